@@ -1,0 +1,2 @@
+//! *Error Eliminating Rapid Ultrasonic Firing* for rings of ultrasonic range sensors, without an allocator.
+#![no_std]

@@ -1,2 +1,51 @@
-//! *Error Eliminating Rapid Ultrasonic Firing* for rings of ultrasonic range sensors, without an allocator.
+//! *Error Eliminating Rapid Ultrasonic Firing* (EERUF) for rings of ultrasonic range sensors, without an allocator.
+//!
+//! Sensors that fire at the same time hear each other: *crosstalk*. Firing one by one avoids it and is slow. EERUF fires
+//! every sensor once per period `T_p` at `T_fire = T_lag + T_wait`, where `T_wait` alternates between two values that
+//! differ from sensor to sensor, and accepts a reading only if it is near-identical to the one before. A true echo does
+//! not depend on the waits; crosstalk shifts with them and is rejected.
+//!
+//! - [`Schedule`]: when each sensor fires. [`schedule!`] checks a table while the firmware is compiled.
+//! - [`Requirements`] and [`Schedule::verify`]: Eqs. (13a), (13b), the smallest interval between neighbours, and the
+//!   listening window.
+//! - [`Ring`]: what firmware runs. It combines a [`Scheduler`] ([`ScheduledFiring`] or [`ImmediateRefiring`]) with the
+//!   filter; [`EchoFilter`] is the filter alone.
+//! - [`Adaptation`]: moves along a ladder of schedules as the rejection rate asks for.
+//! - [`SpeedOfSound`]: distances from echo times.
+//!
+//! The crate is `no_std` and uses no allocator, no floats and no clock: the caller passes `now` in and sleeps until the
+//! deadline it is told, so the same code runs in an interrupt, in a simulator and in a test. Sensors are counted from 0
+//! in code and printed from 1, as in the paper.
+//!
+//! Equations and sections are those of J. Borenstein and Y. Koren, *Error Eliminating Rapid Ultrasonic Firing for Mobile
+//! Robot Obstacle Avoidance*, IEEE Transactions on Robotics and Automation 11(1), February 1995, pp. 132-138.
 #![no_std]
+
+mod adaptation;
+mod conditions;
+mod filter;
+mod layout;
+mod reading;
+mod refiring;
+mod ring;
+mod schedule;
+mod scheduler;
+mod sound;
+pub mod tables;
+mod time;
+mod verify;
+
+pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
+pub use conditions::{Criterion, Interval, Requirements, Separation};
+pub use filter::{EchoFilter, FilterError};
+pub use layout::Layout;
+pub use reading::{Kind, Tally, Verdict};
+pub use refiring::ImmediateRefiring;
+pub use ring::{Config, Event, PeriodStats, Reading, Ring, RingError, ScheduledRing};
+pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError};
+pub use scheduler::{ScheduledFiring, Scheduler, Step};
+pub use sound::SpeedOfSound;
+pub use time::{Instant, Micros};
+#[doc(hidden)]
+pub use verify::{__checked, __micros};
+pub use verify::{Report, Violation, ViolationKind, Violations};

@@ -1,0 +1,267 @@
+//! What a schedule must meet so that crosstalk never passes the filter: Eqs. (13a), (13b) and constraint 3.1 c.
+//!
+//! The paper prints, for all sensors `x != y` (x causes crosstalk, y suffers it),
+//!
+//! ```text
+//! |T_x,a - T_y,a| - |T_x,b - T_y,b| > 2 T_delta      (13a)
+//! |T_x,a - T_y,b| - |T_x,b - T_y,a| > 2 T_delta      (13b)
+//! ```
+//!
+//! where `T` are the waits of phases a and b. Read literally this fails on the paper's own tables (it reaches -22 ms on
+//! Tables I-b and I-d). With the absolute value of the whole left side they have exactly the 2 ms that the paper claims:
+//! [`Criterion::Paper`]. What the derivation from (10a), (10b) really needs is weaker, [`Criterion::Exact`]: with
+//! `d_i = T_i,a - T_i,b`,
+//!
+//! ```text
+//! |d_x - d_y| > 2 T_delta   and   |d_x + d_y| > 2 T_delta
+//! ```
+//!
+//! The first is how far crosstalk from x to y moves between consecutive readings if it arrives an even number of periods
+//! after it was sent, the second for an odd number. Since `||p| - |q|| = min(|p - q|, |p + q|)`, both criteria are
+//! packings on a line, which sorting checks: Exact holds if and only if the `|d_i|` are pairwise separated, and Paper if
+//! and only if the sums `T_i,a + T_i,b` are separated as well.
+//!
+//! Times are whole microseconds and *near-identical* means `difference <= T_delta`, so `> 2 T_delta` is
+//! `>= 2 T_delta + 1 us`.
+
+use core::fmt;
+
+use crate::layout::Layout;
+use crate::schedule::{Phase, Schedule};
+use crate::time::Micros;
+
+/// How to read Eqs. (13a), (13b).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Criterion {
+    /// As printed, with an outer absolute value. Stronger than needed.
+    Paper,
+    /// What rejecting every crosstalk reading needs; the lags cancel, so firing times serve as well as waits.
+    #[default]
+    Exact,
+}
+
+/// Everything a schedule is to be checked against.
+///
+/// ```
+/// use eeruf_core::{Layout, Micros, Requirements, tables::TABLE_I_D};
+/// let paper = Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) };
+/// assert!(TABLE_I_D.verify(&paper).ok());
+/// assert!(!TABLE_I_D.verify(&Requirements { min_interval: Micros::from_millis(18), ..paper }).ok());
+/// let in_blocks = Requirements { layout: Layout::Blocks(4), min_interval: Micros::from_millis(19), ..paper };
+/// assert!(TABLE_I_D.verify(&in_blocks).ok());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Requirements<'a> {
+    /// `T_delta`: consecutive readings that differ by no more are near-identical (Eq. 11).
+    pub t_delta: Micros,
+    /// How to read (13a), (13b).
+    pub criterion: Criterion,
+    /// The least time between the firings of two neighbours, in each phase and across each period's end; 15 ms in the
+    /// paper (Sec. 3.1 c).
+    pub min_interval: Micros,
+    /// Which sensors are neighbours.
+    pub layout: Layout<'a>,
+    /// `T_wind`, for which a sensor listens: it must not fire again earlier.
+    pub window: Micros,
+    /// Also reject a sensor's own echo from the period before: `2 |d| > 2 T_delta` for each sensor.
+    pub stale_echo: bool,
+}
+
+impl Requirements<'_> {
+    /// Criterion Exact at this `t_delta`, any four adjacent sensors of a line as neighbours, and nothing else asked.
+    pub const fn new(t_delta: Micros) -> Self {
+        Self {
+            t_delta,
+            criterion: Criterion::Exact,
+            min_interval: Micros::ZERO,
+            layout: Layout::Line(4),
+            window: Micros::ZERO,
+            stale_echo: false,
+        }
+    }
+
+    /// The separation that `t_delta` needs: `2 t_delta + 1 us`.
+    pub const fn separation(&self) -> Micros {
+        self.t_delta.saturating_add(self.t_delta).saturating_add(Micros::new(1))
+    }
+}
+
+/// The two sensors that come closest to failing (13a), (13b), and by how much they hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Separation {
+    /// The smaller left side of the two conditions.
+    pub value: Micros,
+    /// The sensors, from 0, the smaller number first.
+    pub sensors: (u8, u8),
+}
+
+/// Two firings of neighbours, one after the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Interval {
+    /// The time between them.
+    pub value: Micros,
+    /// The sensors, from 0: ascending within a period, in firing order across a period's end.
+    pub sensors: (u8, u8),
+    /// The phases in which they fire.
+    pub phases: (Phase, Phase),
+}
+
+impl<const K: usize, const M: usize> Schedule<K, M> {
+    /// The smallest interval between two neighbours' firings, over all phases and period boundaries; `None` without
+    /// neighbours. Takes `M K^2` steps.
+    pub const fn min_interval(&self, layout: Layout<'_>) -> Option<Interval> {
+        let mut least: Option<Interval> = None;
+        let mut phase = 0;
+        while phase < M {
+            let mut x = 0;
+            while x < self.sensors() {
+                let mut y = 0;
+                while y < self.sensors() {
+                    if layout.neighbours(self.sensors(), x, y) {
+                        if x < y {
+                            least = shorter(least, self.interval_within(x, y, phase));
+                        }
+                        least = shorter(least, self.interval_across(x, y, phase));
+                    }
+                    y += 1;
+                }
+                x += 1;
+            }
+            phase += 1;
+        }
+        least
+    }
+
+    /// Between the firings of `x` and `y` in one period.
+    pub(crate) const fn interval_within(&self, x: usize, y: usize, phase: usize) -> Interval {
+        Interval {
+            value: self.fire_at(phase, x).abs_diff(self.fire_at(phase, y)),
+            sensors: (x as u8, y as u8),
+            phases: (Phase(phase as u8), Phase(phase as u8)),
+        }
+    }
+
+    /// From the firing of `x` in one period to that of `y` in the next.
+    pub(crate) const fn interval_across(&self, x: usize, y: usize, phase: usize) -> Interval {
+        let next = (phase + 1) % M;
+        let t_fire = self.fire_at(next, y).as_micros() + self.period().as_micros();
+        Interval {
+            value: Micros::new(t_fire - self.fire_at(phase, x).as_micros()),
+            sensors: (x as u8, y as u8),
+            phases: (Phase(phase as u8), Phase(next as u8)),
+        }
+    }
+}
+
+const fn shorter(least: Option<Interval>, next: Interval) -> Option<Interval> {
+    match least {
+        Some(least) if least.value.as_micros() <= next.value.as_micros() => Some(least),
+        _ => Some(next),
+    }
+}
+
+impl<const K: usize> Schedule<K> {
+    /// `d_i = T_i,a - T_i,b` in microseconds: how much earlier, relative to its period, a sensor fires in phase b.
+    ///
+    /// Zero for a sensor that is not there.
+    pub const fn shift_us(&self, sensor: usize) -> i32 {
+        match (self.t_fire(Phase::A, sensor), self.t_fire(Phase::B, sensor)) {
+            // Both are below 2^28, so the difference is exact.
+            (Some(a), Some(b)) => a.as_micros() as i32 - b.as_micros() as i32,
+            _ => 0,
+        }
+    }
+
+    /// The smaller left side of (13a), (13b) over all pairs, and the pair that has it; `None` for a single sensor.
+    /// Sorts instead of comparing all pairs.
+    pub const fn separation(&self, criterion: Criterion) -> Option<Separation> {
+        let by_shift = closest(&self.shift_sizes(), self.sensors());
+        match criterion {
+            Criterion::Exact => by_shift,
+            Criterion::Paper => match (by_shift, closest(&self.wait_sums(), self.sensors())) {
+                (Some(d), Some(s)) if s.value.as_micros() < d.value.as_micros() => Some(s),
+                _ => by_shift,
+            },
+        }
+    }
+
+    const fn shift_sizes(&self) -> [u32; K] {
+        let mut sizes = [0; K];
+        let mut x = 0;
+        while x < self.sensors() {
+            sizes[x] = self.shift_us(x).unsigned_abs();
+            x += 1;
+        }
+        sizes
+    }
+
+    const fn wait_sums(&self) -> [u32; K] {
+        let mut sums = [0; K];
+        let mut x = 0;
+        while x < self.sensors() {
+            sums[x] = self.wait_us(0, x) as u32 + self.wait_us(1, x) as u32;
+            x += 1;
+        }
+        sums
+    }
+
+    /// For a sensor and a phase that are there. A wait is below the period, so it fits.
+    const fn wait_us(&self, phase: usize, sensor: usize) -> i32 {
+        self.fire_at(phase, sensor).as_micros() as i32 - self.t_lag()[sensor].as_micros() as i32
+    }
+
+    /// The left sides of (13a) and (13b) for one pair, written out.
+    pub(crate) const fn left_sides(&self, criterion: Criterion, x: usize, y: usize) -> (Micros, Micros) {
+        let (even, odd) = match criterion {
+            Criterion::Exact => {
+                let (dx, dy) = (self.shift_us(x), self.shift_us(y));
+                (dx - dy, dx + dy)
+            }
+            Criterion::Paper => {
+                let (xa, xb) = (self.wait_us(0, x), self.wait_us(1, x));
+                let (ya, yb) = (self.wait_us(0, y), self.wait_us(1, y));
+                ((xa - ya).abs() - (xb - yb).abs(), (xa - yb).abs() - (xb - ya).abs())
+            }
+        };
+        (Micros::new(even.unsigned_abs()), Micros::new(odd.unsigned_abs()))
+    }
+}
+
+/// The two values that lie closest together, by insertion sort.
+const fn closest<const K: usize>(values: &[u32; K], sensors: usize) -> Option<Separation> {
+    let mut order = [0; K];
+    let mut x = 0;
+    while x < sensors {
+        let mut at = x;
+        while at > 0 && values[order[at - 1]] > values[x] {
+            order[at] = order[at - 1];
+            at -= 1;
+        }
+        order[at] = x;
+        x += 1;
+    }
+    let mut least: Option<Separation> = None;
+    let mut at = 1;
+    while at < sensors {
+        let (x, y) = (order[at - 1], order[at]);
+        let value = Micros::new(values[y] - values[x]);
+        let smaller = match least {
+            Some(least) => value.as_micros() < least.value.as_micros(),
+            None => true,
+        };
+        if smaller {
+            least = Some(Separation { value, sensors: if x < y { (x as u8, y as u8) } else { (y as u8, x as u8) } });
+        }
+        at += 1;
+    }
+    least
+}
+
+impl fmt::Display for Criterion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Paper => "paper",
+            Self::Exact => "exact",
+        })
+    }
+}

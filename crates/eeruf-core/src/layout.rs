@@ -1,0 +1,90 @@
+//! Which sensors are neighbours: two that must not fire shortly after one another (Sec. 3.1, constraint c).
+
+use crate::schedule::MAX_SENSORS;
+
+/// How the sensors stand, and how many adjacent ones count as neighbours.
+///
+/// The paper asks that any *four* adjacent sensors fire at least 15 ms apart (Sec. 3.1 c). Sensors are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout<'a> {
+    /// A row with two ends (the paper's half ring): neighbours differ by less than this number.
+    Line(u8),
+    /// A closed ring: as a line, but the last sensor stands next to the first.
+    Ring(u8),
+    /// Groups of this many adjacent sensors; only members of one group are neighbours.
+    Blocks(u8),
+    /// Any graph: bit `y` of word `x` says that `x` and `y` are neighbours. A pair counts if either word names it;
+    /// missing words are empty.
+    Graph(&'a [u64]),
+}
+
+impl Layout<'_> {
+    /// Whether `x` and `y` (from 0) of `sensors` are neighbours; never for a sensor and itself.
+    pub const fn neighbours(&self, sensors: usize, x: usize, y: usize) -> bool {
+        if x == y || x >= sensors || y >= sensors {
+            return false;
+        }
+        let apart = x.abs_diff(y);
+        match *self {
+            Layout::Line(n) => apart < n as usize,
+            Layout::Ring(n) => apart < n as usize || sensors - apart < n as usize,
+            Layout::Blocks(n) => n > 0 && x / n as usize == y / n as usize,
+            Layout::Graph(rows) => bit(rows, x, y) || bit(rows, y, x),
+        }
+    }
+
+    /// The neighbours of each sensor as bit sets; words beyond `sensors` are zero.
+    pub const fn rows(&self, sensors: usize) -> [u64; MAX_SENSORS] {
+        let mut rows = [0; MAX_SENSORS];
+        let mut x = 0;
+        while x < MAX_SENSORS {
+            let mut y = 0;
+            while y < MAX_SENSORS {
+                if self.neighbours(sensors, x, y) {
+                    rows[x] |= 1 << y;
+                }
+                y += 1;
+            }
+            x += 1;
+        }
+        rows
+    }
+}
+
+const fn bit(rows: &[u64], x: usize, y: usize) -> bool {
+    x < rows.len() && y < MAX_SENSORS && rows[x] >> y & 1 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_has_ends_and_a_ring_has_none() {
+        assert!(Layout::Line(4).neighbours(12, 0, 3) && !Layout::Line(4).neighbours(12, 0, 4));
+        assert!(!Layout::Line(4).neighbours(12, 0, 11));
+        assert!(Layout::Ring(4).neighbours(12, 0, 9) && !Layout::Ring(4).neighbours(12, 0, 8));
+        assert!(Layout::Blocks(4).neighbours(12, 4, 7) && !Layout::Blocks(4).neighbours(12, 3, 4));
+    }
+
+    #[test]
+    fn a_graph_is_symmetric_and_without_loops_whatever_its_words_say() {
+        let graph = Layout::Graph(&[0b011, 0, 0b001]);
+        assert!(!graph.neighbours(3, 0, 0));
+        assert!(graph.neighbours(3, 0, 1) && graph.neighbours(3, 1, 0));
+        assert!(graph.neighbours(3, 0, 2) && graph.neighbours(3, 2, 0));
+        assert!(!graph.neighbours(3, 1, 2) && !graph.neighbours(2, 0, 2));
+    }
+
+    #[test]
+    fn rows_repeat_the_pairwise_answer() {
+        for layout in [Layout::Line(4), Layout::Ring(3), Layout::Blocks(5), Layout::Ring(0)] {
+            let rows = layout.rows(13);
+            for x in 0..64 {
+                for y in 0..64 {
+                    assert_eq!(rows[x] >> y & 1 == 1, layout.neighbours(13, x, y), "{layout:?} {x} {y}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! What becomes of one firing: the [`Kind`] of reading, never a magic number, and [`Tally`], which counts them.
+
+use core::fmt;
+
+use crate::time::Micros;
+
+/// What one firing of one sensor told. Each firing yields exactly one kind, but for [`Kind::Late`], which may follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+#[repr(u8)]
+pub enum Kind {
+    /// An echo with nothing to compare it with: at the start, or after a firing without echo.
+    First,
+    /// Near-identical to the reading before (Eq. 11), as many times running as the filter wants: believe it.
+    Accepted,
+    /// Not near-identical to the reading before: crosstalk, noise, or an object that moved too fast.
+    Rejected,
+    /// Near-identical to the reading before, but not yet often enough; only where more than two readings are compared.
+    Repeated,
+    /// No echo within the window, once.
+    NoEcho,
+    /// No echo as many times running as the filter wants: nothing is in range.
+    Clear,
+    /// Nothing but an edge within the blanking time: ringing of the transducer, or an object closer than it can measure.
+    TooEarly,
+    /// An edge after the window has ended; it is compared with nothing.
+    Late,
+    /// The driver reported that the echo line was stuck when the sensor was to fire.
+    Stuck,
+}
+
+impl Kind {
+    /// Every kind, in the order of the enumeration.
+    pub const ALL: [Self; 9] = [
+        Self::First,
+        Self::Accepted,
+        Self::Rejected,
+        Self::Repeated,
+        Self::NoEcho,
+        Self::Clear,
+        Self::TooEarly,
+        Self::Late,
+        Self::Stuck,
+    ];
+
+    /// A short name, as `--json` and Python spell it.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::First => "first",
+            Self::Accepted => "accepted",
+            Self::Rejected => "rejected",
+            Self::Repeated => "repeated",
+            Self::NoEcho => "no_echo",
+            Self::Clear => "clear",
+            Self::TooEarly => "too_early",
+            Self::Late => "late",
+            Self::Stuck => "stuck",
+        }
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+/// The filter's answer to one firing of one sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Verdict {
+    /// What the firing told.
+    pub kind: Kind,
+    /// The echo time: the accepted one, or else the earliest; `None` without echo.
+    #[doc(alias = "T_echo")]
+    pub t_echo: Option<Micros>,
+    /// The echo time of the firing before that it was compared with, if there was one.
+    pub previous: Option<Micros>,
+    /// How many firings of this sensor ago the last reading was accepted: 0 for an accepted one, `None` if none ever
+    /// was. Stops at 65,534.
+    pub age: Option<u16>,
+}
+
+/// How many readings of each kind; `N` is `u8` for one period of a ring, `u32` for long runs. Counts saturate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally<N = u32> {
+    counts: [N; Kind::ALL.len()],
+}
+
+impl<N: Copy + Into<u32> + TryFrom<u32>> Tally<N> {
+    /// Counts one more reading of this kind.
+    pub fn count(&mut self, kind: Kind) {
+        // `Kind` is numbered in the order of `ALL`, so the index is in range.
+        if let Some(count) = self.counts.get_mut(kind as usize) {
+            let more: u32 = (*count).into().saturating_add(1);
+            if let Ok(more) = N::try_from(more) {
+                *count = more;
+            }
+        }
+    }
+
+    /// The number of readings of one kind.
+    pub fn of(&self, kind: Kind) -> u32 {
+        self.counts.get(kind as usize).map_or(0, |&count| count.into())
+    }
+
+    /// The rejection rate (end of Sec. 3.1): rejected readings of all that were compared, in thousandths; `None` if
+    /// none was compared.
+    pub fn rejection_permille(&self) -> Option<u16> {
+        let rejected = u64::from(self.of(Kind::Rejected));
+        let compared = rejected + u64::from(self.of(Kind::Accepted)) + u64::from(self.of(Kind::Repeated));
+        // At most 1000.
+        (1000 * rejected).checked_div(compared).map(|permille| permille as u16)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tally_counts_each_kind_apart_and_saturates() {
+        let mut tally = Tally::<u8>::default();
+        for _ in 0..300 {
+            tally.count(Kind::Clear);
+        }
+        for kind in Kind::ALL {
+            tally.count(kind);
+        }
+        assert_eq!(tally.of(Kind::Clear), 255);
+        assert_eq!(tally.of(Kind::Stuck), 1);
+        assert_eq!(tally.rejection_permille(), Some(333));
+        assert_eq!(Tally::<u32>::default().rejection_permille(), None);
+    }
+}

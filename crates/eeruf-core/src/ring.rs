@@ -1,0 +1,614 @@
+//! [`Ring`]: scheduler and filter together, with the hygiene that real sensors need.
+//!
+//! The caller polls, fires what it is told to fire, hands in the instants of echo edges, and sleeps until the next
+//! deadline. Nothing here blocks, allocates, panics or reads a clock.
+
+use core::fmt;
+
+use crate::filter::{FilterError, NO_ECHO, Rule, Track, insert};
+use crate::reading::{Kind, Tally, Verdict};
+use crate::refiring::ImmediateRefiring;
+use crate::schedule::{Phase, Schedule};
+use crate::scheduler::{ScheduledFiring, Scheduler, Step};
+use crate::time::{Instant, Micros};
+
+/// How a [`Ring`] listens and compares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Config {
+    /// `T_delta`: consecutive readings that differ by no more are near-identical.
+    pub t_delta: Micros,
+    /// `T_wind`: how long a sensor listens after it has fired. An echo at this very time still counts.
+    pub window: Micros,
+    /// Edges sooner than this after firing are ringing of the transducer, not echoes.
+    pub blanking: Micros,
+    /// How many readings running must agree, 2 to 8.
+    pub consecutive: u8,
+}
+
+impl Config {
+    /// This `t_delta` and window, no blanking, and two readings compared, as in the paper.
+    pub const fn new(t_delta: Micros, window: Micros) -> Self {
+        Self { t_delta, window, blanking: Micros::ZERO, consecutive: 2 }
+    }
+}
+
+/// What a [`Ring`] tells its caller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// Fire this sensor (from 0), now.
+    Fire(u8),
+    /// What became of an earlier firing.
+    Reading(Reading),
+    /// A period has ended.
+    PeriodEnded(PeriodStats),
+}
+
+/// What became of one firing of one sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reading {
+    /// The sensor, from 0.
+    pub sensor: u8,
+    /// The phase in which it fired.
+    pub phase: Phase,
+    /// The period in which it fired, counted from 0.
+    pub period: u32,
+    /// What the firing told.
+    pub kind: Kind,
+    /// The echo time; `None` without echo.
+    pub t_echo: Option<Micros>,
+    /// The echo time that it was compared with.
+    pub previous: Option<Micros>,
+    /// How many firings ago this sensor's last reading was accepted; `None` if none ever was.
+    pub age: Option<u16>,
+}
+
+/// What happened since the end of the period before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PeriodStats {
+    /// The period, counted from 0.
+    pub period: u32,
+    /// Its phase.
+    pub phase: Phase,
+    /// The readings told since the period before ended, by kind.
+    pub tally: Tally<u8>,
+    /// The latest firing: how long after it was due it was polled for, at most 65,535 us.
+    pub max_late: Micros,
+}
+
+/// A ring of up to `K` sensors that fires by the scheduler `S`, and believes only what its filter accepts. `E` is the
+/// number of echoes a sensor reports of one firing.
+///
+/// ```
+/// use eeruf_core::{Config, Event, Instant, Kind, Micros, Ring, tables::TABLE_I_D};
+///
+/// let config = Config::new(Micros::new(999), Micros::from_millis(36));
+/// let mut ring = Ring::new(&TABLE_I_D, config, Instant::from_micros(0))?;
+/// let mut accepted = 0;
+/// for _ in 0..1000 {
+///     let now = ring.next_deadline(); // where firmware would sleep
+///     while let Some(event) = ring.poll(now) {
+///         match event {
+///             Event::Fire(sensor) => ring.echo(sensor, now + Micros::from_millis(12)), // a wall 2 m away
+///             Event::Reading(reading) => accepted += u32::from(reading.kind == Kind::Accepted),
+///             Event::PeriodEnded(stats) => assert_eq!(stats.max_late, Micros::ZERO),
+///         }
+///     }
+/// }
+/// assert!(accepted > 400);
+/// # Ok::<(), eeruf_core::RingError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Ring<S, const K: usize, const E: usize = 1> {
+    scheduler: S,
+    sensors: [Sensor<E>; K],
+    rule: Rule,
+    window: Micros,
+    blanking: Micros,
+    /// When there is something to do next.
+    deadline: Instant,
+    period: u32,
+    tally: Tally<u8>,
+    max_late_us: u16,
+    /// The sensor whose window closes first, or [`NOBODY`].
+    oldest: u8,
+    /// How many sensors have a reading to tell before their window closes.
+    ready: u8,
+}
+
+/// A [`Ring`] with scheduled firing by a schedule of the paper's kind.
+pub type ScheduledRing<'s, const K: usize, const E: usize = 1> = Ring<ScheduledFiring<'s, K>, K, E>;
+
+const NOBODY: u8 = u8::MAX;
+
+impl<'s, const K: usize, const M: usize> Ring<ScheduledFiring<'s, K, M>, K> {
+    /// A ring with scheduled firing that begins at `now`.
+    ///
+    /// # Errors
+    /// As for [`Ring::with_scheduler`].
+    pub fn new(schedule: &'s Schedule<K, M>, config: Config, now: Instant) -> Result<Self, RingError> {
+        Self::with_scheduler(ScheduledFiring::new(schedule, now), config, now)
+    }
+}
+
+impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s, K, M>, K, E> {
+    /// The schedule of the present period.
+    pub const fn schedule(&self) -> &'s Schedule<K, M> {
+        self.scheduler.schedule()
+    }
+
+    /// Changes to another schedule when the present period ends (see [`ScheduledFiring::change_schedule`]). Readings
+    /// before and after the change are not compared.
+    ///
+    /// # Errors
+    /// [`RingError::Window`] if a sensor would fire again while it still listens.
+    pub fn change_schedule(&mut self, schedule: &'s Schedule<K, M>) -> Result<(), RingError> {
+        if self.window > schedule.min_refire() {
+            return Err(RingError::Window { window: self.window, min_refire: schedule.min_refire() });
+        }
+        self.scheduler.change_schedule(schedule);
+        Ok(())
+    }
+}
+
+impl<'s, const K: usize, const M: usize> Ring<ImmediateRefiring<'s, K, M>, K> {
+    /// A ring with immediate refiring that begins at `now`; no sensor fires again before its window has passed.
+    ///
+    /// # Errors
+    /// As for [`Ring::with_scheduler`].
+    pub fn immediate(
+        schedule: &'s Schedule<K, M>,
+        config: Config,
+        min_refire: Micros,
+        now: Instant,
+    ) -> Result<Self, RingError> {
+        Self::with_scheduler(ImmediateRefiring::new(schedule, min_refire, now), config, now)
+    }
+}
+
+impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
+    /// A ring with a scheduler of the caller's and any number of echoes a firing.
+    ///
+    /// # Errors
+    /// [`RingError`] if a sensor would fire again while it still listens, if the window ends within the blanking time,
+    /// or if the number of consecutive readings is not 2 to 8.
+    pub fn with_scheduler(scheduler: S, config: Config, now: Instant) -> Result<Self, RingError> {
+        let Config { t_delta, window, blanking, consecutive } = config;
+        // No echo time within a window can then be mistaken for an instant before the firing.
+        let longest = scheduler.min_refire().min(Micros::new(u32::MAX / 2));
+        if window > longest {
+            return Err(RingError::Window { window, min_refire: longest });
+        }
+        if window <= blanking {
+            return Err(RingError::Blanking { blanking, window });
+        }
+        let mut ring = Self {
+            scheduler,
+            sensors: [Sensor::NEW; K],
+            rule: Rule::new(t_delta, consecutive)?,
+            window,
+            blanking,
+            deadline: now,
+            period: 0,
+            tally: Tally::default(),
+            max_late_us: 0,
+            oldest: NOBODY,
+            ready: 0,
+        };
+        ring.set_deadline();
+        Ok(ring)
+    }
+
+    /// The next thing to do or to know, if there is one at `now`. Call again until there is none, then sleep until
+    /// [`next_deadline`](Self::next_deadline).
+    ///
+    /// Hand in the echo edges you know of before you poll: an edge that comes after the poll that closed its window is
+    /// not heard.
+    /// A late poll loses nothing: firings that are due move back, and all later ones with them.
+    #[inline]
+    pub fn poll(&mut self, now: Instant) -> Option<Event> {
+        self.poll_expecting(now, |_| 0)
+    }
+
+    /// As [`poll`](Self::poll), for a robot that moves: `expected_change_us` is asked for the change in microseconds
+    /// that a good reading of a sensor should show since its firing before (see [`EchoFilter::push_echoes`]).
+    ///
+    /// [`EchoFilter::push_echoes`]: crate::EchoFilter::push_echoes
+    #[inline]
+    pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
+        if !now.has_reached(self.deadline) && self.deadline.since(now) <= self.scheduler.horizon() {
+            return None;
+        }
+        self.advance(now, expected_change_us)
+    }
+
+    /// When to poll next. In the past if something is waiting to be told.
+    #[inline]
+    pub fn next_deadline(&self) -> Instant {
+        self.deadline
+    }
+
+    /// An edge on the echo line of a sensor, `at` this instant. Cheap; edges may come in any order, at any time, from
+    /// any sensor, wanted or not.
+    pub fn echo(&mut self, sensor: u8, at: Instant) {
+        let Some(heard) = self.sensors.get_mut(usize::from(sensor)) else { return };
+        match heard.echo(at, self.blanking, self.window) {
+            Edge::Ready => {
+                self.ready = self.ready.saturating_add(1);
+                if !at.has_reached(self.deadline) {
+                    self.deadline = at;
+                }
+            }
+            Edge::Late => self.tally.count(Kind::Late),
+            Edge::Noted => {}
+        }
+    }
+
+    /// Reports that the echo line of a sensor was already high when it was to fire: the firing just told counts as
+    /// [`Kind::Stuck`], whatever edges follow.
+    pub fn stuck(&mut self, sensor: u8) {
+        if let Some(stuck) = self.sensors.get_mut(usize::from(sensor)) {
+            if stuck.is(LISTENING) {
+                stuck.set(STUCK);
+            }
+        }
+    }
+
+    /// Has a sensor fire no more. A firing of it that is under way is still told.
+    pub fn disable(&mut self, sensor: u8) {
+        self.scheduler.set_enabled(sensor, false);
+        self.set_deadline();
+    }
+
+    /// Has a sensor fire again from its next turn on. Its readings from before are forgotten.
+    pub fn enable(&mut self, sensor: u8) {
+        if self.scheduler.is_enabled(sensor) {
+            return;
+        }
+        self.scheduler.set_enabled(sensor, true);
+        if let Some(sensor) = self.sensors.get_mut(usize::from(sensor)) {
+            sensor.track.forget();
+        }
+        self.set_deadline();
+    }
+
+    /// Whether a sensor fires.
+    pub fn is_enabled(&self, sensor: u8) -> bool {
+        self.scheduler.is_enabled(sensor)
+    }
+
+    /// Begins anew with phase a at `now`, or as soon as the last firings allow. Firings under way are dropped, readings
+    /// from before are forgotten; ages and the count of periods go on.
+    pub fn restart(&mut self, now: Instant) {
+        self.scheduler.restart(now);
+        for sensor in &mut self.sensors {
+            sensor.drop_firing();
+        }
+        self.oldest = NOBODY;
+        self.ready = 0;
+        self.set_deadline();
+    }
+
+    /// The scheduler.
+    pub const fn scheduler(&self) -> &S {
+        &self.scheduler
+    }
+
+    /// Something is due, or the clock has jumped.
+    fn advance(&mut self, now: Instant, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
+        if !now.has_reached(self.deadline) {
+            self.restart(now);
+            if !now.has_reached(self.deadline) {
+                return None;
+            }
+        }
+        let fires = if now.has_reached(self.scheduler.deadline()) { self.scheduler.next_sensor() } else { None };
+        // Firing comes first, since it should be on time; but a sensor tells what it heard before it fires again.
+        let told = match fires {
+            Some(sensor) => self.sensor(sensor).is_some_and(Sensor::holds_reading).then_some(sensor),
+            None => self.next_to_tell(now),
+        };
+        let event = match told {
+            Some(sensor) => self.tell(sensor, &mut expected_change_us).map(Event::Reading),
+            None => self.scheduler.poll(now).map(|step| match step {
+                Step::Fire { sensor, phase, late } => self.fired(sensor, phase, now, late),
+                Step::PeriodEnded { phase, changed } => self.period_ended(phase, changed),
+            }),
+        };
+        self.set_deadline();
+        event
+    }
+
+    fn fired(&mut self, sensor: u8, phase: Phase, now: Instant, late: Micros) -> Event {
+        if late > self.rule.t_delta() {
+            self.disturb();
+        }
+        self.max_late_us = self.max_late_us.max(u16::try_from(late.as_micros()).unwrap_or(u16::MAX));
+        if let Some(fired) = self.sensors.get_mut(usize::from(sensor)) {
+            fired.fire(phase, now);
+        }
+        if self.oldest == NOBODY {
+            self.oldest = sensor;
+        }
+        Event::Fire(sensor)
+    }
+
+    fn period_ended(&mut self, phase: Phase, changed: bool) -> Event {
+        if changed {
+            self.disturb();
+        }
+        let stats = PeriodStats {
+            period: self.period,
+            phase,
+            tally: core::mem::take(&mut self.tally),
+            max_late: Micros::new(core::mem::take(&mut self.max_late_us).into()),
+        };
+        self.period = self.period.wrapping_add(1);
+        Event::PeriodEnded(stats)
+    }
+
+    /// Firings have shifted against each other, by lateness or by a change of schedule, so (13a), (13b) say nothing
+    /// about readings from before compared with readings from after. The next reading of each sensor, which may belong
+    /// to either side, is compared with nothing.
+    fn disturb(&mut self) {
+        for sensor in &mut self.sensors {
+            sensor.set(DISTURBED);
+        }
+    }
+
+    /// A sensor with an echo in, or one whose window has closed.
+    fn next_to_tell(&self, now: Instant) -> Option<u8> {
+        if self.ready > 0 {
+            return self.first_ready();
+        }
+        let oldest = self.sensor(self.oldest)?;
+        now.has_reached(oldest.fired + self.window).then_some(self.oldest)
+    }
+
+    fn first_ready(&self) -> Option<u8> {
+        // At most 64 sensors.
+        self.sensors.iter().position(Sensor::is_ready).map(|x| x as u8)
+    }
+
+    fn tell(&mut self, sensor: u8, expected_change_us: &mut impl FnMut(u8) -> i32) -> Option<Reading> {
+        let heard = self.sensors.get_mut(usize::from(sensor))?;
+        let phase = heard.phase();
+        if heard.is_ready() {
+            self.ready = self.ready.saturating_sub(1);
+        }
+        let listened = heard.is(LISTENING);
+        let ended_at = heard.fired + heard.t_echo().filter(|_| E == 1).unwrap_or(self.window);
+        let verdict = if listened {
+            heard.judge(self.rule, || expected_change_us(sensor))
+        } else {
+            Verdict { kind: Kind::Late, t_echo: heard.take_late(), previous: None, age: heard.track.age() }
+        };
+        if listened {
+            self.scheduler.ended(sensor, ended_at);
+            if self.oldest == sensor {
+                self.oldest = self.find_oldest();
+            }
+        }
+        self.tally.count(verdict.kind);
+        let Verdict { kind, t_echo, previous, age } = verdict;
+        let period = self.period.wrapping_sub(self.scheduler.periods_since(phase).into());
+        Some(Reading { sensor, phase, period, kind, t_echo, previous, age })
+    }
+
+    fn find_oldest(&self) -> u8 {
+        let mut oldest: Option<(u8, Instant)> = None;
+        for (x, sensor) in self.sensors.iter().enumerate() {
+            if sensor.is(LISTENING) && oldest.is_none_or(|(_, fired)| !sensor.fired.has_reached(fired)) {
+                // At most 64 sensors.
+                oldest = Some((x as u8, sensor.fired));
+            }
+        }
+        oldest.map_or(NOBODY, |(x, _)| x)
+    }
+
+    fn set_deadline(&mut self) {
+        let mut deadline = self.scheduler.deadline();
+        let closes = self.sensor(self.oldest).map(|oldest| oldest.fired + self.window);
+        let ready = if self.ready > 0 { self.first_ready().and_then(|x| self.sensor(x)) } else { None };
+        for sooner in [closes, ready.map(|ready| ready.fired)].into_iter().flatten() {
+            if !sooner.has_reached(deadline) {
+                deadline = sooner;
+            }
+        }
+        self.deadline = deadline;
+    }
+
+    fn sensor(&self, sensor: u8) -> Option<&Sensor<E>> {
+        self.sensors.get(usize::from(sensor))
+    }
+}
+
+/// What is known of one sensor between its firing and its next: 16 bytes where it reports one echo.
+#[derive(Clone, Copy, Debug)]
+struct Sensor<const E: usize> {
+    fired: Instant,
+    /// The echoes of the present firing; also, in the first place, the time of an early or late edge.
+    echoes: [u32; E],
+    track: Track<E>,
+}
+
+// The flags of a sensor, beside the phase in which it fired.
+const PHASE: u8 = 0b111;
+/// It has fired, and what became of that is not yet told.
+const LISTENING: u8 = 1 << 3;
+/// The only edges so far came within the blanking time.
+const EARLY: u8 = 1 << 4;
+/// An edge came after the window, or none is to be told.
+const LATE: u8 = 1 << 5;
+/// The driver found the line stuck.
+const STUCK: u8 = 1 << 6;
+/// The next reading is not to be compared with its neighbours in time.
+const DISTURBED: u8 = 1 << 7;
+
+/// What to do about an edge.
+enum Edge {
+    /// A reading can be told.
+    Ready,
+    /// It came after the window, which is not yet closed.
+    Late,
+    /// Nothing.
+    Noted,
+}
+
+impl<const E: usize> Sensor<E> {
+    const NEW: Self = Self { fired: Instant::from_micros(0), echoes: [NO_ECHO; E], track: Track::new(LATE) };
+
+    const fn is(&self, flag: u8) -> bool {
+        self.track.flags & flag != 0
+    }
+
+    fn set(&mut self, flag: u8) {
+        self.track.flags |= flag;
+    }
+
+    fn clear(&mut self, flag: u8) {
+        self.track.flags &= !flag;
+    }
+
+    const fn phase(&self) -> Phase {
+        Phase(self.track.flags & PHASE)
+    }
+
+    fn fire(&mut self, phase: Phase, now: Instant) {
+        self.fired = now;
+        self.echoes = [NO_ECHO; E];
+        self.track.flags = (self.track.flags & DISTURBED) | (phase.0 & PHASE) | LISTENING;
+    }
+
+    fn drop_firing(&mut self) {
+        self.echoes = [NO_ECHO; E];
+        self.track.forget();
+        self.track.flags = LATE;
+    }
+
+    fn echo(&mut self, at: Instant, blanking: Micros, window: Micros) -> Edge {
+        let t_echo = at.since(self.fired);
+        if !at.has_reached(self.fired) {
+            // From before it fired, or from a clock that has jumped.
+            return Edge::Noted;
+        }
+        if !self.is(LISTENING) {
+            if t_echo <= window || self.is(LATE) {
+                return Edge::Noted;
+            }
+            self.set(LATE);
+            self.hold(t_echo);
+            return Edge::Ready;
+        }
+        if t_echo > window {
+            return Edge::Late;
+        }
+        if t_echo < blanking {
+            if self.t_echo().is_none() {
+                self.set(EARLY);
+                self.hold(t_echo);
+            }
+            return Edge::Noted;
+        }
+        if self.is(EARLY) {
+            self.clear(EARLY);
+            self.echoes = [NO_ECHO; E];
+        }
+        let first = self.t_echo().is_none();
+        insert(&mut self.echoes, t_echo.as_micros());
+        if first && E == 1 { Edge::Ready } else { Edge::Noted }
+    }
+
+    fn hold(&mut self, t_echo: Micros) {
+        if let Some(echo) = self.echoes.first_mut() {
+            *echo = t_echo.as_micros();
+        }
+    }
+
+    /// The first edge held, if it is an echo.
+    fn t_echo(&self) -> Option<Micros> {
+        let &echo = self.echoes.first()?;
+        (echo != NO_ECHO && !self.is(EARLY)).then_some(Micros::new(echo))
+    }
+
+    fn take_late(&mut self) -> Option<Micros> {
+        let t_echo = self.t_echo();
+        self.echoes = [NO_ECHO; E];
+        t_echo
+    }
+
+    /// Whether a reading can be told before the window closes: of a sensor with a single echo, or of a late edge.
+    fn is_ready(&self) -> bool {
+        (E == 1 || !self.is(LISTENING)) && self.t_echo().is_some()
+    }
+
+    fn holds_reading(&self) -> bool {
+        self.is(LISTENING) || self.is_ready()
+    }
+
+    /// Ends the firing.
+    fn judge(&mut self, rule: Rule, expected_change_us: impl FnOnce() -> i32) -> Verdict {
+        let disturbed = self.is(DISTURBED);
+        if disturbed {
+            self.track.forget();
+        }
+        let verdict = if self.is(STUCK) {
+            self.track.skip(Kind::Stuck, None)
+        } else if self.is(EARLY) {
+            let edge = self.echoes.first().map(|&us| Micros::new(us));
+            self.track.skip(Kind::TooEarly, edge)
+        } else {
+            self.track.push(rule, &self.echoes, expected_change_us())
+        };
+        if disturbed {
+            self.track.forget();
+        }
+        self.clear(LISTENING | EARLY | STUCK | DISTURBED);
+        self.echoes = [NO_ECHO; E];
+        verdict
+    }
+}
+
+/// Why a [`Ring`] cannot be set up as asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RingError {
+    /// A sensor would fire again while it still listens.
+    Window {
+        /// The window asked for.
+        window: Micros,
+        /// The shortest time between two firings of one sensor.
+        min_refire: Micros,
+    },
+    /// The window is over before the blanking time.
+    Blanking {
+        /// The blanking time asked for.
+        blanking: Micros,
+        /// The window asked for.
+        window: Micros,
+    },
+    /// The filter cannot compare so many readings.
+    Filter(FilterError),
+}
+
+impl From<FilterError> for RingError {
+    fn from(error: FilterError) -> Self {
+        Self::Filter(error)
+    }
+}
+
+impl fmt::Display for RingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Window { window, min_refire } => write!(
+                f,
+                "a listening window of {window}; a sensor of this schedule fires again after {min_refire},                  expected a window no longer than that (T_wind)"
+            ),
+            Self::Blanking { blanking, window } => {
+                write!(f, "a blanking time of {blanking}; expected less than the window of {window}")
+            }
+            Self::Filter(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for RingError {}

@@ -1,0 +1,355 @@
+//! The verifier: holds a [`Schedule`] against its [`Requirements`] and names every violation.
+//!
+//! It is the judge of everything the search returns and shares nothing with it. Nothing is stored: a [`Report`] borrows
+//! the schedule, and its violations are worked out while they are read.
+
+use core::fmt;
+
+use crate::conditions::{Interval, Requirements, Separation};
+use crate::schedule::{Phase, Schedule};
+use crate::time::Micros;
+
+impl<const K: usize> Schedule<K> {
+    /// Checks the schedule against `requirements`: see [`Report`].
+    pub const fn verify<'r>(&'r self, requirements: &'r Requirements<'r>) -> Report<'r, K> {
+        Report { schedule: self, requirements }
+    }
+}
+
+/// What [`Schedule::verify`] found.
+#[derive(Clone, Copy, Debug)]
+pub struct Report<'r, const K: usize> {
+    schedule: &'r Schedule<K>,
+    requirements: &'r Requirements<'r>,
+}
+
+impl<'r, const K: usize> Report<'r, K> {
+    /// Whether every requirement holds.
+    pub const fn ok(&self) -> bool {
+        self.violations().advance().is_none()
+    }
+
+    /// The pair closest to failing (13a), (13b); `None` for a single sensor.
+    pub const fn separation(&self) -> Option<Separation> {
+        self.schedule.separation(self.requirements.criterion)
+    }
+
+    /// The largest `t_delta` at which (13a), (13b) - and the stale echo condition, if asked for - hold; `None` if none
+    /// does.
+    #[doc(alias = "T_delta")]
+    pub const fn max_t_delta(&self) -> Option<Micros> {
+        let mut separation = match self.separation() {
+            Some(separation) => separation.value.as_micros(),
+            None => u32::MAX,
+        };
+        if self.requirements.stale_echo {
+            let mut x = 0;
+            while x < self.schedule.sensors() {
+                let stale = stale_separation(self.schedule, x).as_micros();
+                if stale < separation {
+                    separation = stale;
+                }
+                x += 1;
+            }
+        }
+        match separation.checked_sub(1) {
+            Some(twice) => Some(Micros::new(twice / 2)),
+            None => None,
+        }
+    }
+
+    /// The smallest interval between neighbours; `None` without neighbours.
+    pub const fn min_interval(&self) -> Option<Interval> {
+        self.schedule.min_interval(self.requirements.layout)
+    }
+
+    /// The shortest time between two firings of one sensor.
+    pub const fn min_refire(&self) -> Micros {
+        self.schedule.min_refire()
+    }
+
+    /// Every violation: first (13a), then (13b), stale echoes, intervals, and windows.
+    pub const fn violations(&self) -> Violations<'r, K> {
+        Violations { report: *self, check: 0, x: 0, y: 0, phase: 0 }
+    }
+}
+
+const fn stale_separation<const K: usize>(schedule: &Schedule<K>, sensor: usize) -> Micros {
+    Micros::new(2 * schedule.shift_us(sensor).unsigned_abs())
+}
+
+/// The requirement that is violated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ViolationKind {
+    /// Crosstalk an even number of periods old would pass: Eq. (13a).
+    CrosstalkA,
+    /// Crosstalk an odd number of periods old would pass: Eq. (13b).
+    CrosstalkB,
+    /// A sensor's own echo from the period before would pass.
+    StaleEcho,
+    /// Two neighbours fire too close together: Sec. 3.1 c.
+    Interval,
+    /// A sensor fires again while it still listens.
+    Window,
+}
+
+impl ViolationKind {
+    /// A short name, as `--json` and Python spell it.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::CrosstalkA => "crosstalk_a",
+            Self::CrosstalkB => "crosstalk_b",
+            Self::StaleEcho => "stale_echo",
+            Self::Interval => "interval",
+            Self::Window => "window",
+        }
+    }
+
+    /// Where the requirement comes from.
+    pub const fn source(self) -> &'static str {
+        match self {
+            Self::CrosstalkA => "Eq. (13a)",
+            Self::CrosstalkB | Self::StaleEcho => "Eq. (13b)",
+            Self::Interval => "Sec. 3.1 c",
+            Self::Window => "T_wind",
+        }
+    }
+}
+
+/// One requirement that does not hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Violation {
+    /// Which requirement.
+    pub kind: ViolationKind,
+    /// The sensors concerned, from 0; twice the same if it concerns one.
+    pub sensors: (u8, u8),
+    /// The phases in which they fire; both `a` where the requirement compares phases.
+    pub phases: (Phase, Phase),
+    /// The time found.
+    pub value: Micros,
+    /// The least time that would do.
+    pub required: Micros,
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (x, y) = (self.sensors.0 + 1, self.sensors.1 + 1);
+        let (value, required, source) = (self.value, self.required, self.kind.source());
+        match self.kind {
+            ViolationKind::CrosstalkA | ViolationKind::CrosstalkB => write!(
+                f,
+                "crosstalk between sensors {x} and {y} moves by {value} from one reading to the next; \
+                 to be rejected it needs at least {required} ({source})"
+            ),
+            ViolationKind::StaleEcho => write!(
+                f,
+                "an echo of sensor {x} from the period before moves by {value} from one reading to the next; \
+                 to be rejected it needs at least {required} ({source} with x = y)"
+            ),
+            ViolationKind::Interval if self.phases.0 == self.phases.1 => write!(
+                f,
+                "sensors {x} and {y} fire {value} apart in phase {}; neighbours need at least {required} ({source})",
+                self.phases.0
+            ),
+            ViolationKind::Interval => write!(
+                f,
+                "sensors {x} and {y} fire {value} apart between phases {} and {}; neighbours need at least {required} \
+                 ({source})",
+                self.phases.0, self.phases.1
+            ),
+            ViolationKind::Window => write!(
+                f,
+                "sensor {x} fires again {value} after phase {}; it listens for {required} ({source})",
+                self.phases.0
+            ),
+        }
+    }
+}
+
+/// The violations of a [`Report`], one after the other.
+#[derive(Clone, Copy, Debug)]
+pub struct Violations<'r, const K: usize> {
+    report: Report<'r, K>,
+    check: u8,
+    x: usize,
+    y: usize,
+    phase: usize,
+}
+
+impl<const K: usize> Violations<'_, K> {
+    /// `Iterator::next` as a `const fn`, so that a table can be checked when it is compiled.
+    const fn advance(&mut self) -> Option<Violation> {
+        while self.check < 6 {
+            let found = self.examine();
+            self.step();
+            if found.is_some() {
+                return found;
+            }
+        }
+        None
+    }
+
+    /// To the next sensor `y`, then the next `x`, phase and check.
+    const fn step(&mut self) {
+        let sensors = self.report.schedule.sensors();
+        self.y += 1;
+        if self.y == sensors {
+            self.y = 0;
+            self.x += 1;
+        }
+        if self.x == sensors {
+            self.x = 0;
+            self.phase += 1;
+        }
+        if self.phase == 2 {
+            self.phase = 0;
+            self.check += 1;
+        }
+    }
+
+    const fn examine(&self) -> Option<Violation> {
+        let (schedule, requirements) = (self.report.schedule, self.report.requirements);
+        let (x, y, phase) = (self.x, self.y, self.phase);
+        let pair = x < y && phase == 0;
+        let neighbours = requirements.layout.neighbours(schedule.sensors(), x, y);
+        let phases = (Phase(phase as u8), Phase(phase as u8));
+        let sensors = (x as u8, y as u8);
+        let separation = requirements.separation();
+        let (kind, phases, value, required) = match self.check {
+            0 if pair => {
+                (ViolationKind::CrosstalkA, phases, schedule.left_sides(requirements.criterion, x, y).0, separation)
+            }
+            1 if pair => {
+                (ViolationKind::CrosstalkB, phases, schedule.left_sides(requirements.criterion, x, y).1, separation)
+            }
+            2 if requirements.stale_echo && x == y && phase == 0 => {
+                (ViolationKind::StaleEcho, phases, stale_separation(schedule, x), separation)
+            }
+            3 if neighbours && x < y => {
+                let interval = schedule.interval_within(x, y, phase);
+                (ViolationKind::Interval, interval.phases, interval.value, requirements.min_interval)
+            }
+            4 if neighbours => {
+                let interval = schedule.interval_across(x, y, phase);
+                (ViolationKind::Interval, interval.phases, interval.value, requirements.min_interval)
+            }
+            5 if x == y => (ViolationKind::Window, phases, schedule.refire(phase, x), requirements.window),
+            _ => return None,
+        };
+        if value.as_micros() >= required.as_micros() {
+            return None;
+        }
+        Some(Violation { kind, sensors, phases, value, required })
+    }
+}
+
+impl<const K: usize> Iterator for Violations<'_, K> {
+    type Item = Violation;
+
+    fn next(&mut self) -> Option<Violation> {
+        self.advance()
+    }
+}
+
+/// A [`Schedule`] that is checked while the program is compiled: a table that breaks a condition does not build.
+///
+/// Times are whole microseconds. The table is given by lags and waits or by firing times, and `meets` is the
+/// [`Requirements`] to hold; `eeruf design --emit rust` writes the whole call.
+///
+/// ```
+/// use eeruf_core::{Layout, Micros, Requirements, Schedule, schedule};
+///
+/// const FRONT: Schedule<4> = schedule! {
+///     period_us: 60_000,
+///     t_fire_a_us: [0, 15_000, 30_000, 45_000],
+///     t_fire_b_us: [0, 17_000, 34_000, 51_000],
+///     meets: Requirements { min_interval: Micros::from_millis(9), ..Requirements::new(Micros::new(999)) },
+/// };
+/// assert_eq!(FRONT.sensors(), 4);
+/// ```
+///
+/// The same table does not compile when 15 ms between neighbours are asked for, since sensor 4 in phase b and sensor 1
+/// in phase a fire 9 ms apart:
+///
+/// ```compile_fail
+/// use eeruf_core::{Layout, Micros, Requirements, Schedule, schedule};
+///
+/// const FRONT: Schedule<4> = schedule! {
+///     period_us: 60_000,
+///     t_fire_a_us: [0, 15_000, 30_000, 45_000],
+///     t_fire_b_us: [0, 17_000, 34_000, 51_000],
+///     meets: Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) },
+/// };
+/// # assert_eq!(FRONT.sensors(), 4);
+/// ```
+#[macro_export]
+macro_rules! schedule {
+    (
+        period_us: $period:expr,
+        t_lag_us: $t_lag:expr,
+        t_wait_a_us: $t_wait_a:expr,
+        t_wait_b_us: $t_wait_b:expr,
+        meets: $requirements:expr $(,)?
+    ) => {
+        const {
+            $crate::__checked(
+                $crate::Schedule::new(
+                    $crate::Micros::new($period),
+                    $crate::__micros($t_lag),
+                    [$crate::__micros($t_wait_a), $crate::__micros($t_wait_b)],
+                ),
+                &$requirements,
+            )
+        }
+    };
+    (
+        period_us: $period:expr,
+        t_fire_a_us: $t_fire_a:expr,
+        t_fire_b_us: $t_fire_b:expr,
+        meets: $requirements:expr $(,)?
+    ) => {
+        const {
+            $crate::__checked(
+                $crate::Schedule::from_firing(
+                    $crate::Micros::new($period),
+                    [$crate::__micros($t_fire_a), $crate::__micros($t_fire_b)],
+                ),
+                &$requirements,
+            )
+        }
+    };
+}
+
+/// For `schedule!`, which evaluates it when the program is compiled: its panics are compile errors.
+#[doc(hidden)]
+pub const fn __checked<const K: usize>(
+    schedule: Result<Schedule<K>, crate::schedule::ScheduleError>,
+    requirements: &Requirements<'_>,
+) -> Schedule<K> {
+    match schedule {
+        Ok(schedule) => match schedule.verify(requirements).violations().advance() {
+            None => schedule,
+            Some(violation) => match violation.kind {
+                ViolationKind::CrosstalkA => panic!("two sensors' crosstalk would be accepted, Eq. (13a)"),
+                ViolationKind::CrosstalkB => panic!("two sensors' crosstalk would be accepted, Eq. (13b)"),
+                ViolationKind::StaleEcho => panic!("a sensor's stale echo would be accepted, Eq. (13b) with x = y"),
+                ViolationKind::Interval => panic!("two neighbours fire closer together than min_interval, Sec. 3.1 c"),
+                ViolationKind::Window => panic!("a sensor fires again while it still listens, T_wind"),
+            },
+        },
+        Err(error) => panic!("{}", error.as_str()),
+    }
+}
+
+/// For `schedule!`.
+#[doc(hidden)]
+pub const fn __micros<const K: usize>(us: [u32; K]) -> [Micros; K] {
+    let mut times = [Micros::ZERO; K];
+    let mut i = 0;
+    while i < K {
+        times[i] = Micros::new(us[i]);
+        i += 1;
+    }
+    times
+}

@@ -101,7 +101,7 @@ pub struct PeriodStats {
 pub struct Ring<S, const K: usize, const E: usize = 1> {
     scheduler: S,
     sensors: [Sensor<E>; K],
-    rule: Rule,
+    t_delta: Micros,
     window: Micros,
     blanking: Micros,
     /// When there is something to do next.
@@ -113,6 +113,9 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     oldest: u8,
     /// How many sensors have a reading to tell before their window closes.
     ready: u8,
+    /// How many more period ends disturb the comparison.
+    unsettled: u8,
+    consecutive: u8,
 }
 
 /// A [`Ring`] with scheduled firing by a schedule of the paper's kind.
@@ -151,7 +154,7 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s
 }
 
 impl<'s, const K: usize, const M: usize> Ring<ImmediateRefiring<'s, K, M>, K> {
-    /// A ring with immediate refiring that begins at `now`; no sensor fires again before its window has passed.
+    /// A ring with immediate refiring that begins at `now`; no sensor fires again sooner than `min_refire`.
     ///
     /// # Errors
     /// As for [`Ring::with_scheduler`].
@@ -174,17 +177,18 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     pub fn with_scheduler(scheduler: S, config: Config, now: Instant) -> Result<Self, RingError> {
         let Config { t_delta, window, blanking, consecutive } = config;
         // No echo time within a window can then be mistaken for an instant before the firing.
-        let longest = scheduler.min_refire().min(Micros::new(u32::MAX / 2));
+        let longest = scheduler.longest_window().min(Micros::new(u32::MAX / 2));
         if window > longest {
             return Err(RingError::Window { window, min_refire: longest });
         }
         if window <= blanking {
             return Err(RingError::Blanking { blanking, window });
         }
+        Rule::new(t_delta, consecutive)?;
         let mut ring = Self {
             scheduler,
             sensors: [Sensor::NEW; K],
-            rule: Rule::new(t_delta, consecutive)?,
+            t_delta,
             window,
             blanking,
             deadline: now,
@@ -193,6 +197,8 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             max_late_us: 0,
             oldest: NOBODY,
             ready: 0,
+            unsettled: 0,
+            consecutive,
         };
         ring.set_deadline();
         Ok(ring)
@@ -203,7 +209,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     ///
     /// Hand in the echo edges you know of before you poll: an edge that comes after the poll that closed its window is
     /// not heard.
-    /// A late poll loses nothing: firings that are due move back, and all later ones with them.
+    /// A late poll loses nothing: firings that are due move back, and all later ones with them. After one that is late by
+    /// more than `t_delta` the readings of about two periods are compared with nothing, since crosstalk has shifted by as
+    /// much.
     #[inline]
     pub fn poll(&mut self, now: Instant) -> Option<Event> {
         self.poll_expecting(now, |_| 0)
@@ -319,7 +327,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     }
 
     fn fired(&mut self, sensor: u8, phase: Phase, now: Instant, late: Micros) -> Event {
-        if late > self.rule.t_delta() {
+        if late > self.t_delta {
+            // Sound sent before this moment may be heard for a period, and its readings compared for one more.
+            self.unsettled = 2;
             self.disturb();
         }
         self.max_late_us = self.max_late_us.max(u16::try_from(late.as_micros()).unwrap_or(u16::MAX));
@@ -334,6 +344,10 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
 
     fn period_ended(&mut self, phase: Phase, changed: bool) -> Event {
         if changed {
+            self.unsettled = 2;
+        }
+        if self.unsettled > 0 {
+            self.unsettled -= 1;
             self.disturb();
         }
         let stats = PeriodStats {
@@ -346,9 +360,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         Event::PeriodEnded(stats)
     }
 
-    /// Firings have shifted against each other, by lateness or by a change of schedule, so (13a), (13b) say nothing
-    /// about readings from before compared with readings from after. The next reading of each sensor, which may belong
-    /// to either side, is compared with nothing.
+    /// Firings have shifted against each other, by lateness or by a change of schedule, so (13a), (13b) say nothing about
+    /// readings of sound from before compared with readings of sound from after. The next reading of each sensor, which
+    /// may be of either, is compared with nothing.
     fn disturb(&mut self) {
         for sensor in &mut self.sensors {
             sensor.set(DISTURBED);
@@ -370,6 +384,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     }
 
     fn tell(&mut self, sensor: u8, expected_change_us: &mut impl FnMut(u8) -> i32) -> Option<Reading> {
+        let rule = Rule { t_delta: self.t_delta, consecutive: self.consecutive };
         let heard = self.sensors.get_mut(usize::from(sensor))?;
         let phase = heard.phase();
         if heard.is_ready() {
@@ -378,7 +393,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         let listened = heard.is(LISTENING);
         let ended_at = heard.fired + heard.t_echo().filter(|_| E == 1).unwrap_or(self.window);
         let verdict = if listened {
-            heard.judge(self.rule, || expected_change_us(sensor))
+            heard.judge(rule, || expected_change_us(sensor))
         } else {
             Verdict { kind: Kind::Late, t_echo: heard.take_late(), previous: None, age: heard.track.age() }
         };

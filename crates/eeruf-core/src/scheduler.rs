@@ -3,6 +3,7 @@
 //! A scheduler never reads a clock. The caller passes `now`, and is told the next deadline.
 
 use crate::schedule::{Phase, Schedule};
+use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
 
 /// What a scheduler wants done.
@@ -45,8 +46,8 @@ pub trait Scheduler {
     fn restart(&mut self, now: Instant);
     /// How many periods ago the last period with this phase was, 0 for the present one; 0 without common phases.
     fn periods_since(&self, phase: Phase) -> u8;
-    /// The shortest time between two firings of one sensor.
-    fn min_refire(&self) -> Micros;
+    /// How long a sensor may listen: it never fires again within this time of firing, unless it has ended.
+    fn longest_window(&self) -> Micros;
     /// No deadline lies further ahead than this, unless the clock has jumped.
     fn horizon(&self) -> Micros;
 }
@@ -73,13 +74,24 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
     phase: u8,
     /// Place in the firing order of the next sensor to fire; the number of sensors when all have.
     place: u8,
-    enabled: u64,
+    /// When a sensor last fired, or long enough ago.
+    last_fired: Instant,
+    enabled: SensorSet,
 }
 
 impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     /// Begins the first period of `schedule` at `now`, with all sensors enabled.
     pub const fn new(schedule: &'s Schedule<K, M>, now: Instant) -> Self {
-        Self { schedule, next_schedule: None, start: now, phase: 0, place: 0, enabled: u64::MAX }
+        let long_ago = Instant::from_micros(now.as_micros().wrapping_sub(settling_time(schedule).as_micros()));
+        Self {
+            schedule,
+            next_schedule: None,
+            start: now,
+            phase: 0,
+            place: 0,
+            last_fired: long_ago,
+            enabled: SensorSet::ALL,
+        }
     }
 
     /// The schedule of the present period.
@@ -110,18 +122,9 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
         }
     }
 
-    /// How long to stay silent after the last firing before a period that was not verified against it. Two neighbours
-    /// fire once each per period, so no interval between them that the schedule always keeps is longer than half of it.
-    fn settling_time(&self) -> Micros {
-        let half_period = Micros::new(self.schedule.period().as_micros().div_ceil(2));
-        self.schedule.min_refire().max(half_period)
-    }
-
-    /// The latest firing of this period so far, if any (disabled sensors count: later, so safer).
-    fn last_fired(&self) -> Option<Instant> {
-        let place = usize::from(self.place).checked_sub(1)?;
-        let sensor = *self.schedule.firing_order(Phase(self.phase)).get(place)?;
-        Some(self.start + self.schedule.t_fire(Phase(self.phase), sensor.into())?)
+    /// When a period may begin that was not verified against what fired before.
+    fn settled(&self) -> Instant {
+        self.last_fired + settling_time(self.schedule)
     }
 
     fn begin_period(&mut self, phase: u8, start: Instant) {
@@ -130,6 +133,15 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
         self.place = 0;
         self.skip_disabled();
     }
+}
+
+/// How long to stay silent after the last firing of a schedule so that a period which was not verified against it may
+/// begin. Two neighbours fire once each per period, so no interval between them that the schedule always keeps is longer
+/// than half of it.
+const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>) -> Micros {
+    let half_period = Micros::new(schedule.period().as_micros().div_ceil(2));
+    let min_refire = schedule.min_refire();
+    if min_refire.as_micros() > half_period.as_micros() { min_refire } else { half_period }
 }
 
 impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
@@ -142,25 +154,24 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         if let Some((sensor, due)) = self.due() {
             let late = now.since(due);
             self.start += late;
+            self.last_fired = now;
             self.place += 1;
             self.skip_disabled();
             return Some(Step::Fire { sensor, phase, late });
         }
         // Periods in which nothing fired need not be caught up with.
         let mut start = if now.since(deadline) > self.schedule.period() { now } else { deadline };
-        let next_schedule = self.next_schedule.take();
-        if let Some(next) = next_schedule {
-            if let Some(last) = self.last_fired() {
-                let settled = last + self.settling_time();
-                if settled.has_reached(start) {
-                    start = settled;
-                }
+        let changed = self.next_schedule.is_some();
+        if let Some(next) = self.next_schedule.take() {
+            let settled = self.settled();
+            if settled.has_reached(start) {
+                start = settled;
             }
             self.schedule = next;
         }
         let next_phase = if usize::from(self.phase) + 1 < M { self.phase + 1 } else { 0 };
         self.begin_period(next_phase, start);
-        Some(Step::PeriodEnded { phase, changed: next_schedule.is_some() })
+        Some(Step::PeriodEnded { phase, changed })
     }
 
     fn next_sensor(&self) -> Option<u8> {
@@ -174,24 +185,19 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
     fn ended(&mut self, _sensor: u8, _at: Instant) {}
 
     fn set_enabled(&mut self, sensor: u8, enabled: bool) {
-        let bit = 1_u64.checked_shl(sensor.into()).unwrap_or(0);
-        self.enabled = if enabled { self.enabled | bit } else { self.enabled & !bit };
+        self.enabled.set(sensor, enabled);
         self.skip_disabled();
     }
 
     fn is_enabled(&self, sensor: u8) -> bool {
-        usize::from(sensor) < self.schedule.sensors() && self.enabled.checked_shr(sensor.into()).unwrap_or(0) & 1 == 1
+        usize::from(sensor) < self.schedule.sensors() && self.enabled.contains(sensor)
     }
 
     fn restart(&mut self, now: Instant) {
-        let mut start = now;
-        // Also in the period before this one sensors may have fired just now.
-        let last = self.last_fired().unwrap_or(self.start);
-        let settled = last + self.settling_time();
+        let settled = self.settled();
         // A clock that has jumped says nothing about when the last firing was.
-        if settled.has_reached(now) && settled.since(now) <= self.horizon() {
-            start = settled;
-        }
+        let soon = !now.has_reached(settled) && settled.since(now) <= self.horizon();
+        let start = if soon { settled } else { now };
         self.begin_period(0, start);
     }
 
@@ -200,7 +206,7 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         if self.phase >= phase.0 { self.phase - phase.0 } else { (self.phase + M as u8).saturating_sub(phase.0) }
     }
 
-    fn min_refire(&self) -> Micros {
+    fn longest_window(&self) -> Micros {
         self.schedule.min_refire()
     }
 

@@ -50,3 +50,8 @@ pub use time::{Instant, Micros};
 #[doc(hidden)]
 pub use verify::{__checked, __micros};
 pub use verify::{Report, Violation, ViolationKind, Violations};
+
+/// The listings of the README compile and hold.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

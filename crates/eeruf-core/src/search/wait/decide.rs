@@ -177,7 +177,7 @@ impl<'p, 'm> Decision<'p, 'm> {
         true
     }
 
-    /// The choice after `last`: open orders, ranks from the top, values from the top, sums that are too close.
+    /// The choice after `last`: open orders, sums that are too close, ranks from the top, values from the top.
     fn next_choice(&self, last: Option<Choice>) -> Option<Choice> {
         let order = match last {
             None => self.open_order(0, 0),
@@ -189,16 +189,20 @@ impl<'p, 'm> Decision<'p, 'm> {
         if let Some(order) = order {
             return Some(Choice::Order(order));
         }
-        if let Some(rank) = self.ranked.checked_sub(1) {
-            return Some(Choice::Rank(rank));
+        // Sums as soon as there are any to compare: a pair that cannot be told apart spoils every rank below it.
+        if self.problem.criterion == Criterion::Paper {
+            let sums = self.close_sums();
+            if sums.is_some() {
+                return sums;
+            }
+        }
+        if self.ranked > 0 {
+            return Some(Choice::Rank(self.ranked - 1));
         }
         if self.valued > 0 && !self.is_tight() {
             return Some(Choice::Value(self.valued - 1));
         }
-        match self.problem.criterion {
-            Criterion::Paper => self.close_sums(),
-            Criterion::Exact => None,
-        }
+        None
     }
 
     /// The next pair of conflicting sensors that can fire in either order, from sensor `i` and half pair `start` on.
@@ -217,10 +221,11 @@ impl<'p, 'm> Decision<'p, 'm> {
         None
     }
 
-    /// Two sensors whose `s` lie less than `D` apart in the least solution.
+    /// Two sensors of known `d` whose `s` lie less than `D` apart in the least solution.
     fn close_sums(&self) -> Option<Choice> {
-        for i in 0..self.sensors {
-            for j in 0..i {
+        let known = |i: usize| self.least.d[i][0] == self.least.d[i][1];
+        for i in (0..self.sensors).filter(|&i| known(i)) {
+            for j in (0..i).filter(|&j| known(j)) {
                 if self.least.s(i).abs_diff(self.least.s(j)) < self.problem.separation {
                     return Some(if self.least.s(i) < self.least.s(j) { Choice::Sum(i, j) } else { Choice::Sum(j, i) });
                 }

@@ -87,28 +87,31 @@ impl Rearrange<'_> {
     pub fn best_interval(&self, control: &mut Control<'_>, a: &mut [u32], b: &mut [u32]) -> Result<Best, WaitError> {
         self.check(a, b)?;
         let before = control.nodes();
-        let period = self.search.problem.period;
-        let mut trail = self.start();
-        let (mut value, mut at_least) = (None, self.search.problem.interval);
-        // Each arrangement found raises what the rest of the walk must reach: what was passed over is no better.
+        let problem = &self.search.problem;
+        // Four firings of two sensors share a circle of 2 T_p; without conflicts the interval is the period.
+        let conflict = problem.conflicts.iter().any(|&row| row != 0);
+        let mut bound = if conflict { problem.period / 2 } else { problem.period };
+        let (mut value, mut target) = (None, problem.interval);
+        // Bisection: a large interval is refuted near the root, and a small one found without much walking.
         let finish = loop {
-            match self.advance(&mut trail, at_least, control) {
+            if target > bound {
+                break if value.is_some() { Finish::Found } else { Finish::Exhausted };
+            }
+            let mut trail = self.start();
+            match self.advance(&mut trail, target, control) {
                 Finish::Found => {
                     self.hand_out(&trail, a, b);
-                    let interval = self.search.smallest_interval(a, b);
-                    value = Some(interval);
-                    control.value = value;
-                    if interval >= period {
-                        break Finish::Exhausted;
-                    }
-                    at_least = interval + 1;
+                    value = Some(self.search.smallest_interval(a, b));
                 }
-                finish => break finish,
+                Finish::Exhausted => bound = target.saturating_sub(1),
+                Finish::BudgetSpent => break Finish::BudgetSpent,
             }
-        };
-        let (finish, bound) = match (finish, value) {
-            (Finish::Exhausted, Some(value)) => (Finish::Found, value),
-            (finish, _) => (finish, period),
+            (control.value, control.bound) = (value, Some(bound));
+            target = match value {
+                None => break Finish::Exhausted,
+                Some(value) if value >= bound => break Finish::Found,
+                Some(value) => value + (bound - value).div_ceil(2),
+            };
         };
         Ok(Best { finish, value, bound, nodes: control.nodes() - before })
     }

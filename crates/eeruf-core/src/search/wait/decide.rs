@@ -45,21 +45,53 @@ pub(super) fn decide(
     let separation = if sensors == 1 { 0 } else { problem.separation };
     let interval = if conflict { problem.interval } else { 0 };
     let exact = WaitProblem { criterion: Criterion::Exact, separation, interval, ..*problem };
-    let finish = Decision::new(&exact, memory, false).run(control, wait);
+    let finish = Decision::new(&exact, memory, Style::default()).run(control, wait);
     if problem.criterion == Criterion::Exact || finish != Finish::Found {
         // Without a table under the weaker criterion there is none under the stronger.
         return finish;
     }
     let paper = WaitProblem { criterion: Criterion::Paper, ..exact };
-    for tight in [true, false] {
-        let finish = Decision::new(&paper, memory, tight).run(control, wait);
-        // |d| = D r is only a good guess under this criterion: its failure proves nothing.
-        if finish != Finish::Exhausted || !tight {
-            return finish;
+    let mut slice = FIRST_SLICE;
+    let mut tight = true;
+    loop {
+        // |d| = D r is only a good guess under this criterion: its failure proves nothing. Which way of walking is quick depends on
+        // how tight the problem is, so each gets its turn, and more with every round.
+        for style in STYLES {
+            if style.tight && !tight {
+                continue;
+            }
+            let finish = control.slice(slice, |control| Decision::new(&paper, memory, style).run(control, wait));
+            match finish {
+                Finish::Exhausted if style.tight => tight = false,
+                Finish::BudgetSpent if !control.spent() => {}
+                finish => return finish,
+            }
         }
+        slice = slice.saturating_mul(4);
     }
-    Finish::Exhausted
 }
+
+/// Nodes that each style may take in the first round.
+const FIRST_SLICE: u64 = 200;
+
+/// How a decision walks. Each style is exhaustive in what it looks at; only a tight one does not look at everything.
+#[derive(Clone, Copy, Default)]
+struct Style {
+    /// Only `|d| = D r` is looked at.
+    tight: bool,
+    /// Sums are told apart as soon as there are two, not after all ranks.
+    early_sums: bool,
+    /// The greatest ranks go to the last sensors of a lag first.
+    backwards: bool,
+}
+
+const STYLES: [Style; 5] = [
+    Style { tight: true, early_sums: false, backwards: false },
+    Style { tight: true, early_sums: true, backwards: false },
+    Style { tight: true, early_sums: false, backwards: true },
+    Style { tight: true, early_sums: true, backwards: true },
+    Style { tight: false, early_sums: false, backwards: false },
+];
 
 /// Which choice comes next.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -78,8 +110,7 @@ enum Choice {
 struct Decision<'p, 'm> {
     problem: &'p WaitProblem<'p>,
     sensors: usize,
-    /// Only `|d| = D r` is looked at.
-    tight: bool,
+    style: Style,
     trail: &'m mut [u32],
     least: Least<'p>,
     /// Sensors in the order in which ranks try them: by lag, then by number.
@@ -98,17 +129,18 @@ struct Decision<'p, 'm> {
 
 // Indices are sensors or ranks below `sensors <= MAX_SENSORS`; the trail is read and written with `get`.
 impl<'p, 'm> Decision<'p, 'm> {
-    fn new(problem: &'p WaitProblem<'p>, trail: &'m mut [u32], tight: bool) -> Self {
+    fn new(problem: &'p WaitProblem<'p>, trail: &'m mut [u32], style: Style) -> Self {
         let sensors = problem.lag.len();
         let mut preferred = [0; MAX_SENSORS];
         for (k, p) in preferred.iter_mut().enumerate() {
             *p = k as u8;
         }
-        preferred[..sensors].sort_unstable_by_key(|&i| (problem.lag[usize::from(i)], i));
+        preferred[..sensors]
+            .sort_unstable_by_key(|&i| (problem.lag[usize::from(i)], if style.backwards { u8::MAX - i } else { i }));
         Self {
             problem,
             sensors,
-            tight,
+            style,
             trail,
             least: Least::new(problem),
             preferred,
@@ -189,9 +221,9 @@ impl<'p, 'm> Decision<'p, 'm> {
         if let Some(order) = order {
             return Some(Choice::Order(order));
         }
-        // Sums as soon as there are any to compare: a pair that cannot be told apart spoils every rank below it.
-        if self.problem.criterion == Criterion::Paper {
-            let sums = self.close_sums();
+        let close_sums = || if self.problem.criterion == Criterion::Paper { self.close_sums() } else { None };
+        if self.style.early_sums {
+            let sums = close_sums();
             if sums.is_some() {
                 return sums;
             }
@@ -202,7 +234,7 @@ impl<'p, 'm> Decision<'p, 'm> {
         if self.valued > 0 && !self.is_tight() {
             return Some(Choice::Value(self.valued - 1));
         }
-        None
+        close_sums()
     }
 
     /// The next pair of conflicting sensors that can fire in either order, from sensor `i` and half pair `start` on.
@@ -324,7 +356,7 @@ impl<'p, 'm> Decision<'p, 'm> {
 
     /// Whether `|d| = D r` is all that needs looking at; known once the orders are chosen.
     fn is_tight(&self) -> bool {
-        self.tight || self.problem.criterion == Criterion::Exact && self.least.same_orders()
+        self.style.tight || self.problem.criterion == Criterion::Exact && self.least.same_orders()
     }
 
     /// The least `|d|` of a rank.

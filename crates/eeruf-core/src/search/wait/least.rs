@@ -69,21 +69,12 @@ impl<'p> Least<'p> {
         self.after_weight(i, j) <= self.problem.wait_max as i32
     }
 
-    /// Whether any waits let `j` fire `I` after `i` within a phase.
-    pub(super) fn must_follow(&self, i: usize, j: usize) -> bool {
-        self.after_weight(i, j) <= -(self.problem.wait_max as i32)
-    }
-
     pub(super) fn order(&mut self, order: Order) {
         self.after[order.phase][order.first] |= 1 << order.second;
     }
 
     pub(super) fn forget_order(&mut self, order: Order) {
         self.after[order.phase][order.first] &= !(1 << order.second);
-    }
-
-    pub(super) fn is_ordered(&self, order: Order) -> bool {
-        self.after[order.phase][order.first] >> order.second & 1 == 1
     }
 
     pub(super) fn same_orders(&self) -> bool {

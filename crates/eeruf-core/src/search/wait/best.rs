@@ -4,7 +4,7 @@
 //! last infeasible value is the proof. Values that take long wait until the quick ones are settled.
 
 use super::decide::{decide, memory_words};
-use super::{Control, Finish, MAX_SENSORS, WaitError, WaitSearch};
+use super::{Control, Criterion, Finish, MAX_SENSORS, WaitError, WaitProblem, WaitSearch};
 
 /// What is to be as large as possible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -70,8 +70,9 @@ impl WaitSearch<'_> {
         let before = control.nodes();
         let pairs = self.sensors() as u32 - 1;
         let mut bound = match objective {
-            // Four firings of two sensors share a circle of 2 T_p; without conflicts there is no interval to measure.
-            Objective::Interval if self.problem().conflicts.iter().any(|&row| row != 0) => self.problem().period / 2,
+            // Of two conflicting sensors one fires before and after the other on the circle of 2 T_p; without conflicts there is no
+            // interval to measure.
+            Objective::Interval if self.problem().conflicts.iter().any(|&row| row != 0) => self.problem().period,
             Objective::Interval => self.problem().period.max(self.problem().interval),
             // Capacity: K values |d| in 0 ..= wait_max.
             Objective::Separation => match self.problem().wait_max.checked_div(pairs) {
@@ -79,6 +80,15 @@ impl WaitSearch<'_> {
                 None => self.problem().wait_max.max(self.problem().separation),
             },
         };
+        if self.problem().criterion == Criterion::Paper {
+            // The weaker criterion is settled much faster, and what it excludes is excluded.
+            let exact = Self::new(WaitProblem { criterion: Criterion::Exact, ..*self.problem() })?;
+            let exact = control.slice(BOUND_SLICE, |control| exact.best(objective, memory, control, a, b))?;
+            if exact.finish == Finish::Exhausted {
+                return Ok(exact);
+            }
+            bound = bound.min(exact.bound);
+        }
         let mut wait = [0; 2 * MAX_SENSORS];
         let mut value: Option<u32> = None;
         let mut slice = FIRST_SLICE;
@@ -170,6 +180,8 @@ impl WaitSearch<'_> {
 
 /// Nodes a value may take in the first round of a bisection.
 const FIRST_SLICE: u64 = 1000;
+/// Nodes spent on a bound from the weaker criterion.
+const BOUND_SLICE: u64 = 20_000;
 
 /// One point of the front, in ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -12,6 +12,7 @@
 //! Waits above 63 ticks do not fit the words; such problems are counted one table at a time.
 
 use super::memo::{Key, Memo, Ticket};
+use super::options::{self, Options, Set, left_by};
 use super::{Bits, Control, Criterion, Finish, MAX_SENSORS, WaitProblem, WaitSearch};
 
 /// A sensible amount of memory for [`WaitSearch::count`] where there is plenty, in words (4 MiB).
@@ -39,7 +40,14 @@ impl WaitSearch<'_> {
         let (finish, count) = if self.problem.wait_max > MASK_MAX {
             count_one_by_one(self, limit, control)
         } else {
-            Counting::new(&self.problem, memory).run(limit, control)
+            let problem = &self.problem;
+            match options::words(problem.wait_max) {
+                Some(1) => Counting::<1>::new(problem, memory).run(limit, control),
+                Some(2) => Counting::<2>::new(problem, memory).run(limit, control),
+                Some(3) => Counting::<3>::new(problem, memory).run(limit, control),
+                Some(4) => Counting::<4>::new(problem, memory).run(limit, control),
+                _ => Counting::<0>::new(problem, memory).run(limit, control),
+            }
         };
         Count { finish, count, nodes: control.nodes() - before }
     }
@@ -68,9 +76,11 @@ struct Free {
 }
 
 /// Where the walk stands at one level, which places one sensor.
-#[derive(Clone, Copy, Default)]
-struct Level {
+#[derive(Clone, Copy)]
+struct Level<const N: usize> {
     free: Free,
+    /// The same as pairs of waits.
+    pairs: Set<N>,
     /// Waits a and b that the sensors placed before leave to this level's sensor.
     left: [u64; 2],
     /// The |d| still to be tried.
@@ -85,7 +95,20 @@ struct Level {
     ticket: Option<Ticket>,
 }
 
-struct Counting<'p, 'm> {
+impl<const N: usize> Level<N> {
+    const NONE: Self = Self {
+        free: Free { d: 0, s: [0; 2] },
+        pairs: [0; N],
+        left: [0; 2],
+        d_left: 0,
+        d: 0,
+        a_left: 0,
+        entered_at: 0,
+        ticket: None,
+    };
+}
+
+struct Counting<'p, 'm, const N: usize> {
     problem: &'p WaitProblem<'p>,
     /// Sensors in the order of the levels.
     order: [u8; MAX_SENSORS],
@@ -97,13 +120,14 @@ struct Counting<'p, 'm> {
     placed: [u64; MAX_SENSORS],
     /// By sensor: its waits, while it is placed.
     wait: [[u8; 2]; MAX_SENSORS],
-    levels: [Level; MAX_SENSORS],
+    levels: [Level<N>; MAX_SENSORS],
+    options: Options<N>,
     memo: Memo<'m>,
     total: u128,
 }
 
 // Indices: sensors and levels, both below `lag.len() <= MAX_SENSORS`.
-impl<'p, 'm> Counting<'p, 'm> {
+impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
     fn new(problem: &'p WaitProblem<'p>, memory: &'m mut [u32]) -> Self {
         let mut counting = Self {
             problem,
@@ -112,7 +136,8 @@ impl<'p, 'm> Counting<'p, 'm> {
             touched: [0; MAX_SENSORS],
             placed: [0; MAX_SENSORS],
             wait: [[0; 2]; MAX_SENSORS],
-            levels: [Level::default(); MAX_SENSORS],
+            levels: [Level::NONE; MAX_SENSORS],
+            options: Options::new(problem),
             memo: Memo::new(&mut [], 0),
             total: 0,
         };
@@ -139,7 +164,17 @@ impl<'p, 'm> Counting<'p, 'm> {
             self.total = self.completions(everything, [span(0, wait_max); 2]);
             return (if self.total >= limit { Finish::Found } else { Finish::Exhausted }, self.total);
         }
-        self.enter(0, everything);
+        if N > 0 {
+            let [i, j] = [last - 1, last].map(|level| usize::from(self.order[level]));
+            self.options.last_two(self.problem, (self.near[i] >> j & 1 == 1).then_some((i, j)));
+        }
+        let pairs = if N > 0 { self.options.rectangle([u64::MAX; 2]) } else { [0; N] };
+        // With two sensors the first is the last but one: there is nothing to walk.
+        if N > 0 && last == 1 {
+            self.total = self.last_two(0, &pairs);
+            return (if self.total >= limit { Finish::Found } else { Finish::Exhausted }, self.total);
+        }
+        self.enter(0, everything, pairs);
         loop {
             if self.total >= limit {
                 return (Finish::Found, self.total);
@@ -147,13 +182,15 @@ impl<'p, 'm> Counting<'p, 'm> {
             if !control.enter() {
                 return (Finish::BudgetSpent, self.total);
             }
-            if let Some(free) = self.place_next(level) {
+            if let Some((free, pairs)) = self.place_next(level) {
                 let below = level + 1;
-                if below == last {
+                if N > 0 && below + 1 == last {
+                    self.enter_last_two(below, free, pairs);
+                } else if below == last {
                     let left = self.left(last);
                     let tables = self.completions(free, left);
                     self.add(below, tables);
-                } else if self.enter(below, free) {
+                } else if self.enter(below, free, pairs) {
                     level = below;
                 }
             } else {
@@ -180,33 +217,59 @@ impl<'p, 'm> Counting<'p, 'm> {
     }
 
     /// Enters a level; `false` if it holds no table or is counted already.
-    fn enter(&mut self, level: usize, free: Free) -> bool {
+    fn enter(&mut self, level: usize, free: Free, pairs: Set<N>) -> bool {
+        let Some(ticket) = self.open(level, free) else { return false };
         let left = self.left(level);
-        if left[0] == 0 || left[1] == 0 || !self.has_room(free.d, self.problem.lag.len() - level) {
-            return false;
-        }
-        // Two sensors can be placed in different ways that leave the same; one cannot.
-        let mut ticket = None;
-        if level >= 2 && self.memo.is_useful() {
-            let Some(key) = self.key(level, free) else {
-                return false;
-            };
-            match self.memo.look_up(&key) {
-                Ok(tables) => {
-                    self.add(level, tables);
-                    return false;
-                }
-                Err(new) => ticket = Some(new),
-            }
-        }
-        self.levels[level] = Level { free, left, d_left: free.d, d: 0, a_left: 0, entered_at: self.total, ticket };
+        self.levels[level] = Level { free, pairs, left, d_left: free.d, d: 0, a_left: 0, entered_at: self.total, ticket };
         true
     }
 
+    /// Counts the last two levels.
+    fn enter_last_two(&mut self, level: usize, free: Free, pairs: Set<N>) {
+        let Some(ticket) = self.open(level, free) else { return };
+        let tables = self.last_two(level, &pairs);
+        if let Some(ticket) = ticket {
+            self.memo.keep(ticket, tables);
+        }
+        self.add(level, tables);
+    }
+
+    /// The tables of the last two levels, of which this is the first.
+    fn last_two(&self, level: usize, pairs: &Set<N>) -> u128 {
+        let of = |level: usize, placed: u64| {
+            let mut set = self.options.rectangle(self.left_to(usize::from(self.order[level]), placed));
+            for n in 0..N {
+                set[n] &= pairs[n];
+            }
+            set
+        };
+        let placed = self.placed[level];
+        u128::from(self.options.count(&of(level, placed), &of(level + 1, placed)))
+    }
+
+    /// Looks a level up. `None` if it is counted, with its tables added, or holds none; else where its count is to be kept, if anywhere.
+    fn open(&mut self, level: usize, free: Free) -> Option<Option<Ticket>> {
+        if !self.has_room(free.d, self.problem.lag.len() - level) {
+            return None;
+        }
+        // Two sensors can be placed in different ways that leave the same; one cannot.
+        if level < 2 || !self.memo.is_useful() {
+            return Some(None);
+        }
+        let key = self.key(level, free)?;
+        match self.memo.look_up(&key) {
+            Ok(tables) => {
+                self.add(level, tables);
+                None
+            }
+            Err(new) => Some(Some(new)),
+        }
+    }
+
     /// Places the next pair of waits of a level; returns what it leaves free.
-    fn place_next(&mut self, level: usize) -> Option<Free> {
+    fn place_next(&mut self, level: usize) -> Option<(Free, Set<N>)> {
         let paper = self.problem.criterion == Criterion::Paper;
-        let Level { free, left, mut d_left, mut d, mut a_left, .. } = self.levels[level];
+        let Level { free, pairs, left, mut d_left, mut d, mut a_left, .. } = self.levels[level];
         while a_left == 0 {
             // The first sensor's negative d are the exchanged phases of its positive ones.
             if d > 0 && level != 0 {
@@ -226,6 +289,8 @@ impl<'p, 'm> Counting<'p, 'm> {
         self.wait[usize::from(self.order[level])] = [a as u8, (a - d) as u8];
         // D is at most wait_max here, as there is more than one sensor.
         let reach = self.problem.separation as i32 - 1;
+        let pairs =
+            if N > 0 { self.options.without(&pairs, a as usize * self.options.waits() + (a - d) as usize) } else { pairs };
         let d = d.abs();
         let mut free = free;
         free.d &= !span(d - reach, d + reach);
@@ -234,7 +299,7 @@ impl<'p, 'm> Counting<'p, 'm> {
             free.s[0] &= !span((s - reach + 1).div_euclid(2), (s + reach).div_euclid(2));
             free.s[1] &= !span((s - reach).div_euclid(2), (s + reach - 1).div_euclid(2));
         }
-        Some(free)
+        Some((free, pairs))
     }
 
     /// The number of pairs that complete a table for the last sensor.
@@ -273,17 +338,12 @@ impl<'p, 'm> Counting<'p, 'm> {
 
     /// The waits that `placed` sensors leave to sensor `j`.
     fn left_to(&self, j: usize, placed: u64) -> [u64; 2] {
-        let WaitProblem { period, lag, wait_max, interval, .. } = *self.problem;
-        let (interval, period) = (interval as i32, period as i32);
-        let mut left = [span(0, wait_max as i32); 2];
+        let mut left = [span(0, self.problem.wait_max as i32); 2];
         for i in Bits(self.near[j] & placed) {
-            // When i fires, as a wait of j.
-            let shift = lag[i] as i32 - lag[j] as i32;
-            let (a, b) = (shift + i32::from(self.wait[i][0]), shift + i32::from(self.wait[i][1]));
-            let apart = |t: i32| !span(t - interval + 1, t + interval - 1);
-            let across = |t: i32| span(t + interval - period, t + period - interval);
-            left[0] &= apart(a) & across(b);
-            left[1] &= apart(b) & across(a);
+            let [(a_same, a_across), (b_same, b_across)] =
+                self.wait[i].map(|wait| left_by(self.problem, i, j, i32::from(wait)));
+            left[0] &= a_same & b_across;
+            left[1] &= b_same & a_across;
         }
         left
     }
@@ -367,7 +427,7 @@ const fn shifted(bits: u64, by: i32) -> u64 {
 
 /// Bits `low ..= high`, as far as they lie in a word; none if `low > high`.
 #[inline]
-const fn span(low: i32, high: i32) -> u64 {
+pub(super) const fn span(low: i32, high: i32) -> u64 {
     let low = if low < 0 { 0 } else { low };
     if high < low || low > 63 {
         return 0;

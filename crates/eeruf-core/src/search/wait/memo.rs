@@ -8,6 +8,10 @@ const KEY_WORDS: usize = 1 + 2 * (3 + 2 * MAX_SENSORS);
 const ENTRY_WORDS: usize = 1 + 4;
 /// Entries looked at for a key.
 const PROBES: usize = 4;
+/// Entries used at first.
+const FIRST_ENTRIES: usize = 512;
+/// How many times more are used when those are half full.
+const GROWTH: usize = 8;
 
 /// A remainder as words.
 pub(super) struct Key {
@@ -54,7 +58,11 @@ pub(super) struct Ticket {
 pub(super) struct Memo<'m> {
     slots: &'m mut [u32],
     words: usize,
+    /// Entries that fit, and the part of them in use.
     entries: usize,
+    active: usize,
+    /// Entries written since the part in use was cleared.
+    written: usize,
     serial: u32,
 }
 
@@ -63,8 +71,19 @@ impl<'m> Memo<'m> {
     pub(super) fn new(slots: &'m mut [u32], masks: usize) -> Self {
         let words = 1 + masks + ENTRY_WORDS;
         let entries = slots.len() / words;
-        slots.fill(0);
-        Self { slots, words, entries, serial: 0 }
+        let mut memo = Self { slots, words, entries, active: 0, written: 0, serial: 0 };
+        memo.use_first(FIRST_ENTRIES);
+        memo
+    }
+
+    /// Clears and uses the first `active` entries: a short count does not pay for clearing all the memory lent. Growing forgets, but
+    /// so seldom that it costs a small part of the work.
+    fn use_first(&mut self, active: usize) {
+        self.active = active.min(self.entries);
+        self.written = 0;
+        if let Some(slots) = self.slots.get_mut(..self.active * self.words) {
+            slots.fill(0);
+        }
     }
 
     pub(super) const fn is_useful(&self) -> bool {
@@ -73,10 +92,13 @@ impl<'m> Memo<'m> {
 
     /// The count kept for a key, or the place for it.
     pub(super) fn look_up(&mut self, key: &Key) -> Result<u128, Ticket> {
-        let home = (u128::from(key.hash) * self.entries as u128 >> 64) as usize;
+        if self.written > self.active / 2 && self.active < self.entries {
+            self.use_first(self.active.saturating_mul(GROWTH));
+        }
+        let home = (u128::from(key.hash) * self.active as u128 >> 64) as usize;
         let mut place = home;
-        for probe in 0..PROBES.min(self.entries) {
-            let entry = (home + probe) % self.entries;
+        for probe in 0..PROBES.min(self.active) {
+            let entry = (home + probe) % self.active;
             let Some(words) = self.slots.get(entry * self.words..(entry + 1) * self.words) else { break };
             let (own, rest) = words.split_at(key.len.min(words.len() - ENTRY_WORDS));
             if let (true, Some(&[0, w0, w1, w2, w3])) = (own == &key.words[..own.len()], rest.last_chunk()) {
@@ -88,6 +110,7 @@ impl<'m> Memo<'m> {
             }
         }
         self.serial = self.serial.wrapping_add(1).max(1);
+        self.written += 1;
         let range = place * self.words..(place + 1) * self.words;
         if let Some(words) = self.slots.get_mut(range) {
             let room = words.len() - ENTRY_WORDS;

@@ -30,6 +30,7 @@ mod count;
 mod decide;
 mod least;
 mod memo;
+mod options;
 mod rearrange;
 
 use core::fmt;

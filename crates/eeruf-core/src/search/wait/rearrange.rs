@@ -88,9 +88,9 @@ impl Rearrange<'_> {
         self.check(a, b)?;
         let before = control.nodes();
         let problem = &self.search.problem;
-        // Four firings of two sensors share a circle of 2 T_p; without conflicts the interval is the period.
-        let conflict = problem.conflicts.iter().any(|&row| row != 0);
-        let mut bound = if conflict { problem.period / 2 } else { problem.period };
+        // Of two conflicting sensors one fires before and after the other on the circle of 2 T_p; without conflicts the interval is the
+        // period.
+        let mut bound = problem.period;
         let (mut value, mut target) = (None, problem.interval);
         // Bisection: a large interval is refuted near the root, and a small one found without much walking.
         let finish = loop {

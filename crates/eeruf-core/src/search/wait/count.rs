@@ -120,7 +120,10 @@ struct Counting<'p, 'm, const N: usize> {
     placed: [u64; MAX_SENSORS],
     /// By sensor: its waits, while it is placed.
     wait: [[u8; 2]; MAX_SENSORS],
+    /// By sensor: the waits a and b left to it at the level surveyed last.
+    left: [[u64; 2]; MAX_SENSORS],
     levels: [Level<N>; MAX_SENSORS],
+    key: Key,
     options: Options<N>,
     memo: Memo<'m>,
     total: u128,
@@ -136,7 +139,9 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
             touched: [0; MAX_SENSORS],
             placed: [0; MAX_SENSORS],
             wait: [[0; 2]; MAX_SENSORS],
+            left: [[span(0, problem.wait_max as i32); 2]; MAX_SENSORS],
             levels: [Level::NONE; MAX_SENSORS],
+            key: Key::new(problem.wait_max >= 32),
             options: Options::new(problem),
             memo: Memo::new(&mut [], 0),
             total: 0,
@@ -187,9 +192,10 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
                 if N > 0 && below + 1 == last {
                     self.enter_last_two(below, free, pairs);
                 } else if below == last {
-                    let left = self.left(last);
-                    let tables = self.completions(free, left);
-                    self.add(below, tables);
+                    if self.survey(last) {
+                        let tables = self.completions(free, self.left[usize::from(self.order[last])]);
+                        self.add(below, tables);
+                    }
                 } else if self.enter(below, free, pairs) {
                     level = below;
                 }
@@ -219,7 +225,7 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
     /// Enters a level; `false` if it holds no table or is counted already.
     fn enter(&mut self, level: usize, free: Free, pairs: Set<N>) -> bool {
         let Some(ticket) = self.open(level, free) else { return false };
-        let left = self.left(level);
+        let left = self.left[usize::from(self.order[level])];
         self.levels[level] = Level { free, pairs, left, d_left: free.d, d: 0, a_left: 0, entered_at: self.total, ticket };
         true
     }
@@ -236,34 +242,43 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
 
     /// The tables of the last two levels, of which this is the first.
     fn last_two(&self, level: usize, pairs: &Set<N>) -> u128 {
-        let of = |level: usize, placed: u64| {
-            let mut set = self.options.rectangle(self.left_to(usize::from(self.order[level]), placed));
+        let [own, last] = [level, level + 1].map(|level| {
+            let mut set = self.options.rectangle(self.left[usize::from(self.order[level])]);
             for n in 0..N {
                 set[n] &= pairs[n];
             }
             set
-        };
-        let placed = self.placed[level];
-        u128::from(self.options.count(&of(level, placed), &of(level + 1, placed)))
+        });
+        u128::from(self.options.count(&own, &last))
     }
 
-    /// Looks a level up. `None` if it is counted, with its tables added, or holds none; else where its count is to be kept, if anywhere.
+    /// Surveys a level and looks it up. `None` if it is counted, with its tables added, or holds none; else where its count is to be
+    /// kept, if anywhere.
     fn open(&mut self, level: usize, free: Free) -> Option<Option<Ticket>> {
-        if !self.has_room(free.d, self.problem.lag.len() - level) {
+        if !self.has_room(free.d, self.problem.lag.len() - level) || !self.survey(level) {
             return None;
         }
         // Two sensors can be placed in different ways that leave the same; one cannot.
         if level < 2 || !self.memo.is_useful() {
             return Some(None);
         }
-        let key = self.key(level, free)?;
-        match self.memo.look_up(&key) {
+        self.set_key(level, free);
+        match self.memo.look_up(&self.key) {
             Ok(tables) => {
                 self.add(level, tables);
                 None
             }
             Err(new) => Some(Some(new)),
         }
+    }
+
+    /// Finds the waits left to the sensors that those placed touch; `false` if one of them has none. To the others all are left, as
+    /// they were from the start.
+    fn survey(&mut self, level: usize) -> bool {
+        Bits(self.touched[level]).all(|j| {
+            self.left[j] = self.left_to(j, self.placed[level]);
+            self.left[j][0] != 0 && self.left[j][1] != 0
+        })
     }
 
     /// Places the next pair of waits of a level; returns what it leaves free.
@@ -306,13 +321,11 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
     fn completions(&self, free: Free, left: [u64; 2]) -> u128 {
         let paper = self.problem.criterion == Criterion::Paper;
         let mut tables = 0;
-        if left[0] != 0 && left[1] != 0 {
-            for d in Bits(free.d) {
-                let d = d as i32;
-                tables += waits_with(d, left, free.s, paper).count_ones();
-                if d > 0 {
-                    tables += waits_with(-d, left, free.s, paper).count_ones();
-                }
+        for d in Bits(free.d) {
+            let d = d as i32;
+            tables += waits_with(d, left, free.s, paper).count_ones();
+            if d > 0 {
+                tables += waits_with(-d, left, free.s, paper).count_ones();
             }
         }
         u128::from(tables)
@@ -331,11 +344,6 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
         true
     }
 
-    /// The waits that the sensors placed leave to the sensor of a level.
-    fn left(&self, level: usize) -> [u64; 2] {
-        self.left_to(usize::from(self.order[level]), self.placed[level])
-    }
-
     /// The waits that `placed` sensors leave to sensor `j`.
     fn left_to(&self, j: usize, placed: u64) -> [u64; 2] {
         let mut left = [span(0, self.problem.wait_max as i32); 2];
@@ -348,30 +356,25 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
         left
     }
 
-    /// What a level leaves to be counted, the same for partial tables with the same completions; `None` if there are none.
-    fn key(&self, level: usize, free: Free) -> Option<Key> {
-        let wide = self.problem.wait_max >= 32;
-        let mut key = Key::new(level, wide);
-        key.push(free.d);
+    /// Writes down what a level surveyed leaves to be counted, the same for partial tables with the same completions.
+    fn set_key(&mut self, level: usize, free: Free) {
+        self.key.start(level);
+        self.key.push(free.d);
         if self.problem.criterion == Criterion::Paper {
-            key.push(free.s[0]);
-            key.push(free.s[1]);
+            self.key.push(free.s[0]);
+            self.key.push(free.s[1]);
         }
         let mut exchange = None;
         for j in Bits(self.touched[level]) {
-            let left = self.left_to(j, self.placed[level]);
-            if left[0] == 0 || left[1] == 0 {
-                return None;
-            }
+            let left = self.left[j];
             // The greater side of the first difference goes first.
             if exchange.is_none() && left[0] != left[1] {
                 exchange = Some(left[0] < left[1]);
             }
             let first = usize::from(exchange == Some(true));
-            key.push(left[first]);
-            key.push(left[1 - first]);
+            self.key.push(left[first]);
+            self.key.push(left[1 - first]);
         }
-        Some(key)
     }
 
     /// Notes which conflicting sensors can fire too close at all.
@@ -428,10 +431,17 @@ const fn shifted(bits: u64, by: i32) -> u64 {
 /// Bits `low ..= high`, as far as they lie in a word; none if `low > high`.
 #[inline]
 pub(super) const fn span(low: i32, high: i32) -> u64 {
-    let low = if low < 0 { 0 } else { low };
-    if high < low || low > 63 {
-        return 0;
+    below(high + 1) & !below(low)
+}
+
+/// The bits below bit `end`.
+#[inline]
+const fn below(end: i32) -> u64 {
+    if end <= 0 {
+        0
+    } else if end >= 64 {
+        u64::MAX
+    } else {
+        (1 << end) - 1
     }
-    let to_high = if high >= 63 { u64::MAX } else { (1 << (high + 1)) - 1 };
-    to_high & (u64::MAX << low)
 }

@@ -22,12 +22,16 @@ pub(super) struct Key {
 }
 
 impl Key {
-    /// A key of a level, which is part of it; masks above 32 bits are `wide`.
-    pub(super) fn new(level: usize, wide: bool) -> Self {
-        let mut key = Self { words: [0; KEY_WORDS], len: 0, wide, hash: 0 };
+    /// No key yet; masks above 32 bits are `wide`.
+    pub(super) const fn new(wide: bool) -> Self {
+        Self { words: [0; KEY_WORDS], len: 0, wide, hash: 0 }
+    }
+
+    /// Starts the key of a level, which is part of it.
+    pub(super) fn start(&mut self, level: usize) {
+        (self.len, self.hash) = (0, 0);
         // Not zero, which marks an empty entry.
-        key.push_word(level as u32 + 1);
-        key
+        self.push_word(level as u32 + 1);
     }
 
     pub(super) fn push(&mut self, mask: u64) {
@@ -101,7 +105,7 @@ impl<'m> Memo<'m> {
             let entry = (home + probe) % self.active;
             let Some(words) = self.slots.get(entry * self.words..(entry + 1) * self.words) else { break };
             let (own, rest) = words.split_at(key.len.min(words.len() - ENTRY_WORDS));
-            if let (true, Some(&[0, w0, w1, w2, w3])) = (own == &key.words[..own.len()], rest.last_chunk()) {
+            if let (true, Some(&[0, w0, w1, w2, w3])) = (same(own, &key.words), rest.last_chunk()) {
                 return Ok(u128::from(w0) | u128::from(w1) << 32 | u128::from(w2) << 64 | u128::from(w3) << 96);
             }
             if own.first() == Some(&0) {
@@ -113,9 +117,10 @@ impl<'m> Memo<'m> {
         self.written += 1;
         let range = place * self.words..(place + 1) * self.words;
         if let Some(words) = self.slots.get_mut(range) {
-            let room = words.len() - ENTRY_WORDS;
-            let (own, rest) = words.split_at_mut(room);
-            own[..key.len.min(room)].copy_from_slice(&key.words[..key.len.min(room)]);
+            let (own, rest) = words.split_at_mut(words.len() - ENTRY_WORDS);
+            for (own, &word) in own.iter_mut().zip(&key.words).take(key.len) {
+                *own = word;
+            }
             if let Some(serial) = rest.first_mut() {
                 *serial = self.serial;
             }
@@ -132,4 +137,10 @@ impl<'m> Memo<'m> {
             (*w0, *w1, *w2, *w3) = (count as u32, (count >> 32) as u32, (count >> 64) as u32, (count >> 96) as u32);
         }
     }
+}
+
+/// Whether the words of a key are those kept: a dozen or so, fewer than a call is worth.
+#[inline]
+fn same(own: &[u32], key: &[u32; KEY_WORDS]) -> bool {
+    own.iter().zip(key).fold(0, |differ, (x, y)| differ | (x ^ y)) == 0
 }

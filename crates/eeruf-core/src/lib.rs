@@ -30,6 +30,7 @@ mod refiring;
 mod ring;
 mod schedule;
 mod scheduler;
+pub mod search;
 mod sensor_set;
 mod sound;
 pub mod tables;

@@ -1,0 +1,3 @@
+//! Exhaustive searches for schedules, with proofs.
+
+pub mod design;

@@ -1,29 +1,37 @@
 //! The shortest period for a ring of sensors, proven.
 
+mod bounds;
 mod control;
 mod frame;
+mod hunt;
+mod largest;
 mod network;
 mod packing;
 mod problem;
 mod propagate;
 mod random;
+mod schedule;
+mod shortest;
 mod symmetry;
 mod tree;
 
+pub use bounds::Bound;
 pub use control::{Control, Flow, POLL, Progress};
+pub use largest::{Choice, Largest, Preferred, largest_interval, largest_separation, prefer};
 pub use problem::{MAX_SENSORS, MAX_TICKS, Problem, ProblemError};
+pub use schedule::Firing;
+pub use shortest::{Answer, Decision, Effect, Reason, Relaxations, Shortest, decide, relaxations, shortest};
 
-#[doc(hidden)]
-pub fn probe(problem: &Problem<'_>, period: u32, memory: &mut [i32], seed: Option<u64>, budget: u64) -> (i32, u64, [u32; 64], [u32; 64]) {
-    let needs = problem.needs().unwrap();
-    let mut tree = tree::Tree::new(&needs, period as i32, memory);
-    tree.restart(seed.map(random::Random::new));
-    let o = tree.run(budget);
-    match o {
-        tree::Outcome::Found(t) => (1, tree.nodes(), t.a, t.b),
-        tree::Outcome::Exhausted => (0, tree.nodes(), [0; 64], [0; 64]),
-        tree::Outcome::Spent => (-1, tree.nodes(), [0; 64], [0; 64]),
-    }
+/// The words of memory that every search over `sensors` sensors needs: 51 KiB for 12 sensors, 4.6 MiB for 64.
+///
+/// It can be a `static`: `static mut`-free programs lend a local or a `StaticCell` of `[i32; memory_words(12)]`.
+#[must_use]
+pub const fn memory_words(sensors: usize) -> usize {
+    tree::words(sensors)
 }
-#[doc(hidden)]
-pub const fn words(k: usize) -> usize { tree::words(k) }
+
+/// The memory, if it is large enough.
+fn check_memory(memory: &mut [i32], sensors: usize) -> Result<&mut [i32], ProblemError> {
+    let (words, needed) = (memory.len(), memory_words(sensors));
+    if words < needed { Err(ProblemError::Memory { words, needed }) } else { Ok(memory) }
+}

@@ -11,19 +11,13 @@ use super::network::{Contradiction, Network};
 use super::packing::Intervals;
 use super::problem::{Needs, Sensors};
 use super::random::Random;
+use super::schedule::Firing;
 use super::symmetry::{self, Sorting};
-
-/// Firing times in both phases, in ticks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Times {
-    pub(crate) a: [u32; MAX_SENSORS],
-    pub(crate) b: [u32; MAX_SENSORS],
-}
 
 /// What a search of one period came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    Found(Times),
+    Found(Firing),
     Exhausted,
     Spent,
 }
@@ -196,12 +190,12 @@ impl<'p, 'm> Tree<'p, 'm> {
                 }
                 self.choose();
             }
+            if self.depth == 0 {
+                return Outcome::Exhausted;
+            }
             // More values than fit have been seen on no problem yet; giving up is the honest answer.
             if self.nodes >= end || self.depth > frames(self.needs.sensors) {
                 return Outcome::Spent;
-            }
-            if self.depth == 0 {
-                return Outcome::Exhausted;
             }
             descend = self.next_alternative();
         }
@@ -444,7 +438,7 @@ impl<'p, 'm> Tree<'p, 'm> {
     }
 
     /// The earliest or the latest times that the matrix allows, if all orders are decided and the separation happens to hold.
-    fn reading(&self) -> Option<Times> {
+    fn reading(&self) -> Option<Firing> {
         let (k, interval) = (self.needs.sensors, self.needs.interval);
         let undecided = |u: usize, v: usize| self.net.at_most(u, v) > -interval && self.net.at_most(v, u) > -interval;
         for x in 0..k {
@@ -462,9 +456,9 @@ impl<'p, 'm> Tree<'p, 'm> {
     }
 
     /// These times, if all `|d|` are far enough from each other and from 0.
-    fn times(&self, time: impl Fn(usize) -> i32) -> Option<Times> {
+    fn times(&self, time: impl Fn(usize) -> i32) -> Option<Firing> {
         let k = self.needs.sensors;
-        let mut times = Times { a: [0; MAX_SENSORS], b: [0; MAX_SENSORS] };
+        let mut times = Firing { a: [0; MAX_SENSORS], b: [0; MAX_SENSORS], sensors: k };
         let mut sizes = [0; MAX_SENSORS];
         for x in 0..k {
             let (a, b) = (time(self.node(x, 0)), time(self.node(x, 1)));

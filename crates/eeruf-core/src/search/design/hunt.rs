@@ -1,0 +1,217 @@
+//! One question after another over the same memory: decide a problem, and find where "no" turns into "yes" along one of its numbers.
+
+use super::control::{Control, Flow, POLL, Progress};
+use super::problem::Needs;
+use super::random::Random;
+use super::schedule::Firing;
+use super::tree::{Outcome, Tree};
+
+/// The number that is varied while all others stay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Axis {
+    /// The shortest period.
+    Period,
+    /// The largest separation.
+    Separation,
+    /// The largest interval.
+    Interval,
+    /// The largest window.
+    Window,
+}
+
+/// A problem at a period.
+#[derive(Clone, Copy)]
+pub(crate) struct Question {
+    pub(crate) needs: Needs,
+    pub(crate) period: i32,
+}
+
+impl Question {
+    /// The question with the number on `axis` replaced; larger `ease` is easier.
+    pub(crate) fn at(&self, axis: Axis, ease: i32) -> Self {
+        let mut question = *self;
+        match axis {
+            Axis::Period => question.period = ease,
+            Axis::Separation => {
+                question.needs.separation = -ease;
+                if self.needs.least > 0 {
+                    question.needs.least = (1 - ease) / 2;
+                }
+            }
+            Axis::Interval => question.needs.interval = -ease,
+            Axis::Window => question.needs.window = -ease,
+        }
+        question
+    }
+
+    /// The smallest ease at which the firing times serve.
+    pub(crate) fn ease_of(&self, axis: Axis, firing: &Firing) -> i32 {
+        let needs = &self.needs;
+        match axis {
+            Axis::Period => firing.period(needs),
+            Axis::Separation => -firing.separation(needs, self.period),
+            Axis::Interval => -firing.interval(needs, self.period, self.period),
+            Axis::Window => -firing.window(self.period),
+        }
+    }
+}
+
+/// Where "no" turns into "yes".
+pub(crate) struct Border {
+    /// The largest ease known to be impossible.
+    pub(crate) no: i32,
+    /// The smallest ease known to be possible.
+    pub(crate) yes: i32,
+    /// Firing times at `yes`.
+    pub(crate) firing: Firing,
+}
+
+/// Counts nodes against the budget and asks the control.
+pub(crate) struct Meter<'h, C> {
+    control: &'h mut C,
+    pub(crate) nodes: u64,
+    /// The search ends when `nodes` reaches this.
+    pub(crate) limit: u64,
+    /// Shown to the control, with the period and the nodes of the moment.
+    pub(crate) bound: u32,
+    pub(crate) best: u32,
+    stopped: bool,
+}
+
+impl<C: Control> Meter<'_, C> {
+    /// Whether budget and control allow going on.
+    fn may_go_on(&self) -> bool {
+        !self.stopped && self.nodes < self.limit
+    }
+
+    /// Runs the tree for `budget` nodes, polling.
+    fn run(&mut self, tree: &mut Tree<'_, '_>, budget: u64, period: i32) -> Outcome {
+        let end = tree.nodes() + budget;
+        loop {
+            let before = tree.nodes();
+            let step = POLL.min(end - before).min(self.limit.saturating_sub(self.nodes));
+            let outcome = tree.run(step);
+            self.nodes += tree.nodes() - before;
+            if outcome != Outcome::Spent || tree.nodes() >= end || tree.nodes() == before {
+                return outcome;
+            }
+            let progress = Progress { nodes: self.nodes, period: period as u32, bound: self.bound, best: self.best };
+            self.stopped = self.control.poll(&progress) == Flow::Stop;
+            if !self.may_go_on() {
+                return Outcome::Spent;
+            }
+        }
+    }
+}
+
+/// Lent memory, and the meter.
+pub(crate) struct Hunt<'h, C> {
+    memory: &'h mut [i32],
+    pub(crate) meter: Meter<'h, C>,
+}
+
+impl<'h, C: Control> Hunt<'h, C> {
+    pub(crate) fn new(memory: &'h mut [i32], control: &'h mut C, limit: u64) -> Self {
+        Self { memory, meter: Meter { control, nodes: 0, limit, bound: 0, best: 0, stopped: false } }
+    }
+
+    /// Decides a question with about `budget` nodes.
+    ///
+    /// Most schedules are found by a lucky descent or not for long, and most proofs are short; so descents of few nodes that begin in
+    /// different ways alternate with an ordinary search that is given four times more each time.
+    pub(crate) fn decide(&mut self, question: &Question, budget: u64) -> Outcome {
+        let mut tree = Tree::new(&question.needs, question.period, self.memory);
+        let unit = 64 + 8 * question.needs.sensors as u64;
+        let (mut share, mut spent, mut seed) = (unit, 0, 0);
+        loop {
+            for lucky in [false, true] {
+                let end = (spent + share).min(budget);
+                while spent < end {
+                    seed += 1;
+                    let run = if lucky { unit * luby(seed) } else { share }.min(end - spent);
+                    tree.restart(lucky.then(|| Random::new(seed)));
+                    let before = tree.nodes();
+                    let outcome = self.meter.run(&mut tree, run, question.period);
+                    if outcome != Outcome::Spent {
+                        return outcome;
+                    }
+                    spent += tree.nodes() - before;
+                    if !self.meter.may_go_on() {
+                        return Outcome::Spent;
+                    }
+                }
+            }
+            if spent >= budget {
+                return Outcome::Spent;
+            }
+            share *= 4;
+        }
+    }
+
+    /// Narrows the border along `axis` until nothing is between, or the budget is spent. What can be met at some ease can at any larger.
+    ///
+    /// Each pass first looks for the smallest ease found within its budget, then for the largest disproved within it, both by halving.
+    /// Passes grow fourfold. `border.no` is tried first of all: bounds are often met.
+    pub(crate) fn narrow(&mut self, question: &Question, axis: Axis, border: &mut Border) {
+        let mut budget = 40 * question.needs.sensors as u64 + 400;
+        let mut first = true;
+        while border.no + 1 < border.yes {
+            // Not found within this pass's budget up to here; not disproved from there on.
+            let mut unknown = border.no;
+            while unknown + 1 < border.yes {
+                let ease = if first { unknown + 1 } else { unknown + (border.yes - unknown) / 2 };
+                first = false;
+                match self.ask(question, axis, ease, budget, border) {
+                    Outcome::Found(_) => {}
+                    Outcome::Exhausted | Outcome::Spent => unknown = unknown.max(ease),
+                }
+                if !self.meter.may_go_on() {
+                    return;
+                }
+            }
+            let mut unknown = border.yes;
+            while border.no + 1 < unknown {
+                let ease = border.no + (unknown - border.no) / 2;
+                match self.ask(question, axis, ease, budget, border) {
+                    Outcome::Found(_) => unknown = border.yes,
+                    Outcome::Exhausted => {}
+                    Outcome::Spent => unknown = ease,
+                }
+                if !self.meter.may_go_on() {
+                    return;
+                }
+            }
+            budget *= 4;
+        }
+    }
+
+    /// Decides at `ease` and moves the border accordingly.
+    fn ask(&mut self, question: &Question, axis: Axis, ease: i32, budget: u64, border: &mut Border) -> Outcome {
+        let asked = question.at(axis, ease);
+        let outcome = self.decide(&asked, budget);
+        match &outcome {
+            Outcome::Found(firing) => {
+                border.firing = *firing;
+                border.yes = asked.ease_of(axis, firing).max(border.no + 1).min(ease);
+            }
+            Outcome::Exhausted => border.no = border.no.max(ease),
+            Outcome::Spent => {}
+        }
+        if axis == Axis::Period {
+            (self.meter.bound, self.meter.best) = (border.no as u32 + 1, border.yes as u32);
+        }
+        outcome
+    }
+}
+
+/// The sequence 1 1 2 1 1 2 4 ... (Luby, Sinclair, Zuckerman), which is never far from the best lengths of restarts; `i` from 1.
+fn luby(i: u64) -> u64 {
+    let mut i = i;
+    loop {
+        let size = (i + 1).next_power_of_two();
+        if size == i + 1 {
+            return size / 2;
+        }
+        i -= size / 2 - 1;
+    }
+}

@@ -121,14 +121,17 @@ impl<'h, C: Control> Hunt<'h, C> {
     /// different ways alternate with an ordinary search that is given four times more each time.
     pub(crate) fn decide(&mut self, question: &Question, budget: u64) -> Outcome {
         let mut tree = Tree::new(&question.needs, question.period, self.memory);
-        let unit = 64 + 8 * question.needs.sensors as u64;
-        let (mut share, mut spent, mut seed) = (unit, 0, 0);
+        let unit = 32 + 6 * question.needs.sensors as u64;
+        // Another budget, other descents: nothing lucky is tried twice while a budget grows.
+        let (mut share, mut spent, mut seed) = (2 * unit, 0, budget << 20);
+        let mut descents = 0;
         loop {
             for lucky in [false, true] {
-                let end = (spent + share).min(budget);
+                let end = (spent + if lucky { share / 2 } else { share }).min(budget);
                 while spent < end {
                     seed += 1;
-                    let run = if lucky { unit * luby(seed) } else { share }.min(end - spent);
+                    descents += u64::from(lucky);
+                    let run = if lucky { unit * luby(descents) } else { share }.min(end - spent);
                     tree.restart(lucky.then(|| Random::new(seed)));
                     let before = tree.nodes();
                     let outcome = self.meter.run(&mut tree, run, question.period);
@@ -148,40 +151,44 @@ impl<'h, C: Control> Hunt<'h, C> {
         }
     }
 
-    /// Narrows the border along `axis` until nothing is between, or the budget is spent. What can be met at some ease can at any larger.
+    /// Narrows the border along `axis` until nothing is between, or the budget is spent. What can be met at some ease can be at any larger.
     ///
-    /// Each pass first looks for the smallest ease found within its budget, then for the largest disproved within it, both by halving.
-    /// Passes grow fourfold. `border.no` is tried first of all: bounds are often met.
+    /// Bounds are often met, so it starts at `border.no + 1` and goes up in growing steps until something is found, with a small budget each;
+    /// then down by halving. From there the ease just below the best decides all: either it is possible, or nothing better is. When the
+    /// budget is nearly spent on that, the rest goes into the bound.
     pub(crate) fn narrow(&mut self, question: &Question, axis: Axis, border: &mut Border) {
-        let mut budget = 40 * question.needs.sensors as u64 + 400;
-        let mut first = true;
-        while border.no + 1 < border.yes {
-            // Not found within this pass's budget up to here; not disproved from there on.
+        let mut budget = 16 * question.needs.sensors as u64;
+        let mut step = ((border.yes - border.no) >> 8).max(1);
+        let mut ease = border.no + 1;
+        while ease < border.yes && !matches!(self.ask(question, axis, ease, budget, border), Outcome::Found(_)) {
+            ease += step;
+            step += step.min(border.yes);
+        }
+        loop {
             let mut unknown = border.no;
-            while unknown + 1 < border.yes {
-                let ease = if first { unknown + 1 } else { unknown + (border.yes - unknown) / 2 };
-                first = false;
-                match self.ask(question, axis, ease, budget, border) {
-                    Outcome::Found(_) => {}
-                    Outcome::Exhausted | Outcome::Spent => unknown = unknown.max(ease),
-                }
-                if !self.meter.may_go_on() {
-                    return;
+            while unknown + 1 < border.yes && self.meter.may_go_on() {
+                let ease = unknown + (border.yes - unknown) / 2;
+                if !matches!(self.ask(question, axis, ease, budget, border), Outcome::Found(_)) {
+                    unknown = ease;
                 }
             }
-            let mut unknown = border.yes;
-            while border.no + 1 < unknown {
-                let ease = border.no + (unknown - border.no) / 2;
-                match self.ask(question, axis, ease, budget, border) {
-                    Outcome::Found(_) => unknown = border.yes,
-                    Outcome::Exhausted => {}
-                    Outcome::Spent => unknown = ease,
-                }
-                if !self.meter.may_go_on() {
-                    return;
-                }
+            let before = self.meter.nodes;
+            let rest = self.meter.limit.saturating_sub(before);
+            if border.no + 1 >= border.yes || rest == 0 {
+                return;
             }
-            budget *= 4;
+            if self.ask(question, axis, border.yes - 1, rest - rest / 4, border) == Outcome::Spent {
+                break;
+            }
+            budget = budget.max(2 * (self.meter.nodes - before));
+        }
+        let mut unknown = border.yes - 1;
+        let budget = self.meter.limit.saturating_sub(self.meter.nodes) / 8;
+        while border.no + 1 < unknown && self.meter.may_go_on() {
+            let ease = border.no + (unknown - border.no) / 2;
+            if self.ask(question, axis, ease, budget, border) != Outcome::Exhausted {
+                unknown = ease.min(border.yes - 1);
+            }
         }
     }
 

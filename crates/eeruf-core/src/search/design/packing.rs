@@ -29,6 +29,32 @@ impl Intervals {
         }
     }
 
+    /// With K values D apart in `least..=widest`, the one of rank r lies in `least + D r ..= least + D r + slack`; if slack is below D, no value
+    /// lies between these ranges.
+    ///
+    /// # Errors
+    /// Some interval is left empty.
+    pub(crate) fn round(&mut self, count: usize, separation: i32, least: i32, widest: i32) -> Result<(), Contradiction> {
+        let slack = widest - least - separation * (count as i32 - 1);
+        if slack >= separation - 1 {
+            return Ok(());
+        }
+        for i in 0..count {
+            let below = (self.low[i] - least) % separation;
+            if below > slack {
+                self.low[i] += separation - below;
+            }
+            let above = (self.high[i] - least) % separation;
+            if above > slack {
+                self.high[i] -= above - slack;
+            }
+            if self.low[i] > self.high[i] {
+                return Err(Contradiction);
+            }
+        }
+        Ok(())
+    }
+
     /// Exchanges low and high ends, so that one sweep serves both directions.
     fn mirror(&mut self, count: usize) {
         for i in 0..count {

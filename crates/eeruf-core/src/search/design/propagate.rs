@@ -131,6 +131,7 @@ impl Tree<'_, '_> {
         if (0..k).any(|x| intervals.low[x] > intervals.high[x]) {
             return Err(Contradiction);
         }
+        intervals.round(k, self.needs.separation, self.needs.least, self.widest)?;
         intervals.pack(k, self.needs.separation)?;
         for x in 0..k {
             self.demand_size(x, intervals.low[x], intervals.high[x])?;

@@ -12,11 +12,11 @@ fn main() {
         let p = Problem { sensors: k, conflicts: &conflicts, separation: 2, interval: 15, window: r, stale_echo: false };
         let mut memory = vec![0; memory_words(k) * 4];
         print!("{a}:");
-        for m in [6, 12, 24] {
+        for (m, fo) in [(6, 0), (6, 4), (6,6), (6,7), (6,8),(12,7)] {
             let begin = std::time::Instant::now();
-            let (f, nodes) = probe(&p, t, &mut memory, u64::from(seeds * 24 / m.max(6)), k as u64 * u64::from(m));
+            let (f, nodes) = probe(&p, t, &mut memory, u64::from(seeds * 24 / m.max(6)), k as u64 * u64::from(m), fo);
             let ms = begin.elapsed().as_secs_f64() * 1e3;
-            print!("  {}: {f} in {nodes} = {:.0} nodes {:.0} ms;", m, nodes as f64 / f.max(1) as f64, ms / f.max(1) as f64);
+            print!("  {},{fo}: {f} in {nodes} = {:.0} nodes {:.0} ms;", m, nodes as f64 / f.max(1) as f64, ms / f.max(1) as f64);
         }
         println!();
     }

@@ -92,7 +92,7 @@ pub(crate) fn largest(needs: &Needs) -> Bound {
 }
 
 /// The size of a large clique, and a number of cliques that cover all sensors: greedily, from each sensor upwards.
-fn cliques(needs: &Needs) -> (u32, u32) {
+pub(crate) fn cliques(needs: &Needs) -> (u32, u32) {
     let grow = |first: usize, from: u64| {
         let mut clique = 1u64 << first;
         let mut common = needs.conflicts[first] & from;

@@ -35,15 +35,3 @@ fn check_memory(memory: &mut [i32], sensors: usize) -> Result<&mut [i32], Proble
     let (words, needed) = (memory.len(), memory_words(sensors));
     if words < needed { Err(ProblemError::Memory { words, needed }) } else { Ok(memory) }
 }
-
-#[doc(hidden)]
-pub fn probe(problem: &Problem<'_>, period: u32, memory: &mut [i32], seeds: u64, budget: u64) -> (u64, u64) {
-    let needs = problem.needs().unwrap();
-    let mut tree = tree::Tree::new(&needs, period as i32, memory);
-    let mut found = 0;
-    for s in 1..=seeds {
-        tree.restart(Some(random::Random::new(s)));
-        if let tree::Outcome::Found(_) = tree.run(budget) { found += 1; }
-    }
-    (found, tree.nodes())
-}

@@ -6,6 +6,7 @@
 //! [`Frame`]s in lent memory, and a [`Network`] that can undo.
 
 use super::MAX_SENSORS;
+use super::bounds;
 use super::frame::{FRAME_WORDS, Frame, Kind};
 use super::network::{Contradiction, Network};
 use super::packing::Intervals;
@@ -53,6 +54,10 @@ pub(crate) struct Tree<'p, 'm> {
     /// Sensors in the order in which their firing orders are chosen.
     sequence: [u8; MAX_SENSORS],
     random: Option<Random>,
+    /// In how many of 8 choices an order is copied from the sensors `shift` further along.
+    follow: u32,
+    shift: usize,
+    clique: usize,
     nodes: u64,
     doomed: bool,
 }
@@ -122,6 +127,9 @@ impl<'p, 'm> Tree<'p, 'm> {
             ranks: Ranks { low: [0; MAX_SENSORS], high: [0; MAX_SENSORS], lows: 0, highs: 0, ranked: 0, negative: 0 },
             sequence: [0; MAX_SENSORS],
             random: None,
+            follow: 8,
+            shift: 0,
+            clique: bounds::cliques(needs).0 as usize,
             nodes: 0,
             doomed: false,
         };
@@ -174,6 +182,12 @@ impl<'p, 'm> Tree<'p, 'm> {
         self.depth = 0;
         self.base = 0;
         self.random = random;
+        (self.follow, self.shift) = (8, self.clique);
+        if let Some(random) = &mut self.random {
+            // Most schedules repeat their orders clique by clique, but not all.
+            self.follow = [8, 8, 7, 0][random.below(4) as usize];
+            self.shift += usize::from(random.below(4) == 0);
+        }
     }
 
     /// Goes on for at most `budget` nodes; `Spent` can be continued by calling again.
@@ -400,14 +414,37 @@ impl<'p, 'm> Tree<'p, 'm> {
             before |= 1 << x;
             let Some((_, u, v)) = best else { continue };
             let (late, early) = (self.net.at_most(u, v), self.net.at_most(v, u));
-            let first = match &mut self.random {
+            let pattern = self.pattern(u, v);
+            let first = if let Some(random) = &mut self.random {
                 // `early` and `late` are at least the interval here, or the order would be decided.
-                Some(random) => random.below((late + early).max(1) as u32) < early.max(0) as u32,
-                None => early >= late,
+                let fair = random.below((late + early).max(1) as u32) < early.max(0) as u32;
+                let follow = random.below(8) < self.follow;
+                pattern.filter(|_| follow).unwrap_or(fair)
+            } else {
+                pattern.unwrap_or(early >= late)
             };
             let mut frame = Frame::new(Kind::Order);
             (frame.x, frame.y) = if first { (u as u8, v as u8) } else { (v as u8, u as u8) };
             return Some(frame);
+        }
+        None
+    }
+
+    /// Whether `u` fires before `v` by the order of the sensors one clique further along, if that is decided.
+    fn pattern(&self, u: usize, v: usize) -> Option<bool> {
+        let (k, shift) = (self.needs.sensors, self.shift);
+        let (x, y, phase) = ((u - 1) % k, (v - 1) % k, (u - 1) / k);
+        for shift in [shift, 2 * k - shift] {
+            let (x, y) = ((x + shift) % k, (y + shift) % k);
+            let (u, v) = (self.node(x, phase), self.node(y, phase));
+            if self.needs.conflict(x, y) {
+                if self.net.at_most(u, v) <= -self.needs.interval {
+                    return Some(true);
+                }
+                if self.net.at_most(v, u) <= -self.needs.interval {
+                    return Some(false);
+                }
+            }
         }
         None
     }

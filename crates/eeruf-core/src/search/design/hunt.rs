@@ -123,11 +123,11 @@ impl<'h, C: Control> Hunt<'h, C> {
         let mut tree = Tree::new(&question.needs, question.period, self.memory);
         let unit = 32 + 6 * question.needs.sensors as u64;
         // Another budget, other descents: nothing lucky is tried twice while a budget grows.
-        let (mut share, mut spent, mut seed) = (2 * unit, 0, budget << 20);
+        let (mut share, mut spent, mut seed) = (unit / 2, 0, budget << 20);
         let mut descents = 0;
         loop {
             for lucky in [false, true] {
-                let end = (spent + if lucky { share / 2 } else { share }).min(budget);
+                let end = (spent + if lucky { share.max(unit) } else { share }).min(budget);
                 while spent < end {
                     seed += 1;
                     descents += u64::from(lucky);
@@ -153,16 +153,22 @@ impl<'h, C: Control> Hunt<'h, C> {
 
     /// Narrows the border along `axis` until nothing is between, or the budget is spent. What can be met at some ease can be at any larger.
     ///
-    /// Bounds are often met, so it starts at `border.no + 1` and goes up in growing steps until something is found, with a small budget each;
-    /// then down by halving. From there the ease just below the best decides all: either it is possible, or nothing better is. When the
-    /// budget is nearly spent on that, the rest goes into the bound.
+    /// Bounds are often met, so it starts at `border.no + 1` and goes up in growing steps until something is found, a few times with growing
+    /// budgets: what is much easier is not much easier to find. Then down by halving. From there the ease just below the best decides all:
+    /// either it is possible, or nothing better is. When the budget is nearly spent on that, the rest goes into the bound.
     pub(crate) fn narrow(&mut self, question: &Question, axis: Axis, border: &mut Border) {
         let mut budget = 16 * question.needs.sensors as u64;
-        let mut step = ((border.yes - border.no) >> 8).max(1);
-        let mut ease = border.no + 1;
-        while ease < border.yes && !matches!(self.ask(question, axis, ease, budget, border), Outcome::Found(_)) {
-            ease += step;
-            step += step.min(border.yes);
+        let first = ((border.yes - border.no) >> 8).max(1);
+        'up: for _ in 0..6 {
+            let (mut step, mut ease) = (first, border.no + 1);
+            for _ in 0..6 {
+                if ease >= border.yes || !self.meter.may_go_on() || matches!(self.ask(question, axis, ease, budget, border), Outcome::Found(_)) {
+                    break 'up;
+                }
+                ease = ease.max(border.no) + step;
+                step *= 2;
+            }
+            budget *= 2;
         }
         loop {
             let mut unknown = border.no;
@@ -172,15 +178,15 @@ impl<'h, C: Control> Hunt<'h, C> {
                     unknown = ease;
                 }
             }
-            let before = self.meter.nodes;
-            let rest = self.meter.limit.saturating_sub(before);
+            let rest = self.meter.limit.saturating_sub(self.meter.nodes);
             if border.no + 1 >= border.yes || rest == 0 {
                 return;
             }
-            if self.ask(question, axis, border.yes - 1, rest - rest / 4, border) == Outcome::Spent {
+            budget *= 4;
+            let most = rest - rest / 4;
+            if self.ask(question, axis, border.yes - 1, (4 * budget).min(most), border) == Outcome::Spent && most <= 4 * budget {
                 break;
             }
-            budget = budget.max(2 * (self.meter.nodes - before));
         }
         let mut unknown = border.yes - 1;
         let budget = self.meter.limit.saturating_sub(self.meter.nodes) / 8;

@@ -64,6 +64,8 @@ pub(crate) struct Border {
     pub(crate) yes: i32,
     /// Firing times at `yes`.
     pub(crate) firing: Firing,
+    /// Whether these times came from a search, so that looking for something similar is worth while.
+    pub(crate) guide: bool,
 }
 
 /// Counts nodes against the budget and asks the control.
@@ -119,7 +121,7 @@ impl<'h, C: Control> Hunt<'h, C> {
     ///
     /// Most schedules are found by a lucky descent or not for long, and most proofs are short; so descents of few nodes that begin in
     /// different ways alternate with an ordinary search that is given four times more each time.
-    pub(crate) fn decide(&mut self, question: &Question, budget: u64) -> Outcome {
+    pub(crate) fn decide(&mut self, question: &Question, budget: u64, guide: Option<Firing>) -> Outcome {
         let mut tree = Tree::new(&question.needs, question.period, self.memory);
         let unit = 32 + 6 * question.needs.sensors as u64;
         // Another budget, other descents: nothing lucky is tried twice while a budget grows.
@@ -132,7 +134,7 @@ impl<'h, C: Control> Hunt<'h, C> {
                     seed += 1;
                     descents += u64::from(lucky);
                     let run = if lucky { unit * luby(descents) } else { share }.min(end - spent);
-                    tree.restart(lucky.then(|| Random::new(seed)));
+                    tree.restart(lucky.then(|| Random::new(seed)), guide.filter(|_| !lucky));
                     let before = tree.nodes();
                     let outcome = self.meter.run(&mut tree, run, question.period);
                     if outcome != Outcome::Spent {
@@ -201,10 +203,11 @@ impl<'h, C: Control> Hunt<'h, C> {
     /// Decides at `ease` and moves the border accordingly.
     fn ask(&mut self, question: &Question, axis: Axis, ease: i32, budget: u64, border: &mut Border) -> Outcome {
         let asked = question.at(axis, ease);
-        let outcome = self.decide(&asked, budget);
+        let outcome = self.decide(&asked, budget, border.guide.then_some(border.firing));
         match &outcome {
             Outcome::Found(firing) => {
                 border.firing = *firing;
+                border.guide = true;
                 border.yes = asked.ease_of(axis, firing).max(border.no + 1).min(ease);
             }
             Outcome::Exhausted => border.no = border.no.max(ease),

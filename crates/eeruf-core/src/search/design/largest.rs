@@ -76,7 +76,7 @@ fn largest<C: Control>(
     let mut hunt = Hunt::new(memory, control, budget);
     (hunt.meter.bound, hunt.meter.best) = (period, period);
     let most = most(&question, axis);
-    let firing = match hunt.decide(&question, budget) {
+    let firing = match hunt.decide(&question, budget, None) {
         Outcome::Found(firing) => firing,
         Outcome::Exhausted => return Ok(Largest { found: None, bound: None, nodes: hunt.meter.nodes }),
         Outcome::Spent => return Ok(Largest { found: None, bound: Some(most as u32), nodes: hunt.meter.nodes }),
@@ -89,7 +89,7 @@ fn largest<C: Control>(
 fn improve<C: Control>(hunt: &mut Hunt<'_, C>, question: &Question, axis: Axis, firing: Firing) -> Border {
     let no = -most(question, axis) - 1;
     let yes = question.ease_of(axis, &firing).max(no + 1);
-    let mut border = Border { no, yes, firing };
+    let mut border = Border { no, yes, firing, guide: true };
     hunt.narrow(question, axis, &mut border);
     border
 }

@@ -144,7 +144,7 @@ pub fn decide<C: Control>(
         return Ok(Decision { answer: Answer::Exhausted, nodes: 0 });
     }
     let mut hunt = Hunt::new(memory, control, budget);
-    let answer = match hunt.decide(&Question { needs, period }, budget) {
+    let answer = match hunt.decide(&Question { needs, period }, budget, None) {
         Outcome::Found(firing) => Answer::Found(firing),
         Outcome::Exhausted => Answer::Exhausted,
         Outcome::Spent => Answer::BudgetSpent,
@@ -178,7 +178,7 @@ pub fn shortest<C: Control>(
 pub(crate) fn shortest_period<C: Control>(needs: &Needs, hunt: &mut Hunt<'_, C>) -> Shortest {
     let counted = bounds::largest(needs);
     let firing = schedule::one_by_one(needs);
-    let mut border = Border { no: counted.period() as i32 - 1, yes: firing.period(needs), firing };
+    let mut border = Border { no: counted.period() as i32 - 1, yes: firing.period(needs), firing, guide: false };
     hunt.narrow(&Question { needs: *needs, period: border.yes }, Axis::Period, &mut border);
     let (period, bound) = (border.yes as u32, border.no as u32 + 1);
     let reason = if bound < period {

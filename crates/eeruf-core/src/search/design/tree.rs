@@ -54,6 +54,8 @@ pub(crate) struct Tree<'p, 'm> {
     /// Sensors in the order in which their firing orders are chosen.
     sequence: [u8; MAX_SENSORS],
     random: Option<Random>,
+    /// A schedule for an easier problem: like it first.
+    guide: Option<Firing>,
     /// In how many of 8 choices an order is copied from the sensors `shift` further along.
     follow: u32,
     shift: usize,
@@ -127,6 +129,7 @@ impl<'p, 'm> Tree<'p, 'm> {
             ranks: Ranks { low: [0; MAX_SENSORS], high: [0; MAX_SENSORS], lows: 0, highs: 0, ranked: 0, negative: 0 },
             sequence: [0; MAX_SENSORS],
             random: None,
+            guide: None,
             follow: 8,
             shift: 0,
             clique: bounds::cliques(needs).0 as usize,
@@ -172,8 +175,10 @@ impl<'p, 'm> Tree<'p, 'm> {
         self.nodes
     }
 
-    /// Starts over, trying alternatives in an order drawn from `random`, or in the fixed order.
-    pub(crate) fn restart(&mut self, random: Option<Random>) {
+    /// Starts over, trying alternatives in an order drawn from `random`, or first those of a schedule for an easier problem, or in the fixed
+    /// order.
+    pub(crate) fn restart(&mut self, random: Option<Random>, guide: Option<Firing>) {
+        self.guide = guide;
         self.net.reset(self.root);
         self.ranks.lows = 0;
         self.ranks.highs = 0;
@@ -312,6 +317,13 @@ impl<'p, 'm> Tree<'p, 'm> {
                 return positive.chain(negative).nth(nth);
             }
         }
+        if let Some(guide) = &self.guide {
+            let d = |x: usize| i64::from(guide.a[x]) - i64::from(guide.b[x]);
+            let key = |x: usize| if frame.kind == Kind::Low { d(x).abs() } else { -d(x).abs() };
+            let best = Sensors(frame.positive | frame.negative).min_by_key(|&x| key(x))?;
+            let negative = frame.negative >> best & 1 == 1 && (d(best) < 0 || frame.positive >> best & 1 == 0);
+            return Some((best as u8, negative));
+        }
         if frame.kind == Kind::Top {
             return Sensors(frame.positive).next().map(|x| (x as u8, false));
         }
@@ -434,6 +446,10 @@ impl<'p, 'm> Tree<'p, 'm> {
     fn pattern(&self, u: usize, v: usize) -> Option<bool> {
         let (k, shift) = (self.needs.sensors, self.shift);
         let (x, y, phase) = ((u - 1) % k, (v - 1) % k, (u - 1) / k);
+        if let Some(guide) = &self.guide {
+            let times = if phase == 0 { &guide.a } else { &guide.b };
+            return Some(times[x] < times[y]);
+        }
         for shift in [shift, 2 * k - shift] {
             let (x, y) = ((x + shift) % k, (y + shift) % k);
             let (u, v) = (self.node(x, phase), self.node(y, phase));

@@ -119,37 +119,42 @@ impl<'h, C: Control> Hunt<'h, C> {
 
     /// Decides a question with about `budget` nodes.
     ///
-    /// Most schedules are found by a lucky descent or not for long, and most proofs are short; so descents of few nodes that begin in
-    /// different ways alternate with an ordinary search that is given four times more each time.
-    pub(crate) fn decide(&mut self, question: &Question, budget: u64, guide: Option<Firing>) -> Outcome {
+    /// Most schedules are found by a lucky descent or not for long, and most proofs are short. So a small part of the budget goes to an
+    /// ordinary search, led by `guide`, and the rest to descents of few nodes that begin in different ways; or, to be `thorough`, half each.
+    pub(crate) fn decide(&mut self, question: &Question, budget: u64, guide: Option<Firing>, thorough: bool) -> Outcome {
         let mut tree = Tree::new(&question.needs, question.period, self.memory);
         let unit = 32 + 6 * question.needs.sensors as u64;
+        let full = if thorough { budget / 2 } else { unit.max(budget / 8) }.min(budget);
+        tree.restart(None, guide);
+        let outcome = self.meter.run(&mut tree, full, question.period);
+        if outcome != Outcome::Spent {
+            return outcome;
+        }
         // Another budget, other descents: nothing lucky is tried twice while a budget grows.
-        let (mut share, mut spent, mut seed) = (unit / 2, 0, budget << 20);
+        let seed = budget.wrapping_shl(20);
         let mut descents = 0;
+        while tree.nodes() < budget && self.meter.may_go_on() {
+            descents += 1;
+            tree.restart(Some(Random::new(seed.wrapping_add(descents))), None);
+            let run = (unit * luby(descents)).min(budget - tree.nodes());
+            let outcome = self.meter.run(&mut tree, run, question.period);
+            if outcome != Outcome::Spent {
+                return outcome;
+            }
+        }
+        Outcome::Spent
+    }
+
+    /// Decides a question with `budget` nodes, of which it spends more and more at a time.
+    pub(crate) fn settle(&mut self, question: &Question, budget: u64) -> Outcome {
+        let end = self.meter.nodes.saturating_add(budget).min(self.meter.limit);
+        let mut part = 64 * question.needs.sensors as u64;
         loop {
-            for lucky in [false, true] {
-                let end = (spent + if lucky { share.max(unit) } else { share }).min(budget);
-                while spent < end {
-                    seed += 1;
-                    descents += u64::from(lucky);
-                    let run = if lucky { unit * luby(descents) } else { share }.min(end - spent);
-                    tree.restart(lucky.then(|| Random::new(seed)), guide.filter(|_| !lucky));
-                    let before = tree.nodes();
-                    let outcome = self.meter.run(&mut tree, run, question.period);
-                    if outcome != Outcome::Spent {
-                        return outcome;
-                    }
-                    spent += tree.nodes() - before;
-                    if !self.meter.may_go_on() {
-                        return Outcome::Spent;
-                    }
-                }
+            let outcome = self.decide(question, part.min(end - self.meter.nodes), None, true);
+            if outcome != Outcome::Spent || self.meter.nodes >= end || !self.meter.may_go_on() {
+                return outcome;
             }
-            if spent >= budget {
-                return Outcome::Spent;
-            }
-            share *= 4;
+            part = part.saturating_mul(4);
         }
     }
 
@@ -164,7 +169,7 @@ impl<'h, C: Control> Hunt<'h, C> {
         'up: for _ in 0..6 {
             let (mut step, mut ease) = (first, border.no + 1);
             for _ in 0..6 {
-                if ease >= border.yes || !self.meter.may_go_on() || matches!(self.ask(question, axis, ease, budget, border), Outcome::Found(_)) {
+                if ease >= border.yes || !self.meter.may_go_on() || matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_)) {
                     break 'up;
                 }
                 ease = ease.max(border.no) + step;
@@ -176,7 +181,7 @@ impl<'h, C: Control> Hunt<'h, C> {
             let mut unknown = border.no;
             while unknown + 1 < border.yes && self.meter.may_go_on() {
                 let ease = unknown + (border.yes - unknown) / 2;
-                if !matches!(self.ask(question, axis, ease, budget, border), Outcome::Found(_)) {
+                if !matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_)) {
                     unknown = ease;
                 }
             }
@@ -186,7 +191,7 @@ impl<'h, C: Control> Hunt<'h, C> {
             }
             budget *= 4;
             let most = rest - rest / 4;
-            if self.ask(question, axis, border.yes - 1, (4 * budget).min(most), border) == Outcome::Spent && most <= 4 * budget {
+            if self.ask(question, axis, border.yes - 1, (4 * budget).min(most), true, border) == Outcome::Spent && most <= 4 * budget {
                 break;
             }
         }
@@ -194,16 +199,16 @@ impl<'h, C: Control> Hunt<'h, C> {
         let budget = self.meter.limit.saturating_sub(self.meter.nodes) / 8;
         while border.no + 1 < unknown && self.meter.may_go_on() {
             let ease = border.no + (unknown - border.no) / 2;
-            if self.ask(question, axis, ease, budget, border) != Outcome::Exhausted {
+            if self.ask(question, axis, ease, budget, true, border) != Outcome::Exhausted {
                 unknown = ease.min(border.yes - 1);
             }
         }
     }
 
     /// Decides at `ease` and moves the border accordingly.
-    fn ask(&mut self, question: &Question, axis: Axis, ease: i32, budget: u64, border: &mut Border) -> Outcome {
+    fn ask(&mut self, question: &Question, axis: Axis, ease: i32, budget: u64, thorough: bool, border: &mut Border) -> Outcome {
         let asked = question.at(axis, ease);
-        let outcome = self.decide(&asked, budget, border.guide.then_some(border.firing));
+        let outcome = self.decide(&asked, budget, border.guide.then_some(border.firing), thorough);
         match &outcome {
             Outcome::Found(firing) => {
                 border.firing = *firing;

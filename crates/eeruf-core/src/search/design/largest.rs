@@ -76,7 +76,7 @@ fn largest<C: Control>(
     let mut hunt = Hunt::new(memory, control, budget);
     (hunt.meter.bound, hunt.meter.best) = (period, period);
     let most = most(&question, axis);
-    let firing = match hunt.decide(&question, budget, None) {
+    let firing = match hunt.settle(&question, budget) {
         Outcome::Found(firing) => firing,
         Outcome::Exhausted => return Ok(Largest { found: None, bound: None, nodes: hunt.meter.nodes }),
         Outcome::Spent => return Ok(Largest { found: None, bound: Some(most as u32), nodes: hunt.meter.nodes }),

@@ -13,6 +13,9 @@ pub(crate) struct Intervals {
 }
 
 impl Intervals {
+    /// No intervals yet.
+    pub(crate) const NONE: Self = Self { low: [-1; MAX_SENSORS], high: [-1; MAX_SENSORS] };
+
     /// Tightens the intervals of the first `count` sensors until Hall's condition gives nothing new.
     ///
     /// # Errors
@@ -75,7 +78,7 @@ impl Intervals {
             if by_high.get(rank + 1).is_some_and(|&next| self.high[usize::from(next)] == end) {
                 continue;
             }
-            // The values that end by `end`, from the highest low end down; `top` is where the next one must lie at the latest.
+            // The values that end by `end`, from the highest low end down.
             let mut inside = 0;
             let mut full = false;
             for &i in by_low.iter().rev() {

@@ -6,6 +6,7 @@
 
 use super::MAX_SENSORS;
 use super::network::Contradiction;
+use super::packing::Intervals;
 use super::problem::Sensors;
 use super::tree::Tree;
 
@@ -15,11 +16,12 @@ const ROUNDS: usize = 8;
 impl Tree<'_, '_> {
     /// Draws conclusions from all choices so far.
     pub(super) fn propagate(&mut self) -> Result<(), Contradiction> {
+        let mut packed = Intervals::NONE;
         for _ in 0..ROUNDS {
             let before = self.net.changes();
             self.force_orders()?;
             self.space_ranks()?;
-            self.pack()?;
+            self.pack(&mut packed)?;
             self.set_precedence()?;
             if self.net.changes() == before {
                 break;
@@ -124,10 +126,13 @@ impl Tree<'_, '_> {
         Ok(())
     }
 
-    /// All `|d|` must fit with the separation between them.
-    fn pack(&mut self) -> Result<(), Contradiction> {
+    /// All `|d|` must fit with the separation between them; `packed` is what came out the last time.
+    fn pack(&mut self, packed: &mut Intervals) -> Result<(), Contradiction> {
         let mut intervals = self.intervals();
         let k = self.needs.sensors;
+        if intervals.low[..k] == packed.low[..k] && intervals.high[..k] == packed.high[..k] {
+            return Ok(());
+        }
         if (0..k).any(|x| intervals.low[x] > intervals.high[x]) {
             return Err(Contradiction);
         }
@@ -136,6 +141,7 @@ impl Tree<'_, '_> {
         for x in 0..k {
             self.demand_size(x, intervals.low[x], intervals.high[x])?;
         }
+        *packed = intervals;
         Ok(())
     }
 

@@ -144,7 +144,7 @@ pub fn decide<C: Control>(
         return Ok(Decision { answer: Answer::Exhausted, nodes: 0 });
     }
     let mut hunt = Hunt::new(memory, control, budget);
-    let answer = match hunt.decide(&Question { needs, period }, budget, None) {
+    let answer = match hunt.settle(&Question { needs, period }, budget) {
         Outcome::Found(firing) => Answer::Found(firing),
         Outcome::Exhausted => Answer::Exhausted,
         Outcome::Spent => Answer::BudgetSpent,

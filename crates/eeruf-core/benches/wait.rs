@@ -11,7 +11,9 @@ use std::time::Instant;
 
 use common::naive::{Layout, conflicts};
 use criterion::{Criterion, criterion_group};
-use eeruf_core::search::wait::{self, COUNT_WORDS, Control, MEMORY_WORDS, Objective, WaitProblem, WaitSearch};
+use eeruf_core::search::wait::{
+    self, COUNT_WORDS, Control, MEMORY_WORDS, Objective, WaitProblem, WaitSearch,
+};
 
 /// Sensors, period, longest wait, group of lags, separation, interval, neighbours, whether the paper's criterion, layout.
 type Instance = (usize, u32, u32, usize, u32, u32, usize, bool, Layout);
@@ -26,28 +28,65 @@ const COUNTS: [Instance; 6] = [
 ];
 
 fn with_problem<R>(instance: Instance, then: impl FnOnce(WaitProblem<'_>) -> R) -> R {
-    let (sensors, period, wait_max, group, separation, interval, neighbours, paper, layout) = instance;
-    let lag: Vec<u32> = (0..sensors).map(|i| (i % group) as u32 * period / group as u32).collect();
-    let criterion = if paper { wait::Criterion::Paper } else { wait::Criterion::Exact };
+    let (sensors, period, wait_max, group, separation, interval, neighbours, paper, layout) =
+        instance;
+    let lag: Vec<u32> = (0..sensors)
+        .map(|i| (i % group) as u32 * period / group as u32)
+        .collect();
+    let criterion = if paper {
+        wait::Criterion::Paper
+    } else {
+        wait::Criterion::Exact
+    };
     let conflicts = conflicts(layout, sensors, neighbours);
-    then(WaitProblem { period, lag: &lag, wait_max, separation, interval, conflicts: &conflicts, criterion })
+    then(WaitProblem {
+        period,
+        lag: &lag,
+        wait_max,
+        separation,
+        interval,
+        conflicts: &conflicts,
+        criterion,
+    })
 }
 
 fn best_interval(c: &mut Criterion) {
     let mut memory = vec![0; MEMORY_WORDS];
     for (sensors, separation) in [(12, 2), (8, 1), (12, 1), (16, 1), (24, 1)] {
         for per_ms in [1, 2, 10] {
-            let instance =
-                (sensors, 100 * per_ms, 24 * per_ms, 4, separation * per_ms, 0, 4, false, Layout::Line);
-            c.bench_function(&format!("best interval, {sensors} sensors, D = {separation} ms, {per_ms} ticks a ms"), |bench| {
-                with_problem(instance, |problem| {
-                    let search = WaitSearch::new(problem).unwrap();
-                    let (mut a, mut b) = ([0; 64], [0; 64]);
-                    bench.iter(|| {
-                        search.best(Objective::Interval, &mut memory, &mut Control::unlimited(), &mut a, &mut b).unwrap()
+            let instance = (
+                sensors,
+                100 * per_ms,
+                24 * per_ms,
+                4,
+                separation * per_ms,
+                0,
+                4,
+                false,
+                Layout::Line,
+            );
+            c.bench_function(
+                &format!(
+                    "best interval, {sensors} sensors, D = {separation} ms, {per_ms} ticks a ms"
+                ),
+                |bench| {
+                    with_problem(instance, |problem| {
+                        let search = WaitSearch::new(problem).unwrap();
+                        let (mut a, mut b) = ([0; 64], [0; 64]);
+                        bench.iter(|| {
+                            search
+                                .best(
+                                    Objective::Interval,
+                                    &mut memory,
+                                    &mut Control::unlimited(),
+                                    &mut a,
+                                    &mut b,
+                                )
+                                .unwrap()
+                        });
                     });
-                });
-            });
+                },
+            );
         }
     }
 }
@@ -55,14 +94,21 @@ fn best_interval(c: &mut Criterion) {
 fn rearrange(c: &mut Criterion) {
     let pairs: Vec<(u32, u32)> = (0..12).map(|k| (24, 2 * k)).collect();
     for layout in [Layout::Line, Layout::Ring, Layout::Blocks] {
-        c.bench_function(&format!("Table I rearranged, best interval, {layout:?}"), |bench| {
-            with_problem((12, 100, 24, 4, 2, 0, 4, true, layout), |problem| {
-                let search = WaitSearch::new(problem).unwrap();
-                let arrangements = search.rearrange(&pairs).unwrap();
-                let (mut a, mut b) = ([0; 12], [0; 12]);
-                bench.iter(|| arrangements.best_interval(&mut Control::unlimited(), &mut a, &mut b).unwrap());
-            });
-        });
+        c.bench_function(
+            &format!("Table I rearranged, best interval, {layout:?}"),
+            |bench| {
+                with_problem((12, 100, 24, 4, 2, 0, 4, true, layout), |problem| {
+                    let search = WaitSearch::new(problem).unwrap();
+                    let arrangements = search.rearrange(&pairs).unwrap();
+                    let (mut a, mut b) = ([0; 12], [0; 12]);
+                    bench.iter(|| {
+                        arrangements
+                            .best_interval(&mut Control::unlimited(), &mut a, &mut b)
+                            .unwrap()
+                    });
+                });
+            },
+        );
     }
 }
 
@@ -130,10 +176,19 @@ fn ratios() {
     for instance in COUNTS {
         with_problem(instance, |problem| {
             let search = WaitSearch::new(problem).unwrap();
-            let (fast, counted) = time(20, || search.count(None, &mut memory, &mut Control::unlimited()).count);
+            let (fast, counted) = time(20, || {
+                search
+                    .count(None, &mut memory, &mut Control::unlimited())
+                    .count
+            });
             let (slow, naive) = time(1, || nested_loops(&problem));
             assert_eq!(counted, u128::from(naive));
-            println!("{instance:?}: {counted} tables, search {:.3} ms, nested loops {:.1} ms, ratio {:.0}", fast * 1e3, slow * 1e3, slow / fast);
+            println!(
+                "{instance:?}: {counted} tables, search {:.3} ms, nested loops {:.1} ms, ratio {:.0}",
+                fast * 1e3,
+                slow * 1e3,
+                slow / fast
+            );
         });
     }
 }

@@ -3,7 +3,9 @@
 mod common;
 
 use common::naive;
-use eeruf_core::search::wait::{Control, Criterion, Finish, MEMORY_WORDS, Objective, ParetoPoint, WaitProblem, WaitSearch};
+use eeruf_core::search::wait::{
+    Control, Criterion, Finish, MEMORY_WORDS, Objective, ParetoPoint, WaitProblem, WaitSearch,
+};
 use proptest::prelude::*;
 
 #[derive(Debug, Clone)]
@@ -33,36 +35,66 @@ impl Tiny {
 
 /// A line, a ring, blocks or any graph; lags in groups or anyhow.
 fn tiny() -> impl Strategy<Value = Tiny> {
-    (1_usize..=4, 0_u32..=5, 0_u32..=3, 0_u32..=9, any::<bool>(), 0..4_u8, 1_usize..=4, any::<u16>(), prop::option::of(1_usize..=4))
-        .prop_flat_map(|(sensors, wait_max, separation, interval, paper, layout, neighbours, edges, group)| {
-            let period = wait_max + 1..wait_max + 30;
-            let lags = prop::collection::vec(any::<u32>(), sensors);
-            (period, lags).prop_map(move |(period, lags)| {
-                let lag = lags
-                    .iter()
-                    .enumerate()
-                    .map(|(i, &lag)| match group {
-                        Some(group) => ((i % group) as u32 * period / group as u32).min(period - 1 - wait_max),
-                        None => lag % (period - wait_max),
-                    })
-                    .collect();
-                let conflicts = match layout {
-                    0 => naive::conflicts(naive::Layout::Line, sensors, neighbours),
-                    1 => naive::conflicts(naive::Layout::Ring, sensors, neighbours),
-                    2 => naive::conflicts(naive::Layout::Blocks, sensors, neighbours),
-                    _ => (0..sensors)
-                        .map(|i| {
-                            (0..sensors)
-                                .filter(|&j| i != j && edges >> (i.max(j) * (i.max(j) - 1) / 2 + i.min(j)) & 1 == 1)
-                                .map(|j| 1 << j)
-                                .sum()
+    (
+        1_usize..=4,
+        0_u32..=5,
+        0_u32..=3,
+        0_u32..=9,
+        any::<bool>(),
+        0..4_u8,
+        1_usize..=4,
+        any::<u16>(),
+        prop::option::of(1_usize..=4),
+    )
+        .prop_flat_map(
+            |(sensors, wait_max, separation, interval, paper, layout, neighbours, edges, group)| {
+                let period = wait_max + 1..wait_max + 30;
+                let lags = prop::collection::vec(any::<u32>(), sensors);
+                (period, lags).prop_map(move |(period, lags)| {
+                    let lag = lags
+                        .iter()
+                        .enumerate()
+                        .map(|(i, &lag)| match group {
+                            Some(group) => ((i % group) as u32 * period / group as u32)
+                                .min(period - 1 - wait_max),
+                            None => lag % (period - wait_max),
                         })
-                        .collect(),
-                };
-                let criterion = if paper { Criterion::Paper } else { Criterion::Exact };
-                Tiny { period, lag, wait_max, separation, interval, conflicts, criterion }
-            })
-        })
+                        .collect();
+                    let conflicts = match layout {
+                        0 => naive::conflicts(naive::Layout::Line, sensors, neighbours),
+                        1 => naive::conflicts(naive::Layout::Ring, sensors, neighbours),
+                        2 => naive::conflicts(naive::Layout::Blocks, sensors, neighbours),
+                        _ => (0..sensors)
+                            .map(|i| {
+                                (0..sensors)
+                                    .filter(|&j| {
+                                        i != j
+                                            && edges >> (i.max(j) * (i.max(j) - 1) / 2 + i.min(j))
+                                                & 1
+                                                == 1
+                                    })
+                                    .map(|j| 1 << j)
+                                    .sum()
+                            })
+                            .collect(),
+                    };
+                    let criterion = if paper {
+                        Criterion::Paper
+                    } else {
+                        Criterion::Exact
+                    };
+                    Tiny {
+                        period,
+                        lag,
+                        wait_max,
+                        separation,
+                        interval,
+                        conflicts,
+                        criterion,
+                    }
+                })
+            },
+        )
 }
 
 /// The interval and separation of every table of a problem without demands, those that dominate only, greatest interval first.
@@ -70,9 +102,35 @@ fn naive_front(tiny: &Tiny) -> Vec<ParetoPoint> {
     let search = WaitSearch::new(tiny.problem()).unwrap();
     let mut points: Vec<(u32, u32)> = Vec::new();
     naive::for_each(&tiny.problem(), &mut |a, b| {
-        let value = |ok: &dyn Fn(u32) -> bool, most: u32| (0..=most).rev().find(|&value| ok(value)).unwrap();
-        let interval = value(&|interval| naive::holds(&WaitProblem { interval, ..*search.problem() }, a, b), tiny.period);
-        let separation = value(&|separation| naive::holds(&WaitProblem { separation, ..*search.problem() }, a, b), tiny.wait_max);
+        let value = |ok: &dyn Fn(u32) -> bool, most: u32| {
+            (0..=most).rev().find(|&value| ok(value)).unwrap()
+        };
+        let interval = value(
+            &|interval| {
+                naive::holds(
+                    &WaitProblem {
+                        interval,
+                        ..*search.problem()
+                    },
+                    a,
+                    b,
+                )
+            },
+            tiny.period,
+        );
+        let separation = value(
+            &|separation| {
+                naive::holds(
+                    &WaitProblem {
+                        separation,
+                        ..*search.problem()
+                    },
+                    a,
+                    b,
+                )
+            },
+            tiny.wait_max,
+        );
         if !points.contains(&(interval, separation)) {
             points.push((interval, separation));
         }
@@ -80,7 +138,10 @@ fn naive_front(tiny: &Tiny) -> Vec<ParetoPoint> {
     let mut front: Vec<ParetoPoint> = points
         .iter()
         .filter(|p| !points.iter().any(|q| q != *p && q.0 >= p.0 && q.1 >= p.1))
-        .map(|&(interval, separation)| ParetoPoint { interval, separation })
+        .map(|&(interval, separation)| ParetoPoint {
+            interval,
+            separation,
+        })
         .collect();
     front.sort_by_key(|point| std::cmp::Reverse(point.interval));
     front

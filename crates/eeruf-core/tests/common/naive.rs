@@ -22,7 +22,9 @@ pub fn conflicts(layout: Layout, sensors: usize, neighbours: usize) -> Vec<u64> 
                 Layout::Blocks => i / neighbours == j / neighbours,
             }
     };
-    (0..sensors).map(|i| (0..sensors).filter(|&j| close(i, j)).map(|j| 1 << j).sum()).collect()
+    (0..sensors)
+        .map(|i| (0..sensors).filter(|&j| close(i, j)).map(|j| 1 << j).sum())
+        .collect()
 }
 
 /// Whether sensors x and y may stand in one table.
@@ -32,12 +34,17 @@ pub fn pair_holds(problem: &WaitProblem<'_>, x: usize, y: usize, a: &[u32], b: &
     let separate = match problem.criterion {
         // (13a) and (13b) with an outer absolute value; "> 2 t_delta" is ">= D".
         Criterion::Paper => {
-            ((xa - ya).abs() - (xb - yb).abs()).abs() >= d && ((xa - yb).abs() - (xb - ya).abs()).abs() >= d
+            ((xa - ya).abs() - (xb - yb).abs()).abs() >= d
+                && ((xa - yb).abs() - (xb - ya).abs()).abs() >= d
         }
         // (10a) and (10b).
-        Criterion::Exact => ((xa - xb) - (ya - yb)).abs() >= d && ((xa - xb) + (ya - yb)).abs() >= d,
+        Criterion::Exact => {
+            ((xa - xb) - (ya - yb)).abs() >= d && ((xa - xb) + (ya - yb)).abs() >= d
+        }
     };
-    separate && (problem.conflicts[x] >> y & 1 == 0 || interval(problem, x, y, a, b) >= i64::from(problem.interval))
+    separate
+        && (problem.conflicts[x] >> y & 1 == 0
+            || interval(problem, x, y, a, b) >= i64::from(problem.interval))
 }
 
 /// The least distance between a firing of x and one of y.
@@ -60,12 +67,22 @@ fn interval(problem: &WaitProblem<'_>, x: usize, y: usize, a: &[u32], b: &[u32])
 
 pub fn holds(problem: &WaitProblem<'_>, a: &[u32], b: &[u32]) -> bool {
     let sensors = problem.lag.len();
-    (0..sensors).all(|x| a[x] <= problem.wait_max && b[x] <= problem.wait_max && (0..x).all(|y| pair_holds(problem, x, y, a, b)))
+    (0..sensors).all(|x| {
+        a[x] <= problem.wait_max
+            && b[x] <= problem.wait_max
+            && (0..x).all(|y| pair_holds(problem, x, y, a, b))
+    })
 }
 
 /// Calls `see` for every table: one loop for each wait of each sensor, the innermost bodies entered only if the sensors so far fit.
 pub fn for_each(problem: &WaitProblem<'_>, see: &mut dyn FnMut(&[u32], &[u32])) {
-    fn loops(problem: &WaitProblem<'_>, k: usize, a: &mut Vec<u32>, b: &mut Vec<u32>, see: &mut dyn FnMut(&[u32], &[u32])) {
+    fn loops(
+        problem: &WaitProblem<'_>,
+        k: usize,
+        a: &mut Vec<u32>,
+        b: &mut Vec<u32>,
+        see: &mut dyn FnMut(&[u32], &[u32]),
+    ) {
         if k == problem.lag.len() {
             see(a, b);
             return;
@@ -92,6 +109,12 @@ pub fn count(problem: &WaitProblem<'_>) -> u128 {
 }
 
 /// The greatest smallest interval and the greatest separation of any table, by trying each value.
-pub fn best(problem: &WaitProblem<'_>, with: impl Fn(WaitProblem<'_>, u32) -> WaitProblem<'_>, most: u32) -> Option<u32> {
-    (0..=most).rev().find(|&value| count(&with(*problem, value)) > 0)
+pub fn best(
+    problem: &WaitProblem<'_>,
+    with: impl Fn(WaitProblem<'_>, u32) -> WaitProblem<'_>,
+    most: u32,
+) -> Option<u32> {
+    (0..=most)
+        .rev()
+        .find(|&value| count(&with(*problem, value)) > 0)
 }

@@ -18,7 +18,13 @@ impl<'p> WaitSearch<'p> {
     /// All tables, in lexicographic order of `a_0, b_0, a_1, b_1, ..`.
     #[must_use]
     pub fn all(&self) -> All<'p> {
-        All { problem: self.problem, a: [0; MAX_SENSORS], b: [0; MAX_SENSORS], depth: Some(0), handed_out: false }
+        All {
+            problem: self.problem,
+            a: [0; MAX_SENSORS],
+            b: [0; MAX_SENSORS],
+            depth: Some(0),
+            handed_out: false,
+        }
     }
 }
 
@@ -29,7 +35,12 @@ impl All<'_> {
     ///
     /// # Errors
     /// [`WaitError::Short`] if `a` or `b` is too short.
-    pub fn next_into(&mut self, control: &mut Control<'_>, a: &mut [u32], b: &mut [u32]) -> Result<Finish, WaitError> {
+    pub fn next_into(
+        &mut self,
+        control: &mut Control<'_>,
+        a: &mut [u32],
+        b: &mut [u32],
+    ) -> Result<Finish, WaitError> {
         let sensors = self.problem.lag.len();
         WaitSearch::needs("a", a.len(), sensors)?;
         WaitSearch::needs("b", b.len(), sensors)?;
@@ -93,11 +104,22 @@ impl All<'_> {
 
     /// Whether sensor `k` fires `I` away from the sensors before it, in one phase.
     fn in_time(&self, k: usize, phase: usize) -> bool {
-        let WaitProblem { period, lag, interval, conflicts, .. } = self.problem;
-        let (own, other) = if phase == 0 { (&self.a, &self.b) } else { (&self.b, &self.a) };
+        let WaitProblem {
+            period,
+            lag,
+            interval,
+            conflicts,
+            ..
+        } = self.problem;
+        let (own, other) = if phase == 0 {
+            (&self.a, &self.b)
+        } else {
+            (&self.b, &self.a)
+        };
         let time = lag[k] + own[k];
         Bits(conflicts[k]).take_while(|&j| j < k).all(|j| {
-            time.abs_diff(lag[j] + own[j]) >= interval && period - time.abs_diff(lag[j] + other[j]) >= interval
+            time.abs_diff(lag[j] + own[j]) >= interval
+                && period - time.abs_diff(lag[j] + other[j]) >= interval
         })
     }
 

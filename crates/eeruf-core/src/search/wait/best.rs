@@ -18,7 +18,7 @@ pub enum Objective {
 /// The outcome of a search for the best table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Best {
-    /// Found: the value is proven best. Exhausted: there is no table at all. BudgetSpent: value and bound are what is known.
+    /// Found: the value is proven best. Exhausted: there is no table at all. Budget spent: value and bound are what is known.
     pub finish: Finish,
     /// The best value found, in ticks; the table was written where the caller asked.
     pub value: Option<u32>,
@@ -41,7 +41,13 @@ impl WaitSearch<'_> {
     ///
     /// # Errors
     /// [`WaitError::Short`] if `memory`, `a` or `b` is too short.
-    pub fn first(&self, memory: &mut [u32], control: &mut Control<'_>, a: &mut [u32], b: &mut [u32]) -> Result<Finish, WaitError> {
+    pub fn first(
+        &self,
+        memory: &mut [u32],
+        control: &mut Control<'_>,
+        a: &mut [u32],
+        b: &mut [u32],
+    ) -> Result<Finish, WaitError> {
         self.check(memory, a, b)?;
         let mut wait = [0; 2 * MAX_SENSORS];
         let finish = decide(self.problem(), memory, control, &mut wait);
@@ -72,7 +78,9 @@ impl WaitSearch<'_> {
         let mut bound = match objective {
             // Of two conflicting sensors one fires before and after the other on the circle of 2 T_p; without conflicts there is no
             // interval to measure.
-            Objective::Interval if self.problem().conflicts.iter().any(|&row| row != 0) => self.problem().period,
+            Objective::Interval if self.problem().conflicts.iter().any(|&row| row != 0) => {
+                self.problem().period
+            }
             Objective::Interval => self.problem().period.max(self.problem().interval),
             // Capacity: K values |d| in 0 ..= wait_max.
             Objective::Separation => match self.problem().wait_max.checked_div(pairs) {
@@ -82,8 +90,13 @@ impl WaitSearch<'_> {
         };
         if self.problem().criterion == Criterion::Paper {
             // The weaker criterion is settled much faster, and what it excludes is excluded.
-            let exact = Self::new(WaitProblem { criterion: Criterion::Exact, ..*self.problem() })?;
-            let exact = control.slice(BOUND_SLICE, |control| exact.best(objective, memory, control, a, b))?;
+            let exact = Self::new(WaitProblem {
+                criterion: Criterion::Exact,
+                ..*self.problem()
+            })?;
+            let exact = control.slice(BOUND_SLICE, |control| {
+                exact.best(objective, memory, control, a, b)
+            })?;
             if exact.finish == Finish::Exhausted {
                 return Ok(exact);
             }
@@ -108,7 +121,9 @@ impl WaitSearch<'_> {
                 let search = self.at(objective, target);
                 (control.value, control.bound) = (value, Some(bound));
                 let limit = if value.is_none() { u64::MAX } else { slice };
-                match control.slice(limit, |control| decide(search.problem(), memory, control, &mut wait)) {
+                match control.slice(limit, |control| {
+                    decide(search.problem(), memory, control, &mut wait)
+                }) {
                     Finish::Found => {
                         self.hand_out(&wait, a, b);
                         value = Some(self.value_of(objective, a, b).clamp(target, bound));
@@ -132,13 +147,22 @@ impl WaitSearch<'_> {
             None if !control.spent() => Finish::Exhausted,
             _ => Finish::BudgetSpent,
         };
-        Ok(Best { finish, value, bound, nodes: control.nodes() - before })
+        Ok(Best {
+            finish,
+            value,
+            bound,
+            nodes: control.nodes() - before,
+        })
     }
 
     /// The tables of which no other is better in one of interval and separation without being worse in the other, from the greatest
     /// interval to the greatest separation; both at least those of the problem.
     pub fn pareto<'m>(&self, memory: &'m mut [u32]) -> Pareto<'_, 'm> {
-        Pareto { search: *self, separation: Some(self.problem().separation), memory }
+        Pareto {
+            search: *self,
+            separation: Some(self.problem().separation),
+            memory,
+        }
     }
 
     fn least_of(&self, objective: Objective) -> u32 {
@@ -224,12 +248,25 @@ impl Pareto<'_, '_> {
             }
             return Ok((interval.finish, None));
         };
-        let separation = search.with(from, interval).best(Objective::Separation, self.memory, control, a, b)?;
+        let separation =
+            search
+                .with(from, interval)
+                .best(Objective::Separation, self.memory, control, a, b)?;
         let (Finish::Found, Some(separation)) = (separation.finish, separation.value) else {
             return Ok((Finish::BudgetSpent, None));
         };
         // A single sensor is at no distance from another: its one point is the whole front.
-        self.separation = if search.sensors() == 1 { None } else { separation.checked_add(1) };
-        Ok((Finish::Found, Some(ParetoPoint { interval, separation })))
+        self.separation = if search.sensors() == 1 {
+            None
+        } else {
+            separation.checked_add(1)
+        };
+        Ok((
+            Finish::Found,
+            Some(ParetoPoint {
+                interval,
+                separation,
+            }),
+        ))
     }
 }

@@ -21,7 +21,7 @@ pub const COUNT_WORDS: usize = 1 << 20;
 /// The outcome of counting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Count {
-    /// Exhausted: the count is exact. Found: the limit was reached, there are at least as many. BudgetSpent: so many were counted
+    /// Exhausted: the count is exact. Found: the limit was reached, there are at least as many. Budget spent: so many were counted
     /// before the search stopped.
     pub finish: Finish,
     /// The number of tables.
@@ -34,10 +34,18 @@ impl WaitSearch<'_> {
     /// Counts the tables; stops early when there are `limit` or more. More `memory` makes it faster ([`COUNT_WORDS`]); it may be empty.
     ///
     /// Without a limit, a count beyond `u128` ends with [`Finish::Found`] at its maximum.
-    pub fn count(&self, limit: Option<u128>, memory: &mut [u32], control: &mut Control<'_>) -> Count {
+    pub fn count(
+        &self,
+        limit: Option<u128>,
+        memory: &mut [u32],
+        control: &mut Control<'_>,
+    ) -> Count {
         let before = control.nodes();
         let limit = limit.unwrap_or(u128::MAX);
-        let (finish, count) = if self.problem.wait_max > MASK_MAX {
+        // Beyond capacity nothing needs setting up; what passes has D at most wait_max, or a single sensor.
+        let (finish, count) = if self.problem.is_beyond_capacity() {
+            (Finish::Exhausted, 0)
+        } else if self.problem.wait_max > MASK_MAX {
             count_one_by_one(self, limit, control)
         } else {
             let problem = &self.problem;
@@ -49,14 +57,22 @@ impl WaitSearch<'_> {
                 _ => Counting::<0>::new(problem, memory).run(limit, control),
             }
         };
-        Count { finish, count, nodes: control.nodes() - before }
+        Count {
+            finish,
+            count,
+            nodes: control.nodes() - before,
+        }
     }
 }
 
 /// The longest wait whose set of waits fits a word.
 const MASK_MAX: u32 = 63;
 
-fn count_one_by_one(search: &WaitSearch<'_>, limit: u128, control: &mut Control<'_>) -> (Finish, u128) {
+fn count_one_by_one(
+    search: &WaitSearch<'_>,
+    limit: u128,
+    control: &mut Control<'_>,
+) -> (Finish, u128) {
     let mut all = search.all();
     let mut count = 0;
     while count < limit {
@@ -148,36 +164,64 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
         };
         counting.find_near();
         let widest = counting.choose_order();
-        let masks = 2 * widest + if problem.criterion == Criterion::Paper { 3 } else { 1 };
-        counting.memo = Memo::new(memory, if problem.wait_max < 32 { masks } else { 2 * masks });
+        let masks = 2 * widest
+            + if problem.criterion == Criterion::Paper {
+                3
+            } else {
+                1
+            };
+        counting.memo = Memo::new(
+            memory,
+            if problem.wait_max < 32 {
+                masks
+            } else {
+                2 * masks
+            },
+        );
         counting
     }
 
     fn run(&mut self, limit: u128, control: &mut Control<'_>) -> (Finish, u128) {
         let sensors = self.problem.lag.len();
         let wait_max = self.problem.wait_max as i32;
-        // Capacity; a separation that passes it is at most wait_max, or nobody's concern.
-        let conflict = self.near.iter().any(|&row| row != 0);
-        let packed = u64::from(self.problem.separation) * (sensors as u64 - 1);
-        if packed > u64::from(self.problem.wait_max) || conflict && self.problem.interval > self.problem.period {
-            return (Finish::Exhausted, 0);
-        }
         let last = sensors - 1;
         let mut level = 0;
-        let everything = Free { d: span(0, wait_max), s: [span(0, wait_max), span(0, wait_max - 1)] };
+        let everything = Free {
+            d: span(0, wait_max),
+            s: [span(0, wait_max), span(0, wait_max - 1)],
+        };
         if last == 0 {
             self.total = self.completions(everything, [span(0, wait_max); 2]);
-            return (if self.total >= limit { Finish::Found } else { Finish::Exhausted }, self.total);
+            return (
+                if self.total >= limit {
+                    Finish::Found
+                } else {
+                    Finish::Exhausted
+                },
+                self.total,
+            );
         }
         if N > 0 {
             let [i, j] = [last - 1, last].map(|level| usize::from(self.order[level]));
-            self.options.last_two(self.problem, (self.near[i] >> j & 1 == 1).then_some((i, j)));
+            self.options
+                .last_two(self.problem, (self.near[i] >> j & 1 == 1).then_some((i, j)));
         }
-        let pairs = if N > 0 { self.options.rectangle([u64::MAX; 2]) } else { [0; N] };
+        let pairs = if N > 0 {
+            self.options.rectangle([u64::MAX; 2])
+        } else {
+            [0; N]
+        };
         // With two sensors the first is the last but one: there is nothing to walk.
         if N > 0 && last == 1 {
             self.total = self.last_two(0, &pairs);
-            return (if self.total >= limit { Finish::Found } else { Finish::Exhausted }, self.total);
+            return (
+                if self.total >= limit {
+                    Finish::Found
+                } else {
+                    Finish::Exhausted
+                },
+                self.total,
+            );
         }
         self.enter(0, everything, pairs);
         loop {
@@ -193,14 +237,17 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
                     self.enter_last_two(below, free, pairs);
                 } else if below == last {
                     if self.survey(last) {
-                        let tables = self.completions(free, self.left[usize::from(self.order[last])]);
+                        let tables =
+                            self.completions(free, self.left[usize::from(self.order[last])]);
                         self.add(below, tables);
                     }
                 } else if self.enter(below, free, pairs) {
                     level = below;
                 }
             } else {
-                let Level { entered_at, ticket, .. } = self.levels[level];
+                let Level {
+                    entered_at, ticket, ..
+                } = self.levels[level];
                 let tables = self.total - entered_at;
                 if let Some(ticket) = ticket {
                     self.memo.keep(ticket, tables);
@@ -219,20 +266,37 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
     fn add(&mut self, level: usize, tables: u128) {
         // Exchanging the phases turns each table whose first sensor has d > 0 into one with d < 0: the walk leaves those out.
         let twice = level == 1 && self.levels[0].d > 0;
-        self.total = self.total.saturating_add(if twice { tables.saturating_mul(2) } else { tables });
+        self.total = self.total.saturating_add(if twice {
+            tables.saturating_mul(2)
+        } else {
+            tables
+        });
     }
 
     /// Enters a level; `false` if it holds no table or is counted already.
     fn enter(&mut self, level: usize, free: Free, pairs: Set<N>) -> bool {
-        let Some(ticket) = self.open(level, free) else { return false };
+        let Some(ticket) = self.open(level, free) else {
+            return false;
+        };
         let left = self.left[usize::from(self.order[level])];
-        self.levels[level] = Level { free, pairs, left, d_left: free.d, d: 0, a_left: 0, entered_at: self.total, ticket };
+        self.levels[level] = Level {
+            free,
+            pairs,
+            left,
+            d_left: free.d,
+            d: 0,
+            a_left: 0,
+            entered_at: self.total,
+            ticket,
+        };
         true
     }
 
     /// Counts the last two levels.
     fn enter_last_two(&mut self, level: usize, free: Free, pairs: Set<N>) {
-        let Some(ticket) = self.open(level, free) else { return };
+        let Some(ticket) = self.open(level, free) else {
+            return;
+        };
         let tables = self.last_two(level, &pairs);
         if let Some(ticket) = ticket {
             self.memo.keep(ticket, tables);
@@ -243,7 +307,9 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
     /// The tables of the last two levels, of which this is the first.
     fn last_two(&self, level: usize, pairs: &Set<N>) -> u128 {
         let [own, last] = [level, level + 1].map(|level| {
-            let mut set = self.options.rectangle(self.left[usize::from(self.order[level])]);
+            let mut set = self
+                .options
+                .rectangle(self.left[usize::from(self.order[level])]);
             for n in 0..N {
                 set[n] &= pairs[n];
             }
@@ -284,7 +350,15 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
     /// Places the next pair of waits of a level; returns what it leaves free.
     fn place_next(&mut self, level: usize) -> Option<(Free, Set<N>)> {
         let paper = self.problem.criterion == Criterion::Paper;
-        let Level { free, pairs, left, mut d_left, mut d, mut a_left, .. } = self.levels[level];
+        let Level {
+            free,
+            pairs,
+            left,
+            mut d_left,
+            mut d,
+            mut a_left,
+            ..
+        } = self.levels[level];
         while a_left == 0 {
             // The first sensor's negative d are the exchanged phases of its positive ones.
             if d > 0 && level != 0 {
@@ -302,10 +376,13 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
         let here = &mut self.levels[level];
         (here.d_left, here.d, here.a_left) = (d_left, d, a_left & (a_left - 1));
         self.wait[usize::from(self.order[level])] = [a as u8, (a - d) as u8];
-        // D is at most wait_max here, as there is more than one sensor.
-        let reach = self.problem.separation as i32 - 1;
-        let pairs =
-            if N > 0 { self.options.without(&pairs, a as usize * self.options.waits() + (a - d) as usize) } else { pairs };
+        let reach = reach(self.problem);
+        let pairs = if N > 0 {
+            self.options
+                .without(&pairs, a as usize * self.options.waits() + (a - d) as usize)
+        } else {
+            pairs
+        };
         let d = d.abs();
         let mut free = free;
         free.d &= !span(d - reach, d + reach);
@@ -379,7 +456,14 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
 
     /// Notes which conflicting sensors can fire too close at all.
     fn find_near(&mut self) {
-        let WaitProblem { period, lag, wait_max, interval, conflicts, .. } = *self.problem;
+        let WaitProblem {
+            period,
+            lag,
+            wait_max,
+            interval,
+            conflicts,
+            ..
+        } = *self.problem;
         for (i, &row) in conflicts.iter().enumerate() {
             for j in Bits(row) {
                 let apart = lag[i].abs_diff(lag[j]);
@@ -398,10 +482,17 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
         for level in 0..sensors {
             (self.placed[level], self.touched[level]) = (placed, touched);
             widest = widest.max(touched.count_ones() as usize);
-            let next = (0..sensors).filter(|i| placed >> i & 1 == 0).min_by_key(|&i| {
-                let after = (touched | self.near[i]) & !placed & !(1 << i);
-                (self.near[i] == 0, after.count_ones(), touched >> i & 1 == 0, i)
-            });
+            let next = (0..sensors)
+                .filter(|i| placed >> i & 1 == 0)
+                .min_by_key(|&i| {
+                    let after = (touched | self.near[i]) & !placed & !(1 << i);
+                    (
+                        self.near[i] == 0,
+                        after.count_ones(),
+                        touched >> i & 1 == 0,
+                        i,
+                    )
+                });
             let Some(next) = next else { break };
             self.order[level] = next as u8;
             placed |= 1 << next;
@@ -420,6 +511,11 @@ fn waits_with(d: i32, left: [u64; 2], s: [u64; 2], paper: bool) -> u64 {
     }
     let odd = d & 1;
     waits & shifted(s[odd as usize], (d + odd) / 2)
+}
+
+/// How far a value keeps others away: `D - 1`, or more than any wait if a single sensor has a greater `D`.
+pub(super) fn reach(problem: &WaitProblem<'_>) -> i32 {
+    problem.separation.min(MASK_MAX + 1) as i32 - 1
 }
 
 /// Moves bits up by `by`, or down if it is negative; `by` is at most 63 either way.
@@ -443,5 +539,17 @@ const fn below(end: i32) -> u64 {
         u64::MAX
     } else {
         (1 << end) - 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counting_keeps_less_than_sixteen_kibibytes_beside_the_memory_lent() {
+        // Up to 10 ticks; the paper's 24 need no sets of pairs.
+        assert!(size_of::<Counting<'_, '_, 0>>() < 16 * 1024);
+        assert!(size_of::<Counting<'_, '_, 2>>() < 20 * 1024);
     }
 }

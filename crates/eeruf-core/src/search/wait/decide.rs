@@ -19,7 +19,7 @@ use super::least::{Least, Order};
 use super::{Bits, Control, Criterion, Finish, MAX_SENSORS, WaitProblem};
 
 /// Words of memory that suffice for [`first`](super::WaitSearch::first), [`best`](super::WaitSearch::best) and
-/// [`pareto`](super::WaitSearch::pareto) with so many sensors: 1,224 bytes for 8, 2,832 for 12.
+/// [`pareto`](super::WaitSearch::pareto) with so many sensors: 808 bytes for 8, 1,784 for 12.
 #[must_use]
 pub const fn memory_words(sensors: usize) -> usize {
     // Two choices of order a pair, one of s a pair, a rank and a value a sensor; two words a choice.
@@ -36,21 +36,28 @@ pub(super) fn decide(
 ) -> Finish {
     let sensors = problem.lag.len();
     let conflict = problem.conflicts.iter().any(|&row| row != 0);
-    // Capacity: K values |d| in 0 ..= wait_max, K values s in 0 ..= 2 wait_max. Sums below stay small after this.
-    let packed = u64::from(problem.separation) * (sensors as u64 - 1);
-    if packed > u64::from(problem.wait_max) || conflict && problem.interval > problem.period {
+    // Sums below stay small after this.
+    if problem.is_beyond_capacity() {
         return Finish::Exhausted;
     }
     // A single sensor is never compared with anything.
     let separation = if sensors == 1 { 0 } else { problem.separation };
     let interval = if conflict { problem.interval } else { 0 };
-    let exact = WaitProblem { criterion: Criterion::Exact, separation, interval, ..*problem };
+    let exact = WaitProblem {
+        criterion: Criterion::Exact,
+        separation,
+        interval,
+        ..*problem
+    };
     let finish = Decision::new(&exact, memory, Style::default()).run(control, wait);
     if problem.criterion == Criterion::Exact || finish != Finish::Found {
         // Without a table under the weaker criterion there is none under the stronger.
         return finish;
     }
-    let paper = WaitProblem { criterion: Criterion::Paper, ..exact };
+    let paper = WaitProblem {
+        criterion: Criterion::Paper,
+        ..exact
+    };
     let mut slice = FIRST_SLICE;
     let mut tight = true;
     loop {
@@ -60,7 +67,9 @@ pub(super) fn decide(
             if style.tight && !tight {
                 continue;
             }
-            let finish = control.slice(slice, |control| Decision::new(&paper, memory, style).run(control, wait));
+            let finish = control.slice(slice, |control| {
+                Decision::new(&paper, memory, style).run(control, wait)
+            });
             match finish {
                 Finish::Exhausted if style.tight => tight = false,
                 Finish::BudgetSpent if !control.spent() => {}
@@ -86,11 +95,31 @@ struct Style {
 }
 
 const STYLES: [Style; 5] = [
-    Style { tight: true, early_sums: false, backwards: false },
-    Style { tight: true, early_sums: true, backwards: false },
-    Style { tight: true, early_sums: false, backwards: true },
-    Style { tight: true, early_sums: true, backwards: true },
-    Style { tight: false, early_sums: false, backwards: false },
+    Style {
+        tight: true,
+        early_sums: false,
+        backwards: false,
+    },
+    Style {
+        tight: true,
+        early_sums: true,
+        backwards: false,
+    },
+    Style {
+        tight: true,
+        early_sums: false,
+        backwards: true,
+    },
+    Style {
+        tight: true,
+        early_sums: true,
+        backwards: true,
+    },
+    Style {
+        tight: false,
+        early_sums: false,
+        backwards: false,
+    },
 ];
 
 /// Which choice comes next.
@@ -135,8 +164,12 @@ impl<'p, 'm> Decision<'p, 'm> {
         for (k, p) in preferred.iter_mut().enumerate() {
             *p = k as u8;
         }
-        preferred[..sensors]
-            .sort_unstable_by_key(|&i| (problem.lag[usize::from(i)], if style.backwards { u8::MAX - i } else { i }));
+        preferred[..sensors].sort_unstable_by_key(|&i| {
+            (
+                problem.lag[usize::from(i)],
+                if style.backwards { u8::MAX - i } else { i },
+            )
+        });
         Self {
             problem,
             sensors,
@@ -145,7 +178,11 @@ impl<'p, 'm> Decision<'p, 'm> {
             least: Least::new(problem),
             preferred,
             holder: [(0, false); MAX_SENSORS],
-            unranked: if sensors == MAX_SENSORS { u64::MAX } else { (1 << sensors) - 1 },
+            unranked: if sensors == MAX_SENSORS {
+                u64::MAX
+            } else {
+                (1 << sensors) - 1
+            },
             ranked: sensors,
             valued: sensors,
             value: [0; MAX_SENSORS],
@@ -201,7 +238,11 @@ impl<'p, 'm> Decision<'p, 'm> {
                 }
                 if !self.least.can_follow(j, i) {
                     for phase in 0..2 {
-                        self.least.order(Order { phase, first: i, second: j });
+                        self.least.order(Order {
+                            phase,
+                            first: i,
+                            second: j,
+                        });
                     }
                 }
             }
@@ -213,15 +254,23 @@ impl<'p, 'm> Decision<'p, 'm> {
     fn next_choice(&self, last: Option<Choice>) -> Option<Choice> {
         let order = match last {
             None => self.open_order(0, 0),
-            Some(Choice::Order(Order { phase, first, second })) => {
-                self.open_order(first.max(second), 2 * first.min(second) + phase + 1)
-            }
+            Some(Choice::Order(Order {
+                phase,
+                first,
+                second,
+            })) => self.open_order(first.max(second), 2 * first.min(second) + phase + 1),
             Some(_) => None,
         };
         if let Some(order) = order {
             return Some(Choice::Order(order));
         }
-        let close_sums = || if self.problem.criterion == Criterion::Paper { self.close_sums() } else { None };
+        let close_sums = || {
+            if self.problem.criterion == Criterion::Paper {
+                self.close_sums()
+            } else {
+                None
+            }
+        };
         if self.style.early_sums {
             let sums = close_sums();
             if sums.is_some() {
@@ -245,7 +294,11 @@ impl<'p, 'm> Decision<'p, 'm> {
                 let (j, phase) = (half / 2, half % 2);
                 let conflict = self.problem.conflicts[i] >> j & 1 == 1;
                 if conflict && self.least.can_follow(i, j) && self.least.can_follow(j, i) {
-                    return Some(Order { phase, first: j, second: i });
+                    return Some(Order {
+                        phase,
+                        first: j,
+                        second: i,
+                    });
                 }
             }
             start = 0;
@@ -259,7 +312,11 @@ impl<'p, 'm> Decision<'p, 'm> {
         for i in (0..self.sensors).filter(|&i| known(i)) {
             for j in (0..i).filter(|&j| known(j)) {
                 if self.least.s(i).abs_diff(self.least.s(j)) < self.problem.separation {
-                    return Some(if self.least.s(i) < self.least.s(j) { Choice::Sum(i, j) } else { Choice::Sum(j, i) });
+                    return Some(if self.least.s(i) < self.least.s(j) {
+                        Choice::Sum(i, j)
+                    } else {
+                        Choice::Sum(j, i)
+                    });
                 }
             }
         }
@@ -349,9 +406,21 @@ impl<'p, 'm> Decision<'p, 'm> {
 
     /// The order by lag first, the opposite one second.
     fn oriented(&self, order: Order, alternative: u32) -> Order {
-        let Order { phase, first, second } = order;
+        let Order {
+            phase,
+            first,
+            second,
+        } = order;
         let by_lag = self.problem.lag[first] <= self.problem.lag[second];
-        if by_lag == (alternative == 0) { order } else { Order { phase, first: second, second: first } }
+        if by_lag == (alternative == 0) {
+            order
+        } else {
+            Order {
+                phase,
+                first: second,
+                second: first,
+            }
+        }
     }
 
     /// Whether `|d| = D r` is all that needs looking at; known once the orders are chosen.
@@ -363,7 +432,11 @@ impl<'p, 'm> Decision<'p, 'm> {
     fn low(&self, rank: usize) -> i32 {
         let low = self.problem.separation as i32 * rank as i32;
         // Zero counts as positive.
-        if self.holder[rank].1 && rank >= self.ranked { low.max(1) } else { low }
+        if self.holder[rank].1 && rank >= self.ranked {
+            low.max(1)
+        } else {
+            low
+        }
     }
 
     /// The greatest `|d|` of a rank, which leaves room for those above it.
@@ -381,8 +454,11 @@ impl<'p, 'm> Decision<'p, 'm> {
     /// Sets the range of every `d` from the ranks and values chosen.
     fn bound_d(&mut self) {
         for rank in self.ranked..self.sensors {
-            let (low, high) =
-                if rank >= self.valued { (self.value[rank], self.value[rank]) } else { (self.low(rank), self.high(rank)) };
+            let (low, high) = if rank >= self.valued {
+                (self.value[rank], self.value[rank])
+            } else {
+                (self.low(rank), self.high(rank))
+            };
             let (sensor, negative) = self.holder[rank];
             self.least.d[usize::from(sensor)] = if negative { [-high, -low] } else { [low, high] };
         }
@@ -398,7 +474,11 @@ impl<'p, 'm> Decision<'p, 'm> {
     /// Writes a choice and the alternative taken to the trail.
     fn keep(&mut self, depth: usize, choice: Choice, taken: u32) {
         let (kind, x, y, z) = match choice {
-            Choice::Order(Order { phase, first, second }) => (0, first, second, phase),
+            Choice::Order(Order {
+                phase,
+                first,
+                second,
+            }) => (0, first, second, phase),
             Choice::Rank(rank) => (1, rank, 0, 0),
             Choice::Value(rank) => (2, rank, 0, 0),
             Choice::Sum(low, high) => (3, low, high, 0),
@@ -414,9 +494,17 @@ impl<'p, 'm> Decision<'p, 'm> {
         let Some(&[word, taken]) = self.trail.get(2 * depth..2 * depth + 2) else {
             return (Choice::Rank(0), u32::MAX);
         };
-        let (x, y, z) = ((word >> 8 & 255) as usize, (word >> 16 & 255) as usize, (word >> 24) as usize);
+        let (x, y, z) = (
+            (word >> 8 & 255) as usize,
+            (word >> 16 & 255) as usize,
+            (word >> 24) as usize,
+        );
         let choice = match word & 255 {
-            0 => Choice::Order(Order { phase: z, first: x, second: y }),
+            0 => Choice::Order(Order {
+                phase: z,
+                first: x,
+                second: y,
+            }),
             1 => Choice::Rank(x),
             2 => Choice::Value(x),
             _ => Choice::Sum(x, y),
@@ -433,4 +521,19 @@ enum Applied {
     Skip,
     /// There is none of that number.
     None,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::memory_words;
+    use super::*;
+
+    #[test]
+    fn twelve_sensors_are_decided_in_sixteen_kibibytes() {
+        // A decision, the waits it hands out and sets aside, and the memory lent; what else a call keeps is a few words.
+        let waits = 2 * size_of::<[i32; 2 * MAX_SENSORS]>();
+        let lent = memory_words(12) * size_of::<u32>();
+        assert_eq!(lent, 1784);
+        assert!(size_of::<Decision<'_, '_>>() + waits + lent < 8 * 1024);
+    }
 }

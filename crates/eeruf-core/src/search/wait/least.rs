@@ -97,7 +97,11 @@ impl<'p> Least<'p> {
     /// Raises the waits until all constraints hold; `false` if they cannot.
     pub(super) fn raise(&mut self) -> bool {
         let nodes = 2 * self.sensors;
-        let mut dirty = if nodes == 128 { u128::MAX } else { (1 << nodes) - 1 };
+        let mut dirty = if nodes == 128 {
+            u128::MAX
+        } else {
+            (1 << nodes) - 1
+        };
         // Without a cycle of positive weight every wait is final after as many passes as there are nodes.
         for _ in 0..=nodes {
             let mut now = dirty;

@@ -24,7 +24,12 @@ pub(super) struct Key {
 impl Key {
     /// No key yet; masks above 32 bits are `wide`.
     pub(super) const fn new(wide: bool) -> Self {
-        Self { words: [0; KEY_WORDS], len: 0, wide, hash: 0 }
+        Self {
+            words: [0; KEY_WORDS],
+            len: 0,
+            wide,
+            hash: 0,
+        }
     }
 
     /// Starts the key of a level, which is part of it.
@@ -75,7 +80,14 @@ impl<'m> Memo<'m> {
     pub(super) fn new(slots: &'m mut [u32], masks: usize) -> Self {
         let words = 1 + masks + ENTRY_WORDS;
         let entries = slots.len() / words;
-        let mut memo = Self { slots, words, entries, active: 0, written: 0, serial: 0 };
+        let mut memo = Self {
+            slots,
+            words,
+            entries,
+            active: 0,
+            written: 0,
+            serial: 0,
+        };
         memo.use_first(FIRST_ENTRIES);
         memo
     }
@@ -99,14 +111,19 @@ impl<'m> Memo<'m> {
         if self.written > self.active / 2 && self.active < self.entries {
             self.use_first(self.active.saturating_mul(GROWTH));
         }
-        let home = (u128::from(key.hash) * self.active as u128 >> 64) as usize;
+        let home = ((u128::from(key.hash) * self.active as u128) >> 64) as usize;
         let mut place = home;
         for probe in 0..PROBES.min(self.active) {
             let entry = (home + probe) % self.active;
-            let Some(words) = self.slots.get(entry * self.words..(entry + 1) * self.words) else { break };
+            let Some(words) = self.slots.get(entry * self.words..(entry + 1) * self.words) else {
+                break;
+            };
             let (own, rest) = words.split_at(key.len.min(words.len() - ENTRY_WORDS));
             if let (true, Some(&[0, w0, w1, w2, w3])) = (same(own, &key.words), rest.last_chunk()) {
-                return Ok(u128::from(w0) | u128::from(w1) << 32 | u128::from(w2) << 64 | u128::from(w3) << 96);
+                return Ok(u128::from(w0)
+                    | u128::from(w1) << 32
+                    | u128::from(w2) << 64
+                    | u128::from(w3) << 96);
             }
             if own.first() == Some(&0) {
                 place = entry;
@@ -125,16 +142,26 @@ impl<'m> Memo<'m> {
                 *serial = self.serial;
             }
         }
-        Err(Ticket { entry: place, serial: self.serial })
+        Err(Ticket {
+            entry: place,
+            serial: self.serial,
+        })
     }
 
     /// Keeps a count where its ticket says.
     pub(super) fn keep(&mut self, ticket: Ticket, count: u128) {
         let end = (ticket.entry + 1) * self.words;
-        let Some([serial, w0, w1, w2, w3]) = self.slots.get_mut(end - ENTRY_WORDS..end) else { return };
+        let Some([serial, w0, w1, w2, w3]) = self.slots.get_mut(end - ENTRY_WORDS..end) else {
+            return;
+        };
         if *serial == ticket.serial {
             *serial = 0;
-            (*w0, *w1, *w2, *w3) = (count as u32, (count >> 32) as u32, (count >> 64) as u32, (count >> 96) as u32);
+            (*w0, *w1, *w2, *w3) = (
+                count as u32,
+                (count >> 32) as u32,
+                (count >> 64) as u32,
+                (count >> 96) as u32,
+            );
         }
     }
 }
@@ -142,5 +169,8 @@ impl<'m> Memo<'m> {
 /// Whether the words of a key are those kept: a dozen or so, fewer than a call is worth.
 #[inline]
 fn same(own: &[u32], key: &[u32; KEY_WORDS]) -> bool {
-    own.iter().zip(key).fold(0, |differ, (x, y)| differ | (x ^ y)) == 0
+    own.iter()
+        .zip(key)
+        .fold(0, |differ, (x, y)| differ | (x ^ y))
+        == 0
 }

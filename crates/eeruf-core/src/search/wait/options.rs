@@ -3,7 +3,7 @@
 //! With waits up to 15 ticks a sensor has at most 256 pairs `(a, b)`; pair number `a (wait_max + 1) + b` is one bit. What one sensor
 //! leaves to the next is then an AND of words, and the tables below a pair of the last sensor but one are a count of bits.
 
-use super::count::span;
+use super::count::{reach, span};
 use super::{Bits, Criterion, WaitProblem};
 
 /// The most pairs of waits that a set of them may need.
@@ -27,30 +27,47 @@ pub(super) struct Options<const N: usize> {
 /// Words that the pairs of waits up to `wait_max` take; `None` if there are too many.
 pub(super) const fn words(wait_max: u32) -> Option<usize> {
     let waits = wait_max as usize + 1;
-    if wait_max as usize >= WAITS { None } else { Some((waits * waits).div_ceil(64)) }
+    if wait_max as usize >= WAITS {
+        None
+    } else {
+        Some((waits * waits).div_ceil(64))
+    }
 }
 
 // Indices: waits are below `waits <= WAITS`, pairs below its square, words below N, which `words` gave.
 impl<const N: usize> Options<N> {
     pub(super) fn new(problem: &WaitProblem<'_>) -> Self {
         let waits = problem.wait_max as usize + 1;
-        Self { waits, separate: Self::separate(problem, waits), in_time: [[[0; N]; WAITS]; 2] }
+        Self {
+            waits,
+            separate: Self::separate(problem, waits),
+            in_time: [[[0; N]; WAITS]; 2],
+        }
     }
 
     fn separate(problem: &WaitProblem<'_>, waits: usize) -> [Set<N>; PAIRS] {
         let mut separate = [[0; N]; PAIRS];
-        let reach = problem.separation as i32 - 1;
+        if N == 0 {
+            // Too many pairs: there are no sets.
+            return separate;
+        }
+        let reach = reach(problem);
         let row = span(0, waits as i32 - 1);
         for a in 0..waits as i32 {
             for b in 0..waits as i32 {
                 let (d, s) = ((a - b).abs(), a + b);
                 for c in 0..waits as i32 {
                     // Pairs (c, e): too close where |c - e| is within reach of d, or c + e of s.
-                    let mut close = span(c - d - reach, c - d + reach) | span(c + d - reach, c + d + reach);
+                    let mut close =
+                        span(c - d - reach, c - d + reach) | span(c + d - reach, c + d + reach);
                     if problem.criterion == Criterion::Paper {
                         close |= span(s - c - reach, s - c + reach);
                     }
-                    put(&mut separate[a as usize * waits + b as usize], c as usize * waits, row & !close);
+                    put(
+                        &mut separate[a as usize * waits + b as usize],
+                        c as usize * waits,
+                        row & !close,
+                    );
                 }
             }
         }
@@ -66,7 +83,11 @@ impl<const N: usize> Options<N> {
                     None => all,
                     Some((i, j)) => {
                         let (same, across) = left_by(problem, i, j, wait as i32);
-                        self.rectangle(if phase == 0 { [same, across] } else { [across, same] })
+                        self.rectangle(if phase == 0 {
+                            [same, across]
+                        } else {
+                            [across, same]
+                        })
                     }
                 };
             }
@@ -99,8 +120,15 @@ impl<const N: usize> Options<N> {
         for (k, &word) in own.iter().enumerate() {
             for bit in Bits(word) {
                 let pair = 64 * k + bit;
-                let (a, b) = ((pair as u32 / waits) as usize, (pair as u32 % waits) as usize);
-                let (separate, by_a, by_b) = (&self.separate[pair], &self.in_time[0][a], &self.in_time[1][b]);
+                let (a, b) = (
+                    (pair as u32 / waits) as usize,
+                    (pair as u32 % waits) as usize,
+                );
+                let (separate, by_a, by_b) = (
+                    &self.separate[pair],
+                    &self.in_time[0][a],
+                    &self.in_time[1][b],
+                );
                 for n in 0..N {
                     tables += (last[n] & separate[n] & by_a[n] & by_b[n]).count_ones();
                 }
@@ -115,7 +143,10 @@ pub(super) fn left_by(problem: &WaitProblem<'_>, i: usize, j: usize, wait: i32) 
     let (interval, period) = (problem.interval as i32, problem.period as i32);
     // When i fires, as a wait of j.
     let at = problem.lag[i] as i32 - problem.lag[j] as i32 + wait;
-    (!span(at - interval + 1, at + interval - 1), span(at + interval - period, at + period - interval))
+    (
+        !span(at - interval + 1, at + interval - 1),
+        span(at + interval - period, at + period - interval),
+    )
 }
 
 fn both<const N: usize>(x: &Set<N>, y: &Set<N>) -> Set<N> {
@@ -136,4 +167,3 @@ fn put<const N: usize>(set: &mut Set<N>, place: usize, row: u64) {
         *high |= row >> (64 - bit);
     }
 }
-

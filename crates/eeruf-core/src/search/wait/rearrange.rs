@@ -4,7 +4,9 @@
 //! sensors by number; a pair stays a candidate for a sensor while it fires far enough from the conflicting sensors before it. It
 //! needs no memory but its own, about 2 KiB, and no arithmetic beyond 32 bits but the counters.
 
-use super::{Best, Bits, Control, Count, Criterion, Finish, MAX_SENSORS, WaitError, WaitSearch, gap};
+use super::{
+    Best, Bits, Control, Count, Criterion, Finish, MAX_SENSORS, WaitError, WaitSearch, gap,
+};
 
 /// The problem of arranging given pairs over the sensors.
 #[derive(Debug, Clone, Copy)]
@@ -27,17 +29,26 @@ impl<'p> WaitSearch<'p> {
         let wait_max = self.problem.wait_max;
         for (pair, &(a, b)) in pairs.iter().enumerate() {
             if a.max(b) > wait_max {
-                return Err(WaitError::Pair { pair, wait: a.max(b), wait_max });
+                return Err(WaitError::Pair {
+                    pair,
+                    wait: a.max(b),
+                    wait_max,
+                });
             }
         }
         let paper = self.problem.criterion == Criterion::Paper;
         let separation = self.problem.separation;
         let separate = pairs.iter().enumerate().all(|(k, &(a, b))| {
             pairs[..k].iter().all(|&(c, d)| {
-                a.abs_diff(b).abs_diff(c.abs_diff(d)) >= separation && (!paper || (a + b).abs_diff(c + d) >= separation)
+                a.abs_diff(b).abs_diff(c.abs_diff(d)) >= separation
+                    && (!paper || (a + b).abs_diff(c + d) >= separation)
             })
         });
-        Ok(Rearrange { search: *self, pairs, separate })
+        Ok(Rearrange {
+            search: *self,
+            pairs,
+            separate,
+        })
     }
 }
 
@@ -55,7 +66,12 @@ impl Rearrange<'_> {
     ///
     /// # Errors
     /// [`WaitError::Short`] if `a` or `b` is too short.
-    pub fn first(&self, control: &mut Control<'_>, a: &mut [u32], b: &mut [u32]) -> Result<Finish, WaitError> {
+    pub fn first(
+        &self,
+        control: &mut Control<'_>,
+        a: &mut [u32],
+        b: &mut [u32],
+    ) -> Result<Finish, WaitError> {
         self.check(a, b)?;
         let mut trail = self.start();
         let finish = self.advance(&mut trail, self.search.problem.interval, control);
@@ -77,14 +93,23 @@ impl Rearrange<'_> {
                 finish => break finish,
             }
         };
-        Count { finish, count: u128::from(count), nodes: control.nodes() - before }
+        Count {
+            finish,
+            count: u128::from(count),
+            nodes: control.nodes() - before,
+        }
     }
 
     /// Finds the arrangement with the greatest smallest interval and proves that none has a greater one.
     ///
     /// # Errors
     /// [`WaitError::Short`] if `a` or `b` is too short.
-    pub fn best_interval(&self, control: &mut Control<'_>, a: &mut [u32], b: &mut [u32]) -> Result<Best, WaitError> {
+    pub fn best_interval(
+        &self,
+        control: &mut Control<'_>,
+        a: &mut [u32],
+        b: &mut [u32],
+    ) -> Result<Best, WaitError> {
         self.check(a, b)?;
         let before = control.nodes();
         let problem = &self.search.problem;
@@ -95,7 +120,11 @@ impl Rearrange<'_> {
         // Bisection: a large interval is refuted near the root, and a small one found without much walking.
         let finish = loop {
             if target > bound {
-                break if value.is_some() { Finish::Found } else { Finish::Exhausted };
+                break if value.is_some() {
+                    Finish::Found
+                } else {
+                    Finish::Exhausted
+                };
             }
             let mut trail = self.start();
             match self.advance(&mut trail, target, control) {
@@ -113,7 +142,12 @@ impl Rearrange<'_> {
                 Some(value) => value + (bound - value).div_ceil(2),
             };
         };
-        Ok(Best { finish, value, bound, nodes: control.nodes() - before })
+        Ok(Best {
+            finish,
+            value,
+            bound,
+            nodes: control.nodes() - before,
+        })
     }
 
     fn check(&self, a: &[u32], b: &[u32]) -> Result<(), WaitError> {
@@ -122,8 +156,17 @@ impl Rearrange<'_> {
     }
 
     fn start(&self) -> Trail {
-        let free = if self.pairs.len() == MAX_SENSORS { u64::MAX } else { (1 << self.pairs.len()) - 1 };
-        Trail { pair: [0; MAX_SENSORS], fire: [[0; 2]; MAX_SENSORS], free, depth: 0 }
+        let free = if self.pairs.len() == MAX_SENSORS {
+            u64::MAX
+        } else {
+            (1 << self.pairs.len()) - 1
+        };
+        Trail {
+            pair: [0; MAX_SENSORS],
+            fire: [[0; 2]; MAX_SENSORS],
+            free,
+            depth: 0,
+        }
     }
 
     /// Moves to the next arrangement with this interval. Indices are sensors and pairs, both below `sensors <= MAX_SENSORS`.

@@ -192,14 +192,7 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
         };
         if last == 0 {
             self.total = self.completions(everything, [span(0, wait_max); 2]);
-            return (
-                if self.total >= limit {
-                    Finish::Found
-                } else {
-                    Finish::Exhausted
-                },
-                self.total,
-            );
+            return self.counted(limit);
         }
         if N > 0 {
             let [i, j] = [last - 1, last].map(|level| usize::from(self.order[level]));
@@ -214,14 +207,7 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
         // With two sensors the first is the last but one: there is nothing to walk.
         if N > 0 && last == 1 {
             self.total = self.last_two(0, &pairs);
-            return (
-                if self.total >= limit {
-                    Finish::Found
-                } else {
-                    Finish::Exhausted
-                },
-                self.total,
-            );
+            return self.counted(limit);
         }
         self.enter(0, everything, pairs);
         loop {
@@ -253,13 +239,23 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
                     self.memo.keep(ticket, tables);
                 }
                 let Some(above) = level.checked_sub(1) else {
-                    return (Finish::Exhausted, self.total);
+                    return self.counted(limit);
                 };
                 self.total = entered_at;
                 self.add(level, tables);
                 level = above;
             }
         }
+    }
+
+    /// The total of a walk that looked at everything.
+    fn counted(&self, limit: u128) -> (Finish, u128) {
+        let finish = if self.total >= limit {
+            Finish::Found
+        } else {
+            Finish::Exhausted
+        };
+        (finish, self.total)
     }
 
     /// Adds the tables below one pair of the level above `level`.

@@ -1,5 +1,5 @@
 //! What the wait search costs: the best interval over sensors and ticks, Table I rearranged, and counting against plain nested
-//! loops in the same run (the last lines print the ratio).
+//! loops in the same run (the first lines print the ratio).
 
 #![allow(missing_docs)]
 
@@ -9,75 +9,69 @@ mod common;
 use std::hint::black_box;
 use std::time::Instant;
 
-use common::naive::{Layout, conflicts};
+use common::Owned;
+use common::naive::Layout;
+use common::tables::{Case, File};
 use criterion::{Criterion, criterion_group};
-use eeruf_core::search::wait::{self, COUNT_WORDS, Control, MEMORY_WORDS, Objective, WaitProblem, WaitSearch};
+use eeruf_core::search::wait::{self, COUNT_WORDS, Control, MEMORY_WORDS, Objective, WaitProblem};
 
-/// Sensors, period, longest wait, group of lags, separation, interval, neighbours, whether the paper's criterion, layout.
-type Instance = (usize, u32, u32, usize, u32, u32, usize, bool, Layout);
-
-const COUNTS: [Instance; 6] = [
-    (4, 40, 9, 4, 2, 5, 4, true, Layout::Line),
-    (4, 40, 9, 4, 2, 5, 4, false, Layout::Line),
-    (4, 40, 9, 4, 2, 0, 4, true, Layout::Line),
-    (6, 60, 10, 4, 2, 10, 4, true, Layout::Line),
-    (6, 60, 10, 4, 2, 10, 4, false, Layout::Line),
-    (6, 48, 6, 4, 1, 8, 4, true, Layout::Blocks),
-];
-
-fn with_problem<R>(instance: Instance, then: impl FnOnce(WaitProblem<'_>) -> R) -> R {
-    let (sensors, period, wait_max, group, separation, interval, neighbours, paper, layout) = instance;
-    let lag: Vec<u32> = (0..sensors).map(|i| (i % group) as u32 * period / group as u32).collect();
-    let criterion = if paper { wait::Criterion::Paper } else { wait::Criterion::Exact };
-    let conflicts = conflicts(layout, sensors, neighbours);
-    then(WaitProblem { period, lag: &lag, wait_max, separation, interval, conflicts: &conflicts, criterion })
+/// The problems counted: those of the shared tables with many tables, and two of more nodes.
+fn counts() -> Vec<Case> {
+    let mut cases: Vec<Case> = File::read().cases.into_iter().filter(|case| case.count > 100_000).collect();
+    for (criterion, count) in [("paper", 93_184), ("exact", 6_092_216)] {
+        cases.push(Case {
+            sensors: 6,
+            period: 60,
+            wait_max: 10,
+            group: 4,
+            separation: 2,
+            min_interval: 10,
+            neighbours: 4,
+            criterion: criterion.into(),
+            layout: Layout::Line,
+            count,
+            best_interval: -1,
+        });
+    }
+    cases
 }
 
 fn best_interval(c: &mut Criterion) {
     let mut memory = vec![0; MEMORY_WORDS];
+    let (mut a, mut b) = ([0; 64], [0; 64]);
     for (sensors, separation) in [(12, 2), (8, 1), (12, 1), (16, 1), (24, 1)] {
         for per_ms in [1, 2, 10] {
-            let instance = (sensors, 100 * per_ms, 24 * per_ms, 4, separation * per_ms, 0, 4, false, Layout::Line);
-            c.bench_function(
-                &format!("best interval, {sensors} sensors, D = {separation} ms, {per_ms} ticks a ms"),
-                |bench| {
-                    with_problem(instance, |problem| {
-                        let search = WaitSearch::new(problem).unwrap();
-                        let (mut a, mut b) = ([0; 64], [0; 64]);
-                        bench.iter(|| {
-                            search
-                                .best(Objective::Interval, &mut memory, &mut Control::unlimited(), &mut a, &mut b)
-                                .unwrap()
-                        });
-                    });
-                },
-            );
+            let owned = Owned::paper(sensors, Layout::Line, separation, per_ms, wait::Criterion::Exact);
+            let name = format!("best interval/{sensors} sensors, D {separation} ms, {per_ms} ticks a ms");
+            c.bench_function(&name, |bench| {
+                bench.iter(|| {
+                    let mut control = Control::unlimited();
+                    owned.search().best(Objective::Interval, &mut memory, &mut control, &mut a, &mut b)
+                });
+            });
         }
     }
 }
 
 fn rearrange(c: &mut Criterion) {
     let pairs: Vec<(u32, u32)> = (0..12).map(|k| (24, 2 * k)).collect();
+    let (mut a, mut b) = ([0; 12], [0; 12]);
     for layout in [Layout::Line, Layout::Ring, Layout::Blocks] {
-        c.bench_function(&format!("Table I rearranged, best interval, {layout:?}"), |bench| {
-            with_problem((12, 100, 24, 4, 2, 0, 4, true, layout), |problem| {
-                let search = WaitSearch::new(problem).unwrap();
-                let arrangements = search.rearrange(&pairs).unwrap();
-                let (mut a, mut b) = ([0; 12], [0; 12]);
-                bench.iter(|| arrangements.best_interval(&mut Control::unlimited(), &mut a, &mut b).unwrap());
-            });
+        let owned = Owned::paper(12, layout, 2, 1, wait::Criterion::Paper);
+        let search = owned.search();
+        let arrangements = search.rearrange(&pairs).unwrap();
+        c.bench_function(&format!("Table I rearranged/{layout:?}"), |bench| {
+            bench.iter(|| arrangements.best_interval(&mut Control::unlimited(), &mut a, &mut b));
         });
     }
 }
 
 fn count(c: &mut Criterion) {
     let mut memory = vec![0; COUNT_WORDS];
-    for instance in COUNTS {
-        c.bench_function(&format!("count {instance:?}"), |bench| {
-            with_problem(instance, |problem| {
-                let search = WaitSearch::new(problem).unwrap();
-                bench.iter(|| search.count(None, &mut memory, &mut Control::unlimited()));
-            });
+    for case in counts() {
+        let owned = Owned::of(&case);
+        c.bench_function(&format!("count/{} {}", case.count, case.criterion), |bench| {
+            bench.iter(|| owned.search().count(None, &mut memory, &mut Control::unlimited()));
         });
     }
 }
@@ -131,19 +125,14 @@ fn time<R>(runs: usize, mut run: impl FnMut() -> R) -> (f64, R) {
 
 fn ratios() {
     let mut memory = vec![0; COUNT_WORDS];
-    for instance in COUNTS {
-        with_problem(instance, |problem| {
-            let search = WaitSearch::new(problem).unwrap();
-            let (fast, counted) = time(20, || search.count(None, &mut memory, &mut Control::unlimited()).count);
-            let (slow, naive) = time(1, || nested_loops(&problem));
-            assert_eq!(counted, u128::from(naive));
-            println!(
-                "{instance:?}: {counted} tables, search {:.3} ms, nested loops {:.1} ms, ratio {:.0}",
-                fast * 1e3,
-                slow * 1e3,
-                slow / fast
-            );
-        });
+    for case in counts() {
+        let owned = Owned::of(&case);
+        let (fast, counted) = time(20, || owned.search().count(None, &mut memory, &mut Control::unlimited()).count);
+        let (slow, naive) = time(1, || nested_loops(&owned.problem()));
+        assert_eq!((counted, u128::from(naive)), (case.count, case.count));
+        let ratio = slow / fast;
+        let (fast, slow) = (fast * 1e3, slow * 1e3);
+        println!("{counted} tables: search {fast:.3} ms, nested loops {slow:.1} ms, ratio {ratio:.0}");
     }
 }
 

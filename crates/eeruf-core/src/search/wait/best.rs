@@ -18,7 +18,7 @@ pub enum Objective {
 /// The outcome of a search for the best table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Best {
-    /// Found: the value is proven best. Exhausted: there is no table at all. BudgetSpent: value and bound are what is known.
+    /// Found: the value is proven best. Exhausted: there is no table at all. Budget spent: value and bound are what is known.
     pub finish: Finish,
     /// The best value found, in ticks; the table was written where the caller asked.
     pub value: Option<u32>,

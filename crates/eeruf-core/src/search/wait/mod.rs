@@ -21,7 +21,30 @@
 //!
 //! Nothing here allocates, recurses, reads a clock or depends on chance. The caller lends memory: [`MEMORY_WORDS`] says how
 //! much is enough for all but counting, and counting is exact with any amount, faster with more. What the searches
-//! keep on the stack is below 8 KiB at any size.
+//! keep on the stack is below 8 KiB (32 KiB in counting) at any size: twelve sensors are decided in 16 KiB of RAM, all told.
+//!
+//! ```
+//! use eeruf_core::search::wait::{Control, Criterion, Finish, Objective, WaitProblem, WaitSearch, memory_words};
+//!
+//! // Four sensors that all conflict, lags 0, 25, 50, 75 and waits up to 24 ms; t_delta just below 1 ms, so D = 2 ms.
+//! let problem = WaitProblem {
+//!     period: 100,
+//!     lag: &[0, 25, 50, 75],
+//!     wait_max: 24,
+//!     separation: 2,
+//!     interval: 15,
+//!     conflicts: &[0b1110, 0b1101, 0b1011, 0b0111],
+//!     criterion: Criterion::Paper,
+//! };
+//! let search = WaitSearch::new(problem).unwrap();
+//! let (mut a, mut b) = ([0; 4], [0; 4]);
+//! let best = search
+//!     .best(Objective::Interval, &mut [0; memory_words(4)], &mut Control::unlimited(), &mut a, &mut b)
+//!     .unwrap();
+//! // n I + D (K - 1) <= T_p: 23 ms, with 2 ms to spare.
+//! assert_eq!((best.finish, best.value), (Finish::Found, Some(23)));
+//! assert_eq!(search.smallest_interval(&a, &b), 23);
+//! ```
 
 mod all;
 mod best;
@@ -88,6 +111,16 @@ pub struct WaitProblem<'a> {
     pub conflicts: &'a [u64],
     /// Which reading of (13a) and (13b) holds.
     pub criterion: Criterion,
+}
+
+impl WaitProblem<'_> {
+    /// Whether the values `|d|` cannot lie `D` apart, which needs `D (K - 1) <= wait_max`, or two sensors cannot fire `I` apart, of which
+    /// one fires before and after the other on the circle of `2 T_p`.
+    fn is_beyond_capacity(&self) -> bool {
+        let packed = u64::from(self.separation) * (self.lag.len() as u64).saturating_sub(1);
+        let conflict = self.conflicts.iter().any(|&row| row != 0);
+        packed > u64::from(self.wait_max) || conflict && self.interval > self.period
+    }
 }
 
 /// Why a problem or a call is not well formed.
@@ -162,7 +195,9 @@ impl fmt::Display for WaitError {
             Self::ConflictRows { rows, sensors } => {
                 write!(f, "{rows} rows of conflicts; one for each of {sensors} sensors is expected")
             }
-            Self::Conflict { x, y } if x == y => write!(f, "sensor {} conflicts with itself", x + 1),
+            Self::Conflict { x, y } if x == y => {
+                write!(f, "sensor {} conflicts with itself", x + 1)
+            }
             Self::Conflict { x, y } => {
                 write!(
                     f,
@@ -247,7 +282,7 @@ impl<'a> WaitSearch<'a> {
         let mut smallest = period;
         for (i, &row) in conflicts.iter().enumerate() {
             for j in Bits(row).take_while(|&j| j < i) {
-                let time = |wait: &[u32], k: usize| Some(lag.get(k)? + wait.get(k)?);
+                let time = |wait: &[u32], k: usize| Some(lag.get(k)?.saturating_add(*wait.get(k)?));
                 let (Some(ai), Some(bi), Some(aj), Some(bj)) = (time(a, i), time(b, i), time(a, j), time(b, j)) else {
                     return 0;
                 };
@@ -267,7 +302,8 @@ impl<'a> WaitSearch<'a> {
                 // Indices below the lengths of both slices.
                 least = least.min(a[i].abs_diff(b[i]).abs_diff(a[j].abs_diff(b[j])));
                 if self.problem.criterion == Criterion::Paper {
-                    least = least.min((a[i] + b[i]).abs_diff(a[j] + b[j]));
+                    let s = |k: usize| a[k].saturating_add(b[k]);
+                    least = least.min(s(i).abs_diff(s(j)));
                 }
             }
         }
@@ -288,7 +324,7 @@ const fn gap(period: u32, x: [u32; 2], y: [u32; 2]) -> u32 {
     };
     // Firing times lie within their period, so opposite phases are period -+ difference apart.
     let opposite = {
-        let (a, b) = (period - x[0].abs_diff(y[1]), period - x[1].abs_diff(y[0]));
+        let (a, b) = (period.saturating_sub(x[0].abs_diff(y[1])), period.saturating_sub(x[1].abs_diff(y[0])));
         if a < b { a } else { b }
     };
     if same < opposite { same } else { opposite }

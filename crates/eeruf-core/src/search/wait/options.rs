@@ -3,7 +3,7 @@
 //! With waits up to 15 ticks a sensor has at most 256 pairs `(a, b)`; pair number `a (wait_max + 1) + b` is one bit. What one sensor
 //! leaves to the next is then an AND of words, and the tables below a pair of the last sensor but one are a count of bits.
 
-use super::count::span;
+use super::count::{reach, span};
 use super::{Bits, Criterion, WaitProblem};
 
 /// The most pairs of waits that a set of them may need.
@@ -39,7 +39,11 @@ impl<const N: usize> Options<N> {
 
     fn separate(problem: &WaitProblem<'_>, waits: usize) -> [Set<N>; PAIRS] {
         let mut separate = [[0; N]; PAIRS];
-        let reach = problem.separation as i32 - 1;
+        if N == 0 {
+            // Too many pairs: there are no sets.
+            return separate;
+        }
+        let reach = reach(problem);
         let row = span(0, waits as i32 - 1);
         for a in 0..waits as i32 {
             for b in 0..waits as i32 {

@@ -119,12 +119,12 @@ impl<'h, C: Control> Hunt<'h, C> {
 
     /// Decides a question with about `budget` nodes.
     ///
-    /// Most schedules are found by a lucky descent or not for long, and most proofs are short. So a small part of the budget goes to an
-    /// ordinary search, led by `guide`, and the rest to descents of few nodes that begin in different ways; or, to be `thorough`, half each.
+    /// Most schedules are found by a lucky descent or not for long: a small part of the budget goes to an ordinary search, led by `guide`, and
+    /// the rest to descents of few nodes that begin in different ways. For a proof, `thorough`, all goes to the ordinary search.
     pub(crate) fn decide(&mut self, question: &Question, budget: u64, guide: Option<Firing>, thorough: bool) -> Outcome {
         let mut tree = Tree::new(&question.needs, question.period, self.memory);
         let unit = 32 + 6 * question.needs.sensors as u64;
-        let full = if thorough { budget / 2 } else { unit.max(budget / 8) }.min(budget);
+        let full = if thorough { budget } else { unit.max(budget / 8).min(budget) };
         tree.restart(None, guide);
         let outcome = self.meter.run(&mut tree, full, question.period);
         if outcome != Outcome::Spent {
@@ -150,9 +150,11 @@ impl<'h, C: Control> Hunt<'h, C> {
         let end = self.meter.nodes.saturating_add(budget).min(self.meter.limit);
         let mut part = 64 * question.needs.sensors as u64;
         loop {
-            let outcome = self.decide(question, part.min(end - self.meter.nodes), None, true);
-            if outcome != Outcome::Spent || self.meter.nodes >= end || !self.meter.may_go_on() {
-                return outcome;
+            for (thorough, part) in [(false, part), (true, part.saturating_mul(4))] {
+                let outcome = self.decide(question, part.min(end.saturating_sub(self.meter.nodes)), None, thorough);
+                if outcome != Outcome::Spent || self.meter.nodes >= end || !self.meter.may_go_on() {
+                    return outcome;
+                }
             }
             part = part.saturating_mul(4);
         }

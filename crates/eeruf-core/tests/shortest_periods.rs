@@ -4,8 +4,8 @@
 use std::sync::OnceLock;
 
 use eeruf_core::search::design::{
-    Answer, Bound, Effect, Firing, Flow, Problem, ProblemError, Progress, Reason, decide, largest_interval, largest_separation, memory_words,
-    prefer, relaxations, shortest,
+    Answer, Bound, Effect, Firing, Flow, Problem, ProblemError, Progress, Reason, decide,
+    largest_interval, largest_separation, memory_words, prefer, relaxations, shortest,
 };
 use proptest::prelude::*;
 use serde::Deserialize;
@@ -31,7 +31,10 @@ struct Case {
 
 fn corpus() -> &'static Corpus {
     static CORPUS: OnceLock<Corpus> = OnceLock::new();
-    CORPUS.get_or_init(|| serde_json::from_str(include_str!("../../../tests/data/shortest-periods.json")).expect("the corpus is valid JSON"))
+    CORPUS.get_or_init(|| {
+        serde_json::from_str(include_str!("../../../tests/data/shortest-periods.json"))
+            .expect("the corpus is valid JSON")
+    })
 }
 
 /// Which sensors conflict, by asking for each pair.
@@ -42,7 +45,14 @@ fn conflicts(sensors: usize, neighbours: usize, layout: &str) -> Vec<u64> {
         "blocks" => x / neighbours == y / neighbours,
         _ => panic!("unknown layout {layout}"),
     };
-    (0..sensors).map(|x| (0..sensors).filter(|&y| x != y && conflict(x, y)).map(|y| 1 << y).sum()).collect()
+    (0..sensors)
+        .map(|x| {
+            (0..sensors)
+                .filter(|&y| x != y && conflict(x, y))
+                .map(|y| 1 << y)
+                .sum()
+        })
+        .collect()
 }
 
 /// What is wrong with a schedule: each need is checked as it is written, pair by pair.
@@ -52,16 +62,26 @@ fn judge(problem: &Problem<'_>, period: u32, a: &[u32], b: &[u32]) -> Result<(),
         return Err(format!("{} and {} times for {k} sensors", a.len(), b.len()));
     }
     let t = i64::from(period);
-    let (a, b): (Vec<i64>, Vec<i64>) = (a.iter().map(|&t| t.into()).collect(), b.iter().map(|&t| t.into()).collect());
+    let (a, b): (Vec<i64>, Vec<i64>) = (
+        a.iter().map(|&t| t.into()).collect(),
+        b.iter().map(|&t| t.into()).collect(),
+    );
     for x in 0..k {
         let d = (a[x] - b[x]).abs();
-        if a[x] >= t || b[x] >= t || t - d < problem.window.into() || (problem.stale_echo && 2 * d < problem.separation.into()) {
+        if a[x] >= t
+            || b[x] >= t
+            || t - d < problem.window.into()
+            || (problem.stale_echo && 2 * d < problem.separation.into())
+        {
             return Err(format!("sensor {x}: {} {}", a[x], b[x]));
         }
         for y in 0..x {
             let other = (a[y] - b[y]).abs();
             if (d - other).abs() < problem.separation.into() {
-                return Err(format!("sensors {x} and {y} are separated by {}", (d - other).abs()));
+                return Err(format!(
+                    "sensors {x} and {y} are separated by {}",
+                    (d - other).abs()
+                ));
             }
             if problem.conflicts[x] >> y & 1 == 1 {
                 // All firings of both sensors on the circle of two periods.
@@ -80,7 +100,11 @@ fn judge(problem: &Problem<'_>, period: u32, a: &[u32], b: &[u32]) -> Result<(),
 }
 
 fn assert_serves(problem: &Problem<'_>, period: u32, firing: &Firing) {
-    assert_eq!(judge(problem, period, firing.fire_a(), firing.fire_b()), Ok(()), "{problem:?} at {period}");
+    assert_eq!(
+        judge(problem, period, firing.fire_a(), firing.fire_b()),
+        Ok(()),
+        "{problem:?} at {period}"
+    );
 }
 
 /// Whether any schedule exists, by trying all times of one sensor after the other.
@@ -88,8 +112,15 @@ fn nested_loops(problem: &Problem<'_>, period: u32) -> bool {
     fn place(problem: &Problem<'_>, period: u32, a: &mut Vec<u32>, b: &mut Vec<u32>) -> bool {
         let k = a.len();
         if k > 0 {
-            let rows: Vec<u64> = problem.conflicts[..k].iter().map(|row| row & ((1 << k) - 1)).collect();
-            let part = Problem { sensors: k, conflicts: &rows, ..*problem };
+            let rows: Vec<u64> = problem.conflicts[..k]
+                .iter()
+                .map(|row| row & ((1 << k) - 1))
+                .collect();
+            let part = Problem {
+                sensors: k,
+                conflicts: &rows,
+                ..*problem
+            };
             if judge(&part, period, a, b).is_err() {
                 return false;
             }
@@ -119,7 +150,10 @@ fn the_schedules_of_the_corpus_serve() {
     for case in &corpus().cases {
         let rows = conflicts(case.sensors, case.neighbours, &case.layout);
         let problem = problem_of(case, &rows);
-        assert_eq!(judge(&problem, case.period, &case.fire_a, &case.fire_b), Ok(()));
+        assert_eq!(
+            judge(&problem, case.period, &case.fire_a, &case.fire_b),
+            Ok(())
+        );
     }
 }
 
@@ -140,20 +174,36 @@ fn every_shortest_period_of_the_corpus_is_found_and_proven() {
         let rows = conflicts(case.sensors, case.neighbours, &case.layout);
         let problem = problem_of(case, &rows);
         let mut memory = vec![0; memory_words(case.sensors)];
-        let found = shortest(&problem, u64::MAX, &mut memory, &mut ()).expect("the corpus makes sense");
-        assert_eq!((found.period, found.bound), (case.period, case.period), "{problem:?}");
+        let found =
+            shortest(&problem, u64::MAX, &mut memory, &mut ()).expect("the corpus makes sense");
+        assert_eq!(
+            (found.period, found.bound),
+            (case.period, case.period),
+            "{problem:?}"
+        );
         assert_serves(&problem, found.period, &found.firing);
     }
 }
 
 #[test]
 fn twelve_sensors_need_at_most_64_kib() {
-    assert!(4 * memory_words(12) + 8 * 1024 <= 64 * 1024, "{} words", memory_words(12));
+    assert!(
+        4 * memory_words(12) + 8 * 1024 <= 64 * 1024,
+        "{} words",
+        memory_words(12)
+    );
 }
 
 /// The paper's half ring of 12: 2 ms separation, 15 ms interval, 30 ms window, in ticks of `1 ms / scale`.
 fn paper_12(rows: &[u64], scale: u32) -> Problem<'_> {
-    Problem { sensors: 12, conflicts: rows, separation: 2 * scale, interval: 15 * scale, window: 30 * scale, stale_echo: false }
+    Problem {
+        sensors: 12,
+        conflicts: rows,
+        separation: 2 * scale,
+        interval: 15 * scale,
+        window: 30 * scale,
+        stale_echo: false,
+    }
 }
 
 #[test]
@@ -174,7 +224,15 @@ fn the_same_question_gets_the_same_answer() {
     let problem = paper_12(&rows, 1);
     let answers: Vec<_> = [0, 7]
         .iter()
-        .map(|&fill| shortest(&problem, u64::MAX, &mut vec![fill; memory_words(12) + fill as usize], &mut ()).unwrap())
+        .map(|&fill| {
+            shortest(
+                &problem,
+                u64::MAX,
+                &mut vec![fill; memory_words(12) + fill as usize],
+                &mut (),
+            )
+            .unwrap()
+        })
         .collect();
     assert_eq!(answers[0], answers[1]);
 }
@@ -182,7 +240,14 @@ fn the_same_question_gets_the_same_answer() {
 #[test]
 fn a_small_budget_leaves_a_schedule_and_an_honest_bound() {
     let rows = conflicts(24, 4, "ring");
-    let problem = Problem { sensors: 24, conflicts: &rows, separation: 2, interval: 15, window: 15, stale_echo: false };
+    let problem = Problem {
+        sensors: 24,
+        conflicts: &rows,
+        separation: 2,
+        interval: 15,
+        window: 15,
+        stale_echo: false,
+    };
     let mut memory = vec![0; memory_words(24)];
     for budget in [0, 1, 10, 100, 1000] {
         let found = shortest(&problem, budget, &mut memory, &mut ()).unwrap();
@@ -195,12 +260,19 @@ fn a_small_budget_leaves_a_schedule_and_an_honest_bound() {
 #[test]
 fn the_control_sees_progress_and_can_stop() {
     let rows = conflicts(12, 4, "line");
-    let problem = Problem { window: 45, ..paper_12(&rows, 1) };
+    let problem = Problem {
+        window: 45,
+        ..paper_12(&rows, 1)
+    };
     let mut memory = vec![0; memory_words(12)];
     let mut polls = Vec::new();
     let mut control = |progress: &Progress| {
         polls.push(*progress);
-        if polls.len() < 3 { Flow::Continue } else { Flow::Stop }
+        if polls.len() < 3 {
+            Flow::Continue
+        } else {
+            Flow::Stop
+        }
     };
     let found = shortest(&problem, u64::MAX, &mut memory, &mut control).unwrap();
     assert_eq!(polls.len(), 3);
@@ -213,93 +285,196 @@ fn the_control_sees_progress_and_can_stop() {
 fn the_reason_names_what_to_relax() {
     let rows = conflicts(12, 4, "line");
     let mut memory = vec![0; memory_words(12)];
-    let wide = Problem { window: 60, ..paper_12(&rows, 1) };
+    let wide = Problem {
+        window: 60,
+        ..paper_12(&rows, 1)
+    };
     let found = shortest(&wide, u64::MAX, &mut memory, &mut ()).unwrap();
-    assert!(matches!(found.reason, Reason::Bound(Bound::Capacity { .. })));
+    assert!(matches!(
+        found.reason,
+        Reason::Bound(Bound::Capacity { .. })
+    ));
     assert_eq!(
         found.reason.to_string(),
         "window and separation: 12 sensors need 12 refire times 2 ticks apart, and the shortest must leave a window of 60 ticks, which takes 82 \
          ticks; a shorter window, a smaller separation or fewer sensors would help, a shorter interval would not"
     );
     let relaxed = relaxations(&wide, 82, 100_000, &mut memory, &mut ()).unwrap();
-    assert_eq!((relaxed.separation, relaxed.interval, relaxed.window), (Effect::Shorter, Effect::None, Effect::Shorter));
+    assert_eq!(
+        (relaxed.separation, relaxed.interval, relaxed.window),
+        (Effect::Shorter, Effect::None, Effect::Shorter)
+    );
 
     let narrow = paper_12(&rows, 1);
     let found = shortest(&narrow, u64::MAX, &mut memory, &mut ()).unwrap();
     assert!(matches!(found.reason, Reason::Exhausted { period: 64, .. }));
     let relaxed = relaxations(&narrow, 65, 1_000_000, &mut memory, &mut ()).unwrap();
-    assert_eq!((relaxed.interval, relaxed.window), (Effect::Shorter, Effect::None));
+    assert_eq!(
+        (relaxed.interval, relaxed.window),
+        (Effect::Shorter, Effect::None)
+    );
 }
 
 #[test]
 fn at_100_ms_with_the_paper_s_refire_times_the_half_ring_could_keep_20_ms() {
     // |d| of at most 24 ms, as in the paper's tables, is a window of 76 ms. With the paper's lags it is 19 ms; here lags are free.
     let rows = conflicts(12, 4, "line");
-    let problem = Problem { window: 76, ..paper_12(&rows, 1) };
+    let problem = Problem {
+        window: 76,
+        ..paper_12(&rows, 1)
+    };
     let mut memory = vec![0; memory_words(12)];
     let largest = largest_interval(&problem, 100, u64::MAX, &mut memory, &mut ()).unwrap();
     let (interval, firing) = largest.found.unwrap();
     assert_eq!((interval, largest.bound), (20, Some(20)));
-    assert_serves(&Problem { interval, ..problem }, 100, &firing);
+    assert_serves(
+        &Problem {
+            interval,
+            ..problem
+        },
+        100,
+        &firing,
+    );
 }
 
 #[test]
 fn at_82_ms_the_largest_separation_of_twelve_sensors_with_a_60_ms_window_is_2_ms() {
     let rows = conflicts(12, 4, "line");
-    let problem = Problem { window: 60, ..paper_12(&rows, 1) };
+    let problem = Problem {
+        window: 60,
+        ..paper_12(&rows, 1)
+    };
     let mut memory = vec![0; memory_words(12)];
     for (period, separation) in [(81, 1), (82, 2), (100, 3)] {
         let largest = largest_separation(&problem, period, u64::MAX, &mut memory, &mut ()).unwrap();
         let (value, firing) = largest.found.unwrap();
         assert_eq!((value, largest.bound), (separation, Some(separation)));
-        assert_serves(&Problem { separation, ..problem }, period, &firing);
+        assert_serves(
+            &Problem {
+                separation,
+                ..problem
+            },
+            period,
+            &firing,
+        );
     }
 }
 
 #[test]
 fn the_preferred_schedule_is_no_worse_and_still_serves() {
     let rows = conflicts(8, 4, "line");
-    let problem = Problem { sensors: 8, conflicts: &rows, separation: 20, interval: 150, window: 600, stale_echo: true };
+    let problem = Problem {
+        sensors: 8,
+        conflicts: &rows,
+        separation: 20,
+        interval: 150,
+        window: 600,
+        stale_echo: true,
+    };
     let mut memory = vec![0; memory_words(8)];
     let found = shortest(&problem, u64::MAX, &mut memory, &mut ()).unwrap();
     let preferred = prefer(&problem, &found, 30_000, &mut memory, &mut ()).unwrap();
-    let (separation, interval, window) = (preferred.separation.value, preferred.interval.value, preferred.window.value);
+    let (separation, interval, window) = (
+        preferred.separation.value,
+        preferred.interval.value,
+        preferred.window.value,
+    );
     assert!(separation >= 20 && interval >= 150 && window >= 600);
-    assert_serves(&Problem { separation, interval, window, ..problem }, found.period, &preferred.firing);
+    assert_serves(
+        &Problem {
+            separation,
+            interval,
+            window,
+            ..problem
+        },
+        found.period,
+        &preferred.firing,
+    );
 }
 
 #[test]
 fn absurd_input_gets_an_error_that_names_it() {
     let mut memory = vec![0; memory_words(2)];
-    let good = Problem { sensors: 2, conflicts: &[2, 1], separation: 1, interval: 1, window: 1, stale_echo: false };
+    let good = Problem {
+        sensors: 2,
+        conflicts: &[2, 1],
+        separation: 1,
+        interval: 1,
+        window: 1,
+        stale_echo: false,
+    };
     let mut error = |problem: Problem<'_>| shortest(&problem, 1, &mut memory, &mut ()).unwrap_err();
     for (problem, expected, words) in [
-        (Problem { sensors: 0, ..good }, ProblemError::Sensors(0), "0 sensors; expected 1 to 64"),
-        (Problem { sensors: 65, ..good }, ProblemError::Sensors(65), "65 sensors; expected 1 to 64"),
         (
-            Problem { conflicts: &[2], ..good },
-            ProblemError::Rows { rows: 1, sensors: 2 },
+            Problem { sensors: 0, ..good },
+            ProblemError::Sensors(0),
+            "0 sensors; expected 1 to 64",
+        ),
+        (
+            Problem {
+                sensors: 65,
+                ..good
+            },
+            ProblemError::Sensors(65),
+            "65 sensors; expected 1 to 64",
+        ),
+        (
+            Problem {
+                conflicts: &[2],
+                ..good
+            },
+            ProblemError::Rows {
+                rows: 1,
+                sensors: 2,
+            },
             "1 rows of conflicts for 2 sensors; expected one row for each sensor",
         ),
         (
-            Problem { conflicts: &[2, 0], ..good },
-            ProblemError::OneSided { sensor: 0, other: 1 },
+            Problem {
+                conflicts: &[2, 0],
+                ..good
+            },
+            ProblemError::OneSided {
+                sensor: 0,
+                other: 1,
+            },
             "sensor 1 conflicts with sensor 2, but not the other way round; expected both or neither",
         ),
         (
-            Problem { conflicts: &[1, 0], ..good },
+            Problem {
+                conflicts: &[1, 0],
+                ..good
+            },
             ProblemError::SelfConflict(0),
             "sensor 1 conflicts with itself; expected conflicts with other sensors only",
         ),
         (
-            Problem { conflicts: &[4, 0], ..good },
-            ProblemError::UnknownSensor { sensor: 0, other: 2 },
+            Problem {
+                conflicts: &[4, 0],
+                ..good
+            },
+            ProblemError::UnknownSensor {
+                sensor: 0,
+                other: 2,
+            },
             "sensor 1 conflicts with sensor 3, which does not exist",
         ),
-        (Problem { separation: 0, ..good }, ProblemError::NoSeparation, "a separation of 0 ticks; expected at least 1 tick"),
         (
-            Problem { window: u32::MAX, ..good },
-            ProblemError::TooLong { period: u64::from(u32::MAX) + 2 },
+            Problem {
+                separation: 0,
+                ..good
+            },
+            ProblemError::NoSeparation,
+            "a separation of 0 ticks; expected at least 1 tick",
+        ),
+        (
+            Problem {
+                window: u32::MAX,
+                ..good
+            },
+            ProblemError::TooLong {
+                period: u64::from(u32::MAX) + 2,
+            },
             "firing one by one already takes 4294967297 ticks; expected at most 67108864, so use a coarser tick",
         ),
     ] {
@@ -309,17 +484,38 @@ fn absurd_input_gets_an_error_that_names_it() {
     }
     assert_eq!(
         shortest(&good, 1, &mut [0; 4], &mut ()).unwrap_err(),
-        ProblemError::Memory { words: 4, needed: memory_words(2) }
+        ProblemError::Memory {
+            words: 4,
+            needed: memory_words(2)
+        }
     );
-    assert_eq!(decide(&good, 0, 1, &mut memory, &mut ()).unwrap_err(), ProblemError::Period(0));
+    assert_eq!(
+        decide(&good, 0, 1, &mut memory, &mut ()).unwrap_err(),
+        ProblemError::Period(0)
+    );
 }
 
 #[test]
 fn one_sensor_fires_as_often_as_its_window_allows() {
-    let problem = Problem { sensors: 1, conflicts: &[0], separation: 5, interval: 9, window: 7, stale_echo: false };
+    let problem = Problem {
+        sensors: 1,
+        conflicts: &[0],
+        separation: 5,
+        interval: 9,
+        window: 7,
+        stale_echo: false,
+    };
     let mut memory = vec![0; memory_words(1)];
-    assert_eq!(shortest(&problem, 1000, &mut memory, &mut ()).unwrap().period, 7);
-    let stale = Problem { stale_echo: true, ..problem };
+    assert_eq!(
+        shortest(&problem, 1000, &mut memory, &mut ())
+            .unwrap()
+            .period,
+        7
+    );
+    let stale = Problem {
+        stale_echo: true,
+        ..problem
+    };
     let found = shortest(&stale, 1000, &mut memory, &mut ()).unwrap();
     assert_eq!((found.period, found.proven()), (10, true));
 }
@@ -327,7 +523,14 @@ fn one_sensor_fires_as_often_as_its_window_allows() {
 #[test]
 fn sixty_four_sensors_in_one_clique_fire_one_after_the_other() {
     let rows = conflicts(64, 64, "blocks");
-    let problem = Problem { sensors: 64, conflicts: &rows, separation: 1, interval: 10, window: 10, stale_echo: false };
+    let problem = Problem {
+        sensors: 64,
+        conflicts: &rows,
+        separation: 1,
+        interval: 10,
+        window: 10,
+        stale_echo: false,
+    };
     let mut memory = vec![0; memory_words(64)];
     let found = shortest(&problem, 2_000, &mut memory, &mut ()).unwrap();
     assert!(found.bound >= 640 && found.period <= 64 * 11 + 1);

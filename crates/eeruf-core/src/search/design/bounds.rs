@@ -60,11 +60,23 @@ impl Bound {
     #[must_use]
     pub fn period(&self) -> u32 {
         match *self {
-            Self::Capacity { sensors, separation, window, least } => {
-                (window + least + separation * sensors.saturating_sub(1)).max(1)
-            }
-            Self::Clique { sensors, interval, own } => interval * sensors.saturating_sub(1) + own.max(1),
-            Self::Density { sensors, at_once, interval, own } => (sensors * (interval + own)).div_ceil(2 * at_once.max(1)),
+            Self::Capacity {
+                sensors,
+                separation,
+                window,
+                least,
+            } => (window + least + separation * sensors.saturating_sub(1)).max(1),
+            Self::Clique {
+                sensors,
+                interval,
+                own,
+            } => interval * sensors.saturating_sub(1) + own.max(1),
+            Self::Density {
+                sensors,
+                at_once,
+                interval,
+                own,
+            } => (sensors * (interval + own)).div_ceil(2 * at_once.max(1)),
             Self::OneTick => 1,
         }
     }
@@ -76,19 +88,40 @@ pub(crate) fn largest(needs: &Needs) -> Bound {
     let k = needs.sensors as u32;
     let (interval, window) = (needs.interval as u32, needs.window as u32);
     let own = interval.min(window);
-    let capacity = Bound::Capacity { sensors: k, separation: needs.separation as u32, window, least: needs.least as u32 };
+    let capacity = Bound::Capacity {
+        sensors: k,
+        separation: needs.separation as u32,
+        window,
+        least: needs.least as u32,
+    };
     let (clique, cover) = cliques(needs);
     let mut best = capacity;
     // A single sensor, or none that conflict: then the interval plays no part.
     if clique >= 2 {
-        let density = Bound::Density { sensors: k, at_once: ring_at_once(needs).unwrap_or(cover), interval, own };
-        for bound in [Bound::Clique { sensors: clique, interval, own }, density] {
+        let density = Bound::Density {
+            sensors: k,
+            at_once: ring_at_once(needs).unwrap_or(cover),
+            interval,
+            own,
+        };
+        for bound in [
+            Bound::Clique {
+                sensors: clique,
+                interval,
+                own,
+            },
+            density,
+        ] {
             if bound.period() > best.period() {
                 best = bound;
             }
         }
     }
-    if best.period() <= 1 { Bound::OneTick } else { best }
+    if best.period() <= 1 {
+        Bound::OneTick
+    } else {
+        best
+    }
 }
 
 /// The size of a large clique, and a number of cliques that cover all sensors: greedily, from each sensor upwards.
@@ -102,7 +135,13 @@ pub(crate) fn cliques(needs: &Needs) -> (u32, u32) {
         }
         clique
     };
-    let largest = (0..needs.sensors).map(|x| grow(x, u64::MAX << x).count_ones().max(grow(x, u64::MAX).count_ones())).max();
+    let largest = (0..needs.sensors)
+        .map(|x| {
+            grow(x, u64::MAX << x)
+                .count_ones()
+                .max(grow(x, u64::MAX).count_ones())
+        })
+        .max();
     let mut left = needs.all();
     let mut cover = 0;
     while let Some(x) = Sensors(left).next() {
@@ -115,7 +154,9 @@ pub(crate) fn cliques(needs: &Needs) -> (u32, u32) {
 /// On a ring where a sensor conflicts with the next n - 1 on both sides: `K / n` rounded down, as independent sensors are n apart all round.
 fn ring_at_once(needs: &Needs) -> Option<u32> {
     let k = needs.sensors as u32;
-    let n = needs.conflicts[0].trailing_ones().max((needs.conflicts[0] >> 1).trailing_ones() + 1);
+    let n = needs.conflicts[0]
+        .trailing_ones()
+        .max((needs.conflicts[0] >> 1).trailing_ones() + 1);
     let consecutive = (1..n).all(|step| step < k && needs.conflict(0, step as usize));
     (consecutive && n > 1 && n <= k && symmetry::is_ring(needs)).then(|| (k / n).max(1))
 }

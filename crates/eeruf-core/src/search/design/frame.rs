@@ -38,7 +38,15 @@ pub(crate) struct Frame {
 
 impl Frame {
     pub(crate) fn new(kind: Kind) -> Self {
-        Self { kind, x: 0, y: 0, tried: 0, mark: 0, positive: 0, negative: 0 }
+        Self {
+            kind,
+            x: 0,
+            y: 0,
+            tried: 0,
+            mark: 0,
+            positive: 0,
+            negative: 0,
+        }
     }
 
     pub(crate) fn pack(&self) -> [i32; FRAME_WORDS] {
@@ -60,7 +68,9 @@ impl Frame {
     }
 
     pub(crate) fn unpack(words: &[i32]) -> Self {
-        let [first, mark, p, q, r, s] = *words else { return Self::new(Kind::Value) };
+        let [first, mark, p, q, r, s] = *words else {
+            return Self::new(Kind::Value);
+        };
         let [kind, x, y, tried] = first.to_le_bytes();
         let kind = match kind {
             0 => Kind::Top,
@@ -70,6 +80,14 @@ impl Frame {
             _ => Kind::Value,
         };
         let join = |low: i32, high: i32| u64::from(high as u32) << 32 | u64::from(low as u32);
-        Self { kind, x, y, tried, mark: mark as u32, positive: join(p, q), negative: join(r, s) }
+        Self {
+            kind,
+            x,
+            y,
+            tried,
+            mark: mark as u32,
+            positive: join(p, q),
+            negative: join(r, s),
+        }
     }
 }

@@ -91,13 +91,20 @@ impl<C: Control> Meter<'_, C> {
         let end = tree.nodes() + budget;
         loop {
             let before = tree.nodes();
-            let step = POLL.min(end - before).min(self.limit.saturating_sub(self.nodes));
+            let step = POLL
+                .min(end - before)
+                .min(self.limit.saturating_sub(self.nodes));
             let outcome = tree.run(step);
             self.nodes += tree.nodes() - before;
             if outcome != Outcome::Spent || tree.nodes() >= end || tree.nodes() == before {
                 return outcome;
             }
-            let progress = Progress { nodes: self.nodes, period: period as u32, bound: self.bound, best: self.best };
+            let progress = Progress {
+                nodes: self.nodes,
+                period: period as u32,
+                bound: self.bound,
+                best: self.best,
+            };
             self.stopped = self.control.poll(&progress) == Flow::Stop;
             if !self.may_go_on() {
                 return Outcome::Spent;
@@ -114,17 +121,37 @@ pub(crate) struct Hunt<'h, C> {
 
 impl<'h, C: Control> Hunt<'h, C> {
     pub(crate) fn new(memory: &'h mut [i32], control: &'h mut C, limit: u64) -> Self {
-        Self { memory, meter: Meter { control, nodes: 0, limit, bound: 0, best: 0, stopped: false } }
+        Self {
+            memory,
+            meter: Meter {
+                control,
+                nodes: 0,
+                limit,
+                bound: 0,
+                best: 0,
+                stopped: false,
+            },
+        }
     }
 
     /// Decides a question with about `budget` nodes.
     ///
     /// Most schedules are found by a lucky descent or not for long: a small part of the budget goes to an ordinary search, led by `guide`, and
     /// the rest to descents of few nodes that begin in different ways. For a proof, `thorough`, all goes to the ordinary search.
-    pub(crate) fn decide(&mut self, question: &Question, budget: u64, guide: Option<Firing>, thorough: bool) -> Outcome {
+    pub(crate) fn decide(
+        &mut self,
+        question: &Question,
+        budget: u64,
+        guide: Option<Firing>,
+        thorough: bool,
+    ) -> Outcome {
         let mut tree = Tree::new(&question.needs, question.period, self.memory);
         let unit = 32 + 6 * question.needs.sensors as u64;
-        let full = if thorough { budget } else { unit.max(budget / 8).min(budget) };
+        let full = if thorough {
+            budget
+        } else {
+            unit.max(budget / 8).min(budget)
+        };
         tree.restart(None, guide);
         let outcome = self.meter.run(&mut tree, full, question.period);
         if outcome != Outcome::Spent {
@@ -147,11 +174,20 @@ impl<'h, C: Control> Hunt<'h, C> {
 
     /// Decides a question with `budget` nodes, of which it spends more and more at a time.
     pub(crate) fn settle(&mut self, question: &Question, budget: u64) -> Outcome {
-        let end = self.meter.nodes.saturating_add(budget).min(self.meter.limit);
+        let end = self
+            .meter
+            .nodes
+            .saturating_add(budget)
+            .min(self.meter.limit);
         let mut part = 64 * question.needs.sensors as u64;
         loop {
             for (thorough, part) in [(false, part), (true, part.saturating_mul(4))] {
-                let outcome = self.decide(question, part.min(end.saturating_sub(self.meter.nodes)), None, thorough);
+                let outcome = self.decide(
+                    question,
+                    part.min(end.saturating_sub(self.meter.nodes)),
+                    None,
+                    thorough,
+                );
                 if outcome != Outcome::Spent || self.meter.nodes >= end || !self.meter.may_go_on() {
                     return outcome;
                 }
@@ -170,8 +206,14 @@ impl<'h, C: Control> Hunt<'h, C> {
         let first = ((border.yes - border.no) >> 8).max(1);
         'up: for _ in 0..6 {
             let (mut step, mut ease) = (first, border.no + 1);
-            for _ in 0..6 {
-                if ease >= border.yes || !self.meter.may_go_on() || matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_)) {
+            for budget in [4 * budget, budget, budget, budget, budget, budget] {
+                if ease >= border.yes || !self.meter.may_go_on() {
+                    break 'up;
+                }
+                if matches!(
+                    self.ask(question, axis, ease, budget, false, border),
+                    Outcome::Found(_)
+                ) {
                     break 'up;
                 }
                 ease = ease.max(border.no) + step;
@@ -180,10 +222,17 @@ impl<'h, C: Control> Hunt<'h, C> {
             budget *= 2;
         }
         loop {
+            // The tightest problem leaves the least to guess.
+            if border.no + 2 < border.yes && self.meter.may_go_on() {
+                self.ask(question, axis, border.no + 1, budget, false, border);
+            }
             let mut unknown = border.no;
             while unknown + 1 < border.yes && self.meter.may_go_on() {
                 let ease = unknown + (border.yes - unknown) / 2;
-                if !matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_)) {
+                if !matches!(
+                    self.ask(question, axis, ease, budget, false, border),
+                    Outcome::Found(_)
+                ) {
                     unknown = ease;
                 }
             }
@@ -193,7 +242,16 @@ impl<'h, C: Control> Hunt<'h, C> {
             }
             budget *= 4;
             let most = rest - rest / 4;
-            if self.ask(question, axis, border.yes - 1, (4 * budget).min(most), true, border) == Outcome::Spent && most <= 4 * budget {
+            if self.ask(
+                question,
+                axis,
+                border.yes - 1,
+                (4 * budget).min(most),
+                true,
+                border,
+            ) == Outcome::Spent
+                && most <= 4 * budget
+            {
                 break;
             }
         }
@@ -208,9 +266,22 @@ impl<'h, C: Control> Hunt<'h, C> {
     }
 
     /// Decides at `ease` and moves the border accordingly.
-    fn ask(&mut self, question: &Question, axis: Axis, ease: i32, budget: u64, thorough: bool, border: &mut Border) -> Outcome {
+    fn ask(
+        &mut self,
+        question: &Question,
+        axis: Axis,
+        ease: i32,
+        budget: u64,
+        thorough: bool,
+        border: &mut Border,
+    ) -> Outcome {
         let asked = question.at(axis, ease);
-        let outcome = self.decide(&asked, budget, border.guide.then_some(border.firing), thorough);
+        let outcome = self.decide(
+            &asked,
+            budget,
+            border.guide.then_some(border.firing),
+            thorough,
+        );
         match &outcome {
             Outcome::Found(firing) => {
                 border.firing = *firing;

@@ -42,7 +42,11 @@ pub fn largest_separation<C: Control>(
     memory: &mut [i32],
     control: &mut C,
 ) -> Result<Largest, ProblemError> {
-    let needs = Problem { separation: 1, ..*problem }.needs()?;
+    let needs = Problem {
+        separation: 1,
+        ..*problem
+    }
+    .needs()?;
     largest(needs, Axis::Separation, period, budget, memory, control)
 }
 
@@ -59,7 +63,11 @@ pub fn largest_interval<C: Control>(
     memory: &mut [i32],
     control: &mut C,
 ) -> Result<Largest, ProblemError> {
-    let needs = Problem { interval: 0, ..*problem }.needs()?;
+    let needs = Problem {
+        interval: 0,
+        ..*problem
+    }
+    .needs()?;
     largest(needs, Axis::Interval, period, budget, memory, control)
 }
 
@@ -72,24 +80,53 @@ fn largest<C: Control>(
     control: &mut C,
 ) -> Result<Largest, ProblemError> {
     let memory = check_memory(memory, needs.sensors)?;
-    let question = Question { needs, period: check_period(period)? };
+    let question = Question {
+        needs,
+        period: check_period(period)?,
+    };
     let mut hunt = Hunt::new(memory, control, budget);
     (hunt.meter.bound, hunt.meter.best) = (period, period);
     let most = most(&question, axis);
     let firing = match hunt.settle(&question, budget) {
         Outcome::Found(firing) => firing,
-        Outcome::Exhausted => return Ok(Largest { found: None, bound: None, nodes: hunt.meter.nodes }),
-        Outcome::Spent => return Ok(Largest { found: None, bound: Some(most as u32), nodes: hunt.meter.nodes }),
+        Outcome::Exhausted => {
+            return Ok(Largest {
+                found: None,
+                bound: None,
+                nodes: hunt.meter.nodes,
+            });
+        }
+        Outcome::Spent => {
+            return Ok(Largest {
+                found: None,
+                bound: Some(most as u32),
+                nodes: hunt.meter.nodes,
+            });
+        }
     };
     let border = improve(&mut hunt, &question, axis, firing);
-    Ok(Largest { found: Some((-border.yes as u32, border.firing)), bound: Some((-border.no - 1) as u32), nodes: hunt.meter.nodes })
+    Ok(Largest {
+        found: Some((-border.yes as u32, border.firing)),
+        bound: Some((-border.no - 1) as u32),
+        nodes: hunt.meter.nodes,
+    })
 }
 
 /// Moves from `firing`, which answers `question`, as far along `axis` as the budget allows.
-fn improve<C: Control>(hunt: &mut Hunt<'_, C>, question: &Question, axis: Axis, firing: Firing) -> Border {
+fn improve<C: Control>(
+    hunt: &mut Hunt<'_, C>,
+    question: &Question,
+    axis: Axis,
+    firing: Firing,
+) -> Border {
     let no = -most(question, axis) - 1;
     let yes = question.ease_of(axis, &firing).max(no + 1);
-    let mut border = Border { no, yes, firing, guide: true };
+    let mut border = Border {
+        no,
+        yes,
+        firing,
+        guide: true,
+    };
     hunt.narrow(question, axis, &mut border);
     border
 }
@@ -168,18 +205,33 @@ pub fn prefer<C: Control>(
 ) -> Result<Preferred, ProblemError> {
     let needs = problem.needs()?;
     let memory = check_memory(memory, needs.sensors)?;
-    let mut question = Question { needs, period: check_period(shortest.period)? };
+    let mut question = Question {
+        needs,
+        period: check_period(shortest.period)?,
+    };
     let mut hunt = Hunt::new(memory, control, 0);
     (hunt.meter.bound, hunt.meter.best) = (shortest.bound, shortest.period);
     let mut firing = shortest.firing;
     let mut choices = [Choice { value: 0, bound: 0 }; 3];
-    for (choice, axis) in choices.iter_mut().zip([Axis::Separation, Axis::Interval, Axis::Window]) {
+    for (choice, axis) in choices
+        .iter_mut()
+        .zip([Axis::Separation, Axis::Interval, Axis::Window])
+    {
         hunt.meter.limit = hunt.meter.nodes + budget / 3;
         let border = improve(&mut hunt, &question, axis, firing);
         firing = border.firing;
         question = question.at(axis, border.yes);
-        *choice = Choice { value: -border.yes as u32, bound: (-border.no - 1) as u32 };
+        *choice = Choice {
+            value: -border.yes as u32,
+            bound: (-border.no - 1) as u32,
+        };
     }
     let [separation, interval, window] = choices;
-    Ok(Preferred { firing, separation, interval, window, nodes: hunt.meter.nodes })
+    Ok(Preferred {
+        firing,
+        separation,
+        interval,
+        window,
+        nodes: hunt.meter.nodes,
+    })
 }

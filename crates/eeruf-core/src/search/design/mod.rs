@@ -20,7 +20,9 @@ pub use control::{Control, Flow, POLL, Progress};
 pub use largest::{Choice, Largest, Preferred, largest_interval, largest_separation, prefer};
 pub use problem::{MAX_SENSORS, MAX_TICKS, Problem, ProblemError};
 pub use schedule::Firing;
-pub use shortest::{Answer, Decision, Effect, Reason, Relaxations, Shortest, decide, relaxations, shortest};
+pub use shortest::{
+    Answer, Decision, Effect, Reason, Relaxations, Shortest, decide, relaxations, shortest,
+};
 
 /// The words of memory that every search over `sensors` sensors needs: 51 KiB for 12 sensors, 4.6 MiB for 64.
 ///
@@ -33,5 +35,9 @@ pub const fn memory_words(sensors: usize) -> usize {
 /// The memory, if it is large enough.
 fn check_memory(memory: &mut [i32], sensors: usize) -> Result<&mut [i32], ProblemError> {
     let (words, needed) = (memory.len(), memory_words(sensors));
-    if words < needed { Err(ProblemError::Memory { words, needed }) } else { Ok(memory) }
+    if words < needed {
+        Err(ProblemError::Memory { words, needed })
+    } else {
+        Ok(memory)
+    }
 }

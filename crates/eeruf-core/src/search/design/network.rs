@@ -39,7 +39,16 @@ impl<'m> Network<'m> {
         for u in 0..nodes {
             bound[u * nodes + u] = 0;
         }
-        Self { nodes, bound, log, used: 0, step: 1, saved: [0; MAX_NODES], overrun: false, changes: 0 }
+        Self {
+            nodes,
+            bound,
+            log,
+            used: 0,
+            step: 1,
+            saved: [0; MAX_NODES],
+            overrun: false,
+            changes: 0,
+        }
     }
 
     /// The largest value of `time(u) - time(v)`.

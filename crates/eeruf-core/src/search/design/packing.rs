@@ -14,7 +14,10 @@ pub(crate) struct Intervals {
 
 impl Intervals {
     /// No intervals yet.
-    pub(crate) const NONE: Self = Self { low: [-1; MAX_SENSORS], high: [-1; MAX_SENSORS] };
+    pub(crate) const NONE: Self = Self {
+        low: [-1; MAX_SENSORS],
+        high: [-1; MAX_SENSORS],
+    };
 
     /// Tightens the intervals of the first `count` sensors until Hall's condition gives nothing new.
     ///
@@ -37,7 +40,13 @@ impl Intervals {
     ///
     /// # Errors
     /// Some interval is left empty.
-    pub(crate) fn round(&mut self, count: usize, separation: i32, least: i32, widest: i32) -> Result<(), Contradiction> {
+    pub(crate) fn round(
+        &mut self,
+        count: usize,
+        separation: i32,
+        least: i32,
+        widest: i32,
+    ) -> Result<(), Contradiction> {
         let slack = widest - least - separation * (count as i32 - 1);
         if slack >= separation - 1 {
             return Ok(());
@@ -75,7 +84,10 @@ impl Intervals {
         for (rank, &last) in by_high.iter().enumerate() {
             let end = self.high[usize::from(last)];
             // Only the last of equal ends sees the whole set.
-            if by_high.get(rank + 1).is_some_and(|&next| self.high[usize::from(next)] == end) {
+            if by_high
+                .get(rank + 1)
+                .is_some_and(|&next| self.high[usize::from(next)] == end)
+            {
                 continue;
             }
             // The values that end by `end`, from the highest low end down.
@@ -95,7 +107,10 @@ impl Intervals {
                     full = true;
                     for &j in by_high {
                         let j = usize::from(j);
-                        if self.high[j] > end && self.low[j] >= low && self.low[j] < low + separation * inside {
+                        if self.high[j] > end
+                            && self.low[j] >= low
+                            && self.low[j] < low + separation * inside
+                        {
                             self.low[j] = low + separation * inside;
                             if self.low[j] > self.high[j] {
                                 return Err(Contradiction);

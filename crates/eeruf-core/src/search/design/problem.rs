@@ -86,13 +86,25 @@ impl fmt::Display for ProblemError {
         match *self {
             Self::Sensors(sensors) => write!(f, "{sensors} sensors; expected 1 to {MAX_SENSORS}"),
             Self::Rows { rows, sensors } => {
-                write!(f, "{rows} rows of conflicts for {sensors} sensors; expected one row for each sensor")
+                write!(
+                    f,
+                    "{rows} rows of conflicts for {sensors} sensors; expected one row for each sensor"
+                )
             }
             Self::UnknownSensor { sensor, other } => {
-                write!(f, "sensor {} conflicts with sensor {}, which does not exist", sensor + 1, other + 1)
+                write!(
+                    f,
+                    "sensor {} conflicts with sensor {}, which does not exist",
+                    sensor + 1,
+                    other + 1
+                )
             }
             Self::SelfConflict(sensor) => {
-                write!(f, "sensor {} conflicts with itself; expected conflicts with other sensors only", sensor + 1)
+                write!(
+                    f,
+                    "sensor {} conflicts with itself; expected conflicts with other sensors only",
+                    sensor + 1
+                )
             }
             Self::OneSided { sensor, other } => write!(
                 f,
@@ -102,10 +114,17 @@ impl fmt::Display for ProblemError {
             ),
             Self::NoSeparation => f.write_str("a separation of 0 ticks; expected at least 1 tick"),
             Self::TooLong { period } => {
-                write!(f, "firing one by one already takes {period} ticks; expected at most {MAX_TICKS}, so use a coarser tick")
+                write!(
+                    f,
+                    "firing one by one already takes {period} ticks; expected at most {MAX_TICKS}, so use a coarser tick"
+                )
             }
-            Self::Period(period) => write!(f, "a period of {period} ticks; expected 1 to {MAX_TICKS}"),
-            Self::Memory { words, needed } => write!(f, "{words} words of memory; expected at least {needed}"),
+            Self::Period(period) => {
+                write!(f, "a period of {period} ticks; expected 1 to {MAX_TICKS}")
+            }
+            Self::Memory { words, needed } => {
+                write!(f, "{words} words of memory; expected at least {needed}")
+            }
         }
     }
 }
@@ -123,7 +142,10 @@ impl<'a> Problem<'a> {
             return Err(ProblemError::Sensors(sensors));
         }
         if self.conflicts.len() != sensors {
-            return Err(ProblemError::Rows { rows: self.conflicts.len(), sensors });
+            return Err(ProblemError::Rows {
+                rows: self.conflicts.len(),
+                sensors,
+            });
         }
         for (sensor, &row) in self.conflicts.iter().enumerate() {
             for other in Sensors(row) {
@@ -162,7 +184,11 @@ impl<'a> Problem<'a> {
             separation: self.separation as i32,
             interval: self.interval as i32,
             window: self.window as i32,
-            least: if self.stale_echo { self.separation.div_ceil(2) as i32 } else { 0 },
+            least: if self.stale_echo {
+                self.separation.div_ceil(2) as i32
+            } else {
+                0
+            },
         })
     }
 }

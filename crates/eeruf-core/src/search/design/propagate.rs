@@ -61,7 +61,10 @@ impl Tree<'_, '_> {
         let mut chain = [0u8; MAX_SENSORS];
         let (lows, highs) = (self.ranks.lows().len(), self.ranks.highs().len());
         chain[..lows].copy_from_slice(self.ranks.lows());
-        for (place, &x) in chain[lows..].iter_mut().zip(self.ranks.highs().iter().rev()) {
+        for (place, &x) in chain[lows..]
+            .iter_mut()
+            .zip(self.ranks.highs().iter().rev())
+        {
             *place = x;
         }
         let unranked = self.needs.all() & !self.ranks.ranked;
@@ -96,18 +99,30 @@ impl Tree<'_, '_> {
 
     /// Demands `|d_x| + D <= |d_y|`: of four times, each pair of differences bounds the other.
     fn behind(&mut self, x: usize, y: usize) -> Result<(), Contradiction> {
-        let (Some((late_x, early_x)), Some((late_y, early_y))) = (self.signed(x), self.signed(y)) else { return Ok(()) };
+        let (Some((late_x, early_x)), Some((late_y, early_y))) = (self.signed(x), self.signed(y))
+        else {
+            return Ok(());
+        };
         let d = self.needs.separation;
         // (late_y - early_y) + (early_x - late_x) >= D
-        self.net.demand(early_y, late_y, self.net.at_most(early_x, late_x) - d)?;
-        self.net.demand(late_x, early_x, self.net.at_most(late_y, early_y) - d)?;
+        self.net
+            .demand(early_y, late_y, self.net.at_most(early_x, late_x) - d)?;
+        self.net
+            .demand(late_x, early_x, self.net.at_most(late_y, early_y) - d)?;
         // (late_y - late_x) + (early_x - early_y) >= D
-        self.net.demand(late_x, late_y, self.net.at_most(early_x, early_y) - d)?;
-        self.net.demand(early_y, early_x, self.net.at_most(late_y, late_x) - d)
+        self.net
+            .demand(late_x, late_y, self.net.at_most(early_x, early_y) - d)?;
+        self.net
+            .demand(early_y, early_x, self.net.at_most(late_y, late_x) - d)
     }
 
     /// Demands that `|d|` of sensor `x` is within `low..=high`, as far as the sign is known; for ranked sensors it is.
-    pub(super) fn demand_size(&mut self, x: usize, low: i32, high: i32) -> Result<(), Contradiction> {
+    pub(super) fn demand_size(
+        &mut self,
+        x: usize,
+        low: i32,
+        high: i32,
+    ) -> Result<(), Contradiction> {
         if low > high {
             return Err(Contradiction);
         }
@@ -165,7 +180,10 @@ impl Tree<'_, '_> {
             let (xa, xb) = (self.node(x, 0), self.node(x, 1));
             let (low, high) = self.span(x);
             let (forced, low) = if mirrored {
-                (-(self.net.at_most(ya, xa) + self.net.at_most(xb, yb)), -high)
+                (
+                    -(self.net.at_most(ya, xa) + self.net.at_most(xb, yb)),
+                    -high,
+                )
             } else {
                 (-(self.net.at_most(xa, ya) + self.net.at_most(yb, xb)), low)
             };
@@ -194,9 +212,15 @@ impl Tree<'_, '_> {
             }
             lows[at] = low;
             // All d of the set, D apart: where the last one is at the earliest.
-            let last = lows[1..=i].iter().fold(lows[0], |last, &low| low.max(last + separation));
+            let last = lows[1..=i]
+                .iter()
+                .fold(lows[0], |last, &low| low.max(last + separation));
             least = least.max(last + forced);
         }
-        if mirrored { self.net.demand(ya, yb, -least) } else { self.net.demand(yb, ya, -least) }
+        if mirrored {
+            self.net.demand(ya, yb, -least)
+        } else {
+            self.net.demand(yb, ya, -least)
+        }
     }
 }

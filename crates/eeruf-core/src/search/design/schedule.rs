@@ -38,7 +38,10 @@ impl Firing {
         let sizes = &mut sizes[..self.sensors];
         sizes.sort_unstable();
         let own = if needs.least > 0 { 2 * sizes[0] } else { most };
-        sizes.windows(2).map(|pair| pair[1] - pair[0]).fold(own.min(most), i32::min)
+        sizes
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .fold(own.min(most), i32::min)
     }
 
     /// The smallest interval between firings of conflicting sensors, across the ends of the phases too; `most` at most.
@@ -46,8 +49,18 @@ impl Firing {
         let mut least = most;
         for x in 0..self.sensors {
             for y in Sensors(needs.conflicts[x]) {
-                let (ax, bx, ay, by) = (self.a[x] as i32, self.b[x] as i32, self.a[y] as i32, self.b[y] as i32);
-                for gap in [(ax - ay).abs(), (bx - by).abs(), period + by - ax, period + ay - bx] {
+                let (ax, bx, ay, by) = (
+                    self.a[x] as i32,
+                    self.b[x] as i32,
+                    self.a[y] as i32,
+                    self.b[y] as i32,
+                );
+                for gap in [
+                    (ax - ay).abs(),
+                    (bx - by).abs(),
+                    period + by - ax,
+                    period + ay - bx,
+                ] {
                     least = least.min(gap);
                 }
             }
@@ -57,7 +70,9 @@ impl Firing {
 
     /// The smallest time between two firings of one sensor.
     pub(crate) fn window(&self, period: i32) -> i32 {
-        (0..self.sensors).map(|x| period - self.size(x)).fold(period, i32::min)
+        (0..self.sensors)
+            .map(|x| period - self.size(x))
+            .fold(period, i32::min)
     }
 
     /// The shortest period at which these very times serve.
@@ -65,9 +80,14 @@ impl Firing {
         let mut period = 1;
         for x in 0..self.sensors {
             let (ax, bx) = (self.a[x] as i32, self.b[x] as i32);
-            period = period.max(ax + 1).max(bx + 1).max(needs.window + self.size(x));
+            period = period
+                .max(ax + 1)
+                .max(bx + 1)
+                .max(needs.window + self.size(x));
             for y in Sensors(needs.conflicts[x]) {
-                period = period.max(needs.interval + ax - self.b[y] as i32).max(needs.interval + bx - self.a[y] as i32);
+                period = period
+                    .max(needs.interval + ax - self.b[y] as i32)
+                    .max(needs.interval + bx - self.a[y] as i32);
             }
         }
         period
@@ -76,7 +96,11 @@ impl Firing {
 
 /// Firing one by one: sensor i at `i I` in phase b and at `i (I + D)` in phase a, so that `d = i D`. It always serves, at a long period.
 pub(crate) fn one_by_one(needs: &Needs) -> Firing {
-    let mut firing = Firing { a: [0; MAX_SENSORS], b: [0; MAX_SENSORS], sensors: needs.sensors };
+    let mut firing = Firing {
+        a: [0; MAX_SENSORS],
+        b: [0; MAX_SENSORS],
+        sensors: needs.sensors,
+    };
     for i in 0..needs.sensors {
         let b = i as i32 * needs.interval;
         firing.b[i] = b as u32;

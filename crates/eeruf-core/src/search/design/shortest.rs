@@ -34,20 +34,41 @@ impl fmt::Display for Bound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let period = self.period();
         match *self {
-            Self::Capacity { sensors, separation, window, least } => {
-                write!(f, "window and separation: {sensors} sensors need {sensors} refire times {separation} ticks apart")?;
+            Self::Capacity {
+                sensors,
+                separation,
+                window,
+                least,
+            } => {
+                write!(
+                    f,
+                    "window and separation: {sensors} sensors need {sensors} refire times {separation} ticks apart"
+                )?;
                 if least > 0 {
-                    write!(f, ", the first {least} ticks from the period for the sake of stale echoes")?;
+                    write!(
+                        f,
+                        ", the first {least} ticks from the period for the sake of stale echoes"
+                    )?;
                 }
-                write!(f, ", and the shortest must leave a window of {window} ticks, which takes {period} ticks; ")?;
+                write!(
+                    f,
+                    ", and the shortest must leave a window of {window} ticks, which takes {period} ticks; "
+                )?;
                 f.write_str("a shorter window, a smaller separation or fewer sensors would help, a shorter interval would not")
             }
-            Self::Clique { sensors, interval, .. } => write!(
+            Self::Clique {
+                sensors, interval, ..
+            } => write!(
                 f,
                 "interval: {sensors} sensors that all conflict must fire {interval} ticks apart, which takes {period} ticks; \
                  a shorter interval or fewer conflicting neighbours would help, a smaller separation would not"
             ),
-            Self::Density { sensors, at_once, interval, .. } => write!(
+            Self::Density {
+                sensors,
+                at_once,
+                interval,
+                ..
+            } => write!(
                 f,
                 "interval and number of sensors: at most {at_once} of {sensors} sensors can fire within the same {interval} ticks, \
                  which takes {period} ticks; a shorter interval or fewer conflicts would help, a smaller separation would not"
@@ -75,7 +96,10 @@ impl fmt::Display for Reason {
                 write!(f, " (every order was searched)")
             }
             Self::BudgetSpent { bound } => {
-                write!(f, "the budget was spent: periods from {bound} ticks on are neither found nor excluded")
+                write!(
+                    f,
+                    "the budget was spent: periods from {bound} ticks on are neither found nor excluded"
+                )
             }
         }
     }
@@ -107,6 +131,10 @@ impl Shortest {
 
 /// What a search of one period came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no allocator to box it with, and one exists at a time"
+)]
 pub enum Answer {
     /// A schedule.
     Found(Firing),
@@ -141,7 +169,10 @@ pub fn decide<C: Control>(
     let memory = check_memory(memory, needs.sensors)?;
     let period = check_period(period)?;
     if period < bounds::largest(&needs).period() as i32 {
-        return Ok(Decision { answer: Answer::Exhausted, nodes: 0 });
+        return Ok(Decision {
+            answer: Answer::Exhausted,
+            nodes: 0,
+        });
     }
     let mut hunt = Hunt::new(memory, control, budget);
     let answer = match hunt.settle(&Question { needs, period }, budget) {
@@ -149,11 +180,18 @@ pub fn decide<C: Control>(
         Outcome::Exhausted => Answer::Exhausted,
         Outcome::Spent => Answer::BudgetSpent,
     };
-    Ok(Decision { answer, nodes: hunt.meter.nodes })
+    Ok(Decision {
+        answer,
+        nodes: hunt.meter.nodes,
+    })
 }
 
 pub(crate) fn check_period(period: u32) -> Result<i32, ProblemError> {
-    if period == 0 || period > MAX_TICKS { Err(ProblemError::Period(period)) } else { Ok(period as i32) }
+    if period == 0 || period > MAX_TICKS {
+        Err(ProblemError::Period(period))
+    } else {
+        Ok(period as i32)
+    }
 }
 
 /// The shortest period, within `budget` nodes.
@@ -178,17 +216,38 @@ pub fn shortest<C: Control>(
 pub(crate) fn shortest_period<C: Control>(needs: &Needs, hunt: &mut Hunt<'_, C>) -> Shortest {
     let counted = bounds::largest(needs);
     let firing = schedule::one_by_one(needs);
-    let mut border = Border { no: counted.period() as i32 - 1, yes: firing.period(needs), firing, guide: false };
-    hunt.narrow(&Question { needs: *needs, period: border.yes }, Axis::Period, &mut border);
+    let mut border = Border {
+        no: counted.period() as i32 - 1,
+        yes: firing.period(needs),
+        firing,
+        guide: false,
+    };
+    hunt.narrow(
+        &Question {
+            needs: *needs,
+            period: border.yes,
+        },
+        Axis::Period,
+        &mut border,
+    );
     let (period, bound) = (border.yes as u32, border.no as u32 + 1);
     let reason = if bound < period {
         Reason::BudgetSpent { bound }
     } else if period == counted.period() {
         Reason::Bound(counted)
     } else {
-        Reason::Exhausted { period: period - 1, counted }
+        Reason::Exhausted {
+            period: period - 1,
+            counted,
+        }
     };
-    Shortest { firing: border.firing, period, bound, nodes: hunt.meter.nodes, reason }
+    Shortest {
+        firing: border.firing,
+        period,
+        bound,
+        nodes: hunt.meter.nodes,
+        reason,
+    }
 }
 
 /// What one tick less of one need would do to the period.
@@ -218,12 +277,22 @@ pub struct Relaxations {
 
 impl fmt::Display for Relaxations {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let all = [("separation", self.separation), ("interval", self.interval), ("window", self.window)];
+        let all = [
+            ("separation", self.separation),
+            ("interval", self.interval),
+            ("window", self.window),
+        ];
         let mut first = true;
         for (effect, words) in [
-            (Effect::Shorter, "one tick less of it allows a shorter period"),
+            (
+                Effect::Shorter,
+                "one tick less of it allows a shorter period",
+            ),
             (Effect::None, "one tick less of it changes nothing"),
-            (Effect::Unknown, "what one tick less of it does was not found out"),
+            (
+                Effect::Unknown,
+                "what one tick less of it does was not found out",
+            ),
         ] {
             for (need, _) in all.iter().filter(|(_, is)| *is == effect) {
                 write!(f, "{}{need}: {words}", if first { "" } else { "; " })?;
@@ -261,8 +330,31 @@ pub fn relaxations<C: Control>(
     check_period(period)?;
     problem.check()?;
     let less = |value: u32| value.saturating_sub(1);
-    let separation = effect(Problem { separation: less(problem.separation).max(1), ..*problem }, problem.separation > 1)?;
-    let interval = effect(Problem { interval: less(problem.interval), ..*problem }, problem.interval > 0)?;
-    let window = effect(Problem { window: less(problem.window), ..*problem }, problem.window > 0)?;
-    Ok(Relaxations { separation, interval, window, nodes })
+    let separation = effect(
+        Problem {
+            separation: less(problem.separation).max(1),
+            ..*problem
+        },
+        problem.separation > 1,
+    )?;
+    let interval = effect(
+        Problem {
+            interval: less(problem.interval),
+            ..*problem
+        },
+        problem.interval > 0,
+    )?;
+    let window = effect(
+        Problem {
+            window: less(problem.window),
+            ..*problem
+        },
+        problem.window > 0,
+    )?;
+    Ok(Relaxations {
+        separation,
+        interval,
+        window,
+        nodes,
+    })
 }

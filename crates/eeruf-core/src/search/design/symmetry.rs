@@ -70,7 +70,9 @@ impl Sorting {
         let mut twins = false;
         for y in 0..k {
             // The next lower twin other than `top`.
-            let lower = (0..y).rev().find(|&x| x != top && y != top && twin(needs, x) == twin(needs, y));
+            let lower = (0..y)
+                .rev()
+                .find(|&x| x != top && y != top && twin(needs, x) == twin(needs, y));
             twins |= twin(needs, y) != y;
             if let Some(x) = lower {
                 after[y] = x as u8 + 1;
@@ -100,6 +102,10 @@ impl Sorting {
 
     /// The pairs.
     pub(crate) fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.after.iter().enumerate().filter(|&(_, &x)| x > 0).map(|(y, &x)| (usize::from(x) - 1, y))
+        self.after
+            .iter()
+            .enumerate()
+            .filter(|&(_, &x)| x > 0)
+            .map(|(y, &x)| (usize::from(x) - 1, y))
     }
 }

@@ -17,6 +17,10 @@ use super::symmetry::{self, Sorting};
 
 /// What a search of one period came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no allocator to box it with, and one exists at a time"
+)]
 pub(crate) enum Outcome {
     Found(Firing),
     Exhausted,
@@ -126,7 +130,14 @@ impl<'p, 'm> Tree<'p, 'm> {
             stack,
             depth: 0,
             base: 0,
-            ranks: Ranks { low: [0; MAX_SENSORS], high: [0; MAX_SENSORS], lows: 0, highs: 0, ranked: 0, negative: 0 },
+            ranks: Ranks {
+                low: [0; MAX_SENSORS],
+                high: [0; MAX_SENSORS],
+                lows: 0,
+                highs: 0,
+                ranked: 0,
+                negative: 0,
+            },
             sequence: [0; MAX_SENSORS],
             random: None,
             guide: None,
@@ -221,7 +232,11 @@ impl<'p, 'm> Tree<'p, 'm> {
     }
 
     fn frame(&self, i: usize) -> Frame {
-        Frame::unpack(self.stack.get(i * FRAME_WORDS..(i + 1) * FRAME_WORDS).unwrap_or(&[]))
+        Frame::unpack(
+            self.stack
+                .get(i * FRAME_WORDS..(i + 1) * FRAME_WORDS)
+                .unwrap_or(&[]),
+        )
     }
 
     fn store(&mut self, i: usize, frame: &Frame) {
@@ -294,7 +309,9 @@ impl<'p, 'm> Tree<'p, 'm> {
                 frame.tried <= 3
             }
             Kind::Top | Kind::Low | Kind::High => {
-                let Some((x, negative)) = self.pick(frame) else { return false };
+                let Some((x, negative)) = self.pick(frame) else {
+                    return false;
+                };
                 (frame.x, frame.y, frame.tried) = (x, u8::from(negative), 1);
                 if negative {
                     frame.negative &= !(1 << x);
@@ -319,16 +336,29 @@ impl<'p, 'm> Tree<'p, 'm> {
         }
         if let Some(guide) = &self.guide {
             let d = |x: usize| i64::from(guide.a[x]) - i64::from(guide.b[x]);
-            let key = |x: usize| if frame.kind == Kind::Low { d(x).abs() } else { -d(x).abs() };
+            let key = |x: usize| {
+                if frame.kind == Kind::Low {
+                    d(x).abs()
+                } else {
+                    -d(x).abs()
+                }
+            };
             let best = Sensors(frame.positive | frame.negative).min_by_key(|&x| key(x))?;
-            let negative = frame.negative >> best & 1 == 1 && (d(best) < 0 || frame.positive >> best & 1 == 0);
+            let negative =
+                frame.negative >> best & 1 == 1 && (d(best) < 0 || frame.positive >> best & 1 == 0);
             return Some((best as u8, negative));
         }
         if frame.kind == Kind::Top {
             return Sensors(frame.positive).next().map(|x| (x as u8, false));
         }
         let intervals = self.intervals();
-        let key = |x: usize| if frame.kind == Kind::Low { intervals.high[x] } else { -intervals.low[x] };
+        let key = |x: usize| {
+            if frame.kind == Kind::Low {
+                intervals.high[x]
+            } else {
+                -intervals.low[x]
+            }
+        };
         let best = Sensors(frame.positive | frame.negative).min_by_key(|&x| key(x))?;
         Some((best as u8, frame.positive >> best & 1 == 0))
     }
@@ -344,7 +374,9 @@ impl<'p, 'm> Tree<'p, 'm> {
     fn apply(&mut self, frame: &Frame) -> Result<(), Contradiction> {
         let x = usize::from(frame.x);
         match frame.kind {
-            Kind::Order => self.net.demand(x, usize::from(frame.y), -self.needs.interval),
+            Kind::Order => self
+                .net
+                .demand(x, usize::from(frame.y), -self.needs.interval),
             Kind::Value => {
                 let (low, high) = (frame.positive as i32, frame.negative as i32);
                 let middle = low + (high - low) / 2;
@@ -364,7 +396,11 @@ impl<'p, 'm> Tree<'p, 'm> {
                         self.net.demand(self.node(x, 0), self.node(y, 0), 0)?;
                     }
                     let last = self.needs.sensors as i32 - 1;
-                    return self.demand_size(x, self.needs.least + last * self.needs.separation, self.widest);
+                    return self.demand_size(
+                        x,
+                        self.needs.least + last * self.needs.separation,
+                        self.widest,
+                    );
                 }
                 self.demand_size(x, self.needs.least, self.widest)
             }
@@ -396,7 +432,10 @@ impl<'p, 'm> Tree<'p, 'm> {
         let mut frame = Frame::new(Kind::Value);
         // If all are fixed and still no schedule, there is no alternative left.
         frame.tried = 3;
-        if let Some(x) = (0..k).filter(|&x| intervals.low[x] < intervals.high[x]).min_by_key(|&x| intervals.low[x]) {
+        if let Some(x) = (0..k)
+            .filter(|&x| intervals.low[x] < intervals.high[x])
+            .min_by_key(|&x| intervals.low[x])
+        {
             (frame.x, frame.tried) = (x as u8, 0);
             frame.positive = intervals.low[x] as u64;
             frame.negative = intervals.high[x] as u64;
@@ -418,7 +457,10 @@ impl<'p, 'm> Tree<'p, 'm> {
                 for phase in 0..2 {
                     let (u, v) = (self.node(x, phase), self.node(y, phase));
                     let (late, early) = (self.net.at_most(u, v), self.net.at_most(v, u));
-                    if late > -interval && early > -interval && best.is_none_or(|(room, ..)| late + early < room) {
+                    if late > -interval
+                        && early > -interval
+                        && best.is_none_or(|(room, ..)| late + early < room)
+                    {
                         best = Some((late + early, u, v));
                     }
                 }
@@ -436,7 +478,11 @@ impl<'p, 'm> Tree<'p, 'm> {
                 pattern.unwrap_or(early >= late)
             };
             let mut frame = Frame::new(Kind::Order);
-            (frame.x, frame.y) = if first { (u as u8, v as u8) } else { (v as u8, u as u8) };
+            (frame.x, frame.y) = if first {
+                (u as u8, v as u8)
+            } else {
+                (v as u8, u as u8)
+            };
             return Some(frame);
         }
         None
@@ -487,13 +533,19 @@ impl<'p, 'm> Tree<'p, 'm> {
             }
         }
         let count = |frame: &Frame| frame.positive.count_ones() + frame.negative.count_ones();
-        if count(&low) < count(&high) { low } else { high }
+        if count(&low) < count(&high) {
+            low
+        } else {
+            high
+        }
     }
 
     /// The earliest or the latest times that the matrix allows, if all orders are decided and the separation happens to hold.
     fn reading(&self) -> Option<Firing> {
         let (k, interval) = (self.needs.sensors, self.needs.interval);
-        let undecided = |u: usize, v: usize| self.net.at_most(u, v) > -interval && self.net.at_most(v, u) > -interval;
+        let undecided = |u: usize, v: usize| {
+            self.net.at_most(u, v) > -interval && self.net.at_most(v, u) > -interval
+        };
         for x in 0..k {
             for y in Sensors(self.needs.conflicts[x] & ((1 << x) - 1)) {
                 for phase in 0..2 {
@@ -511,7 +563,11 @@ impl<'p, 'm> Tree<'p, 'm> {
     /// These times, if all `|d|` are far enough from each other and from 0.
     fn times(&self, time: impl Fn(usize) -> i32) -> Option<Firing> {
         let k = self.needs.sensors;
-        let mut times = Firing { a: [0; MAX_SENSORS], b: [0; MAX_SENSORS], sensors: k };
+        let mut times = Firing {
+            a: [0; MAX_SENSORS],
+            b: [0; MAX_SENSORS],
+            sensors: k,
+        };
         let mut sizes = [0; MAX_SENSORS];
         for x in 0..k {
             let (a, b) = (time(self.node(x, 0)), time(self.node(x, 1)));
@@ -524,7 +580,10 @@ impl<'p, 'm> Tree<'p, 'm> {
         }
         let sizes = &mut sizes[..k];
         sizes.sort_unstable();
-        sizes.windows(2).all(|pair| pair[1] - pair[0] >= self.needs.separation).then_some(times)
+        sizes
+            .windows(2)
+            .all(|pair| pair[1] - pair[0] >= self.needs.separation)
+            .then_some(times)
     }
 
     /// The interval of d of sensor `x`.
@@ -536,7 +595,10 @@ impl<'p, 'm> Tree<'p, 'm> {
 
     /// The intervals of all `|d|` by the network and the ranks.
     pub(super) fn intervals(&self) -> Intervals {
-        let mut intervals = Intervals { low: [0; MAX_SENSORS], high: [0; MAX_SENSORS] };
+        let mut intervals = Intervals {
+            low: [0; MAX_SENSORS],
+            high: [0; MAX_SENSORS],
+        };
         for x in 0..self.needs.sensors {
             let (low, high) = self.span(x);
             // Above 0, below 0, or on both sides of it.
@@ -570,7 +632,9 @@ fn sequence(needs: &Needs, first: usize) -> [u8; MAX_SENSORS] {
         taken |= 1 << next;
         let left = needs.all() & !taken;
         // Of equals the lowest: `max_by_key` would take the last.
-        next = Sensors(left).min_by_key(|&x| 64 - (needs.conflicts[x] & taken).count_ones()).unwrap_or(0);
+        next = Sensors(left)
+            .min_by_key(|&x| 64 - (needs.conflicts[x] & taken).count_ones())
+            .unwrap_or(0);
     }
     sequence
 }

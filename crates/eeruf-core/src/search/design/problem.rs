@@ -107,8 +107,12 @@ impl fmt::Display for ProblemError {
                     "firing one by one already takes {period} ticks; expected at most {MAX_TICKS}, so use a coarser tick"
                 )
             }
-            Self::Period(period) => write!(f, "a period of {period} ticks; expected 1 to {MAX_TICKS}"),
-            Self::Memory { words, needed } => write!(f, "{words} words of memory; expected at least {needed}"),
+            Self::Period(period) => {
+                write!(f, "a period of {period} ticks; expected 1 to {MAX_TICKS}")
+            }
+            Self::Memory { words, needed } => {
+                write!(f, "{words} words of memory; expected at least {needed}")
+            }
         }
     }
 }

@@ -112,6 +112,7 @@ impl Shortest {
 
 /// What a search of one period came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::large_enum_variant, reason = "there is no allocator to box it with, and one exists at a time")]
 pub enum Answer {
     /// A schedule.
     Found(Firing),

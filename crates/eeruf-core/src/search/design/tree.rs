@@ -17,6 +17,7 @@ use super::symmetry::{self, Sorting};
 
 /// What a search of one period came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::large_enum_variant, reason = "there is no allocator to box it with, and one exists at a time")]
 pub(crate) enum Outcome {
     Found(Firing),
     Exhausted,
@@ -294,7 +295,9 @@ impl<'p, 'm> Tree<'p, 'm> {
                 frame.tried <= 3
             }
             Kind::Top | Kind::Low | Kind::High => {
-                let Some((x, negative)) = self.pick(frame) else { return false };
+                let Some((x, negative)) = self.pick(frame) else {
+                    return false;
+                };
                 (frame.x, frame.y, frame.tried) = (x, u8::from(negative), 1);
                 if negative {
                     frame.negative &= !(1 << x);
@@ -319,7 +322,9 @@ impl<'p, 'm> Tree<'p, 'm> {
         }
         if let Some(guide) = &self.guide {
             let d = |x: usize| i64::from(guide.a[x]) - i64::from(guide.b[x]);
-            let key = |x: usize| if frame.kind == Kind::Low { d(x).abs() } else { -d(x).abs() };
+            let key = |x: usize| {
+                if frame.kind == Kind::Low { d(x).abs() } else { -d(x).abs() }
+            };
             let best = Sensors(frame.positive | frame.negative).min_by_key(|&x| key(x))?;
             let negative = frame.negative >> best & 1 == 1 && (d(best) < 0 || frame.positive >> best & 1 == 0);
             return Some((best as u8, negative));
@@ -328,7 +333,9 @@ impl<'p, 'm> Tree<'p, 'm> {
             return Sensors(frame.positive).next().map(|x| (x as u8, false));
         }
         let intervals = self.intervals();
-        let key = |x: usize| if frame.kind == Kind::Low { intervals.high[x] } else { -intervals.low[x] };
+        let key = |x: usize| {
+            if frame.kind == Kind::Low { intervals.high[x] } else { -intervals.low[x] }
+        };
         let best = Sensors(frame.positive | frame.negative).min_by_key(|&x| key(x))?;
         Some((best as u8, frame.positive >> best & 1 == 0))
     }

@@ -3,7 +3,7 @@
 
 #![allow(missing_docs)]
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../crates/eeruf-core/tests/common/mod.rs"]
 mod common;
 
 use std::hint::black_box;

@@ -13,7 +13,7 @@ use common::Owned;
 use common::naive::Layout;
 use common::tables::{Case, File};
 use criterion::{Criterion, criterion_group};
-use eeruf_core::search::wait::{self, COUNT_WORDS, Control, MEMORY_WORDS, Objective, WaitProblem};
+use eeruf_core::search::wait::{COUNT_WORDS, Control, MEMORY_WORDS, Objective, Problem};
 
 /// The problems counted: those of the shared tables with many tables, and two of more nodes.
 fn counts() -> Vec<Case> {
@@ -41,7 +41,7 @@ fn best_interval(c: &mut Criterion) {
     let (mut a, mut b) = ([0; 64], [0; 64]);
     for (sensors, separation) in [(12, 2), (8, 1), (12, 1), (16, 1), (24, 1)] {
         for per_ms in [1, 2, 10] {
-            let owned = Owned::paper(sensors, Layout::Line, separation, per_ms, wait::Criterion::Exact);
+            let owned = Owned::paper(sensors, Layout::Line, separation, per_ms, eeruf_core::Criterion::Exact);
             let name = format!("best interval/{sensors} sensors, D {separation} ms, {per_ms} ticks a ms");
             c.bench_function(&name, |bench| {
                 bench.iter(|| {
@@ -57,7 +57,7 @@ fn rearrange(c: &mut Criterion) {
     let pairs: Vec<(u32, u32)> = (0..12).map(|k| (24, 2 * k)).collect();
     let (mut a, mut b) = ([0; 12], [0; 12]);
     for layout in [Layout::Line, Layout::Ring, Layout::Blocks] {
-        let owned = Owned::paper(12, layout, 2, 1, wait::Criterion::Paper);
+        let owned = Owned::paper(12, layout, 2, 1, eeruf_core::Criterion::Paper);
         let search = owned.search();
         let arrangements = search.rearrange(&pairs).unwrap();
         c.bench_function(&format!("Table I rearranged/{layout:?}"), |bench| {
@@ -78,8 +78,8 @@ fn count(c: &mut Criterion) {
 
 /// Plain nested loops as one would write them for speed: pairs in order, each checked against the sensors before it; the body of the
 /// innermost loop counts.
-fn nested_loops(problem: &WaitProblem<'_>) -> u64 {
-    fn fits(p: &WaitProblem<'_>, k: usize, wait: &[(i32, i32)], a: i32, b: i32) -> bool {
+fn nested_loops(problem: &Problem<'_>) -> u64 {
+    fn fits(p: &Problem<'_>, k: usize, wait: &[(i32, i32)], a: i32, b: i32) -> bool {
         let period = p.period as i32;
         let (interval, separation) = (p.interval as i32, p.separation as i32);
         (0..k).all(|j| {
@@ -91,10 +91,10 @@ fn nested_loops(problem: &WaitProblem<'_>) -> u64 {
                     && period - (lag + a - e).abs() >= interval
                     && period - (lag + b - c).abs() >= interval)
                 && ((a - b).abs() - (c - e).abs()).abs() >= separation
-                && (p.criterion == wait::Criterion::Exact || (a + b - c - e).abs() >= separation)
+                && (p.criterion == eeruf_core::Criterion::Exact || (a + b - c - e).abs() >= separation)
         })
     }
-    fn loops(p: &WaitProblem<'_>, k: usize, wait: &mut [(i32, i32)]) -> u64 {
+    fn loops(p: &Problem<'_>, k: usize, wait: &mut [(i32, i32)]) -> u64 {
         let (most, last) = (p.wait_max as i32, k + 1 == p.lag.len());
         let mut tables = 0;
         for a in 0..=most {

@@ -3,7 +3,8 @@
 //! Arguments, times in ticks: sensors, period, longest wait, group of lags, separation, interval, neighbours, `paper` or `exact`, and
 //! `line`, `ring` or `blocks`.
 
-use eeruf_core::search::wait::{COUNT_WORDS, Control, Criterion, WaitProblem, WaitSearch};
+use eeruf_core::Criterion;
+use eeruf_core::search::wait::{COUNT_WORDS, Control, Problem, Search};
 use std::error::Error;
 use std::time::Instant;
 
@@ -28,8 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let conflicts: Vec<u64> =
         (0..sensors).map(|i| (0..sensors).filter(|&j| i != j && close(i, j)).map(|j| 1 << j).sum()).collect();
     let criterion = if criterion == "exact" { Criterion::Exact } else { Criterion::Paper };
-    let problem = WaitProblem { period, lag: &lag, wait_max, separation, interval, conflicts: &conflicts, criterion };
-    let search = WaitSearch::new(problem)?;
+    let problem = Problem { period, lag: &lag, wait_max, separation, interval, conflicts: &conflicts, criterion };
+    let search = Search::new(problem)?;
     let mut memory = vec![0; COUNT_WORDS];
     let (mut least, mut count) = (f64::INFINITY, 0);
     for _ in 0..10 {

@@ -3,29 +3,21 @@
 mod common;
 
 use common::naive::{self, Layout};
+use eeruf_core::Criterion;
 use eeruf_core::search::wait::{
-    Best, COUNT_WORDS, Control, Criterion, Finish, MEMORY_WORDS, Objective, Progress, WaitError, WaitProblem,
-    WaitSearch, memory_words,
+    Best, COUNT_WORDS, Control, Finish, MEMORY_WORDS, Objective, Problem, ProblemError, Progress, Search, memory_words,
 };
 
 const LAG: [u32; 6] = [0, 12, 24, 36, 0, 12];
 
-fn six(conflicts: &[u64]) -> WaitProblem<'_> {
-    WaitProblem {
-        period: 48,
-        lag: &LAG,
-        wait_max: 6,
-        separation: 1,
-        interval: 8,
-        conflicts,
-        criterion: Criterion::Paper,
-    }
+fn six(conflicts: &[u64]) -> Problem<'_> {
+    Problem { period: 48, lag: &LAG, wait_max: 6, separation: 1, interval: 8, conflicts, criterion: Criterion::Paper }
 }
 
 #[test]
 fn a_spent_budget_says_so_and_proves_nothing() {
     let conflicts = naive::conflicts(Layout::Blocks, 6, 4);
-    let search = WaitSearch::new(six(&conflicts)).unwrap();
+    let search = Search::new(six(&conflicts)).unwrap();
     let (mut a, mut b) = ([0; 6], [0; 6]);
     let mut memory = [0; MEMORY_WORDS];
     let mut control = Control::nodes_at_most(3);
@@ -46,7 +38,7 @@ fn a_spent_budget_says_so_and_proves_nothing() {
 #[test]
 fn a_walk_goes_on_after_its_budget_was_spent() {
     let conflicts = naive::conflicts(Layout::Line, 3, 3);
-    let problem = WaitProblem {
+    let problem = Problem {
         period: 30,
         lag: &[0, 10, 20],
         wait_max: 6,
@@ -55,7 +47,7 @@ fn a_walk_goes_on_after_its_budget_was_spent() {
         conflicts: &conflicts,
         criterion: Criterion::Paper,
     };
-    let mut all = WaitSearch::new(problem).unwrap().all();
+    let mut all = Search::new(problem).unwrap().all();
     let (mut a, mut b) = ([0; 3], [0; 3]);
     let (mut seen, mut pauses) = (0, 0);
     loop {
@@ -74,7 +66,7 @@ fn a_walk_goes_on_after_its_budget_was_spent() {
 #[test]
 fn a_watcher_sees_every_so_many_nodes_and_can_cancel() {
     let conflicts = naive::conflicts(Layout::Blocks, 6, 4);
-    let search = WaitSearch::new(six(&conflicts)).unwrap();
+    let search = Search::new(six(&conflicts)).unwrap();
     let mut seen = Vec::new();
     let mut watch = |progress: Progress| {
         seen.push(progress.nodes);
@@ -89,7 +81,7 @@ fn a_watcher_sees_every_so_many_nodes_and_can_cancel() {
 #[test]
 fn a_limit_ends_a_count_early() {
     let conflicts = naive::conflicts(Layout::Blocks, 6, 4);
-    let search = WaitSearch::new(six(&conflicts)).unwrap();
+    let search = Search::new(six(&conflicts)).unwrap();
     let mut memory = vec![0; COUNT_WORDS];
     let counted = search.count(Some(1000), &mut memory, &mut Control::unlimited());
     assert_eq!(counted.finish, Finish::Found);
@@ -101,8 +93,8 @@ fn a_limit_ends_a_count_early() {
 #[test]
 fn a_count_is_exact_whatever_the_memory_and_whatever_it_held() {
     let conflicts = naive::conflicts(Layout::Line, 6, 4);
-    let problem = WaitProblem { wait_max: 5, ..six(&conflicts) };
-    let search = WaitSearch::new(problem).unwrap();
+    let problem = Problem { wait_max: 5, ..six(&conflicts) };
+    let search = Search::new(problem).unwrap();
     let counts: Vec<_> = [0, 1, 50, 1000, 100_000]
         .map(|words| search.count(None, &mut vec![u32::MAX; words], &mut Control::unlimited()))
         .to_vec();
@@ -111,8 +103,8 @@ fn a_count_is_exact_whatever_the_memory_and_whatever_it_held() {
 }
 
 /// Two sensors whose waits range to `wait_max`.
-fn two(wait_max: u32, interval: u32) -> WaitProblem<'static> {
-    WaitProblem {
+fn two(wait_max: u32, interval: u32) -> Problem<'static> {
+    Problem {
         period: 200,
         lag: &[0, 60],
         wait_max,
@@ -128,12 +120,12 @@ fn waits_beyond_the_words_of_the_count_are_counted_all_the_same() {
     // 16 ticks leave the sets of pairs, 32 the half words, 64 the words.
     for wait_max in [14, 15, 16, 31, 32] {
         let problem = two(wait_max, 55);
-        let counted = WaitSearch::new(problem).unwrap().count(None, &mut [0; 500], &mut Control::unlimited());
+        let counted = Search::new(problem).unwrap().count(None, &mut [0; 500], &mut Control::unlimited());
         assert_eq!(counted.count, naive::count(&problem), "{wait_max}");
     }
     for wait_max in [62, 63, 64, 65] {
         // An interval that leaves few tables: the walk over them is the judge.
-        let search = WaitSearch::new(two(wait_max, 96)).unwrap();
+        let search = Search::new(two(wait_max, 96)).unwrap();
         let counted = search.count(None, &mut [0; 500], &mut Control::unlimited());
         let (mut a, mut b, mut seen) = ([0; 2], [0; 2], 0);
         let mut all = search.all();
@@ -150,7 +142,7 @@ fn waits_beyond_the_words_of_the_count_are_counted_all_the_same() {
 fn sixty_four_sensors_have_a_best_interval() {
     let lag: Vec<u32> = (0..64).map(|i| i % 4 * 250).collect();
     let conflicts = naive::conflicts(Layout::Line, 64, 4);
-    let problem = WaitProblem {
+    let problem = Problem {
         period: 1000,
         lag: &lag,
         wait_max: 240,
@@ -160,16 +152,16 @@ fn sixty_four_sensors_have_a_best_interval() {
         criterion: Criterion::Exact,
     };
     let (mut a, mut b) = ([0; 64], [0; 64]);
-    let search = WaitSearch::new(problem).unwrap();
+    let search = Search::new(problem).unwrap();
     let best = search.best(Objective::Interval, &mut [0; MEMORY_WORDS], &mut Control::unlimited(), &mut a, &mut b);
     // n I + D (K - 1) <= T_p.
     assert_eq!(best.unwrap().value, Some((1000 - 2 * 63) / 4));
-    assert!(naive::holds(&WaitProblem { interval: 218, ..problem }, &a, &b));
+    assert!(naive::holds(&Problem { interval: 218, ..problem }, &a, &b));
 }
 
 #[test]
 fn a_single_sensor_is_never_too_close_to_anything() {
-    let problem = WaitProblem {
+    let problem = Problem {
         period: 10,
         lag: &[0],
         wait_max: 9,
@@ -178,7 +170,7 @@ fn a_single_sensor_is_never_too_close_to_anything() {
         conflicts: &[0],
         criterion: Criterion::Paper,
     };
-    let search = WaitSearch::new(problem).unwrap();
+    let search = Search::new(problem).unwrap();
     let (mut a, mut b) = ([0], [0]);
     let mut memory = [0; memory_words(1)];
     assert_eq!(search.first(&mut memory, &mut Control::unlimited(), &mut a, &mut b), Ok(Finish::Found));
@@ -194,7 +186,7 @@ fn a_single_sensor_is_never_too_close_to_anything() {
 
 #[test]
 fn a_count_beyond_every_number_stops_at_the_greatest() {
-    let problem = WaitProblem {
+    let problem = Problem {
         period: 64,
         lag: &[0; 64],
         wait_max: 63,
@@ -203,13 +195,13 @@ fn a_count_beyond_every_number_stops_at_the_greatest() {
         conflicts: &[0; 64],
         criterion: Criterion::Exact,
     };
-    let counted = WaitSearch::new(problem).unwrap().count(None, &mut [0; 5000], &mut Control::unlimited());
+    let counted = Search::new(problem).unwrap().count(None, &mut [0; 5000], &mut Control::unlimited());
     assert_eq!((counted.finish, counted.count), (Finish::Found, u128::MAX));
 }
 
 #[test]
 fn bad_input_gets_one_clear_line() {
-    let good = WaitProblem {
+    let good = Problem {
         period: 30,
         lag: &[0, 10],
         wait_max: 6,
@@ -218,28 +210,25 @@ fn bad_input_gets_one_clear_line() {
         conflicts: &[2, 1],
         criterion: Criterion::Paper,
     };
-    let line = |problem: WaitProblem<'_>| WaitSearch::new(problem).unwrap_err().to_string();
-    assert_eq!(line(WaitProblem { lag: &[], ..good }), "0 sensors; between 1 and 64 are expected");
-    assert_eq!(line(WaitProblem { lag: &[0; 65], ..good }), "65 sensors; between 1 and 64 are expected");
-    assert_eq!(line(WaitProblem { period: 0, ..good }), "period of 0 ticks; between 1 and 134217728 are expected");
+    let line = |problem: Problem<'_>| Search::new(problem).unwrap_err().to_string();
+    assert_eq!(line(Problem { lag: &[], ..good }), "0 sensors; between 1 and 64 are expected");
+    assert_eq!(line(Problem { lag: &[0; 65], ..good }), "65 sensors; between 1 and 64 are expected");
+    assert_eq!(line(Problem { period: 0, ..good }), "period of 0 ticks; between 1 and 134217728 are expected");
     assert_eq!(
-        line(WaitProblem { wait_max: 20, ..good }),
+        line(Problem { wait_max: 20, ..good }),
         "sensor 2 has lag 10 and waits up to 20 ticks; their sum must be below the period of 30"
     );
+    assert_eq!(line(Problem { conflicts: &[0], ..good }), "1 rows of conflicts; one for each of 2 sensors is expected");
+    assert_eq!(line(Problem { conflicts: &[1, 0], ..good }), "sensor 1 conflicts with itself");
     assert_eq!(
-        line(WaitProblem { conflicts: &[0], ..good }),
-        "1 rows of conflicts; one for each of 2 sensors is expected"
-    );
-    assert_eq!(line(WaitProblem { conflicts: &[1, 0], ..good }), "sensor 1 conflicts with itself");
-    assert_eq!(
-        line(WaitProblem { conflicts: &[2, 0], ..good }),
+        line(Problem { conflicts: &[2, 0], ..good }),
         "sensor 1 conflicts with sensor 2, which does not exist or does not conflict with it"
     );
-    let search = WaitSearch::new(good).unwrap();
+    let search = Search::new(good).unwrap();
     let mut short = [0; 2];
     let error = search.first(&mut short, &mut Control::unlimited(), &mut [0; 2], &mut [0; 2]).unwrap_err();
     assert_eq!(error.to_string(), "memory has length 2; at least 16 is needed");
-    assert_eq!(error, WaitError::Short { what: "memory", given: 2, needed: 16 });
+    assert_eq!(error, ProblemError::Short { what: "memory", given: 2, needed: 16 });
     assert_eq!(
         search.rearrange(&[(7, 0), (0, 0)]).unwrap_err().to_string(),
         "pair 1 has a wait of 7 ticks; at most 6 is allowed"
@@ -249,7 +238,7 @@ fn bad_input_gets_one_clear_line() {
 #[test]
 fn values_of_foreign_waits_are_measured_without_overflow() {
     let conflicts = naive::conflicts(Layout::Line, 6, 4);
-    let search = WaitSearch::new(six(&conflicts)).unwrap();
+    let search = Search::new(six(&conflicts)).unwrap();
     let huge = [u32::MAX; 6];
     assert_eq!(search.smallest_interval(&huge, &huge), 0);
     assert_eq!(search.separation_of(&huge, &huge), 0);

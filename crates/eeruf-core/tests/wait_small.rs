@@ -3,9 +3,8 @@
 mod common;
 
 use common::{Owned, naive};
-use eeruf_core::search::wait::{
-    Control, Criterion, Finish, MEMORY_WORDS, Objective, ParetoPoint, WaitProblem, WaitSearch,
-};
+use eeruf_core::Criterion;
+use eeruf_core::search::wait::{Control, Finish, MEMORY_WORDS, Objective, ParetoPoint, Problem, Search};
 use proptest::prelude::*;
 
 /// A line, a ring, blocks or any graph; lags in groups or anyhow.
@@ -54,14 +53,13 @@ fn tiny() -> impl Strategy<Value = Owned> {
 
 /// The interval and separation of every table of a problem without demands, those that dominate only, greatest interval first.
 fn naive_front(tiny: &Owned) -> Vec<ParetoPoint> {
-    let search = WaitSearch::new(tiny.problem()).unwrap();
+    let search = Search::new(tiny.problem()).unwrap();
     let mut points: Vec<(u32, u32)> = Vec::new();
     naive::for_each(&tiny.problem(), &mut |a, b| {
         let value = |ok: &dyn Fn(u32) -> bool, most: u32| (0..=most).rev().find(|&value| ok(value)).unwrap();
-        let interval =
-            value(&|interval| naive::holds(&WaitProblem { interval, ..*search.problem() }, a, b), tiny.period);
+        let interval = value(&|interval| naive::holds(&Problem { interval, ..*search.problem() }, a, b), tiny.period);
         let separation =
-            value(&|separation| naive::holds(&WaitProblem { separation, ..*search.problem() }, a, b), tiny.wait_max);
+            value(&|separation| naive::holds(&Problem { separation, ..*search.problem() }, a, b), tiny.wait_max);
         if !points.contains(&(interval, separation)) {
             points.push((interval, separation));
         }
@@ -81,7 +79,7 @@ proptest! {
     #[test]
     fn nested_loops_agree_on_found_exhausted_and_count(tiny in tiny()) {
         let problem = tiny.problem();
-        let search = WaitSearch::new(problem).unwrap();
+        let search = Search::new(problem).unwrap();
         let count = naive::count(&problem);
         let mut memory = vec![0; MEMORY_WORDS];
         let (mut a, mut b) = ([0; 64], [0; 64]);
@@ -107,7 +105,7 @@ proptest! {
     fn nested_loops_agree_on_the_best_values_and_the_front(tiny in tiny()) {
         let tiny = Owned { lag: tiny.lag.iter().take(3).copied().collect(), conflicts: tiny.conflicts.iter().take(3).map(|row| row & 7).collect(), ..tiny };
         let problem = tiny.problem();
-        let search = WaitSearch::new(problem).unwrap();
+        let search = Search::new(problem).unwrap();
         let mut memory = vec![0; MEMORY_WORDS];
         let (mut a, mut b) = ([0; 64], [0; 64]);
         let front = naive_front(&tiny);
@@ -119,7 +117,7 @@ proptest! {
             prop_assert_eq!(best.value.is_some(), !front.is_empty());
         }
         if let Some(interval) = best.value {
-            let at = &WaitProblem { interval, ..problem };
+            let at = &Problem { interval, ..problem };
             prop_assert!(naive::holds(at, &a, &b));
         }
         let best = search.best(Objective::Separation, &mut memory, &mut Control::unlimited(), &mut a, &mut b).unwrap();
@@ -127,7 +125,7 @@ proptest! {
         prop_assert_eq!(best.value.is_some(), !front.is_empty());
         if let (Some(separation), true) = (best.value, tiny.lag.len() > 1) {
             prop_assert_eq!(Some(separation), front.last().map(|point| point.separation));
-            let at = &WaitProblem { separation, ..problem };
+            let at = &Problem { separation, ..problem };
             prop_assert!(naive::holds(at, &a, &b));
         }
         if tiny.lag.len() > 1 && tiny.conflicts.iter().any(|&row| row != 0) {
@@ -135,7 +133,7 @@ proptest! {
             let mut points = Vec::new();
             while let (Finish::Found, Some(point)) = walk.next_into(&mut Control::unlimited(), &mut a, &mut b).unwrap() {
                 let ParetoPoint { interval, separation } = point;
-                let at = &WaitProblem { interval, separation, ..problem };
+                let at = &Problem { interval, separation, ..problem };
             prop_assert!(naive::holds(at, &a, &b));
                 points.push(point);
             }

@@ -6,9 +6,8 @@ mod common;
 use common::Owned;
 use common::naive::{self, Layout};
 use common::tables::File;
-use eeruf_core::search::wait::{
-    COUNT_WORDS, Control, Criterion, Finish, MEMORY_WORDS, Objective, WaitProblem, memory_words,
-};
+use eeruf_core::Criterion;
+use eeruf_core::search::wait::{COUNT_WORDS, Control, Finish, MEMORY_WORDS, Objective, Problem, memory_words};
 
 #[test]
 fn every_count_of_the_shared_tables_comes_out() {
@@ -56,7 +55,7 @@ fn every_best_interval_of_the_shared_tables_comes_out_proven() {
         let value = best.value.map_or(-1, i64::from);
         assert_eq!(value, case.best_interval, "{case:?} {best:?}");
         if value >= 0 {
-            assert!(naive::holds(&WaitProblem { interval: value as u32, ..owned.problem() }, &a, &b));
+            assert!(naive::holds(&Problem { interval: value as u32, ..owned.problem() }, &a, &b));
         }
     }
 }
@@ -70,8 +69,8 @@ fn best_interval(owned: &Owned) -> (u32, u64) {
         owned.search().best(Objective::Interval, &mut memory, &mut Control::unlimited(), &mut a, &mut b).unwrap();
     let value = best.value.unwrap();
     assert_eq!((best.finish, best.bound), (Finish::Found, value));
-    assert!(naive::holds(&WaitProblem { interval: value, ..owned.problem() }, &a, &b));
-    assert!(!naive::holds(&WaitProblem { interval: value + 1, ..owned.problem() }, &a, &b));
+    assert!(naive::holds(&Problem { interval: value, ..owned.problem() }, &a, &b));
+    assert!(!naive::holds(&Problem { interval: value + 1, ..owned.problem() }, &a, &b));
     (value, best.nodes)
 }
 

@@ -5,7 +5,8 @@
 pub mod naive;
 pub mod tables;
 
-use eeruf_core::search::wait::{Criterion, WaitProblem, WaitSearch};
+use eeruf_core::Criterion;
+use eeruf_core::search::wait::{Problem, Search};
 use naive::Layout;
 use tables::Case;
 
@@ -48,12 +49,12 @@ impl Owned {
         }
     }
 
-    pub fn search(&self) -> WaitSearch<'_> {
-        WaitSearch::new(self.problem()).unwrap()
+    pub fn search(&self) -> Search<'_> {
+        Search::new(self.problem()).unwrap()
     }
 
-    pub fn problem(&self) -> WaitProblem<'_> {
-        WaitProblem {
+    pub fn problem(&self) -> Problem<'_> {
+        Problem {
             period: self.period,
             lag: &self.lag,
             wait_max: self.wait_max,

@@ -13,9 +13,9 @@
 
 use super::memo::{Key, Memo, Ticket};
 use super::options::{self, Options, Set, left_by};
-use super::{Bits, Control, Criterion, Finish, MAX_SENSORS, WaitProblem, WaitSearch};
+use super::{Bits, Control, Criterion, Finish, MAX_SENSORS, Problem, Search};
 
-/// A sensible amount of memory for [`WaitSearch::count`] where there is plenty, in words (4 MiB).
+/// A sensible amount of memory for [`Search::count`] where there is plenty, in words (4 MiB).
 pub const COUNT_WORDS: usize = 1 << 20;
 
 /// The outcome of counting.
@@ -30,7 +30,7 @@ pub struct Count {
     pub nodes: u64,
 }
 
-impl WaitSearch<'_> {
+impl Search<'_> {
     /// Counts the tables; stops early when there are `limit` or more. More `memory` makes it faster ([`COUNT_WORDS`]); it may be empty.
     ///
     /// Without a limit, a count beyond `u128` ends with [`Finish::Found`] at its maximum.
@@ -59,7 +59,7 @@ impl WaitSearch<'_> {
 /// The longest wait whose set of waits fits a word.
 const MASK_MAX: u32 = 63;
 
-fn count_one_by_one(search: &WaitSearch<'_>, limit: u128, control: &mut Control<'_>) -> (Finish, u128) {
+fn count_one_by_one(search: &Search<'_>, limit: u128, control: &mut Control<'_>) -> (Finish, u128) {
     let mut all = search.all();
     let mut count = 0;
     while count < limit {
@@ -112,7 +112,7 @@ impl<const N: usize> Level<N> {
 }
 
 struct Counting<'p, 'm, const N: usize> {
-    problem: &'p WaitProblem<'p>,
+    problem: &'p Problem<'p>,
     /// Sensors in the order of the levels.
     order: [u8; MAX_SENSORS],
     /// By sensor: those that can fire too close to it.
@@ -134,7 +134,7 @@ struct Counting<'p, 'm, const N: usize> {
 
 // Indices: sensors and levels, both below `lag.len() <= MAX_SENSORS`.
 impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
-    fn new(problem: &'p WaitProblem<'p>, memory: &'m mut [u32]) -> Self {
+    fn new(problem: &'p Problem<'p>, memory: &'m mut [u32]) -> Self {
         let mut counting = Self {
             problem,
             order: [0; MAX_SENSORS],
@@ -389,7 +389,7 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
 
     /// Notes which conflicting sensors can fire too close at all.
     fn find_near(&mut self) {
-        let WaitProblem { period, lag, wait_max, interval, conflicts, .. } = *self.problem;
+        let Problem { period, lag, wait_max, interval, conflicts, .. } = *self.problem;
         for (i, &row) in conflicts.iter().enumerate() {
             for j in Bits(row) {
                 let apart = lag[i].abs_diff(lag[j]);
@@ -433,7 +433,7 @@ fn waits_with(d: i32, left: [u64; 2], s: [u64; 2], paper: bool) -> u64 {
 }
 
 /// How far a value keeps others away: `D - 1`, or more than any wait if a single sensor has a greater `D`.
-pub(super) fn reach(problem: &WaitProblem<'_>) -> i32 {
+pub(super) fn reach(problem: &Problem<'_>) -> i32 {
     problem.separation.min(MASK_MAX + 1) as i32 - 1
 }
 

@@ -46,9 +46,15 @@ pub struct RingNeeds<'a> {
 pub struct Designed<const K: usize> {
     /// The schedule, with the period as its value and the bound below which there is none.
     pub found: Found<K>,
-    /// Why the period is not shorter.
-    pub reason: Reason,
     shortest: Shortest,
+    grid: Grid,
+}
+
+impl<const K: usize> Designed<K> {
+    /// Why the period is not shorter, in words; times in microseconds or milliseconds.
+    pub const fn reason(&self) -> InTime<'_, Reason> {
+        self.shortest.reason.in_ticks_of(self.grid.tick())
+    }
 }
 
 /// Of all schedules with the shortest period, the one to prefer: see [`RingNeeds::prefer`].
@@ -89,7 +95,7 @@ impl RingNeeds<'_> {
             proven: shortest.proven(),
             nodes: shortest.nodes,
         };
-        Ok(Designed { found, reason: shortest.reason, shortest })
+        Ok(Designed { found, shortest, grid })
     }
 
     /// Of all schedules with the period found, the one with the largest `t_delta`; of these, the one with the largest

@@ -1,5 +1,7 @@
 //! How long the shortest period takes: the instances of the theory's table, and those of it in finer ticks.
 
+#![allow(missing_docs, reason = "criterion's macro writes a public function without any")]
+
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use eeruf_core::Layout;
 use eeruf_core::search::design::{Problem, memory_words, shortest};

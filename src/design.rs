@@ -175,13 +175,7 @@ impl RingDesign {
     }
 }
 
-fn describe(
-    name: &str,
-    spec: &RingSpec,
-    requirements: &Requirements<'_>,
-    design: &RingDesign,
-    seconds: f64,
-) -> String {
+fn describe(name: &str, spec: &RingSpec, requirements: &Requirements<'_>, design: &RingDesign, seconds: f64) -> String {
     let RingDesign { schedule, designed, preferred, .. } = design;
     let found = &designed.found;
     let report = schedule.verify(requirements);

@@ -10,7 +10,10 @@ use crate::input::{InputError, read_toml};
 
 /// How the sensors stand, as files spell it.
 #[derive(Clone, Debug, Default, Deserialize)]
-#[serde(untagged, expecting = "expected \"line\", \"ring\", \"blocks\", or pairs of neighbours such as [[0, 1], [1, 2]]")]
+#[serde(
+    untagged,
+    expecting = "expected \"line\", \"ring\", \"blocks\", or pairs of neighbours such as [[0, 1], [1, 2]]"
+)]
 pub(crate) enum LayoutKey {
     #[default]
     #[serde(skip)]
@@ -271,5 +274,9 @@ fn neighbours_in_range(neighbours: u8) -> Result<(), String> {
 }
 
 fn number(name: &str, value: f64, least: f64, most: f64) -> Result<f64, String> {
-    if (least..=most).contains(&value) { Ok(value) } else { Err(format!("{name} = {value}; expected {least} to {most}")) }
+    if (least..=most).contains(&value) {
+        Ok(value)
+    } else {
+        Err(format!("{name} = {value}; expected {least} to {most}"))
+    }
 }

@@ -14,11 +14,7 @@ pub(crate) fn diagram(schedule: &AnySchedule, window: Micros) -> String {
     let column_us = 2.0 * period / COLUMNS as f64;
     let column = |us: f64| ((us / column_us) as usize).min(COLUMNS);
     let mut text = String::new();
-    _ = writeln!(
-        text,
-        "Two periods, {:.1} ms a column: # fires, - listens",
-        column_us / 1000.0
-    );
+    _ = writeln!(text, "Two periods, {:.1} ms a column: # fires, - listens", column_us / 1000.0);
     _ = writeln!(text, "      |{:<half$}|{:<half$}|", " phase a", " phase b", half = (COLUMNS - 1) / 2);
     for x in 0..schedule.sensors() {
         let mut line = [' '; COLUMNS];

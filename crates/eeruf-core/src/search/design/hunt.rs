@@ -189,16 +189,14 @@ impl<'h, C: Control> Hunt<'h, C> {
             budget *= 2;
         }
         loop {
-            // The tightest problem leaves the least to guess.
-            if border.no + 2 < border.yes && self.meter.may_go_on() {
-                self.ask(question, axis, border.no + 1, budget, false, border);
-            }
+            // The tightest problem leaves the least to guess, so it comes first; then halving.
             let mut unknown = border.no;
+            let mut ease = border.no + 1;
             while unknown + 1 < border.yes && self.meter.may_go_on() {
-                let ease = unknown + (border.yes - unknown) / 2;
-                if !matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_)) {
+                if !self.finds(question, axis, ease, budget, border) {
                     unknown = ease;
                 }
+                ease = unknown + (border.yes - unknown) / 2;
             }
             let rest = self.meter.limit.saturating_sub(self.meter.nodes);
             if border.no + 1 >= border.yes || rest == 0 {
@@ -206,9 +204,8 @@ impl<'h, C: Control> Hunt<'h, C> {
             }
             budget *= 4;
             let most = rest - rest / 4;
-            if self.ask(question, axis, border.yes - 1, (4 * budget).min(most), true, border) == Outcome::Spent
-                && most <= 4 * budget
-            {
+            let outcome = self.ask(question, axis, border.yes - 1, budget.min(most), true, border);
+            if outcome == Outcome::Spent && most <= budget {
                 break;
             }
         }
@@ -220,6 +217,11 @@ impl<'h, C: Control> Hunt<'h, C> {
                 unknown = ease.min(border.yes - 1);
             }
         }
+    }
+
+    /// Whether a schedule is found at `ease` with a little luck.
+    fn finds(&mut self, question: &Question, axis: Axis, ease: i32, budget: u64, border: &mut Border) -> bool {
+        matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_))
     }
 
     /// Decides at `ease` and moves the border accordingly.

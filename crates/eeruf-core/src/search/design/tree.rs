@@ -29,9 +29,11 @@ pub(crate) const fn frames(sensors: usize) -> usize {
     sensors * (sensors - 1) + 8 * sensors + 32
 }
 
-/// The least rows of the undo log; with fewer, backing up recomputes more.
+/// The rows of the undo log: for 12 sensors what fits into 64 KiB with everything else, for more sensors enough
+/// that backing up hardly ever has to recompute.
 const fn log_rows(sensors: usize) -> usize {
-    8 * (2 * sensors + 1)
+    let per_node = if sensors <= 12 { 16 } else { 64 };
+    per_node * (2 * sensors + 1)
 }
 
 /// The words of memory that a search over `sensors` sensors needs.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::time::Instant;
 
 use clap::ValueEnum;
 use comfy_table::{Table, presets};
@@ -61,6 +62,7 @@ const PREFERENCE_BUDGET: u64 = 300_000;
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let spec = read_ring(&args.file)?;
     let bad = |error: SearchError| InputError::new(&args.file, None, error);
+    let began = Instant::now();
     let mut watch = Watch::new();
     let Some(design) = find(&spec, args.budget, &mut watch).map_err(bad)? else {
         println!(
@@ -70,7 +72,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         );
         return Ok(Answer::No);
     };
-    let seconds = watch.seconds();
+    let seconds = began.elapsed().as_secs_f64();
     drop(watch);
     let requirements = spec.needs(design.t_delta).requirements;
     if let Some(file) = &args.svg {

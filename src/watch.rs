@@ -51,11 +51,6 @@ impl Watch {
         }
         true
     }
-
-    /// The time since it began.
-    pub(crate) fn seconds(&self) -> f64 {
-        self.began.elapsed().as_secs_f64()
-    }
 }
 
 impl Drop for Watch {

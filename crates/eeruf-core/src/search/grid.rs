@@ -17,6 +17,10 @@ impl Grid {
         if tick == Micros::ZERO { Err(GridError::NoTick) } else { Ok(Self { tick_us: tick.as_micros() }) }
     }
 
+    pub(super) const fn tick(self) -> Micros {
+        Micros::new(self.tick_us)
+    }
+
     /// The least number of ticks that is no shorter than `time`.
     pub(super) fn at_least(self, time: Micros) -> u32 {
         time.as_micros().div_ceil(self.tick_us)

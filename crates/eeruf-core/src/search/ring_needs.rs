@@ -1,6 +1,6 @@
 //! The user's question, in microseconds: what a ring needs, and the best schedule that meets it.
 
-use super::design::{self, Control, Firing, Problem, Reason, Shortest};
+use super::design::{self, Control, Firing, InTime, Problem, Shortest};
 use super::grid::Grid;
 use super::{Found, SearchError};
 use crate::conditions::{Criterion, Requirements};
@@ -52,7 +52,7 @@ pub struct Designed<const K: usize> {
 
 impl<const K: usize> Designed<K> {
     /// Why the period is not shorter, in words; times in microseconds or milliseconds.
-    pub const fn reason(&self) -> InTime<'_, Reason> {
+    pub const fn reason(&self) -> InTime<'_> {
         self.shortest.reason.in_ticks_of(self.grid.tick())
     }
 }

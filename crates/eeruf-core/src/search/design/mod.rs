@@ -44,6 +44,7 @@ mod packing;
 mod problem;
 mod propagate;
 mod random;
+mod reason;
 mod schedule;
 mod shortest;
 mod symmetry;
@@ -52,9 +53,12 @@ mod tree;
 pub use bounds::Bound;
 pub use control::{Control, Flow, POLL, Progress};
 pub use largest::{Choice, Largest, Preferred, largest_interval, largest_separation, prefer};
-pub use problem::{MAX_SENSORS, MAX_TICKS, Problem, ProblemError};
+pub use problem::{MAX_TICKS, Problem, ProblemError};
+
+use crate::schedule::MAX_SENSORS;
+pub use reason::{InTime, Reason};
 pub use schedule::Firing;
-pub use shortest::{Answer, Decision, Effect, Reason, Relaxations, Shortest, decide, relaxations, shortest};
+pub use shortest::{Answer, Decision, Effect, Relaxations, Shortest, decide, relaxations, shortest};
 
 /// The words of memory that every search over `sensors` sensors needs: 52 KiB for 12 sensors, 4.4 MiB for 64.
 ///

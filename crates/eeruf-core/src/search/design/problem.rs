@@ -2,8 +2,7 @@
 
 use core::fmt;
 
-/// The most sensors a problem may have: one bit each in a word of conflicts.
-pub const MAX_SENSORS: usize = 64;
+use crate::schedule::MAX_SENSORS;
 
 /// The longest time the search computes with, in ticks (67 s of 1 us).
 pub const MAX_TICKS: u32 = 1 << 26;

@@ -400,6 +400,9 @@ struct Block {
     y: [f64; BLOCK],
     len: usize,
     all: bool,
+    /// A disc around all of them, to be quicker when they stand together.
+    middle: Point,
+    radius: f64,
 }
 
 impl Default for Block {
@@ -409,6 +412,8 @@ impl Default for Block {
             y: [0.0; BLOCK],
             len: 0,
             all: false,
+            middle: Point::origin(),
+            radius: 0.0,
         }
     }
 }
@@ -416,6 +421,7 @@ impl Default for Block {
 impl Block {
     fn fill(&mut self, receivers: &[Point]) {
         self.all = receivers.len() > BLOCK;
+        self.enclose(receivers);
         // Filled up with repetitions to whole groups of four, which the compiler turns into vector instructions.
         self.len = if self.all {
             0
@@ -429,9 +435,25 @@ impl Block {
         }
     }
 
+    fn enclose(&mut self, receivers: &[Point]) {
+        let count = receivers.len().max(1) as f64;
+        let sum = receivers
+            .iter()
+            .fold(Vector::zeros(), |sum, at| sum + at.coords);
+        self.middle = Point::from(sum / count);
+        let far = receivers.iter().map(|at| (at - self.middle).norm());
+        self.radius = far.fold(0.0, f64::max) * (1.0 + 1e-9) + TOUCH_M;
+    }
+
     /// Whether any receiver may be in the cone; never wrong when it says no.
     #[inline]
     fn may_see(&self, image: Point, left: Vector, right: Vector) -> bool {
+        let ahead = self.middle - image;
+        // The sum of a vector's coordinates is no less than its length.
+        let reach = |limit: Vector| -self.radius * (limit.x.abs() + limit.y.abs());
+        if cross(ahead, left) < reach(left) || cross(right, ahead) < reach(right) {
+            return false;
+        }
         if self.all {
             return true;
         }

@@ -185,7 +185,7 @@ impl Mesh {
             middle,
             reach_m,
         };
-        mesh.solid = mesh.find_solid(&exits);
+        mesh.solid = mesh.find_solid(&exits, walls);
         mesh.hints = Hints::over(&mesh, middle, extent);
         Ok(mesh)
     }
@@ -361,8 +361,8 @@ impl Mesh {
         false
     }
 
-    /// Regions (triangles joined where no wall is between them) that touch backs of walls and no front.
-    fn find_solid(&self, exits: &[Exit]) -> Vec<bool> {
+    /// Regions (triangles joined where no wall or an opening is between them) that touch backs of walls and no front.
+    fn find_solid(&self, exits: &[Exit], walls: &[Wall]) -> Vec<bool> {
         let mut solid = vec![false; self.len()];
         let mut seen = vec![false; self.len()];
         let mut region = Vec::new();
@@ -378,7 +378,8 @@ impl Mesh {
             while let Some(&triangle) = region.get(next) {
                 next += 1;
                 for gate in 3 * triangle as usize..3 * triangle as usize + 3 {
-                    if self.walls[gate] == NONE {
+                    let wall = walls.get(self.walls[gate] as usize);
+                    if wall.is_none_or(Wall::is_open) {
                         let neighbour = self.across[gate];
                         if neighbour != NONE && !seen[neighbour as usize] {
                             seen[neighbour as usize] = true;

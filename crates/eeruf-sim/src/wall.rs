@@ -64,6 +64,11 @@ impl Wall {
             .map(|pair| Self::new(pair[0][0], pair[0][1], pair[1][0], pair[1][1]))
     }
 
+    /// Whether it is an opening.
+    pub fn is_open(&self) -> bool {
+        self.faces == Faces::Open
+    }
+
     /// Length in metres.
     pub fn length_m(&self) -> f64 {
         (self.to - self.from).norm()

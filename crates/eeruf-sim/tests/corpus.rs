@@ -1,6 +1,9 @@
 //! The shared corpus `tests/data/critical-paths.json`: every scene and closed form, path for path.
 
-use eeruf_sim::{Air, Bounce, Faces, Paths, Point, Pole, Scene, Wall, alhazen};
+use eeruf_sim::{
+    Air, Bounce, Faces, Limits, Material, Paths, Piston, Point, Pole, Scene, Tracer, Vector, Wall,
+    alhazen, reception, reception_along, rigid_cylinder_form,
+};
 use serde_json::Value;
 
 fn corpus() -> Value {
@@ -179,4 +182,146 @@ fn every_closed_form_of_the_corpus_is_met() {
         seen += 1;
     }
     assert_eq!(seen, 16);
+}
+
+#[test]
+fn amplitudes_and_directions_of_the_corpus_are_met() {
+    let corpus = corpus();
+    let mut compared = 0;
+    for case in corpus["cases"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|case| !case["amplitude"].is_null())
+    {
+        let acoustics = &case["amplitude"];
+        let number = |key: &str| acoustics[key].as_f64().unwrap();
+        let reflecting = Material::flat(number("reflection"));
+        let bare = scene(case);
+        let walls = bare
+            .walls()
+            .iter()
+            .map(|wall| wall.with_material(reflecting))
+            .collect();
+        let scene = Scene::new(walls, vec![], Air::default()).unwrap();
+        assert!(
+            (scene.air().absorption_db_per_m(49_400.0) - number("alpha_db_per_m")).abs() < 1e-6
+        );
+        let piston = Piston {
+            ka: number("ka"),
+            floor: 0.0,
+        };
+        let source_axis = number("source_axis_deg").to_radians();
+        let limits = Limits::order(case["max_order"].as_u64().unwrap() as u32);
+        let mut found = Paths::default();
+        Tracer::at(49_400.0)
+            .trace(
+                &scene,
+                point(&case["source"]),
+                &receivers(case),
+                limits,
+                &mut found,
+            )
+            .unwrap();
+        for (receiver, axis) in numbers(&acoustics["receiver_axis_deg"]).iter().enumerate() {
+            let values = rows(&acoustics["values"][receiver]);
+            let ours = found.of(receiver as u32);
+            assert_eq!(ours.len(), values.len());
+            for (k, value) in ours.zip(values) {
+                let near = |a: f64, b: f64| (a - b).sin().abs() < 1e-8 && (a - b).cos() > 0.0;
+                assert!(
+                    near(found.departure_rad[k], value[0]) && near(found.arrival_rad[k], value[1]),
+                    "path {k}"
+                );
+                let patterns = piston.pattern(found.departure_rad[k] - source_axis)
+                    * piston.pattern(found.arrival_rad[k] - axis.to_radians());
+                let amplitude = patterns * found.amplitude[k];
+                assert!(
+                    (amplitude - value[2]).abs() <= 1e-6 * value[2] + 1e-12,
+                    "path {k}: {amplitude} against {}",
+                    value[2]
+                );
+                compared += 1;
+            }
+        }
+    }
+    assert_eq!(compared, 168);
+}
+
+#[test]
+fn moving_receivers_of_the_corpus_are_reached_in_time() {
+    let corpus = corpus();
+    let mut seen = 0;
+    for case in corpus["closed_form"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|case| case["kind"] == "moving_receiver")
+    {
+        let number = |key: &str| case[key].as_f64().unwrap();
+        let (source, receiver, velocity) = (
+            point(&case["source"]),
+            point(&case["receiver"]),
+            numbers(&case["receiver_velocity"]),
+        );
+        let velocity = Vector::new(velocity[0], velocity[1]);
+        let image = Point::new(source.x, 2.0 * number("wall_y") - source.y);
+        let met = reception(image, receiver, velocity, number("c")).unwrap();
+        assert!((met.time_s - number("arrival_time")).abs() < 1e-14);
+        assert!((met.length_m - number("path_length")).abs() < 1e-11);
+        // The same from the path finder's answer.
+        let wall = Wall::new(50.0, number("wall_y"), -50.0, number("wall_y"));
+        let scene = Scene::new(vec![wall], vec![], Air::default()).unwrap();
+        let paths = scene.paths(source, &[receiver], 1, f64::INFINITY).unwrap();
+        let k = paths.len() - 1;
+        let met = reception_along(
+            paths.length_m[k],
+            paths.arrival_rad[k],
+            velocity,
+            number("c"),
+        )
+        .unwrap();
+        assert!((met.time_s - number("arrival_time")).abs() < 1e-14);
+        seen += 1;
+    }
+    assert_eq!(seen, 2);
+}
+
+#[test]
+fn physics_values_of_the_corpus_are_met() {
+    let corpus = corpus();
+    for value in corpus["physics"].as_array().unwrap() {
+        let number = |key: &str| value[key].as_f64().unwrap();
+        let name = value["name"].as_str().unwrap();
+        let ours = match name.split(' ').next().unwrap() {
+            "air_absorption_iso9613_1" => {
+                let air = Air {
+                    temperature_c: number("temp_c"),
+                    humidity_percent: number("rh_percent"),
+                    pressure_kpa: number("pressure_kpa"),
+                };
+                air.absorption_db_per_m(number("f_hz"))
+            }
+            "speed_of_sound_343.2*sqrt(T/293.15)" => Air::at(number("temp_c")).speed_of_sound(),
+            "piston_2J1x/x_abs" => Piston {
+                ka: number("ka"),
+                floor: 0.0,
+            }
+            .pattern(number("theta_deg").to_radians()),
+            "piston_angle_at_db_deg" => Piston {
+                ka: number("ka"),
+                floor: 0.0,
+            }
+            .angle_at_db(number("db"))
+            .unwrap()
+            .to_degrees(),
+            "rigid_cylinder_form" => rigid_cylinder_form(number("ka"), number("phi_rad")),
+            other => panic!("a physics value that is not tested: {other}"),
+        };
+        let expected = number("value");
+        assert!(
+            (ours / expected - 1.0).abs() <= number("rtol"),
+            "{name}: {ours} against {expected}"
+        );
+    }
 }

@@ -30,6 +30,21 @@ pub struct Specular {
 /// assert!((echo.before_m + echo.after_m - 3.992).abs() < 1e-15);
 /// ```
 pub fn alhazen(source: Point, receiver: Point, centre: Point, radius_m: f64) -> Option<Specular> {
+    let point = balance(source, receiver, centre, radius_m)?;
+    let normal = (point - centre) / radius_m;
+    let (back, on) = (source - point, receiver - point);
+    let incidence_rad = cross(normal, back).abs().atan2(normal.dot(&back));
+    // With the circle in between, the angles balance on its far side.
+    (normal.dot(&back) > 0.0 && normal.dot(&on) > 0.0).then(|| Specular {
+        point,
+        incidence_rad,
+        before_m: back.norm(),
+        after_m: on.norm(),
+    })
+}
+
+/// The point of the circle with equal angles, in sight or not; none when a point is not outside the circle.
+fn balance(source: Point, receiver: Point, centre: Point, radius_m: f64) -> Option<Point> {
     let (to_source, to_receiver) = (source - centre, receiver - centre);
     let (far_s, far_r) = (to_source.norm(), to_receiver.norm());
     // Written so that a NaN gives none.
@@ -39,25 +54,11 @@ pub fn alhazen(source: Point, receiver: Point, centre: Point, radius_m: f64) -> 
     let between = cross(to_source, to_receiver)
         .abs()
         .atan2(to_source.dot(&to_receiver));
-    // Each point sees the arc up to where its line of sight touches.
-    let low = (between - (radius_m / far_r).acos()).max(0.0);
-    let high = (radius_m / far_s).acos().min(between);
-    if low > high {
-        return None;
-    }
-    let t = solve(
-        Half {
-            far: far_s,
-            radius: radius_m,
-        },
-        Half {
-            far: far_r,
-            radius: radius_m,
-        },
-        between,
-        low,
-        high,
-    );
+    let half = |far: f64| Half {
+        far,
+        radius: radius_m,
+    };
+    let t = solve(half(far_s), half(far_r), between);
 
     let towards_receiver = if cross(to_source, to_receiver) < 0.0 {
         -1.0
@@ -67,15 +68,7 @@ pub fn alhazen(source: Point, receiver: Point, centre: Point, radius_m: f64) -> 
     let (sin, cos) = (towards_receiver * t).sin_cos();
     let unit = to_source / far_s;
     let normal = Vector::new(cos * unit.x - sin * unit.y, sin * unit.x + cos * unit.y);
-    let point = centre + normal * radius_m;
-    let (back, on) = (source - point, receiver - point);
-    let incidence_rad = cross(normal, back).abs().atan2(normal.dot(&back));
-    (normal.dot(&back) > 0.0 && normal.dot(&on) > 0.0).then(|| Specular {
-        point,
-        incidence_rad,
-        before_m: back.norm(),
-        after_m: on.norm(),
-    })
+    Some(centre + normal * radius_m)
 }
 
 /// One of the two points, seen from the circle.
@@ -95,7 +88,8 @@ impl Half {
     }
 }
 
-fn solve(source: Half, receiver: Half, between: f64, mut low: f64, mut high: f64) -> f64 {
+fn solve(source: Half, receiver: Half, between: f64) -> f64 {
+    let (mut low, mut high) = (0.0, between);
     let weight = |half: Half| half.far / (half.far - half.radius);
     let (from_s, from_r) = (weight(source), weight(receiver));
     let mut t = (between * from_r / (from_s + from_r)).clamp(low, high);
@@ -130,22 +124,24 @@ pub fn alhazen_twice(
     first: (Point, f64),
     second: (Point, f64),
 ) -> Option<(Specular, Specular)> {
-    let mut on_second = second.0;
     // The first guess aims at the nearer side of the second circle.
     let aside = first.0 - second.0;
-    if aside.norm() <= first.1 + second.1 {
+    let apart = aside.norm();
+    if !(apart > first.1 + second.1) {
         return None;
     }
-    on_second += aside * (second.1 / aside.norm());
+    let mut on_second = second.0 + aside * (second.1 / apart);
     let mut last_step = f64::INFINITY;
     for _ in 0..200 {
-        let one = alhazen(source, on_second, first.0, first.1)?;
-        let two = alhazen(one.point, receiver, second.0, second.1)?;
-        let step = (two.point - on_second).norm();
-        on_second = two.point;
+        // On the way a point may be hidden; only the answer must be seen.
+        let on_first = balance(source, on_second, first.0, first.1)?;
+        let next = balance(on_first, receiver, second.0, second.1)?;
+        let step = (next - on_second).norm();
+        on_second = next;
         // Steps shrink until rounding stops them.
-        if step == 0.0 || (step < 1e-12 && step >= last_step) {
-            return Some((alhazen(source, on_second, first.0, first.1)?, two));
+        if step == 0.0 || (step < 1e-12 * apart && step >= last_step) {
+            let one = alhazen(source, on_second, first.0, first.1)?;
+            return Some((one, alhazen(one.point, receiver, second.0, second.1)?));
         }
         last_step = step;
     }

@@ -119,6 +119,8 @@ pub(crate) struct Growth<'a> {
     pub(crate) max_order: u32,
     pub(crate) max_length_m: f64,
     pub(crate) budget: usize,
+    /// Beams of the last order serve receivers only, not poles, and may be dropped where no receiver is.
+    pub(crate) last_for_receivers: bool,
 }
 
 impl BeamTree {
@@ -330,7 +332,9 @@ impl BeamTree {
             order: beam.order + 1,
             turn: mirror.turn - beam.turn,
         };
-        if next.order == growth.max_order && !self.block.may_see(next.image, next.left, next.right)
+        if growth.last_for_receivers
+            && next.order == growth.max_order
+            && !self.block.may_see(next.image, next.left, next.right)
         {
             return;
         }

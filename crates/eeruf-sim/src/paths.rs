@@ -199,6 +199,7 @@ impl Tracer {
             max_order: limits.max_order,
             max_length_m: limits.max_length_m,
             budget: MAX_BEAMS,
+            last_for_receivers: true,
         };
         if !self.tree.grow(&growth, source, receivers) {
             return Err(PathsError::Budget { beams: MAX_BEAMS });

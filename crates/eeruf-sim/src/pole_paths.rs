@@ -68,6 +68,7 @@ impl PoleSearch {
                 max_order: limits.max_order - 1,
                 max_length_m: limits.max_length_m,
                 budget,
+                last_for_receivers: false,
             };
             let mut back = core::mem::take(&mut self.back);
             let complete = back.grow(&growth, at, &[]);

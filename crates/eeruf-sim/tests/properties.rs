@@ -54,7 +54,7 @@ fn changed(scene: &Scene, wall: impl Fn(&Wall) -> Wall, pole: impl Fn(&Pole) -> 
 const FAR: f64 = f64::INFINITY;
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn paths_are_the_same_backwards(seed: u64) {
@@ -69,7 +69,7 @@ proptest! {
         prop_assert!(same(&rows(&there), &turned, 1.0));
         // Amplitudes too, and arrival there is departure here.
         let sum = |paths: &Paths| paths.amplitude.iter().sum::<f64>();
-        prop_assert!((sum(&there) / sum(&back) - 1.0).abs() < 1e-9);
+        prop_assert!((sum(&there) - sum(&back)).abs() <= 1e-9 * sum(&back));
         let cosines = |angles: &[f64]| angles.iter().map(|a| a.cos()).sum::<f64>();
         prop_assert!((cosines(&there.departure_rad) - cosines(&back.arrival_rad)).abs() < 1e-6);
     }

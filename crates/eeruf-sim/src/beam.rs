@@ -33,6 +33,8 @@ pub(crate) struct Beam {
     /// Directions in the image's world are `turn + d` after an even number of bounces, `turn - d` after an odd one, with `d`
     /// the direction of departure.
     pub(crate) turn: f64,
+    /// The product of the walls' reflections.
+    kept: f64,
 }
 
 /// A receiver that sees an image of the source.
@@ -41,6 +43,8 @@ pub(crate) struct Sighting {
     pub(crate) length_m: f64,
     pub(crate) image: Point,
     pub(crate) turn: f64,
+    /// The product of the walls' reflections, if all were flat.
+    pub(crate) kept: f64,
     pub(crate) receiver: u32,
     pub(crate) order: u32,
     /// The beam before the last wall, or [`NONE`] when there was no wall.
@@ -178,6 +182,7 @@ impl BeamTree {
             wall: NONE,
             order: 0,
             turn: 0.0,
+            kept: 1.0,
         });
         let mut triangles = core::mem::take(&mut self.triangles);
         growth.mesh.containing(source, &mut triangles);
@@ -331,6 +336,7 @@ impl BeamTree {
             wall,
             order: beam.order + 1,
             turn: mirror.turn - beam.turn,
+            kept: beam.kept * mirror.reflection,
         };
         if growth.last_for_receivers
             && next.order == growth.max_order
@@ -389,6 +395,7 @@ impl BeamTree {
             length_m,
             image: beam.image,
             turn: beam.turn,
+            kept: beam.kept,
             receiver,
             order: beam.order,
             parent: beam.parent,

@@ -73,7 +73,7 @@ impl Scene {
         )?;
         let mirrors = walls
             .iter()
-            .map(|wall| Mirror::through(wall.from, wall.to))
+            .map(|wall| Mirror::through(wall.from, wall.to, wall.material.reflection))
             .collect();
         let materials = walls
             .iter()

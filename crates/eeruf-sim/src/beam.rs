@@ -347,7 +347,8 @@ impl BeamTree {
         self.beams.push(next);
     }
 
-    #[cold]
+    /// Looks for receivers and poles in a triangle that the cone passes.
+    #[inline]
     #[allow(clippy::too_many_arguments, reason = "the parts of a beam in flight")]
     fn look(
         &mut self,
@@ -365,24 +366,30 @@ impl BeamTree {
             target = next;
             let ahead = at - beam.image;
             if what & POLE != 0 {
-                let radius = growth.poles[(what & !POLE) as usize].radius_m * (1.0 + 1e-9);
-                if cross(ahead, left) >= -radius * left.norm()
-                    && cross(right, ahead) >= -radius * right.norm()
-                {
-                    self.pole_cones.push(PoleCone {
-                        pole: what & !POLE,
-                        triangle,
-                        beam: index,
-                        left,
-                        right,
-                    });
-                }
+                let cone = PoleCone {
+                    pole: what & !POLE,
+                    triangle,
+                    beam: index,
+                    left,
+                    right,
+                };
+                self.pass_pole(growth, ahead, cone);
             } else if cone_holds(left, right, ahead) {
                 let length = ahead.norm();
                 if length <= growth.max_length_m {
                     self.see(beam, beam.wall, what, length);
                 }
             }
+        }
+    }
+
+    #[cold]
+    fn pass_pole(&mut self, growth: &Growth<'_>, ahead: Vector, cone: PoleCone) {
+        let radius = growth.poles[cone.pole as usize].radius_m * (1.0 + 1e-9);
+        if cross(ahead, cone.left) >= -radius * cone.left.norm()
+            && cross(cone.right, ahead) >= -radius * cone.right.norm()
+        {
+            self.pole_cones.push(cone);
         }
     }
 

@@ -30,9 +30,13 @@ pub(crate) fn wrap_angle(angle_rad: f64) -> f64 {
     if angle_rad > -PI && angle_rad <= PI {
         return angle_rad;
     }
-    let wrapped = angle_rad - TAU * (angle_rad / TAU).round();
+    // A conversion to an integer and back rounds without a call.
+    let turns = (angle_rad / TAU + 0.5f64.copysign(angle_rad)) as i64;
+    let wrapped = angle_rad - TAU * turns as f64;
     if wrapped <= -PI {
         wrapped + TAU
+    } else if wrapped > PI {
+        wrapped - TAU
     } else {
         wrapped
     }

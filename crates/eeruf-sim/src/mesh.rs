@@ -110,7 +110,7 @@ impl Mesh {
         let edges: Vec<_> = pieces.iter().map(|piece| piece.ends).collect();
         let mut refused = 0;
         let cdt = ConstrainedDelaunayTriangulation::<_>::try_bulk_load_cdt(points, edges, |_| {
-            refused += 1
+            refused += 1;
         })
         .map_err(|_| SceneError::Tangled {
             pieces: pieces.len(),

@@ -454,7 +454,7 @@ fn check(
             max_order: limits.max_order,
         });
     }
-    if !(limits.max_length_m > 0.0) {
+    if limits.max_length_m.is_nan() || limits.max_length_m <= 0.0 {
         return Err(PathsError::Length {
             max_length_m: limits.max_length_m,
         });

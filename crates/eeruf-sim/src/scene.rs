@@ -127,7 +127,7 @@ fn check_walls(walls: &[Wall]) -> Result<(), SceneError> {
     }
     for (index, wall) in walls.iter().enumerate() {
         for value in [wall.from.x, wall.from.y, wall.to.x, wall.to.y] {
-            if !(value.abs() <= MAX_COORDINATE_M) {
+            if value.is_nan() || value.abs() > MAX_COORDINATE_M {
                 return Err(SceneError::WallCoordinate { wall: index, value });
             }
         }
@@ -147,7 +147,7 @@ fn check_walls(walls: &[Wall]) -> Result<(), SceneError> {
 fn check_poles(poles: &[Pole]) -> Result<(), SceneError> {
     for (index, pole) in poles.iter().enumerate() {
         for value in [pole.centre.x, pole.centre.y] {
-            if !(value.abs() <= MAX_COORDINATE_M) {
+            if value.is_nan() || value.abs() > MAX_COORDINATE_M {
                 return Err(SceneError::Pole { pole: index, value });
             }
         }

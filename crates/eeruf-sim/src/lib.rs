@@ -37,6 +37,7 @@ mod beam;
 pub mod collide;
 pub mod crosstalk;
 pub mod error;
+mod joints;
 pub mod material;
 mod mesh;
 pub mod moving;

@@ -114,13 +114,31 @@ fn follow(walls: &[Wall], images: &[Point], sequence: &[usize], receiver: Point)
     }
 }
 
+/// Bounces and length.
+type Found = (Vec<Bounce>, f64);
+type Sequences = Vec<Found>;
+
+/// The same sequences with the same lengths; returns how many.
+fn assert_agree(
+    mut ours: Sequences,
+    mut expected: Sequences,
+    setting: impl Fn() -> String,
+) -> usize {
+    ours.sort_by(|a, b| a.0.cmp(&b.0));
+    expected.sort_by(|a, b| a.0.cmp(&b.0));
+    let alike = |(o, e): (&Found, &Found)| o.0 == e.0 && (o.1 - e.1).abs() < 1e-9;
+    let same = ours.len() == expected.len() && ours.iter().zip(&expected).all(alike);
+    assert!(same, "{}\n{ours:?}\n{expected:?}", setting());
+    ours.len()
+}
+
 /// All paths of a receiver as (sequence, length), or none when one of them is doubtful.
 fn image_sources(
     scene: &Scene,
     source: Point,
     receiver: Point,
     max_order: usize,
-) -> Option<Vec<(Vec<Bounce>, f64)>> {
+) -> Option<Sequences> {
     let walls = scene.walls();
     let mut found = Vec::new();
     let mut images = vec![source];
@@ -165,7 +183,7 @@ fn beam_tree_and_image_sources_agree_on_thousands_of_random_rooms() {
             free_point(&mut random, &scene),
             free_point(&mut random, &scene),
         );
-        let Some(mut expected) = image_sources(&scene, source, receiver, order) else {
+        let Some(expected) = image_sources(&scene, source, receiver, order) else {
             doubtful += 1;
             continue;
         };
@@ -173,22 +191,10 @@ fn beam_tree_and_image_sources_agree_on_thousands_of_random_rooms() {
         let found = scene
             .paths(source, &[receiver], order as u32, f64::INFINITY)
             .unwrap();
-        let mut ours: Vec<_> = (0..found.len())
-            .map(|k| (found.bounces(k).to_vec(), found.length_m[k]))
-            .collect();
-        ours.sort_by(|a, b| a.0.cmp(&b.0));
-        expected.sort_by(|a, b| a.0.cmp(&b.0));
-        let same = ours.len() == expected.len()
-            && ours
-                .iter()
-                .zip(&expected)
-                .all(|(o, e)| o.0 == e.0 && (o.1 - e.1).abs() < 1e-9);
-        assert!(
-            same,
-            "room {rooms}: {:?}\n{source} to {receiver}\n{ours:?}\n{expected:?}",
-            scene.walls()
-        );
-        paths += ours.len();
+        let ours = (0..found.len()).map(|k| (found.bounces(k).to_vec(), found.length_m[k]));
+        paths += assert_agree(ours.collect(), expected, || {
+            format!("{:?}, {source} to {receiver}", scene.walls())
+        });
     }
     assert!(
         doubtful < rooms / 50,
@@ -295,24 +301,11 @@ fn pole_paths_agree_with_a_plain_search_over_image_sources() {
         let found = with_pole
             .paths(source, &[receiver], 3, f64::INFINITY)
             .unwrap();
-        let mut ours: Vec<_> = (0..found.len())
-            .map(|k| (found.bounces(k).to_vec(), found.length_m[k]))
-            .collect();
-        ours.retain(|path| path.0.contains(&Bounce::Pole(0)));
-        ours.sort_by(|a, b| a.0.cmp(&b.0));
-        expected.sort_by(|a, b| a.0.cmp(&b.0));
-        let same = ours.len() == expected.len()
-            && ours
-                .iter()
-                .zip(&expected)
-                .all(|(o, e)| o.0 == e.0 && (o.1 - e.1).abs() < 1e-9);
-        assert!(
-            same,
-            "{:?}\n{:?}\n{source} to {receiver}\n{ours:?}\n{expected:?}",
-            with_pole.walls(),
-            pole
-        );
-        paths += ours.len();
+        let ours = (0..found.len()).map(|k| (found.bounces(k).to_vec(), found.length_m[k]));
+        let over_pole = ours.filter(|path| path.0.contains(&Bounce::Pole(0)));
+        paths += assert_agree(over_pole.collect(), expected, || {
+            format!("{:?}, {pole:?}, {source} to {receiver}", with_pole.walls())
+        });
     }
     assert!(
         doubtful < rooms,

@@ -314,26 +314,21 @@ impl Mesh {
     }
 
     /// Whether the straight segment between two points meets no wall.
-    pub(crate) fn sees(&self, from: Point, to: Point, starts: &mut Vec<u32>) -> bool {
-        self.containing(to, starts);
-        let goals = core::mem::take(starts);
+    pub(crate) fn sees(&self, from: Point, to: Point, [starts, goals]: &mut [Vec<u32>; 2]) -> bool {
         self.containing(from, starts);
-        let ahead = to - from;
-        let mut seen = starts.iter().any(|t| goals.contains(t));
-        for start in 0..starts.len() {
-            if seen {
-                break;
-            }
-            seen = self.sides(starts[start]).iter().any(|side| {
-                let (left, right) = (side.left - from, side.right - from);
-                cross(right, left) > 0.0
-                    && cross(right, ahead) >= 0.0
-                    && cross(ahead, left) >= 0.0
-                    && self.segment_reaches(side.exit, from, ahead, &goals)
-            });
+        self.containing(to, goals);
+        if starts.iter().any(|triangle| goals.contains(triangle)) {
+            return true;
         }
-        starts.clear();
-        seen
+        let ahead = to - from;
+        let mut sides = starts.iter().flat_map(|&start| self.sides(start));
+        sides.any(|side| {
+            let (left, right) = (side.left - from, side.right - from);
+            cross(right, left) > 0.0
+                && cross(right, ahead) >= 0.0
+                && cross(ahead, left) >= 0.0
+                && self.segment_reaches(side.exit, from, ahead, goals)
+        })
     }
 
     fn segment_reaches(

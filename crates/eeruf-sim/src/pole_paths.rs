@@ -35,7 +35,7 @@ pub(crate) struct PoleSearch {
     bounces: Vec<Bounce>,
     from_source: Vec<PoleCone>,
     back: BeamTree,
-    triangles: Vec<u32>,
+    triangles: [Vec<u32>; 2],
     /// Poles in plain sight of the source, and of the receiver.
     firsts: Vec<u32>,
     lasts: Vec<u32>,

@@ -164,13 +164,13 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     /// `T_lag` of each sensor.
     #[doc(alias = "T_lag")]
     pub const fn t_lag(&self) -> &[Micros] {
-        self.t_lag.split_at(self.sensors as usize).0
+        used(&self.t_lag, self.sensors)
     }
 
     /// `T_wait` of each sensor in a phase; empty for a phase the schedule does not have.
     #[doc(alias = "T_wait")]
     pub const fn t_wait(&self, phase: Phase) -> &[Micros] {
-        if (phase.0 as usize) < M { self.t_wait[phase.0 as usize].split_at(self.sensors as usize).0 } else { &[] }
+        if (phase.0 as usize) < M { used(&self.t_wait[phase.0 as usize], self.sensors) } else { &[] }
     }
 
     /// `T_fire = T_lag + T_wait` after the start of the period, or `None` for a sensor or phase that is not there.
@@ -185,7 +185,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
 
     /// The sensors of a phase in the order in which they fire; empty for a phase the schedule does not have.
     pub const fn firing_order(&self, phase: Phase) -> &[u8] {
-        if (phase.0 as usize) < M { self.order[phase.0 as usize].split_at(self.sensors as usize).0 } else { &[] }
+        if (phase.0 as usize) < M { used(&self.order[phase.0 as usize], self.sensors) } else { &[] }
     }
 
     /// From a sensor's firing in a phase to its next one, `T_p - d` or `T_p + d` with two phases: the `dt` over which a
@@ -270,15 +270,29 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         Self::with_sensors(period, self.sensors as usize, t_lag, t_wait)
     }
 
-    /// For indices already known to be in range. Cannot overflow: both terms are at most `MAX_PERIOD`.
+    /// For indices already known to be in range; the optimiser does not know that `sensors` is at most `K`, and the check
+    /// spares a firmware image the code for a panic. Cannot overflow: both terms are at most `MAX_PERIOD`.
     pub(crate) const fn fire_at(&self, phase: usize, sensor: usize) -> Micros {
-        Micros::new(self.t_lag[sensor].as_micros() + self.t_wait[phase][sensor].as_micros())
+        if phase < M && sensor < K {
+            Micros::new(self.t_lag[sensor].as_micros() + self.t_wait[phase][sensor].as_micros())
+        } else {
+            Micros::ZERO
+        }
     }
 
     /// From this sensor's firing in a phase to its next one.
     pub(crate) const fn refire(&self, phase: usize, sensor: usize) -> Micros {
         let next = self.fire_at((phase + 1) % M, sensor).as_micros() + self.period.as_micros();
         Micros::new(next - self.fire_at(phase, sensor).as_micros())
+    }
+}
+
+/// The part of a table that is in use. Without `split_at`, whose panic would stay in a firmware image.
+const fn used<T>(table: &[T], sensors: u8) -> &[T] {
+    match table.split_at_checked(sensors as usize) {
+        Some((used, _)) => used,
+        // Never: a schedule has at most `K` sensors.
+        None => table,
     }
 }
 

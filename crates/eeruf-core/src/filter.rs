@@ -99,8 +99,8 @@ pub(crate) fn insert<const E: usize>(echoes: &mut [u32; E], mut echo: u32) {
 /// When readings agree, and how often they must.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rule {
-    t_delta: Micros,
-    consecutive: u8,
+    pub(crate) t_delta: Micros,
+    pub(crate) consecutive: u8,
 }
 
 impl Rule {
@@ -109,10 +109,6 @@ impl Rule {
             return Err(FilterError::Consecutive { consecutive });
         }
         Ok(Self { t_delta, consecutive })
-    }
-
-    pub(crate) const fn t_delta(self) -> Micros {
-        self.t_delta
     }
 
     /// Eq. (11), after taking off the change that is expected.

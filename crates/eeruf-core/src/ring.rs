@@ -101,7 +101,7 @@ pub struct PeriodStats {
 pub struct Ring<S, const K: usize, const E: usize = 1> {
     scheduler: S,
     sensors: [Sensor<E>; K],
-    rule: Rule,
+    t_delta: Micros,
     window: Micros,
     blanking: Micros,
     /// When there is something to do next.
@@ -109,6 +109,7 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     period: u32,
     tally: Tally<u8>,
     max_late_us: u16,
+    consecutive: u8,
     /// The sensor whose window closes first, or [`NOBODY`].
     oldest: u8,
     /// How many sensors have a reading to tell before their window closes.
@@ -181,16 +182,18 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if window <= blanking {
             return Err(RingError::Blanking { blanking, window });
         }
+        Rule::new(t_delta, consecutive)?;
         let mut ring = Self {
             scheduler,
             sensors: [Sensor::NEW; K],
-            rule: Rule::new(t_delta, consecutive)?,
+            t_delta,
             window,
             blanking,
             deadline: now,
             period: 0,
             tally: Tally::default(),
             max_late_us: 0,
+            consecutive,
             oldest: NOBODY,
             ready: 0,
         };
@@ -319,7 +322,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     }
 
     fn fired(&mut self, sensor: u8, phase: Phase, now: Instant, late: Micros) -> Event {
-        if late > self.rule.t_delta() {
+        if late > self.t_delta {
             self.disturb();
         }
         self.max_late_us = self.max_late_us.max(u16::try_from(late.as_micros()).unwrap_or(u16::MAX));
@@ -378,7 +381,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         let listened = heard.is(LISTENING);
         let ended_at = heard.fired + heard.t_echo().filter(|_| E == 1).unwrap_or(self.window);
         let verdict = if listened {
-            heard.judge(self.rule, || expected_change_us(sensor))
+            heard.judge(Rule { t_delta: self.t_delta, consecutive: self.consecutive }, || expected_change_us(sensor))
         } else {
             Verdict { kind: Kind::Late, t_echo: heard.take_late(), previous: None, age: heard.track.age() }
         };
@@ -406,12 +409,15 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     }
 
     fn set_deadline(&mut self) {
+        if self.ready > 0 {
+            // There is more to tell: the deadline that led here, or the echo's, has come and stays.
+            return;
+        }
         let mut deadline = self.scheduler.deadline();
-        let closes = self.sensor(self.oldest).map(|oldest| oldest.fired + self.window);
-        let ready = if self.ready > 0 { self.first_ready().and_then(|x| self.sensor(x)) } else { None };
-        for sooner in [closes, ready.map(|ready| ready.fired)].into_iter().flatten() {
-            if !sooner.has_reached(deadline) {
-                deadline = sooner;
+        if let Some(oldest) = self.sensor(self.oldest) {
+            let closes = oldest.fired + self.window;
+            if !closes.has_reached(deadline) {
+                deadline = closes;
             }
         }
         self.deadline = deadline;

@@ -188,6 +188,21 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         if (phase.0 as usize) < M { used(&self.order[phase.0 as usize], self.sensors) } else { &[] }
     }
 
+    /// The sensor at a place in the firing order of a phase, and its `T_fire`. For each step of the scheduler: every index
+    /// is checked against what the optimiser knows, in the fewest instructions.
+    #[inline]
+    pub(crate) fn firing(&self, phase: u8, place: u8) -> Option<(u8, Micros)> {
+        if place >= self.sensors {
+            return None;
+        }
+        let phase = usize::from(phase);
+        let &sensor = self.order.get(phase)?.get(usize::from(place))?;
+        let x = usize::from(sensor);
+        // Both terms are at most `MAX_PERIOD`.
+        let t_fire = self.t_lag.get(x)?.as_micros() + self.t_wait.get(phase)?.get(x)?.as_micros();
+        Some((sensor, Micros::new(t_fire)))
+    }
+
     /// From a sensor's firing in a phase to its next one, `T_p - d` or `T_p + d` with two phases: the `dt` over which a
     /// good reading changes by `2 v dt / c`. `None` for a sensor or phase that is not there.
     pub const fn refire_after(&self, phase: Phase, sensor: usize) -> Option<Micros> {

@@ -70,16 +70,29 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
     next_schedule: Option<&'s Schedule<K, M>>,
     /// When the present period began, moved on by all lateness since.
     start: Instant,
+    /// When the next step is due. Worked out once per step, since it is asked for at every poll.
+    due: Instant,
+    /// The disabled sensors: two words, because a core of 32 bits shifts them without a library call.
+    disabled: [u32; 2],
     phase: u8,
     /// Place in the firing order of the next sensor to fire; the number of sensors when all have.
     place: u8,
-    enabled: u64,
+    /// The next sensor to fire, or [`NOBODY`] when all have.
+    next: u8,
 }
+
+const NOBODY: u8 = u8::MAX;
 
 impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     /// Begins the first period of `schedule` at `now`, with all sensors enabled.
     pub const fn new(schedule: &'s Schedule<K, M>, now: Instant) -> Self {
-        Self { schedule, next_schedule: None, start: now, phase: 0, place: 0, enabled: u64::MAX }
+        let (next, t_fire) = match schedule.firing_order(Phase::A) {
+            [first, ..] => (*first, schedule.fire_at(0, *first as usize)),
+            // Never: a schedule has a sensor.
+            [] => (NOBODY, schedule.period()),
+        };
+        let due = Instant::from_micros(now.as_micros().wrapping_add(t_fire.as_micros()));
+        Self { schedule, next_schedule: None, start: now, due, disabled: [0; 2], phase: 0, place: 0, next }
     }
 
     /// The schedule of the present period.
@@ -95,19 +108,19 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
         self.next_schedule = Some(schedule);
     }
 
-    fn due(&self) -> Option<(u8, Instant)> {
-        let sensor = *self.schedule.firing_order(Phase(self.phase)).get(usize::from(self.place))?;
-        let t_fire = self.schedule.t_fire(Phase(self.phase), sensor.into())?;
-        Some((sensor, self.start + t_fire))
-    }
-
-    fn skip_disabled(&mut self) {
-        while let Some((sensor, _)) = self.due() {
-            if self.is_enabled(sensor) {
-                break;
+    /// From the present place on: the next enabled sensor, or the end of the period.
+    #[inline]
+    fn find_next(&mut self) {
+        while let Some((sensor, t_fire)) = self.schedule.firing(self.phase, self.place) {
+            if self.disabled == [0; 2] || self.is_enabled(sensor) {
+                self.next = sensor;
+                self.due = self.start + t_fire;
+                return;
             }
             self.place += 1;
         }
+        self.next = NOBODY;
+        self.due = self.start + self.schedule.period();
     }
 
     /// How long to stay silent after the last firing before a period that was not verified against it. Two neighbours
@@ -119,35 +132,22 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
 
     /// The latest firing of this period so far, if any (disabled sensors count: later, so safer).
     fn last_fired(&self) -> Option<Instant> {
-        let place = usize::from(self.place).checked_sub(1)?;
-        let sensor = *self.schedule.firing_order(Phase(self.phase)).get(place)?;
-        Some(self.start + self.schedule.t_fire(Phase(self.phase), sensor.into())?)
+        let (_, t_fire) = self.schedule.firing(self.phase, self.place.checked_sub(1)?)?;
+        Some(self.start + t_fire)
     }
 
     fn begin_period(&mut self, phase: u8, start: Instant) {
         self.phase = phase;
         self.start = start;
         self.place = 0;
-        self.skip_disabled();
+        self.find_next();
     }
-}
 
-impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
-    fn poll(&mut self, now: Instant) -> Option<Step> {
-        let deadline = self.deadline();
-        if !now.has_reached(deadline) {
-            return None;
-        }
+    /// The present period has ended.
+    fn end_period(&mut self, now: Instant) -> Step {
         let phase = Phase(self.phase);
-        if let Some((sensor, due)) = self.due() {
-            let late = now.since(due);
-            self.start += late;
-            self.place += 1;
-            self.skip_disabled();
-            return Some(Step::Fire { sensor, phase, late });
-        }
         // Periods in which nothing fired need not be caught up with.
-        let mut start = if now.since(deadline) > self.schedule.period() { now } else { deadline };
+        let mut start = if now.since(self.due) > self.schedule.period() { now } else { self.due };
         let next_schedule = self.next_schedule.take();
         if let Some(next) = next_schedule {
             if let Some(last) = self.last_fired() {
@@ -160,27 +160,50 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         }
         let next_phase = if usize::from(self.phase) + 1 < M { self.phase + 1 } else { 0 };
         self.begin_period(next_phase, start);
-        Some(Step::PeriodEnded { phase, changed: next_schedule.is_some() })
+        Step::PeriodEnded { phase, changed: next_schedule.is_some() }
+    }
+}
+
+impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
+    #[inline]
+    fn poll(&mut self, now: Instant) -> Option<Step> {
+        if !now.has_reached(self.due) {
+            return None;
+        }
+        if self.next == NOBODY {
+            return Some(self.end_period(now));
+        }
+        let late = now.since(self.due);
+        let step = Step::Fire { sensor: self.next, phase: Phase(self.phase), late };
+        self.start += late;
+        self.place += 1;
+        self.find_next();
+        Some(step)
     }
 
+    #[inline]
     fn next_sensor(&self) -> Option<u8> {
-        self.due().map(|(sensor, _)| sensor)
+        (self.next != NOBODY).then_some(self.next)
     }
 
+    #[inline]
     fn deadline(&self) -> Instant {
-        self.due().map_or_else(|| self.start + self.schedule.period(), |(_, due)| due)
+        self.due
     }
 
     fn ended(&mut self, _sensor: u8, _at: Instant) {}
 
     fn set_enabled(&mut self, sensor: u8, enabled: bool) {
-        let bit = 1_u64.checked_shl(sensor.into()).unwrap_or(0);
-        self.enabled = if enabled { self.enabled | bit } else { self.enabled & !bit };
-        self.skip_disabled();
+        if let Some(word) = self.disabled.get_mut(usize::from(sensor / 32)) {
+            let bit = 1 << (sensor % 32);
+            *word = if enabled { *word & !bit } else { *word | bit };
+        }
+        self.find_next();
     }
 
     fn is_enabled(&self, sensor: u8) -> bool {
-        usize::from(sensor) < self.schedule.sensors() && self.enabled.checked_shr(sensor.into()).unwrap_or(0) & 1 == 1
+        let word = self.disabled.get(usize::from(sensor / 32));
+        usize::from(sensor) < self.schedule.sensors() && word.is_some_and(|word| word >> (sensor % 32) & 1 == 0)
     }
 
     fn restart(&mut self, now: Instant) {
@@ -204,9 +227,9 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         self.schedule.min_refire()
     }
 
+    #[inline]
     fn horizon(&self) -> Micros {
-        // Settling takes less than two periods and the firing time less than one; both are at most 2^28 us each.
-        let period = self.schedule.period().as_micros();
-        Micros::new(period.saturating_mul(3))
+        // Settling takes less than two periods and the firing time less than one, and a period at most 2^28 us.
+        Micros::new(3 * self.schedule.period().as_micros())
     }
 }

@@ -218,10 +218,14 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// [`EchoFilter::push_echoes`]: crate::EchoFilter::push_echoes
     #[inline]
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
-        if !now.has_reached(self.deadline) && self.deadline.since(now) <= self.scheduler.horizon() {
-            return None;
+        if now.has_reached(self.deadline) {
+            self.advance(now, expected_change_us)
+        } else if self.deadline.since(now) <= self.scheduler.horizon() {
+            None
+        } else {
+            self.jumped(now);
+            None
         }
-        self.advance(now, expected_change_us)
     }
 
     /// When to poll next. In the past if something is waiting to be told.
@@ -296,32 +300,43 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         &self.scheduler
     }
 
-    /// Something is due, or the clock has jumped.
-    fn advance(&mut self, now: Instant, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
-        if !now.has_reached(self.deadline) {
-            self.restart(now);
-            if !now.has_reached(self.deadline) {
-                return None;
-            }
-        }
+    /// The clock has jumped.
+    #[cold]
+    fn jumped(&mut self, now: Instant) {
+        self.restart(now);
+    }
+
+    /// Something is due. Firing comes first, since it should be on time; but a sensor tells what it heard before it
+    /// fires again.
+    fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
         let fires = if now.has_reached(self.scheduler.deadline()) { self.scheduler.next_sensor() } else { None };
-        // Firing comes first, since it should be on time; but a sensor tells what it heard before it fires again.
         let told = match fires {
             Some(sensor) => self.sensor(sensor).is_some_and(Sensor::holds_reading).then_some(sensor),
             None => self.next_to_tell(now),
         };
-        let event = match told {
-            Some(sensor) => self.tell(sensor, &mut expected_change_us).map(Event::Reading),
-            None => self.scheduler.poll(now).map(|step| match step {
-                Step::Fire { sensor, phase, late } => self.fired(sensor, phase, now, late),
-                Step::PeriodEnded { phase, changed } => self.period_ended(phase, changed),
-            }),
-        };
-        self.set_deadline();
-        event
+        match told {
+            Some(sensor) => self.tell(sensor, expected_change_us),
+            None => self.step(now),
+        }
     }
 
-    fn fired(&mut self, sensor: u8, phase: Phase, now: Instant, late: Micros) -> Event {
+    /// The next step of the scheduler: a firing, or the end of a period. Apart from [`tell`](Self::tell), so that a
+    /// firing need not save the registers that telling a reading needs.
+    #[inline(never)]
+    fn step(&mut self, now: Instant) -> Option<Event> {
+        let event = match self.scheduler.poll(now)? {
+            Step::Fire { sensor, phase, late } => {
+                self.fired(sensor, phase, now, late);
+                Event::Fire(sensor)
+            }
+            Step::PeriodEnded { phase, changed } => self.period_ended(phase, changed),
+        };
+        self.set_deadline();
+        Some(event)
+    }
+
+    #[inline]
+    fn fired(&mut self, sensor: u8, phase: Phase, now: Instant, late: Micros) {
         if late > self.t_delta {
             self.disturb();
         }
@@ -332,9 +347,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if self.oldest == NOBODY {
             self.oldest = sensor;
         }
-        Event::Fire(sensor)
     }
 
+    #[inline(never)]
     fn period_ended(&mut self, phase: Phase, changed: bool) -> Event {
         if changed {
             self.disturb();
@@ -352,6 +367,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// Firings have shifted against each other, by lateness or by a change of schedule, so (13a), (13b) say nothing
     /// about readings from before compared with readings from after. The next reading of each sensor, which may belong
     /// to either side, is compared with nothing.
+    #[cold]
     fn disturb(&mut self) {
         for sensor in &mut self.sensors {
             sensor.set(DISTURBED);
@@ -372,7 +388,8 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         self.sensors.iter().position(Sensor::is_ready).map(|x| x as u8)
     }
 
-    fn tell(&mut self, sensor: u8, expected_change_us: &mut impl FnMut(u8) -> i32) -> Option<Reading> {
+    #[inline(never)]
+    fn tell(&mut self, sensor: u8, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
         let heard = self.sensors.get_mut(usize::from(sensor))?;
         let phase = heard.phase();
         if heard.is_ready() {
@@ -394,7 +411,8 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         self.tally.count(verdict.kind);
         let Verdict { kind, t_echo, previous, age } = verdict;
         let period = self.period.wrapping_sub(self.scheduler.periods_since(phase).into());
-        Some(Reading { sensor, phase, period, kind, t_echo, previous, age })
+        self.set_deadline();
+        Some(Event::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age }))
     }
 
     fn find_oldest(&self) -> u8 {

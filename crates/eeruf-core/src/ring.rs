@@ -71,7 +71,7 @@ pub struct PeriodStats {
     pub phase: Phase,
     /// The readings told since the period before ended, by kind.
     pub tally: Tally<u8>,
-    /// The latest firing: how long after it was due it was polled for, at most 65,535 us.
+    /// The latest firing: how long after it was due it was polled for.
     pub max_late: Micros,
 }
 
@@ -98,22 +98,24 @@ pub struct PeriodStats {
 /// # Ok::<(), eeruf_core::RingError>(())
 /// ```
 #[derive(Clone, Debug)]
+// In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction.
+#[repr(C)]
 pub struct Ring<S, const K: usize, const E: usize = 1> {
     scheduler: S,
-    sensors: [Sensor<E>; K],
-    t_delta: Micros,
-    window: Micros,
-    blanking: Micros,
     /// When there is something to do next.
     deadline: Instant,
-    period: u32,
-    tally: Tally<u8>,
-    max_late_us: u16,
-    consecutive: u8,
+    window: Micros,
+    t_delta: Micros,
+    max_late: Micros,
     /// The sensor whose window closes first, or [`NOBODY`].
     oldest: u8,
     /// How many sensors have a reading to tell before their window closes.
     ready: u8,
+    consecutive: u8,
+    tally: Tally<u8>,
+    blanking: Micros,
+    period: u32,
+    sensors: [Sensor<E>; K],
 }
 
 /// A [`Ring`] with scheduled firing by a schedule of the paper's kind.
@@ -192,7 +194,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             deadline: now,
             period: 0,
             tally: Tally::default(),
-            max_late_us: 0,
+            max_late: Micros::ZERO,
             consecutive,
             oldest: NOBODY,
             ready: 0,
@@ -308,49 +310,40 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
 
     /// Something is due. Firing comes first, since it should be on time; but a sensor tells what it heard before it
     /// fires again.
+    #[inline(never)]
     fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
         let fires = if now.has_reached(self.scheduler.deadline()) { self.scheduler.next_sensor() } else { None };
         let told = match fires {
-            Some(sensor) => self.sensor(sensor).is_some_and(Sensor::holds_reading).then_some(sensor),
+            Some(sensor) if !self.sensor(sensor).is_some_and(Sensor::holds_reading) => return self.fire(now),
+            Some(sensor) => Some(sensor),
             None => self.next_to_tell(now),
         };
         match told {
             Some(sensor) => self.tell(sensor, expected_change_us),
-            None => self.step(now),
+            None => self.end_period(now),
         }
-    }
-
-    /// The next step of the scheduler: a firing, or the end of a period. Apart from [`tell`](Self::tell), so that a
-    /// firing need not save the registers that telling a reading needs.
-    #[inline(never)]
-    fn step(&mut self, now: Instant) -> Option<Event> {
-        let event = match self.scheduler.poll(now)? {
-            Step::Fire { sensor, phase, late } => {
-                self.fired(sensor, phase, now, late);
-                Event::Fire(sensor)
-            }
-            Step::PeriodEnded { phase, changed } => self.period_ended(phase, changed),
-        };
-        self.set_deadline();
-        Some(event)
     }
 
     #[inline]
-    fn fired(&mut self, sensor: u8, phase: Phase, now: Instant, late: Micros) {
+    fn fire(&mut self, now: Instant) -> Option<Event> {
+        let Step::Fire { sensor, phase, late } = self.scheduler.fire(now)? else { return None };
         if late > self.t_delta {
             self.disturb();
         }
-        self.max_late_us = self.max_late_us.max(u16::try_from(late.as_micros()).unwrap_or(u16::MAX));
+        self.max_late = self.max_late.max(late);
         if let Some(fired) = self.sensors.get_mut(usize::from(sensor)) {
             fired.fire(phase, now);
         }
         if self.oldest == NOBODY {
             self.oldest = sensor;
         }
+        self.set_deadline();
+        Some(Event::Fire(sensor))
     }
 
     #[inline(never)]
-    fn period_ended(&mut self, phase: Phase, changed: bool) -> Event {
+    fn end_period(&mut self, now: Instant) -> Option<Event> {
+        let Step::PeriodEnded { phase, changed } = self.scheduler.end_period(now)? else { return None };
         if changed {
             self.disturb();
         }
@@ -358,16 +351,18 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             period: self.period,
             phase,
             tally: core::mem::take(&mut self.tally),
-            max_late: Micros::new(core::mem::take(&mut self.max_late_us).into()),
+            max_late: core::mem::take(&mut self.max_late),
         };
         self.period = self.period.wrapping_add(1);
-        Event::PeriodEnded(stats)
+        self.set_deadline();
+        Some(Event::PeriodEnded(stats))
     }
 
     /// Firings have shifted against each other, by lateness or by a change of schedule, so (13a), (13b) say nothing
     /// about readings from before compared with readings from after. The next reading of each sensor, which may belong
     /// to either side, is compared with nothing.
     #[cold]
+    #[inline(never)]
     fn disturb(&mut self) {
         for sensor in &mut self.sensors {
             sensor.set(DISTURBED);

@@ -46,6 +46,8 @@ impl fmt::Display for Phase {
 /// # Ok::<(), eeruf_core::ScheduleError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+// In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction.
+#[repr(C)]
 pub struct Schedule<const K: usize, const M: usize = 2> {
     period: Micros,
     sensors: u8,

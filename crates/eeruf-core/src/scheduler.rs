@@ -30,7 +30,13 @@ pub enum Step {
 /// [`ImmediateRefiring`](crate::refiring::ImmediateRefiring).
 pub trait Scheduler {
     /// The next step that is due, if any. Call again until there is none.
-    fn poll(&mut self, now: Instant) -> Option<Step>;
+    fn poll(&mut self, now: Instant) -> Option<Step> {
+        self.fire(now).or_else(|| self.end_period(now))
+    }
+    /// The next firing, if one is due.
+    fn fire(&mut self, now: Instant) -> Option<Step>;
+    /// The end of the period, if it is due and no firing is.
+    fn end_period(&mut self, now: Instant) -> Option<Step>;
     /// The sensor that will fire next, if one will before the period ends.
     fn next_sensor(&self) -> Option<u8>;
     /// When the next step is due.
@@ -111,16 +117,25 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     /// From the present place on: the next enabled sensor, or the end of the period.
     #[inline]
     fn find_next(&mut self) {
-        while let Some((sensor, t_fire)) = self.schedule.firing(self.phase, self.place) {
-            if self.disabled == [0; 2] || self.is_enabled(sensor) {
-                self.next = sensor;
-                self.due = self.start + t_fire;
+        if self.disabled != [0; 2] {
+            self.skip_disabled();
+        }
+        let mut t_fire = self.schedule.period();
+        self.next = NOBODY;
+        if let Some(firing) = self.schedule.firing(self.phase, self.place) {
+            (self.next, t_fire) = firing;
+        }
+        self.due = self.start + t_fire;
+    }
+
+    #[cold]
+    fn skip_disabled(&mut self) {
+        while let Some((sensor, _)) = self.schedule.firing(self.phase, self.place) {
+            if self.is_enabled(sensor) {
                 return;
             }
             self.place += 1;
         }
-        self.next = NOBODY;
-        self.due = self.start + self.schedule.period();
     }
 
     /// How long to stay silent after the last firing before a period that was not verified against it. Two neighbours
@@ -142,9 +157,26 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
         self.place = 0;
         self.find_next();
     }
+}
 
-    /// The present period has ended.
-    fn end_period(&mut self, now: Instant) -> Step {
+impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
+    #[inline]
+    fn fire(&mut self, now: Instant) -> Option<Step> {
+        if self.next == NOBODY || !now.has_reached(self.due) {
+            return None;
+        }
+        let late = now.since(self.due);
+        let step = Step::Fire { sensor: self.next, phase: Phase(self.phase), late };
+        self.start += late;
+        self.place += 1;
+        self.find_next();
+        Some(step)
+    }
+
+    fn end_period(&mut self, now: Instant) -> Option<Step> {
+        if self.next != NOBODY || !now.has_reached(self.due) {
+            return None;
+        }
         let phase = Phase(self.phase);
         // Periods in which nothing fired need not be caught up with.
         let mut start = if now.since(self.due) > self.schedule.period() { now } else { self.due };
@@ -160,25 +192,7 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
         }
         let next_phase = if usize::from(self.phase) + 1 < M { self.phase + 1 } else { 0 };
         self.begin_period(next_phase, start);
-        Step::PeriodEnded { phase, changed: next_schedule.is_some() }
-    }
-}
-
-impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
-    #[inline]
-    fn poll(&mut self, now: Instant) -> Option<Step> {
-        if !now.has_reached(self.due) {
-            return None;
-        }
-        if self.next == NOBODY {
-            return Some(self.end_period(now));
-        }
-        let late = now.since(self.due);
-        let step = Step::Fire { sensor: self.next, phase: Phase(self.phase), late };
-        self.start += late;
-        self.place += 1;
-        self.find_next();
-        Some(step)
+        Some(Step::PeriodEnded { phase, changed: next_schedule.is_some() })
     }
 
     #[inline]

@@ -101,20 +101,20 @@ pub struct PeriodStats {
 // In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction.
 #[repr(C)]
 pub struct Ring<S, const K: usize, const E: usize = 1> {
-    scheduler: S,
-    /// When there is something to do next.
-    deadline: Instant,
-    window: Micros,
-    t_delta: Micros,
-    max_late: Micros,
     /// The sensor whose window closes first, or [`NOBODY`].
     oldest: u8,
     /// How many sensors have a reading to tell before their window closes.
     ready: u8,
     consecutive: u8,
-    tally: Tally<u8>,
+    scheduler: S,
+    /// When the window of the oldest closes.
+    closes: Instant,
+    window: Micros,
+    t_delta: Micros,
+    max_late: Micros,
     blanking: Micros,
     period: u32,
+    tally: Tally<u8>,
     sensors: [Sensor<E>; K],
 }
 
@@ -185,22 +185,20 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             return Err(RingError::Blanking { blanking, window });
         }
         Rule::new(t_delta, consecutive)?;
-        let mut ring = Self {
-            scheduler,
-            sensors: [Sensor::NEW; K],
-            t_delta,
-            window,
-            blanking,
-            deadline: now,
-            period: 0,
-            tally: Tally::default(),
-            max_late: Micros::ZERO,
-            consecutive,
+        Ok(Self {
             oldest: NOBODY,
             ready: 0,
-        };
-        ring.set_deadline();
-        Ok(ring)
+            consecutive,
+            scheduler,
+            closes: now,
+            window,
+            t_delta,
+            max_late: Micros::ZERO,
+            blanking,
+            period: 0,
+            tally: Tally::default(),
+            sensors: [Sensor::NEW; K],
+        })
     }
 
     /// The next thing to do or to know, if there is one at `now`. Call again until there is none, then sleep until
@@ -220,20 +218,23 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// [`EchoFilter::push_echoes`]: crate::EchoFilter::push_echoes
     #[inline]
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
-        if now.has_reached(self.deadline) {
-            self.advance(now, expected_change_us)
-        } else if self.deadline.since(now) <= self.scheduler.horizon() {
-            None
-        } else {
-            self.jumped(now);
-            None
+        let due = self.scheduler.deadline();
+        if now.has_reached(due) || self.ready > 0 || (self.oldest != NOBODY && now.has_reached(self.closes)) {
+            return self.advance(now, expected_change_us);
         }
+        if due.since(now) > self.scheduler.horizon() {
+            self.jumped(now);
+        }
+        None
     }
 
     /// When to poll next. In the past if something is waiting to be told.
-    #[inline]
     pub fn next_deadline(&self) -> Instant {
-        self.deadline
+        let due = self.scheduler.deadline();
+        if self.ready > 0 {
+            return self.first_ready().and_then(|x| self.sensor(x)).map_or(due, |ready| ready.fired);
+        }
+        if self.oldest != NOBODY && !self.closes.has_reached(due) { self.closes } else { due }
     }
 
     /// An edge on the echo line of a sensor, `at` this instant. Cheap; edges may come in any order, at any time, from
@@ -241,12 +242,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     pub fn echo(&mut self, sensor: u8, at: Instant) {
         let Some(heard) = self.sensors.get_mut(usize::from(sensor)) else { return };
         match heard.echo(at, self.blanking, self.window) {
-            Edge::Ready => {
-                self.ready = self.ready.saturating_add(1);
-                if !at.has_reached(self.deadline) {
-                    self.deadline = at;
-                }
-            }
+            Edge::Ready => self.ready = self.ready.saturating_add(1),
             Edge::Late => self.tally.count(Kind::Late),
             Edge::Noted => {}
         }
@@ -265,7 +261,6 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// Has a sensor fire no more. A firing of it that is under way is still told.
     pub fn disable(&mut self, sensor: u8) {
         self.scheduler.set_enabled(sensor, false);
-        self.set_deadline();
     }
 
     /// Has a sensor fire again from its next turn on. Its readings from before are forgotten.
@@ -277,7 +272,6 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if let Some(sensor) = self.sensors.get_mut(usize::from(sensor)) {
             sensor.track.forget();
         }
-        self.set_deadline();
     }
 
     /// Whether a sensor fires.
@@ -294,7 +288,6 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         }
         self.oldest = NOBODY;
         self.ready = 0;
-        self.set_deadline();
     }
 
     /// The scheduler.
@@ -336,8 +329,8 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         }
         if self.oldest == NOBODY {
             self.oldest = sensor;
+            self.closes = now + self.window;
         }
-        self.set_deadline();
         Some(Event::Fire(sensor))
     }
 
@@ -354,7 +347,6 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             max_late: core::mem::take(&mut self.max_late),
         };
         self.period = self.period.wrapping_add(1);
-        self.set_deadline();
         Some(Event::PeriodEnded(stats))
     }
 
@@ -374,8 +366,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if self.ready > 0 {
             return self.first_ready();
         }
-        let oldest = self.sensor(self.oldest)?;
-        now.has_reached(oldest.fired + self.window).then_some(self.oldest)
+        (self.oldest != NOBODY && now.has_reached(self.closes)).then_some(self.oldest)
     }
 
     fn first_ready(&self) -> Option<u8> {
@@ -400,17 +391,16 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if listened {
             self.scheduler.ended(sensor, ended_at);
             if self.oldest == sensor {
-                self.oldest = self.find_oldest();
+                self.find_oldest();
             }
         }
         self.tally.count(verdict.kind);
         let Verdict { kind, t_echo, previous, age } = verdict;
         let period = self.period.wrapping_sub(self.scheduler.periods_since(phase).into());
-        self.set_deadline();
         Some(Event::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age }))
     }
 
-    fn find_oldest(&self) -> u8 {
+    fn find_oldest(&mut self) {
         let mut oldest: Option<(u8, Instant)> = None;
         for (x, sensor) in self.sensors.iter().enumerate() {
             if sensor.is(LISTENING) && oldest.is_none_or(|(_, fired)| !sensor.fired.has_reached(fired)) {
@@ -418,22 +408,11 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
                 oldest = Some((x as u8, sensor.fired));
             }
         }
-        oldest.map_or(NOBODY, |(x, _)| x)
-    }
-
-    fn set_deadline(&mut self) {
-        if self.ready > 0 {
-            // There is more to tell: the deadline that led here, or the echo's, has come and stays.
-            return;
+        self.oldest = NOBODY;
+        if let Some((x, fired)) = oldest {
+            self.oldest = x;
+            self.closes = fired + self.window;
         }
-        let mut deadline = self.scheduler.deadline();
-        if let Some(oldest) = self.sensor(self.oldest) {
-            let closes = oldest.fired + self.window;
-            if !closes.has_reached(deadline) {
-                deadline = closes;
-            }
-        }
-        self.deadline = deadline;
     }
 
     fn sensor(&self, sensor: u8) -> Option<&Sensor<E>> {

@@ -106,6 +106,7 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     /// How many sensors have a reading to tell before their window closes.
     ready: u8,
     consecutive: u8,
+    tally: Tally<u8>,
     scheduler: S,
     /// When the window of the oldest closes.
     closes: Instant,
@@ -114,7 +115,6 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     max_late: Micros,
     blanking: Micros,
     period: u32,
-    tally: Tally<u8>,
     sensors: [Sensor<E>; K],
 }
 

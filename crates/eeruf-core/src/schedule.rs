@@ -55,6 +55,8 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
     t_wait: [[Micros; K]; M],
     /// The sensors of each phase by firing time, so that the scheduler need not look for the next one.
     order: [[u8; K]; M],
+    /// Their firing times, in the same order.
+    due: [[Micros; K]; M],
 }
 
 impl<const K: usize, const M: usize> Schedule<K, M> {
@@ -121,6 +123,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
             return Err(ScheduleError::Period { period });
         }
         let mut order = [[0; K]; M];
+        let mut due = [[Micros::ZERO; K]; M];
         let mut phase = 0;
         while phase < M {
             let mut x = 0;
@@ -132,19 +135,20 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
                 // Insertion sort by firing time; sensors that fire together keep their order.
                 let mut at = x;
                 while at > 0 {
-                    let before = order[phase][at - 1] as usize;
-                    if t_lag[before].as_micros() + t_wait[phase][before].as_micros() <= t_fire.as_micros() {
+                    if due[phase][at - 1].as_micros() <= t_fire.as_micros() {
                         break;
                     }
-                    order[phase][at] = before as u8;
+                    order[phase][at] = order[phase][at - 1];
+                    due[phase][at] = due[phase][at - 1];
                     at -= 1;
                 }
                 order[phase][at] = x as u8;
+                due[phase][at] = t_fire;
                 x += 1;
             }
             phase += 1;
         }
-        Ok(Self { period, sensors: sensors as u8, t_lag, t_wait, order })
+        Ok(Self { period, sensors: sensors as u8, t_lag, t_wait, order, due })
     }
 
     /// `T_p`: every sensor fires once in each period.
@@ -190,19 +194,14 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         if (phase.0 as usize) < M { used(&self.order[phase.0 as usize], self.sensors) } else { &[] }
     }
 
-    /// The sensor at a place in the firing order of a phase, and its `T_fire`. For each step of the scheduler: every index
-    /// is checked against what the optimiser knows, in the fewest instructions.
+    /// The sensor at a place in the firing order of a phase, and its `T_fire`: for each step of the scheduler.
     #[inline]
     pub(crate) fn firing(&self, phase: u8, place: u8) -> Option<(u8, Micros)> {
-        if place >= self.sensors {
+        let (phase, place) = (usize::from(phase), usize::from(place));
+        if place >= self.sensors() {
             return None;
         }
-        let phase = usize::from(phase);
-        let &sensor = self.order.get(phase)?.get(usize::from(place))?;
-        let x = usize::from(sensor);
-        // Both terms are at most `MAX_PERIOD`.
-        let t_fire = self.t_lag.get(x)?.as_micros() + self.t_wait.get(phase)?.get(x)?.as_micros();
-        Some((sensor, Micros::new(t_fire)))
+        Some((*self.order.get(phase)?.get(place)?, *self.due.get(phase)?.get(place)?))
     }
 
     /// From a sensor's firing in a phase to its next one, `T_p - d` or `T_p + d` with two phases: the `dt` over which a

@@ -71,20 +71,22 @@ pub trait Scheduler {
 /// assert_eq!(scheduler.poll(first), Some(Step::Fire { sensor: 0, phase: Phase::A, late: Micros::ZERO }));
 /// ```
 #[derive(Clone, Debug)]
+// In this order for the short offsets of a Cortex-M0: see `Ring`.
+#[repr(C)]
 pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
-    schedule: &'s Schedule<K, M>,
-    next_schedule: Option<&'s Schedule<K, M>>,
-    /// When the present period began, moved on by all lateness since.
-    start: Instant,
-    /// When the next step is due. Worked out once per step, since it is asked for at every poll.
-    due: Instant,
-    /// The disabled sensors: two words, because a core of 32 bits shifts them without a library call.
-    disabled: [u32; 2],
     phase: u8,
     /// Place in the firing order of the next sensor to fire; the number of sensors when all have.
     place: u8,
     /// The next sensor to fire, or [`NOBODY`] when all have.
     next: u8,
+    /// When the next step is due. Worked out once per step, since it is asked for at every poll.
+    due: Instant,
+    schedule: &'s Schedule<K, M>,
+    /// When the present period began, moved on by all lateness since.
+    start: Instant,
+    /// The disabled sensors: two words, because a core of 32 bits shifts them without a library call.
+    disabled: [u32; 2],
+    next_schedule: Option<&'s Schedule<K, M>>,
 }
 
 const NOBODY: u8 = u8::MAX;

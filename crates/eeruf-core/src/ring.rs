@@ -303,7 +303,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
 
     /// Something is due. Firing comes first, since it should be on time; but a sensor tells what it heard before it
     /// fires again.
-    #[inline(never)]
+    #[inline]
     fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
         let fires = if now.has_reached(self.scheduler.deadline()) { self.scheduler.next_sensor() } else { None };
         let told = match fires {
@@ -369,9 +369,19 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         (self.oldest != NOBODY && now.has_reached(self.closes)).then_some(self.oldest)
     }
 
+    /// A sensor with something to tell; the oldest before others, which saves the search where it costs most: the next
+    /// oldest has then to be looked for, too.
     fn first_ready(&self) -> Option<u8> {
-        // At most 64 sensors.
-        self.sensors.iter().position(Sensor::is_ready).map(|x| x as u8)
+        if self.sensor(self.oldest).is_some_and(Sensor::is_ready) {
+            return Some(self.oldest);
+        }
+        for (x, sensor) in self.sensors.iter().enumerate() {
+            if sensor.is_ready() {
+                // At most 64 sensors.
+                return Some(x as u8);
+            }
+        }
+        None
     }
 
     #[inline(never)]
@@ -379,10 +389,12 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         let heard = self.sensors.get_mut(usize::from(sensor))?;
         let phase = heard.phase();
         if heard.is_ready() {
-            self.ready = self.ready.saturating_sub(1);
+            // It was counted when its edge came.
+            self.ready = self.ready.wrapping_sub(1);
         }
         let listened = heard.is(LISTENING);
-        let ended_at = heard.fired + heard.t_echo().filter(|_| E == 1).unwrap_or(self.window);
+        let fired = heard.fired;
+        let ended_at = fired + heard.t_echo().filter(|_| E == 1).unwrap_or(self.window);
         let verdict = if listened {
             heard.judge(Rule { t_delta: self.t_delta, consecutive: self.consecutive }, || expected_change_us(sensor))
         } else {
@@ -391,7 +403,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if listened {
             self.scheduler.ended(sensor, ended_at);
             if self.oldest == sensor {
-                self.find_oldest();
+                self.find_oldest(fired);
             }
         }
         self.tally.count(verdict.kind);
@@ -400,19 +412,17 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         Some(Event::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age }))
     }
 
-    fn find_oldest(&mut self) {
-        let mut oldest: Option<(u8, Instant)> = None;
+    /// The oldest, which fired at `before`, listens no more: which one is it now? All others fired later.
+    fn find_oldest(&mut self, before: Instant) {
+        let (mut oldest, mut soonest) = (NOBODY, Micros::MAX);
         for (x, sensor) in self.sensors.iter().enumerate() {
-            if sensor.is(LISTENING) && oldest.is_none_or(|(_, fired)| !sensor.fired.has_reached(fired)) {
+            if sensor.is(LISTENING) && sensor.fired.since(before) < soonest {
                 // At most 64 sensors.
-                oldest = Some((x as u8, sensor.fired));
+                (oldest, soonest) = (x as u8, sensor.fired.since(before));
             }
         }
-        self.oldest = NOBODY;
-        if let Some((x, fired)) = oldest {
-            self.oldest = x;
-            self.closes = fired + self.window;
-        }
+        self.oldest = oldest;
+        self.closes = before + soonest + self.window;
     }
 
     fn sensor(&self, sensor: u8) -> Option<&Sensor<E>> {
@@ -536,7 +546,8 @@ impl<const E: usize> Sensor<E> {
 
     /// Whether a reading can be told before the window closes: of a sensor with a single echo, or of a late edge.
     fn is_ready(&self) -> bool {
-        (E == 1 || !self.is(LISTENING)) && self.t_echo().is_some()
+        let silent = self.echoes.first().is_none_or(|&echo| echo == NO_ECHO);
+        !silent && !self.is(EARLY) && (E == 1 || !self.is(LISTENING))
     }
 
     fn holds_reading(&self) -> bool {

@@ -158,18 +158,12 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
     ///
     /// # Errors
     /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered.
-    pub fn new(
-        ring: Ring<S, K>,
-        pins: [Pins<T, I>; K],
-        delay: D,
-        settings: Settings,
-    ) -> Result<Self, SetupError> {
+    pub fn new(ring: Ring<S, K>, pins: [Pins<T, I>; K], delay: D, settings: Settings) -> Result<Self, SetupError> {
         let min_refire = ring.scheduler().min_refire();
         if min_refire < settings.min_retrigger {
             return Err(SetupError::Retrigger { min_refire, min_retrigger: settings.min_retrigger });
         }
-        let line =
-            Line { triggered: Instant::from_micros(0), pulse: Pulse::Idle, silent: 0, health: Health::Well };
+        let line = Line { triggered: Instant::from_micros(0), pulse: Pulse::Idle, silent: 0, health: Health::Well };
         Ok(Self { ring, pins, delay, lines: [line; K], settings })
     }
 

@@ -9,8 +9,9 @@ use eeruf_core::Instant;
 
 /// The name of this board.
 pub const NAME: &str = "rv_virt";
-/// [`count`] advances by this many thousandths per instruction.
-pub const COUNTS_PER_1000_INSTRUCTIONS: u32 = 1_000;
+/// [`count`] advances by this many thousandths per instruction when an instruction takes 1024 ns (`-icount shift=10`):
+/// the emulated counter of instructions counts nanoseconds.
+pub const COUNTS_PER_1000_INSTRUCTIONS: u32 = 1_024_000;
 
 const TIME_COMPARE: *mut u32 = 0x0200_4000 as *mut u32;
 const TIME: *const u32 = 0x0200_BFF8 as *const u32;

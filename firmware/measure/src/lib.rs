@@ -1,7 +1,10 @@
 //! What the measured programs share: a schedule of the paper's kind for any number of sensors, and a ring in static
-//! memory behind functions that are not inlined, one for each public function of `Ring`.
+//! memory behind functions that are not inlined, one for each public function of `Ring`, and a counter of instructions.
 #![no_std]
 
+use core::hint::black_box;
+
+use eeruf_board::{COUNTS_PER_1000_INSTRUCTIONS, say};
 use eeruf_core::{Config, Micros, Schedule};
 
 /// The paper's schedule for `K` sensors: groups of four, waits of `2 K` ms in phase a and 0, 2, 4, .. ms in phase b.
@@ -24,6 +27,46 @@ pub const fn plain<const K: usize>() -> Schedule<K> {
 
 /// The configuration of all measured rings.
 pub const CONFIG: Config = Config::new(Micros::new(999), Micros::from_millis(36));
+
+/// The fewest and the most instructions that one kind of call took.
+#[derive(Debug)]
+pub struct Range {
+    name: &'static str,
+    fewest: u32,
+    most: u32,
+}
+
+impl Range {
+    /// Nothing measured.
+    pub const fn new(name: &'static str) -> Self {
+        Self { name, fewest: u32::MAX, most: 0 }
+    }
+
+    /// One more call, which took so many counts of the board's counter.
+    pub fn note(&mut self, counts: u32) {
+        self.fewest = self.fewest.min(counts);
+        self.most = self.most.max(counts);
+    }
+
+    /// One line: name, fewest, most. Reading the counter itself does not count.
+    pub fn say(&self) {
+        let nothing = (0..4).map(|_| counts(|| black_box(())).0).min().unwrap_or(0);
+        let instructions = |counts: u32| {
+            let thousandths = u64::from(counts.saturating_sub(nothing)) * 1000;
+            let per_instruction = u64::from(COUNTS_PER_1000_INSTRUCTIONS);
+            ((thousandths + per_instruction / 2) / per_instruction) as u32
+        };
+        say!(self.name, " ", instructions(self.fewest), " ", instructions(self.most));
+    }
+}
+
+/// The counts of the board's counter that a call takes, and what it returns.
+pub fn counts<R>(call: impl FnOnce() -> R) -> (u32, R) {
+    let before = eeruf_board::count();
+    let result = call();
+    // The timer of the Cortex-M3 board has 24 bits.
+    (eeruf_board::count().wrapping_sub(before) & 0x00FF_FFFF, result)
+}
 
 /// A program that has all of `Ring` in it for `K` sensors, in static memory, and nothing else. Its size less that of
 /// the program `bare` is the size of scheduler and filter.

@@ -8,40 +8,15 @@
 use core::hint::black_box;
 
 use eeruf_board::say::leave;
-use eeruf_board::{COUNTS_PER_1000_INSTRUCTIONS, say};
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Event, Instant, Kind, Micros, Ring, ScheduledRing};
 use eeruf_hc_sr04::{Edge, EdgeQueue};
-use eeruf_measure::CONFIG;
+use eeruf_measure::{CONFIG, Range, counts};
 
 eeruf_board::no_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
 
 static EDGES: EdgeQueue<32> = EdgeQueue::new();
-
-struct Range {
-    name: &'static str,
-    fewest: u32,
-    most: u32,
-}
-
-impl Range {
-    const fn new(name: &'static str) -> Self {
-        Self { name, fewest: u32::MAX, most: 0 }
-    }
-
-    fn note(&mut self, counts: u32) {
-        self.fewest = self.fewest.min(counts);
-        self.most = self.most.max(counts);
-    }
-
-    fn say(&self, nothing: u32) {
-        let instructions = |counts: u32| {
-            (counts.saturating_sub(nothing) * 1000 + COUNTS_PER_1000_INSTRUCTIONS / 2) / COUNTS_PER_1000_INSTRUCTIONS
-        };
-        say!(self.name, " ", instructions(self.fewest), " ", instructions(self.most));
-    }
-}
 
 #[inline(never)]
 fn poll(ring: &mut ScheduledRing<'static, 12>, now: Instant) -> Option<Event> {
@@ -59,13 +34,6 @@ fn stamp(sensor: u8, at: Instant) {
     EDGES.push(Edge { sensor, high: true, at });
 }
 
-fn counts<R>(call: impl FnOnce() -> R) -> (u32, R) {
-    let before = eeruf_board::count();
-    let result = call();
-    // The timer of the Cortex-M3 board has 24 bits.
-    (eeruf_board::count().wrapping_sub(before) & 0x00FF_FFFF, result)
-}
-
 #[eeruf_board::entry]
 fn main() -> ! {
     eeruf_board::start();
@@ -78,7 +46,6 @@ fn main() -> ! {
     let mut reading = Range::new("reading");
     let mut ended = Range::new("period_ended");
 
-    let nothing = (0..4).map(|_| counts(|| black_box(())).0).min().unwrap_or(0);
     let mut periods = 0;
     while periods < 40 {
         let now = black_box(ring.next_deadline());
@@ -119,7 +86,7 @@ fn main() -> ! {
         }
     }
     for range in [&idle, &fire, &heard, &stamped, &reading, &ended] {
-        range.say(nothing);
+        range.say();
     }
     leave(0)
 }

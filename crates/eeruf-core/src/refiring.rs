@@ -13,6 +13,7 @@
 
 use crate::schedule::{Phase, Schedule};
 use crate::scheduler::{Scheduler, Step};
+use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
 
 /// Immediate refiring: a sensor fires again `T_wait` after it has stopped listening; the first time after `T_lag + T_wait`.
@@ -22,8 +23,8 @@ pub struct ImmediateRefiring<'s, const K: usize, const M: usize = 2> {
     min_refire: Micros,
     sensors: [Turn; K],
     /// Sensors that have fired and not yet ended.
-    listening: u64,
-    enabled: u64,
+    listening: SensorSet,
+    enabled: SensorSet,
     period_start: Instant,
     phase: u8,
 }
@@ -40,8 +41,15 @@ impl<'s, const K: usize, const M: usize> ImmediateRefiring<'s, K, M> {
     /// [`Step::PeriodEnded`] comes. No sensor fires again sooner than `min_refire` after it has fired.
     pub fn new(schedule: &'s Schedule<K, M>, min_refire: Micros, now: Instant) -> Self {
         let sensors = [Turn { at: now, phase: 0 }; K];
-        let mut refiring =
-            Self { schedule, min_refire, sensors, listening: 0, enabled: u64::MAX, period_start: now, phase: 0 };
+        let mut refiring = Self {
+            schedule,
+            min_refire,
+            sensors,
+            listening: SensorSet::NONE,
+            enabled: SensorSet::ALL,
+            period_start: now,
+            phase: 0,
+        };
         refiring.restart(now);
         refiring
     }
@@ -53,7 +61,7 @@ impl<'s, const K: usize, const M: usize> ImmediateRefiring<'s, K, M> {
         for (x, turn) in self.sensors.iter().take(self.schedule.sensors()).enumerate() {
             // At most 64 sensors.
             let x = x as u8;
-            let waits = self.is_enabled(x) && self.listening >> x & 1 == 0;
+            let waits = self.is_enabled(x) && !self.listening.contains(x);
             if waits && first.is_none_or(|(_, at)| !turn.at.has_reached(at)) {
                 first = Some((x, turn.at));
             }
@@ -78,7 +86,7 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
     fn fire(&mut self, now: Instant) -> Option<Step> {
         if let Some((sensor, due)) = self.first() {
             if now.has_reached(due) {
-                self.listening |= 1 << sensor;
+                self.listening.set(sensor, true);
                 let turn = self.sensors.get_mut(usize::from(sensor))?;
                 turn.at = now;
                 return Some(Step::Fire { sensor, phase: Phase(turn.phase), late: now.since(due) });
@@ -98,7 +106,7 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
             }
             // A disabled sensor stays due, but its instant must not fall half a turn of the clock behind.
             for (x, turn) in self.sensors.iter_mut().enumerate() {
-                if self.listening >> x & 1 == 0 && now.has_reached(turn.at) {
+                if !self.listening.contains(x as u8) && now.has_reached(turn.at) {
                     turn.at = now;
                 }
             }
@@ -120,10 +128,10 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
 
     fn ended(&mut self, sensor: u8, at: Instant) {
         let Some(&Turn { at: fired, phase }) = self.sensors.get(usize::from(sensor)) else { return };
-        if self.listening >> sensor & 1 == 0 {
+        if !self.listening.contains(sensor) {
             return;
         }
-        self.listening &= !(1 << sensor);
+        self.listening.set(sensor, false);
         let phase = next_phase::<M>(phase);
         let mut next = at + self.wait(phase, sensor);
         let soonest = fired + self.min_refire;
@@ -136,16 +144,15 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
     }
 
     fn set_enabled(&mut self, sensor: u8, enabled: bool) {
-        let bit = 1_u64.checked_shl(sensor.into()).unwrap_or(0);
-        self.enabled = if enabled { self.enabled | bit } else { self.enabled & !bit };
+        self.enabled.set(sensor, enabled);
     }
 
     fn is_enabled(&self, sensor: u8) -> bool {
-        usize::from(sensor) < self.schedule.sensors() && self.enabled.checked_shr(sensor.into()).unwrap_or(0) & 1 == 1
+        usize::from(sensor) < self.schedule.sensors() && self.enabled.contains(sensor)
     }
 
     fn restart(&mut self, now: Instant) {
-        self.listening = 0;
+        self.listening = SensorSet::NONE;
         self.period_start = now;
         self.phase = 0;
         for (x, turn) in self.sensors.iter_mut().enumerate() {
@@ -163,8 +170,9 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
         0
     }
 
-    fn min_refire(&self) -> Micros {
-        self.min_refire
+    fn longest_window(&self) -> Micros {
+        // It fires only what has ended.
+        Micros::MAX
     }
 
     fn horizon(&self) -> Micros {

@@ -71,7 +71,7 @@ pub struct PeriodStats {
     pub phase: Phase,
     /// The readings told since the period before ended, by kind.
     pub tally: Tally<u8>,
-    /// The latest firing: how long after it was due it was polled for.
+    /// The latest firing: how long after it was due it was polled for, at most 65,535 us.
     pub max_late: Micros,
 }
 
@@ -106,13 +106,15 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     /// How many sensors have a reading to tell before their window closes.
     ready: u8,
     consecutive: u8,
+    /// How many more period ends disturb the comparison.
+    unsettled: u8,
+    max_late_us: u16,
     tally: Tally<u8>,
     scheduler: S,
     /// When the window of the oldest closes.
     closes: Instant,
     window: Micros,
     t_delta: Micros,
-    max_late: Micros,
     blanking: Micros,
     period: u32,
     sensors: [Sensor<E>; K],
@@ -154,7 +156,7 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s
 }
 
 impl<'s, const K: usize, const M: usize> Ring<ImmediateRefiring<'s, K, M>, K> {
-    /// A ring with immediate refiring that begins at `now`; no sensor fires again before its window has passed.
+    /// A ring with immediate refiring that begins at `now`; no sensor fires again sooner than `min_refire`.
     ///
     /// # Errors
     /// As for [`Ring::with_scheduler`].
@@ -177,7 +179,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     pub fn with_scheduler(scheduler: S, config: Config, now: Instant) -> Result<Self, RingError> {
         let Config { t_delta, window, blanking, consecutive } = config;
         // No echo time within a window can then be mistaken for an instant before the firing.
-        let longest = scheduler.min_refire().min(Micros::new(u32::MAX / 2));
+        let longest = scheduler.longest_window().min(Micros::new(u32::MAX / 2));
         if window > longest {
             return Err(RingError::Window { window, min_refire: longest });
         }
@@ -189,14 +191,15 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             oldest: NOBODY,
             ready: 0,
             consecutive,
+            unsettled: 0,
+            max_late_us: 0,
+            tally: Tally::default(),
             scheduler,
             closes: now,
             window,
             t_delta,
-            max_late: Micros::ZERO,
             blanking,
             period: 0,
-            tally: Tally::default(),
             sensors: [Sensor::NEW; K],
         })
     }
@@ -206,7 +209,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     ///
     /// Hand in the echo edges you know of before you poll: an edge that comes after the poll that closed its window is
     /// not heard.
-    /// A late poll loses nothing: firings that are due move back, and all later ones with them.
+    /// A late poll loses nothing: firings that are due move back, and all later ones with them. After one that is late by
+    /// more than `t_delta` the readings of about two periods are compared with nothing, since crosstalk has shifted by as
+    /// much.
     #[inline]
     pub fn poll(&mut self, now: Instant) -> Option<Event> {
         self.poll_expecting(now, |_| 0)
@@ -321,9 +326,11 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     fn fire(&mut self, now: Instant) -> Option<Event> {
         let Step::Fire { sensor, phase, late } = self.scheduler.fire(now)? else { return None };
         if late > self.t_delta {
+            // Sound sent before this moment may be heard for a period, and its readings compared for one more.
+            self.unsettled = 2;
             self.disturb();
         }
-        self.max_late = self.max_late.max(late);
+        self.max_late_us = self.max_late_us.max(u16::try_from(late.as_micros()).unwrap_or(u16::MAX));
         if let Some(fired) = self.sensors.get_mut(usize::from(sensor)) {
             fired.fire(phase, now);
         }
@@ -338,21 +345,25 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     fn end_period(&mut self, now: Instant) -> Option<Event> {
         let Step::PeriodEnded { phase, changed } = self.scheduler.end_period(now)? else { return None };
         if changed {
+            self.unsettled = 2;
+        }
+        if self.unsettled > 0 {
+            self.unsettled -= 1;
             self.disturb();
         }
         let stats = PeriodStats {
             period: self.period,
             phase,
             tally: core::mem::take(&mut self.tally),
-            max_late: core::mem::take(&mut self.max_late),
+            max_late: Micros::new(core::mem::take(&mut self.max_late_us).into()),
         };
         self.period = self.period.wrapping_add(1);
         Some(Event::PeriodEnded(stats))
     }
 
-    /// Firings have shifted against each other, by lateness or by a change of schedule, so (13a), (13b) say nothing
-    /// about readings from before compared with readings from after. The next reading of each sensor, which may belong
-    /// to either side, is compared with nothing.
+    /// Firings have shifted against each other, by lateness or by a change of schedule, so (13a), (13b) say nothing about
+    /// readings of sound from before compared with readings of sound from after. The next reading of each sensor, which
+    /// may be of either, is compared with nothing.
     #[cold]
     #[inline(never)]
     fn disturb(&mut self) {

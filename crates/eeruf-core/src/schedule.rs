@@ -55,8 +55,8 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
     t_wait: [[Micros; K]; M],
     /// The sensors of each phase by firing time, so that the scheduler need not look for the next one.
     order: [[u8; K]; M],
-    /// Their firing times, in the same order.
-    due: [[Micros; K]; M],
+    /// How long each of them fires after the one before it, the first after the start of the period.
+    gap: [[Micros; K]; M],
 }
 
 impl<const K: usize, const M: usize> Schedule<K, M> {
@@ -123,9 +123,11 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
             return Err(ScheduleError::Period { period });
         }
         let mut order = [[0; K]; M];
-        let mut due = [[Micros::ZERO; K]; M];
+        let mut gap = [[Micros::ZERO; K]; M];
         let mut phase = 0;
         while phase < M {
+            // Firing times in order, until they become gaps.
+            let times = &mut gap[phase];
             let mut x = 0;
             while x < sensors {
                 let t_fire = t_lag[x].saturating_add(t_wait[phase][x]);
@@ -134,21 +136,23 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
                 }
                 // Insertion sort by firing time; sensors that fire together keep their order.
                 let mut at = x;
-                while at > 0 {
-                    if due[phase][at - 1].as_micros() <= t_fire.as_micros() {
-                        break;
-                    }
+                while at > 0 && times[at - 1].as_micros() > t_fire.as_micros() {
                     order[phase][at] = order[phase][at - 1];
-                    due[phase][at] = due[phase][at - 1];
+                    times[at] = times[at - 1];
                     at -= 1;
                 }
                 order[phase][at] = x as u8;
-                due[phase][at] = t_fire;
+                times[at] = t_fire;
                 x += 1;
+            }
+            let mut at = sensors - 1;
+            while at > 0 {
+                times[at] = times[at].abs_diff(times[at - 1]);
+                at -= 1;
             }
             phase += 1;
         }
-        Ok(Self { period, sensors: sensors as u8, t_lag, t_wait, order, due })
+        Ok(Self { period, sensors: sensors as u8, t_lag, t_wait, order, gap })
     }
 
     /// `T_p`: every sensor fires once in each period.
@@ -194,14 +198,27 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         if (phase.0 as usize) < M { used(&self.order[phase.0 as usize], self.sensors) } else { &[] }
     }
 
-    /// The sensor at a place in the firing order of a phase, and its `T_fire`: for each step of the scheduler.
+    /// The sensor at a place in the firing order of a phase, and how long it fires after the one before it; beyond the
+    /// last place nobody (255), and the time from the last firing to the end of the period. Each step of the scheduler asks.
     #[inline]
-    pub(crate) fn firing(&self, phase: u8, place: u8) -> Option<(u8, Micros)> {
-        let (phase, place) = (usize::from(phase), usize::from(place));
-        if place >= self.sensors() {
-            return None;
+    pub(crate) const fn firing(&self, phase: u8, place: u8) -> (u8, Micros) {
+        let (phase, place) = (phase as usize, place as usize);
+        if phase < M && place < K && place < self.sensors() {
+            (self.order[phase][place], self.gap[phase][place])
+        } else {
+            (u8::MAX, self.after_last(phase))
         }
-        Some((*self.order.get(phase)?.get(place)?, *self.due.get(phase)?.get(place)?))
+    }
+
+    /// From the last firing of a phase to the end of the period.
+    const fn after_last(&self, phase: usize) -> Micros {
+        let mut last = Micros::ZERO;
+        let mut place = 0;
+        while phase < M && place < K && place < self.sensors() {
+            last = last.saturating_add(self.gap[phase][place]);
+            place += 1;
+        }
+        self.period.saturating_sub(last)
     }
 
     /// From a sensor's firing in a phase to its next one, `T_p - d` or `T_p + d` with two phases: the `dt` over which a

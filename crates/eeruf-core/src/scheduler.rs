@@ -3,6 +3,7 @@
 //! A scheduler never reads a clock. The caller passes `now`, and is told the next deadline.
 
 use crate::schedule::{Phase, Schedule};
+use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
 
 /// What a scheduler wants done.
@@ -51,8 +52,8 @@ pub trait Scheduler {
     fn restart(&mut self, now: Instant);
     /// How many periods ago the last period with this phase was, 0 for the present one; 0 without common phases.
     fn periods_since(&self, phase: Phase) -> u8;
-    /// The shortest time between two firings of one sensor.
-    fn min_refire(&self) -> Micros;
+    /// How long a sensor may listen: it never fires again within this time of firing, unless it has ended.
+    fn longest_window(&self) -> Micros;
     /// No deadline lies further ahead than this, unless the clock has jumped.
     fn horizon(&self) -> Micros;
 }
@@ -79,13 +80,12 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
     place: u8,
     /// The next sensor to fire, or [`NOBODY`] when all have.
     next: u8,
-    /// When the next step is due. Worked out once per step, since it is asked for at every poll.
+    /// When it is due, or when the period ends. Worked out once per step, since it is asked for at every poll.
     due: Instant,
     schedule: &'s Schedule<K, M>,
-    /// When the present period began, moved on by all lateness since.
-    start: Instant,
-    /// The disabled sensors: two words, because a core of 32 bits shifts them without a library call.
-    disabled: [u32; 2],
+    /// When a sensor last fired, or long enough ago.
+    last_fired: Instant,
+    disabled: SensorSet,
     next_schedule: Option<&'s Schedule<K, M>>,
 }
 
@@ -94,13 +94,18 @@ const NOBODY: u8 = u8::MAX;
 impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     /// Begins the first period of `schedule` at `now`, with all sensors enabled.
     pub const fn new(schedule: &'s Schedule<K, M>, now: Instant) -> Self {
-        let (next, t_fire) = match schedule.firing_order(Phase::A) {
-            [first, ..] => (*first, schedule.fire_at(0, *first as usize)),
-            // Never: a schedule has a sensor.
-            [] => (NOBODY, schedule.period()),
-        };
-        let due = Instant::from_micros(now.as_micros().wrapping_add(t_fire.as_micros()));
-        Self { schedule, next_schedule: None, start: now, due, disabled: [0; 2], phase: 0, place: 0, next }
+        let now = now.as_micros();
+        let (next, gap) = schedule.firing(0, 0);
+        Self {
+            phase: 0,
+            place: 0,
+            next,
+            due: Instant::from_micros(now.wrapping_add(gap.as_micros())),
+            schedule,
+            last_fired: Instant::from_micros(now.wrapping_sub(settling_time(schedule).as_micros())),
+            disabled: SensorSet::NONE,
+            next_schedule: None,
+        }
     }
 
     /// The schedule of the present period.
@@ -116,49 +121,47 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
         self.next_schedule = Some(schedule);
     }
 
-    /// From the present place on: the next enabled sensor, or the end of the period.
+    /// Turns to the sensor at the present place, `gap` after this instant, or to the next enabled one after it; if there is
+    /// none, to the end of the period.
     #[inline]
-    fn find_next(&mut self) {
-        if self.disabled != [0; 2] {
+    fn turn_to(&mut self, from: Instant) {
+        let (next, gap) = self.schedule.firing(self.phase, self.place);
+        self.next = next;
+        self.due = from + gap;
+        if self.disabled != SensorSet::NONE {
             self.skip_disabled();
         }
-        let mut t_fire = self.schedule.period();
-        self.next = NOBODY;
-        if let Some(firing) = self.schedule.firing(self.phase, self.place) {
-            (self.next, t_fire) = firing;
-        }
-        self.due = self.start + t_fire;
     }
 
     #[cold]
     fn skip_disabled(&mut self) {
-        while let Some((sensor, _)) = self.schedule.firing(self.phase, self.place) {
-            if self.is_enabled(sensor) {
-                return;
-            }
+        while self.next != NOBODY && self.disabled.contains(self.next) {
             self.place += 1;
+            let (next, gap) = self.schedule.firing(self.phase, self.place);
+            self.next = next;
+            self.due += gap;
         }
     }
 
-    /// How long to stay silent after the last firing before a period that was not verified against it. Two neighbours
-    /// fire once each per period, so no interval between them that the schedule always keeps is longer than half of it.
-    fn settling_time(&self) -> Micros {
-        let half_period = Micros::new(self.schedule.period().as_micros().div_ceil(2));
-        self.schedule.min_refire().max(half_period)
-    }
-
-    /// The latest firing of this period so far, if any (disabled sensors count: later, so safer).
-    fn last_fired(&self) -> Option<Instant> {
-        let (_, t_fire) = self.schedule.firing(self.phase, self.place.checked_sub(1)?)?;
-        Some(self.start + t_fire)
+    /// When a period may begin that was not verified against what fired before.
+    fn settled(&self) -> Instant {
+        self.last_fired + settling_time(self.schedule)
     }
 
     fn begin_period(&mut self, phase: u8, start: Instant) {
         self.phase = phase;
-        self.start = start;
         self.place = 0;
-        self.find_next();
+        self.turn_to(start);
     }
+}
+
+/// How long to stay silent after the last firing of a schedule so that a period which was not verified against it may
+/// begin. Two neighbours fire once each per period, so no interval between them that the schedule always keeps is longer
+/// than half of it.
+const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>) -> Micros {
+    let half_period = Micros::new(schedule.period().as_micros().div_ceil(2));
+    let min_refire = schedule.min_refire();
+    if min_refire.as_micros() > half_period.as_micros() { min_refire } else { half_period }
 }
 
 impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
@@ -167,11 +170,11 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         if self.next == NOBODY || !now.has_reached(self.due) {
             return None;
         }
-        let late = now.since(self.due);
-        let step = Step::Fire { sensor: self.next, phase: Phase(self.phase), late };
-        self.start += late;
+        let step = Step::Fire { sensor: self.next, phase: Phase(self.phase), late: now.since(self.due) };
+        self.last_fired = now;
         self.place += 1;
-        self.find_next();
+        // From now, not from when it was due: all that follows moves by as much as this firing is late.
+        self.turn_to(now);
         Some(step)
     }
 
@@ -182,19 +185,17 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         let phase = Phase(self.phase);
         // Periods in which nothing fired need not be caught up with.
         let mut start = if now.since(self.due) > self.schedule.period() { now } else { self.due };
-        let next_schedule = self.next_schedule.take();
-        if let Some(next) = next_schedule {
-            if let Some(last) = self.last_fired() {
-                let settled = last + self.settling_time();
-                if settled.has_reached(start) {
-                    start = settled;
-                }
+        let changed = self.next_schedule.is_some();
+        if let Some(next) = self.next_schedule.take() {
+            let settled = self.settled();
+            if settled.has_reached(start) {
+                start = settled;
             }
             self.schedule = next;
         }
         let next_phase = if usize::from(self.phase) + 1 < M { self.phase + 1 } else { 0 };
         self.begin_period(next_phase, start);
-        Some(Step::PeriodEnded { phase, changed: next_schedule.is_some() })
+        Some(Step::PeriodEnded { phase, changed })
     }
 
     #[inline]
@@ -210,27 +211,19 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
     fn ended(&mut self, _sensor: u8, _at: Instant) {}
 
     fn set_enabled(&mut self, sensor: u8, enabled: bool) {
-        if let Some(word) = self.disabled.get_mut(usize::from(sensor / 32)) {
-            let bit = 1 << (sensor % 32);
-            *word = if enabled { *word & !bit } else { *word | bit };
-        }
-        self.find_next();
+        self.disabled.set(sensor, !enabled);
+        self.skip_disabled();
     }
 
     fn is_enabled(&self, sensor: u8) -> bool {
-        let word = self.disabled.get(usize::from(sensor / 32));
-        usize::from(sensor) < self.schedule.sensors() && word.is_some_and(|word| word >> (sensor % 32) & 1 == 0)
+        usize::from(sensor) < self.schedule.sensors() && !self.disabled.contains(sensor)
     }
 
     fn restart(&mut self, now: Instant) {
-        let mut start = now;
-        // Also in the period before this one sensors may have fired just now.
-        let last = self.last_fired().unwrap_or(self.start);
-        let settled = last + self.settling_time();
+        let settled = self.settled();
         // A clock that has jumped says nothing about when the last firing was.
-        if settled.has_reached(now) && settled.since(now) <= self.horizon() {
-            start = settled;
-        }
+        let soon = !now.has_reached(settled) && settled.since(now) <= self.horizon();
+        let start = if soon { settled } else { now };
         self.begin_period(0, start);
     }
 
@@ -239,7 +232,7 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         if self.phase >= phase.0 { self.phase - phase.0 } else { (self.phase + M as u8).saturating_sub(phase.0) }
     }
 
-    fn min_refire(&self) -> Micros {
+    fn longest_window(&self) -> Micros {
         self.schedule.min_refire()
     }
 

@@ -159,7 +159,7 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
     /// # Errors
     /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered.
     pub fn new(ring: Ring<S, K>, pins: [Pins<T, I>; K], delay: D, settings: Settings) -> Result<Self, SetupError> {
-        let min_refire = ring.scheduler().min_refire();
+        let min_refire = ring.scheduler().longest_window();
         if min_refire < settings.min_retrigger {
             return Err(SetupError::Retrigger { min_refire, min_retrigger: settings.min_retrigger });
         }

@@ -23,6 +23,7 @@
 
 mod adaptation;
 mod conditions;
+mod emit;
 mod filter;
 mod layout;
 mod reading;
@@ -39,6 +40,7 @@ mod verify;
 
 pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
 pub use conditions::{Criterion, Interval, Requirements, Separation};
+pub use emit::{CHeader, RustSource, Toml};
 pub use filter::{EchoFilter, FilterError};
 pub use layout::Layout;
 pub use reading::{Kind, Tally, Verdict};

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::{env, fs};
 
-const ARM_INTERRUPTS: &str = "PROVIDE(ALARM = DefaultHandler);\nPROVIDE(ECHO = DefaultHandler);\n";
+const ARM_INTERRUPTS: &str =
+    "PROVIDE(ALARM = DefaultHandler);\nPROVIDE(ECHO = DefaultHandler);\nPROVIDE(SPARE = DefaultHandler);\n";
 
 fn main() {
     let target = env::var("TARGET").expect("cargo sets TARGET");

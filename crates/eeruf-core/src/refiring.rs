@@ -116,7 +116,7 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
     }
 
     fn next_sensor(&self) -> Option<u8> {
-        self.first().map(|(sensor, _)| sensor)
+        self.first().filter(|&(_, due)| self.period_end().has_reached(due)).map(|(sensor, _)| sensor)
     }
 
     fn deadline(&self) -> Instant {

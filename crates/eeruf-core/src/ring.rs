@@ -111,8 +111,8 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     max_late_us: u16,
     tally: Tally<u8>,
     scheduler: S,
-    /// When the window of the oldest closes.
-    closes: Instant,
+    /// When to tell next: when an edge came, or when the window of the oldest closes.
+    tell_at: Instant,
     window: Micros,
     t_delta: Micros,
     blanking: Micros,
@@ -195,7 +195,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             max_late_us: 0,
             tally: Tally::default(),
             scheduler,
-            closes: now,
+            tell_at: now,
             window,
             t_delta,
             blanking,
@@ -224,7 +224,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     #[inline]
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
         let due = self.scheduler.deadline();
-        if now.has_reached(due) || self.ready > 0 || (self.oldest != NOBODY && now.has_reached(self.closes)) {
+        if now.has_reached(due) || (self.has_to_tell() && now.has_reached(self.tell_at)) {
             return self.advance(now, expected_change_us);
         }
         if due.since(now) > self.scheduler.horizon() {
@@ -236,10 +236,13 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// When to poll next. In the past if something is waiting to be told.
     pub fn next_deadline(&self) -> Instant {
         let due = self.scheduler.deadline();
-        if self.ready > 0 {
-            return self.first_ready().and_then(|x| self.sensor(x)).map_or(due, |ready| ready.fired);
-        }
-        if self.oldest != NOBODY && !self.closes.has_reached(due) { self.closes } else { due }
+        if self.has_to_tell() && !self.tell_at.has_reached(due) { self.tell_at } else { due }
+    }
+
+    /// Whether there will be something to tell without a further firing.
+    #[inline]
+    fn has_to_tell(&self) -> bool {
+        self.ready > 0 || self.oldest != NOBODY
     }
 
     /// An edge on the echo line of a sensor, `at` this instant. Cheap; edges may come in any order, at any time, from
@@ -247,7 +250,12 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     pub fn echo(&mut self, sensor: u8, at: Instant) {
         let Some(heard) = self.sensors.get_mut(usize::from(sensor)) else { return };
         match heard.echo(at, self.blanking, self.window) {
-            Edge::Ready => self.ready = self.ready.saturating_add(1),
+            Edge::Ready => {
+                if !self.has_to_tell() || !at.has_reached(self.tell_at) {
+                    self.tell_at = at;
+                }
+                self.ready = self.ready.saturating_add(1);
+            }
             Edge::Late => self.tally.count(Kind::Late),
             Edge::Noted => {}
         }
@@ -336,7 +344,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         }
         if self.oldest == NOBODY {
             self.oldest = sensor;
-            self.closes = now + self.window;
+            if self.ready == 0 {
+                self.tell_at = now + self.window;
+            }
         }
         Some(Event::Fire(sensor))
     }
@@ -377,7 +387,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if self.ready > 0 {
             return self.first_ready();
         }
-        (self.oldest != NOBODY && now.has_reached(self.closes)).then_some(self.oldest)
+        (self.oldest != NOBODY && now.has_reached(self.tell_at)).then_some(self.oldest)
     }
 
     /// A sensor with something to tell; the oldest before others, which saves the search where it costs most: the next
@@ -417,6 +427,11 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
                 self.find_oldest(fired);
             }
         }
+        if self.ready == 0 {
+            if let Some(oldest) = self.sensor(self.oldest) {
+                self.tell_at = oldest.fired + self.window;
+            }
+        }
         self.tally.count(verdict.kind);
         let Verdict { kind, t_echo, previous, age } = verdict;
         let period = self.period.wrapping_sub(self.scheduler.periods_since(phase).into());
@@ -433,7 +448,6 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             }
         }
         self.oldest = oldest;
-        self.closes = before + soonest + self.window;
     }
 
     fn sensor(&self, sensor: u8) -> Option<&Sensor<E>> {

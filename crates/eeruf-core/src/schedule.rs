@@ -57,6 +57,8 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
     order: [[u8; K]; M],
     /// How long each of them fires after the one before it, the first after the start of the period.
     gap: [[Micros; K]; M],
+    /// From the last firing of each phase to the end of the period.
+    after_last: [Micros; M],
 }
 
 impl<const K: usize, const M: usize> Schedule<K, M> {
@@ -124,6 +126,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         }
         let mut order = [[0; K]; M];
         let mut gap = [[Micros::ZERO; K]; M];
+        let mut after_last = [Micros::ZERO; M];
         let mut phase = 0;
         while phase < M {
             // Firing times in order, until they become gaps.
@@ -146,13 +149,14 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
                 x += 1;
             }
             let mut at = sensors - 1;
+            after_last[phase] = period.abs_diff(times[at]);
             while at > 0 {
                 times[at] = times[at].abs_diff(times[at - 1]);
                 at -= 1;
             }
             phase += 1;
         }
-        Ok(Self { period, sensors: sensors as u8, t_lag, t_wait, order, gap })
+        Ok(Self { period, sensors: sensors as u8, t_lag, t_wait, order, gap, after_last })
     }
 
     /// `T_p`: every sensor fires once in each period.
@@ -203,22 +207,13 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     #[inline]
     pub(crate) const fn firing(&self, phase: u8, place: u8) -> (u8, Micros) {
         let (phase, place) = (phase as usize, place as usize);
-        if phase < M && place < K && place < self.sensors() {
+        if phase >= M {
+            (u8::MAX, self.period)
+        } else if place < K && place < self.sensors() {
             (self.order[phase][place], self.gap[phase][place])
         } else {
-            (u8::MAX, self.after_last(phase))
+            (u8::MAX, self.after_last[phase])
         }
-    }
-
-    /// From the last firing of a phase to the end of the period.
-    const fn after_last(&self, phase: usize) -> Micros {
-        let mut last = Micros::ZERO;
-        let mut place = 0;
-        while phase < M && place < K && place < self.sensors() {
-            last = last.saturating_add(self.gap[phase][place]);
-            place += 1;
-        }
-        self.period.saturating_sub(last)
     }
 
     /// From a sensor's firing in a phase to its next one, `T_p - d` or `T_p + d` with two phases: the `dt` over which a

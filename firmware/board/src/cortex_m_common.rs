@@ -2,7 +2,7 @@
 
 use core::ptr::{read_volatile, write_volatile};
 
-use crate::chip::{ALARM_IRQ, ECHO_IRQ};
+use crate::chip::{ALARM_IRQ, ECHO_IRQ, SPARE_IRQ};
 
 /// Gives the two interrupts of the board their handlers: `interrupts!(alarm, echo)`, both `fn()`.
 #[macro_export]
@@ -31,6 +31,7 @@ unsafe extern "C" {
     fn DefaultHandler();
     fn ALARM();
     fn ECHO();
+    fn SPARE();
 }
 
 /// The vectors of all interrupts up to the last one in use.
@@ -38,6 +39,7 @@ pub(crate) const fn vectors<const N: usize>() -> [Vector; N] {
     let mut vectors = [Vector { handler: DefaultHandler }; N];
     vectors[ALARM_IRQ as usize] = Vector { handler: ALARM };
     vectors[ECHO_IRQ as usize] = Vector { handler: ECHO };
+    vectors[SPARE_IRQ as usize] = Vector { handler: SPARE };
     vectors
 }
 
@@ -96,4 +98,39 @@ pub fn sleep_unless(awake: impl FnOnce() -> bool) {
     }
     // SAFETY: interrupts were on before.
     unsafe { cortex_m::interrupt::enable() };
+}
+
+/// What frameworks want to know of a device.
+pub mod device {
+    use cortex_m::interrupt::InterruptNumber;
+
+    use crate::chip::{ALARM_IRQ, ECHO_IRQ, SPARE_IRQ};
+
+    /// How many bits of an interrupt's priority count.
+    pub const NVIC_PRIO_BITS: u8 = crate::chip::NVIC_PRIO_BITS;
+
+    /// The interrupts in use.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[allow(clippy::upper_case_acronyms)]
+    #[repr(u16)]
+    pub enum Interrupt {
+        /// The alarm.
+        ALARM = ALARM_IRQ,
+        /// An edge on an echo line.
+        ECHO = ECHO_IRQ,
+        /// None of this crate's: a framework may raise it for its own purposes.
+        SPARE = SPARE_IRQ,
+    }
+
+    // SAFETY: these are the numbers of the interrupts in the vector table.
+    unsafe impl InterruptNumber for Interrupt {
+        fn number(self) -> u16 {
+            self as u16
+        }
+    }
+
+    /// Named as frameworks expect it; there are no further peripherals to hand out.
+    pub use cortex_m::Peripherals;
+    /// The same enumeration under the name that RTIC looks for.
+    pub use Interrupt as interrupt;
 }

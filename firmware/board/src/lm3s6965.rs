@@ -14,6 +14,8 @@ use crate::cortex_m_common::{Register, enable_interrupts, pend_alarm, pend_echo}
 pub const NAME: &str = "lm3s6965";
 pub(crate) const ALARM_IRQ: u16 = 19;
 pub(crate) const ECHO_IRQ: u16 = 21;
+pub(crate) const SPARE_IRQ: u16 = 5;
+pub(crate) const NVIC_PRIO_BITS: u8 = 3;
 pub(crate) const VECTORS: usize = 44;
 /// [`count`] advances by this many thousandths per instruction when an instruction takes 1024 ns (`-icount shift=10`).
 pub const COUNTS_PER_1000_INSTRUCTIONS: u32 = 4_096;

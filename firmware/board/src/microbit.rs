@@ -8,6 +8,8 @@ use crate::cortex_m_common::{Register, enable_interrupts, pend_alarm, pend_echo}
 pub const NAME: &str = "microbit";
 pub(crate) const ALARM_IRQ: u16 = 8;
 pub(crate) const ECHO_IRQ: u16 = 9;
+pub(crate) const SPARE_IRQ: u16 = 20;
+pub(crate) const NVIC_PRIO_BITS: u8 = 2;
 pub(crate) const VECTORS: usize = 32;
 /// [`count`] advances by this many thousandths per instruction when an instruction takes 1024 ns (`-icount shift=10`).
 pub const COUNTS_PER_1000_INSTRUCTIONS: u32 = 16_384;

@@ -17,6 +17,9 @@
 //! deadline it is told, so the same code runs in an interrupt, in a simulator and in a test. Sensors are counted from 0
 //! in code and printed from 1, as in the paper.
 //!
+//! Features, all off by default, for crates that firmware already uses: `defmt` (formats), `serde` (readings and times),
+//! `fugit` and `embassy-time` (conversions of times).
+//!
 //! Equations and sections are those of J. Borenstein and Y. Koren, *Error Eliminating Rapid Ultrasonic Firing for Mobile
 //! Robot Obstacle Avoidance*, IEEE Transactions on Robotics and Automation 11(1), February 1995, pp. 132-138.
 #![no_std]
@@ -25,6 +28,7 @@ mod adaptation;
 mod conditions;
 mod emit;
 mod filter;
+mod interop;
 mod layout;
 mod reading;
 mod refiring;

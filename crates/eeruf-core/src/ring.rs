@@ -14,6 +14,8 @@ use crate::time::{Instant, Micros};
 
 /// How a [`Ring`] listens and compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
     /// `T_delta`: consecutive readings that differ by no more are near-identical.
     pub t_delta: Micros,
@@ -34,6 +36,7 @@ impl Config {
 
 /// What a [`Ring`] tells its caller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Event {
     /// Fire this sensor (from 0), now.
     Fire(u8),
@@ -45,6 +48,8 @@ pub enum Event {
 
 /// What became of one firing of one sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Reading {
     /// The sensor, from 0.
     pub sensor: u8,
@@ -64,6 +69,7 @@ pub struct Reading {
 
 /// What happened since the end of the period before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PeriodStats {
     /// The period, counted from 0.
     pub period: u32,
@@ -605,6 +611,7 @@ impl<const E: usize> Sensor<E> {
 /// Why a [`Ring`] cannot be set up as asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RingError {
     /// A sensor would fire again while it still listens.
     Window {

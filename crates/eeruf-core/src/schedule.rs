@@ -13,6 +13,8 @@ pub const MAX_PERIOD: Micros = Micros::new(1 << 28);
 
 /// One of the phases of a schedule, counted from 0 and printed `a`, `b`, ...
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Phase(pub u8);
 
 impl Phase {
@@ -332,6 +334,7 @@ const fn scale(time: Micros, num: u32, den: u32) -> Micros {
 /// Why raw numbers do not make a [`Schedule`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ScheduleError {
     /// No sensors, or more than fit.
     Sensors {

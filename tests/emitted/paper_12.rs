@@ -1,6 +1,6 @@
 use eeruf_core::{Criterion, Layout, Micros, Requirements, Schedule, schedule};
 
-/// 12 sensors, T_p = 65 ms; t_delta = 999 us, 4 adjacent sensors of a line at least 15 ms apart, listening for 30 ms.
+// 12 sensors, T_p = 65 ms; t_delta = 999 us, 4 adjacent sensors of a line at least 15 ms apart, listening for 30 ms.
 pub const RING: Schedule<12> = schedule! {
     period_us: 65_000,
     t_fire_a_us: [35_000, 50_000, 3_000, 18_000, 33_000, 48_000, 63_000, 14_000, 29_000, 44_000, 59_000, 14_000],

@@ -52,7 +52,7 @@ mod tests {
 
     #[test]
     fn fugits_times_go_there_and_back() {
-        let duration = fugit::MicrosDurationU32::millis(24);
+        let duration = fugit::MicrosDurationU32::from_millis(24);
         assert_eq!(Micros::from(duration), Micros::from_millis(24));
         assert_eq!(fugit::MicrosDurationU32::from(Micros::from_millis(24)), duration);
         let instant = fugit::WrappingTimerInstantU32::<1_000_000>::from_ticks(u32::MAX);

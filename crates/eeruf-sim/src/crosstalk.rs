@@ -1,0 +1,174 @@
+//! Who hears whom: all critical paths of a ring at one pose, from each emitter to each receiver, that are loud enough.
+
+use crate::{
+    error::PathsError,
+    paths::{Bounce, Limits, Paths, Tracer},
+    plane::{Point, Pose},
+    scene::Scene,
+    transducer::Transducer,
+};
+
+/// One way from an emitter to a receiver that is heard. With `emitter == receiver` it is the sensor's own echo; otherwise
+/// it is a critical path, one that can cause crosstalk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CriticalPath {
+    /// Index of the sensor that fires.
+    pub emitter: u32,
+    /// Index of the sensor that hears it.
+    pub receiver: u32,
+    /// Length in metres.
+    pub length_m: f64,
+    /// Amplitude relative to 1 m on axis, both patterns included.
+    pub amplitude: f64,
+    /// How many bounces.
+    pub order: u32,
+    /// Where the path leaves, in the scene's frame.
+    pub departure_rad: f64,
+    /// Where the receiver looks to see it, in the scene's frame.
+    pub arrival_rad: f64,
+    bounces: [u32; 2],
+}
+
+impl CriticalPath {
+    /// Whether it causes *direct* crosstalk: straight over or by a single reflection. All others are *indirect*.
+    pub fn is_direct(&self) -> bool {
+        self.order <= 1
+    }
+}
+
+/// All paths between the sensors of a ring, by emitter, receiver and length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CrosstalkMatrix {
+    sensors: usize,
+    paths: Vec<CriticalPath>,
+    /// Where each pair's paths begin; one more at the end.
+    starts: Vec<u32>,
+    bounces: Vec<Bounce>,
+    // Kept between computations only for their memory.
+    positions: Vec<Point>,
+    found: Paths,
+}
+
+impl CrosstalkMatrix {
+    /// An empty matrix, to be [computed](Self::compute).
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Traces each emitter once and keeps what is heard: `level` (the transducer's gain applied) at or above `floor`.
+    ///
+    /// `sensors` are the transducers' places and headings in the scene; each heads along its pose's x axis. Keep the matrix
+    /// as long as nothing moves: it does not depend on time.
+    ///
+    /// # Errors
+    /// As [`Tracer::trace`]; the matrix is empty then.
+    pub fn compute(
+        &mut self,
+        tracer: &mut Tracer,
+        scene: &Scene,
+        sensors: &[Pose],
+        transducer: &Transducer,
+        limits: Limits,
+        floor: f64,
+    ) -> Result<(), PathsError> {
+        let air = scene.air();
+        let piston = transducer.piston(air);
+        self.sensors = 0;
+        self.paths.clear();
+        self.starts.clear();
+        self.bounces.clear();
+        self.positions.clear();
+        self.positions.extend(sensors.iter().map(|sensor| Point::from(sensor.translation.vector)));
+        tracer.frequency_hz = transducer.frequency_hz;
+        for (emitter, pose) in sensors.iter().enumerate() {
+            if let Err(error) = tracer.trace(scene, self.positions[emitter], &self.positions, limits, &mut self.found) {
+                self.paths.clear();
+                self.starts.clear();
+                return Err(error);
+            }
+            let found = &self.found;
+            let mut next = 0;
+            for (receiver, listener) in sensors.iter().enumerate() {
+                self.starts.push(self.paths.len() as u32);
+                let range = next..found.of(receiver as u32).end;
+                next = range.end;
+                for k in range {
+                    let bare = found.amplitude[k];
+                    // The patterns only take away, and cost more than anything else here.
+                    if transducer.received(bare, found.length_m[k], air) < floor {
+                        continue;
+                    }
+                    let amplitude = bare
+                        * piston.pattern(found.departure_rad[k] - pose.rotation.angle())
+                        * piston.pattern(found.arrival_rad[k] - listener.rotation.angle());
+                    if transducer.received(amplitude, found.length_m[k], air) < floor {
+                        continue;
+                    }
+                    let start = self.bounces.len() as u32;
+                    self.bounces.extend_from_slice(found.bounces(k));
+                    self.paths.push(CriticalPath {
+                        emitter: emitter as u32,
+                        receiver: receiver as u32,
+                        length_m: found.length_m[k],
+                        amplitude,
+                        order: found.order[k],
+                        departure_rad: found.departure_rad[k],
+                        arrival_rad: found.arrival_rad[k],
+                        bounces: [start, self.bounces.len() as u32],
+                    });
+                }
+            }
+        }
+        self.starts.push(self.paths.len() as u32);
+        self.sensors = sensors.len();
+        Ok(())
+    }
+
+    /// How many sensors the ring has.
+    pub fn sensors(&self) -> usize {
+        self.sensors
+    }
+
+    /// The paths from an emitter to a receiver, shortest first; none for sensors that do not exist.
+    pub fn between(&self, emitter: usize, receiver: usize) -> &[CriticalPath] {
+        if emitter >= self.sensors || receiver >= self.sensors {
+            return &[];
+        }
+        let pair = emitter * self.sensors + receiver;
+        &self.paths[self.starts[pair] as usize..self.starts[pair + 1] as usize]
+    }
+
+    /// All paths, by emitter, receiver and length.
+    pub fn paths(&self) -> &[CriticalPath] {
+        &self.paths
+    }
+
+    /// The bounces of one of this matrix's paths, emitter to receiver.
+    pub fn bounces(&self, path: &CriticalPath) -> &[Bounce] {
+        self.bounces.get(path.bounces[0] as usize..path.bounces[1] as usize).unwrap_or(&[])
+    }
+}
+
+/// Transducers evenly spread over an arc of a circle, facing outwards.
+///
+/// `pose` is the robot's; the first sensor stands `first_rad` from its heading, the next ones `spacing_rad` further each.
+///
+/// ```
+/// use eeruf_sim::{Pose, ring_of};
+/// let ring: Vec<_> = ring_of(&Pose::identity(), 24, 0.3, 0.0, 15f64.to_radians()).collect();
+/// assert!((ring[6].translation.y - 0.3).abs() < 1e-15);
+/// ```
+pub fn ring_of(
+    pose: &Pose,
+    sensors: usize,
+    radius_m: f64,
+    first_rad: f64,
+    spacing_rad: f64,
+) -> impl Iterator<Item = Pose> {
+    let pose = *pose;
+    (0..sensors).map(move |sensor| {
+        let heading = first_rad + spacing_rad * sensor as f64;
+        let place = crate::plane::Vector::new(radius_m * heading.cos(), radius_m * heading.sin());
+        pose * Pose::new(place, heading)
+    })
+}

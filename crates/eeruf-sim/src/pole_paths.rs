@@ -1,0 +1,196 @@
+//! Paths that bounce at a pole. Walls before the pole mirror the source forward, walls after it mirror the receiver
+//! backward; between the two images remains one problem of Alhazen, whose answer must lie in a beam of each.
+
+use crate::{
+    alhazen::{Specular, alhazen, alhazen_twice},
+    beam::{BeamTree, Growth, PoleCone},
+    paths::{Bounce, Limits, push_chain},
+    plane::{Point, Vector, wrap_angle},
+    scene::Scene,
+};
+
+/// A path with one pole, or two in turn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PolePath {
+    pub(crate) receiver: u32,
+    pub(crate) length_m: f64,
+    pub(crate) order: u32,
+    pub(crate) departure_rad: f64,
+    pub(crate) arrival_rad: f64,
+    /// Where the source seems to be, for telling doubles.
+    pub(crate) image: Point,
+    /// What the legs and the poles' curvature leave of the amplitude.
+    pub(crate) spread: f64,
+    pub(crate) cos_incidence: [f64; 2],
+    bounces: (u32, u32),
+}
+
+/// Finds them; holds the buffers.
+#[derive(Debug, Default)]
+pub(crate) struct PoleSearch {
+    pub(crate) found: Vec<PolePath>,
+    bounces: Vec<Bounce>,
+    from_source: Vec<PoleCone>,
+    back: BeamTree,
+    triangles: Vec<u32>,
+}
+
+impl PoleSearch {
+    pub(crate) fn bounces(&self, path: &PolePath) -> &[Bounce] {
+        &self.bounces[path.bounces.0 as usize..path.bounces.1 as usize]
+    }
+
+    /// Adds all pole paths, given the source's grown tree. Returns whether the budget sufficed.
+    pub(crate) fn search(
+        &mut self,
+        scene: &Scene,
+        tree: &BeamTree,
+        source: Point,
+        receivers: &[Point],
+        limits: Limits,
+        budget: usize,
+    ) -> bool {
+        self.found.clear();
+        self.bounces.clear();
+        if scene.poles().is_empty() || limits.max_order == 0 {
+            return true;
+        }
+        let cone_key = |cone: &PoleCone| (cone.pole, cone.triangle);
+        self.from_source.clear();
+        self.from_source.extend_from_slice(&tree.pole_cones);
+        self.from_source.sort_by_key(cone_key);
+        for (receiver, &at) in receivers.iter().enumerate() {
+            let growth = Growth {
+                mesh: &scene.mesh,
+                mirrors: &scene.mirrors,
+                poles: scene.poles(),
+                pole_triangles: &scene.pole_triangles,
+                max_order: limits.max_order - 1,
+                max_length_m: limits.max_length_m,
+                budget,
+                last_for_receivers: false,
+            };
+            let mut back = core::mem::take(&mut self.back);
+            let complete = back.grow(&growth, at, &[]);
+            for behind in &back.pole_cones {
+                let start = self.from_source.partition_point(|cone| cone_key(cone) < cone_key(behind));
+                for index in start..self.from_source.len() {
+                    let before = self.from_source[index];
+                    if cone_key(&before) != cone_key(behind) {
+                        break;
+                    }
+                    self.join(scene, tree, &before, &back, behind, receiver as u32, limits);
+                }
+            }
+            self.back = back;
+            if !complete || self.found.len() > budget {
+                return false;
+            }
+            if limits.max_order >= 2 {
+                self.two_poles(scene, source, at, receiver as u32, limits);
+            }
+        }
+        true
+    }
+
+    /// One pole between a beam of the source and a beam of the receiver.
+    #[allow(clippy::too_many_arguments, reason = "two trees and a cone of each")]
+    fn join(
+        &mut self,
+        scene: &Scene,
+        tree: &BeamTree,
+        before: &PoleCone,
+        back: &BeamTree,
+        behind: &PoleCone,
+        receiver: u32,
+        limits: Limits,
+    ) {
+        let (out, home) = (&tree.beams[before.beam as usize], &back.beams[behind.beam as usize]);
+        let order = out.order + 1 + home.order;
+        if order > limits.max_order {
+            return;
+        }
+        let pole = &scene.poles()[before.pole as usize];
+        let Some(hit) = alhazen(out.image, home.image, pole.centre, pole.radius_m) else {
+            return;
+        };
+        let length_m = hit.before_m + hit.after_m;
+        if length_m > limits.max_length_m
+            || !before.holds(hit.point - out.image)
+            || !behind.holds(hit.point - home.image)
+            || !scene.mesh.touches(before.triangle, hit.point)
+        {
+            return;
+        }
+        let start = self.bounces.len();
+        push_chain(&tree.beams, before.beam, &mut self.bounces);
+        self.bounces[start..].reverse();
+        self.bounces.push(Bounce::Pole(before.pole));
+        push_chain(&back.beams, behind.beam, &mut self.bounces);
+        let departure_rad = unfolded(hit.point - out.image, out.order, out.turn);
+        let arrival_rad = unfolded(hit.point - home.image, home.order, home.turn);
+        self.push(receiver, back.beams[0].image, order, [departure_rad, arrival_rad], &[(hit, pole.radius_m)], start);
+    }
+
+    /// Source, one pole, another pole, receiver, all in sight of each other.
+    fn two_poles(&mut self, scene: &Scene, source: Point, at: Point, receiver: u32, limits: Limits) {
+        let poles = scene.poles();
+        for (a, first) in poles.iter().enumerate() {
+            for (b, second) in poles.iter().enumerate() {
+                if a == b {
+                    continue;
+                }
+                let circles = ((first.centre, first.radius_m), (second.centre, second.radius_m));
+                let Some((one, two)) = alhazen_twice(source, at, circles.0, circles.1) else {
+                    continue;
+                };
+                if one.before_m + two.before_m + two.after_m > limits.max_length_m
+                    || !scene.mesh.sees(source, one.point, &mut self.triangles)
+                    || !scene.mesh.sees(one.point, two.point, &mut self.triangles)
+                    || !scene.mesh.sees(two.point, at, &mut self.triangles)
+                {
+                    continue;
+                }
+                let start = self.bounces.len();
+                self.bounces.extend([Bounce::Pole(a as u32), Bounce::Pole(b as u32)]);
+                let angles = [unfolded(one.point - source, 0, 0.0), unfolded(two.point - at, 0, 0.0)];
+                self.push(receiver, at, 2, angles, &[(one, circles.0.1), (two, circles.1.1)], start);
+            }
+        }
+    }
+
+    fn push(
+        &mut self,
+        receiver: u32,
+        at: Point,
+        order: u32,
+        [departure_rad, arrival_rad]: [f64; 2],
+        hits: &[(Specular, f64)],
+        start: usize,
+    ) {
+        let length_m =
+            hits.iter().map(|(hit, _)| hit.before_m).sum::<f64>() + hits.last().map_or(0.0, |(hit, _)| hit.after_m);
+        let mut cos_incidence = [1.0; 2];
+        for (cos, (hit, _)) in cos_incidence.iter_mut().zip(hits) {
+            *cos = hit.incidence_rad.cos();
+        }
+        let (sin, cos) = arrival_rad.sin_cos();
+        self.found.push(PolePath {
+            receiver,
+            length_m,
+            order,
+            departure_rad,
+            arrival_rad,
+            image: at + Vector::new(cos, sin) * length_m,
+            spread: crate::amplitude::pole_spread(hits),
+            cos_incidence,
+            bounces: (start as u32, self.bounces.len() as u32),
+        });
+    }
+}
+
+/// The direction at the source of what is `ahead` in the image's world.
+fn unfolded(ahead: Vector, order: u32, turn: f64) -> f64 {
+    let there = ahead.y.atan2(ahead.x);
+    wrap_angle(if order.is_multiple_of(2) { there - turn } else { turn - there })
+}

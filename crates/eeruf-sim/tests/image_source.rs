@@ -1,0 +1,158 @@
+//! A second opinion on the paths: plain image sources over all wall sequences, followed back from the receiver with parry's
+//! ray casts. It shares no code with the beam tree; it is slow and says when it cannot tell.
+
+mod common;
+
+use common::{Random, free_point, scene};
+use eeruf_sim::{Bounce, Faces, Point, Scene, Wall};
+use parry2d_f64::{
+    math::Vector,
+    query::{Ray, RayCast},
+    shape::Segment,
+};
+
+/// A path is doubtful when walls longer or shorter by this much would change the answer. Parry's hit points are good to
+/// 1e-7 m, and rays aimed at corners may leak.
+const MARGIN_M: f64 = 1e-6;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Answer {
+    Yes,
+    No,
+    Doubtful,
+}
+
+fn mirrored(wall: &Wall, point: Point) -> Point {
+    let along = (wall.to - wall.from).normalize();
+    let to = point - wall.from;
+    wall.from + along * (2.0 * along.dot(&to)) - to
+}
+
+fn left_of(wall: &Wall, point: Point) -> f64 {
+    let (along, to) = ((wall.to - wall.from).normalize(), point - wall.from);
+    along.x * to.y - along.y * to.x
+}
+
+fn grown(wall: &Wall, by: f64) -> Segment {
+    let along = (wall.to - wall.from).normalize() * by;
+    Segment::new((wall.from - along).coords.into(), (wall.to + along).coords.into())
+}
+
+/// Whether the straight way is free of all walls but the two that it connects.
+fn free(walls: &[Wall], from: Point, to: Point, skip: [Option<usize>; 2]) -> Answer {
+    let way = to - from;
+    let length = way.norm();
+    let ray = Ray::new(Vector::new(from.x, from.y), Vector::new(way.x / length, way.y / length));
+    let blocked = |by: f64, reach: f64| {
+        let others = walls.iter().enumerate().filter(|(w, _)| !skip.contains(&Some(*w)));
+        others.into_iter().any(|(_, wall)| grown(wall, by).cast_local_ray(&ray, reach, true).is_some())
+    };
+    match (blocked(MARGIN_M, length + MARGIN_M), blocked(-MARGIN_M, length - MARGIN_M)) {
+        (false, _) => Answer::Yes,
+        (true, true) => Answer::No,
+        (true, false) => Answer::Doubtful,
+    }
+}
+
+/// Follows one wall sequence back from the receiver.
+fn follow(walls: &[Wall], images: &[Point], sequence: &[usize], receiver: Point) -> Answer {
+    let mut at = receiver;
+    let mut last = None;
+    let mut answer = Answer::Yes;
+    for (depth, &w) in sequence.iter().enumerate().rev() {
+        let wall = &walls[w];
+        let target = images[depth + 1];
+        // The real point must be on the reflecting side, the image behind it.
+        let (here, there) = (left_of(wall, at), left_of(wall, target));
+        let side = if wall.faces == Faces::Both { here.signum() } else { 1.0 };
+        if here * side <= 0.0 || there * side >= 0.0 {
+            return if (here * side).abs().min((there * side).abs()) < MARGIN_M {
+                Answer::Doubtful
+            } else {
+                Answer::No
+            };
+        }
+        let hit = at + (target - at) * (here / (here - there));
+        let along = (wall.to - wall.from).normalize();
+        let s = along.dot(&(hit - wall.from));
+        let inside = s.min(wall.length_m() - s);
+        if inside < -MARGIN_M {
+            return Answer::No;
+        }
+        if inside < MARGIN_M {
+            answer = Answer::Doubtful;
+        }
+        match free(walls, at, hit, [last, Some(w)]) {
+            Answer::No => return Answer::No,
+            Answer::Doubtful => answer = Answer::Doubtful,
+            Answer::Yes => {}
+        }
+        at = hit;
+        last = Some(w);
+    }
+    match free(walls, at, images[0], [last, None]) {
+        Answer::Yes => answer,
+        other => other,
+    }
+}
+
+/// All paths of a receiver as (sequence, length), or none when one of them is doubtful.
+fn image_sources(scene: &Scene, source: Point, receiver: Point, max_order: usize) -> Option<Vec<(Vec<Bounce>, f64)>> {
+    let walls = scene.walls();
+    let mut found = Vec::new();
+    let mut images = vec![source];
+    let mut sequence: Vec<usize> = Vec::new();
+    // Counts through all sequences up to the order, like digits.
+    let mut next = 0;
+    loop {
+        if next == 0 {
+            match follow(walls, &images, &sequence, receiver) {
+                Answer::Yes => {
+                    let bounces = sequence.iter().map(|w| Bounce::Wall(*w as u32)).collect();
+                    found.push((bounces, (receiver - images[images.len() - 1]).norm()));
+                }
+                Answer::Doubtful => return None,
+                Answer::No => {}
+            }
+        }
+        let deeper = sequence.len() < max_order;
+        let candidate =
+            (next..walls.len()).find(|w| deeper && walls[*w].faces != Faces::Open && sequence.last() != Some(w));
+        if let Some(w) = candidate {
+            images.push(mirrored(&walls[w], images[images.len() - 1]));
+            sequence.push(w);
+            next = 0;
+        } else if let Some(w) = sequence.pop() {
+            images.pop();
+            next = w + 1;
+        } else {
+            return Some(found);
+        }
+    }
+}
+
+#[test]
+fn beam_tree_and_image_sources_agree_on_thousands_of_random_rooms() {
+    let mut random = Random(7);
+    let (mut rooms, mut doubtful, mut paths) = (0, 0, 0);
+    while rooms < 3000 {
+        let scene = scene(&mut random, 7);
+        let order = if scene.walls().len() <= 6 { 4 } else { 3 };
+        let (source, receiver) = (free_point(&mut random, &scene), free_point(&mut random, &scene));
+        let Some(mut expected) = image_sources(&scene, source, receiver, order) else {
+            doubtful += 1;
+            continue;
+        };
+        rooms += 1;
+        let found = scene.paths(source, &[receiver], order as u32, f64::INFINITY).unwrap();
+        let mut ours: Vec<_> = (0..found.len()).map(|k| (found.bounces(k).to_vec(), found.length_m[k])).collect();
+        ours.sort_by(|a, b| a.0.cmp(&b.0));
+        expected.sort_by(|a, b| a.0.cmp(&b.0));
+        let same = ours.len() == expected.len()
+            && ours.iter().zip(&expected).all(|(o, e)| o.0 == e.0 && (o.1 - e.1).abs() < 1e-9);
+        assert!(same, "room {rooms}: {:?}\n{source} to {receiver}\n{ours:?}\n{expected:?}", scene.walls());
+        paths += ours.len();
+    }
+    assert!(doubtful < rooms / 50, "{doubtful} of {rooms} rooms were doubtful");
+    assert!(paths > 20_000, "only {paths} paths compared");
+}

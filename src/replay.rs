@@ -1,7 +1,7 @@
 //! `eeruf replay`: what the filter makes of recorded readings.
 
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use comfy_table::{CellAlignment, Table, presets};
 use eeruf_core::{EchoFilter, Kind, Micros, Tally};
@@ -13,7 +13,7 @@ use crate::input::{InputError, to_json, write};
 
 /// Run the filter over a log of real readings: which would it have believed?
 ///
-/// The log is a CSV file with a header. A column is a sensor if its first value is a number: the range in metres. Other
+/// The log is a CSV file with a header. A column is a sensor if the first value in it is a number: the range in metres. Other
 /// columns are ignored. Each row is one firing of every sensor. An empty value, or one of no-echo-m or more, is no echo.
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -60,7 +60,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         write(file, &draw::kinds_over_time(&columns, args.t_delta_us))?;
     }
     let counts: Vec<_> = columns.iter().map(Counts::of).collect();
-    let total = counts.iter().fold(Counts::default(), |total, counts| total.plus(counts));
+    let total = counts.iter().fold(Counts::default(), Counts::plus);
     if args.json {
         println!("{}", to_json(&Replay { total, sensors: counts }));
     } else {
@@ -69,53 +69,37 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(Answer::Yes)
 }
 
-/// One sensor of the log: its place in a row, and its readings so far.
-struct Sensor {
-    place: usize,
-    filter: EchoFilter<1>,
-    column: Column,
-}
-
 fn filter(args: &Args, log: impl Read) -> Result<Vec<Column>, InputError> {
     let bad = |line, message: &dyn std::fmt::Display| InputError::new(&args.file, line, message);
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(log);
     let header = reader.headers().map_err(|error| bad(None, &error))?.clone();
-    let mut sensors: Option<Vec<Sensor>> = None;
-    for record in reader.records() {
-        let record = record.map_err(|error| bad(error.position().map(csv::Position::line), &error))?;
-        let line = record.position().map(csv::Position::line);
-        let sensors = match &mut sensors {
-            Some(sensors) => sensors,
-            none => none.insert(find_sensors(args, &header, &record)?),
-        };
-        for Sensor { place, filter, column } in sensors {
-            let text = record.get(*place).unwrap_or_default();
-            let t_echo = echo_time(args, text)
-                .map_err(|expected| bad(line, &format!("column {}: `{text}`; expected {expected}", column.name)))?;
-            // The filter has this one sensor.
-            if let Ok(verdict) = filter.push(0, t_echo) {
-                column.kinds.push(verdict.kind);
-            }
+    let rows = reader
+        .records()
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(|error| bad(error.position().map(csv::Position::line), &error))?;
+    let mut columns = vec![];
+    for (place, name) in header.iter().enumerate() {
+        let values = || rows.iter().map(|row| row.get(place).unwrap_or_default());
+        let first = values().find(|text| !text.is_empty());
+        if first.is_none_or(|text| text.parse::<f64>().is_err()) {
+            continue;
         }
+        let mut filter =
+            EchoFilter::<1>::new(Micros::new(args.t_delta_us), args.consecutive).map_err(|error| bad(None, &error))?;
+        let mut kinds = vec![];
+        for (row, text) in rows.iter().zip(values()) {
+            let line = row.position().map(csv::Position::line);
+            let t_echo = echo_time(args, text)
+                .map_err(|expected| bad(line, &format!("column {name}: `{text}`; expected {expected}")))?;
+            let verdict = filter.push(0, t_echo).map_err(|error| bad(line, &error))?;
+            kinds.push(verdict.kind);
+        }
+        columns.push(Column { name: name.to_owned(), kinds });
     }
-    let columns = sensors.unwrap_or_default();
     if columns.is_empty() {
         return Err(bad(None, &"no readings; expected a header and rows with a range in metres for each sensor"));
     }
-    Ok(columns.into_iter().map(|sensor| sensor.column).collect())
-}
-
-fn find_sensors(args: &Args, header: &csv::StringRecord, first: &csv::StringRecord) -> Result<Vec<Sensor>, InputError> {
-    let numeric = |place: &usize| first.get(*place).is_some_and(|text| text.parse::<f64>().is_ok());
-    (0..header.len())
-        .filter(numeric)
-        .map(|place| {
-            let filter = EchoFilter::new(Micros::new(args.t_delta_us), args.consecutive)
-                .map_err(|error| InputError::new(Path::new("--consecutive"), None, error))?;
-            let name = header.get(place).unwrap_or_default().to_owned();
-            Ok(Sensor { place, filter, column: Column { name, kinds: vec![] } })
-        })
-        .collect()
+    Ok(columns)
 }
 
 /// The echo time of a range in metres: `2 d / c`, rounded to the microsecond.

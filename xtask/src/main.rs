@@ -1,2 +1,23 @@
 //! The project's own commands.
-fn main() {}
+//!
+//! `cargo xtask test` runs every check there is, the cheap ones first. A check whose tools are not installed is skipped
+//! with a loud word on what to install; with `--nothing-skipped`, as in CI, that counts as a failure.
+
+mod checks;
+mod steps;
+mod toolchain;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let args: Vec<&str> = args.iter().map(String::as_str).collect();
+    match args[..] {
+        ["test"] => checks::run_all(false),
+        ["test", "--nothing-skipped"] => checks::run_all(true),
+        _ => {
+            eprintln!("usage: cargo xtask test [--nothing-skipped]");
+            ExitCode::from(2)
+        }
+    }
+}

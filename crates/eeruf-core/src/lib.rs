@@ -30,6 +30,7 @@ mod refiring;
 mod ring;
 mod schedule;
 mod scheduler;
+pub mod search;
 mod sensor_set;
 mod sound;
 pub mod tables;
@@ -50,3 +51,8 @@ pub use time::{Instant, Micros};
 #[doc(hidden)]
 pub use verify::{__checked, __micros};
 pub use verify::{Report, Violation, ViolationKind, Violations};
+
+/// The listings of the README compile and hold.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

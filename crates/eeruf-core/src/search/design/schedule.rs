@@ -1,0 +1,86 @@
+//! Firing times, and what they need or leave: plain arithmetic on times, without any search.
+
+use super::MAX_SENSORS;
+use super::problem::{Needs, Sensors};
+
+/// The firing times of all sensors in both phases, in ticks from the start of the phase, each below the period.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Firing {
+    pub(crate) a: [u32; MAX_SENSORS],
+    pub(crate) b: [u32; MAX_SENSORS],
+    pub(crate) sensors: usize,
+}
+
+impl Firing {
+    /// The times in phase a, sensor by sensor.
+    #[must_use]
+    pub fn fire_a(&self) -> &[u32] {
+        self.a.get(..self.sensors).unwrap_or(&[])
+    }
+
+    /// The times in phase b, sensor by sensor.
+    #[must_use]
+    pub fn fire_b(&self) -> &[u32] {
+        self.b.get(..self.sensors).unwrap_or(&[])
+    }
+
+    /// `|d|` of sensor `x`, which is below `MAX_SENSORS`.
+    fn size(&self, x: usize) -> i32 {
+        self.a[x].abs_diff(self.b[x]) as i32
+    }
+
+    /// The smallest difference between two `|d|`, and with the stale-echo option twice the smallest `|d|`; `most` at most.
+    pub(crate) fn separation(&self, needs: &Needs, most: i32) -> i32 {
+        let mut sizes = [0; MAX_SENSORS];
+        for x in 0..self.sensors {
+            sizes[x] = self.size(x);
+        }
+        let sizes = &mut sizes[..self.sensors];
+        sizes.sort_unstable();
+        let own = if needs.least > 0 { 2 * sizes[0] } else { most };
+        sizes.windows(2).map(|pair| pair[1] - pair[0]).fold(own.min(most), i32::min)
+    }
+
+    /// The smallest interval between firings of conflicting sensors, across the ends of the phases too; `most` at most.
+    pub(crate) fn interval(&self, needs: &Needs, period: i32, most: i32) -> i32 {
+        let mut least = most;
+        for x in 0..self.sensors {
+            for y in Sensors(needs.conflicts[x]) {
+                let (ax, bx, ay, by) = (self.a[x] as i32, self.b[x] as i32, self.a[y] as i32, self.b[y] as i32);
+                for gap in [(ax - ay).abs(), (bx - by).abs(), period + by - ax, period + ay - bx] {
+                    least = least.min(gap);
+                }
+            }
+        }
+        least
+    }
+
+    /// The smallest time between two firings of one sensor.
+    pub(crate) fn window(&self, period: i32) -> i32 {
+        (0..self.sensors).map(|x| period - self.size(x)).fold(period, i32::min)
+    }
+
+    /// The shortest period at which these very times serve.
+    pub(crate) fn period(&self, needs: &Needs) -> i32 {
+        let mut period = 1;
+        for x in 0..self.sensors {
+            let (ax, bx) = (self.a[x] as i32, self.b[x] as i32);
+            period = period.max(ax + 1).max(bx + 1).max(needs.window + self.size(x));
+            for y in Sensors(needs.conflicts[x]) {
+                period = period.max(needs.interval + ax - self.b[y] as i32).max(needs.interval + bx - self.a[y] as i32);
+            }
+        }
+        period
+    }
+}
+
+/// Firing one by one: sensor i at `i I` in phase b and at `i (I + D)` in phase a, so that `d = i D`. It always serves, at a long period.
+pub(crate) fn one_by_one(needs: &Needs) -> Firing {
+    let mut firing = Firing { a: [0; MAX_SENSORS], b: [0; MAX_SENSORS], sensors: needs.sensors };
+    for i in 0..needs.sensors {
+        let b = i as i32 * needs.interval;
+        firing.b[i] = b as u32;
+        firing.a[i] = (b + needs.least + i as i32 * needs.separation) as u32;
+    }
+    firing
+}

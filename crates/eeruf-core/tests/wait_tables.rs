@@ -1,0 +1,178 @@
+//! The shared counts and optima of small wait-time problems, and the facts about the paper's own pairs (THEORY, section 4).
+//! Plain nested loops and a slow, obvious checker judge what the searches return.
+
+mod common;
+
+use common::naive::{self, Layout};
+use common::tables::{Case, File};
+use eeruf_core::search::wait::{
+    COUNT_WORDS, Control, Criterion, Finish, MEMORY_WORDS, Objective, WaitProblem, WaitSearch, memory_words,
+};
+
+/// Owned parts of a problem.
+struct Owned {
+    lag: Vec<u32>,
+    conflicts: Vec<u64>,
+    period: u32,
+    wait_max: u32,
+    separation: u32,
+    interval: u32,
+    criterion: Criterion,
+}
+
+impl Owned {
+    fn of(case: &Case) -> Self {
+        let lag = (0..case.sensors).map(|i| (i % case.group) as u32 * case.period / case.group as u32).collect();
+        Self {
+            lag,
+            conflicts: naive::conflicts(case.layout, case.sensors, case.neighbours),
+            period: case.period,
+            wait_max: case.wait_max,
+            separation: case.separation,
+            interval: case.min_interval,
+            criterion: if case.criterion == "paper" { Criterion::Paper } else { Criterion::Exact },
+        }
+    }
+
+    /// The paper's ring: lags in groups of four, all times in ticks of which a millisecond has `per_ms`.
+    fn paper(sensors: usize, layout: Layout, separation: u32, per_ms: u32, criterion: Criterion) -> Self {
+        Self {
+            lag: (0..sensors).map(|i| (i % 4) as u32 * 25 * per_ms).collect(),
+            conflicts: naive::conflicts(layout, sensors, 4),
+            period: 100 * per_ms,
+            wait_max: 24 * per_ms,
+            separation: separation * per_ms,
+            interval: 0,
+            criterion,
+        }
+    }
+
+    fn search(&self) -> WaitSearch<'_> {
+        WaitSearch::new(self.problem()).unwrap()
+    }
+
+    fn problem(&self) -> WaitProblem<'_> {
+        WaitProblem {
+            period: self.period,
+            lag: &self.lag,
+            wait_max: self.wait_max,
+            separation: self.separation,
+            interval: self.interval,
+            conflicts: &self.conflicts,
+            criterion: self.criterion,
+        }
+    }
+}
+
+#[test]
+fn every_count_of_the_shared_tables_comes_out() {
+    let mut memory = vec![0; COUNT_WORDS];
+    for case in File::read().cases {
+        let owned = Owned::of(&case);
+        let count = owned.search().count(None, &mut memory, &mut Control::unlimited());
+        assert_eq!((count.finish, count.count), (Finish::Exhausted, case.count), "{case:?}");
+    }
+}
+
+#[test]
+fn plain_nested_loops_agree_on_what_the_shared_tables_mean() {
+    for case in File::read().cases.iter().filter(|case| case.count < 200_000) {
+        let owned = Owned::of(case);
+        assert_eq!(naive::count(&owned.problem()), case.count, "{case:?}");
+    }
+}
+
+#[test]
+fn the_walk_over_all_tables_visits_as_many_as_are_counted() {
+    for case in File::read().cases.iter().filter(|case| case.count < 200_000) {
+        let owned = Owned::of(case);
+        let (mut a, mut b) = ([0; 64], [0; 64]);
+        let mut all = owned.search().all();
+        let mut seen = 0;
+        let mut control = Control::unlimited();
+        while all.next_into(&mut control, &mut a, &mut b).unwrap() == Finish::Found {
+            assert!(naive::holds(&owned.problem(), &a, &b));
+            seen += 1;
+        }
+        assert_eq!(seen, case.count, "{case:?}");
+    }
+}
+
+#[test]
+fn every_best_interval_of_the_shared_tables_comes_out_proven() {
+    let mut memory = vec![0; MEMORY_WORDS];
+    for case in File::read().cases {
+        let owned = Owned::of(&case);
+        let (mut a, mut b) = ([0; 64], [0; 64]);
+        let best =
+            owned.search().best(Objective::Interval, &mut memory, &mut Control::unlimited(), &mut a, &mut b).unwrap();
+        assert!(best.proven(), "{case:?}");
+        let value = best.value.map_or(-1, i64::from);
+        assert_eq!(value, case.best_interval, "{case:?} {best:?}");
+        if value >= 0 {
+            assert!(naive::holds(&WaitProblem { interval: value as u32, ..owned.problem() }, &a, &b));
+        }
+    }
+}
+
+/// The best interval for the paper's lags, in ticks, after the checks that every result must pass.
+fn best_interval(owned: &Owned) -> (u32, u64) {
+    let sensors = owned.lag.len();
+    let mut memory = vec![0; memory_words(sensors)];
+    let (mut a, mut b) = (vec![0; sensors], vec![0; sensors]);
+    let best =
+        owned.search().best(Objective::Interval, &mut memory, &mut Control::unlimited(), &mut a, &mut b).unwrap();
+    let value = best.value.unwrap();
+    assert_eq!((best.finish, best.bound), (Finish::Found, value));
+    assert!(naive::holds(&WaitProblem { interval: value, ..owned.problem() }, &a, &b));
+    assert!(!naive::holds(&WaitProblem { interval: value + 1, ..owned.problem() }, &a, &b));
+    (value, best.nodes)
+}
+
+#[test]
+fn waits_on_a_millisecond_grid_give_nineteen_milliseconds_and_finer_grids_half_a_millisecond_more() {
+    for criterion in [Criterion::Paper, Criterion::Exact] {
+        for layout in [Layout::Line, Layout::Blocks] {
+            for (per_ms, best) in [(1, 19), (2, 39), (10, 195)] {
+                let found = best_interval(&Owned::paper(12, layout, 2, per_ms, criterion));
+                println!("{criterion:?} {layout:?} {per_ms} {found:?}");
+                assert_eq!(found.0, best, "{criterion:?} {layout:?} {per_ms}");
+            }
+        }
+    }
+}
+
+#[test]
+fn half_the_separation_gives_room_for_more_sensors() {
+    for criterion in [Criterion::Paper, Criterion::Exact] {
+        for (sensors, best) in [(8, 23), (12, 22), (16, 21), (24, 19)] {
+            let found = best_interval(&Owned::paper(sensors, Layout::Line, 1, 1, criterion));
+            println!("{criterion:?} {sensors} {found:?}");
+            assert_eq!(found.0, best, "{criterion:?} {sensors}");
+        }
+    }
+}
+
+#[test]
+fn the_rearrangements_of_table_i_come_out() {
+    let facts = File::read().rearrangements_of_table_i;
+    let pairs: Vec<(u32, u32)> = (0..12).map(|k| (24, 2 * k)).collect();
+    for (layout, counts, best) in
+        [(Layout::Line, facts.line, 19), (Layout::Ring, facts.ring, 17), (Layout::Blocks, facts.blocks, 19)]
+    {
+        let owned = Owned::paper(12, layout, 2, 1, Criterion::Paper);
+        for (interval, count) in counts {
+            let search = owned.search().with(2, interval);
+            let found = search.rearrange(&pairs).unwrap().count(&mut Control::unlimited());
+            assert_eq!((found.finish, found.count), (Finish::Exhausted, count), "{layout:?} {interval}");
+        }
+        let (mut a, mut b) = ([0; 12], [0; 12]);
+        let search = owned.search();
+        let found = search.rearrange(&pairs).unwrap().best_interval(&mut Control::unlimited(), &mut a, &mut b).unwrap();
+        println!("{layout:?} {found:?}");
+        assert_eq!((found.finish, found.value, found.bound), (Finish::Found, Some(best), best));
+        if layout == Layout::Line {
+            assert_eq!(b.to_vec(), facts.the_one_with_19_on_a_line.t_wait_b_ms);
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! The program as its users call it: what it prints, and the exit code.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+struct Outcome {
+    code: Option<i32>,
+    out: String,
+    err: String,
+}
+
+fn eeruf(args: &[&str]) -> Outcome {
+    let output = Command::new(env!("CARGO_BIN_EXE_eeruf"))
+        .args(args)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("the program was built beside this test");
+    let text = |bytes| String::from_utf8(bytes).expect("the program prints UTF-8");
+    Outcome { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+}
+
+fn json(args: &[&str]) -> Value {
+    let outcome = eeruf(args);
+    assert_eq!(outcome.err, "");
+    assert_eq!(outcome.out.lines().count(), 1, "{}", outcome.out);
+    serde_json::from_str(&outcome.out).expect("one JSON object")
+}
+
+/// A file that is gone when this is dropped.
+struct Scratch(tempfile::TempDir);
+
+impl Scratch {
+    fn new(name: &str, contents: &str) -> (Self, PathBuf) {
+        let folder = tempfile::tempdir().expect("a folder for temporary files");
+        let file = folder.path().join(name);
+        std::fs::write(&file, contents).expect("it can be written to");
+        (Self(folder), file)
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+#[test]
+fn table_i_d_is_verified_up_to_999_us_and_not_at_1000() {
+    for (t_delta, code) in [("999", 0), ("1000", 1)] {
+        for criterion in ["paper", "exact"] {
+            let outcome = eeruf(&["verify", "rings/table-i-d.toml", "--t-delta-us", t_delta, "--criterion", criterion]);
+            assert_eq!(outcome.code, Some(code), "{}", outcome.out);
+        }
+    }
+    let outcome = eeruf(&["verify", "rings/table-i-d.toml", "--t-delta-us", "999"]);
+    for said in ["2000 us", "999 us", "17000 us  sensors 2 and 5 in phase b", "19000 us"] {
+        assert!(outcome.out.contains(said), "{said}\n{}", outcome.out);
+    }
+}
+
+#[test]
+fn the_report_of_table_i_d_has_the_figures_of_the_paper_in_blocks_and_ours_in_a_line() {
+    for criterion in ["paper", "exact"] {
+        for (layout, min_interval) in [("line", 17_000), ("blocks", 19_000), ("0-1,1-2,2-3", 19_000)] {
+            let report =
+                json(&["verify", "rings/table-i-d.toml", "--json", "--layout", layout, "--criterion", criterion]);
+            assert_eq!(report["ok"], true);
+            assert_eq!(report["separation_us"], 2000);
+            assert_eq!(report["max_t_delta_us"], 999);
+            assert_eq!(report["min_interval_us"], min_interval);
+            assert_eq!(report["min_refire_us"], 76_000);
+            assert_eq!(report["violations"], serde_json::json!([]));
+        }
+    }
+}
+
+#[test]
+fn table_i_c_has_sensors_4_and_1_one_millisecond_apart() {
+    let asked = ["verify", "rings/table-i-c.toml", "--min-interval-us", "15000"];
+    let outcome = eeruf(&asked);
+    assert_eq!(outcome.code, Some(1));
+    assert!(outcome.out.contains("sensors 4 and 1 fire 1 ms apart between phases a and b"), "{}", outcome.out);
+    let report = json(&[&asked[..], &["--json"]].concat());
+    assert_eq!(report["min_interval_us"], 1000);
+    let violation = &report["violations"][0];
+    assert_eq!(violation["kind"], "interval");
+    assert_eq!(violation["sensors"], serde_json::json!([3, 0]));
+    assert_eq!((&violation["value_us"], &violation["required_us"]), (&1000.into(), &15_000.into()));
+    assert_eq!(violation["source"], "Sec. 3.1 c");
+}
+
+#[test]
+fn the_files_of_the_papers_tables_are_the_tables_of_the_core() {
+    use eeruf_core::tables;
+    let tables = [
+        ("table-i-a", tables::TABLE_I_A),
+        ("table-i-b", tables::TABLE_I_B),
+        ("table-i-c", tables::TABLE_I_C),
+        ("table-i-d", tables::TABLE_I_D),
+        ("table-i-19ms", tables::THE_ONE_WITH_19_MS),
+    ];
+    for (name, table) in tables {
+        let report = json(&["verify", &format!("rings/{name}.toml"), "--json"]);
+        let requirements = eeruf_core::Requirements::new(eeruf_core::Micros::ZERO);
+        let expected = table.verify(&requirements);
+        let interval = expected.min_interval().map(|interval| interval.value.as_micros());
+        assert_eq!(report["min_interval_us"].as_u64(), interval.map(u64::from), "{name}");
+        assert_eq!(report["min_refire_us"], expected.min_refire().as_micros(), "{name}");
+        assert_eq!(report["separation_us"], expected.separation().unwrap().value.as_micros(), "{name}");
+    }
+}
+
+#[test]
+fn the_log_of_a_real_robot_is_judged_reading_by_reading() {
+    let log = "tests/data/scitos-g5-24-sonars.csv";
+    for (t_delta, accepted, rejected) in [("1000", 101_332, 8257), ("500", 99_210, 10_379)] {
+        let replay = json(&["replay", log, "--t-delta-us", t_delta, "--json"]);
+        let expected = serde_json::json!({
+            "accepted": accepted, "rejected": rejected, "first": 3226, "no_echo": 3208, "clear": 14_921,
+        });
+        assert_eq!(replay["total"], expected);
+        let sensors = replay["sensors"].as_array().unwrap();
+        assert_eq!((sensors.len(), &sensors[23]["name"]), (24, &"S24".into()));
+        let sum: u64 = sensors.iter().map(|sensor| sensor["accepted"].as_u64().unwrap()).sum();
+        assert_eq!(sum, accepted);
+    }
+}
+
+#[test]
+fn a_replay_draws_what_it_counts() {
+    let (folder, log) = Scratch::new("log.csv", "left,note,right\n1.0,x,\n1.0,y,2.5\n1.5,z,2.5\n");
+    let picture = folder.path().join("picture.svg");
+    let outcome = eeruf(&["replay", log.to_str().unwrap(), "--t-delta-us", "100", "--svg", picture.to_str().unwrap()]);
+    assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
+    assert!(outcome.out.contains("| left   |        1 |        1 |         50.0 % |     1 |"), "{}", outcome.out);
+    // The first row of `right` has no echo; it is a sensor all the same, and `note` is none.
+    assert!(
+        outcome.out.contains("| right  |        1 |        0 |          0.0 % |     1 |       1 |"),
+        "{}",
+        outcome.out
+    );
+    assert!(!outcome.out.contains("note"), "{}", outcome.out);
+    let svg = std::fs::read_to_string(picture).unwrap();
+    assert!(svg.starts_with("<svg") && svg.contains("left") && svg.contains("3 firings"));
+}
+
+#[test]
+fn bad_input_gets_one_line_that_names_file_place_value_and_what_is_expected() {
+    let cases = [
+        (
+            "period_us = 100000\nt_lag_us = [0]\nt_wait_a_us = [1, 2]\nt_wait_b_us = [1]\n",
+            ": t_wait_a_us has 2 numbers; expected 1, as many as t_lag_us",
+        ),
+        (
+            "period_us = 100\nt_fire_a_us = [10, 100]\nt_fire_b_us = [1, 2]\n",
+            ": sensor 2 fires 100 us into phase a; expected less than the period of 100 us",
+        ),
+        (
+            "period_us = 100000\nt_fire_a_us = [0]\n",
+            ": expected either t_lag_us, t_wait_a_us and t_wait_b_us, or t_fire_a_us and t_fire_b_us, one number for each \
+          sensor",
+        ),
+        ("period_us = 100000\nt_fire_a_us = [0]\nt_fire_b_us = [-3]\n", ", line 3: "),
+        ("period_us = 100000\nt_fires_a_us = [0]\n", ", line 2: unknown field `t_fires_a_us`, expected one of "),
+        ("period_us = 0\nt_fire_a_us = [0]\nt_fire_b_us = [0]\n", ": a period of 0 us; expected 1 us to 268435.456 ms"),
+        ("period_us = 9\nt_fire_a_us = []\nt_fire_b_us = []\n", ": 0 sensors; expected 1 to 64"),
+        ("period_us = \n", ", line 1: "),
+    ];
+    for (contents, expected) in cases {
+        let (_folder, file) = Scratch::new("bad.toml", contents);
+        let outcome = eeruf(&["verify", file.to_str().unwrap()]);
+        assert_eq!((outcome.code, outcome.out.as_str()), (Some(2), ""), "{contents}");
+        assert_eq!(outcome.err.lines().count(), 1, "{}", outcome.err);
+        let prefix = format!("eeruf: {}{expected}", file.display());
+        assert!(outcome.err.starts_with(&prefix), "{}\n{prefix}", outcome.err);
+    }
+    let cases = [
+        ("a,b\n1.0,2.0\n1.0,?\n", ", line 3: column b: `?`; expected a range in metres"),
+        ("a,b\n1.0,2.0\n1.0,-2\n", ", line 3: column b: `-2`; expected a range of zero metres or more"),
+        ("a,b\n1.0,2.0\n1.0\n", ", line 3: "),
+        ("a,b\nx,y\n", ": no readings; expected a header and rows with a range in metres for each sensor"),
+        ("", ": no readings; expected a header and rows with a range in metres for each sensor"),
+    ];
+    for (contents, expected) in cases {
+        let (_folder, file) = Scratch::new("bad.csv", contents);
+        let outcome = eeruf(&["replay", file.to_str().unwrap(), "--t-delta-us", "100"]);
+        assert_eq!((outcome.code, outcome.out.as_str()), (Some(2), ""), "{contents}");
+        let prefix = format!("eeruf: {}{expected}", file.display());
+        assert!(outcome.err.starts_with(&prefix), "{}\n{prefix}", outcome.err);
+        assert_eq!(outcome.err.lines().count(), 1, "{}", outcome.err);
+    }
+    let missing = eeruf(&["verify", "no-such-file.toml"]);
+    assert_eq!(missing.code, Some(2));
+    assert!(missing.err.starts_with("eeruf: no-such-file.toml: No such file"), "{}", missing.err);
+}

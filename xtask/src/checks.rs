@@ -1,0 +1,77 @@
+//! `cargo xtask test`: everything that must hold before a change goes in.
+
+use std::collections::BTreeMap;
+use std::process::{Command, ExitCode};
+
+use cargo_metadata::{Metadata, MetadataCommand, Package};
+
+use crate::steps::{Steps, Trouble, run};
+use crate::toolchain::{cargo_for_target, cargo_of_version};
+
+/// The smallest core that firmware runs on; the others are tried with the firmware itself.
+const BARE_TARGETS: [&str; 1] = ["thumbv6m-none-eabi"];
+
+pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
+    let mut steps = Steps::default();
+    steps.step("formatting", || run_cargo(&["fmt", "--all", "--check"]));
+    steps.step("clippy", || {
+        run_cargo(&["clippy", "--workspace", "--all-targets", "--locked", "--", "--deny", "warnings"])
+    });
+    let metadata = match MetadataCommand::new().no_deps().exec() {
+        Ok(metadata) => metadata,
+        Err(error) => {
+            steps.step("cargo metadata", || Err(Trouble::Failed(error.to_string())));
+            return steps.finish(nothing_skipped);
+        }
+    };
+    steps.step("each feature alone", || each_feature_alone(&metadata));
+    for target in BARE_TARGETS {
+        steps.step(&format!("eeruf-core without an operating system ({target})"), || {
+            let mut cargo = cargo_for_target(target)?;
+            run(cargo.args(["build", "--package", "eeruf-core", "--release", "--locked", "--target", target]))
+        });
+    }
+    for (version, packages) in packages_by_version(&metadata) {
+        steps.step(&format!("minimum Rust {version}"), || {
+            let mut cargo = cargo_of_version(&version)?;
+            cargo.args(["check", "--locked"]);
+            for package in packages {
+                cargo.args(["--package", &package.name]);
+            }
+            run(&mut cargo)
+        });
+    }
+    steps.step("tests and doctests", || run_cargo(&["test", "--workspace", "--locked"]));
+    steps.step("documentation", || {
+        run(Command::new("cargo")
+            .args(["doc", "--workspace", "--no-deps", "--locked"])
+            .env("RUSTDOCFLAGS", "--deny warnings"))
+    });
+    steps.finish(nothing_skipped)
+}
+
+fn run_cargo(args: &[&str]) -> Result<(), Trouble> {
+    run(Command::new("cargo").args(args))
+}
+
+fn each_feature_alone(metadata: &Metadata) -> Result<(), Trouble> {
+    for package in metadata.workspace_packages() {
+        run_cargo(&["check", "--package", &package.name, "--locked", "--no-default-features"])?;
+        for feature in package.features.keys().filter(|feature| *feature != "default") {
+            let features = ["--no-default-features", "--features", feature];
+            run_cargo(&[&["check", "--package", &package.name, "--locked"], &features[..]].concat())?;
+        }
+    }
+    Ok(())
+}
+
+/// The packages of the workspace by the minimum version of Rust that they declare, as "1.85".
+fn packages_by_version(metadata: &Metadata) -> BTreeMap<String, Vec<&Package>> {
+    let mut packages = BTreeMap::<_, Vec<_>>::new();
+    for package in metadata.workspace_packages() {
+        if let Some(version) = &package.rust_version {
+            packages.entry(format!("{}.{}", version.major, version.minor)).or_default().push(package);
+        }
+    }
+    packages
+}

@@ -68,10 +68,14 @@ fn main() {
     let file = std::env::args()
         .nth(1)
         .unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/critical-paths.json").into());
+    let only = std::env::args().nth(2);
     let corpus: Value = serde_json::from_str(&std::fs::read_to_string(file).expect("the corpus")).expect("JSON");
     let mut out = serde_json::Map::new();
     for case in corpus["cases"].as_array().expect("cases") {
         let id = case["id"].as_str().expect("id");
+        if only.as_ref().is_some_and(|only| only != id) {
+            continue;
+        }
         let mut walls: Vec<_> = case["walls"]
             .as_array()
             .expect("walls")
@@ -95,6 +99,9 @@ fn main() {
         }
     }
     for (id, walls) in [("star1000", star(1000)), ("pillars1024", pillars(16))] {
+        if only.as_ref().is_some_and(|only| only != id) {
+            continue;
+        }
         let start = Instant::now();
         let scene = Scene::new(walls, vec![], Air::default()).expect("a scene");
         let build_us = start.elapsed().as_secs_f64() * 1e6;

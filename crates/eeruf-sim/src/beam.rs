@@ -33,6 +33,8 @@ pub(crate) struct Beam {
     /// Directions in the image's world are `turn + d` after an even number of bounces, `turn - d` after an odd one, with `d`
     /// the direction of departure.
     pub(crate) turn: f64,
+    /// The product of the walls' reflections.
+    kept: f64,
 }
 
 /// A receiver that sees an image of the source.
@@ -41,6 +43,8 @@ pub(crate) struct Sighting {
     pub(crate) length_m: f64,
     pub(crate) image: Point,
     pub(crate) turn: f64,
+    /// The product of the walls' reflections, if all were flat.
+    pub(crate) kept: f64,
     pub(crate) receiver: u32,
     pub(crate) order: u32,
     /// The beam before the last wall, or [`NONE`] when there was no wall.
@@ -173,6 +177,7 @@ impl BeamTree {
             wall: NONE,
             order: 0,
             turn: 0.0,
+            kept: 1.0,
         });
         let mut triangles = core::mem::take(&mut self.triangles);
         growth.mesh.containing(source, &mut triangles);
@@ -292,6 +297,7 @@ impl BeamTree {
             wall,
             order: beam.order + 1,
             turn: mirror.turn - beam.turn,
+            kept: beam.kept * mirror.reflection,
         };
         if growth.last_for_receivers
             && next.order == growth.max_order
@@ -302,7 +308,8 @@ impl BeamTree {
         self.beams.push(next);
     }
 
-    #[cold]
+    /// Looks for receivers and poles in a triangle that the cone passes.
+    #[inline]
     #[allow(clippy::too_many_arguments, reason = "the parts of a beam in flight")]
     fn look(
         &mut self,
@@ -320,16 +327,24 @@ impl BeamTree {
             target = next;
             let ahead = at - beam.image;
             if what & POLE != 0 {
-                let radius = growth.poles[(what & !POLE) as usize].radius_m * (1.0 + 1e-9);
-                if cross(ahead, left) >= -radius * left.norm() && cross(right, ahead) >= -radius * right.norm() {
-                    self.pole_cones.push(PoleCone { pole: what & !POLE, triangle, beam: index, left, right });
-                }
+                let cone = PoleCone { pole: what & !POLE, triangle, beam: index, left, right };
+                self.pass_pole(growth, ahead, cone);
             } else if cone_holds(left, right, ahead) {
                 let length = ahead.norm();
                 if length <= growth.max_length_m {
                     self.see(beam, beam.wall, what, length);
                 }
             }
+        }
+    }
+
+    #[cold]
+    fn pass_pole(&mut self, growth: &Growth<'_>, ahead: Vector, cone: PoleCone) {
+        let radius = growth.poles[cone.pole as usize].radius_m * (1.0 + 1e-9);
+        if cross(ahead, cone.left) >= -radius * cone.left.norm()
+            && cross(cone.right, ahead) >= -radius * cone.right.norm()
+        {
+            self.pole_cones.push(cone);
         }
     }
 
@@ -342,6 +357,7 @@ impl BeamTree {
             length_m,
             image: beam.image,
             turn: beam.turn,
+            kept: beam.kept,
             receiver,
             order: beam.order,
             parent: beam.parent,

@@ -1,4 +1,34 @@
-//! Exact critical paths and the acoustics along them.
+//! The physical half of EERUF's simulator: which ways sound takes from one ultrasonic sensor to another, exactly, and how
+//! loud it is when it arrives.
+//!
+//! - A [`Scene`] is walls, poles and air, checked once. [`Scene::paths`] answers with *every* specular path; a [`Tracer`]
+//!   does so again and again without allocating.
+//! - [`Transducer`], [`Piston`], [`Material`] and [`Air`] turn a path into an amplitude; [`CrosstalkMatrix`] does so for a
+//!   whole ring and says who hears whom.
+//! - [`reception`] solves for the moment at which sound meets a moving receiver; [`Scene::contact`] for what a robot touches.
+//!
+//! Paths are found with a beam tree over a constrained triangulation of the scene, poles with Alhazen's problem; positions
+//! are good to about 1e-12 of the scene's size and sets of paths are complete. Units are metres, seconds and radians; walls,
+//! poles, sensors and receivers are counted from 0.
+//!
+//! The method that all this is for: J. Borenstein and Y. Koren, "Error Eliminating Rapid Ultrasonic Firing for Mobile Robot
+//! Obstacle Avoidance", IEEE Transactions on Robotics and Automation 11(1), 1995, pp. 132-138.
+//!
+//! ```
+//! use eeruf_sim::*;
+//! // A ring of eight sensors in a small room: who hears sensor 0?
+//! let room = Wall::polyline(&[[0.0, 0.0], [3.0, 0.0], [3.0, 2.0], [0.0, 2.0], [0.0, 0.0]]).collect();
+//! let scene = Scene::new(room, vec![], Air::default())?;
+//! let robot = Pose::new(Vector::new(1.5, 1.0), 0.0);
+//! let ring: Vec<_> = ring_of(&robot, 8, 0.3, 0.0, std::f64::consts::FRAC_PI_4).collect();
+//! let transducer = Transducer::POLAROID_6500;
+//! let mut matrix = CrosstalkMatrix::new();
+//! matrix.compute(&mut Tracer::new(), &scene, &ring, &transducer, Limits::order(4), transducer.detection_floor(scene.air()))?;
+//! let echo = &matrix.between(0, 0)[0];
+//! assert!((echo.length_m - 2.4).abs() < 1e-12); // the wall ahead
+//! assert!(!matrix.between(0, 1).is_empty()); // the neighbour hears it too
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod air;
 pub mod alhazen;
@@ -15,6 +45,7 @@ pub mod piston;
 pub mod plane;
 pub mod pole;
 mod pole_paths;
+mod polyline;
 pub mod scatter;
 pub mod scene;
 pub mod transducer;
@@ -27,7 +58,7 @@ pub use crosstalk::{CriticalPath, CrosstalkMatrix, ring_of};
 pub use error::{PathsError, SceneError};
 pub use material::Material;
 pub use moving::{Reception, reception, reception_along};
-pub use paths::{Bounce, Limits, Paths, Tracer};
+pub use paths::{Bounce, Limits, Paths, Tracer, paths_of_many};
 pub use piston::Piston;
 pub use plane::{Point, Pose, Vector};
 pub use pole::Pole;

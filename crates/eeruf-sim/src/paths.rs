@@ -1,13 +1,16 @@
 //! Critical paths: every specular way from a source to its receivers, as flat arrays that are used again from question to
 //! question.
 
+use rayon::prelude::*;
+
 use crate::{
     amplitude::reflected,
     beam::{Beam, BeamTree, Growth, Sighting},
     error::PathsError,
     mesh::NONE,
-    plane::{Point, TOUCH_M, wrap_angle},
+    plane::{Point, TOUCH_M, opposite, wrap_angle},
     pole_paths::{PolePath, PoleSearch},
+    scatter::pole_wave_correction,
     scene::Scene,
 };
 
@@ -69,6 +72,16 @@ impl Paths {
         self.receiver.partition_point(|&r| r < receiver)..self.receiver.partition_point(|&r| r <= receiver)
     }
 
+    fn reserve(&mut self, more: usize) {
+        self.receiver.reserve(more);
+        self.length_m.reserve(more);
+        self.order.reserve(more);
+        self.departure_rad.reserve(more);
+        self.arrival_rad.reserve(more);
+        self.amplitude.reserve(more);
+        self.ends.reserve(more);
+    }
+
     /// Forgets the paths, keeps the memory.
     pub fn clear(&mut self) {
         self.receiver.clear();
@@ -103,13 +116,22 @@ impl Limits {
 pub struct Tracer {
     /// The frequency that absorption and roughness are taken at, in Hz.
     pub frequency_hz: f64,
+    /// Whether poles return what a rigid cylinder does at this frequency instead of what geometric optics says; see
+    /// [`pole_wave_correction`](crate::pole_wave_correction). Off by default.
+    pub pole_waves: bool,
     tree: BeamTree,
     poles: PoleSearch,
+    keys: Vec<u64>,
     ranks: Vec<Rank>,
     starts: Vec<u32>,
     sequence: Vec<Bounce>,
     other: Vec<Bounce>,
 }
+
+/// The low bits of a sorting key hold the index of the path, the high ones those of its length: lengths are positive, so
+/// their bits are in the same order as they are.
+const INDEX: u64 = (1 << 24) - 1;
+const _: () = assert!(MAX_BEAMS as u64 <= INDEX);
 
 /// A path's place in the order of lengths.
 #[derive(Clone, Copy, Debug)]
@@ -134,8 +156,10 @@ impl Tracer {
     pub fn at(frequency_hz: f64) -> Self {
         Self {
             frequency_hz,
+            pole_waves: false,
             tree: BeamTree::default(),
             poles: PoleSearch::default(),
+            keys: Vec::new(),
             ranks: Vec::new(),
             starts: Vec::new(),
             sequence: Vec::new(),
@@ -205,7 +229,7 @@ impl Tracer {
         self.tree.beams.len()
     }
 
-    /// Sorts by receiver, then length: a counting sort over receivers and a short sort within each.
+    /// Sorts by receiver, then length: a counting sort over receivers and a short sort of plain numbers within each.
     fn rank(&mut self, receivers: usize) {
         let walls = self.tree.sightings.iter().map(|s| (s.receiver, s.length_m));
         let poles = self.poles.found.iter().map(|p| (p.receiver, p.length_m));
@@ -217,53 +241,53 @@ impl Tracer {
         for receiver in 2..self.starts.len() {
             self.starts[receiver] += self.starts[receiver - 1];
         }
-        self.ranks.clear();
-        self.ranks.resize(self.tree.sightings.len() + self.poles.found.len(), Rank { length_m: 0.0, index: 0 });
+        self.keys.clear();
+        self.keys.resize(self.tree.sightings.len() + self.poles.found.len(), 0);
         for (index, (receiver, length_m)) in walls.chain(poles).enumerate() {
             let place = &mut self.starts[receiver as usize + 1];
-            self.ranks[*place as usize] = Rank { length_m, index: index as u32 };
+            self.keys[*place as usize] = (length_m.to_bits() & !INDEX) | index as u64;
             *place += 1;
         }
         for receiver in 0..receivers {
             let range = self.starts[receiver] as usize..self.starts[receiver + 1] as usize;
-            // Lengths are positive, so their bits are in the same order and compare faster.
-            self.ranks[range].sort_unstable_by_key(|rank| (rank.length_m.to_bits(), rank.index));
+            self.keys[range].sort_unstable();
         }
     }
 
-    /// Keeps one of several paths with the same order and image: what both wall orders of a right-angle corner, or two
-    /// pieces of one straight wall, find at their common point.
+    /// Puts the sorted paths in exact order and keeps one of several with the same order and image: what both wall orders
+    /// of a right-angle corner, or two pieces of one straight wall, find at their common point.
     fn remove_doubles(&mut self, receivers: usize) {
-        let mut kept_to = 0;
-        let mut from = 0;
+        self.ranks.clear();
         for receiver in 0..receivers {
-            let to = self.starts[receiver + 1] as usize;
-            let group = kept_to;
-            for at in from..to {
-                let rank = self.ranks[at];
-                let double = (group..kept_to)
-                    .rev()
-                    .take_while(|&k| rank.length_m - self.ranks[k].length_m <= TOUCH_M)
-                    .find(|&k| self.is_double(self.ranks[k].index, rank.index));
-                match double {
-                    None => {
-                        self.ranks[kept_to] = rank;
-                        kept_to += 1;
-                    }
+            let group = self.ranks.len();
+            for at in self.starts[receiver] as usize..self.starts[receiver + 1] as usize {
+                let index = (self.keys[at] & INDEX) as u32;
+                let length_m = match self.entry(index) {
+                    Entry::Walls(sighting) => sighting.length_m,
+                    Entry::Pole(path) => path.length_m,
+                };
+                // The keys ignore the last digits of the lengths, so a neighbour or two may have to give way.
+                let mut place = self.ranks.len();
+                while place > group && self.ranks[place - 1].length_m > length_m {
+                    place -= 1;
+                }
+                let near = |rank: &Rank| (rank.length_m - length_m).abs() <= TOUCH_M;
+                let below = (group..place).rev().take_while(|&k| near(&self.ranks[k]));
+                let above = (place..self.ranks.len()).take_while(|&k| near(&self.ranks[k]));
+                match below.chain(above).find(|&k| self.is_double(self.ranks[k].index, index)) {
+                    None => self.ranks.insert(place, Rank { length_m, index }),
                     Some(k) => {
                         // The smaller wall sequence stays, whatever the mesh looked like.
                         self.read_bounces(self.ranks[k].index);
                         core::mem::swap(&mut self.sequence, &mut self.other);
-                        self.read_bounces(rank.index);
+                        self.read_bounces(index);
                         if self.sequence < self.other {
-                            self.ranks[k].index = rank.index;
+                            self.ranks[k].index = index;
                         }
                     }
                 }
             }
-            from = to;
         }
-        self.ranks.truncate(kept_to);
     }
 
     fn is_double(&self, a: u32, b: u32) -> bool {
@@ -299,46 +323,58 @@ impl Tracer {
     fn write(&self, scene: &Scene, receivers: &[Point], paths: &mut Paths) {
         let loss_per_m = -scene.air().absorption_db_per_m(self.frequency_hz) * core::f64::consts::LN_10 / 20.0;
         let wave_number = core::f64::consts::TAU * self.frequency_hz / scene.air().speed_of_sound();
+        paths.reserve(self.ranks.len());
         for rank in &self.ranks {
             let start = paths.bounces.len();
-            let (receiver, order, departure, arrival, spread) = match self.entry(rank.index) {
+            let amplitude;
+            match self.entry(rank.index) {
                 Entry::Walls(s) => {
                     push_walls(&self.tree.beams, s, &mut paths.bounces);
-                    let at = receivers[s.receiver as usize];
-                    let ahead = at - s.image;
+                    let ahead = receivers[s.receiver as usize] - s.image;
                     let there = ahead.y.atan2(ahead.x);
                     let departure = if s.order.is_multiple_of(2) { there - s.turn } else { s.turn - there };
-                    (
-                        s.receiver,
-                        s.order,
-                        wrap_angle(departure),
-                        wrap_angle(there + core::f64::consts::PI),
-                        1.0 / s.length_m,
-                    )
+                    let angles = [wrap_angle(departure), opposite(there)];
+                    let kept = if scene.rough {
+                        reflected(scene, &paths.bounces[start..], angles, [1.0; 2], wave_number)
+                    } else {
+                        s.kept
+                    };
+                    amplitude = kept / s.length_m;
+                    paths.receiver.push(s.receiver);
+                    paths.order.push(s.order);
+                    paths.departure_rad.push(angles[0]);
+                    paths.arrival_rad.push(angles[1]);
                 }
                 Entry::Pole(p) => {
                     paths.bounces.extend_from_slice(self.poles.bounces(p));
-                    (p.receiver, p.order, p.departure_rad, p.arrival_rad, p.spread)
+                    let angles = [p.departure_rad, p.arrival_rad];
+                    let kept = reflected(scene, &paths.bounces[start..], angles, p.cos_incidence, wave_number);
+                    amplitude = kept * p.spread * self.pole_waves(p, &paths.bounces[start..], scene, wave_number);
+                    paths.receiver.push(p.receiver);
+                    paths.order.push(p.order);
+                    paths.departure_rad.push(angles[0]);
+                    paths.arrival_rad.push(angles[1]);
                 }
-            };
-            let hits = self.pole_hits(rank.index);
-            let reflected = reflected(scene, &paths.bounces[start..], [departure, arrival], hits, wave_number);
-            paths.receiver.push(receiver);
+            }
             paths.length_m.push(rank.length_m);
-            paths.order.push(order);
-            paths.departure_rad.push(departure);
-            paths.arrival_rad.push(arrival);
-            paths.amplitude.push(spread * reflected * (loss_per_m * rank.length_m).exp());
+            paths.amplitude.push(amplitude * (loss_per_m * rank.length_m).exp());
             paths.ends.push(paths.bounces.len() as u32);
         }
     }
 
-    /// Cosines of incidence at the poles of a path.
-    fn pole_hits(&self, index: u32) -> [f64; 2] {
-        match self.entry(index) {
-            Entry::Walls(_) => [1.0; 2],
-            Entry::Pole(path) => path.cos_incidence,
+    /// The wave correction of a path's poles, if it is asked for.
+    fn pole_waves(&self, path: &PolePath, bounces: &[Bounce], scene: &Scene, wave_number: f64) -> f64 {
+        if !self.pole_waves {
+            return 1.0;
         }
+        let poles = bounces.iter().filter_map(|bounce| match *bounce {
+            Bounce::Pole(pole) => scene.poles().get(pole as usize),
+            Bounce::Wall(_) => None,
+        });
+        let corrections = poles
+            .zip(path.cos_incidence)
+            .map(|(pole, cos)| pole_wave_correction(wave_number * pole.radius_m, cos.min(1.0).acos()));
+        corrections.product()
     }
 }
 
@@ -348,14 +384,16 @@ enum Entry<'a> {
 }
 
 /// Appends the walls of a sighting, source to receiver.
+#[inline]
 fn push_walls(beams: &[Beam], sighting: &Sighting, bounces: &mut Vec<Bounce>) {
-    if sighting.wall == NONE {
-        return;
-    }
     let start = bounces.len();
-    bounces.push(Bounce::Wall(sighting.wall));
-    push_chain(beams, sighting.parent, bounces);
-    bounces[start..].reverse();
+    bounces.resize(start + sighting.order as usize, Bounce::Wall(sighting.wall));
+    let mut beam = sighting.parent;
+    for bounce in bounces[start..].iter_mut().rev().skip(1) {
+        let node = &beams[beam as usize];
+        *bounce = Bounce::Wall(node.wall);
+        beam = node.parent;
+    }
 }
 
 /// Appends the walls of a beam from the last to the first.
@@ -383,6 +421,25 @@ fn check(scene: &Scene, source: Point, receivers: &[Point], limits: Limits) -> R
         }
         None => Ok(()),
     }
+}
+
+/// The paths of many sources at once, on all cores, in the order of the sources.
+///
+/// # Errors
+/// As [`Tracer::trace`], for the first source that has one.
+pub fn paths_of_many(
+    scene: &Scene,
+    sources: &[Point],
+    receivers: &[Point],
+    limits: Limits,
+) -> Result<Vec<Paths>, PathsError> {
+    sources
+        .par_iter()
+        .map_init(Tracer::new, |tracer, &source| {
+            let mut paths = Paths::default();
+            tracer.trace(scene, source, receivers, limits, &mut paths).map(|()| paths)
+        })
+        .collect()
 }
 
 impl Scene {

@@ -30,8 +30,23 @@ pub(crate) fn wrap_angle(angle_rad: f64) -> f64 {
     if angle_rad > -PI && angle_rad <= PI {
         return angle_rad;
     }
-    let wrapped = angle_rad - TAU * (angle_rad / TAU).round();
-    if wrapped <= -PI { wrapped + TAU } else { wrapped }
+    // A conversion to an integer and back rounds without a call.
+    let turns = (angle_rad / TAU + 0.5f64.copysign(angle_rad)) as i64;
+    let wrapped = angle_rad - TAU * turns as f64;
+    if wrapped <= -PI {
+        wrapped + TAU
+    } else if wrapped > PI {
+        wrapped - TAU
+    } else {
+        wrapped
+    }
+}
+
+/// The opposite of a direction in (-pi, pi], in the same range.
+#[inline]
+pub(crate) fn opposite(angle_rad: f64) -> f64 {
+    use core::f64::consts::PI;
+    if angle_rad > 0.0 { angle_rad - PI } else { angle_rad + PI }
 }
 
 /// The line of a wall as a mirror.
@@ -41,13 +56,15 @@ pub(crate) struct Mirror {
     normal: Vector,
     /// Twice the line's own angle: reflection sends a direction `theta` to `turn - theta`.
     pub(crate) turn: f64,
+    /// What a flat wall of its material returns.
+    pub(crate) reflection: f64,
 }
 
 impl Mirror {
     /// The mirror along the line through two different points; its normal is on the left of `from` to `to`.
-    pub(crate) fn through(from: Point, to: Point) -> Self {
+    pub(crate) fn through(from: Point, to: Point, reflection: f64) -> Self {
         let along = (to - from).normalize();
-        Self { on: from, normal: Vector::new(-along.y, along.x), turn: 2.0 * along.y.atan2(along.x) }
+        Self { on: from, normal: Vector::new(-along.y, along.x), turn: 2.0 * along.y.atan2(along.x), reflection }
     }
 
     /// Signed distance, positive on the left.
@@ -80,7 +97,7 @@ mod tests {
 
     #[test]
     fn reflecting_twice_returns_the_point_and_the_direction() {
-        let mirror = Mirror::through(Point::new(1.0, 2.0), Point::new(4.0, -1.5));
+        let mirror = Mirror::through(Point::new(1.0, 2.0), Point::new(4.0, -1.5), 1.0);
         let point = Point::new(0.3, 7.0);
         let image = mirror.image(point, mirror.distance(point));
         assert!((mirror.image(image, mirror.distance(image)) - point).norm() < 1e-14);
@@ -95,6 +112,7 @@ mod tests {
         use core::f64::consts::PI;
         assert_eq!(wrap_angle(PI), PI);
         assert_eq!(wrap_angle(-PI), PI);
+        assert_eq!((opposite(PI), opposite(0.0)), (0.0, PI));
         assert!((wrap_angle(7.0 * PI + 0.25) - (0.25 - PI)).abs() < 1e-14);
     }
 }

@@ -61,7 +61,7 @@ impl Scene {
             Bvh::from_iter(BvhBuildStrategy::Binned, walls.iter().enumerate().map(|(i, wall)| (i, wall_box(wall))));
         let (vertices, pieces) = join(&walls, &wall_boxes)?;
         let mesh = Mesh::build(vertices, &pieces, &walls, poles.iter().map(|pole| pole.centre))?;
-        let mirrors = walls.iter().map(|wall| Mirror::through(wall.from, wall.to)).collect();
+        let mirrors = walls.iter().map(|wall| Mirror::through(wall.from, wall.to, wall.material.reflection)).collect();
         let materials = walls.iter().map(|wall| wall.material).chain(poles.iter().map(|pole| pole.material));
         let rough = materials.into_iter().any(|material| material.roughness_m > 0.0);
         let mut pole_triangles = Vec::new();

@@ -24,6 +24,8 @@ pub struct Robot {
     pub motion: Motion,
     /// Its clock.
     pub clock: Clock,
+    /// When its ring begins to fire, by its own clock, after the start of the simulation.
+    pub start: Micros,
     /// The schedule that the `eeruf` methods use; `None` for the paper's own (see [`table_i_d_for`]).
     ///
     /// [`table_i_d_for`]: crate::method::table_i_d_for
@@ -70,6 +72,7 @@ impl Robot {
             pose,
             motion: Motion::Still,
             clock: Clock::default(),
+            start: Micros::ZERO,
             schedule: None,
             period: Micros::from_millis(60),
             t_delta: Micros::new(500),

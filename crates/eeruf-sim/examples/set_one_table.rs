@@ -11,7 +11,7 @@ fn main() {
     let alcoves: Vec<u64> = (0..argument(1, 80)).collect();
     let options = Options::periods(argument(2, 1000) as u32);
     println!(
-        "{:16} {:>21} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10}",
+        "{:16} {:>21} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10}",
         "method",
         "wrong % p10 med p90",
         "of acc.",
@@ -37,11 +37,12 @@ fn main() {
         let wrong = |s: &eeruf_sim::Summary| 100.0 * s.wrong_of_all;
         let readings: usize = summaries.iter().map(|summary| summary.readings).sum();
         println!(
-            "{:16} {:6.2} {:6.2} {:6.2}  {:8.2} {:8.2} {:8.2} {:8.2} {:8.1} {:8.1} {:8.1} {:10.0}",
+            "{:16} {:6.2} {:6.2} {:6.2}  {:8.2} {:8.2} {:8.2} {:8.2} {:8.2} {:8.1} {:8.1} {:8.1} {:10.0}",
             method.as_str(),
             of(0.1, &wrong),
             median(&wrong),
             of(0.9, &wrong),
+            median(&|s| 100.0 * s.crosstalk_of_all),
             median(&|s| 100.0 * s.wrong_of_accepted.unwrap_or(0.0)),
             median(&|s| 100.0 * s.wrong_before_filter),
             median(&|s| 100.0 * s.rejected),

@@ -3,7 +3,7 @@
 use core::fmt;
 use core::str::FromStr;
 
-use eeruf_core::{MAX_SENSORS, Micros, Schedule, ScheduleError};
+use eeruf_core::{MAX_SENSORS, Micros, Phase, Schedule, ScheduleError};
 use serde::{Serialize, Serializer};
 
 use crate::robot::Robot;
@@ -29,7 +29,8 @@ pub enum Method {
     Comparison,
     /// As conventional, but the median of a sensor's last readings is believed.
     Median,
-    /// Immediate refiring with alternating waits (Figs. 2a, 2b). Consecutive readings are compared.
+    /// Immediate refiring with alternating waits (Figs. 2a, 2b): those of the paper's table, each longer by the robot's
+    /// `min_refire`. Consecutive readings are compared.
     EerufImmediate,
     /// Scheduled firing (Fig. 3) by the robot's own schedule, or else by the paper's table at the robot's period (see
     /// [`table_i_d_for`]). Consecutive readings are compared.
@@ -193,6 +194,15 @@ fn constant(period: Micros, lags: &[Micros]) -> Result<AnySchedule, ScheduleErro
     AnySchedule::from_slices(period, lags, [&none, &none])
 }
 
+/// The paper's waits for immediate refiring, each longer by the shortest refire time. Holding a sensor back until that time
+/// has passed would do as well for the transducer, but wherever it does so every wait is as good as any other, and nothing
+/// alternates.
+fn refiring(sensors: usize, period: Micros, neighbours: u8, soonest: Micros) -> Result<AnySchedule, ScheduleError> {
+    let table = table_i_d_for(sensors, period, neighbours)?;
+    let longer = |phase| table.t_wait(phase).iter().map(|wait| wait.saturating_add(soonest)).collect::<Vec<_>>();
+    AnySchedule::from_slices(period.saturating_add(soonest), table.t_lag(), [&longer(Phase::A), &longer(Phase::B)])
+}
+
 /// The schedule that a robot's ring starts with under a method; for dither the lags alone.
 pub(crate) fn schedule_for(
     method: Method,
@@ -207,6 +217,7 @@ pub(crate) fn schedule_for(
         constant(Micros::new(turn.saturating_mul(turns as u32)), &times)
     };
     match method {
+        Method::EerufImmediate => refiring(sensors, period, n, robot.min_refire),
         Method::Simultaneous => constant(period, &vec![Micros::ZERO; sensors]),
         Method::Sequential => in_turn(sensors),
         Method::FarGroups => in_turn(sensors.min(usize::from(n))),
@@ -233,7 +244,7 @@ pub(crate) fn widest_dither(robot: &Robot) -> Micros {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eeruf_core::{Criterion, Phase, Requirements, tables::TABLE_I_D};
+    use eeruf_core::{Criterion, Requirements, tables::TABLE_I_D};
 
     #[test]
     fn the_table_continues_to_any_number_of_sensors_with_all_pairs_apart() {

@@ -38,10 +38,13 @@ pub struct Robot {
     pub window: Micros,
     /// How long a sensor is deaf after it has fired.
     pub blanking: Micros,
-    /// With immediate refiring, how soon a sensor may fire again. 15 ms to begin with.
+    /// With immediate refiring, how long a sensor rests at least between its echo and its next firing. 36 ms to begin with, as
+    /// long as it listens: much sooner, and it hears its last sound fade away in the room, just after blanking, every time.
     pub min_refire: Micros,
     /// How many adjacent sensors must not fire close together; the conventional lags repeat after as many. 4 to begin with.
     pub neighbours: u8,
+    /// How many consecutive readings must agree, 2 to 8. 2 to begin with, as in the paper.
+    pub consecutive: u8,
     /// Whether the robot tells its ring by how much a good reading should change from its own motion.
     pub odometry: bool,
 }
@@ -78,8 +81,9 @@ impl Robot {
             t_delta: Micros::new(500),
             window: Micros::from_millis(36),
             blanking: Micros::new((transducer.blanking_s * 1e6).round() as u32),
-            min_refire: Micros::from_millis(15),
+            min_refire: Micros::from_millis(36),
             neighbours: 4,
+            consecutive: 2,
             odometry: false,
         }
     }

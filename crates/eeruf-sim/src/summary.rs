@@ -2,7 +2,10 @@
 
 use serde::Serialize;
 
-use crate::{method::Method, readings::Readings};
+use crate::{
+    method::Method,
+    readings::{Cause, Readings},
+};
 
 /// By how much a reading may miss the reference, unless another tolerance is asked for: 0.5 ms, 8.6 cm.
 pub const DEFAULT_TOLERANCE_US: f64 = 500.0;
@@ -22,6 +25,9 @@ pub struct Summary {
     pub accepted: usize,
     /// Share of all readings that were accepted and wrong: what does harm.
     pub wrong_of_all: f64,
+    /// The part of `wrong_of_all` that foreign or stale sound caused. The rest are the sensor's own doing: an echo just loud
+    /// enough that faded away once, so that the sensor reads what lies behind.
+    pub crosstalk_of_all: f64,
     /// Share of the accepted readings that were wrong; `None` if none was accepted.
     pub wrong_of_accepted: Option<f64>,
     /// Share of all readings that were not accepted: rejected, first of a pair, without echo once.
@@ -56,7 +62,7 @@ impl Readings {
 
     /// The figures with another tolerance, in microseconds.
     pub fn summary_within(&self, tolerance_us: f64) -> Summary {
-        let (mut accepted, mut wrong, mut good, mut good_lost) = (0, 0, 0, 0);
+        let (mut accepted, mut wrong, mut crosstalk, mut good, mut good_lost) = (0, 0, 0, 0, 0);
         let mut ages = Vec::with_capacity(self.len());
         // Per robot and sensor: when the last accepted reading was fired.
         let mut last =
@@ -65,7 +71,10 @@ impl Readings {
             let believed = self.is_accepted(reading);
             let is_good = self.is_good(reading, tolerance_us);
             accepted += usize::from(believed);
-            wrong += usize::from(believed && self.is_wrong(reading, tolerance_us));
+            let fooled = believed && self.is_wrong(reading, tolerance_us);
+            wrong += usize::from(fooled);
+            let foreign = matches!(self.cause[reading], Cause::Stale | Cause::Crosstalk | Cause::External);
+            crosstalk += usize::from(fooled && foreign);
             good += usize::from(is_good);
             good_lost += usize::from(is_good && !believed);
             let place = &mut last[usize::from(self.robot[reading])][usize::from(self.sensor[reading])];
@@ -81,6 +90,7 @@ impl Readings {
             readings: self.len(),
             accepted,
             wrong_of_all: share(wrong, self.len()),
+            crosstalk_of_all: share(crosstalk, self.len()),
             wrong_of_accepted: (accepted > 0).then(|| share(wrong, accepted)),
             rejected: share(self.len() - accepted, self.len()),
             good_lost: (good > 0).then(|| share(good_lost, good)),

@@ -175,6 +175,9 @@ fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), WorldError> {
     if robot.neighbours == 0 || usize::from(robot.neighbours) > MAX_SENSORS {
         return fail("neighbours", f64::from(robot.neighbours), "1 to 64");
     }
+    if !(2..=8).contains(&robot.consecutive) {
+        return fail("consecutive", f64::from(robot.consecutive), "2 to 8");
+    }
     if let Some(schedule) = &robot.schedule {
         if schedule.sensors() != robot.sensors.len() {
             let (sensors, expected) = (schedule.sensors(), robot.sensors.len());

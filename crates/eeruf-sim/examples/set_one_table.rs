@@ -6,22 +6,19 @@ use std::time::Instant;
 
 use eeruf_sim::{Method, Options, experiments::set_one::Alcove, quantile, simulate, sweep};
 
+/// What stands over the medians.
+const HEADINGS: [&str; 9] =
+    ["crosst. %", "of acc.", "before", "rejected", "lost", "age ms", "p99 ms", "acc./s", "readings/s"];
+
 fn main() {
     let argument = |place, default| std::env::args().nth(place).and_then(|text| text.parse().ok()).unwrap_or(default);
     let alcoves: Vec<u64> = (0..argument(1, 80)).collect();
     let options = Options::periods(argument(2, 1000) as u32);
     println!(
-        "{:16} {:>21} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10}",
+        "{:16} {:>20}{}",
         "method",
         "wrong % p10 med p90",
-        "of acc.",
-        "before",
-        "rejected",
-        "lost",
-        "age ms",
-        "p99",
-        "acc./s",
-        "simulated/s"
+        HEADINGS.map(|heading| format!("{heading:>9}")).concat()
     );
     for method in Method::ALL {
         let start = Instant::now();
@@ -37,7 +34,7 @@ fn main() {
         let wrong = |s: &eeruf_sim::Summary| 100.0 * s.wrong_of_all;
         let readings: usize = summaries.iter().map(|summary| summary.readings).sum();
         println!(
-            "{:16} {:6.2} {:6.2} {:6.2}  {:8.2} {:8.2} {:8.2} {:8.2} {:8.2} {:8.1} {:8.1} {:8.1} {:10.0}",
+            "{:16} {:6.2} {:6.2} {:6.2} {:8.2} {:8.2} {:8.2} {:8.2} {:8.2} {:8.1} {:8.1} {:8.1} {:10.0}",
             method.as_str(),
             of(0.1, &wrong),
             median(&wrong),

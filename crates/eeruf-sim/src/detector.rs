@@ -146,10 +146,8 @@ impl Detector {
         if hearing.echoes == 1 {
             self.until = self.next_at();
         }
-        if let Some(later) = later {
-            if hearing.echoes > 1 || later.at > self.settled {
-                self.pending.push(later);
-            }
+        if let Some(later) = later.filter(|later| hearing.echoes > 1 || later.at > self.settled) {
+            self.pending.push(later);
         }
     }
 

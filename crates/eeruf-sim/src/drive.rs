@@ -45,11 +45,11 @@ struct AdaptiveRing<'s> {
 impl Drive for AdaptiveRing<'_> {
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<Event> {
         let event = self.ring.poll_expecting(now, expected_change_us)?;
-        if let Event::PeriodEnded(stats) = event {
-            if let Some(schedule) = self.adaptation.observe(&stats) {
-                // Every rung was checked against the window, so this cannot fail.
-                _ = self.ring.change_schedule(schedule);
-            }
+        if let Event::PeriodEnded(stats) = event
+            && let Some(schedule) = self.adaptation.observe(&stats)
+        {
+            // Every rung was checked against the window, so this cannot fail.
+            _ = self.ring.change_schedule(schedule);
         }
         Some(event)
     }
@@ -138,7 +138,7 @@ fn boxed<'s, S: Scheduler + 's, const E: usize>(
 ) -> Result<Box<dyn Drive + 's>, RingError> {
     Ok(match sensors {
         ..=8 => Box::new(Ring::<S, 8, E>::with_scheduler(scheduler, config, now)?),
-        ..=24 => Box::new(Ring::<S, 24, E>::with_scheduler(scheduler, config, now)?),
+        9..=24 => Box::new(Ring::<S, 24, E>::with_scheduler(scheduler, config, now)?),
         _ => Box::new(Ring::<S, MAX_SENSORS, E>::with_scheduler(scheduler, config, now)?),
     })
 }

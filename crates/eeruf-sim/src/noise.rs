@@ -39,7 +39,7 @@ impl Noise {
                 return Err(WorldError::Noise { field, value, expected });
             }
         }
-        if !(self.burst_db.abs() <= 200.0) {
+        if !(-200.0..=200.0).contains(&self.burst_db) {
             return Err(WorldError::Noise { field: "burst_db", value: self.burst_db, expected: "-200 to 200" });
         }
         Ok(())

@@ -115,6 +115,11 @@ impl World {
     }
 }
 
+/// Whether a number is one, and not farther from zero than `most`.
+fn within(value: f64, most: f64) -> bool {
+    (-most..=most).contains(&value)
+}
+
 fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), WorldError> {
     if robot.sensors.is_empty() || robot.sensors.len() > MAX_SENSORS {
         return Err(WorldError::Sensors { robot: index, sensors: robot.sensors.len() });
@@ -123,7 +128,7 @@ fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), WorldError> {
     let poses = [("pose", &robot.pose)].into_iter().chain(robot.sensors.iter().map(|sensor| ("sensors", sensor)));
     for (field, pose) in poses {
         for value in [pose.translation.x, pose.translation.y, pose.rotation.angle()] {
-            if !(value.abs() <= MAX_COORDINATE_M) {
+            if !within(value, MAX_COORDINATE_M) {
                 return fail(field, value, "a number within 100000 m");
             }
         }
@@ -133,7 +138,7 @@ fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), WorldError> {
         Motion::Still => {}
         Motion::Constant { velocity, turn_rad_s } => {
             for value in [velocity.x, velocity.y, *turn_rad_s] {
-                if !(value.abs() <= MAX_SPEED) {
+                if !within(value, MAX_SPEED) {
                     return fail("motion", value, speed);
                 }
             }
@@ -143,13 +148,13 @@ fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), WorldError> {
                 return fail("speed_m_s", *speed_m_s, speed);
             }
             for value in points.iter().flat_map(|point| [point.x, point.y]) {
-                if !(value.abs() <= MAX_COORDINATE_M) {
+                if !within(value, MAX_COORDINATE_M) {
                     return fail("waypoints_m", value, "a number within 100000 m");
                 }
             }
         }
     }
-    if !(robot.clock.drift_ppm.abs() <= MAX_DRIFT_PPM) {
+    if !within(robot.clock.drift_ppm, MAX_DRIFT_PPM) {
         return fail("drift_ppm", robot.clock.drift_ppm, "-1000 to 1000");
     }
     let transducer = &robot.transducer;

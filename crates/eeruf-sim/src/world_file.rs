@@ -305,16 +305,13 @@ fn scene(source: &Source, file: &WorldFile) -> Result<Scene, WorldFileError> {
         let wall = |wall: usize| entries.get(wall).and_then(|&entry| file.walls.get(entry)).map(Spanned::span);
         let pole = |pole: usize| file.poles.get(pole).map(Spanned::span);
         let (place, field) = match error {
-            SceneError::WallCoordinate { wall: index, .. } | SceneError::WallTooShort { wall: index, .. } => {
-                (wall(index), "points_m")
-            }
+            SceneError::WallCoordinate { wall: index, .. }
+            | SceneError::WallTooShort { wall: index, .. }
+            | SceneError::WallsCross { walls: [_, index], .. }
+            | SceneError::WallsOverlap { walls: [_, index] } => (wall(index), "points_m"),
             SceneError::WallMaterial { wall: index } => (wall(index), "reflection"),
-            SceneError::WallsCross { walls: [_, index], .. } | SceneError::WallsOverlap { walls: [_, index] } => {
-                (wall(index), "points_m")
-            }
-            SceneError::Pole { pole: index, .. } => (pole(index), "at_m"),
+            SceneError::Pole { pole: index, .. } | SceneError::SamePole { poles: [_, index] } => (pole(index), "at_m"),
             SceneError::PoleMaterial { pole: index } => (pole(index), "reflection"),
-            SceneError::SamePole { poles: [_, index] } => (pole(index), "at_m"),
             SceneError::Air { quantity, .. } => (file.air.as_ref().map(Spanned::span), quantity),
             _ => (None, ""),
         };

@@ -1,14 +1,16 @@
 //! Pictures, as SVG.
 
-use eeruf_core::Kind;
+use eeruf_core::{Kind, Phase, Requirements};
 use plotters::prelude::*;
 
+use crate::input::AnySchedule;
 use crate::replay::Column;
 
 const ACCEPTED: RGBColor = RGBColor(0x4c, 0x9f, 0x70);
 const REJECTED: RGBColor = RGBColor(0xd1, 0x49, 0x5b);
 const UNCOMPARED: RGBColor = RGBColor(0xed, 0xc7, 0x6a);
 const SILENT: RGBColor = RGBColor(0xe4, 0xe6, 0xea);
+const LISTENING: RGBColor = RGBColor(0xb9, 0xd0, 0xe8);
 const INK: RGBColor = RGBColor(0x2b, 0x2d, 0x33);
 const FONT: &str = "sans-serif";
 
@@ -69,4 +71,71 @@ fn colour_of(kind: Kind) -> RGBColor {
         Kind::NoEcho | Kind::Clear => SILENT,
         _ => UNCOMPARED,
     }
+}
+
+/// When each sensor fires in two periods, and how long it listens: one lane for each sensor, as Fig. 3 of the paper.
+pub(crate) fn timing_diagram(schedule: &AnySchedule, requirements: &Requirements<'_>) -> String {
+    const LANE: i32 = 26;
+    const LEFT: i32 = 48;
+    const TOP: i32 = 76;
+    const WIDTH: f64 = 900.0;
+    let period = f64::from(schedule.period().as_micros());
+    let x_of = |us: f64| LEFT + (us / (2.0 * period) * WIDTH).round() as i32;
+    let sensors = schedule.sensors() as i32;
+    let (width, height) = (LEFT + WIDTH as i32 + 24, TOP + LANE * sensors + 50);
+    let bottom = TOP + LANE * sensors;
+    let mut svg = String::new();
+    {
+        let area = SVGBackend::with_string(&mut svg, (width as u32, height as u32)).into_drawing_area();
+        // As above: writing to a string does not fail.
+        _ = area.fill(&WHITE);
+        let text = |text: String, at: (i32, i32), size: i32| {
+            _ = area.draw(&Text::new(text, at, (FONT, size).into_font().color(&INK)));
+        };
+        let title = format!("{} sensors, T_p = {}: firing and listening", schedule.sensors(), schedule.period());
+        text(title, (LEFT, 12), 18);
+        for (phase, start) in [(Phase::A, 0.0), (Phase::B, period)] {
+            text(format!("phase {phase}"), (x_of(start) + 6, 46), 14);
+        }
+        for start in [0.0, period, 2.0 * period] {
+            let line = [(x_of(start), 44), (x_of(start), bottom)];
+            _ = area.draw(&PathElement::new(line, INK.mix(0.5).stroke_width(1)));
+        }
+        let step = grid_step_us(2.0 * period);
+        let mut tick = 0.0;
+        while tick <= 2.0 * period {
+            let line = [(x_of(tick), TOP), (x_of(tick), bottom + 4)];
+            _ = area.draw(&PathElement::new(line, INK.mix(0.12).stroke_width(1)));
+            text(format!("{}", tick / 1000.0), (x_of(tick) - 8, bottom + 8), 13);
+            tick += step;
+        }
+        text("ms".to_owned(), (x_of(2.0 * period) - 18, bottom + 26), 13);
+        for x in 0..schedule.sensors() {
+            let top = TOP + LANE * x as i32 + 3;
+            text(format!("{}", x + 1), (16, top + 2), 14);
+            for (phase, start) in [(Phase::A, 0.0), (Phase::B, period)] {
+                let Some(t_fire) = schedule.t_fire(phase, x) else { continue };
+                let fire = start + f64::from(t_fire.as_micros());
+                let end = fire + f64::from(requirements.window.as_micros());
+                // What the second period leaves over is heard in the first.
+                for (from, to) in [(fire, end.min(2.0 * period)), (0.0, end - 2.0 * period)] {
+                    if to > from {
+                        let corners = [(x_of(from), top + 4), (x_of(to), top + LANE - 10)];
+                        _ = area.draw(&Rectangle::new(corners, LISTENING.filled()));
+                    }
+                }
+                let corners = [(x_of(fire) - 1, top), (x_of(fire) + 2, top + LANE - 6)];
+                _ = area.draw(&Rectangle::new(corners, REJECTED.filled()));
+            }
+        }
+        _ = area.present();
+    }
+    svg
+}
+
+/// A round distance between grid lines: some ten of them over this time.
+fn grid_step_us(whole: f64) -> f64 {
+    let rough = whole / 10.0;
+    let magnitude = 10_f64.powf(rough.log10().floor());
+    [1.0, 2.0, 5.0, 10.0].into_iter().map(|n| n * magnitude).find(|&step| step >= rough).unwrap_or(rough)
 }

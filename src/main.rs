@@ -5,10 +5,15 @@
 // Doc comments of arguments are what --help prints in a terminal, where backticks only disturb.
 #![allow(clippy::doc_markdown)]
 
+mod design;
 mod draw;
 mod input;
 mod replay;
+mod ring_file;
+mod search;
+mod timing;
 mod verify;
+mod watch;
 
 use std::process::ExitCode;
 
@@ -27,7 +32,9 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Verb {
+    Design(design::Args),
     Verify(verify::Args),
+    Search(search::Args),
     Replay(replay::Args),
 }
 
@@ -41,7 +48,9 @@ enum Answer {
 
 fn main() -> ExitCode {
     let answer = match Cli::parse().verb {
+        Verb::Design(args) => design::run(&args),
         Verb::Verify(args) => verify::run(&args),
+        Verb::Search(args) => search::run(&args),
         Verb::Replay(args) => replay::run(&args),
     };
     match answer {

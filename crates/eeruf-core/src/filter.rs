@@ -211,6 +211,7 @@ fn better(kind: Kind, than: Kind) -> bool {
 /// Why a filter cannot do what is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum FilterError {
     /// Too few or too many consecutive readings.
     Consecutive {

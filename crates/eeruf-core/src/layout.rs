@@ -1,5 +1,7 @@
 //! Which sensors are neighbours: two that must not fire shortly after one another (Sec. 3.1, constraint c).
 
+use core::fmt;
+
 use crate::schedule::MAX_SENSORS;
 
 /// How the sensors stand, and how many adjacent ones count as neighbours.
@@ -48,6 +50,17 @@ impl Layout<'_> {
             x += 1;
         }
         rows
+    }
+}
+
+impl fmt::Display for Layout<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(n) => write!(f, "{n} adjacent sensors of a line"),
+            Self::Ring(n) => write!(f, "{n} adjacent sensors of a ring"),
+            Self::Blocks(n) => write!(f, "sensors of a block of {n}"),
+            Self::Graph(_) => f.write_str("the given neighbours"),
+        }
     }
 }
 

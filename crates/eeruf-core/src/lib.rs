@@ -17,13 +17,18 @@
 //! deadline it is told, so the same code runs in an interrupt, in a simulator and in a test. Sensors are counted from 0
 //! in code and printed from 1, as in the paper.
 //!
+//! Features, all off by default, for crates that firmware already uses: `defmt` (formats), `serde` (readings and times),
+//! `fugit` and `embassy-time` (conversions of times).
+//!
 //! Equations and sections are those of J. Borenstein and Y. Koren, *Error Eliminating Rapid Ultrasonic Firing for Mobile
 //! Robot Obstacle Avoidance*, IEEE Transactions on Robotics and Automation 11(1), February 1995, pp. 132-138.
 #![no_std]
 
 mod adaptation;
 mod conditions;
+mod emit;
 mod filter;
+mod interop;
 mod layout;
 mod reading;
 mod refiring;
@@ -39,6 +44,7 @@ mod verify;
 
 pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
 pub use conditions::{Criterion, Interval, Requirements, Separation};
+pub use emit::{CHeader, RustSource, Toml};
 pub use filter::{EchoFilter, FilterError};
 pub use layout::Layout;
 pub use reading::{Kind, Tally, Verdict};

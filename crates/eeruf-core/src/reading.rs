@@ -8,6 +8,9 @@ use crate::time::Micros;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[repr(u8)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Kind {
     /// An echo with nothing to compare it with: at the start, or after a firing without echo.
     First,
@@ -67,6 +70,8 @@ impl fmt::Display for Kind {
 
 /// The filter's answer to one firing of one sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Verdict {
     /// What the firing told.
     pub kind: Kind,
@@ -82,6 +87,7 @@ pub struct Verdict {
 
 /// How many readings of each kind; `N` is `u8` for one period of a ring, `u32` for long runs. Counts saturate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tally<N = u32> {
     counts: [N; Kind::ALL.len()],
 }

@@ -83,7 +83,7 @@ fn next_phase<const M: usize>(phase: u8) -> u8 {
 }
 
 impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
-    fn poll(&mut self, now: Instant) -> Option<Step> {
+    fn fire(&mut self, now: Instant) -> Option<Step> {
         if let Some((sensor, due)) = self.first() {
             if now.has_reached(due) {
                 self.listening.set(sensor, true);
@@ -92,6 +92,10 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
                 return Some(Step::Fire { sensor, phase: Phase(turn.phase), late: now.since(due) });
             }
         }
+        None
+    }
+
+    fn end_period(&mut self, now: Instant) -> Option<Step> {
         if now.has_reached(self.period_end()) {
             let phase = Phase(self.phase);
             self.phase = next_phase::<M>(self.phase);
@@ -112,7 +116,7 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
     }
 
     fn next_sensor(&self) -> Option<u8> {
-        self.first().map(|(sensor, _)| sensor)
+        self.first().filter(|&(_, due)| self.period_end().has_reached(due)).map(|(sensor, _)| sensor)
     }
 
     fn deadline(&self) -> Instant {

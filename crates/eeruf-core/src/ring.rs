@@ -14,6 +14,8 @@ use crate::time::{Instant, Micros};
 
 /// How a [`Ring`] listens and compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
     /// `T_delta`: consecutive readings that differ by no more are near-identical.
     pub t_delta: Micros,
@@ -34,6 +36,7 @@ impl Config {
 
 /// What a [`Ring`] tells its caller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Event {
     /// Fire this sensor (from 0), now.
     Fire(u8),
@@ -45,6 +48,8 @@ pub enum Event {
 
 /// What became of one firing of one sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Reading {
     /// The sensor, from 0.
     pub sensor: u8,
@@ -64,6 +69,7 @@ pub struct Reading {
 
 /// What happened since the end of the period before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PeriodStats {
     /// The period, counted from 0.
     pub period: u32,
@@ -98,24 +104,26 @@ pub struct PeriodStats {
 /// # Ok::<(), eeruf_core::RingError>(())
 /// ```
 #[derive(Clone, Debug)]
+// In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction.
+#[repr(C)]
 pub struct Ring<S, const K: usize, const E: usize = 1> {
-    scheduler: S,
-    sensors: [Sensor<E>; K],
-    t_delta: Micros,
-    window: Micros,
-    blanking: Micros,
-    /// When there is something to do next.
-    deadline: Instant,
-    period: u32,
-    tally: Tally<u8>,
-    max_late_us: u16,
     /// The sensor whose window closes first, or [`NOBODY`].
     oldest: u8,
     /// How many sensors have a reading to tell before their window closes.
     ready: u8,
+    consecutive: u8,
     /// How many more period ends disturb the comparison.
     unsettled: u8,
-    consecutive: u8,
+    max_late_us: u16,
+    tally: Tally<u8>,
+    scheduler: S,
+    /// When to tell next: when an edge came, or when the window of the oldest closes.
+    tell_at: Instant,
+    window: Micros,
+    t_delta: Micros,
+    blanking: Micros,
+    period: u32,
+    sensors: [Sensor<E>; K],
 }
 
 /// A [`Ring`] with scheduled firing by a schedule of the paper's kind.
@@ -185,23 +193,21 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             return Err(RingError::Blanking { blanking, window });
         }
         Rule::new(t_delta, consecutive)?;
-        let mut ring = Self {
-            scheduler,
-            sensors: [Sensor::NEW; K],
-            t_delta,
-            window,
-            blanking,
-            deadline: now,
-            period: 0,
-            tally: Tally::default(),
-            max_late_us: 0,
+        Ok(Self {
             oldest: NOBODY,
             ready: 0,
-            unsettled: 0,
             consecutive,
-        };
-        ring.set_deadline();
-        Ok(ring)
+            unsettled: 0,
+            max_late_us: 0,
+            tally: Tally::default(),
+            scheduler,
+            tell_at: now,
+            window,
+            t_delta,
+            blanking,
+            period: 0,
+            sensors: [Sensor::NEW; K],
+        })
     }
 
     /// The next thing to do or to know, if there is one at `now`. Call again until there is none, then sleep until
@@ -223,16 +229,26 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// [`EchoFilter::push_echoes`]: crate::EchoFilter::push_echoes
     #[inline]
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
-        if !now.has_reached(self.deadline) && self.deadline.since(now) <= self.scheduler.horizon() {
-            return None;
+        let due = self.scheduler.deadline();
+        if now.has_reached(due) || (self.has_to_tell() && now.has_reached(self.tell_at)) {
+            return self.advance(now, expected_change_us);
         }
-        self.advance(now, expected_change_us)
+        if due.since(now) > self.scheduler.horizon() {
+            self.jumped(now);
+        }
+        None
     }
 
     /// When to poll next. In the past if something is waiting to be told.
-    #[inline]
     pub fn next_deadline(&self) -> Instant {
-        self.deadline
+        let due = self.scheduler.deadline();
+        if self.has_to_tell() && !self.tell_at.has_reached(due) { self.tell_at } else { due }
+    }
+
+    /// Whether there will be something to tell without a further firing.
+    #[inline]
+    fn has_to_tell(&self) -> bool {
+        self.ready > 0 || self.oldest != NOBODY
     }
 
     /// An edge on the echo line of a sensor, `at` this instant. Cheap; edges may come in any order, at any time, from
@@ -241,10 +257,10 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         let Some(heard) = self.sensors.get_mut(usize::from(sensor)) else { return };
         match heard.echo(at, self.blanking, self.window) {
             Edge::Ready => {
-                self.ready = self.ready.saturating_add(1);
-                if !at.has_reached(self.deadline) {
-                    self.deadline = at;
+                if !self.has_to_tell() || !at.has_reached(self.tell_at) {
+                    self.tell_at = at;
                 }
+                self.ready = self.ready.saturating_add(1);
             }
             Edge::Late => self.tally.count(Kind::Late),
             Edge::Noted => {}
@@ -264,7 +280,6 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// Has a sensor fire no more. A firing of it that is under way is still told.
     pub fn disable(&mut self, sensor: u8) {
         self.scheduler.set_enabled(sensor, false);
-        self.set_deadline();
     }
 
     /// Has a sensor fire again from its next turn on. Its readings from before are forgotten.
@@ -276,7 +291,6 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if let Some(sensor) = self.sensors.get_mut(usize::from(sensor)) {
             sensor.track.forget();
         }
-        self.set_deadline();
     }
 
     /// Whether a sensor fires.
@@ -293,7 +307,6 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         }
         self.oldest = NOBODY;
         self.ready = 0;
-        self.set_deadline();
     }
 
     /// The scheduler.
@@ -301,32 +314,31 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         &self.scheduler
     }
 
-    /// Something is due, or the clock has jumped.
-    fn advance(&mut self, now: Instant, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
-        if !now.has_reached(self.deadline) {
-            self.restart(now);
-            if !now.has_reached(self.deadline) {
-                return None;
-            }
-        }
-        let fires = if now.has_reached(self.scheduler.deadline()) { self.scheduler.next_sensor() } else { None };
-        // Firing comes first, since it should be on time; but a sensor tells what it heard before it fires again.
-        let told = match fires {
-            Some(sensor) => self.sensor(sensor).is_some_and(Sensor::holds_reading).then_some(sensor),
-            None => self.next_to_tell(now),
-        };
-        let event = match told {
-            Some(sensor) => self.tell(sensor, &mut expected_change_us).map(Event::Reading),
-            None => self.scheduler.poll(now).map(|step| match step {
-                Step::Fire { sensor, phase, late } => self.fired(sensor, phase, now, late),
-                Step::PeriodEnded { phase, changed } => self.period_ended(phase, changed),
-            }),
-        };
-        self.set_deadline();
-        event
+    /// The clock has jumped.
+    #[cold]
+    fn jumped(&mut self, now: Instant) {
+        self.restart(now);
     }
 
-    fn fired(&mut self, sensor: u8, phase: Phase, now: Instant, late: Micros) -> Event {
+    /// Something is due. Firing comes first, since it should be on time; but a sensor tells what it heard before it
+    /// fires again.
+    #[inline]
+    fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
+        let fires = if now.has_reached(self.scheduler.deadline()) { self.scheduler.next_sensor() } else { None };
+        let told = match fires {
+            Some(sensor) if !self.sensor(sensor).is_some_and(Sensor::holds_reading) => return self.fire(now),
+            Some(sensor) => Some(sensor),
+            None => self.next_to_tell(now),
+        };
+        match told {
+            Some(sensor) => self.tell(sensor, expected_change_us),
+            None => self.end_period(now),
+        }
+    }
+
+    #[inline]
+    fn fire(&mut self, now: Instant) -> Option<Event> {
+        let Step::Fire { sensor, phase, late } = self.scheduler.fire(now)? else { return None };
         if late > self.t_delta {
             // Sound sent before this moment may be heard for a period, and its readings compared for one more.
             self.unsettled = 2;
@@ -338,11 +350,16 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         }
         if self.oldest == NOBODY {
             self.oldest = sensor;
+            if self.ready == 0 {
+                self.tell_at = now + self.window;
+            }
         }
-        Event::Fire(sensor)
+        Some(Event::Fire(sensor))
     }
 
-    fn period_ended(&mut self, phase: Phase, changed: bool) -> Event {
+    #[inline(never)]
+    fn end_period(&mut self, now: Instant) -> Option<Event> {
+        let Step::PeriodEnded { phase, changed } = self.scheduler.end_period(now)? else { return None };
         if changed {
             self.unsettled = 2;
         }
@@ -357,12 +374,14 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             max_late: Micros::new(core::mem::take(&mut self.max_late_us).into()),
         };
         self.period = self.period.wrapping_add(1);
-        Event::PeriodEnded(stats)
+        Some(Event::PeriodEnded(stats))
     }
 
     /// Firings have shifted against each other, by lateness or by a change of schedule, so (13a), (13b) say nothing about
     /// readings of sound from before compared with readings of sound from after. The next reading of each sensor, which
     /// may be of either, is compared with nothing.
+    #[cold]
+    #[inline(never)]
     fn disturb(&mut self) {
         for sensor in &mut self.sensors {
             sensor.set(DISTURBED);
@@ -374,62 +393,67 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if self.ready > 0 {
             return self.first_ready();
         }
-        let oldest = self.sensor(self.oldest)?;
-        now.has_reached(oldest.fired + self.window).then_some(self.oldest)
+        (self.oldest != NOBODY && now.has_reached(self.tell_at)).then_some(self.oldest)
     }
 
+    /// A sensor with something to tell; the oldest before others, which saves the search where it costs most: the next
+    /// oldest has then to be looked for, too.
     fn first_ready(&self) -> Option<u8> {
-        // At most 64 sensors.
-        self.sensors.iter().position(Sensor::is_ready).map(|x| x as u8)
+        if self.sensor(self.oldest).is_some_and(Sensor::is_ready) {
+            return Some(self.oldest);
+        }
+        for (x, sensor) in self.sensors.iter().enumerate() {
+            if sensor.is_ready() {
+                // At most 64 sensors.
+                return Some(x as u8);
+            }
+        }
+        None
     }
 
-    fn tell(&mut self, sensor: u8, expected_change_us: &mut impl FnMut(u8) -> i32) -> Option<Reading> {
-        let rule = Rule { t_delta: self.t_delta, consecutive: self.consecutive };
+    #[inline(never)]
+    fn tell(&mut self, sensor: u8, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
         let heard = self.sensors.get_mut(usize::from(sensor))?;
         let phase = heard.phase();
         if heard.is_ready() {
-            self.ready = self.ready.saturating_sub(1);
+            // It was counted when its edge came.
+            self.ready = self.ready.wrapping_sub(1);
         }
         let listened = heard.is(LISTENING);
-        let ended_at = heard.fired + heard.t_echo().filter(|_| E == 1).unwrap_or(self.window);
+        let fired = heard.fired;
+        let ended_at = fired + heard.t_echo().filter(|_| E == 1).unwrap_or(self.window);
         let verdict = if listened {
-            heard.judge(rule, || expected_change_us(sensor))
+            heard.judge(Rule { t_delta: self.t_delta, consecutive: self.consecutive }, || expected_change_us(sensor))
         } else {
             Verdict { kind: Kind::Late, t_echo: heard.take_late(), previous: None, age: heard.track.age() }
         };
         if listened {
             self.scheduler.ended(sensor, ended_at);
             if self.oldest == sensor {
-                self.oldest = self.find_oldest();
+                self.find_oldest(fired);
+            }
+        }
+        if self.ready == 0 {
+            if let Some(oldest) = self.sensor(self.oldest) {
+                self.tell_at = oldest.fired + self.window;
             }
         }
         self.tally.count(verdict.kind);
         let Verdict { kind, t_echo, previous, age } = verdict;
         let period = self.period.wrapping_sub(self.scheduler.periods_since(phase).into());
-        Some(Reading { sensor, phase, period, kind, t_echo, previous, age })
+        Some(Event::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age }))
     }
 
-    fn find_oldest(&self) -> u8 {
-        let mut oldest: Option<(u8, Instant)> = None;
+    /// The oldest, which fired at `before`, listens no more: which one is it now? All others fired later.
+    fn find_oldest(&mut self, before: Instant) {
+        let (mut oldest, mut soonest) = (NOBODY, Micros::MAX);
         for (x, sensor) in self.sensors.iter().enumerate() {
-            if sensor.is(LISTENING) && oldest.is_none_or(|(_, fired)| !sensor.fired.has_reached(fired)) {
+            if sensor.is(LISTENING) && sensor.fired.since(before) < soonest {
                 // At most 64 sensors.
-                oldest = Some((x as u8, sensor.fired));
+                (oldest, soonest) = (x as u8, sensor.fired.since(before));
             }
         }
-        oldest.map_or(NOBODY, |(x, _)| x)
-    }
-
-    fn set_deadline(&mut self) {
-        let mut deadline = self.scheduler.deadline();
-        let closes = self.sensor(self.oldest).map(|oldest| oldest.fired + self.window);
-        let ready = if self.ready > 0 { self.first_ready().and_then(|x| self.sensor(x)) } else { None };
-        for sooner in [closes, ready.map(|ready| ready.fired)].into_iter().flatten() {
-            if !sooner.has_reached(deadline) {
-                deadline = sooner;
-            }
-        }
-        self.deadline = deadline;
+        self.oldest = oldest;
     }
 
     fn sensor(&self, sensor: u8) -> Option<&Sensor<E>> {
@@ -553,7 +577,8 @@ impl<const E: usize> Sensor<E> {
 
     /// Whether a reading can be told before the window closes: of a sensor with a single echo, or of a late edge.
     fn is_ready(&self) -> bool {
-        (E == 1 || !self.is(LISTENING)) && self.t_echo().is_some()
+        let silent = self.echoes.first().is_none_or(|&echo| echo == NO_ECHO);
+        !silent && !self.is(EARLY) && (E == 1 || !self.is(LISTENING))
     }
 
     fn holds_reading(&self) -> bool {
@@ -586,6 +611,7 @@ impl<const E: usize> Sensor<E> {
 /// Why a [`Ring`] cannot be set up as asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RingError {
     /// A sensor would fire again while it still listens.
     Window {

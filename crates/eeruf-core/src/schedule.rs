@@ -13,6 +13,8 @@ pub const MAX_PERIOD: Micros = Micros::new(1 << 28);
 
 /// One of the phases of a schedule, counted from 0 and printed `a`, `b`, ...
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Phase(pub u8);
 
 impl Phase {
@@ -46,6 +48,8 @@ impl fmt::Display for Phase {
 /// # Ok::<(), eeruf_core::ScheduleError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+// In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction.
+#[repr(C)]
 pub struct Schedule<const K: usize, const M: usize = 2> {
     period: Micros,
     sensors: u8,
@@ -53,6 +57,10 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
     t_wait: [[Micros; K]; M],
     /// The sensors of each phase by firing time, so that the scheduler need not look for the next one.
     order: [[u8; K]; M],
+    /// How long each of them fires after the one before it, the first after the start of the period.
+    gap: [[Micros; K]; M],
+    /// From the last firing of each phase to the end of the period.
+    after_last: [Micros; M],
 }
 
 impl<const K: usize, const M: usize> Schedule<K, M> {
@@ -119,8 +127,12 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
             return Err(ScheduleError::Period { period });
         }
         let mut order = [[0; K]; M];
+        let mut gap = [[Micros::ZERO; K]; M];
+        let mut after_last = [Micros::ZERO; M];
         let mut phase = 0;
         while phase < M {
+            // Firing times in order, until they become gaps.
+            let times = &mut gap[phase];
             let mut x = 0;
             while x < sensors {
                 let t_fire = t_lag[x].saturating_add(t_wait[phase][x]);
@@ -129,20 +141,24 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
                 }
                 // Insertion sort by firing time; sensors that fire together keep their order.
                 let mut at = x;
-                while at > 0 {
-                    let before = order[phase][at - 1] as usize;
-                    if t_lag[before].as_micros() + t_wait[phase][before].as_micros() <= t_fire.as_micros() {
-                        break;
-                    }
-                    order[phase][at] = before as u8;
+                while at > 0 && times[at - 1].as_micros() > t_fire.as_micros() {
+                    order[phase][at] = order[phase][at - 1];
+                    times[at] = times[at - 1];
                     at -= 1;
                 }
                 order[phase][at] = x as u8;
+                times[at] = t_fire;
                 x += 1;
+            }
+            let mut at = sensors - 1;
+            after_last[phase] = period.abs_diff(times[at]);
+            while at > 0 {
+                times[at] = times[at].abs_diff(times[at - 1]);
+                at -= 1;
             }
             phase += 1;
         }
-        Ok(Self { period, sensors: sensors as u8, t_lag, t_wait, order })
+        Ok(Self { period, sensors: sensors as u8, t_lag, t_wait, order, gap, after_last })
     }
 
     /// `T_p`: every sensor fires once in each period.
@@ -164,13 +180,13 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     /// `T_lag` of each sensor.
     #[doc(alias = "T_lag")]
     pub const fn t_lag(&self) -> &[Micros] {
-        self.t_lag.split_at(self.sensors as usize).0
+        used(&self.t_lag, self.sensors)
     }
 
     /// `T_wait` of each sensor in a phase; empty for a phase the schedule does not have.
     #[doc(alias = "T_wait")]
     pub const fn t_wait(&self, phase: Phase) -> &[Micros] {
-        if (phase.0 as usize) < M { self.t_wait[phase.0 as usize].split_at(self.sensors as usize).0 } else { &[] }
+        if (phase.0 as usize) < M { used(&self.t_wait[phase.0 as usize], self.sensors) } else { &[] }
     }
 
     /// `T_fire = T_lag + T_wait` after the start of the period, or `None` for a sensor or phase that is not there.
@@ -185,7 +201,21 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
 
     /// The sensors of a phase in the order in which they fire; empty for a phase the schedule does not have.
     pub const fn firing_order(&self, phase: Phase) -> &[u8] {
-        if (phase.0 as usize) < M { self.order[phase.0 as usize].split_at(self.sensors as usize).0 } else { &[] }
+        if (phase.0 as usize) < M { used(&self.order[phase.0 as usize], self.sensors) } else { &[] }
+    }
+
+    /// The sensor at a place in the firing order of a phase, and how long it fires after the one before it; beyond the
+    /// last place nobody (255), and the time from the last firing to the end of the period. Each step of the scheduler asks.
+    #[inline]
+    pub(crate) const fn firing(&self, phase: u8, place: u8) -> (u8, Micros) {
+        let (phase, place) = (phase as usize, place as usize);
+        if phase >= M {
+            (u8::MAX, self.period)
+        } else if place < K && place < self.sensors() {
+            (self.order[phase][place], self.gap[phase][place])
+        } else {
+            (u8::MAX, self.after_last[phase])
+        }
     }
 
     /// From a sensor's firing in a phase to its next one, `T_p - d` or `T_p + d` with two phases: the `dt` over which a
@@ -270,15 +300,29 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         Self::with_sensors(period, self.sensors as usize, t_lag, t_wait)
     }
 
-    /// For indices already known to be in range. Cannot overflow: both terms are at most `MAX_PERIOD`.
+    /// For indices already known to be in range; the optimiser does not know that `sensors` is at most `K`, and the check
+    /// spares a firmware image the code for a panic. Cannot overflow: both terms are at most `MAX_PERIOD`.
     pub(crate) const fn fire_at(&self, phase: usize, sensor: usize) -> Micros {
-        Micros::new(self.t_lag[sensor].as_micros() + self.t_wait[phase][sensor].as_micros())
+        if phase < M && sensor < K {
+            Micros::new(self.t_lag[sensor].as_micros() + self.t_wait[phase][sensor].as_micros())
+        } else {
+            Micros::ZERO
+        }
     }
 
     /// From this sensor's firing in a phase to its next one.
     pub(crate) const fn refire(&self, phase: usize, sensor: usize) -> Micros {
         let next = self.fire_at((phase + 1) % M, sensor).as_micros() + self.period.as_micros();
         Micros::new(next - self.fire_at(phase, sensor).as_micros())
+    }
+}
+
+/// The part of a table that is in use. Without `split_at`, whose panic would stay in a firmware image.
+const fn used<T>(table: &[T], sensors: u8) -> &[T] {
+    match table.split_at_checked(sensors as usize) {
+        Some((used, _)) => used,
+        // Never: a schedule has at most `K` sensors.
+        None => table,
     }
 }
 
@@ -290,6 +334,7 @@ const fn scale(time: Micros, num: u32, den: u32) -> Micros {
 /// Why raw numbers do not make a [`Schedule`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ScheduleError {
     /// No sensors, or more than fit.
     Sensors {

@@ -31,7 +31,13 @@ pub enum Step {
 /// [`ImmediateRefiring`](crate::refiring::ImmediateRefiring).
 pub trait Scheduler {
     /// The next step that is due, if any. Call again until there is none.
-    fn poll(&mut self, now: Instant) -> Option<Step>;
+    fn poll(&mut self, now: Instant) -> Option<Step> {
+        self.fire(now).or_else(|| self.end_period(now))
+    }
+    /// The next firing, if one is due.
+    fn fire(&mut self, now: Instant) -> Option<Step>;
+    /// The end of the period, if it is due and no firing is.
+    fn end_period(&mut self, now: Instant) -> Option<Step>;
     /// The sensor that will fire next, if one will before the period ends.
     fn next_sensor(&self) -> Option<u8>;
     /// When the next step is due.
@@ -66,31 +72,39 @@ pub trait Scheduler {
 /// assert_eq!(scheduler.poll(first), Some(Step::Fire { sensor: 0, phase: Phase::A, late: Micros::ZERO }));
 /// ```
 #[derive(Clone, Debug)]
+// In this order for the short offsets of a Cortex-M0: see `Ring`.
+#[repr(C)]
 pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
-    schedule: &'s Schedule<K, M>,
-    next_schedule: Option<&'s Schedule<K, M>>,
-    /// When the present period began, moved on by all lateness since.
-    start: Instant,
     phase: u8,
     /// Place in the firing order of the next sensor to fire; the number of sensors when all have.
     place: u8,
+    /// The next sensor to fire, or [`NOBODY`] when all have.
+    next: u8,
+    /// When it is due, or when the period ends. Worked out once per step, since it is asked for at every poll.
+    due: Instant,
+    schedule: &'s Schedule<K, M>,
     /// When a sensor last fired, or long enough ago.
     last_fired: Instant,
-    enabled: SensorSet,
+    disabled: SensorSet,
+    next_schedule: Option<&'s Schedule<K, M>>,
 }
+
+const NOBODY: u8 = u8::MAX;
 
 impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     /// Begins the first period of `schedule` at `now`, with all sensors enabled.
     pub const fn new(schedule: &'s Schedule<K, M>, now: Instant) -> Self {
-        let long_ago = Instant::from_micros(now.as_micros().wrapping_sub(settling_time(schedule).as_micros()));
+        let now = now.as_micros();
+        let (next, gap) = schedule.firing(0, 0);
         Self {
-            schedule,
-            next_schedule: None,
-            start: now,
             phase: 0,
             place: 0,
-            last_fired: long_ago,
-            enabled: SensorSet::ALL,
+            next,
+            due: Instant::from_micros(now.wrapping_add(gap.as_micros())),
+            schedule,
+            last_fired: Instant::from_micros(now.wrapping_sub(settling_time(schedule).as_micros())),
+            disabled: SensorSet::NONE,
+            next_schedule: None,
         }
     }
 
@@ -107,18 +121,25 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
         self.next_schedule = Some(schedule);
     }
 
-    fn due(&self) -> Option<(u8, Instant)> {
-        let sensor = *self.schedule.firing_order(Phase(self.phase)).get(usize::from(self.place))?;
-        let t_fire = self.schedule.t_fire(Phase(self.phase), sensor.into())?;
-        Some((sensor, self.start + t_fire))
+    /// Turns to the sensor at the present place, `gap` after this instant, or to the next enabled one after it; if there is
+    /// none, to the end of the period.
+    #[inline]
+    fn turn_to(&mut self, from: Instant) {
+        let (next, gap) = self.schedule.firing(self.phase, self.place);
+        self.next = next;
+        self.due = from + gap;
+        if self.disabled != SensorSet::NONE {
+            self.skip_disabled();
+        }
     }
 
+    #[cold]
     fn skip_disabled(&mut self) {
-        while let Some((sensor, _)) = self.due() {
-            if self.is_enabled(sensor) {
-                break;
-            }
+        while self.next != NOBODY && self.disabled.contains(self.next) {
             self.place += 1;
+            let (next, gap) = self.schedule.firing(self.phase, self.place);
+            self.next = next;
+            self.due += gap;
         }
     }
 
@@ -129,9 +150,8 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
 
     fn begin_period(&mut self, phase: u8, start: Instant) {
         self.phase = phase;
-        self.start = start;
         self.place = 0;
-        self.skip_disabled();
+        self.turn_to(start);
     }
 }
 
@@ -145,22 +165,26 @@ const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>
 }
 
 impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
-    fn poll(&mut self, now: Instant) -> Option<Step> {
-        let deadline = self.deadline();
-        if !now.has_reached(deadline) {
+    #[inline]
+    fn fire(&mut self, now: Instant) -> Option<Step> {
+        if self.next == NOBODY || !now.has_reached(self.due) {
+            return None;
+        }
+        let step = Step::Fire { sensor: self.next, phase: Phase(self.phase), late: now.since(self.due) };
+        self.last_fired = now;
+        self.place += 1;
+        // From now, not from when it was due: all that follows moves by as much as this firing is late.
+        self.turn_to(now);
+        Some(step)
+    }
+
+    fn end_period(&mut self, now: Instant) -> Option<Step> {
+        if self.next != NOBODY || !now.has_reached(self.due) {
             return None;
         }
         let phase = Phase(self.phase);
-        if let Some((sensor, due)) = self.due() {
-            let late = now.since(due);
-            self.start += late;
-            self.last_fired = now;
-            self.place += 1;
-            self.skip_disabled();
-            return Some(Step::Fire { sensor, phase, late });
-        }
         // Periods in which nothing fired need not be caught up with.
-        let mut start = if now.since(deadline) > self.schedule.period() { now } else { deadline };
+        let mut start = if now.since(self.due) > self.schedule.period() { now } else { self.due };
         let changed = self.next_schedule.is_some();
         if let Some(next) = self.next_schedule.take() {
             let settled = self.settled();
@@ -174,23 +198,25 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         Some(Step::PeriodEnded { phase, changed })
     }
 
+    #[inline]
     fn next_sensor(&self) -> Option<u8> {
-        self.due().map(|(sensor, _)| sensor)
+        (self.next != NOBODY).then_some(self.next)
     }
 
+    #[inline]
     fn deadline(&self) -> Instant {
-        self.due().map_or_else(|| self.start + self.schedule.period(), |(_, due)| due)
+        self.due
     }
 
     fn ended(&mut self, _sensor: u8, _at: Instant) {}
 
     fn set_enabled(&mut self, sensor: u8, enabled: bool) {
-        self.enabled.set(sensor, enabled);
+        self.disabled.set(sensor, !enabled);
         self.skip_disabled();
     }
 
     fn is_enabled(&self, sensor: u8) -> bool {
-        usize::from(sensor) < self.schedule.sensors() && self.enabled.contains(sensor)
+        usize::from(sensor) < self.schedule.sensors() && !self.disabled.contains(sensor)
     }
 
     fn restart(&mut self, now: Instant) {
@@ -210,9 +236,9 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         self.schedule.min_refire()
     }
 
+    #[inline]
     fn horizon(&self) -> Micros {
-        // Settling takes less than two periods and the firing time less than one; both are at most 2^28 us each.
-        let period = self.schedule.period().as_micros();
-        Micros::new(period.saturating_mul(3))
+        // Settling takes less than two periods and the firing time less than one, and a period at most 2^28 us.
+        Micros::new(3 * self.schedule.period().as_micros())
     }
 }

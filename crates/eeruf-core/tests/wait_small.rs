@@ -1,40 +1,14 @@
-//! Tiny random wait-time problems, where plain nested loops can say everything: found or not, every count, the best values and the front.
+//! Owned random wait-time problems, where plain nested loops can say everything: found or not, every count, the best values and the front.
 
 mod common;
 
-use common::naive;
-use eeruf_core::search::wait::{
-    Control, Criterion, Finish, MEMORY_WORDS, Objective, ParetoPoint, WaitProblem, WaitSearch,
-};
+use common::{Owned, naive};
+use eeruf_core::Criterion;
+use eeruf_core::search::wait::{Control, Finish, MEMORY_WORDS, Objective, ParetoPoint, Problem, Search};
 use proptest::prelude::*;
 
-#[derive(Debug, Clone)]
-struct Tiny {
-    period: u32,
-    lag: Vec<u32>,
-    wait_max: u32,
-    separation: u32,
-    interval: u32,
-    conflicts: Vec<u64>,
-    criterion: Criterion,
-}
-
-impl Tiny {
-    fn problem(&self) -> WaitProblem<'_> {
-        WaitProblem {
-            period: self.period,
-            lag: &self.lag,
-            wait_max: self.wait_max,
-            separation: self.separation,
-            interval: self.interval,
-            conflicts: &self.conflicts,
-            criterion: self.criterion,
-        }
-    }
-}
-
 /// A line, a ring, blocks or any graph; lags in groups or anyhow.
-fn tiny() -> impl Strategy<Value = Tiny> {
+fn tiny() -> impl Strategy<Value = Owned> {
     (
         1_usize..=4,
         0_u32..=5,
@@ -72,21 +46,20 @@ fn tiny() -> impl Strategy<Value = Tiny> {
                         .collect(),
                 };
                 let criterion = if paper { Criterion::Paper } else { Criterion::Exact };
-                Tiny { period, lag, wait_max, separation, interval, conflicts, criterion }
+                Owned { period, lag, wait_max, separation, interval, conflicts, criterion }
             })
         })
 }
 
 /// The interval and separation of every table of a problem without demands, those that dominate only, greatest interval first.
-fn naive_front(tiny: &Tiny) -> Vec<ParetoPoint> {
-    let search = WaitSearch::new(tiny.problem()).unwrap();
+fn naive_front(tiny: &Owned) -> Vec<ParetoPoint> {
+    let search = Search::new(tiny.problem()).unwrap();
     let mut points: Vec<(u32, u32)> = Vec::new();
     naive::for_each(&tiny.problem(), &mut |a, b| {
         let value = |ok: &dyn Fn(u32) -> bool, most: u32| (0..=most).rev().find(|&value| ok(value)).unwrap();
-        let interval =
-            value(&|interval| naive::holds(&WaitProblem { interval, ..*search.problem() }, a, b), tiny.period);
+        let interval = value(&|interval| naive::holds(&Problem { interval, ..*search.problem() }, a, b), tiny.period);
         let separation =
-            value(&|separation| naive::holds(&WaitProblem { separation, ..*search.problem() }, a, b), tiny.wait_max);
+            value(&|separation| naive::holds(&Problem { separation, ..*search.problem() }, a, b), tiny.wait_max);
         if !points.contains(&(interval, separation)) {
             points.push((interval, separation));
         }
@@ -101,12 +74,12 @@ fn naive_front(tiny: &Tiny) -> Vec<ParetoPoint> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn nested_loops_agree_on_found_exhausted_and_count(tiny in tiny()) {
         let problem = tiny.problem();
-        let search = WaitSearch::new(problem).unwrap();
+        let search = Search::new(problem).unwrap();
         let count = naive::count(&problem);
         let mut memory = vec![0; MEMORY_WORDS];
         let (mut a, mut b) = ([0; 64], [0; 64]);
@@ -130,9 +103,9 @@ proptest! {
 
     #[test]
     fn nested_loops_agree_on_the_best_values_and_the_front(tiny in tiny()) {
-        let tiny = Tiny { lag: tiny.lag.iter().take(3).copied().collect(), conflicts: tiny.conflicts.iter().take(3).map(|row| row & 7).collect(), ..tiny };
+        let tiny = Owned { lag: tiny.lag.iter().take(3).copied().collect(), conflicts: tiny.conflicts.iter().take(3).map(|row| row & 7).collect(), ..tiny };
         let problem = tiny.problem();
-        let search = WaitSearch::new(problem).unwrap();
+        let search = Search::new(problem).unwrap();
         let mut memory = vec![0; MEMORY_WORDS];
         let (mut a, mut b) = ([0; 64], [0; 64]);
         let front = naive_front(&tiny);
@@ -144,7 +117,7 @@ proptest! {
             prop_assert_eq!(best.value.is_some(), !front.is_empty());
         }
         if let Some(interval) = best.value {
-            let at = &WaitProblem { interval, ..problem };
+            let at = &Problem { interval, ..problem };
             prop_assert!(naive::holds(at, &a, &b));
         }
         let best = search.best(Objective::Separation, &mut memory, &mut Control::unlimited(), &mut a, &mut b).unwrap();
@@ -152,7 +125,7 @@ proptest! {
         prop_assert_eq!(best.value.is_some(), !front.is_empty());
         if let (Some(separation), true) = (best.value, tiny.lag.len() > 1) {
             prop_assert_eq!(Some(separation), front.last().map(|point| point.separation));
-            let at = &WaitProblem { separation, ..problem };
+            let at = &Problem { separation, ..problem };
             prop_assert!(naive::holds(at, &a, &b));
         }
         if tiny.lag.len() > 1 && tiny.conflicts.iter().any(|&row| row != 0) {
@@ -160,7 +133,7 @@ proptest! {
             let mut points = Vec::new();
             while let (Finish::Found, Some(point)) = walk.next_into(&mut Control::unlimited(), &mut a, &mut b).unwrap() {
                 let ParetoPoint { interval, separation } = point;
-                let at = &WaitProblem { interval, separation, ..problem };
+                let at = &Problem { interval, separation, ..problem };
             prop_assert!(naive::holds(at, &a, &b));
                 points.push(point);
             }

@@ -1,13 +1,13 @@
 //! Times the path finder on the scenes of the shared corpus and prints one JSON object: per scene the microseconds of the
 //! core (images seen) and of the whole answer (sorted, with angles and amplitudes), single thread, best of many runs.
+//! An argument names the only scene to time.
 
-use eeruf_sim::{Air, Faces, Limits, Paths, Point, Scene, Tracer, Wall};
+use eeruf_sim::{Air, Limits, Paths, Point, Scene, Tracer, Wall};
 use serde_json::{Value, json};
 use std::time::Instant;
 
-fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().map(|list| list.iter().filter_map(Value::as_f64).collect()).unwrap_or_default()
-}
+#[path = "../tests/common/corpus.rs"]
+mod corpus;
 
 fn best_us(mut run: impl FnMut()) -> f64 {
     let mut best = f64::INFINITY;
@@ -25,7 +25,9 @@ fn best_us(mut run: impl FnMut()) -> f64 {
 fn time(scene: &Scene, source: Point, receivers: &[Point], order: u32) -> Value {
     let (mut tracer, mut paths) = (Tracer::new(), Paths::default());
     let limits = Limits::order(order);
-    let whole = best_us(|| tracer.trace(scene, source, receivers, limits, &mut paths).expect("a scene of the corpus"));
+    let whole = best_us(|| {
+        tracer.trace(scene, source, receivers, limits, &mut paths).expect("a scene of the corpus");
+    });
     let core = best_us(|| {
         tracer.sight(scene, source, receivers, limits).expect("a scene of the corpus");
     });
@@ -65,41 +67,22 @@ fn pillars(per_side: usize) -> Vec<Wall> {
 }
 
 fn main() {
-    let file = std::env::args()
-        .nth(1)
-        .unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/critical-paths.json").into());
-    let only = std::env::args().nth(2);
-    let corpus: Value = serde_json::from_str(&std::fs::read_to_string(file).expect("the corpus")).expect("JSON");
+    let only = std::env::args().nth(1);
+    let skip = |id: &str| only.as_ref().is_some_and(|only| only != id);
+    let cases = corpus::corpus();
     let mut out = serde_json::Map::new();
-    for case in corpus["cases"].as_array().expect("cases") {
+    for case in cases["cases"].as_array().expect("cases") {
         let id = case["id"].as_str().expect("id");
-        if only.as_ref().is_some_and(|only| only != id) {
+        if skip(id) {
             continue;
         }
-        let mut walls: Vec<_> = case["walls"]
-            .as_array()
-            .expect("walls")
-            .iter()
-            .map(numbers)
-            .map(|w| Wall::new(w[0], w[1], w[2], w[3]))
-            .collect();
-        numbers(&case["open"]).iter().for_each(|w| walls[*w as usize].faces = Faces::Open);
-        numbers(&case["two_sided"]).iter().for_each(|w| walls[*w as usize].faces = Faces::Both);
-        let scene = Scene::new(walls, vec![], Air::default()).expect("a scene of the corpus");
-        let source = numbers(&case["source"]);
-        let receivers: Vec<_> = case["receivers"]
-            .as_array()
-            .expect("receivers")
-            .iter()
-            .map(numbers)
-            .map(|p| Point::new(p[0], p[1]))
-            .collect();
+        let (scene, source, receivers) = (corpus::scene(case), corpus::point(&case["source"]), corpus::receivers(case));
         for order in [4, 6] {
-            out.insert(format!("{id}@{order}"), time(&scene, Point::new(source[0], source[1]), &receivers, order));
+            out.insert(format!("{id}@{order}"), time(&scene, source, &receivers, order));
         }
     }
     for (id, walls) in [("star1000", star(1000)), ("pillars1024", pillars(16))] {
-        if only.as_ref().is_some_and(|only| only != id) {
+        if skip(id) {
             continue;
         }
         let start = Instant::now();

@@ -117,7 +117,7 @@ pub fn alhazen_twice(
     // The first guess aims at the nearer side of the second circle.
     let aside = first.0 - second.0;
     let apart = aside.norm();
-    if !(apart > first.1 + second.1) {
+    if apart <= first.1 + second.1 {
         return None;
     }
     let mut on_second = second.0 + aside * (second.1 / apart);

@@ -48,17 +48,23 @@ impl DitherFiring {
 }
 
 impl Scheduler for DitherFiring {
-    fn poll(&mut self, now: Instant) -> Option<Step> {
-        let deadline = self.deadline();
+    fn fire(&mut self, now: Instant) -> Option<Step> {
+        let &(due, sensor) = self.due.get(self.place)?;
+        let deadline = self.start + due;
         if !now.has_reached(deadline) {
             return None;
         }
         let late = now.since(deadline);
-        if let Some(&(_, sensor)) = self.due.get(self.place) {
-            self.start += late;
-            self.place += 1;
-            self.skip_disabled();
-            return Some(Step::Fire { sensor, phase: Phase::A, late });
+        self.start += late;
+        self.place += 1;
+        self.skip_disabled();
+        Some(Step::Fire { sensor, phase: Phase::A, late })
+    }
+
+    fn end_period(&mut self, now: Instant) -> Option<Step> {
+        let deadline = self.deadline();
+        if self.place < self.due.len() || !now.has_reached(deadline) {
+            return None;
         }
         self.begin_period(deadline);
         Some(Step::PeriodEnded { phase: Phase::A, changed: false })

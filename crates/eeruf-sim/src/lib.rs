@@ -1,11 +1,14 @@
-//! The physical half of EERUF's simulator: which ways sound takes from one ultrasonic sensor to another, exactly, and how
-//! loud it is when it arrives.
+//! EERUF's simulator: which ways sound takes from one ultrasonic sensor to another, exactly, how loud it is when it arrives,
+//! and what whole rings make of it under each firing method.
 //!
 //! - A [`Scene`] is walls, poles and air, checked once. [`Scene::paths`] answers with *every* specular path; a [`Tracer`]
 //!   does so again and again without allocating.
 //! - [`Transducer`], [`Piston`], [`Material`] and [`Air`] turn a path into an amplitude; [`CrosstalkMatrix`] does so for a
 //!   whole ring and says who hears whom.
 //! - [`reception`] solves for the moment at which sound meets a moving receiver; [`Scene::contact`] for what a robot touches.
+//! - A [`World`] puts robots with rings, clocks and motions into a scene, from a TOML file or from code; [`simulate`] drives
+//!   the ring of `eeruf-core` through simulated time under a [`Method`]. Every one of the [`Readings`] knows what caused it;
+//!   [`Summary`] counts the errors and [`Attribution`] says who was fooled by whom.
 //!
 //! Paths are found with a beam tree over a constrained triangulation of the scene, poles with Alhazen's problem; positions
 //! are good to about 1e-12 of the scene's size and sets of paths are complete. Units are metres, seconds and radians; walls,
@@ -44,6 +47,7 @@ mod drive;
 pub mod error;
 mod events;
 pub mod experiments;
+mod joints;
 mod judge;
 pub mod material;
 mod mesh;
@@ -91,7 +95,7 @@ pub use robot::Robot;
 pub use scatter::{edge_diffraction, pole_wave_correction, rigid_cylinder_form};
 pub use scene::Scene;
 pub use simulate::{Options, SimulationError, simulate, simulate_while, sweep};
-pub use summary::{Age, Summary, quantile};
+pub use summary::{Age, DEFAULT_TOLERANCE_US, Summary, quantile};
 pub use transducer::{GainProfile, Transducer};
 pub use wall::{Faces, Wall};
 pub use world::{World, WorldError};

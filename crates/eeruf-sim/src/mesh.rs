@@ -109,8 +109,10 @@ impl Mesh {
         let points: Vec<_> = vertices.iter().map(|v| Point2::new(v.x, v.y)).collect();
         let edges: Vec<_> = pieces.iter().map(|piece| piece.ends).collect();
         let mut refused = 0;
-        let cdt = ConstrainedDelaunayTriangulation::<_>::try_bulk_load_cdt(points, edges, |_| refused += 1)
-            .map_err(|_| SceneError::Tangled { pieces: pieces.len() })?;
+        let cdt = ConstrainedDelaunayTriangulation::<_>::try_bulk_load_cdt(points, edges, |_| {
+            refused += 1;
+        })
+        .map_err(|_| SceneError::Tangled { pieces: pieces.len() })?;
         if refused > 0 || cdt.num_vertices() != first_corner + 4 {
             return Err(SceneError::Tangled { pieces: refused });
         }
@@ -292,26 +294,21 @@ impl Mesh {
     }
 
     /// Whether the straight segment between two points meets no wall.
-    pub(crate) fn sees(&self, from: Point, to: Point, starts: &mut Vec<u32>) -> bool {
-        self.containing(to, starts);
-        let goals = core::mem::take(starts);
+    pub(crate) fn sees(&self, from: Point, to: Point, [starts, goals]: &mut [Vec<u32>; 2]) -> bool {
         self.containing(from, starts);
-        let ahead = to - from;
-        let mut seen = starts.iter().any(|t| goals.contains(t));
-        for start in 0..starts.len() {
-            if seen {
-                break;
-            }
-            seen = self.sides(starts[start]).iter().any(|side| {
-                let (left, right) = (side.left - from, side.right - from);
-                cross(right, left) > 0.0
-                    && cross(right, ahead) >= 0.0
-                    && cross(ahead, left) >= 0.0
-                    && self.segment_reaches(side.exit, from, ahead, &goals)
-            });
+        self.containing(to, goals);
+        if starts.iter().any(|triangle| goals.contains(triangle)) {
+            return true;
         }
-        starts.clear();
-        seen
+        let ahead = to - from;
+        let mut sides = starts.iter().flat_map(|&start| self.sides(start));
+        sides.any(|side| {
+            let (left, right) = (side.left - from, side.right - from);
+            cross(right, left) > 0.0
+                && cross(right, ahead) >= 0.0
+                && cross(ahead, left) >= 0.0
+                && self.segment_reaches(side.exit, from, ahead, goals)
+        })
     }
 
     fn segment_reaches(&self, mut exit: Exit, from: Point, ahead: crate::plane::Vector, goals: &[u32]) -> bool {

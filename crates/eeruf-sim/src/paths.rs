@@ -17,7 +17,7 @@ use crate::{
 /// The highest order that may be asked for.
 pub const MAX_ORDER: u32 = 1000;
 /// The most beams that one question may grow, some hundreds of megabytes.
-pub const MAX_BEAMS: usize = 1 << 23;
+pub const MAX_BEAMS: usize = 1 << 22;
 /// The frequency that amplitudes are given for unless another is asked for: Polaroid's 49.4 kHz.
 pub const DEFAULT_FREQUENCY_HZ: f64 = 49_400.0;
 
@@ -117,7 +117,7 @@ pub struct Tracer {
     /// The frequency that absorption and roughness are taken at, in Hz.
     pub frequency_hz: f64,
     /// Whether poles return what a rigid cylinder does at this frequency instead of what geometric optics says; see
-    /// [`pole_wave_correction`](crate::pole_wave_correction). Off by default.
+    /// [`pole_wave_correction`]. Off by default.
     pub pole_waves: bool,
     tree: BeamTree,
     poles: PoleSearch,
@@ -409,7 +409,7 @@ fn check(scene: &Scene, source: Point, receivers: &[Point], limits: Limits) -> R
     if limits.max_order > MAX_ORDER {
         return Err(PathsError::Order { max_order: limits.max_order });
     }
-    if !(limits.max_length_m > 0.0) {
+    if limits.max_length_m.is_nan() || limits.max_length_m <= 0.0 {
         return Err(PathsError::Length { max_length_m: limits.max_length_m });
     }
     if !scene.mesh.covers(source) {

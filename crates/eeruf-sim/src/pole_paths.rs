@@ -9,6 +9,9 @@ use crate::{
     scene::Scene,
 };
 
+/// The most problems of Alhazen that one question may try, some ten seconds.
+const MAX_TRIED: usize = 1 << 25;
+
 /// A path with one pole, or two in turn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PolePath {
@@ -32,7 +35,12 @@ pub(crate) struct PoleSearch {
     bounces: Vec<Bounce>,
     from_source: Vec<PoleCone>,
     back: BeamTree,
-    triangles: Vec<u32>,
+    triangles: [Vec<u32>; 2],
+    /// Poles in plain sight of the source, and of the receiver.
+    firsts: Vec<u32>,
+    lasts: Vec<u32>,
+    /// Problems of Alhazen tried so far.
+    tried: usize,
 }
 
 impl PoleSearch {
@@ -52,13 +60,16 @@ impl PoleSearch {
     ) -> bool {
         self.found.clear();
         self.bounces.clear();
+        self.tried = 0;
         if scene.poles().is_empty() || limits.max_order == 0 {
             return true;
         }
         let cone_key = |cone: &PoleCone| (cone.pole, cone.triangle);
         self.from_source.clear();
         self.from_source.extend_from_slice(&tree.pole_cones);
-        self.from_source.sort_by_key(cone_key);
+        // Within one key the beams stay in the order of their tree, lowest order first.
+        self.from_source.sort_by_key(|cone| (cone_key(cone), cone.beam));
+        in_sight(&self.from_source, &mut self.firsts);
         for (receiver, &at) in receivers.iter().enumerate() {
             let growth = Growth {
                 mesh: &scene.mesh,
@@ -73,17 +84,22 @@ impl PoleSearch {
             let mut back = core::mem::take(&mut self.back);
             let complete = back.grow(&growth, at, &[]);
             for behind in &back.pole_cones {
+                let home_order = back.beams[behind.beam as usize].order;
                 let start = self.from_source.partition_point(|cone| cone_key(cone) < cone_key(behind));
                 for index in start..self.from_source.len() {
                     let before = self.from_source[index];
-                    if cone_key(&before) != cone_key(behind) {
+                    if cone_key(&before) != cone_key(behind)
+                        || tree.beams[before.beam as usize].order + home_order >= limits.max_order
+                        || self.tried > MAX_TRIED
+                    {
                         break;
                     }
                     self.join(scene, tree, &before, &back, behind, receiver as u32, limits);
                 }
             }
+            in_sight(&back.pole_cones, &mut self.lasts);
             self.back = back;
-            if !complete || self.found.len() > budget {
+            if !complete || self.found.len() > budget || self.tried > MAX_TRIED {
                 return false;
             }
             if limits.max_order >= 2 {
@@ -107,10 +123,12 @@ impl PoleSearch {
     ) {
         let (out, home) = (&tree.beams[before.beam as usize], &back.beams[behind.beam as usize]);
         let order = out.order + 1 + home.order;
-        if order > limits.max_order {
+        let pole = &scene.poles()[before.pole as usize];
+        let (far_out, far_home) = ((out.image - pole.centre).norm(), (home.image - pole.centre).norm());
+        if far_out + far_home > limits.max_length_m + 2.0 * pole.radius_m {
             return;
         }
-        let pole = &scene.poles()[before.pole as usize];
+        self.tried += 1;
         let Some(hit) = alhazen(out.image, home.image, pole.centre, pole.radius_m) else {
             return;
         };
@@ -135,11 +153,14 @@ impl PoleSearch {
     /// Source, one pole, another pole, receiver, all in sight of each other.
     fn two_poles(&mut self, scene: &Scene, source: Point, at: Point, receiver: u32, limits: Limits) {
         let poles = scene.poles();
-        for (a, first) in poles.iter().enumerate() {
-            for (b, second) in poles.iter().enumerate() {
+        for a in 0..self.firsts.len() {
+            for b in 0..self.lasts.len() {
+                let (a, b) = (self.firsts[a], self.lasts[b]);
                 if a == b {
                     continue;
                 }
+                self.tried += 1;
+                let (first, second) = (&poles[a as usize], &poles[b as usize]);
                 let circles = ((first.centre, first.radius_m), (second.centre, second.radius_m));
                 let Some((one, two)) = alhazen_twice(source, at, circles.0, circles.1) else {
                     continue;
@@ -152,7 +173,7 @@ impl PoleSearch {
                     continue;
                 }
                 let start = self.bounces.len();
-                self.bounces.extend([Bounce::Pole(a as u32), Bounce::Pole(b as u32)]);
+                self.bounces.extend([Bounce::Pole(a), Bounce::Pole(b)]);
                 let angles = [unfolded(one.point - source, 0, 0.0), unfolded(two.point - at, 0, 0.0)];
                 self.push(receiver, at, 2, angles, &[(one, circles.0.1), (two, circles.1.1)], start);
             }
@@ -187,6 +208,14 @@ impl PoleSearch {
             bounces: (start as u32, self.bounces.len() as u32),
         });
     }
+}
+
+/// The poles that the source's own, unreflected cones pass.
+fn in_sight(cones: &[PoleCone], poles: &mut Vec<u32>) {
+    poles.clear();
+    poles.extend(cones.iter().filter(|cone| cone.beam == 0).map(|cone| cone.pole));
+    poles.sort_unstable();
+    poles.dedup();
 }
 
 /// The direction at the source of what is `ahead` in the image's world.

@@ -1,47 +1,14 @@
 //! The shared corpus `tests/data/critical-paths.json`: every scene and closed form, path for path.
 
 use eeruf_sim::{
-    Air, Bounce, Faces, Limits, Material, Paths, Piston, Point, Pole, Scene, Tracer, Vector, Wall, alhazen, reception,
+    Air, Bounce, Limits, Material, Paths, Piston, Point, Scene, Tracer, Vector, Wall, alhazen, reception,
     reception_along, rigid_cylinder_form,
 };
 use serde_json::Value;
 
-fn corpus() -> Value {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/critical-paths.json");
-    serde_json::from_str(&std::fs::read_to_string(file).unwrap()).unwrap()
-}
-
-fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().map(|list| list.iter().map(|v| v.as_f64().unwrap()).collect()).unwrap_or_default()
-}
-
-fn rows(value: &Value) -> Vec<Vec<f64>> {
-    value.as_array().map(|list| list.iter().map(numbers).collect()).unwrap_or_default()
-}
-
-fn point(value: &Value) -> Point {
-    let at = numbers(value);
-    Point::new(at[0], at[1])
-}
-
-fn scene(case: &Value) -> Scene {
-    let mut walls: Vec<_> = rows(&case["walls"]).iter().map(|w| Wall::new(w[0], w[1], w[2], w[3])).collect();
-    for open in numbers(&case["open"]) {
-        walls[open as usize].faces = Faces::Open;
-    }
-    for panel in numbers(&case["two_sided"]) {
-        walls[panel as usize].faces = Faces::Both;
-    }
-    let poles = rows(&case["poles"]).iter().map(|p| Pole::new(p[0], p[1], p[2])).collect();
-    Scene::new(walls, poles, Air::default()).unwrap()
-}
-
-fn receivers(case: &Value) -> Vec<Point> {
-    match case["receivers"].as_array() {
-        Some(list) => list.iter().map(point).collect(),
-        None => vec![point(&case["receiver"])],
-    }
-}
+#[path = "common/corpus.rs"]
+mod reader;
+use reader::{corpus, numbers, point, receivers, rows, scene};
 
 /// One path as the corpus writes it: length, order, sequence (absent where the case is degenerate).
 type Expected = (f64, u32, Option<Vec<Bounce>>);

@@ -209,3 +209,21 @@ fn the_matrix_is_sorted_and_blind_to_pairs_that_do_not_exist() {
     assert!(total > 8);
     assert!(heard.between(8, 0).is_empty() && heard.between(0, 8).is_empty());
 }
+
+#[test]
+fn a_forest_and_a_hall_of_poles_are_answered_soon() {
+    let forest = |count: u32| {
+        (0..count).map(|k| Pole::new(0.37 * f64::from(k % 17), 0.41 * f64::from(k / 17), 0.01)).collect::<Vec<_>>()
+    };
+    let open = Scene::new(vec![], forest(200), Air::default()).unwrap();
+    let (source, receiver) = (Point::new(-1.0, 0.2), Point::new(-1.0, 0.9));
+    let paths = open.paths(source, &[receiver], 2, f64::INFINITY).unwrap();
+    // Nothing hides a pole: one path over each, and many over two.
+    assert_eq!(paths.order.iter().filter(|order| **order == 1).count(), 200);
+    assert!(paths.len() > 10_000);
+    let room = Wall::polyline(&[[-2.0, -2.0], [8.0, -2.0], [8.0, 8.0], [-2.0, 8.0], [-2.0, -2.0]]).collect();
+    let hall = Scene::new(room, forest(100), Air::default()).unwrap();
+    let near = hall.paths(source, &[receiver], 60, 9.0).unwrap();
+    assert!(near.length_m.iter().all(|length| *length <= 9.0));
+    assert!(near.len() > 1000);
+}

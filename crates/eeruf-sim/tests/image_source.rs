@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Random, free_point, scene};
-use eeruf_sim::{Bounce, Faces, Point, Scene, Wall};
+use eeruf_sim::{Air, Bounce, Faces, Point, Pole, Scene, Wall};
 use parry2d_f64::{
     math::Vector,
     query::{Ray, RayCast},
@@ -96,8 +96,22 @@ fn follow(walls: &[Wall], images: &[Point], sequence: &[usize], receiver: Point)
     }
 }
 
+/// Bounces and length.
+type Found = (Vec<Bounce>, f64);
+type Sequences = Vec<Found>;
+
+/// The same sequences with the same lengths; returns how many.
+fn assert_agree(mut ours: Sequences, mut expected: Sequences, setting: impl Fn() -> String) -> usize {
+    ours.sort_by(|a, b| a.0.cmp(&b.0));
+    expected.sort_by(|a, b| a.0.cmp(&b.0));
+    let alike = |(o, e): (&Found, &Found)| o.0 == e.0 && (o.1 - e.1).abs() < 1e-9;
+    let same = ours.len() == expected.len() && ours.iter().zip(&expected).all(alike);
+    assert!(same, "{}\n{ours:?}\n{expected:?}", setting());
+    ours.len()
+}
+
 /// All paths of a receiver as (sequence, length), or none when one of them is doubtful.
-fn image_sources(scene: &Scene, source: Point, receiver: Point, max_order: usize) -> Option<Vec<(Vec<Bounce>, f64)>> {
+fn image_sources(scene: &Scene, source: Point, receiver: Point, max_order: usize) -> Option<Sequences> {
     let walls = scene.walls();
     let mut found = Vec::new();
     let mut images = vec![source];
@@ -136,23 +150,117 @@ fn beam_tree_and_image_sources_agree_on_thousands_of_random_rooms() {
     let mut random = Random(7);
     let (mut rooms, mut doubtful, mut paths) = (0, 0, 0);
     while rooms < 3000 {
-        let scene = scene(&mut random, 7);
-        let order = if scene.walls().len() <= 6 { 4 } else { 3 };
+        // Now and then a large room at a low order.
+        let scene = scene(&mut random, if rooms % 10 == 0 { 40 } else { 7 });
+        let order = match scene.walls().len() {
+            ..=6 => 4,
+            7..=14 => 3,
+            _ => 2,
+        };
         let (source, receiver) = (free_point(&mut random, &scene), free_point(&mut random, &scene));
-        let Some(mut expected) = image_sources(&scene, source, receiver, order) else {
+        let Some(expected) = image_sources(&scene, source, receiver, order) else {
             doubtful += 1;
             continue;
         };
         rooms += 1;
         let found = scene.paths(source, &[receiver], order as u32, f64::INFINITY).unwrap();
-        let mut ours: Vec<_> = (0..found.len()).map(|k| (found.bounces(k).to_vec(), found.length_m[k])).collect();
-        ours.sort_by(|a, b| a.0.cmp(&b.0));
-        expected.sort_by(|a, b| a.0.cmp(&b.0));
-        let same = ours.len() == expected.len()
-            && ours.iter().zip(&expected).all(|(o, e)| o.0 == e.0 && (o.1 - e.1).abs() < 1e-9);
-        assert!(same, "room {rooms}: {:?}\n{source} to {receiver}\n{ours:?}\n{expected:?}", scene.walls());
-        paths += ours.len();
+        let ours = (0..found.len()).map(|k| (found.bounces(k).to_vec(), found.length_m[k]));
+        paths += assert_agree(ours.collect(), expected, || format!("{:?}, {source} to {receiver}", scene.walls()));
     }
     assert!(doubtful < rooms / 50, "{doubtful} of {rooms} rooms were doubtful");
     assert!(paths > 20_000, "only {paths} paths compared");
+}
+
+/// The point of a circle where a broken line bounces with equal angles, by plain search: the way over the circle is
+/// shortest there.
+fn shortest_over(from: Point, to: Point, pole: &Pole) -> Option<Point> {
+    let at = |angle: f64| pole.centre + eeruf_sim::Vector::new(angle.cos(), angle.sin()) * pole.radius_m;
+    let way = |angle: f64| (at(angle) - from).norm() + (to - at(angle)).norm();
+    let steps = 720;
+    let step = std::f64::consts::TAU / f64::from(steps);
+    let best = (0..steps).map(|k| f64::from(k) * step).min_by(|a, b| way(*a).total_cmp(&way(*b)))?;
+    let (mut low, mut high) = (best - step, best + step);
+    while high - low > 1e-9 {
+        let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+        if way(a) < way(b) { high = b } else { low = a }
+    }
+    let point = at(low);
+    let normal = point - pole.centre;
+    (normal.dot(&(from - point)) > 0.0 && normal.dot(&(to - point)) > 0.0).then_some(point)
+}
+
+#[test]
+fn pole_paths_agree_with_a_plain_search_over_image_sources() {
+    let mut random = Random(11);
+    let (mut rooms, mut doubtful, mut paths) = (0, 0, 0);
+    while rooms < 150 {
+        let bare = scene(&mut random, 5);
+        let (source, receiver) = (free_point(&mut random, &bare), free_point(&mut random, &bare));
+        let axis = free_point(&mut random, &bare);
+        let pole = Pole::new(axis.x, axis.y, random.between(0.004, 0.05));
+        let walls = bare.walls().to_vec();
+        let far = |p: Point| (p - axis).norm() > 2.0 * pole.radius_m;
+        // A pole well clear of the walls and of the two points, so that the search is well behaved.
+        let clear = walls.iter().all(|wall| {
+            let along = wall.to - wall.from;
+            let s = (along.dot(&(axis - wall.from)) / along.norm_squared()).clamp(0.0, 1.0);
+            far(wall.from + along * s)
+        });
+        if !(clear && far(source) && far(receiver)) {
+            continue;
+        }
+        let mut sequences: Vec<Vec<usize>> = vec![vec![]];
+        for w in 0..walls.len() {
+            sequences.push(vec![w]);
+            sequences.extend((0..walls.len()).filter(|v| *v != w).map(|v| vec![w, v]));
+        }
+        sequences.retain(|sequence| sequence.iter().all(|w| walls[*w].faces != Faces::Open));
+        let images = |start: Point, sequence: &[usize]| {
+            let mut images = vec![start];
+            for &w in sequence {
+                images.push(mirrored(&walls[w], images[images.len() - 1]));
+            }
+            images
+        };
+        let mut expected = Vec::new();
+        let mut unsure = false;
+        for before in &sequences {
+            let out = images(source, before);
+            for after in sequences.iter().filter(|after| before.len() + after.len() < 3) {
+                let home = images(receiver, after);
+                let (from, to) = (out[out.len() - 1], home[home.len() - 1]);
+                let Some(hit) = shortest_over(from, to, &pole) else {
+                    continue;
+                };
+                match (follow(&walls, &out, before, hit), follow(&walls, &home, after, hit)) {
+                    (Answer::No, _) | (_, Answer::No) => {}
+                    (Answer::Yes, Answer::Yes) => {
+                        let wall = |w: &usize| Bounce::Wall(*w as u32);
+                        let bounces: Vec<_> = before
+                            .iter()
+                            .map(wall)
+                            .chain([Bounce::Pole(0)])
+                            .chain(after.iter().rev().map(wall))
+                            .collect();
+                        expected.push((bounces, (hit - from).norm() + (to - hit).norm()));
+                    }
+                    _ => unsure = true,
+                }
+            }
+        }
+        if unsure {
+            doubtful += 1;
+            continue;
+        }
+        rooms += 1;
+        let with_pole = Scene::new(walls, vec![pole], Air::default()).unwrap();
+        let found = with_pole.paths(source, &[receiver], 3, f64::INFINITY).unwrap();
+        let ours = (0..found.len()).map(|k| (found.bounces(k).to_vec(), found.length_m[k]));
+        let over_pole = ours.filter(|path| path.0.contains(&Bounce::Pole(0)));
+        paths += assert_agree(over_pole.collect(), expected, || {
+            format!("{:?}, {pole:?}, {source} to {receiver}", with_pole.walls())
+        });
+    }
+    assert!(doubtful < rooms, "{doubtful} of {rooms} rooms were doubtful");
+    assert!(paths > 1000, "only {paths} paths compared");
 }

@@ -155,3 +155,78 @@ proptest! {
         prop_assert_eq!(paths.len(), 1);
     }
 }
+
+/// Sources and receivers on a lattice: paths through corners, along the mesh's own diagonals and through the joints of walls
+/// that were cut at lattice points.
+#[test]
+fn a_rectangle_has_one_path_per_image_even_on_a_lattice() {
+    let cut = |corners: &[[f64; 2]]| Scene::new(Wall::polyline(corners).collect(), vec![], Air::default()).unwrap();
+    let whole = cut(&[[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0], [0.0, 0.0]]);
+    let pieces = cut(&[
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [2.0, 0.0],
+        [4.0, 0.0],
+        [4.0, 1.5],
+        [4.0, 3.0],
+        [3.0, 3.0],
+        [0.0, 3.0],
+        [0.0, 1.0],
+        [0.0, 0.0],
+    ]);
+    let lattice: Vec<_> =
+        (0..35).map(|k| Point::new(0.5 + 0.5 * f64::from(k % 7), 0.5 + 0.5 * f64::from(k / 7))).collect();
+    for scene in [whole, pieces] {
+        for &source in &lattice {
+            let paths = scene.paths(source, &lattice, 5, FAR).unwrap();
+            for (receiver, &at) in lattice.iter().enumerate() {
+                let expected = 1 + 2 * 5 * 6 - usize::from(at == source);
+                assert_eq!(paths.of(receiver as u32).len(), expected, "{source} to {at}");
+            }
+        }
+    }
+}
+
+/// Corners of each path: equal angles at walls and poles, and the length that was claimed.
+#[test]
+fn every_path_obeys_the_law_of_reflection_at_each_bounce() {
+    let mut bounced = 0;
+    for seed in 0..300 {
+        let (scene, source, receiver) = setting(seed);
+        let paths = scene.paths(source, &[receiver], 4, FAR).unwrap();
+        for k in 0..paths.len() {
+            let bounces = paths.bounces(k);
+            let corners = scene.polyline(source, receiver, bounces).unwrap();
+            let length: f64 = corners.windows(2).map(|leg| (leg[1] - leg[0]).norm()).sum();
+            assert!((length - paths.length_m[k]).abs() < 1e-9);
+            let angle = |from: Point, to: Point| (to.y - from.y).atan2(to.x - from.x);
+            let last = corners.len() - 1;
+            assert!((angle(source, corners[1]) - paths.departure_rad[k]).sin().abs() < 1e-6);
+            assert!((angle(receiver, corners[last - 1]) - paths.arrival_rad[k]).sin().abs() < 1e-6);
+            for (bounce, around) in bounces.iter().zip(corners.windows(3)) {
+                let normal = match *bounce {
+                    Bounce::Wall(wall) => {
+                        let wall = scene.walls()[wall as usize];
+                        let along = (wall.to - wall.from).normalize();
+                        let off = around[1] - wall.from;
+                        assert!((along.x * off.y - along.y * off.x).abs() < 1e-9);
+                        assert!((-1e-9..=wall.length_m() + 1e-9).contains(&along.dot(&off)));
+                        Vector::new(-along.y, along.x)
+                    }
+                    Bounce::Pole(pole) => {
+                        let pole = scene.poles()[pole as usize];
+                        let normal = (around[1] - pole.centre) / pole.radius_m;
+                        assert!((normal.norm() - 1.0).abs() < 1e-9);
+                        normal
+                    }
+                };
+                // The mirrored way in is the way out.
+                let (way_in, way_out) = ((around[1] - around[0]).normalize(), (around[2] - around[1]).normalize());
+                let mirrored = way_in - normal * (2.0 * way_in.dot(&normal));
+                assert!((mirrored - way_out).norm() < 1e-6, "{bounce:?}: {way_in} to {way_out}");
+                bounced += 1;
+            }
+        }
+    }
+    assert!(bounced > 10_000);
+}

@@ -1,7 +1,8 @@
 //! A slow, obvious judge of wait tables: (13a) and (13b) pair by pair as printed, firings compared one by one on the circle, and
 //! plain nested loops. It shares nothing with the search but the problem's type.
 
-use eeruf_core::search::wait::{Criterion, WaitProblem};
+use eeruf_core::Criterion;
+use eeruf_core::search::wait::Problem;
 use serde::Deserialize;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -26,7 +27,7 @@ pub fn conflicts(layout: Layout, sensors: usize, neighbours: usize) -> Vec<u64> 
 }
 
 /// Whether sensors x and y may stand in one table.
-pub fn pair_holds(problem: &WaitProblem<'_>, x: usize, y: usize, a: &[u32], b: &[u32]) -> bool {
+pub fn pair_holds(problem: &Problem<'_>, x: usize, y: usize, a: &[u32], b: &[u32]) -> bool {
     let (xa, xb, ya, yb) = (a[x] as i64, b[x] as i64, a[y] as i64, b[y] as i64);
     let d = i64::from(problem.separation);
     let separate = match problem.criterion {
@@ -41,7 +42,7 @@ pub fn pair_holds(problem: &WaitProblem<'_>, x: usize, y: usize, a: &[u32], b: &
 }
 
 /// The least distance between a firing of x and one of y.
-fn interval(problem: &WaitProblem<'_>, x: usize, y: usize, a: &[u32], b: &[u32]) -> i64 {
+fn interval(problem: &Problem<'_>, x: usize, y: usize, a: &[u32], b: &[u32]) -> i64 {
     let period = i64::from(problem.period);
     let firings = |k: usize| {
         let lag = i64::from(problem.lag[k]);
@@ -58,7 +59,7 @@ fn interval(problem: &WaitProblem<'_>, x: usize, y: usize, a: &[u32], b: &[u32])
     least
 }
 
-pub fn holds(problem: &WaitProblem<'_>, a: &[u32], b: &[u32]) -> bool {
+pub fn holds(problem: &Problem<'_>, a: &[u32], b: &[u32]) -> bool {
     let sensors = problem.lag.len();
     (0..sensors).all(|x| {
         a[x] <= problem.wait_max && b[x] <= problem.wait_max && (0..x).all(|y| pair_holds(problem, x, y, a, b))
@@ -66,14 +67,8 @@ pub fn holds(problem: &WaitProblem<'_>, a: &[u32], b: &[u32]) -> bool {
 }
 
 /// Calls `see` for every table: one loop for each wait of each sensor, the innermost bodies entered only if the sensors so far fit.
-pub fn for_each(problem: &WaitProblem<'_>, see: &mut dyn FnMut(&[u32], &[u32])) {
-    fn loops(
-        problem: &WaitProblem<'_>,
-        k: usize,
-        a: &mut Vec<u32>,
-        b: &mut Vec<u32>,
-        see: &mut dyn FnMut(&[u32], &[u32]),
-    ) {
+pub fn for_each(problem: &Problem<'_>, see: &mut dyn FnMut(&[u32], &[u32])) {
+    fn loops(problem: &Problem<'_>, k: usize, a: &mut Vec<u32>, b: &mut Vec<u32>, see: &mut dyn FnMut(&[u32], &[u32])) {
         if k == problem.lag.len() {
             see(a, b);
             return;
@@ -93,17 +88,13 @@ pub fn for_each(problem: &WaitProblem<'_>, see: &mut dyn FnMut(&[u32], &[u32])) 
     loops(problem, 0, &mut Vec::new(), &mut Vec::new(), see);
 }
 
-pub fn count(problem: &WaitProblem<'_>) -> u128 {
+pub fn count(problem: &Problem<'_>) -> u128 {
     let mut count = 0;
     for_each(problem, &mut |_, _| count += 1);
     count
 }
 
 /// The greatest smallest interval and the greatest separation of any table, by trying each value.
-pub fn best(
-    problem: &WaitProblem<'_>,
-    with: impl Fn(WaitProblem<'_>, u32) -> WaitProblem<'_>,
-    most: u32,
-) -> Option<u32> {
+pub fn best(problem: &Problem<'_>, with: impl Fn(Problem<'_>, u32) -> Problem<'_>, most: u32) -> Option<u32> {
     (0..=most).rev().find(|&value| count(&with(*problem, value)) > 0)
 }

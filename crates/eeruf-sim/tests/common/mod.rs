@@ -3,7 +3,7 @@
 
 use eeruf_sim::{Air, Faces, Point, Scene, Wall};
 
-/// SplitMix64.
+/// The `SplitMix64` generator.
 pub struct Random(pub u64);
 
 impl Random {

@@ -60,7 +60,9 @@ impl Frame {
     }
 
     pub(crate) fn unpack(words: &[i32]) -> Self {
-        let [first, mark, p, q, r, s] = *words else { return Self::new(Kind::Value) };
+        let [first, mark, p, q, r, s] = *words else {
+            return Self::new(Kind::Value);
+        };
         let [kind, x, y, tried] = first.to_le_bytes();
         let kind = match kind {
             0 => Kind::Top,

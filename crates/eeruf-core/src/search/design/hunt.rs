@@ -98,7 +98,7 @@ impl<C: Control> Meter<'_, C> {
                 return outcome;
             }
             let progress = Progress { nodes: self.nodes, period: period as u32, bound: self.bound, best: self.best };
-            self.stopped = self.control.poll(&progress) == Flow::Stop;
+            self.stopped |= self.control.poll(&progress) == Flow::Stop;
             if !self.may_go_on() {
                 return Outcome::Spent;
             }
@@ -119,8 +119,8 @@ impl<'h, C: Control> Hunt<'h, C> {
 
     /// Decides a question with about `budget` nodes.
     ///
-    /// Most schedules are found by a lucky descent or not for long, and most proofs are short. So a small part of the budget goes to an
-    /// ordinary search, led by `guide`, and the rest to descents of few nodes that begin in different ways; or, to be `thorough`, half each.
+    /// Most schedules are found by a lucky descent or not for long: a small part of the budget goes to an ordinary search, led by `guide`, and
+    /// the rest to descents of few nodes that begin in different ways. For a proof, `thorough`, all goes to the ordinary search.
     pub(crate) fn decide(
         &mut self,
         question: &Question,
@@ -130,7 +130,7 @@ impl<'h, C: Control> Hunt<'h, C> {
     ) -> Outcome {
         let mut tree = Tree::new(&question.needs, question.period, self.memory);
         let unit = 32 + 6 * question.needs.sensors as u64;
-        let full = if thorough { budget / 2 } else { unit.max(budget / 8) }.min(budget);
+        let full = if thorough { budget } else { unit.max(budget / 8).min(budget) };
         tree.restart(None, guide);
         let outcome = self.meter.run(&mut tree, full, question.period);
         if outcome != Outcome::Spent {
@@ -156,9 +156,11 @@ impl<'h, C: Control> Hunt<'h, C> {
         let end = self.meter.nodes.saturating_add(budget).min(self.meter.limit);
         let mut part = 64 * question.needs.sensors as u64;
         loop {
-            let outcome = self.decide(question, part.min(end - self.meter.nodes), None, true);
-            if outcome != Outcome::Spent || self.meter.nodes >= end || !self.meter.may_go_on() {
-                return outcome;
+            for (thorough, part) in [(false, part), (true, part.saturating_mul(4))] {
+                let outcome = self.decide(question, part.min(end.saturating_sub(self.meter.nodes)), None, thorough);
+                if outcome != Outcome::Spent || self.meter.nodes >= end || !self.meter.may_go_on() {
+                    return outcome;
+                }
             }
             part = part.saturating_mul(4);
         }
@@ -174,11 +176,11 @@ impl<'h, C: Control> Hunt<'h, C> {
         let first = ((border.yes - border.no) >> 8).max(1);
         'up: for _ in 0..6 {
             let (mut step, mut ease) = (first, border.no + 1);
-            for _ in 0..6 {
-                if ease >= border.yes
-                    || !self.meter.may_go_on()
-                    || matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_))
-                {
+            for budget in [4 * budget, budget, budget, budget, budget, budget] {
+                if ease >= border.yes || !self.meter.may_go_on() {
+                    break 'up;
+                }
+                if matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_)) {
                     break 'up;
                 }
                 ease = ease.max(border.no) + step;
@@ -187,22 +189,23 @@ impl<'h, C: Control> Hunt<'h, C> {
             budget *= 2;
         }
         loop {
+            // The tightest problem leaves the least to guess, so it comes first; then halving.
             let mut unknown = border.no;
+            let mut ease = border.no + 1;
             while unknown + 1 < border.yes && self.meter.may_go_on() {
-                let ease = unknown + (border.yes - unknown) / 2;
-                if !matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_)) {
+                if !self.finds(question, axis, ease, budget, border) {
                     unknown = ease;
                 }
+                ease = unknown + (border.yes - unknown) / 2;
             }
             let rest = self.meter.limit.saturating_sub(self.meter.nodes);
-            if border.no + 1 >= border.yes || rest == 0 {
+            if border.no + 1 >= border.yes || !self.meter.may_go_on() {
                 return;
             }
             budget *= 4;
             let most = rest - rest / 4;
-            if self.ask(question, axis, border.yes - 1, (4 * budget).min(most), true, border) == Outcome::Spent
-                && most <= 4 * budget
-            {
+            let outcome = self.ask(question, axis, border.yes - 1, budget.min(most), true, border);
+            if outcome == Outcome::Spent && most <= budget {
                 break;
             }
         }
@@ -216,6 +219,11 @@ impl<'h, C: Control> Hunt<'h, C> {
         }
     }
 
+    /// Whether a schedule is found at `ease` with a little luck.
+    fn finds(&mut self, question: &Question, axis: Axis, ease: i32, budget: u64, border: &mut Border) -> bool {
+        matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_))
+    }
+
     /// Decides at `ease` and moves the border accordingly.
     fn ask(
         &mut self,
@@ -226,6 +234,9 @@ impl<'h, C: Control> Hunt<'h, C> {
         thorough: bool,
         border: &mut Border,
     ) -> Outcome {
+        if !self.meter.may_go_on() {
+            return Outcome::Spent;
+        }
         let asked = question.at(axis, ease);
         let outcome = self.decide(&asked, budget, border.guide.then_some(border.firing), thorough);
         match &outcome {

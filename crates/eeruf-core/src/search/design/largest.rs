@@ -78,8 +78,12 @@ fn largest<C: Control>(
     let most = most(&question, axis);
     let firing = match hunt.settle(&question, budget) {
         Outcome::Found(firing) => firing,
-        Outcome::Exhausted => return Ok(Largest { found: None, bound: None, nodes: hunt.meter.nodes }),
-        Outcome::Spent => return Ok(Largest { found: None, bound: Some(most as u32), nodes: hunt.meter.nodes }),
+        Outcome::Exhausted => {
+            return Ok(Largest { found: None, bound: None, nodes: hunt.meter.nodes });
+        }
+        Outcome::Spent => {
+            return Ok(Largest { found: None, bound: Some(most as u32), nodes: hunt.meter.nodes });
+        }
     };
     let border = improve(&mut hunt, &question, axis, firing);
     Ok(Largest {

@@ -2,8 +2,7 @@
 
 use core::fmt;
 
-/// The most sensors a problem may have: one bit each in a word of conflicts.
-pub const MAX_SENSORS: usize = 64;
+use crate::schedule::MAX_SENSORS;
 
 /// The longest time the search computes with, in ticks (67 s of 1 us).
 pub const MAX_TICKS: u32 = 1 << 26;
@@ -107,8 +106,12 @@ impl fmt::Display for ProblemError {
                     "firing one by one already takes {period} ticks; expected at most {MAX_TICKS}, so use a coarser tick"
                 )
             }
-            Self::Period(period) => write!(f, "a period of {period} ticks; expected 1 to {MAX_TICKS}"),
-            Self::Memory { words, needed } => write!(f, "{words} words of memory; expected at least {needed}"),
+            Self::Period(period) => {
+                write!(f, "a period of {period} ticks; expected 1 to {MAX_TICKS}")
+            }
+            Self::Memory { words, needed } => {
+                write!(f, "{words} words of memory; expected at least {needed}")
+            }
         }
     }
 }

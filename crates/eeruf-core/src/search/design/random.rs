@@ -18,6 +18,6 @@ impl Random {
 
     /// A number below `below`, which is at least 1.
     pub(crate) fn below(&mut self, below: u32) -> u32 {
-        ((self.next() & 0xffff_ffff) * u64::from(below) >> 32) as u32
+        (((self.next() & 0xffff_ffff) * u64::from(below)) >> 32) as u32
     }
 }

@@ -2,89 +2,14 @@
 
 use core::fmt;
 
-use super::bounds::{self, Bound};
+use super::bounds;
 use super::control::Control;
 use super::hunt::{Axis, Border, Hunt, Question};
 use super::problem::{Needs, Problem, ProblemError};
+use super::reason::Reason;
 use super::schedule::{self, Firing};
 use super::tree::Outcome;
 use super::{MAX_TICKS, check_memory};
-
-/// Why there is no shorter period, or none is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Reason {
-    /// A bound that follows by counting is met.
-    Bound(Bound),
-    /// The search went through every schedule that is one tick shorter, and found that none works.
-    Exhausted {
-        /// The period that was searched, in ticks.
-        period: u32,
-        /// The best bound by counting.
-        counted: Bound,
-    },
-    /// The budget was spent, or the caller stopped the search: the period may not be the shortest.
-    BudgetSpent {
-        /// The shortest period that is not excluded, in ticks.
-        bound: u32,
-    },
-}
-
-impl fmt::Display for Bound {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let period = self.period();
-        match *self {
-            Self::Capacity { sensors, separation, window, least } => {
-                write!(
-                    f,
-                    "window and separation: {sensors} sensors need {sensors} refire times {separation} ticks apart"
-                )?;
-                if least > 0 {
-                    write!(f, ", the first {least} ticks from the period for the sake of stale echoes")?;
-                }
-                write!(f, ", and the shortest must leave a window of {window} ticks, which takes {period} ticks; ")?;
-                f.write_str(
-                    "a shorter window, a smaller separation or fewer sensors would help, a shorter interval would not",
-                )
-            }
-            Self::Clique { sensors, interval, .. } => write!(
-                f,
-                "interval: {sensors} sensors that all conflict must fire {interval} ticks apart, which takes {period} ticks; \
-                 a shorter interval or fewer conflicting neighbours would help, a smaller separation would not"
-            ),
-            Self::Density { sensors, at_once, interval, .. } => write!(
-                f,
-                "interval and number of sensors: at most {at_once} of {sensors} sensors can fire within the same {interval} ticks, \
-                 which takes {period} ticks; a shorter interval or fewer conflicts would help, a smaller separation would not"
-            ),
-            Self::OneTick => f.write_str("the tick: a period has at least one"),
-        }
-    }
-}
-
-impl fmt::Display for Reason {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Bound(bound) => bound.fmt(f),
-            Self::Exhausted { period, counted } => {
-                write!(
-                    f,
-                    "interval and separation together: no firing order of the sensors meets both within {period} ticks, though {} would \
-                     do for ",
-                    counted.period()
-                )?;
-                f.write_str(match counted {
-                    Bound::Capacity { .. } => "window and separation alone",
-                    _ => "the interval alone",
-                })?;
-                write!(f, " (every order was searched)")
-            }
-            Self::BudgetSpent { bound } => {
-                write!(f, "the budget was spent: periods from {bound} ticks on are neither found nor excluded")
-            }
-        }
-    }
-}
 
 /// The shortest period found, with its proof or lower bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,6 +37,7 @@ impl Shortest {
 
 /// What a search of one period came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::large_enum_variant, reason = "there is no allocator to box it with, and one exists at a time")]
 pub enum Answer {
     /// A schedule.
     Found(Firing),

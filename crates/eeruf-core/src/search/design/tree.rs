@@ -17,6 +17,7 @@ use super::symmetry::{self, Sorting};
 
 /// What a search of one period came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::large_enum_variant, reason = "there is no allocator to box it with, and one exists at a time")]
 pub(crate) enum Outcome {
     Found(Firing),
     Exhausted,
@@ -28,9 +29,11 @@ pub(crate) const fn frames(sensors: usize) -> usize {
     sensors * (sensors - 1) + 8 * sensors + 32
 }
 
-/// The least rows of the undo log; with fewer, backing up recomputes more.
+/// The rows of the undo log: for 12 sensors what fits into 64 KiB with everything else, for more sensors enough
+/// that backing up hardly ever has to recompute.
 const fn log_rows(sensors: usize) -> usize {
-    8 * (2 * sensors + 1)
+    let per_node = if sensors <= 12 { 16 } else { 64 };
+    per_node * (2 * sensors + 1)
 }
 
 /// The words of memory that a search over `sensors` sensors needs.
@@ -294,7 +297,9 @@ impl<'p, 'm> Tree<'p, 'm> {
                 frame.tried <= 3
             }
             Kind::Top | Kind::Low | Kind::High => {
-                let Some((x, negative)) = self.pick(frame) else { return false };
+                let Some((x, negative)) = self.pick(frame) else {
+                    return false;
+                };
                 (frame.x, frame.y, frame.tried) = (x, u8::from(negative), 1);
                 if negative {
                     frame.negative &= !(1 << x);
@@ -319,7 +324,9 @@ impl<'p, 'm> Tree<'p, 'm> {
         }
         if let Some(guide) = &self.guide {
             let d = |x: usize| i64::from(guide.a[x]) - i64::from(guide.b[x]);
-            let key = |x: usize| if frame.kind == Kind::Low { d(x).abs() } else { -d(x).abs() };
+            let key = |x: usize| {
+                if frame.kind == Kind::Low { d(x).abs() } else { -d(x).abs() }
+            };
             let best = Sensors(frame.positive | frame.negative).min_by_key(|&x| key(x))?;
             let negative = frame.negative >> best & 1 == 1 && (d(best) < 0 || frame.positive >> best & 1 == 0);
             return Some((best as u8, negative));
@@ -328,7 +335,9 @@ impl<'p, 'm> Tree<'p, 'm> {
             return Sensors(frame.positive).next().map(|x| (x as u8, false));
         }
         let intervals = self.intervals();
-        let key = |x: usize| if frame.kind == Kind::Low { intervals.high[x] } else { -intervals.low[x] };
+        let key = |x: usize| {
+            if frame.kind == Kind::Low { intervals.high[x] } else { -intervals.low[x] }
+        };
         let best = Sensors(frame.positive | frame.negative).min_by_key(|&x| key(x))?;
         Some((best as u8, frame.positive >> best & 1 == 0))
     }

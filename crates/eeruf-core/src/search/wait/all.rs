@@ -1,11 +1,11 @@
 //! Every table, one at a time, in lexicographic order of `a_0, b_0, a_1, b_1, ..`.
 
-use super::{Bits, Control, Criterion, Finish, MAX_SENSORS, WaitError, WaitProblem, WaitSearch};
+use super::{Bits, Control, Criterion, Finish, MAX_SENSORS, Problem, ProblemError, Search};
 
 /// Walks all tables. Its trail is the table itself; it takes no memory from the caller.
 #[derive(Debug, Clone)]
 pub struct All<'p> {
-    problem: WaitProblem<'p>,
+    problem: Problem<'p>,
     a: [u32; MAX_SENSORS],
     b: [u32; MAX_SENSORS],
     /// Sensors below this one have waits that fit together; [`Option::None`] when all tables were handed out.
@@ -14,7 +14,7 @@ pub struct All<'p> {
     handed_out: bool,
 }
 
-impl<'p> WaitSearch<'p> {
+impl<'p> Search<'p> {
     /// All tables, in lexicographic order of `a_0, b_0, a_1, b_1, ..`.
     #[must_use]
     pub fn all(&self) -> All<'p> {
@@ -28,11 +28,16 @@ impl All<'_> {
     /// where it stopped.
     ///
     /// # Errors
-    /// [`WaitError::Short`] if `a` or `b` is too short.
-    pub fn next_into(&mut self, control: &mut Control<'_>, a: &mut [u32], b: &mut [u32]) -> Result<Finish, WaitError> {
+    /// [`ProblemError::Short`] if `a` or `b` is too short.
+    pub fn next_into(
+        &mut self,
+        control: &mut Control<'_>,
+        a: &mut [u32],
+        b: &mut [u32],
+    ) -> Result<Finish, ProblemError> {
         let sensors = self.problem.lag.len();
-        WaitSearch::needs("a", a.len(), sensors)?;
-        WaitSearch::needs("b", b.len(), sensors)?;
+        Search::needs("a", a.len(), sensors)?;
+        Search::needs("b", b.len(), sensors)?;
         let finish = self.advance(control);
         if finish == Finish::Found {
             a[..sensors].copy_from_slice(&self.a[..sensors]);
@@ -93,7 +98,7 @@ impl All<'_> {
 
     /// Whether sensor `k` fires `I` away from the sensors before it, in one phase.
     fn in_time(&self, k: usize, phase: usize) -> bool {
-        let WaitProblem { period, lag, interval, conflicts, .. } = self.problem;
+        let Problem { period, lag, interval, conflicts, .. } = self.problem;
         let (own, other) = if phase == 0 { (&self.a, &self.b) } else { (&self.b, &self.a) };
         let time = lag[k] + own[k];
         Bits(conflicts[k]).take_while(|&j| j < k).all(|j| {

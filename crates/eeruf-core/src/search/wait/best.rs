@@ -4,7 +4,7 @@
 //! last infeasible value is the proof. Values that take long wait until the quick ones are settled.
 
 use super::decide::{decide, memory_words};
-use super::{Control, Criterion, Finish, MAX_SENSORS, WaitError, WaitProblem, WaitSearch};
+use super::{Control, Criterion, Finish, MAX_SENSORS, Problem, ProblemError, Search};
 
 /// What is to be as large as possible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -18,7 +18,7 @@ pub enum Objective {
 /// The outcome of a search for the best table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Best {
-    /// Found: the value is proven best. Exhausted: there is no table at all. BudgetSpent: value and bound are what is known.
+    /// Found: the value is proven best. Exhausted: there is no table at all. Budget spent: value and bound are what is known.
     pub finish: Finish,
     /// The best value found, in ticks; the table was written where the caller asked.
     pub value: Option<u32>,
@@ -36,18 +36,18 @@ impl Best {
     }
 }
 
-impl WaitSearch<'_> {
+impl Search<'_> {
     /// Finds one table, or proves that there is none. `memory` of [`memory_words`] words; `a` and `b` receive the waits in ticks.
     ///
     /// # Errors
-    /// [`WaitError::Short`] if `memory`, `a` or `b` is too short.
+    /// [`ProblemError::Short`] if `memory`, `a` or `b` is too short.
     pub fn first(
         &self,
         memory: &mut [u32],
         control: &mut Control<'_>,
         a: &mut [u32],
         b: &mut [u32],
-    ) -> Result<Finish, WaitError> {
+    ) -> Result<Finish, ProblemError> {
         self.check(memory, a, b)?;
         let mut wait = [0; 2 * MAX_SENSORS];
         let finish = decide(self.problem(), memory, control, &mut wait);
@@ -63,7 +63,7 @@ impl WaitSearch<'_> {
     /// With nothing in conflict the interval is the period; a single sensor has the separation `wait_max`.
     ///
     /// # Errors
-    /// [`WaitError::Short`] if `memory` ([`memory_words`]), `a` or `b` is too short.
+    /// [`ProblemError::Short`] if `memory` ([`memory_words`]), `a` or `b` is too short.
     pub fn best(
         &self,
         objective: Objective,
@@ -71,7 +71,7 @@ impl WaitSearch<'_> {
         control: &mut Control<'_>,
         a: &mut [u32],
         b: &mut [u32],
-    ) -> Result<Best, WaitError> {
+    ) -> Result<Best, ProblemError> {
         self.check(memory, a, b)?;
         let before = control.nodes();
         let pairs = self.sensors() as u32 - 1;
@@ -88,7 +88,7 @@ impl WaitSearch<'_> {
         };
         if self.problem().criterion == Criterion::Paper {
             // The weaker criterion is settled much faster, and what it excludes is excluded.
-            let exact = Self::new(WaitProblem { criterion: Criterion::Exact, ..*self.problem() })?;
+            let exact = Self::new(Problem { criterion: Criterion::Exact, ..*self.problem() })?;
             let exact = control.slice(BOUND_SLICE, |control| exact.best(objective, memory, control, a, b))?;
             if exact.finish == Finish::Exhausted {
                 return Ok(exact);
@@ -168,7 +168,7 @@ impl WaitSearch<'_> {
         }
     }
 
-    fn check(&self, memory: &[u32], a: &[u32], b: &[u32]) -> Result<(), WaitError> {
+    fn check(&self, memory: &[u32], a: &[u32], b: &[u32]) -> Result<(), ProblemError> {
         Self::needs("memory", memory.len(), memory_words(self.sensors()))?;
         Self::needs("a", a.len(), self.sensors())?;
         Self::needs("b", b.len(), self.sensors())
@@ -201,7 +201,7 @@ pub struct ParetoPoint {
 /// Walks the front of interval and separation; each step hands out a table.
 #[derive(Debug)]
 pub struct Pareto<'p, 'm> {
-    search: WaitSearch<'p>,
+    search: Search<'p>,
     /// The separation from which the next point is sought.
     separation: Option<u32>,
     memory: &'m mut [u32],
@@ -212,13 +212,13 @@ impl Pareto<'_, '_> {
     /// point was proven. A step that ran out of budget may be repeated with a new one.
     ///
     /// # Errors
-    /// [`WaitError::Short`] if the memory lent, `a` or `b` is too short.
+    /// [`ProblemError::Short`] if the memory lent, `a` or `b` is too short.
     pub fn next_into(
         &mut self,
         control: &mut Control<'_>,
         a: &mut [u32],
         b: &mut [u32],
-    ) -> Result<(Finish, Option<ParetoPoint>), WaitError> {
+    ) -> Result<(Finish, Option<ParetoPoint>), ProblemError> {
         let Some(from) = self.separation else {
             return Ok((Finish::Exhausted, None));
         };

@@ -22,6 +22,7 @@ pub struct Control<'c> {
     budget: u64,
     every: u64,
     next_poll: u64,
+    polled_at: u64,
     watch: Option<&'c mut dyn FnMut(Progress) -> bool>,
     cancelled: bool,
     pub(super) value: Option<u32>,
@@ -55,6 +56,7 @@ impl<'c> Control<'c> {
             budget,
             every: u64::MAX,
             next_poll: budget,
+            polled_at: 0,
             watch: None,
             cancelled: false,
             value: None,
@@ -66,7 +68,13 @@ impl<'c> Control<'c> {
     #[must_use]
     pub fn watched(self, every: u32, watch: &'c mut dyn FnMut(Progress) -> bool) -> Self {
         let every = u64::from(every.max(1));
-        Self { every, next_poll: self.budget.min(self.nodes + every), watch: Some(watch), ..self }
+        Self {
+            every,
+            next_poll: self.budget.min(self.nodes.saturating_add(every)),
+            polled_at: self.nodes,
+            watch: Some(watch),
+            ..self
+        }
     }
 
     /// Nodes visited so far.
@@ -100,6 +108,7 @@ impl<'c> Control<'c> {
         if let Some(watch) = &mut self.watch {
             self.cancelled = !watch(progress);
         }
+        self.polled_at = self.nodes;
         self.next_poll = self.budget.min(self.nodes.saturating_add(self.every));
         if self.cancelled {
             return false;
@@ -108,16 +117,15 @@ impl<'c> Control<'c> {
         true
     }
 
-    /// Runs `search` with at most `slice` further nodes of this budget. The second value says whether only the slice, and
-    /// not the whole budget, ran out.
+    /// Runs `search` with at most `slice` further nodes of this budget.
     pub(super) fn slice<R>(&mut self, slice: u64, search: impl FnOnce(&mut Self) -> R) -> R {
-        let (budget, next_poll) = (self.budget, self.next_poll);
+        let budget = self.budget;
         self.budget = budget.min(self.nodes.saturating_add(slice));
         self.next_poll = self.next_poll.min(self.budget);
         let result = search(self);
         self.budget = budget;
-        // The poll that was due before the slice is still due.
-        self.next_poll = if self.watch.is_some() { self.nodes.min(next_poll.max(self.nodes)) } else { budget };
+        // The end of the slice was no poll: the next one is due when it was.
+        self.next_poll = budget.min(self.polled_at.saturating_add(self.every));
         result
     }
 }

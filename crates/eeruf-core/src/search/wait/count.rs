@@ -13,15 +13,15 @@
 
 use super::memo::{Key, Memo, Ticket};
 use super::options::{self, Options, Set, left_by};
-use super::{Bits, Control, Criterion, Finish, MAX_SENSORS, WaitProblem, WaitSearch};
+use super::{Bits, Control, Criterion, Finish, MAX_SENSORS, Problem, Search};
 
-/// A sensible amount of memory for [`WaitSearch::count`] where there is plenty, in words (4 MiB).
+/// A sensible amount of memory for [`Search::count`] where there is plenty, in words (4 MiB).
 pub const COUNT_WORDS: usize = 1 << 20;
 
 /// The outcome of counting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Count {
-    /// Exhausted: the count is exact. Found: the limit was reached, there are at least as many. BudgetSpent: so many were counted
+    /// Exhausted: the count is exact. Found: the limit was reached, there are at least as many. Budget spent: so many were counted
     /// before the search stopped.
     pub finish: Finish,
     /// The number of tables.
@@ -30,14 +30,17 @@ pub struct Count {
     pub nodes: u64,
 }
 
-impl WaitSearch<'_> {
+impl Search<'_> {
     /// Counts the tables; stops early when there are `limit` or more. More `memory` makes it faster ([`COUNT_WORDS`]); it may be empty.
     ///
     /// Without a limit, a count beyond `u128` ends with [`Finish::Found`] at its maximum.
     pub fn count(&self, limit: Option<u128>, memory: &mut [u32], control: &mut Control<'_>) -> Count {
         let before = control.nodes();
         let limit = limit.unwrap_or(u128::MAX);
-        let (finish, count) = if self.problem.wait_max > MASK_MAX {
+        // Beyond capacity nothing needs setting up; what passes has D at most wait_max, or a single sensor.
+        let (finish, count) = if self.problem.is_beyond_capacity() {
+            (Finish::Exhausted, 0)
+        } else if self.problem.wait_max > MASK_MAX {
             count_one_by_one(self, limit, control)
         } else {
             let problem = &self.problem;
@@ -56,7 +59,7 @@ impl WaitSearch<'_> {
 /// The longest wait whose set of waits fits a word.
 const MASK_MAX: u32 = 63;
 
-fn count_one_by_one(search: &WaitSearch<'_>, limit: u128, control: &mut Control<'_>) -> (Finish, u128) {
+fn count_one_by_one(search: &Search<'_>, limit: u128, control: &mut Control<'_>) -> (Finish, u128) {
     let mut all = search.all();
     let mut count = 0;
     while count < limit {
@@ -109,7 +112,7 @@ impl<const N: usize> Level<N> {
 }
 
 struct Counting<'p, 'm, const N: usize> {
-    problem: &'p WaitProblem<'p>,
+    problem: &'p Problem<'p>,
     /// Sensors in the order of the levels.
     order: [u8; MAX_SENSORS],
     /// By sensor: those that can fire too close to it.
@@ -131,7 +134,7 @@ struct Counting<'p, 'm, const N: usize> {
 
 // Indices: sensors and levels, both below `lag.len() <= MAX_SENSORS`.
 impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
-    fn new(problem: &'p WaitProblem<'p>, memory: &'m mut [u32]) -> Self {
+    fn new(problem: &'p Problem<'p>, memory: &'m mut [u32]) -> Self {
         let mut counting = Self {
             problem,
             order: [0; MAX_SENSORS],
@@ -156,18 +159,12 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
     fn run(&mut self, limit: u128, control: &mut Control<'_>) -> (Finish, u128) {
         let sensors = self.problem.lag.len();
         let wait_max = self.problem.wait_max as i32;
-        // Capacity; a separation that passes it is at most wait_max, or nobody's concern.
-        let conflict = self.near.iter().any(|&row| row != 0);
-        let packed = u64::from(self.problem.separation) * (sensors as u64 - 1);
-        if packed > u64::from(self.problem.wait_max) || conflict && self.problem.interval > self.problem.period {
-            return (Finish::Exhausted, 0);
-        }
         let last = sensors - 1;
         let mut level = 0;
         let everything = Free { d: span(0, wait_max), s: [span(0, wait_max), span(0, wait_max - 1)] };
         if last == 0 {
             self.total = self.completions(everything, [span(0, wait_max); 2]);
-            return (if self.total >= limit { Finish::Found } else { Finish::Exhausted }, self.total);
+            return self.counted(limit);
         }
         if N > 0 {
             let [i, j] = [last - 1, last].map(|level| usize::from(self.order[level]));
@@ -177,7 +174,7 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
         // With two sensors the first is the last but one: there is nothing to walk.
         if N > 0 && last == 1 {
             self.total = self.last_two(0, &pairs);
-            return (if self.total >= limit { Finish::Found } else { Finish::Exhausted }, self.total);
+            return self.counted(limit);
         }
         self.enter(0, everything, pairs);
         loop {
@@ -206,13 +203,19 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
                     self.memo.keep(ticket, tables);
                 }
                 let Some(above) = level.checked_sub(1) else {
-                    return (Finish::Exhausted, self.total);
+                    return self.counted(limit);
                 };
                 self.total = entered_at;
                 self.add(level, tables);
                 level = above;
             }
         }
+    }
+
+    /// The total of a walk that looked at everything.
+    fn counted(&self, limit: u128) -> (Finish, u128) {
+        let finish = if self.total >= limit { Finish::Found } else { Finish::Exhausted };
+        (finish, self.total)
     }
 
     /// Adds the tables below one pair of the level above `level`.
@@ -224,7 +227,9 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
 
     /// Enters a level; `false` if it holds no table or is counted already.
     fn enter(&mut self, level: usize, free: Free, pairs: Set<N>) -> bool {
-        let Some(ticket) = self.open(level, free) else { return false };
+        let Some(ticket) = self.open(level, free) else {
+            return false;
+        };
         let left = self.left[usize::from(self.order[level])];
         self.levels[level] =
             Level { free, pairs, left, d_left: free.d, d: 0, a_left: 0, entered_at: self.total, ticket };
@@ -233,7 +238,9 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
 
     /// Counts the last two levels.
     fn enter_last_two(&mut self, level: usize, free: Free, pairs: Set<N>) {
-        let Some(ticket) = self.open(level, free) else { return };
+        let Some(ticket) = self.open(level, free) else {
+            return;
+        };
         let tables = self.last_two(level, &pairs);
         if let Some(ticket) = ticket {
             self.memo.keep(ticket, tables);
@@ -303,8 +310,7 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
         let here = &mut self.levels[level];
         (here.d_left, here.d, here.a_left) = (d_left, d, a_left & (a_left - 1));
         self.wait[usize::from(self.order[level])] = [a as u8, (a - d) as u8];
-        // D is at most wait_max here, as there is more than one sensor.
-        let reach = self.problem.separation as i32 - 1;
+        let reach = reach(self.problem);
         let pairs = if N > 0 {
             self.options.without(&pairs, a as usize * self.options.waits() + (a - d) as usize)
         } else {
@@ -383,7 +389,7 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
 
     /// Notes which conflicting sensors can fire too close at all.
     fn find_near(&mut self) {
-        let WaitProblem { period, lag, wait_max, interval, conflicts, .. } = *self.problem;
+        let Problem { period, lag, wait_max, interval, conflicts, .. } = *self.problem;
         for (i, &row) in conflicts.iter().enumerate() {
             for j in Bits(row) {
                 let apart = lag[i].abs_diff(lag[j]);
@@ -426,6 +432,11 @@ fn waits_with(d: i32, left: [u64; 2], s: [u64; 2], paper: bool) -> u64 {
     waits & shifted(s[odd as usize], (d + odd) / 2)
 }
 
+/// How far a value keeps others away: `D - 1`, or more than any wait if a single sensor has a greater `D`.
+pub(super) fn reach(problem: &Problem<'_>) -> i32 {
+    problem.separation.min(MASK_MAX + 1) as i32 - 1
+}
+
 /// Moves bits up by `by`, or down if it is negative; `by` is at most 63 either way.
 #[inline]
 const fn shifted(bits: u64, by: i32) -> u64 {
@@ -447,5 +458,22 @@ const fn below(end: i32) -> u64 {
         u64::MAX
     } else {
         (1 << end) - 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counting_keeps_less_than_32_kibibytes_beside_the_memory_lent() {
+        let sizes = [
+            size_of::<Counting<'_, '_, 0>>(),
+            size_of::<Counting<'_, '_, 1>>(),
+            size_of::<Counting<'_, '_, 2>>(),
+            size_of::<Counting<'_, '_, 3>>(),
+            size_of::<Counting<'_, '_, 4>>(),
+        ];
+        assert!(sizes.iter().all(|&size| size < 32 * 1024), "{sizes:?}");
     }
 }

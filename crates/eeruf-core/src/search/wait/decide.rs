@@ -16,10 +16,10 @@
 //! finds no sensor.
 
 use super::least::{Least, Order};
-use super::{Bits, Control, Criterion, Finish, MAX_SENSORS, WaitProblem};
+use super::{Bits, Control, Criterion, Finish, MAX_SENSORS, Problem};
 
-/// Words of memory that suffice for [`first`](super::WaitSearch::first), [`best`](super::WaitSearch::best) and
-/// [`pareto`](super::WaitSearch::pareto) with so many sensors: 1,224 bytes for 8, 2,832 for 12.
+/// Words of memory that suffice for [`first`](super::Search::first), [`best`](super::Search::best) and
+/// [`pareto`](super::Search::pareto) with so many sensors: 808 bytes for 8, 1,784 for 12.
 #[must_use]
 pub const fn memory_words(sensors: usize) -> usize {
     // Two choices of order a pair, one of s a pair, a rank and a value a sensor; two words a choice.
@@ -29,28 +29,27 @@ pub const fn memory_words(sensors: usize) -> usize {
 
 /// Decides whether a table exists, and leaves it in `wait` (`a` and `b` alternating).
 pub(super) fn decide(
-    problem: &WaitProblem<'_>,
+    problem: &Problem<'_>,
     memory: &mut [u32],
     control: &mut Control<'_>,
     wait: &mut [i32; 2 * MAX_SENSORS],
 ) -> Finish {
     let sensors = problem.lag.len();
     let conflict = problem.conflicts.iter().any(|&row| row != 0);
-    // Capacity: K values |d| in 0 ..= wait_max, K values s in 0 ..= 2 wait_max. Sums below stay small after this.
-    let packed = u64::from(problem.separation) * (sensors as u64 - 1);
-    if packed > u64::from(problem.wait_max) || conflict && problem.interval > problem.period {
+    // Sums below stay small after this.
+    if problem.is_beyond_capacity() {
         return Finish::Exhausted;
     }
     // A single sensor is never compared with anything.
     let separation = if sensors == 1 { 0 } else { problem.separation };
     let interval = if conflict { problem.interval } else { 0 };
-    let exact = WaitProblem { criterion: Criterion::Exact, separation, interval, ..*problem };
+    let exact = Problem { criterion: Criterion::Exact, separation, interval, ..*problem };
     let finish = Decision::new(&exact, memory, Style::default()).run(control, wait);
     if problem.criterion == Criterion::Exact || finish != Finish::Found {
         // Without a table under the weaker criterion there is none under the stronger.
         return finish;
     }
-    let paper = WaitProblem { criterion: Criterion::Paper, ..exact };
+    let paper = Problem { criterion: Criterion::Paper, ..exact };
     let mut slice = FIRST_SLICE;
     let mut tight = true;
     loop {
@@ -108,7 +107,7 @@ enum Choice {
 
 /// The trail: two words a choice, the choice itself and how many of its alternatives were tried.
 struct Decision<'p, 'm> {
-    problem: &'p WaitProblem<'p>,
+    problem: &'p Problem<'p>,
     sensors: usize,
     style: Style,
     trail: &'m mut [u32],
@@ -129,7 +128,7 @@ struct Decision<'p, 'm> {
 
 // Indices are sensors or ranks below `sensors <= MAX_SENSORS`; the trail is read and written with `get`.
 impl<'p, 'm> Decision<'p, 'm> {
-    fn new(problem: &'p WaitProblem<'p>, trail: &'m mut [u32], style: Style) -> Self {
+    fn new(problem: &'p Problem<'p>, trail: &'m mut [u32], style: Style) -> Self {
         let sensors = problem.lag.len();
         let mut preferred = [0; MAX_SENSORS];
         for (k, p) in preferred.iter_mut().enumerate() {
@@ -221,7 +220,9 @@ impl<'p, 'm> Decision<'p, 'm> {
         if let Some(order) = order {
             return Some(Choice::Order(order));
         }
-        let close_sums = || if self.problem.criterion == Criterion::Paper { self.close_sums() } else { None };
+        let close_sums = || {
+            if self.problem.criterion == Criterion::Paper { self.close_sums() } else { None }
+        };
         if self.style.early_sums {
             let sums = close_sums();
             if sums.is_some() {
@@ -436,4 +437,19 @@ enum Applied {
     Skip,
     /// There is none of that number.
     None,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::memory_words;
+    use super::*;
+
+    #[test]
+    fn twelve_sensors_are_decided_in_sixteen_kibibytes() {
+        // A decision, the waits it hands out and sets aside, and the memory lent; what else a call keeps is a few words.
+        let waits = 2 * size_of::<[i32; 2 * MAX_SENSORS]>();
+        let lent = memory_words(12) * size_of::<u32>();
+        assert_eq!(lent, 1784);
+        assert!(size_of::<Decision<'_, '_>>() + waits + lent < 8 * 1024);
+    }
 }

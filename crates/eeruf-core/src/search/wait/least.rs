@@ -4,7 +4,7 @@
 //! weights follow from a few words a sensor, so none is stored. If raising never ends or passes `wait_max` there is no solution
 //! (Bellman and Ford); else the result is the least solution, whole ticks because all weights are.
 
-use super::{Bits, MAX_SENSORS, WaitProblem};
+use super::{Bits, MAX_SENSORS, Problem};
 
 /// Order of two conflicting sensors within one phase.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub(super) struct Order {
 }
 
 pub(super) struct Least<'p> {
-    problem: &'p WaitProblem<'p>,
+    problem: &'p Problem<'p>,
     sensors: usize,
     /// The least waits so far, by node.
     pub(super) wait: [i32; 2 * MAX_SENSORS],
@@ -29,11 +29,11 @@ pub(super) struct Least<'p> {
     pub(super) d: [[i32; 2]; MAX_SENSORS],
 }
 
-// Indices: sensors are below `sensors <= MAX_SENSORS`, as bits of rows are (`WaitSearch::new` checked the rows), and nodes below
+// Indices: sensors are below `sensors <= MAX_SENSORS`, as bits of rows are (`Search::new` checked the rows), and nodes below
 // twice that.
 impl<'p> Least<'p> {
     /// No orders chosen, `d` free.
-    pub(super) fn new(problem: &'p WaitProblem<'p>) -> Self {
+    pub(super) fn new(problem: &'p Problem<'p>) -> Self {
         let free = problem.wait_max as i32;
         let mut least = Self {
             problem,

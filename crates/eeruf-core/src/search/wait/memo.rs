@@ -99,11 +99,13 @@ impl<'m> Memo<'m> {
         if self.written > self.active / 2 && self.active < self.entries {
             self.use_first(self.active.saturating_mul(GROWTH));
         }
-        let home = (u128::from(key.hash) * self.active as u128 >> 64) as usize;
+        let home = ((u128::from(key.hash) * self.active as u128) >> 64) as usize;
         let mut place = home;
         for probe in 0..PROBES.min(self.active) {
             let entry = (home + probe) % self.active;
-            let Some(words) = self.slots.get(entry * self.words..(entry + 1) * self.words) else { break };
+            let Some(words) = self.slots.get(entry * self.words..(entry + 1) * self.words) else {
+                break;
+            };
             let (own, rest) = words.split_at(key.len.min(words.len() - ENTRY_WORDS));
             if let (true, Some(&[0, w0, w1, w2, w3])) = (same(own, &key.words), rest.last_chunk()) {
                 return Ok(u128::from(w0) | u128::from(w1) << 32 | u128::from(w2) << 64 | u128::from(w3) << 96);
@@ -131,7 +133,9 @@ impl<'m> Memo<'m> {
     /// Keeps a count where its ticket says.
     pub(super) fn keep(&mut self, ticket: Ticket, count: u128) {
         let end = (ticket.entry + 1) * self.words;
-        let Some([serial, w0, w1, w2, w3]) = self.slots.get_mut(end - ENTRY_WORDS..end) else { return };
+        let Some([serial, w0, w1, w2, w3]) = self.slots.get_mut(end - ENTRY_WORDS..end) else {
+            return;
+        };
         if *serial == ticket.serial {
             *serial = 0;
             (*w0, *w1, *w2, *w3) = (count as u32, (count >> 32) as u32, (count >> 64) as u32, (count >> 96) as u32);

@@ -13,15 +13,39 @@
 //!
 //! | question | method | how |
 //! |---|---|---|
-//! | is there one? | [`WaitSearch::first`] | ranks of `|d|` over difference constraints: the tick does not matter |
-//! | the best interval or separation, and the front of both | [`WaitSearch::best`], [`WaitSearch::pareto`] | the same, by bisection |
-//! | every one | [`WaitSearch::all`] | depth first over the values, in lexicographic order |
-//! | how many? | [`WaitSearch::count`] | depth first with a memory of what was counted before |
-//! | these pairs, over any sensors | [`WaitSearch::rearrange`] | depth first over the pairs |
+//! | is there one? | [`Search::first`] | ranks of `|d|` over difference constraints: the tick does not matter |
+//! | the best interval or separation, and the front of both | [`Search::best`], [`Search::pareto`] | the same, by bisection |
+//! | every one | [`Search::all`] | depth first over the values, in lexicographic order |
+//! | how many? | [`Search::count`] | depth first with a memory of what was counted before |
+//! | these pairs, over any sensors | [`Search::rearrange`] | depth first over the pairs |
 //!
 //! Nothing here allocates, recurses, reads a clock or depends on chance. The caller lends memory: [`MEMORY_WORDS`] says how
 //! much is enough for all but counting, and counting is exact with any amount, faster with more. What the searches
-//! keep on the stack is below 8 KiB at any size.
+//! keep on the stack is below 8 KiB (32 KiB in counting) at any size: twelve sensors are decided in 16 KiB of RAM, all told.
+//!
+//! ```
+//! use eeruf_core::Criterion;
+//! use eeruf_core::search::wait::{Control, Finish, Objective, Problem, Search, memory_words};
+//!
+//! // Four sensors that all conflict, lags 0, 25, 50, 75 and waits up to 24 ms; t_delta just below 1 ms, so D = 2 ms.
+//! let problem = Problem {
+//!     period: 100,
+//!     lag: &[0, 25, 50, 75],
+//!     wait_max: 24,
+//!     separation: 2,
+//!     interval: 15,
+//!     conflicts: &[0b1110, 0b1101, 0b1011, 0b0111],
+//!     criterion: Criterion::Paper,
+//! };
+//! let search = Search::new(problem).unwrap();
+//! let (mut a, mut b) = ([0; 4], [0; 4]);
+//! let best = search
+//!     .best(Objective::Interval, &mut [0; memory_words(4)], &mut Control::unlimited(), &mut a, &mut b)
+//!     .unwrap();
+//! // n I + D (K - 1) <= T_p: 23 ms, with 2 ms to spare.
+//! assert_eq!((best.finish, best.value), (Finish::Found, Some(23)));
+//! assert_eq!(search.smallest_interval(&a, &b), 23);
+//! ```
 
 mod all;
 mod best;
@@ -35,6 +59,9 @@ mod rearrange;
 
 use core::fmt;
 
+use crate::conditions::Criterion;
+use crate::schedule::MAX_SENSORS;
+
 pub use all::All;
 pub use best::{Best, Objective, Pareto, ParetoPoint};
 pub use control::{Control, Progress};
@@ -42,23 +69,11 @@ pub use count::{COUNT_WORDS, Count};
 pub use decide::memory_words;
 pub use rearrange::Rearrange;
 
-/// The greatest number of sensors.
-pub const MAX_SENSORS: usize = 64;
-
 /// Words of memory that suffice for every search here with up to [`MAX_SENSORS`] sensors; [`memory_words`] tells it for fewer.
 pub const MEMORY_WORDS: usize = memory_words(MAX_SENSORS);
 
 /// The longest period, in ticks: sums of a few times then stay far inside 32 bits.
 pub const MAX_PERIOD: u32 = 1 << 27;
-
-/// Which reading of (13a) and (13b) the waits must meet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Criterion {
-    /// As printed, with an outer absolute value: the values `|d|` lie `D` apart, and so do the values `s`.
-    Paper,
-    /// What (10a) and (10b) really need: the values `|d|` lie `D` apart.
-    Exact,
-}
 
 /// The three ways in which a search ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -73,7 +88,7 @@ pub enum Finish {
 
 /// The wait-time problem, all times in ticks.
 #[derive(Debug, Clone, Copy)]
-pub struct WaitProblem<'a> {
+pub struct Problem<'a> {
     /// The period `T_p`.
     pub period: u32,
     /// The lag of each sensor; its length is the number of sensors.
@@ -90,10 +105,20 @@ pub struct WaitProblem<'a> {
     pub criterion: Criterion,
 }
 
+impl Problem<'_> {
+    /// Whether the values `|d|` cannot lie `D` apart, which needs `D (K - 1) <= wait_max`, or two sensors cannot fire `I` apart, of which
+    /// one fires before and after the other on the circle of `2 T_p`.
+    fn is_beyond_capacity(&self) -> bool {
+        let packed = u64::from(self.separation) * (self.lag.len() as u64).saturating_sub(1);
+        let conflict = self.conflicts.iter().any(|&row| row != 0);
+        packed > u64::from(self.wait_max) || conflict && self.interval > self.period
+    }
+}
+
 /// Why a problem or a call is not well formed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum WaitError {
+pub enum ProblemError {
     /// The number of sensors is zero or above [`MAX_SENSORS`].
     Sensors {
         /// The number given.
@@ -149,7 +174,7 @@ pub enum WaitError {
     },
 }
 
-impl fmt::Display for WaitError {
+impl fmt::Display for ProblemError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Sensors { sensors } => write!(f, "{sensors} sensors; between 1 and {MAX_SENSORS} are expected"),
@@ -162,7 +187,9 @@ impl fmt::Display for WaitError {
             Self::ConflictRows { rows, sensors } => {
                 write!(f, "{rows} rows of conflicts; one for each of {sensors} sensors is expected")
             }
-            Self::Conflict { x, y } if x == y => write!(f, "sensor {} conflicts with itself", x + 1),
+            Self::Conflict { x, y } if x == y => {
+                write!(f, "sensor {} conflicts with itself", x + 1)
+            }
             Self::Conflict { x, y } => {
                 write!(
                     f,
@@ -179,42 +206,42 @@ impl fmt::Display for WaitError {
     }
 }
 
-impl core::error::Error for WaitError {}
+impl core::error::Error for ProblemError {}
 
-/// A checked [`WaitProblem`], ready to be asked.
+/// A checked [`Problem`], ready to be asked.
 #[derive(Debug, Clone, Copy)]
-pub struct WaitSearch<'a> {
-    problem: WaitProblem<'a>,
+pub struct Search<'a> {
+    problem: Problem<'a>,
 }
 
-impl<'a> WaitSearch<'a> {
+impl<'a> Search<'a> {
     /// Checks the problem.
     ///
     /// # Errors
-    /// [`WaitError`] for a number of sensors, period, lag or conflict outside its range. An infeasible problem is not an
+    /// [`ProblemError`] for a number of sensors, period, lag or conflict outside its range. An infeasible problem is not an
     /// error: the searches prove it.
-    pub fn new(problem: WaitProblem<'a>) -> Result<Self, WaitError> {
-        let WaitProblem { period, lag, wait_max, conflicts, .. } = problem;
+    pub fn new(problem: Problem<'a>) -> Result<Self, ProblemError> {
+        let Problem { period, lag, wait_max, conflicts, .. } = problem;
         let sensors = lag.len();
         if sensors == 0 || sensors > MAX_SENSORS {
-            return Err(WaitError::Sensors { sensors });
+            return Err(ProblemError::Sensors { sensors });
         }
         if period == 0 || period > MAX_PERIOD {
-            return Err(WaitError::Period { period });
+            return Err(ProblemError::Period { period });
         }
         for (sensor, &lag) in lag.iter().enumerate() {
             if u64::from(lag) + u64::from(wait_max) >= u64::from(period) {
-                return Err(WaitError::OutsidePeriod { sensor, lag, wait_max, period });
+                return Err(ProblemError::OutsidePeriod { sensor, lag, wait_max, period });
             }
         }
         if conflicts.len() != sensors {
-            return Err(WaitError::ConflictRows { rows: conflicts.len(), sensors });
+            return Err(ProblemError::ConflictRows { rows: conflicts.len(), sensors });
         }
         for (x, &row) in conflicts.iter().enumerate() {
             for y in Bits(row) {
                 let back = conflicts.get(y).is_some_and(|row| row >> x & 1 == 1);
                 if x == y || !back {
-                    return Err(WaitError::Conflict { x, y });
+                    return Err(ProblemError::Conflict { x, y });
                 }
             }
         }
@@ -223,7 +250,7 @@ impl<'a> WaitSearch<'a> {
 
     /// The problem as given.
     #[must_use]
-    pub const fn problem(&self) -> &WaitProblem<'a> {
+    pub const fn problem(&self) -> &Problem<'a> {
         &self.problem
     }
 
@@ -236,18 +263,18 @@ impl<'a> WaitSearch<'a> {
     /// The same problem with another separation and interval.
     #[must_use]
     pub const fn with(&self, separation: u32, interval: u32) -> Self {
-        Self { problem: WaitProblem { separation, interval, ..self.problem } }
+        Self { problem: Problem { separation, interval, ..self.problem } }
     }
 
     /// The smallest interval between firings of conflicting sensors for these waits, in ticks, at most the period (which it
     /// is when nothing conflicts). Zero if there are fewer waits than sensors.
     #[must_use]
     pub fn smallest_interval(&self, a: &[u32], b: &[u32]) -> u32 {
-        let WaitProblem { period, lag, conflicts, .. } = self.problem;
+        let Problem { period, lag, conflicts, .. } = self.problem;
         let mut smallest = period;
         for (i, &row) in conflicts.iter().enumerate() {
             for j in Bits(row).take_while(|&j| j < i) {
-                let time = |wait: &[u32], k: usize| Some(lag.get(k)? + wait.get(k)?);
+                let time = |wait: &[u32], k: usize| Some(lag.get(k)?.saturating_add(*wait.get(k)?));
                 let (Some(ai), Some(bi), Some(aj), Some(bj)) = (time(a, i), time(b, i), time(a, j), time(b, j)) else {
                     return 0;
                 };
@@ -267,15 +294,16 @@ impl<'a> WaitSearch<'a> {
                 // Indices below the lengths of both slices.
                 least = least.min(a[i].abs_diff(b[i]).abs_diff(a[j].abs_diff(b[j])));
                 if self.problem.criterion == Criterion::Paper {
-                    least = least.min((a[i] + b[i]).abs_diff(a[j] + b[j]));
+                    let s = |k: usize| a[k].saturating_add(b[k]);
+                    least = least.min(s(i).abs_diff(s(j)));
                 }
             }
         }
         least
     }
 
-    fn needs(what: &'static str, given: usize, needed: usize) -> Result<(), WaitError> {
-        if given < needed { Err(WaitError::Short { what, given, needed }) } else { Ok(()) }
+    fn needs(what: &'static str, given: usize, needed: usize) -> Result<(), ProblemError> {
+        if given < needed { Err(ProblemError::Short { what, given, needed }) } else { Ok(()) }
     }
 }
 
@@ -288,7 +316,7 @@ const fn gap(period: u32, x: [u32; 2], y: [u32; 2]) -> u32 {
     };
     // Firing times lie within their period, so opposite phases are period -+ difference apart.
     let opposite = {
-        let (a, b) = (period - x[0].abs_diff(y[1]), period - x[1].abs_diff(y[0]));
+        let (a, b) = (period.saturating_sub(x[0].abs_diff(y[1])), period.saturating_sub(x[1].abs_diff(y[0])));
         if a < b { a } else { b }
     };
     if same < opposite { same } else { opposite }

@@ -3,8 +3,8 @@
 //! With waits up to 15 ticks a sensor has at most 256 pairs `(a, b)`; pair number `a (wait_max + 1) + b` is one bit. What one sensor
 //! leaves to the next is then an AND of words, and the tables below a pair of the last sensor but one are a count of bits.
 
-use super::count::span;
-use super::{Bits, Criterion, WaitProblem};
+use super::count::{reach, span};
+use super::{Bits, Criterion, Problem};
 
 /// The most pairs of waits that a set of them may need.
 const PAIRS: usize = 256;
@@ -32,14 +32,18 @@ pub(super) const fn words(wait_max: u32) -> Option<usize> {
 
 // Indices: waits are below `waits <= WAITS`, pairs below its square, words below N, which `words` gave.
 impl<const N: usize> Options<N> {
-    pub(super) fn new(problem: &WaitProblem<'_>) -> Self {
+    pub(super) fn new(problem: &Problem<'_>) -> Self {
         let waits = problem.wait_max as usize + 1;
         Self { waits, separate: Self::separate(problem, waits), in_time: [[[0; N]; WAITS]; 2] }
     }
 
-    fn separate(problem: &WaitProblem<'_>, waits: usize) -> [Set<N>; PAIRS] {
+    fn separate(problem: &Problem<'_>, waits: usize) -> [Set<N>; PAIRS] {
         let mut separate = [[0; N]; PAIRS];
-        let reach = problem.separation as i32 - 1;
+        if N == 0 {
+            // Too many pairs: there are no sets.
+            return separate;
+        }
+        let reach = reach(problem);
         let row = span(0, waits as i32 - 1);
         for a in 0..waits as i32 {
             for b in 0..waits as i32 {
@@ -58,7 +62,7 @@ impl<const N: usize> Options<N> {
     }
 
     /// Notes what the firings of sensor `i` leave to sensor `j`, which conflict.
-    pub(super) fn last_two(&mut self, problem: &WaitProblem<'_>, near: Option<(usize, usize)>) {
+    pub(super) fn last_two(&mut self, problem: &Problem<'_>, near: Option<(usize, usize)>) {
         let all = self.rectangle([u64::MAX; 2]);
         for wait in 0..self.waits {
             for phase in 0..2 {
@@ -111,7 +115,7 @@ impl<const N: usize> Options<N> {
 }
 
 /// The waits that a firing of sensor `i` with this wait leaves to sensor `j`: in the same phase, and in the other one.
-pub(super) fn left_by(problem: &WaitProblem<'_>, i: usize, j: usize, wait: i32) -> (u64, u64) {
+pub(super) fn left_by(problem: &Problem<'_>, i: usize, j: usize, wait: i32) -> (u64, u64) {
     let (interval, period) = (problem.interval as i32, problem.period as i32);
     // When i fires, as a wait of j.
     let at = problem.lag[i] as i32 - problem.lag[j] as i32 + wait;

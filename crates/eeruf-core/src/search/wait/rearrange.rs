@@ -4,30 +4,30 @@
 //! sensors by number; a pair stays a candidate for a sensor while it fires far enough from the conflicting sensors before it. It
 //! needs no memory but its own, about 2 KiB, and no arithmetic beyond 32 bits but the counters.
 
-use super::{Best, Bits, Control, Count, Criterion, Finish, MAX_SENSORS, WaitError, WaitSearch, gap};
+use super::{Best, Bits, Control, Count, Criterion, Finish, MAX_SENSORS, ProblemError, Search, gap};
 
 /// The problem of arranging given pairs over the sensors.
 #[derive(Debug, Clone, Copy)]
 pub struct Rearrange<'p> {
-    search: WaitSearch<'p>,
+    search: Search<'p>,
     pairs: &'p [(u32, u32)],
     /// Whether the pairs are separated as the criterion asks.
     separate: bool,
 }
 
-impl<'p> WaitSearch<'p> {
+impl<'p> Search<'p> {
     /// Restricts the problem to arrangements of `pairs` of waits `(a, b)`, in ticks, one for each sensor. Pairs that the criterion does
     /// not separate have no arrangement.
     ///
     /// # Errors
-    /// [`WaitError::Short`] if there are fewer pairs than sensors, [`WaitError::Pair`] if a wait is above `wait_max`.
-    pub fn rearrange(&self, pairs: &'p [(u32, u32)]) -> Result<Rearrange<'p>, WaitError> {
+    /// [`ProblemError::Short`] if there are fewer pairs than sensors, [`ProblemError::Pair`] if a wait is above `wait_max`.
+    pub fn rearrange(&self, pairs: &'p [(u32, u32)]) -> Result<Rearrange<'p>, ProblemError> {
         Self::needs("pairs", pairs.len(), self.sensors())?;
         let pairs = &pairs[..self.sensors()];
         let wait_max = self.problem.wait_max;
         for (pair, &(a, b)) in pairs.iter().enumerate() {
             if a.max(b) > wait_max {
-                return Err(WaitError::Pair { pair, wait: a.max(b), wait_max });
+                return Err(ProblemError::Pair { pair, wait: a.max(b), wait_max });
             }
         }
         let paper = self.problem.criterion == Criterion::Paper;
@@ -54,8 +54,8 @@ impl Rearrange<'_> {
     /// Finds an arrangement, the first in lexicographic order of pair numbers, or proves that there is none.
     ///
     /// # Errors
-    /// [`WaitError::Short`] if `a` or `b` is too short.
-    pub fn first(&self, control: &mut Control<'_>, a: &mut [u32], b: &mut [u32]) -> Result<Finish, WaitError> {
+    /// [`ProblemError::Short`] if `a` or `b` is too short.
+    pub fn first(&self, control: &mut Control<'_>, a: &mut [u32], b: &mut [u32]) -> Result<Finish, ProblemError> {
         self.check(a, b)?;
         let mut trail = self.start();
         let finish = self.advance(&mut trail, self.search.problem.interval, control);
@@ -83,8 +83,8 @@ impl Rearrange<'_> {
     /// Finds the arrangement with the greatest smallest interval and proves that none has a greater one.
     ///
     /// # Errors
-    /// [`WaitError::Short`] if `a` or `b` is too short.
-    pub fn best_interval(&self, control: &mut Control<'_>, a: &mut [u32], b: &mut [u32]) -> Result<Best, WaitError> {
+    /// [`ProblemError::Short`] if `a` or `b` is too short.
+    pub fn best_interval(&self, control: &mut Control<'_>, a: &mut [u32], b: &mut [u32]) -> Result<Best, ProblemError> {
         self.check(a, b)?;
         let before = control.nodes();
         let problem = &self.search.problem;
@@ -116,9 +116,9 @@ impl Rearrange<'_> {
         Ok(Best { finish, value, bound, nodes: control.nodes() - before })
     }
 
-    fn check(&self, a: &[u32], b: &[u32]) -> Result<(), WaitError> {
-        WaitSearch::needs("a", a.len(), self.search.sensors())?;
-        WaitSearch::needs("b", b.len(), self.search.sensors())
+    fn check(&self, a: &[u32], b: &[u32]) -> Result<(), ProblemError> {
+        Search::needs("a", a.len(), self.search.sensors())?;
+        Search::needs("b", b.len(), self.search.sensors())
     }
 
     fn start(&self) -> Trail {

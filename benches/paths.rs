@@ -1,0 +1,32 @@
+//! Paths per second on the scenes of the shared corpus: the core alone (images seen) and the whole answer.
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use eeruf_sim::{Limits, Paths, Tracer};
+use std::{hint::black_box, time::Duration};
+
+#[path = "../crates/eeruf-sim/tests/common/corpus.rs"]
+mod corpus;
+
+fn paths(criterion: &mut Criterion) {
+    let cases = corpus::corpus();
+    let mut group = criterion.benchmark_group("paths");
+    group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(1));
+    for case in cases["cases"].as_array().expect("cases") {
+        let id = case["id"].as_str().expect("id");
+        let (scene, source, receivers) = (corpus::scene(case), corpus::point(&case["source"]), corpus::receivers(case));
+        let limits = Limits::order(case["max_order"].as_u64().expect("max_order") as u32);
+        let (mut tracer, mut found) = (Tracer::new(), Paths::default());
+        tracer.trace(&scene, source, &receivers, limits, &mut found).expect("paths");
+        group.throughput(Throughput::Elements(found.len() as u64));
+        group.bench_function(format!("{id}/core"), |bencher| {
+            bencher.iter(|| black_box(tracer.sight(&scene, black_box(source), &receivers, limits)));
+        });
+        group.bench_function(format!("{id}/whole"), |bencher| {
+            bencher.iter(|| black_box(tracer.trace(&scene, black_box(source), &receivers, limits, &mut found)));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, paths);
+criterion_main!(benches);

@@ -1,0 +1,226 @@
+//! A schedule as source text: Rust that is checked when it is compiled, a C header, a TOML file.
+//!
+//! Each is a [`fmt::Display`], so nothing is allocated here.
+
+use core::fmt;
+
+use crate::conditions::{Criterion, Requirements};
+use crate::layout::Layout;
+use crate::schedule::{Phase, Schedule};
+use crate::time::Micros;
+
+impl<const K: usize> Schedule<K> {
+    /// A `const RING: Schedule` in Rust, with the `requirements` for the compiler to check (see
+    /// [`schedule!`](crate::schedule!)).
+    pub const fn to_rust<'r>(&'r self, requirements: &'r Requirements<'r>) -> RustSource<'r, K> {
+        RustSource { schedule: self, requirements }
+    }
+
+    /// A C99 header that includes nothing but `<stdint.h>`, with the firing times and what they were designed for.
+    pub const fn to_c<'r>(&'r self, requirements: &'r Requirements<'r>) -> CHeader<'r, K> {
+        CHeader { schedule: self, requirements }
+    }
+
+    /// A schedule file, as the program reads it: lags and waits, or firing times if all lags are zero.
+    pub const fn to_toml(&self) -> Toml<'_, K> {
+        Toml { schedule: self }
+    }
+
+    fn fire_times(&self, phase: Phase) -> impl Iterator<Item = Micros> {
+        (0..self.sensors()).filter_map(move |x| self.t_fire(phase, x))
+    }
+
+    fn has_lags(&self) -> bool {
+        self.t_lag().iter().any(|&lag| lag != Micros::ZERO)
+    }
+}
+
+/// A schedule in Rust: see [`Schedule::to_rust`].
+#[derive(Clone, Copy, Debug)]
+pub struct RustSource<'r, const K: usize> {
+    schedule: &'r Schedule<K>,
+    requirements: &'r Requirements<'r>,
+}
+
+impl<const K: usize> fmt::Display for RustSource<'_, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { schedule, requirements } = self;
+        let Requirements { t_delta, criterion, min_interval, layout, window, stale_echo } = requirements;
+        writeln!(f, "use eeruf_core::{{Criterion, Layout, Micros, Requirements, Schedule, schedule}};\n")?;
+        writeln!(f, "/// {}; {}.", Summary(schedule), Promise(requirements))?;
+        writeln!(f, "pub const RING: Schedule<{}> = schedule! {{", schedule.sensors())?;
+        writeln!(f, "    period_us: {},", Grouped(schedule.period()))?;
+        if schedule.has_lags() {
+            writeln!(f, "    t_lag_us: [{}],", Numbers(|| schedule.t_lag().iter().copied()))?;
+            writeln!(f, "    t_wait_a_us: [{}],", Numbers(|| schedule.t_wait(Phase::A).iter().copied()))?;
+            writeln!(f, "    t_wait_b_us: [{}],", Numbers(|| schedule.t_wait(Phase::B).iter().copied()))?;
+        } else {
+            writeln!(f, "    t_fire_a_us: [{}],", Numbers(|| schedule.fire_times(Phase::A)))?;
+            writeln!(f, "    t_fire_b_us: [{}],", Numbers(|| schedule.fire_times(Phase::B)))?;
+        }
+        writeln!(f, "    meets: Requirements {{")?;
+        writeln!(f, "        t_delta: Micros::new({}),", Grouped(*t_delta))?;
+        let criterion = match criterion {
+            Criterion::Exact => "Exact",
+            Criterion::Paper => "Paper",
+        };
+        writeln!(f, "        criterion: Criterion::{criterion},")?;
+        writeln!(f, "        min_interval: Micros::new({}),", Grouped(*min_interval))?;
+        write!(f, "        layout: Layout::")?;
+        match layout {
+            Layout::Line(n) => writeln!(f, "Line({n}),")?,
+            Layout::Ring(n) => writeln!(f, "Ring({n}),")?,
+            Layout::Blocks(n) => writeln!(f, "Blocks({n}),")?,
+            Layout::Graph(rows) => {
+                write!(f, "Graph(&[")?;
+                for (place, row) in rows.iter().enumerate() {
+                    write!(f, "{}{row:#x}", if place == 0 { "" } else { ", " })?;
+                }
+                writeln!(f, "]),")?;
+            }
+        }
+        writeln!(f, "        window: Micros::new({}),", Grouped(*window))?;
+        writeln!(f, "        stale_echo: {stale_echo},")?;
+        writeln!(f, "    }},\n}};")
+    }
+}
+
+/// A schedule as a C header: see [`Schedule::to_c`].
+#[derive(Clone, Copy, Debug)]
+pub struct CHeader<'r, const K: usize> {
+    schedule: &'r Schedule<K>,
+    requirements: &'r Requirements<'r>,
+}
+
+impl<const K: usize> fmt::Display for CHeader<'_, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { schedule, requirements } = self;
+        writeln!(f, "/* {};\n   {}.", Summary(schedule), Promise(requirements))?;
+        writeln!(f, "   Times are microseconds from the start of each period; phases a and b alternate. */")?;
+        writeln!(f, "#ifndef EERUF_SCHEDULE_H\n#define EERUF_SCHEDULE_H\n\n#include <stdint.h>\n")?;
+        writeln!(f, "#define EERUF_SENSORS {}", schedule.sensors())?;
+        writeln!(f, "#define EERUF_PERIOD_US {}u", schedule.period().as_micros())?;
+        writeln!(f, "#define EERUF_T_DELTA_US {}u", requirements.t_delta.as_micros())?;
+        writeln!(f, "#define EERUF_WINDOW_US {}u\n", requirements.window.as_micros())?;
+        writeln!(f, "static const uint32_t eeruf_t_fire_us[2][EERUF_SENSORS] = {{")?;
+        for phase in [Phase::A, Phase::B] {
+            write!(f, "    {{")?;
+            for (x, t_fire) in schedule.fire_times(phase).enumerate() {
+                write!(f, "{}{}u", if x == 0 { "" } else { ", " }, t_fire.as_micros())?;
+            }
+            writeln!(f, "}}, /* phase {phase} */")?;
+        }
+        writeln!(f, "}};\n\n#endif")
+    }
+}
+
+/// A schedule as a TOML file: see [`Schedule::to_toml`].
+#[derive(Clone, Copy, Debug)]
+pub struct Toml<'s, const K: usize> {
+    schedule: &'s Schedule<K>,
+}
+
+impl<const K: usize> fmt::Display for Toml<'_, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let schedule = self.schedule;
+        writeln!(f, "period_us = {}", Grouped(schedule.period()))?;
+        if schedule.has_lags() {
+            writeln!(f, "t_lag_us = [{}]", Numbers(|| schedule.t_lag().iter().copied()))?;
+            writeln!(f, "t_wait_a_us = [{}]", Numbers(|| schedule.t_wait(Phase::A).iter().copied()))?;
+            writeln!(f, "t_wait_b_us = [{}]", Numbers(|| schedule.t_wait(Phase::B).iter().copied()))
+        } else {
+            writeln!(f, "t_fire_a_us = [{}]", Numbers(|| schedule.fire_times(Phase::A)))?;
+            writeln!(f, "t_fire_b_us = [{}]", Numbers(|| schedule.fire_times(Phase::B)))
+        }
+    }
+}
+
+/// "12 sensors, `T_p` = 65 ms".
+struct Summary<'s, const K: usize>(&'s Schedule<K>);
+
+impl<const K: usize> fmt::Display for Summary<'_, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} sensors, T_p = {}", self.0.sensors(), self.0.period())
+    }
+}
+
+/// What the schedule was designed for.
+struct Promise<'r>(&'r Requirements<'r>);
+
+impl fmt::Display for Promise<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Requirements { t_delta, min_interval, layout, window, .. } = *self.0;
+        write!(f, "t_delta = {t_delta}, {layout} at least {min_interval} apart, listening for {window}")
+    }
+}
+
+/// Numbers in microseconds, separated by commas.
+struct Numbers<F>(F);
+
+impl<F: Fn() -> I, I: Iterator<Item = Micros>> fmt::Display for Numbers<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, time) in (self.0)().enumerate() {
+            write!(f, "{}{}", if place == 0 { "" } else { ", " }, Grouped(time))?;
+        }
+        Ok(())
+    }
+}
+
+/// Microseconds with an underscore before each three digits: `65_000`.
+struct Grouped(Micros);
+
+impl fmt::Display for Grouped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let us = self.0.as_micros();
+        match (us / 1_000_000_000, us / 1_000_000 % 1000, us / 1000 % 1000, us % 1000) {
+            (0, 0, 0, ones) => write!(f, "{ones}"),
+            (0, 0, thousands, ones) => write!(f, "{thousands}_{ones:03}"),
+            (0, millions, thousands, ones) => write!(f, "{millions}_{thousands:03}_{ones:03}"),
+            (billions, millions, thousands, ones) => write!(f, "{billions}_{millions:03}_{thousands:03}_{ones:03}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::tables::{TABLE_I_C, TABLE_I_D};
+    use std::string::ToString;
+
+    const REQUIREMENTS: Requirements<'static> =
+        Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) };
+
+    #[test]
+    fn a_table_of_waits_is_written_as_lags_and_waits_and_one_of_firing_times_as_such() {
+        assert_eq!(
+            TABLE_I_D.to_toml().to_string(),
+            "period_us = 100_000\n\
+             t_lag_us = [0, 25_000, 50_000, 75_000, 0, 25_000, 50_000, 75_000, 0, 25_000, 50_000, 75_000]\n\
+             t_wait_a_us = [24_000, 24_000, 24_000, 24_000, 24_000, 24_000, 24_000, 24_000, 24_000, 24_000, 24_000, \
+             24_000]\n\
+             t_wait_b_us = [18_000, 12_000, 6_000, 0, 20_000, 14_000, 8_000, 2_000, 22_000, 16_000, 10_000, 4_000]\n"
+        );
+        let text = TABLE_I_C.to_toml().to_string();
+        assert!(text.contains("t_fire_b_us = [0, 27_000, 54_000,") && !text.contains("t_lag_us"), "{text}");
+    }
+
+    #[test]
+    fn the_sources_say_what_the_schedule_was_designed_for() {
+        let rust = TABLE_I_D.to_rust(&REQUIREMENTS).to_string();
+        let promise = "12 sensors, T_p = 100 ms";
+        assert!(rust.contains(promise) && rust.contains("pub const RING: Schedule<12> = schedule! {"), "{rust}");
+        assert!(rust.contains("t_delta = 999 us, 4 adjacent sensors of a line at least 15 ms apart"), "{rust}");
+        let c = TABLE_I_D.to_c(&REQUIREMENTS).to_string();
+        assert!(c.contains(promise) && c.contains("#define EERUF_SENSORS 12\n"), "{c}");
+        assert!(c.contains("{24000u, 49000u") && c.contains("{18000u, 37000u"), "{c}");
+    }
+
+    #[test]
+    fn numbers_are_grouped_by_thousands() {
+        for (us, text) in [(0, "0"), (999, "999"), (1000, "1_000"), (65_005, "65_005"), (1_000_070, "1_000_070")] {
+            assert_eq!(Grouped(Micros::new(us)).to_string(), text);
+        }
+        assert_eq!(Grouped(Micros::MAX).to_string(), "4_294_967_295");
+    }
+}

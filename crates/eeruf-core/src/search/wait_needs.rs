@@ -1,0 +1,206 @@
+//! The paper's question, in microseconds: lags are given, and for each sensor two waits are sought.
+
+use super::grid::Grid;
+use super::wait::{All, Best, Control, Count, Finish, Objective, Problem, Search};
+use super::{Found, SearchError};
+use crate::conditions::Criterion;
+use crate::layout::Layout;
+use crate::schedule::{MAX_SENSORS, Schedule};
+use crate::time::Micros;
+
+/// What a table of waits must meet (Sec. 3.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WaitNeeds<'a> {
+    /// The number of sensors, 1 to 64.
+    pub sensors: usize,
+    /// `T_p`, a whole number of ticks.
+    pub period: Micros,
+    /// Waits are 0, one tick, two ticks, .. up to this.
+    pub wait_max: Micros,
+    /// The grid of the waits.
+    pub tick: Micros,
+    /// `T_lag` of each sensor, in whole ticks; `None` spreads each group of [`neighbours`](Self::neighbours) sensors over the
+    /// period, as Table I-a does.
+    pub t_lag: Option<&'a [Micros]>,
+    /// `T_delta`: near-identical readings differ by no more.
+    pub t_delta: Micros,
+    /// The least time between the firings of two neighbours.
+    pub min_interval: Micros,
+    /// How many adjacent sensors make a group for the default lags.
+    pub neighbours: u8,
+    /// Which sensors are neighbours.
+    pub layout: Layout<'a>,
+    /// How to read (13a), (13b).
+    pub criterion: Criterion,
+}
+
+/// A search for tables of waits, in memory that the caller lends ([`wait::memory_words`](super::wait::memory_words)).
+///
+/// ```
+/// use eeruf_core::search::{WaitNeeds, WaitSearch, wait};
+/// use eeruf_core::{Criterion, Layout, Micros};
+///
+/// let needs = WaitNeeds {
+///     sensors: 12,
+///     period: Micros::from_millis(100),
+///     wait_max: Micros::from_millis(24),
+///     tick: Micros::from_millis(1),
+///     t_lag: None,
+///     t_delta: Micros::new(999),
+///     min_interval: Micros::from_millis(15),
+///     neighbours: 4,
+///     layout: Layout::Line(4),
+///     criterion: Criterion::Exact,
+/// };
+/// let search = WaitSearch::new(&needs)?;
+/// let mut memory = vec![0; wait::memory_words(12)];
+/// let best = search.best::<12>(wait::Objective::Interval, &mut memory, &mut wait::Control::unlimited())?;
+/// // n I + D (K - 1) <= T_p: no table keeps any four neighbours further apart than 19 ms.
+/// assert_eq!(best.value, Some(Micros::from_millis(19)));
+/// assert!(best.proven);
+/// # Ok::<(), eeruf_core::search::SearchError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct WaitSearch {
+    grid: Grid,
+    sensors: usize,
+    period: u32,
+    wait_max: u32,
+    separation: u32,
+    interval: u32,
+    criterion: Criterion,
+    lag: [u32; MAX_SENSORS],
+    rows: [u64; MAX_SENSORS],
+}
+
+impl WaitSearch {
+    /// Checks the needs and puts them on the grid.
+    ///
+    /// # Errors
+    /// [`SearchError`] if a number is out of range, a period or lag is not a whole number of ticks, or a sensor could fire
+    /// after its period has ended.
+    pub fn new(needs: &WaitNeeds<'_>) -> Result<Self, SearchError> {
+        let grid = Grid::new(needs.tick)?;
+        let sensors = needs.t_lag.map_or(needs.sensors, <[Micros]>::len);
+        if needs.sensors == 0 || needs.sensors > MAX_SENSORS || sensors != needs.sensors {
+            return Err(SearchError::Lags { sensors: needs.sensors, lags: sensors });
+        }
+        let mut lag = [0; MAX_SENSORS];
+        for (x, lag) in lag.iter_mut().enumerate().take(sensors) {
+            *lag = match needs.t_lag {
+                Some(lags) => grid.exactly("a lag", lags.get(x).copied().unwrap_or(Micros::ZERO))?,
+                None => grid.exactly("a lag", default_lag(needs, x))?,
+            };
+        }
+        let search = Self {
+            grid,
+            sensors,
+            period: grid.exactly("the period", needs.period)?,
+            wait_max: grid.at_most(needs.wait_max),
+            separation: grid.separation(needs.t_delta),
+            interval: grid.at_least(needs.min_interval),
+            criterion: needs.criterion,
+            lag,
+            rows: needs.layout.rows(sensors),
+        };
+        search.ticks()?;
+        Ok(search)
+    }
+
+    /// The same question in ticks, for what this type does not offer: rearrangements and the Pareto front.
+    ///
+    /// # Errors
+    /// None after [`WaitSearch::new`], which has asked already.
+    pub fn ticks(&self) -> Result<Search<'_>, SearchError> {
+        Ok(Search::new(Problem {
+            period: self.period,
+            lag: self.lag.get(..self.sensors).unwrap_or(&[]),
+            wait_max: self.wait_max,
+            separation: self.separation,
+            interval: self.interval,
+            conflicts: self.rows.get(..self.sensors).unwrap_or(&[]),
+            criterion: self.criterion,
+        })?)
+    }
+
+    /// A table, or the proof that there is none, or neither if the budget is spent.
+    ///
+    /// # Errors
+    /// [`SearchError`] for too little memory or a capacity `K` below the number of sensors.
+    pub fn first<const K: usize>(
+        &self,
+        memory: &mut [u32],
+        control: &mut Control<'_>,
+    ) -> Result<(Finish, Option<Schedule<K>>), SearchError> {
+        let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
+        let finish = self.ticks()?.first(memory, control, &mut a, &mut b)?;
+        let schedule = if finish == Finish::Found { Some(self.schedule(&a, &b)?) } else { None };
+        Ok((finish, schedule))
+    }
+
+    /// How many tables there are, exactly; it stops when it has counted `limit`.
+    ///
+    /// # Errors
+    /// None after [`WaitSearch::new`].
+    pub fn count(
+        &self,
+        limit: Option<u128>,
+        memory: &mut [u32],
+        control: &mut Control<'_>,
+    ) -> Result<Count, SearchError> {
+        Ok(self.ticks()?.count(limit, memory, control))
+    }
+
+    /// The table with the largest smallest interval or the largest `t_delta`; the other one as in the needs.
+    ///
+    /// # Errors
+    /// As for [`first`](Self::first).
+    pub fn best<const K: usize>(
+        &self,
+        objective: Objective,
+        memory: &mut [u32],
+        control: &mut Control<'_>,
+    ) -> Result<Found<K>, SearchError> {
+        let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
+        let best @ Best { value, bound, nodes, .. } = self.ticks()?.best(objective, memory, control, &mut a, &mut b)?;
+        let time = |ticks| match objective {
+            Objective::Interval => Some(self.grid.time(ticks)),
+            Objective::Separation => self.grid.t_delta(ticks),
+        };
+        let schedule = if value.is_some() { Some(self.schedule(&a, &b)?) } else { None };
+        let bound = if best.finish == Finish::Exhausted { None } else { time(bound) };
+        Ok(Found { schedule, value: value.and_then(time), bound, proven: best.proven(), nodes })
+    }
+
+    /// All tables, one after the other: each [`All::next_into`] gives the waits of one in ticks, for
+    /// [`schedule`](Self::schedule) to make a schedule of.
+    ///
+    /// # Errors
+    /// None after [`WaitSearch::new`].
+    pub fn all(&self) -> Result<All<'_>, SearchError> {
+        Ok(self.ticks()?.all())
+    }
+
+    /// The schedule with these waits, in ticks.
+    ///
+    /// # Errors
+    /// [`SearchError::Schedule`] if there are fewer waits than sensors, if they are too long, or for a capacity `K` below the
+    /// number of sensors.
+    pub fn schedule<const K: usize>(&self, wait_a: &[u32], wait_b: &[u32]) -> Result<Schedule<K>, SearchError> {
+        let waits = |ticks: &'_ [u32]| ticks.len().min(self.sensors);
+        self.grid.schedule(
+            self.period,
+            self.lag.get(..self.sensors).unwrap_or(&[]),
+            wait_a.get(..waits(wait_a)).unwrap_or(&[]),
+            wait_b.get(..waits(wait_b)).unwrap_or(&[]),
+        )
+    }
+}
+
+/// Table I-a: sensor `x` of a group of `n` lags by `x mod n` parts in `n` of the period.
+fn default_lag(needs: &WaitNeeds<'_>, x: usize) -> Micros {
+    let n = u64::from(needs.neighbours.max(1));
+    let part = u64::from(needs.period.as_micros()) * (x as u64 % n) / n;
+    // Below the period.
+    Micros::new(part as u32)
+}

@@ -1,0 +1,139 @@
+//! [`EdgeQueue`]: from the edge interrupt, which only time-stamps, to the main loop, which thinks.
+
+use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
+
+use eeruf_core::Instant;
+
+/// An edge on the echo line of one sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Edge {
+    /// The sensor, from 0 to 127.
+    pub sensor: u8,
+    /// Whether the line rose.
+    pub high: bool,
+    /// When.
+    pub at: Instant,
+}
+
+/// A queue of up to `N` edges between one producer, the edge interrupt, and one consumer, the main loop. It needs
+/// neither locks nor an atomic exchange, so that a Cortex-M0 can use it.
+///
+/// `N` is a power of two from 2 to 128: a mask then keeps every index in range without a check.
+///
+/// ```
+/// use eeruf_core::Instant;
+/// use eeruf_hc_sr04::{Edge, EdgeQueue};
+/// static EDGES: EdgeQueue<32> = EdgeQueue::new();
+/// EDGES.push(Edge { sensor: 3, high: true, at: Instant::from_micros(1_450) }); // in the interrupt
+/// assert_eq!(EDGES.pop().map(|edge| edge.sensor), Some(3)); // in the main loop
+/// assert_eq!(EDGES.pop(), None);
+/// ```
+#[derive(Debug)]
+pub struct EdgeQueue<const N: usize> {
+    at: [AtomicU32; N],
+    /// The sensor, and in the highest bit whether its line rose.
+    line: [AtomicU8; N],
+    /// How many edges were ever pushed, and how many popped; both wrap.
+    pushed: AtomicU8,
+    popped: AtomicU8,
+    lost: AtomicU8,
+}
+
+const HIGH: u8 = 0x80;
+
+impl<const N: usize> EdgeQueue<N> {
+    /// An empty queue.
+    pub const fn new() -> Self {
+        const { assert!(N.is_power_of_two() && N >= 2 && N <= 128, "the length of an EdgeQueue is 2, 4, 8, .. 128") };
+        Self {
+            at: [const { AtomicU32::new(0) }; N],
+            line: [const { AtomicU8::new(0) }; N],
+            pushed: AtomicU8::new(0),
+            popped: AtomicU8::new(0),
+            lost: AtomicU8::new(0),
+        }
+    }
+
+    /// Takes in an edge; if the queue is full the edge is [lost](Self::lost). Call it from one interrupt priority only.
+    #[inline]
+    pub fn push(&self, edge: Edge) {
+        let pushed = self.pushed.load(Ordering::Relaxed);
+        let place = usize::from(pushed) % N;
+        let full = usize::from(pushed.wrapping_sub(self.popped.load(Ordering::Acquire))) >= N;
+        match (self.at.get(place), self.line.get(place)) {
+            (Some(at), Some(line)) if !full => {
+                at.store(edge.at.as_micros(), Ordering::Relaxed);
+                line.store(if edge.high { edge.sensor | HIGH } else { edge.sensor & !HIGH }, Ordering::Relaxed);
+                self.pushed.store(pushed.wrapping_add(1), Ordering::Release);
+            }
+            _ => self.lost.store(self.lost.load(Ordering::Relaxed).saturating_add(1), Ordering::Relaxed),
+        }
+    }
+
+    /// The oldest edge not yet taken out. Call it from the main loop only.
+    #[inline]
+    pub fn pop(&self) -> Option<Edge> {
+        let popped = self.popped.load(Ordering::Relaxed);
+        if popped == self.pushed.load(Ordering::Acquire) {
+            return None;
+        }
+        let place = usize::from(popped) % N;
+        let line = self.line.get(place)?.load(Ordering::Relaxed);
+        let at = Instant::from_micros(self.at.get(place)?.load(Ordering::Relaxed));
+        self.popped.store(popped.wrapping_add(1), Ordering::Release);
+        Some(Edge { sensor: line & !HIGH, high: line & HIGH != 0, at })
+    }
+
+    /// Whether nothing waits; ask with interrupts off before going to sleep.
+    pub fn is_empty(&self) -> bool {
+        self.popped.load(Ordering::Relaxed) == self.pushed.load(Ordering::Relaxed)
+    }
+
+    /// How many edges found the queue full; stops at 255.
+    pub fn lost(&self) -> u8 {
+        self.lost.load(Ordering::Relaxed)
+    }
+}
+
+impl<const N: usize> Default for EdgeQueue<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn edge(n: u32) -> Edge {
+        Edge { sensor: (n % 100) as u8, high: n % 3 == 0, at: Instant::from_micros(n) }
+    }
+
+    #[test]
+    fn edges_come_out_in_the_order_they_went_in_through_many_wraps_of_the_counts() {
+        let queue = EdgeQueue::<128>::new();
+        for round in 0..20 {
+            for n in 0..100 {
+                queue.push(edge(100 * round + n));
+            }
+            for n in 0..100 {
+                assert_eq!(queue.pop(), Some(edge(100 * round + n)));
+            }
+            assert!(queue.is_empty());
+        }
+        assert_eq!(queue.lost(), 0);
+    }
+
+    #[test]
+    fn a_full_queue_keeps_the_oldest_edges_and_counts_the_lost() {
+        let queue = EdgeQueue::<4>::new();
+        for n in 0..300 {
+            queue.push(edge(n));
+        }
+        assert_eq!(queue.lost(), 255);
+        for n in 0..4 {
+            assert_eq!(queue.pop(), Some(edge(n)));
+        }
+        assert_eq!(queue.pop(), None);
+    }
+}

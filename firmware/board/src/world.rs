@@ -1,0 +1,158 @@
+//! The world of a board on its own: sensors with a wall in front of each, seen through their pins.
+//!
+//! Each sensor behaves as an HC-SR04. After a trigger its line rises, falls when the echo is in, and makes the echo
+//! interrupt both times. All of it is played by the echo timer.
+
+use core::cell::Cell;
+use core::convert::Infallible;
+
+use critical_section::{CriticalSection, Mutex};
+use eeruf_core::{Instant, Micros};
+use eeruf_hc_sr04::{Edge, Pins};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
+
+/// The most sensors that can be played.
+pub const MAX_SENSORS: usize = 24;
+
+/// From trigger to the rise of the line.
+const RISE: Micros = Micros::new(450);
+
+#[derive(Clone, Copy)]
+struct Line {
+    /// What is in front of the sensor; `None` for a sensor that is missing.
+    t_echo: Option<Micros>,
+    /// The edges to come.
+    rise: Option<Instant>,
+    fall: Option<Instant>,
+    high: bool,
+}
+
+struct World {
+    lines: [Cell<Line>; MAX_SENSORS],
+}
+
+impl World {
+    /// Sets the timer to the next edge of any line.
+    fn set_timer(&self) {
+        let mut next: Option<Instant> = None;
+        for line in &self.lines {
+            let line = line.get();
+            if let Some(at) = line.rise.or(line.fall) {
+                if next.is_none_or(|next| !at.has_reached(next)) {
+                    next = Some(at);
+                }
+            }
+        }
+        if let Some(at) = next {
+            crate::set_echo(at);
+        }
+    }
+}
+
+static WORLD: Mutex<World> = Mutex::new(World {
+    lines: [const { Cell::new(Line { t_echo: None, rise: None, fall: None, high: false }) }; MAX_SENSORS],
+});
+
+fn with<R>(f: impl FnOnce(CriticalSection<'_>, &World) -> R) -> R {
+    critical_section::with(|token| f(token, WORLD.borrow(token)))
+}
+
+/// Puts a wall in front of a sensor, at this echo time, or takes the sensor away.
+pub fn put(sensor: usize, t_echo: Option<Micros>) {
+    with(|_, world| {
+        if let Some(line) = world.lines.get(sensor) {
+            line.set(Line { t_echo, ..line.get() });
+        }
+    });
+}
+
+/// Triggers a sensor now.
+fn trigger(sensor: usize) {
+    let now = crate::now();
+    with(|_, world| {
+        let Some(cell) = world.lines.get(sensor) else { return };
+        let line = cell.get();
+        if let Some(t_echo) = line.t_echo {
+            cell.set(Line { rise: Some(now + RISE), fall: Some(now + RISE + t_echo), ..line });
+        }
+        world.set_timer();
+    });
+}
+
+/// What the interrupt controller would say of the lines: the edge that has come, if one has. To be called by the echo
+/// interrupt's handler until there is none.
+pub fn edge() -> Option<Edge> {
+    let at = crate::now();
+    with(|_, world| {
+        for (x, cell) in world.lines.iter().enumerate() {
+            let mut line = cell.get();
+            let Some(due) = line.rise.or(line.fall) else { continue };
+            if !at.has_reached(due) {
+                continue;
+            }
+            line.high = line.rise.take().is_some();
+            if !line.high {
+                line.fall = None;
+            }
+            cell.set(line);
+            return Some(Edge { sensor: x as u8, high: line.high, at });
+        }
+        world.set_timer();
+        None
+    })
+}
+
+/// The trigger pin of a sensor.
+#[derive(Clone, Copy, Debug)]
+pub struct Trigger(u8);
+
+/// The echo pin of a sensor.
+#[derive(Clone, Copy, Debug)]
+pub struct Echo(u8);
+
+/// The pins of all sensors.
+pub fn pins<const K: usize>() -> [Pins<Trigger, Echo>; K] {
+    core::array::from_fn(|x| Pins { trigger: Trigger(x as u8), echo: Echo(x as u8) })
+}
+
+impl ErrorType for Trigger {
+    type Error = Infallible;
+}
+
+impl OutputPin for Trigger {
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    /// An HC-SR04 measures from the falling edge of its trigger.
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        trigger(self.0.into());
+        Ok(())
+    }
+}
+
+impl ErrorType for Echo {
+    type Error = Infallible;
+}
+
+impl InputPin for Echo {
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        Ok(with(|_, world| world.lines.get(usize::from(self.0)).is_some_and(|line| line.get().high)))
+    }
+
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        self.is_high().map(|high| !high)
+    }
+}
+
+/// Waits by watching the clock.
+#[derive(Clone, Copy, Debug)]
+pub struct Delay;
+
+impl DelayNs for Delay {
+    fn delay_ns(&mut self, ns: u32) {
+        let end = crate::now() + Micros::new(ns.div_ceil(1000));
+        while !crate::now().has_reached(end) {}
+    }
+}

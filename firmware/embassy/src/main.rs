@@ -1,0 +1,74 @@
+//! The ring of twelve HC-SR04 sensors on embassy. One task sleeps until the ring's next deadline or an echo edge; the
+//! echo interrupt only time-stamps.
+#![no_std]
+#![no_main]
+
+mod time_driver;
+
+use eeruf_board::say::leave;
+use eeruf_board::world;
+use eeruf_core::tables::TABLE_I_D;
+use eeruf_core::{Config, Event, Instant, Kind, Micros, Ring, Tally};
+use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
+use embassy_executor::Spawner;
+use embassy_futures::select::select;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::signal::Signal;
+use embassy_time::Timer;
+
+eeruf_board::say_panic!();
+eeruf_board::interrupts!(time_driver::alarm, echo_interrupt);
+
+static EDGES: EdgeQueue<32> = EdgeQueue::new();
+static EDGE: Signal<CriticalSectionRawMutex, ()> = Signal::new();
+
+fn echo_interrupt() {
+    eeruf_board::clear_echo();
+    while let Some(edge) = world::edge() {
+        EDGES.push(edge);
+    }
+    EDGE.signal(());
+}
+
+/// The low 32 bits of embassy's clock.
+fn now() -> Instant {
+    Instant::from_micros(embassy_time::Instant::now().as_micros() as u32)
+}
+
+async fn sleep_until(deadline: Instant) {
+    let now = now();
+    if !now.has_reached(deadline) {
+        Timer::after_micros(deadline.since(now).as_micros().into()).await;
+    }
+}
+
+#[embassy_executor::main]
+async fn main(_spawner: Spawner) {
+    eeruf_board::start();
+    for sensor in 0..12 {
+        world::put(sensor, Some(Micros::new(5_000 + 1_000 * sensor as u32)));
+    }
+    let config = Config::new(Micros::new(999), Micros::from_millis(40));
+    let Ok(ring) = Ring::new(&TABLE_I_D, config, now()) else { leave(2) };
+    let Ok(mut ring) = HcSr04Ring::new(ring, world::pins(), world::Delay, Settings::default()) else { leave(3) };
+    let mut readings = Tally::<u32>::default();
+    loop {
+        while let Some(edge) = EDGES.pop() {
+            ring.edge(edge);
+        }
+        while let Some(event) = ring.poll(now()) {
+            match event {
+                Event::Fire(_) => {}
+                Event::Reading(reading) => readings.count(reading.kind),
+                Event::PeriodEnded(stats) => {
+                    if stats.period == 99 {
+                        let accepted = readings.of(Kind::Accepted);
+                        eeruf_board::say!("embassy on ", eeruf_board::NAME, ": accepted ", accepted);
+                        leave(0);
+                    }
+                }
+            }
+        }
+        select(sleep_until(ring.next_deadline()), EDGE.wait()).await;
+    }
+}

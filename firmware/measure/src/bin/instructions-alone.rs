@@ -1,0 +1,47 @@
+//! As `instructions`, for the scheduler alone and the filter alone: each is usable without the other.
+#![no_std]
+#![no_main]
+
+use core::hint::black_box;
+
+use eeruf_board::say::leave;
+use eeruf_core::tables::TABLE_I_D;
+use eeruf_core::{EchoFilter, Instant, Micros, ScheduledFiring, Scheduler, Step, Verdict};
+use eeruf_measure::{CONFIG, Range, counts};
+
+eeruf_board::no_panic!();
+eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
+
+#[inline(never)]
+fn fire(scheduler: &mut ScheduledFiring<'static, 12>, now: Instant) -> Option<Step> {
+    scheduler.fire(now)
+}
+
+#[inline(never)]
+fn push(filter: &mut EchoFilter<12>, sensor: usize, t_echo: Option<Micros>) -> Option<Verdict> {
+    filter.push(sensor, t_echo).ok()
+}
+
+#[eeruf_board::entry]
+fn main() -> ! {
+    eeruf_board::start();
+    let mut firing = Range::new("scheduler_fire");
+    let mut pushing = Range::new("filter_push");
+    let mut scheduler = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
+    let Ok(mut filter) = EchoFilter::<12>::new(CONFIG.t_delta, CONFIG.consecutive) else { leave(2) };
+    for round in 0..480_u32 {
+        let now = scheduler.deadline();
+        let (taken, step) = counts(|| fire(&mut scheduler, now));
+        match step {
+            Some(_) => firing.note(taken),
+            None => {
+                scheduler.end_period(now);
+            }
+        }
+        let t_echo = black_box((round % 7 != 0).then_some(Micros::new(5_000 + 600 * (round / 50))));
+        pushing.note(counts(|| push(&mut filter, (round % 12) as usize, t_echo)).0);
+    }
+    firing.say();
+    pushing.say();
+    leave(0)
+}

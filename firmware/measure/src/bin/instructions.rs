@@ -1,0 +1,92 @@
+//! Instructions of each call of a ring of twelve sensors, the fewest and the most over forty periods. To be run with
+//! `-icount shift=10`, where every instruction takes 1024 ns, so that a hardware timer counts instructions.
+//!
+//! Prints one line per kind of call: name, fewest, most. Call and return count; reading the timer does not.
+#![no_std]
+#![no_main]
+
+use core::hint::black_box;
+
+use eeruf_board::say::leave;
+use eeruf_core::tables::TABLE_I_D;
+use eeruf_core::{Event, Instant, Kind, Micros, Ring, ScheduledRing};
+use eeruf_hc_sr04::{Edge, EdgeQueue};
+use eeruf_measure::{CONFIG, Range, counts};
+
+eeruf_board::no_panic!();
+eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
+
+static EDGES: EdgeQueue<32> = EdgeQueue::new();
+
+#[inline(never)]
+fn poll(ring: &mut ScheduledRing<'static, 12>, now: Instant) -> Option<Event> {
+    ring.poll(now)
+}
+
+#[inline(never)]
+fn echo(ring: &mut ScheduledRing<'static, 12>, sensor: u8, at: Instant) {
+    ring.echo(sensor, at);
+}
+
+/// What an edge interrupt does: it stamps and stores.
+#[inline(never)]
+fn stamp(sensor: u8, at: Instant) {
+    EDGES.push(Edge { sensor, high: true, at });
+}
+
+#[eeruf_board::entry]
+fn main() -> ! {
+    eeruf_board::start();
+    let start = Instant::from_micros(0);
+    let Ok(mut ring) = Ring::new(&TABLE_I_D, CONFIG, start) else { leave(2) };
+    let mut idle = Range::new("idle_poll");
+    let mut fire = Range::new("fire");
+    let mut heard = Range::new("echo");
+    let mut stamped = Range::new("stamp");
+    let mut reading = Range::new("reading");
+    let mut ended = Range::new("period_ended");
+
+    let mut periods = 0;
+    while periods < 40 {
+        let now = black_box(ring.next_deadline());
+        loop {
+            let (taken, event) = counts(|| poll(&mut ring, now));
+            match event {
+                None => {
+                    idle.note(taken);
+                    break;
+                }
+                Some(Event::Fire(sensor)) => {
+                    fire.note(taken);
+                    // Every kind of reading: near and far, moving, and none at all.
+                    let t_echo = match (sensor, periods % 4) {
+                        (0, _) => None,
+                        (1, phase) => Some(5_000 + 3_000 * phase),
+                        (2, 1) => None,
+                        _ => Some(4_000 + 2_500 * u32::from(sensor)),
+                    };
+                    if let Some(t_echo) = t_echo {
+                        let at = now + Micros::new(black_box(t_echo));
+                        heard.note(counts(|| echo(&mut ring, sensor, at)).0);
+                        stamped.note(counts(|| stamp(sensor, at)).0);
+                        EDGES.pop();
+                    }
+                }
+                Some(Event::Reading(told)) => {
+                    reading.note(taken);
+                    if told.kind == Kind::Stuck {
+                        leave(3);
+                    }
+                }
+                Some(Event::PeriodEnded(_)) => {
+                    ended.note(taken);
+                    periods += 1;
+                }
+            }
+        }
+    }
+    for range in [&idle, &fire, &heard, &stamped, &reading, &ended] {
+        range.say();
+    }
+    leave(0)
+}

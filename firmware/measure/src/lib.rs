@@ -1,0 +1,166 @@
+//! What the measured programs share: a schedule of the paper's kind for any number of sensors, and a ring in static
+//! memory behind functions that are not inlined, one for each public function of `Ring`, and a counter of instructions.
+#![no_std]
+
+use core::hint::black_box;
+
+use eeruf_board::{COUNTS_PER_1000_INSTRUCTIONS, say};
+use eeruf_core::{Config, Micros, Schedule};
+
+/// The paper's schedule for `K` sensors: groups of four, waits of `2 K` ms in phase a and 0, 2, 4, .. ms in phase b.
+pub const fn plain<const K: usize>() -> Schedule<K> {
+    let longest = 2 * K as u32;
+    let mut t_lag = [Micros::ZERO; K];
+    let mut t_wait = [[Micros::from_millis(longest); K], [Micros::ZERO; K]];
+    let mut x = 0;
+    while x < K {
+        t_lag[x] = Micros::from_millis((x as u32 % 4) * (longest + 1));
+        t_wait[1][x] = Micros::from_millis(2 * x as u32);
+        x += 1;
+    }
+    match Schedule::new(Micros::from_millis(4 * (longest + 1)), t_lag, t_wait) {
+        Ok(schedule) => schedule,
+        // Only ever evaluated when this crate is compiled.
+        Err(_) => panic!("not a schedule"),
+    }
+}
+
+/// The configuration of all measured rings.
+pub const CONFIG: Config = Config::new(Micros::new(999), Micros::from_millis(36));
+
+/// The fewest and the most instructions that one kind of call took.
+#[derive(Debug)]
+pub struct Range {
+    name: &'static str,
+    fewest: u32,
+    most: u32,
+}
+
+impl Range {
+    /// Nothing measured.
+    pub const fn new(name: &'static str) -> Self {
+        Self { name, fewest: u32::MAX, most: 0 }
+    }
+
+    /// One more call, which took so many counts of the board's counter.
+    pub fn note(&mut self, counts: u32) {
+        self.fewest = self.fewest.min(counts);
+        self.most = self.most.max(counts);
+    }
+
+    /// One line: name, fewest, most. Reading the counter itself does not count.
+    pub fn say(&self) {
+        let nothing = (0..4).map(|_| counts(|| black_box(())).0).min().unwrap_or(0);
+        let instructions = |counts: u32| {
+            let thousandths = u64::from(counts.saturating_sub(nothing)) * 1000;
+            let per_instruction = u64::from(COUNTS_PER_1000_INSTRUCTIONS);
+            ((thousandths + per_instruction / 2) / per_instruction) as u32
+        };
+        say!(self.name, " ", instructions(self.fewest), " ", instructions(self.most));
+    }
+}
+
+/// The counts of the board's counter that a call takes, and what it returns.
+pub fn counts<R>(call: impl FnOnce() -> R) -> (u32, R) {
+    let before = eeruf_board::count();
+    let result = call();
+    // The timer of the Cortex-M3 board has 24 bits.
+    (eeruf_board::count().wrapping_sub(before) & 0x00FF_FFFF, result)
+}
+
+/// A program that has all of `Ring` in it for `K` sensors, in static memory, and nothing else. Its size less that of
+/// the program `bare` is the size of scheduler and filter.
+#[macro_export]
+macro_rules! ring_in_static_memory {
+    ($k:literal) => {
+        use core::cell::UnsafeCell;
+        use core::hint::black_box;
+        use core::mem::MaybeUninit;
+        use eeruf_core::{Event, Instant, Ring, Schedule, ScheduledRing};
+
+        static SCHEDULE: Schedule<$k> = $crate::plain();
+
+        struct Memory(UnsafeCell<MaybeUninit<ScheduledRing<'static, $k>>>);
+        // SAFETY: used by `main` alone.
+        unsafe impl Sync for Memory {}
+        static MEMORY: Memory = Memory(UnsafeCell::new(MaybeUninit::uninit()));
+
+        #[unsafe(no_mangle)]
+        #[inline(never)]
+        fn ring_new(memory: &'static mut MaybeUninit<ScheduledRing<'static, $k>>, now: Instant) -> bool {
+            match Ring::new(&SCHEDULE, $crate::CONFIG, now) {
+                Ok(ring) => {
+                    memory.write(ring);
+                    true
+                }
+                Err(_) => false,
+            }
+        }
+
+        #[unsafe(no_mangle)]
+        #[inline(never)]
+        fn ring_poll(ring: &mut ScheduledRing<'static, $k>, now: Instant) -> Option<Event> {
+            ring.poll(now)
+        }
+
+        #[unsafe(no_mangle)]
+        #[inline(never)]
+        fn ring_next_deadline(ring: &ScheduledRing<'static, $k>) -> Instant {
+            ring.next_deadline()
+        }
+
+        #[unsafe(no_mangle)]
+        #[inline(never)]
+        fn ring_echo(ring: &mut ScheduledRing<'static, $k>, sensor: u8, at: Instant) {
+            ring.echo(sensor, at);
+        }
+
+        #[unsafe(no_mangle)]
+        #[inline(never)]
+        fn ring_stuck(ring: &mut ScheduledRing<'static, $k>, sensor: u8) {
+            ring.stuck(sensor);
+        }
+
+        #[unsafe(no_mangle)]
+        #[inline(never)]
+        fn ring_disable(ring: &mut ScheduledRing<'static, $k>, sensor: u8) {
+            ring.disable(sensor);
+        }
+
+        #[unsafe(no_mangle)]
+        #[inline(never)]
+        fn ring_enable(ring: &mut ScheduledRing<'static, $k>, sensor: u8) {
+            ring.enable(sensor);
+        }
+
+        #[unsafe(no_mangle)]
+        #[inline(never)]
+        fn ring_restart(ring: &mut ScheduledRing<'static, $k>, now: Instant) {
+            ring.restart(now);
+        }
+
+        fn ring_program() {
+            // SAFETY: the only use of the memory.
+            let memory = unsafe { &mut *MEMORY.0.get() };
+            if !ring_new(memory, black_box(eeruf_board::now())) {
+                return;
+            }
+            // SAFETY: `ring_new` has written it.
+            let ring = unsafe { (*MEMORY.0.get()).assume_init_mut() };
+            loop {
+                while let Some(event) = ring_poll(ring, eeruf_board::now()) {
+                    if let Event::Fire(sensor) = black_box(event) {
+                        ring_echo(ring, sensor, eeruf_board::now());
+                    }
+                }
+                match black_box(0) {
+                    1 => ring_stuck(ring, black_box(1)),
+                    2 => ring_disable(ring, black_box(1)),
+                    3 => ring_enable(ring, black_box(1)),
+                    4 => ring_restart(ring, eeruf_board::now()),
+                    _ => eeruf_board::set_alarm(ring_next_deadline(ring)),
+                }
+            }
+        }
+    };
+}

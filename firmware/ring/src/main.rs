@@ -1,0 +1,69 @@
+//! A ring of twelve HC-SR04 sensors on bare metal. The main loop sleeps until the ring's next deadline; the echo
+//! interrupt only time-stamps.
+#![no_std]
+#![no_main]
+
+use eeruf_board::say::leave;
+use eeruf_board::{say, world};
+use eeruf_core::tables::TABLE_I_D;
+use eeruf_core::{Config, Event, Kind, Micros, Ring, Tally};
+use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
+
+eeruf_board::no_panic!();
+eeruf_board::interrupts!(eeruf_board::clear_alarm, echo_interrupt);
+
+/// From the echo interrupt to the main loop.
+static EDGES: EdgeQueue<32> = EdgeQueue::new();
+
+fn echo_interrupt() {
+    eeruf_board::clear_echo();
+    while let Some(edge) = world::edge() {
+        EDGES.push(edge);
+    }
+}
+
+const PERIODS: u32 = 100;
+
+#[eeruf_board::entry]
+fn main() -> ! {
+    eeruf_board::start();
+    for sensor in 0..12 {
+        // Walls 0.9 m to 2.8 m away, and no sensor in place 6.
+        world::put(sensor, (sensor != 5).then_some(Micros::new(5_000 + 1_000 * sensor as u32)));
+    }
+    let config = Config::new(Micros::new(999), Micros::from_millis(40));
+    let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
+    let Ok(mut ring) = HcSr04Ring::new(ring, world::pins(), world::Delay, Settings::default()) else { leave(3) };
+
+    let mut readings = Tally::<u32>::default();
+    let mut max_late = Micros::ZERO;
+    loop {
+        while let Some(edge) = EDGES.pop() {
+            ring.edge(edge);
+        }
+        while let Some(event) = ring.poll(eeruf_board::now()) {
+            match event {
+                Event::Fire(_) => {}
+                Event::Reading(reading) => readings.count(reading.kind),
+                Event::PeriodEnded(stats) => {
+                    max_late = max_late.max(stats.max_late);
+                    if stats.period + 1 == PERIODS {
+                        say!(eeruf_board::NAME, ": ", PERIODS, " periods");
+                        for kind in Kind::ALL {
+                            say!("  ", kind.as_str(), " ", readings.of(kind));
+                        }
+                        for sensor in 0..12 {
+                            if ring.health(sensor) != eeruf_hc_sr04::Health::Well {
+                                say!("  sensor ", sensor + 1, " is not well");
+                            }
+                        }
+                        say!("  latest firing ", max_late.as_micros(), " us, edges lost ", EDGES.lost());
+                        leave(0);
+                    }
+                }
+            }
+        }
+        eeruf_board::set_alarm(ring.next_deadline());
+        eeruf_board::sleep_unless(|| !EDGES.is_empty());
+    }
+}

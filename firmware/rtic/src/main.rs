@@ -1,0 +1,79 @@
+//! The ring of twelve HC-SR04 sensors on RTIC 2. The alarm's task owns the ring; the echo interrupt, of higher
+//! priority, only time-stamps and wakes it.
+#![no_std]
+#![no_main]
+
+eeruf_board::no_panic!();
+
+#[rtic::app(device = eeruf_board::device, peripherals = false)]
+mod app {
+    use eeruf_board::say::leave;
+    use eeruf_board::world::{self, Delay, Echo, Trigger};
+    use eeruf_board::{say, set_alarm};
+    use eeruf_core::tables::TABLE_I_D;
+    use eeruf_core::{Config, Event, Kind, Micros, Ring, ScheduledFiring, Tally};
+    use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
+
+    static EDGES: EdgeQueue<32> = EdgeQueue::new();
+
+    #[shared]
+    struct Shared {}
+
+    #[local]
+    struct Local {
+        ring: HcSr04Ring<ScheduledFiring<'static, 12>, Trigger, Echo, Delay, 12>,
+        readings: Tally<u32>,
+    }
+
+    #[init]
+    fn init(_: init::Context) -> (Shared, Local) {
+        eeruf_board::start();
+        for sensor in 0..12 {
+            world::put(sensor, Some(Micros::new(5_000 + 1_000 * sensor as u32)));
+        }
+        let config = Config::new(Micros::new(999), Micros::from_millis(40));
+        let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
+        let Ok(ring) = HcSr04Ring::new(ring, world::pins(), Delay, Settings::default()) else { leave(3) };
+        set_alarm(ring.next_deadline());
+        (Shared {}, Local { ring, readings: Tally::default() })
+    }
+
+    /// Asleep whenever no task runs.
+    #[idle]
+    fn idle(_: idle::Context) -> ! {
+        loop {
+            rtic::export::wfi();
+        }
+    }
+
+    #[task(binds = ECHO, priority = 2)]
+    fn edge(_: edge::Context) {
+        eeruf_board::clear_echo();
+        while let Some(edge) = world::edge() {
+            EDGES.push(edge);
+        }
+        rtic::pend(eeruf_board::device::Interrupt::ALARM);
+    }
+
+    #[task(binds = ALARM, priority = 1, local = [ring, readings])]
+    fn alarm(context: alarm::Context) {
+        let alarm::LocalResources { ring, readings, .. } = context.local;
+        eeruf_board::clear_alarm();
+        while let Some(edge) = EDGES.pop() {
+            ring.edge(edge);
+        }
+        while let Some(event) = ring.poll(eeruf_board::now()) {
+            match event {
+                Event::Fire(_) => {}
+                Event::Reading(reading) => readings.count(reading.kind),
+                Event::PeriodEnded(stats) => {
+                    if stats.period == 99 {
+                        say!("rtic on ", eeruf_board::NAME, ": accepted ", readings.of(Kind::Accepted));
+                        leave(0);
+                    }
+                }
+            }
+        }
+        set_alarm(ring.next_deadline());
+    }
+}

@@ -1,0 +1,25 @@
+//! A test harness for boards: runs named functions, says which one runs, and fails by panic.
+#![no_std]
+
+use eeruf_board::say;
+
+/// A test and its name.
+pub type Test = (&'static str, fn());
+
+/// Runs the tests one after the other and leaves: with 0 if all pass, with 101 from the panic of the first that fails.
+pub fn run(tests: &[Test]) -> ! {
+    for (name, test) in tests {
+        say!("test ", *name, " ..");
+        test();
+    }
+    say!(eeruf_board::NAME, ": ", tests.len() as u32, " passed");
+    eeruf_board::say::leave(0)
+}
+
+/// Names functions after themselves.
+#[macro_export]
+macro_rules! tests {
+    ($($test:ident),* $(,)?) => {
+        &[$((stringify!($test), $test as fn())),*]
+    };
+}

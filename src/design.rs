@@ -1,0 +1,311 @@
+//! `eeruf design`: the shortest period for a ring, and why it is not shorter.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::ValueEnum;
+use comfy_table::{Table, presets};
+use eeruf_core::search::design::{self, Effect, Flow, Progress, Relaxations};
+use eeruf_core::search::{Designed, Preferred, SearchError};
+use eeruf_core::tables::TABLE_I_D;
+use eeruf_core::{MAX_SENSORS, Micros, Phase, Requirements};
+use serde::Serialize;
+
+use crate::Answer;
+use crate::draw;
+use crate::input::{AnySchedule, InputError, ScheduleFile, to_json, write};
+use crate::ring_file::{RingSpec, read_ring};
+use crate::timing;
+use crate::watch::Watch;
+
+/// Find the schedule with the shortest period for a ring of sensors, and prove that none is shorter.
+///
+/// The ring file says how many sensors there are (sensors, layout, neighbours) and what they need: t_delta_us,
+/// min_interval_us, window_us; or jitter_us and speed_m_s, crosstalk_range_m, max_range_m and retrigger_us, temperature_c.
+/// Among all schedules with that period it prefers a larger T_delta, then a larger smallest interval, then evener
+/// firing. Exit code 0 if there is a schedule, 1 if there is none, 2 for bad input.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The ring
+    #[arg(value_name = "RING.toml")]
+    file: PathBuf,
+    /// Print only the schedule, in this form
+    #[arg(long, value_enum, value_name = "FORM")]
+    emit: Option<Form>,
+    /// The same as --emit json
+    #[arg(long, conflicts_with = "emit")]
+    json: bool,
+    /// Draw the timing of two periods
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// How many nodes to search at most before giving the best schedule so far
+    #[arg(long, default_value_t = 50_000_000, value_name = "NODES")]
+    budget: u64,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Form {
+    /// A schedule file
+    Toml,
+    /// A const that is checked when the firmware is compiled
+    Rust,
+    /// A C99 header
+    C,
+    /// One object with schedule, value, bound, proof and nodes
+    Json,
+}
+
+/// How many nodes the choice among the shortest schedules may cost.
+const PREFERENCE_BUDGET: u64 = 100_000;
+/// How many nodes it may cost to find out what one need, relaxed, would bring.
+const RELAXATION_BUDGET: u64 = 20_000;
+
+pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    let spec = read_ring(&args.file)?;
+    let bad = |error: SearchError| InputError::new(&args.file, None, error);
+    let began = Instant::now();
+    let mut watch = Watch::new();
+    let Some(design) = find(&spec, args.budget, &mut watch).map_err(bad)? else {
+        println!(
+            "{}: no schedule: good readings change more from period to period, the more sensors at this speed must be \
+             kept apart; expected fewer sensors or a lower speed_m_s",
+            args.file.display()
+        );
+        return Ok(Answer::No);
+    };
+    let seconds = began.elapsed().as_secs_f64();
+    drop(watch);
+    let requirements = spec.needs(design.t_delta).requirements;
+    if let Some(file) = &args.svg {
+        write(file, &draw::timing_diagram(&design.schedule, &requirements))?;
+    }
+    let form = if args.json { Some(Form::Json) } else { args.emit };
+    match form {
+        Some(Form::Toml) => print!("{}", design.schedule.to_toml()),
+        Some(Form::Rust) => print!("{}", design.schedule.to_rust(&requirements)),
+        Some(Form::C) => print!("{}", design.schedule.to_c(&requirements)),
+        Some(Form::Json) => println!("{}", to_json(&FoundJson::new(&design, seconds))),
+        None => print!("{}", describe(&args.file.display().to_string(), &spec, &requirements, &design, seconds)),
+    }
+    Ok(Answer::Yes)
+}
+
+/// A schedule for a ring file.
+pub(crate) struct RingDesign {
+    pub(crate) schedule: AnySchedule,
+    /// What `t_delta` has to cover, motion included.
+    pub(crate) t_delta: Micros,
+    designed: Designed<MAX_SENSORS>,
+    preferred: Option<Preferred<MAX_SENSORS>>,
+    relaxations: Option<Relaxations>,
+}
+
+/// Finds the shortest period, and the preferred schedule with it; `None` if the robot is too fast for any.
+///
+/// If `t_delta` must cover motion, it depends on the period, which depends on it: longer periods need a larger `t_delta`,
+/// which needs longer periods. Starting from a robot that stands, this climbs to the first pair that agrees.
+pub(crate) fn find(spec: &RingSpec, budget: u64, watch: &mut Watch) -> Result<Option<RingDesign>, SearchError> {
+    let mut memory = vec![0; design::memory_words(spec.sensors)];
+    let mut control = |progress: &Progress| {
+        let how_far = || {
+            let (bound, best) = (progress.bound, progress.best);
+            format!("{} nodes, period at least {bound} and at most {best} ticks of {}", progress.nodes, spec.tick)
+        };
+        if watch.go_on(how_far) { Flow::Continue } else { Flow::Stop }
+    };
+    let mut t_delta = spec.t_delta;
+    loop {
+        let needs = spec.needs(t_delta);
+        let designed = needs.shortest::<MAX_SENSORS>(budget, &mut memory, &mut control)?;
+        let preferred = if designed.found.proven {
+            Some(needs.prefer(&designed, PREFERENCE_BUDGET, &mut memory, &mut control)?)
+        } else {
+            None
+        };
+        let Some(schedule) = preferred.map_or(designed.found.schedule, |preferred| Some(preferred.schedule)) else {
+            return Ok(None);
+        };
+        let needed = t_delta_needed(spec, &schedule);
+        let allowed = schedule.verify(&needs.requirements).max_t_delta();
+        if allowed >= Some(needed) {
+            let relaxations = if designed.found.proven {
+                Some(needs.relaxations(&designed, RELAXATION_BUDGET, &mut memory, &mut control)?)
+            } else {
+                None
+            };
+            let t_delta = needed.max(t_delta);
+            return Ok(Some(RingDesign { schedule, t_delta, designed, preferred, relaxations }));
+        }
+        // Past this point a second of silence would not be enough either.
+        if needed > Micros::from_millis(1000) {
+            return Ok(None);
+        }
+        t_delta = needed;
+    }
+}
+
+/// Jitter, and `2 v dt / c` for the longest `dt` of the schedule.
+fn t_delta_needed(spec: &RingSpec, schedule: &AnySchedule) -> Micros {
+    let speed = u64::from(spec.speed_mm_s.unwrap_or(0));
+    let change = 2 * speed * u64::from(schedule.max_refire().as_micros());
+    let change = change.div_ceil(u64::from(spec.c.mm_per_s()).max(1));
+    spec.t_delta.saturating_add(Micros::new(u32::try_from(change).unwrap_or(u32::MAX)))
+}
+
+/// Found, as Python names it.
+#[derive(Serialize)]
+struct FoundJson {
+    schedule: ScheduleFile,
+    value_us: Option<u32>,
+    bound_us: Option<u32>,
+    proven: bool,
+    nodes: u64,
+    seconds: f64,
+    reason: String,
+}
+
+impl FoundJson {
+    fn new(design: &RingDesign, seconds: f64) -> Self {
+        let found = &design.designed.found;
+        Self {
+            schedule: ScheduleFile::from(&design.schedule),
+            value_us: found.value.map(Micros::as_micros),
+            bound_us: found.bound.map(Micros::as_micros),
+            proven: found.proven,
+            nodes: found.nodes,
+            seconds,
+            reason: design.reason(),
+        }
+    }
+}
+
+impl RingDesign {
+    fn reason(&self) -> String {
+        self.designed.reason().to_string()
+    }
+}
+
+fn describe(name: &str, spec: &RingSpec, requirements: &Requirements<'_>, design: &RingDesign, seconds: f64) -> String {
+    let RingDesign { schedule, designed, preferred, relaxations, .. } = design;
+    let found = &designed.found;
+    let report = schedule.verify(requirements);
+    let period = schedule.period();
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    let proof = if found.proven {
+        "proven: no schedule is shorter".to_owned()
+    } else {
+        format!("not proven: it may be as short as {}", found.bound.unwrap_or(period))
+    };
+    table.add_row(["period", &period.to_string(), &proof]);
+    let best = |proven: Option<bool>| match proven {
+        Some(true) => ", and no schedule of this period has more",
+        Some(false) => ", the best found",
+        None => "",
+    };
+    table.add_row([
+        "t_delta".to_owned(),
+        report.max_t_delta().map_or_else(|| "none".to_owned(), |t_delta| t_delta.to_string()),
+        format!("needed: {}{}", requirements.t_delta, best(preferred.map(|p| p.t_delta_proven))),
+    ]);
+    if let Some(interval) = report.min_interval() {
+        table.add_row([
+            "smallest interval".to_owned(),
+            interval.value.to_string(),
+            format!("needed: {}{}", requirements.min_interval, best(preferred.map(|p| p.min_interval_proven))),
+        ]);
+    }
+    table.add_row([
+        "listening".to_owned(),
+        requirements.window.to_string(),
+        format!(
+            "{:.2} m; no sensor fires again within {}",
+            f64::from(spec.c.distance_mm(requirements.window)) / 1000.0,
+            report.min_refire()
+        ),
+    ]);
+    let speed = schedule.max_speed_mm_s(report.max_t_delta().unwrap_or(Micros::ZERO), spec.c.mm_per_s());
+    table.add_row([
+        "motion".to_owned(),
+        format!("{:.2} m/s", f64::from(speed) / 1000.0),
+        format!("before good readings differ by more than t_delta ({} at most between firings)", schedule.max_refire()),
+    ]);
+    let rate = |period: f64| 1e6 / period;
+    let one_by_one = f64::from(requirements.window.as_micros()) * spec.sensors as f64;
+    let us = f64::from(period.as_micros());
+    table.add_row([
+        "readings".to_owned(),
+        format!("{:.1} a second", rate(us)),
+        format!("of each sensor; {:.1} times one by one ({:.1} a second)", one_by_one / us, rate(one_by_one)),
+    ]);
+    if let Some(paper) = papers_period_us(spec, requirements) {
+        table.add_row([
+            String::new(),
+            String::new(),
+            format!("{:.2} times Table I-d scaled to the same needs ({:.1} a second)", paper / us, rate(paper)),
+        ]);
+    }
+    table.add_row([
+        "search".to_owned(),
+        format!("{:.1} ms", 1000.0 * seconds),
+        format!("{} nodes, and {} for the choice", found.nodes, preferred.map_or(0, |p| p.nodes)),
+    ]);
+
+    let mut text = format!("{name}: {} sensors, {}\n{table}\n", spec.sensors, requirements.layout);
+    _ = writeln!(text, "\nNot shorter because of {}.", design.reason());
+    if let Some(relaxations) = relaxations {
+        _ = writeln!(text, "{}", ways_to_get_faster(relaxations, spec.tick));
+    }
+    text.push('\n');
+    text += &timing::diagram(schedule, requirements.window);
+    _ = writeln!(text, "\n{}", schedule.to_toml());
+    text
+}
+
+/// What the designer may change to get faster.
+fn ways_to_get_faster(relaxations: &Relaxations, tick: Micros) -> String {
+    let Relaxations { separation, interval, window, .. } = *relaxations;
+    let needs = [("t_delta", separation), ("interval", interval), ("listening window", window)];
+    let those = |effect| {
+        let names: Vec<_> = needs.iter().filter(|need| need.1 == effect).map(|need| need.0).collect();
+        names.join(" or ")
+    };
+    let mut text = match those(Effect::Shorter) {
+        helpful if helpful.is_empty() => {
+            format!("To get faster: no single need, smaller by a tick of {tick}, allows a shorter period")
+        }
+        helpful => format!("To get faster: a smaller {helpful}, by a tick of {tick}, allows a shorter period"),
+    };
+    for (effect, verdict) in [(Effect::None, "changes nothing"), (Effect::Unknown, "was not found out")] {
+        let names = those(effect);
+        if !names.is_empty() && !text.contains("no single need") {
+            text += &format!("; a smaller {names} {verdict}");
+        }
+    }
+    text + "."
+}
+
+/// The period to which Table I-d, cut to this many sensors, has to be scaled to meet the same requirements.
+fn papers_period_us(spec: &RingSpec, requirements: &Requirements<'_>) -> Option<f64> {
+    if spec.sensors > TABLE_I_D.sensors() {
+        return None;
+    }
+    let cut = |phase| TABLE_I_D.t_wait(phase).get(..spec.sensors);
+    let table = AnySchedule::from_slices(
+        TABLE_I_D.period(),
+        TABLE_I_D.t_lag().get(..spec.sensors)?,
+        [cut(Phase::A)?, cut(Phase::B)?],
+    )
+    .ok()?;
+    let report = table.verify(requirements);
+    let ratio = |needed: Micros, has: Micros| f64::from(needed.as_micros()) / f64::from(has.as_micros());
+    let mut scale = ratio(requirements.window, report.min_refire());
+    if let Some(max_t_delta) = report.max_t_delta() {
+        scale = scale.max(ratio(requirements.separation(), Micros::new(2 * max_t_delta.as_micros() + 1)));
+    }
+    if let Some(interval) = report.min_interval() {
+        scale = scale.max(ratio(requirements.min_interval, interval.value));
+    }
+    Some(scale * f64::from(TABLE_I_D.period().as_micros()))
+}

@@ -71,6 +71,39 @@ impl CrosstalkMatrix {
         limits: Limits,
         floor: f64,
     ) -> Result<(), PathsError> {
+        self.fill(tracer, scene, sensors, 0..sensors.len(), transducer, limits, floor)
+    }
+
+    /// As [`compute`](Self::compute), but traces one emitter only: for a world in which things move from firing to firing.
+    /// All paths from other emitters are missing.
+    ///
+    /// # Errors
+    /// As [`compute`](Self::compute).
+    #[allow(clippy::too_many_arguments, reason = "as compute, and the emitter")]
+    pub fn compute_from(
+        &mut self,
+        emitter: usize,
+        tracer: &mut Tracer,
+        scene: &Scene,
+        sensors: &[Pose],
+        transducer: &Transducer,
+        limits: Limits,
+        floor: f64,
+    ) -> Result<(), PathsError> {
+        self.fill(tracer, scene, sensors, emitter..emitter + 1, transducer, limits, floor)
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "as compute, and the emitters")]
+    fn fill(
+        &mut self,
+        tracer: &mut Tracer,
+        scene: &Scene,
+        sensors: &[Pose],
+        emitters: core::ops::Range<usize>,
+        transducer: &Transducer,
+        limits: Limits,
+        floor: f64,
+    ) -> Result<(), PathsError> {
         let air = scene.air();
         let piston = transducer.piston(air);
         self.sensors = 0;
@@ -81,6 +114,10 @@ impl CrosstalkMatrix {
         self.positions.extend(sensors.iter().map(|sensor| Point::from(sensor.translation.vector)));
         tracer.frequency_hz = transducer.frequency_hz;
         for (emitter, pose) in sensors.iter().enumerate() {
+            if !emitters.contains(&emitter) {
+                self.starts.resize(self.starts.len() + sensors.len(), self.paths.len() as u32);
+                continue;
+            }
             if let Err(error) = tracer.trace(scene, self.positions[emitter], &self.positions, limits, &mut self.found) {
                 self.paths.clear();
                 self.starts.clear();

@@ -1,0 +1,3 @@
+//! The paper's experiments, made repeatable.
+
+pub mod set_one;

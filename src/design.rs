@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use comfy_table::{Table, presets};
-use eeruf_core::search::design::{self, Flow, Progress};
+use eeruf_core::search::design::{self, Effect, Flow, Progress, Relaxations};
 use eeruf_core::search::{Designed, Preferred, SearchError};
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{MAX_SENSORS, Micros, Phase, Requirements};
@@ -57,7 +57,9 @@ enum Form {
 }
 
 /// How many nodes the choice among the shortest schedules may cost.
-const PREFERENCE_BUDGET: u64 = 300_000;
+const PREFERENCE_BUDGET: u64 = 100_000;
+/// How many nodes it may cost to find out what one need, relaxed, would bring.
+const RELAXATION_BUDGET: u64 = 20_000;
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let spec = read_ring(&args.file)?;
@@ -96,6 +98,7 @@ pub(crate) struct RingDesign {
     pub(crate) t_delta: Micros,
     designed: Designed<MAX_SENSORS>,
     preferred: Option<Preferred<MAX_SENSORS>>,
+    relaxations: Option<Relaxations>,
 }
 
 /// Finds the shortest period, and the preferred schedule with it; `None` if the robot is too fast for any.
@@ -126,7 +129,13 @@ pub(crate) fn find(spec: &RingSpec, budget: u64, watch: &mut Watch) -> Result<Op
         let needed = t_delta_needed(spec, &schedule);
         let allowed = schedule.verify(&needs.requirements).max_t_delta();
         if allowed >= Some(needed) {
-            return Ok(Some(RingDesign { schedule, t_delta: needed.max(t_delta), designed, preferred }));
+            let relaxations = if designed.found.proven {
+                Some(needs.relaxations(&designed, RELAXATION_BUDGET, &mut memory, &mut control)?)
+            } else {
+                None
+            };
+            let t_delta = needed.max(t_delta);
+            return Ok(Some(RingDesign { schedule, t_delta, designed, preferred, relaxations }));
         }
         // Past this point a second of silence would not be enough either.
         if needed > Micros::from_millis(1000) {
@@ -178,7 +187,7 @@ impl RingDesign {
 }
 
 fn describe(name: &str, spec: &RingSpec, requirements: &Requirements<'_>, design: &RingDesign, seconds: f64) -> String {
-    let RingDesign { schedule, designed, preferred, .. } = design;
+    let RingDesign { schedule, designed, preferred, relaxations, .. } = design;
     let found = &designed.found;
     let report = schedule.verify(requirements);
     let period = schedule.period();
@@ -244,10 +253,37 @@ fn describe(name: &str, spec: &RingSpec, requirements: &Requirements<'_>, design
     ]);
 
     let mut text = format!("{name}: {} sensors, {}\n{table}\n", spec.sensors, requirements.layout);
-    _ = writeln!(text, "\nNot shorter because of {}.\n", design.reason());
+    _ = writeln!(text, "\nNot shorter because of {}.", design.reason());
+    if let Some(relaxations) = relaxations {
+        _ = writeln!(text, "{}", ways_to_get_faster(relaxations, spec.tick));
+    }
+    text.push('\n');
     text += &timing::diagram(schedule, requirements.window);
     _ = writeln!(text, "\n{}", schedule.to_toml());
     text
+}
+
+/// What the designer may change to get faster.
+fn ways_to_get_faster(relaxations: &Relaxations, tick: Micros) -> String {
+    let Relaxations { separation, interval, window, .. } = *relaxations;
+    let needs = [("t_delta", separation), ("interval", interval), ("listening window", window)];
+    let those = |effect| {
+        let names: Vec<_> = needs.iter().filter(|need| need.1 == effect).map(|need| need.0).collect();
+        names.join(" or ")
+    };
+    let mut text = match those(Effect::Shorter) {
+        helpful if helpful.is_empty() => {
+            format!("To get faster: no single need, smaller by a tick of {tick}, allows a shorter period")
+        }
+        helpful => format!("To get faster: a smaller {helpful}, by a tick of {tick}, allows a shorter period"),
+    };
+    for (effect, verdict) in [(Effect::None, "changes nothing"), (Effect::Unknown, "was not found out")] {
+        let names = those(effect);
+        if !names.is_empty() && !text.contains("no single need") {
+            text += &format!("; a smaller {names} {verdict}");
+        }
+    }
+    text + "."
 }
 
 /// The period to which Table I-d, cut to this many sensors, has to be scaled to meet the same requirements.

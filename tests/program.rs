@@ -193,3 +193,153 @@ fn bad_input_gets_one_line_that_names_file_place_value_and_what_is_expected() {
     assert_eq!(missing.code, Some(2));
     assert!(missing.err.starts_with("eeruf: no-such-file.toml: No such file"), "{}", missing.err);
 }
+
+#[test]
+fn the_papers_ring_can_run_at_65_ms_and_the_answer_is_the_same_in_every_form() {
+    let found = json(&["design", "rings/paper-12.toml", "--emit", "json"]);
+    assert_eq!((&found["value_us"], &found["bound_us"]), (&65_000.into(), &65_000.into()));
+    assert_eq!(found["proven"], true);
+    assert_eq!(found["schedule"]["period_us"], 65_000);
+    assert_eq!(found["schedule"]["t_fire_a_us"].as_array().unwrap().len(), 12);
+    let again = json(&["design", "rings/paper-12.toml", "--json"]);
+    assert_eq!((&again["schedule"], &again["nodes"]), (&found["schedule"], &found["nodes"]));
+
+    // The schedule file passes what was asked for, and not a microsecond more of separation or window.
+    let toml = eeruf(&["design", "rings/paper-12.toml", "--emit", "toml"]);
+    let (_folder, file) = Scratch::new("schedule.toml", &toml.out);
+    let asked = ["--t-delta-us", "999", "--min-interval-us", "15000", "--window-us", "30000"];
+    let report = json(&[&["verify", file.to_str().unwrap(), "--json"], &asked[..]].concat());
+    assert_eq!((&report["ok"], &report["max_t_delta_us"]), (&true.into(), &999.into()));
+
+    let told = eeruf(&["design", "rings/paper-12.toml"]);
+    for said in ["65 ms", "proven: no schedule is shorter", "1.54 times Table I-d", "Not shorter because", "# fires"] {
+        assert!(told.out.contains(said), "{said}\n{}", told.out);
+    }
+}
+
+#[test]
+fn every_ring_file_that_we_ship_gets_a_proven_schedule_with_a_picture() {
+    for (ring, period_us) in [("labmate-8", 48_300), ("ring-24", 76_000), ("hc-sr04-8", 63_000)] {
+        let (folder, _) = Scratch::new("unused", "");
+        let picture = folder.path().join("timing.svg");
+        let file = format!("rings/{ring}.toml");
+        let found = json(&["design", &file, "--json", "--svg", picture.to_str().unwrap()]);
+        assert_eq!((&found["value_us"], &found["proven"]), (&period_us.into(), &true.into()), "{ring}");
+        assert!(std::fs::read_to_string(picture).unwrap().contains("phase b"));
+    }
+}
+
+#[test]
+fn a_robot_that_moves_gets_a_t_delta_that_covers_its_motion() {
+    let still = "sensors = 8\nwindow_us = 20_000\nmin_interval_us = 10_000\njitter_us = 60\ntick_us = 100\n";
+    let (_folder, file) = Scratch::new("still.toml", still);
+    let still_period = json(&["design", file.to_str().unwrap(), "--json"])["value_us"].as_u64().unwrap();
+    let moving = format!("{still}speed_m_s = 1.0\n");
+    let (_folder, file) = Scratch::new("moving.toml", &moving);
+    let found = json(&["design", file.to_str().unwrap(), "--json"]);
+    assert!(found["value_us"].as_u64().unwrap() > still_period);
+    // No good reading changes by more than jitter and 2 v dt / c over the longest dt.
+    let times = |key: &str| -> Vec<i64> {
+        found["schedule"][key].as_array().unwrap().iter().map(|t| t.as_i64().unwrap()).collect()
+    };
+    let longest = times("t_fire_a_us").iter().zip(times("t_fire_b_us")).map(|(a, b)| (a - b).abs()).max().unwrap();
+    let change = 60.0 + 2.0 * (found["value_us"].as_i64().unwrap() + longest) as f64 / 343.2;
+    let toml = eeruf(&["design", file.to_str().unwrap(), "--emit", "toml"]);
+    let (_folder, schedule) = Scratch::new("schedule.toml", &toml.out);
+    let t_delta = change.floor().to_string();
+    assert_eq!(eeruf(&["verify", schedule.to_str().unwrap(), "--t-delta-us", &t_delta]).code, Some(0));
+
+    let (_folder, file) = Scratch::new("rocket.toml", &format!("{still}speed_m_s = 100.0\n"));
+    let rocket = eeruf(&["design", file.to_str().unwrap()]);
+    assert_eq!(rocket.code, Some(1));
+    assert!(rocket.out.contains("no schedule"), "{}", rocket.out);
+}
+
+#[test]
+fn emitted_rust_is_checked_by_the_compiler_and_emitted_c_compiles_without_a_warning() {
+    let rust = eeruf(&["design", "rings/paper-12.toml", "--emit", "rust"]).out;
+    // `tests/emitted.rs` compiles that file.
+    assert_eq!(rust, include_str!("emitted/paper_12.rs"), "eeruf design rings/paper-12.toml --emit rust");
+    let c = eeruf(&["design", "rings/paper-12.toml", "--emit", "c"]).out;
+    let (folder, header) = Scratch::new("schedule.h", &c);
+    let user = folder.path().join("user.c");
+    std::fs::write(
+        &user,
+        format!(
+            "#include \"{}\"\nint main(void) {{ return eeruf_t_fire_us[1][EERUF_SENSORS - 1] >= EERUF_PERIOD_US; }}\n",
+            header.display()
+        ),
+    )
+    .unwrap();
+    for (compiler, standard) in [("gcc", "-std=c99"), ("g++", "-std=c++11")] {
+        let language = if compiler == "gcc" { "c" } else { "c++" };
+        let built = Command::new(compiler)
+            .args([standard, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-x", language])
+            .arg(&user)
+            .arg("-o")
+            .arg(folder.path().join("user"))
+            .status()
+            .expect("a C compiler");
+        assert!(built.success(), "{compiler}");
+        assert!(Command::new(folder.path().join("user")).status().unwrap().success());
+    }
+}
+
+#[test]
+fn the_search_for_waits_counts_proves_and_finds() {
+    let waits = "sensors = 4\nperiod_us = 40000\nwait_max_us = 9000\ntick_us = 1000\nt_delta_us = 999\n\
+                 min_interval_us = 5000\n";
+    for (criterion, count) in [("paper", 178_048), ("exact", 1_058_048)] {
+        let (_folder, file) = Scratch::new("waits.toml", &format!("{waits}criterion = \"{criterion}\"\n"));
+        let file = file.to_str().unwrap();
+        assert_eq!(json(&["search", file, "--count", "--json"]), serde_json::json!({ "count": count }));
+        let best = json(&["search", file, "--best", "interval", "--json"]);
+        assert_eq!((&best["value_us"], &best["bound_us"], &best["proven"]), (&8000.into(), &8000.into(), &true.into()));
+        let (_folder, schedule) = Scratch::new("schedule.toml", &eeruf(&["search", file]).out.replace("a table", "#"));
+        let asked = ["--t-delta-us", "999", "--min-interval-us", "5000", "--criterion", criterion];
+        assert_eq!(eeruf(&[&["verify", schedule.to_str().unwrap()], &asked[..]].concat()).code, Some(0));
+    }
+    let (_folder, file) = Scratch::new("waits.toml", &waits.replace("999", "1999"));
+    let none = eeruf(&["search", file.to_str().unwrap()]);
+    assert_eq!(none.code, Some(1));
+    assert!(none.out.starts_with("there is no such table: all were searched"), "{}", none.out);
+}
+
+#[test]
+fn impossible_rings_get_one_clear_line() {
+    let ring =
+        |line: &str| format!("sensors = 8\nt_delta_us = 999\nmin_interval_us = 15000\nwindow_us = 30000\n{line}\n");
+    let cases = [
+        (ring("").replace("sensors = 8", "sensors = 0"), ": 0 sensors; expected 1 to 64"),
+        (ring("").replace("sensors = 8", "sensors = 65"), ": 65 sensors; expected 1 to 64"),
+        (ring("neighbours = 0"), ": neighbours = 0; expected 1 to 64"),
+        (ring("tick_us = 0"), ": a tick of 0 us; expected 1 us or more"),
+        (ring("").replace("30000", "0"), ": a listening window of 0 us; expected window_us or max_range_m above zero"),
+        (ring("max_range_m = 3.0"), ": expected either window_us, or max_range_m with or without retrigger_us"),
+        (ring("jitter_us = 3"), ": expected either t_delta_us, or jitter_us with or without speed_m_s"),
+        (ring("layout = \"star\""), ", line 5: "),
+        (ring("layout = [[0, 8]]"), ": layout: neighbours [0, 8]; expected two different sensors from 0 to 7"),
+        (ring("").replace("15000", "4294967295") + "tick_us = 1\n", ": firing one by one already takes "),
+    ];
+    for (contents, expected) in cases {
+        let (_folder, file) = Scratch::new("ring.toml", &contents);
+        let outcome = eeruf(&["design", file.to_str().unwrap()]);
+        assert_eq!((outcome.code, outcome.out.as_str()), (Some(2), ""), "{contents}");
+        let prefix = format!("eeruf: {}{expected}", file.display());
+        assert!(outcome.err.starts_with(&prefix), "{}\n{prefix}", outcome.err);
+        assert_eq!(outcome.err.lines().count(), 1, "{}", outcome.err);
+    }
+    let waits = "sensors = 3\nperiod_us = 40000\nwait_max_us = 9000\ntick_us = 1000\nt_delta_us = 999\n";
+    let cases = [
+        (format!("{waits}t_lag_us = [0, 500, 10000]\n"), ": a lag of 500 us; expected a whole number of ticks of 1 ms"),
+        (format!("{waits}t_lag_us = [0, 35000, 10000]\n"), ": sensor 2 has lag 35 and waits up to 9 ticks; "),
+        (format!("{waits}t_lag_us = [0]\n"), ": 1 lags; expected one for each of 3 sensors"),
+    ];
+    for (contents, expected) in cases {
+        let (_folder, file) = Scratch::new("waits.toml", &contents);
+        let outcome = eeruf(&["search", file.to_str().unwrap()]);
+        assert_eq!((outcome.code, outcome.out.as_str()), (Some(2), ""), "{contents}");
+        let prefix = format!("eeruf: {}{expected}", file.display());
+        assert!(outcome.err.starts_with(&prefix), "{}\n{prefix}", outcome.err);
+    }
+}

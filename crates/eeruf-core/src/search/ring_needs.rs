@@ -1,6 +1,6 @@
 //! The user's question, in microseconds: what a ring needs, and the best schedule that meets it.
 
-use super::design::{self, Control, Firing, InTime, Problem, Shortest};
+use super::design::{self, Control, Firing, InTime, Problem, Relaxations, Shortest};
 use super::grid::Grid;
 use super::{Found, SearchError};
 use crate::conditions::{Criterion, Requirements};
@@ -120,6 +120,23 @@ impl RingNeeds<'_> {
             min_refire_proven: preferred.window.proven(),
             nodes: preferred.nodes,
         })
+    }
+
+    /// Which of the needs to relax for a shorter period: for each of separation, interval and window, what one tick less of
+    /// it would do. `budget` nodes each.
+    ///
+    /// # Errors
+    /// As for [`shortest`](Self::shortest).
+    pub fn relaxations<const K: usize>(
+        &self,
+        designed: &Designed<K>,
+        budget: u64,
+        memory: &mut [i32],
+        control: &mut impl Control,
+    ) -> Result<Relaxations, SearchError> {
+        let (grid, rows) = self.grid()?;
+        let problem = self.problem(grid, &rows);
+        Ok(design::relaxations(&problem, designed.shortest.period, budget, memory, control)?)
     }
 
     /// The largest `t_delta` at a given period; that of the requirements is not looked at.

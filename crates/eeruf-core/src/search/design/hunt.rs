@@ -98,7 +98,7 @@ impl<C: Control> Meter<'_, C> {
                 return outcome;
             }
             let progress = Progress { nodes: self.nodes, period: period as u32, bound: self.bound, best: self.best };
-            self.stopped = self.control.poll(&progress) == Flow::Stop;
+            self.stopped |= self.control.poll(&progress) == Flow::Stop;
             if !self.may_go_on() {
                 return Outcome::Spent;
             }
@@ -199,7 +199,7 @@ impl<'h, C: Control> Hunt<'h, C> {
                 ease = unknown + (border.yes - unknown) / 2;
             }
             let rest = self.meter.limit.saturating_sub(self.meter.nodes);
-            if border.no + 1 >= border.yes || rest == 0 {
+            if border.no + 1 >= border.yes || !self.meter.may_go_on() {
                 return;
             }
             budget *= 4;
@@ -234,6 +234,9 @@ impl<'h, C: Control> Hunt<'h, C> {
         thorough: bool,
         border: &mut Border,
     ) -> Outcome {
+        if !self.meter.may_go_on() {
+            return Outcome::Spent;
+        }
         let asked = question.at(axis, ease);
         let outcome = self.decide(&asked, budget, border.guide.then_some(border.firing), thorough);
         match &outcome {

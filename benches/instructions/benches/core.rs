@@ -1,0 +1,84 @@
+//! What the searches, the filter and a ring cost in instructions, under callgrind.
+#![allow(missing_docs, unused_qualifications, reason = "what the macros generate")]
+
+use std::hint::black_box;
+
+use eeruf_core::search::wait::{Control, Objective, memory_words};
+use eeruf_core::search::{RingNeeds, WaitNeeds, WaitSearch, design};
+use eeruf_core::tables::TABLE_I_D;
+use eeruf_core::{Config, Criterion, EchoFilter, Event, Instant, Layout, Micros, Requirements, Ring, Schedule};
+use gungraun::{library_benchmark, library_benchmark_group, main};
+
+// The shortest period of the paper's half ring of twelve, proven.
+#[library_benchmark]
+fn design_paper_12() -> Option<Micros> {
+    let needs = RingNeeds {
+        sensors: 12,
+        requirements: Requirements {
+            min_interval: Micros::from_millis(15),
+            window: Micros::from_millis(30),
+            ..Requirements::new(Micros::new(999))
+        },
+        tick: Micros::from_millis(1),
+    };
+    let mut memory = vec![0; design::memory_words(12)];
+    black_box(needs).shortest::<12>(u64::MAX, &mut memory, &mut ()).ok()?.found.value
+}
+
+// The largest smallest interval of a table of waits for twelve sensors, proven.
+#[library_benchmark]
+fn best_interval_12() -> Option<Micros> {
+    let needs = WaitNeeds {
+        sensors: 12,
+        period: Micros::from_millis(100),
+        wait_max: Micros::from_millis(24),
+        tick: Micros::from_millis(1),
+        t_lag: None,
+        t_delta: Micros::new(999),
+        min_interval: Micros::from_millis(15),
+        neighbours: 4,
+        layout: Layout::Line(4),
+        criterion: Criterion::Exact,
+    };
+    let search = WaitSearch::new(&black_box(needs)).ok()?;
+    let mut memory = vec![0; memory_words(12)];
+    search.best::<12>(Objective::Interval, &mut memory, &mut Control::unlimited()).ok()?.value
+}
+
+// A thousand readings of one sensor.
+#[library_benchmark]
+fn filter_1000_readings() -> u32 {
+    let Ok(mut filter) = EchoFilter::<1>::new(Micros::new(500), 2) else { return 0 };
+    let mut accepted = 0;
+    for n in 0..1000 {
+        let verdict = filter.push(0, Some(Micros::new(black_box(9000 + n % 7 * 100))));
+        accepted += u32::from(verdict.is_ok_and(|verdict| verdict.t_echo.is_some()));
+    }
+    accepted
+}
+
+// A hundred periods of twelve sensors: 1,200 firings and echoes.
+#[library_benchmark]
+fn ring_100_periods() -> u32 {
+    static SCHEDULE: Schedule<12> = TABLE_I_D;
+    let config = Config::new(Micros::new(999), Micros::from_millis(36));
+    let Ok(mut ring) = Ring::new(&SCHEDULE, config, Instant::default()) else { return 0 };
+    let (mut periods, mut readings) = (0, 0);
+    while periods < 100 {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            match event {
+                Event::Fire(sensor) => ring.echo(sensor, now + Micros::from_millis(black_box(12))),
+                Event::Reading(_) => readings += 1,
+                Event::PeriodEnded(_) => periods += 1,
+            }
+        }
+    }
+    readings
+}
+
+library_benchmark_group!(
+    name = core;
+    benchmarks = design_paper_12, best_interval_12, filter_1000_readings, ring_100_periods
+);
+main!(library_benchmark_groups = core);

@@ -1,0 +1,24 @@
+//! What `eeruf design --emit rust` printed, compiled: the compiler has checked the table against its requirements.
+
+// Public, for firmware to put where it likes.
+#[expect(unreachable_pub)]
+#[path = "emitted/paper_12.rs"]
+mod paper_12;
+
+use eeruf_core::{Config, Event, Instant, Micros, Ring};
+
+#[test]
+fn an_emitted_table_drives_a_ring() {
+    let config = Config::new(Micros::new(999), Micros::from_millis(30));
+    let mut ring = Ring::new(&paper_12::RING, config, Instant::default()).unwrap();
+    let mut fired = [0; 12];
+    while ring.next_deadline() != Instant::default() + Micros::from_millis(130) {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            if let Event::Fire(sensor) = event {
+                fired[usize::from(sensor)] += 1;
+            }
+        }
+    }
+    assert_eq!(fired, [2; 12]);
+}

@@ -37,6 +37,7 @@ const STACK: u64 = 256;
 
 /// Builds, runs and measures everything; prints the tables of `docs/firmware.md`.
 pub(crate) fn firmware() -> Result<(), Trouble> {
+    crate::listings::check("docs/firmware.md")?;
     let tables = measure_all()?;
     println!("\n{tables}");
     Ok(())

@@ -5,6 +5,7 @@
 
 mod checks;
 mod firmware;
+mod listings;
 mod steps;
 mod toolchain;
 

@@ -238,7 +238,7 @@ fn sections(board: &Board, name: &str) -> Result<(u64, u64), Trouble> {
         let Ok(bytes) = bytes.parse::<u64>() else { continue };
         match section {
             ".vector_table" | ".init" | ".init.rust" | ".text" | ".text.dummy" | ".rodata" | ".trap" | ".init.trap" => {
-                flash += bytes
+                flash += bytes;
             }
             ".data" => {
                 flash += bytes;
@@ -276,10 +276,10 @@ fn stack(board: &Board) -> Result<Vec<(String, u64)>, Trouble> {
 
     let mut frames = BTreeMap::new();
     for line in llvm("readelf", &["--stack-sizes"], &image)?.lines() {
-        if let Some((bytes, names)) = line.trim().split_once(char::is_whitespace) {
-            if let Ok(bytes) = bytes.parse::<u64>() {
-                frames.extend(names.trim().split(", ").map(|name| (name.to_owned(), bytes)));
-            }
+        if let Some((bytes, names)) = line.trim().split_once(char::is_whitespace)
+            && let Ok(bytes) = bytes.parse::<u64>()
+        {
+            frames.extend(names.trim().split(", ").map(|name| (name.to_owned(), bytes)));
         }
     }
     let mut calls: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
@@ -287,14 +287,13 @@ fn stack(board: &Board) -> Result<Vec<(String, u64)>, Trouble> {
     for line in llvm("objdump", &["-d", "--no-show-raw-insn"], &image)?.lines() {
         if let Some(name) = line.strip_suffix(">:").and_then(|line| line.split_once('<')) {
             name.1.clone_into(&mut caller);
-        } else if let Some((_, callee)) = line.rsplit_once('<') {
-            // A branch within a function has an offset; to another one it is a call.
-            let callee = callee.trim_end_matches('>');
-            let jumps =
-                ["\tbl\t", "\tb\t", "\tbx\t", "\tbhi", "\tbls", "\tb.w\t"].iter().any(|jump| line.contains(jump));
-            if jumps && !callee.contains('+') && callee != caller {
-                calls.entry(caller.clone()).or_default().insert(callee.to_owned());
-            }
+            continue;
+        }
+        // A branch within a function has an offset; to another one it is a call.
+        let Some((_, callee)) = line.rsplit_once('<') else { continue };
+        let callee = callee.split_once('>').map_or(callee, |(callee, _)| callee);
+        if !callee.contains('+') && callee != caller {
+            calls.entry(caller.clone()).or_default().insert(callee.to_owned());
         }
     }
     let public: Vec<String> =

@@ -13,11 +13,12 @@ pub(crate) fn check(document: &str) -> Result<(), Trouble> {
     let mut rest = text.as_str();
     let mut listings = 0;
     while let Some((_, after)) = rest.split_once("<!-- listing: ") {
-        let (what, after) = after.split_once(" -->\n").ok_or_else(|| failed(document, "a listing comment has no end"))?;
+        let (what, after) =
+            after.split_once(" -->\n").ok_or_else(|| failed(document, "a listing comment has no end"))?;
         let (_, after) = after.split_once('\n').ok_or_else(|| failed(document, what))?;
         let (block, after) = after.split_once("```").ok_or_else(|| failed(document, what))?;
         let (file, range) = what.split_once(" from ").unwrap_or((what, ""));
-        let (from, to) = range.split_once(" to ").unwrap_or((range, ""));
+        let (from, to) = range.rsplit_once(" to ").unwrap_or((range, ""));
         let source = read(file)?;
         let lines: Vec<&str> = source.lines().collect();
         let first = lines.iter().position(|line| line.contains(from)).unwrap_or(0);

@@ -35,6 +35,7 @@
 //! ```
 
 mod bounds;
+mod classes;
 mod control;
 mod frame;
 mod hunt;

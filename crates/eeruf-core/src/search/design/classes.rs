@@ -1,0 +1,234 @@
+//! How much a period leaves to spare decides how many sensors can share a size of `|d|`: a bound for cliques, lines and rings.
+//!
+//! Take n sensors that all conflict, in a period `T_p = n I + sigma`, with `R >= I`. Any two firings that follow each other are I apart, also
+//! those of one sensor. If a sensor is the p-th of them in phase a and the q-th in phase b, `n + p - q` such steps lie between its firing in b
+//! and the next in a, and `n - p + q` between a and the next b, so with `c = p - q`
+//!
+//! ```text
+//! T_p + d >= (n + c) I,  T_p - d >= (n - c) I,  that is  c I - sigma <= d <= c I + sigma.
+//! ```
+//!
+//! Its **class** is `|c|`. As long as `2 sigma < I` the classes are apart, and each has room for as many `|d|` as fit D apart into
+//! `|c| I - sigma ..= |c| I + sigma`, cut off at `least` below and at the `T_p - R` that the window leaves above. The n values c are how far the
+//! places of a permutation move. That bounds one clique; a set of **disjoint cliques** shares the room of the classes.
+//!
+//! **Line** (each n adjacent sensors conflict). Sensors i and i + n both conflict with the n - 1 between them, whose firings leave
+//! `2 (n - 1)` gaps, in two periods end to end. A gap with u firings of sensor i and v of sensor i + n in it is at least `(1 + max(u, v)) I` long;
+//! together they are `2 T_p < (2 n + 1) I` long, so the sum of `max(u, v)` is at most 2. As u and v sum to 2 each, `u = v` in each gap: sensor
+//! i + n takes the places of sensor i. (Should i be last in both phases, i + n may instead be first in both: that moves all places of the
+//! sensors between by one, in both phases alike.) So c of sensor x depends on `x mod n` alone, and *one* permutation places `floor(K / n)` sensors
+//! or one more for each of its places. For n that divides K and n = 4, that is `n I + D (L - 1)` with `L = K / n` at `R = I`.
+//!
+//! **Ring.** The same goes all round, so c depends on x mod the largest common divisor of n and K, and of each class there are K / n times as
+//! many sensors as places. Let x and y conflict, x before y in phase b and behind it in a: `a_x - a_y >= (p_x - p_y) I` and
+//! `b_y - b_x >= (q_y - q_x) I`, so `e = d - c I` is no smaller for x than for y. If `c_x > 0`, somebody in each clique is overtaken so; with
+//! `K >= 2 n` there is one on either side of x, n sensors apart and so of one class, and their e differ by D. Hence `e_x >= -sigma + D`,
+//! and likewise `e_x <= sigma - D` if `c_x < 0`: in terms of `|d|` every class but 0 loses D at the lower end. A sensor that keeps its place,
+//! `c = 0`, while others pass it from both sides, has both: its class loses D above, on the one side that `|d|` has. Sensors that nobody
+//! passes lose nothing.
+//!
+//! Whether some permutation fits is found by trying them, place by place; there are few unless n is large, and then giving up says nothing.
+//! Where `2 sigma >= I` nothing is said: no bound of this kind exceeds `n I + I / 2`.
+
+use super::MAX_SENSORS;
+use super::bounds;
+use super::problem::{Needs, Sensors};
+use super::symmetry;
+
+/// The places tried before giving up.
+const STEPS: u32 = 1 << 15;
+
+/// What is known of the conflicts.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Shape {
+    Line,
+    /// With at least twice as many sensors as conflict at once.
+    Ring,
+    /// So many disjoint cliques.
+    Cliques(u32),
+}
+
+/// Cliques of n sensors, and how they hang together.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Classes {
+    shape: Shape,
+    /// n.
+    clique: u32,
+}
+
+impl Classes {
+    /// What the conflicts allow to count, or `None` if no two sensors conflict.
+    pub(crate) fn new(needs: &Needs) -> Option<Self> {
+        let first = needs.conflicts[0];
+        // Sensors 1 to n - 1 conflict with sensor 0, and more only round the end of a ring.
+        let n = (first >> 1).trailing_ones() as usize + 1;
+        let near = |x: usize, y: usize| x != y && x.abs_diff(y) < n;
+        let row = |x: usize| (0..needs.sensors).filter(|&y| near(x, y)).fold(0, |row, y| row | 1 << y);
+        if n >= 2 && (0..needs.sensors).all(|x| needs.conflicts[x] == row(x)) {
+            return Some(Self { shape: Shape::Line, clique: n as u32 });
+        }
+        if n >= 2 && needs.sensors >= 2 * n && first.count_ones() as usize == 2 * (n - 1) && symmetry::is_ring(needs) {
+            return Some(Self { shape: Shape::Ring, clique: n as u32 });
+        }
+        let (clique, cliques) = bounds::disjoint_cliques(needs);
+        (clique >= 2).then_some(Self { shape: Shape::Cliques(cliques), clique })
+    }
+
+    /// A period below which there is no schedule, with n; it may be smaller than other bounds.
+    pub(crate) fn period(&self, needs: &Needs) -> i32 {
+        // `ProblemError::TooLong` bounds n I.
+        let clique = self.clique as i32 * needs.interval;
+        let (mut no, mut yes) = (clique - 1, clique + (needs.interval + 1) / 2);
+        while no + 1 < yes {
+            let middle = no + (yes - no) / 2;
+            if self.excludes(needs, middle) { no = middle } else { yes = middle }
+        }
+        yes
+    }
+
+    /// The number of sensors in each clique.
+    pub(crate) fn clique(&self) -> u32 {
+        self.clique
+    }
+
+    /// The number of sensors that were counted.
+    pub(crate) fn sensors(&self, needs: &Needs) -> u32 {
+        if let Shape::Cliques(cliques) = self.shape { cliques * self.clique } else { needs.sensors as u32 }
+    }
+
+    /// Whether there is no schedule with this period because too few `|d|` fit into each class.
+    pub(crate) fn excludes(&self, needs: &Needs, period: i32) -> bool {
+        let n = self.clique as i32;
+        let spare = period - n * needs.interval;
+        if needs.window < needs.interval || 2 * spare >= needs.interval {
+            return false;
+        }
+        if spare < 0 {
+            return true;
+        }
+        let sensors = needs.sensors as i32;
+        let mut room = Room { places: [0; MAX_SENSORS], crossed: n, values: [0; MAX_SENSORS] };
+        // The sensors of one class that share a place of the permutation: at least `sensors / per`.
+        let (sensors, per) = match self.shape {
+            Shape::Line => (sensors / n, 1),
+            Shape::Ring => (sensors, n),
+            Shape::Cliques(_) => (1, 1),
+        };
+        let mut sum = 0;
+        for class in 0..n {
+            let values = self.values(needs, period, class, false);
+            // A move by at least m has n - m places to start from, in each direction.
+            let most = if class > 0 { 2 * (n - class) } else { n };
+            let places = if let Shape::Cliques(cliques) = self.shape {
+                values.min(most.saturating_mul(cliques as i32))
+            } else {
+                // In i64, as values times n may be large.
+                (i64::from(values) * i64::from(per) / i64::from(sensors)).min(i64::from(most)) as i32
+            };
+            sum += places;
+            // Class is below n, which is at most MAX_SENSORS.
+            (room.places[class as usize], room.values[class as usize]) = (places, values);
+        }
+        match self.shape {
+            Shape::Cliques(cliques) if cliques > 1 => sum < n * cliques as i32,
+            _ if sum < n => true,
+            shape => {
+                if shape == Shape::Ring {
+                    let crossed = i64::from(self.values(needs, period, 0, true)) * i64::from(per);
+                    room.crossed = (crossed / i64::from(sensors)).min(i64::from(n)) as i32;
+                }
+                !room.some_permutation(n as usize, |moved| match shape {
+                    Shape::Line => {
+                        // Some places have a sensor more than the others.
+                        let more: i32 = (0..n as usize)
+                            .map(|class| moved[class].min(room.values[class] - sensors * moved[class]))
+                            .sum();
+                        more >= needs.sensors as i32 % n
+                    }
+                    Shape::Ring => {
+                        // Places that differ by a common divisor of n and K are of one class.
+                        let alike = n / common_divisor(n, sensors);
+                        moved.iter().all(|moved| moved % alike == 0)
+                    }
+                    Shape::Cliques(_) => true,
+                })
+            }
+        }
+    }
+
+    /// How many `|d|` fit into a class.
+    fn values(&self, needs: &Needs, period: i32, class: i32, crossed: bool) -> i32 {
+        let spare = period - self.clique as i32 * needs.interval;
+        let middle = class * needs.interval;
+        let d = needs.separation;
+        let (mut low, mut high) = ((middle - spare).max(needs.least), middle + spare);
+        if self.shape == Shape::Ring && class > 0 {
+            low = low.max(middle - spare + d);
+        }
+        if crossed {
+            high -= d;
+        }
+        high = high.min(period - needs.window);
+        if low <= high { (high - low) / d + 1 } else { 0 }
+    }
+}
+
+/// What fits into the classes.
+struct Room {
+    /// How many places of the permutation may be in each class.
+    places: [i32; MAX_SENSORS],
+    /// How many of those in class 0 may be passed by others.
+    crossed: i32,
+    /// How many `|d|` fit into each class.
+    values: [i32; MAX_SENSORS],
+}
+
+impl Room {
+    /// Whether there is a permutation of n places for which there is room and that `suits`, given how many places move by each distance;
+    /// true also if that takes too long to tell.
+    ///
+    /// Places are below n, which is at most `MAX_SENSORS`, and so are distances: all indices are in range.
+    fn some_permutation(&self, n: usize, suits: impl Fn(&[i32]) -> bool) -> bool {
+        let mut to = [0u8; MAX_SENSORS];
+        let mut moved = [0i32; MAX_SENSORS];
+        let (mut used, mut crossed) = (0u64, 0);
+        let (mut from, mut first) = (0, 0);
+        for _ in 0..STEPS {
+            if from == n && suits(&moved[..n]) {
+                return true;
+            }
+            let passed = from < n && used != !(u64::MAX << from);
+            let fits = |&p: &usize| {
+                let class = p.abs_diff(from);
+                p >= first && moved[class] < self.places[class] && (class > 0 || !passed || crossed < self.crossed)
+            };
+            let open = if from < n { !used & (u64::MAX >> (MAX_SENSORS - n)) } else { 0 };
+            if let Some(p) = Sensors(open).find(fits) {
+                moved[p.abs_diff(from)] += 1;
+                crossed += i32::from(p == from && passed);
+                used |= 1 << p;
+                // A place is below 64.
+                to[from] = p as u8;
+                (from, first) = (from + 1, 0);
+            } else if from == 0 {
+                return false;
+            } else {
+                from -= 1;
+                let p = usize::from(to[from]);
+                used &= !(1 << p);
+                moved[p.abs_diff(from)] -= 1;
+                crossed -= i32::from(p == from && used != !(u64::MAX << from));
+                first = p + 1;
+            }
+        }
+        true
+    }
+}
+
+fn common_divisor(a: i32, b: i32) -> i32 {
+    let (mut a, mut b) = (a, b);
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}

@@ -33,6 +33,7 @@
 use super::MAX_SENSORS;
 use super::bounds;
 use super::problem::{Needs, Sensors};
+use super::random::Random;
 use super::symmetry;
 
 /// The places tried before giving up.
@@ -137,7 +138,8 @@ impl Classes {
                     let crossed = i64::from(self.values(needs, period, 0, true)) * i64::from(per);
                     room.crossed = (crossed / i64::from(sensors)).min(i64::from(n)) as i32;
                 }
-                !room.some_permutation(n as usize, |moved| match shape {
+                let none = [0; MAX_SENSORS];
+                let search = room.permutation(&[1; MAX_SENSORS][..n as usize], &none, |moved| match shape {
                     Shape::Line => {
                         // Some places have a sensor more than the others.
                         let more: i32 = (0..n as usize)
@@ -151,9 +153,53 @@ impl Classes {
                         moved.iter().all(|moved| moved % alike == 0)
                     }
                     Shape::Cliques(_) => true,
-                })
+                });
+                matches!(search, Search::None)
             }
         }
+    }
+
+    /// Orders drawn by chance in which each n-th sensor has the same place, and for whose classes there is room.
+    pub(crate) fn draw(&self, needs: &Needs, period: i32, random: &mut Random) -> Option<Orders> {
+        let (k, n) = (needs.sensors, self.clique as usize);
+        if matches!(self.shape, Shape::Cliques(_)) || (self.shape == Shape::Ring && k % n > 0) {
+            return None;
+        }
+        let mut room = Room { places: [0; MAX_SENSORS], crossed: i32::MAX, values: [0; MAX_SENSORS] };
+        // n is at most MAX_SENSORS; so are places, and numbers mod n.
+        for class in 0..n {
+            room.places[class] = self.values(needs, period, class as i32, false);
+        }
+        let (mut at, mut offsets, mut sizes) = ([0u8; MAX_SENSORS], [0u8; MAX_SENSORS], [0; MAX_SENSORS]);
+        for q in 0..n {
+            let other = random.below(q as u32 + 1) as usize;
+            at[q] = at[other];
+            at[other] = q as u8;
+            offsets[q] = random.below(n as u32) as u8;
+        }
+        for q in 0..n {
+            sizes[q] = ((k + n - 1 - usize::from(at[q])) / n) as i32;
+        }
+        let Search::Found(to) = room.permutation(&sizes[..n], &offsets, |_| true) else {
+            return None;
+        };
+        let mut orders = Orders { a: [0; MAX_SENSORS], b: [0; MAX_SENSORS], tops: 0 };
+        let mut widest = 0;
+        for q in 0..n {
+            let moved = i32::from(to[q]) - q as i32;
+            if moved.abs() > i32::abs(widest) {
+                widest = moved;
+            }
+        }
+        for q in 0..n {
+            for x in (usize::from(at[q])..k).step_by(n) {
+                // Of the sensor with the largest |d|, d is positive.
+                (orders.a[x], orders.b[x]) = if widest < 0 { (q as u8, to[q]) } else { (to[q], q as u8) };
+                let d = i32::from(orders.a[x]) - i32::from(orders.b[x]);
+                orders.tops |= u64::from(d == widest.abs()) << x;
+            }
+        }
+        Some(orders)
     }
 
     /// How many `|d|` fit into a class.
@@ -184,45 +230,71 @@ struct Room {
 }
 
 impl Room {
-    /// Whether there is a permutation of n places for which there is room and that `suits`, given how many places move by each distance;
-    /// true also if that takes too long to tell.
+    /// A permutation of the places for which there is room and that `suits`, given how much of each class it takes; place q takes `sizes[q]`
+    /// and is tried at `offsets[q]` first.
     ///
-    /// Places are below n, which is at most `MAX_SENSORS`, and so are distances: all indices are in range.
-    fn some_permutation(&self, n: usize, suits: impl Fn(&[i32]) -> bool) -> bool {
+    /// Places are below n, the length of both, which is at most `MAX_SENSORS`, and so are distances: all indices are in range.
+    fn permutation(&self, sizes: &[i32], offsets: &[u8], suits: impl Fn(&[i32]) -> bool) -> Search {
+        let n = sizes.len();
         let mut to = [0u8; MAX_SENSORS];
+        // The alternatives of each place that were tried.
+        let mut tried = [0usize; MAX_SENSORS];
         let mut moved = [0i32; MAX_SENSORS];
-        let (mut used, mut crossed) = (0u64, 0);
-        let (mut from, mut first) = (0, 0);
+        let (mut used, mut crossed, mut from) = (0u64, 0, 0);
         for _ in 0..STEPS {
-            if from == n && suits(&moved[..n]) {
-                return true;
-            }
-            let passed = from < n && used != !(u64::MAX << from);
-            let fits = |&p: &usize| {
-                let class = p.abs_diff(from);
-                p >= first && moved[class] < self.places[class] && (class > 0 || !passed || crossed < self.crossed)
-            };
-            let open = if from < n { !used & (u64::MAX >> (MAX_SENSORS - n)) } else { 0 };
-            if let Some(p) = Sensors(open).find(fits) {
-                moved[p.abs_diff(from)] += 1;
-                crossed += i32::from(p == from && passed);
-                used |= 1 << p;
-                // A place is below 64.
-                to[from] = p as u8;
-                (from, first) = (from + 1, 0);
-            } else if from == 0 {
-                return false;
+            if from == n {
+                if suits(&moved[..n]) {
+                    return Search::Found(to);
+                }
             } else {
-                from -= 1;
-                let p = usize::from(to[from]);
-                used &= !(1 << p);
-                moved[p.abs_diff(from)] -= 1;
-                crossed -= i32::from(p == from && used != !(u64::MAX << from));
-                first = p + 1;
+                let passed = used != !(u64::MAX << from);
+                let next = (tried[from]..n).map(|i| (i, (i + usize::from(offsets[from])) % n)).find(|&(_, p)| {
+                    let class = p.abs_diff(from);
+                    used >> p & 1 == 0
+                        && moved[class] + sizes[from] <= self.places[class]
+                        && (class > 0 || !passed || crossed < self.crossed)
+                });
+                if let Some((i, p)) = next {
+                    moved[p.abs_diff(from)] += sizes[from];
+                    crossed += i32::from(p == from && passed);
+                    used |= 1 << p;
+                    // A place is below 64.
+                    to[from] = p as u8;
+                    tried[from] = i + 1;
+                    from += 1;
+                    if from < n {
+                        tried[from] = 0;
+                    }
+                    continue;
+                }
             }
+            if from == 0 {
+                return Search::None;
+            }
+            from -= 1;
+            let p = usize::from(to[from]);
+            used &= !(1 << p);
+            moved[p.abs_diff(from)] -= sizes[from];
+            crossed -= i32::from(p == from && used != !(u64::MAX << from));
         }
-        true
+        Search::GivenUp
     }
+}
+
+/// What came of looking for a permutation.
+enum Search {
+    Found([u8; MAX_SENSORS]),
+    None,
+    GivenUp,
+}
+
+/// In which order sensors fire: of two that conflict, the one with the smaller number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Orders {
+    pub(crate) a: [u8; MAX_SENSORS],
+    pub(crate) b: [u8; MAX_SENSORS],
+    /// The sensor with the largest `|d|`, which is positive, should be one of these.
+    pub(crate) tops: u64,
 }
 
 fn common_divisor(a: i32, b: i32) -> i32 {

@@ -1,5 +1,6 @@
 //! One question after another over the same memory: decide a problem, and find where "no" turns into "yes" along one of its numbers.
 
+use super::classes::Classes;
 use super::control::{Control, Flow, POLL, Progress};
 use super::problem::Needs;
 use super::random::Random;
@@ -139,9 +140,17 @@ impl<'h, C: Control> Hunt<'h, C> {
         // Another budget, other descents: nothing lucky is tried twice while a budget grows.
         let seed = budget.wrapping_shl(20);
         let mut descents = 0;
+        let classes = Classes::new(&question.needs);
         while tree.nodes() < budget && self.meter.may_go_on() {
             descents += 1;
-            tree.restart(Some(Random::new(seed.wrapping_add(descents))), None);
+            let mut random = Random::new(seed.wrapping_add(descents));
+            // Every other descent begins with orders for whose classes there is room.
+            let orders = classes.filter(|_| descents % 2 == 1);
+            let orders = orders.and_then(|classes| classes.draw(&question.needs, question.period, &mut random));
+            tree.restart(Some(random), None);
+            if let Some(orders) = orders {
+                tree.like(orders);
+            }
             let run = (unit * luby(descents)).min(budget - tree.nodes());
             let outcome = self.meter.run(&mut tree, run, question.period);
             if outcome != Outcome::Spent {

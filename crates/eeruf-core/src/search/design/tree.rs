@@ -7,6 +7,7 @@
 
 use super::MAX_SENSORS;
 use super::bounds;
+use super::classes::Orders;
 use super::frame::{FRAME_WORDS, Frame, Kind};
 use super::network::{Contradiction, Network};
 use super::packing::Intervals;
@@ -59,6 +60,8 @@ pub(crate) struct Tree<'p, 'm> {
     random: Option<Random>,
     /// A schedule for an easier problem: like it first.
     guide: Option<Firing>,
+    /// Orders to like first.
+    orders: Option<Orders>,
     /// In how many of 8 choices an order is copied from the sensors `shift` further along.
     follow: u32,
     shift: usize,
@@ -133,6 +136,7 @@ impl<'p, 'm> Tree<'p, 'm> {
             sequence: [0; MAX_SENSORS],
             random: None,
             guide: None,
+            orders: None,
             follow: 8,
             shift: 0,
             clique: bounds::cliques(needs).0 as usize,
@@ -182,6 +186,7 @@ impl<'p, 'm> Tree<'p, 'm> {
     /// order.
     pub(crate) fn restart(&mut self, random: Option<Random>, guide: Option<Firing>) {
         self.guide = guide;
+        self.orders = None;
         self.net.reset(self.root);
         self.ranks.lows = 0;
         self.ranks.highs = 0;
@@ -196,6 +201,12 @@ impl<'p, 'm> Tree<'p, 'm> {
             self.follow = [8, 8, 7, 0][random.below(4) as usize];
             self.shift += usize::from(random.below(4) == 0);
         }
+    }
+
+    /// Likes these orders first, until the next restart.
+    pub(crate) fn like(&mut self, orders: Orders) {
+        self.orders = Some(orders);
+        self.follow = 8;
     }
 
     /// Goes on for at most `budget` nodes; `Spent` can be continued by calling again.
@@ -313,6 +324,11 @@ impl<'p, 'm> Tree<'p, 'm> {
 
     /// The remaining candidate for a rank that leaves the others most room, or any.
     fn pick(&mut self, frame: &Frame) -> Option<(u8, bool)> {
+        if let (Kind::Top, Some(orders)) = (frame.kind, &self.orders) {
+            if let Some(x) = Sensors(frame.positive & orders.tops).next() {
+                return Some((x as u8, false));
+            }
+        }
         if let Some(random) = &mut self.random {
             let count = frame.positive.count_ones() + frame.negative.count_ones();
             if count > 1 && (frame.kind == Kind::Top || random.below(2) == 0) {
@@ -458,6 +474,10 @@ impl<'p, 'm> Tree<'p, 'm> {
         if let Some(guide) = &self.guide {
             let times = if phase == 0 { &guide.a } else { &guide.b };
             return Some(times[x] < times[y]);
+        }
+        if let Some(orders) = &self.orders {
+            let places = if phase == 0 { &orders.a } else { &orders.b };
+            return Some(places[x] < places[y]);
         }
         for shift in [shift, 2 * k - shift] {
             let (x, y) = ((x + shift) % k, (y + shift) % k);

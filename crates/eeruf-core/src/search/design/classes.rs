@@ -27,12 +27,18 @@
 //! `c = 0`, while others pass it from both sides, has both: its class loses D above, on the one side that `|d|` has. Sensors that nobody
 //! passes lose nothing.
 //!
+//! **Ring of `K = 2 n`.** Every sensor conflicts with all but the one opposite, and both fire in the same 2 n places of two periods, of which
+//! each takes as long as its two firings are apart. The time from one firing to the next is `T_p + d` or `T_p - d`; of two opposite
+//! sensors these times differ by D at least, so the two places that they share take D together. (If they are next to each other, because the
+//! sensor that is last in one phase is first in the next, then it is I from each firing to the next, and from the first of the four
+//! to the last `I + D`.) All n pairs of places, with I behind each place: `2 T_p >= 2 n I + n D`.
+//!
 //! Whether some permutation fits is found by trying them, place by place; there are few unless n is large, and then giving up says nothing.
 //! Where `2 sigma >= I` nothing is said: no bound of this kind exceeds `n I + I / 2`.
 
 use super::MAX_SENSORS;
 use super::bounds;
-use super::problem::{Needs, Sensors};
+use super::problem::Needs;
 use super::random::Random;
 use super::symmetry;
 
@@ -92,6 +98,16 @@ impl Classes {
         self.clique
     }
 
+    /// Whether any n adjacent sensors conflict.
+    pub(crate) fn adjacent(&self) -> bool {
+        !matches!(self.shape, Shape::Cliques(_))
+    }
+
+    /// Whether also round the end.
+    pub(crate) fn ring(&self) -> bool {
+        self.shape == Shape::Ring
+    }
+
     /// The number of sensors that were counted.
     pub(crate) fn sensors(&self, needs: &Needs) -> u32 {
         if let Shape::Cliques(cliques) = self.shape { cliques * self.clique } else { needs.sensors as u32 }
@@ -108,6 +124,9 @@ impl Classes {
             return true;
         }
         let sensors = needs.sensors as i32;
+        if self.shape == Shape::Ring && sensors == 2 * n && 2 * spare < n * needs.separation {
+            return true;
+        }
         let mut room = Room { places: [0; MAX_SENSORS], crossed: n, values: [0; MAX_SENSORS] };
         // The sensors of one class that share a place of the permutation: at least `sensors / per`.
         let (sensors, per) = match self.shape {
@@ -203,7 +222,7 @@ impl Classes {
     }
 
     /// How many `|d|` fit into a class.
-    fn values(&self, needs: &Needs, period: i32, class: i32, crossed: bool) -> i32 {
+    pub(super) fn values(&self, needs: &Needs, period: i32, class: i32, crossed: bool) -> i32 {
         let spare = period - self.clique as i32 * needs.interval;
         let middle = class * needs.interval;
         let d = needs.separation;

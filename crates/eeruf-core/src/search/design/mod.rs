@@ -42,6 +42,7 @@ mod hunt;
 mod largest;
 mod network;
 mod packing;
+mod place;
 mod problem;
 mod propagate;
 mod random;

@@ -11,6 +11,7 @@ use super::classes::Orders;
 use super::frame::{FRAME_WORDS, Frame, Kind};
 use super::network::{Contradiction, Network};
 use super::packing::Intervals;
+use super::place::Places;
 use super::problem::{Needs, Sensors};
 use super::random::Random;
 use super::schedule::Firing;
@@ -55,6 +56,7 @@ pub(crate) struct Tree<'p, 'm> {
     /// Frames below this one can no longer be undone, only recomputed.
     base: usize,
     pub(super) ranks: Ranks,
+    pub(super) places: Places,
     /// Sensors in the order in which their firing orders are chosen.
     sequence: [u8; MAX_SENSORS],
     random: Option<Random>,
@@ -133,6 +135,7 @@ impl<'p, 'm> Tree<'p, 'm> {
             depth: 0,
             base: 0,
             ranks: Ranks { low: [0; MAX_SENSORS], high: [0; MAX_SENSORS], lows: 0, highs: 0, ranked: 0, negative: 0 },
+            places: Places::new(needs, period),
             sequence: [0; MAX_SENSORS],
             random: None,
             guide: None,
@@ -192,6 +195,7 @@ impl<'p, 'm> Tree<'p, 'm> {
         self.ranks.highs = 0;
         self.ranks.ranked = 0;
         self.ranks.negative = 0;
+        self.places.clear();
         self.depth = 0;
         self.base = 0;
         self.random = random;
@@ -277,6 +281,7 @@ impl<'p, 'm> Tree<'p, 'm> {
         self.ranks.highs = 0;
         self.ranks.ranked = 0;
         self.ranks.negative = 0;
+        self.places.clear();
         self.base = 0;
         for i in 0..to {
             let mut frame = self.frame(i);
@@ -307,6 +312,14 @@ impl<'p, 'm> Tree<'p, 'm> {
                 frame.tried += 1;
                 frame.tried <= 3
             }
+            Kind::Place => {
+                let Some(pair) = self.pick_place(frame) else {
+                    return false;
+                };
+                frame.positive &= !(1 << pair);
+                (frame.y, frame.tried) = (pair, 1);
+                true
+            }
             Kind::Top | Kind::Low | Kind::High => {
                 let Some((x, negative)) = self.pick(frame) else {
                     return false;
@@ -320,6 +333,21 @@ impl<'p, 'm> Tree<'p, 'm> {
                 true
             }
         }
+    }
+
+    /// One of the remaining pairs of places.
+    fn pick_place(&mut self, frame: &Frame) -> Option<u8> {
+        if let Some(orders) = &self.orders {
+            if let Some(pair) = self.places.of_orders(orders, frame) {
+                return Some(pair);
+            }
+        }
+        let nth = match &mut self.random {
+            Some(random) => random.below(frame.positive.count_ones().max(1)) as usize,
+            None => 0,
+        };
+        // A pair is below 64.
+        Sensors(frame.positive).nth(nth).map(|pair| pair as u8)
     }
 
     /// The remaining candidate for a rank that leaves the others most room, or any.
@@ -363,12 +391,16 @@ impl<'p, 'm> Tree<'p, 'm> {
         if matches!(frame.kind, Kind::Top | Kind::Low | Kind::High) {
             self.ranks.pop(frame.kind);
         }
+        if frame.kind == Kind::Place {
+            self.places.pop();
+        }
     }
 
     /// Demands what the frame's present alternative says.
     fn apply(&mut self, frame: &Frame) -> Result<(), Contradiction> {
         let x = usize::from(frame.x);
         match frame.kind {
+            Kind::Place => self.place(frame),
             Kind::Order => self.net.demand(x, usize::from(frame.y), -self.needs.interval),
             Kind::Value => {
                 let (low, high) = (frame.positive as i32, frame.negative as i32);
@@ -383,6 +415,7 @@ impl<'p, 'm> Tree<'p, 'm> {
             Kind::Top | Kind::Low | Kind::High => {
                 self.ranks.push(frame.kind, frame.x, frame.y == 1);
                 if frame.kind == Kind::Top {
+                    self.places.begin(self.needs, x);
                     self.sequence = sequence(self.needs, x);
                     let sorting = Sorting::new(self.needs, x);
                     for (x, y) in sorting.pairs() {
@@ -408,6 +441,9 @@ impl<'p, 'm> Tree<'p, 'm> {
         if self.ranks.highs == 0 {
             let mut frame = Frame::new(Kind::Top);
             frame.positive = symmetry::representatives(self.needs);
+            return frame;
+        }
+        if let Some(frame) = self.place_choice() {
             return frame;
         }
         if let Some(frame) = self.order_choice() {

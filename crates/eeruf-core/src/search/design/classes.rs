@@ -38,7 +38,7 @@
 
 use super::MAX_SENSORS;
 use super::bounds;
-use super::problem::Needs;
+use super::problem::{Needs, common_divisor};
 use super::random::Random;
 use super::symmetry;
 
@@ -314,12 +314,4 @@ pub(crate) struct Orders {
     pub(crate) b: [u8; MAX_SENSORS],
     /// The sensor with the largest `|d|`, which is positive, should be one of these.
     pub(crate) tops: u64,
-}
-
-fn common_divisor(a: i32, b: i32) -> i32 {
-    let (mut a, mut b) = (a, b);
-    while b > 0 {
-        (a, b) = (b, a % b);
-    }
-    a
 }

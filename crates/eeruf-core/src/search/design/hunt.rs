@@ -1,5 +1,6 @@
 //! One question after another over the same memory: decide a problem, and find where "no" turns into "yes" along one of its numbers.
 
+use super::bounds;
 use super::classes::Classes;
 use super::control::{Control, Flow, POLL, Progress};
 use super::problem::Needs;
@@ -277,7 +278,12 @@ impl<'h, C: Control> Hunt<'h, C> {
             return Outcome::Spent;
         }
         let asked = question.at(axis, ease);
-        let outcome = self.decide(&asked, budget, border.guide.then_some(border.firing), thorough);
+        // Along the period the border already begins at the bound.
+        let outcome = if axis != Axis::Period && bounds::largest(&asked.needs).period() as i32 > asked.period {
+            Outcome::Exhausted
+        } else {
+            self.decide(&asked, budget, border.guide.then_some(border.firing), thorough)
+        };
         match &outcome {
             Outcome::Found(firing) => {
                 border.firing = *firing;

@@ -10,8 +10,9 @@ use super::packing::Intervals;
 use super::problem::Sensors;
 use super::tree::Tree;
 
-/// Rounds after each choice; more would be sound but, in the rare case of slow convergence, wasteful.
-const ROUNDS: usize = 8;
+/// Rounds after each choice. Almost always a few are enough. In fine ticks conclusions can go round in circles and gain a tick each time:
+/// then it is far cheaper to go on here than to let the search try value by value.
+const ROUNDS: usize = 400;
 
 impl Tree<'_, '_> {
     /// Draws conclusions from all choices so far.

@@ -1,4 +1,6 @@
 //! What the sensors need, in ticks, and the check that the numbers make sense.
+//!
+//! Indices: `check` compares every row and every member of a row with the number of sensors before it looks there.
 
 use core::fmt;
 

@@ -3,6 +3,9 @@
 //! Four arguments, repeated until nothing is new: an order that has become impossible leaves the other one; ranked neighbours are D apart;
 //! K values `|d|` must fit ([`packing`](super::packing)); and where the difference `d_y - d_x` is forced for several x, these x are D apart
 //! among themselves, so y is that far behind the last of them.
+//!
+//! Indices: sensors are below `needs.sensors` and so below `MAX_SENSORS`; a chain holds each sensor at most once, a set at most the conflicting
+//! ones.
 
 use super::MAX_SENSORS;
 use super::network::Contradiction;

@@ -21,6 +21,9 @@
 //! Robot Obstacle Avoidance*, IEEE Transactions on Robotics and Automation 11(1), February 1995, pp. 132-138.
 #![no_std]
 
+#[cfg(feature = "std")]
+extern crate std;
+
 mod adaptation;
 mod conditions;
 mod emit;

@@ -225,6 +225,43 @@ fn the_same_question_gets_the_same_answer() {
     assert_eq!(answers[0], answers[1]);
 }
 
+#[cfg(feature = "std")]
+#[test]
+fn one_two_and_three_threads_come_to_the_answer_of_none() {
+    use eeruf_core::search::design::shortest_on_threads;
+    for (sensors, layout, window, scale) in
+        [(8, "ring", 30, 1), (12, "line", 45, 1), (12, "ring", 45, 10), (16, "line", 60, 1)]
+    {
+        let rows = conflicts(sensors, 4, layout);
+        let problem = Problem { sensors, window: window * scale, ..paper_12(&rows, scale) };
+        for budget in [0, 100, 1000, 7777, u64::MAX] {
+            let mut memory = vec![0; memory_words(sensors)];
+            let alone = shortest(&problem, budget, &mut memory, &mut ()).unwrap();
+            for threads in 1..=3 {
+                assert_eq!(shortest_on_threads(&problem, budget, threads, &mut ()), Ok(alone), "{threads} threads");
+            }
+        }
+    }
+}
+
+#[cfg(feature = "std")]
+#[test]
+fn threads_stop_when_the_control_says_so() {
+    use eeruf_core::search::design::shortest_on_threads;
+    let rows = conflicts(24, 5, "ring");
+    let problem = Problem { sensors: 24, ..paper_12(&rows, 1) };
+    let mut polls = 0;
+    let mut control = |progress: &Progress| {
+        assert!(progress.bound <= progress.best || progress.best == 0);
+        polls += 1;
+        if polls < 5 { Flow::Continue } else { Flow::Stop }
+    };
+    let found = shortest_on_threads(&problem, u64::MAX, 2, &mut control).unwrap();
+    assert_eq!(polls, 5);
+    assert!(matches!(found.reason, Reason::BudgetSpent { bound } if bound == found.bound));
+    assert_serves(&problem, found.period, &found.firing);
+}
+
 #[test]
 fn a_small_budget_leaves_a_schedule_and_an_honest_bound() {
     let rows = conflicts(24, 4, "ring");

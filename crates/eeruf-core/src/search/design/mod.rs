@@ -14,6 +14,8 @@
 //! is exact. Descents of a few hundred nodes from a fixed seed find schedules, the full search proves that there are none; the answer depends
 //! on the problem and the budget alone.
 //!
+//! With the feature `std`, `shortest_on_threads` comes to the same answer on several threads.
+//!
 //! All memory is lent by the caller, see [`memory_words`]; besides that a search needs less than 12 KiB of stack.
 //!
 //! ```
@@ -53,6 +55,8 @@ mod reason;
 mod schedule;
 mod shortest;
 mod symmetry;
+#[cfg(feature = "std")]
+mod threads;
 mod tree;
 
 pub use bounds::Bound;
@@ -64,6 +68,8 @@ use crate::schedule::MAX_SENSORS;
 pub use reason::{InTime, Reason};
 pub use schedule::Firing;
 pub use shortest::{Answer, Decision, Effect, Relaxations, Shortest, decide, relaxations, shortest};
+#[cfg(feature = "std")]
+pub use threads::shortest_on_threads;
 
 /// The words of memory that every search over `sensors` sensors needs: 52 KiB for 12 sensors, 4.4 MiB for 64.
 ///

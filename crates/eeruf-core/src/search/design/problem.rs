@@ -182,7 +182,7 @@ pub(crate) fn one_by_one(sensors: usize, separation: u32, interval: u32, window:
 }
 
 /// A checked [`Problem`] with signed times, of which sums of a few cannot overflow.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Needs {
     pub(crate) sensors: usize,
     pub(crate) conflicts: [u64; MAX_SENSORS],

@@ -183,6 +183,38 @@ fn the_half_ring_of_twelve_runs_at_65_ms_and_also_in_microseconds() {
 }
 
 #[test]
+fn larger_neighbourhoods_are_proven_within_few_nodes() {
+    for (sensors, neighbours, layout, separation, window, period) in [
+        (8, 6, "line", 2, 15, 91),
+        (12, 6, "line", 2, 15, 93),
+        (12, 6, "ring", 2, 15, 96),
+        (16, 8, "line", 2, 15, 122),
+        (16, 8, "ring", 2, 60, 128),
+        (15, 5, "ring", 1, 30, 79),
+        (10, 5, "blocks", 1, 15, 76),
+    ] {
+        let rows = conflicts(sensors, neighbours, layout);
+        let problem = Problem { sensors, conflicts: &rows, separation, interval: 15, window, stale_echo: false };
+        let mut memory = vec![0; memory_words(sensors)];
+        let found = shortest(&problem, 40_000, &mut memory, &mut ()).unwrap();
+        assert_eq!((found.period, found.bound), (period, period), "{problem:?}");
+        assert_serves(&problem, found.period, &found.firing);
+    }
+}
+
+#[test]
+fn a_tick_of_a_microsecond_needs_little_more_nodes_than_one_of_a_millisecond() {
+    let rows = conflicts(8, 4, "ring");
+    let mut memory = vec![0; memory_words(8)];
+    for scale in [1, 100, 1000] {
+        let problem = Problem { sensors: 8, window: 30 * scale, ..paper_12(&rows, scale) };
+        let found = shortest(&problem, 20_000, &mut memory, &mut ()).unwrap();
+        assert_eq!((found.period, found.bound), (65 * scale, 65 * scale));
+        assert_serves(&problem, found.period, &found.firing);
+    }
+}
+
+#[test]
 fn the_same_question_gets_the_same_answer() {
     let rows = conflicts(12, 4, "ring");
     let problem = paper_12(&rows, 1);
@@ -191,6 +223,43 @@ fn the_same_question_gets_the_same_answer() {
         .map(|&fill| shortest(&problem, u64::MAX, &mut vec![fill; memory_words(12) + fill as usize], &mut ()).unwrap())
         .collect();
     assert_eq!(answers[0], answers[1]);
+}
+
+#[cfg(feature = "std")]
+#[test]
+fn one_two_and_three_threads_come_to_the_answer_of_none() {
+    use eeruf_core::search::design::shortest_on_threads;
+    for (sensors, layout, window, scale) in
+        [(8, "ring", 30, 1), (12, "line", 45, 1), (12, "ring", 45, 10), (16, "line", 60, 1)]
+    {
+        let rows = conflicts(sensors, 4, layout);
+        let problem = Problem { sensors, window: window * scale, ..paper_12(&rows, scale) };
+        for budget in [0, 100, 1000, 7777, u64::MAX] {
+            let mut memory = vec![0; memory_words(sensors)];
+            let alone = shortest(&problem, budget, &mut memory, &mut ()).unwrap();
+            for threads in 1..=3 {
+                assert_eq!(shortest_on_threads(&problem, budget, threads, &mut ()), Ok(alone), "{threads} threads");
+            }
+        }
+    }
+}
+
+#[cfg(feature = "std")]
+#[test]
+fn threads_stop_when_the_control_says_so() {
+    use eeruf_core::search::design::shortest_on_threads;
+    let rows = conflicts(24, 5, "ring");
+    let problem = Problem { sensors: 24, ..paper_12(&rows, 1) };
+    let mut polls = 0;
+    let mut control = |progress: &Progress| {
+        assert!(progress.bound <= progress.best || progress.best == 0);
+        polls += 1;
+        if polls < 5 { Flow::Continue } else { Flow::Stop }
+    };
+    let found = shortest_on_threads(&problem, u64::MAX, 2, &mut control).unwrap();
+    assert_eq!(polls, 5);
+    assert!(matches!(found.reason, Reason::BudgetSpent { bound } if bound == found.bound));
+    assert_serves(&problem, found.period, &found.firing);
 }
 
 #[test]
@@ -243,7 +312,15 @@ fn the_reason_names_what_to_relax() {
 
     let narrow = paper_12(&rows, 1);
     let found = shortest(&narrow, u64::MAX, &mut memory, &mut ()).unwrap();
-    assert!(matches!(found.reason, Reason::Exhausted { period: 64, .. }));
+    assert!(matches!(found.reason, Reason::Bound(Bound::Classes { clique: 4, sensors: 12, period: 65, .. })));
+    assert_eq!(
+        found.reason.to_string(),
+        "interval and separation together: 4 sensors that are all neighbours and fire 15 ticks apart leave too little time to tell 12 refire \
+         times 2 ticks apart, which takes 65 ticks; a shorter interval, a smaller separation or fewer neighbours would help"
+    );
+    let middling = Problem { window: 45, ..narrow };
+    let searched = shortest(&middling, u64::MAX, &mut memory, &mut ()).unwrap();
+    assert!(matches!(searched.reason, Reason::Exhausted { period: 69, .. }));
     let relaxed = relaxations(&narrow, 65, 1_000_000, &mut memory, &mut ()).unwrap();
     assert_eq!((relaxed.interval, relaxed.window), (Effect::Shorter, Effect::None));
 }

@@ -13,6 +13,8 @@
 //!   do not conflict. Each sensor keeps at least `I + own` open in two periods: `2 alpha T_p >= K (I + own)`. Here alpha is the size of
 //!   the largest set without conflicts, or a number of cliques that cover all sensors, which is no smaller.
 //! - **Classes.** How few `|d|` fit where clique and interval leave little to spare: [`classes`](super::classes).
+//!
+//! Indices: sensors are below `needs.sensors` and so below `MAX_SENSORS`, the length of what is indexed by sensor.
 
 use super::classes::Classes;
 use super::problem::{Needs, Sensors};

@@ -64,8 +64,11 @@ pub(crate) struct Classes {
 }
 
 impl Classes {
-    /// What the conflicts allow to count, or `None` if no two sensors conflict.
+    /// What the conflicts allow to count, or `None` if no two sensors conflict or the window is shorter than the interval.
     pub(crate) fn new(needs: &Needs) -> Option<Self> {
+        if needs.window < needs.interval {
+            return None;
+        }
         let first = needs.conflicts[0];
         // Sensors 1 to n - 1 conflict with sensor 0, and more only round the end of a ring.
         let n = (first >> 1).trailing_ones() as usize + 1;
@@ -117,7 +120,7 @@ impl Classes {
     pub(crate) fn excludes(&self, needs: &Needs, period: i32) -> bool {
         let n = self.clique as i32;
         let spare = period - n * needs.interval;
-        if needs.window < needs.interval || 2 * spare >= needs.interval {
+        if 2 * spare >= needs.interval {
             return false;
         }
         if spare < 0 {
@@ -314,4 +317,67 @@ pub(crate) struct Orders {
     pub(crate) b: [u8; MAX_SENSORS],
     /// The sensor with the largest `|d|`, which is positive, should be one of these.
     pub(crate) tops: u64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Problem;
+    use super::super::place::Places;
+    use super::super::tree::{Outcome, Tree};
+    use super::*;
+
+    fn rows(sensors: usize, n: usize, layout: &str) -> [u64; MAX_SENSORS] {
+        let mut rows = [0; MAX_SENSORS];
+        for x in 0..sensors {
+            for y in 0..sensors {
+                let apart = x.abs_diff(y);
+                let conflict = match layout {
+                    "line" => apart < n,
+                    "ring" => apart.min(sensors - apart) < n,
+                    _ => x / n == y / n,
+                };
+                rows[x] |= u64::from(x != y && conflict) << y;
+            }
+        }
+        rows
+    }
+
+    /// Goes through the tree without placing a clique first, which rests on the same argument.
+    fn search(needs: &Needs, period: i32, budget: u64, memory: &mut [i32]) -> Outcome {
+        let mut tree = Tree::new(needs, period, memory);
+        tree.places = Places::none();
+        tree.restart(None, None);
+        tree.run(budget)
+    }
+
+    #[test]
+    fn no_schedule_is_found_below_the_bound_of_classes() {
+        let mut memory = [0; super::super::memory_words(10)];
+        let (mut proven, mut met) = (0, 0);
+        for layout in ["line", "ring", "blocks"] {
+            for (sensors, n) in
+                [(4, 2), (5, 2), (6, 2), (5, 3), (6, 3), (7, 3), (8, 3), (9, 3), (8, 4), (9, 4), (10, 4), (5, 5)]
+            {
+                for (separation, interval, window) in
+                    [(1, 7, 7), (1, 15, 30), (2, 8, 20), (2, 15, 15), (3, 16, 32), (2, 15, 45)]
+                {
+                    for stale_echo in [false, true] {
+                        let rows = rows(sensors, n, layout);
+                        let conflicts = &rows[..sensors];
+                        let problem = Problem { sensors, conflicts, separation, interval, window, stale_echo };
+                        let needs = problem.needs().unwrap();
+                        let bound = Classes::new(&needs).unwrap().period(&needs);
+                        match search(&needs, bound - 1, 4_000, &mut memory) {
+                            Outcome::Found(_) => panic!("{layout} {n}: {problem:?} below {bound}"),
+                            Outcome::Exhausted => proven += 1,
+                            Outcome::Spent => {}
+                        }
+                        let outcome = search(&needs, bound, 1_000, &mut memory);
+                        met += i32::from(matches!(outcome, Outcome::Found(_)));
+                    }
+                }
+            }
+        }
+        assert!(proven > 350 && met > 200, "{proven} proven, {met} met");
+    }
 }

@@ -1,10 +1,13 @@
 //! One question after another over the same memory: decide a problem, and find where "no" turns into "yes" along one of its numbers.
 
+use super::bounds;
 use super::classes::Classes;
 use super::control::{Control, Flow, POLL, Progress};
 use super::problem::Needs;
 use super::random::Random;
 use super::schedule::{self, Firing};
+#[cfg(feature = "std")]
+use super::threads::Replay;
 use super::tree::{Outcome, Tree};
 
 /// The number that is varied while all others stay.
@@ -21,10 +24,19 @@ pub(crate) enum Axis {
 }
 
 /// A problem at a period.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Question {
     pub(crate) needs: Needs,
     pub(crate) period: i32,
+}
+
+/// A question as [`Hunt::decide`] gets it; the answer, and the nodes that it takes, depend on nothing else while the budget of the hunt lasts.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Ask {
+    pub(crate) question: Question,
+    pub(crate) budget: u64,
+    pub(crate) guide: Option<Firing>,
+    pub(crate) thorough: bool,
 }
 
 impl Question {
@@ -79,8 +91,8 @@ pub(crate) struct Meter<'h, C> {
     pub(crate) bound: u32,
     pub(crate) best: u32,
     /// The length of a tick of the questions asked, in the caller's ticks.
-    ticks: u32,
-    stopped: bool,
+    pub(crate) ticks: u32,
+    pub(crate) stopped: bool,
 }
 
 impl<C: Control> Meter<'_, C> {
@@ -114,24 +126,31 @@ impl<C: Control> Meter<'_, C> {
 pub(crate) struct Hunt<'h, C> {
     memory: &'h mut [i32],
     pub(crate) meter: Meter<'h, C>,
+    /// Answers found on other threads, instead of memory to search in.
+    #[cfg(feature = "std")]
+    pub(crate) replay: Option<&'h mut Replay>,
 }
 
 impl<'h, C: Control> Hunt<'h, C> {
     pub(crate) fn new(memory: &'h mut [i32], control: &'h mut C, limit: u64) -> Self {
-        Self { memory, meter: Meter { control, nodes: 0, limit, bound: 0, best: 0, ticks: 1, stopped: false } }
+        Self {
+            memory,
+            meter: Meter { control, nodes: 0, limit, bound: 0, best: 0, ticks: 1, stopped: false },
+            #[cfg(feature = "std")]
+            replay: None,
+        }
     }
 
     /// Decides a question with about `budget` nodes.
     ///
     /// Most schedules are found by a lucky descent or not for long: a small part of the budget goes to an ordinary search, led by `guide`, and
     /// the rest to descents of few nodes that begin in different ways. For a proof, `thorough`, all goes to the ordinary search.
-    pub(crate) fn decide(
-        &mut self,
-        question: &Question,
-        budget: u64,
-        guide: Option<Firing>,
-        thorough: bool,
-    ) -> Outcome {
+    pub(crate) fn decide(&mut self, ask: &Ask) -> Outcome {
+        #[cfg(feature = "std")]
+        if let Some(replay) = &mut self.replay {
+            return replay.answer(ask, &mut self.meter);
+        }
+        let Ask { question, budget, guide, thorough } = *ask;
         let mut tree = Tree::new(&question.needs, question.period, self.memory);
         let unit = 32 + 6 * question.needs.sensors as u64;
         let full = if thorough { budget } else { unit.max(budget / 8).min(budget) };
@@ -169,7 +188,10 @@ impl<'h, C: Control> Hunt<'h, C> {
         let mut part = 64 * question.needs.sensors as u64;
         loop {
             for (thorough, part) in [(false, part), (true, part.saturating_mul(4))] {
-                let outcome = self.decide(question, part.min(end.saturating_sub(self.meter.nodes)), None, thorough);
+                let outcome = {
+                    let budget = part.min(end.saturating_sub(self.meter.nodes));
+                    self.decide(&Ask { question: *question, budget, guide: None, thorough })
+                };
                 if outcome != Outcome::Spent || self.meter.nodes >= end || !self.meter.may_go_on() {
                     return outcome;
                 }
@@ -277,7 +299,12 @@ impl<'h, C: Control> Hunt<'h, C> {
             return Outcome::Spent;
         }
         let asked = question.at(axis, ease);
-        let outcome = self.decide(&asked, budget, border.guide.then_some(border.firing), thorough);
+        // Along the period the border already begins at the bound.
+        let outcome = if axis != Axis::Period && bounds::largest(&asked.needs).period() as i32 > asked.period {
+            Outcome::Exhausted
+        } else {
+            self.decide(&Ask { question: asked, budget, guide: border.guide.then_some(border.firing), thorough })
+        };
         match &outcome {
             Outcome::Found(firing) => {
                 border.firing = *firing;

@@ -8,10 +8,13 @@
 //! - [`largest_separation`] and [`largest_interval`] turn the question round.
 //! - [`prefer`] picks, among the schedules with the shortest period, the one with most to spare.
 //!
-//! How it works: bounds that follow by counting ([`Bound`]) give the lowest period worth trying. One period is decided by a depth-first
-//! search over firing orders, then ranks of `|d|`; times stay intervals in a matrix of differences, so that a finer tick costs next to
-//! nothing. What is possible at one period is possible at any longer one, so halving is exact. Descents of a few hundred nodes from a fixed
-//! seed find schedules, the full search proves that there are none; the answer depends on the problem and the budget alone.
+//! How it works: bounds that follow by counting ([`Bound`]) give the lowest period worth trying, and for most lines, rings and blocks they
+//! are met. One period is decided by a depth-first search over firing orders, then ranks of `|d|`; times stay intervals in a matrix of
+//! differences, and fine ticks begin with what coarse ones have found. What is possible at one period is possible at any longer one, so halving
+//! is exact. Descents of a few hundred nodes from a fixed seed find schedules, the full search proves that there are none; the answer depends
+//! on the problem and the budget alone.
+//!
+//! With the feature `std`, `shortest_on_threads` comes to the same answer on several threads.
 //!
 //! All memory is lent by the caller, see [`memory_words`]; besides that a search needs less than 12 KiB of stack.
 //!
@@ -35,6 +38,7 @@
 //! ```
 
 mod bounds;
+mod choose;
 mod classes;
 mod control;
 mod frame;
@@ -46,21 +50,26 @@ mod place;
 mod problem;
 mod propagate;
 mod random;
+mod ranks;
 mod reason;
 mod schedule;
 mod shortest;
 mod symmetry;
+#[cfg(feature = "std")]
+mod threads;
 mod tree;
 
 pub use bounds::Bound;
 pub use control::{Control, Flow, POLL, Progress};
 pub use largest::{Choice, Largest, Preferred, largest_interval, largest_separation, prefer};
 pub use problem::{MAX_TICKS, Problem, ProblemError};
-
-use crate::schedule::MAX_SENSORS;
 pub use reason::{InTime, Reason};
 pub use schedule::Firing;
 pub use shortest::{Answer, Decision, Effect, Relaxations, Shortest, decide, relaxations, shortest};
+#[cfg(feature = "std")]
+pub use threads::shortest_on_threads;
+
+use crate::schedule::MAX_SENSORS;
 
 /// The words of memory that every search over `sensors` sensors needs: 52 KiB for 12 sensors, 4.4 MiB for 64.
 ///

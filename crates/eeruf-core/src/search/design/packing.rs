@@ -2,6 +2,8 @@
 //!
 //! Values in `[s, e]` need `s + D (c - 1) <= e` if there are c of them (Hall's condition). Where they fill `[s, e]` so that no further value
 //! fits, every other value that may not lie below s must lie at least D behind the last of them, and likewise from the other side.
+//!
+//! Indices: `count` is the number of sensors, at most `MAX_SENSORS`; the numbers that are sorted are those below it.
 
 use super::MAX_SENSORS;
 use super::network::Contradiction;

@@ -31,18 +31,22 @@ pub(super) struct Places {
 }
 
 impl Places {
-    pub(super) fn new(needs: &Needs, period: i32) -> Self {
-        let mut places = Self {
+    /// Nothing to place.
+    pub(super) const fn none() -> Self {
+        Self {
             count: 0,
             spare: 0,
             ring: false,
             sensors: [0; MAX_PLACES],
             placed: 0,
             at: [(0, 0, 0); MAX_PLACES],
-            room: [i32::MAX; MAX_PLACES],
-        };
-        let Some(classes) = Classes::new(needs).filter(|classes| needs.window >= needs.interval && classes.adjacent())
-        else {
+            room: [0; MAX_PLACES],
+        }
+    }
+
+    pub(super) fn new(needs: &Needs, period: i32) -> Self {
+        let mut places = Self::none();
+        let Some(classes) = Classes::new(needs).filter(Classes::adjacent) else {
             return places;
         };
         let n = classes.clique() as usize;

@@ -1,4 +1,6 @@
 //! What the sensors need, in ticks, and the check that the numbers make sense.
+//!
+//! Indices: `check` compares every row and every member of a row with the number of sensors before it looks there.
 
 use core::fmt;
 
@@ -180,7 +182,7 @@ pub(crate) fn one_by_one(sensors: usize, separation: u32, interval: u32, window:
 }
 
 /// A checked [`Problem`] with signed times, of which sums of a few cannot overflow.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Needs {
     pub(crate) sensors: usize,
     pub(crate) conflicts: [u64; MAX_SENSORS],

@@ -3,6 +3,9 @@
 //! Four arguments, repeated until nothing is new: an order that has become impossible leaves the other one; ranked neighbours are D apart;
 //! K values `|d|` must fit ([`packing`](super::packing)); and where the difference `d_y - d_x` is forced for several x, these x are D apart
 //! among themselves, so y is that far behind the last of them.
+//!
+//! Indices: sensors are below `needs.sensors` and so below `MAX_SENSORS`; a chain holds each sensor at most once, a set at most the conflicting
+//! ones.
 
 use super::MAX_SENSORS;
 use super::network::Contradiction;
@@ -10,8 +13,9 @@ use super::packing::Intervals;
 use super::problem::Sensors;
 use super::tree::Tree;
 
-/// Rounds after each choice; more would be sound but, in the rare case of slow convergence, wasteful.
-const ROUNDS: usize = 8;
+/// Rounds after each choice. Almost always a few are enough. In fine ticks conclusions can go round in circles and gain a tick each time:
+/// then it is far cheaper to go on here than to let the search try value by value.
+const ROUNDS: usize = 400;
 
 impl Tree<'_, '_> {
     /// Draws conclusions from all choices so far.

@@ -1,4 +1,6 @@
 //! Firing times, and what they need or leave: plain arithmetic on times, without any search.
+//!
+//! Indices: sensors are below `needs.sensors` and so below `MAX_SENSORS`, the length of what is indexed by sensor.
 
 use super::MAX_SENSORS;
 use super::problem::{Needs, Sensors};

@@ -3,6 +3,8 @@
 //! Of all schedules that are the same but for a renaming, the search needs only one. It picks the sensor with the largest `|d|` from
 //! [`representatives`], and among the renamings that leave that sensor alone it sorts the interchangeable ones by their time in phase a
 //! ([`Sorting`]). Exchanging the phases or reversing time negates every d, so that the largest may be taken as positive.
+//!
+//! Indices: sensors are below `needs.sensors` and so below `MAX_SENSORS`; renamings map them to such.
 
 use super::MAX_SENSORS;
 use super::problem::{Needs, Sensors};

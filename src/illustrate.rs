@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use eeruf_sim::{Cause, HeardPath, Method, Point, Readings, Summary, World};
+use eeruf_sim::{Cause, HeardPath, Method, Point, Readings, SensorId, Summary, World};
 
 use crate::draw::{self, DrawnPath, Panel};
 use crate::input::InputError;
@@ -73,7 +73,7 @@ fn panel(world: &World, readings: &Readings) -> Panel {
 /// Where a path ran when it first fooled its receiver; where nothing moves, always.
 fn corners(world: &World, readings: &Readings, index: u32, path: &HeardPath) -> Option<Vec<Point>> {
     let first = (0..readings.len()).find(|&reading| readings.path[reading] == index)?;
-    let place = |id: eeruf_sim::SensorId, time_s: f64| {
+    let place = |id: SensorId, time_s: f64| {
         let sensor = world.sensors(usize::from(id.robot), time_s).nth(usize::from(id.sensor))?;
         Some(Point::from(sensor.translation.vector))
     };
@@ -82,21 +82,24 @@ fn corners(world: &World, readings: &Readings, index: u32, path: &HeardPath) -> 
     world.scene().polyline(place(path.emitter, sent_s)?, place(path.receiver, heard_s)?, &path.bounces)
 }
 
-/// The robot and sensor that were fooled most under one method and have readings believed under the other. Which weighs as
-/// much: of a sensor that believes nothing there is little to see.
+/// The robot and sensor that were fooled most and farthest under one method, and have readings believed under the other: of
+/// a sensor that believes nothing there is little to see.
 fn most_helped(before: &Readings, after: &Readings) -> (usize, u8) {
-    let mut counts = BTreeMap::new();
-    for entry in before.attribution(TOLERANCE_US) {
-        if matches!(entry.cause, Cause::Crosstalk | Cause::Stale | Cause::External) {
-            counts.entry(entry.receiver).or_insert((0, 1)).0 += entry.accepted;
+    let mut scores = BTreeMap::new();
+    for reading in (0..before.len()).filter(|&reading| before.is_accepted(reading)) {
+        let off_us = (before.t_echo_us[reading] - before.reference_us[reading]).abs();
+        let foreign = matches!(before.cause[reading], Cause::Crosstalk | Cause::Stale | Cause::External);
+        if foreign && off_us > TOLERANCE_US {
+            scores.entry(before.id(reading)).or_insert((0.0, 0.0)).0 += off_us;
         }
     }
     for reading in (0..after.len()).filter(|&reading| after.is_accepted(reading)) {
-        if let Some(count) = counts.get_mut(&after.id(reading)) {
-            count.1 += 1;
+        if let Some(score) = scores.get_mut(&after.id(reading)) {
+            score.1 += 1.0;
         }
     }
-    let most = counts.into_iter().max_by_key(|&(id, (fooled, believed))| (fooled * believed, std::cmp::Reverse(id)));
+    let score = |&(_, (off, believed)): &(SensorId, (f64, f64))| off * believed;
+    let most = scores.into_iter().max_by(|a, b| score(a).total_cmp(&score(b)));
     most.map_or((0, 0), |(id, _)| (usize::from(id.robot), id.sensor))
 }
 

@@ -46,8 +46,7 @@ pub(crate) fn scene_with_paths(world: &World, panels: &[Panel]) -> Picture {
         picture.place(view.panel(world, panel, most), (left, TOP));
     }
     let bottom = TOP + view.height;
-    // Colours, for the sensors of the first robot.
-    let sensors = world.robots().first().map_or(0, |robot| robot.sensors.len());
+    let sensors = world.robots().iter().map(|robot| robot.sensors.len()).max().unwrap_or(0);
     picture.text("sound sent by sensor", (MARGIN, bottom + 24.0), CAPTION);
     for sensor in 0..sensors.min(24) {
         let at = (MARGIN + 182.0 + 24.0 * sensor as f64, bottom + 24.0);
@@ -57,7 +56,7 @@ pub(crate) fn scene_with_paths(world: &World, panels: &[Panel]) -> Picture {
     picture.text("wrong readings believed", (MARGIN, bottom + 56.0), CAPTION);
     let mut x = MARGIN + 182.0;
     for times in [most.div_ceil(20), most.div_ceil(4), most].into_iter().filter(|&times| times > 0) {
-        picture.line((x, bottom + 56.0), (x + 34.0, bottom + 56.0), width_of(times, most), INK);
+        picture.line((x, bottom + 56.0), (x + 34.0, bottom + 56.0), view.width_of(times, most), INK);
         picture.text(times.to_string(), (x + 40.0, bottom + 56.0), CAPTION);
         x += 100.0;
     }
@@ -71,10 +70,6 @@ pub(crate) fn scene_with_paths(world: &World, panels: &[Panel]) -> Picture {
     let length = format!("{} m", tick_label(step, step));
     picture.text_in(length, (end - step * view.scale - 10.0, y), CAPTION, HPos::Right, INK);
     picture
-}
-
-fn width_of(times: usize, most: usize) -> f64 {
-    1.0 + 4.0 * (times as f64 / most.max(1) as f64).sqrt()
 }
 
 /// The part of the scene that is shown, and at which scale.
@@ -111,6 +106,12 @@ impl View {
         Self { low, width_m: width / scale, scale, width, height: height_m * scale }
     }
 
+    /// How wide a path is drawn that spoilt so many readings.
+    fn width_of(&self, times: usize, most: usize) -> f64 {
+        let widest = (0.02 * self.scale).clamp(3.0, 5.0);
+        1.0 + (widest - 1.0) * (times as f64 / most.max(1) as f64).sqrt()
+    }
+
     fn px(&self, point: Point) -> At {
         ((point.x - self.low.x) * self.scale, self.height - (point.y - self.low.y) * self.scale)
     }
@@ -119,6 +120,7 @@ impl View {
         let mut picture = Picture::new(self.width, self.height);
         picture.rect([(0.0, 0.0), (self.width, self.height)], SILENT.mix(0.35));
         for robot in 0..world.robots().len() {
+            self.course(&mut picture, world, robot);
             self.beams(&mut picture, world, robot);
         }
         for wall in world.scene().walls() {
@@ -139,7 +141,7 @@ impl View {
         // The commonest last, on top.
         for path in panel.paths.iter().rev() {
             let colour: RGBAColor = sensor_colour(path.emitter);
-            let width = width_of(path.times, most);
+            let width = self.width_of(path.times, most);
             let corners: Vec<At> = path.corners.iter().map(|&corner| self.px(corner)).collect();
             for leg in corners.windows(2) {
                 if let Some((from, to)) = self.clipped(leg[0], leg[1]) {
@@ -149,13 +151,28 @@ impl View {
             if let [.., from, to] = corners[..]
                 && self.holds(to)
             {
-                picture.arrow_head(from, to, 9.0 + 1.5 * width, colour);
+                let leg = (to.0 - from.0).hypot(to.1 - from.1);
+                picture.arrow_head(from, to, (5.0 + 2.3 * width).min(0.4 * leg), colour);
             }
         }
         for robot in 0..world.robots().len() {
             self.sensors(&mut picture, world, robot);
         }
         picture
+    }
+
+    /// Where a moving robot goes.
+    fn course(&self, picture: &mut Picture, world: &World, robot: usize) {
+        const STEP_S: f64 = 0.25;
+        const STEPS: u32 = 400;
+        let Some(body) = world.robots().get(robot).filter(|body| !body.motion.is_still()) else { return };
+        let at = |step: u32| self.px(place(&body.motion.at(&body.pose, STEP_S * f64::from(step)).pose));
+        // Every other step: dashes, longer for a faster robot.
+        for step in (0..STEPS).step_by(2) {
+            if let Some((from, to)) = self.clipped(at(step), at(step + 1)) {
+                picture.line(from, to, 2.0, INK.mix(0.3));
+            }
+        }
     }
 
     fn beams(&self, picture: &mut Picture, world: &World, robot: usize) {
@@ -176,15 +193,20 @@ impl View {
     }
 
     fn sensors(&self, picture: &mut Picture, world: &World, robot: usize) {
+        let mut numbers: Vec<At> = Vec::new();
         for (k, sensor) in world.sensors(robot, 0.0).enumerate() {
             let at = self.px(place(&sensor));
             if !self.holds(at) {
                 continue;
             }
-            picture.dot(at, 4.0, sensor_colour(k));
-            // Numbers stand inside the ring, where no sound goes.
+            picture.dot(at, (0.02 * self.scale).clamp(2.0, 4.0), sensor_colour(k));
+            // Numbers stand inside the ring, where no sound goes, if there is room for them.
             let inside = self.px(sensor * Point::new(-14.0 / self.scale, 0.0));
-            picture.text_in((k + 1).to_string(), inside, SMALL, HPos::Center, INK);
+            let apart = |&(x, y): &At| (inside.0 - x).hypot(inside.1 - y) > 12.0;
+            if 0.25 * self.scale > 30.0 && numbers.iter().all(apart) {
+                picture.text_in((k + 1).to_string(), inside, SMALL, HPos::Center, INK);
+                numbers.push(inside);
+            }
         }
     }
 

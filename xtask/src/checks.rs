@@ -42,6 +42,10 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
         });
     }
     steps.step("tests and doctests", || run_cargo(&["test", "--workspace", "--locked"]));
+    steps.step("tests of the core's conversions", || {
+        run_cargo(&["test", "--package", "eeruf-core", "--lib", "--locked", "--features", "fugit,serde", "interop"])
+    });
+    steps.step("firmware on emulated boards", crate::firmware::firmware);
     steps.step("documentation", || {
         run(Command::new("cargo")
             .args(["doc", "--workspace", "--no-deps", "--locked"])

@@ -4,6 +4,8 @@
 //! with a loud word on what to install; with `--nothing-skipped`, as in CI, that counts as a failure.
 
 mod checks;
+mod firmware;
+mod listings;
 mod steps;
 mod toolchain;
 
@@ -15,8 +17,13 @@ fn main() -> ExitCode {
     match args[..] {
         ["test"] => checks::run_all(false),
         ["test", "--nothing-skipped"] => checks::run_all(true),
+        ["firmware"] => {
+            let mut steps = steps::Steps::default();
+            steps.step("firmware on emulated boards", firmware::firmware);
+            steps.finish(true)
+        }
         _ => {
-            eprintln!("usage: cargo xtask test [--nothing-skipped]");
+            eprintln!("usage: cargo xtask test [--nothing-skipped] | firmware");
             ExitCode::from(2)
         }
     }

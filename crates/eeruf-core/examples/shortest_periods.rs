@@ -1,5 +1,5 @@
 //! Prints the table of shortest periods with what each cost: `cargo run --release --example shortest_periods [ticks-per-ms] [separation-ms]
-//! [sensors,..] [neighbours] [layout,..]`; without arguments the table of the theory, 8 to 24 sensors in a line and in a ring.
+//! [sensors,..] [neighbours] [layout,..] [budget] [window-ms,..]`; without arguments the table of the theory, 8 to 24 sensors in a line and in a ring.
 //!
 //! The columns are read by `benches/peers/design_cpsat.py`; keep them in step.
 
@@ -26,13 +26,15 @@ fn main() {
     let ticks = list::<u32>(&argument(0, "1"))[0];
     let separation = list::<u32>(&argument(1, "2"))[0] * ticks;
     let neighbours = list::<usize>(&argument(3, "4"))[0];
+    let budget = list::<u64>(&argument(5, "100000000"))[0];
+    let windows = list::<u32>(&argument(6, "15,30,45,60"));
     println!("layout sensors window period bound nodes milliseconds reason");
     let (mut times, begin) = (Vec::new(), Instant::now());
     for layout in list::<String>(&argument(4, "line,ring")) {
         for sensors in list::<usize>(&argument(2, "8,12,16,24")) {
             let rows = conflicts(sensors, neighbours, &layout);
             let mut memory = vec![0; memory_words(sensors)];
-            for window in [15, 30, 45, 60] {
+            for &window in &windows {
                 let problem = Problem {
                     sensors,
                     conflicts: &rows,
@@ -42,7 +44,7 @@ fn main() {
                     stale_echo: false,
                 };
                 let begin = Instant::now();
-                let found = shortest(&problem, 100_000_000, &mut memory, &mut ()).expect("the table makes sense");
+                let found = shortest(&problem, budget, &mut memory, &mut ()).expect("the table makes sense");
                 let milliseconds = begin.elapsed().as_secs_f64() * 1e3;
                 times.push(milliseconds);
                 println!(

@@ -47,7 +47,7 @@ impl<const K: usize> fmt::Display for RustSource<'_, K> {
         let Self { schedule, requirements } = self;
         let Requirements { t_delta, criterion, min_interval, layout, window, stale_echo } = requirements;
         writeln!(f, "use eeruf_core::{{Criterion, Layout, Micros, Requirements, Schedule, schedule}};\n")?;
-        writeln!(f, "/// {}; {}.", Summary(schedule), Promise(requirements))?;
+        writeln!(f, "// {}; {}.", Summary(schedule), Promise(requirements))?;
         writeln!(f, "pub const RING: Schedule<{}> = schedule! {{", schedule.sensors())?;
         writeln!(f, "    period_us: {},", Grouped(schedule.period()))?;
         if schedule.has_lags() {

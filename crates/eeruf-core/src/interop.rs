@@ -6,7 +6,7 @@ use crate::time::{Instant, Micros};
 #[cfg(feature = "fugit")]
 impl From<fugit::MicrosDurationU32> for Micros {
     fn from(duration: fugit::MicrosDurationU32) -> Self {
-        Self::new(duration.ticks())
+        Self::new(duration.as_ticks())
     }
 }
 
@@ -18,14 +18,14 @@ impl From<Micros> for fugit::MicrosDurationU32 {
 }
 
 #[cfg(feature = "fugit")]
-impl From<fugit::TimerInstantU32<1_000_000>> for Instant {
-    fn from(instant: fugit::TimerInstantU32<1_000_000>) -> Self {
-        Self::from_micros(instant.ticks())
+impl From<fugit::WrappingTimerInstantU32<1_000_000>> for Instant {
+    fn from(instant: fugit::WrappingTimerInstantU32<1_000_000>) -> Self {
+        Self::from_micros(instant.as_ticks())
     }
 }
 
 #[cfg(feature = "fugit")]
-impl From<Instant> for fugit::TimerInstantU32<1_000_000> {
+impl From<Instant> for fugit::WrappingTimerInstantU32<1_000_000> {
     fn from(instant: Instant) -> Self {
         Self::from_ticks(instant.as_micros())
     }
@@ -52,10 +52,10 @@ mod tests {
 
     #[test]
     fn fugits_times_go_there_and_back() {
-        let duration = fugit::MicrosDurationU32::millis(24);
+        let duration = fugit::MicrosDurationU32::from_millis(24);
         assert_eq!(Micros::from(duration), Micros::from_millis(24));
         assert_eq!(fugit::MicrosDurationU32::from(Micros::from_millis(24)), duration);
-        let instant = fugit::TimerInstantU32::<1_000_000>::from_ticks(u32::MAX);
-        assert_eq!(fugit::TimerInstantU32::from(Instant::from(instant)), instant);
+        let instant = fugit::WrappingTimerInstantU32::<1_000_000>::from_ticks(u32::MAX);
+        assert_eq!(fugit::WrappingTimerInstantU32::from(Instant::from(instant)), instant);
     }
 }

@@ -140,22 +140,25 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
                     return Err(ScheduleError::Fire { sensor: x as u8, phase: Phase(phase as u8), t_fire, period });
                 }
                 // Insertion sort by firing time; sensors that fire together keep their order.
+                order[phase][x] = x as u8;
+                times[x] = t_fire;
                 let mut at = x;
                 while at > 0 && times[at - 1].as_micros() > t_fire.as_micros() {
-                    order[phase][at] = order[phase][at - 1];
-                    times[at] = times[at - 1];
+                    order[phase].swap(at, at - 1);
+                    times.swap(at, at - 1);
                     at -= 1;
                 }
-                order[phase][at] = x as u8;
-                times[at] = t_fire;
                 x += 1;
             }
-            let mut at = sensors - 1;
-            after_last[phase] = period.abs_diff(times[at]);
-            while at > 0 {
-                times[at] = times[at].abs_diff(times[at - 1]);
-                at -= 1;
+            let mut last = Micros::ZERO;
+            let mut at = 0;
+            while at < sensors {
+                let t_fire = times[at];
+                times[at] = t_fire.abs_diff(last);
+                last = t_fire;
+                at += 1;
             }
+            after_last[phase] = period.abs_diff(last);
             phase += 1;
         }
         Ok(Self { period, sensors: sensors as u8, t_lag, t_wait, order, gap, after_last })

@@ -16,10 +16,11 @@
 //! ```no_run
 //! # use embedded_hal::{delay::DelayNs, digital::{InputPin, OutputPin}};
 //! # fn sleep_until(_: eeruf_core::Instant) {}
-//! # fn run<T: OutputPin, I: InputPin>(pins: [Pins<T, I>; 12], delay: impl DelayNs, now: fn() -> eeruf_core::Instant)
+//! # use eeruf_hc_sr04::Pins as P;
+//! # fn run<T: OutputPin, I: InputPin>(pins: [P<T, I>; 12], delay: impl DelayNs, now: fn() -> eeruf_core::Instant)
 //! # -> Result<(), eeruf_hc_sr04::SetupError> {
 //! use eeruf_core::{Config, Event, Kind, Micros, Ring, tables::TABLE_I_D};
-//! use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Pins, Settings};
+//! use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
 //!
 //! static EDGES: EdgeQueue<32> = EdgeQueue::new(); // filled by the edge interrupt
 //!
@@ -139,6 +140,8 @@ struct Line {
     pulse: Pulse,
     /// Firings running without a pulse.
     silent: u8,
+    /// Whether this firing had more than one pulse, or one too short.
+    chattered: bool,
     health: Health,
 }
 
@@ -163,7 +166,13 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
         if min_refire < settings.min_retrigger {
             return Err(SetupError::Retrigger { min_refire, min_retrigger: settings.min_retrigger });
         }
-        let line = Line { triggered: Instant::from_micros(0), pulse: Pulse::Idle, silent: 0, health: Health::Well };
+        let line = Line {
+            triggered: Instant::from_micros(0),
+            pulse: Pulse::Idle,
+            silent: 0,
+            chattered: false,
+            health: Health::Well,
+        };
         Ok(Self { ring, pins, delay, lines: [line; K], settings })
     }
 
@@ -191,7 +200,7 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
         }
     }
 
-    /// How a sensor is, as far as its line tells; [`Health::Missing`] for one that the ring does not have.
+    /// How a sensor was at its last complete firing, as far as its line tells; [`Health::Missing`] for one that the ring does not have.
     pub fn health(&self, sensor: u8) -> Health {
         self.lines.get(usize::from(sensor)).map_or(Health::Missing, |line| line.health)
     }
@@ -256,17 +265,14 @@ impl Line {
                 let width = edge.at.since(rose);
                 if width < settings.shortest {
                     self.pulse = Pulse::Awaited;
-                    self.health = Health::Chatters;
+                    self.chattered = true;
                     return None;
                 }
                 self.pulse = Pulse::Over;
-                if !matches!(self.health, Health::Chatters) {
-                    self.health = Health::Well;
-                }
                 (width < settings.longest).then_some(width)
             }
             (Pulse::Over, true) => {
-                self.health = Health::Chatters;
+                self.chattered = true;
                 None
             }
             _ => None,
@@ -278,14 +284,16 @@ impl Line {
         match self.pulse {
             Pulse::Awaited => {
                 self.silent = self.silent.saturating_add(1);
-                if self.silent >= missing_after {
+                if self.chattered {
+                    self.health = Health::Chatters;
+                } else if self.silent >= missing_after {
                     self.health = Health::Missing;
                 }
             }
-            // One firing without a further pulse, and it chatters no more.
-            Pulse::Over if self.health == Health::Chatters => self.health = Health::Well,
-            _ => {}
+            Pulse::Over => self.health = if self.chattered { Health::Chatters } else { Health::Well },
+            Pulse::Idle | Pulse::Rose(_) => {}
         }
+        self.chattered = false;
     }
 }
 

@@ -215,7 +215,7 @@ impl<'w> Ways<'w> {
         while let Some(&number) = self.numbers.get(&key) {
             let known = &self.paths[number as usize];
             if known.emitter == emitter && known.receiver == receiver && *known.bounces == *bounces {
-                // Standing still, two pieces of one scene may share a sequence only if it is one path; doubles are gone.
+                // One emitter has one image in a sequence of walls, so this is the same path, if need be from elsewhere.
                 return number;
             }
             key = key.wrapping_add(1);

@@ -13,7 +13,7 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
 /// The most sensors that can be played.
-pub const MAX_SENSORS: usize = 24;
+pub const MAX_SENSORS: usize = 12;
 
 /// From trigger to the rise of the line.
 const RISE: Micros = Micros::new(450);

@@ -63,7 +63,9 @@ fn main() -> ! {
                 }
             }
         }
-        eeruf_board::set_alarm(ring.next_deadline());
-        eeruf_board::sleep_unless(|| !EDGES.is_empty());
+        let deadline = ring.next_deadline();
+        eeruf_board::set_alarm(deadline);
+        // The alarm may have gone off before we sleep, and then wakes nobody.
+        eeruf_board::sleep_unless(|| !EDGES.is_empty() || eeruf_board::now().has_reached(deadline));
     }
 }

@@ -1,7 +1,7 @@
 //! A test harness for boards: runs named functions, says which one runs, and fails by panic.
 #![no_std]
 
-use eeruf_board::say;
+use eeruf_board::{say, say::leave};
 
 /// A test and its name.
 pub type Test = (&'static str, fn());
@@ -13,7 +13,7 @@ pub fn run(tests: &[Test]) -> ! {
         test();
     }
     say!(eeruf_board::NAME, ": ", tests.len() as u32, " passed");
-    eeruf_board::say::leave(0)
+    leave(0)
 }
 
 /// Names functions after themselves.

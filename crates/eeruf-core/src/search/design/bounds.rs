@@ -12,7 +12,9 @@
 //! - **Density.** At any time at most alpha of the intervals `[t, t + I)` that begin with a firing are open, as sensors with open intervals
 //!   do not conflict. Each sensor keeps at least `I + own` open in two periods: `2 alpha T_p >= K (I + own)`. Here alpha is the size of
 //!   the largest set without conflicts, or a number of cliques that cover all sensors, which is no smaller.
+//! - **Classes.** How few `|d|` fit where clique and interval leave little to spare: [`classes`](super::classes).
 
+use super::classes::Classes;
 use super::problem::{Needs, Sensors};
 use super::symmetry;
 
@@ -51,6 +53,19 @@ pub enum Bound {
         /// What each sensor keeps after its second firing: I, or the window if that is shorter.
         own: u32,
     },
+    /// Sensors that all conflict fire one after the other, and too few `|d|` fit into the little time that leaves.
+    Classes {
+        /// The number of such sensors.
+        clique: u32,
+        /// The number of sensors whose `|d|` must fit.
+        sensors: u32,
+        /// I in ticks.
+        interval: u32,
+        /// D in ticks.
+        separation: u32,
+        /// The period from which on they may fit, in ticks.
+        period: u32,
+    },
     /// A period has at least one tick.
     OneTick,
 }
@@ -67,6 +82,7 @@ impl Bound {
             Self::Density { sensors, at_once, interval, own } => {
                 (sensors * (interval + own)).div_ceil(2 * at_once.max(1))
             }
+            Self::Classes { period, .. } => period,
             Self::OneTick => 1,
         }
     }
@@ -91,29 +107,58 @@ pub(crate) fn largest(needs: &Needs) -> Bound {
             }
         }
     }
+    if let Some(classes) = Classes::new(needs) {
+        let period = classes.period(needs) as u32;
+        if period > best.period() {
+            best = Bound::Classes {
+                clique: classes.clique(),
+                sensors: classes.sensors(needs),
+                interval,
+                separation: needs.separation as u32,
+                period,
+            };
+        }
+    }
     if best.period() <= 1 { Bound::OneTick } else { best }
 }
 
-/// The size of a large clique, and a number of cliques that cover all sensors: greedily, from each sensor upwards.
+/// A large clique among the sensors `from`, with sensor `first`: greedily, upwards.
+fn grow(needs: &Needs, first: usize, from: u64) -> u64 {
+    let mut clique = 1u64 << first;
+    let mut common = needs.conflicts[first] & from;
+    while let Some(x) = Sensors(common).next() {
+        clique |= 1 << x;
+        common &= needs.conflicts[x];
+    }
+    clique
+}
+
+/// The size of a large clique, and a number of cliques that cover all sensors.
 pub(crate) fn cliques(needs: &Needs) -> (u32, u32) {
-    let grow = |first: usize, from: u64| {
-        let mut clique = 1u64 << first;
-        let mut common = needs.conflicts[first] & from;
-        while let Some(x) = Sensors(common).next() {
-            clique |= 1 << x;
-            common &= needs.conflicts[x];
-        }
-        clique
-    };
-    let largest =
-        (0..needs.sensors).map(|x| grow(x, u64::MAX << x).count_ones().max(grow(x, u64::MAX).count_ones())).max();
+    let size = |x: usize, from: u64| grow(needs, x, from).count_ones();
+    let largest = (0..needs.sensors).map(|x| size(x, u64::MAX << x).max(size(x, u64::MAX))).max();
     let mut left = needs.all();
     let mut cover = 0;
     while let Some(x) = Sensors(left).next() {
-        left &= !grow(x, left);
+        left &= !grow(needs, x, left);
         cover += 1;
     }
     (largest.unwrap_or(1), cover)
+}
+
+/// The size of a large clique, and a number of disjoint cliques of that size, at least 1.
+pub(crate) fn disjoint_cliques(needs: &Needs) -> (u32, u32) {
+    let (size, _) = cliques(needs);
+    let mut left = needs.all();
+    let mut count = 0;
+    for x in 0..needs.sensors {
+        let clique = if left >> x & 1 == 1 { grow(needs, x, left) } else { 0 };
+        if clique.count_ones() == size {
+            left &= !clique;
+            count += 1;
+        }
+    }
+    (size, count.max(1))
 }
 
 /// On a ring where a sensor conflicts with the next n - 1 on both sides: `K / n` rounded down, as independent sensors are n apart all round.

@@ -8,6 +8,8 @@ pub(crate) const FRAME_WORDS: usize = 6;
 pub(crate) enum Kind {
     /// The sensor with the largest `|d|`.
     Top,
+    /// The places of a sensor in both phases, among adjacent sensors.
+    Place,
     /// Which of two firings in the same phase comes first.
     Order,
     /// The sensor with the smallest `|d|` of those without a rank, and its sign.
@@ -24,13 +26,14 @@ pub(crate) struct Frame {
     pub(crate) kind: Kind,
     /// A sensor; for [`Kind::Order`] the node to fire first in the first alternative.
     pub(crate) x: u8,
-    /// For [`Kind::Order`] the other node; for ranks 1 if d is negative.
+    /// For [`Kind::Order`] the other node; for ranks 1 if d is negative; for [`Kind::Place`] the pair of places.
     pub(crate) y: u8,
     /// Alternatives begun, for [`Kind::Order`] and [`Kind::Value`].
     pub(crate) tried: u8,
     /// Where the network's log stood before the choice.
     pub(crate) mark: u32,
-    /// Remaining sensors with positive d; for [`Kind::Value`] the smallest value.
+    /// Remaining sensors with positive d; for [`Kind::Value`] the smallest value, for [`Kind::Place`]
+    /// the remaining pairs of places.
     pub(crate) positive: u64,
     /// Remaining sensors with negative d; for [`Kind::Value`] the largest value.
     pub(crate) negative: u64,
@@ -48,6 +51,7 @@ impl Frame {
             Kind::Low => 2,
             Kind::High => 3,
             Kind::Value => 4,
+            Kind::Place => 5,
         };
         [
             i32::from_le_bytes([kind, self.x, self.y, self.tried]),
@@ -69,6 +73,7 @@ impl Frame {
             1 => Kind::Order,
             2 => Kind::Low,
             3 => Kind::High,
+            5 => Kind::Place,
             _ => Kind::Value,
         };
         let join = |low: i32, high: i32| u64::from(high as u32) << 32 | u64::from(low as u32);

@@ -1,9 +1,10 @@
 //! One question after another over the same memory: decide a problem, and find where "no" turns into "yes" along one of its numbers.
 
+use super::classes::Classes;
 use super::control::{Control, Flow, POLL, Progress};
 use super::problem::Needs;
 use super::random::Random;
-use super::schedule::Firing;
+use super::schedule::{self, Firing};
 use super::tree::{Outcome, Tree};
 
 /// The number that is varied while all others stay.
@@ -77,6 +78,8 @@ pub(crate) struct Meter<'h, C> {
     /// Shown to the control, with the period and the nodes of the moment.
     pub(crate) bound: u32,
     pub(crate) best: u32,
+    /// The length of a tick of the questions asked, in the caller's ticks.
+    ticks: u32,
     stopped: bool,
 }
 
@@ -97,7 +100,8 @@ impl<C: Control> Meter<'_, C> {
             if outcome != Outcome::Spent || tree.nodes() >= end || tree.nodes() == before {
                 return outcome;
             }
-            let progress = Progress { nodes: self.nodes, period: period as u32, bound: self.bound, best: self.best };
+            let period = period as u32 * self.ticks;
+            let progress = Progress { nodes: self.nodes, period, bound: self.bound, best: self.best };
             self.stopped |= self.control.poll(&progress) == Flow::Stop;
             if !self.may_go_on() {
                 return Outcome::Spent;
@@ -114,7 +118,7 @@ pub(crate) struct Hunt<'h, C> {
 
 impl<'h, C: Control> Hunt<'h, C> {
     pub(crate) fn new(memory: &'h mut [i32], control: &'h mut C, limit: u64) -> Self {
-        Self { memory, meter: Meter { control, nodes: 0, limit, bound: 0, best: 0, stopped: false } }
+        Self { memory, meter: Meter { control, nodes: 0, limit, bound: 0, best: 0, ticks: 1, stopped: false } }
     }
 
     /// Decides a question with about `budget` nodes.
@@ -139,9 +143,17 @@ impl<'h, C: Control> Hunt<'h, C> {
         // Another budget, other descents: nothing lucky is tried twice while a budget grows.
         let seed = budget.wrapping_shl(20);
         let mut descents = 0;
+        let classes = Classes::new(&question.needs);
         while tree.nodes() < budget && self.meter.may_go_on() {
             descents += 1;
-            tree.restart(Some(Random::new(seed.wrapping_add(descents))), None);
+            let mut random = Random::new(seed.wrapping_add(descents));
+            // Every other descent begins with orders for whose classes there is room.
+            let orders = classes.filter(|_| descents % 2 == 1);
+            let orders = orders.and_then(|classes| classes.draw(&question.needs, question.period, &mut random));
+            tree.restart(Some(random), None);
+            if let Some(orders) = orders {
+                tree.like(orders);
+            }
             let run = (unit * luby(descents)).min(budget - tree.nodes());
             let outcome = self.meter.run(&mut tree, run, question.period);
             if outcome != Outcome::Spent {
@@ -167,28 +179,64 @@ impl<'h, C: Control> Hunt<'h, C> {
     }
 
     /// Narrows the border along `axis` until nothing is between, or the budget is spent. What can be met at some ease can be at any larger.
-    ///
-    /// Bounds are often met, so it starts at `border.no + 1` and goes up in growing steps until something is found, a few times with growing
-    /// budgets: what is much easier is not much easier to find. Then down by halving. From there the ease just below the best decides all:
-    /// either it is possible, or nothing better is. When the budget is nearly spent on that, the rest goes into the bound.
     pub(crate) fn narrow(&mut self, question: &Question, axis: Axis, border: &mut Border) {
+        let budget = self.climb(question, axis, border);
+        self.close(question, axis, budget, border);
+    }
+
+    /// Narrows the border on the period in ticks of which each is `ticks` of the border's, and leaves the best found, with the budget that was last
+    /// given to a question. At most half of all nodes that are left go into this.
+    pub(crate) fn narrow_in_coarse_ticks(&mut self, coarse: &Needs, ticks: i32, border: &mut Border) -> u64 {
+        let (limit, begin) = (self.meter.limit, self.meter.nodes);
+        self.meter.limit = begin + limit.saturating_sub(begin) / 2;
+        (self.meter.ticks, self.meter.bound) = (ticks as u32, border.no as u32 + 1);
+        let firing = schedule::one_by_one(coarse);
+        // No coarse period below the fine bound, rounded up.
+        let mut found = Border { no: border.no / ticks, yes: firing.period(coarse), firing, guide: false };
+        let question = Question { needs: *coarse, period: found.yes };
+        self.narrow(&question, Axis::Period, &mut found);
+        (border.firing, border.guide) = (found.firing.in_fine_ticks(ticks as u32), found.guide);
+        (self.meter.limit, self.meter.ticks) = (limit, 1);
+        (16 * coarse.sensors as u64).max((self.meter.nodes - begin) / 8)
+    }
+
+    /// Bounds are often met, so this starts at `border.no + 1` and goes up in growing steps until something is found, a few times with growing
+    /// budgets: what is much easier is not much easier to find. Returns the last budget.
+    fn climb(&mut self, question: &Question, axis: Axis, border: &mut Border) -> u64 {
         let mut budget = 16 * question.needs.sensors as u64;
         let first = ((border.yes - border.no) >> 8).max(1);
-        'up: for _ in 0..6 {
+        for _ in 0..6 {
             let (mut step, mut ease) = (first, border.no + 1);
             for budget in [4 * budget, budget, budget, budget, budget, budget] {
-                if ease >= border.yes || !self.meter.may_go_on() {
-                    break 'up;
-                }
-                if matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_)) {
-                    break 'up;
+                if ease >= border.yes
+                    || !self.meter.may_go_on()
+                    || matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_))
+                {
+                    return budget;
                 }
                 ease = ease.max(border.no) + step;
                 step *= 2;
             }
             budget *= 2;
         }
+        budget
+    }
+
+    /// Closes the border. The ease just below the best decides all: either it is possible, or nothing better is. In turns with growing budgets
+    /// this tries to prove that it is impossible, and to find something better, by halving. When the budget is nearly spent on that, the
+    /// rest goes into the bound.
+    pub(crate) fn close(&mut self, question: &Question, axis: Axis, budget: u64, border: &mut Border) {
+        let mut budget = budget;
         loop {
+            let rest = self.meter.limit.saturating_sub(self.meter.nodes);
+            if border.no + 1 >= border.yes || !self.meter.may_go_on() {
+                return;
+            }
+            let most = rest - rest / 4;
+            let outcome = self.ask(question, axis, border.yes - 1, (4 * budget).min(most), true, border);
+            if outcome == Outcome::Spent && most <= 4 * budget {
+                break;
+            }
             // The tightest problem leaves the least to guess, so it comes first; then halving.
             let mut unknown = border.no;
             let mut ease = border.no + 1;
@@ -198,16 +246,7 @@ impl<'h, C: Control> Hunt<'h, C> {
                 }
                 ease = unknown + (border.yes - unknown) / 2;
             }
-            let rest = self.meter.limit.saturating_sub(self.meter.nodes);
-            if border.no + 1 >= border.yes || !self.meter.may_go_on() {
-                return;
-            }
             budget *= 4;
-            let most = rest - rest / 4;
-            let outcome = self.ask(question, axis, border.yes - 1, budget.min(most), true, border);
-            if outcome == Outcome::Spent && most <= budget {
-                break;
-            }
         }
         let mut unknown = border.yes - 1;
         let budget = self.meter.limit.saturating_sub(self.meter.nodes) / 8;
@@ -249,7 +288,11 @@ impl<'h, C: Control> Hunt<'h, C> {
             Outcome::Spent => {}
         }
         if axis == Axis::Period {
-            (self.meter.bound, self.meter.best) = (border.no as u32 + 1, border.yes as u32);
+            self.meter.best = border.yes as u32 * self.meter.ticks;
+            // That there is no schedule in coarse ticks does not exclude one in fine ticks.
+            if self.meter.ticks == 1 {
+                self.meter.bound = border.no as u32 + 1;
+            }
         }
         outcome
     }

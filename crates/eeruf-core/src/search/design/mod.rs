@@ -35,12 +35,14 @@
 //! ```
 
 mod bounds;
+mod classes;
 mod control;
 mod frame;
 mod hunt;
 mod largest;
 mod network;
 mod packing;
+mod place;
 mod problem;
 mod propagate;
 mod random;

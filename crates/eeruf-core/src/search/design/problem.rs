@@ -196,10 +196,32 @@ impl Needs {
         self.conflicts[x] >> y & 1 == 1
     }
 
+    /// The same needs in coarser ticks, with their length, if all are multiples of that.
+    pub(crate) fn in_coarse_ticks(&self) -> Option<(Self, i32)> {
+        let ticks = [self.interval, self.window, self.least].iter().fold(self.separation, |a, &b| common_divisor(a, b));
+        let coarse = Self {
+            separation: self.separation / ticks,
+            interval: self.interval / ticks,
+            window: self.window / ticks,
+            least: self.least / ticks,
+            ..*self
+        };
+        (ticks > 1).then_some((coarse, ticks))
+    }
+
     /// The set of all sensors.
     pub(crate) fn all(&self) -> u64 {
         u64::MAX >> (MAX_SENSORS - self.sensors)
     }
+}
+
+/// The largest number that divides both; `a` is above 0.
+pub(crate) fn common_divisor(a: i32, b: i32) -> i32 {
+    let (mut a, mut b) = (a, b);
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a
 }
 
 /// Goes through the members of a bit set of sensors, lowest first.

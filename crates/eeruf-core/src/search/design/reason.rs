@@ -71,6 +71,14 @@ impl InTime<'_> {
                  which takes {period}; a shorter interval or fewer neighbours would help, a smaller separation would not",
                 self.time(interval)
             ),
+            Bound::Classes { clique, sensors, interval, separation, .. } => write!(
+                f,
+                "interval and separation together: {clique} sensors that are all neighbours and fire {} apart leave too \
+                 little time to tell {sensors} refire times {} apart, which takes {period}; a shorter interval, a smaller \
+                 separation or fewer neighbours would help",
+                self.time(interval),
+                self.time(separation)
+            ),
             Bound::OneTick => f.write_str("the tick: a period has at least one"),
         }
     }
@@ -83,6 +91,7 @@ impl fmt::Display for InTime<'_> {
             Reason::Exhausted { period, counted } => {
                 let alone = match counted {
                     Bound::Capacity { .. } => "window and separation alone",
+                    Bound::Classes { .. } => "the sizes of the refire times",
                     _ => "the interval alone",
                 };
                 write!(

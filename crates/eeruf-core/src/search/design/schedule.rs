@@ -24,6 +24,11 @@ impl Firing {
         self.b.get(..self.sensors).unwrap_or(&[])
     }
 
+    /// The same times in ticks of which `ticks` make one of these.
+    pub(crate) fn in_fine_ticks(&self, ticks: u32) -> Self {
+        Self { a: self.a.map(|time| time * ticks), b: self.b.map(|time| time * ticks), sensors: self.sensors }
+    }
+
     /// `|d|` of sensor `x`, which is below `MAX_SENSORS`.
     fn size(&self, x: usize) -> i32 {
         self.a[x].abs_diff(self.b[x]) as i32

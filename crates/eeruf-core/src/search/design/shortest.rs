@@ -106,11 +106,22 @@ pub fn shortest<C: Control>(
     Ok(shortest_period(&needs, &mut hunt))
 }
 
+/// In fine ticks the same problem is solved in coarse ones first, if all times are multiples of one: a schedule in coarse ticks is one in fine
+/// ticks as well, and hardly ever is there a better one. That is then all that remains to be proven.
 pub(crate) fn shortest_period<C: Control>(needs: &Needs, hunt: &mut Hunt<'_, C>) -> Shortest {
     let counted = bounds::largest(needs);
     let firing = schedule::one_by_one(needs);
     let mut border = Border { no: counted.period() as i32 - 1, yes: firing.period(needs), firing, guide: false };
-    hunt.narrow(&Question { needs: *needs, period: border.yes }, Axis::Period, &mut border);
+    let question = Question { needs: *needs, period: border.yes };
+    match needs.in_coarse_ticks() {
+        None => hunt.narrow(&question, Axis::Period, &mut border),
+        Some((coarse, ticks)) => {
+            let budget = hunt.narrow_in_coarse_ticks(&coarse, ticks, &mut border);
+            // As it is ticks that were multiplied, the times may serve at a shorter period still.
+            border.yes = border.firing.period(needs).max(border.no + 1);
+            hunt.close(&question, Axis::Period, budget, &mut border);
+        }
+    }
     let (period, bound) = (border.yes as u32, border.no as u32 + 1);
     let reason = if bound < period {
         Reason::BudgetSpent { bound }

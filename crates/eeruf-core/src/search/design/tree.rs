@@ -7,9 +7,11 @@
 
 use super::MAX_SENSORS;
 use super::bounds;
+use super::classes::Orders;
 use super::frame::{FRAME_WORDS, Frame, Kind};
 use super::network::{Contradiction, Network};
 use super::packing::Intervals;
+use super::place::Places;
 use super::problem::{Needs, Sensors};
 use super::random::Random;
 use super::schedule::Firing;
@@ -54,11 +56,14 @@ pub(crate) struct Tree<'p, 'm> {
     /// Frames below this one can no longer be undone, only recomputed.
     base: usize,
     pub(super) ranks: Ranks,
+    pub(super) places: Places,
     /// Sensors in the order in which their firing orders are chosen.
     sequence: [u8; MAX_SENSORS],
     random: Option<Random>,
     /// A schedule for an easier problem: like it first.
     guide: Option<Firing>,
+    /// Orders to like first.
+    orders: Option<Orders>,
     /// In how many of 8 choices an order is copied from the sensors `shift` further along.
     follow: u32,
     shift: usize,
@@ -130,9 +135,11 @@ impl<'p, 'm> Tree<'p, 'm> {
             depth: 0,
             base: 0,
             ranks: Ranks { low: [0; MAX_SENSORS], high: [0; MAX_SENSORS], lows: 0, highs: 0, ranked: 0, negative: 0 },
+            places: Places::new(needs, period),
             sequence: [0; MAX_SENSORS],
             random: None,
             guide: None,
+            orders: None,
             follow: 8,
             shift: 0,
             clique: bounds::cliques(needs).0 as usize,
@@ -182,11 +189,13 @@ impl<'p, 'm> Tree<'p, 'm> {
     /// order.
     pub(crate) fn restart(&mut self, random: Option<Random>, guide: Option<Firing>) {
         self.guide = guide;
+        self.orders = None;
         self.net.reset(self.root);
         self.ranks.lows = 0;
         self.ranks.highs = 0;
         self.ranks.ranked = 0;
         self.ranks.negative = 0;
+        self.places.clear();
         self.depth = 0;
         self.base = 0;
         self.random = random;
@@ -196,6 +205,12 @@ impl<'p, 'm> Tree<'p, 'm> {
             self.follow = [8, 8, 7, 0][random.below(4) as usize];
             self.shift += usize::from(random.below(4) == 0);
         }
+    }
+
+    /// Likes these orders first, until the next restart.
+    pub(crate) fn like(&mut self, orders: Orders) {
+        self.orders = Some(orders);
+        self.follow = 8;
     }
 
     /// Goes on for at most `budget` nodes; `Spent` can be continued by calling again.
@@ -266,6 +281,7 @@ impl<'p, 'm> Tree<'p, 'm> {
         self.ranks.highs = 0;
         self.ranks.ranked = 0;
         self.ranks.negative = 0;
+        self.places.clear();
         self.base = 0;
         for i in 0..to {
             let mut frame = self.frame(i);
@@ -296,6 +312,14 @@ impl<'p, 'm> Tree<'p, 'm> {
                 frame.tried += 1;
                 frame.tried <= 3
             }
+            Kind::Place => {
+                let Some(pair) = self.pick_place(frame) else {
+                    return false;
+                };
+                frame.positive &= !(1 << pair);
+                (frame.y, frame.tried) = (pair, 1);
+                true
+            }
             Kind::Top | Kind::Low | Kind::High => {
                 let Some((x, negative)) = self.pick(frame) else {
                     return false;
@@ -311,8 +335,28 @@ impl<'p, 'm> Tree<'p, 'm> {
         }
     }
 
+    /// One of the remaining pairs of places.
+    fn pick_place(&mut self, frame: &Frame) -> Option<u8> {
+        if let Some(orders) = &self.orders {
+            if let Some(pair) = self.places.of_orders(orders, frame) {
+                return Some(pair);
+            }
+        }
+        let nth = match &mut self.random {
+            Some(random) => random.below(frame.positive.count_ones().max(1)) as usize,
+            None => 0,
+        };
+        // A pair is below 64.
+        Sensors(frame.positive).nth(nth).map(|pair| pair as u8)
+    }
+
     /// The remaining candidate for a rank that leaves the others most room, or any.
     fn pick(&mut self, frame: &Frame) -> Option<(u8, bool)> {
+        if let (Kind::Top, Some(orders)) = (frame.kind, &self.orders) {
+            if let Some(x) = Sensors(frame.positive & orders.tops).next() {
+                return Some((x as u8, false));
+            }
+        }
         if let Some(random) = &mut self.random {
             let count = frame.positive.count_ones() + frame.negative.count_ones();
             if count > 1 && (frame.kind == Kind::Top || random.below(2) == 0) {
@@ -347,12 +391,16 @@ impl<'p, 'm> Tree<'p, 'm> {
         if matches!(frame.kind, Kind::Top | Kind::Low | Kind::High) {
             self.ranks.pop(frame.kind);
         }
+        if frame.kind == Kind::Place {
+            self.places.pop();
+        }
     }
 
     /// Demands what the frame's present alternative says.
     fn apply(&mut self, frame: &Frame) -> Result<(), Contradiction> {
         let x = usize::from(frame.x);
         match frame.kind {
+            Kind::Place => self.place(frame),
             Kind::Order => self.net.demand(x, usize::from(frame.y), -self.needs.interval),
             Kind::Value => {
                 let (low, high) = (frame.positive as i32, frame.negative as i32);
@@ -367,6 +415,7 @@ impl<'p, 'm> Tree<'p, 'm> {
             Kind::Top | Kind::Low | Kind::High => {
                 self.ranks.push(frame.kind, frame.x, frame.y == 1);
                 if frame.kind == Kind::Top {
+                    self.places.begin(self.needs, x);
                     self.sequence = sequence(self.needs, x);
                     let sorting = Sorting::new(self.needs, x);
                     for (x, y) in sorting.pairs() {
@@ -392,6 +441,9 @@ impl<'p, 'm> Tree<'p, 'm> {
         if self.ranks.highs == 0 {
             let mut frame = Frame::new(Kind::Top);
             frame.positive = symmetry::representatives(self.needs);
+            return frame;
+        }
+        if let Some(frame) = self.place_choice() {
             return frame;
         }
         if let Some(frame) = self.order_choice() {
@@ -458,6 +510,10 @@ impl<'p, 'm> Tree<'p, 'm> {
         if let Some(guide) = &self.guide {
             let times = if phase == 0 { &guide.a } else { &guide.b };
             return Some(times[x] < times[y]);
+        }
+        if let Some(orders) = &self.orders {
+            let places = if phase == 0 { &orders.a } else { &orders.b };
+            return Some(places[x] < places[y]);
         }
         for shift in [shift, 2 * k - shift] {
             let (x, y) = ((x + shift) % k, (y + shift) % k);

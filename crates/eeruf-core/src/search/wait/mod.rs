@@ -21,7 +21,7 @@
 //!
 //! Nothing here allocates, recurses, reads a clock or depends on chance. The caller lends memory: [`MEMORY_WORDS`] says how
 //! much is enough for all but counting, and counting is exact with any amount, faster with more. What the searches
-//! keep on the stack is below 8 KiB (32 KiB in counting) at any size: twelve sensors are decided in 16 KiB of RAM, all told.
+//! keep on the stack is below 8 KiB (64 KiB in counting) at any size: twelve sensors are decided in 16 KiB of RAM, all told.
 //!
 //! ```
 //! use eeruf_core::Criterion;

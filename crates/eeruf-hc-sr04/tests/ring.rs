@@ -1,0 +1,141 @@
+//! Real wiring against the driver: every fault costs only the sensor that has it, and is named.
+
+use eeruf_core::{Config, Event, Instant, Kind, Micros, Ring, Schedule, ScheduledFiring, Tally};
+use eeruf_hc_sr04::{Edge, HcSr04Ring, Health, Pins, Settings, SetupError};
+use embedded_hal_mock::eh1::delay::NoopDelay;
+use embedded_hal_mock::eh1::digital::{Mock, State, Transaction};
+
+const K: usize = 3;
+type Driver<'s> = HcSr04Ring<ScheduledFiring<'s, K>, Mock, Mock, NoopDelay, K>;
+
+fn schedule(period_ms: u32) -> Schedule<K> {
+    let ms = |ms: [u32; K]| ms.map(Micros::from_millis);
+    Schedule::from_firing(Micros::from_millis(period_ms), [ms([24, 44, 64]), ms([20, 38, 56])]).unwrap()
+}
+
+const CONFIG: Config = Config::new(Micros::new(500), Micros::from_millis(40));
+
+/// What a sensor does after a trigger: edges as (time in us, high).
+type Line<'a> = &'a dyn Fn(u32) -> Vec<(u32, bool)>;
+
+fn echo(us: u32) -> impl Fn(u32) -> Vec<(u32, bool)> {
+    move |_| vec![(450, true), (450 + us, false)]
+}
+
+/// Runs some periods; `high` says whether the line of sensor 1 is high when it is to be triggered.
+fn run(periods: u32, high: bool, lines: [Line<'_>; K]) -> ([Tally<u32>; K], [Health; K]) {
+    let schedule = schedule(100);
+    let pulses =
+        |n| (0..n).flat_map(|_| [Transaction::set(State::High), Transaction::set(State::Low)]).collect::<Vec<_>>();
+    // All firings of each sensor until the period after the last has begun.
+    let firings = periods as usize;
+    let mut mocks = Vec::new();
+    let pins: [Pins<Mock, Mock>; K] = std::array::from_fn(|x| {
+        let stuck = high && x == 1;
+        let state = if stuck { State::High } else { State::Low };
+        let trigger = Mock::new(&if stuck { vec![] } else { pulses(firings) });
+        let echo = Mock::new(&vec![Transaction::get(state); firings]);
+        mocks.extend([trigger.clone(), echo.clone()]);
+        Pins { trigger, echo }
+    });
+    let ring = Ring::new(&schedule, CONFIG, Instant::default()).unwrap();
+    let mut driver: Driver<'_> = HcSr04Ring::new(ring, pins, NoopDelay, Settings::default()).unwrap();
+    let mut edges: Vec<Edge> = Vec::new();
+    let mut tallies = [Tally::default(); K];
+    let mut ended = 0;
+    while ended < periods {
+        let deadline = driver.next_deadline();
+        edges.sort_by_key(|edge| edge.at.as_micros());
+        let now = match edges.first() {
+            Some(edge) if deadline.has_reached(edge.at) => edge.at,
+            _ => deadline,
+        };
+        while edges.first().is_some_and(|edge| now.has_reached(edge.at)) {
+            driver.edge(edges.remove(0));
+        }
+        while let Some(event) = driver.poll(now) {
+            match event {
+                Event::Fire(sensor) => {
+                    let line = lines[usize::from(sensor)];
+                    let us = |us| now + Micros::new(us);
+                    edges.extend(line(ended).into_iter().map(|(at, high)| Edge { sensor, high, at: us(at) }));
+                }
+                Event::Reading(reading) => tallies[usize::from(reading.sensor)].count(reading.kind),
+                Event::PeriodEnded(_) => ended += 1,
+            }
+        }
+    }
+    let health = std::array::from_fn(|x| driver.health(x as u8));
+    drop(driver);
+    // Triggered as often as fired, and never when stuck.
+    for mut mock in mocks {
+        mock.done();
+    }
+    (tallies, health)
+}
+
+/// The others read as if nothing were wrong.
+fn others_are_well(tallies: &[Tally<u32>; K], health: &[Health; K]) {
+    for x in [0, 2] {
+        assert_eq!((tallies[x].of(Kind::First), tallies[x].of(Kind::Accepted), health[x]), (1, 9, Health::Well));
+    }
+}
+
+#[test]
+fn the_width_of_the_pulse_is_the_echo_time_and_two_that_agree_are_accepted() {
+    let (tallies, health) = run(10, false, [&echo(5_000), &echo(12_000), &echo(20_000)]);
+    others_are_well(&tallies, &health);
+    assert_eq!((tallies[1].of(Kind::Accepted), health[1]), (9, Health::Well));
+}
+
+#[test]
+fn edges_within_100_us_of_the_trigger_are_not_echoes() {
+    let noisy = |_| vec![(20, true), (60, false), (99, true), (450, true), (12_450, false)];
+    let (tallies, health) = run(10, false, [&echo(5_000), &noisy, &echo(20_000)]);
+    others_are_well(&tallies, &health);
+    assert_eq!((tallies[1].of(Kind::Accepted), health[1]), (9, Health::Well));
+}
+
+#[test]
+fn a_line_stuck_high_is_not_triggered_and_told_as_stuck() {
+    let (tallies, health) = run(10, true, [&echo(5_000), &|_| vec![], &echo(20_000)]);
+    others_are_well(&tallies, &health);
+    assert_eq!(tallies[1].of(Kind::Stuck) + tallies[1].of(Kind::NoEcho) + tallies[1].of(Kind::Clear), 10);
+    assert_eq!((tallies[1].of(Kind::Stuck), health[1]), (10, Health::StuckHigh));
+}
+
+#[test]
+fn a_missing_sensor_is_named_after_three_firings_without_a_pulse() {
+    let none: Line<'_> = &|_| vec![];
+    assert_eq!(run(3, false, [&echo(5_000), none, &echo(20_000)]).1[1], Health::Well);
+    let (tallies, health) = run(10, false, [&echo(5_000), none, &echo(20_000)]);
+    others_are_well(&tallies, &health);
+    assert_eq!((tallies[1].of(Kind::Clear), health[1]), (9, Health::Missing));
+}
+
+#[test]
+fn a_chattering_line_counts_with_its_first_true_pulse_and_is_named() {
+    let chatters = |_| vec![(450, true), (480, false), (500, true), (12_500, false), (13_000, true), (14_000, false)];
+    let (tallies, health) = run(10, false, [&echo(5_000), &chatters, &echo(20_000)]);
+    others_are_well(&tallies, &health);
+    assert_eq!((tallies[1].of(Kind::Accepted), health[1]), (9, Health::Chatters));
+}
+
+#[test]
+fn the_sensors_own_time_out_is_no_echo_and_no_fault() {
+    let (tallies, health) = run(10, false, [&echo(5_000), &echo(38_000), &echo(20_000)]);
+    others_are_well(&tallies, &health);
+    assert_eq!((tallies[1].of(Kind::Clear), health[1]), (9, Health::Well));
+}
+
+#[test]
+fn a_schedule_that_triggers_a_sensor_too_soon_is_refused() {
+    let schedule = schedule(66);
+    let mut unused = Mock::new(&[]);
+    let pins = || std::array::from_fn(|_| Pins { trigger: unused.clone(), echo: unused.clone() });
+    let ring = || Ring::new(&schedule, CONFIG, Instant::default()).unwrap();
+    let error: Result<Driver<'_>, _> = HcSr04Ring::new(ring(), pins(), NoopDelay, Settings::default());
+    let Err(error @ SetupError::Retrigger { .. }) = error else { panic!("not refused") };
+    assert_eq!(error.to_string(), "a sensor of this schedule fires again after 58 ms; an HC-SR04 needs at least 60 ms");
+    unused.done();
+}

@@ -1,0 +1,170 @@
+//! The paper's tables, the shared cases, a ring and a search on the board itself.
+#![no_std]
+#![no_main]
+
+use eeruf_core::search::wait::{Control, Finish, Problem, Search};
+use eeruf_core::tables::{TABLE_I_A, TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
+use eeruf_core::{
+    Config, Criterion, Event, Instant, Kind, Layout, Micros, Phase, Requirements, Ring, Schedule, ScheduledRing, Tally,
+};
+use eeruf_on_target::{run, tests};
+
+eeruf_board::say_panic!();
+eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
+
+/// A schedule with the shortest period for what it meets, in ticks.
+struct ShortestPeriod {
+    layout: Layout<'static>,
+    tick_us: u32,
+    min_interval: u32,
+    separation: u32,
+    window: u32,
+    stale_echo: bool,
+    period: u32,
+    fire_a: &'static [u32],
+    fire_b: &'static [u32],
+}
+
+include!(concat!(env!("OUT_DIR"), "/cases.rs"));
+
+fn tables_i_b_and_i_d_are_separated_by_2_ms_and_i_a_by_nothing() {
+    for criterion in [Criterion::Paper, Criterion::Exact] {
+        for table in [TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS] {
+            // Table I-c gives firing times, which say nothing about the sums of waits.
+            if table != TABLE_I_C || criterion == Criterion::Exact {
+                assert_eq!(table.separation(criterion).map(|least| least.value), Some(Micros::from_millis(2)));
+            }
+        }
+        assert_eq!(TABLE_I_A.separation(criterion).map(|least| least.value), Some(Micros::ZERO));
+    }
+}
+
+fn table_i_d_keeps_19_ms_in_its_blocks_and_17_ms_on_the_line() {
+    let interval = |table: &Schedule<12>, layout| table.min_interval(layout).map(|least| least.value);
+    assert_eq!(interval(&TABLE_I_D, Layout::Blocks(4)), Some(Micros::from_millis(19)));
+    assert_eq!(interval(&TABLE_I_D, Layout::Line(4)), Some(Micros::from_millis(17)));
+    assert_eq!(interval(&TABLE_I_B, Layout::Line(4)), Some(Micros::from_millis(1)));
+    assert_eq!(interval(&THE_ONE_WITH_19_MS, Layout::Line(4)), Some(Micros::from_millis(19)));
+}
+
+fn every_schedule_of_the_shared_cases_meets_its_requirements() {
+    for case in SHORTEST_PERIODS {
+        let us = |ticks: u32| Micros::new(ticks * case.tick_us);
+        let mut times = [[Micros::ZERO; 32]; 2];
+        for (times, ticks) in times.iter_mut().zip([case.fire_a, case.fire_b]) {
+            for (time, &ticks) in times.iter_mut().zip(ticks) {
+                *time = us(ticks);
+            }
+        }
+        let sensors = case.fire_a.len();
+        let schedule = Schedule::<32>::from_slices(
+            us(case.period),
+            &[Micros::ZERO; 32][..sensors],
+            [&times[0][..sensors], &times[1][..sensors]],
+        )
+        .expect("a schedule");
+        let requirements = Requirements {
+            t_delta: Micros::new((case.separation * case.tick_us - 1) / 2),
+            criterion: Criterion::Exact,
+            min_interval: us(case.min_interval),
+            layout: case.layout,
+            window: us(case.window),
+            stale_echo: case.stale_echo,
+        };
+        assert_eq!(schedule.verify(&requirements).violations().next(), None);
+    }
+}
+
+/// The paper's waits (24 ms in phase a; 0, 2, .., 22 ms in phase b), in any order over the sensors.
+fn exactly_one_rearrangement_of_table_i_keeps_19_ms_between_any_four_adjacent_sensors() {
+    let lag: [u32; 12] = core::array::from_fn(|x| 25 * (x as u32 % 4));
+    let pairs: [(u32, u32); 12] = core::array::from_fn(|x| (24, 2 * x as u32));
+    let conflicts = Layout::Line(4).rows(12);
+    let problem = |interval| Problem {
+        period: 100,
+        lag: &lag,
+        wait_max: 24,
+        separation: 2,
+        interval,
+        conflicts: &conflicts[..12],
+        criterion: Criterion::Paper,
+    };
+    let search = Search::new(problem(19)).expect("a problem");
+    let count = search.rearrange(&pairs).expect("pairs").count(&mut Control::unlimited());
+    assert_eq!((count.finish, count.count), (Finish::Exhausted, 1));
+    let (mut a, mut b) = ([0; 12], [0; 12]);
+    let found = search.rearrange(&pairs).expect("pairs").first(&mut Control::unlimited(), &mut a, &mut b);
+    assert_eq!((found, b), (Ok(Finish::Found), [22, 16, 10, 4, 20, 14, 8, 2, 18, 12, 6, 0]));
+}
+
+/// Walls 0.9 m to 2.8 m away: sensor `x` hears its echo after `5 + x` ms.
+fn a_ring_believes_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock() {
+    let config = Config::new(Micros::new(999), Micros::from_millis(36));
+    let mut ring: ScheduledRing<12> =
+        Ring::new(&TABLE_I_D, config, Instant::from_micros(u32::MAX - 1_000_000)).expect("a ring");
+    let mut tally = Tally::<u32>::default();
+    let mut periods = 0;
+    while periods < 40 {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            match event {
+                Event::Fire(sensor) => ring.echo(sensor, now + Micros::from_millis(5 + u32::from(sensor))),
+                Event::Reading(reading) => {
+                    assert_eq!(reading.t_echo, Some(Micros::from_millis(5 + u32::from(reading.sensor))));
+                    assert!(reading.phase == Phase((reading.period % 2) as u8));
+                    tally.count(reading.kind);
+                }
+                Event::PeriodEnded(stats) => {
+                    assert_eq!(stats.max_late, Micros::ZERO);
+                    periods += 1;
+                }
+            }
+        }
+    }
+    // Every reading but the first of each sensor, and perhaps some of the last period still to come.
+    assert_eq!(tally.of(Kind::First), 12);
+    assert!(tally.of(Kind::Accepted) >= 39 * 12 - 12 && tally.of(Kind::Rejected) == 0);
+}
+
+fn readings_that_alternate_as_crosstalk_does_are_all_rejected() {
+    let config = Config::new(Micros::new(999), Micros::from_millis(36));
+    let mut ring: ScheduledRing<12> = Ring::new(&TABLE_I_D, config, Instant::default()).expect("a ring");
+    let mut tally = Tally::<u32>::default();
+    let (mut periods, mut phase) = (0, Phase::A);
+    while periods < 20 {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            match event {
+                // Sound of sensor 1, 20 ms under way, heard by all others.
+                Event::Fire(sensor) if sensor > 0 => {
+                    let at = |x| TABLE_I_D.t_fire(phase, x).map_or(0, Micros::as_micros);
+                    let reading = (30_000 + at(0)).wrapping_sub(at(usize::from(sensor)));
+                    if reading < 36_000 {
+                        ring.echo(sensor, now + Micros::new(reading));
+                    }
+                }
+                Event::Fire(_) => {}
+                Event::Reading(reading) => tally.count(reading.kind),
+                Event::PeriodEnded(_) => {
+                    periods += 1;
+                    phase = Phase(periods % 2);
+                }
+            }
+        }
+    }
+    assert_eq!(tally.of(Kind::Accepted), 0);
+    assert!(tally.of(Kind::Rejected) > 20);
+}
+
+#[eeruf_board::entry]
+fn main() -> ! {
+    eeruf_board::start();
+    run(tests![
+        tables_i_b_and_i_d_are_separated_by_2_ms_and_i_a_by_nothing,
+        table_i_d_keeps_19_ms_in_its_blocks_and_17_ms_on_the_line,
+        every_schedule_of_the_shared_cases_meets_its_requirements,
+        exactly_one_rearrangement_of_table_i_keeps_19_ms_between_any_four_adjacent_sensors,
+        a_ring_believes_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock,
+        readings_that_alternate_as_crosstalk_does_are_all_rejected,
+    ])
+}

@@ -1,0 +1,312 @@
+//! `cargo xtask firmware`: builds the firmware for four boards, runs it in QEMU, and measures it.
+//!
+//! Every figure is an exact count that repeats: instructions under `-icount`, bytes of sections, stack sizes that the
+//! compiler wrote down. The budgets of a Cortex-M0 with twelve sensors are checked.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::steps::{Trouble, output, run};
+use crate::toolchain::cargo_for_target;
+
+struct Board {
+    name: &'static str,
+    target: &'static str,
+    qemu: &'static [&'static str],
+}
+
+const BOARDS: [Board; 4] = [
+    Board { name: "microbit", target: "thumbv6m-none-eabi", qemu: &["qemu-system-arm", "-M", "microbit"] },
+    Board { name: "lm3s6965", target: "thumbv7m-none-eabi", qemu: &["qemu-system-arm", "-M", "lm3s6965evb"] },
+    Board { name: "an386", target: "thumbv7em-none-eabihf", qemu: &["qemu-system-arm", "-M", "mps2-an386"] },
+    Board {
+        name: "rv_virt",
+        target: "riscv32imac-unknown-none-elf",
+        qemu: &["qemu-system-riscv32", "-M", "virt", "-bios", "none"],
+    },
+];
+
+/// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions).
+const INSTRUCTIONS: [(&str, u32); 5] =
+    [("idle_poll", 40), ("echo", 60), ("stamp", 60), ("reading", 400), ("scheduler_fire", 80)];
+const FLASH: u64 = 4096;
+const RAM: u64 = 12 * 16 + 64;
+const STACK: u64 = 256;
+
+/// Builds, runs and measures everything; prints the tables of `docs/firmware.md`.
+pub(crate) fn firmware() -> Result<(), Trouble> {
+    crate::listings::check("docs/firmware.md")?;
+    let tables = measure_all()?;
+    println!("\n{tables}");
+    Ok(())
+}
+
+fn measure_all() -> Result<String, Trouble> {
+    let mut text = String::new();
+    let mut instructions = Vec::new();
+    let mut sizes = Vec::new();
+    let mut lateness = Vec::new();
+    for board in &BOARDS {
+        build(
+            board,
+            &["--workspace", "--exclude", "eeruf-c-header", "--exclude", "eeruf-rtic", "--exclude", "eeruf-embassy"],
+        )?;
+        expect(board, "eeruf-ring", 6, "accepted 1089")?;
+        on_target_tests(board)?;
+        let said = format!("{}{}", run_image(board, "instructions", 10)?, run_image(board, "instructions-alone", 10)?);
+        instructions.push((board, said));
+        sizes.push((board, [8, 12, 24].map(|k| sections(board, &format!("size-{k}"))), sections(board, "size-bare")));
+        for shift in [6, 9] {
+            lateness.push((board, shift, run_image(board, "lateness", shift)?));
+        }
+    }
+    let [microbit, lm3s6965, ..] = &BOARDS;
+    build(lm3s6965, &["--package", "eeruf-rtic", "--package", "eeruf-embassy"])?;
+    build(microbit, &["--package", "eeruf-embassy"])?;
+    expect(lm3s6965, "eeruf-rtic", 6, "accepted 1188")?;
+    expect(lm3s6965, "eeruf-embassy", 6, "accepted 1188")?;
+    expect(microbit, "eeruf-embassy", 6, "accepted 1188")?;
+    c_examples(lm3s6965)?;
+
+    let mut over = Vec::new();
+    text += "| board | call | fewest instructions | most |\n|---|---|---:|---:|\n";
+    for (board, said) in &instructions {
+        for line in said.lines() {
+            let [name, fewest, most] = line.split(' ').collect::<Vec<_>>()[..] else { continue };
+            text += &format!("| {} | {name} | {fewest} | {most} |\n", board.name);
+            let most: u32 = most.parse().map_err(|_| Trouble::Failed(format!("{}: {line}", board.name)))?;
+            for (budgeted, budget) in INSTRUCTIONS {
+                if board.name == "microbit" && name == budgeted && most > budget {
+                    over.push(format!("{name}: {most} instructions; the budget is {budget}"));
+                }
+            }
+        }
+    }
+    text += "\n| board | sensors | flash (text) | data + bss |\n|---|---:|---:|---:|\n";
+    for (board, with, bare) in sizes {
+        let bare = bare?;
+        for (k, with) in [8, 12, 24].into_iter().zip(with) {
+            let with = with?;
+            let (flash, ram) = (with.0 - bare.0, with.1 - bare.1);
+            text += &format!("| {} | {k} | {flash} | {ram} |\n", board.name);
+            if board.name == "microbit" && k == 12 && (flash > FLASH || ram > RAM) {
+                over.push(format!("{flash} bytes of flash and {ram} of RAM; the budget is {FLASH} and {RAM}"));
+            }
+        }
+    }
+    text += "\n| board | function | worst stack, bytes |\n|---|---|---:|\n";
+    for board in [microbit, lm3s6965] {
+        for (function, bytes) in stack(board)? {
+            text += &format!("| {} | `{function}` | {bytes} |\n", board.name);
+            // Setting up builds the ring on the stack before it is moved to its place; it comes before the loop.
+            if board.name == "microbit" && function != "ring_new" && bytes > STACK {
+                over.push(format!("{function}: {bytes} bytes of stack; the budget is {STACK}"));
+            }
+        }
+    }
+    text += "\n| board | ns per instruction | lateness under echo load |\n|---|---:|---|\n";
+    for (board, shift, said) in lateness {
+        text += &format!("| {} | {} | {} |\n", board.name, 1 << shift, said.trim());
+    }
+    let search = run_image(lm3s6965, "search", 6)?;
+    text += &format!("\nSearch on {}: {}\n", lm3s6965.name, search.trim());
+    if over.is_empty() { Ok(text) } else { Err(Trouble::Failed(format!("{text}\n{}", over.join("; ")))) }
+}
+
+/// `cargo` for a board, in the firmware's own workspace.
+fn cargo(board: &Board) -> Result<Command, Trouble> {
+    let mut cargo = cargo_for_target(board.target)?;
+    cargo.current_dir("firmware");
+    Ok(cargo)
+}
+
+fn build(board: &Board, what: &[&str]) -> Result<(), Trouble> {
+    run(cargo(board)?.args(["build", "--quiet", "--release", "--locked", "--target", board.target]).args(what))
+}
+
+fn on_target_tests(board: &Board) -> Result<(), Trouble> {
+    let target = ["test", "--quiet", "--release", "--locked", "--target", board.target];
+    run(cargo(board)?.args(target).args(["--package", "eeruf-on-target", "--test", "corpus"]))
+}
+
+fn image(board: &Board, name: &str) -> Result<PathBuf, Trouble> {
+    let cargo = cargo(board)?;
+    let target_dir = cargo.get_envs().find(|(key, _)| *key == "CARGO_TARGET_DIR").and_then(|(_, value)| value);
+    let target_dir = target_dir.map_or(PathBuf::from("target"), PathBuf::from);
+    Ok(Path::new("firmware").join(target_dir).join(board.target).join("release").join(name))
+}
+
+/// Runs an image, with `2^shift` ns an instruction; what it says, if it leaves with 0 within a minute.
+fn run_image(board: &Board, name: &str, shift: u32) -> Result<String, Trouble> {
+    qemu(board, &image(board, name)?, shift)
+}
+
+fn qemu(board: &Board, image: &Path, shift: u32) -> Result<String, Trouble> {
+    let [program, machine @ ..] = board.qemu else { return Err(Trouble::Failed("no QEMU for a board".into())) };
+    let what = format!("{} on {}", image.display(), board.name);
+    let mut child = Command::new(program)
+        .args(machine)
+        .args(["-nographic", "-monitor", "none", "-serial", "none", "-icount", &format!("shift={shift},sleep=off")])
+        .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+        .arg(image)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(|error| {
+            Trouble::Skipped(format!("{program}: {error}; install qemu-system-arm and qemu-system-misc"))
+        })?;
+    let deadline = Instant::now() + Duration::from_secs(60);
+    loop {
+        match child.try_wait() {
+            Ok(None) if Instant::now() > deadline => {
+                // It may have ended meanwhile.
+                let _ = child.kill();
+                return Err(Trouble::Failed(format!("{what}: not finished after a minute")));
+            }
+            Ok(None) => std::thread::sleep(Duration::from_millis(10)),
+            Ok(Some(_)) => break,
+            Err(error) => return Err(Trouble::Failed(format!("{what}: {error}"))),
+        }
+    }
+    let output = child.wait_with_output().map_err(|error| Trouble::Failed(format!("{what}: {error}")))?;
+    let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
+    // QEMU complains of a timer that is not yet set; that is harmless.
+    let said: String =
+        said.lines().filter(|line| !line.contains("Timer with period zero")).map(|line| format!("{line}\n")).collect();
+    if output.status.success() { Ok(said) } else { Err(Trouble::Failed(format!("{what}: {}\n{said}", output.status))) }
+}
+
+fn expect(board: &Board, name: &str, shift: u32, what: &str) -> Result<(), Trouble> {
+    let said = run_image(board, name, shift)?;
+    print!("{said}");
+    if said.contains(what) {
+        Ok(())
+    } else {
+        Err(Trouble::Failed(format!("{name} on {}: expected {what}", board.name)))
+    }
+}
+
+fn c_examples(board: &Board) -> Result<(), Trouble> {
+    let header = ["run", "--quiet", "--locked", "--package", "eeruf-c-header", "--", "--check"];
+    run(Command::new("cargo").current_dir("firmware").args(header))?;
+    for compiler in [&["gcc", "-std=c99"][..], &["g++", "-x", "c++", "-std=c++11"]] {
+        let strict = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-fsyntax-only", "firmware/c/eeruf.h"];
+        run(Command::new(compiler[0]).args(&compiler[1..]).args(strict))?;
+    }
+    let host = ["build", "--quiet", "--release", "--locked", "--package", "eeruf-c"];
+    run(Command::new("cargo").current_dir("firmware").args(host))?;
+    let strict = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-Ifirmware/c", "firmware/c/examples/ring.c"];
+    let out = "firmware/target/ring-c";
+    run(Command::new("gcc").args(strict).args([
+        "firmware/target/release/libeeruf.a",
+        "-o",
+        out,
+        "-lpthread",
+        "-ldl",
+        "-lm",
+    ]))?;
+    run(&mut Command::new(out))?;
+    let out = "firmware/target/ring-c-m3.elf";
+    run(Command::new("arm-none-eabi-gcc")
+        .args(["-mcpu=cortex-m3", "-mthumb", "-Os"])
+        .args(strict)
+        .arg("firmware/c/examples/lm3s6965.c")
+        .arg(image(board, "libeeruf.a")?)
+        .args([
+            "-nostartfiles",
+            "--specs=rdimon.specs",
+            "-T",
+            "firmware/c/examples/lm3s6965.ld",
+            "-Wl,--gc-sections",
+            "-o",
+            out,
+        ]))?;
+    let said = qemu(board, Path::new(out), 6)?;
+    print!("{said}");
+    if said.contains("c: accepted 396") { Ok(()) } else { Err(Trouble::Failed(format!("the C example said: {said}"))) }
+}
+
+/// Flash and RAM of an image: the sections that are loaded, and those that are not but for the stack.
+fn sections(board: &Board, name: &str) -> Result<(u64, u64), Trouble> {
+    let image = image(board, name)?;
+    let listing = llvm("size", &["-A"], &image)?;
+    let (mut flash, mut ram) = (0, 0);
+    for line in listing.lines() {
+        let [section, bytes, _] = line.split_whitespace().collect::<Vec<_>>()[..] else { continue };
+        let Ok(bytes) = bytes.parse::<u64>() else { continue };
+        match section {
+            ".vector_table" | ".init" | ".init.rust" | ".text" | ".text.dummy" | ".rodata" | ".trap" | ".init.trap" => {
+                flash += bytes;
+            }
+            ".data" => {
+                flash += bytes;
+                ram += bytes;
+            }
+            ".bss" | ".uninit" => ram += bytes,
+            _ => {}
+        }
+    }
+    Ok((flash, ram))
+}
+
+/// Debian's LLVM tools have their version in the name.
+fn llvm(tool: &str, args: &[&str], image: &Path) -> Result<String, Trouble> {
+    for name in [format!("llvm-{tool}-22"), format!("llvm-{tool}")] {
+        if let Some(text) = output(Command::new(name).args(args).arg(image)) {
+            return Ok(text);
+        }
+    }
+    Err(Trouble::Skipped(format!("no llvm-{tool}; install llvm-22")))
+}
+
+/// The worst stack of each public function of `Ring`, over all calls it can lead to: the compiler writes the size of each
+/// frame, the disassembly says who calls whom.
+fn stack(board: &Board) -> Result<Vec<(String, u64)>, Trouble> {
+    let mut cargo = cargo(board)?;
+    let target_dir = cargo.get_envs().find(|(key, _)| *key == "CARGO_TARGET_DIR").and_then(|(_, value)| value);
+    let target_dir = target_dir.map_or(PathBuf::from("target"), PathBuf::from).join("stack");
+    cargo.args(["build", "--quiet", "--release", "--locked", "--target", board.target]);
+    cargo.args(["--package", "eeruf-measure", "--bin", "size-12"]);
+    // An unstable option of the compiler.
+    cargo.env("RUSTC_BOOTSTRAP", "1").env("CARGO_TARGET_DIR", &target_dir);
+    run(cargo.env("RUSTFLAGS", "-Clink-arg=-Tlink.x -Zemit-stack-sizes"))?;
+    let image = Path::new("firmware").join(target_dir).join(board.target).join("release/size-12");
+
+    let mut frames = BTreeMap::new();
+    for line in llvm("readelf", &["--stack-sizes"], &image)?.lines() {
+        if let Some((bytes, names)) = line.trim().split_once(char::is_whitespace)
+            && let Ok(bytes) = bytes.parse::<u64>()
+        {
+            frames.extend(names.trim().split(", ").map(|name| (name.to_owned(), bytes)));
+        }
+    }
+    let mut calls: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    let mut caller = String::new();
+    for line in llvm("objdump", &["-d", "--no-show-raw-insn"], &image)?.lines() {
+        if let Some(name) = line.strip_suffix(">:").and_then(|line| line.split_once('<')) {
+            name.1.clone_into(&mut caller);
+            continue;
+        }
+        // A branch within a function has an offset; to another one it is a call.
+        let Some((_, callee)) = line.rsplit_once('<') else { continue };
+        let callee = callee.split_once('>').map_or(callee, |(callee, _)| callee);
+        if !callee.contains('+') && callee != caller {
+            calls.entry(caller.clone()).or_default().insert(callee.to_owned());
+        }
+    }
+    let public: Vec<String> =
+        frames.keys().filter(|name| name.starts_with("ring_") && *name != "ring_program").cloned().collect();
+    Ok(public.into_iter().map(|name| (name.clone(), worst(&name, &frames, &calls, 0))).collect())
+}
+
+/// The calls are a tree: core has no recursion. A path deeper than any there is would be one, and counts as endless.
+fn worst(name: &str, frames: &BTreeMap<String, u64>, calls: &BTreeMap<String, BTreeSet<String>>, depth: u32) -> u64 {
+    if depth > 64 {
+        return u64::MAX / 2;
+    }
+    let below = calls.get(name).into_iter().flatten().map(|callee| worst(callee, frames, calls, depth + 1)).max();
+    frames.get(name).copied().unwrap_or(0) + below.unwrap_or(0)
+}

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use crate::Answer;
 use crate::draw;
-use crate::input::{AnySchedule, InputError, ScheduleFile, to_json, write};
+use crate::input::{AnySchedule, InputError, ScheduleFile, to_json};
 use crate::ring_file::{RingSpec, read_ring};
 use crate::timing;
 use crate::watch::Watch;
@@ -36,7 +36,7 @@ pub(crate) struct Args {
     /// The same as --emit json
     #[arg(long, conflicts_with = "emit")]
     json: bool,
-    /// Draw the timing of two periods
+    /// Draw the timing of two periods, as SVG or, if the name ends in .png, as PNG
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
     /// How many nodes to search at most before giving the best schedule so far
@@ -78,7 +78,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     drop(watch);
     let requirements = spec.needs(design.t_delta).requirements;
     if let Some(file) = &args.svg {
-        write(file, &draw::timing_diagram(&design.schedule, &requirements))?;
+        draw::timing_diagram(&design.schedule, &requirements).save(file)?;
     }
     let form = if args.json { Some(Form::Json) } else { args.emit };
     match form {

@@ -48,7 +48,7 @@ pub(crate) fn read_schedule(file: &Path) -> Result<AnySchedule, InputError> {
 }
 
 /// Writes a file that the user asked for.
-pub(crate) fn write(file: &Path, contents: &str) -> Result<(), InputError> {
+pub(crate) fn write(file: &Path, contents: impl AsRef<[u8]>) -> Result<(), InputError> {
     fs::write(file, contents).map_err(|error| InputError::new(file, None, error))
 }
 

@@ -1,4 +1,4 @@
-//! The program `eeruf`: verify firing schedules, and see what the filter makes of recorded readings.
+//! The program `eeruf`: design, verify and study firing schedules, and see what the filter makes of recorded readings.
 //!
 //! One module for each verb; `input` reads files and reports what is wrong with them in one line.
 
@@ -7,10 +7,14 @@
 
 mod design;
 mod draw;
+mod fooled;
+mod illustrate;
 mod input;
+mod paths;
 mod replay;
 mod ring_file;
 mod search;
+mod study;
 mod timing;
 mod verify;
 mod watch;
@@ -35,6 +39,8 @@ enum Verb {
     Design(design::Args),
     Verify(verify::Args),
     Search(search::Args),
+    Study(study::Args),
+    Paths(paths::Args),
     Replay(replay::Args),
 }
 
@@ -51,6 +57,8 @@ fn main() -> ExitCode {
         Verb::Design(args) => design::run(&args),
         Verb::Verify(args) => verify::run(&args),
         Verb::Search(args) => search::run(&args),
+        Verb::Study(args) => study::run(&args),
+        Verb::Paths(args) => paths::run(&args),
         Verb::Replay(args) => replay::run(&args),
     };
     match answer {

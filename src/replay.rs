@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::Answer;
 use crate::draw;
-use crate::input::{InputError, to_json, write};
+use crate::input::{InputError, to_json};
 
 /// Run the filter over a log of real readings: which would it have believed?
 ///
@@ -32,7 +32,7 @@ pub(crate) struct Args {
     /// How many readings running must agree
     #[arg(long, default_value_t = 2, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=8))]
     consecutive: u8,
-    /// Draw what happened to each sensor over time
+    /// Draw what happened to each sensor over time, as SVG or, if the name ends in .png, as PNG
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
     /// Print one JSON object
@@ -57,7 +57,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let log = std::fs::File::open(&args.file).map_err(|error| InputError::new(&args.file, None, error))?;
     let columns = filter(args, log)?;
     if let Some(file) = &args.svg {
-        write(file, &draw::kinds_over_time(&columns, args.t_delta_us))?;
+        draw::kinds_over_time(&columns, args.t_delta_us).save(file)?;
     }
     let counts: Vec<_> = columns.iter().map(Counts::of).collect();
     let total = counts.iter().fold(Counts::default(), Counts::plus);

@@ -38,6 +38,7 @@ pub mod alhazen;
 mod amplitude;
 mod attribution;
 mod beam;
+pub mod best;
 pub mod clock;
 pub mod collide;
 pub mod crosstalk;

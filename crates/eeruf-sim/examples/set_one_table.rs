@@ -1,53 +1,55 @@
-//! Set I over random alcoves: one line for each method with the medians, and how fast it was.
+//! Set I over random alcoves: one line for each method.
 //!
-//! `cargo run --release -p eeruf-sim --example set_one_table -- [ALCOVES] [PERIODS]`
+//! `cargo run --release -p eeruf-sim --example set_one_table -- [ALCOVES]`
 
 use std::time::Instant;
 
-use eeruf_sim::{Method, Options, experiments::set_one::Alcove, quantile, simulate, sweep};
-
-/// What stands over the medians.
-const HEADINGS: [&str; 9] =
-    ["crosst. %", "of acc.", "before", "rejected", "lost", "age ms", "p99 ms", "acc./s", "readings/s"];
+use eeruf_sim::{
+    Method,
+    best::best_for,
+    experiments::{
+        Spread,
+        set_one::{Alcove, READINGS, set_one},
+    },
+};
 
 fn main() {
-    let argument = |place, default| std::env::args().nth(place).and_then(|text| text.parse().ok()).unwrap_or(default);
-    let alcoves: Vec<u64> = (0..argument(1, 80)).collect();
-    let options = Options::periods(argument(2, 1000) as u32);
+    let seeds = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(200);
+    let best = best_for(&Alcove::random(0).robot(), 300_000, |_| true).expect("eight sensors are not too many");
+    println!("best: {} (proven: {})", best.schedule.period(), best.proven);
+    let start = Instant::now();
+    let table = set_one(seeds, READINGS, &Method::ALL, Some(&best), &|_| true).expect("Set I fits every method");
+    let seconds = start.elapsed().as_secs_f64();
+    println!("{seeds} alcoves of {READINGS} readings in {seconds:.1} s; 10 % / median / 90 %");
     println!(
-        "{:16} {:>20}{}",
+        "{:16}{:>20}{:>20}{:>20}{:>20}{:>9}{:>9}{:>8}{:>8}",
         "method",
-        "wrong % p10 med p90",
-        HEADINGS.map(|heading| format!("{heading:>9}")).concat()
+        "wrong of all %",
+        "wrong of accepted %",
+        "rejected %",
+        "good lost %",
+        "age ms",
+        "99 %",
+        "per s",
+        "starved"
     );
-    for method in Method::ALL {
-        let start = Instant::now();
-        let summaries = sweep(&alcoves, |&number| {
-            let world = Alcove::random(number).world().expect("every random alcove has room");
-            simulate(&world, method, &options).expect("Set I fits every method").summary()
-        });
-        let seconds = start.elapsed().as_secs_f64();
-        let of = |share: f64, value: &dyn Fn(&eeruf_sim::Summary) -> f64| {
-            quantile(&mut summaries.iter().map(value).collect::<Vec<_>>(), share)
-        };
-        let median = |value: &dyn Fn(&eeruf_sim::Summary) -> f64| of(0.5, value);
-        let wrong = |s: &eeruf_sim::Summary| 100.0 * s.wrong_of_all;
-        let readings: usize = summaries.iter().map(|summary| summary.readings).sum();
+    let three = |spread: Option<Spread>| {
+        spread
+            .map_or_else(String::new, |s| format!("{:.2} {:.2} {:.2}", 100.0 * s.p10, 100.0 * s.median, 100.0 * s.p90))
+    };
+    let median = |spread: Option<Spread>| spread.map_or(f64::NAN, |s| s.median);
+    for (method, figures) in &table.methods {
         println!(
-            "{:16} {:6.2} {:6.2} {:6.2} {:8.2} {:8.2} {:8.2} {:8.2} {:8.2} {:8.1} {:8.1} {:8.1} {:10.0}",
+            "{:16}{:>20}{:>20}{:>20}{:>20}{:>9.0}{:>9.0}{:>8.1}{:>8.2}",
             method.as_str(),
-            of(0.1, &wrong),
-            median(&wrong),
-            of(0.9, &wrong),
-            median(&|s| 100.0 * s.crosstalk_of_all),
-            median(&|s| 100.0 * s.wrong_of_accepted.unwrap_or(0.0)),
-            median(&|s| 100.0 * s.wrong_before_filter),
-            median(&|s| 100.0 * s.rejected),
-            median(&|s| 100.0 * s.good_lost.unwrap_or(0.0)),
-            median(&|s| s.age_ms.median),
-            median(&|s| s.age_ms.p99),
-            median(&|s| s.readings_per_s),
-            readings as f64 / seconds,
+            three(figures.wrong_of_all),
+            three(figures.wrong_of_accepted),
+            three(figures.rejected),
+            three(figures.good_lost),
+            median(figures.age_ms),
+            median(figures.age_p99_ms),
+            median(figures.readings_per_s),
+            figures.starved
         );
     }
 }

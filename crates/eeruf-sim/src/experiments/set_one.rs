@@ -4,6 +4,10 @@
 //! radius 0.30 m in or near its mouth that heads into it within 20 degrees. Everything else is as [`Robot::ring`] has it: a
 //! period of 60 ms, a window of 36 ms, `T_delta` = 0.5 ms.
 
+mod table;
+
+pub use table::{Figures, READINGS, SetOne, set_one};
+
 use crate::{
     air::Air, error::SceneError, noise::Chance, noise::Noise, plane::Pose, plane::Vector, robot::Robot, scene::Scene,
     transducer::Transducer, wall::Wall, world::World, world::WorldError,

@@ -13,7 +13,7 @@ use crate::{
     robot::Robot,
     simulate::{Options, simulate_while, sweep},
     summary::Summary,
-    world::World,
+    world::{World, WorldError},
 };
 
 /// How many readings the paper has of one set-up; of the conventional method, and of all others in the same time.
@@ -120,7 +120,7 @@ pub fn set_one(
         let alcove = Alcove::random(number);
         let standard = alcove.world()?;
         let robot = Robot { t_delta: MULTI_ECHO_T_DELTA, ..alcove.robot() };
-        let narrow = World::new(alcove.scene()?, vec![robot], standard.noise())?;
+        let narrow = World::new(alcove.scene().map_err(WorldError::from)?, vec![robot], standard.noise())?;
         let mut summaries = Vec::with_capacity(methods.len());
         for &method in methods {
             let world = if method == Method::MultiEcho { &narrow } else { &standard };

@@ -381,7 +381,7 @@ fn verdict(runs: &[Readings], sensors: usize) -> String {
     if eeruf.starved > 0 {
         _ = write!(
             text,
-            ", and {} of {sensors} sensors never have one accepted: foreign sound always comes first there",
+            ", and {} of {sensors} sensors never had one accepted: foreign sound always came first there",
             eeruf.starved
         );
         if of(Method::MultiEcho).is_some_and(|several| several.starved < eeruf.starved) {

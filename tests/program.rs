@@ -1,48 +1,10 @@
 //! The program as its users call it: what it prints, and the exit code.
 
-use std::path::{Path, PathBuf};
+mod common;
+
 use std::process::Command;
 
-use serde_json::Value;
-
-struct Outcome {
-    code: Option<i32>,
-    out: String,
-    err: String,
-}
-
-fn eeruf(args: &[&str]) -> Outcome {
-    let output = Command::new(env!("CARGO_BIN_EXE_eeruf"))
-        .args(args)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .expect("the program was built beside this test");
-    let text = |bytes| String::from_utf8(bytes).expect("the program prints UTF-8");
-    Outcome { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
-}
-
-fn json(args: &[&str]) -> Value {
-    let outcome = eeruf(args);
-    assert_eq!(outcome.err, "");
-    assert_eq!(outcome.out.lines().count(), 1, "{}", outcome.out);
-    serde_json::from_str(&outcome.out).expect("one JSON object")
-}
-
-/// A file that is gone when this is dropped.
-struct Scratch(tempfile::TempDir);
-
-impl Scratch {
-    fn new(name: &str, contents: &str) -> (Self, PathBuf) {
-        let folder = tempfile::tempdir().expect("a folder for temporary files");
-        let file = folder.path().join(name);
-        std::fs::write(&file, contents).expect("it can be written to");
-        (Self(folder), file)
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-}
+use common::{Scratch, eeruf, json};
 
 #[test]
 fn table_i_d_is_verified_up_to_999_us_and_not_at_1000() {

@@ -13,6 +13,13 @@ const LANE: f64 = 28.0;
 /// Room at the right of each column for the number at the end of its longest bar.
 const ROOM: f64 = 50.0;
 
+/// A figure: its name, its unit, its colour, and how to take it from a summary.
+type Column = (&'static str, &'static str, RGBColor, fn(&Summary) -> Option<f64>);
+
+fn percent(share: Option<f64>) -> Option<f64> {
+    share.map(|share| 100.0 * share)
+}
+
 /// One line for each method, one column of bars for each figure.
 pub(crate) fn methods_chart(title: &str, summaries: &[Summary]) -> Picture {
     let bottom = TOP + LANE * summaries.len() as f64;
@@ -25,12 +32,11 @@ pub(crate) fn methods_chart(title: &str, summaries: &[Summary]) -> Picture {
         }
         picture.text_in(summary.method.to_string(), (LEFT - 10.0, y), CAPTION, HPos::Right, INK);
     }
-    let share = |share: Option<f64>| share.map(|share| 100.0 * share);
-    let columns: [(&str, &str, RGBColor, &dyn Fn(&Summary) -> Option<f64>); 4] = [
-        ("wrong", "of accepted, %", REJECTED, &|summary| share(summary.wrong_of_accepted)),
-        ("rejected", "of all, %", UNCOMPARED, &|summary| share(Some(summary.rejected))),
-        ("good lost", "of good, %", LISTENING, &|summary| share(summary.good_lost)),
-        ("accepted", "readings a second", ACCEPTED, &|summary| Some(summary.readings_per_s)),
+    let columns: [Column; 4] = [
+        ("wrong", "of accepted, %", REJECTED, |summary| percent(summary.wrong_of_accepted)),
+        ("rejected", "of all, %", UNCOMPARED, |summary| percent(Some(summary.rejected))),
+        ("good lost", "of good, %", LISTENING, |summary| percent(summary.good_lost)),
+        ("accepted", "readings a second", ACCEPTED, |summary| Some(summary.readings_per_s)),
     ];
     let column_width = (WIDTH - LEFT) / columns.len() as f64;
     for (place, (name, unit, colour, value_of)) in columns.into_iter().enumerate() {

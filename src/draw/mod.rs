@@ -2,8 +2,8 @@
 //!
 //! Shapes are handed to plotters' two backends: SVG as they are, bitmaps four times as large and then halved, which smooths
 //! edges and leaves two pixels for each of the picture's. Text in bitmaps is set in a part of DejaVu Sans (see `font/`), which
-//! travels in the program: what a PNG looks like does not depend on the machine. That is far lighter than rendering the SVG
-//! (`resvg` and what it needs are some 40 crates, `ab_glyph` and `png` five).
+//! travels in the program: what a PNG looks like does not depend on the machine. Rendering the SVG instead would need a parser
+//! for it, a text shaper and a second rasteriser (`resvg`); this way a glyph outliner (`ab_glyph`) and `png` are enough.
 
 mod crosstalk;
 mod kinds;

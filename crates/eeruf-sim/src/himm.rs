@@ -86,7 +86,7 @@ impl Himm {
     /// Takes in an echo: an obstacle `range_m` metres from `sensor` in the direction `heading_rad`, and nothing before it.
     /// Cells within `near_m` metres of the sensor, where it is deaf, are left as they are.
     pub fn echo(&mut self, sensor: Point, heading_rad: f64, near_m: f64, range_m: f64) {
-        if !(is_number(sensor, heading_rad) && range_m >= 0.0 && range_m < 1e4) {
+        if !(is_number(sensor, heading_rad) && (0.0..1e4).contains(&range_m)) {
             return;
         }
         let hit = self.cell_of(along(sensor, heading_rad, range_m));

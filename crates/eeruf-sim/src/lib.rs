@@ -6,7 +6,7 @@
 //! - [`Transducer`], [`Piston`], [`Material`] and [`Air`] turn a path into an amplitude; [`CrosstalkMatrix`] does so for a
 //!   whole ring and says who hears whom.
 //! - [`reception`] solves for the moment at which sound meets a moving receiver; [`Scene::contact`] for what a robot touches.
-//! - A [`World`] puts robots with rings, clocks and motions into a scene, from a TOML file or from code; [`simulate`] drives
+//! - A [`World`] puts robots with rings, clocks and motions into a scene, from a TOML file or from code; [`simulate()`] drives
 //!   the ring of `eeruf-core` through simulated time under a [`Method`]. Every one of the [`Readings`] knows what caused it;
 //!   [`Summary`] counts the errors and [`Attribution`] says who was fooled by whom.
 //!

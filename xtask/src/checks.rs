@@ -42,6 +42,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
         });
     }
     steps.step("tests and doctests", || run_cargo(&["test", "--workspace", "--locked"]));
+    steps.step("benches, each once", || run_cargo(&["test", "--package", "eeruf", "--benches", "--locked"]));
     steps.step("tests of the core's conversions", || {
         run_cargo(&["test", "--package", "eeruf-core", "--lib", "--locked", "--features", "fugit,serde", "interop"])
     });

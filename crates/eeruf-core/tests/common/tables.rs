@@ -41,7 +41,6 @@ pub struct One {
 
 impl File {
     pub fn read() -> Self {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/wait-tables.json");
-        serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+        serde_json::from_str(include_str!("../../../../tests/data/wait-tables.json")).unwrap()
     }
 }

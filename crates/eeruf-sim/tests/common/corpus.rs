@@ -5,8 +5,7 @@ use eeruf_sim::{Air, Faces, Point, Pole, Scene, Wall};
 use serde_json::Value;
 
 pub fn corpus() -> Value {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/critical-paths.json");
-    serde_json::from_str(&std::fs::read_to_string(file).unwrap()).unwrap()
+    serde_json::from_str(include_str!("../../../../tests/data/critical-paths.json")).unwrap()
 }
 
 pub fn numbers(value: &Value) -> Vec<f64> {

@@ -1,0 +1,187 @@
+//! Arguments: what is wrong with one is said by name, with its value and what is expected.
+
+use core::fmt::Display;
+use std::ops::RangeInclusive;
+
+use eeruf_core::{Criterion, Layout, MAX_SENSORS, Micros, Requirements};
+use numpy::{PyReadonlyArray2, prelude::*};
+use pyo3::{prelude::*, types::PyList};
+
+use crate::errors::ArgumentError;
+
+/// `NAME = VALUE; expected EXPECTED`.
+pub(crate) fn wrong(name: &str, value: impl Display, expected: impl Display) -> PyErr {
+    ArgumentError::new_err(format!("{name} = {value}; expected {expected}"))
+}
+
+fn shown(value: &Bound<'_, PyAny>) -> String {
+    let text = value.repr().map_or_else(|_| "?".to_owned(), |text| text.to_string());
+    if text.chars().count() > 60 { text.chars().take(57).collect::<String>() + "..." } else { text }
+}
+
+/// A whole number within a range.
+pub(crate) fn whole<T: TryFrom<i128> + TryInto<i128> + Copy>(
+    name: &str,
+    value: &Bound<'_, PyAny>,
+    range: RangeInclusive<T>,
+) -> PyResult<T> {
+    let bound = |end: &T| (*end).try_into().unwrap_or_default();
+    let (least, most) = (bound(range.start()), bound(range.end()));
+    // No bool: `sensors=True` is a slip, not a number.
+    let number = if value.is_instance_of::<pyo3::types::PyBool>() { None } else { value.extract::<i128>().ok() };
+    number
+        .filter(|number| (least..=most).contains(number))
+        .and_then(|number| T::try_from(number).ok())
+        .ok_or_else(|| wrong(name, shown(value), format_args!("a whole number from {least} to {most}")))
+}
+
+/// A time in whole microseconds.
+pub(crate) fn micros(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Micros> {
+    whole(name, value, 0..=u32::MAX).map(Micros::new)
+}
+
+/// A whole number, or the default where there is none.
+pub(crate) fn whole_or<T: TryFrom<i128> + TryInto<i128> + Copy>(
+    name: &str,
+    value: Option<&Bound<'_, PyAny>>,
+    default: T,
+    range: RangeInclusive<T>,
+) -> PyResult<T> {
+    value.map_or(Ok(default), |value| whole(name, value, range))
+}
+
+/// A finite number within a range.
+pub(crate) fn number(name: &str, value: &Bound<'_, PyAny>, range: RangeInclusive<f64>) -> PyResult<f64> {
+    match value.extract::<f64>() {
+        Ok(number) if range.contains(&number) => Ok(number),
+        _ => Err(wrong(name, shown(value), format_args!("a number from {} to {}", range.start(), range.end()))),
+    }
+}
+
+/// One time for each sensor, in whole microseconds.
+pub(crate) fn times(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<Micros>> {
+    let expected = "a sequence of whole numbers of microseconds, one for each sensor";
+    let items = value.try_iter().map_err(|_| wrong(name, shown(value), expected))?;
+    let mut times = Vec::new();
+    for (index, item) in items.enumerate() {
+        times.push(micros(&format!("{name}[{index}]"), &item?)?);
+    }
+    Ok(times)
+}
+
+/// A matrix of floats with so many columns.
+pub(crate) fn matrix<'py>(
+    name: &str,
+    value: &Bound<'py, PyAny>,
+    columns: usize,
+) -> PyResult<PyReadonlyArray2<'py, f64>> {
+    let py = value.py();
+    let expected = || format!("an array of floats of shape (n, {columns})");
+    let numpy = py.import("numpy")?;
+    let array = numpy
+        .call_method1("ascontiguousarray", (value, "float64"))
+        .map_err(|_| wrong(name, shown(value), expected()))?;
+    let empty = array.getattr("size")?.extract::<usize>()? == 0;
+    let array = if empty { array.call_method1("reshape", ((0, columns),))? } else { array };
+    match array.extract::<PyReadonlyArray2<'py, f64>>() {
+        Ok(matrix) if matrix.shape()[1] == columns => Ok(matrix),
+        _ => Err(wrong(&format!("shape of {name}"), array.getattr("shape")?, expected())),
+    }
+}
+
+/// A point or several: an array of shape (2,) or (n, 2), in metres.
+pub(crate) fn points(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<eeruf_sim::Point>> {
+    let numpy = value.py().import("numpy")?;
+    let array = numpy
+        .call_method1("atleast_2d", (value,))
+        .map_err(|_| wrong(name, shown(value), "an array of floats of shape (2,) or (n, 2), in metres"))?;
+    let matrix = matrix(name, &array, 2)?;
+    Ok(matrix.as_array().rows().into_iter().map(|row| eeruf_sim::Point::new(row[0], row[1])).collect())
+}
+
+/// How the sensors stand, with the rows of the graph if it is one.
+pub(crate) enum OwnedLayout {
+    Named(Layout<'static>),
+    Graph(Vec<u64>),
+}
+
+impl OwnedLayout {
+    pub(crate) fn new(layout: Option<&Bound<'_, PyAny>>, neighbours: u8) -> PyResult<Self> {
+        let Some(layout) = layout else { return Ok(Self::Named(Layout::Line(neighbours))) };
+        let expected = "\"line\", \"ring\", \"blocks\", or pairs of neighbours such as [(0, 1), (1, 2)]";
+        if let Ok(name) = layout.extract::<String>() {
+            return match name.as_str() {
+                "line" => Ok(Self::Named(Layout::Line(neighbours))),
+                "ring" => Ok(Self::Named(Layout::Ring(neighbours))),
+                "blocks" => Ok(Self::Named(Layout::Blocks(neighbours))),
+                _ => Err(wrong("layout", shown(layout), expected)),
+            };
+        }
+        let pairs: Vec<(usize, usize)> = layout
+            .try_iter()
+            .and_then(|items| PyList::new(layout.py(), items.collect::<PyResult<Vec<_>>>()?)?.extract())
+            .map_err(|_| wrong("layout", shown(layout), expected))?;
+        let mut rows = vec![0_u64; MAX_SENSORS];
+        for (x, y) in pairs {
+            if x >= MAX_SENSORS || y >= MAX_SENSORS || x == y {
+                return Err(wrong(
+                    "layout",
+                    format_args!("[({x}, {y})]"),
+                    "pairs of two different sensors from 0 to 63",
+                ));
+            }
+            rows[x] |= 1 << y;
+            rows[y] |= 1 << x;
+        }
+        Ok(Self::Graph(rows))
+    }
+
+    pub(crate) fn layout(&self) -> Layout<'_> {
+        match self {
+            Self::Named(layout) => *layout,
+            Self::Graph(rows) => Layout::Graph(rows),
+        }
+    }
+}
+
+/// How to read (13a), (13b).
+pub(crate) fn criterion(name: &str) -> PyResult<Criterion> {
+    match name {
+        "exact" => Ok(Criterion::Exact),
+        "paper" => Ok(Criterion::Paper),
+        _ => Err(wrong("criterion", format_args!("{name:?}"), "\"exact\" or \"paper\"")),
+    }
+}
+
+/// What a schedule must meet, as `verify`, `to_rust` and `to_c` take it.
+pub(crate) struct OwnedRequirements {
+    pub(crate) t_delta: Micros,
+    pub(crate) min_interval: Micros,
+    pub(crate) layout: OwnedLayout,
+    pub(crate) criterion: Criterion,
+    pub(crate) window: Micros,
+    pub(crate) stale_echo: bool,
+}
+
+impl OwnedRequirements {
+    pub(crate) fn requirements(&self) -> Requirements<'_> {
+        Requirements {
+            t_delta: self.t_delta,
+            criterion: self.criterion,
+            min_interval: self.min_interval,
+            layout: self.layout.layout(),
+            window: self.window,
+            stale_echo: self.stale_echo,
+        }
+    }
+}
+
+/// The number of neighbours: four, or what is said.
+pub(crate) fn neighbours(value: Option<&Bound<'_, PyAny>>) -> PyResult<u8> {
+    whole_or("neighbours", value, 4, 1..=MAX_SENSORS as u8)
+}
+
+/// The number of sensors.
+pub(crate) fn sensors(value: &Bound<'_, PyAny>) -> PyResult<usize> {
+    whole("sensors", value, 1..=MAX_SENSORS as u32).map(|sensors| sensors as usize)
+}

@@ -1,0 +1,95 @@
+//! `EchoFilter`.
+
+use eeruf_core::{MAX_SENSORS, Micros};
+use numpy::{PyArray2, prelude::*};
+use pyo3::prelude::*;
+
+use crate::{
+    arguments::{self, matrix, micros, whole, whole_or, wrong},
+    errors::{ArgumentError, Raise},
+    ring::Reading,
+};
+
+/// Compares the consecutive readings of each sensor.
+#[pyclass(module = "eeruf")]
+pub(crate) struct EchoFilter {
+    filter: eeruf_core::EchoFilter<MAX_SENSORS>,
+    #[pyo3(get)]
+    sensors: usize,
+    #[pyo3(get)]
+    t_delta_us: u32,
+    #[pyo3(get)]
+    consecutive: u8,
+}
+
+#[pymethods]
+impl EchoFilter {
+    #[new]
+    #[pyo3(signature = (sensors, t_delta_us, consecutive=None), text_signature = "(sensors, t_delta_us, consecutive=2)")]
+    fn new(
+        sensors: &Bound<'_, PyAny>,
+        t_delta_us: &Bound<'_, PyAny>,
+        consecutive: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let (sensors, t_delta) = (arguments::sensors(sensors)?, micros("t_delta_us", t_delta_us)?);
+        let consecutive = whole_or("consecutive", consecutive, 2, 0..=u8::MAX)?;
+        let filter = eeruf_core::EchoFilter::new(t_delta, consecutive).map_err(Raise::raise)?;
+        Ok(Self { filter, sensors, t_delta_us: t_delta.as_micros(), consecutive })
+    }
+
+    #[pyo3(signature = (sensor, t_echo_us, expected_change_us=None), text_signature = "($self, sensor, t_echo_us, expected_change_us=0)")]
+    fn push(
+        &mut self,
+        sensor: &Bound<'_, PyAny>,
+        t_echo_us: Option<&Bound<'_, PyAny>>,
+        expected_change_us: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Reading> {
+        let sensor = self.sensor(sensor)?;
+        let echo = t_echo_us.map(|echo| micros("t_echo_us", echo)).transpose()?;
+        let change = whole_or("expected_change_us", expected_change_us, 0, i32::MIN..=i32::MAX)?;
+        let verdict = self.filter.push_echoes(sensor, echo.as_slice(), change).map_err(Raise::raise)?;
+        Ok(Reading::of_filter(sensor, &verdict))
+    }
+
+    #[pyo3(signature = (t_echo_us))]
+    fn push_many<'py>(&mut self, py: Python<'py>, t_echo_us: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<u8>>> {
+        let echoes = matrix("t_echo_us", t_echo_us, self.sensors)?;
+        let echoes = echoes.as_slice().map_err(|error| ArgumentError::new_err(error.to_string()))?;
+        if let Some(at) = echoes.iter().position(|&us| !(us.is_nan() || (0.0..=f64::from(u32::MAX)).contains(&us))) {
+            let name = format!("t_echo_us[{}, {}]", at / self.sensors, at % self.sensors);
+            return Err(wrong(&name, echoes[at], format_args!("0 to {} microseconds, or nan for no echo", u32::MAX)));
+        }
+        let mut kinds = vec![0; echoes.len()];
+        let (filter, sensors) = (&mut self.filter, self.sensors);
+        let pushed = py.detach(|| {
+            for (row, kinds) in echoes.chunks_exact(sensors).zip(kinds.chunks_exact_mut(sensors)) {
+                for (sensor, (&us, kind)) in row.iter().zip(kinds).enumerate() {
+                    // Rounded to whole microseconds, which core counts in; in range, as was just checked.
+                    let echo = (!us.is_nan()).then(|| Micros::new(us.round() as u32));
+                    *kind = filter.push(sensor, echo)?.kind as u8;
+                }
+            }
+            Ok(())
+        });
+        pushed.map_err(|error: eeruf_core::FilterError| error.raise())?;
+        numpy::PyArray1::from_vec(py, kinds).reshape([echoes.len() / self.sensors, self.sensors])
+    }
+
+    #[pyo3(signature = (sensor))]
+    fn forget(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+        let sensor = self.sensor(sensor)?;
+        self.filter.forget(sensor);
+        Ok(())
+    }
+
+    fn __repr__(&self) -> String {
+        let Self { sensors, t_delta_us, consecutive, .. } = self;
+        format!("EchoFilter(sensors={sensors}, t_delta_us={t_delta_us}, consecutive={consecutive})")
+    }
+}
+
+impl EchoFilter {
+    fn sensor(&self, sensor: &Bound<'_, PyAny>) -> PyResult<usize> {
+        whole("sensor", sensor, 0..=self.sensors as u32 - 1).map(|sensor| sensor as usize)
+    }
+}

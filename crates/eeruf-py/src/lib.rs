@@ -1,0 +1,52 @@
+//! `eeruf._eeruf`: the compiled part of the Python package. One file for each concept; what they do is in `eeruf-core` and
+//! `eeruf-sim`, here it only changes its clothes: microseconds as `int`, many numbers as NumPy arrays, errors as exceptions.
+//! What users read is in `python/eeruf`.
+
+mod arguments;
+mod errors;
+mod experiments;
+mod filter;
+mod paths;
+mod readings;
+mod report;
+mod ring;
+mod robot;
+mod scene;
+mod schedule;
+mod search;
+mod watch;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _eeruf {
+    #[pymodule_export]
+    use crate::{
+        errors::{
+            ArgumentError, EerufError, ExperimentError, FilterError, PathsError, RingError, SceneError, ScheduleError,
+            SearchError, SimulationError,
+        },
+        experiments::set_one,
+        filter::EchoFilter,
+        paths::Paths,
+        readings::Readings,
+        readings::{readings_from_columns, simulate},
+        report::{Report, Violation},
+        ring::{Fire, PeriodEnded, Reading, Ring},
+        robot::Robot,
+        scene::{Scene, scene_from_text},
+        schedule::Schedule,
+        search::{Found, WaitSearch, WaitTables, design},
+    };
+    use pyo3::prelude::*;
+    use pyo3::types::PyTuple;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let kinds = eeruf_core::Kind::ALL.map(eeruf_core::Kind::as_str);
+        module.add("KINDS", PyTuple::new(module.py(), kinds)?)?;
+        let methods = eeruf_sim::Method::ALL.map(eeruf_sim::Method::as_str);
+        module.add("METHODS", PyTuple::new(module.py(), methods)?)?;
+        module.add("CAUSES", PyTuple::new(module.py(), crate::readings::CAUSES)?)
+    }
+}

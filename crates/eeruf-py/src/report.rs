@@ -1,0 +1,129 @@
+//! `Report` and its `Violation`s.
+
+use eeruf_core::{MAX_SENSORS, Micros};
+use pyo3::{prelude::*, types::PyTuple};
+
+/// One condition that a schedule does not meet.
+#[pyclass(frozen, eq, hash, get_all, module = "eeruf", from_py_object)]
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Violation {
+    kind: String,
+    sensors: (u8, u8),
+    phases: (String, String),
+    value_us: u32,
+    required_us: u32,
+    source: String,
+}
+
+#[pymethods]
+impl Violation {
+    #[new]
+    #[pyo3(signature = (kind, sensors, phases, value_us, required_us, source))]
+    fn new(
+        kind: String,
+        sensors: (u8, u8),
+        phases: (String, String),
+        value_us: u32,
+        required_us: u32,
+        source: String,
+    ) -> Self {
+        Self { kind, sensors, phases, value_us, required_us, source }
+    }
+
+    fn __repr__(&self) -> String {
+        let Self { kind, sensors: (x, y), phases: (p, q), value_us, required_us, source } = self;
+        format!(
+            "Violation(kind='{kind}', sensors=({x}, {y}), phases=('{p}', '{q}'), value_us={value_us}, \
+             required_us={required_us}, source='{source}')"
+        )
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let Self { kind, sensors, phases, value_us, required_us, source } = slf.get();
+        let arguments = (kind, sensors, phases, value_us, required_us, source).into_pyobject(slf.py())?;
+        Ok((slf.get_type().into_any(), arguments))
+    }
+}
+
+/// What `Schedule.verify` found.
+#[pyclass(frozen, eq, hash, module = "eeruf")]
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Report {
+    #[pyo3(get)]
+    separation_us: Option<u32>,
+    #[pyo3(get)]
+    max_t_delta_us: Option<u32>,
+    #[pyo3(get)]
+    min_interval_us: Option<u32>,
+    #[pyo3(get)]
+    min_refire_us: u32,
+    violations: Vec<Violation>,
+}
+
+impl Report {
+    pub(crate) fn of(report: &eeruf_core::Report<'_, MAX_SENSORS>) -> Self {
+        let violations = report.violations().map(|violation| Violation {
+            kind: violation.kind.as_str().to_owned(),
+            sensors: violation.sensors,
+            phases: (violation.phases.0.to_string(), violation.phases.1.to_string()),
+            value_us: violation.value.as_micros(),
+            required_us: violation.required.as_micros(),
+            source: violation.kind.source().to_owned(),
+        });
+        Self {
+            separation_us: report.separation().map(|separation| separation.value.as_micros()),
+            max_t_delta_us: report.max_t_delta().map(Micros::as_micros),
+            min_interval_us: report.min_interval().map(|interval| interval.value.as_micros()),
+            min_refire_us: report.min_refire().as_micros(),
+            violations: violations.collect(),
+        }
+    }
+}
+
+#[pymethods]
+impl Report {
+    #[new]
+    #[pyo3(signature = (separation_us, max_t_delta_us, min_interval_us, min_refire_us, violations))]
+    fn new(
+        separation_us: Option<u32>,
+        max_t_delta_us: Option<u32>,
+        min_interval_us: Option<u32>,
+        min_refire_us: u32,
+        violations: Vec<Violation>,
+    ) -> Self {
+        Self { separation_us, max_t_delta_us, min_interval_us, min_refire_us, violations }
+    }
+
+    #[getter]
+    fn ok(&self) -> bool {
+        self.violations.is_empty()
+    }
+
+    #[getter]
+    fn violations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.violations.iter().cloned())
+    }
+
+    fn __bool__(&self) -> bool {
+        self.ok()
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let shown = |value: Option<u32>| value.map_or_else(|| "None".to_owned(), |value| value.to_string());
+        Ok(format!(
+            "Report(separation_us={}, max_t_delta_us={}, min_interval_us={}, min_refire_us={}, violations={})",
+            shown(self.separation_us),
+            shown(self.max_t_delta_us),
+            shown(self.min_interval_us),
+            self.min_refire_us,
+            self.violations(py)?.repr()?
+        ))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let (py, this) = (slf.py(), slf.get());
+        let violations = this.violations(py)?;
+        let arguments = (this.separation_us, this.max_t_delta_us, this.min_interval_us, this.min_refire_us, violations);
+        Ok((slf.get_type().into_any(), arguments.into_pyobject(py)?))
+    }
+}

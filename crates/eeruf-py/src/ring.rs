@@ -1,0 +1,245 @@
+//! `Ring` and its events.
+
+use eeruf_core::{Config, Event, Instant, Kind, MAX_SENSORS, Micros, ScheduledRing, Verdict};
+use eeruf_sim::AnySchedule;
+use pyo3::{
+    IntoPyObjectExt,
+    prelude::*,
+    types::{PyDict, PyTuple},
+};
+
+use crate::{
+    arguments::{micros, whole, whole_or},
+    errors::Raise,
+    schedule::Schedule,
+};
+
+/// The ring is to fire a sensor.
+#[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Fire {
+    sensor: u8,
+}
+
+#[pymethods]
+impl Fire {
+    #[new]
+    #[pyo3(signature = (sensor))]
+    fn new(sensor: u8) -> Self {
+        Self { sensor }
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Fire(sensor={})", self.sensor)
+    }
+}
+
+/// What one firing told.
+#[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Reading {
+    sensor: u8,
+    kind: String,
+    t_echo_us: Option<u32>,
+    previous_us: Option<u32>,
+    age: Option<u16>,
+    phase: Option<u8>,
+    period: Option<u32>,
+}
+
+impl Reading {
+    /// From a filter alone, which knows no phases.
+    pub(crate) fn of_filter(sensor: usize, verdict: &Verdict) -> Self {
+        Self {
+            // Below 64.
+            sensor: sensor as u8,
+            kind: verdict.kind.as_str().to_owned(),
+            t_echo_us: verdict.t_echo.map(Micros::as_micros),
+            previous_us: verdict.previous.map(Micros::as_micros),
+            age: verdict.age,
+            phase: None,
+            period: None,
+        }
+    }
+}
+
+#[pymethods]
+impl Reading {
+    #[new]
+    #[pyo3(signature = (sensor, kind, t_echo_us=None, previous_us=None, age=None, phase=None, period=None))]
+    fn new(
+        sensor: u8,
+        kind: String,
+        t_echo_us: Option<u32>,
+        previous_us: Option<u32>,
+        age: Option<u16>,
+        phase: Option<u8>,
+        period: Option<u32>,
+    ) -> Self {
+        Self { sensor, kind, t_echo_us, previous_us, age, phase, period }
+    }
+
+    fn __repr__(&self) -> String {
+        let shown = |value: Option<u32>| value.map_or_else(|| "None".to_owned(), |value| value.to_string());
+        format!(
+            "Reading(sensor={}, kind='{}', t_echo_us={}, previous_us={}, age={}, phase={}, period={})",
+            self.sensor,
+            self.kind,
+            shown(self.t_echo_us),
+            shown(self.previous_us),
+            shown(self.age.map(u32::from)),
+            shown(self.phase.map(u32::from)),
+            shown(self.period)
+        )
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let Self { sensor, kind, t_echo_us, previous_us, age, phase, period } = slf.get();
+        let arguments = (sensor, kind, t_echo_us, previous_us, age, phase, period).into_pyobject(slf.py())?;
+        Ok((slf.get_type().into_any(), arguments))
+    }
+}
+
+/// A period has ended.
+#[pyclass(frozen, get_all, module = "eeruf")]
+pub(crate) struct PeriodEnded {
+    period: u32,
+    phase: u8,
+    max_late_us: u32,
+    tally: Py<PyDict>,
+}
+
+#[pymethods]
+impl PeriodEnded {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let Self { period, phase, max_late_us, tally } = self;
+        let tally = tally.bind(py).repr()?;
+        Ok(format!("<PeriodEnded period={period} phase={phase} max_late_us={max_late_us} tally={tally}>"))
+    }
+}
+
+type Scheduled<'s> = ScheduledRing<'s, MAX_SENSORS>;
+
+self_cell::self_cell!(
+    /// A ring with the schedule that it borrows.
+    struct Owned {
+        owner: Box<AnySchedule>,
+        #[covariant]
+        dependent: Scheduled,
+    }
+);
+
+/// Scheduler and filter together, as the firmware runs them.
+#[pyclass(module = "eeruf")]
+pub(crate) struct Ring {
+    ring: Owned,
+    sensors: u32,
+}
+
+impl Ring {
+    fn sensor(&self, sensor: &Bound<'_, PyAny>) -> PyResult<u8> {
+        whole("sensor", sensor, 0..=self.sensors - 1).map(|sensor| sensor as u8)
+    }
+
+    fn change(&mut self, change: impl FnOnce(&mut Scheduled<'_>)) {
+        self.ring.with_dependent_mut(|_, ring| change(ring));
+    }
+}
+
+/// A moment on a clock that wraps at 2^32 us: larger numbers are what such a clock would show.
+fn instant(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Instant> {
+    whole(name, value, 0..=u64::MAX).map(|us| Instant::from_micros(us as u32))
+}
+
+#[pymethods]
+impl Ring {
+    #[new]
+    #[pyo3(signature = (schedule, t_delta_us, now_us=None, *, window_us, blanking_us=None, consecutive=None))]
+    #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us, blanking_us=0, consecutive=2)")]
+    fn new(
+        schedule: &Bound<'_, Schedule>,
+        t_delta_us: &Bound<'_, PyAny>,
+        now_us: Option<&Bound<'_, PyAny>>,
+        window_us: &Bound<'_, PyAny>,
+        blanking_us: Option<&Bound<'_, PyAny>>,
+        consecutive: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let config = Config {
+            blanking: blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?,
+            consecutive: whole_or("consecutive", consecutive, 2, 0..=u8::MAX)?,
+            ..Config::new(micros("t_delta_us", t_delta_us)?, micros("window_us", window_us)?)
+        };
+        let now = now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))?;
+        let schedule = schedule.get().0;
+        let ring = Owned::try_new(Box::new(schedule), |schedule| Scheduled::new(schedule, config, now));
+        // At most 64.
+        Ok(Self { ring: ring.map_err(Raise::raise)?, sensors: schedule.sensors() as u32 })
+    }
+
+    #[pyo3(signature = (now_us))]
+    fn poll<'py>(&mut self, now_us: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let (py, now) = (now_us.py(), instant("now_us", now_us)?);
+        let event = self.ring.with_dependent_mut(|_, ring| ring.poll(now));
+        let event = match event {
+            None => return Ok(None),
+            Some(Event::Fire(sensor)) => Fire { sensor }.into_bound_py_any(py),
+            Some(Event::Reading(reading)) => Reading {
+                sensor: reading.sensor,
+                kind: reading.kind.as_str().to_owned(),
+                t_echo_us: reading.t_echo.map(Micros::as_micros),
+                previous_us: reading.previous.map(Micros::as_micros),
+                age: reading.age,
+                phase: Some(reading.phase.0),
+                period: Some(reading.period),
+            }
+            .into_bound_py_any(py),
+            Some(Event::PeriodEnded(stats)) => {
+                let tally = PyDict::new(py);
+                for kind in Kind::ALL {
+                    tally.set_item(kind.as_str(), stats.tally.of(kind))?;
+                }
+                let (period, phase, max_late_us) = (stats.period, stats.phase.0, stats.max_late.as_micros());
+                PeriodEnded { period, phase, max_late_us, tally: tally.unbind() }.into_bound_py_any(py)
+            }
+        };
+        event.map(Some)
+    }
+
+    #[getter]
+    fn next_deadline_us(&self) -> u32 {
+        self.ring.borrow_dependent().next_deadline().as_micros()
+    }
+
+    #[getter]
+    fn schedule(&self) -> Schedule {
+        Schedule(**self.ring.borrow_owner())
+    }
+
+    #[pyo3(signature = (sensor, at_us))]
+    fn echo(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
+        self.change(|ring| ring.echo(sensor, at));
+        Ok(())
+    }
+
+    #[pyo3(signature = (sensor))]
+    fn stuck(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+        let sensor = self.sensor(sensor)?;
+        self.change(|ring| ring.stuck(sensor));
+        Ok(())
+    }
+
+    #[pyo3(signature = (sensor))]
+    fn disable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+        let sensor = self.sensor(sensor)?;
+        self.change(|ring| ring.disable(sensor));
+        Ok(())
+    }
+
+    #[pyo3(signature = (sensor))]
+    fn enable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+        let sensor = self.sensor(sensor)?;
+        self.change(|ring| ring.enable(sensor));
+        Ok(())
+    }
+}

@@ -1,0 +1,130 @@
+//! `sim.Robot`: a robot with its ring, for scenes built in code.
+
+use eeruf_core::Micros;
+use eeruf_sim::{Pose, Transducer, Vector};
+use pyo3::{prelude::*, types::PyTuple};
+
+use crate::{
+    arguments::{self, micros, number, wrong},
+    schedule::Schedule,
+};
+
+/// A robot that stands, with sensors on an arc.
+#[pyclass(frozen, eq, module = "eeruf.sim", from_py_object)]
+#[derive(Clone, PartialEq)]
+pub(crate) struct Robot {
+    pub(crate) robot: eeruf_sim::Robot,
+    #[pyo3(get)]
+    pose: (f64, f64, f64),
+    spacing_rad: f64,
+    radius_m: f64,
+    transducer: String,
+}
+
+fn transducer(name: &str) -> PyResult<Transducer> {
+    match name {
+        "polaroid_6500" => Ok(Transducer::POLAROID_6500),
+        "hc_sr04" => Ok(Transducer::HC_SR04),
+        _ => Err(wrong("transducer", format_args!("{name:?}"), "\"polaroid_6500\" or \"hc_sr04\"")),
+    }
+}
+
+#[pymethods]
+impl Robot {
+    #[new]
+    #[pyo3(signature = (pose, sensors, spacing_rad, radius_m, transducer="polaroid_6500", *, period_us=None, t_delta_us=None, window_us=None, schedule=None))]
+    #[pyo3(
+        text_signature = "(pose, sensors, spacing_rad, radius_m, transducer=\"polaroid_6500\", *, period_us=60000, t_delta_us=500, window_us=36000, schedule=None)"
+    )]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+    fn new(
+        pose: (Bound<'_, PyAny>, Bound<'_, PyAny>, Bound<'_, PyAny>),
+        sensors: &Bound<'_, PyAny>,
+        spacing_rad: &Bound<'_, PyAny>,
+        radius_m: &Bound<'_, PyAny>,
+        transducer: &str,
+        period_us: Option<&Bound<'_, PyAny>>,
+        t_delta_us: Option<&Bound<'_, PyAny>>,
+        window_us: Option<&Bound<'_, PyAny>>,
+        schedule: Option<&Bound<'_, Schedule>>,
+    ) -> PyResult<Self> {
+        let metres = -1e6..=1e6;
+        let pose = (
+            number("pose[0]", &pose.0, metres.clone())?,
+            number("pose[1]", &pose.1, metres)?,
+            number("pose[2]", &pose.2, -1e6..=1e6)?,
+        );
+        let spacing_rad = number("spacing_rad", spacing_rad, -10.0..=10.0)?;
+        let radius_m = number("radius_m", radius_m, 0.0..=1e3)?;
+        let at = Pose::new(Vector::new(pose.0, pose.1), pose.2);
+        let name = transducer;
+        let transducer = self::transducer(name)?;
+        let mut robot = eeruf_sim::Robot::ring(at, arguments::sensors(sensors)?, spacing_rad, radius_m, transducer);
+        let set = |name, value: Option<&Bound<'_, PyAny>>, field: &mut Micros| {
+            value.map_or(Ok(()), |value| micros(name, value).map(|us| *field = us))
+        };
+        set("period_us", period_us, &mut robot.period)?;
+        set("t_delta_us", t_delta_us, &mut robot.t_delta)?;
+        set("window_us", window_us, &mut robot.window)?;
+        robot.schedule = schedule.map(|schedule| schedule.get().0);
+        if let (Some(schedule), None) = (robot.schedule, period_us) {
+            robot.period = schedule.period();
+        }
+        Ok(Self { robot, pose, spacing_rad, radius_m, transducer: name.to_owned() })
+    }
+
+    #[getter]
+    fn sensors(&self) -> usize {
+        self.robot.sensors.len()
+    }
+
+    #[getter]
+    fn period_us(&self) -> u32 {
+        self.robot.period.as_micros()
+    }
+
+    #[getter]
+    fn t_delta_us(&self) -> u32 {
+        self.robot.t_delta.as_micros()
+    }
+
+    #[getter]
+    fn window_us(&self) -> u32 {
+        self.robot.window.as_micros()
+    }
+
+    #[getter]
+    fn schedule(&self) -> Option<Schedule> {
+        self.robot.schedule.map(Schedule)
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let schedule = self.schedule().into_pyobject(py)?.repr()?.to_string();
+        let Self { pose, spacing_rad, radius_m, transducer, .. } = self;
+        Ok(format!(
+            "Robot(pose={pose:?}, sensors={}, spacing_rad={spacing_rad:?}, radius_m={radius_m:?}, transducer='{transducer}', \
+             period_us={}, t_delta_us={}, window_us={}, schedule={schedule})",
+            self.sensors(),
+            self.period_us(),
+            self.t_delta_us(),
+            self.window_us(),
+        ))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let (py, this) = (slf.py(), slf.get());
+        let fields = (
+            this.pose,
+            this.sensors(),
+            this.spacing_rad,
+            this.radius_m,
+            &this.transducer,
+            this.period_us(),
+            this.t_delta_us(),
+            this.window_us(),
+            this.schedule(),
+        );
+        let rebuild = py.import("eeruf._rebuild")?.getattr("robot")?;
+        Ok((rebuild, fields.into_pyobject(py)?))
+    }
+}

@@ -1,0 +1,225 @@
+//! `sim.Scene`: walls and poles, and the robots among them if there are any.
+
+use std::path::{Path, PathBuf};
+
+use eeruf_sim::{Air, Faces, Noise, Pole, Wall, World};
+use numpy::{PyArray1, PyArray2, prelude::*};
+use pyo3::{
+    prelude::*,
+    types::{PyDict, PyTuple},
+};
+
+use crate::{
+    arguments::{matrix, number, points, whole, whole_or, wrong},
+    errors::{Raise, SceneError},
+    paths::Paths,
+    robot::Robot,
+};
+
+/// Walls alone, or a world with robots.
+enum Contents {
+    Walls(Box<eeruf_sim::Scene>),
+    World(Box<World>),
+}
+
+/// How a scene was made: what it takes to make it again.
+enum Source {
+    Toml { file: PathBuf, text: String },
+    Code(Py<PyDict>),
+}
+
+/// Walls, poles and robots.
+#[pyclass(frozen, module = "eeruf.sim")]
+pub(crate) struct Scene {
+    contents: Contents,
+    source: Source,
+}
+
+impl Scene {
+    pub(crate) fn scene(&self) -> &eeruf_sim::Scene {
+        match &self.contents {
+            Contents::Walls(scene) => scene,
+            Contents::World(world) => world.scene(),
+        }
+    }
+
+    pub(crate) fn world(&self) -> PyResult<&World> {
+        match &self.contents {
+            Contents::World(world) => Ok(world),
+            Contents::Walls(_) => Err(SceneError::new_err("a scene of 0 robots; expected 1 or more to simulate")),
+        }
+    }
+
+    fn from_source(file: PathBuf, text: String) -> PyResult<Self> {
+        let world = World::from_text(&file, &text).map_err(Raise::raise)?;
+        Ok(Self { contents: Contents::World(Box::new(world)), source: Source::Toml { file, text } })
+    }
+}
+
+/// A scene from the text of a file, as a pickle holds it.
+#[pyfunction]
+#[pyo3(name = "_scene_from_text", signature = (file, text))]
+pub(crate) fn scene_from_text(file: PathBuf, text: String) -> PyResult<Scene> {
+    Scene::from_source(file, text)
+}
+
+fn indices(name: &str, value: Option<&Bound<'_, PyAny>>, walls: usize) -> PyResult<Vec<usize>> {
+    let Some(value) = value else { return Ok(vec![]) };
+    if walls == 0 {
+        return Ok(vec![]);
+    }
+    let items = value.try_iter().map_err(|_| wrong(name, value, "a sequence of indices of walls"))?;
+    let index =
+        |item: PyResult<Bound<'_, PyAny>>| whole(name, &item?, 0..=walls as u64 - 1).map(|index| index as usize);
+    items.map(index).collect()
+}
+
+#[pymethods]
+impl Scene {
+    #[new]
+    #[pyo3(signature = (walls, open=None, two_sided=None, poles=None, *, temperature_c=None, robots=vec![], noise=true, seed=None, max_order=None))]
+    #[pyo3(
+        text_signature = "(walls, open=None, two_sided=None, poles=None, *, temperature_c=20.0, robots=(), noise=True, seed=1, max_order=6)"
+    )]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+    fn new(
+        py: Python<'_>,
+        walls: &Bound<'_, PyAny>,
+        open: Option<&Bound<'_, PyAny>>,
+        two_sided: Option<&Bound<'_, PyAny>>,
+        poles: Option<&Bound<'_, PyAny>>,
+        temperature_c: Option<&Bound<'_, PyAny>>,
+        robots: Vec<Robot>,
+        noise: bool,
+        seed: Option<&Bound<'_, PyAny>>,
+        max_order: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let made_of = PyDict::new(py);
+        let rows = matrix("walls", walls, 4)?;
+        made_of.set_item("walls", PyArray2::from_array(py, &rows.as_array()))?;
+        let mut built: Vec<_> =
+            rows.as_array().rows().into_iter().map(|row| Wall::new(row[0], row[1], row[2], row[3])).collect();
+        for (name, which, faces) in [("open", open, Faces::Open), ("two_sided", two_sided, Faces::Both)] {
+            let indices = indices(name, which, built.len())?;
+            made_of.set_item(name, &indices)?;
+            for index in indices {
+                built[index].faces = faces;
+            }
+        }
+        let mut standing = vec![];
+        if let Some(poles) = poles {
+            let rows = matrix("poles", poles, 3)?;
+            made_of.set_item("poles", PyArray2::from_array(py, &rows.as_array()))?;
+            standing.extend(rows.as_array().rows().into_iter().map(|row| Pole::new(row[0], row[1], row[2])));
+        }
+        let celsius = temperature_c.map_or(Ok(20.0), |celsius| number("temperature_c", celsius, -100.0..=100.0))?;
+        let seed = whole_or("seed", seed, 1, 0..=u64::MAX)?;
+        let order = max_order.map(|order| whole("max_order", order, 0..=u32::MAX)).transpose()?;
+        made_of.set_item("temperature_c", celsius)?;
+        made_of.set_item("robots", PyTuple::new(py, robots.iter().cloned())?)?;
+        made_of.set_item("noise", noise)?;
+        made_of.set_item("seed", seed)?;
+        made_of.set_item("max_order", order)?;
+        let scene = py.detach(|| eeruf_sim::Scene::new(built, standing, Air::at(celsius))).map_err(Raise::raise)?;
+        let source = Source::Code(made_of.unbind());
+        if robots.is_empty() {
+            return Ok(Self { contents: Contents::Walls(Box::new(scene)), source });
+        }
+        let noise = if noise { Noise::default() } else { Noise::NONE };
+        let robots = robots.into_iter().map(|robot| robot.robot).collect();
+        let mut world = World::new(scene, robots, noise).map_err(Raise::raise)?.with_seed(seed);
+        if let Some(order) = order {
+            world = world.with_max_order(order).map_err(Raise::raise)?;
+        }
+        Ok(Self { contents: Contents::World(Box::new(world)), source })
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (path))]
+    fn from_toml(path: PathBuf) -> PyResult<Self> {
+        let text = std::fs::read_to_string(&path)
+            .map_err(|error| SceneError::new_err(format!("{}: {error}", path.display())))?;
+        Self::from_source(path, text)
+    }
+
+    #[getter]
+    fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let walls = self.scene().walls();
+        let flat = walls.iter().flat_map(|wall| [wall.from.x, wall.from.y, wall.to.x, wall.to.y]).collect();
+        PyArray1::from_vec(py, flat).reshape([walls.len(), 4])
+    }
+
+    #[getter]
+    fn open(&self) -> Vec<usize> {
+        self.with_faces(Faces::Open)
+    }
+
+    #[getter]
+    fn two_sided(&self) -> Vec<usize> {
+        self.with_faces(Faces::Both)
+    }
+
+    #[getter]
+    fn poles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let poles = self.scene().poles();
+        let flat = poles.iter().flat_map(|pole| [pole.centre.x, pole.centre.y, pole.radius_m]).collect();
+        PyArray1::from_vec(py, flat).reshape([poles.len(), 3])
+    }
+
+    #[getter]
+    fn robots(&self) -> usize {
+        match &self.contents {
+            Contents::Walls(_) => 0,
+            Contents::World(world) => world.robots().len(),
+        }
+    }
+
+    #[getter]
+    fn temperature_c(&self) -> f64 {
+        self.scene().air().temperature_c
+    }
+
+    #[pyo3(signature = (source, receivers, max_order, max_length_m=f64::INFINITY))]
+    fn paths(
+        slf: &Bound<'_, Self>,
+        source: &Bound<'_, PyAny>,
+        receivers: &Bound<'_, PyAny>,
+        max_order: &Bound<'_, PyAny>,
+        max_length_m: f64,
+    ) -> PyResult<Paths> {
+        let at = points("source", source)?;
+        let [from] = at[..] else { return Err(wrong("source", source.repr()?, "one point (x, y) in metres")) };
+        let receivers = points("receivers", receivers)?;
+        let max_order = whole("max_order", max_order, 0..=u32::MAX)?;
+        let scene = slf.get().scene();
+        let paths = slf.py().detach(|| scene.paths(from, &receivers, max_order, max_length_m));
+        let paths = paths.map_err(Raise::raise)?;
+        Ok(Paths { paths, source: from, receivers, scene: slf.clone().unbind() })
+    }
+
+    fn __repr__(&self) -> String {
+        let (walls, poles) = (self.scene().walls().len(), self.scene().poles().len());
+        let origin = match &self.source {
+            Source::Toml { file, .. } => format!(" from {}", Path::display(file)),
+            Source::Code(_) => String::new(),
+        };
+        format!("<Scene{origin}: {walls} walls, {poles} poles, {} robots>", self.robots())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let py = slf.py();
+        let rebuild = py.import("eeruf._rebuild")?.getattr("scene")?;
+        let arguments = match &slf.get().source {
+            Source::Toml { file, text } => (file, text).into_pyobject(py)?,
+            Source::Code(made_of) => (made_of,).into_pyobject(py)?,
+        };
+        Ok((rebuild, arguments))
+    }
+}
+
+impl Scene {
+    fn with_faces(&self, faces: Faces) -> Vec<usize> {
+        let walls = self.scene().walls().iter().enumerate();
+        walls.filter(|(_, wall)| wall.faces == faces).map(|(index, _)| index).collect()
+    }
+}

@@ -1,0 +1,90 @@
+"""Fire all ultrasonic sensors of a ring at once per period, and do not believe each other's echoes.
+
+EERUF (J. Borenstein and Y. Koren, IEEE T-RA 11(1), 1995) lets every sensor wait a little before it fires, by one of two waits
+that alternate and differ from sensor to sensor. A true echo does not care; crosstalk moves, and is rejected.
+
+Times are whole microseconds (``_us``), lengths metres, angles radians. Sensors count from 0. What is wrong with an argument raises
+an :class:`EerufError`, which is a ``ValueError``, with the name, the value and what is expected.
+
+Example:
+    >>> import eeruf
+    >>> found = eeruf.design(sensors=12, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
+    >>> found.value_us, found.proven
+    (68000, True)
+    >>> found.schedule.verify(t_delta_us=999, min_interval_us=15_000, window_us=36_000).ok
+    True
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from eeruf import experiments, sim, tables
+from eeruf._eeruf import (
+    KINDS,
+    ArgumentError,
+    EchoFilter,
+    EerufError,
+    ExperimentError,
+    FilterError,
+    Fire,
+    Found,
+    PathsError,
+    PeriodEnded,
+    Reading,
+    Report,
+    Ring,
+    RingError,
+    Schedule,
+    ScheduleError,
+    SceneError,
+    SearchError,
+    SimulationError,
+    Violation,
+    WaitSearch,
+    WaitTables,
+    design,
+)
+from eeruf._sweep import sweep
+
+if TYPE_CHECKING:
+    from eeruf import plot
+
+__all__ = [
+    "KINDS",
+    "ArgumentError",
+    "EchoFilter",
+    "EerufError",
+    "ExperimentError",
+    "FilterError",
+    "Fire",
+    "Found",
+    "PathsError",
+    "PeriodEnded",
+    "Reading",
+    "Report",
+    "Ring",
+    "RingError",
+    "SceneError",
+    "Schedule",
+    "ScheduleError",
+    "SearchError",
+    "SimulationError",
+    "Violation",
+    "WaitSearch",
+    "WaitTables",
+    "design",
+    "experiments",
+    "plot",
+    "sim",
+    "sweep",
+    "tables",
+]
+
+
+def __getattr__(name: str) -> Any:
+    # On first use: nobody who does not draw should wait for it.
+    if name == "plot":
+        return importlib.import_module("eeruf.plot")
+    raise AttributeError(f"module 'eeruf' has no attribute {name!r}")

@@ -1,0 +1,85 @@
+"""Many cases at once, on this machine or on others."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import Executor, ProcessPoolExecutor
+from typing import Any, Callable, Iterable, TypeVar
+
+from eeruf._eeruf import ArgumentError
+
+Case = TypeVar("Case")
+Result = TypeVar("Result")
+
+
+def sweep(
+    function: Callable[[Case], Result],
+    cases: Iterable[Case],
+    executor: Executor | None = None,
+    progress: bool | Callable[[float | None, str], Any] | None = None,
+) -> list[Result]:
+    """Call a function for every case, in parallel, and return the results in the order of the cases.
+
+    Args:
+        function: of one case. With processes (the default, and Dask) it must be importable, not a lambda.
+        cases: what to call it with. Schedules, scenes, robots and readings pickle, so they may be cases and results.
+        executor: any ``concurrent.futures.Executor``, such as Dask's ``Client.get_executor()``; by default one process for each
+            core, since a function may hold the interpreter lock.
+        progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
+
+    Returns:
+        One result for each case. The results do not depend on the executor.
+
+    Raises:
+        ArgumentError: the function cannot be called, or ``progress`` is neither.
+
+    Example:
+        >>> import eeruf
+        >>> from concurrent.futures import ThreadPoolExecutor
+        >>> def period_us(sensors):
+        ...     return eeruf.design(sensors, t_delta_us=999, min_interval_us=15_000, window_us=36_000).value_us
+        >>> with ThreadPoolExecutor() as threads:
+        ...     eeruf.sweep(period_us, [4, 8], executor=threads)
+        [60000, 63000]
+    """
+    if not callable(function):
+        raise ArgumentError(f"function = {function!r}; expected something to call with one case")
+    tell = _tell(progress)
+    todo = list(cases)
+    if executor is None:
+        with ProcessPoolExecutor(max_workers=max(1, min(len(todo), os.cpu_count() or 1))) as processes:
+            return _run(function, todo, processes, tell)
+    return _run(function, todo, executor, tell)
+
+
+def _tell(progress: Any) -> Callable[[float | None, str], Any] | None:
+    if progress is None or progress is False:
+        return None
+    if progress is True:
+        from eeruf._progress import bar
+
+        return bar()
+    if callable(progress):
+        found: Callable[[float | None, str], Any] = progress
+        return found
+    raise ArgumentError(f"progress = {progress!r}; expected None, True or a callable (share, text)")
+
+
+def _run(
+    function: Callable[[Case], Result],
+    cases: list[Case],
+    executor: Executor,
+    tell: Callable[[float | None, str], Any] | None,
+) -> list[Result]:
+    futures = [executor.submit(function, case) for case in cases]
+    results = []
+    try:
+        for done, future in enumerate(futures, start=1):
+            results.append(future.result())
+            if tell is not None:
+                tell(done / len(futures), f"{done} of {len(futures)}")
+    finally:
+        # After an error or Ctrl-C nobody waits for the rest.
+        for future in futures:
+            future.cancel()
+    return results

@@ -1,0 +1,236 @@
+"""Figures with matplotlib, which the extra ``eeruf[plot]`` installs.
+
+Every function draws into ``ax``, or into new axes if there are none, and returns the axes. Sensors are printed from 1, as in the
+paper; arguments count them from 0, as everywhere in code.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike
+
+    from eeruf import Schedule
+    from eeruf.sim import Paths, Readings, Scene
+
+__all__ = ["course", "methods", "readings", "scene", "timing"]
+
+# Colours that also differ in grey and to the colour-blind (Okabe and Ito).
+_BLUE, _VERMILION, _GREEN, _GREY = "#0072b2", "#d55e00", "#009e73", "#8c8c8c"
+_INK, _WINDOW = "#1a1a1a", "#cfe3f1"
+
+
+def _axes(ax: Axes | None, *, width: float = 7.0, height: float = 4.0) -> Axes:
+    if ax is not None:
+        return ax
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError as error:
+        raise ImportError("figures need matplotlib: pip install 'eeruf[plot]'") from error
+    return plt.subplots(figsize=(width, height), layout="constrained")[1]
+
+
+def _bare(ax: Axes) -> None:
+    ax.spines[["top", "right"]].set_visible(False)
+
+
+def timing(schedule: Schedule, *, window_us: int = 0, ax: Axes | None = None) -> Axes:
+    """When each sensor fires in the two phases of a schedule (as the paper's Fig. 3).
+
+    Args:
+        schedule: whose firing times to draw.
+        window_us: how long a sensor listens after it fired, in microseconds; 0 draws no windows.
+        ax: where to draw.
+
+    Returns:
+        The axes; times in milliseconds over one period of phase a and one of phase b.
+
+    Example:
+        >>> import eeruf
+        >>> ax = eeruf.plot.timing(eeruf.tables.TABLE_I_D, window_us=36_000)
+        >>> ax.get_xlabel()
+        'time (ms)'
+    """
+    sensors = schedule.sensors
+    ax = _axes(ax, height=1.2 + 0.26 * sensors)
+    period_ms = schedule.period_us / 1e3
+    for phase, (times, colour) in enumerate(((schedule.t_fire_a_us, _BLUE), (schedule.t_fire_b_us, _VERMILION))):
+        fires_ms = phase * period_ms + np.asarray(times) / 1e3
+        if window_us > 0:
+            # The windows that are open at the end are open at the beginning as well: the two phases repeat.
+            for left in (fires_ms, fires_ms - 2 * period_ms):
+                ax.barh(np.arange(1, sensors + 1), window_us / 1e3, left=left, height=0.62, color=_WINDOW, linewidth=0)
+        name = "ab"[phase]
+        ax.vlines(fires_ms, np.arange(1, sensors + 1) - 0.38, np.arange(1, sensors + 1) + 0.38, colors=colour, linewidth=2.2)
+        ax.text((phase + 0.5) * period_ms, 0.25, f"phase {name}", color=colour, ha="center", va="bottom")
+    for end in (period_ms, 2 * period_ms):
+        ax.axvline(end, color=_GREY, linewidth=0.8, linestyle=(0, (4, 3)))
+    ax.set_xlim(0, 2 * period_ms)
+    ax.set_ylim(sensors + 0.6, 0.2)
+    ax.set_yticks(range(1, sensors + 1))
+    ax.tick_params(axis="y", length=0)
+    ax.set_xlabel("time (ms)")
+    ax.set_ylabel("sensor")
+    _bare(ax)
+    return ax
+
+
+def scene(
+    scene: Scene,
+    paths: Paths | None = None,
+    *,
+    source: ArrayLike | None = None,
+    receivers: ArrayLike | None = None,
+    most: int = 40,
+    ax: Axes | None = None,
+) -> Axes:
+    """Walls and poles from above, and the paths that sound takes between them (as the paper's Fig. 1).
+
+    Args:
+        scene: the walls and poles.
+        paths: of ``Scene.paths``; the shortest are drawn, darker the fewer bounces they take.
+        source: of the paths, (x, y) in metres, to mark it.
+        receivers: of the paths, shape (n, 2) in metres, to mark them.
+        most: how many paths to draw at most.
+        ax: where to draw.
+
+    Returns:
+        The axes; metres, one as long in x as in y.
+    """
+    ax = _axes(ax, width=6.0, height=6.0)
+    for wall in np.asarray(scene.walls).reshape(-1, 4):
+        ax.plot(wall[[0, 2]], wall[[1, 3]], color=_INK, linewidth=2.2, solid_capstyle="round", zorder=3)
+    for x, y, radius in np.asarray(scene.poles).reshape(-1, 3):
+        # A pole of 8 mm would not be seen at its size.
+        ax.plot(x, y, marker="o", markersize=max(4.0, 20.0 * radius), color=_INK, zorder=3)
+    if paths is not None:
+        from matplotlib import colormaps
+
+        orders = np.asarray(paths.order)
+        shades = colormaps["viridis"](np.linspace(0.05, 0.85, int(orders.max(initial=0)) + 1))
+        told: set[int] = set()
+        for path in np.argsort(paths.length_m, kind="stable")[:most]:
+            points, order = np.asarray(paths.points(int(path))), int(orders[path])
+            label = None if order in told else f"{order} bounce{'s' * (order != 1)}"
+            told.add(order)
+            ax.plot(points[:, 0], points[:, 1], color=shades[order], linewidth=0.9, alpha=0.8, label=label)
+        handles, labels = ax.get_legend_handles_labels()
+        if handles:
+            by_order = sorted(zip(labels, handles, strict=True), key=lambda entry: int(entry[0].split()[0]))
+            ax.legend(
+                [handle for _, handle in by_order],
+                [label for label, _ in by_order],
+                frameon=False,
+                loc="upper left",
+                bbox_to_anchor=(1.0, 1.0),
+            )
+    if receivers is not None:
+        at = np.asarray(receivers, dtype=float).reshape(-1, 2)
+        ax.plot(at[:, 0], at[:, 1], linestyle="", marker="o", markersize=5, color=_BLUE, zorder=4)
+    if source is not None:
+        x, y = np.asarray(source, dtype=float)
+        ax.plot(x, y, marker="*", markersize=12, color=_VERMILION, markeredgecolor="white", zorder=5)
+    ax.set_aspect("equal")
+    ax.set_xlabel("x (m)")
+    ax.set_ylabel("y (m)")
+    _bare(ax)
+    return ax
+
+
+def readings(
+    readings: Readings,
+    *,
+    sensor: int = 0,
+    robot: int = 0,
+    first: int = 0,
+    count: int = 100,
+    ax: Axes | None = None,
+) -> Axes:
+    """What one sensor read over time: what the method accepted, what it rejected, and what the sensor reads alone.
+
+    Args:
+        readings: of ``eeruf.sim.simulate``.
+        sensor: which sensor of the ring, from 0.
+        robot: whose ring, from 0.
+        first: the first of the sensor's readings to draw.
+        count: how many to draw.
+        ax: where to draw.
+
+    Returns:
+        The axes; echo times in milliseconds over time in seconds. Readings without echo do not appear.
+    """
+    ax = _axes(ax, width=8.0, height=3.6)
+    mine = np.flatnonzero((np.asarray(readings.sensor) == sensor) & (np.asarray(readings.robot) == robot))
+    mine = mine[first : first + count]
+    at_s = np.asarray(readings.fired_s)[mine]
+    echo_ms = np.asarray(readings.t_echo_us)[mine] / 1e3
+    accepted = np.asarray(readings.is_accepted)[mine]
+    alone_ms = np.asarray(readings.reference_us)[mine] / 1e3
+    ax.step(at_s, alone_ms, where="mid", color=_GREY, linewidth=1.2, label="the sensor alone", zorder=1)
+    ax.plot(at_s[accepted], echo_ms[accepted], linestyle="", marker="o", markersize=4, color=_BLUE, label="accepted")
+    ax.plot(
+        at_s[~accepted], echo_ms[~accepted], linestyle="", marker="x", markersize=5, color=_VERMILION, label="not accepted"
+    )
+    ax.set_ylim(bottom=0)
+    ax.set_xlabel("time (s)")
+    ax.set_ylabel(f"echo time of sensor {sensor + 1} (ms)")
+    ax.legend(frameon=False, ncols=3, loc="lower left", bbox_to_anchor=(0.0, 1.0))
+    _bare(ax)
+    return ax
+
+
+def methods(
+    result: Mapping[str, Any],
+    *,
+    figure: str = "wrong_of_all",
+    names: Sequence[str] | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """The firing methods side by side: the median over all geometries, and where eight in ten of them lie.
+
+    Args:
+        result: of ``eeruf.experiments.set_one``.
+        figure: which figure to draw, such as "wrong_of_all", "rejected", "good_lost" or "readings_per_s".
+        names: which methods, first on top; by default all, worst median on top.
+        ax: where to draw.
+
+    Returns:
+        The axes; percent for shares of readings, else the figure's own unit.
+
+    Raises:
+        KeyError: no method has that figure.
+    """
+    spreads = {name: method[figure] for name, method in result["methods"].items() if method.get(figure) is not None}
+    if not spreads:
+        raise KeyError(f"figure {figure!r}: expected one of {sorted(set().union(*result['methods'].values()))}")
+    chosen = list(names) if names is not None else sorted(spreads, key=lambda name: -spreads[name]["median"])
+    ax = _axes(ax, height=1.0 + 0.34 * len(chosen))
+    share = not figure.endswith(("_ms", "_per_s", "_m_s", "_m"))
+    scale = 100.0 if share else 1.0
+    low, median, high = (scale * np.array([spreads[name][key] for name in chosen]) for key in ("p10", "median", "p90"))
+    row = np.arange(len(chosen))
+    colours = [_BLUE if name.startswith(("eeruf", "adaptive", "multi_echo")) else _GREY for name in chosen]
+    ax.barh(row, median, color=colours, height=0.6)
+    ax.errorbar(median, row, xerr=[median - low, high - median], fmt="none", ecolor=_INK, elinewidth=1, capsize=3)
+    for at, value, most in zip(row, median, high, strict=True):
+        ax.annotate(f"{value:.3g}", (most, at), xytext=(5, 0), textcoords="offset points", va="center", fontsize="small")
+    ax.set_yticks(row, [name.replace("_", " ") for name in chosen])
+    ax.invert_yaxis()
+    ax.set_xlim(0, 1.1 * float(high.max()) or 1.0)
+    ax.tick_params(axis="y", length=0)
+    unit = " (% of readings)" if share else f" ({figure.rsplit('_', 2 if figure.endswith('_m_s') else 1)[-1]})"
+    ax.set_xlabel("wrong of all readings (%)" if figure == "wrong_of_all" else figure.replace("_", " ") + unit)
+    _bare(ax)
+    return ax
+
+
+def _extent(grid: np.ndarray[Any, Any], cell_m: float, origin_m: Sequence[float]) -> tuple[float, float, float, float]:
+    rows, columns = grid.shape
+    x, y = origin_m
+    return x, x + columns * cell_m, y, y + rows * cell_m

@@ -10,6 +10,7 @@ mod kinds;
 mod methods;
 mod readings;
 mod scene;
+mod spreads;
 mod timing;
 
 pub(crate) use crosstalk::two_periods;
@@ -17,6 +18,7 @@ pub(crate) use kinds::kinds_over_time;
 pub(crate) use methods::methods_chart;
 pub(crate) use readings::readings_over_time;
 pub(crate) use scene::{DrawnPath, Panel, scene_with_paths};
+pub(crate) use spreads::set_one;
 pub(crate) use timing::timing_diagram;
 
 use std::path::Path;

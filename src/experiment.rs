@@ -1,6 +1,7 @@
 //! `eeruf experiment`: Section 4 of the paper as two commands, with its own figures beside those found here.
 
 mod set_one;
+mod set_two;
 
 use std::fmt;
 use std::path::PathBuf;
@@ -23,6 +24,7 @@ pub(crate) struct Args {
 #[derive(clap::Subcommand)]
 enum Set {
     SetOne(set_one::Args),
+    SetTwo(set_two::Args),
 }
 
 /// What both sets are asked.
@@ -45,6 +47,7 @@ struct Common {
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     match &args.set {
         Set::SetOne(args) => set_one::run(args)?,
+        Set::SetTwo(args) => set_two::run(args)?,
     }
     Ok(Answer::Yes)
 }

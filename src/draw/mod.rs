@@ -5,6 +5,7 @@
 //! travels in the program: what a PNG looks like does not depend on the machine. Rendering the SVG instead would need a parser
 //! for it, a text shaper and a second rasteriser (`resvg`); this way a glyph outliner (`ab_glyph`) and `png` are enough.
 
+mod course;
 mod crosstalk;
 mod kinds;
 mod methods;
@@ -13,6 +14,7 @@ mod scene;
 mod spreads;
 mod timing;
 
+pub(crate) use course::courses;
 pub(crate) use crosstalk::two_periods;
 pub(crate) use kinds::kinds_over_time;
 pub(crate) use methods::methods_chart;

@@ -119,6 +119,8 @@ pub struct Tracer {
     /// Whether poles return what a rigid cylinder does at this frequency instead of what geometric optics says; see
     /// [`pole_wave_correction`]. Off by default.
     pub pole_waves: bool,
+    /// The most bounces of a path with a pole, at most those of all others. [`MAX_ORDER`] to begin with.
+    pub pole_order: u32,
     tree: BeamTree,
     poles: PoleSearch,
     keys: Vec<u64>,
@@ -157,6 +159,7 @@ impl Tracer {
         Self {
             frequency_hz,
             pole_waves: false,
+            pole_order: MAX_ORDER,
             tree: BeamTree::default(),
             poles: PoleSearch::default(),
             keys: Vec::new(),
@@ -186,7 +189,8 @@ impl Tracer {
     ) -> Result<(), PathsError> {
         paths.clear();
         self.sight(scene, source, receivers, limits)?;
-        if !self.poles.search(scene, &self.tree, source, receivers, limits, MAX_BEAMS) {
+        let at_poles = Limits { max_order: limits.max_order.min(self.pole_order), ..limits };
+        if !self.poles.search(scene, &self.tree, source, receivers, at_poles, MAX_BEAMS) {
             return Err(PathsError::Budget { beams: MAX_BEAMS });
         }
         self.rank(receivers.len());

@@ -48,6 +48,7 @@ mod drive;
 pub mod error;
 mod events;
 pub mod experiments;
+mod gate;
 mod guide;
 pub mod himm;
 mod joints;

@@ -7,6 +7,7 @@ use crate::{
     amplitude::reflected,
     beam::{Beam, BeamTree, Growth, Sighting},
     error::PathsError,
+    gate::Gate,
     mesh::NONE,
     plane::{Point, TOUCH_M, opposite, wrap_angle},
     pole_paths::{PolePath, PoleSearch},
@@ -187,10 +188,26 @@ impl Tracer {
         limits: Limits,
         paths: &mut Paths,
     ) -> Result<(), PathsError> {
+        self.trace_through(None, scene, source, receivers, limits, paths)
+    }
+
+    /// As [`trace`](Self::trace), without paths that a gate keeps back as too faint.
+    pub(crate) fn trace_through(
+        &mut self,
+        gate: Option<&Gate>,
+        scene: &Scene,
+        source: Point,
+        receivers: &[Point],
+        limits: Limits,
+        paths: &mut Paths,
+    ) -> Result<(), PathsError> {
         paths.clear();
         self.sight(scene, source, receivers, limits)?;
+        if let Some(gate) = gate {
+            self.tree.drop_faint(gate, receivers);
+        }
         let at_poles = Limits { max_order: limits.max_order.min(self.pole_order), ..limits };
-        if !self.poles.search(scene, &self.tree, source, receivers, at_poles, MAX_BEAMS) {
+        if !self.poles.search(scene, &self.tree, source, receivers, at_poles, gate, MAX_BEAMS) {
             return Err(PathsError::Budget { beams: MAX_BEAMS });
         }
         self.rank(receivers.len());

@@ -20,13 +20,14 @@ const CELL_M: f64 = 0.1;
 /// The course on which the methods differ most, one panel for each.
 pub(crate) fn courses(found: &SetTwo) -> Picture {
     let number = telling(found);
-    let course = Course::random(number as u64);
+    let number_of = found.runs.first().and_then(|runs| runs.get(number)).map_or(0, |run| run.course);
+    let course = Course::random(number_of);
     let panel_width = 0.5 * (WIDTH - 2.0 * MARGIN - GAP);
     let scale = panel_width / ROOM_M[0];
     let panel_height = ROOM_M[1] * scale;
     let rows = found.methods.len().div_ceil(2) as f64;
     let mut picture = Picture::new(WIDTH, TOP + rows * (panel_height + CAPTIONS + GAP) + 16.0);
-    let title = format!("Course {}, top speed {} m/s", number + 1, found.speed_m_s);
+    let title = format!("Course {number_of}, top speed {} m/s", found.speed_m_s);
     let beside = if found.second_robot { ", a second robot firing in the corner" } else { "" };
     picture.text(title + beside, (MARGIN, 24.0), TITLE);
     for (place, ((method, _), runs)) in found.methods.iter().zip(&found.runs).enumerate() {

@@ -5,6 +5,7 @@ use std::fs;
 use eeruf_sim::Method;
 use eeruf_sim::best::best_for;
 use eeruf_sim::experiments::set_two::{Course, Figures, SetTwo, SetTwoOptions, SpeedStep, set_two, speed_sweep};
+use eeruf_sim::labmate::LabMate;
 use serde::Serialize;
 
 use super::{Common, bad, percent, table, watched};
@@ -56,7 +57,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     let mut options = SetTwoOptions {
         seeds: args.common.seeds.unwrap_or(SEEDS),
         second_robot: args.second_robot,
-        speed_m_s: args.speed,
+        labmate: LabMate { speed_max_m_s: args.speed, ..LabMate::default() },
         odometry: !args.no_odometry,
         ..SetTwoOptions::default()
     };

@@ -8,5 +8,5 @@ mod pilot;
 mod runs;
 
 pub use course::{Course, POLE_RADIUS_M, ROOM_M};
-pub use pilot::{Cell, Ending, Place, Run};
+pub use pilot::{Cell, Ending, Piloting, Place, Run};
 pub use runs::{Figures, SetTwo, SetTwoOptions, SpeedStep, set_two, speed_sweep};

@@ -24,16 +24,40 @@ const STEP_NS: u64 = 5_000_000;
 const STEPS_PER_LOOK: u64 = 6;
 /// The width of the grid's cells, in metres, as in the papers.
 const CELL_M: f64 = 0.1;
-/// Echoes from farther away are not entered, but clear the way there.
-const RANGE_M: f64 = 2.0;
-/// What a steering error of a radian asks for, in rad/s.
-const TURN_GAIN: f64 = 3.0;
 /// An echo farther than this from every pole and wall is of a phantom: cell and beam are not much narrower.
 const PHANTOM_M: f64 = 0.35;
 /// A cell from this value on counts as an obstacle when phantoms are counted.
 const CERTAIN: u8 = 6;
 /// A pole that came nearer than this to the platform's middle should have been seen.
 const PASSED_M: f64 = 1.0;
+
+/// How readings become steering.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piloting {
+    /// The vector field histogram; its highest speed is the platform's.
+    pub vfh: Vfh,
+    /// What a steering error of a radian asks for, in rad/s.
+    pub turn_gain: f64,
+    /// Echoes from farther away are not entered into the grid, but clear the way there, in metres.
+    pub range_m: f64,
+    /// Whether cells beside certain ones grow faster, see [`Himm::growth`].
+    pub growth: bool,
+}
+
+impl Default for Piloting {
+    /// Tuned for finished courses and speed, on other courses than those that methods are compared on.
+    fn default() -> Self {
+        let vfh = Vfh {
+            smoothing: 3,
+            threshold: 0.03,
+            wide: 16,
+            density_max: 1.0,
+            turn_max_rad_s: 360f64.to_radians(),
+            ..Vfh::default()
+        };
+        Self { vfh, turn_gain: 2.0, range_m: 2.5, growth: true }
+    }
+}
 
 /// How a course ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -112,7 +136,7 @@ pub struct Run {
 pub(super) struct Pilot<'w> {
     world: &'w World,
     labmate: LabMate,
-    vfh: Vfh,
+    piloting: Piloting,
     state: Driven,
     steps: u64,
     steps_most: u64,
@@ -124,7 +148,7 @@ pub(super) struct Pilot<'w> {
 }
 
 impl<'w> Pilot<'w> {
-    pub(super) fn new(world: &'w World, course: u64, labmate: LabMate, vfh: Vfh, time_s: f64) -> Self {
+    pub(super) fn new(world: &'w World, course: u64, labmate: LabMate, piloting: Piloting, time_s: f64) -> Self {
         let run = Run {
             course,
             ending: Ending::TimeOut,
@@ -146,11 +170,11 @@ impl<'w> Pilot<'w> {
         let side = (1.3 * ROOM_M[0] / CELL_M) as usize;
         let mut grid = Himm::new(side, CELL_M);
         grid.move_to(Point::new(0.5 * ROOM_M[0], 0.5 * ROOM_M[1]));
-        grid.growth = true;
+        grid.growth = piloting.growth;
         Self {
             world,
             labmate,
-            vfh,
+            piloting,
             state: Driven::at_rest(world.robots()[0].pose),
             steps: 0,
             steps_most: (time_s * 1e9) as u64 / STEP_NS,
@@ -185,16 +209,17 @@ impl<'w> Pilot<'w> {
     /// Where to, and how fast.
     fn look(&mut self) {
         let (place, heading) = (self.place(), self.state.pose.rotation.angle());
-        let smoothed: [f64; SECTORS] = self.vfh.smoothed(&self.vfh.histogram(&self.grid, place));
+        let smoothed: [f64; SECTORS] = self.piloting.vfh.smoothed(&self.piloting.vfh.histogram(&self.grid, place));
         let towards = TARGET - place;
         let target = towards.y.atan2(towards.x);
-        self.wanted = match self.vfh.choose(&smoothed, target) {
+        self.wanted = match self.piloting.vfh.choose(&smoothed, target) {
             // Every way is blocked: stand, and look around.
             None => (0.0, 0.5 * self.labmate.turn_max_rad_s),
             Some(steering) => {
                 let error = wrap_angle(steering.direction_rad - heading);
-                let turn = (TURN_GAIN * error).clamp(-self.labmate.turn_max_rad_s, self.labmate.turn_max_rad_s);
-                let speed = self.vfh.speed(&smoothed, heading, self.state.turn_rad_s);
+                let turn =
+                    (self.piloting.turn_gain * error).clamp(-self.labmate.turn_max_rad_s, self.labmate.turn_max_rad_s);
+                let speed = self.piloting.vfh.speed(&smoothed, heading, self.state.turn_rad_s);
                 (speed * error.cos().max(0.0), turn)
             }
         };
@@ -272,8 +297,8 @@ impl Guide for Pilot<'_> {
         }
         self.run.wrong += u32::from(readings.is_wrong(last, DEFAULT_TOLERANCE_US));
         let range_m = readings.t_echo_us[last] * metres_per_us;
-        if readings.kind[last] != Kind::Accepted || range_m > RANGE_M {
-            self.grid.clear(at, heading, near_m, RANGE_M);
+        if readings.kind[last] != Kind::Accepted || range_m > self.piloting.range_m {
+            self.grid.clear(at, heading, near_m, self.piloting.range_m);
             return;
         }
         self.grid.echo(at, heading, near_m, range_m);

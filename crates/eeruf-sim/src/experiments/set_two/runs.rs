@@ -2,11 +2,12 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
+use eeruf_core::Micros;
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use super::{
     course::Course,
-    pilot::{Ending, Pilot, Run},
+    pilot::{Ending, Pilot, Piloting, Run},
 };
 use crate::{
     best::Best,
@@ -16,7 +17,6 @@ use crate::{
     method::Method,
     robot::Robot,
     simulate::{Options, sweep},
-    vfh::Vfh,
 };
 
 /// For how long a robot may try.
@@ -25,26 +25,32 @@ const TIME_S: f64 = 40.0;
 /// What is asked of Set II.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetTwoOptions {
-    /// How many courses: numbers 0 to `seeds`. 100 to begin with.
+    /// How many courses. 100 to begin with.
     pub seeds: u64,
+    /// The first course's number, so that whoever tunes something need not do so on the courses that it is tried on. 0 to
+    /// begin with.
+    pub first: u64,
     /// The methods.
     pub methods: Vec<Method>,
     /// What [`Method::EerufBest`] fires by, see [`best_for`](crate::best::best_for).
     pub best: Option<Best>,
     /// Whether another robot fires 24 times in 80 ms nearby.
     pub second_robot: bool,
-    /// The platform's highest speed in m/s. 1 to begin with.
-    pub speed_m_s: f64,
+    /// The platform.
+    pub labmate: LabMate,
     /// Whether the robot tells its ring by how much readings should change from its own motion.
     pub odometry: bool,
+    /// `T_delta`. With odometry it need not leave room for motion, and chance agrees the more rarely the smaller it is.
+    pub t_delta: Micros,
     /// How it steers.
-    pub vfh: Vfh,
+    pub piloting: Piloting,
 }
 
 impl Default for SetTwoOptions {
     fn default() -> Self {
         Self {
             seeds: 100,
+            first: 0,
             methods: vec![
                 Method::Sequential,
                 Method::Conventional,
@@ -55,9 +61,10 @@ impl Default for SetTwoOptions {
             ],
             best: None,
             second_robot: false,
-            speed_m_s: 1.0,
+            labmate: LabMate::default(),
             odometry: true,
-            vfh: Vfh { threshold: 0.1, ..Vfh::default() },
+            t_delta: Micros::new(250),
+            piloting: Piloting::default(),
         }
     }
 }
@@ -155,8 +162,11 @@ pub fn set_two(options: &SetTwoOptions, keep_going: &(dyn Fn(f64) -> bool + Sync
     if options.methods.is_empty() {
         return Err(ExperimentError::NoMethods);
     }
-    let jobs: Vec<(Method, u64)> =
-        options.methods.iter().flat_map(|&method| (0..options.seeds).map(move |number| (method, number))).collect();
+    let jobs: Vec<(Method, u64)> = options
+        .methods
+        .iter()
+        .flat_map(|&method| (options.first..options.first + options.seeds).map(move |number| (method, number)))
+        .collect();
     let (done, stopped) = (AtomicU64::new(0), AtomicBool::new(false));
     let runs = sweep(&jobs, |&(method, number)| {
         if stopped.load(Ordering::Relaxed) {
@@ -178,18 +188,18 @@ pub fn set_two(options: &SetTwoOptions, keep_going: &(dyn Fn(f64) -> bool + Sync
         by_method.push(runs.by_ref().take(options.seeds as usize).collect::<Result<Vec<_>, _>>()?);
     }
     let methods = options.methods.iter().zip(&by_method).map(|(&method, runs)| (method, Figures::of(runs))).collect();
-    let SetTwoOptions { seeds, second_robot, speed_m_s, .. } = *options;
-    Ok(SetTwo { seeds, second_robot, speed_m_s, methods, runs: by_method })
+    let SetTwoOptions { seeds, second_robot, .. } = *options;
+    Ok(SetTwo { seeds, second_robot, speed_m_s: options.labmate.speed_max_m_s, methods, runs: by_method })
 }
 
 /// One course by one method.
 fn drive(options: &SetTwoOptions, method: Method, number: u64) -> Result<Run, ExperimentError> {
     let course = Course::random(number);
-    let robot = Robot { odometry: options.odometry, ..course.robot() };
+    let robot = Robot { odometry: options.odometry, t_delta: options.t_delta, ..course.robot() };
     let world = course.world(robot, options.second_robot)?;
-    let labmate = LabMate { speed_max_m_s: options.speed_m_s, ..LabMate::default() };
-    let vfh = Vfh { speed_max_m_s: options.speed_m_s, ..options.vfh };
-    let mut pilot = Pilot::new(&world, number, labmate, vfh, TIME_S);
+    let mut piloting = options.piloting;
+    piloting.vfh.speed_max_m_s = options.labmate.speed_max_m_s;
+    let mut pilot = Pilot::new(&world, number, options.labmate, piloting, TIME_S);
     let period_s = f64::from(world.robots()[0].period.as_micros()) * 1e-6;
     let simulation =
         Options { best: options.best.map(|best| best.schedule), ..Options::periods((TIME_S / period_s).ceil() as u32) };
@@ -222,7 +232,8 @@ pub fn speed_sweep(
     let mut steps = Vec::new();
     for (place, &speed_m_s) in speeds_m_s.iter().enumerate() {
         let share = |done: f64| keep_going((place as f64 + done) / speeds_m_s.len() as f64);
-        let found = set_two(&SetTwoOptions { speed_m_s, ..options.clone() }, &share)?;
+        let labmate = LabMate { speed_max_m_s: speed_m_s, ..options.labmate };
+        let found = set_two(&SetTwoOptions { labmate, ..options.clone() }, &share)?;
         let each = |value: fn(&Figures) -> f64| found.methods.iter().map(|(method, of)| (*method, value(of))).collect();
         steps.push(SpeedStep {
             speed_m_s,

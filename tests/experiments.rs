@@ -59,7 +59,7 @@ fn json_of_set_one_has_quantiles_for_each_method() {
 fn json_of_set_two_counts_courses_for_each_method() {
     let words = ["experiment", "set-two", "--seeds", "2", "--second-robot", "--method", "eeruf,conventional", "--json"];
     let found = json(&words);
-    assert_eq!((&found["second_robot"], &found["seeds"]), (&Value::from(true), &Value::from(2)));
+    assert_eq!((&found["second_robot_m"], &found["seeds"]), (&Value::from(vec![0.6, 5.4]), &Value::from(2)));
     for method in ["eeruf", "conventional"] {
         let figures = &found["methods"][method];
         let count = |name: &str| figures[name].as_u64().unwrap();

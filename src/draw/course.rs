@@ -28,7 +28,7 @@ pub(crate) fn courses(found: &SetTwo) -> Picture {
     let rows = found.methods.len().div_ceil(2) as f64;
     let mut picture = Picture::new(WIDTH, TOP + rows * (panel_height + CAPTIONS + GAP) + 16.0);
     let title = format!("Course {number_of}, top speed {} m/s", found.speed_m_s);
-    let beside = if found.second_robot { ", a second robot firing in the corner" } else { "" };
+    let beside = if found.second_robot_m.is_some() { ", a second robot firing in a corner" } else { "" };
     picture.text(title + beside, (MARGIN, 24.0), TITLE);
     for (place, ((method, _), runs)) in found.methods.iter().zip(&found.runs).enumerate() {
         let left = MARGIN + (place % 2) as f64 * (panel_width + GAP);
@@ -37,7 +37,7 @@ pub(crate) fn courses(found: &SetTwo) -> Picture {
         picture.text(method.to_string(), (left, top + 10.0), CAPTION);
         picture.text_in(outcome(run), (left, top + 30.0), SMALL, HPos::Left, INK);
         let view = View { scale, height: panel_height };
-        picture.place(view.panel(&course, run, found.second_robot), (left, top + CAPTIONS));
+        picture.place(view.panel(&course, run, found.second_robot_m), (left, top + CAPTIONS));
     }
     picture
 }
@@ -75,7 +75,7 @@ impl View {
         (x_m * self.scale, self.height - y_m * self.scale)
     }
 
-    fn panel(&self, course: &Course, run: &Run, second_robot: bool) -> Picture {
+    fn panel(&self, course: &Course, run: &Run, second_robot_m: Option<[f64; 2]>) -> Picture {
         let mut picture = Picture::new(ROOM_M[0] * self.scale, self.height);
         picture.rect([(0.0, 0.0), (ROOM_M[0] * self.scale, self.height)], SILENT.mix(0.25));
         for Cell { x_m, y_m, value } in &run.grid {
@@ -90,8 +90,8 @@ impl View {
         {
             picture.line(self.px(from.0, from.1), self.px(to.0, to.1), width, INK);
         }
-        if second_robot {
-            picture.dot(self.px(9.4, 5.3), 0.3 * self.scale, REJECTED.mix(0.6));
+        if let Some([x, y]) = second_robot_m {
+            picture.dot(self.px(x, y), 0.3 * self.scale, REJECTED.mix(0.6));
         }
         let mut next = 0.0;
         for place in &run.track {

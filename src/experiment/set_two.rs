@@ -2,10 +2,13 @@
 
 use std::fs;
 
-use eeruf_sim::Method;
+use eeruf_core::Micros;
 use eeruf_sim::best::best_for;
-use eeruf_sim::experiments::set_two::{Course, Figures, SetTwo, SetTwoOptions, SpeedStep, set_two, speed_sweep};
+use eeruf_sim::experiments::set_two::{
+    Course, Figures, SECOND_AHEAD, SECOND_BEHIND, SetTwo, SetTwoOptions, SpeedStep, set_two, speed_sweep,
+};
 use eeruf_sim::labmate::LabMate;
+use eeruf_sim::{Method, Point, Robot};
 use serde::Serialize;
 
 use super::{Common, bad, percent, table, watched};
@@ -20,16 +23,18 @@ use crate::watch::Watch;
 pub(crate) struct Args {
     #[command(flatten)]
     common: Common,
-    /// Drive by these methods only; sequential, conventional, comparison, eeruf, eeruf_best and adaptive to begin with
+    /// Drive by these methods only; sequential, conventional, comparison, eeruf, eeruf_best, adaptive and multi_echo
+    /// to begin with
     #[arg(long = "method", value_name = "NAME", num_args = 1.., value_delimiter = ',')]
     methods: Vec<Method>,
-    /// Let another robot with 24 sensors fire 24 times in 80 ms nearby
-    #[arg(long)]
-    second_robot: bool,
+    /// Let another robot with 24 sensors fire 24 times in 80 ms in a corner of the lab: behind the start, or ahead, where all
+    /// sensors face it
+    #[arg(long, value_name = "WHERE", num_args = 0..=1, default_missing_value = "behind")]
+    second_robot: Option<Corner>,
     /// The platform's highest speed in m/s
     #[arg(long, value_name = "M/S", default_value_t = 1.0, value_parser = speed)]
     speed: f64,
-    /// Do not tell the ring by how much readings should change from the robot's own motion
+    /// Do not tell the ring by how much readings should change from the robot's own motion, and compare within 500 us instead
     #[arg(long)]
     no_odometry: bool,
     /// Drive all courses at several top speeds instead, and say which speed each method bears
@@ -37,9 +42,26 @@ pub(crate) struct Args {
     sweep: bool,
 }
 
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Corner {
+    Behind,
+    Ahead,
+}
+
+impl Corner {
+    fn place(self) -> Point {
+        match self {
+            Self::Behind => SECOND_BEHIND,
+            Self::Ahead => SECOND_AHEAD,
+        }
+    }
+}
+
 const SEEDS: u64 = 100;
 /// How many nodes the search for `eeruf_best` may cost; it is proven shortest long before.
 const BUDGET: u64 = 300_000;
+/// Wide enough for a robot at 1 m/s: 2 v dt / c is at most 0.434 ms.
+const PAPERS_T_DELTA: Micros = Micros::new(500);
 /// The top speeds of a sweep, in m/s.
 const SPEEDS: [f64; 7] = [0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0];
 /// A method bears a speed at which this share of the courses is finished.
@@ -56,9 +78,10 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     let bad = bad("set-two");
     let mut options = SetTwoOptions {
         seeds: args.common.seeds.unwrap_or(SEEDS),
-        second_robot: args.second_robot,
+        second_robot: args.second_robot.map(Corner::place),
         labmate: LabMate { speed_max_m_s: args.speed, ..LabMate::default() },
         odometry: !args.no_odometry,
+        t_delta: if args.no_odometry { PAPERS_T_DELTA } else { SetTwoOptions::default().t_delta },
         ..SetTwoOptions::default()
     };
     let asked: Vec<Method> = Method::ALL.into_iter().filter(|method| args.methods.contains(method)).collect();
@@ -68,7 +91,8 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     if options.methods.contains(&Method::EerufBest) {
         let mut watch = Watch::new();
         let designing = |nodes: u64| format!("designing eeruf_best, {nodes} nodes");
-        let best = best_for(&Course::random(0).robot(), BUDGET, |progress| watch.go_on(|| designing(progress.nodes)));
+        let robot = Robot { t_delta: options.t_delta, ..Course::random(0).robot() };
+        let best = best_for(&robot, BUDGET, |progress| watch.go_on(|| designing(progress.nodes)));
         options.best = Some(best.map_err(|error| bad(&error))?);
     }
     let watched = watched(format!("{} courses by {} methods", options.seeds, options.methods.len()));
@@ -84,7 +108,11 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     for (folder, ending) in [(&args.common.svg, "svg"), (&args.common.png, "png")] {
         if let Some(folder) = folder {
             fs::create_dir_all(folder).map_err(|error| InputError::new(folder, None, error))?;
-            let name = if args.second_robot { "set-two-second-robot" } else { "set-two" };
+            let name = match args.second_robot {
+                None => "set-two",
+                Some(Corner::Behind) => "set-two-second-behind",
+                Some(Corner::Ahead) => "set-two-second-ahead",
+            };
             draw::courses(&found).save(&folder.join(name).with_extension(ending))?;
         }
     }
@@ -96,8 +124,9 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     Ok(())
 }
 
-fn beside(second_robot: bool) -> &'static str {
-    if second_robot { ", beside a second robot that fires 24 times in 80 ms" } else { "" }
+fn beside(second_robot_m: Option<[f64; 2]>) -> String {
+    second_robot_m
+        .map_or_else(String::new, |[x, y]| format!(", a second robot at ({x} m, {y} m) firing 24 times in 80 ms"))
 }
 
 fn describe(found: &SetTwo) -> String {
@@ -120,7 +149,7 @@ fn describe(found: &SetTwo) -> String {
         "Set II: {} courses at up to {} m/s{}. Phantoms and the nearest pole are means over the courses.\n\n",
         found.seeds,
         found.speed_m_s,
-        beside(found.second_robot)
+        beside(found.second_robot_m)
     );
     text += &table(&header, found.methods.iter().map(|(method, figures)| row(*method, figures)));
     text
@@ -148,7 +177,7 @@ fn row(method: Method, figures: &Figures) -> Vec<String> {
 #[derive(Serialize)]
 struct Sweep {
     seeds: u64,
-    second_robot: bool,
+    second_robot_m: Option<[f64; 2]>,
     steps: Vec<SpeedStep>,
     /// The highest speed at which nearly all courses are finished, of those up to which that is so.
     #[serde(serialize_with = "by_name")]
@@ -166,7 +195,8 @@ impl Sweep {
             up_to.last().map(|step| step.speed_m_s)
         };
         let borne_m_s = options.methods.iter().enumerate().map(|(place, method)| (*method, borne(place))).collect();
-        Self { seeds: options.seeds, second_robot: options.second_robot, steps, borne_m_s }
+        let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);
+        Self { seeds: options.seeds, second_robot_m, steps, borne_m_s }
     }
 
     fn describe(&self) -> String {
@@ -186,7 +216,7 @@ impl Sweep {
             "Set II: {} courses at several top speeds{}: finished %, and (mean speed in m/s). A speed is borne\n\
              if {:.0} % of the courses are finished at it and at all lower ones.\n\n",
             self.seeds,
-            beside(self.second_robot),
+            beside(self.second_robot_m),
             100.0 * BORNE
         );
         text += &table(&header.iter().map(String::as_str).collect::<Vec<_>>(), rows);

@@ -6,7 +6,7 @@ use eeruf_sim::{
     Method,
     experiments::{
         ExperimentError,
-        set_two::{Ending, Figures, SetTwo, SetTwoOptions, set_two, speed_sweep},
+        set_two::{Ending, Figures, SECOND_AHEAD, SECOND_BEHIND, SetTwo, SetTwoOptions, set_two, speed_sweep},
     },
 };
 
@@ -20,7 +20,7 @@ fn of(found: &SetTwo, method: Method) -> Figures {
 
 #[test]
 fn eeruf_gets_through_where_constant_lags_fill_the_grid_with_phantoms() {
-    for second_robot in [false, true] {
+    for second_robot in [None, Some(SECOND_BEHIND)] {
         let asked = options(20, &[Method::Conventional, Method::Comparison, Method::Eeruf]);
         let found = set_two(&SetTwoOptions { second_robot, ..asked }, &|_| true).unwrap();
         let eeruf = of(&found, Method::Eeruf);
@@ -62,7 +62,8 @@ fn every_course_tells_where_the_robot_drove_and_how_it_ended() {
 fn set_two_is_the_same_on_any_number_of_threads() {
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let asked = SetTwoOptions { second_robot: true, ..options(3, &[Method::Eeruf, Method::Adaptive]) };
+        let asked =
+            SetTwoOptions { second_robot: Some(SECOND_AHEAD), ..options(3, &[Method::Eeruf, Method::Adaptive]) };
         pool.install(|| set_two(&asked, &|_| true).unwrap())
     };
     assert_eq!(on(1), on(2));

@@ -7,6 +7,6 @@ mod course;
 mod pilot;
 mod runs;
 
-pub use course::{Course, POLE_RADIUS_M, ROOM_M};
+pub use course::{Course, POLE_RADIUS_M, ROOM_M, SECOND_AHEAD, SECOND_BEHIND};
 pub use pilot::{Cell, Ending, Piloting, Place, Run};
 pub use runs::{Figures, SetTwo, SetTwoOptions, SpeedStep, set_two, speed_sweep};

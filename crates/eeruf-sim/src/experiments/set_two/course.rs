@@ -36,6 +36,12 @@ pub(super) const FINISH_X_M: f64 = 8.2;
 /// What it steers for.
 pub(super) const TARGET: Point = Point::new(9.4, 3.0);
 
+/// Places for a second robot, out of the first one's way: in the corner behind it, and in the reflective corner ahead, which
+/// all its sensors face.
+pub const SECOND_BEHIND: Point = Point::new(0.6, 5.4);
+/// See [`SECOND_BEHIND`].
+pub const SECOND_AHEAD: Point = Point::new(9.4, 5.3);
+
 /// One course.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
@@ -112,11 +118,11 @@ impl Course {
         Robot::ring(pose, SENSORS, SPACING_DEG.to_radians(), RADIUS_M, Transducer::POLAROID_6500)
     }
 
-    /// The other robot: 24 sensors all around that fire 24 times in 80 ms, standing in the reflective corner, its clock 40 ppm
-    /// fast and started at any time.
-    pub fn second_robot(&self) -> Robot {
+    /// The other robot: 24 sensors all around that fire 24 times in 80 ms, standing at a place, its clock 40 ppm fast and
+    /// started at any time.
+    pub fn second_robot(&self, at: Point) -> Robot {
         let mut chance = Chance::new(self.number).of(3);
-        let pose = Pose::new(Vector::new(9.4, 5.3), chance.between(-3.1, 3.1));
+        let pose = Pose::new(at.coords, chance.between(-3.1, 3.1));
         let ring = Robot::ring(pose, 24, 15f64.to_radians(), RADIUS_M, Transducer::POLAROID_6500);
         Robot {
             period: Micros::from_millis(80),
@@ -131,8 +137,9 @@ impl Course {
     ///
     /// # Errors
     /// [`WorldError`] if something does not fit.
-    pub fn world(&self, robot: Robot, second: bool) -> Result<World, WorldError> {
-        let robots = if second { vec![robot, self.second_robot()] } else { vec![robot] };
+    pub fn world(&self, robot: Robot, second: Option<Point>) -> Result<World, WorldError> {
+        let mut robots = vec![robot];
+        robots.extend(second.map(|at| self.second_robot(at)));
         let world = World::new(self.scene()?, robots, Noise::default())?;
         world.with_max_order(ORDER)?.with_pole_order(POLE_ORDER).map(|world| world.with_seed(self.number))
     }
@@ -169,7 +176,7 @@ mod tests {
     fn every_random_course_has_room_for_both_robots_and_poles_about_1_6_m_apart() {
         for number in 0..200 {
             let course = Course::random(number);
-            assert!(course.world(course.robot(), true).is_ok(), "{number}");
+            assert!(course.world(course.robot(), Some(SECOND_BEHIND)).is_ok(), "{number}");
             let nearest = |pole: &Point| {
                 let others = course.poles.iter().filter(|other| *other != pole).map(|other| (other - pole).norm());
                 others.fold(f64::INFINITY, f64::min)

@@ -15,6 +15,7 @@ use crate::{
     experiments::ExperimentError,
     labmate::LabMate,
     method::Method,
+    plane::Point,
     robot::Robot,
     simulate::{Options, sweep},
 };
@@ -34,8 +35,8 @@ pub struct SetTwoOptions {
     pub methods: Vec<Method>,
     /// What [`Method::EerufBest`] fires by, see [`best_for`](crate::best::best_for).
     pub best: Option<Best>,
-    /// Whether another robot fires 24 times in 80 ms nearby.
-    pub second_robot: bool,
+    /// Where another robot stands that fires 24 times in 80 ms, if there is one.
+    pub second_robot: Option<Point>,
     /// The platform.
     pub labmate: LabMate,
     /// Whether the robot tells its ring by how much readings should change from its own motion.
@@ -58,12 +59,13 @@ impl Default for SetTwoOptions {
                 Method::Eeruf,
                 Method::EerufBest,
                 Method::Adaptive,
+                Method::MultiEcho,
             ],
             best: None,
-            second_robot: false,
+            second_robot: None,
             labmate: LabMate::default(),
             odometry: true,
-            t_delta: Micros::new(250),
+            t_delta: Micros::new(150),
             piloting: Piloting::default(),
         }
     }
@@ -74,8 +76,8 @@ impl Default for SetTwoOptions {
 pub struct SetTwo {
     /// How many courses.
     pub seeds: u64,
-    /// Whether another robot fired nearby.
-    pub second_robot: bool,
+    /// Where another robot stood and fired, in metres.
+    pub second_robot_m: Option<[f64; 2]>,
     /// The platform's highest speed in m/s.
     pub speed_m_s: f64,
     /// The methods in the order asked for, with their figures.
@@ -189,7 +191,8 @@ pub fn set_two(options: &SetTwoOptions, keep_going: &(dyn Fn(f64) -> bool + Sync
     }
     let methods = options.methods.iter().zip(&by_method).map(|(&method, runs)| (method, Figures::of(runs))).collect();
     let SetTwoOptions { seeds, second_robot, .. } = *options;
-    Ok(SetTwo { seeds, second_robot, speed_m_s: options.labmate.speed_max_m_s, methods, runs: by_method })
+    let second_robot_m = second_robot.map(|at| [at.x, at.y]);
+    Ok(SetTwo { seeds, second_robot_m, speed_m_s: options.labmate.speed_max_m_s, methods, runs: by_method })
 }
 
 /// One course by one method.

@@ -78,7 +78,8 @@ impl View {
     fn panel(&self, course: &Course, run: &Run, second_robot_m: Option<[f64; 2]>) -> Picture {
         let mut picture = Picture::new(ROOM_M[0] * self.scale, self.height);
         picture.rect([(0.0, 0.0), (ROOM_M[0] * self.scale, self.height)], SILENT.mix(0.25));
-        for Cell { x_m, y_m, value } in &run.grid {
+        let inside = |cell: &&Cell| (0.0..ROOM_M[0]).contains(&cell.x_m) && (0.0..ROOM_M[1]).contains(&cell.y_m);
+        for Cell { x_m, y_m, value } in run.grid.iter().filter(inside) {
             let half = 0.5 * CELL_M;
             let corners = [self.px(x_m - half, y_m + half), self.px(x_m + half, y_m - half)];
             picture.rect(corners, INK.mix(0.08 + 0.05 * f64::from(*value)));

@@ -1,4 +1,4 @@
-//! The LabMate, the platform of the paper's second set: a box on two driven wheels, with limits to how fast it goes, turns,
+//! The platform of the paper's second set, TRC's `LabMate`: a box on two driven wheels, with limits to how fast it goes, turns,
 //! and changes either.
 
 use crate::{

@@ -43,6 +43,8 @@ pub(crate) struct Ways<'w> {
     tracer: Tracer,
     matrix: CrosstalkMatrix,
     moves: bool,
+    /// For the kind of transducer asked for last, how long a path may be that is heard.
+    loudest: Option<(Transducer, f64)>,
     /// Whether it matters what a robot hears.
     listens: Vec<bool>,
     /// The ways from each emitter while nothing moves, with one more start at the end; else those of the last firing.
@@ -73,6 +75,7 @@ impl<'w> Ways<'w> {
             tracer: Tracer::new(),
             matrix: CrosstalkMatrix::new(),
             moves: guide.moves(),
+            loudest: None,
             listens: (0..world.robots().len()).map(|robot| guide.listens(robot)).collect(),
             ways: Vec::new(),
             starts: Vec::new(),
@@ -188,8 +191,12 @@ impl<'w> Ways<'w> {
         let scene = self.world.scene();
         let lift = 10f64.powf(self.world.noise().fading_db_rms * f64::from(FARTHEST) / 20.0);
         let floor = transducer.detection_floor(scene.air()) / lift;
-        let limits =
-            Limits { max_order: self.world.max_order(), max_length_m: loudest_m(transducer, scene.air(), floor) };
+        let max_length_m = match self.loudest {
+            Some((kind, longest)) if kind == *transducer => longest,
+            _ => loudest_m(transducer, scene.air(), floor),
+        };
+        self.loudest = Some((*transducer, max_length_m));
+        let limits = Limits { max_order: self.world.max_order(), max_length_m };
         self.tracer.pole_order = self.world.pole_order();
         // The receiver's gain depends on when the receiver fired, so it cannot be applied here.
         let flat = Transducer { gain: GainProfile::Constant, ..*transducer };

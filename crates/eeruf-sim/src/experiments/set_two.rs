@@ -1,4 +1,4 @@
-//! Set II (Sec. 4): a LabMate drives through a course of thin poles, steered by what its ring tells: HIMM grid, vector field
+//! Set II (Sec. 4): a `LabMate` drives through a course of thin poles, steered by what its ring tells: HIMM grid, vector field
 //! histogram, platform, in a closed loop.
 //!
 //! The ring is core's own under the event simulation, as everywhere; only where the robot is is not known beforehand.

@@ -179,7 +179,7 @@ struct Sweep {
     seeds: u64,
     second_robot_m: Option<[f64; 2]>,
     steps: Vec<SpeedStep>,
-    /// The highest speed at which nearly all courses are finished, of those up to which that is so.
+    /// The highest speed at which nearly all courses are finished.
     #[serde(serialize_with = "by_name")]
     borne_m_s: Vec<(Method, Option<f64>)>,
 }
@@ -191,8 +191,8 @@ fn by_name<S: serde::Serializer>(borne: &[(Method, Option<f64>)], serializer: S)
 impl Sweep {
     fn of(options: &SetTwoOptions, steps: Vec<SpeedStep>) -> Self {
         let borne = |place: usize| {
-            let up_to = steps.iter().take_while(|step| step.finished[place].1 >= BORNE);
-            up_to.last().map(|step| step.speed_m_s)
+            let borne = steps.iter().filter(|step| step.finished[place].1 >= BORNE);
+            borne.last().map(|step| step.speed_m_s)
         };
         let borne_m_s = options.methods.iter().enumerate().map(|(place, method)| (*method, borne(place))).collect();
         let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);
@@ -213,8 +213,8 @@ impl Sweep {
                 row
             });
         let mut text = format!(
-            "Set II: {} courses at several top speeds{}: finished %, and (mean speed in m/s). A speed is borne\n\
-             if {:.0} % of the courses are finished at it and at all lower ones.\n\n",
+            "Set II: {} courses at several top speeds{}: finished %, and (mean speed in m/s). Borne is\n\
+             the highest speed at which {:.0} % of the courses are finished.\n\n",
             self.seeds,
             beside(self.second_robot_m),
             100.0 * BORNE

@@ -8,6 +8,7 @@ use eeruf_sim::{
         ExperimentError,
         set_two::{Ending, Figures, SECOND_AHEAD, SECOND_BEHIND, SetTwo, SetTwoOptions, set_two, speed_sweep},
     },
+    labmate::LabMate,
 };
 
 fn options(seeds: u64, methods: &[Method]) -> SetTwoOptions {
@@ -70,10 +71,20 @@ fn set_two_is_the_same_on_any_number_of_threads() {
 }
 
 #[test]
-fn a_robot_that_creeps_touches_nothing() {
-    let steps = speed_sweep(&options(6, &[Method::Eeruf]), &[0.3], &|_| true).unwrap();
-    assert_eq!((steps[0].speed_m_s, steps[0].finished[0]), (0.3, (Method::Eeruf, 1.0)));
-    assert!(steps[0].mean_speed_m_s[0].1 <= 0.3);
+fn a_sweep_tells_at_each_speed_what_a_run_at_that_speed_tells() {
+    let asked = options(4, &[Method::Eeruf, Method::Sequential]);
+    let steps = speed_sweep(&asked, &[0.5, 1.5], &|_| true).unwrap();
+    assert_eq!(steps.iter().map(|step| step.speed_m_s).collect::<Vec<_>>(), [0.5, 1.5]);
+    for step in &steps {
+        let labmate = LabMate { speed_max_m_s: step.speed_m_s, ..LabMate::default() };
+        let found = set_two(&SetTwoOptions { labmate, ..asked.clone() }, &|_| true).unwrap();
+        for (place, (method, figures)) in found.methods.iter().enumerate() {
+            assert_eq!(step.finished[place], (*method, figures.finished as f64 / 4.0));
+            assert_eq!(step.mean_speed_m_s[place], (*method, figures.mean_speed_m_s));
+            assert!(figures.top_speed_m_s <= step.speed_m_s && figures.mean_speed_m_s < figures.top_speed_m_s);
+        }
+    }
+    assert!(steps[1].mean_speed_m_s[0].1 > 1.5 * steps[0].mean_speed_m_s[0].1);
 }
 
 #[test]

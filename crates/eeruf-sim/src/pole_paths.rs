@@ -67,18 +67,19 @@ impl PoleSearch {
         if scene.poles().is_empty() || limits.max_order == 0 {
             return true;
         }
+        if limits.max_order == 1 {
+            in_sight(&tree.pole_cones, &mut self.firsts);
+            for (receiver, &at) in receivers.iter().enumerate() {
+                self.one_pole(scene, source, at, receiver as u32, limits, gate);
+            }
+            return true;
+        }
         let cone_key = |cone: &PoleCone| (cone.pole, cone.triangle);
         self.from_source.clear();
         self.from_source.extend_from_slice(&tree.pole_cones);
         // Within one key the beams stay in the order of their tree, lowest order first.
         self.from_source.sort_by_key(|cone| (cone_key(cone), cone.beam));
         in_sight(&self.from_source, &mut self.firsts);
-        if limits.max_order == 1 {
-            for (receiver, &at) in receivers.iter().enumerate() {
-                self.one_pole(scene, source, at, receiver as u32, limits, gate);
-            }
-            return true;
-        }
         for (receiver, &at) in receivers.iter().enumerate() {
             let growth = Growth {
                 mesh: &scene.mesh,

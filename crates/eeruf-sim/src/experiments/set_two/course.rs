@@ -132,8 +132,8 @@ impl Course {
         }
     }
 
-    /// The lab with its robots. Sound is followed for two bounces at walls or one at a pole: what comes to a robot 60 ms after
-    /// firing over more is below what is heard, save in the reflective corner.
+    /// The lab with its robots. Sound is followed for two bounces at walls, or one at a pole: a choice, for speed. Fainter
+    /// sound over more bounces is left out.
     ///
     /// # Errors
     /// [`WorldError`] if something does not fit.

@@ -191,8 +191,8 @@ fn by_name<S: serde::Serializer>(borne: &[(Method, Option<f64>)], serializer: S)
 impl Sweep {
     fn of(options: &SetTwoOptions, steps: Vec<SpeedStep>) -> Self {
         let borne = |place: usize| {
-            let borne = steps.iter().filter(|step| step.finished[place].1 >= BORNE);
-            borne.last().map(|step| step.speed_m_s)
+            let mut borne = steps.iter().filter(|step| step.finished[place].1 >= BORNE);
+            borne.next_back().map(|step| step.speed_m_s)
         };
         let borne_m_s = options.methods.iter().enumerate().map(|(place, method)| (*method, borne(place))).collect();
         let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);

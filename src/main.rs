@@ -7,6 +7,7 @@
 
 mod design;
 mod draw;
+mod experiment;
 mod fooled;
 mod illustrate;
 mod input;
@@ -42,6 +43,7 @@ enum Verb {
     Study(study::Args),
     Paths(paths::Args),
     Replay(replay::Args),
+    Experiment(experiment::Args),
 }
 
 /// What a verb's answer is, and with it the exit code.
@@ -60,6 +62,7 @@ fn main() -> ExitCode {
         Verb::Study(args) => study::run(&args),
         Verb::Paths(args) => paths::run(&args),
         Verb::Replay(args) => replay::run(&args),
+        Verb::Experiment(args) => experiment::run(&args),
     };
     match answer {
         Ok(Answer::Yes) => ExitCode::SUCCESS,

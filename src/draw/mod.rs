@@ -5,18 +5,22 @@
 //! travels in the program: what a PNG looks like does not depend on the machine. Rendering the SVG instead would need a parser
 //! for it, a text shaper and a second rasteriser (`resvg`); this way a glyph outliner (`ab_glyph`) and `png` are enough.
 
+mod course;
 mod crosstalk;
 mod kinds;
 mod methods;
 mod readings;
 mod scene;
+mod spreads;
 mod timing;
 
+pub(crate) use course::courses;
 pub(crate) use crosstalk::two_periods;
 pub(crate) use kinds::kinds_over_time;
 pub(crate) use methods::methods_chart;
 pub(crate) use readings::readings_over_time;
 pub(crate) use scene::{DrawnPath, Panel, scene_with_paths};
+pub(crate) use spreads::set_one;
 pub(crate) use timing::timing_diagram;
 
 use std::path::Path;

@@ -6,6 +6,7 @@
 //! build up: a node is one piece of wall that is truly seen, and the tree grows about quadratically with the order.
 
 use crate::{
+    gate::Gate,
     mesh::{Beyond, Exit, Mesh, NONE},
     plane::{Mirror, Point, SAME_DIRECTION, TOUCH_M, Vector, cross},
     pole::Pole,
@@ -346,6 +347,24 @@ impl BeamTree {
         {
             self.pole_cones.push(cone);
         }
+    }
+
+    /// Forgets what is certainly too faint.
+    pub(crate) fn drop_faint(&mut self, gate: &Gate, receivers: &[Point]) {
+        // Sightings of one beam follow each other.
+        let (mut turn, mut order, mut axis) = (f64::NAN, 0, Vector::zeros());
+        self.sightings.retain(|sighting| {
+            if turn != sighting.turn || order != sighting.order % 2 {
+                (turn, order) = (sighting.turn, sighting.order % 2);
+                // Where the source heads, as seen in the image's world.
+                let heading = if order == 0 { gate.source_rad() + turn } else { turn - gate.source_rad() };
+                axis = Vector::new(heading.cos(), heading.sin());
+            }
+            let Some(at) = receivers.get(sighting.receiver as usize) else { return true };
+            let ahead = at - sighting.image;
+            let departure_cos = ahead.dot(&axis) / sighting.length_m;
+            gate.walls(departure_cos, sighting.receiver as usize, -ahead, sighting.length_m, sighting.kept)
+        });
     }
 
     #[inline]

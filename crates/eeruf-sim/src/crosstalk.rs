@@ -2,8 +2,9 @@
 
 use crate::{
     error::PathsError,
+    gate::Gate,
     paths::{Bounce, Limits, Paths, Tracer},
-    plane::{Point, Pose},
+    plane::{Point, Pose, Vector},
     scene::Scene,
     transducer::Transducer,
 };
@@ -47,6 +48,7 @@ pub struct CrosstalkMatrix {
     // Kept between computations only for their memory.
     positions: Vec<Point>,
     found: Paths,
+    gate: Option<Gate>,
 }
 
 impl CrosstalkMatrix {
@@ -118,7 +120,16 @@ impl CrosstalkMatrix {
                 self.starts.resize(self.starts.len() + sensors.len(), self.paths.len() as u32);
                 continue;
             }
-            if let Err(error) = tracer.trace(scene, self.positions[emitter], &self.positions, limits, &mut self.found) {
+            let gate = match &mut self.gate {
+                Some(gate) if gate.is_for(&piston) => gate,
+                gate => gate.insert(Gate::new(piston)),
+            };
+            let axes = sensors.iter().map(|sensor| sensor.rotation * Vector::x());
+            gate.aim(floor, pose.rotation.angle(), axes);
+            // The wave correction may add a little to what a pole returns.
+            let gate = if tracer.pole_waves { None } else { Some(&*gate) };
+            let (source, receivers) = (self.positions[emitter], &self.positions);
+            if let Err(error) = tracer.trace_through(gate, scene, source, receivers, limits, &mut self.found) {
                 self.paths.clear();
                 self.starts.clear();
                 return Err(error);
@@ -205,7 +216,7 @@ pub fn ring_of(
     let pose = *pose;
     (0..sensors).map(move |sensor| {
         let heading = first_rad + spacing_rad * sensor as f64;
-        let place = crate::plane::Vector::new(radius_m * heading.cos(), radius_m * heading.sin());
+        let place = Vector::new(radius_m * heading.cos(), radius_m * heading.sin());
         pose * Pose::new(place, heading)
     })
 }

@@ -11,8 +11,10 @@ use crate::{
     detector::{Arrival, Detector, EXTERNAL, Hearing, MAX_ECHOES, NEVER},
     drive::{Drive, drive, rungs, soonest_refire},
     error::PathsError,
+    guide::Guide,
     judge::Judge,
     method::{Method, schedule_for},
+    motion::Moment,
     noise::{Chance, FARTHEST, Normal},
     readings::Readings,
     robot::{Robot, offset},
@@ -43,12 +45,15 @@ struct Crew<'a> {
 }
 
 /// A world under way.
-struct Course<'a> {
+struct Course<'a, G> {
     world: &'a World,
+    guide: &'a mut G,
     ways: Ways<'a>,
     detectors: Vec<Detector>,
     /// What each sensor reads alone, at its last firing.
     references: Vec<u64>,
+    /// Where each sensor's robot was then.
+    fired: Vec<Option<Moment>>,
     chance: Chance,
     normal: Normal,
     judge: Judge,
@@ -56,17 +61,19 @@ struct Course<'a> {
     end: u64,
 }
 
-pub(crate) fn run(
+pub(crate) fn run<G: Guide>(
     world: &World,
     method: Method,
     options: &Options,
+    guide: &mut G,
     mut keep_going: impl FnMut(f64) -> bool,
 ) -> Result<Readings, SimulationError> {
     let seed = Chance::new(options.seed.unwrap_or(world.seed()));
-    let schedules = schedules(world, method, options)?;
-    let mut course = Course::new(world, method, options, seed)?;
+    let schedules = schedules(world, method, options, guide)?;
+    let mut course = Course::new(world, method, options, guide, seed)?;
     let mut crews = Vec::with_capacity(world.robots().len());
     for (index, robot) in world.robots().iter().enumerate() {
+        let method = course.guide.method(index, method);
         crews.push(crew(method, index, robot, &schedules[index], &course.ways, world, seed)?);
     }
     let longest = crews.iter().map(|crew| crew.hearing.window).max().unwrap_or(0);
@@ -81,7 +88,7 @@ pub(crate) fn run(
                 (now, whose) = (due, Some(index));
             }
         }
-        if now > last {
+        if now > last || !course.guide.advance(now) {
             break;
         }
         if until_call == 0 {
@@ -108,10 +115,12 @@ fn schedules(
     world: &World,
     method: Method,
     options: &Options,
+    guide: &impl Guide,
 ) -> Result<Vec<Vec<crate::method::AnySchedule>>, SimulationError> {
     let robots = world.robots().iter().enumerate();
     let all =
         robots.map(|(index, robot)| {
+            let method = guide.method(index, method);
             let base = schedule_for(method, robot, options.best.as_ref())
                 .map_err(|error| SimulationError::Schedule { robot: index, method, error })?;
             rungs(method, index, robot, base)
@@ -149,18 +158,26 @@ fn crew<'a>(
     Ok(Crew { robot, ring, clock, hearing, sensors, wakes: clock.reaches(start), hears: NEVER })
 }
 
-impl<'a> Course<'a> {
-    fn new(world: &'a World, method: Method, options: &Options, seed: Chance) -> Result<Self, SimulationError> {
-        let ways = Ways::new(world).map_err(|error| paths_error(0, error))?;
+impl<'a, G: Guide> Course<'a, G> {
+    fn new(
+        world: &'a World,
+        method: Method,
+        options: &Options,
+        guide: &'a mut G,
+        seed: Chance,
+    ) -> Result<Self, SimulationError> {
+        let ways = Ways::new(world, guide).map_err(|error| paths_error(0, error))?;
         let sensors = ways.ids().len();
         // A world has at least one robot.
         let end = u64::from(options.periods) * u64::from(world.robots()[0].period.as_micros()) * 1000;
         let judge = Judge::new(method, options, end, ways.ids())?;
         Ok(Self {
             world,
+            guide,
             ways,
             detectors: vec![Detector::NEW; sensors],
             references: vec![NEVER; sensors],
+            fired: vec![None; sensors],
             chance: seed.of(ARRIVALS),
             normal: Normal::new(),
             judge,
@@ -178,17 +195,26 @@ impl<'a> Course<'a> {
         }
         loop {
             let crew = &mut crews[index];
-            let detectors = &self.detectors;
-            let world = self.world;
-            let change = |sensor: u8| expected_change_us(world, crew.robot, detectors, &crew.sensors, sensor);
+            let (detectors, fired) = (&self.detectors, &self.fired);
+            let c = self.world.scene().air().speed_of_sound();
+            let change = |sensor: u8| {
+                let place = crew.sensors.start + usize::from(sensor);
+                match (detectors.get(place), fired.get(place)) {
+                    (Some(detector), Some(Some(fired))) => expected_change_us(crew.robot, detector, fired, sensor, c),
+                    _ => 0,
+                }
+            };
             match crew.ring.poll(instant, &change) {
                 None => break,
                 Some(Event::Fire(sensor)) => self.fire(crews, index, crew_sensor(index, crews, sensor), now)?,
                 Some(Event::Reading(reading)) => {
                     let place = crew.sensors.start + usize::from(reading.sensor);
                     if let Some(detector) = self.detectors.get_mut(place) {
-                        self.judge.tell(place, &reading, detector, self.references[place]);
+                        let told = self.judge.tell(place, &reading, detector, self.references[place]);
                         detector.stop();
+                        if let (Some(readings), Some(fired)) = (told, &self.fired[place]) {
+                            self.guide.told(readings, fired);
+                        }
                     }
                 }
                 Some(Event::PeriodEnded(_)) => {}
@@ -219,7 +245,8 @@ impl<'a> Course<'a> {
 
     /// A sensor fires: it begins to listen, and its sound sets out to every sensor that can hear it.
     fn fire(&mut self, crews: &mut [Crew<'_>], index: usize, emitter: usize, now: u64) -> Result<(), PathsError> {
-        self.ways.prepare(emitter, now)?;
+        self.fired[emitter] = Some(self.guide.moment(index, now));
+        self.ways.prepare(emitter, now, self.guide)?;
         let hearing = crews[index].hearing;
         self.references[emitter] = self.ways.reference(emitter, &hearing);
         let detector = &mut self.detectors[emitter];
@@ -274,27 +301,17 @@ fn crew_sensor(index: usize, crews: &[Crew<'_>], sensor: u8) -> usize {
 }
 
 /// By how much a good reading of a sensor should have changed since its firing before: `-2 v dt / c`, with `v` the speed at
-/// which the robot carries it forward. Nothing without odometry.
-fn expected_change_us(
-    world: &World,
-    robot: &Robot,
-    detectors: &[Detector],
-    sensors: &core::ops::Range<usize>,
-    sensor: u8,
-) -> i32 {
-    let place = usize::from(sensor);
-    let (Some(pose), Some(detector)) = (robot.sensors.get(place), detectors.get(sensors.start + place)) else {
-        return 0;
-    };
+/// which the robot carried it forward when it fired. Nothing without odometry.
+fn expected_change_us(robot: &Robot, detector: &Detector, fired: &Moment, sensor: u8, speed_of_sound: f64) -> i32 {
+    let Some(pose) = robot.sensors.get(usize::from(sensor)) else { return 0 };
     if !robot.odometry || detector.firings < 2 {
         return 0;
     }
-    let moment = robot.motion.at(&robot.pose, detector.fired as f64 * 1e-9);
-    let heading = moment.pose.rotation * pose.rotation;
-    let velocity = moment.velocity_at(moment.pose.rotation * offset(pose));
+    let heading = fired.pose.rotation * pose.rotation;
+    let velocity = fired.velocity_at(fired.pose.rotation * offset(pose));
     let v = velocity.x * heading.re + velocity.y * heading.im;
     let dt_us = (detector.fired - detector.fired_before) as f64 * 1e-3;
-    (-2.0 * v * dt_us / world.scene().air().speed_of_sound()).round() as i32
+    (-2.0 * v * dt_us / speed_of_sound).round() as i32
 }
 
 /// When bursts from outside come.

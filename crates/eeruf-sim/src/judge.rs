@@ -46,10 +46,17 @@ impl Judge {
         Ok(Self { readings, belief, ids: ids.to_vec(), end, median_of, history })
     }
 
-    /// Takes in what the ring tells of a firing. `reference` is the travelling time of what the sensor hears alone.
-    pub(crate) fn tell(&mut self, place: usize, reading: &Reading, detector: &Detector, reference: u64) {
+    /// Takes in what the ring tells of a firing. `reference` is the travelling time of what the sensor hears alone. The
+    /// answer is all readings with this one as the last; none if it does not count.
+    pub(crate) fn tell(
+        &mut self,
+        place: usize,
+        reading: &Reading,
+        detector: &Detector,
+        reference: u64,
+    ) -> Option<&Readings> {
         if reading.kind == Kind::Late || detector.fired >= self.end {
-            return;
+            return None;
         }
         let earliest = detector.heard().next().copied();
         let (kind, told) = match self.belief {
@@ -87,6 +94,7 @@ impl Judge {
         out.cause.push(cause);
         out.path.push(path);
         out.emitted_s.push(emitted_s);
+        Some(out)
     }
 
     fn median(&mut self, place: usize, earliest: Option<Heard>) -> (Kind, Option<Heard>) {

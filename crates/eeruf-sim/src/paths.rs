@@ -7,6 +7,7 @@ use crate::{
     amplitude::reflected,
     beam::{Beam, BeamTree, Growth, Sighting},
     error::PathsError,
+    gate::Gate,
     mesh::NONE,
     plane::{Point, TOUCH_M, opposite, wrap_angle},
     pole_paths::{PolePath, PoleSearch},
@@ -119,6 +120,8 @@ pub struct Tracer {
     /// Whether poles return what a rigid cylinder does at this frequency instead of what geometric optics says; see
     /// [`pole_wave_correction`]. Off by default.
     pub pole_waves: bool,
+    /// The most bounces of a path with a pole, at most those of all others. [`MAX_ORDER`] to begin with.
+    pub pole_order: u32,
     tree: BeamTree,
     poles: PoleSearch,
     keys: Vec<u64>,
@@ -157,6 +160,7 @@ impl Tracer {
         Self {
             frequency_hz,
             pole_waves: false,
+            pole_order: MAX_ORDER,
             tree: BeamTree::default(),
             poles: PoleSearch::default(),
             keys: Vec::new(),
@@ -184,9 +188,26 @@ impl Tracer {
         limits: Limits,
         paths: &mut Paths,
     ) -> Result<(), PathsError> {
+        self.trace_through(None, scene, source, receivers, limits, paths)
+    }
+
+    /// As [`trace`](Self::trace), without paths that a gate keeps back as too faint.
+    pub(crate) fn trace_through(
+        &mut self,
+        gate: Option<&Gate>,
+        scene: &Scene,
+        source: Point,
+        receivers: &[Point],
+        limits: Limits,
+        paths: &mut Paths,
+    ) -> Result<(), PathsError> {
         paths.clear();
         self.sight(scene, source, receivers, limits)?;
-        if !self.poles.search(scene, &self.tree, source, receivers, limits, MAX_BEAMS) {
+        if let Some(gate) = gate {
+            self.tree.drop_faint(gate, receivers);
+        }
+        let at_poles = Limits { max_order: limits.max_order.min(self.pole_order), ..limits };
+        if !self.poles.search(scene, &self.tree, source, receivers, at_poles, gate, MAX_BEAMS) {
             return Err(PathsError::Budget { beams: MAX_BEAMS });
         }
         self.rank(receivers.len());

@@ -4,6 +4,7 @@
 use crate::{
     alhazen::{Specular, alhazen, alhazen_twice},
     beam::{BeamTree, Growth, PoleCone},
+    gate::Gate,
     paths::{Bounce, Limits, push_chain},
     plane::{Point, Vector, wrap_angle},
     scene::Scene,
@@ -48,7 +49,8 @@ impl PoleSearch {
         &self.bounces[path.bounces.0 as usize..path.bounces.1 as usize]
     }
 
-    /// Adds all pole paths, given the source's grown tree. Returns whether the budget sufficed.
+    /// Adds all pole paths that a gate lets through, given the source's grown tree. Returns whether the budget sufficed.
+    #[allow(clippy::too_many_arguments, reason = "the question, and what is known of its answer")]
     pub(crate) fn search(
         &mut self,
         scene: &Scene,
@@ -56,12 +58,20 @@ impl PoleSearch {
         source: Point,
         receivers: &[Point],
         limits: Limits,
+        gate: Option<&Gate>,
         budget: usize,
     ) -> bool {
         self.found.clear();
         self.bounces.clear();
         self.tried = 0;
         if scene.poles().is_empty() || limits.max_order == 0 {
+            return true;
+        }
+        if limits.max_order == 1 {
+            in_sight(&tree.pole_cones, &mut self.firsts);
+            for (receiver, &at) in receivers.iter().enumerate() {
+                self.one_pole(scene, source, at, receiver as u32, limits, gate);
+            }
             return true;
         }
         let cone_key = |cone: &PoleCone| (cone.pole, cone.triangle);
@@ -148,6 +158,36 @@ impl PoleSearch {
         let departure_rad = unfolded(hit.point - out.image, out.order, out.turn);
         let arrival_rad = unfolded(hit.point - home.image, home.order, home.turn);
         self.push(receiver, back.beams[0].image, order, [departure_rad, arrival_rad], &[(hit, pole.radius_m)], start);
+    }
+
+    /// Source, one pole, receiver, both in sight of it: no trees are needed.
+    fn one_pole(
+        &mut self,
+        scene: &Scene,
+        source: Point,
+        at: Point,
+        receiver: u32,
+        limits: Limits,
+        gate: Option<&Gate>,
+    ) {
+        for k in 0..self.firsts.len() {
+            let index = self.firsts[k];
+            let pole = &scene.poles()[index as usize];
+            if gate.is_some_and(|gate| !gate.pole(source, receiver as usize, at, pole)) {
+                continue;
+            }
+            let Some(hit) = alhazen(source, at, pole.centre, pole.radius_m) else { continue };
+            if hit.before_m + hit.after_m > limits.max_length_m
+                || !scene.mesh.sees(source, hit.point, &mut self.triangles)
+                || !scene.mesh.sees(hit.point, at, &mut self.triangles)
+            {
+                continue;
+            }
+            let start = self.bounces.len();
+            self.bounces.push(Bounce::Pole(index));
+            let angles = [unfolded(hit.point - source, 0, 0.0), unfolded(hit.point - at, 0, 0.0)];
+            self.push(receiver, at, 1, angles, &[(hit, pole.radius_m)], start);
+        }
     }
 
     /// Source, one pole, another pole, receiver, all in sight of each other.

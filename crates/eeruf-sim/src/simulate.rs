@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::{
     error::PathsError,
     events,
+    guide::Planned,
     method::{AnySchedule, Method},
     readings::Readings,
     world::World,
@@ -71,7 +72,7 @@ pub fn simulate_while(
     options: &Options,
     keep_going: impl FnMut(f64) -> bool,
 ) -> Result<Readings, SimulationError> {
-    events::run(world, method, options, keep_going)
+    events::run(world, method, options, &mut Planned(world), keep_going)
 }
 
 /// Several simulations at once on all cores, the answers in the order of the jobs. What comes out does not depend on the

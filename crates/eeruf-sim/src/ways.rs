@@ -9,7 +9,7 @@ use crate::{
     crosstalk::{CriticalPath, CrosstalkMatrix},
     detector::{Hearing, NEVER},
     error::PathsError,
-    motion::Moment,
+    guide::Guide,
     moving::reception_along,
     noise::FARTHEST,
     paths::{Bounce, Limits, Tracer},
@@ -43,6 +43,10 @@ pub(crate) struct Ways<'w> {
     tracer: Tracer,
     matrix: CrosstalkMatrix,
     moves: bool,
+    /// For the kind of transducer asked for last, how long a path may be that is heard.
+    loudest: Option<(Transducer, f64)>,
+    /// Whether it matters what a robot hears.
+    listens: Vec<bool>,
     /// The ways from each emitter while nothing moves, with one more start at the end; else those of the last firing.
     ways: Vec<Way>,
     starts: Vec<usize>,
@@ -56,7 +60,7 @@ pub(crate) struct Ways<'w> {
 }
 
 impl<'w> Ways<'w> {
-    pub(crate) fn new(world: &'w World) -> Result<Self, PathsError> {
+    pub(crate) fn new(world: &'w World, guide: &impl Guide) -> Result<Self, PathsError> {
         let mut ids = Vec::new();
         let mut first = Vec::new();
         for (robot, crew) in world.robots().iter().enumerate() {
@@ -70,7 +74,9 @@ impl<'w> Ways<'w> {
             first,
             tracer: Tracer::new(),
             matrix: CrosstalkMatrix::new(),
-            moves: world.moves(),
+            moves: guide.moves(),
+            loudest: None,
+            listens: (0..world.robots().len()).map(|robot| guide.listens(robot)).collect(),
             ways: Vec::new(),
             starts: Vec::new(),
             paths: Vec::new(),
@@ -80,7 +86,7 @@ impl<'w> Ways<'w> {
             group: Vec::new(),
         };
         if !ways.moves {
-            ways.compute_all()?;
+            ways.compute_all(guide)?;
         }
         Ok(ways)
     }
@@ -96,8 +102,8 @@ impl<'w> Ways<'w> {
     }
 
     /// Makes sure that the ways from this emitter are those at a time, in true nanoseconds.
-    pub(crate) fn prepare(&mut self, emitter: usize, now: u64) -> Result<(), PathsError> {
-        if self.moves { self.compute_from(emitter, now as f64 * 1e-9) } else { Ok(()) }
+    pub(crate) fn prepare(&mut self, emitter: usize, now: u64, guide: &impl Guide) -> Result<(), PathsError> {
+        if self.moves { self.compute_from(emitter, now, guide) } else { Ok(()) }
     }
 
     /// The ways from an emitter that was prepared.
@@ -119,8 +125,8 @@ impl<'w> Ways<'w> {
         &self.world.robots()[usize::from(self.ids[sensor].robot)]
     }
 
-    fn compute_all(&mut self) -> Result<(), PathsError> {
-        self.place(0.0);
+    fn compute_all(&mut self, guide: &impl Guide) -> Result<(), PathsError> {
+        self.place(0, guide);
         let mut by_emitter: Vec<Vec<Way>> = vec![Vec::new(); self.ids.len()];
         for (robot, crew) in self.world.robots().iter().enumerate() {
             // Once for each kind of transducer.
@@ -145,8 +151,8 @@ impl<'w> Ways<'w> {
         Ok(())
     }
 
-    fn compute_from(&mut self, emitter: usize, time_s: f64) -> Result<(), PathsError> {
-        self.place(time_s);
+    fn compute_from(&mut self, emitter: usize, now: u64, guide: &impl Guide) -> Result<(), PathsError> {
+        self.place(now, guide);
         let transducer = &self.robot_of(emitter).transducer;
         self.trace(transducer, Some(emitter))?;
         let matrix = core::mem::take(&mut self.matrix);
@@ -161,11 +167,11 @@ impl<'w> Ways<'w> {
     }
 
     /// Where all sensors are, and how fast they go.
-    fn place(&mut self, time_s: f64) {
+    fn place(&mut self, now: u64, guide: &impl Guide) {
         self.poses.clear();
         self.velocities.clear();
-        for robot in self.world.robots() {
-            let moment: Moment = robot.motion.at(&robot.pose, time_s);
+        for (index, robot) in self.world.robots().iter().enumerate() {
+            let moment = guide.moment(index, now);
             for sensor in &robot.sensors {
                 self.poses.push(moment.pose * sensor);
                 self.velocities.push(moment.velocity_at(moment.pose.rotation * offset(sensor)));
@@ -176,13 +182,22 @@ impl<'w> Ways<'w> {
     /// Fills the matrix for all sensors of one kind, or from one emitter to them. Paths that only the strongest fading lifts
     /// over the detection floor are in it too.
     fn trace(&mut self, transducer: &Transducer, emitter: Option<usize>) -> Result<(), PathsError> {
-        let same_kind = |&sensor: &usize| self.robot_of(sensor).transducer == *transducer;
-        self.group = (0..self.ids.len()).filter(same_kind).collect();
+        let concerned = |&sensor: &usize| {
+            let hears = emitter == Some(sensor) || self.listens[usize::from(self.ids[sensor].robot)];
+            hears && self.robot_of(sensor).transducer == *transducer
+        };
+        self.group = (0..self.ids.len()).filter(concerned).collect();
         let poses: Vec<_> = self.group.iter().map(|&sensor| self.poses[sensor]).collect();
         let scene = self.world.scene();
         let lift = 10f64.powf(self.world.noise().fading_db_rms * f64::from(FARTHEST) / 20.0);
         let floor = transducer.detection_floor(scene.air()) / lift;
-        let limits = Limits::order(self.world.max_order());
+        let max_length_m = match self.loudest {
+            Some((kind, longest)) if kind == *transducer => longest,
+            _ => loudest_m(transducer, scene.air(), floor),
+        };
+        self.loudest = Some((*transducer, max_length_m));
+        let limits = Limits { max_order: self.world.max_order(), max_length_m };
+        self.tracer.pole_order = self.world.pole_order();
         // The receiver's gain depends on when the receiver fired, so it cannot be applied here.
         let flat = Transducer { gain: GainProfile::Constant, ..*transducer };
         match emitter.and_then(|emitter| self.group.iter().position(|&sensor| sensor == emitter)) {
@@ -233,4 +248,17 @@ impl<'w> Ways<'w> {
         });
         number
     }
+}
+
+/// The longest path that sound could be heard after, in metres: a millimetre more than where it has fallen to `floor` without
+/// any loss but spreading and the air's.
+fn loudest_m(transducer: &Transducer, air: crate::air::Air, floor: f64) -> f64 {
+    let loss_db_per_m = air.absorption_db_per_m(transducer.frequency_hz);
+    let (mut near, mut far) = (0.0, 1.0 / floor);
+    while far - near > 1e-3 {
+        let middle = 0.5 * (near + far);
+        let heard = 10f64.powf(-loss_db_per_m * middle / 20.0) / middle >= floor;
+        *(if heard { &mut near } else { &mut far }) = middle;
+    }
+    far + 1e-3
 }

@@ -31,6 +31,7 @@ pub struct World {
     robots: Vec<Robot>,
     noise: Noise,
     max_order: u32,
+    pole_order: u32,
     seed: u64,
 }
 
@@ -56,7 +57,7 @@ impl World {
             check(&scene, index, robot)?;
         }
         noise.check()?;
-        Ok(Self { scene, robots, noise, max_order: DEFAULT_ORDER, seed: 1 })
+        Ok(Self { scene, robots, noise, max_order: DEFAULT_ORDER, pole_order: MAX_ORDER, seed: 1 })
     }
 
     /// The same world, with sound followed up to another order.
@@ -68,6 +69,18 @@ impl World {
             return Err(WorldError::Order { max_order });
         }
         Ok(Self { max_order, ..self })
+    }
+
+    /// The same world, with sound that meets a pole followed up to this order only, at most that of all other sound. Such
+    /// sound is faint, and by far the dearest to follow.
+    ///
+    /// # Errors
+    /// [`WorldError::Order`] above [`MAX_ORDER`].
+    pub fn with_pole_order(self, pole_order: u32) -> Result<Self, WorldError> {
+        if pole_order > MAX_ORDER {
+            return Err(WorldError::Order { max_order: pole_order });
+        }
+        Ok(Self { pole_order, ..self })
     }
 
     /// The same world with another seed.
@@ -94,6 +107,11 @@ impl World {
     /// The most bounces that sound is followed for.
     pub fn max_order(&self) -> u32 {
         self.max_order
+    }
+
+    /// The most bounces that sound is followed for if one of them is at a pole.
+    pub fn pole_order(&self) -> u32 {
+        self.pole_order.min(self.max_order)
     }
 
     /// What decides all chance.

@@ -2,6 +2,7 @@
 
 mod error;
 pub mod set_one;
+pub mod set_two;
 mod spread;
 
 pub use error::ExperimentError;

@@ -1,0 +1,195 @@
+//! A course: a lab with poles about 1.6 m apart (Fig. 6), which a robot can certainly pass.
+
+use crate::{
+    air::Air,
+    clock::Clock,
+    experiments::set_one::{RADIUS_M, SENSORS, SPACING_DEG},
+    material::Material,
+    noise::{Chance, Noise},
+    plane::{Point, Pose, Vector},
+    pole::Pole,
+    robot::Robot,
+    scene::Scene,
+    transducer::Transducer,
+    wall::Wall,
+    world::{World, WorldError},
+};
+use eeruf_core::Micros;
+
+/// Length and width of the lab, in metres. The course runs along its length.
+pub const ROOM_M: [f64; 2] = [10.0, 6.0];
+/// The poles are 8 mm thick.
+pub const POLE_RADIUS_M: f64 = 0.004;
+/// Between poles of the unshaken lattice, in metres.
+const SPACING_M: f64 = 1.6;
+/// How far a pole is moved from its place at most, along either axis.
+const SHAKE_M: f64 = 0.2;
+/// No two poles are nearer.
+const LEAST_GAP_M: f64 = 1.4;
+/// A way exists on which a disc of this radius touches nothing: the platform's corners are 0.53 m from its middle.
+const PASSABLE_M: f64 = 0.6;
+/// The cells that the way is looked for on.
+const CELL_M: f64 = 0.1;
+/// Where the robot starts, and the line that it finishes at.
+const START_M: [f64; 2] = [1.0, 3.0];
+pub(super) const FINISH_X_M: f64 = 8.2;
+/// What it steers for.
+pub(super) const TARGET: Point = Point::new(9.4, 3.0);
+
+/// Places for a second robot, out of the first one's way: in the corner behind it, and in the reflective corner ahead, which
+/// all its sensors face.
+pub const SECOND_BEHIND: Point = Point::new(0.6, 5.4);
+/// See [`SECOND_BEHIND`].
+pub const SECOND_AHEAD: Point = Point::new(9.4, 5.3);
+
+/// One course.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Course {
+    /// Which one.
+    pub number: u64,
+    /// The poles' axes.
+    pub poles: Vec<Point>,
+}
+
+impl Course {
+    /// The course that a number stands for. Poles are drawn, shaken from a lattice of triangles, until no two are nearer than
+    /// 1.4 m and a disc of radius 0.6 m can roll from the start to the finish; a search over cells of 10 cm proves that.
+    pub fn random(number: u64) -> Self {
+        let mut chance = Chance::new(number).of(2);
+        loop {
+            let course = Self { number, poles: shaken(&mut chance) };
+            if course.gap_m() >= LEAST_GAP_M && course.is_passable() {
+                return course;
+            }
+        }
+    }
+
+    /// The two poles nearest to each other.
+    fn gap_m(&self) -> f64 {
+        let pairs =
+            self.poles.iter().enumerate().flat_map(|(k, a)| self.poles[..k].iter().map(move |b| (a - b).norm()));
+        pairs.fold(f64::INFINITY, f64::min)
+    }
+
+    fn is_passable(&self) -> bool {
+        let [columns, rows] = ROOM_M.map(|length| (length / CELL_M) as usize);
+        let middle = |cell: usize| Point::new((cell % columns) as f64 + 0.5, (cell / columns) as f64 + 0.5) * CELL_M;
+        let free = |cell: usize| {
+            let at = middle(cell);
+            // Half a cell's diagonal more, since the disc rolls from middle to middle.
+            let needed = PASSABLE_M + 0.05;
+            let [x, y] = [at.x.min(ROOM_M[0] - at.x), at.y.min(ROOM_M[1] - at.y)];
+            x >= needed && y >= needed && self.poles.iter().all(|pole| (pole - at).norm() >= needed)
+        };
+        let start = (START_M[1] / CELL_M) as usize * columns + (START_M[0] / CELL_M) as usize;
+        let mut known = vec![false; columns * rows];
+        let mut ahead = vec![start];
+        while let Some(cell) = ahead.pop() {
+            if known[cell] || !free(cell) {
+                continue;
+            }
+            known[cell] = true;
+            if middle(cell).x >= FINISH_X_M {
+                return true;
+            }
+            // Free cells are never at the border, so all four neighbours exist.
+            ahead.extend([cell - columns, cell - 1, cell + 1, cell + columns]);
+        }
+        false
+    }
+
+    /// The lab: its far end and left side are smooth and make the reflective corner, the other two walls are lined with
+    /// furniture and return half of the sound.
+    ///
+    /// # Errors
+    /// [`WorldError`] if the poles stand where none can.
+    pub fn scene(&self) -> Result<Scene, WorldError> {
+        let [x, y] = ROOM_M;
+        let corners = [[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]];
+        let materials = [Material::SOFT, Material::SMOOTH, Material::SMOOTH, Material::SOFT];
+        let walls = Wall::polyline(&corners).zip(materials).map(|(wall, material)| wall.with_material(material));
+        let poles = self.poles.iter().map(|pole| Pole::new(pole.x, pole.y, POLE_RADIUS_M));
+        Ok(Scene::new(walls.collect(), poles.collect(), Air::default())?)
+    }
+
+    /// The ring of Set I on the platform's middle, at the start.
+    pub fn robot(&self) -> Robot {
+        let pose = Pose::new(Vector::from(START_M), 0.0);
+        Robot::ring(pose, SENSORS, SPACING_DEG.to_radians(), RADIUS_M, Transducer::POLAROID_6500)
+    }
+
+    /// The other robot: 24 sensors all around that fire 24 times in 80 ms, standing at a place, its clock 40 ppm fast and
+    /// started at any time.
+    pub fn second_robot(&self, at: Point) -> Robot {
+        let mut chance = Chance::new(self.number).of(3);
+        let pose = Pose::new(at.coords, chance.between(-3.1, 3.1));
+        let ring = Robot::ring(pose, 24, 15f64.to_radians(), RADIUS_M, Transducer::POLAROID_6500);
+        Robot {
+            period: Micros::from_millis(80),
+            clock: Clock { offset_us: chance.bits() as u32, drift_ppm: 40.0 },
+            start: Micros::new(chance.between(0.0, 80_000.0) as u32),
+            ..ring
+        }
+    }
+
+    /// The lab with its robots. Sound is followed for two bounces at walls, or one at a pole: a choice, for speed. Fainter
+    /// sound over more bounces is left out.
+    ///
+    /// # Errors
+    /// [`WorldError`] if something does not fit.
+    pub fn world(&self, robot: Robot, second: Option<Point>) -> Result<World, WorldError> {
+        let mut robots = vec![robot];
+        robots.extend(second.map(|at| self.second_robot(at)));
+        let world = World::new(self.scene()?, robots, Noise::default())?;
+        world.with_max_order(ORDER)?.with_pole_order(POLE_ORDER).map(|world| world.with_seed(self.number))
+    }
+}
+
+/// How far sound is followed, at walls alone and if a pole is among them.
+const ORDER: u32 = 2;
+const POLE_ORDER: u32 = 1;
+
+/// A lattice of triangles over the middle of the lab, every pole shaken and the whole lattice moved.
+fn shaken(chance: &mut Chance) -> Vec<Point> {
+    let column_m = SPACING_M * 0.75f64.sqrt();
+    let aside = chance.between(-0.5 * SPACING_M, 0.5 * SPACING_M);
+    let mut poles = Vec::new();
+    for column in 0..4 {
+        let shift = aside + if column % 2 == 0 { 0.0 } else { 0.5 * SPACING_M };
+        for row in -3..=3 {
+            let shake = [chance.between(-SHAKE_M, SHAKE_M), chance.between(-SHAKE_M, SHAKE_M)];
+            let x = 2.8 + column_m * f64::from(column) + shake[0];
+            let y = 0.5 * ROOM_M[1] + shift + SPACING_M * f64::from(row) + shake[1];
+            if (0.3..ROOM_M[1] - 0.3).contains(&y) {
+                poles.push(Point::new(x, y));
+            }
+        }
+    }
+    poles
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_random_course_has_room_for_both_robots_and_poles_about_1_6_m_apart() {
+        for number in 0..200 {
+            let course = Course::random(number);
+            assert!(course.world(course.robot(), Some(SECOND_BEHIND)).is_ok(), "{number}");
+            let nearest = |pole: &Point| {
+                let others = course.poles.iter().filter(|other| *other != pole).map(|other| (other - pole).norm());
+                others.fold(f64::INFINITY, f64::min)
+            };
+            let mean = course.poles.iter().map(nearest).sum::<f64>() / course.poles.len() as f64;
+            assert!(course.gap_m() >= LEAST_GAP_M && (1.4..1.75).contains(&mean), "{number}: {mean}");
+        }
+    }
+
+    #[test]
+    fn a_course_closed_by_a_row_of_poles_is_not_passable() {
+        let poles = (0..6).map(|k| Point::new(5.0, 0.5 + f64::from(k))).collect();
+        assert!(!Course { number: 0, poles }.is_passable());
+        assert!(Course { number: 0, poles: vec![] }.is_passable());
+    }
+}

@@ -1,0 +1,319 @@
+//! The closed loop: accepted readings fill the histogram grid from where they were taken, the vector field histogram says
+//! where to steer and how fast, and the platform follows as well as it can.
+
+use eeruf_core::Kind;
+use serde::Serialize;
+
+use super::course::{FINISH_X_M, POLE_RADIUS_M, ROOM_M, TARGET};
+use crate::{
+    guide::Guide,
+    himm::Himm,
+    labmate::{Driven, LabMate},
+    method::Method,
+    motion::Moment,
+    plane::{Point, wrap_angle},
+    readings::Readings,
+    summary::DEFAULT_TOLERANCE_US,
+    vfh::{SECTORS, Vfh},
+    world::World,
+};
+
+/// The platform is driven in steps of this length, in nanoseconds.
+const STEP_NS: u64 = 5_000_000;
+/// How many of them go by between two looks at the grid: 30 ms, as long as one took on the paper's computer.
+const STEPS_PER_LOOK: u64 = 6;
+/// The width of the grid's cells, in metres, as in the papers.
+const CELL_M: f64 = 0.1;
+/// An echo farther than this from every pole and wall is of a phantom: cell and beam are not much narrower.
+const PHANTOM_M: f64 = 0.35;
+/// A cell from this value on counts as an obstacle when phantoms are counted.
+const CERTAIN: u8 = 6;
+/// A pole that came nearer than this to the platform's middle should have been seen.
+const PASSED_M: f64 = 1.0;
+
+/// How readings become steering.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piloting {
+    /// The vector field histogram; its highest speed is the platform's.
+    pub vfh: Vfh,
+    /// What a steering error of a radian asks for, in rad/s.
+    pub turn_gain: f64,
+    /// Echoes from farther away are not entered into the grid, but clear the way there, in metres.
+    pub range_m: f64,
+    /// Whether cells beside certain ones grow faster, see [`Himm::growth`].
+    pub growth: bool,
+}
+
+impl Default for Piloting {
+    /// Tuned for finished courses and speed, on other courses than those that methods are compared on.
+    fn default() -> Self {
+        let vfh = Vfh {
+            smoothing: 3,
+            threshold: 0.03,
+            wide: 16,
+            density_max: 1.0,
+            turn_max_rad_s: 360f64.to_radians(),
+            ..Vfh::default()
+        };
+        Self { vfh, turn_gain: 2.0, range_m: 2.5, growth: true }
+    }
+}
+
+/// How a course ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ending {
+    /// Over the finishing line.
+    Finished,
+    /// It touched a pole or a wall.
+    Contact,
+    /// It was still under way, or stuck, when the time was over.
+    TimeOut,
+}
+
+/// Where the robot was at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Place {
+    /// In seconds.
+    pub time_s: f64,
+    /// In metres.
+    pub x_m: f64,
+    /// In metres.
+    pub y_m: f64,
+    /// In radians.
+    pub heading_rad: f64,
+    /// In m/s.
+    pub speed_m_s: f64,
+}
+
+/// A cell of the grid that is not empty.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Cell {
+    /// Its middle, in metres.
+    pub x_m: f64,
+    /// Its middle, in metres.
+    pub y_m: f64,
+    /// Its certainty, 1 to 15.
+    pub value: u8,
+}
+
+/// What came of one course under one method.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Run {
+    /// Which course.
+    pub course: u64,
+    /// How it ended.
+    pub ending: Ending,
+    /// For how long it drove, in seconds.
+    pub time_s: f64,
+    /// How far it drove, in metres.
+    pub way_m: f64,
+    /// Its highest speed, in m/s.
+    pub top_speed_m_s: f64,
+    /// How near its outline came to a pole, in metres.
+    pub nearest_m: f64,
+    /// How many readings its sensors took.
+    pub readings: u32,
+    /// How many of them were not accepted.
+    pub rejected: u32,
+    /// How many were accepted and wrong.
+    pub wrong: u32,
+    /// How many echoes were entered into the grid where nothing is.
+    pub phantom_echoes: u32,
+    /// How many cells of the grid are certain in the end though nothing is there.
+    pub phantom_cells: u32,
+    /// How many poles the robot came near.
+    pub poles_passed: u32,
+    /// How many of them never had an echo entered into the grid.
+    pub poles_missed: u32,
+    /// Where it drove, every 30 ms.
+    pub track: Vec<Place>,
+    /// The grid in the end.
+    pub grid: Vec<Cell>,
+}
+
+/// Steers the first robot of a world.
+pub(super) struct Pilot<'w> {
+    world: &'w World,
+    labmate: LabMate,
+    piloting: Piloting,
+    state: Driven,
+    steps: u64,
+    steps_most: u64,
+    grid: Himm,
+    wanted: (f64, f64),
+    /// For each pole: whether an echo of it was entered, and how near the robot's middle came to it.
+    poles: Vec<(bool, f64)>,
+    run: Run,
+}
+
+impl<'w> Pilot<'w> {
+    pub(super) fn new(world: &'w World, course: u64, labmate: LabMate, piloting: Piloting, time_s: f64) -> Self {
+        let run = Run {
+            course,
+            ending: Ending::TimeOut,
+            time_s: 0.0,
+            way_m: 0.0,
+            top_speed_m_s: 0.0,
+            nearest_m: f64::INFINITY,
+            readings: 0,
+            rejected: 0,
+            wrong: 0,
+            phantom_echoes: 0,
+            phantom_cells: 0,
+            poles_passed: 0,
+            poles_missed: 0,
+            track: Vec::new(),
+            grid: Vec::new(),
+        };
+        // One grid for all of the lab; the active window moves over it.
+        let side = (1.3 * ROOM_M[0] / CELL_M) as usize;
+        let mut grid = Himm::new(side, CELL_M);
+        grid.move_to(Point::new(0.5 * ROOM_M[0], 0.5 * ROOM_M[1]));
+        grid.growth = piloting.growth;
+        Self {
+            world,
+            labmate,
+            piloting,
+            state: Driven::at_rest(world.robots()[0].pose),
+            steps: 0,
+            steps_most: (time_s * 1e9) as u64 / STEP_NS,
+            grid,
+            wanted: (0.0, 0.0),
+            poles: vec![(false, f64::INFINITY); world.scene().poles().len()],
+            run,
+        }
+    }
+
+    pub(super) fn finish(mut self) -> Run {
+        self.run.time_s = (self.steps * STEP_NS) as f64 * 1e-9;
+        for (point, value) in self.grid.occupied(Point::new(0.5 * ROOM_M[0], 0.5 * ROOM_M[1]), self.grid.side()) {
+            self.run.grid.push(Cell { x_m: point.x, y_m: point.y, value });
+            self.run.phantom_cells += u32::from(value >= CERTAIN && self.is_phantom(point));
+        }
+        let passed = self.poles.iter().filter(|(_, nearest)| *nearest < PASSED_M);
+        self.run.poles_passed = passed.clone().count() as u32;
+        self.run.poles_missed = passed.filter(|(seen, _)| !seen).count() as u32;
+        self.run
+    }
+
+    fn is_phantom(&self, point: Point) -> bool {
+        let wall = point.x.min(ROOM_M[0] - point.x).min(point.y).min(ROOM_M[1] - point.y);
+        wall > PHANTOM_M && self.world.scene().poles().iter().all(|pole| (pole.centre - point).norm() > PHANTOM_M)
+    }
+
+    fn place(&self) -> Point {
+        Point::from(self.state.pose.translation.vector)
+    }
+
+    /// Where to, and how fast.
+    fn look(&mut self) {
+        let (place, heading) = (self.place(), self.state.pose.rotation.angle());
+        let smoothed: [f64; SECTORS] = self.piloting.vfh.smoothed(&self.piloting.vfh.histogram(&self.grid, place));
+        let towards = TARGET - place;
+        let target = towards.y.atan2(towards.x);
+        self.wanted = match self.piloting.vfh.choose(&smoothed, target) {
+            // Every way is blocked: stand, and look around.
+            None => (0.0, 0.5 * self.labmate.turn_max_rad_s),
+            Some(steering) => {
+                let error = wrap_angle(steering.direction_rad - heading);
+                let turn =
+                    (self.piloting.turn_gain * error).clamp(-self.labmate.turn_max_rad_s, self.labmate.turn_max_rad_s);
+                let speed = self.piloting.vfh.speed(&smoothed, heading, self.state.turn_rad_s);
+                (speed * error.cos().max(0.0), turn)
+            }
+        };
+        let Driven { speed_m_s, .. } = self.state;
+        let time_s = (self.steps * STEP_NS) as f64 * 1e-9;
+        self.run.track.push(Place { time_s, x_m: place.x, y_m: place.y, heading_rad: heading, speed_m_s });
+    }
+
+    /// Drives a step on; `false` when the course is over.
+    fn step(&mut self) -> bool {
+        if self.steps.is_multiple_of(STEPS_PER_LOOK) {
+            self.look();
+        }
+        self.labmate.drive(&mut self.state, self.wanted.0, self.wanted.1, STEP_NS as f64 * 1e-9);
+        self.steps += 1;
+        self.run.way_m += self.state.speed_m_s * STEP_NS as f64 * 1e-9;
+        self.run.top_speed_m_s = self.run.top_speed_m_s.max(self.state.speed_m_s);
+        let place = self.place();
+        for (pole, (_, nearest)) in self.world.scene().poles().iter().zip(&mut self.poles) {
+            let off = (pole.centre - place).norm();
+            *nearest = nearest.min(off);
+            if off < 2.0 * self.labmate.side_m {
+                let clearance = self.labmate.clearance_m(&self.state.pose, pole.centre) - POLE_RADIUS_M;
+                self.run.nearest_m = self.run.nearest_m.min(clearance);
+            }
+        }
+        let contact =
+            self.run.nearest_m <= 0.0 || self.world.scene().contact(&self.labmate.body(), &self.state.pose).is_some();
+        if contact {
+            self.run.ending = Ending::Contact;
+            self.run.nearest_m = self.run.nearest_m.max(0.0);
+        } else if place.x >= FINISH_X_M {
+            self.run.ending = Ending::Finished;
+        } else {
+            return self.steps < self.steps_most;
+        }
+        false
+    }
+}
+
+impl Guide for Pilot<'_> {
+    fn moves(&self) -> bool {
+        true
+    }
+
+    fn moment(&self, robot: usize, now: u64) -> Moment {
+        if robot == 0 {
+            self.state.moment((now - self.steps * STEP_NS) as f64 * 1e-9)
+        } else {
+            let robot = &self.world.robots()[robot];
+            robot.motion.at(&robot.pose, now as f64 * 1e-9)
+        }
+    }
+
+    fn advance(&mut self, now: u64) -> bool {
+        while (self.steps + 1) * STEP_NS <= now {
+            if !self.step() {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn told(&mut self, readings: &Readings, fired: &Moment) {
+        let Some(last) = readings.len().checked_sub(1).filter(|&last| readings.robot[last] == 0) else { return };
+        let robot = &self.world.robots()[0];
+        let sensor = fired.pose * robot.sensors[usize::from(readings.sensor[last])];
+        let (at, heading) = (Point::from(sensor.translation.vector), sensor.rotation.angle());
+        let metres_per_us = 0.5e-6 * self.world.scene().air().speed_of_sound();
+        let near_m = f64::from(robot.blanking.as_micros()) * metres_per_us;
+        self.run.readings += 1;
+        if !readings.is_accepted(last) {
+            self.run.rejected += 1;
+            return;
+        }
+        self.run.wrong += u32::from(readings.is_wrong(last, DEFAULT_TOLERANCE_US));
+        let range_m = readings.t_echo_us[last] * metres_per_us;
+        if readings.kind[last] != Kind::Accepted || range_m > self.piloting.range_m {
+            self.grid.clear(at, heading, near_m, self.piloting.range_m);
+            return;
+        }
+        self.grid.echo(at, heading, near_m, range_m);
+        let hit = Point::from(at.coords + (sensor.rotation * crate::plane::Vector::x()) * range_m);
+        self.run.phantom_echoes += u32::from(self.is_phantom(hit));
+        for (pole, (seen, _)) in self.world.scene().poles().iter().zip(&mut self.poles) {
+            *seen |= (pole.centre - hit).norm() <= PHANTOM_M;
+        }
+    }
+
+    fn method(&self, robot: usize, asked: Method) -> Method {
+        if robot == 0 { asked } else { Method::Eeruf }
+    }
+
+    fn listens(&self, robot: usize) -> bool {
+        robot == 0
+    }
+}

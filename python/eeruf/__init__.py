@@ -13,6 +13,7 @@ Example:
     (68000, True)
     >>> found.schedule.verify(t_delta_us=999, min_interval_us=15_000, window_us=36_000).ok
     True
+
 """
 
 from __future__ import annotations
@@ -36,9 +37,9 @@ from eeruf._eeruf import (
     Report,
     Ring,
     RingError,
+    SceneError,
     Schedule,
     ScheduleError,
-    SceneError,
     SearchError,
     SimulationError,
     Violation,

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from concurrent.futures import Executor, ProcessPoolExecutor
-from typing import Any, Callable, Iterable, TypeVar
+from typing import Any, Callable, TypeVar
 
 from eeruf._eeruf import ArgumentError
 
@@ -40,7 +41,8 @@ def sweep(
         ...     return eeruf.design(sensors, t_delta_us=999, min_interval_us=15_000, window_us=36_000).value_us
         >>> with ThreadPoolExecutor() as threads:
         ...     eeruf.sweep(period_us, [4, 8], executor=threads)
-        [60000, 63000]
+        [62000, 66000]
+
     """
     if not callable(function):
         raise ArgumentError(f"function = {function!r}; expected something to call with one case")

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Callable, Sequence
+from collections.abc import Sequence
+from typing import Any, Callable
 
 from eeruf import _eeruf
 
@@ -39,6 +40,7 @@ def set_one(
         >>> wrong = {name: method["wrong_of_all"]["median"] for name, method in table["methods"].items()}
         >>> wrong["eeruf"] < 0.1 < wrong["conventional"]
         True
+
     """
     chosen = None if methods is None else list(methods)
     table: dict[str, Any] = json.loads(_eeruf._set_one(seeds, readings, chosen, progress))

@@ -6,7 +6,7 @@ paper; arguments count them from 0, as everywhere in code.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from eeruf import Schedule
     from eeruf.sim import Paths, Readings, Scene
 
-__all__ = ["course", "methods", "readings", "scene", "timing"]
+__all__ = ["methods", "readings", "scene", "timing"]
 
 # Colours that also differ in grey and to the colour-blind (Okabe and Ito).
 _BLUE, _VERMILION, _GREEN, _GREY = "#0072b2", "#d55e00", "#009e73", "#8c8c8c"
@@ -56,6 +56,7 @@ def timing(schedule: Schedule, *, window_us: int = 0, ax: Axes | None = None) ->
         >>> ax = eeruf.plot.timing(eeruf.tables.TABLE_I_D, window_us=36_000)
         >>> ax.get_xlabel()
         'time (ms)'
+
     """
     sensors = schedule.sensors
     ax = _axes(ax, height=1.2 + 0.26 * sensors)
@@ -67,7 +68,9 @@ def timing(schedule: Schedule, *, window_us: int = 0, ax: Axes | None = None) ->
             for left in (fires_ms, fires_ms - 2 * period_ms):
                 ax.barh(np.arange(1, sensors + 1), window_us / 1e3, left=left, height=0.62, color=_WINDOW, linewidth=0)
         name = "ab"[phase]
-        ax.vlines(fires_ms, np.arange(1, sensors + 1) - 0.38, np.arange(1, sensors + 1) + 0.38, colors=colour, linewidth=2.2)
+        ax.vlines(
+            fires_ms, np.arange(1, sensors + 1) - 0.38, np.arange(1, sensors + 1) + 0.38, colors=colour, linewidth=2.2
+        )
         ax.text((phase + 0.5) * period_ms, 0.25, f"phase {name}", color=colour, ha="center", va="bottom")
     for end in (period_ms, 2 * period_ms):
         ax.axvline(end, color=_GREY, linewidth=0.8, linestyle=(0, (4, 3)))
@@ -102,6 +105,7 @@ def scene(
 
     Returns:
         The axes; metres, one as long in x as in y.
+
     """
     ax = _axes(ax, width=6.0, height=6.0)
     for wall in np.asarray(scene.walls).reshape(-1, 4):
@@ -122,7 +126,7 @@ def scene(
             ax.plot(points[:, 0], points[:, 1], color=shades[order], linewidth=0.9, alpha=0.8, label=label)
         handles, labels = ax.get_legend_handles_labels()
         if handles:
-            by_order = sorted(zip(labels, handles, strict=True), key=lambda entry: int(entry[0].split()[0]))
+            by_order = sorted(zip(labels, handles), key=lambda entry: int(entry[0].split()[0]))
             ax.legend(
                 [handle for _, handle in by_order],
                 [label for label, _ in by_order],
@@ -164,6 +168,7 @@ def readings(
 
     Returns:
         The axes; echo times in milliseconds over time in seconds. Readings without echo do not appear.
+
     """
     ax = _axes(ax, width=8.0, height=3.6)
     mine = np.flatnonzero((np.asarray(readings.sensor) == sensor) & (np.asarray(readings.robot) == robot))
@@ -175,7 +180,13 @@ def readings(
     ax.step(at_s, alone_ms, where="mid", color=_GREY, linewidth=1.2, label="the sensor alone", zorder=1)
     ax.plot(at_s[accepted], echo_ms[accepted], linestyle="", marker="o", markersize=4, color=_BLUE, label="accepted")
     ax.plot(
-        at_s[~accepted], echo_ms[~accepted], linestyle="", marker="x", markersize=5, color=_VERMILION, label="not accepted"
+        at_s[~accepted],
+        echo_ms[~accepted],
+        linestyle="",
+        marker="x",
+        markersize=5,
+        color=_VERMILION,
+        label="not accepted",
     )
     ax.set_ylim(bottom=0)
     ax.set_xlabel("time (s)")
@@ -205,6 +216,7 @@ def methods(
 
     Raises:
         KeyError: no method has that figure.
+
     """
     spreads = {name: method[figure] for name, method in result["methods"].items() if method.get(figure) is not None}
     if not spreads:
@@ -218,8 +230,10 @@ def methods(
     colours = [_BLUE if name.startswith(("eeruf", "adaptive", "multi_echo")) else _GREY for name in chosen]
     ax.barh(row, median, color=colours, height=0.6)
     ax.errorbar(median, row, xerr=[median - low, high - median], fmt="none", ecolor=_INK, elinewidth=1, capsize=3)
-    for at, value, most in zip(row, median, high, strict=True):
-        ax.annotate(f"{value:.3g}", (most, at), xytext=(5, 0), textcoords="offset points", va="center", fontsize="small")
+    for at, value, most in zip(row, median, high):
+        ax.annotate(
+            f"{value:.3g}", (most, at), xytext=(5, 0), textcoords="offset points", va="center", fontsize="small"
+        )
     ax.set_yticks(row, [name.replace("_", " ") for name in chosen])
     ax.invert_yaxis()
     ax.set_xlim(0, 1.1 * float(high.max()) or 1.0)
@@ -228,9 +242,3 @@ def methods(
     ax.set_xlabel("wrong of all readings (%)" if figure == "wrong_of_all" else figure.replace("_", " ") + unit)
     _bare(ax)
     return ax
-
-
-def _extent(grid: np.ndarray[Any, Any], cell_m: float, origin_m: Sequence[float]) -> tuple[float, float, float, float]:
-    rows, columns = grid.shape
-    x, y = origin_m
-    return x, x + columns * cell_m, y, y + rows * cell_m

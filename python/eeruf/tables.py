@@ -4,6 +4,7 @@ Example:
     >>> from eeruf import tables
     >>> tables.TABLE_I_D.verify(t_delta_us=999, min_interval_us=15_000).ok
     True
+
 """
 
 from typing import Final

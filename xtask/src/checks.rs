@@ -46,6 +46,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     steps.step("tests of the core's conversions", || {
         run_cargo(&["test", "--package", "eeruf-core", "--lib", "--locked", "--features", "fugit,serde", "interop"])
     });
+    steps.step("Python package", crate::python::python);
     steps.step("firmware on emulated boards", crate::firmware::firmware);
     steps.step("documentation", || {
         run(Command::new("cargo")

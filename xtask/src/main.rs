@@ -6,6 +6,7 @@
 mod checks;
 mod firmware;
 mod listings;
+mod python;
 mod steps;
 mod toolchain;
 
@@ -22,8 +23,13 @@ fn main() -> ExitCode {
             steps.step("firmware on emulated boards", firmware::firmware);
             steps.finish(true)
         }
+        ["python"] => {
+            let mut steps = steps::Steps::default();
+            steps.step("Python package", python::python);
+            steps.finish(true)
+        }
         _ => {
-            eprintln!("usage: cargo xtask test [--nothing-skipped] | firmware");
+            eprintln!("usage: cargo xtask test [--nothing-skipped] | firmware | python");
             ExitCode::from(2)
         }
     }

@@ -1,5 +1,5 @@
 //! `eeruf._eeruf`: the compiled part of the Python package. One file for each concept; what they do is in `eeruf-core` and
-//! `eeruf-sim`, here it only changes its clothes: microseconds as `int`, many numbers as NumPy arrays, errors as exceptions.
+//! `eeruf-sim`, here it only changes its clothes: microseconds as `int`, many numbers as `NumPy` arrays, errors as exceptions.
 //! What users read is in `python/eeruf`.
 
 mod arguments;

@@ -36,7 +36,11 @@ impl Robot {
     #[pyo3(
         text_signature = "(pose, sensors, spacing_rad, radius_m, transducer=\"polaroid_6500\", *, period_us=60000, t_delta_us=500, window_us=36000, schedule=None)"
     )]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+    #[expect(
+        clippy::too_many_arguments,
+        clippy::needless_pass_by_value,
+        reason = "keyword arguments, as Python gives them"
+    )]
     fn new(
         pose: (Bound<'_, PyAny>, Bound<'_, PyAny>, Bound<'_, PyAny>),
         sensors: &Bound<'_, PyAny>,

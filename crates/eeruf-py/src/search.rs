@@ -63,7 +63,6 @@ impl Found {
 impl Found {
     #[new]
     #[pyo3(signature = (schedule, value_us, bound_us, proven, nodes, seconds, reason=None))]
-    #[expect(clippy::too_many_arguments, reason = "fields")]
     fn new(
         schedule: Option<PyRef<'_, Schedule>>,
         value_us: Option<u32>,

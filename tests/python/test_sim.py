@@ -1,0 +1,72 @@
+"""Scenes, simulations and sweeps."""
+
+import functools
+import pickle
+from pathlib import Path
+
+import eeruf
+import numpy as np
+import pytest
+from distributed import Client, LocalCluster
+from eeruf import sim
+
+SCENES = Path(__file__).parents[2] / "scenes"
+ALCOVE = [[0.85, 0.0, 0.85, 1.39], [0.85, 1.39, -0.85, 1.39], [-0.85, 1.39, -0.85, 0.0]]
+
+
+def same(one: sim.Readings, other: sim.Readings) -> bool:
+    columns = other.columns()
+    return all(
+        np.array_equal(column, columns[name], equal_nan=column.dtype.kind == "f")
+        for name, column in one.columns().items()
+    )
+
+
+def test_the_same_seed_gives_the_same_readings_and_another_others() -> None:
+    scene = sim.Scene.from_toml(SCENES / "alcove.toml")
+    first = sim.simulate(scene, "eeruf", periods=50, seed=7)
+    assert same(first, sim.simulate(scene, "eeruf", periods=50, seed=7))
+    assert not same(first, sim.simulate(scene, "eeruf", periods=50, seed=8))
+
+
+@pytest.mark.parametrize("method", sim.METHODS)
+def test_every_method_runs_in_a_scene_made_in_code(method: str) -> None:
+    robot = sim.Robot((-0.26, 0.17, 1.65), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    scene = sim.Scene(ALCOVE, robots=[robot], seed=3)
+    readings = sim.simulate(scene, method, periods=30)
+    assert readings.method == method
+    assert len(readings) == len(readings.fired_s) > 0
+    assert 0 <= readings.summary()["wrong_of_all"] <= 1
+
+
+def test_scenes_robots_and_readings_pickle() -> None:
+    robot = sim.Robot((-0.26, 0.17, 1.65), 8, 0.26, 0.3, schedule=None)
+    assert pickle.loads(pickle.dumps(robot)) == robot
+    made = sim.Scene(ALCOVE, poles=[[0.0, 1.0, 0.004]], robots=[robot])
+    for scene in (made, sim.Scene.from_toml(SCENES / "alcove.toml")):
+        again = pickle.loads(pickle.dumps(scene))
+        readings = sim.simulate(scene, periods=20)
+        assert same(readings, sim.simulate(again, periods=20))
+        copy = pickle.loads(pickle.dumps(readings))
+        assert same(readings, copy)
+        assert copy.summary() == readings.summary()
+
+
+def test_readings_become_a_data_frame() -> None:
+    readings = sim.simulate(sim.Scene.from_toml(SCENES / "alcove.toml"), periods=20)
+    frame = readings.to_pandas()
+    assert len(frame) == len(readings)
+    assert list(frame.columns) == list(readings.columns())
+
+
+def test_a_sweep_gives_the_same_on_processes_and_on_dask() -> None:
+    scene = sim.Scene.from_toml(SCENES / "alcove.toml")
+    # The cases are seeds. Other processes find the function by its name.
+    run = functools.partial(sim.simulate, scene, "conventional", 50)
+    here = [run(seed) for seed in range(4)]
+    assert all(same(one, other) for one, other in zip(here, eeruf.sweep(run, range(4))))
+    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+        with Client(cluster) as client:
+            there = eeruf.sweep(run, range(4), executor=client.get_executor())
+    assert len(there) == 4
+    assert all(same(one, other) for one, other in zip(here, there))

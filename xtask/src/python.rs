@@ -1,0 +1,49 @@
+//! `cargo xtask python`: builds the wheel once, installs it into a virtual environment of its own, and holds it against its
+//! tests, its types and its examples.
+
+use std::env::consts::EXE_SUFFIX;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::steps::{Trouble, output, run};
+
+/// Everything about the Python package.
+pub(crate) fn python() -> Result<(), Trouble> {
+    let home = PathBuf::from("target/python");
+    let python = environment(&home)?;
+    let wheels = home.join("wheels");
+    // Only the wheel that is built now.
+    if wheels.exists() {
+        fs::remove_dir_all(&wheels).map_err(|error| Trouble::Failed(format!("{}: {error}", wheels.display())))?;
+    }
+    let tool = |name: &str| Command::new(python.with_file_name(format!("{name}{EXE_SUFFIX}")));
+    run(tool("maturin").args(["build", "--locked", "--out"]).arg(&wheels))?;
+    let wheel = only_file(&wheels)?;
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--force-reinstall", "--no-deps"]).arg(&wheel))?;
+    run(tool("ruff").args(["check", "python", "tests/python"]))?;
+    run(tool("ruff").args(["format", "--check", "python", "tests/python"]))?;
+    run(tool("mypy").args(["tests/python"]))?;
+    run(tool("stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
+    run(tool("pytest").env("EERUF_WHEEL", &wheel))
+}
+
+/// A virtual environment with what the tests need; its Python.
+fn environment(home: &Path) -> Result<PathBuf, Trouble> {
+    if output(Command::new("python3").args(["-c", "import venv, ensurepip"])).is_none() {
+        return Err(Trouble::Skipped("python3 with venv is not installed".to_owned()));
+    }
+    let python = home.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    if !python.exists() {
+        run(Command::new("python3").args(["-m", "venv"]).arg(home))?;
+    }
+    // pip reads dependency groups since 25.1.
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--upgrade", "pip>=25.1"]))?;
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--group", "test", "numpy"]))?;
+    Ok(python)
+}
+
+fn only_file(folder: &Path) -> Result<PathBuf, Trouble> {
+    let found = fs::read_dir(folder).ok().and_then(|mut entries| entries.next()).and_then(Result::ok);
+    found.map(|entry| entry.path()).ok_or_else(|| Trouble::Failed(format!("no wheel in {}", folder.display())))
+}

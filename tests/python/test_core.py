@@ -4,6 +4,7 @@ import json
 import os
 import pickle
 import subprocess
+import sys
 from pathlib import Path
 
 import eeruf
@@ -95,7 +96,7 @@ def test_a_callable_follows_the_work_and_its_error_ends_it() -> None:
 
 def test_results_do_not_depend_on_the_number_of_threads() -> None:
     program = "import eeruf, json; print(json.dumps(eeruf.experiments.set_one(seeds=3, readings=800)))"
-    command = ["python", "-c", program]
+    command = [sys.executable, "-c", program]
     printed = [
         subprocess.run(
             command, check=True, capture_output=True, env={**os.environ, "RAYON_NUM_THREADS": threads}

@@ -260,10 +260,9 @@ pub unsafe extern "C" fn eeruf_ring_init(
         return EERUF_NULL;
     }
     let config = Config {
-        t_delta: Micros::new(config.t_delta_us),
-        window: Micros::new(config.window_us),
         blanking: Micros::new(config.blanking_us),
         consecutive: config.consecutive,
+        ..Config::new(Micros::new(config.t_delta_us), Micros::new(config.window_us))
     };
     match Ring::new(schedule, config, Instant::from_micros(now_us)) {
         Ok(value) => {

@@ -122,6 +122,26 @@ fn a_chattering_line_counts_with_its_first_true_pulse_and_is_named() {
 }
 
 #[test]
+fn a_line_whose_edges_get_lost_is_named_and_no_width_is_made_of_what_is_left() {
+    let rises_lost = |_| vec![(12_450, false)];
+    let (tallies, health) = run(10, false, [&echo(5_000), &rises_lost, &echo(20_000)]);
+    others_are_well(&tallies, &health);
+    assert_eq!((tallies[1].of(Kind::Clear), health[1]), (9, Health::LosesEdges));
+    let falls_lost = |_| vec![(450, true)];
+    let (tallies, health) = run(10, false, [&echo(5_000), &falls_lost, &echo(20_000)]);
+    others_are_well(&tallies, &health);
+    assert_eq!((tallies[1].of(Kind::Clear), health[1]), (9, Health::LosesEdges));
+}
+
+#[test]
+fn the_trigger_seen_across_the_end_of_the_deaf_time_is_no_lost_edge() {
+    let long_glitch = |_| vec![(20, true), (110, false), (450, true), (12_450, false)];
+    let (tallies, health) = run(10, false, [&echo(5_000), &long_glitch, &echo(20_000)]);
+    others_are_well(&tallies, &health);
+    assert_eq!((tallies[1].of(Kind::Accepted), health[1]), (9, Health::Well));
+}
+
+#[test]
 fn the_sensors_own_time_out_is_no_echo_and_no_fault() {
     let (tallies, health) = run(10, false, [&echo(5_000), &echo(38_000), &echo(20_000)]);
     others_are_well(&tallies, &health);

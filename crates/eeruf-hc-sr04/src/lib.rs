@@ -28,10 +28,7 @@
 //! let ring = Ring::new(&TABLE_I_D, config, now())?;
 //! let mut ring = HcSr04Ring::new(ring, pins, delay, Settings::default())?;
 //! loop {
-//!     while let Some(edge) = EDGES.pop() {
-//!         ring.edge(edge);
-//!     }
-//!     while let Some(event) = ring.poll(now()) {
+//!     while let Some(event) = ring.poll_with_edges(&EDGES, now()) {
 //!         if let Event::Reading(reading) = event {
 //!             if reading.kind == Kind::Accepted { /* believe reading.t_echo */ }
 //!         }
@@ -188,6 +185,15 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
             self.trigger(sensor, now);
         }
         Some(event)
+    }
+
+    /// Hands in all edges that wait, then [polls](Self::poll). Read the clock for `now` just before: whatever held the main
+    /// loop up since it was here, no window closes on an edge that came in time.
+    pub fn poll_with_edges<const N: usize>(&mut self, edges: &EdgeQueue<N>, now: Instant) -> Option<Event> {
+        while let Some(edge) = edges.pop() {
+            self.edge(edge);
+        }
+        self.poll(now)
     }
 
     /// As [`Ring::next_deadline`].

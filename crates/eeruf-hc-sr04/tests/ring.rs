@@ -1,7 +1,7 @@
 //! Real wiring against the driver: every fault costs only the sensor that has it, and is named.
 
 use eeruf_core::{Config, Event, Instant, Kind, Micros, Ring, Schedule, ScheduledFiring, Tally};
-use eeruf_hc_sr04::{Edge, HcSr04Ring, Health, Pins, Settings, SetupError};
+use eeruf_hc_sr04::{Edge, EdgeQueue, HcSr04Ring, Health, Pins, Settings, SetupError};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::digital::{Mock, State, Transaction};
 
@@ -146,6 +146,37 @@ fn the_sensors_own_time_out_is_no_echo_and_no_fault() {
     let (tallies, health) = run(10, false, [&echo(5_000), &echo(38_000), &echo(20_000)]);
     others_are_well(&tallies, &health);
     assert_eq!((tallies[1].of(Kind::Clear), health[1]), (9, Health::Well));
+}
+
+#[test]
+fn an_echo_that_came_in_time_is_heard_however_long_an_event_took() {
+    let schedule = schedule(100);
+    let pins = || Mock::new(&[Transaction::set(State::High), Transaction::set(State::Low)]);
+    let low = || Mock::new(&[Transaction::get(State::Low)]);
+    let mut mocks: Vec<Mock> = Vec::new();
+    let pins: [Pins<Mock, Mock>; K] = std::array::from_fn(|_| {
+        let pair = Pins { trigger: pins(), echo: low() };
+        mocks.extend([pair.trigger.clone(), pair.echo.clone()]);
+        pair
+    });
+    let ring = Ring::new(&schedule, CONFIG, Instant::default()).unwrap();
+    let mut driver: Driver<'_> = HcSr04Ring::new(ring, pins, NoopDelay, Settings::default()).unwrap();
+    let edges = EdgeQueue::<8>::new();
+    let ms = |ms: u32| Instant::from_micros(1000 * ms);
+    assert_eq!(driver.poll_with_edges(&edges, ms(24)), Some(Event::Fire(0)));
+    // Here the caller is held up for 50 ms, and its edges wait.
+    edges.push(Edge { sensor: 0, high: true, at: ms(25) });
+    edges.push(Edge { sensor: 0, high: false, at: ms(31) });
+    let events: Vec<_> = std::iter::from_fn(|| driver.poll_with_edges(&edges, ms(74))).take(2).collect();
+    assert_eq!(events[0], Event::Fire(1));
+    let Event::Reading(reading) = events[1] else { panic!("{events:?}") };
+    assert_eq!((reading.sensor, reading.t_echo), (0, Some(Micros::from_millis(6))));
+    let third = std::iter::from_fn(|| driver.poll_with_edges(&edges, ms(94))).next();
+    assert_eq!(third, Some(Event::Fire(2)));
+    drop(driver);
+    for mut mock in mocks {
+        mock.done();
+    }
 }
 
 #[test]

@@ -50,7 +50,8 @@ impl Emulator {
         let (done, ended) = channel();
         let watched = Arc::clone(&child);
         let watch = thread::spawn(move || {
-            let late = ended.recv_timeout(LONGEST).is_err_and(|error| error == std::sync::mpsc::RecvTimeoutError::Timeout);
+            let late =
+                ended.recv_timeout(LONGEST).is_err_and(|error| error == std::sync::mpsc::RecvTimeoutError::Timeout);
             if late {
                 // It may have ended at this very moment.
                 let _ = watched.lock().unwrap_or_else(PoisonError::into_inner).kill();

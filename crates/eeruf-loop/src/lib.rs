@@ -38,8 +38,8 @@ pub struct Orders {
     pub start: Instant,
     /// For how many periods to run.
     pub periods: u32,
-    /// In which period the main loop stalls.
-    pub stall_in: u32,
+    /// After which period, counted from 0, the main loop stalls.
+    pub stall_after: u32,
     /// For how long; zero for never.
     pub stall: Micros,
 }
@@ -47,12 +47,12 @@ pub struct Orders {
 impl Orders {
     /// As words.
     pub const fn to_words(self) -> [u32; 4] {
-        [self.start.as_micros(), self.periods, self.stall_in, self.stall.as_micros()]
+        [self.start.as_micros(), self.periods, self.stall_after, self.stall.as_micros()]
     }
 
     /// From words.
-    pub const fn from_words([start, periods, stall_in, stall]: [u32; 4]) -> Self {
-        Self { start: Instant::from_micros(start), periods, stall_in, stall: Micros::new(stall) }
+    pub const fn from_words([start, periods, stall_after, stall]: [u32; 4]) -> Self {
+        Self { start: Instant::from_micros(start), periods, stall_after, stall: Micros::new(stall) }
     }
 }
 
@@ -208,5 +208,72 @@ impl Record {
     /// The instant that it names, for those that name one.
     pub const fn instant(self) -> Instant {
         Instant::from_micros(self.0[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eeruf_core::{Kind, PeriodStats, Phase, Tally};
+
+    #[test]
+    fn what_the_host_says_arrives_as_it_was_said() {
+        let orders =
+            Orders { start: Instant::from_micros(7), periods: 8, stall_after: 9, stall: Micros::from_millis(50) };
+        assert_eq!(Orders::from_words(orders.to_words()), orders);
+        for (sensor, high, lost) in [(0, false, true), (7, true, false), (255, true, true)] {
+            let ahead = Ahead { edge: Edge { sensor, high, at: Instant::from_micros(u32::MAX) }, lost };
+            assert_eq!(Ahead::from_words(ahead.to_words()), ahead);
+        }
+    }
+
+    #[test]
+    fn readings_that_differ_in_anything_are_different_records() {
+        let reading = Reading {
+            sensor: 3,
+            phase: Phase::A,
+            period: 5,
+            kind: Kind::Accepted,
+            t_echo: Some(Micros::new(4000)),
+            previous: Some(Micros::new(4001)),
+            age: Some(0),
+        };
+        let record = |reading| Record::told(Some(&Event::Reading(reading)));
+        assert_eq!(record(reading), record(reading));
+        for other in [
+            Reading { sensor: 2, ..reading },
+            Reading { phase: Phase::B, ..reading },
+            Reading { period: 6, ..reading },
+            Reading { kind: Kind::Rejected, ..reading },
+            Reading { t_echo: Some(Micros::new(4002)), ..reading },
+            Reading { t_echo: None, ..reading },
+            Reading { previous: None, ..reading },
+            Reading { age: None, ..reading },
+        ] {
+            assert_ne!(record(other), record(reading), "{other:?}");
+        }
+    }
+
+    #[test]
+    fn period_ends_that_differ_in_any_count_are_different_records() {
+        let stats = PeriodStats { period: 1, phase: Phase::A, tally: Tally::default(), max_late: Micros::ZERO };
+        let record = |stats| Record::told(Some(&Event::PeriodEnded(stats)));
+        for kind in Kind::ALL {
+            let mut other = stats;
+            other.tally.count(kind);
+            assert_ne!(record(other), record(stats), "{kind}");
+        }
+        assert_ne!(record(PeriodStats { max_late: Micros::new(1), ..stats }), record(stats));
+    }
+
+    #[test]
+    fn every_record_says_what_it_is_about() {
+        for topic in Topic::ALL {
+            let record = Record::new(topic, 9, 1, [0; 5]);
+            assert_eq!((record.topic(), record.sensor(), record.flag()), (Some(topic), 9, 1));
+        }
+        assert_eq!(Record([99; 6]).topic(), None);
+        let bytes = Record::poll(Instant::from_micros(0x0403_0201)).to_bytes();
+        assert_eq!(bytes[..9], [Topic::Poll as u8, 0, 0, 0, 1, 2, 3, 4, 0]);
     }
 }

@@ -1,7 +1,9 @@
 //! The echo lines of eight HC-SR04 sensors in a simulated world, and what goes wrong with one of them.
 
+use core::fmt;
+
 use eeruf_core::{Instant, Micros};
-use eeruf_hc_sr04::Edge;
+use eeruf_hc_sr04::{Edge, Health};
 use eeruf_loop::{Ahead, MOST_AHEAD, SENSORS};
 use eeruf_sim::{LockStep, World};
 
@@ -26,6 +28,31 @@ pub(crate) enum LineFault {
     Chatters,
     /// Every fifth rise and every seventh fall make no interrupt.
     InterruptsLost,
+}
+
+impl LineFault {
+    /// What the driver should call it.
+    pub(crate) fn name(self) -> Health {
+        match self {
+            Self::None => Health::Well,
+            Self::Missing => Health::Missing,
+            Self::StuckHigh => Health::StuckHigh,
+            Self::Chatters => Health::Chatters,
+            Self::InterruptsLost => Health::LosesEdges,
+        }
+    }
+}
+
+impl fmt::Display for LineFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::None => "well",
+            Self::Missing => "missing",
+            Self::StuckHigh => "stuck high",
+            Self::Chatters => "chattering",
+            Self::InterruptsLost => "losing interrupts",
+        })
+    }
 }
 
 /// One line since its sensor was triggered.
@@ -146,5 +173,78 @@ impl<'w> Lines<'w> {
         } else {
             Err(format!("sensor {}: the board noticed {noticed} of {edges} edges of a firing", sensor + 1))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn alcove() -> World {
+        World::from_toml(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/alcove-hc-sr04.toml")).unwrap()
+    }
+
+    fn at(us: u32) -> Instant {
+        Instant::from_micros(us)
+    }
+
+    #[test]
+    fn every_line_rises_when_its_sound_is_sent_and_falls_when_something_is_heard() {
+        let world = alcove();
+        let mut lines = Lines::new(&world, LineFault::None, at(0)).unwrap();
+        lines.trigger(4, at(1_000)).unwrap();
+        let ahead = lines.ahead(at(1_000)).unwrap();
+        let [rise, fall] = ahead[..] else { panic!("{ahead:?}") };
+        assert_eq!(rise.edge, Edge { sensor: 4, high: true, at: at(1_450) });
+        assert!(fall.edge.sensor == 4 && !fall.edge.high && fall.edge.at.has_reached(at(2_000)));
+    }
+
+    #[test]
+    fn a_later_firing_amends_what_a_listening_sensor_will_hear() {
+        let world = alcove();
+        let amended = (0..8).flat_map(|x| (0..8).map(move |y| (x, y))).filter(|&(x, y)| {
+            let mut lines = Lines::new(&world, LineFault::None, at(0)).unwrap();
+            lines.trigger(y, at(0)).unwrap();
+            let alone = lines.edges(y);
+            x != y && {
+                lines.trigger(x, at(300)).unwrap();
+                lines.edges(y) != alone
+            }
+        });
+        assert!(amended.count() > 3);
+    }
+
+    #[test]
+    fn edges_that_do_not_follow_from_the_world_are_refused() {
+        let world = alcove();
+        let fresh = || {
+            let mut lines = Lines::new(&world, LineFault::None, at(u32::MAX - 99)).unwrap();
+            lines.trigger(0, at(u32::MAX - 99)).unwrap();
+            lines
+        };
+        // 450 us later, through the wrap of the clock.
+        let edge = |sensor, high, us| Edge { sensor, high, at: at(us) };
+        assert_eq!(fresh().notice(edge(0, true, 353)), Ok(()));
+        for wrong in
+            [edge(0, false, 353), edge(0, true, 349), edge(0, true, 351 + LATEST_US as u32), edge(1, true, 353)]
+        {
+            assert!(fresh().notice(wrong).is_err(), "{wrong:?}");
+        }
+        let error = fresh().trigger(0, at(80_000)).unwrap_err();
+        assert_eq!(error, "sensor 1: the board noticed 0 of 2 edges of a firing");
+    }
+
+    #[test]
+    fn the_ring_fires_as_the_simulator_does_in_this_scene() {
+        let world = alcove();
+        let robot = &world.robots()[0];
+        let simulated = eeruf_sim::table_i_d_for(robot.sensors.len(), robot.period, robot.neighbours).unwrap();
+        for sensor in 0..SENSORS {
+            for phase in [eeruf_core::Phase::A, eeruf_core::Phase::B] {
+                assert_eq!(eeruf_loop::SCHEDULE.t_fire(phase, sensor), simulated.t_fire(phase, sensor));
+            }
+        }
+        assert_eq!(eeruf_loop::CONFIG.t_delta, robot.t_delta);
     }
 }

@@ -1,9 +1,11 @@
 //! One run of a board in its world, held against the twin.
 
-use eeruf_core::{Event, Instant, Micros, Reading};
+use core::fmt;
+
+use eeruf_core::{Event, Instant, Kind, Micros, Reading};
 use eeruf_hc_sr04::{Edge, Health};
 use eeruf_loop::{Orders, SENSORS, Topic};
-use eeruf_sim::{Method, Options, World, simulate};
+use eeruf_sim::{Readings, World};
 
 use crate::emulator::Emulator;
 use crate::lines::{FAULTY, LineFault, Lines};
@@ -18,14 +20,17 @@ pub(crate) const PERIODS: u32 = 1000;
 pub(crate) enum Fault {
     None,
     Line(LineFault),
-    /// The main loop is held up for 50 ms in the 500th period.
+    /// The main loop is held up for 50 ms after a period's end.
     Stall,
     /// The clock wraps in the middle.
     Wrap,
 }
 
-pub(crate) const STALL_IN: u32 = 500;
-pub(crate) const STALL: Micros = Micros::from_millis(50);
+const STALL_AFTER: u32 = 500;
+const STALL: Micros = Micros::from_millis(50);
+
+/// Echo times of the same sound move by no more than this from run to run.
+const MOST_MOVED: Micros = Micros::new(25);
 
 impl Fault {
     /// All but none.
@@ -42,7 +47,18 @@ impl Fault {
         // Half of 1,000 periods of 100 ms before the wrap.
         let start = if self == Self::Wrap { 0_u32.wrapping_sub(50_000_000) } else { 0 };
         let stall = if self == Self::Stall { STALL } else { Micros::ZERO };
-        Orders { start: Instant::from_micros(start), periods: PERIODS, stall_in: STALL_IN, stall }
+        Orders { start: Instant::from_micros(start), periods: PERIODS, stall_after: STALL_AFTER, stall }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None => f.write_str("none"),
+            Self::Line(fault) => write!(f, "sensor {} {fault}", FAULTY + 1),
+            Self::Stall => write!(f, "main loop stalls for {STALL}"),
+            Self::Wrap => f.write_str("clock wraps"),
+        }
     }
 }
 
@@ -50,12 +66,21 @@ impl Fault {
 pub(crate) struct Run {
     pub(crate) read: Read,
     /// The latest that an edge was noticed.
-    pub(crate) latest: Micros,
+    pub(crate) latest_edge: Micros,
     /// The latest firing.
     pub(crate) max_late: Micros,
-    /// What the driver called each sensor that it did not call well, and in which period first.
-    pub(crate) named: [Health; SENSORS],
-    pub(crate) named_in: Option<u32>,
+    /// What the driver called each sensor last that it did not call well.
+    named: [Health; SENSORS],
+    /// The period at whose end it first did.
+    named_after: Option<u32>,
+}
+
+/// How the sensors without a fault differ from a run without one.
+pub(crate) struct Change {
+    /// Readings of another kind.
+    pub(crate) kinds: usize,
+    /// By how much echo times moved.
+    pub(crate) moved: Micros,
 }
 
 pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Run, String> {
@@ -69,10 +94,10 @@ pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Ru
         let mut unharmed = Unharmed::new(now, FAULTY)?;
         let mut run = Run {
             read: Default::default(),
-            latest: Micros::ZERO,
+            latest_edge: Micros::ZERO,
             max_late: Micros::ZERO,
             named: [Health::Well; SENSORS],
-            named_in: None,
+            named_after: None,
         };
         let mut periods = 0;
         loop {
@@ -113,7 +138,7 @@ pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Ru
         if matches!(fault, Fault::Line(_)) {
             run.others_are(&unharmed.read)?;
         }
-        run.latest = session.borrow().lines.latest;
+        run.latest_edge = session.borrow().lines.latest;
         Ok(run)
     })();
     let Ok(session) = std::rc::Rc::try_unwrap(session) else { return Err("pins outlive their ring".to_owned()) };
@@ -136,7 +161,7 @@ impl Run {
         for (named, health) in self.named.iter_mut().zip(health) {
             if health != Health::Well {
                 *named = health;
-                self.named_in.get_or_insert(period);
+                self.named_after.get_or_insert(period);
             }
         }
     }
@@ -149,45 +174,82 @@ impl Run {
     fn others_are(&self, unharmed: &Read) -> Result<(), String> {
         for (sensor, (read, without)) in self.read.iter().zip(unharmed).enumerate() {
             if sensor != usize::from(FAULTY) && read != without {
-                return Err(format!("sensor {} reads other than it would without the fault of sensor {}", sensor + 1, FAULTY + 1));
+                return Err(format!(
+                    "sensor {} reads other than it would without the fault of sensor {}",
+                    sensor + 1,
+                    FAULTY + 1
+                ));
             }
         }
         Ok(())
     }
 
-    /// How many readings are of the same kind as the simulator's own run of the same world has them, and by how much echo
-    /// times differ at most.
-    pub(crate) fn as_simulated(&self, world: &World) -> Result<(usize, f64), String> {
-        let simulated = simulate(world, Method::Eeruf, &Options::periods(PERIODS)).map_err(|error| error.to_string())?;
+    /// How many readings are of the kind that the simulator's own run of the same world has, and by how many microseconds
+    /// their echo times differ at most.
+    pub(crate) fn as_simulated(&self, simulated: &Readings) -> Result<(usize, f64), String> {
         let (mut same, mut most) = (0, 0.0_f64);
         for k in 0..simulated.len() {
-            let reading = &self.read[usize::from(simulated.sensor[k])].get(simulated.period[k] as usize);
-            let Some(reading) = reading else { continue };
-            if reading.kind == simulated.kind[k] {
-                same += 1;
-                if let Some(t_echo) = reading.t_echo {
-                    most = most.max((f64::from(t_echo.as_micros()) - simulated.earliest_us[k]).abs());
-                }
+            let (sensor, period) = (usize::from(simulated.sensor[k]), simulated.period[k] as usize);
+            let reading = self.read.get(sensor).and_then(|read| read.get(period));
+            let Some(reading) = reading.filter(|reading| reading.kind == simulated.kind[k]) else { continue };
+            same += 1;
+            if let Some(t_echo) = reading.t_echo {
+                most = most.max((f64::from(t_echo.as_micros()) - simulated.earliest_us[k]).abs());
             }
+        }
+        // Kinds may differ where two readings are just about T_delta apart.
+        if 1000 * same < 999 * simulated.len() {
+            return Err(format!("{same} of {} readings are of the kind that was simulated", simulated.len()));
         }
         Ok((same, most))
     }
 
-    pub(crate) fn compare(&self, whole: &Self) -> String {
-        let (mut kinds, mut times, mut most, mut n) = (0, 0, 0, 0);
-        for (sensor, (mine, theirs)) in self.read.iter().zip(&whole.read).enumerate() {
-            if sensor == usize::from(FAULTY) {
+    /// What the report calls the fault; it must be this one, and nothing else.
+    pub(crate) fn report(&self, fault: Fault) -> Result<String, String> {
+        let mut expected = [Health::Well; SENSORS];
+        if let (Fault::Line(fault), Some(expected)) = (fault, expected.get_mut(usize::from(FAULTY))) {
+            *expected = fault.name();
+        }
+        if self.named != expected {
+            return Err(format!("sensors are called {:?}; expected {expected:?}", self.named));
+        }
+        let late = fault == Fault::Stall;
+        // The next firing is due up to 24 ms after the stall began.
+        if late != (self.max_late >= Micros::from_millis(26)) {
+            return Err(format!("the latest firing came {}", self.max_late));
+        }
+        Ok(match (fault, self.named_after) {
+            (Fault::Line(fault), Some(period)) => format!("{} after {period} periods", fault.name()),
+            (Fault::Stall, _) => format!("a firing {} late", self.max_late),
+            _ => "nothing to name".to_owned(),
+        })
+    }
+
+    /// How others differ from a run without a fault. Firings and interrupts come some microseconds earlier or later when there
+    /// is more or less to do, so echo times move by as much; no kind of reading may change for it. A stall makes the ring
+    /// compare with nothing: the readings of three periods, those not yet told when it began, and the first ones after that.
+    pub(crate) fn change_from(&self, whole: &Self, fault: Fault) -> Result<Change, String> {
+        let mut change = Change { kinds: 0, moved: Micros::ZERO };
+        for (sensor, (mine, without)) in self.read.iter().zip(&whole.read).enumerate() {
+            if sensor == usize::from(FAULTY) && matches!(fault, Fault::Line(_)) {
                 continue;
             }
-            for (mine, theirs) in mine.iter().zip(theirs) {
-                n += 1;
-                kinds += usize::from(mine.kind != theirs.kind);
-                if let (Some(a), Some(b)) = (mine.t_echo, theirs.t_echo) {
-                    times += usize::from(a != b);
-                    most = most.max(a.abs_diff(b).as_micros());
+            for (mine, without) in mine.iter().zip(without) {
+                if mine.kind != without.kind {
+                    change.kinds += 1;
+                    let compared = [Kind::Accepted, Kind::Rejected].contains(&mine.kind);
+                    if fault != Fault::Stall || compared || !(STALL_AFTER..=STALL_AFTER + 4).contains(&mine.period) {
+                        return Err(format!("{mine:?} would be {without:?} without the fault"));
+                    }
+                }
+                if let (Some(mine), Some(without)) = (mine.t_echo, without.t_echo) {
+                    change.moved = change.moved.max(mine.abs_diff(without));
                 }
             }
         }
-        format!("of {n} others {kinds} of another kind, {times} of another time, by up to {most} us")
+        if change.moved > MOST_MOVED {
+            return Err(format!("echo times moved by {}; expected at most {MOST_MOVED}", change.moved));
+        }
+        Ok(change)
     }
 }

@@ -152,7 +152,11 @@ impl<'w> Twin<'w> {
             // How many edges were lost before they came to the ring is the board's to know.
             _ => Record::state(self.health(), said.flag()),
         };
-        if said == mine { Ok(()) } else { Err(format!("the host's ring is at {:x?}, the board's at {:x?}", mine.0, said.0)) }
+        if said == mine {
+            Ok(())
+        } else {
+            Err(format!("the host's ring is at {:x?}, the board's at {:x?}", mine.0, said.0))
+        }
     }
 
     pub(crate) fn health(&self) -> [Health; SENSORS] {

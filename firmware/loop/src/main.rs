@@ -41,12 +41,13 @@ fn main() -> ! {
     let pins = core::array::from_fn(|x| Pins { trigger: pin(x), echo: pin(x) });
     let Ok(mut ring) = HcSr04Ring::new(ring, pins, Delay, Settings::default()) else { leave(3) };
     loop {
-        while let Some(edge) = EDGES.pop() {
-            host.say(Record::edge(edge));
-            ring.edge(edge);
-        }
         loop {
+            // As `HcSr04Ring::poll_with_edges` does.
             let now = eeruf_board::now();
+            while let Some(edge) = EDGES.pop() {
+                host.say(Record::edge(edge));
+                ring.edge(edge);
+            }
             host.say(Record::poll(now));
             let event = ring.poll(now);
             host.say(Record::told(event.as_ref()));
@@ -58,7 +59,7 @@ fn main() -> ! {
                         host.flush();
                         leave(0);
                     }
-                    if stats.period == orders.stall_in {
+                    if stats.period == orders.stall_after {
                         stall(orders.stall);
                     }
                 }

@@ -38,10 +38,7 @@ fn main() -> ! {
     let mut readings = Tally::<u32>::default();
     let mut max_late = Micros::ZERO;
     loop {
-        while let Some(edge) = EDGES.pop() {
-            ring.edge(edge);
-        }
-        while let Some(event) = ring.poll(eeruf_board::now()) {
+        while let Some(event) = ring.poll_with_edges(&EDGES, eeruf_board::now()) {
             match event {
                 Event::Fire(_) => {}
                 Event::Reading(reading) => readings.count(reading.kind),

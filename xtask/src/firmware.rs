@@ -30,9 +30,10 @@ const BOARDS: [Board; 4] = [
     },
 ];
 
-/// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions).
-const INSTRUCTIONS: [(&str, u32); 5] =
-    [("idle_poll", 40), ("echo", 60), ("stamp", 60), ("reading", 400), ("scheduler_fire", 80)];
+/// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions). 80 is the budget of a
+/// firing; the ring's bookkeeping for its filter comes on top of the scheduler's share.
+const INSTRUCTIONS: [(&str, u32); 6] =
+    [("idle_poll", 40), ("echo", 60), ("stamp", 60), ("reading", 400), ("scheduler_fire", 80), ("fire", 120)];
 const FLASH: u64 = 4096;
 const RAM: u64 = 12 * 16 + 64;
 const STACK: u64 = 256;
@@ -103,8 +104,7 @@ fn measure_all() -> Result<String, Trouble> {
     for board in [microbit, lm3s6965] {
         for (function, bytes) in stack(board)? {
             text += &format!("| {} | `{function}` | {bytes} |\n", board.name);
-            // Setting up builds the ring on the stack before it is moved to its place; it comes before the loop.
-            if board.name == "microbit" && function != "ring_new" && bytes > STACK {
+            if board.name == "microbit" && bytes > STACK {
                 over.push(format!("{function}: {bytes} bytes of stack; the budget is {STACK}"));
             }
         }

@@ -41,9 +41,21 @@ const STACK: u64 = 256;
 /// Builds, runs and measures everything; prints the tables of `docs/firmware.md`.
 pub(crate) fn firmware() -> Result<(), Trouble> {
     crate::listings::check("docs/firmware.md")?;
+    run(Command::new("cargo").current_dir("firmware").args(["fmt", "--all", "--check"]))?;
+    clippy()?;
     let tables = measure_all()?;
     println!("\n{tables}");
     Ok(())
+}
+
+/// All but RTIC's program, whose target may have a compiler of Debian's that comes without Clippy.
+fn clippy() -> Result<(), Trouble> {
+    let [microbit, ..] = &BOARDS;
+    let strict = ["clippy", "--quiet", "--release", "--locked", "--workspace", "--exclude", "eeruf-rtic"];
+    let bare = ["--exclude", "eeruf-c-header", "--target", microbit.target, "--", "--deny", "warnings"];
+    run(cargo(microbit)?.args(strict).args(bare))?;
+    let host = ["clippy", "--quiet", "--locked", "--package", "eeruf-c-header", "--", "--deny", "warnings"];
+    run(Command::new("cargo").current_dir("firmware").args(host))
 }
 
 fn measure_all() -> Result<String, Trouble> {

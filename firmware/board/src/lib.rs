@@ -32,9 +32,9 @@ pub use chip::*;
 #[cfg(target_arch = "arm")]
 pub use cortex_m_common::*;
 #[cfg(any(board = "lm3s6965", board = "an386"))]
-pub use systick_clock::{clear_alarm, clear_echo, set_alarm, set_echo};
-#[cfg(any(board = "lm3s6965", board = "an386"))]
 use systick_clock::running;
+#[cfg(any(board = "lm3s6965", board = "an386"))]
+pub use systick_clock::{clear_alarm, clear_echo, set_alarm, set_echo};
 
 /// The entry point of a program: `#[eeruf_board::entry] fn main() -> !`.
 #[cfg(target_arch = "arm")]

@@ -42,8 +42,18 @@ fn main() -> ! {
                     most = stats.max_late.as_micros().max(most);
                     sum += stats.max_late.as_micros();
                     if stats.period == 199 {
-                        say!("latest_us ", most, " mean_of_latest_us ", sum / 200, " edges_lost ", EDGES.lost(),
-                            " accepted ", readings.of(Kind::Accepted), " rejected ", readings.of(Kind::Rejected));
+                        say!(
+                            "latest_us ",
+                            most,
+                            " mean_of_latest_us ",
+                            sum / 200,
+                            " edges_lost ",
+                            EDGES.lost(),
+                            " accepted ",
+                            readings.of(Kind::Accepted),
+                            " rejected ",
+                            readings.of(Kind::Rejected)
+                        );
                         leave(0);
                     }
                 }

@@ -2,8 +2,8 @@
 //! wrong has an error code. A ring belongs to one context: hand echo edges of an interrupt over to the main loop, or
 //! keep interrupts off around the calls.
 #![cfg_attr(target_os = "none", no_std)]
-// The names are those of the header.
-#![allow(non_camel_case_types)]
+// Names and documents are those of the header.
+#![allow(non_camel_case_types, clippy::doc_markdown)]
 
 use core::mem::MaybeUninit;
 

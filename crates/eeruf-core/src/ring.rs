@@ -329,8 +329,20 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
         let fires = if now.has_reached(self.scheduler.deadline()) { self.scheduler.next_sensor() } else { None };
         let told = match fires {
-            Some(sensor) if !self.sensor(sensor).is_some_and(Sensor::holds_reading) => return self.fire(now),
-            Some(sensor) => Some(sensor),
+            Some(sensor) => {
+                let fired = self.sensors.get_mut(usize::from(sensor));
+                let untold = |sensor: &&mut Sensor<E>| sensor.is(LISTENING) || (self.ready > 0 && sensor.is_ready());
+                match fired {
+                    Some(fired) if untold(&fired) => Some(sensor),
+                    fired => {
+                        let Step::Fire { phase, late, .. } = self.scheduler.fire(now)? else { return None };
+                        if let Some(fired) = fired {
+                            fired.fire(phase, now);
+                        }
+                        return self.fired(sensor, late, now);
+                    }
+                }
+            }
             None => self.next_to_tell(now),
         };
         match told {
@@ -340,16 +352,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     }
 
     #[inline]
-    fn fire(&mut self, now: Instant) -> Option<Event> {
-        let Step::Fire { sensor, phase, late } = self.scheduler.fire(now)? else { return None };
-        if late > self.t_delta {
-            // Sound sent before this moment may be heard for a period, and its readings compared for one more.
-            self.unsettled = 2;
-            self.disturb();
-        }
-        self.max_late_us = self.max_late_us.max(u16::try_from(late.as_micros()).unwrap_or(u16::MAX));
-        if let Some(fired) = self.sensors.get_mut(usize::from(sensor)) {
-            fired.fire(phase, now);
+    fn fired(&mut self, sensor: u8, late: Micros, now: Instant) -> Option<Event> {
+        if late.as_micros() > self.max_late_us.into() {
+            self.fired_late(late);
         }
         if self.oldest == NOBODY {
             self.oldest = sensor;
@@ -358,6 +363,18 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             }
         }
         Some(Event::Fire(sensor))
+    }
+
+    /// Nothing in this period has fired later yet.
+    #[inline(never)]
+    fn fired_late(&mut self, late: Micros) {
+        self.max_late_us = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
+        if late > self.t_delta {
+            // Sound sent before this moment may be heard for a period, and its readings compared for one more. A further
+            // late firing in this period changes nothing: what is told until its end is compared with nothing already.
+            self.unsettled = 2;
+            self.disturb();
+        }
     }
 
     #[inline(never)]
@@ -517,8 +534,7 @@ impl<const E: usize> Sensor<E> {
 
     fn fire(&mut self, phase: Phase, now: Instant) {
         self.fired = now;
-        self.echoes = [NO_ECHO; E];
-        self.track.flags = (self.track.flags & DISTURBED) | (phase.0 & PHASE) | LISTENING;
+        self.track.flags = (self.track.flags & DISTURBED) | LISTENING | phase.0;
     }
 
     fn drop_firing(&mut self) {
@@ -582,10 +598,6 @@ impl<const E: usize> Sensor<E> {
     fn is_ready(&self) -> bool {
         let silent = self.echoes.first().is_none_or(|&echo| echo == NO_ECHO);
         !silent && !self.is(EARLY) && (E == 1 || !self.is(LISTENING))
-    }
-
-    fn holds_reading(&self) -> bool {
-        self.is(LISTENING) || self.is_ready()
     }
 
     /// Ends the firing.

@@ -80,6 +80,8 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
     place: u8,
     /// The next sensor to fire, or [`NOBODY`] when all have.
     next: u8,
+    /// Whether any sensor is disabled, since asking all 64 takes time at every firing.
+    some_disabled: bool,
     /// When it is due, or when the period ends. Worked out once per step, since it is asked for at every poll.
     due: Instant,
     schedule: &'s Schedule<K, M>,
@@ -100,6 +102,7 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
             phase: 0,
             place: 0,
             next,
+            some_disabled: false,
             due: Instant::from_micros(now.wrapping_add(gap.as_micros())),
             schedule,
             last_fired: Instant::from_micros(now.wrapping_sub(settling_time(schedule).as_micros())),
@@ -128,7 +131,7 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
         let (next, gap) = self.schedule.firing(self.phase, self.place);
         self.next = next;
         self.due = from + gap;
-        if self.disabled != SensorSet::NONE {
+        if self.some_disabled {
             self.skip_disabled();
         }
     }
@@ -212,6 +215,7 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
 
     fn set_enabled(&mut self, sensor: u8, enabled: bool) {
         self.disabled.set(sensor, !enabled);
+        self.some_disabled = self.disabled != SensorSet::NONE;
         self.skip_disabled();
     }
 

@@ -10,20 +10,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eeruf import _eeruf
+from eeruf._eeruf import ArgumentError
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from matplotlib.axes import Axes
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from eeruf import Schedule
+    from eeruf.experiments import Run, SetTwo
     from eeruf.sim import Paths, Readings, Scene
 
-__all__ = ["methods", "readings", "scene", "timing"]
+__all__ = ["course", "methods", "readings", "scene", "timing"]
 
 # Colours that also differ in grey and to the colour-blind (Okabe and Ito).
 _BLUE, _VERMILION, _GREEN, _GREY = "#0072b2", "#d55e00", "#009e73", "#8c8c8c"
-_INK, _WINDOW = "#1a1a1a", "#cfe3f1"
+_ORANGE = "#e69f00"
+_INK, _WINDOW, _FLOOR = "#1a1a1a", "#cfe3f1", "#f4f4f4"
 
 
 def _axes(ax: Axes | None, *, width: float = 7.0, height: float = 4.0) -> Axes:
@@ -242,3 +247,108 @@ def methods(
     ax.set_xlabel("wrong of all readings (%)" if figure == "wrong_of_all" else figure.replace("_", " ") + unit)
     _bare(ax)
     return ax
+
+
+def course(
+    result: SetTwo | Run,
+    *,
+    method: str | None = None,
+    course: int | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """One course of Set II from above: poles, walls, where the robot drove, and the grid that it made of its readings.
+
+    The two walls that are drawn heavier are smooth and make the reflective corner; the others return half of the sound. The
+    outline of the platform is drawn for every second.
+
+    Args:
+        result: of ``eeruf.experiments.set_two``, or one of its runs.
+        method: whose run to draw; by default ``"eeruf"``, or the first method if it is not among them.
+        course: the number of the course; by default the first.
+        ax: where to draw.
+
+    Returns:
+        The axes; metres, one as long in x as in y.
+
+    Raises:
+        ArgumentError: the result has no such method or course.
+
+    Example:
+        >>> import eeruf
+        >>> found = eeruf.experiments.set_two(seeds=1, methods=["eeruf"])
+        >>> ax = eeruf.plot.course(found)
+        >>> ax.get_title(loc="left")
+        'eeruf, course 0: finished after 9.3 s, mean 0.81 m/s, 1 phantom echo'
+
+    """
+    run, name, second_robot_m = _chosen(result, method, course)
+    ax = _axes(ax, width=7.0, height=5.0)
+    from matplotlib.collections import PatchCollection
+    from matplotlib.patches import Circle, Polygon, Rectangle
+
+    length, width = _eeruf._ROOM_M
+    ax.add_patch(Rectangle((0, 0), length, width, facecolor=_FLOOR, zorder=0))
+    cells = PatchCollection([Rectangle((x - 0.05, y - 0.05), 0.1, 0.1) for x, y, _ in run.grid], linewidth=0, zorder=1)
+    cells.set(array=run.grid[:, 2], cmap="Greys", clim=(-3, 15))
+    ax.add_collection(cells)
+    ax.plot([0, 0, length], [width, 0, 0], color=_INK, linewidth=1.0, zorder=3)
+    ax.plot([length, length, 0], [0, width, width], color=_INK, linewidth=3.5, zorder=3)
+    if second_robot_m is not None:
+        ax.add_patch(Circle(second_robot_m, 0.3, facecolor=_ORANGE, zorder=3, label="second robot"))
+    seconds = np.arange(0.0, run.time_s, 1.0)
+    for at in np.searchsorted(run.track[:, 0], seconds):
+        if at < len(run.track):
+            ax.add_patch(Polygon(_outline(run.track[at]), fill=False, edgecolor=_BLUE, linewidth=0.7, alpha=0.5, zorder=2))
+    ax.plot(run.track[:, 1], run.track[:, 2], color=_BLUE, linewidth=1.8, zorder=4, label="track, outline each second")
+    finished = run.ending == "finished"
+    last = Polygon(_outline(run.track[-1]), fill=False, edgecolor=_GREEN if finished else _VERMILION, linewidth=2, zorder=4)
+    last.set_label({"finished": "finished", "contact": "touched something"}.get(run.ending, "out of time"))
+    ax.add_patch(last)
+    # A pole of 8 mm would not be seen at its size.
+    ax.plot(run.poles[:, 0], run.poles[:, 1], linestyle="", marker="o", markersize=4.5, color=_VERMILION, zorder=5, label="pole")
+    cell = Rectangle((0, 0), 1, 1, facecolor="#6b6b6b", label="grid, darker: more certain")
+    handles = [*ax.get_legend_handles_labels()[0], cell]
+    ax.legend(handles=handles, frameon=False, ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.12), fontsize="small")
+    ending = {"finished": "finished after", "contact": "touched something after"}.get(run.ending, "not through in")
+    mean_m_s = run.way_m / run.time_s if run.time_s > 0 else 0.0
+    echoes = f"{run.phantom_echoes} phantom echo{'es' * (run.phantom_echoes != 1)}"
+    title = f"course {run.course}: {ending} {run.time_s:.1f} s, mean {mean_m_s:.2f} m/s, {echoes}"
+    ax.set_title(title if name is None else f"{name}, {title}", loc="left", fontsize="medium")
+    ax.set_aspect("equal")
+    ax.set_xlim(-0.06, length + 0.06)
+    ax.set_ylim(-0.06, width + 0.06)
+    ax.set_xlabel("x (m)")
+    ax.set_ylabel("y (m)")
+    ax.spines[:].set_visible(False)
+    return ax
+
+
+def _chosen(
+    result: SetTwo | Run, method: str | None, course: int | None
+) -> tuple[Run, str | None, tuple[float, float] | None]:
+    """A run, its method and where the second robot stood, as far as the result tells."""
+    from eeruf.experiments import Run, SetTwo
+
+    if isinstance(result, Run):
+        return result, None, None
+    if not isinstance(result, SetTwo):
+        raise ArgumentError(f"result = {result!r:.60}; expected what eeruf.experiments.set_two returns, or one of its runs")
+    if method is None:
+        method = "eeruf" if "eeruf" in result.runs else next(iter(result.runs))
+    if method not in result.runs:
+        raise ArgumentError(f"method = {method!r}; expected one of {', '.join(result.runs)}")
+    runs = {run.course: run for run in result.runs[method]}
+    if course is None:
+        course = min(runs)
+    if course not in runs:
+        raise ArgumentError(f"course = {course!r}; expected {min(runs)} to {max(runs)}")
+    return runs[course], method, result["second_robot_m"]
+
+
+def _outline(place: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The corners of the platform at a place of a track."""
+    _, x, y, heading, _ = place
+    half = _eeruf._SIDE_M / 2
+    ahead, aside = np.array([np.cos(heading), np.sin(heading)]), np.array([-np.sin(heading), np.cos(heading)])
+    corners = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
+    return np.array([[x, y] + half * (along * ahead + side * aside) for along, side in corners])

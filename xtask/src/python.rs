@@ -17,14 +17,18 @@ pub(crate) fn python() -> Result<(), Trouble> {
     if wheels.exists() {
         fs::remove_dir_all(&wheels).map_err(|error| Trouble::Failed(format!("{}: {error}", wheels.display())))?;
     }
-    let tool = |name: &str| Command::new(python.with_file_name(format!("{name}{EXE_SUFFIX}")));
+    let tool = |name: &str| {
+        let mut command = Command::new(&python);
+        command.args(["-m", name]);
+        command
+    };
     run(tool("maturin").args(["build", "--locked", "--out"]).arg(&wheels))?;
     let wheel = only_file(&wheels)?;
-    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--force-reinstall", "--no-deps"]).arg(&wheel))?;
-    run(tool("ruff").args(["check", "python", "tests/python"]))?;
-    run(tool("ruff").args(["format", "--check", "python", "tests/python"]))?;
-    run(tool("mypy").args(["tests/python"]))?;
-    run(tool("stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
+    run(tool("pip").args(["install", "--quiet", "--force-reinstall", "--no-deps"]).arg(&wheel))?;
+    run(tool("ruff").args(["check", "python", "tests/python", "benches/python"]))?;
+    run(tool("ruff").args(["format", "--check", "python", "tests/python", "benches/python"]))?;
+    run(tool("mypy").args(["tests/python", "benches/python"]))?;
+    run(tool("mypy.stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
     run(tool("pytest").env("EERUF_WHEEL", &wheel))
 }
 

@@ -26,6 +26,11 @@ pub(crate) fn coded(bounces: &[Bounce]) -> impl ExactSizeIterator<Item = i64> {
     })
 }
 
+/// What [`coded`] meant.
+pub(crate) fn bounce(code: i64) -> Bounce {
+    if code < 0 { Bounce::Pole((-1 - code) as u32) } else { Bounce::Wall(code as u32) }
+}
+
 #[pymethods]
 impl Paths {
     fn __len__(&self) -> usize {

@@ -3,8 +3,10 @@
 use eeruf_core::{MAX_SENSORS, Micros};
 use pyo3::{prelude::*, types::PyTuple};
 
+use crate::arguments::{instance, items, shown, text, whole, whole_or_none, wrong};
+
 /// One condition that a schedule does not meet.
-#[pyclass(frozen, eq, hash, get_all, module = "eeruf", from_py_object)]
+#[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Violation {
     kind: String,
@@ -20,14 +22,22 @@ impl Violation {
     #[new]
     #[pyo3(signature = (kind, sensors, phases, value_us, required_us, source))]
     fn new(
-        kind: String,
-        sensors: (u8, u8),
-        phases: (String, String),
-        value_us: u32,
-        required_us: u32,
-        source: String,
-    ) -> Self {
-        Self { kind, sensors, phases, value_us, required_us, source }
+        kind: &Bound<'_, PyAny>,
+        sensors: &Bound<'_, PyAny>,
+        phases: &Bound<'_, PyAny>,
+        value_us: &Bound<'_, PyAny>,
+        required_us: &Bound<'_, PyAny>,
+        source: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let refused = |name, value| wrong(name, shown(value), "a pair");
+        Ok(Self {
+            kind: text("kind", kind, "the name of a condition")?,
+            sensors: sensors.extract().map_err(|_| refused("sensors", sensors))?,
+            phases: phases.extract().map_err(|_| refused("phases", phases))?,
+            value_us: whole("value_us", value_us, 0..=u32::MAX)?,
+            required_us: whole("required_us", required_us, 0..=u32::MAX)?,
+            source: text("source", source, "a place in the paper")?,
+        })
     }
 
     fn __repr__(&self) -> String {
@@ -85,13 +95,22 @@ impl Report {
     #[new]
     #[pyo3(signature = (separation_us, max_t_delta_us, min_interval_us, min_refire_us, violations))]
     fn new(
-        separation_us: Option<u32>,
-        max_t_delta_us: Option<u32>,
-        min_interval_us: Option<u32>,
-        min_refire_us: u32,
-        violations: Vec<Violation>,
-    ) -> Self {
-        Self { separation_us, max_t_delta_us, min_interval_us, min_refire_us, violations }
+        separation_us: Option<&Bound<'_, PyAny>>,
+        max_t_delta_us: Option<&Bound<'_, PyAny>>,
+        min_interval_us: Option<&Bound<'_, PyAny>>,
+        min_refire_us: &Bound<'_, PyAny>,
+        violations: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let expected = "a sequence of eeruf.Violation";
+        let of = items("violations", violations, expected)?;
+        let one = |violation| instance::<Violation>("violations", violation, expected).map(|one| one.get().clone());
+        Ok(Self {
+            separation_us: whole_or_none("separation_us", separation_us, 0..=u32::MAX)?,
+            max_t_delta_us: whole_or_none("max_t_delta_us", max_t_delta_us, 0..=u32::MAX)?,
+            min_interval_us: whole_or_none("min_interval_us", min_interval_us, 0..=u32::MAX)?,
+            min_refire_us: whole("min_refire_us", min_refire_us, 0..=u32::MAX)?,
+            violations: of.iter().map(one).collect::<PyResult<_>>()?,
+        })
     }
 
     #[getter]

@@ -1,5 +1,7 @@
 //! `Ring` and its events.
 
+use std::ops::RangeInclusive;
+
 use eeruf_core::{Config, Event, Instant, Kind, MAX_SENSORS, Micros, ScheduledRing, Verdict};
 use eeruf_sim::AnySchedule;
 use pyo3::{
@@ -9,10 +11,13 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{micros, whole, whole_or},
+    arguments::{choice, instance, micros, whole, whole_or, whole_or_none},
     errors::Raise,
     schedule::Schedule,
 };
+
+/// Sensors that can be.
+const SENSORS: RangeInclusive<u8> = 0..=MAX_SENSORS as u8 - 1;
 
 /// The ring is to fire a sensor.
 #[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
@@ -25,12 +30,16 @@ pub(crate) struct Fire {
 impl Fire {
     #[new]
     #[pyo3(signature = (sensor))]
-    fn new(sensor: u8) -> Self {
-        Self { sensor }
+    fn new(sensor: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self { sensor: whole("sensor", sensor, SENSORS)? })
     }
 
     fn __repr__(&self) -> String {
         format!("Fire(sensor={})", self.sensor)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        Ok((slf.get_type().into_any(), (slf.get().sensor,).into_pyobject(slf.py())?))
     }
 }
 
@@ -39,7 +48,7 @@ impl Fire {
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Reading {
     sensor: u8,
-    kind: String,
+    kind: &'static str,
     t_echo_us: Option<u32>,
     previous_us: Option<u32>,
     age: Option<u16>,
@@ -53,7 +62,7 @@ impl Reading {
         Self {
             // Below 64.
             sensor: sensor as u8,
-            kind: verdict.kind.as_str().to_owned(),
+            kind: verdict.kind.as_str(),
             t_echo_us: verdict.t_echo.map(Micros::as_micros),
             previous_us: verdict.previous.map(Micros::as_micros),
             age: verdict.age,
@@ -68,15 +77,23 @@ impl Reading {
     #[new]
     #[pyo3(signature = (sensor, kind, t_echo_us=None, previous_us=None, age=None, phase=None, period=None))]
     fn new(
-        sensor: u8,
-        kind: String,
-        t_echo_us: Option<u32>,
-        previous_us: Option<u32>,
-        age: Option<u16>,
-        phase: Option<u8>,
-        period: Option<u32>,
-    ) -> Self {
-        Self { sensor, kind, t_echo_us, previous_us, age, phase, period }
+        sensor: &Bound<'_, PyAny>,
+        kind: &Bound<'_, PyAny>,
+        t_echo_us: Option<&Bound<'_, PyAny>>,
+        previous_us: Option<&Bound<'_, PyAny>>,
+        age: Option<&Bound<'_, PyAny>>,
+        phase: Option<&Bound<'_, PyAny>>,
+        period: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            sensor: whole("sensor", sensor, SENSORS)?,
+            kind: choice("kind", Some(kind), &Kind::ALL.map(|kind| (kind.as_str(), kind.as_str())))?,
+            t_echo_us: whole_or_none("t_echo_us", t_echo_us, 0..=u32::MAX)?,
+            previous_us: whole_or_none("previous_us", previous_us, 0..=u32::MAX)?,
+            age: whole_or_none("age", age, 0..=u16::MAX)?,
+            phase: whole_or_none("phase", phase, 0..=u8::MAX)?,
+            period: whole_or_none("period", period, 0..=u32::MAX)?,
+        })
     }
 
     fn __repr__(&self) -> String {
@@ -157,7 +174,7 @@ impl Ring {
     #[pyo3(signature = (schedule, t_delta_us, now_us=None, *, window_us, blanking_us=None, consecutive=None))]
     #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us, blanking_us=0, consecutive=2)")]
     fn new(
-        schedule: &Bound<'_, Schedule>,
+        schedule: &Bound<'_, PyAny>,
         t_delta_us: &Bound<'_, PyAny>,
         now_us: Option<&Bound<'_, PyAny>>,
         window_us: &Bound<'_, PyAny>,
@@ -170,7 +187,7 @@ impl Ring {
             ..Config::new(micros("t_delta_us", t_delta_us)?, micros("window_us", window_us)?)
         };
         let now = now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))?;
-        let schedule = schedule.get().0;
+        let schedule = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
         let ring = Owned::try_new(Box::new(schedule), |schedule| Scheduled::new(schedule, config, now));
         // At most 64.
         Ok(Self { ring: ring.map_err(Raise::raise)?, sensors: schedule.sensors() as u32 })
@@ -185,7 +202,7 @@ impl Ring {
             Some(Event::Fire(sensor)) => Fire { sensor }.into_bound_py_any(py),
             Some(Event::Reading(reading)) => Reading {
                 sensor: reading.sensor,
-                kind: reading.kind.as_str().to_owned(),
+                kind: reading.kind.as_str(),
                 t_echo_us: reading.t_echo.map(Micros::as_micros),
                 previous_us: reading.previous.map(Micros::as_micros),
                 age: reading.age,

@@ -5,12 +5,12 @@ use eeruf_sim::{Pose, Transducer, Vector};
 use pyo3::{prelude::*, types::PyTuple};
 
 use crate::{
-    arguments::{self, micros, number, wrong},
+    arguments::{self, choice, instance, micros, number, shown, wrong},
     schedule::Schedule,
 };
 
 /// A robot that stands, with sensors on an arc.
-#[pyclass(frozen, eq, module = "eeruf.sim", from_py_object)]
+#[pyclass(frozen, eq, module = "eeruf.sim")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Robot {
     pub(crate) robot: eeruf_sim::Robot,
@@ -18,51 +18,41 @@ pub(crate) struct Robot {
     pose: (f64, f64, f64),
     spacing_rad: f64,
     radius_m: f64,
-    transducer: String,
+    transducer: &'static str,
 }
 
-fn transducer(name: &str) -> PyResult<Transducer> {
-    match name {
-        "polaroid_6500" => Ok(Transducer::POLAROID_6500),
-        "hc_sr04" => Ok(Transducer::HC_SR04),
-        _ => Err(wrong("transducer", format_args!("{name:?}"), "\"polaroid_6500\" or \"hc_sr04\"")),
-    }
-}
+const TRANSDUCERS: [(&str, Transducer); 2] =
+    [("polaroid_6500", Transducer::POLAROID_6500), ("hc_sr04", Transducer::HC_SR04)];
 
 #[pymethods]
 impl Robot {
     #[new]
-    #[pyo3(signature = (pose, sensors, spacing_rad, radius_m, transducer="polaroid_6500", *, period_us=None, t_delta_us=None, window_us=None, schedule=None))]
+    #[pyo3(signature = (pose, sensors, spacing_rad, radius_m, transducer=None, *, period_us=None, t_delta_us=None, window_us=None, schedule=None))]
     #[pyo3(
         text_signature = "(pose, sensors, spacing_rad, radius_m, transducer=\"polaroid_6500\", *, period_us=60000, t_delta_us=500, window_us=36000, schedule=None)"
     )]
-    #[expect(
-        clippy::too_many_arguments,
-        clippy::needless_pass_by_value,
-        reason = "keyword arguments, as Python gives them"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
-        pose: (Bound<'_, PyAny>, Bound<'_, PyAny>, Bound<'_, PyAny>),
+        pose: &Bound<'_, PyAny>,
         sensors: &Bound<'_, PyAny>,
         spacing_rad: &Bound<'_, PyAny>,
         radius_m: &Bound<'_, PyAny>,
-        transducer: &str,
+        transducer: Option<&Bound<'_, PyAny>>,
         period_us: Option<&Bound<'_, PyAny>>,
         t_delta_us: Option<&Bound<'_, PyAny>>,
         window_us: Option<&Bound<'_, PyAny>>,
-        schedule: Option<&Bound<'_, Schedule>>,
+        schedule: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let metres = -1e6..=1e6;
-        let pose = (
-            number("pose[0]", &pose.0, metres.clone())?,
-            number("pose[1]", &pose.1, metres)?,
-            number("pose[2]", &pose.2, -1e6..=1e6)?,
-        );
+        let expected = "(x, y, heading) in metres and radians";
+        let coordinates = arguments::items("pose", pose, expected)?;
+        let [x, y, heading] = &coordinates[..] else { return Err(wrong("pose", shown(pose), expected)) };
+        let coordinate = |name: &str, value| number(name, value, -1e6..=1e6);
+        let pose = (coordinate("pose[0]", x)?, coordinate("pose[1]", y)?, coordinate("pose[2]", heading)?);
         let spacing_rad = number("spacing_rad", spacing_rad, -10.0..=10.0)?;
         let radius_m = number("radius_m", radius_m, 0.0..=1e3)?;
         let at = Pose::new(Vector::new(pose.0, pose.1), pose.2);
-        let name = transducer;
-        let transducer = self::transducer(name)?;
+        let (name, transducer) =
+            choice("transducer", transducer, &TRANSDUCERS.map(|(name, kind)| (name, (name, kind))))?;
         let mut robot = eeruf_sim::Robot::ring(at, arguments::sensors(sensors)?, spacing_rad, radius_m, transducer);
         let set = |name, value: Option<&Bound<'_, PyAny>>, field: &mut Micros| {
             value.map_or(Ok(()), |value| micros(name, value).map(|us| *field = us))
@@ -70,11 +60,12 @@ impl Robot {
         set("period_us", period_us, &mut robot.period)?;
         set("t_delta_us", t_delta_us, &mut robot.t_delta)?;
         set("window_us", window_us, &mut robot.window)?;
-        robot.schedule = schedule.map(|schedule| schedule.get().0);
+        let given = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
+        robot.schedule = given.transpose()?.map(|schedule| schedule.get().0);
         if let (Some(schedule), None) = (robot.schedule, period_us) {
             robot.period = schedule.period();
         }
-        Ok(Self { robot, pose, spacing_rad, radius_m, transducer: name.to_owned() })
+        Ok(Self { robot, pose, spacing_rad, radius_m, transducer: name })
     }
 
     #[getter]
@@ -122,7 +113,7 @@ impl Robot {
             this.sensors(),
             this.spacing_rad,
             this.radius_m,
-            &this.transducer,
+            this.transducer,
             this.period_us(),
             this.t_delta_us(),
             this.window_us(),

@@ -10,7 +10,7 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{matrix, number, points, whole, whole_or, wrong},
+    arguments::{self, instance, matrix, number, points, shown, whole, whole_or, wrong},
     errors::{Raise, SceneError},
     paths::Paths,
     robot::Robot,
@@ -65,19 +65,18 @@ pub(crate) fn scene_from_text(file: PathBuf, text: String) -> PyResult<Scene> {
 
 fn indices(name: &str, value: Option<&Bound<'_, PyAny>>, walls: usize) -> PyResult<Vec<usize>> {
     let Some(value) = value else { return Ok(vec![]) };
-    if walls == 0 {
-        return Ok(vec![]);
+    let items = arguments::items(name, value, "a sequence of indices of walls")?;
+    match (walls as u64).checked_sub(1) {
+        None if items.is_empty() => Ok(vec![]),
+        None => Err(wrong(name, shown(value), "no indices where there are no walls")),
+        Some(last) => items.iter().map(|item| whole(name, item, 0..=last).map(|index| index as usize)).collect(),
     }
-    let items = value.try_iter().map_err(|_| wrong(name, value, "a sequence of indices of walls"))?;
-    let index =
-        |item: PyResult<Bound<'_, PyAny>>| whole(name, &item?, 0..=walls as u64 - 1).map(|index| index as usize);
-    items.map(index).collect()
 }
 
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (walls, open=None, two_sided=None, poles=None, *, temperature_c=None, robots=vec![], noise=true, seed=None, max_order=None))]
+    #[pyo3(signature = (walls, open=None, two_sided=None, poles=None, *, temperature_c=None, robots=None, noise=None, seed=None, max_order=None))]
     #[pyo3(
         text_signature = "(walls, open=None, two_sided=None, poles=None, *, temperature_c=20.0, robots=(), noise=True, seed=1, max_order=6)"
     )]
@@ -89,8 +88,8 @@ impl Scene {
         two_sided: Option<&Bound<'_, PyAny>>,
         poles: Option<&Bound<'_, PyAny>>,
         temperature_c: Option<&Bound<'_, PyAny>>,
-        robots: Vec<Robot>,
-        noise: bool,
+        robots: Option<&Bound<'_, PyAny>>,
+        noise: Option<&Bound<'_, PyAny>>,
         seed: Option<&Bound<'_, PyAny>>,
         max_order: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
@@ -113,6 +112,12 @@ impl Scene {
             standing.extend(rows.as_array().rows().into_iter().map(|row| Pole::new(row[0], row[1], row[2])));
         }
         let celsius = temperature_c.map_or(Ok(20.0), |celsius| number("temperature_c", celsius, -100.0..=100.0))?;
+        let expected = "a sequence of eeruf.sim.Robot";
+        let given = robots.map_or(Ok(vec![]), |robots| arguments::items("robots", robots, expected))?;
+        let one =
+            |robot: &Bound<'_, PyAny>| instance::<Robot>("robots", robot, expected).map(|robot| robot.get().clone());
+        let robots = given.iter().map(one).collect::<PyResult<Vec<_>>>()?;
+        let noise = arguments::flag("noise", noise, true)?;
         let seed = whole_or("seed", seed, 1, 0..=u64::MAX)?;
         let order = max_order.map(|order| whole("max_order", order, 0..=u32::MAX)).transpose()?;
         made_of.set_item("temperature_c", celsius)?;
@@ -136,7 +141,8 @@ impl Scene {
 
     #[staticmethod]
     #[pyo3(signature = (path))]
-    fn from_toml(path: PathBuf) -> PyResult<Self> {
+    fn from_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let path: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a scene in TOML"))?;
         let text = std::fs::read_to_string(&path)
             .map_err(|error| SceneError::new_err(format!("{}: {error}", path.display())))?;
         Self::from_source(path, text)
@@ -179,18 +185,20 @@ impl Scene {
         self.scene().air().temperature_c
     }
 
-    #[pyo3(signature = (source, receivers, max_order, max_length_m=f64::INFINITY))]
+    #[pyo3(signature = (source, receivers, max_order, max_length_m=None), text_signature = "($self, source, receivers, max_order, max_length_m=inf)")]
     fn paths(
         slf: &Bound<'_, Self>,
         source: &Bound<'_, PyAny>,
         receivers: &Bound<'_, PyAny>,
         max_order: &Bound<'_, PyAny>,
-        max_length_m: f64,
+        max_length_m: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Paths> {
         let at = points("source", source)?;
-        let [from] = at[..] else { return Err(wrong("source", source.repr()?, "one point (x, y) in metres")) };
+        let [from] = at[..] else { return Err(wrong("source", shown(source), "one point (x, y) in metres")) };
         let receivers = points("receivers", receivers)?;
         let max_order = whole("max_order", max_order, 0..=u32::MAX)?;
+        let max_length_m =
+            max_length_m.map_or(Ok(f64::INFINITY), |most| number("max_length_m", most, 0.0..=f64::INFINITY))?;
         let scene = slf.get().scene();
         let paths = slf.py().detach(|| scene.paths(from, &receivers, max_order, max_length_m));
         let paths = paths.map_err(Raise::raise)?;

@@ -44,9 +44,9 @@ impl Schedule {
         min_interval_us: Option<&Bound<'_, PyAny>>,
         neighbours: Option<&Bound<'_, PyAny>>,
         layout: Option<&Bound<'_, PyAny>>,
-        criterion: &str,
+        criterion: Option<&Bound<'_, PyAny>>,
         window_us: Option<&Bound<'_, PyAny>>,
-        stale_echo: bool,
+        stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<OwnedRequirements> {
         let or_zero =
             |name, value: Option<&Bound<'_, PyAny>>| value.map_or(Ok(Micros::ZERO), |value| micros(name, value));
@@ -56,7 +56,7 @@ impl Schedule {
             layout: OwnedLayout::new(layout, arguments::neighbours(neighbours)?)?,
             criterion: arguments::criterion(criterion)?,
             window: or_zero("window_us", window_us)?,
-            stale_echo,
+            stale_echo: arguments::flag("stale_echo", stale_echo, false)?,
         };
         if t_delta_us.is_none() {
             // The most that the schedule allows.
@@ -96,17 +96,19 @@ impl Schedule {
 
     #[staticmethod]
     #[pyo3(signature = (text))]
-    fn from_toml(text: &str) -> PyResult<Self> {
+    fn from_toml(text: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let text = arguments::text("text", text, "a schedule in TOML")?;
         let file: ScheduleFile =
-            toml::from_str(text).map_err(|error| ScheduleError::new_err(error.message().to_owned()))?;
+            toml::from_str(&text).map_err(|error| ScheduleError::new_err(error.message().to_owned()))?;
         file.schedule().map(Self).map_err(ScheduleError::new_err)
     }
 
     #[staticmethod]
     #[pyo3(signature = (text))]
-    fn from_json(text: &str) -> PyResult<Self> {
+    fn from_json(text: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let text = arguments::text("text", text, "a schedule in JSON")?;
         let file: ScheduleFile =
-            serde_json::from_str(text).map_err(|error| ScheduleError::new_err(error.to_string()))?;
+            serde_json::from_str(&text).map_err(|error| ScheduleError::new_err(error.to_string()))?;
         file.schedule().map(Self).map_err(ScheduleError::new_err)
     }
 
@@ -151,7 +153,7 @@ impl Schedule {
         self.0.scaled(num, den).map(Self).map_err(Raise::raise)
     }
 
-    #[pyo3(signature = (t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion="exact", window_us=None, stale_echo=false))]
+    #[pyo3(signature = (t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None, stale_echo=None))]
     #[pyo3(
         text_signature = "($self, t_delta_us, min_interval_us=0, neighbours=4, layout=\"line\", criterion=\"exact\", window_us=0, stale_echo=False)"
     )]
@@ -162,9 +164,9 @@ impl Schedule {
         min_interval_us: Option<&Bound<'_, PyAny>>,
         neighbours: Option<&Bound<'_, PyAny>>,
         layout: Option<&Bound<'_, PyAny>>,
-        criterion: &str,
+        criterion: Option<&Bound<'_, PyAny>>,
         window_us: Option<&Bound<'_, PyAny>>,
-        stale_echo: bool,
+        stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Report> {
         let t_delta = Some(t_delta_us);
         let owned =
@@ -180,7 +182,7 @@ impl Schedule {
         serde_json::to_string(&ScheduleFile::from(&self.0)).map_err(|error| ScheduleError::new_err(error.to_string()))
     }
 
-    #[pyo3(signature = (t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion="exact", window_us=None, stale_echo=false))]
+    #[pyo3(signature = (t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None, stale_echo=None))]
     #[pyo3(
         text_signature = "($self, t_delta_us=None, min_interval_us=0, neighbours=4, layout=\"line\", criterion=\"exact\", window_us=0, stale_echo=False)"
     )]
@@ -191,16 +193,16 @@ impl Schedule {
         min_interval_us: Option<&Bound<'_, PyAny>>,
         neighbours: Option<&Bound<'_, PyAny>>,
         layout: Option<&Bound<'_, PyAny>>,
-        criterion: &str,
+        criterion: Option<&Bound<'_, PyAny>>,
         window_us: Option<&Bound<'_, PyAny>>,
-        stale_echo: bool,
+        stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<String> {
         let owned =
             self.requirements(t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo)?;
         Ok(self.0.to_rust(&owned.requirements()).to_string())
     }
 
-    #[pyo3(signature = (t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion="exact", window_us=None, stale_echo=false))]
+    #[pyo3(signature = (t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None, stale_echo=None))]
     #[pyo3(
         text_signature = "($self, t_delta_us=None, min_interval_us=0, neighbours=4, layout=\"line\", criterion=\"exact\", window_us=0, stale_echo=False)"
     )]
@@ -211,9 +213,9 @@ impl Schedule {
         min_interval_us: Option<&Bound<'_, PyAny>>,
         neighbours: Option<&Bound<'_, PyAny>>,
         layout: Option<&Bound<'_, PyAny>>,
-        criterion: &str,
+        criterion: Option<&Bound<'_, PyAny>>,
         window_us: Option<&Bound<'_, PyAny>>,
-        stale_echo: bool,
+        stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<String> {
         let owned =
             self.requirements(t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo)?;

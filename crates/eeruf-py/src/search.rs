@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use eeruf_core::{
-    MAX_SENSORS, Micros, Requirements,
+    Criterion, MAX_SENSORS, Micros, Requirements,
     search::{
         self, RingNeeds, SearchError, WaitNeeds, design as period,
         design::{Flow, Progress},
@@ -13,7 +13,9 @@ use eeruf_core::{
 use pyo3::{prelude::*, types::PyTuple};
 
 use crate::{
-    arguments::{self, OwnedLayout, micros, times, whole, whole_or, wrong},
+    arguments::{
+        self, OwnedLayout, choice, flag, instance, micros, number, text, times, whole, whole_or, whole_or_none,
+    },
     errors::Raise,
     schedule::Schedule,
     watch::Watch,
@@ -64,16 +66,24 @@ impl Found {
     #[new]
     #[pyo3(signature = (schedule, value_us, bound_us, proven, nodes, seconds, reason=None))]
     fn new(
-        schedule: Option<PyRef<'_, Schedule>>,
-        value_us: Option<u32>,
-        bound_us: Option<u32>,
-        proven: bool,
-        nodes: u64,
-        seconds: f64,
-        reason: Option<String>,
-    ) -> Self {
-        let schedule = schedule.map(|schedule| Schedule(schedule.0));
-        Self { schedule, value_us, bound_us, proven, nodes, seconds, reason }
+        schedule: Option<&Bound<'_, PyAny>>,
+        value_us: Option<&Bound<'_, PyAny>>,
+        bound_us: Option<&Bound<'_, PyAny>>,
+        proven: &Bound<'_, PyAny>,
+        nodes: &Bound<'_, PyAny>,
+        seconds: &Bound<'_, PyAny>,
+        reason: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let schedule = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
+        Ok(Self {
+            schedule: schedule.transpose()?.map(|schedule| schedule.get().clone()),
+            value_us: whole_or_none("value_us", value_us, 0..=u32::MAX)?,
+            bound_us: whole_or_none("bound_us", bound_us, 0..=u32::MAX)?,
+            proven: flag("proven", Some(proven), false)?,
+            nodes: whole("nodes", nodes, 0..=u64::MAX)?,
+            seconds: number("seconds", seconds, 0.0..=f64::INFINITY)?,
+            reason: reason.map(|reason| text("reason", reason, "why")).transpose()?,
+        })
     }
 
     #[getter]
@@ -97,7 +107,7 @@ impl Found {
 
 /// The shortest period for a ring.
 #[pyfunction]
-#[pyo3(signature = (sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=false, budget=None, progress=None))]
+#[pyo3(signature = (sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None, budget=None, progress=None))]
 #[pyo3(
     text_signature = "(sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, layout=\"line\", stale_echo=False, budget=None, progress=None)"
 )]
@@ -111,7 +121,7 @@ pub(crate) fn design(
     tick_us: Option<&Bound<'_, PyAny>>,
     neighbours: Option<&Bound<'_, PyAny>>,
     layout: Option<&Bound<'_, PyAny>>,
-    stale_echo: bool,
+    stale_echo: Option<&Bound<'_, PyAny>>,
     budget: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Found> {
@@ -120,11 +130,12 @@ pub(crate) fn design(
     let (t_delta, min_interval) = (micros("t_delta_us", t_delta_us)?, micros("min_interval_us", min_interval_us)?);
     let window = whole("window_us", window_us, 1..=u32::MAX).map(Micros::new)?;
     let tick = Micros::new(whole_or("tick_us", tick_us, 1000, 1..=u32::MAX)?);
+    let stale_echo = flag("stale_echo", stale_echo, false)?;
     let budget = whole_or("budget", budget, DESIGN_BUDGET, 1..=u64::MAX)?;
     let mut watch = Watch::new(progress)?;
     let began = Instant::now();
     let designed = py.detach(|| {
-        let criterion = eeruf_core::Criterion::Exact;
+        let criterion = Criterion::Exact;
         let layout = layout.layout();
         let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo };
         let needs = RingNeeds { sensors, requirements, tick };
@@ -181,7 +192,7 @@ impl WaitSearch {
 #[pymethods]
 impl WaitSearch {
     #[new]
-    #[pyo3(signature = (sensors, period_us, wait_max_us, tick_us, t_lag_us=None, *, t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion="paper"))]
+    #[pyo3(signature = (sensors, period_us, wait_max_us, tick_us, t_lag_us=None, *, t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion=None))]
     #[pyo3(
         text_signature = "(sensors, period_us, wait_max_us, tick_us, t_lag_us=None, *, t_delta_us, min_interval_us=0, neighbours=4, layout=\"line\", criterion=\"paper\")"
     )]
@@ -196,7 +207,7 @@ impl WaitSearch {
         min_interval_us: Option<&Bound<'_, PyAny>>,
         neighbours: Option<&Bound<'_, PyAny>>,
         layout: Option<&Bound<'_, PyAny>>,
-        criterion: &str,
+        criterion: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let sensors = arguments::sensors(sensors)?;
         let t_lag = t_lag_us.map(|lags| times("t_lag_us", lags)).transpose()?;
@@ -212,7 +223,7 @@ impl WaitSearch {
             min_interval: min_interval_us.map_or(Ok(Micros::ZERO), |value| micros("min_interval_us", value))?,
             neighbours,
             layout: layout.layout(),
-            criterion: arguments::criterion(criterion)?,
+            criterion: choice("criterion", criterion, &[("paper", Criterion::Paper), ("exact", Criterion::Exact)])?,
         };
         Ok(Self { search: search::WaitSearch::new(&needs).map_err(Raise::raise)?, sensors })
     }
@@ -234,13 +245,15 @@ impl WaitSearch {
         Ok(WaitTables(Walk::try_new(self.search.clone(), search::WaitSearch::all).map_err(Raise::raise)?))
     }
 
-    #[pyo3(signature = (objective="interval", budget=None))]
-    fn best(&self, py: Python<'_>, objective: &str, budget: Option<&Bound<'_, PyAny>>) -> PyResult<Found> {
-        let objective = match objective {
-            "interval" => Objective::Interval,
-            "t_delta" => Objective::Separation,
-            other => return Err(wrong("objective", format_args!("{other:?}"), "\"interval\" or \"t_delta\"")),
-        };
+    #[pyo3(signature = (objective=None, budget=None), text_signature = "($self, objective=\"interval\", budget=None)")]
+    fn best(
+        &self,
+        py: Python<'_>,
+        objective: Option<&Bound<'_, PyAny>>,
+        budget: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Found> {
+        let objectives = [("interval", Objective::Interval), ("t_delta", Objective::Separation)];
+        let objective = choice("objective", objective, &objectives)?;
         let budget = whole_or("budget", budget, u64::MAX, 1..=u64::MAX)?;
         let words = wait::memory_words(self.sensors);
         let began = Instant::now();

@@ -278,7 +278,7 @@ def course(
         >>> found = eeruf.experiments.set_two(seeds=1, methods=["eeruf"])
         >>> ax = eeruf.plot.course(found)
         >>> ax.get_title(loc="left")
-        'eeruf, course 0: finished after 9.3 s, mean 0.81 m/s, 1 phantom echo'
+        'eeruf, course 0: finished after 8.6 s, 3 phantom echoes'
 
     """
     run, name, second_robot_m = _chosen(result, method, course)
@@ -299,21 +299,29 @@ def course(
     for at in np.searchsorted(run.track[:, 0], seconds):
         if at < len(run.track):
             ax.add_patch(Polygon(_outline(run.track[at]), fill=False, edgecolor=_BLUE, linewidth=0.7, alpha=0.5, zorder=2))
-    ax.plot(run.track[:, 1], run.track[:, 2], color=_BLUE, linewidth=1.8, zorder=4, label="track, outline each second")
+    ax.plot(run.track[:, 1], run.track[:, 2], color=_BLUE, linewidth=1.8, zorder=4, label="track, outline every second")
     finished = run.ending == "finished"
     last = Polygon(_outline(run.track[-1]), fill=False, edgecolor=_GREEN if finished else _VERMILION, linewidth=2, zorder=4)
-    last.set_label({"finished": "finished", "contact": "touched something"}.get(run.ending, "out of time"))
     ax.add_patch(last)
     # A pole of 8 mm would not be seen at its size.
     ax.plot(run.poles[:, 0], run.poles[:, 1], linestyle="", marker="o", markersize=4.5, color=_VERMILION, zorder=5, label="pole")
     cell = Rectangle((0, 0), 1, 1, facecolor="#6b6b6b", label="grid, darker: more certain")
-    handles = [*ax.get_legend_handles_labels()[0], cell]
-    ax.legend(handles=handles, frameon=False, ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.12), fontsize="small")
+    ax.legend(
+        handles=[*ax.get_legend_handles_labels()[0], cell],
+        frameon=False,
+        ncols=4,
+        loc="lower left",
+        bbox_to_anchor=(-0.01, 1.0),
+        borderaxespad=0.2,
+        columnspacing=1.2,
+        handlelength=1.4,
+        fontsize="small",
+    )
     ending = {"finished": "finished after", "contact": "touched something after"}.get(run.ending, "not through in")
-    mean_m_s = run.way_m / run.time_s if run.time_s > 0 else 0.0
     echoes = f"{run.phantom_echoes} phantom echo{'es' * (run.phantom_echoes != 1)}"
-    title = f"course {run.course}: {ending} {run.time_s:.1f} s, mean {mean_m_s:.2f} m/s, {echoes}"
-    ax.set_title(title if name is None else f"{name}, {title}", loc="left", fontsize="medium")
+    title = f"course {run.course}: {ending} {run.time_s:.1f} s, {echoes}"
+    # Above the legend.
+    ax.set_title(title if name is None else f"{name}, {title}", loc="left", fontsize="medium", pad=24)
     ax.set_aspect("equal")
     ax.set_xlim(-0.06, length + 0.06)
     ax.set_ylim(-0.06, width + 0.06)

@@ -2,6 +2,13 @@
 //! `eeruf-sim`, here it only changes its clothes: microseconds as `int`, many numbers as `NumPy` arrays, errors as exceptions.
 //! What users read is in `python/eeruf`.
 
+#![allow(
+    clippy::doc_markdown,
+    clippy::doc_lazy_continuation,
+    clippy::doc_overindented_list_items,
+    reason = "the docs of what Python sees are docstrings, in their own markup"
+)]
+
 mod arguments;
 mod errors;
 mod experiments;

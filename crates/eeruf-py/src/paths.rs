@@ -9,7 +9,13 @@ use pyo3::{
 
 use crate::{arguments::whole, scene::Scene};
 
-/// Every path from a source to some receivers.
+/// Every path from a source to some receivers: arrays of equal length, sorted by receiver and then by length. The arrays are copies.
+///
+/// Example:
+///     >>> from eeruf import sim
+///     >>> paths = sim.Scene([[5, 2, -5, 2]]).paths((0, 0), [(3, 0)], max_order=1)
+///     >>> len(paths), paths.walls
+///     (2, [(), (0,)])
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Paths {
     pub(crate) paths: eeruf_sim::Paths,
@@ -37,42 +43,64 @@ impl Paths {
         self.paths.len()
     }
 
+    /// The index of the receiver: uint32.
     #[getter]
     fn receiver<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_slice(py, &self.paths.receiver)
     }
 
+    /// The length in metres: float64.
     #[getter]
     fn length_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.paths.length_m)
     }
 
+    /// How many bounces, those at poles included: uint32.
     #[getter]
     fn order<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_slice(py, &self.paths.order)
     }
 
+    /// The direction in which the path leaves the source, in (-pi, pi]: float64.
     #[getter]
     fn departure_rad<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.paths.departure_rad)
     }
 
+    /// The direction in which the receiver looks to see it, in (-pi, pi]: float64.
     #[getter]
     fn arrival_rad<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.paths.arrival_rad)
     }
 
+    /// The amplitude relative to 1 m in free air, without the transducers' patterns: float64.
     #[getter]
     fn amplitude<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.paths.amplitude)
     }
 
+    /// For each path its bounces from source to receiver, a list of tuples: a wall by its index, a pole by -1 minus its index.
     #[getter]
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let sequences = (0..self.paths.len()).map(|path| PyTuple::new(py, coded(self.paths.bounces(path))));
         PyList::new(py, sequences.collect::<PyResult<Vec<_>>>()?)
     }
 
+    /// The corners of a path, from source to receiver.
+    ///
+    /// Args:
+    ///     path: which one, from 0.
+    ///
+    /// Returns:
+    ///     Array of shape (order + 2, 2), in metres.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such path.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> sim.Scene([[5, 2, -5, 2]]).paths((0, 0), (3, 0), max_order=1).points(1).tolist()
+    ///     [[0.0, 0.0], [1.5, 2.0], [3.0, 0.0]]
     #[pyo3(signature = (path))]
     fn points<'py>(&self, path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let py = path.py();

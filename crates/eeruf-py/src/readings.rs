@@ -29,11 +29,46 @@ pub(crate) fn method(argument: &str, name: &Bound<'_, PyAny>) -> PyResult<Method
     name.parse().map_err(|error: eeruf_sim::UnknownMethod| ArgumentError::new_err(error.to_string()))
 }
 
-/// Every reading of a simulation.
+/// Every reading of a simulation: arrays of equal length, in the order in which the rings told them. Readings pickle.
+///
+/// Each reading comes with what caused it and with what the sensor would have read alone. Times without a value are NaN. The arrays
+/// are copies.
+///
+/// Example:
+///     >>> from eeruf import sim
+///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+///     >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+///     >>> len(readings), readings.summary()["wrong_of_all"] < 0.01
+///     (800, True)
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Readings(eeruf_sim::Readings);
 
-/// Runs a scene under a method.
+/// Drive the rings of a scene through simulated time by a method: core's own scheduler and filter, as on the target.
+///
+/// The same scene, method and seed give the same readings, bit for bit. It runs on one core, without the interpreter lock; Ctrl-C
+/// ends it.
+///
+/// Args:
+///     scene: with one robot or more.
+///     method: one of ``METHODS``.
+///     periods: for how many periods of the first robot, 1 or more.
+///     seed: of the noise, 0 to 2^64 - 1; the scene's by default.
+///     progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
+///
+/// Returns:
+///     Every reading.
+///
+/// Raises:
+///     ArgumentError: no such method, or something of the wrong type or out of range.
+///     SceneError: the scene has no robot.
+///     SimulationError: a ring cannot fire by the method as it should listen.
+///
+/// Example:
+///     >>> from eeruf import sim
+///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+///     >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
+///     >>> sim.simulate(scene, method="conventional", periods=10)
+///     <Readings: 80 of 8 sensors, conventional, 0.600 s>
 #[pyfunction]
 #[pyo3(signature = (scene, method=None, periods=None, seed=None, *, progress=None))]
 #[pyo3(text_signature = "(scene, method=\"eeruf\", periods=1000, seed=None, *, progress=None)")]
@@ -82,77 +117,95 @@ impl Readings {
         self.0.len()
     }
 
+    /// The method that was simulated, one of ``METHODS``.
     #[getter]
     fn method(&self) -> &'static str {
         self.0.method.as_str()
     }
 
+    /// For how long, in seconds.
     #[getter]
     fn duration_s(&self) -> f64 {
         self.0.duration_s
     }
 
+    /// How many sensors the scene has, of all robots together.
     #[getter]
     fn sensors(&self) -> usize {
         self.0.sensors
     }
 
+    /// The robot, from 0: uint16.
     #[getter]
     fn robot<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         Self::array(py, self.0.robot.iter().copied())
     }
 
+    /// The sensor on its ring, from 0: uint8.
     #[getter]
     fn sensor<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         Self::array(py, self.0.sensor.iter().copied())
     }
 
+    /// The period in which it fired, from 0: uint32.
     #[getter]
     fn period<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         Self::array(py, self.0.period.iter().copied())
     }
 
+    /// The phase in which it fired, 0 for a and 1 for b: uint8.
     #[getter]
     fn phase<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         Self::array(py, self.0.phase.iter().copied())
     }
 
+    /// When it fired, in seconds: float64.
     #[getter]
     fn fired_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         Self::array(py, self.0.fired_s.iter().copied())
     }
 
+    /// What the method made of it, an index into ``eeruf.KINDS``: uint8.
     #[getter]
     fn kind<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         Self::array(py, self.0.kind.iter().map(|&kind| kind as u8))
     }
 
+    /// The echo time that the method tells, in microseconds: float64.
     #[getter]
     fn t_echo_us<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         Self::array(py, self.0.t_echo_us.iter().copied())
     }
 
+    /// The earliest echo of the firing, in microseconds: float64.
     #[getter]
     fn earliest_us<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         Self::array(py, self.0.earliest_us.iter().copied())
     }
 
+    /// What the sensor would have read alone in quiet air, in microseconds: float64.
     #[getter]
     fn reference_us<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         Self::array(py, self.0.reference_us.iter().copied())
     }
 
+    /// What ``t_echo_us`` came from, an index into ``CAUSES``: uint8.
     #[getter]
     fn cause<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         Self::array(py, self.0.cause.iter().map(|&cause| cause as u8))
     }
 
+    /// Along which of ``paths`` the sound came, an index, or -1 for none: int64.
     #[getter]
     fn path<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         let index = |&path: &u32| if path == NO_PATH { -1 } else { i64::from(path) };
         Self::array(py, self.0.path.iter().map(index))
     }
 
+    /// Every path that some reading came along: a dict of arrays of equal length.
+    ///
+    /// ``emitter_robot``, ``emitter``, ``receiver_robot``, ``receiver`` count from 0; ``order`` is the number of bounces; ``length_m``,
+    /// ``departure_rad`` and ``arrival_rad`` are in metres and radians of the scene; ``walls`` is a list of tuples as in ``Paths``.
     #[getter]
     fn paths<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (columns, paths) = (PyDict::new(py), &self.0.paths);
@@ -169,22 +222,46 @@ impl Readings {
         Ok(columns)
     }
 
+    /// When the sound behind ``t_echo_us`` was sent, in seconds: float64.
     #[getter]
     fn emitted_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         Self::array(py, self.0.emitted_s.iter().copied())
     }
 
+    /// Whether the method believes the reading, an echo or that nothing is in range: bool.
     #[getter]
     fn is_accepted<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         Self::array(py, (0..self.0.len()).map(|reading| self.0.is_accepted(reading)))
     }
 
+    /// Whether what the reading says is wrong, believed or not.
+    ///
+    /// Args:
+    ///     tolerance_us: by how much it may miss the reference, in microseconds.
+    ///
+    /// Returns:
+    ///     Array of bool.
+    ///
+    /// Raises:
+    ///     ArgumentError: the tolerance is negative or not a number.
     #[pyo3(signature = (tolerance_us=None), text_signature = "($self, tolerance_us=500.0)")]
     fn is_wrong<'py>(&self, py: Python<'py>, tolerance_us: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         let tolerance_us = tolerance(tolerance_us)?;
         Ok(Self::array(py, (0..self.0.len()).map(|reading| self.0.is_wrong(reading, tolerance_us))))
     }
 
+    /// The figures that are always reported together.
+    ///
+    /// Args:
+    ///     tolerance_us: by how much a reading may miss the reference, in microseconds.
+    ///
+    /// Returns:
+    ///     A dict: ``readings``, ``accepted``; as fractions of 1 ``wrong_of_all``, ``crosstalk_of_all``, ``wrong_of_accepted``,
+    ///     ``rejected``, ``good_lost``, ``wrong_before_filter``; ``age_ms`` with ``median`` and ``p99``; ``readings_per_s``;
+    ///     ``starved``: how many sensors never had a reading accepted.
+    ///
+    /// Raises:
+    ///     ArgumentError: the tolerance is negative or not a number.
     #[pyo3(signature = (tolerance_us=None), text_signature = "($self, tolerance_us=500.0)")]
     fn summary<'py>(&self, py: Python<'py>, tolerance_us: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         let tolerance_us = tolerance(tolerance_us)?;
@@ -193,6 +270,7 @@ impl Readings {
         py.import("json")?.call_method1("loads", (json,))
     }
 
+    /// All arrays, one entry for each reading, by their names: a dict.
     fn columns<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(slf.py());
         for name in COLUMNS {
@@ -201,17 +279,25 @@ impl Readings {
         Ok(columns)
     }
 
+    /// All arrays as a ``pandas.DataFrame``.
+    ///
+    /// Raises:
+    ///     ImportError: pandas is not installed.
     fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("pandas")?.call_method1("DataFrame", (Self::columns(slf)?,))
     }
 
+    /// All arrays as a ``polars.DataFrame``.
+    ///
+    /// Raises:
+    ///     ImportError: polars is not installed.
     fn to_polars<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("polars")?.call_method1("DataFrame", (Self::columns(slf)?,))
     }
 
     fn __repr__(&self) -> String {
         format!(
-            "<Readings: {} of {} sensors, {}, {} s>",
+            "<Readings: {} of {} sensors, {}, {:.3} s>",
             self.0.len(),
             self.0.sensors,
             self.0.method,

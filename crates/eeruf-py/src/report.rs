@@ -6,14 +6,26 @@ use pyo3::{prelude::*, types::PyTuple};
 use crate::arguments::{instance, items, shown, text, whole, whole_or_none, wrong};
 
 /// One condition that a schedule does not meet.
+///
+/// Example:
+///     >>> from eeruf.tables import TABLE_I_B
+///     >>> violation = TABLE_I_B.verify(t_delta_us=999, min_interval_us=15_000).violations[0]
+///     >>> violation.kind, violation.value_us < violation.required_us, violation.source
+///     ('interval', True, 'Sec. 3.1 c')
 #[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Violation {
+    /// Which condition: ``"crosstalk_a"``, ``"crosstalk_b"``, ``"stale_echo"``, ``"interval"`` or ``"window"``.
     kind: String,
+    /// The two sensors, from 0; the same one twice where a condition is about one alone.
     sensors: (u8, u8),
+    /// The phases in which they fire, each ``"a"`` or ``"b"``.
     phases: (String, String),
+    /// What the schedule has, in microseconds.
     value_us: u32,
+    /// What the condition asks for, in microseconds.
     required_us: u32,
+    /// Where the condition comes from, such as ``"Eq. (13a)"``.
     source: String,
 }
 
@@ -55,16 +67,26 @@ impl Violation {
     }
 }
 
-/// What `Schedule.verify` found.
+/// What ``Schedule.verify`` found. It is true if all conditions hold.
+///
+/// Example:
+///     >>> from eeruf.tables import TABLE_I_D
+///     >>> bool(TABLE_I_D.verify(t_delta_us=999)), bool(TABLE_I_D.verify(t_delta_us=1_000))
+///     (True, False)
 #[pyclass(frozen, eq, hash, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Report {
+    /// The smaller left side of (13a), (13b) of the pair that is closest to failing, in microseconds; None for a single sensor.
     #[pyo3(get)]
     separation_us: Option<u32>,
+    /// The largest ``T_delta`` at which (13a), (13b) (and the stale echo condition, if asked for) hold, in microseconds; None if none
+    /// does.
     #[pyo3(get)]
     max_t_delta_us: Option<u32>,
+    /// The smallest time between the firings of two neighbours, in microseconds; None without neighbours.
     #[pyo3(get)]
     min_interval_us: Option<u32>,
+    /// The shortest time between two firings of one sensor, in microseconds.
     #[pyo3(get)]
     min_refire_us: u32,
     violations: Vec<Violation>,
@@ -113,11 +135,13 @@ impl Report {
         })
     }
 
+    /// Whether every condition holds.
     #[getter]
     fn ok(&self) -> bool {
         self.violations.is_empty()
     }
 
+    /// Every violation, as a tuple of ``Violation``: first (13a), then (13b), stale echoes, intervals and windows.
     #[getter]
     fn violations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.violations.iter().cloned())

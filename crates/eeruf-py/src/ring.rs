@@ -19,10 +19,16 @@ use crate::{
 /// Sensors that can be.
 const SENSORS: RangeInclusive<u8> = 0..=MAX_SENSORS as u8 - 1;
 
-/// The ring is to fire a sensor.
+/// The ring is to fire a sensor, now.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000).poll(24_000)
+///     Fire(sensor=0)
 #[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Fire {
+    /// Which sensor, from 0.
     sensor: u8,
 }
 
@@ -43,16 +49,28 @@ impl Fire {
     }
 }
 
-/// What one firing told.
+/// What one firing of one sensor told.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> eeruf.EchoFilter(1, 500).push(0, 9_000)
+///     Reading(sensor=0, kind='first', t_echo_us=9000, previous_us=None, age=None, phase=None, period=None)
 #[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Reading {
+    /// Which sensor, from 0.
     sensor: u8,
+    /// What became of it, one of ``eeruf.KINDS``: ``"accepted"`` and ``"clear"`` (nothing in range) are to be believed.
     kind: &'static str,
+    /// The time of the echo after firing, in microseconds; None without echo.
     t_echo_us: Option<u32>,
+    /// What it was compared with, in microseconds; None if with nothing.
     previous_us: Option<u32>,
+    /// How many firings ago the sensor's last accepted reading was: 0 for this one, None if there never was one.
     age: Option<u16>,
+    /// The phase in which the sensor fired: 0 for a, 1 for b; None from a filter alone.
     phase: Option<u8>,
+    /// The period in which the sensor fired, from 0; None from a filter alone.
     period: Option<u32>,
 }
 
@@ -117,12 +135,24 @@ impl Reading {
     }
 }
 
-/// A period has ended.
+/// A period of the ring has ended.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+///     >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.PeriodEnded):
+///     ...     pass
+///     >>> event.period, event.phase, event.tally["no_echo"] <= 12
+///     (0, 0, True)
 #[pyclass(frozen, get_all, module = "eeruf")]
 pub(crate) struct PeriodEnded {
+    /// Which period, from 0.
     period: u32,
+    /// Its phase: 0 for a, 1 for b.
     phase: u8,
+    /// How long after it was due the latest firing was polled for, in microseconds, at most 65,535.
     max_late_us: u32,
+    /// How many readings of each kind were told since the period before ended: a dict by the names in ``eeruf.KINDS``.
     tally: Py<PyDict>,
 }
 
@@ -146,7 +176,34 @@ self_cell::self_cell!(
     }
 );
 
-/// Scheduler and filter together, as the firmware runs them.
+/// Scheduler and filter together, as the firmware runs them: the caller passes the time and is told what to do.
+///
+/// Moments are microseconds on a clock that wraps at 2^32, as on a small microcontroller; larger numbers are taken modulo that.
+///
+/// Args:
+///     schedule: when the sensors fire.
+///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11).
+///     now_us: when the first period begins.
+///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more.
+///     blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
+///     consecutive: how many readings running must agree, 2 to 8.
+///
+/// Raises:
+///     ArgumentError: something of the wrong type or out of range.
+///     RingError: the ring cannot listen like that, such as longer than the schedule lets it.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> ring, kinds = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000), []
+///     >>> while len(kinds) < 24:
+///     ...     now_us = ring.next_deadline_us
+///     ...     while event := ring.poll(now_us):
+///     ...         if isinstance(event, eeruf.Fire):
+///     ...             ring.echo(event.sensor, now_us + 9_000)  # a wall 1.5 m away
+///     ...         elif isinstance(event, eeruf.Reading):
+///     ...             kinds.append(event.kind)
+///     >>> kinds == ["first"] * 12 + ["accepted"] * 12
+///     True
 #[pyclass(module = "eeruf")]
 pub(crate) struct Ring {
     ring: Owned,
@@ -193,6 +250,18 @@ impl Ring {
         Ok(Self { ring: ring.map_err(Raise::raise)?, sensors: schedule.sensors() as u32 })
     }
 
+    /// The next thing to do or to know at a time. Call again until there is none, then wait until ``next_deadline_us``.
+    ///
+    /// Hand in the echoes you know of before you poll: one that comes after the poll that closed its window is not heard.
+    ///
+    /// Args:
+    ///     now_us: the present, 0 or more.
+    ///
+    /// Returns:
+    ///     A ``Fire``, a ``Reading``, a ``PeriodEnded``, or None if there is nothing to do now.
+    ///
+    /// Raises:
+    ///     ArgumentError: not such a time.
     #[pyo3(signature = (now_us))]
     fn poll<'py>(&mut self, now_us: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let (py, now) = (now_us.py(), instant("now_us", now_us)?);
@@ -222,16 +291,26 @@ impl Ring {
         event.map(Some)
     }
 
+    /// When to poll next, in microseconds of the clock that wraps at 2^32; in the past if something is waiting to be told.
     #[getter]
     fn next_deadline_us(&self) -> u32 {
         self.ring.borrow_dependent().next_deadline().as_micros()
     }
 
+    /// What it fires by.
     #[getter]
     fn schedule(&self) -> Schedule {
         Schedule(**self.ring.borrow_owner())
     }
 
+    /// An edge on the echo line of a sensor. Edges may come in any order, at any time, wanted or not.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///     at_us: when, 0 or more.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor or time.
     #[pyo3(signature = (sensor, at_us))]
     fn echo(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
@@ -239,6 +318,13 @@ impl Ring {
         Ok(())
     }
 
+    /// The echo line of a sensor was already high when it was to fire: the firing just told counts as ``"stuck"``.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
     #[pyo3(signature = (sensor))]
     fn stuck(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
@@ -246,6 +332,13 @@ impl Ring {
         Ok(())
     }
 
+    /// Have a sensor fire no more. A firing of it that is under way is still told.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
     #[pyo3(signature = (sensor))]
     fn disable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
@@ -253,6 +346,13 @@ impl Ring {
         Ok(())
     }
 
+    /// Have a sensor fire again, from its next turn on. Its readings from before are forgotten.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
     #[pyo3(signature = (sensor))]
     fn enable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;

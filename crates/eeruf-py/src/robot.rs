@@ -9,15 +9,41 @@ use crate::{
     schedule::Schedule,
 };
 
-/// A robot that stands, with sensors on an arc.
+/// A robot that stands, with a ring of sensors on an arc whose middle is ahead.
+///
+/// Args:
+///     pose: (x, y, heading) in metres and radians, counter-clockwise from the x axis.
+///     sensors: how many, 1 to 64.
+///     spacing_rad: the angle from one sensor to the next, in radians.
+///     radius_m: the radius of the arc, in metres.
+///     transducer: ``"polaroid_6500"`` or ``"hc_sr04"``.
+///     period_us: ``T_p`` of the methods that bring no schedule of their own; the schedule's if there is one.
+///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical.
+///     window_us: ``T_wind``: how long a sensor listens.
+///     schedule: what the EERUF methods fire by; None for the paper's table, scaled to the period.
+///
+/// Raises:
+///     ArgumentError: something of the wrong type or out of range.
+///
+/// Example:
+///     >>> from eeruf import sim
+///     >>> sim.Robot((0.0, 0.0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3).period_us
+///     60000
 #[pyclass(frozen, eq, module = "eeruf.sim")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Robot {
     pub(crate) robot: eeruf_sim::Robot,
+    /// (x, y, heading) in metres and radians.
     #[pyo3(get)]
     pose: (f64, f64, f64),
+    /// The angle from one sensor to the next, in radians.
+    #[pyo3(get)]
     spacing_rad: f64,
+    /// The radius of the arc, in metres.
+    #[pyo3(get)]
     radius_m: f64,
+    /// The name of the transducer.
+    #[pyo3(get)]
     transducer: &'static str,
 }
 
@@ -68,26 +94,31 @@ impl Robot {
         Ok(Self { robot, pose, spacing_rad, radius_m, transducer: name })
     }
 
+    /// How many sensors.
     #[getter]
     fn sensors(&self) -> usize {
         self.robot.sensors.len()
     }
 
+    /// ``T_p`` of the methods that bring no schedule of their own, in microseconds.
     #[getter]
     fn period_us(&self) -> u32 {
         self.robot.period.as_micros()
     }
 
+    /// ``T_delta``, in microseconds.
     #[getter]
     fn t_delta_us(&self) -> u32 {
         self.robot.t_delta.as_micros()
     }
 
+    /// How long a sensor listens, in microseconds.
     #[getter]
     fn window_us(&self) -> u32 {
         self.robot.window.as_micros()
     }
 
+    /// What the EERUF methods fire by; None for the paper's table.
     #[getter]
     fn schedule(&self) -> Option<Schedule> {
         self.robot.schedule.map(Schedule)

@@ -28,7 +28,30 @@ enum Source {
     Code(Py<PyDict>),
 }
 
-/// Walls, poles and robots.
+/// Walls, poles and robots from above, in metres. Immutable; scenes pickle.
+///
+/// A wall reflects on its left side, seen from its first end to its second; walls that meet end to end may be given as they come.
+///
+/// Args:
+///     walls: array of shape (n, 4): x, y of one end and x, y of the other.
+///     open: indices of walls that let sound pass: openings.
+///     two_sided: indices of walls that reflect on both sides.
+///     poles: array of shape (m, 3): x, y and radius.
+///     temperature_c: of the air, in degrees Celsius, -100 to 100; the speed of sound depends on it.
+///     robots: the robots that :func:`simulate` drives.
+///     noise: whether :func:`simulate` has jitter, fading and bursts from outside.
+///     seed: of the noise, 0 to 2^64 - 1.
+///     max_order: how many bounces :func:`simulate` follows; 6 unless it is given.
+///
+/// Raises:
+///     ArgumentError: an array of the wrong shape, an index of no wall, something of the wrong type or out of range.
+///     SceneError: walls that cross, have no length or are not finite, or a robot where none can stand.
+///
+/// Example:
+///     >>> from eeruf import sim
+///     >>> scene = sim.Scene([[0.85, 0, 0.85, 1.39], [0.85, 1.39, -0.85, 1.39], [-0.85, 1.39, -0.85, 0]])
+///     >>> scene
+///     <Scene: 3 walls, 0 poles, 0 robots>
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Scene {
     contents: Contents,
@@ -139,6 +162,14 @@ impl Scene {
         Ok(Self { contents: Contents::World(Box::new(world)), source })
     }
 
+    /// Read a scene file, such as those in the folder ``scenes``.
+    ///
+    /// Args:
+    ///     path: of the file; a schedule that it names is looked for beside it.
+    ///
+    /// Raises:
+    ///     ArgumentError: not a path.
+    ///     SceneError: no such file, or it says something that makes no scene: by name, value and what is expected.
     #[staticmethod]
     #[pyo3(signature = (path))]
     fn from_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
@@ -148,6 +179,7 @@ impl Scene {
         Self::from_source(path, text)
     }
 
+    /// The walls: array of shape (n, 4), as given.
     #[getter]
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let walls = self.scene().walls();
@@ -155,16 +187,19 @@ impl Scene {
         PyArray1::from_vec(py, flat).reshape([walls.len(), 4])
     }
 
+    /// The indices of the walls that let sound pass.
     #[getter]
     fn open(&self) -> Vec<usize> {
         self.with_faces(Faces::Open)
     }
 
+    /// The indices of the walls that reflect on both sides.
     #[getter]
     fn two_sided(&self) -> Vec<usize> {
         self.with_faces(Faces::Both)
     }
 
+    /// The poles: array of shape (m, 3) of x, y and radius in metres.
     #[getter]
     fn poles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let poles = self.scene().poles();
@@ -172,6 +207,7 @@ impl Scene {
         PyArray1::from_vec(py, flat).reshape([poles.len(), 3])
     }
 
+    /// How many robots there are.
     #[getter]
     fn robots(&self) -> usize {
         match &self.contents {
@@ -180,11 +216,33 @@ impl Scene {
         }
     }
 
+    /// The temperature of the air, in degrees Celsius.
     #[getter]
     fn temperature_c(&self) -> f64 {
         self.scene().air().temperature_c
     }
 
+    /// Every specular path from a source to some receivers, exactly, without the interpreter lock.
+    ///
+    /// Args:
+    ///     source: (x, y) in metres.
+    ///     receivers: array of shape (n, 2), or one point, in metres.
+    ///     max_order: the most bounces, 0 to 1000; those at poles count.
+    ///     max_length_m: the longest path, in metres; above 0.
+    ///
+    /// Returns:
+    ///     The paths as arrays, sorted by receiver and then by length.
+    ///
+    /// Raises:
+    ///     ArgumentError: something of the wrong type, shape or range.
+    ///     PathsError: a point that is not finite or far from all walls, too high an order, or too many paths to keep.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> wall = sim.Scene([[5, 2, -5, 2]])
+    ///     >>> paths = wall.paths(source=(0, 0), receivers=[(3, 0)], max_order=1)
+    ///     >>> paths.order.tolist(), paths.length_m.tolist()
+    ///     ([0, 1], [3.0, 5.0])
     #[pyo3(signature = (source, receivers, max_order, max_length_m=None), text_signature = "($self, source, receivers, max_order, max_length_m=inf)")]
     fn paths(
         slf: &Bound<'_, Self>,

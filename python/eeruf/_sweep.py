@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
-from concurrent.futures import Executor, ProcessPoolExecutor
-from typing import Any, Callable, TypeVar
+from typing import TYPE_CHECKING, Any, Callable, TypeVar
 
 from eeruf._eeruf import ArgumentError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from concurrent.futures import Executor
 
 Case = TypeVar("Case")
 Result = TypeVar("Result")
@@ -32,7 +34,8 @@ def sweep(
         One result for each case. The results do not depend on the executor.
 
     Raises:
-        ArgumentError: the function cannot be called, or ``progress`` is neither.
+        ArgumentError: the function cannot be called, the cases are not several, or an executor or ``progress`` that is none.
+        Exception: whatever the function raises first.
 
     Example:
         >>> import eeruf
@@ -47,8 +50,17 @@ def sweep(
     if not callable(function):
         raise ArgumentError(f"function = {function!r}; expected something to call with one case")
     tell = _tell(progress)
-    todo = list(cases)
+    try:
+        one_by_one = iter(cases)
+    except TypeError:
+        raise ArgumentError(f"cases = {cases!r:.60}; expected several cases") from None
+    todo = list(one_by_one)
+    if executor is not None and not callable(getattr(executor, "submit", None)):
+        raise ArgumentError(f"executor = {executor!r:.60}; expected a concurrent.futures.Executor")
     if executor is None:
+        # Not before it is needed: multiprocessing is most of what importing eeruf would cost.
+        from concurrent.futures import ProcessPoolExecutor
+
         with ProcessPoolExecutor(max_workers=max(1, min(len(todo), os.cpu_count() or 1))) as processes:
             return _run(function, todo, processes, tell)
     return _run(function, todo, executor, tell)

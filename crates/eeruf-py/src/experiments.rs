@@ -1,12 +1,6 @@
 //! The paper's experiments. Their tables come as JSON, with the names that `eeruf experiment --json` uses; what users call is
 //! in `python/eeruf/experiments.py`.
 
-use std::sync::{
-    Mutex,
-    atomic::{AtomicBool, Ordering},
-};
-use std::time::Duration;
-
 use eeruf_core::Micros;
 use eeruf_sim::{
     Method, Robot,
@@ -31,49 +25,15 @@ use crate::{
     arguments::{flag, items, micros, number, points, shown, whole, whole_or, wrong},
     errors::{ArgumentError, Raise},
     readings::method,
-    watch::Watch,
+    watch::{Aside, aside},
 };
 
 /// How many nodes the search for `eeruf_best` may cost, as in the program; it is proven shortest long before.
 pub(crate) const BEST_BUDGET: u64 = 300_000;
-/// How often the thread that called looks up.
-const LOOK: Duration = Duration::from_millis(10);
 /// As many as the program allows.
 const SEEDS_MOST: u64 = 100_000;
 /// `T_delta` of a robot that does not know how it moves, as in the program.
 const WITHOUT_ODOMETRY: Micros = Micros::new(500);
-
-/// Runs work that uses all cores on a thread of its own, while the thread that called looks after Ctrl-C and progress:
-/// signals reach Python only there.
-fn beside<T: Send>(
-    py: Python<'_>,
-    progress: Option<&Bound<'_, PyAny>>,
-    text: &str,
-    work: impl FnOnce(&(dyn Fn(f64) -> bool + Sync)) -> PyResult<T> + Send,
-) -> PyResult<T> {
-    let mut watch = Watch::new(progress)?;
-    let result = py.detach(|| {
-        let (stopped, share) = (AtomicBool::new(false), Mutex::new(0.0_f64));
-        let keep_going = |done: f64| {
-            if let Ok(mut share) = share.lock() {
-                *share = share.max(done);
-            }
-            !stopped.load(Ordering::Relaxed)
-        };
-        std::thread::scope(|scope| {
-            let worker = scope.spawn(|| work(&keep_going));
-            while !worker.is_finished() {
-                std::thread::sleep(LOOK);
-                let done = share.lock().map_or(0.0, |share| *share);
-                if !watch.go_on(Some(done), || text.to_owned()) {
-                    stopped.store(true, Ordering::Relaxed);
-                }
-            }
-            worker.join().unwrap_or_else(|_| Err(ArgumentError::new_err("the experiment ended early")))
-        })
-    });
-    watch.outcome(result)
-}
 
 fn json(table: &impl Serialize) -> PyResult<String> {
     serde_json::to_string(table).map_err(|error| ArgumentError::new_err(error.to_string()))
@@ -86,9 +46,11 @@ fn methods(names: Option<&Bound<'_, PyAny>>, default: &[Method]) -> PyResult<Vec
 }
 
 /// What `eeruf_best` fires by, if it is asked for.
-fn best(methods: &[Method], robot: &Robot, keep_going: &dyn Fn(f64) -> bool) -> PyResult<Option<Best>> {
+fn best(methods: &[Method], robot: &Robot, aside: &Aside) -> PyResult<Option<Best>> {
     let asked = methods.contains(&Method::EerufBest);
-    asked.then(|| best_for(robot, BEST_BUDGET, |_| keep_going(0.0)).map_err(Raise::raise)).transpose()
+    asked
+        .then(|| best_for(robot, BEST_BUDGET, |_| aside.go_on(None, || "designing".to_owned())).map_err(Raise::raise))
+        .transpose()
 }
 
 /// Set I over many geometries.
@@ -104,9 +66,10 @@ pub(crate) fn set_one(
     let seeds = whole("seeds", seeds, 1..=SEEDS_MOST)?;
     let readings = whole_or("readings", readings, READINGS, 1..=u32::MAX)?;
     let methods = self::methods(methods, &Method::ALL)?;
-    beside(py, progress, "Set I", |keep_going| {
-        let best = best(&methods, &Alcove::random(0).robot(), keep_going)?;
-        let table = first_set::set_one(seeds, readings, &methods, best.as_ref(), keep_going).map_err(Raise::raise)?;
+    aside(py, progress, move |aside| {
+        let best = best(&methods, &Alcove::random(0).robot(), aside)?;
+        let keep_going = |done| aside.go_on(Some(done), || format!("{seeds} alcoves"));
+        let table = first_set::set_one(seeds, readings, &methods, best.as_ref(), &keep_going).map_err(Raise::raise)?;
         json(&table)
     })
 }
@@ -159,10 +122,9 @@ fn corner(value: &Bound<'_, PyAny>) -> PyResult<eeruf_sim::Point> {
     }
 }
 
-fn with_best(options: &mut SetTwoOptions, keep_going: &dyn Fn(f64) -> bool) -> PyResult<()> {
+fn with_best(options: SetTwoOptions, aside: &Aside) -> PyResult<SetTwoOptions> {
     let robot = Robot { t_delta: options.t_delta, ..Course::random(0).robot() };
-    options.best = best(&options.methods, &robot, keep_going)?;
-    Ok(())
+    Ok(SetTwoOptions { best: best(&options.methods, &robot, aside)?, ..options })
 }
 
 /// Set II over many courses: the table, and for each method the fields of each run.
@@ -173,10 +135,11 @@ pub(crate) fn set_two<'py>(
     asked: Asked<'py>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(String, Bound<'py, PyDict>)> {
-    let mut options = asked.options()?;
-    let found = beside(py, progress, "Set II", |keep_going| {
-        with_best(&mut options, keep_going)?;
-        second_set::set_two(&options, keep_going).map_err(Raise::raise)
+    let options = asked.options()?;
+    let found = aside(py, progress, move |aside| {
+        let options = with_best(options, aside)?;
+        let keep_going = |done| aside.go_on(Some(done), || format!("{} courses", options.seeds));
+        second_set::set_two(&options, &keep_going).map_err(Raise::raise)
     })?;
     let runs = PyDict::new(py);
     for ((method, _), of_method) in found.methods.iter().zip(&found.runs) {
@@ -210,10 +173,12 @@ pub(crate) fn speed_sweep(
     if speeds.is_empty() {
         return Err(wrong("speeds_m_s", "[]", expected));
     }
-    let mut options = asked.options()?;
-    beside(py, progress, "Set II", |keep_going| {
-        with_best(&mut options, keep_going)?;
-        let steps = second_set::speed_sweep(&options, &speeds, keep_going).map_err(Raise::raise)?;
+    let options = asked.options()?;
+    aside(py, progress, move |aside| {
+        let options = with_best(options, aside)?;
+        let keep_going =
+            |done| aside.go_on(Some(done), || format!("{} courses at {} speeds", options.seeds, speeds.len()));
+        let steps = second_set::speed_sweep(&options, &speeds, &keep_going).map_err(Raise::raise)?;
         let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);
         json(&Sweep { seeds: options.seeds, second_robot_m, steps })
     })

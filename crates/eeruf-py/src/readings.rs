@@ -1,9 +1,7 @@
 //! `sim.simulate` and the `Readings` it returns.
 
 use eeruf_core::Kind;
-use eeruf_sim::{
-    Cause, HeardPath, Method, NO_PATH, Options, SensorId, SimulationError as Trouble, best::best_for, simulate_while,
-};
+use eeruf_sim::{Cause, HeardPath, Method, NO_PATH, Options, SensorId, best::best_for, simulate_while};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::{
     prelude::*,
@@ -16,7 +14,7 @@ use crate::{
     experiments::BEST_BUDGET,
     paths::{bounce, coded},
     scene::Scene,
-    watch::{Watch, interrupted},
+    watch::aside,
 };
 
 /// The names of causes by their codes.
@@ -80,25 +78,22 @@ pub(crate) fn simulate(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Readings> {
     let scene = instance::<Scene>("scene", scene, "an eeruf.sim.Scene")?;
-    let world = scene.get().world()?;
+    scene.get().world()?;
     let method = method.map_or(Ok(Method::Eeruf), |name| self::method("method", name))?;
     let mut options = Options {
         seed: seed.map(|seed| whole("seed", seed, 0..=u64::MAX)).transpose()?,
         ..Options::periods(whole_or("periods", periods, 1000, 1..=u32::MAX)?)
     };
-    let mut watch = Watch::new(progress)?;
-    let result = scene.py().detach(|| {
+    let (py, scene) = (scene.py(), scene.clone().unbind());
+    aside(py, progress, move |aside| {
+        let world = scene.get().world()?;
         if let (Method::EerufBest, Some(robot)) = (method, world.robots().first()) {
-            let best = best_for(robot, BEST_BUDGET, |_| watch.go_on(None, || "designing".to_owned()));
+            let best = best_for(robot, BEST_BUDGET, |_| aside.go_on(None, || "designing".to_owned()));
             options.best = Some(best.map_err(Raise::raise)?.schedule);
         }
-        let keep_going = |share| watch.go_on(Some(share), || format!("simulating {method}"));
-        simulate_while(world, method, &options, keep_going).map(Readings).map_err(|error| match error {
-            Trouble::Stopped => interrupted(),
-            error => error.raise(),
-        })
-    });
-    watch.outcome(result)
+        let keep_going = |share| aside.go_on(Some(share), || format!("simulating {method}"));
+        simulate_while(world, method, &options, keep_going).map(Readings).map_err(Raise::raise)
+    })
 }
 
 fn tolerance(value: Option<&Bound<'_, PyAny>>) -> PyResult<f64> {

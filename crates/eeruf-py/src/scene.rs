@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use eeruf_sim::{Air, Faces, Noise, Pole, Wall, World};
+use eeruf_sim::{Air, Faces, Noise, Point, Pole, Wall, World};
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
@@ -14,7 +14,13 @@ use crate::{
     errors::{Raise, SceneError},
     paths::Paths,
     robot::Robot,
+    watch::aside,
 };
+
+/// Up to so many walls, receivers and bounces, paths are found before anybody could press Ctrl-C, and sooner than a thread would
+/// start.
+const FEW: usize = 32;
+const LOW_ORDER: u32 = 6;
 
 /// Walls alone, or a world with robots.
 enum Contents {
@@ -257,10 +263,13 @@ impl Scene {
         let max_order = whole("max_order", max_order, 0..=u32::MAX)?;
         let max_length_m =
             max_length_m.map_or(Ok(f64::INFINITY), |most| number("max_length_m", most, 0.0..=f64::INFINITY))?;
-        let scene = slf.get().scene();
-        let paths = slf.py().detach(|| scene.paths(from, &receivers, max_order, max_length_m));
-        let paths = paths.map_err(Raise::raise)?;
-        Ok(Paths { paths, source: from, receivers, scene: slf.clone().unbind() })
+        let (py, scene) = (slf.py(), slf.clone().unbind());
+        let few = slf.get().scene().walls().len() <= FEW && receivers.len() <= FEW && max_order <= LOW_ORDER;
+        let find = move |receivers: Vec<Point>| {
+            let paths = scene.get().scene().paths(from, &receivers, max_order, max_length_m).map_err(Raise::raise)?;
+            Ok(Paths { paths, source: from, receivers, scene })
+        };
+        if few { py.detach(|| find(receivers)) } else { aside(py, None, move |_| find(receivers)) }
     }
 
     fn __repr__(&self) -> String {

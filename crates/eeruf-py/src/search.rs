@@ -18,13 +18,16 @@ use crate::{
     },
     errors::Raise,
     schedule::Schedule,
-    watch::Watch,
+    watch::{Watch, aside},
 };
 
 /// How many nodes the choice among the shortest schedules may cost.
 const PREFERENCE_BUDGET: u64 = 100_000;
 /// How many nodes a search visits unless another budget is given.
 const DESIGN_BUDGET: u64 = 50_000_000;
+/// With so few sensors the engine asks often whether to go on. With more it may be a good part of a second between two nodes that
+/// ask, so that the search gets a thread of its own; a small search would wait for that thread longer than for its answer.
+const FEW_SENSORS: usize = 12;
 /// How many nodes of the search for waits lie between two looks at the clock.
 const POLL: u32 = 1 << 12;
 
@@ -173,21 +176,23 @@ pub(crate) fn design(
     let tick = Micros::new(whole_or("tick_us", tick_us, 1000, 1..=u32::MAX)?);
     let stale_echo = flag("stale_echo", stale_echo, false)?;
     let budget = whole_or("budget", budget, DESIGN_BUDGET, 1..=u64::MAX)?;
-    let mut watch = Watch::new(progress)?;
     let began = Instant::now();
-    let designed = py.detach(|| {
-        let criterion = Criterion::Exact;
-        let layout = layout.layout();
+    let work = move |go_on: &mut dyn FnMut(&Progress) -> bool| {
+        let (criterion, layout) = (Criterion::Exact, layout.layout());
         let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo };
         let needs = RingNeeds { sensors, requirements, tick };
-        let mut control = |at: &Progress| {
-            let text = || format!("{} nodes, period {} to {} ticks", at.nodes, at.bound, at.best);
-            if watch.go_on(None, text) { Flow::Continue } else { Flow::Stop }
-        };
-        shortest(&needs, budget, &mut control)
-    });
-    let found = designed.map(|(found, reason)| Found::of(&found, began, Some(reason))).map_err(Raise::raise);
-    watch.outcome(found)
+        let mut control = |at: &Progress| if go_on(at) { Flow::Continue } else { Flow::Stop };
+        shortest(&needs, budget, &mut control).map_err(Raise::raise)
+    };
+    let text = |at: &Progress| format!("{} nodes, period {} to {} ticks", at.nodes, at.bound, at.best);
+    let (found, reason) = if sensors <= FEW_SENSORS {
+        let mut watch = Watch::new(progress)?;
+        let designed = py.detach(|| work(&mut |at| watch.go_on(None, || text(at))));
+        watch.outcome(designed)?
+    } else {
+        aside(py, progress, move |aside| work(&mut |at| aside.go_on(None, || text(at))))?
+    };
+    Ok(Found::of(&found, began, Some(reason)))
 }
 
 fn shortest(

@@ -114,6 +114,9 @@ pub fn set_one(
     let going = Going::new(seeds * methods.len() as u64, keep_going);
     let geometries: Vec<u64> = (0..seeds).collect();
     let runs = sweep(&geometries, |&number| {
+        if !going.go_on() {
+            return Err(ExperimentError::Stopped);
+        }
         let alcove = Alcove::random(number);
         let standard = alcove.world()?;
         let robot = Robot { t_delta: MULTI_ECHO_T_DELTA, ..alcove.robot() };

@@ -23,6 +23,8 @@ def sweep(
 ) -> list[Result]:
     """Call a function for every case, in parallel, and return the results in the order of the cases.
 
+    The first error ends it, and so does Ctrl-C; cases that run on an executor of yours are not waited for.
+
     Args:
         function: of one case. With processes (the default, and Dask) it must be importable, not a lambda.
         cases: what to call it with. Schedules, scenes, robots and readings pickle, so they may be cases and results.
@@ -58,11 +60,7 @@ def sweep(
     if executor is not None and not callable(getattr(executor, "submit", None)):
         raise ArgumentError(f"executor = {executor!r:.60}; expected a concurrent.futures.Executor")
     if executor is None:
-        # Not before it is needed: multiprocessing is most of what importing eeruf would cost.
-        from concurrent.futures import ProcessPoolExecutor
-
-        with ProcessPoolExecutor(max_workers=max(1, min(len(todo), os.cpu_count() or 1))) as processes:
-            return _run(function, todo, processes, tell)
+        return _run_here(function, todo, tell)
     return _run(function, todo, executor, tell)
 
 
@@ -77,6 +75,25 @@ def _tell(progress: Any) -> Callable[[float | None, str], Any] | None:
         found: Callable[[float | None, str], Any] = progress
         return found
     raise ArgumentError(f"progress = {progress!r}; expected None, True or a callable (share, text)")
+
+
+def _run_here(
+    function: Callable[[Case], Result], cases: list[Case], tell: Callable[[float | None, str], Any] | None
+) -> list[Result]:
+    """Run on processes of our own, which end with us."""
+    # Not before it is needed: multiprocessing is most of what importing eeruf would cost.
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    others = set(multiprocessing.active_children())
+    with ProcessPoolExecutor(max_workers=max(1, min(len(cases), os.cpu_count() or 1))) as processes:
+        try:
+            return _run(function, cases, processes, tell)
+        except BaseException:
+            # A case may take hours, and what was handed to a process can no longer be cancelled.
+            for process in set(multiprocessing.active_children()) - others:
+                process.terminate()
+            raise
 
 
 def _run(

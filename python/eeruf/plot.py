@@ -6,6 +6,7 @@ paper; arguments count them from 0, as everywhere in code.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from eeruf import _eeruf
 from eeruf._eeruf import ArgumentError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
@@ -28,6 +29,30 @@ __all__ = ["course", "methods", "readings", "scene", "timing"]
 # Colours that also differ in grey and to the colour-blind (Okabe and Ito).
 _BLUE, _VERMILION, _GREEN, _GREY = "#0072b2", "#d55e00", "#009e73", "#8c8c8c"
 _ORANGE = "#e69f00"
+_QUANTILES = ("p10", "median", "p90")
+# Figures that are neither shares nor end in their unit.
+_COUNTS = ("courses", "finished", "contacts", "timed_out", "phantom_echoes", "phantom_cells", "starved")
+_TITLES = {
+    "wrong_of_all": "wrong of all readings (%)",
+    "crosstalk_of_all": "crosstalk of all readings (%)",
+    "wrong_of_accepted": "wrong of accepted readings (%)",
+    "rejected": "readings not accepted (%)",
+    "good_lost": "good readings lost (%)",
+    "wrong_before_filter": "wrong before any filter (%)",
+    "readings_per_s": "accepted readings per second",
+    "age_ms": "age of the last accepted reading (ms)",
+    "age_p99_ms": "age of the last accepted reading, 99 % (ms)",
+    "starved": "sensors that never had a reading accepted",
+    "finished": "courses finished",
+    "contacts": "courses with a contact",
+    "timed_out": "courses out of time",
+    "mean_speed_m_s": "mean speed (m/s)",
+    "top_speed_m_s": "top speed (m/s)",
+    "nearest_m": "nearest pole (m)",
+    "poles_missed": "poles missed (%)",
+    "phantom_echoes": "phantom echoes in a course",
+    "phantom_cells": "phantom cells in a course",
+}
 _INK, _WINDOW, _FLOOR = "#1a1a1a", "#cfe3f1", "#f4f4f4"
 
 
@@ -111,6 +136,14 @@ def scene(
     Returns:
         The axes; metres, one as long in x as in y.
 
+    Example:
+        >>> import eeruf
+        >>> wall = eeruf.sim.Scene([[5, 2, -5, 2]])
+        >>> paths = wall.paths(source=(0, 0), receivers=[(3, 0)], max_order=1)
+        >>> ax = eeruf.plot.scene(wall, paths, source=(0, 0), receivers=[(3, 0)])
+        >>> [text.get_text() for text in ax.get_legend().get_texts()]
+        ['0 bounces', '1 bounce']
+
     """
     ax = _axes(ax, width=6.0, height=6.0)
     for wall in np.asarray(scene.walls).reshape(-1, 4):
@@ -174,6 +207,14 @@ def readings(
     Returns:
         The axes; echo times in milliseconds over time in seconds. Readings without echo do not appear.
 
+    Example:
+        >>> import eeruf
+        >>> robot = eeruf.sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+        >>> scene = eeruf.sim.Scene([[5, 2, -5, 2]], robots=[robot])
+        >>> ax = eeruf.plot.readings(eeruf.sim.simulate(scene, periods=50), sensor=3)
+        >>> ax.get_ylabel()
+        'echo time of sensor 4 (ms)'
+
     """
     ax = _axes(ax, width=8.0, height=3.6)
     mine = np.flatnonzero((np.asarray(readings.sensor) == sensor) & (np.asarray(readings.robot) == robot))
@@ -211,7 +252,7 @@ def methods(
     """The firing methods side by side: the median over all geometries, and where eight in ten of them lie.
 
     Args:
-        result: of ``eeruf.experiments.set_one``.
+        result: of ``eeruf.experiments.set_one`` or ``set_two``.
         figure: which figure to draw, such as "wrong_of_all", "rejected", "good_lost" or "readings_per_s".
         names: which methods, first on top; by default all, worst median on top.
         ax: where to draw.
@@ -220,21 +261,35 @@ def methods(
         The axes; percent for shares of readings, else the figure's own unit.
 
     Raises:
-        KeyError: no method has that figure.
+        ArgumentError: no method has that figure, or there is no such method.
+
+    Example:
+        >>> import eeruf
+        >>> table = eeruf.experiments.set_one(seeds=2, readings=400, methods=["eeruf", "conventional"])
+        >>> ax = eeruf.plot.methods(table)
+        >>> [label.get_text() for label in ax.get_yticklabels()]
+        ['conventional', 'eeruf']
 
     """
-    spreads = {name: method[figure] for name, method in result["methods"].items() if method.get(figure) is not None}
-    if not spreads:
-        raise KeyError(f"figure {figure!r}: expected one of {sorted(set().union(*result['methods'].values()))}")
+    figures = {name: method[figure] for name, method in result["methods"].items() if method.get(figure) is not None}
+    if not figures:
+        known = ", ".join(sorted(set().union(*result["methods"].values())))
+        raise ArgumentError(f"figure = {figure!r}; expected one of {known}")
+    # Set II has one number for all courses.
+    spreads = {name: of if isinstance(of, Mapping) else dict.fromkeys(_QUANTILES, of) for name, of in figures.items()}
     chosen = list(names) if names is not None else sorted(spreads, key=lambda name: -spreads[name]["median"])
+    for name in chosen:
+        if name not in spreads:
+            raise ArgumentError(f"names has {name!r}; expected some of {', '.join(spreads)}")
     ax = _axes(ax, height=1.0 + 0.34 * len(chosen))
-    share = not figure.endswith(("_ms", "_per_s", "_m_s", "_m"))
+    share = not figure.endswith(("_ms", "_per_s", "_m_s", "_m")) and figure not in _COUNTS
     scale = 100.0 if share else 1.0
-    low, median, high = (scale * np.array([spreads[name][key] for name in chosen]) for key in ("p10", "median", "p90"))
+    low, median, high = (scale * np.array([spreads[name][key] for name in chosen]) for key in _QUANTILES)
     row = np.arange(len(chosen))
     colours = [_BLUE if name.startswith(("eeruf", "adaptive", "multi_echo")) else _GREY for name in chosen]
     ax.barh(row, median, color=colours, height=0.6)
-    ax.errorbar(median, row, xerr=[median - low, high - median], fmt="none", ecolor=_INK, elinewidth=1, capsize=3)
+    if (low < high).any():
+        ax.errorbar(median, row, xerr=[median - low, high - median], fmt="none", ecolor=_INK, elinewidth=1, capsize=3)
     for at, value, most in zip(row, median, high):
         ax.annotate(
             f"{value:.3g}", (most, at), xytext=(5, 0), textcoords="offset points", va="center", fontsize="small"
@@ -243,8 +298,7 @@ def methods(
     ax.invert_yaxis()
     ax.set_xlim(0, 1.1 * float(high.max()) or 1.0)
     ax.tick_params(axis="y", length=0)
-    unit = " (% of readings)" if share else f" ({figure.rsplit('_', 2 if figure.endswith('_m_s') else 1)[-1]})"
-    ax.set_xlabel("wrong of all readings (%)" if figure == "wrong_of_all" else figure.replace("_", " ") + unit)
+    ax.set_xlabel(_TITLES.get(figure) or figure.replace("_", " "))
     _bare(ax)
     return ax
 

@@ -234,7 +234,7 @@ impl Scene {
     ///     source: (x, y) in metres.
     ///     receivers: array of shape (n, 2), or one point, in metres.
     ///     max_order: the most bounces, 0 to 1000; those at poles count.
-    ///     max_length_m: the longest path, in metres; above 0.
+    ///     max_length_m: the longest path, in metres, above 0; None for any length.
     ///
     /// Returns:
     ///     The paths as arrays, sorted by receiver and then by length.
@@ -249,7 +249,7 @@ impl Scene {
     ///     >>> paths = wall.paths(source=(0, 0), receivers=[(3, 0)], max_order=1)
     ///     >>> paths.order.tolist(), paths.length_m.tolist()
     ///     ([0, 1], [3.0, 5.0])
-    #[pyo3(signature = (source, receivers, max_order, max_length_m=None), text_signature = "($self, source, receivers, max_order, max_length_m=inf)")]
+    #[pyo3(signature = (source, receivers, max_order, max_length_m=None), text_signature = "($self, source, receivers, max_order, max_length_m=None)")]
     fn paths(
         slf: &Bound<'_, Self>,
         source: &Bound<'_, PyAny>,

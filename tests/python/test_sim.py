@@ -59,6 +59,45 @@ def test_readings_become_a_data_frame() -> None:
     assert list(frame.columns) == list(readings.columns())
 
 
+def test_readings_become_a_polars_frame() -> None:
+    readings = sim.simulate(sim.Scene.from_toml(SCENES / "alcove.toml"), periods=20)
+    frame = readings.to_polars()
+    assert frame.columns == list(readings.columns())
+    assert frame["t_echo_us"].to_numpy().tolist() == pytest.approx(readings.t_echo_us.tolist(), nan_ok=True)
+
+
+def test_every_reading_of_crosstalk_knows_its_path_and_keeps_it_in_a_pickle() -> None:
+    readings = sim.simulate(sim.Scene.from_toml(SCENES / "alcove.toml"), "conventional", periods=100)
+    copy = pickle.loads(pickle.dumps(readings))
+    crosstalk = readings.cause == sim.CAUSES.index("crosstalk")
+    assert crosstalk.sum() > 100
+    for told in (readings, copy):
+        paths, along = told.paths, told.path[crosstalk]
+        assert along.min() >= 0
+        assert np.array_equal(paths["receiver"][along], told.sensor[crosstalk])
+        assert (paths["emitter"][along] != told.sensor[crosstalk]).all()
+        assert [len(paths["walls"][path]) for path in along] == paths["order"][along].tolist()
+        flight_us = told.fired_s[crosstalk] * 1e6 + told.t_echo_us[crosstalk] - told.emitted_s[crosstalk] * 1e6
+        # At 343 m/s, give or take jitter of a robot's clock and of its sensors.
+        assert np.allclose(flight_us * 343.2e-6, paths["length_m"][along], atol=0.05)
+    assert (readings.path[readings.cause == sim.CAUSES.index("nothing")] == -1).all()
+    assert readings.paths.keys() == copy.paths.keys()
+    for name, column in readings.paths.items():
+        assert np.array_equal(column, copy.paths[name]) if name != "walls" else column == copy.paths[name]
+
+
+def test_runs_of_set_two_pickle() -> None:
+    found = eeruf.experiments.set_two(seeds=2, methods=["eeruf"])
+    copy = pickle.loads(pickle.dumps(found))
+    assert copy == found
+    assert copy.runs == found.runs
+    assert found.runs["eeruf"][0] != found.runs["eeruf"][1]
+    for run in found.runs["eeruf"]:
+        assert run.way_m == pytest.approx(np.hypot(*np.diff(run.track[:, 1:3], axis=0).T).sum(), rel=0.02)
+        assert (run.track[:, 0] <= run.time_s).all()
+        assert ((run.grid[:, 2] >= 1) & (run.grid[:, 2] <= 15)).all()
+
+
 def test_a_sweep_gives_the_same_on_processes_and_on_dask() -> None:
     scene = sim.Scene.from_toml(SCENES / "alcove.toml")
     # The cases are seeds. Other processes find the function by its name.

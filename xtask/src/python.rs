@@ -1,5 +1,5 @@
 //! `cargo xtask python`: builds the wheel once, installs it into a virtual environment of its own, and holds it against its
-//! tests, its types and its examples.
+//! tests, its types and its examples, and against what Rust says.
 
 use std::env::consts::EXE_SUFFIX;
 use std::fs;
@@ -29,7 +29,18 @@ pub(crate) fn python() -> Result<(), Trouble> {
     run(tool("ruff").args(["format", "--check", "python", "tests/python", "benches/python"]))?;
     run(tool("mypy").args(["tests/python", "benches/python"]))?;
     run(tool("mypy.stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
-    run(tool("pytest").env("EERUF_WHEEL", &wheel))
+    // What Python is held against: the program, and the paths of the corpus.
+    let mut cargo = Command::new("cargo");
+    cargo.args(["build", "--locked", "--package", "eeruf", "--package", "eeruf-sim"]);
+    run(cargo.args(["--bin", "eeruf", "--example", "rust_side"]))?;
+    let built = |name: &str| std::path::absolute(format!("target/debug/{name}{EXE_SUFFIX}"));
+    let (program, rust_side) = match (built("eeruf"), built("examples/rust_side")) {
+        (Ok(program), Ok(rust_side)) => (program, rust_side),
+        (Err(error), _) | (_, Err(error)) => return Err(Trouble::Failed(error.to_string())),
+    };
+    let mut tests = tool("pytest");
+    tests.env("EERUF_WHEEL", &wheel).env("EERUF_PROGRAM", program).env("EERUF_RUST_SIDE", rust_side);
+    run(&mut tests)
 }
 
 /// A virtual environment with what the tests need; its Python.

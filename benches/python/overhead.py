@@ -25,7 +25,7 @@ import numpy as np
 from eeruf import sim
 
 ROOT = Path(__file__).resolve().parents[2]
-NEEDS = {"t_delta_us": 999, "min_interval_us": 15_000, "window_us": 36_000}
+NEEDS: dict[str, Any] = {"t_delta_us": 999, "min_interval_us": 15_000, "window_us": 36_000}
 # What Ctrl-C interrupts; each tells when it is under way, and would take minutes.
 LONG = {
     "design": """
@@ -114,7 +114,9 @@ def main() -> None:
         print(f"| {name} | {1e6 * there:.1f} us | {1e6 * here:.1f} us | {ratio:.2f} | {added:.1f} us |")
     numpy_ms, all_ms = import_ms("import numpy"), import_ms("import eeruf")
     after_ms = import_ms("import numpy; start = time.perf_counter(); import eeruf")
-    print(f"\nimport eeruf: {all_ms:.0f} ms; numpy alone {numpy_ms:.0f} ms, eeruf after numpy {after_ms:.1f} ms (medians of 15)")
+    print(
+        f"\nimport eeruf: {all_ms:.0f} ms; numpy alone {numpy_ms:.0f} ms, eeruf after numpy {after_ms:.1f} ms (medians of 15)"
+    )
     print("\n| Ctrl-C in the middle of | ends within |\n|---|---|")
     for name, work in LONG.items():
         print(f"| {name} | {interrupted_ms(work):.0f} ms |")

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Progress = bool | Callable[[float | None, str], Any] | None
-    Corner = Literal["behind", "ahead"] | tuple[float, float] | None
+    _Progress = bool | Callable[[float | None, str], Any] | None
+    _Corner = Literal["behind", "ahead"] | tuple[float, float] | None
 
 __all__ = ["SPEEDS_M_S", "Run", "SetTwo", "set_one", "set_two", "speed_sweep"]
 
@@ -36,7 +36,7 @@ def set_one(
     *,
     readings: int = 8000,
     methods: Sequence[str] | None = None,
-    progress: Progress = None,
+    progress: _Progress = None,
 ) -> dict[str, Any]:
     """Set I: eight sensors before three walls at right angles, by every method, in many random alcoves.
 
@@ -151,12 +151,12 @@ def set_two(
     seeds: int = 100,
     *,
     methods: Sequence[str] | None = None,
-    second_robot: Corner = None,
+    second_robot: _Corner = None,
     speed_m_s: float = 1.0,
     odometry: bool = True,
     t_delta_us: int | None = None,
     first: int = 0,
-    progress: Progress = None,
+    progress: _Progress = None,
 ) -> SetTwo:
     """Set II: a LabMate drives through random courses of 8 mm poles about 1.6 m apart, steered by what its ring tells.
 
@@ -200,11 +200,11 @@ def speed_sweep(
     *,
     seeds: int = 100,
     methods: Sequence[str] | None = None,
-    second_robot: Corner = None,
+    second_robot: _Corner = None,
     odometry: bool = True,
     t_delta_us: int | None = None,
     first: int = 0,
-    progress: Progress = None,
+    progress: _Progress = None,
 ) -> dict[str, Any]:
     """Set II at several top speeds: which speed each method bears. Ctrl-C ends it.
 

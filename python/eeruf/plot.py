@@ -6,7 +6,7 @@ paper; arguments count them from 0, as everywhere in code.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -66,6 +66,23 @@ def _axes(ax: Axes | None, *, width: float = 7.0, height: float = 4.0) -> Axes:
     return plt.subplots(figsize=(width, height), layout="constrained")[1]
 
 
+def _is(name: str, value: object, kind: type, expected: str) -> None:
+    if not isinstance(value, kind):
+        raise ArgumentError(f"{name} = {value!r:.60}; expected {expected}")
+
+
+def _whole(name: str, value: object, least: int, most: int) -> None:
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
+        raise ArgumentError(f"{name} = {value!r:.60}; expected a whole number from {least} to {most}")
+
+
+def _points(name: str, value: ArrayLike, expected: str) -> NDArray[np.float64]:
+    try:
+        return np.asarray(value, dtype=float).reshape(-1, 2)
+    except (TypeError, ValueError):
+        raise ArgumentError(f"{name} = {value!r:.60}; expected {expected}") from None
+
+
 def _bare(ax: Axes) -> None:
     ax.spines[["top", "right"]].set_visible(False)
 
@@ -88,6 +105,8 @@ def timing(schedule: Schedule, *, window_us: int = 0, ax: Axes | None = None) ->
         'time (ms)'
 
     """
+    _is("schedule", schedule, _eeruf.Schedule, "an eeruf.Schedule")
+    _whole("window_us", window_us, 0, 2**32 - 1)
     sensors = schedule.sensors
     ax = _axes(ax, height=1.2 + 0.26 * sensors)
     period_ms = schedule.period_us / 1e3
@@ -145,6 +164,15 @@ def scene(
         ['0 bounces', '1 bounce']
 
     """
+    _is("scene", scene, _eeruf.Scene, "an eeruf.sim.Scene")
+    if paths is not None:
+        _is("paths", paths, _eeruf.Paths, "eeruf.sim.Paths")
+    _whole("most", most, 0, 2**32 - 1)
+    none = np.empty((0, 2))
+    ends = none if source is None else _points("source", source, "one point (x, y) in metres")
+    if len(ends) > 1:
+        raise ArgumentError(f"source = {source!r:.60}; expected one point (x, y) in metres")
+    at = none if receivers is None else _points("receivers", receivers, "an array of floats of shape (n, 2), in metres")
     ax = _axes(ax, width=6.0, height=6.0)
     for wall in np.asarray(scene.walls).reshape(-1, 4):
         ax.plot(wall[[0, 2]], wall[[1, 3]], color=_INK, linewidth=2.2, solid_capstyle="round", zorder=3)
@@ -172,11 +200,9 @@ def scene(
                 loc="upper left",
                 bbox_to_anchor=(1.0, 1.0),
             )
-    if receivers is not None:
-        at = np.asarray(receivers, dtype=float).reshape(-1, 2)
-        ax.plot(at[:, 0], at[:, 1], linestyle="", marker="o", markersize=5, color=_BLUE, zorder=4)
-    if source is not None:
-        x, y = np.asarray(source, dtype=float)
+    for x, y in at:
+        ax.plot(x, y, marker="o", markersize=5, color=_BLUE, zorder=4)
+    for x, y in ends:
         ax.plot(x, y, marker="*", markersize=12, color=_VERMILION, markeredgecolor="white", zorder=5)
     ax.set_aspect("equal")
     ax.set_xlabel("x (m)")
@@ -216,6 +242,11 @@ def readings(
         'echo time of sensor 4 (ms)'
 
     """
+    _is("readings", readings, _eeruf.Readings, "eeruf.sim.Readings")
+    _whole("sensor", sensor, 0, int(readings.sensor.max(initial=0)))
+    _whole("robot", robot, 0, int(readings.robot.max(initial=0)))
+    _whole("first", first, 0, 2**32 - 1)
+    _whole("count", count, 1, 2**32 - 1)
     ax = _axes(ax, width=8.0, height=3.6)
     mine = np.flatnonzero((np.asarray(readings.sensor) == sensor) & (np.asarray(readings.robot) == robot))
     mine = mine[first : first + count]
@@ -271,16 +302,25 @@ def methods(
         ['conventional', 'eeruf']
 
     """
-    figures = {name: method[figure] for name, method in result["methods"].items() if method.get(figure) is not None}
+    table = result.get("methods") if isinstance(result, Mapping) else None
+    if not isinstance(table, Mapping) or not table or not all(isinstance(of, Mapping) for of in table.values()):
+        raise ArgumentError(f"result = {result!r:.60}; expected what eeruf.experiments.set_one or set_two returns")
+    figures = {
+        name: method[figure]
+        for name, method in table.items()
+        if isinstance(figure, str) and figure in _TITLES and method.get(figure) is not None
+    }
     if not figures:
-        known = ", ".join(sorted(set().union(*result["methods"].values())))
+        known = ", ".join(sorted(name for name in _TITLES if any(name in of for of in table.values())))
         raise ArgumentError(f"figure = {figure!r}; expected one of {known}")
     # Set II has one number for all courses.
     spreads = {name: of if isinstance(of, Mapping) else dict.fromkeys(_QUANTILES, of) for name, of in figures.items()}
-    chosen = list(names) if names is not None else sorted(spreads, key=lambda name: -spreads[name]["median"])
-    for name in chosen:
-        if name not in spreads:
-            raise ArgumentError(f"names has {name!r}; expected some of {', '.join(spreads)}")
+    chosen = sorted(spreads, key=lambda name: -spreads[name]["median"])
+    if names is not None:
+        chosen = list(names) if isinstance(names, Iterable) else []
+        strange = [name for name in chosen if not isinstance(name, str) or name not in spreads]
+        if strange or not chosen:
+            raise ArgumentError(f"names = {names!r:.60}; expected some of {', '.join(spreads)}")
     ax = _axes(ax, height=1.0 + 0.34 * len(chosen))
     share = not figure.endswith(("_ms", "_per_s", "_m_s", "_m")) and figure not in _COUNTS
     scale = 100.0 if share else 1.0
@@ -298,7 +338,7 @@ def methods(
     ax.invert_yaxis()
     ax.set_xlim(0, 1.1 * float(high.max()) or 1.0)
     ax.tick_params(axis="y", length=0)
-    ax.set_xlabel(_TITLES.get(figure) or figure.replace("_", " "))
+    ax.set_xlabel(_TITLES[figure])
     _bare(ax)
     return ax
 
@@ -352,13 +392,26 @@ def course(
     seconds = np.arange(0.0, run.time_s, 1.0)
     for at in np.searchsorted(run.track[:, 0], seconds):
         if at < len(run.track):
-            ax.add_patch(Polygon(_outline(run.track[at]), fill=False, edgecolor=_BLUE, linewidth=0.7, alpha=0.5, zorder=2))
+            ax.add_patch(
+                Polygon(_outline(run.track[at]), fill=False, edgecolor=_BLUE, linewidth=0.7, alpha=0.5, zorder=2)
+            )
     ax.plot(run.track[:, 1], run.track[:, 2], color=_BLUE, linewidth=1.8, zorder=4, label="track, outline every second")
     finished = run.ending == "finished"
-    last = Polygon(_outline(run.track[-1]), fill=False, edgecolor=_GREEN if finished else _VERMILION, linewidth=2, zorder=4)
+    last = Polygon(
+        _outline(run.track[-1]), fill=False, edgecolor=_GREEN if finished else _VERMILION, linewidth=2, zorder=4
+    )
     ax.add_patch(last)
     # A pole of 8 mm would not be seen at its size.
-    ax.plot(run.poles[:, 0], run.poles[:, 1], linestyle="", marker="o", markersize=4.5, color=_VERMILION, zorder=5, label="pole")
+    ax.plot(
+        run.poles[:, 0],
+        run.poles[:, 1],
+        linestyle="",
+        marker="o",
+        markersize=4.5,
+        color=_VERMILION,
+        zorder=5,
+        label="pole",
+    )
     cell = Rectangle((0, 0), 1, 1, facecolor="#6b6b6b", label="grid, darker: more certain")
     ax.legend(
         handles=[*ax.get_legend_handles_labels()[0], cell],
@@ -394,15 +447,17 @@ def _chosen(
     if isinstance(result, Run):
         return result, None, None
     if not isinstance(result, SetTwo):
-        raise ArgumentError(f"result = {result!r:.60}; expected what eeruf.experiments.set_two returns, or one of its runs")
+        raise ArgumentError(
+            f"result = {result!r:.60}; expected what eeruf.experiments.set_two returns, or one of its runs"
+        )
     if method is None:
         method = "eeruf" if "eeruf" in result.runs else next(iter(result.runs))
-    if method not in result.runs:
+    if not isinstance(method, str) or method not in result.runs:
         raise ArgumentError(f"method = {method!r}; expected one of {', '.join(result.runs)}")
     runs = {run.course: run for run in result.runs[method]}
     if course is None:
         course = min(runs)
-    if course not in runs:
+    if not isinstance(course, int) or course not in runs:
         raise ArgumentError(f"course = {course!r}; expected {min(runs)} to {max(runs)}")
     return runs[course], method, result["second_robot_m"]
 

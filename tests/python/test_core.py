@@ -23,7 +23,16 @@ def test_what_compares_equal_pickles_and_prints_so_that_it_can_be_pasted() -> No
     reading = eeruf.EchoFilter(1, 500).push(0, 9_000)
     names = {name: getattr(eeruf, name) for name in ("Schedule", "Found", "Report", "Violation", "Fire", "Reading")}
     firing = Schedule.from_firing(40_000, [0, 20_000], [2_000, 25_000])
-    values = (tables.TABLE_I_D, tables.TABLE_I_D.scaled(3, 5), firing, found, report, report.violations[0], eeruf.Fire(3), reading)
+    values = (
+        tables.TABLE_I_D,
+        tables.TABLE_I_D.scaled(3, 5),
+        firing,
+        found,
+        report,
+        report.violations[0],
+        eeruf.Fire(3),
+        reading,
+    )
     for value in values:
         assert pickle.loads(pickle.dumps(value)) == value
         assert eval(repr(value), names) == value
@@ -81,7 +90,13 @@ def test_pushing_many_leaves_the_array_alone_and_takes_any_that_numpy_can_conver
     assert expected.dtype == np.uint8
     wide = np.full((4, 2), 1.0)
     wide[::2] = echoes
-    for same in (echoes.tolist(), np.asfortranarray(echoes), wide[::2], echoes.astype(np.float32), echoes.astype(object)):
+    for same in (
+        echoes.tolist(),
+        np.asfortranarray(echoes),
+        wide[::2],
+        echoes.astype(np.float32),
+        echoes.astype(object),
+    ):
         assert np.array_equal(eeruf.EchoFilter(2, 500).push_many(same), expected)
     assert eeruf.EchoFilter(2, 500).push_many(np.empty((0, 2))).shape == (0, 2)
     frozen = echoes.copy()
@@ -167,9 +182,7 @@ def test_threads_run_side_by_side_without_the_interpreter_lock() -> None:
     chance = np.random.default_rng(3)
     pairs = [(x, y) for x in range(64) for y in range(x) if chance.random() < 0.3]
     with ThreadPoolExecutor(1) as threads:
-        search = threads.submit(
-            lambda: eeruf.design(64, 499, 9_000, 36_000, layout=pairs, budget=2**60, progress=tell)
-        )
+        search = threads.submit(lambda: eeruf.design(64, 499, 9_000, 36_000, layout=pairs, budget=2**60, progress=tell))
         for _ in range(100_000):
             pass
         assert not search.done()

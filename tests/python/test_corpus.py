@@ -73,7 +73,11 @@ def test_tables_of_waits_are_counted_as_in_the_corpus(case: dict[str, Any]) -> N
     assert search.count() == case["count"]
 
 
-@pytest.mark.parametrize("case", corpus("shortest-periods.json")["cases"], ids=lambda case: "-".join(str(case[name]) for name in ("sensors", "layout", "window", "stale_echo")))
+@pytest.mark.parametrize(
+    "case",
+    corpus("shortest-periods.json")["cases"],
+    ids=lambda case: "-".join(str(case[name]) for name in ("sensors", "layout", "window", "stale_echo")),
+)
 def test_the_shortest_periods_of_the_corpus_come_out_proven(case: dict[str, Any]) -> None:
     needs = {
         "t_delta_us": (case["separation"] * case["tick_us"] - 1) // 2,

@@ -103,7 +103,6 @@ def test_the_listings_of_a_document_run_from_top_to_bottom(
     assert len(blocks) >= least
     shutil.copytree(ROOT / "scenes", tmp_path / "scenes")
     monkeypatch.chdir(tmp_path)
-    matplotlib.pyplot.close("all")
     scope: dict[str, Any] = {}
     for block in blocks:
         exec(compile(block, document, "exec"), scope)

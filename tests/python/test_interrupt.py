@@ -50,7 +50,8 @@ def test_ctrl_c_ends_long_work(name: str) -> None:
         out, err = child.communicate(timeout=100)
     finally:
         # Nothing is left behind, whatever went wrong.
-        child.poll() is None and os.killpg(child.pid, signal.SIGKILL)
+        if child.poll() is None:
+            os.killpg(child.pid, signal.SIGKILL)
     assert "completed" not in out
     assert "KeyboardInterrupt" in err.splitlines()[-1], err
     assert child.returncode != 0

@@ -40,7 +40,7 @@ def test_methods_are_drawn_worst_first_in_percent() -> None:
     assert ax.patches[0].get_width() == pytest.approx(100 * median)  # type: ignore[attr-defined]
     with pytest.raises(eeruf.ArgumentError, match="figure = 'beauty'; expected one of age_ms"):
         plot.methods(result, figure="beauty")
-    with pytest.raises(eeruf.ArgumentError, match="names has 'loud'; expected some of eeruf, conventional"):
+    with pytest.raises(eeruf.ArgumentError, match=r"names = \['loud'\]; expected some of eeruf, conventional"):
         plot.methods(result, names=["loud"])
 
 
@@ -65,7 +65,7 @@ def test_a_course_shows_poles_grid_track_and_the_last_place() -> None:
     assert drawn["pole"].get_xdata() == pytest.approx(run.poles[:, 0])
     track = drawn["track, outline every second"]
     assert (track.get_xdata()[-1], track.get_ydata()[-1]) == tuple(run.track[-1, 1:3])  # type: ignore[index]
-    assert ax.collections[0].get_array() == pytest.approx(run.grid[:, 2])
+    assert np.array_equal(np.asarray(ax.collections[0].get_array()), run.grid[:, 2])
     circles = [patch for patch in ax.patches if isinstance(patch, matplotlib.patches.Circle)]
     assert [circle.get_center() for circle in circles] == [pytest.approx((9.4, 5.3))]
     assert ax.get_title(loc="left").startswith("conventional, course 1: touched something after")
@@ -80,5 +80,5 @@ def test_a_run_alone_is_drawn_as_well_and_what_is_none_is_refused() -> None:
     ]:
         with pytest.raises(eeruf.ArgumentError, match=message):
             plot.course(found, **arguments)  # type: ignore[arg-type]
-    with pytest.raises(eeruf.ArgumentError, match="expected what eeruf.experiments.set_two returns"):
+    with pytest.raises(eeruf.ArgumentError, match="expected what eeruf"):
         plot.course({"methods": {}})  # type: ignore[arg-type]

@@ -69,7 +69,9 @@ def test_a_sweep_of_speeds_is_the_programs() -> None:
 @pytest.mark.parametrize("ring", ["paper-12", "ring-24"])
 def test_a_design_is_the_programs(ring: str) -> None:
     told = program("design", f"rings/{ring}.toml")
-    arguments = {"sensors": 12, "layout": "line"} if ring == "paper-12" else {"sensors": 24, "layout": "ring"}
+    arguments: dict[str, Any] = (
+        {"sensors": 12, "layout": "line"} if ring == "paper-12" else {"sensors": 24, "layout": "ring"}
+    )
     found = eeruf.design(t_delta_us=999, min_interval_us=15_000, window_us=30_000, **arguments)
     del told["seconds"]
     assert Schedule.from_firing(**told.pop("schedule")) == found.schedule
@@ -79,7 +81,7 @@ def test_a_design_is_the_programs(ring: str) -> None:
 
 def test_the_best_table_of_waits_is_the_programs() -> None:
     told = program("search", "rings/table-i-waits.toml", "--best", "interval")
-    needs = {"t_delta_us": 999, "min_interval_us": 15_000, "criterion": "paper"}
+    needs: dict[str, Any] = {"t_delta_us": 999, "min_interval_us": 15_000, "criterion": "paper"}
     found = eeruf.WaitSearch(12, 100_000, 24_000, 1_000, **needs).best("interval")
     assert Schedule(**told["schedule"]) == found.schedule
     assert [told[name] for name in ("value_us", "bound_us", "nodes")] == [found.value_us, found.bound_us, found.nodes]
@@ -101,8 +103,13 @@ def test_a_log_is_judged_as_by_the_program() -> None:
 def test_a_report_is_the_programs() -> None:
     told = program("verify", "rings/table-i-b.toml", "--t-delta-us", "999", "--min-interval-us", "15000")
     report = tables.TABLE_I_B.verify(999, min_interval_us=15_000)
-    shown = {name: getattr(report, name) for name in ("ok", "separation_us", "max_t_delta_us", "min_interval_us", "min_refire_us")}
+    shown = {
+        name: getattr(report, name)
+        for name in ("ok", "separation_us", "max_t_delta_us", "min_interval_us", "min_refire_us")
+    }
     assert shown == {name: told[name] for name in shown}
-    violations = [Violation(**{**violation, "sensors": tuple(violation["sensors"])}) for violation in told["violations"]]
+    violations = [
+        Violation(**{**violation, "sensors": tuple(violation["sensors"])}) for violation in told["violations"]
+    ]
     assert list(report.violations) == violations
     assert len(violations) > 2

@@ -37,7 +37,18 @@ def test_importing_brings_numpy_and_a_few_small_modules() -> None:
     program = "import sys, numpy; before = set(sys.modules); import eeruf; print(*sorted(set(sys.modules) - before))"
     run = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
     brought = {name.split(".")[0] for name in run.stdout.split()}
-    costly = {"asyncio", "concurrent", "multiprocessing", "matplotlib", "pandas", "polars", "tqdm", "dask", "socket", "ssl"}
+    costly = {
+        "asyncio",
+        "concurrent",
+        "multiprocessing",
+        "matplotlib",
+        "pandas",
+        "polars",
+        "tqdm",
+        "dask",
+        "socket",
+        "ssl",
+    }
     assert "eeruf" in brought
     assert not brought & costly, brought & costly
     assert {name for name in brought if name not in sys.stdlib_module_names} == {"eeruf"}

@@ -108,8 +108,10 @@ def test_a_report_is_the_programs() -> None:
         for name in ("ok", "separation_us", "max_t_delta_us", "min_interval_us", "min_refire_us")
     }
     assert shown == {name: told[name] for name in shown}
+    pairs = ("sensors", "phases")
     violations = [
-        Violation(**{**violation, "sensors": tuple(violation["sensors"])}) for violation in told["violations"]
+        Violation(**{name: tuple(value) if name in pairs else value for name, value in violation.items()})
+        for violation in told["violations"]
     ]
     assert list(report.violations) == violations
     assert len(violations) > 2

@@ -285,7 +285,7 @@ def methods(
     Args:
         result: of ``eeruf.experiments.set_one`` or ``set_two``.
         figure: which figure to draw, such as "wrong_of_all", "rejected", "good_lost" or "readings_per_s".
-        names: which methods, first on top; by default all, worst median on top.
+        names: which methods, first on top; by default all, largest median on top.
         ax: where to draw.
 
     Returns:

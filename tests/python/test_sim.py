@@ -86,6 +86,16 @@ def test_every_reading_of_crosstalk_knows_its_path_and_keeps_it_in_a_pickle() ->
         assert np.array_equal(column, copy.paths[name]) if name != "walls" else column == copy.paths[name]
 
 
+def test_paths_pickle() -> None:
+    paths = sim.Scene(ALCOVE).paths((0.0, 0.2), [(0.1, 0.2), (0.2, 0.3)], 4, max_length_m=6.0)
+    copy = pickle.loads(pickle.dumps(paths))
+    assert len(copy) == len(paths) > 10
+    for name in ("receiver", "length_m", "order", "departure_rad", "arrival_rad", "amplitude"):
+        assert np.array_equal(getattr(copy, name), getattr(paths, name))
+    assert copy.walls == paths.walls
+    assert np.array_equal(copy.points(3), paths.points(3))
+
+
 def test_runs_of_set_two_pickle() -> None:
     found = eeruf.experiments.set_two(seeds=2, methods=["eeruf"])
     copy = pickle.loads(pickle.dumps(found))

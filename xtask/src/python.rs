@@ -29,6 +29,7 @@ pub(crate) fn python() -> Result<(), Trouble> {
     run(tool("ruff").args(["format", "--check", "python", "tests/python", "benches/python"]))?;
     run(tool("mypy").args(["tests/python", "benches/python"]))?;
     run(tool("mypy.stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
+    fresh(&wheel)?;
     // What Python is held against: the program, and the paths of the corpus.
     let mut cargo = Command::new("cargo");
     cargo.args(["build", "--locked", "--package", "eeruf", "--package", "eeruf-sim"]);
@@ -48,7 +49,7 @@ fn environment(home: &Path) -> Result<PathBuf, Trouble> {
     if output(Command::new("python3").args(["-c", "import venv, ensurepip"])).is_none() {
         return Err(Trouble::Skipped("python3 with venv is not installed".to_owned()));
     }
-    let python = home.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    let python = interpreter(home);
     if !python.exists() {
         run(Command::new("python3").args(["-m", "venv"]).arg(home))?;
     }
@@ -56,6 +57,28 @@ fn environment(home: &Path) -> Result<PathBuf, Trouble> {
     run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--upgrade", "pip>=25.1"]))?;
     run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--group", "test", "numpy"]))?;
     Ok(python)
+}
+
+/// What a user does first: the wheel in an empty environment, and the README's lines beside the scenes.
+fn fresh(wheel: &Path) -> Result<(), Trouble> {
+    let home = Path::new("target/python-fresh");
+    run(Command::new("python3").args(["-m", "venv", "--clear"]).arg(home))?;
+    let python = interpreter(home);
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).arg(format!("{}[plot]", wheel.display())))?;
+    run(Command::new(&python).args(["-c", README_LINES]).env("MPLBACKEND", "Agg"))
+}
+
+const README_LINES: &str = r#"
+import os, pathlib, re, shutil
+lines = re.search(r"^## In Python$.*?^```python\n(.*?)^```$", pathlib.Path("README.md").read_text(), re.M | re.S)[1]
+shutil.copytree("scenes", "target/python-fresh/scenes")
+os.chdir("target/python-fresh")
+exec(lines)
+assert pathlib.Path("timing.png").stat().st_size > 5_000
+"#;
+
+fn interpreter(home: &Path) -> PathBuf {
+    home.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" })
 }
 
 fn only_file(folder: &Path) -> Result<PathBuf, Trouble> {

@@ -22,6 +22,8 @@ pub(crate) struct Paths {
     pub(crate) source: Point,
     pub(crate) receivers: Vec<Point>,
     pub(crate) scene: Py<Scene>,
+    pub(crate) max_order: u32,
+    pub(crate) max_length_m: f64,
 }
 
 /// A wall by its index, a pole by -1 minus its index.
@@ -112,6 +114,14 @@ impl Paths {
         let corners = scene.polyline(self.source, receiver, self.paths.bounces(path)).unwrap_or_default();
         let flat: Vec<f64> = corners.iter().flat_map(|corner| [corner.x, corner.y]).collect();
         PyArray1::from_vec(py, flat).reshape([corners.len(), 2])
+    }
+
+    /// Found again: that is exact, and mostly faster than carrying all of them.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let (py, this) = (slf.py(), slf.get());
+        let receivers: Vec<(f64, f64)> = this.receivers.iter().map(|at| (at.x, at.y)).collect();
+        let arguments = ((this.source.x, this.source.y), receivers, this.max_order, this.max_length_m);
+        Ok((this.scene.bind(py).getattr("paths")?, arguments.into_pyobject(py)?))
     }
 
     fn __repr__(&self) -> String {

@@ -291,6 +291,10 @@ impl Ring {
         event.map(Some)
     }
 
+    fn __repr__(&self) -> String {
+        format!("<Ring: {} sensors, next deadline at {} us>", self.sensors, self.next_deadline_us())
+    }
+
     /// When to poll next, in microseconds of the clock that wraps at 2^32; in the past if something is waiting to be told.
     #[getter]
     fn next_deadline_us(&self) -> u32 {

@@ -36,11 +36,12 @@ enum Source {
 
 /// Walls, poles and robots from above, in metres. Immutable; scenes pickle.
 ///
-/// A wall reflects on its left side, seen from its first end to its second; walls that meet end to end may be given as they come.
+/// A wall reflects on its left side, seen from its first end to its second, and its back swallows: a room is a loop walked
+/// counter-clockwise, a pillar one walked clockwise.
 ///
 /// Args:
 ///     walls: array of shape (n, 4): x, y of one end and x, y of the other.
-///     open: indices of walls that let sound pass: openings.
+///     open: indices of openings, from which nothing comes back.
 ///     two_sided: indices of walls that reflect on both sides.
 ///     poles: array of shape (m, 3): x, y and radius.
 ///     temperature_c: of the air, in degrees Celsius, -100 to 100; the speed of sound depends on it.
@@ -193,7 +194,7 @@ impl Scene {
         PyArray1::from_vec(py, flat).reshape([walls.len(), 4])
     }
 
-    /// The indices of the walls that let sound pass.
+    /// The indices of the openings, from which nothing comes back.
     #[getter]
     fn open(&self) -> Vec<usize> {
         self.with_faces(Faces::Open)
@@ -267,7 +268,7 @@ impl Scene {
         let few = slf.get().scene().walls().len() <= FEW && receivers.len() <= FEW && max_order <= LOW_ORDER;
         let find = move |receivers: Vec<Point>| {
             let paths = scene.get().scene().paths(from, &receivers, max_order, max_length_m).map_err(Raise::raise)?;
-            Ok(Paths { paths, source: from, receivers, scene })
+            Ok(Paths { paths, source: from, receivers, scene, max_order, max_length_m })
         };
         if few { py.detach(|| find(receivers)) } else { aside(py, None, move |_| find(receivers)) }
     }

@@ -236,6 +236,8 @@ fn shortest(
 pub(crate) struct WaitSearch {
     search: search::WaitSearch,
     sensors: usize,
+    period: Micros,
+    wait_max: Micros,
 }
 
 impl WaitSearch {
@@ -281,10 +283,11 @@ impl WaitSearch {
         let t_lag = t_lag_us.map(|lags| times("t_lag_us", lags)).transpose()?;
         let neighbours = arguments::neighbours(neighbours)?;
         let layout = OwnedLayout::new(layout, neighbours)?;
+        let (period, wait_max) = (micros("period_us", period_us)?, micros("wait_max_us", wait_max_us)?);
         let needs = WaitNeeds {
             sensors,
-            period: micros("period_us", period_us)?,
-            wait_max: micros("wait_max_us", wait_max_us)?,
+            period,
+            wait_max,
             tick: micros("tick_us", tick_us)?,
             t_lag: t_lag.as_deref(),
             t_delta: micros("t_delta_us", t_delta_us)?,
@@ -293,7 +296,11 @@ impl WaitSearch {
             layout: layout.layout(),
             criterion: choice("criterion", criterion, &[("paper", Criterion::Paper), ("exact", Criterion::Exact)])?,
         };
-        Ok(Self { search: search::WaitSearch::new(&needs).map_err(Raise::raise)?, sensors })
+        Ok(Self { search: search::WaitSearch::new(&needs).map_err(Raise::raise)?, sensors, period, wait_max })
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<WaitSearch: {} sensors, period {}, waits up to {}>", self.sensors, self.period, self.wait_max)
     }
 
     /// One table of waits, the same each time, or None if there is none. Ctrl-C ends the search.

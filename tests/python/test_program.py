@@ -108,10 +108,10 @@ def test_a_report_is_the_programs() -> None:
         for name in ("ok", "separation_us", "max_t_delta_us", "min_interval_us", "min_refire_us")
     }
     assert shown == {name: told[name] for name in shown}
-    pairs = ("sensors", "phases")
-    violations = [
-        Violation(**{name: tuple(value) if name in pairs else value for name, value in violation.items()})
+    fields: list[dict[str, Any]] = [
+        {name: tuple(value) if isinstance(value, list) else value for name, value in violation.items()}
         for violation in told["violations"]
     ]
+    violations = [Violation(**violation) for violation in fields]
     assert list(report.violations) == violations
     assert len(violations) > 2

@@ -112,11 +112,8 @@ def main() -> None:
         here, there = best(call), rust[name]
         added, ratio = 1e6 * (here - there), here / there
         print(f"| {name} | {1e6 * there:.1f} us | {1e6 * here:.1f} us | {ratio:.2f} | {added:.1f} us |")
-    numpy_ms, all_ms = import_ms("import numpy"), import_ms("import eeruf")
-    after_ms = import_ms("import numpy; start = time.perf_counter(); import eeruf")
-    print(
-        f"\nimport eeruf: {all_ms:.0f} ms; numpy alone {numpy_ms:.0f} ms, eeruf after numpy {after_ms:.1f} ms (medians of 15)"
-    )
+    alone_ms, numpy_ms, both_ms = (import_ms(f"import {what}") for what in ("eeruf", "numpy", "numpy, eeruf"))
+    print(f"\nimport eeruf: {alone_ms:.0f} ms; import numpy: {numpy_ms:.0f} ms; both: {both_ms:.0f} ms (medians of 15)")
     print("\n| Ctrl-C in the middle of | ends within |\n|---|---|")
     for name, work in LONG.items():
         print(f"| {name} | {interrupted_ms(work):.0f} ms |")

@@ -10,13 +10,12 @@ import json
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-
 from eeruf import _eeruf
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    import numpy as np
     from numpy.typing import NDArray
 
     _Progress = bool | Callable[[float | None, str], Any] | None
@@ -117,6 +116,8 @@ class Run:
         """Whether all fields are equal, arrays by their elements."""
         if not isinstance(other, Run):
             return NotImplemented
+        import numpy as np
+
         return all(np.array_equal(getattr(self, name.name), getattr(other, name.name)) for name in fields(self))
 
 

@@ -41,7 +41,8 @@ fn shortest_periods(rust: &mut String, file: &Value) {
         let names = ["tick_us", "min_interval", "separation", "window", "stale_echo", "period"];
         let fields = fields(case, &names);
         let (layout, a, b) = (layout(case), &case["fire_a"], &case["fire_b"]);
-        writeln!(rust, "    ShortestPeriod {{ {fields}layout: {layout}, fire_a: &{a}, fire_b: &{b} }},").expect("a string");
+        writeln!(rust, "    ShortestPeriod {{ {fields}layout: {layout}, fire_a: &{a}, fire_b: &{b} }},")
+            .expect("a string");
     }
     rust.push_str("];\n");
 }

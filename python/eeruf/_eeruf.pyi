@@ -310,7 +310,13 @@ class Robot:
         t_delta_us: int = 500,
         window_us: int = 36000,
         schedule: Schedule | None = None,
+        consecutive: int = 2,
+        patience: int = 0,
     ) -> Robot: ...
+    @property
+    def consecutive(self) -> int: ...
+    @property
+    def patience(self) -> int: ...
     @property
     def pose(self) -> tuple[float, float, float]: ...
     @property

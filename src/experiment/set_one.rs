@@ -4,7 +4,9 @@ use std::fs;
 
 use eeruf_sim::Method;
 use eeruf_sim::best::{Best, best_for};
-use eeruf_sim::experiments::set_one::{Alcove, Figures, MULTI_ECHO_T_DELTA, READINGS, SetOne, set_one};
+use eeruf_sim::experiments::set_one::{
+    Alcove, Figures, MULTI_ECHO_CONSECUTIVE, MULTI_ECHO_PATIENCE, MULTI_ECHO_T_DELTA, READINGS, SetOne, set_one,
+};
 
 use super::{Common, bad, median, percents, table, watched};
 use crate::draw;
@@ -81,10 +83,13 @@ fn describe(found: &SetOne, best: &Best) -> String {
     let rows = found.methods.iter().map(|(method, figures)| row(*method, figures));
     let mut text = format!(
         "Set I: {} alcoves, {} periods of 60 ms each; 10 % / median / 90 % of the alcoves, or the median alone.\n\
-         multi_echo compares within {}, all others within 500 us; eeruf_best has a period of {} ({}).\n\n",
+         multi_echo compares {} readings within {} and has a patience of {}, all others two within 500 us and none;\n\
+         eeruf_best has a period of {} ({}).\n\n",
         found.seeds,
         found.periods,
+        MULTI_ECHO_CONSECUTIVE,
         MULTI_ECHO_T_DELTA,
+        MULTI_ECHO_PATIENCE,
         best.schedule.period(),
         if best.proven { "proven shortest" } else { "not proven shortest" },
     );

@@ -5,7 +5,8 @@ use std::fs;
 use eeruf_core::Micros;
 use eeruf_sim::best::best_for;
 use eeruf_sim::experiments::set_two::{
-    Course, Figures, SECOND_AHEAD, SECOND_BEHIND, SetTwo, SetTwoOptions, SpeedStep, set_two, speed_sweep,
+    Course, Figures, MULTI_ECHO_CONSECUTIVE, SECOND_AHEAD, SECOND_BEHIND, SetTwo, SetTwoOptions, SpeedStep, set_two,
+    speed_sweep,
 };
 use eeruf_sim::labmate::LabMate;
 use eeruf_sim::{Method, Point, Robot};
@@ -146,7 +147,8 @@ fn describe(found: &SetTwo) -> String {
         "accepted/s",
     ];
     let mut text = format!(
-        "Set II: {} courses at up to {} m/s{}. Phantoms and the nearest pole are means over the courses.\n\n",
+        "Set II: {} courses at up to {} m/s{}. Phantoms and the nearest pole are means over the courses;\n\
+         multi_echo compares {MULTI_ECHO_CONSECUTIVE} readings, the other filters 2.\n\n",
         found.seeds,
         found.speed_m_s,
         beside(found.second_robot_m)
@@ -214,7 +216,7 @@ impl Sweep {
             });
         let mut text = format!(
             "Set II: {} courses at several top speeds{}: finished %, and (mean speed in m/s). Borne is\n\
-             the highest speed at which {:.0} % of the courses are finished.\n\n",
+             the highest speed at which {:.0} % of the courses are finished; multi_echo compares {MULTI_ECHO_CONSECUTIVE} readings, the other filters 2.\n\n",
             self.seeds,
             beside(self.second_robot_m),
             100.0 * BORNE

@@ -40,7 +40,8 @@ def test_every_method_runs_in_a_scene_made_in_code(method: str) -> None:
 
 
 def test_scenes_robots_and_readings_pickle() -> None:
-    robot = sim.Robot((-0.26, 0.17, 1.65), 8, 0.26, 0.3, schedule=None)
+    robot = sim.Robot((-0.26, 0.17, 1.65), 8, 0.26, 0.3, t_delta_us=100, consecutive=5, patience=12)
+    assert eval(repr(robot), {"Robot": sim.Robot}) == robot
     assert pickle.loads(pickle.dumps(robot)) == robot
     made = sim.Scene(ALCOVE, poles=[[0.0, 1.0, 0.004]], robots=[robot])
     for scene in (made, sim.Scene.from_toml(SCENES / "alcove.toml")):
@@ -84,6 +85,21 @@ def test_every_reading_of_crosstalk_knows_its_path_and_keeps_it_in_a_pickle() ->
     assert readings.paths.keys() == copy.paths.keys()
     for name, column in readings.paths.items():
         assert np.array_equal(column, copy.paths[name]) if name != "walls" else column == copy.paths[name]
+
+
+def test_a_pickled_scene_brings_the_schedule_that_its_file_names(tmp_path: Path) -> None:
+    schedule = eeruf.design(8, t_delta_us=499, min_interval_us=9_000, window_us=36_000).schedule
+    assert schedule is not None
+    (tmp_path / "ring.toml").write_text(schedule.to_toml())
+    text = (SCENES / "alcove.toml").read_text().replace("[[robots]]", '[[robots]]\nschedule = "ring.toml"')
+    (tmp_path / "scene.toml").write_text(text)
+    scene = sim.Scene.from_toml(tmp_path / "scene.toml")
+    pickled = pickle.dumps(scene)
+    readings = sim.simulate(scene, periods=50)
+    assert not same(readings, sim.simulate(sim.Scene.from_toml(SCENES / "alcove.toml"), periods=50))
+    for file in tmp_path.iterdir():
+        file.unlink()
+    assert same(readings, sim.simulate(pickle.loads(pickled), periods=50))
 
 
 def test_paths_pickle() -> None:

@@ -14,23 +14,26 @@ use crate::toolchain::cargo_for_target;
 struct Board {
     name: &'static str,
     target: &'static str,
-    qemu: &'static [&'static str],
+    qemu: &'static str,
+    machine: &'static [&'static str],
 }
 
 const BOARDS: [Board; 4] = [
-    Board { name: "microbit", target: "thumbv6m-none-eabi", qemu: &["qemu-system-arm", "-M", "microbit"] },
-    Board { name: "lm3s6965", target: "thumbv7m-none-eabi", qemu: &["qemu-system-arm", "-M", "lm3s6965evb"] },
-    Board { name: "an386", target: "thumbv7em-none-eabihf", qemu: &["qemu-system-arm", "-M", "mps2-an386"] },
+    Board { name: "microbit", target: "thumbv6m-none-eabi", qemu: "qemu-system-arm", machine: &["-M", "microbit"] },
+    Board { name: "lm3s6965", target: "thumbv7m-none-eabi", qemu: "qemu-system-arm", machine: &["-M", "lm3s6965evb"] },
+    Board { name: "an386", target: "thumbv7em-none-eabihf", qemu: "qemu-system-arm", machine: &["-M", "mps2-an386"] },
     Board {
         name: "rv_virt",
         target: "riscv32imac-unknown-none-elf",
-        qemu: &["qemu-system-riscv32", "-M", "virt", "-bios", "none"],
+        qemu: "qemu-system-riscv32",
+        machine: &["-M", "virt", "-bios", "none"],
     },
 ];
 
-/// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions).
-const INSTRUCTIONS: [(&str, u32); 5] =
-    [("idle_poll", 40), ("echo", 60), ("stamp", 60), ("reading", 400), ("scheduler_fire", 80)];
+/// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions). 80 is the budget of a
+/// firing; the ring's bookkeeping for its filter comes on top of the scheduler's share.
+const INSTRUCTIONS: [(&str, u32); 6] =
+    [("idle_poll", 40), ("echo", 60), ("stamp", 60), ("reading", 400), ("scheduler_fire", 80), ("fire", 120)];
 const FLASH: u64 = 4096;
 const RAM: u64 = 12 * 16 + 64;
 const STACK: u64 = 256;
@@ -38,9 +41,21 @@ const STACK: u64 = 256;
 /// Builds, runs and measures everything; prints the tables of `docs/firmware.md`.
 pub(crate) fn firmware() -> Result<(), Trouble> {
     crate::listings::check("docs/firmware.md")?;
+    run(Command::new("cargo").current_dir("firmware").args(["fmt", "--all", "--check"]))?;
+    clippy()?;
     let tables = measure_all()?;
     println!("\n{tables}");
     Ok(())
+}
+
+/// All but RTIC's program, whose target may have a compiler of Debian's that comes without Clippy.
+fn clippy() -> Result<(), Trouble> {
+    let [microbit, ..] = &BOARDS;
+    let strict = ["clippy", "--quiet", "--release", "--locked", "--workspace", "--exclude", "eeruf-rtic"];
+    let bare = ["--exclude", "eeruf-c-header", "--target", microbit.target, "--", "--deny", "warnings"];
+    run(cargo(microbit)?.args(strict).args(bare))?;
+    let host = ["clippy", "--quiet", "--locked", "--package", "eeruf-c-header", "--", "--deny", "warnings"];
+    run(Command::new("cargo").current_dir("firmware").args(host))
 }
 
 fn measure_all() -> Result<String, Trouble> {
@@ -69,6 +84,7 @@ fn measure_all() -> Result<String, Trouble> {
     expect(lm3s6965, "eeruf-embassy", 6, "accepted 1188")?;
     expect(microbit, "eeruf-embassy", 6, "accepted 1188")?;
     c_examples(lm3s6965)?;
+    let in_the_loop = in_the_loop()?;
 
     let mut over = Vec::new();
     text += "| board | call | fewest instructions | most |\n|---|---|---:|---:|\n";
@@ -100,8 +116,7 @@ fn measure_all() -> Result<String, Trouble> {
     for board in [microbit, lm3s6965] {
         for (function, bytes) in stack(board)? {
             text += &format!("| {} | `{function}` | {bytes} |\n", board.name);
-            // Setting up builds the ring on the stack before it is moved to its place; it comes before the loop.
-            if board.name == "microbit" && function != "ring_new" && bytes > STACK {
+            if board.name == "microbit" && bytes > STACK {
                 over.push(format!("{function}: {bytes} bytes of stack; the budget is {STACK}"));
             }
         }
@@ -111,7 +126,7 @@ fn measure_all() -> Result<String, Trouble> {
         text += &format!("| {} | {} | {} |\n", board.name, 1 << shift, said.trim());
     }
     let search = run_image(lm3s6965, "search", 6)?;
-    text += &format!("\nSearch on {}: {}\n", lm3s6965.name, search.trim());
+    text += &format!("\nSearch on {}: {}\n\n{in_the_loop}", lm3s6965.name, search.trim());
     if over.is_empty() { Ok(text) } else { Err(Trouble::Failed(format!("{text}\n{}", over.join("; ")))) }
 }
 
@@ -143,21 +158,37 @@ fn run_image(board: &Board, name: &str, shift: u32) -> Result<String, Trouble> {
     qemu(board, &image(board, name)?, shift)
 }
 
-fn qemu(board: &Board, image: &Path, shift: u32) -> Result<String, Trouble> {
-    let [program, machine @ ..] = board.qemu else { return Err(Trouble::Failed("no QEMU for a board".into())) };
-    let what = format!("{} on {}", image.display(), board.name);
-    let mut child = Command::new(program)
-        .args(machine)
+/// The command that runs an image on a board, with `2^shift` ns an instruction.
+fn emulator(board: &Board, image: &Path, shift: u32) -> Command {
+    let mut qemu = Command::new(board.qemu);
+    qemu.args(board.machine)
         .args(["-nographic", "-monitor", "none", "-serial", "none", "-icount", &format!("shift={shift},sleep=off")])
         .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
-        .arg(image)
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .map_err(|error| {
-            Trouble::Skipped(format!("{program}: {error}; install qemu-system-arm and qemu-system-misc"))
-        })?;
+        .arg(image);
+    qemu
+}
+
+/// The boards' rings in the simulated world, in lock step with the host's; the tables that come of it.
+fn in_the_loop() -> Result<String, Trouble> {
+    let mut cargo = Command::new("cargo");
+    cargo.args(["run", "--quiet", "--locked", "--package", "eeruf-loop", "--", "scenes/alcove-hc-sr04.toml"]);
+    for board in &BOARDS {
+        let qemu = emulator(board, &image(board, "eeruf-loop-board")?, 6);
+        cargo.args(["--board", board.name]).arg(qemu.get_program()).args(qemu.get_args());
+    }
+    let what = |why: &dyn std::fmt::Display| Trouble::Failed(format!("hardware in the loop: {why}"));
+    let said = cargo.stderr(Stdio::inherit()).output().map_err(|error| what(&error))?;
+    let tables = String::from_utf8_lossy(&said.stdout).into_owned();
+    if said.status.success() { Ok(tables) } else { Err(what(&said.status)) }
+}
+
+fn qemu(board: &Board, image: &Path, shift: u32) -> Result<String, Trouble> {
+    let what = format!("{} on {}", image.display(), board.name);
+    let mut command = emulator(board, image, shift);
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().map_err(|error| {
+        Trouble::Skipped(format!("{}: {error}; install qemu-system-arm and qemu-system-misc", board.qemu))
+    })?;
     let deadline = Instant::now() + Duration::from_secs(300);
     loop {
         match child.try_wait() {

@@ -6,6 +6,7 @@
 mod checks;
 mod firmware;
 mod listings;
+mod printed;
 mod python;
 mod steps;
 mod toolchain;
@@ -28,8 +29,13 @@ fn main() -> ExitCode {
             steps.step("Python package", python::python);
             steps.finish(true)
         }
+        ["reprint", document] => {
+            let mut steps = steps::Steps::default();
+            steps.step("what the program prints", || printed::reprint(document));
+            steps.finish(true)
+        }
         _ => {
-            eprintln!("usage: cargo xtask test [--nothing-skipped] | firmware | python");
+            eprintln!("usage: cargo xtask test [--nothing-skipped] | firmware | python | reprint DOCUMENT");
             ExitCode::from(2)
         }
     }

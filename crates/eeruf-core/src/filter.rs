@@ -42,8 +42,41 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// # Errors
     /// [`FilterError::Consecutive`] unless 2 to 8 readings are compared.
     pub const fn new(t_delta: Micros, consecutive: u8) -> Result<Self, FilterError> {
-        match Rule::new(t_delta, consecutive) {
-            Ok(rule) => Ok(Self { tracks: [Track::new(0); K], rule }),
+        match Agreement::new(consecutive, 0) {
+            Ok(agreement) => Ok(Self { tracks: [Track::new(0); K], rule: Rule { t_delta, agreement } }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// A filter that does not give up an accepted echo at once when it is missing, as a faint echo is that fades now and
+    /// then. As long as it is waited for, no later echo is accepted in its place, and when it comes back it is accepted again.
+    ///
+    /// Each echo has a credit: one more for each firing that it is in, at most `patience` (or `consecutive`, if that is more),
+    /// one less for each that it is missing from. It is accepted from when its credit has reached `consecutive` until it is used
+    /// up. With a patience of 0, as in the paper, a missing echo is forgotten.
+    ///
+    /// This is for schedules of two phases, and for sensors that report several echoes; with `E` = 1 it changes nothing. The
+    /// price is that an object that has gone is still waited for.
+    ///
+    /// # Errors
+    /// [`FilterError::Patience`] for more than 15.
+    ///
+    /// ```
+    /// use eeruf_core::{EchoFilter, Kind, Micros};
+    /// let mut filter = EchoFilter::<1, 8>::new(Micros::new(100), 2)?.with_patience(4)?;
+    /// let mut push = |echoes: &[u32]| {
+    ///     let echoes: Vec<_> = echoes.iter().map(|&us| Micros::new(us)).collect();
+    ///     filter.push_echoes(0, &echoes, 0).map(|verdict| verdict.kind)
+    /// };
+    /// push(&[9_000, 14_000])?;
+    /// assert_eq!(push(&[9_000, 14_000])?, Kind::Accepted);
+    /// assert_eq!(push(&[14_000])?, Kind::Rejected); // the wall behind is not believed at once
+    /// assert_eq!(push(&[9_000, 14_000])?, Kind::Accepted);
+    /// # Ok::<(), eeruf_core::FilterError>(())
+    /// ```
+    pub const fn with_patience(self, patience: u8) -> Result<Self, FilterError> {
+        match Agreement::new(self.rule.agreement.consecutive(), patience) {
+            Ok(agreement) => Ok(Self { rule: Rule { agreement, ..self.rule }, ..self }),
             Err(error) => Err(error),
         }
     }
@@ -100,31 +133,88 @@ pub(crate) fn insert<const E: usize>(echoes: &mut [u32; E], mut echo: u32) {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rule {
     pub(crate) t_delta: Micros,
-    pub(crate) consecutive: u8,
+    pub(crate) agreement: Agreement,
 }
 
 impl Rule {
-    pub(crate) const fn new(t_delta: Micros, consecutive: u8) -> Result<Self, FilterError> {
+    /// Eq. (11), after taking off the change that is expected.
+    fn near_identical(self, echo: u32, previous: u32, expected_change_us: i32) -> bool {
+        if echo == NO_ECHO || previous == NO_ECHO {
+            return echo == previous;
+        }
+        let change = i64::from(echo) - i64::from(previous) - i64::from(expected_change_us);
+        change.unsigned_abs() <= u64::from(self.t_delta.as_micros())
+    }
+}
+
+/// How often an echo must be seen to be believed, and for how long it is then waited for, in one byte.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Agreement(u8);
+
+impl Agreement {
+    pub(crate) const fn new(consecutive: u8, patience: u8) -> Result<Self, FilterError> {
         if consecutive < 2 || consecutive > 8 {
             return Err(FilterError::Consecutive { consecutive });
         }
-        Ok(Self { t_delta, consecutive })
+        if patience > Standing::CREDIT {
+            return Err(FilterError::Patience { patience });
+        }
+        Ok(Self(consecutive | patience << 4))
     }
 
-    /// Eq. (11), after taking off the change that is expected.
-    fn near_identical(self, echo: u32, previous: u32, expected_change_us: i32) -> bool {
-        let change = i64::from(echo) - i64::from(previous) - i64::from(expected_change_us);
-        change.unsigned_abs() <= u64::from(self.t_delta.as_micros())
+    const fn consecutive(self) -> u8 {
+        self.0 & 15
+    }
+
+    const fn patience(self) -> u8 {
+        self.0 >> 4
+    }
+}
+
+/// What is known of an echo besides its time, in one byte: whether it is believed, and its credit, which grows by one with
+/// each firing that it is in and shrinks by one with each that it is missing from. The higher of two is the better.
+///
+/// What is not believed is forgotten when it is missing once. So a belief always begins with firings running, of which
+/// one phase alone, where crosstalk repeats, makes no more than one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Standing(u8);
+
+impl Standing {
+    const NONE: Self = Self(0);
+    const CREDIT: u8 = 0b1111;
+    const BELIEVED: u8 = 1 << 4;
+    /// In its first firing.
+    const NEW: Self = Self(1);
+
+    const fn credit(self) -> u8 {
+        self.0 & Self::CREDIT
+    }
+
+    const fn is_believed(self) -> bool {
+        self.0 & Self::BELIEVED != 0
+    }
+
+    /// One firing later, which it is in.
+    fn seen(self, agreement: Agreement) -> Self {
+        let most = agreement.consecutive().max(agreement.patience());
+        let credit = (self.credit() + 1).min(most);
+        let believed = if credit >= agreement.consecutive() { Self::BELIEVED } else { self.0 & Self::BELIEVED };
+        Self(credit | believed)
+    }
+
+    /// One firing later, which it is missing from.
+    const fn missed(self) -> Self {
+        if self.credit() > 1 { Self(self.0 - 1) } else { Self::NONE }
     }
 }
 
 /// What is remembered of one sensor: eight bytes where it reports one echo.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Track<const E: usize> {
-    /// The echoes of the firing before, earliest first, [`NO_ECHO`] in the places left.
-    previous: [u32; E],
-    /// How many firings running each of them has been seen; without echo, how many running had none (0 at the start).
-    runs: [u8; E],
+    /// The echoes to compare with, earliest first: those of the firing before, and believed ones that are missing.
+    /// [`NO_ECHO`] stands for silence where it has a standing.
+    known: [u32; E],
+    standings: [Standing; E],
     /// For the owner: the ring keeps its flags in this byte, which would otherwise be padding.
     pub(crate) flags: u8,
     /// Firings since the last accepted reading.
@@ -133,12 +223,12 @@ pub(crate) struct Track<const E: usize> {
 
 impl<const E: usize> Track<E> {
     pub(crate) const fn new(flags: u8) -> Self {
-        Self { previous: [NO_ECHO; E], runs: [0; E], flags, age: NEVER }
+        Self { known: [NO_ECHO; E], standings: [Standing::NONE; E], flags, age: NEVER }
     }
 
     pub(crate) fn forget(&mut self) {
-        self.previous = [NO_ECHO; E];
-        self.runs = [0; E];
+        self.known = [NO_ECHO; E];
+        self.standings = [Standing::NONE; E];
     }
 
     /// A firing that says nothing about the echo time: forgets, and only grows older.
@@ -147,38 +237,74 @@ impl<const E: usize> Track<E> {
         self.verdict(kind, t_echo, None)
     }
 
-    /// Compares the echoes of one firing, earliest first, with those of the firing before.
+    /// Compares the echoes of one firing, earliest first, with those that are known.
     pub(crate) fn push(&mut self, rule: Rule, echoes: &[u32; E], expected_change_us: i32) -> Verdict {
-        let before = core::mem::replace(&mut self.previous, *echoes);
-        let runs_before = core::mem::replace(&mut self.runs, [1; E]);
+        let before = core::mem::replace(&mut self.known, *echoes);
+        let standings = core::mem::replace(&mut self.standings, [Standing::NONE; E]);
+        let known = || before.iter().copied().zip(standings).take_while(|(_, standing)| *standing != Standing::NONE);
+        let earliest = echoes.first().copied().unwrap_or(NO_ECHO);
         let earliest_before = before.first().copied().and_then(echo_time);
-        let Some(earliest) = echoes.first().copied().and_then(echo_time) else {
-            // Without echo twice running, the first count is of silent firings.
-            let silent_before = if earliest_before.is_none() { runs_before.first().copied().unwrap_or(0) } else { 0 };
-            let silent = silent_before.saturating_add(1);
-            self.runs = [silent; E];
-            let kind = if silent >= rule.consecutive { Kind::Clear } else { Kind::NoEcho };
-            return self.verdict(kind, None, earliest_before);
-        };
-        if earliest_before.is_none() {
-            return self.verdict(Kind::First, Some(earliest), None);
-        }
-        let mut best = (Kind::Rejected, earliest, earliest_before);
-        for (&echo, run) in echoes.iter().zip(&mut self.runs) {
-            let Some(t_echo) = echo_time(echo) else { break };
-            for (&previous, &run_before) in before.iter().zip(&runs_before) {
-                let Some(t_previous) = echo_time(previous) else { break };
-                if !rule.near_identical(echo, previous, expected_change_us) {
-                    continue;
-                }
-                *run = (*run).max(run_before.saturating_add(1));
-                let kind = if *run >= rule.consecutive { Kind::Accepted } else { Kind::Repeated };
-                if better(kind, best.0) {
-                    best = (kind, t_echo, Some(t_previous));
+
+        // Silence counts as an echo of its own, later than all others.
+        let silent = earliest == NO_ECHO;
+        let heard = echoes.iter().copied().enumerate().take_while(|&(place, echo)| echo != NO_ECHO || place == 0);
+        // The earliest that is believed, or else the earliest that repeats.
+        let mut best = (Standing::NEW, earliest, earliest_before);
+        for ((_, echo), now) in heard.clone().zip(&mut self.standings) {
+            *now = Standing::NEW;
+            for (previous, standing) in known() {
+                if rule.near_identical(echo, previous, expected_change_us) {
+                    *now = (*now).max(standing.seen(rule.agreement));
+                    if best.0 == Standing::NEW || (now.is_believed() && !best.0.is_believed()) {
+                        best = (*now, echo, echo_time(previous));
+                    }
                 }
             }
         }
-        self.verdict(best.0, Some(best.1), best.2)
+        if E > 1 && rule.agreement.patience() > 0 {
+            for (previous, standing) in known() {
+                let missing = standing.missed();
+                let is_it = |(_, echo)| rule.near_identical(echo, previous, expected_change_us);
+                if !missing.is_believed() || heard.clone().any(is_it) {
+                    continue;
+                }
+                let expected = match previous {
+                    NO_ECHO => NO_ECHO,
+                    previous => previous.saturating_add_signed(expected_change_us).min(NO_ECHO - 1),
+                };
+                if best.0.is_believed() && expected < best.1 {
+                    best = (Standing::NEW, earliest, echo_time(previous));
+                }
+                self.keep(expected, missing);
+            }
+        }
+        let kind = match best.0 {
+            standing if standing.is_believed() => {
+                if silent {
+                    Kind::Clear
+                } else {
+                    Kind::Accepted
+                }
+            }
+            _ if silent => Kind::NoEcho,
+            _ if earliest_before.is_none() => Kind::First,
+            Standing::NEW => Kind::Rejected,
+            _ => Kind::Repeated,
+        };
+        self.verdict(kind, echo_time(best.1), best.2)
+    }
+
+    /// Goes on knowing an echo that is missing, unless all places hold earlier ones.
+    fn keep(&mut self, echo: u32, standing: Standing) {
+        let free = |(&known, &standing): (&u32, &Standing)| echo < known || standing == Standing::NONE;
+        let Some(place) = self.known.iter().zip(&self.standings).position(free) else { return };
+        if let (Some(known), Some(standings)) = (self.known.get_mut(place..), self.standings.get_mut(place..)) {
+            known.rotate_right(1);
+            standings.rotate_right(1);
+            if let (Some(known), Some(held)) = (known.first_mut(), standings.first_mut()) {
+                (*known, *held) = (echo, standing);
+            }
+        }
     }
 
     fn verdict(&mut self, kind: Kind, t_echo: Option<Micros>, previous: Option<Micros>) -> Verdict {
@@ -199,15 +325,6 @@ fn echo_time(echo: u32) -> Option<Micros> {
     (echo != NO_ECHO).then_some(Micros::new(echo))
 }
 
-/// Whether a later echo of this kind replaces an earlier one of the other.
-fn better(kind: Kind, than: Kind) -> bool {
-    match than {
-        Kind::Rejected => true,
-        Kind::Repeated => kind == Kind::Accepted,
-        _ => false,
-    }
-}
-
 /// Why a filter cannot do what is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -217,6 +334,11 @@ pub enum FilterError {
     Consecutive {
         /// How many were asked for.
         consecutive: u8,
+    },
+    /// Too much patience.
+    Patience {
+        /// How much was asked for.
+        patience: u8,
     },
     /// A sensor that is not there.
     Sensor {
@@ -231,6 +353,7 @@ impl fmt::Display for FilterError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Consecutive { consecutive } => write!(f, "{consecutive} consecutive readings; expected 2 to 8"),
+            Self::Patience { patience } => write!(f, "a patience of {patience} firings; expected 0 to 15"),
             Self::Sensor { sensor, sensors } => {
                 write!(f, "sensor {}; expected 1 to {sensors}", sensor.saturating_add(1))
             }
@@ -313,6 +436,54 @@ mod tests {
     }
 
     #[test]
+    fn an_accepted_echo_that_fades_is_waited_for_before_a_later_one_is_believed() {
+        use Kind::*;
+        let mut filter = filter::<4>(100, 2).with_patience(3).unwrap();
+        let mut seen = |firings: &[&[u32]]| kinds(&mut filter, firings);
+        assert_eq!(seen(&[&[5000, 9000], &[5000, 9000], &[5000, 9000]]), [First, Accepted, Accepted]);
+        assert_eq!(seen(&[&[9000], &[5050, 9000], &[9000], &[9000]]), [Rejected, Accepted, Rejected, Rejected]);
+        assert_eq!(seen(&[&[9000], &[9000], &[5000, 9000], &[5000, 9000]]), [Accepted; 4]);
+    }
+
+    #[test]
+    fn silence_is_not_believed_while_an_echo_is_waited_for() {
+        use Kind::*;
+        let firings: [&[u32]; 9] = [&[], &[], &[5000], &[5000], &[], &[], &[], &[5000], &[]];
+        let mut patient = filter::<2>(100, 2).with_patience(2).unwrap();
+        let seen = kinds(&mut patient, &firings);
+        assert_eq!(seen, [NoEcho, Clear, First, Accepted, NoEcho, Clear, Clear, First, Clear]);
+        let seen = kinds(&mut filter::<2>(100, 2), &firings);
+        assert_eq!(seen, [NoEcho, Clear, First, Accepted, NoEcho, Clear, Clear, First, NoEcho]);
+    }
+
+    #[test]
+    fn an_echo_heard_in_one_phase_only_is_never_accepted_however_patient_the_filter() {
+        for patience in 0..=15 {
+            let mut filter = filter::<8>(100, 2).with_patience(patience).unwrap();
+            let firings = [[3000, 9000], [7000, 12_000]].into_iter().cycle().take(60).collect::<Vec<_>>();
+            let firings: Vec<&[u32]> = firings.iter().map(|echoes| &echoes[..]).collect();
+            assert!(!kinds(&mut filter, &firings).contains(&Kind::Accepted));
+        }
+    }
+
+    #[test]
+    fn an_echo_that_is_waited_for_moves_as_expected() {
+        let mut filter = filter::<2>(50, 2).with_patience(4).unwrap();
+        let mut push = |us: &[u32]| {
+            let echoes: Vec<_> = us.iter().map(|&us| Micros::new(us)).collect();
+            filter.push_echoes(0, &echoes, -1_000).unwrap().kind
+        };
+        for t_echo in [10_000, 9_000, 8_000] {
+            push(&[t_echo]);
+        }
+        push(&[]);
+        assert_eq!(push(&[6_000]), Kind::Accepted);
+        for _ in 0..20 {
+            push(&[]);
+        }
+    }
+
+    #[test]
     fn the_age_counts_firings_since_the_last_accepted_reading() {
         let mut filter = filter::<1>(50, 2);
         let mut age = |echo: Option<u32>| filter.push(0, echo.map(Micros::new)).unwrap().age;
@@ -338,6 +509,8 @@ mod tests {
     fn errors_say_what_is_expected() {
         let error = EchoFilter::<1>::new(Micros::new(1), 9).unwrap_err();
         assert_eq!(error.to_string(), "9 consecutive readings; expected 2 to 8");
+        let error = filter::<1>(1, 2).with_patience(16).unwrap_err();
+        assert_eq!(error.to_string(), "a patience of 16 firings; expected 0 to 15");
         let error = filter::<1>(1, 2).push(1, None).unwrap_err();
         assert_eq!(error.to_string(), "sensor 2; expected 1 to 1");
     }

@@ -5,7 +5,7 @@
 
 use core::fmt;
 
-use crate::filter::{FilterError, NO_ECHO, Rule, Track, insert};
+use crate::filter::{Agreement, FilterError, NO_ECHO, Rule, Track, insert};
 use crate::reading::{Kind, Tally, Verdict};
 use crate::refiring::ImmediateRefiring;
 use crate::schedule::{Phase, Schedule};
@@ -25,12 +25,15 @@ pub struct Config {
     pub blanking: Micros,
     /// How many readings running must agree, 2 to 8.
     pub consecutive: u8,
+    /// For how many firings an accepted echo that is missing is waited for, 0 to 15; see
+    /// [`EchoFilter::with_patience`](crate::EchoFilter::with_patience).
+    pub patience: u8,
 }
 
 impl Config {
-    /// This `t_delta` and window, no blanking, and two readings compared, as in the paper.
+    /// This `t_delta` and window, no blanking, two readings compared and no patience, as in the paper.
     pub const fn new(t_delta: Micros, window: Micros) -> Self {
-        Self { t_delta, window, blanking: Micros::ZERO, consecutive: 2 }
+        Self { t_delta, window, blanking: Micros::ZERO, consecutive: 2, patience: 0 }
     }
 }
 
@@ -111,7 +114,7 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     oldest: u8,
     /// How many sensors have a reading to tell before their window closes.
     ready: u8,
-    consecutive: u8,
+    agreement: Agreement,
     /// How many more period ends disturb the comparison.
     unsettled: u8,
     max_late_us: u16,
@@ -181,9 +184,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     ///
     /// # Errors
     /// [`RingError`] if a sensor would fire again while it still listens, if the window ends within the blanking time,
-    /// or if the number of consecutive readings is not 2 to 8.
+    /// or if the number of consecutive readings is not 2 to 8 or the patience more than 15.
     pub fn with_scheduler(scheduler: S, config: Config, now: Instant) -> Result<Self, RingError> {
-        let Config { t_delta, window, blanking, consecutive } = config;
+        let Config { t_delta, window, blanking, consecutive, patience } = config;
         // No echo time within a window can then be mistaken for an instant before the firing.
         let longest = scheduler.longest_window().min(Micros::new(u32::MAX / 2));
         if window > longest {
@@ -192,11 +195,11 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if window <= blanking {
             return Err(RingError::Blanking { blanking, window });
         }
-        Rule::new(t_delta, consecutive)?;
+        let agreement = Agreement::new(consecutive, patience)?;
         Ok(Self {
             oldest: NOBODY,
             ready: 0,
-            consecutive,
+            agreement,
             unsettled: 0,
             max_late_us: 0,
             tally: Tally::default(),
@@ -423,7 +426,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         let fired = heard.fired;
         let ended_at = fired + heard.t_echo().filter(|_| E == 1).unwrap_or(self.window);
         let verdict = if listened {
-            heard.judge(Rule { t_delta: self.t_delta, consecutive: self.consecutive }, || expected_change_us(sensor))
+            heard.judge(Rule { t_delta: self.t_delta, agreement: self.agreement }, || expected_change_us(sensor))
         } else {
             Verdict { kind: Kind::Late, t_echo: heard.take_late(), previous: None, age: heard.track.age() }
         };

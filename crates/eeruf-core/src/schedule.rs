@@ -55,12 +55,21 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
     sensors: u8,
     t_lag: [Micros; K],
     t_wait: [[Micros; K]; M],
-    /// The sensors of each phase by firing time, so that the scheduler need not look for the next one.
-    order: [[u8; K]; M],
-    /// How long each of them fires after the one before it, the first after the start of the period.
-    gap: [[Micros; K]; M],
-    /// From the last firing of each phase to the end of the period.
-    after_last: [Micros; M],
+    /// The shortest time between two firings of one sensor. Kept, since working it out takes time and stack on a target.
+    min_refire: Micros,
+    firings: [Firings<K>; M],
+}
+
+/// The firings of one phase in the order in which they come, so that the scheduler need not look for the next one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(C)]
+struct Firings<const K: usize> {
+    /// From the last firing to the end of the period.
+    after_last: Micros,
+    /// How long each fires after the one before it, the first after the start of the period; then `after_last`.
+    gap: [Micros; K],
+    /// The sensors by firing time; then nobody (255).
+    order: [u8; K],
 }
 
 impl<const K: usize, const M: usize> Schedule<K, M> {
@@ -126,13 +135,13 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         if period.as_micros() == 0 || period.as_micros() > MAX_PERIOD.as_micros() {
             return Err(ScheduleError::Period { period });
         }
-        let mut order = [[0; K]; M];
-        let mut gap = [[Micros::ZERO; K]; M];
-        let mut after_last = [Micros::ZERO; M];
+        let nobody = Firings { after_last: period, gap: [Micros::ZERO; K], order: [u8::MAX; K] };
+        let mut firings = [nobody; M];
         let mut phase = 0;
         while phase < M {
+            let Firings { after_last, gap, order } = &mut firings[phase];
             // Firing times in order, until they become gaps.
-            let times = &mut gap[phase];
+            let times = gap;
             let mut x = 0;
             while x < sensors {
                 let t_fire = t_lag[x].saturating_add(t_wait[phase][x]);
@@ -140,11 +149,11 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
                     return Err(ScheduleError::Fire { sensor: x as u8, phase: Phase(phase as u8), t_fire, period });
                 }
                 // Insertion sort by firing time; sensors that fire together keep their order.
-                order[phase][x] = x as u8;
+                order[x] = x as u8;
                 times[x] = t_fire;
                 let mut at = x;
                 while at > 0 && times[at - 1].as_micros() > t_fire.as_micros() {
-                    order[phase].swap(at, at - 1);
+                    order.swap(at, at - 1);
                     times.swap(at, at - 1);
                     at -= 1;
                 }
@@ -158,10 +167,15 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
                 last = t_fire;
                 at += 1;
             }
-            after_last[phase] = period.abs_diff(last);
+            *after_last = period.abs_diff(last);
+            if sensors < K {
+                times[sensors] = *after_last;
+            }
             phase += 1;
         }
-        Ok(Self { period, sensors: sensors as u8, t_lag, t_wait, order, gap, after_last })
+        let mut schedule = Self { period, sensors: sensors as u8, t_lag, t_wait, min_refire: Micros::MAX, firings };
+        schedule.min_refire = schedule.shortest_refire();
+        Ok(schedule)
     }
 
     /// `T_p`: every sensor fires once in each period.
@@ -204,7 +218,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
 
     /// The sensors of a phase in the order in which they fire; empty for a phase the schedule does not have.
     pub const fn firing_order(&self, phase: Phase) -> &[u8] {
-        if (phase.0 as usize) < M { used(&self.order[phase.0 as usize], self.sensors) } else { &[] }
+        if (phase.0 as usize) < M { used(&self.firings[phase.0 as usize].order, self.sensors) } else { &[] }
     }
 
     /// The sensor at a place in the firing order of a phase, and how long it fires after the one before it; beyond the
@@ -213,12 +227,10 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     pub(crate) const fn firing(&self, phase: u8, place: u8) -> (u8, Micros) {
         let (phase, place) = (phase as usize, place as usize);
         if phase >= M {
-            (u8::MAX, self.period)
-        } else if place < K && place < self.sensors() {
-            (self.order[phase][place], self.gap[phase][place])
-        } else {
-            (u8::MAX, self.after_last[phase])
+            return (u8::MAX, self.period);
         }
+        let firings = &self.firings[phase];
+        if place < K { (firings.order[place], firings.gap[place]) } else { (u8::MAX, firings.after_last) }
     }
 
     /// From a sensor's firing in a phase to its next one, `T_p - d` or `T_p + d` with two phases: the `dt` over which a
@@ -234,6 +246,10 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     /// The shortest time between two firings of one sensor: `T_p - max |d|` with two phases. No listening window may be
     /// longer.
     pub const fn min_refire(&self) -> Micros {
+        self.min_refire
+    }
+
+    const fn shortest_refire(&self) -> Micros {
         let mut least = Micros::MAX;
         let mut x = 0;
         while x < self.sensors as usize {

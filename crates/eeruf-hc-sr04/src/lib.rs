@@ -7,7 +7,7 @@
 //! - edges within 100 us of the trigger, which are the trigger itself seen through the cable;
 //! - pulses too short for an echo, and further pulses of a line that chatters;
 //! - a line stuck high: the sensor is not triggered, and the firing is told as [`Kind::Stuck`](eeruf_core::Kind::Stuck);
-//! - a sensor that is not there: its line never rises, and [`HcSr04Ring::health`] says so;
+//! - a sensor that is not there, or edges that get lost on the way: [`HcSr04Ring::health`] says so;
 //! - a schedule that would trigger a sensor again too soon: it is refused when the ring is set up.
 //!
 //! It is a crate beside `eeruf-core` and not a feature of it, because core has no dependencies at all and a major version
@@ -28,10 +28,7 @@
 //! let ring = Ring::new(&TABLE_I_D, config, now())?;
 //! let mut ring = HcSr04Ring::new(ring, pins, delay, Settings::default())?;
 //! loop {
-//!     while let Some(edge) = EDGES.pop() {
-//!         ring.edge(edge);
-//!     }
-//!     while let Some(event) = ring.poll(now()) {
+//!     while let Some(event) = ring.poll_with_edges(&EDGES, now()) {
 //!         if let Event::Reading(reading) = event {
 //!             if reading.kind == Kind::Accepted { /* believe reading.t_echo */ }
 //!         }
@@ -99,12 +96,14 @@ pub enum Health {
     /// Its line answers, or it has not been asked often enough to know.
     #[default]
     Well,
-    /// Its line does not rise when it is triggered: no sensor there, a cut wire, or lost interrupts.
+    /// Nothing comes from its line when it is triggered: no sensor there, a cut wire, or no interrupts at all.
     Missing,
     /// Its line was high when it was to be triggered.
     StuckHigh,
     /// Several pulses followed one trigger.
     Chatters,
+    /// Its line fell without having risen, or rose and was low again without having fallen: edges get lost on the way.
+    LosesEdges,
     /// One of its pins reported an error.
     PinError,
 }
@@ -116,6 +115,7 @@ impl fmt::Display for Health {
             Self::Missing => "missing",
             Self::StuckHigh => "stuck high",
             Self::Chatters => "chatters",
+            Self::LosesEdges => "loses edges",
             Self::PinError => "pin error",
         })
     }
@@ -140,8 +140,8 @@ struct Line {
     pulse: Pulse,
     /// Firings running without a pulse.
     silent: u8,
-    /// Whether this firing had more than one pulse, or one too short.
-    chattered: bool,
+    /// What is wrong with this firing: more than one pulse or one too short, or an edge without its counterpart.
+    flaw: Health,
     health: Health,
 }
 
@@ -170,7 +170,7 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
             triggered: Instant::from_micros(0),
             pulse: Pulse::Idle,
             silent: 0,
-            chattered: false,
+            flaw: Health::Well,
             health: Health::Well,
         };
         Ok(Self { ring, pins, delay, lines: [line; K], settings })
@@ -185,6 +185,15 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
             self.trigger(sensor, now);
         }
         Some(event)
+    }
+
+    /// Hands in all edges that wait, then [polls](Self::poll). Read the clock for `now` just before: whatever held the main
+    /// loop up since it was here, no window closes on an edge that came in time.
+    pub fn poll_with_edges<const N: usize>(&mut self, edges: &EdgeQueue<N>, now: Instant) -> Option<Event> {
+        while let Some(edge) = edges.pop() {
+            self.edge(edge);
+        }
+        self.poll(now)
     }
 
     /// As [`Ring::next_deadline`].
@@ -265,14 +274,21 @@ impl Line {
                 let width = edge.at.since(rose);
                 if width < settings.shortest {
                     self.pulse = Pulse::Awaited;
-                    self.chattered = true;
+                    self.flaw = Health::Chatters;
                     return None;
                 }
                 self.pulse = Pulse::Over;
                 (width < settings.longest).then_some(width)
             }
             (Pulse::Over, true) => {
-                self.chattered = true;
+                self.flaw = Health::Chatters;
+                None
+            }
+            (Pulse::Awaited, false) => {
+                if self.flaw == Health::Well {
+                    self.flaw = Health::LosesEdges;
+                }
+                self.silent = 0;
                 None
             }
             _ => None,
@@ -282,18 +298,20 @@ impl Line {
     /// Before the next trigger: what the one before came to.
     fn end_firing(&mut self, missing_after: u8) {
         match self.pulse {
-            Pulse::Awaited => {
+            Pulse::Awaited if self.flaw == Health::Well => {
                 self.silent = self.silent.saturating_add(1);
-                if self.chattered {
-                    self.health = Health::Chatters;
-                } else if self.silent >= missing_after {
+                if self.silent >= missing_after {
                     self.health = Health::Missing;
                 }
             }
-            Pulse::Over => self.health = if self.chattered { Health::Chatters } else { Health::Well },
-            Pulse::Idle | Pulse::Rose(_) => {}
+            // A pulse may follow what was taken for the end of one whose beginning was too soon after the trigger.
+            Pulse::Over if self.flaw == Health::LosesEdges => self.health = Health::Well,
+            Pulse::Awaited | Pulse::Over => self.health = self.flaw,
+            // If the line is still high it is stuck, as will be seen.
+            Pulse::Rose(_) => self.health = Health::LosesEdges,
+            Pulse::Idle => {}
         }
-        self.chattered = false;
+        self.flaw = Health::Well;
     }
 }
 

@@ -1,7 +1,7 @@
 //! Real wiring against the driver: every fault costs only the sensor that has it, and is named.
 
 use eeruf_core::{Config, Event, Instant, Kind, Micros, Ring, Schedule, ScheduledFiring, Tally};
-use eeruf_hc_sr04::{Edge, HcSr04Ring, Health, Pins, Settings, SetupError};
+use eeruf_hc_sr04::{Edge, EdgeQueue, HcSr04Ring, Health, Pins, Settings, SetupError};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::digital::{Mock, State, Transaction};
 
@@ -122,10 +122,61 @@ fn a_chattering_line_counts_with_its_first_true_pulse_and_is_named() {
 }
 
 #[test]
+fn a_line_whose_edges_get_lost_is_named_and_no_width_is_made_of_what_is_left() {
+    let rises_lost = |_| vec![(12_450, false)];
+    let (tallies, health) = run(10, false, [&echo(5_000), &rises_lost, &echo(20_000)]);
+    others_are_well(&tallies, &health);
+    assert_eq!((tallies[1].of(Kind::Clear), health[1]), (9, Health::LosesEdges));
+    let falls_lost = |_| vec![(450, true)];
+    let (tallies, health) = run(10, false, [&echo(5_000), &falls_lost, &echo(20_000)]);
+    others_are_well(&tallies, &health);
+    assert_eq!((tallies[1].of(Kind::Clear), health[1]), (9, Health::LosesEdges));
+}
+
+#[test]
+fn the_trigger_seen_across_the_end_of_the_deaf_time_is_no_lost_edge() {
+    let long_glitch = |_| vec![(20, true), (110, false), (450, true), (12_450, false)];
+    let (tallies, health) = run(10, false, [&echo(5_000), &long_glitch, &echo(20_000)]);
+    others_are_well(&tallies, &health);
+    assert_eq!((tallies[1].of(Kind::Accepted), health[1]), (9, Health::Well));
+}
+
+#[test]
 fn the_sensors_own_time_out_is_no_echo_and_no_fault() {
     let (tallies, health) = run(10, false, [&echo(5_000), &echo(38_000), &echo(20_000)]);
     others_are_well(&tallies, &health);
     assert_eq!((tallies[1].of(Kind::Clear), health[1]), (9, Health::Well));
+}
+
+#[test]
+fn an_echo_that_came_in_time_is_heard_however_long_an_event_took() {
+    let schedule = schedule(100);
+    let pins = || Mock::new(&[Transaction::set(State::High), Transaction::set(State::Low)]);
+    let low = || Mock::new(&[Transaction::get(State::Low)]);
+    let mut mocks: Vec<Mock> = Vec::new();
+    let pins: [Pins<Mock, Mock>; K] = std::array::from_fn(|_| {
+        let pair = Pins { trigger: pins(), echo: low() };
+        mocks.extend([pair.trigger.clone(), pair.echo.clone()]);
+        pair
+    });
+    let ring = Ring::new(&schedule, CONFIG, Instant::default()).unwrap();
+    let mut driver: Driver<'_> = HcSr04Ring::new(ring, pins, NoopDelay, Settings::default()).unwrap();
+    let edges = EdgeQueue::<8>::new();
+    let ms = |ms: u32| Instant::from_micros(1000 * ms);
+    assert_eq!(driver.poll_with_edges(&edges, ms(24)), Some(Event::Fire(0)));
+    // Here the caller is held up for 50 ms, and its edges wait.
+    edges.push(Edge { sensor: 0, high: true, at: ms(25) });
+    edges.push(Edge { sensor: 0, high: false, at: ms(31) });
+    let events: Vec<_> = std::iter::from_fn(|| driver.poll_with_edges(&edges, ms(74))).take(2).collect();
+    assert_eq!(events[0], Event::Fire(1));
+    let Event::Reading(reading) = events[1] else { panic!("{events:?}") };
+    assert_eq!((reading.sensor, reading.t_echo), (0, Some(Micros::from_millis(6))));
+    let third = std::iter::from_fn(|| driver.poll_with_edges(&edges, ms(94))).next();
+    assert_eq!(third, Some(Event::Fire(2)));
+    drop(driver);
+    for mut mock in mocks {
+        mock.done();
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@ use eeruf_sim::{Pose, Transducer, Vector};
 use pyo3::{prelude::*, types::PyTuple};
 
 use crate::{
-    arguments::{self, choice, instance, micros, number, shown, wrong},
+    arguments::{self, choice, instance, micros, number, shown, whole_or, wrong},
     schedule::Schedule,
 };
 
@@ -21,6 +21,8 @@ use crate::{
 ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical.
 ///     window_us: ``T_wind``: how long a sensor listens.
 ///     schedule: what the EERUF methods fire by; None for the paper's table, scaled to the period.
+///     consecutive: how many readings running must agree, 2 to 8.
+///     patience: for how many firings ``multi_echo`` waits for an accepted echo that is missing, 0 to 15.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
@@ -53,9 +55,9 @@ const TRANSDUCERS: [(&str, Transducer); 2] =
 #[pymethods]
 impl Robot {
     #[new]
-    #[pyo3(signature = (pose, sensors, spacing_rad, radius_m, transducer=None, *, period_us=None, t_delta_us=None, window_us=None, schedule=None))]
+    #[pyo3(signature = (pose, sensors, spacing_rad, radius_m, transducer=None, *, period_us=None, t_delta_us=None, window_us=None, schedule=None, consecutive=None, patience=None))]
     #[pyo3(
-        text_signature = "(pose, sensors, spacing_rad, radius_m, transducer=\"polaroid_6500\", *, period_us=60000, t_delta_us=500, window_us=36000, schedule=None)"
+        text_signature = "(pose, sensors, spacing_rad, radius_m, transducer=\"polaroid_6500\", *, period_us=60000, t_delta_us=500, window_us=36000, schedule=None, consecutive=2, patience=0)"
     )]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
@@ -68,6 +70,8 @@ impl Robot {
         t_delta_us: Option<&Bound<'_, PyAny>>,
         window_us: Option<&Bound<'_, PyAny>>,
         schedule: Option<&Bound<'_, PyAny>>,
+        consecutive: Option<&Bound<'_, PyAny>>,
+        patience: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let expected = "(x, y, heading) in metres and radians";
         let coordinates = arguments::items("pose", pose, expected)?;
@@ -86,6 +90,8 @@ impl Robot {
         set("period_us", period_us, &mut robot.period)?;
         set("t_delta_us", t_delta_us, &mut robot.t_delta)?;
         set("window_us", window_us, &mut robot.window)?;
+        robot.consecutive = whole_or("consecutive", consecutive, 2, 2..=8)?;
+        robot.patience = whole_or("patience", patience, 0, 0..=15)?;
         let given = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
         robot.schedule = given.transpose()?.map(|schedule| schedule.get().0);
         if let (Some(schedule), None) = (robot.schedule, period_us) {
@@ -124,16 +130,30 @@ impl Robot {
         self.robot.schedule.map(Schedule)
     }
 
+    /// How many readings running must agree.
+    #[getter]
+    fn consecutive(&self) -> u8 {
+        self.robot.consecutive
+    }
+
+    /// For how many firings ``multi_echo`` waits for an accepted echo that is missing.
+    #[getter]
+    fn patience(&self) -> u8 {
+        self.robot.patience
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let schedule = self.schedule().into_pyobject(py)?.repr()?.to_string();
         let Self { pose, spacing_rad, radius_m, transducer, .. } = self;
         Ok(format!(
             "Robot(pose={pose:?}, sensors={}, spacing_rad={spacing_rad:?}, radius_m={radius_m:?}, transducer='{transducer}', \
-             period_us={}, t_delta_us={}, window_us={}, schedule={schedule})",
+             period_us={}, t_delta_us={}, window_us={}, schedule={schedule}, consecutive={}, patience={})",
             self.sensors(),
             self.period_us(),
             self.t_delta_us(),
             self.window_us(),
+            self.consecutive(),
+            self.patience(),
         ))
     }
 
@@ -149,6 +169,8 @@ impl Robot {
             this.t_delta_us(),
             this.window_us(),
             this.schedule(),
+            this.consecutive(),
+            this.patience(),
         );
         let rebuild = py.import("eeruf._rebuild")?.getattr("robot")?;
         Ok((rebuild, fields.into_pyobject(py)?))

@@ -82,8 +82,27 @@ impl Scene {
 
     fn from_source(file: PathBuf, text: String) -> PyResult<Self> {
         let world = World::from_text(&file, &text).map_err(Raise::raise)?;
+        // Whoever unpickles it may not have the files beside it.
+        let text = with_schedules(&file, &text).unwrap_or(text);
         Ok(Self { contents: Contents::World(Box::new(world)), source: Source::Toml { file, text } })
     }
+}
+
+/// The text of a scene with the schedules in it that it names; `None` if it names none.
+fn with_schedules(file: &Path, text: &str) -> Option<String> {
+    let mut scene: toml::Table = text.parse().ok()?;
+    let mut named = false;
+    for robot in scene.get_mut("robots")?.as_array_mut()? {
+        let schedule = robot.get_mut("schedule");
+        if let Some((value, name)) =
+            schedule.and_then(|value| value.as_str().map(str::to_owned).map(|name| (value, name)))
+        {
+            let beside = file.parent().unwrap_or(Path::new("")).join(name);
+            *value = toml::Value::Table(std::fs::read_to_string(beside).ok()?.parse().ok()?);
+            named = true;
+        }
+    }
+    named.then(|| scene.to_string())
 }
 
 /// A scene from the text of a file, as a pickle holds it.

@@ -102,8 +102,8 @@ pub(crate) fn drive<'s>(
     chance: Chance,
     now: Instant,
 ) -> Result<Box<dyn Drive + 's>, SimulationError> {
-    let config =
-        Config { blanking: robot.blanking, consecutive: robot.consecutive, ..Config::new(robot.t_delta, robot.window) };
+    let &Robot { t_delta, window, blanking, consecutive, patience, .. } = robot;
+    let config = Config { t_delta, window, blanking, consecutive, patience };
     let ring_error = |error| SimulationError::Ring { robot: index, method, error };
     // At least one rung, by construction.
     let schedule = &rungs[0];

@@ -26,7 +26,7 @@ use crate::{
 /// How many events go by between two calls of `keep_going`.
 const EVENTS_PER_CALL: u32 = 8192;
 // What the streams of chance are for.
-const ARRIVALS: u64 = 1;
+pub(crate) const ARRIVALS: u64 = 1;
 const BURSTS: u64 = 2;
 const DITHER: u64 = 3;
 

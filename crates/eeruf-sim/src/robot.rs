@@ -45,6 +45,9 @@ pub struct Robot {
     pub neighbours: u8,
     /// How many consecutive readings must agree, 2 to 8. 2 to begin with, as in the paper.
     pub consecutive: u8,
+    /// For how many firings an accepted echo that is missing is waited for, 0 to 15
+    /// ([`EchoFilter::with_patience`](eeruf_core::EchoFilter::with_patience)). 0 to begin with, as in the paper.
+    pub patience: u8,
     /// Whether the robot tells its ring by how much a good reading should change from its own motion.
     pub odometry: bool,
 }
@@ -84,6 +87,7 @@ impl Robot {
             min_refire: Micros::from_millis(36),
             neighbours: 4,
             consecutive: 2,
+            patience: 0,
             odometry: false,
         }
     }

@@ -201,6 +201,9 @@ fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), WorldError> {
     if !(2..=8).contains(&robot.consecutive) {
         return fail("consecutive", f64::from(robot.consecutive), "2 to 8");
     }
+    if robot.patience > 15 {
+        return fail("patience", f64::from(robot.patience), "0 to 15");
+    }
     if let Some(schedule) = &robot.schedule {
         if schedule.sensors() != robot.sensors.len() {
             let (sensors, expected) = (schedule.sensors(), robot.sensors.len());

@@ -131,6 +131,7 @@ struct RobotFile {
     min_refire_us: Option<u32>,
     neighbours: Option<u8>,
     consecutive: Option<u8>,
+    patience: Option<u8>,
     #[serde(default)]
     odometry: bool,
 }
@@ -417,6 +418,7 @@ fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -> Result<Ro
     set(&mut robot.min_refire, file.min_refire_us);
     robot.neighbours = file.neighbours.unwrap_or(robot.neighbours);
     robot.consecutive = file.consecutive.unwrap_or(robot.consecutive);
+    robot.patience = file.patience.unwrap_or(robot.patience);
     robot.odometry = file.odometry;
     Ok(robot)
 }

@@ -129,8 +129,8 @@ pub mod device {
         }
     }
 
-    /// Named as frameworks expect it; there are no further peripherals to hand out.
-    pub use cortex_m::Peripherals;
     /// The same enumeration under the name that RTIC looks for.
     pub use Interrupt as interrupt;
+    /// Named as frameworks expect it; there are no further peripherals to hand out.
+    pub use cortex_m::Peripherals;
 }

@@ -20,17 +20,44 @@ mod chip;
 #[cfg(target_arch = "arm")]
 mod cortex_m_common;
 pub mod say;
+#[cfg(any(board = "lm3s6965", board = "an386"))]
+mod systick_clock;
 pub mod world;
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use eeruf_core::{Instant, Micros};
 
 pub use chip::*;
 #[cfg(target_arch = "arm")]
 pub use cortex_m_common::*;
+#[cfg(any(board = "lm3s6965", board = "an386"))]
+use systick_clock::running;
+#[cfg(any(board = "lm3s6965", board = "an386"))]
+pub use systick_clock::{clear_alarm, clear_echo, set_alarm, set_echo};
 
 /// The entry point of a program: `#[eeruf_board::entry] fn main() -> !`.
 #[cfg(target_arch = "arm")]
 pub use cortex_m_rt::entry;
 #[cfg(target_arch = "riscv32")]
 pub use riscv_rt::entry;
+
+/// What the clock read at the start.
+static CLOCK_AT_START: AtomicU32 = AtomicU32::new(0);
+
+/// Has the clock begin with another reading than 0, to see it wrap. To be called before it is read.
+pub fn begin_clock_at(start: Instant) {
+    CLOCK_AT_START.store(start.as_micros(), Ordering::Relaxed);
+}
+
+/// The clock.
+pub fn now() -> Instant {
+    instant_of(running())
+}
+
+fn instant_of(running: Micros) -> Instant {
+    Instant::from_micros(CLOCK_AT_START.load(Ordering::Relaxed)) + running
+}
 
 /// Proof that an image cannot panic: its panic handler calls a function that does not exist. If any path to a panic is
 /// left after optimisation, the image does not link. Only for release builds, where the optimiser removes what cannot

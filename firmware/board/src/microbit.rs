@@ -1,6 +1,6 @@
 //! BBC micro:bit: nRF51822, Cortex-M0. TIMER0 is clock and alarm, TIMER1 the echo lines, TIMER2 counts instructions.
 
-use eeruf_core::Instant;
+use eeruf_core::{Instant, Micros};
 
 use crate::cortex_m_common::{Register, enable_interrupts, pend_alarm, pend_echo};
 
@@ -49,16 +49,16 @@ fn capture(timer: usize) -> u32 {
     Register::at(timer, CC_1).read()
 }
 
-/// The clock.
-pub fn now() -> Instant {
-    Instant::from_micros(capture(TIMER0))
+/// The time since the start.
+pub(crate) fn running() -> Micros {
+    Micros::new(capture(TIMER0))
 }
 
 /// Sets the alarm, and forgets any other. If `at` has passed it goes off at once.
 pub fn set_alarm(at: Instant) {
-    Register::at(TIMER0, CC_0).write(at.as_micros());
+    Register::at(TIMER0, CC_0).write(at.since(crate::instant_of(Micros::ZERO)).as_micros());
     // The compare register only fires when the counter comes to it.
-    if now().has_reached(at) {
+    if crate::now().has_reached(at) {
         pend_alarm();
     }
 }
@@ -70,7 +70,7 @@ pub fn clear_alarm() {
 
 /// Sets the instant of the next echo interrupt, and forgets any other. If `at` has passed it comes at once.
 pub fn set_echo(at: Instant) {
-    let now = now();
+    let now = crate::now();
     Register::at(TIMER1, STOP).write(1);
     Register::at(TIMER1, COMPARE_0).write(0);
     if now.has_reached(at) {

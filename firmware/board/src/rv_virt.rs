@@ -5,7 +5,7 @@ use core::cell::Cell;
 use core::ptr::{read_volatile, write_volatile};
 
 use critical_section::Mutex;
-use eeruf_core::Instant;
+use eeruf_core::{Instant, Micros};
 
 /// The name of this board.
 pub const NAME: &str = "rv_virt";
@@ -64,14 +64,14 @@ fn ticks() -> u64 {
     }
 }
 
-/// The clock.
-pub fn now() -> Instant {
-    Instant::from_micros((ticks() / TICKS_PER_US) as u32)
+/// The time since the start.
+pub(crate) fn running() -> Micros {
+    Micros::new((ticks() / TICKS_PER_US) as u32)
 }
 
 impl Timers {
     fn set(&self) {
-        let (ticks, now) = (ticks(), now());
+        let (ticks, now) = (ticks(), crate::now());
         let mut compare = u64::MAX;
         for at in [self.alarm.get(), self.echo.get()].into_iter().flatten() {
             let wait = if now.has_reached(at) { 0 } else { at.since(now).as_micros() };
@@ -91,7 +91,7 @@ impl Timers {
 pub fn due() -> (bool, bool) {
     critical_section::with(|token| {
         let timers = TIMERS.borrow(token);
-        let now = now();
+        let now = crate::now();
         let has_come = |timer: &Cell<Option<Instant>>| {
             let come = timer.get().is_some_and(|at| now.has_reached(at));
             if come {

@@ -44,10 +44,10 @@ impl Say for u32 {
             rest /= 10;
         }
         let first = digits.iter().position(|&digit| digit != b'0').unwrap_or(10).min(10);
-        if let Some(text) = digits.get(first..11) {
-            if let Ok(text) = core::str::from_utf8(text) {
-                text.say();
-            }
+        if let Some(text) = digits.get(first..11)
+            && let Ok(text) = core::str::from_utf8(text)
+        {
+            text.say();
         }
     }
 }

@@ -38,10 +38,10 @@ impl World {
         let mut next: Option<Instant> = None;
         for line in &self.lines {
             let line = line.get();
-            if let Some(at) = line.rise.or(line.fall) {
-                if next.is_none_or(|next| !at.has_reached(next)) {
-                    next = Some(at);
-                }
+            if let Some(at) = line.rise.or(line.fall)
+                && next.is_none_or(|next| !at.has_reached(next))
+            {
+                next = Some(at);
             }
         }
         if let Some(at) = next {

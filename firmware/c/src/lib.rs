@@ -2,8 +2,8 @@
 //! wrong has an error code. A ring belongs to one context: hand echo edges of an interrupt over to the main loop, or
 //! keep interrupts off around the calls.
 #![cfg_attr(target_os = "none", no_std)]
-// The names are those of the header.
-#![allow(non_camel_case_types)]
+// Names and documents are those of the header.
+#![allow(non_camel_case_types, clippy::doc_markdown)]
 
 use core::mem::MaybeUninit;
 
@@ -260,10 +260,9 @@ pub unsafe extern "C" fn eeruf_ring_init(
         return EERUF_NULL;
     }
     let config = Config {
-        t_delta: Micros::new(config.t_delta_us),
-        window: Micros::new(config.window_us),
         blanking: Micros::new(config.blanking_us),
         consecutive: config.consecutive,
+        ..Config::new(Micros::new(config.t_delta_us), Micros::new(config.window_us))
     };
     match Ring::new(schedule, config, Instant::from_micros(now_us)) {
         Ok(value) => {

@@ -53,10 +53,7 @@ async fn main(_spawner: Spawner) {
     let Ok(mut ring) = HcSr04Ring::new(ring, world::pins(), world::Delay, Settings::default()) else { leave(3) };
     let mut readings = Tally::<u32>::default();
     loop {
-        while let Some(edge) = EDGES.pop() {
-            ring.edge(edge);
-        }
-        while let Some(event) = ring.poll(now()) {
+        while let Some(event) = ring.poll_with_edges(&EDGES, now()) {
             match event {
                 Event::Fire(_) => {}
                 Event::Reading(reading) => readings.count(reading.kind),

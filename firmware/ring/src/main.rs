@@ -1,5 +1,4 @@
-//! A ring of twelve HC-SR04 sensors on bare metal. The main loop sleeps until the ring's next deadline; the echo
-//! interrupt only time-stamps.
+//! A ring of twelve HC-SR04 sensors on bare metal. The echo interrupt only time-stamps; the main loop is that of the library.
 #![no_std]
 #![no_main]
 
@@ -7,7 +6,8 @@ use eeruf_board::say::leave;
 use eeruf_board::{say, world};
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Config, Event, Kind, Micros, Ring, Tally};
-use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
+use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Health, Settings};
+use eeruf_ring::run;
 
 eeruf_board::no_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, echo_interrupt);
@@ -33,39 +33,28 @@ fn main() -> ! {
     }
     let config = Config::new(Micros::new(999), Micros::from_millis(40));
     let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
-    let Ok(mut ring) = HcSr04Ring::new(ring, world::pins(), world::Delay, Settings::default()) else { leave(3) };
+    let Ok(ring) = HcSr04Ring::new(ring, world::pins(), world::Delay, Settings::default()) else { leave(3) };
 
     let mut readings = Tally::<u32>::default();
     let mut max_late = Micros::ZERO;
-    loop {
-        while let Some(edge) = EDGES.pop() {
-            ring.edge(edge);
-        }
-        while let Some(event) = ring.poll(eeruf_board::now()) {
-            match event {
-                Event::Fire(_) => {}
-                Event::Reading(reading) => readings.count(reading.kind),
-                Event::PeriodEnded(stats) => {
-                    max_late = max_late.max(stats.max_late);
-                    if stats.period + 1 == PERIODS {
-                        say!(eeruf_board::NAME, ": ", PERIODS, " periods");
-                        for kind in Kind::ALL {
-                            say!("  ", kind.as_str(), " ", readings.of(kind));
-                        }
-                        for sensor in 0..12 {
-                            if ring.health(sensor) != eeruf_hc_sr04::Health::Well {
-                                say!("  sensor ", sensor + 1, " is not well");
-                            }
-                        }
-                        say!("  latest firing ", max_late.as_micros(), " us, edges lost ", EDGES.lost());
-                        leave(0);
+    run(ring, &EDGES, |ring, event| match event {
+        Event::Fire(_) => {}
+        Event::Reading(reading) => readings.count(reading.kind),
+        Event::PeriodEnded(stats) => {
+            max_late = max_late.max(stats.max_late);
+            if stats.period + 1 == PERIODS {
+                say!(eeruf_board::NAME, ": ", PERIODS, " periods");
+                for kind in Kind::ALL {
+                    say!("  ", kind.as_str(), " ", readings.of(kind));
+                }
+                for sensor in 0..12 {
+                    if ring.health(sensor) != Health::Well {
+                        say!("  sensor ", sensor + 1, " is not well");
                     }
                 }
+                say!("  latest firing ", max_late.as_micros(), " us, edges lost ", EDGES.lost());
+                leave(0);
             }
         }
-        let deadline = ring.next_deadline();
-        eeruf_board::set_alarm(deadline);
-        // The alarm may have gone off before we sleep, and then wakes nobody.
-        eeruf_board::sleep_unless(|| !EDGES.is_empty() || eeruf_board::now().has_reached(deadline));
-    }
+    })
 }

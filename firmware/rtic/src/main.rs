@@ -59,10 +59,7 @@ mod app {
     fn alarm(context: alarm::Context) {
         let alarm::LocalResources { ring, readings, .. } = context.local;
         eeruf_board::clear_alarm();
-        while let Some(edge) = EDGES.pop() {
-            ring.edge(edge);
-        }
-        while let Some(event) = ring.poll(eeruf_board::now()) {
+        while let Some(event) = ring.poll_with_edges(&EDGES, eeruf_board::now()) {
             match event {
                 Event::Fire(_) => {}
                 Event::Reading(reading) => readings.count(reading.kind),

@@ -6,7 +6,7 @@
 
 mod table;
 
-pub use table::{Figures, MULTI_ECHO_T_DELTA, READINGS, SetOne, set_one};
+pub use table::{Figures, MULTI_ECHO_CONSECUTIVE, MULTI_ECHO_PATIENCE, MULTI_ECHO_T_DELTA, READINGS, SetOne, set_one};
 
 use crate::{
     air::Air, error::SceneError, noise::Chance, noise::Noise, plane::Pose, plane::Vector, robot::Robot, scene::Scene,

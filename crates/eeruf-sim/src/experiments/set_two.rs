@@ -9,4 +9,4 @@ mod runs;
 
 pub use course::{Course, POLE_RADIUS_M, ROOM_M, SECOND_AHEAD, SECOND_BEHIND};
 pub use pilot::{Cell, Ending, Piloting, Place, Run};
-pub use runs::{Figures, SetTwo, SetTwoOptions, SpeedStep, set_two, speed_sweep};
+pub use runs::{Figures, MULTI_ECHO_CONSECUTIVE, SetTwo, SetTwoOptions, SpeedStep, set_two, speed_sweep};

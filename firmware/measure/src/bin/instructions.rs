@@ -60,9 +60,8 @@ fn main() -> ! {
                     fire.note(taken);
                     // Every kind of reading: near and far, moving, and none at all.
                     let t_echo = match (sensor, periods % 4) {
-                        (0, _) => None,
+                        (0, _) | (2, 1) => None,
                         (1, phase) => Some(5_000 + 3_000 * phase),
-                        (2, 1) => None,
                         _ => Some(4_000 + 2_500 * u32::from(sensor)),
                     };
                     if let Some(t_echo) = t_echo {

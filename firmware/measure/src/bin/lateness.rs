@@ -8,6 +8,7 @@ use eeruf_board::{say, world};
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Config, Event, Kind, Micros, Ring, Tally};
 use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
+use eeruf_ring::run;
 
 eeruf_board::no_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, echo_interrupt);
@@ -30,31 +31,30 @@ fn main() -> ! {
     }
     let config = Config::new(Micros::new(999), Micros::from_millis(40));
     let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
-    let Ok(mut ring) = HcSr04Ring::new(ring, world::pins(), world::Delay, Settings::default()) else { leave(3) };
+    let Ok(ring) = HcSr04Ring::new(ring, world::pins(), world::Delay, Settings::default()) else { leave(3) };
     let mut readings = Tally::<u32>::default();
     let (mut most, mut sum) = (0, 0);
-    loop {
-        while let Some(edge) = EDGES.pop() {
-            ring.edge(edge);
-        }
-        while let Some(event) = ring.poll(eeruf_board::now()) {
-            match event {
-                Event::Fire(_) => {}
-                Event::Reading(reading) => readings.count(reading.kind),
-                Event::PeriodEnded(stats) => {
-                    most = stats.max_late.as_micros().max(most);
-                    sum += stats.max_late.as_micros();
-                    if stats.period == 199 {
-                        say!("latest_us ", most, " mean_of_latest_us ", sum / 200, " edges_lost ", EDGES.lost(),
-                            " accepted ", readings.of(Kind::Accepted), " rejected ", readings.of(Kind::Rejected));
-                        leave(0);
-                    }
-                }
+    run(ring, &EDGES, |_, event| match event {
+        Event::Fire(_) => {}
+        Event::Reading(reading) => readings.count(reading.kind),
+        Event::PeriodEnded(stats) => {
+            most = stats.max_late.as_micros().max(most);
+            sum += stats.max_late.as_micros();
+            if stats.period == 199 {
+                say!(
+                    "latest_us ",
+                    most,
+                    " mean_of_latest_us ",
+                    sum / 200,
+                    " edges_lost ",
+                    EDGES.lost(),
+                    " accepted ",
+                    readings.of(Kind::Accepted),
+                    " rejected ",
+                    readings.of(Kind::Rejected)
+                );
+                leave(0);
             }
         }
-        let deadline = ring.next_deadline();
-        eeruf_board::set_alarm(deadline);
-        // The alarm may have gone off before we sleep, and then wakes nobody.
-        eeruf_board::sleep_unless(|| !EDGES.is_empty() || eeruf_board::now().has_reached(deadline));
-    }
+    })
 }

@@ -21,6 +21,10 @@ use crate::{
 /// For how long a robot may try.
 const TIME_S: f64 = 40.0;
 
+/// How many readings [`Method::MultiEcho`] compares. Chance makes pairs of many echoes agree, the more the more foreign sound
+/// there is; three running agree by chance far more rarely, and a sensor that hears past foreign sound can afford them.
+pub const MULTI_ECHO_CONSECUTIVE: u8 = 3;
+
 /// What is asked of Set II.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetTwoOptions {
@@ -193,7 +197,8 @@ fn drive(options: &SetTwoOptions, method: Method, number: u64, going: &Going<'_>
         return Err(ExperimentError::Stopped);
     }
     let course = Course::random(number);
-    let robot = Robot { odometry: options.odometry, t_delta: options.t_delta, ..course.robot() };
+    let consecutive = if method == Method::MultiEcho { MULTI_ECHO_CONSECUTIVE } else { 2 };
+    let robot = Robot { odometry: options.odometry, t_delta: options.t_delta, consecutive, ..course.robot() };
     let world = course.world(robot, options.second_robot)?;
     let mut piloting = options.piloting;
     piloting.vfh.speed_max_m_s = options.labmate.speed_max_m_s;

@@ -1,0 +1,26 @@
+//! The main loop of a ring on bare metal: asleep between deadlines.
+#![no_std]
+
+use eeruf_board::world::{Delay, Echo, Trigger};
+use eeruf_core::{Event, ScheduledFiring};
+use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring};
+
+/// A ring on the pins of this board.
+pub type BoardRing<const K: usize> = HcSr04Ring<ScheduledFiring<'static, K>, Trigger, Echo, Delay, K>;
+
+/// Runs a ring for ever; what it tells goes to `told`.
+pub fn run<const K: usize, const N: usize>(
+    mut ring: BoardRing<K>,
+    edges: &EdgeQueue<N>,
+    mut told: impl FnMut(&BoardRing<K>, Event),
+) -> ! {
+    loop {
+        while let Some(event) = ring.poll_with_edges(edges, eeruf_board::now()) {
+            told(&ring, event);
+        }
+        let deadline = ring.next_deadline();
+        eeruf_board::set_alarm(deadline);
+        // The alarm may have gone off before we sleep, and then wakes nobody.
+        eeruf_board::sleep_unless(|| !edges.is_empty() || eeruf_board::now().has_reached(deadline));
+    }
+}

@@ -91,7 +91,7 @@ def test_a_pickled_scene_brings_the_schedule_that_its_file_names(tmp_path: Path)
     schedule = eeruf.design(8, t_delta_us=499, min_interval_us=9_000, window_us=36_000).schedule
     assert schedule is not None
     (tmp_path / "ring.toml").write_text(schedule.to_toml())
-    text = (SCENES / "alcove.toml").read_text().replace("[[robots]]", '[[robots]]\nschedule = "ring.toml"')
+    text = (SCENES / "alcove.toml").read_text().replace("[[robot]]", '[[robot]]\nschedule = "ring.toml"')
     (tmp_path / "scene.toml").write_text(text)
     scene = sim.Scene.from_toml(tmp_path / "scene.toml")
     pickled = pickle.dumps(scene)

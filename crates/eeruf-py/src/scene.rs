@@ -92,7 +92,7 @@ impl Scene {
 fn with_schedules(file: &Path, text: &str) -> Option<String> {
     let mut scene: toml::Table = text.parse().ok()?;
     let mut named = false;
-    for robot in scene.get_mut("robots")?.as_array_mut()? {
+    for robot in scene.get_mut("robot")?.as_array_mut()? {
         let schedule = robot.get_mut("schedule");
         if let Some((value, name)) =
             schedule.and_then(|value| value.as_str().map(str::to_owned).map(|name| (value, name)))

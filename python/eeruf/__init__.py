@@ -4,7 +4,8 @@ EERUF (J. Borenstein and Y. Koren, IEEE T-RA 11(1), 1995) lets every sensor wait
 that alternate and differ from sensor to sensor. A true echo does not care; crosstalk moves, and is rejected.
 
 Times are whole microseconds (``_us``), lengths metres, angles radians. Sensors count from 0. What is wrong with an argument raises
-an :class:`EerufError`, which is a ``ValueError``, with the name, the value and what is expected.
+an :class:`EerufError`, which is a ``ValueError``, with the name, the value and what is expected. ``KINDS`` are the kinds of readings,
+of which arrays hold the indices.
 
 Example:
     >>> import eeruf

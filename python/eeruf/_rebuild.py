@@ -25,6 +25,8 @@ def robot(
     t_delta_us: int,
     window_us: int,
     schedule: _eeruf.Schedule | None,
+    consecutive: int,
+    patience: int,
 ) -> _eeruf.Robot:
     """Make a robot of what it was made of."""
     return _eeruf.Robot(
@@ -37,4 +39,6 @@ def robot(
         t_delta_us=t_delta_us,
         window_us=window_us,
         schedule=schedule,
+        consecutive=consecutive,
+        patience=patience,
     )

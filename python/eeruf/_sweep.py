@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
-from concurrent.futures import Executor, ProcessPoolExecutor
-from typing import Any, Callable, TypeVar
+from typing import TYPE_CHECKING, Any, Callable, TypeVar
 
 from eeruf._eeruf import ArgumentError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from concurrent.futures import Executor
 
 Case = TypeVar("Case")
 Result = TypeVar("Result")
@@ -21,6 +23,8 @@ def sweep(
 ) -> list[Result]:
     """Call a function for every case, in parallel, and return the results in the order of the cases.
 
+    The first error ends it, and so does Ctrl-C; cases that run on an executor of yours are not waited for.
+
     Args:
         function: of one case. With processes (the default, and Dask) it must be importable, not a lambda.
         cases: what to call it with. Schedules, scenes, robots and readings pickle, so they may be cases and results.
@@ -32,7 +36,8 @@ def sweep(
         One result for each case. The results do not depend on the executor.
 
     Raises:
-        ArgumentError: the function cannot be called, or ``progress`` is neither.
+        ArgumentError: the function cannot be called, the cases are not several, or an executor or ``progress`` that is none.
+        Exception: whatever the function raises first.
 
     Example:
         >>> import eeruf
@@ -47,10 +52,15 @@ def sweep(
     if not callable(function):
         raise ArgumentError(f"function = {function!r}; expected something to call with one case")
     tell = _tell(progress)
-    todo = list(cases)
+    try:
+        one_by_one = iter(cases)
+    except TypeError:
+        raise ArgumentError(f"cases = {cases!r:.60}; expected several cases") from None
+    todo = list(one_by_one)
+    if executor is not None and not callable(getattr(executor, "submit", None)):
+        raise ArgumentError(f"executor = {executor!r:.60}; expected a concurrent.futures.Executor")
     if executor is None:
-        with ProcessPoolExecutor(max_workers=max(1, min(len(todo), os.cpu_count() or 1))) as processes:
-            return _run(function, todo, processes, tell)
+        return _run_here(function, todo, tell)
     return _run(function, todo, executor, tell)
 
 
@@ -65,6 +75,25 @@ def _tell(progress: Any) -> Callable[[float | None, str], Any] | None:
         found: Callable[[float | None, str], Any] = progress
         return found
     raise ArgumentError(f"progress = {progress!r}; expected None, True or a callable (share, text)")
+
+
+def _run_here(
+    function: Callable[[Case], Result], cases: list[Case], tell: Callable[[float | None, str], Any] | None
+) -> list[Result]:
+    """Run on processes of our own, which end with us."""
+    # Not before it is needed: multiprocessing is most of what importing eeruf would cost.
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    others = set(multiprocessing.active_children())
+    with ProcessPoolExecutor(max_workers=max(1, min(len(cases), os.cpu_count() or 1))) as processes:
+        try:
+            return _run(function, cases, processes, tell)
+        except BaseException:
+            # A case may take hours, and what was handed to a process can no longer be cancelled.
+            for process in set(multiprocessing.active_children()) - others:
+                process.terminate()
+            raise
 
 
 def _run(

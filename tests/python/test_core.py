@@ -5,6 +5,9 @@ import os
 import pickle
 import subprocess
 import sys
+import threading
+import tracemalloc
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import eeruf
@@ -17,8 +20,20 @@ def test_what_compares_equal_pickles_and_prints_so_that_it_can_be_pasted() -> No
     found = eeruf.design(4, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
     report = tables.TABLE_I_D.verify(1_500, min_interval_us=18_000)
     assert not report.ok
-    names = {name: getattr(eeruf, name) for name in ("Schedule", "Found", "Report", "Violation")}
-    for value in (tables.TABLE_I_D, tables.TABLE_I_D.scaled(3, 5), found, report, report.violations[0]):
+    reading = eeruf.EchoFilter(1, 500).push(0, 9_000)
+    names = {name: getattr(eeruf, name) for name in ("Schedule", "Found", "Report", "Violation", "Fire", "Reading")}
+    firing = Schedule.from_firing(40_000, [0, 20_000], [2_000, 25_000])
+    values = (
+        tables.TABLE_I_D,
+        tables.TABLE_I_D.scaled(3, 5),
+        firing,
+        found,
+        report,
+        report.violations[0],
+        eeruf.Fire(3),
+        reading,
+    )
+    for value in values:
         assert pickle.loads(pickle.dumps(value)) == value
         assert eval(repr(value), names) == value
 
@@ -67,6 +82,45 @@ def test_many_readings_at_once_are_judged_as_one_by_one() -> None:
     assert {"accepted", "rejected", "no_echo", "clear", "first"} == {eeruf.KINDS[kind] for kind in np.unique(together)}
 
 
+def test_pushing_many_leaves_the_array_alone_and_takes_any_that_numpy_can_convert() -> None:
+    echoes = np.array([[9_000.0, 7_000.0], [9_100.0, np.nan]])
+    before = echoes.copy()
+    expected = eeruf.EchoFilter(2, 500).push_many(echoes)
+    assert np.array_equal(echoes, before, equal_nan=True)
+    assert expected.dtype == np.uint8
+    wide = np.full((4, 2), 1.0)
+    wide[::2] = echoes
+    for same in (
+        echoes.tolist(),
+        np.asfortranarray(echoes),
+        wide[::2],
+        echoes.astype(np.float32),
+        echoes.astype(object),
+    ):
+        assert np.array_equal(eeruf.EchoFilter(2, 500).push_many(same), expected)
+    assert eeruf.EchoFilter(2, 500).push_many(np.empty((0, 2))).shape == (0, 2)
+    frozen = echoes.copy()
+    frozen.flags.writeable = False
+    assert np.array_equal(eeruf.EchoFilter(2, 500).push_many(frozen), expected)
+
+
+def test_a_million_readings_are_read_in_place() -> None:
+    # 8 MB in; were they copied, numpy would trace as much again. Out come kinds of one byte each, in memory of Rust.
+    echoes = np.full((125_000, 8), 9_000.0)
+    filter = eeruf.EchoFilter(8, 500)
+    tracemalloc.start()
+    kinds = filter.push_many(echoes)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert kinds.size == 1_000_000
+    assert peak < 1_000_000
+    tracemalloc.start()
+    filter.push_many(echoes.astype(np.float32))
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak > 8_000_000
+
+
 def test_a_ring_accepts_an_echo_that_repeats() -> None:
     ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
     kinds: list[str] = []
@@ -95,19 +149,43 @@ def test_a_callable_follows_the_work_and_its_error_ends_it() -> None:
 
 
 def test_results_do_not_depend_on_the_number_of_threads() -> None:
-    program = "import eeruf, json; print(json.dumps(eeruf.experiments.set_one(seeds=3, readings=800)))"
-    command = [sys.executable, "-c", program]
+    program = """
+import eeruf, json, hashlib
+one = eeruf.experiments.set_one(seeds=3, readings=800)
+two = eeruf.experiments.set_two(seeds=4, methods=["eeruf", "conventional"])
+tracks = [hashlib.sha256(run.track.tobytes() + run.grid.tobytes()).hexdigest() for runs in two.runs.values() for run in runs]
+print(json.dumps([one, two, tracks]))
+"""
     printed = [
         subprocess.run(
-            command, check=True, capture_output=True, env={**os.environ, "RAYON_NUM_THREADS": threads}
+            [sys.executable, "-c", program],
+            check=True,
+            capture_output=True,
+            env={**os.environ, "RAYON_NUM_THREADS": threads},
         ).stdout
         for threads in ("1", "2")
     ]
     assert printed[0] == printed[1]
-    assert json.loads(printed[0])["methods"]["eeruf"]
+    one, two, tracks = json.loads(printed[0])
+    assert one["methods"]["eeruf"] and two["methods"]["eeruf"]["courses"] == 4
+    assert len(set(tracks)) == 8
 
 
-def test_the_wheel_is_below_3_mb() -> None:
-    wheel = os.environ.get("EERUF_WHEEL")
-    assert wheel is not None, "EERUF_WHEEL names the wheel; `cargo xtask python` sets it"
-    assert Path(wheel).stat().st_size < 3_000_000
+def test_threads_run_side_by_side_without_the_interpreter_lock() -> None:
+    # While one thread is in a search that does not end, another one runs Python, and ends the search.
+    reached = threading.Event()
+
+    def tell(share: "float | None", text: str) -> None:
+        if reached.is_set():
+            raise InterruptedError
+
+    chance = np.random.default_rng(3)
+    pairs = [(x, y) for x in range(64) for y in range(x) if chance.random() < 0.3]
+    with ThreadPoolExecutor(1) as threads:
+        search = threads.submit(lambda: eeruf.design(64, 499, 9_000, 36_000, layout=pairs, budget=2**60, progress=tell))
+        for _ in range(100_000):
+            pass
+        assert not search.done()
+        reached.set()
+        with pytest.raises(InterruptedError):
+            search.result(timeout=60)

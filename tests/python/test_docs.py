@@ -1,16 +1,108 @@
-"""The examples in the docstrings hold, and the notebooks run."""
+"""Every public name says what it is, the examples hold, and so do the listings in the documents."""
 
 import doctest
-import importlib
+import inspect
+import re
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
 
+import eeruf
+import matplotlib
 import pytest
 
+matplotlib.use("Agg")
+ROOT = Path(__file__).parents[2]
+MODULES = [eeruf, eeruf.experiments, eeruf.plot, eeruf.sim, eeruf.tables]
 
-@pytest.mark.parametrize("name", ["eeruf", "eeruf._sweep", "eeruf.experiments", "eeruf.plot", "eeruf.tables"])
-def test_the_examples_in_the_docstrings_hold(name: str) -> None:
-    import matplotlib
 
-    matplotlib.use("Agg")
-    failed, tried = doctest.testmod(importlib.import_module(name))
+def names(module: ModuleType) -> Iterator[tuple[str, Any]]:
+    """The public functions and classes of a module, and the classes' methods and properties, compiled or not."""
+    for name in module.__all__:
+        thing = getattr(module, name)
+        if inspect.ismodule(thing) or not (callable(thing) or inspect.isclass(thing)):
+            continue
+        yield f"{module.__name__}.{name}", thing
+        if inspect.isclass(thing):
+            for member, value in vars(thing).items():
+                if not member.startswith("_"):
+                    value = value.__func__ if isinstance(value, staticmethod) else value
+                    yield f"{module.__name__}.{name}.{member}", value
+
+
+# With the members of classes, and without.
+DOCUMENTED = {name: thing for module in MODULES for name, thing in names(module)}
+TOP = [f"{module.__name__}.{name}" for module in MODULES for name in module.__all__]
+TOP = [name for name in TOP if name in DOCUMENTED]
+
+
+def test_the_package_exports_what_the_design_names() -> None:
+    expected = """eeruf.Schedule eeruf.Schedule.verify eeruf.WaitSearch.best eeruf.design eeruf.EchoFilter.push_many eeruf.Ring.poll
+        eeruf.Found.bound_us eeruf.sweep eeruf.sim.Scene.paths eeruf.sim.simulate eeruf.sim.Readings.summary
+        eeruf.experiments.set_one eeruf.experiments.set_two eeruf.plot.timing eeruf.plot.scene eeruf.plot.readings
+        eeruf.plot.course""".split()
+    assert set(expected) <= set(DOCUMENTED)
+
+
+@pytest.mark.parametrize("name", DOCUMENTED)
+def test_every_public_name_has_a_docstring(name: str) -> None:
+    said = DOCUMENTED[name].__doc__
+    assert said is not None
+    assert len(said.split()) > 2, said
+    assert said != getattr(type(DOCUMENTED[name]), "__doc__", None), "its own docstring, not its type's"
+
+
+@pytest.mark.parametrize("name", TOP)
+def test_every_public_class_and_function_has_an_example(name: str) -> None:
+    assert ">>>" in (DOCUMENTED[name].__doc__ or "")
+
+
+@pytest.mark.parametrize("name", [name for name, thing in DOCUMENTED.items() if ">>>" in (thing.__doc__ or "")])
+def test_an_example_in_a_docstring_holds(name: str) -> None:
+    test = doctest.DocTestParser().get_doctest(DOCUMENTED[name].__doc__, {}, name, None, None)
+    told: list[str] = []
+    failed, tried = doctest.DocTestRunner().run(test, out=told.append)
     assert tried > 0
+    assert failed == 0, "".join(told)
+
+
+@pytest.mark.parametrize("module", MODULES, ids=lambda module: str(module.__name__))
+def test_a_module_says_what_it_is_for(module: ModuleType) -> None:
+    failed, _ = doctest.testmod(module)
+    assert module.__doc__
     assert failed == 0
+
+
+@pytest.mark.parametrize("name", [name for name, thing in DOCUMENTED.items() if callable(thing)])
+def test_help_shows_the_arguments_of_what_can_be_called(name: str) -> None:
+    thing = DOCUMENTED[name]
+    if inspect.isclass(thing) and (issubclass(thing, Exception) or thing.__new__ is object.__new__):
+        return
+    if name.rsplit(".", 1)[1] in ("Paths", "Readings", "WaitTables", "PeriodEnded"):
+        # Only functions return them.
+        return
+    parameters = [parameter for parameter in inspect.signature(thing).parameters if parameter not in ("self", "cls")]
+    said = thing.__doc__ or ""
+    if inspect.isclass(thing) and "Args:" not in said:
+        return
+    assert all(f"    {parameter}: " in said for parameter in parameters), parameters
+
+
+def listings(document: str) -> list[str]:
+    """The blocks of Python in a document."""
+    return re.findall(r"^```python\n(.*?)^```$", (ROOT / document).read_text(), flags=re.M | re.S)
+
+
+@pytest.mark.parametrize(("document", "least"), [("README.md", 1), ("docs/python.md", 8)])
+def test_the_listings_of_a_document_run_from_top_to_bottom(
+    document: str, least: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    blocks = listings(document)
+    assert len(blocks) >= least
+    shutil.copytree(ROOT / "scenes", tmp_path / "scenes")
+    monkeypatch.chdir(tmp_path)
+    scope: dict[str, Any] = {}
+    for block in blocks:
+        exec(compile(block, document, "exec"), scope)

@@ -1,9 +1,11 @@
 """Whatever is wrong raises one clear error, and nothing panics."""
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Callable
 
 import eeruf
+import matplotlib.figure
 import numpy as np
 import pytest
 from eeruf import sim, tables
@@ -19,6 +21,11 @@ ANYTHING = st.one_of(
     st.text(max_size=3),
     st.lists(st.integers(-1, 2**33), max_size=3),
 )
+
+# For what a type checker would not let through.
+ANY: Any = eeruf
+WALL = sim.Scene([[0, 0, 1, 0]])
+ROOM = sim.Scene([[5, 2, -5, 2]], robots=[sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)])
 
 BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: eeruf.design(0, 1, 1, 1), eeruf.ArgumentError, "sensors = 0; expected a whole number from 1 to 64"),
@@ -43,6 +50,110 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: eeruf.experiments.set_one(0), eeruf.ArgumentError, "seeds = 0"),
     (lambda: eeruf.experiments.set_one(1, methods=["loud"]), eeruf.ArgumentError, "no method `loud`"),
     (lambda: eeruf.experiments.set_one(1, methods=[]), eeruf.ExperimentError, "no methods"),
+    # The same for what is no number at all, and for everything that came later.
+    (lambda: ANY.design("4", 1, 1, 1), eeruf.ArgumentError, "sensors = '4'; expected a whole number from 1 to 64"),
+    (lambda: ANY.design(4.0, 1, 1, 1), eeruf.ArgumentError, "sensors = 4.0"),
+    (lambda: ANY.design(True, 1, 1, 1), eeruf.ArgumentError, "sensors = True"),
+    (lambda: ANY.design(4, math.nan, 1, 1), eeruf.ArgumentError, "t_delta_us = nan"),
+    (
+        lambda: ANY.design(4, 1, 1, 1, stale_echo="yes"),
+        eeruf.ArgumentError,
+        "stale_echo = 'yes'; expected True or False",
+    ),
+    (lambda: eeruf.design(4, 1, 1, 1, layout="star"), eeruf.ArgumentError, "layout = 'star'; expected \"line\""),
+    (
+        lambda: eeruf.design(4, 1, 1, 1, layout=[(0, 64)]),
+        eeruf.ArgumentError,
+        r"layout = \[\(0, 64\)\]; expected pairs",
+    ),
+    (
+        lambda: ANY.design(4, 1, 1, 1, progress=3),
+        eeruf.ArgumentError,
+        "progress = 3; expected None, True or a callable",
+    ),
+    (lambda: eeruf.design(4, 1, 1, 1, budget=0), eeruf.ArgumentError, "budget = 0"),
+    (
+        lambda: ANY.tables.TABLE_I_D.verify(1, criterion="strict"),
+        eeruf.ArgumentError,
+        'criterion = \'strict\'; expected "exact" or "paper"',
+    ),
+    (lambda: eeruf.Schedule.from_toml("period_us ="), eeruf.ScheduleError, "."),
+    (lambda: eeruf.Schedule.from_json("{}"), eeruf.ScheduleError, "period_us"),
+    (lambda: ANY.Schedule.from_json(b"{}"), eeruf.ArgumentError, "text = b'{}'; expected a schedule in JSON"),
+    (lambda: tables.TABLE_I_D.scaled(1, 0), eeruf.ScheduleError, "0"),
+    (lambda: eeruf.Schedule(10, (), (), ()), eeruf.ScheduleError, "0 sensors"),
+    (lambda: eeruf.Schedule.from_firing(10, [0] * 65, [0] * 65), eeruf.ScheduleError, "65 sensors"),
+    (lambda: eeruf.Schedule.from_firing(10, [0], [-1]), eeruf.ArgumentError, r"t_fire_b_us\[0\] = -1"),
+    (lambda: eeruf.WaitSearch(4, 100, 10, 1, t_delta_us=1).best("speed"), eeruf.ArgumentError, "objective = 'speed'"),
+    (lambda: eeruf.WaitSearch(4, 100, 10, 1, t_delta_us=1).count(0), eeruf.ArgumentError, "limit = 0"),
+    (lambda: eeruf.EchoFilter(1, 500).push(0, -5), eeruf.ArgumentError, "t_echo_us = -5"),
+    (lambda: eeruf.EchoFilter(1, 500).push_many([[math.inf]]), eeruf.ArgumentError, r"t_echo_us\[0, 0\] = inf"),
+    (lambda: eeruf.EchoFilter(1, 500).push_many([["a"]]), eeruf.ArgumentError, "t_echo_us = .*array of floats"),
+    (lambda: eeruf.EchoFilter(2, 500).push_many(np.zeros(2)), eeruf.ArgumentError, r"shape of t_echo_us = \(2,\)"),
+    (lambda: ANY.Ring("I-d", 500, window_us=1), eeruf.ArgumentError, "schedule = 'I-d'; expected an eeruf.Schedule"),
+    (lambda: eeruf.Ring(tables.TABLE_I_D, 500, window_us=90_000), eeruf.RingError, "listening window of 90 ms"),
+    (lambda: eeruf.Fire(64), eeruf.ArgumentError, "sensor = 64; expected a whole number from 0 to 63"),
+    (lambda: eeruf.Reading(0, "loud"), eeruf.ArgumentError, "kind = 'loud'; expected \"first\" or"),
+    (
+        lambda: ANY.Report(1, 1, 1, 1, [3]),
+        eeruf.ArgumentError,
+        "violations = 3; expected a sequence of eeruf.Violation",
+    ),
+    (lambda: sim.Robot((0, 0), 8, 0.2, 0.3), eeruf.ArgumentError, r"pose = \(0, 0\); expected \(x, y, heading\)"),  # type: ignore[arg-type]
+    (lambda: sim.Robot((0, math.nan, 0), 8, 0.2, 0.3), eeruf.ArgumentError, r"pose\[1\] = nan"),
+    (lambda: sim.Robot((0, 0, 0), 65, 0.2, 0.3), eeruf.ArgumentError, "sensors = 65"),
+    (
+        lambda: sim.Robot((0, 0, 0), 8, 0.2, 0.3, "bat"),
+        eeruf.ArgumentError,
+        "transducer = 'bat'; expected \"polaroid_6500\"",
+    ),
+    (lambda: sim.Scene([[0, 0, 1, 0]], open=[1]), eeruf.ArgumentError, "open = 1; expected a whole number from 0 to 0"),
+    (lambda: sim.Scene([], open=[0]), eeruf.ArgumentError, r"open = \[0\]; expected no indices"),
+    (lambda: sim.Scene([], robots=[3]), eeruf.ArgumentError, "robots = 3; expected a sequence of eeruf.sim.Robot"),  # type: ignore[list-item]
+    (lambda: sim.Scene([], poles=[[0, 0, -1]]), eeruf.SceneError, "pole 0"),
+    (lambda: sim.Scene.from_toml("nowhere.toml"), eeruf.SceneError, "nowhere.toml"),
+    (lambda: sim.Scene.from_toml(3), eeruf.ArgumentError, "path = 3"),  # type: ignore[arg-type]
+    (lambda: WALL.paths((0, -1), [(1, -1)], 1001), eeruf.PathsError, "paths up to order 1001; expected at most 1000"),
+    (lambda: WALL.paths((0, -1), [(1, -1)], 1, math.nan), eeruf.ArgumentError, "max_length_m = nan"),
+    (lambda: WALL.paths((0, -1), [(1, -1)], 1, 0), eeruf.PathsError, "paths up to 0 m"),
+    (lambda: WALL.paths([(0, -1), (0, -2)], [(1, -1)], 1), eeruf.ArgumentError, "source = .*; expected one point"),
+    (lambda: WALL.paths((0, -1), (1, -1), 1).points(9), eeruf.ArgumentError, "path = 9"),
+    (lambda: sim.simulate(ROOM, "loud"), eeruf.ArgumentError, "no method `loud`; expected simultaneous"),
+    (lambda: sim.simulate(ROOM, periods=0), eeruf.ArgumentError, "periods = 0"),
+    (lambda: sim.simulate(ROOM, seed=-1), eeruf.ArgumentError, "seed = -1"),
+    (lambda: sim.simulate(3), eeruf.ArgumentError, "scene = 3; expected an eeruf.sim.Scene"),  # type: ignore[arg-type]
+    (lambda: sim.simulate(ROOM, periods=2).summary(-1), eeruf.ArgumentError, "tolerance_us = -1"),
+    (lambda: eeruf.experiments.set_one(100_001), eeruf.ArgumentError, "seeds = 100001; expected .* from 1 to 100000"),
+    (
+        lambda: eeruf.experiments.set_one(1, methods="eeruf"),
+        eeruf.ArgumentError,
+        "methods = 'eeruf'; expected a sequence",
+    ),
+    (lambda: eeruf.experiments.set_two(0), eeruf.ArgumentError, "seeds = 0"),
+    (lambda: eeruf.experiments.set_two(1, methods=[]), eeruf.ExperimentError, "no methods"),
+    (
+        lambda: eeruf.experiments.set_two(1, speed_m_s=9),
+        eeruf.ArgumentError,
+        "speed_m_s = 9; expected a number from 0.1 to 5",
+    ),
+    (lambda: eeruf.experiments.set_two(1, second_robot="here"), eeruf.ArgumentError, "second_robot = 'here'"),  # type: ignore[arg-type]
+    (lambda: eeruf.experiments.set_two(1, second_robot=(math.nan, 1)), eeruf.EerufError, "."),
+    (lambda: eeruf.experiments.set_two(1, t_delta_us=-1), eeruf.ArgumentError, "t_delta_us = -1"),
+    (lambda: eeruf.experiments.set_two(1, odometry="no"), eeruf.ArgumentError, "odometry = 'no'"),  # type: ignore[arg-type]
+    (lambda: eeruf.experiments.speed_sweep([]), eeruf.ArgumentError, r"speeds_m_s = \[\]; expected one speed or more"),
+    (lambda: eeruf.experiments.speed_sweep([1.0, -1]), eeruf.ArgumentError, r"speeds_m_s\[1\] = -1"),
+    (lambda: ANY.sweep(3, [1]), eeruf.ArgumentError, "function = 3"),
+    (lambda: ANY.sweep(abs, 3), eeruf.ArgumentError, "cases = 3; expected several cases"),
+    (lambda: ANY.sweep(abs, [1], executor=3), eeruf.ArgumentError, "executor = 3"),
+    (lambda: ANY.sweep(abs, [1], progress=3), eeruf.ArgumentError, "progress = 3"),
+    (lambda: ANY.plot.timing(3), eeruf.ArgumentError, "schedule = 3; expected an eeruf.Schedule"),
+    (lambda: ANY.plot.timing(tables.TABLE_I_D, window_us=-1), eeruf.ArgumentError, "window_us = -1"),
+    (lambda: ANY.plot.scene(3), eeruf.ArgumentError, "scene = 3; expected an eeruf.sim.Scene"),
+    (lambda: ANY.plot.scene(WALL, 3), eeruf.ArgumentError, "paths = 3; expected eeruf.sim.Paths"),
+    (lambda: ANY.plot.scene(WALL, source=(1, 2, 3)), eeruf.ArgumentError, "source = .*; expected one point"),
+    (lambda: ANY.plot.readings(3), eeruf.ArgumentError, "readings = 3; expected eeruf.sim.Readings"),
+    (lambda: ANY.plot.readings(sim.simulate(ROOM, periods=2), sensor=99), eeruf.ArgumentError, "sensor = 99; expected"),
+    (lambda: ANY.plot.methods(3), eeruf.ArgumentError, "result = 3; expected what eeruf.experiments.set_one"),
 ]
 
 
@@ -56,22 +167,111 @@ def test_bad_input_is_told_by_name_value_and_expectation(
     assert isinstance(told.value, ValueError)
 
 
+# Whole calls of all kinds; numbers stay small where more would only take long.
+SMALL = st.one_of(
+    st.none(), st.booleans(), st.integers(-2, 3), st.floats(), st.text(max_size=2), st.lists(st.floats(), max_size=3)
+)
+ARRAY = st.one_of(
+    ANYTHING,
+    st.lists(st.lists(st.floats(), min_size=2, max_size=4), max_size=3),
+    st.lists(st.lists(st.floats(-9, 9), min_size=4, max_size=4), max_size=3),
+)
+
+
 @settings(deadline=None)
 @given(st.lists(ANYTHING, min_size=4, max_size=4), ANYTHING)
-def test_nothing_panics_whatever_it_is_given(arguments: list[Any], layout: Any) -> None:
-    design: Any = eeruf.design
-    calls: list[Callable[[], Any]] = [
-        lambda: design(*arguments, layout=layout, budget=100),
-        lambda: eeruf.Schedule(*arguments),
-        lambda: eeruf.Schedule.from_firing(*arguments[:3]),
-        lambda: tables.TABLE_I_D.verify(arguments[0], arguments[1], arguments[2], layout),
+def test_the_core_never_panics_whatever_it_is_given(arguments: list[Any], layout: Any) -> None:
+    refuse(
+        lambda: ANY.design(*arguments, layout=layout, budget=100),
+        lambda: ANY.design(4, 999, 15_000, 36_000, *arguments[:2], layout, *arguments[2:]),
+        lambda: ANY.Schedule(*arguments),
+        lambda: ANY.Schedule.from_firing(*arguments[:3]),
+        lambda: ANY.Schedule.from_toml(arguments[0]),
+        lambda: ANY.Schedule.from_json(arguments[0]),
+        lambda: ANY.tables.TABLE_I_D.verify(*arguments[:3], layout, *arguments[2:], arguments[0]),
+        lambda: tables.TABLE_I_D.to_rust(arguments[0], arguments[1], arguments[2], layout),
+        lambda: tables.TABLE_I_D.to_c(arguments[0], arguments[1], arguments[2], layout),
         lambda: tables.TABLE_I_D.scaled(*arguments[:2]),
-        lambda: eeruf.EchoFilter(arguments[0], arguments[1], arguments[2]).push(0, arguments[3]),
-        lambda: eeruf.Ring(tables.TABLE_I_D, arguments[0], arguments[1], window_us=arguments[2]).poll(arguments[3]),
-        lambda: sim.Scene([[0, 0, 1, 0]], open=layout).paths(arguments[0], arguments[1], arguments[2]),
-    ]
+        lambda: ANY.WaitSearch(4, *arguments[:3], arguments[3], t_delta_us=layout).first(),
+        lambda: ANY.WaitSearch(arguments[0], 100, 10, 1, arguments[1], t_delta_us=arguments[2], layout=layout).count(
+            10
+        ),
+        lambda: ANY.WaitSearch(4, 100, 10, 1, t_delta_us=1).best(arguments[0], arguments[1]),
+        lambda: ANY.EchoFilter(arguments[0], arguments[1], arguments[2]).push(0, arguments[3]),
+        lambda: ANY.EchoFilter(4, 500).push(arguments[0], arguments[1], arguments[2]),
+        lambda: ANY.EchoFilter(4, 500).forget(arguments[0]),
+        lambda: ANY.Ring(tables.TABLE_I_D, arguments[0], arguments[1], window_us=arguments[2]).poll(arguments[3]),
+        lambda: ANY.Ring(arguments[0], 500, window_us=36_000),
+        lambda: ANY.Ring(tables.TABLE_I_D, 500, window_us=36_000).echo(arguments[0], arguments[1]),
+        lambda: ANY.Ring(tables.TABLE_I_D, 500, window_us=36_000).disable(arguments[0]),
+        lambda: ANY.Fire(arguments[0]),
+        lambda: ANY.Reading(*arguments),
+        lambda: ANY.Violation(*arguments, layout, arguments[0]),
+        lambda: ANY.Report(*arguments, layout),
+        lambda: ANY.Found(*arguments, layout, arguments[0]),
+    )
+
+
+@settings(deadline=None)
+@given(ARRAY, ARRAY, st.lists(SMALL, min_size=6, max_size=6))
+def test_the_simulator_never_panics_whatever_it_is_given(array: Any, other: Any, arguments: list[Any]) -> None:
+    refuse(
+        lambda: ANY.EchoFilter(2, 500).push_many(array),
+        lambda: ANY.sim.Scene(array, arguments[0], arguments[1], other),
+        lambda: ANY.sim.Scene(array, poles=other).paths(arguments[0], arguments[1], arguments[2], arguments[3]),
+        lambda: ANY.sim.Scene(array).paths((0.3, 0.7), other, 2),
+        lambda: ANY.sim.Scene(
+            array, noise=arguments[0], seed=arguments[1], max_order=arguments[2], robots=arguments[3]
+        ),
+        lambda: ANY.sim.Scene(array, robots=[ROBOT]),
+        lambda: WALL.paths(array, other, 2).points(arguments[0]),
+        lambda: ANY.sim.Scene.from_toml(arguments[0]),
+        lambda: ANY.sim.Robot(array, 8, *arguments[:2]),
+        lambda: ANY.sim.Robot((0, 0, 1.5), 8, arguments[0], arguments[1], arguments[2], period_us=arguments[3]),
+        lambda: ANY.sim.Robot(
+            (0, 0, 1.5), 8, 0.2, 0.3, t_delta_us=arguments[0], window_us=arguments[1], schedule=arguments[2]
+        ),
+        lambda: ANY.sim.simulate(ROOM, arguments[0], arguments[1], arguments[2]),
+        lambda: ANY.sim.simulate(ROOM, periods=arguments[0], progress=arguments[1]),
+        lambda: ANY.sim.simulate(ROOM, periods=3).summary(arguments[0]),
+        lambda: ANY.sim.simulate(ROOM, periods=3).is_wrong(arguments[0]),
+    )
+
+
+@settings(deadline=None, max_examples=50)
+@given(ARRAY, st.lists(SMALL, min_size=6, max_size=6))
+def test_experiments_sweeps_and_figures_never_panic_whatever_they_are_given(array: Any, arguments: list[Any]) -> None:
+    one, two, three, four, *_ = arguments
+    refuse(
+        lambda: ANY.experiments.set_one(one, readings=two, methods=three or ["eeruf"], progress=four),
+        lambda: ANY.experiments.set_two(1, methods=["eeruf"], second_robot=array, speed_m_s=one, odometry=two),
+        lambda: ANY.experiments.set_two(one, methods=two or ["eeruf"], t_delta_us=three, first=four),
+        lambda: ANY.experiments.speed_sweep(array, seeds=1, methods=["eeruf"]),
+        lambda: ANY.sweep(one, two, executor=INLINE, progress=three),
+        lambda: ANY.sweep(repr, two, executor=INLINE, progress=three),
+        lambda: ANY.plot.timing(one, window_us=two),
+        lambda: ANY.plot.timing(tables.TABLE_I_D, window_us=one, ax=AX),
+        lambda: ANY.plot.scene(WALL, one, source=two, receivers=array, most=three, ax=AX),
+        lambda: ANY.plot.readings(FEW, sensor=one, robot=two, first=three, count=four, ax=AX),
+        lambda: ANY.plot.methods({"methods": one}, figure=two, ax=AX),
+        lambda: ANY.plot.methods(STANDING, figure=one, names=two, ax=AX),
+        lambda: ANY.plot.course(DRIVING, method=one, course=two, ax=AX),
+        lambda: ANY.plot.course(array, ax=AX),
+    )
+
+
+def refuse(*calls: Callable[[], Any]) -> None:
+    """Calls work, or say what is wrong; nothing else."""
     for call in calls:
         try:
             call()
-        except (eeruf.EerufError, TypeError):
-            pass
+        except eeruf.EerufError as error:
+            assert len(str(error)) > 10
+
+
+ROBOT = sim.Robot((0.3, 0.7, 1.57), 2, 0.26, 0.1)
+INLINE = ThreadPoolExecutor(1)
+AX = matplotlib.figure.Figure().subplots()
+FEW = sim.simulate(ROOM, periods=3)
+STANDING = eeruf.experiments.set_one(1, readings=8, methods=["eeruf"])
+DRIVING = eeruf.experiments.set_two(1, methods=["eeruf"])

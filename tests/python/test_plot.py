@@ -6,7 +6,7 @@ import eeruf
 import matplotlib
 import numpy as np
 import pytest
-from eeruf import plot, sim, tables
+from eeruf import experiments, plot, sim, tables
 
 matplotlib.use("Agg")
 ALCOVE = Path(__file__).parents[2] / "scenes" / "alcove.toml"
@@ -38,5 +38,47 @@ def test_methods_are_drawn_worst_first_in_percent() -> None:
     assert [label.get_text() for label in ax.get_yticklabels()] == ["conventional", "eeruf"]
     median = result["methods"]["conventional"]["wrong_of_all"]["median"]
     assert ax.patches[0].get_width() == pytest.approx(100 * median)  # type: ignore[attr-defined]
-    with pytest.raises(KeyError, match="beauty"):
+    with pytest.raises(eeruf.ArgumentError, match="figure = 'beauty'; expected one of age_ms"):
         plot.methods(result, figure="beauty")
+    with pytest.raises(eeruf.ArgumentError, match=r"names = \['loud'\]; expected some of eeruf, conventional"):
+        plot.methods(result, names=["loud"])
+
+
+def test_set_two_is_drawn_by_counts_and_shares() -> None:
+    found = experiments.set_two(seeds=2, methods=["eeruf", "conventional"])
+    ax = plot.methods(found, figure="finished")
+    assert [patch.get_width() for patch in ax.patches] == [2, 0]  # type: ignore[attr-defined]
+    assert ax.get_xlabel() == "courses finished"
+    ax = plot.methods(found, figure="rejected")
+    assert ax.get_xlabel() == "readings not accepted (%)"
+    assert ax.patches[0].get_width() == pytest.approx(100 * found["methods"]["eeruf"]["rejected"])  # type: ignore[attr-defined]
+
+
+def test_a_course_shows_poles_grid_track_and_the_last_place() -> None:
+    import matplotlib.pyplot as plt
+
+    found = experiments.set_two(seeds=2, methods=["conventional", "eeruf"], second_robot="ahead")
+    run = found.runs["conventional"][1]
+    ax = plt.subplots()[1]
+    assert plot.course(found, method="conventional", course=1, ax=ax) is ax
+    drawn = {line.get_label(): line for line in ax.lines}
+    assert drawn["pole"].get_xdata() == pytest.approx(run.poles[:, 0])
+    track = drawn["track, outline every second"]
+    assert (track.get_xdata()[-1], track.get_ydata()[-1]) == tuple(run.track[-1, 1:3])  # type: ignore[index]
+    assert np.array_equal(np.asarray(ax.collections[0].get_array()), run.grid[:, 2])
+    circles = [patch for patch in ax.patches if isinstance(patch, matplotlib.patches.Circle)]
+    assert [circle.get_center() for circle in circles] == [pytest.approx((9.4, 5.3))]
+    assert ax.get_title(loc="left").startswith("conventional, course 1: touched something after")
+
+
+def test_a_run_alone_is_drawn_as_well_and_what_is_none_is_refused() -> None:
+    found = experiments.set_two(seeds=1, methods=["eeruf"])
+    assert plot.course(found.runs["eeruf"][0]).get_title(loc="left").startswith("course 0: finished after")
+    for arguments, message in [
+        ({"method": "loud"}, "method = 'loud'; expected one of eeruf"),
+        ({"course": 7}, "course = 7; expected 0 to 0"),
+    ]:
+        with pytest.raises(eeruf.ArgumentError, match=message):
+            plot.course(found, **arguments)  # type: ignore[arg-type]
+    with pytest.raises(eeruf.ArgumentError, match="expected what eeruf"):
+        plot.course({"methods": {}})  # type: ignore[arg-type]

@@ -1,5 +1,5 @@
 //! `cargo xtask python`: builds the wheel once, installs it into a virtual environment of its own, and holds it against its
-//! tests, its types and its examples.
+//! tests, its types and its examples, and against what Rust says.
 
 use std::env::consts::EXE_SUFFIX;
 use std::fs;
@@ -17,15 +17,31 @@ pub(crate) fn python() -> Result<(), Trouble> {
     if wheels.exists() {
         fs::remove_dir_all(&wheels).map_err(|error| Trouble::Failed(format!("{}: {error}", wheels.display())))?;
     }
-    let tool = |name: &str| Command::new(python.with_file_name(format!("{name}{EXE_SUFFIX}")));
+    let tool = |name: &str| {
+        let mut command = Command::new(&python);
+        command.args(["-m", name]);
+        command
+    };
     run(tool("maturin").args(["build", "--locked", "--out"]).arg(&wheels))?;
     let wheel = only_file(&wheels)?;
-    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--force-reinstall", "--no-deps"]).arg(&wheel))?;
-    run(tool("ruff").args(["check", "python", "tests/python"]))?;
-    run(tool("ruff").args(["format", "--check", "python", "tests/python"]))?;
-    run(tool("mypy").args(["tests/python"]))?;
-    run(tool("stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
-    run(tool("pytest").env("EERUF_WHEEL", &wheel))
+    run(tool("pip").args(["install", "--quiet", "--force-reinstall", "--no-deps"]).arg(&wheel))?;
+    run(tool("ruff").args(["check", "python", "tests/python", "benches/python"]))?;
+    run(tool("ruff").args(["format", "--check", "python", "tests/python", "benches/python"]))?;
+    run(tool("mypy").args(["tests/python", "benches/python"]))?;
+    run(tool("mypy.stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
+    fresh(&wheel)?;
+    // What Python is held against: the program, and the paths of the corpus.
+    let mut cargo = Command::new("cargo");
+    cargo.args(["build", "--locked", "--package", "eeruf", "--package", "eeruf-sim"]);
+    run(cargo.args(["--bin", "eeruf", "--example", "rust_side"]))?;
+    let built = |name: &str| std::path::absolute(format!("target/debug/{name}{EXE_SUFFIX}"));
+    let (program, rust_side) = match (built("eeruf"), built("examples/rust_side")) {
+        (Ok(program), Ok(rust_side)) => (program, rust_side),
+        (Err(error), _) | (_, Err(error)) => return Err(Trouble::Failed(error.to_string())),
+    };
+    let mut tests = tool("pytest");
+    tests.env("EERUF_WHEEL", &wheel).env("EERUF_PROGRAM", program).env("EERUF_RUST_SIDE", rust_side);
+    run(&mut tests)
 }
 
 /// A virtual environment with what the tests need; its Python.
@@ -33,7 +49,7 @@ fn environment(home: &Path) -> Result<PathBuf, Trouble> {
     if output(Command::new("python3").args(["-c", "import venv, ensurepip"])).is_none() {
         return Err(Trouble::Skipped("python3 with venv is not installed".to_owned()));
     }
-    let python = home.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    let python = interpreter(home);
     if !python.exists() {
         run(Command::new("python3").args(["-m", "venv"]).arg(home))?;
     }
@@ -41,6 +57,28 @@ fn environment(home: &Path) -> Result<PathBuf, Trouble> {
     run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--upgrade", "pip>=25.1"]))?;
     run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--group", "test", "numpy"]))?;
     Ok(python)
+}
+
+/// What a user does first: the wheel in an empty environment, and the README's lines beside the scenes.
+fn fresh(wheel: &Path) -> Result<(), Trouble> {
+    let home = Path::new("target/python-fresh");
+    run(Command::new("python3").args(["-m", "venv", "--clear"]).arg(home))?;
+    let python = interpreter(home);
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).arg(format!("{}[plot]", wheel.display())))?;
+    run(Command::new(&python).args(["-c", README_LINES]).env("MPLBACKEND", "Agg"))
+}
+
+const README_LINES: &str = r#"
+import os, pathlib, re, shutil
+lines = re.search(r"^## In Python$.*?^```python\n(.*?)^```$", pathlib.Path("README.md").read_text(), re.M | re.S)[1]
+shutil.copytree("scenes", "target/python-fresh/scenes")
+os.chdir("target/python-fresh")
+exec(lines)
+assert pathlib.Path("timing.png").stat().st_size > 5_000
+"#;
+
+fn interpreter(home: &Path) -> PathBuf {
+    home.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" })
 }
 
 fn only_file(folder: &Path) -> Result<PathBuf, Trouble> {

@@ -657,7 +657,8 @@ impl fmt::Display for RingError {
         match self {
             Self::Window { window, min_refire } => write!(
                 f,
-                "a listening window of {window}; a sensor of this schedule fires again after {min_refire},                  expected a window no longer than that (T_wind)"
+                "a listening window of {window}; a sensor of this schedule fires again after {min_refire}, \
+                 expected a window no longer than that (T_wind)"
             ),
             Self::Blanking { blanking, window } => {
                 write!(f, "a blanking time of {blanking}; expected less than the window of {window}")

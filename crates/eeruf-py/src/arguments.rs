@@ -14,7 +14,7 @@ pub(crate) fn wrong(name: &str, value: impl Display, expected: impl Display) -> 
     ArgumentError::new_err(format!("{name} = {value}; expected {expected}"))
 }
 
-fn shown(value: &Bound<'_, PyAny>) -> String {
+pub(crate) fn shown(value: &Bound<'_, PyAny>) -> String {
     let text = value.repr().map_or_else(|_| "?".to_owned(), |text| text.to_string());
     if text.chars().count() > 60 { text.chars().take(57).collect::<String>() + "..." } else { text }
 }
@@ -50,7 +50,55 @@ pub(crate) fn whole_or<T: TryFrom<i128> + TryInto<i128> + Copy>(
     value.map_or(Ok(default), |value| whole(name, value, range))
 }
 
-/// A finite number within a range.
+/// As [`whole_or`], where no number is `None`.
+pub(crate) fn whole_or_none<T: TryFrom<i128> + TryInto<i128> + Copy>(
+    name: &str,
+    value: Option<&Bound<'_, PyAny>>,
+    range: RangeInclusive<T>,
+) -> PyResult<Option<T>> {
+    value.map(|value| whole(name, value, range)).transpose()
+}
+
+/// `True` or `False`, Python's or `NumPy`'s.
+pub(crate) fn flag(name: &str, value: Option<&Bound<'_, PyAny>>, default: bool) -> PyResult<bool> {
+    let Some(value) = value else { return Ok(default) };
+    value.extract().map_err(|_| wrong(name, shown(value), "True or False"))
+}
+
+/// A text.
+pub(crate) fn text(name: &str, value: &Bound<'_, PyAny>, expected: &str) -> PyResult<String> {
+    value.extract().map_err(|_| wrong(name, shown(value), expected))
+}
+
+/// A text out of a few, or the first of them where there is none.
+pub(crate) fn choice<T: Copy>(name: &str, value: Option<&Bound<'_, PyAny>>, of: &[(&str, T)]) -> PyResult<T> {
+    let said = value.map(|value| value.extract::<String>().unwrap_or_default());
+    let found = of.iter().find(|(text, _)| said.as_deref().is_none_or(|said| said == *text));
+    found.map(|(_, choice)| *choice).ok_or_else(|| {
+        let expected = of.iter().map(|(text, _)| format!("\"{text}\"")).collect::<Vec<_>>().join(" or ");
+        wrong(name, value.map(shown).unwrap_or_default(), expected)
+    })
+}
+
+/// An instance of one of our classes.
+pub(crate) fn instance<'a, 'py, T: pyo3::PyTypeInfo>(
+    name: &str,
+    value: &'a Bound<'py, PyAny>,
+    expected: &str,
+) -> PyResult<&'a Bound<'py, T>> {
+    value.cast().map_err(|_| wrong(name, shown(value), expected))
+}
+
+/// Several things: any sequence or iterator, but no text.
+pub(crate) fn items<'py>(name: &str, value: &Bound<'py, PyAny>, expected: &str) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    let refused = || wrong(name, shown(value), expected);
+    if value.is_instance_of::<pyo3::types::PyString>() {
+        return Err(refused());
+    }
+    value.try_iter().map_err(|_| refused())?.collect()
+}
+
+/// A number within a range, which `NaN` is not.
 pub(crate) fn number(name: &str, value: &Bound<'_, PyAny>, range: RangeInclusive<f64>) -> PyResult<f64> {
     match value.extract::<f64>() {
         Ok(number) if range.contains(&number) => Ok(number),
@@ -61,12 +109,8 @@ pub(crate) fn number(name: &str, value: &Bound<'_, PyAny>, range: RangeInclusive
 /// One time for each sensor, in whole microseconds.
 pub(crate) fn times(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<Micros>> {
     let expected = "a sequence of whole numbers of microseconds, one for each sensor";
-    let items = value.try_iter().map_err(|_| wrong(name, shown(value), expected))?;
-    let mut times = Vec::new();
-    for (index, item) in items.enumerate() {
-        times.push(micros(&format!("{name}[{index}]"), &item?)?);
-    }
-    Ok(times)
+    let items = items(name, value, expected)?.into_iter().enumerate();
+    items.map(|(index, item)| micros(&format!("{name}[{index}]"), &item)).collect()
 }
 
 /// A matrix of floats with so many columns.
@@ -144,13 +188,9 @@ impl OwnedLayout {
     }
 }
 
-/// How to read (13a), (13b).
-pub(crate) fn criterion(name: &str) -> PyResult<Criterion> {
-    match name {
-        "exact" => Ok(Criterion::Exact),
-        "paper" => Ok(Criterion::Paper),
-        _ => Err(wrong("criterion", format_args!("{name:?}"), "\"exact\" or \"paper\"")),
-    }
+/// How to read (13a), (13b): exactly unless it is said.
+pub(crate) fn criterion(value: Option<&Bound<'_, PyAny>>) -> PyResult<Criterion> {
+    choice("criterion", value, &[("exact", Criterion::Exact), ("paper", Criterion::Paper)])
 }
 
 /// What a schedule must meet, as `verify`, `to_rust` and `to_c` take it.

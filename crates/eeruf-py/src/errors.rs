@@ -2,7 +2,21 @@
 
 use pyo3::{create_exception, exceptions::PyValueError, prelude::*};
 
-create_exception!(eeruf, EerufError, PyValueError, "Something eeruf cannot do with what it was given.");
+create_exception!(
+    eeruf,
+    EerufError,
+    PyValueError,
+    "Something eeruf cannot do with what it was given; a ``ValueError``, and the base of all others.
+
+Example:
+    >>> import eeruf
+    >>> try:
+    ...     eeruf.design(sensors=65, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
+    ... except eeruf.EerufError as error:
+    ...     print(error)
+    sensors = 65; expected a whole number from 1 to 64
+"
+);
 
 macro_rules! errors {
     ($($name:ident $doc:literal $(from $($rust:ty),+)?;)*) => {$(
@@ -21,14 +35,78 @@ pub(crate) trait Raise {
 }
 
 errors! {
-    ArgumentError "An argument of the wrong type, shape or range, which it names.";
-    ScheduleError "Numbers that make no schedule." from eeruf_core::ScheduleError;
-    FilterError "A filter that cannot compare as asked." from eeruf_core::FilterError;
-    RingError "A ring that cannot listen as asked." from eeruf_core::RingError;
-    SearchError "Needs that make no sense or are too large to search." from eeruf_core::search::SearchError;
-    SceneError "Walls, poles, robots or noise that make no scene."
-        from eeruf_sim::SceneError, eeruf_sim::WorldError, eeruf_sim::WorldFileError;
-    PathsError "Paths that cannot be found." from eeruf_sim::PathsError;
-    SimulationError "A simulation that cannot be run." from eeruf_sim::SimulationError;
-    ExperimentError "An experiment that cannot be run." from eeruf_sim::experiments::ExperimentError;
+    ArgumentError "An argument of the wrong type, shape or range, which it names.
+
+Example:
+    >>> import eeruf
+    >>> eeruf.EchoFilter(sensors=0, t_delta_us=500)
+    Traceback (most recent call last):
+    eeruf.ArgumentError: sensors = 0; expected a whole number from 1 to 64
+";
+    ScheduleError "Numbers that make no schedule.
+
+Example:
+    >>> import eeruf
+    >>> eeruf.Schedule.from_firing(40_000, [0, 50_000], [0, 2_000])
+    Traceback (most recent call last):
+    eeruf.ScheduleError: sensor 2 fires 50 ms into phase a; expected less than the period of 40 ms
+" from eeruf_core::ScheduleError;
+    FilterError "A filter that cannot compare as asked.
+
+Example:
+    >>> import eeruf
+    >>> eeruf.EchoFilter(4, 500, consecutive=9)
+    Traceback (most recent call last):
+    eeruf.FilterError: 9 consecutive readings; expected 2 to 8
+" from eeruf_core::FilterError;
+    RingError "A ring that cannot listen as asked.
+
+Example:
+    >>> import eeruf
+    >>> eeruf.Ring(eeruf.tables.TABLE_I_D, 500, window_us=0)
+    Traceback (most recent call last):
+    eeruf.RingError: a blanking time of 0 us; expected less than the window of 0 us
+" from eeruf_core::RingError;
+    SearchError "Needs that make no sense or are too large to search.
+
+Example:
+    >>> import eeruf
+    >>> eeruf.WaitSearch(4, 40_000, 8_000, tick_us=3_000, t_delta_us=999)
+    Traceback (most recent call last):
+    eeruf.SearchError: a lag of 10 ms; expected a whole number of ticks of 3 ms
+" from eeruf_core::search::SearchError;
+    SceneError "Walls, poles, robots or noise that make no scene.
+
+Example:
+    >>> import eeruf
+    >>> eeruf.sim.Scene([[0, 0, 0, 0]])
+    Traceback (most recent call last):
+    eeruf.SceneError: wall 0 is 0 m long; expected at least 0.000001 m
+" from eeruf_sim::SceneError, eeruf_sim::WorldError, eeruf_sim::WorldFileError;
+    PathsError "Paths that cannot be found.
+
+Example:
+    >>> import eeruf
+    >>> eeruf.sim.Scene([[5, 2, -5, 2]]).paths((0, 0), (1, 0), max_order=1001)
+    Traceback (most recent call last):
+    eeruf.PathsError: paths up to order 1001; expected at most 1000
+" from eeruf_sim::PathsError;
+    SimulationError "A simulation that cannot be run.
+
+Example:
+    >>> import eeruf
+    >>> robot = eeruf.sim.Robot((0, 0, 0), sensors=8, spacing_rad=0.26, radius_m=0.3, window_us=90_000)
+    >>> scene = eeruf.sim.Scene([[5, 2, -5, 2]], robots=[robot])
+    >>> eeruf.sim.simulate(scene)
+    Traceback (most recent call last):
+    eeruf.SimulationError: robot 1, method eeruf: a listening window of 90 ms; a sensor of this schedule fires again after 45.6 ms, expected a window no longer than that (T_wind)
+" from eeruf_sim::SimulationError;
+    ExperimentError "An experiment that cannot be run.
+
+Example:
+    >>> import eeruf
+    >>> eeruf.experiments.set_one(seeds=1, methods=[])
+    Traceback (most recent call last):
+    eeruf.ExperimentError: no methods; expected at least one
+" from eeruf_sim::experiments::ExperimentError;
 }

@@ -1,58 +1,56 @@
-//! The paper's experiments. Their tables come as JSON, with the names that `eeruf experiment --json` uses.
+//! The paper's experiments. Their tables come as JSON, with the names that `eeruf experiment --json` uses; what users call is
+//! in `python/eeruf/experiments.py`.
 
-use std::sync::{
-    Mutex,
-    atomic::{AtomicBool, Ordering},
-};
-use std::time::Duration;
-
+use eeruf_core::Micros;
 use eeruf_sim::{
-    Method,
-    best::best_for,
-    experiments::set_one::{Alcove, READINGS, set_one as table_of},
+    Method, Robot,
+    best::{Best, best_for},
+    experiments::{
+        set_one::{self as first_set, Alcove, READINGS},
+        set_two::{
+            self as second_set, Course, Ending, POLE_RADIUS_M, Run, SECOND_AHEAD, SECOND_BEHIND, SetTwoOptions,
+            SpeedStep,
+        },
+    },
+    labmate::LabMate,
 };
-use pyo3::prelude::*;
+use numpy::{PyArray1, PyArray2, prelude::*};
+use pyo3::{
+    prelude::*,
+    types::{PyDict, PyList},
+};
+use serde::Serialize;
 
 use crate::{
-    arguments::whole_or,
+    arguments::{flag, items, micros, number, points, shown, whole, whole_or, wrong},
     errors::{ArgumentError, Raise},
     readings::method,
-    watch::Watch,
+    watch::{Aside, aside},
 };
 
-/// How many nodes the schedule of `eeruf_best` may cost, as in the program.
-const BEST_BUDGET: u64 = 2_000_000;
+/// How many nodes the search for `eeruf_best` may cost, as in the program; it is proven shortest long before.
+pub(crate) const BEST_BUDGET: u64 = 300_000;
+/// As many as the program allows.
+const SEEDS_MOST: u64 = 100_000;
+/// `T_delta` of a robot that does not know how it moves, as in the program.
+const WITHOUT_ODOMETRY: Micros = Micros::new(500);
 
-/// Runs work that uses all cores on a thread of its own, while the thread that called looks after Ctrl-C and progress:
-/// signals reach Python only there.
-pub(crate) fn beside<T: Send>(
-    py: Python<'_>,
-    progress: Option<&Bound<'_, PyAny>>,
-    text: &str,
-    work: impl FnOnce(&(dyn Fn(f64) -> bool + Sync)) -> PyResult<T> + Send,
-) -> PyResult<T> {
-    let mut watch = Watch::new(progress)?;
-    let result = py.detach(|| {
-        let (stopped, share) = (AtomicBool::new(false), Mutex::new(0.0_f64));
-        let keep_going = |done: f64| {
-            if let Ok(mut share) = share.lock() {
-                *share = share.max(done);
-            }
-            !stopped.load(Ordering::Relaxed)
-        };
-        std::thread::scope(|scope| {
-            let worker = scope.spawn(|| work(&keep_going));
-            while !worker.is_finished() {
-                std::thread::sleep(Duration::from_millis(10));
-                let done = share.lock().map_or(0.0, |share| *share);
-                if !watch.go_on(Some(done), || text.to_owned()) {
-                    stopped.store(true, Ordering::Relaxed);
-                }
-            }
-            worker.join().unwrap_or_else(|_| Err(ArgumentError::new_err("the experiment ended early")))
-        })
-    });
-    watch.outcome(result)
+fn json(table: &impl Serialize) -> PyResult<String> {
+    serde_json::to_string(table).map_err(|error| ArgumentError::new_err(error.to_string()))
+}
+
+fn methods(names: Option<&Bound<'_, PyAny>>, default: &[Method]) -> PyResult<Vec<Method>> {
+    let Some(names) = names else { return Ok(default.to_vec()) };
+    let names = items("methods", names, "a sequence of names of eeruf.sim.METHODS")?;
+    names.iter().map(|name| method("methods", name)).collect()
+}
+
+/// What `eeruf_best` fires by, if it is asked for.
+fn best(methods: &[Method], robot: &Robot, aside: &Aside) -> PyResult<Option<Best>> {
+    let asked = methods.contains(&Method::EerufBest);
+    asked
+        .then(|| best_for(robot, BEST_BUDGET, |_| aside.go_on(None, || "designing".to_owned())).map_err(Raise::raise))
+        .transpose()
 }
 
 /// Set I over many geometries.
@@ -62,20 +60,164 @@ pub(crate) fn set_one(
     py: Python<'_>,
     seeds: &Bound<'_, PyAny>,
     readings: Option<&Bound<'_, PyAny>>,
-    methods: Option<Vec<String>>,
+    methods: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
-    let seeds = whole_or("seeds", Some(seeds), 0, 1..=u64::MAX)?;
+    let seeds = whole("seeds", seeds, 1..=SEEDS_MOST)?;
     let readings = whole_or("readings", readings, READINGS, 1..=u32::MAX)?;
-    let methods = match methods {
-        None => Method::ALL.to_vec(),
-        Some(names) => names.iter().map(|name| method(name)).collect::<PyResult<_>>()?,
-    };
-    beside(py, progress, "Set I", |keep_going| {
-        let needs_best = methods.contains(&Method::EerufBest);
-        let best = |robot| best_for(robot, BEST_BUDGET, |_| keep_going(0.0)).map_err(Raise::raise);
-        let best = if needs_best { Some(best(&Alcove::random(0).robot())?) } else { None };
-        let table = table_of(seeds, readings, &methods, best.as_ref(), keep_going).map_err(Raise::raise)?;
-        serde_json::to_string(&table).map_err(|error| ArgumentError::new_err(error.to_string()))
+    let methods = self::methods(methods, &Method::ALL)?;
+    aside(py, progress, move |aside| {
+        let best = best(&methods, &Alcove::random(0).robot(), aside)?;
+        let keep_going = |done| aside.go_on(Some(done), || format!("{seeds} alcoves"));
+        let table = first_set::set_one(seeds, readings, &methods, best.as_ref(), &keep_going).map_err(Raise::raise)?;
+        json(&table)
     })
+}
+
+/// What is asked of Set II, as Python gives it.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Asked<'py> {
+    seeds: Bound<'py, PyAny>,
+    first: Bound<'py, PyAny>,
+    methods: Option<Bound<'py, PyAny>>,
+    second_robot: Option<Bound<'py, PyAny>>,
+    speed_m_s: Bound<'py, PyAny>,
+    odometry: Bound<'py, PyAny>,
+    t_delta_us: Option<Bound<'py, PyAny>>,
+}
+
+fn speed(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    number(name, value, 0.1..=5.0)
+}
+
+impl Asked<'_> {
+    fn options(self) -> PyResult<SetTwoOptions> {
+        let default = SetTwoOptions::default();
+        let odometry = flag("odometry", Some(&self.odometry), true)?;
+        let t_delta = self.t_delta_us.map(|value| micros("t_delta_us", &value)).transpose()?;
+        Ok(SetTwoOptions {
+            seeds: whole("seeds", &self.seeds, 1..=SEEDS_MOST)?,
+            first: whole("first", &self.first, 0..=u64::from(u32::MAX))?,
+            methods: methods(self.methods.as_ref(), &default.methods)?,
+            second_robot: self.second_robot.as_ref().map(corner).transpose()?,
+            labmate: LabMate { speed_max_m_s: speed("speed_m_s", &self.speed_m_s)?, ..default.labmate },
+            odometry,
+            t_delta: t_delta.unwrap_or(if odometry { default.t_delta } else { WITHOUT_ODOMETRY }),
+            ..default
+        })
+    }
+}
+
+fn corner(value: &Bound<'_, PyAny>) -> PyResult<eeruf_sim::Point> {
+    let refused = || wrong("second_robot", shown(value), "\"behind\", \"ahead\" or a point (x, y) in metres");
+    match value.extract::<String>().as_deref() {
+        Ok("behind") => Ok(SECOND_BEHIND),
+        Ok("ahead") => Ok(SECOND_AHEAD),
+        Ok(_) => Err(refused()),
+        Err(_) => match points("second_robot", value).as_deref() {
+            Ok([at]) => Ok(*at),
+            _ => Err(refused()),
+        },
+    }
+}
+
+fn with_best(options: SetTwoOptions, aside: &Aside) -> PyResult<SetTwoOptions> {
+    let robot = Robot { t_delta: options.t_delta, ..Course::random(0).robot() };
+    Ok(SetTwoOptions { best: best(&options.methods, &robot, aside)?, ..options })
+}
+
+/// Set II over many courses: the table, and for each method the fields of each run.
+#[pyfunction]
+#[pyo3(name = "_set_two", signature = (asked, progress))]
+pub(crate) fn set_two<'py>(
+    py: Python<'py>,
+    asked: Asked<'py>,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<(String, Bound<'py, PyDict>)> {
+    let options = asked.options()?;
+    let found = aside(py, progress, move |aside| {
+        let options = with_best(options, aside)?;
+        let keep_going = |done| aside.go_on(Some(done), || format!("{} courses", options.seeds));
+        second_set::set_two(&options, &keep_going).map_err(Raise::raise)
+    })?;
+    let runs = PyDict::new(py);
+    for ((method, _), of_method) in found.methods.iter().zip(&found.runs) {
+        let fields = of_method.iter().map(|run| fields(py, run)).collect::<PyResult<Vec<_>>>()?;
+        runs.set_item(method.as_str(), PyList::new(py, fields)?)?;
+    }
+    Ok((json(&found)?, runs))
+}
+
+/// What a sweep tells, under the program's names.
+#[derive(Serialize)]
+struct Sweep {
+    seeds: u64,
+    second_robot_m: Option<[f64; 2]>,
+    steps: Vec<SpeedStep>,
+}
+
+/// Set II at several top speeds.
+#[pyfunction]
+#[pyo3(name = "_speed_sweep", signature = (speeds_m_s, asked, progress))]
+pub(crate) fn speed_sweep(
+    py: Python<'_>,
+    speeds_m_s: &Bound<'_, PyAny>,
+    asked: Asked<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<String> {
+    let expected = "one speed or more, in m/s";
+    let given = items("speeds_m_s", speeds_m_s, expected)?;
+    let named = given.iter().enumerate().map(|(place, value)| speed(&format!("speeds_m_s[{place}]"), value));
+    let speeds = named.collect::<PyResult<Vec<f64>>>()?;
+    if speeds.is_empty() {
+        return Err(wrong("speeds_m_s", "[]", expected));
+    }
+    let options = asked.options()?;
+    aside(py, progress, move |aside| {
+        let options = with_best(options, aside)?;
+        let keep_going =
+            |done| aside.go_on(Some(done), || format!("{} courses at {} speeds", options.seeds, speeds.len()));
+        let steps = second_set::speed_sweep(&options, &speeds, &keep_going).map_err(Raise::raise)?;
+        let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);
+        json(&Sweep { seeds: options.seeds, second_robot_m, steps })
+    })
+}
+
+/// The fields of `eeruf.experiments.Run`.
+fn fields<'py>(py: Python<'py>, run: &Run) -> PyResult<Bound<'py, PyDict>> {
+    let fields = PyDict::new(py);
+    fields.set_item("course", run.course)?;
+    let ending = match run.ending {
+        Ending::Finished => "finished",
+        Ending::Contact => "contact",
+        Ending::TimeOut => "time_out",
+    };
+    fields.set_item("ending", ending)?;
+    fields.set_item("time_s", run.time_s)?;
+    fields.set_item("way_m", run.way_m)?;
+    fields.set_item("top_speed_m_s", run.top_speed_m_s)?;
+    fields.set_item("nearest_m", run.nearest_m)?;
+    fields.set_item("readings", run.readings)?;
+    fields.set_item("rejected", run.rejected)?;
+    fields.set_item("wrong", run.wrong)?;
+    fields.set_item("phantom_echoes", run.phantom_echoes)?;
+    fields.set_item("phantom_cells", run.phantom_cells)?;
+    fields.set_item("poles_passed", run.poles_passed)?;
+    fields.set_item("poles_missed", run.poles_missed)?;
+    let track = run.track.iter().map(|at| [at.time_s, at.x_m, at.y_m, at.heading_rad, at.speed_m_s]);
+    fields.set_item("track", rows(py, track)?)?;
+    fields.set_item("grid", rows(py, run.grid.iter().map(|cell| [cell.x_m, cell.y_m, f64::from(cell.value)]))?)?;
+    let poles = Course::random(run.course).poles;
+    fields.set_item("poles", rows(py, poles.iter().map(|pole| [pole.x, pole.y, POLE_RADIUS_M]))?)?;
+    Ok(fields)
+}
+
+fn rows<'py, const N: usize>(
+    py: Python<'py>,
+    rows: impl Iterator<Item = [f64; N]>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let flat: Vec<f64> = rows.flatten().collect();
+    let count = flat.len() / N;
+    PyArray1::from_vec(py, flat).reshape([count, N])
 }

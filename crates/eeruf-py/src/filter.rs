@@ -10,14 +10,32 @@ use crate::{
     ring::Reading,
 };
 
-/// Compares the consecutive readings of each sensor.
+/// Compares the consecutive readings of each sensor, and accepts those that are near-identical (Eq. 11).
+///
+/// Args:
+///     sensors: how many, 1 to 64.
+///     t_delta_us: ``T_delta``: readings that differ by no more are near-identical.
+///     consecutive: how many readings running must agree, 2 to 8.
+///
+/// Raises:
+///     ArgumentError: something of the wrong type or out of range.
+///     FilterError: fewer than 2 or more than 8 readings to compare.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> filter = eeruf.EchoFilter(sensors=1, t_delta_us=500)
+///     >>> [filter.push(0, us).kind for us in (9_000, 9_300, 12_000)]
+///     ['first', 'accepted', 'rejected']
 #[pyclass(module = "eeruf")]
 pub(crate) struct EchoFilter {
     filter: eeruf_core::EchoFilter<MAX_SENSORS>,
+    /// How many sensors.
     #[pyo3(get)]
     sensors: usize,
+    /// ``T_delta``, in microseconds.
     #[pyo3(get)]
     t_delta_us: u32,
+    /// How many readings running must agree.
     #[pyo3(get)]
     consecutive: u8,
 }
@@ -37,6 +55,25 @@ impl EchoFilter {
         Ok(Self { filter, sensors, t_delta_us: t_delta.as_micros(), consecutive })
     }
 
+    /// Take in one firing of a sensor.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///     t_echo_us: the time of its echo after firing in whole microseconds, or None for no echo.
+    ///     expected_change_us: by how much a good reading should differ from the one before, from the robot's own motion: ``-2 v dt /
+    ///         c`` for an object approached at ``v``.
+    ///
+    /// Returns:
+    ///     The reading, without phase and period, which a filter does not know.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor, or no such time.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> filter = eeruf.EchoFilter(1, 100)
+    ///     >>> [filter.push(0, us, expected_change_us=-400).kind for us in (9_000, 8_610)]
+    ///     ['first', 'accepted']
     #[pyo3(signature = (sensor, t_echo_us, expected_change_us=None), text_signature = "($self, sensor, t_echo_us, expected_change_us=0)")]
     fn push(
         &mut self,
@@ -51,6 +88,23 @@ impl EchoFilter {
         Ok(Reading::of_filter(sensor, &verdict))
     }
 
+    /// Take in many firings at once, without the interpreter lock.
+    ///
+    /// Args:
+    ///     t_echo_us: array of shape (periods, sensors): echo times in microseconds, rounded to whole ones; NaN for no echo. An array of
+    ///         contiguous float64 is read in place, anything else is converted first.
+    ///
+    /// Returns:
+    ///     Array of uint8 of the same shape: indices into ``eeruf.KINDS``.
+    ///
+    /// Raises:
+    ///     ArgumentError: another shape, or a time that is negative or 2^32 or more; nothing has been taken in then.
+    ///
+    /// Example:
+    ///     >>> import eeruf, numpy
+    ///     >>> kinds = eeruf.EchoFilter(2, 500).push_many([[9_000, 7_000], [9_100, numpy.nan]])
+    ///     >>> [[eeruf.KINDS[kind] for kind in row] for row in kinds]
+    ///     [['first', 'first'], ['accepted', 'no_echo']]
     #[pyo3(signature = (t_echo_us))]
     fn push_many<'py>(&mut self, py: Python<'py>, t_echo_us: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<u8>>> {
         let echoes = matrix("t_echo_us", t_echo_us, self.sensors)?;
@@ -75,6 +129,21 @@ impl EchoFilter {
         numpy::PyArray1::from_vec(py, kinds).reshape([echoes.len() / self.sensors, self.sensors])
     }
 
+    /// Forget the readings of a sensor, so that its next one is compared with nothing.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> filter = eeruf.EchoFilter(1, 500)
+    ///     >>> kinds = [filter.push(0, 9_000).kind]
+    ///     >>> filter.forget(0)
+    ///     >>> kinds + [filter.push(0, 9_000).kind]
+    ///     ['first', 'first']
     #[pyo3(signature = (sensor))]
     fn forget(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;

@@ -2,6 +2,13 @@
 //! `eeruf-sim`, here it only changes its clothes: microseconds as `int`, many numbers as `NumPy` arrays, errors as exceptions.
 //! What users read is in `python/eeruf`.
 
+#![allow(
+    clippy::doc_markdown,
+    clippy::doc_lazy_continuation,
+    clippy::doc_overindented_list_items,
+    reason = "the docs of what Python sees are docstrings, in their own markup"
+)]
+
 mod arguments;
 mod errors;
 mod experiments;
@@ -26,7 +33,7 @@ mod _eeruf {
             ArgumentError, EerufError, ExperimentError, FilterError, PathsError, RingError, SceneError, ScheduleError,
             SearchError, SimulationError,
         },
-        experiments::set_one,
+        experiments::{set_one, set_two, speed_sweep},
         filter::EchoFilter,
         paths::Paths,
         readings::Readings,
@@ -47,6 +54,9 @@ mod _eeruf {
         module.add("KINDS", PyTuple::new(module.py(), kinds)?)?;
         let methods = eeruf_sim::Method::ALL.map(eeruf_sim::Method::as_str);
         module.add("METHODS", PyTuple::new(module.py(), methods)?)?;
-        module.add("CAUSES", PyTuple::new(module.py(), crate::readings::CAUSES)?)
+        module.add("CAUSES", PyTuple::new(module.py(), crate::readings::CAUSES)?)?;
+        // What the picture of a course shows.
+        module.add("_ROOM_M", eeruf_sim::experiments::set_two::ROOM_M)?;
+        module.add("_SIDE_M", eeruf_sim::labmate::LabMate::default().side_m)
     }
 }

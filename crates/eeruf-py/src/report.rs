@@ -3,15 +3,29 @@
 use eeruf_core::{MAX_SENSORS, Micros};
 use pyo3::{prelude::*, types::PyTuple};
 
+use crate::arguments::{instance, items, shown, text, whole, whole_or_none, wrong};
+
 /// One condition that a schedule does not meet.
-#[pyclass(frozen, eq, hash, get_all, module = "eeruf", from_py_object)]
+///
+/// Example:
+///     >>> from eeruf.tables import TABLE_I_B
+///     >>> violation = TABLE_I_B.verify(t_delta_us=999, min_interval_us=15_000).violations[0]
+///     >>> violation.kind, violation.value_us < violation.required_us, violation.source
+///     ('interval', True, 'Sec. 3.1 c')
+#[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Violation {
+    /// Which condition: ``"crosstalk_a"``, ``"crosstalk_b"``, ``"stale_echo"``, ``"interval"`` or ``"window"``.
     kind: String,
+    /// The two sensors, from 0; the same one twice where a condition is about one alone.
     sensors: (u8, u8),
+    /// The phases in which they fire, each ``"a"`` or ``"b"``.
     phases: (String, String),
+    /// What the schedule has, in microseconds.
     value_us: u32,
+    /// What the condition asks for, in microseconds.
     required_us: u32,
+    /// Where the condition comes from, such as ``"Eq. (13a)"``.
     source: String,
 }
 
@@ -20,14 +34,22 @@ impl Violation {
     #[new]
     #[pyo3(signature = (kind, sensors, phases, value_us, required_us, source))]
     fn new(
-        kind: String,
-        sensors: (u8, u8),
-        phases: (String, String),
-        value_us: u32,
-        required_us: u32,
-        source: String,
-    ) -> Self {
-        Self { kind, sensors, phases, value_us, required_us, source }
+        kind: &Bound<'_, PyAny>,
+        sensors: &Bound<'_, PyAny>,
+        phases: &Bound<'_, PyAny>,
+        value_us: &Bound<'_, PyAny>,
+        required_us: &Bound<'_, PyAny>,
+        source: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let refused = |name, value| wrong(name, shown(value), "a pair");
+        Ok(Self {
+            kind: text("kind", kind, "the name of a condition")?,
+            sensors: sensors.extract().map_err(|_| refused("sensors", sensors))?,
+            phases: phases.extract().map_err(|_| refused("phases", phases))?,
+            value_us: whole("value_us", value_us, 0..=u32::MAX)?,
+            required_us: whole("required_us", required_us, 0..=u32::MAX)?,
+            source: text("source", source, "a place in the paper")?,
+        })
     }
 
     fn __repr__(&self) -> String {
@@ -45,16 +67,26 @@ impl Violation {
     }
 }
 
-/// What `Schedule.verify` found.
+/// What ``Schedule.verify`` found. It is true if all conditions hold.
+///
+/// Example:
+///     >>> from eeruf.tables import TABLE_I_D
+///     >>> bool(TABLE_I_D.verify(t_delta_us=999)), bool(TABLE_I_D.verify(t_delta_us=1_000))
+///     (True, False)
 #[pyclass(frozen, eq, hash, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Report {
+    /// The smaller left side of (13a), (13b) of the pair that is closest to failing, in microseconds; None for a single sensor.
     #[pyo3(get)]
     separation_us: Option<u32>,
+    /// The largest ``T_delta`` at which (13a), (13b) (and the stale echo condition, if asked for) hold, in microseconds; None if none
+    /// does.
     #[pyo3(get)]
     max_t_delta_us: Option<u32>,
+    /// The smallest time between the firings of two neighbours, in microseconds; None without neighbours.
     #[pyo3(get)]
     min_interval_us: Option<u32>,
+    /// The shortest time between two firings of one sensor, in microseconds.
     #[pyo3(get)]
     min_refire_us: u32,
     violations: Vec<Violation>,
@@ -85,20 +117,31 @@ impl Report {
     #[new]
     #[pyo3(signature = (separation_us, max_t_delta_us, min_interval_us, min_refire_us, violations))]
     fn new(
-        separation_us: Option<u32>,
-        max_t_delta_us: Option<u32>,
-        min_interval_us: Option<u32>,
-        min_refire_us: u32,
-        violations: Vec<Violation>,
-    ) -> Self {
-        Self { separation_us, max_t_delta_us, min_interval_us, min_refire_us, violations }
+        separation_us: Option<&Bound<'_, PyAny>>,
+        max_t_delta_us: Option<&Bound<'_, PyAny>>,
+        min_interval_us: Option<&Bound<'_, PyAny>>,
+        min_refire_us: &Bound<'_, PyAny>,
+        violations: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let expected = "a sequence of eeruf.Violation";
+        let of = items("violations", violations, expected)?;
+        let one = |violation| instance::<Violation>("violations", violation, expected).map(|one| one.get().clone());
+        Ok(Self {
+            separation_us: whole_or_none("separation_us", separation_us, 0..=u32::MAX)?,
+            max_t_delta_us: whole_or_none("max_t_delta_us", max_t_delta_us, 0..=u32::MAX)?,
+            min_interval_us: whole_or_none("min_interval_us", min_interval_us, 0..=u32::MAX)?,
+            min_refire_us: whole("min_refire_us", min_refire_us, 0..=u32::MAX)?,
+            violations: of.iter().map(one).collect::<PyResult<_>>()?,
+        })
     }
 
+    /// Whether every condition holds.
     #[getter]
     fn ok(&self) -> bool {
         self.violations.is_empty()
     }
 
+    /// Every violation, as a tuple of ``Violation``: first (13a), then (13b), stale echoes, intervals and windows.
     #[getter]
     fn violations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.violations.iter().cloned())

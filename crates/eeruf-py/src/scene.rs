@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use eeruf_sim::{Air, Faces, Noise, Pole, Wall, World};
+use eeruf_sim::{Air, Faces, Noise, Point, Pole, Wall, World};
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
@@ -10,11 +10,17 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{matrix, number, points, whole, whole_or, wrong},
+    arguments::{self, instance, matrix, number, points, shown, whole, whole_or, wrong},
     errors::{Raise, SceneError},
     paths::Paths,
     robot::Robot,
+    watch::aside,
 };
+
+/// Up to so many walls, receivers and bounces, paths are found before anybody could press Ctrl-C, and sooner than a thread would
+/// start.
+const FEW: usize = 32;
+const LOW_ORDER: u32 = 6;
 
 /// Walls alone, or a world with robots.
 enum Contents {
@@ -28,7 +34,31 @@ enum Source {
     Code(Py<PyDict>),
 }
 
-/// Walls, poles and robots.
+/// Walls, poles and robots from above, in metres. Immutable; scenes pickle.
+///
+/// A wall reflects on its left side, seen from its first end to its second, and its back swallows: a room is a loop walked
+/// counter-clockwise, a pillar one walked clockwise.
+///
+/// Args:
+///     walls: array of shape (n, 4): x, y of one end and x, y of the other.
+///     open: indices of openings, from which nothing comes back.
+///     two_sided: indices of walls that reflect on both sides.
+///     poles: array of shape (m, 3): x, y and radius.
+///     temperature_c: of the air, in degrees Celsius, -100 to 100; the speed of sound depends on it.
+///     robots: the robots that :func:`simulate` drives.
+///     noise: whether :func:`simulate` has jitter, fading and bursts from outside.
+///     seed: of the noise, 0 to 2^64 - 1.
+///     max_order: how many bounces :func:`simulate` follows; 6 unless it is given.
+///
+/// Raises:
+///     ArgumentError: an array of the wrong shape, an index of no wall, something of the wrong type or out of range.
+///     SceneError: walls that cross, have no length or are not finite, or a robot where none can stand.
+///
+/// Example:
+///     >>> from eeruf import sim
+///     >>> scene = sim.Scene([[0.85, 0, 0.85, 1.39], [0.85, 1.39, -0.85, 1.39], [-0.85, 1.39, -0.85, 0]])
+///     >>> scene
+///     <Scene: 3 walls, 0 poles, 0 robots>
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Scene {
     contents: Contents,
@@ -52,8 +82,27 @@ impl Scene {
 
     fn from_source(file: PathBuf, text: String) -> PyResult<Self> {
         let world = World::from_text(&file, &text).map_err(Raise::raise)?;
+        // Whoever unpickles it may not have the files beside it.
+        let text = with_schedules(&file, &text).unwrap_or(text);
         Ok(Self { contents: Contents::World(Box::new(world)), source: Source::Toml { file, text } })
     }
+}
+
+/// The text of a scene with the schedules in it that it names; `None` if it names none.
+fn with_schedules(file: &Path, text: &str) -> Option<String> {
+    let mut scene: toml::Table = text.parse().ok()?;
+    let mut named = false;
+    for robot in scene.get_mut("robot")?.as_array_mut()? {
+        let schedule = robot.get_mut("schedule");
+        if let Some((value, name)) =
+            schedule.and_then(|value| value.as_str().map(str::to_owned).map(|name| (value, name)))
+        {
+            let beside = file.parent().unwrap_or(Path::new("")).join(name);
+            *value = toml::Value::Table(std::fs::read_to_string(beside).ok()?.parse().ok()?);
+            named = true;
+        }
+    }
+    named.then(|| scene.to_string())
 }
 
 /// A scene from the text of a file, as a pickle holds it.
@@ -65,19 +114,18 @@ pub(crate) fn scene_from_text(file: PathBuf, text: String) -> PyResult<Scene> {
 
 fn indices(name: &str, value: Option<&Bound<'_, PyAny>>, walls: usize) -> PyResult<Vec<usize>> {
     let Some(value) = value else { return Ok(vec![]) };
-    if walls == 0 {
-        return Ok(vec![]);
+    let items = arguments::items(name, value, "a sequence of indices of walls")?;
+    match (walls as u64).checked_sub(1) {
+        None if items.is_empty() => Ok(vec![]),
+        None => Err(wrong(name, shown(value), "no indices where there are no walls")),
+        Some(last) => items.iter().map(|item| whole(name, item, 0..=last).map(|index| index as usize)).collect(),
     }
-    let items = value.try_iter().map_err(|_| wrong(name, value, "a sequence of indices of walls"))?;
-    let index =
-        |item: PyResult<Bound<'_, PyAny>>| whole(name, &item?, 0..=walls as u64 - 1).map(|index| index as usize);
-    items.map(index).collect()
 }
 
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (walls, open=None, two_sided=None, poles=None, *, temperature_c=None, robots=vec![], noise=true, seed=None, max_order=None))]
+    #[pyo3(signature = (walls, open=None, two_sided=None, poles=None, *, temperature_c=None, robots=None, noise=None, seed=None, max_order=None))]
     #[pyo3(
         text_signature = "(walls, open=None, two_sided=None, poles=None, *, temperature_c=20.0, robots=(), noise=True, seed=1, max_order=6)"
     )]
@@ -89,8 +137,8 @@ impl Scene {
         two_sided: Option<&Bound<'_, PyAny>>,
         poles: Option<&Bound<'_, PyAny>>,
         temperature_c: Option<&Bound<'_, PyAny>>,
-        robots: Vec<Robot>,
-        noise: bool,
+        robots: Option<&Bound<'_, PyAny>>,
+        noise: Option<&Bound<'_, PyAny>>,
         seed: Option<&Bound<'_, PyAny>>,
         max_order: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
@@ -113,6 +161,12 @@ impl Scene {
             standing.extend(rows.as_array().rows().into_iter().map(|row| Pole::new(row[0], row[1], row[2])));
         }
         let celsius = temperature_c.map_or(Ok(20.0), |celsius| number("temperature_c", celsius, -100.0..=100.0))?;
+        let expected = "a sequence of eeruf.sim.Robot";
+        let given = robots.map_or(Ok(vec![]), |robots| arguments::items("robots", robots, expected))?;
+        let one =
+            |robot: &Bound<'_, PyAny>| instance::<Robot>("robots", robot, expected).map(|robot| robot.get().clone());
+        let robots = given.iter().map(one).collect::<PyResult<Vec<_>>>()?;
+        let noise = arguments::flag("noise", noise, true)?;
         let seed = whole_or("seed", seed, 1, 0..=u64::MAX)?;
         let order = max_order.map(|order| whole("max_order", order, 0..=u32::MAX)).transpose()?;
         made_of.set_item("temperature_c", celsius)?;
@@ -134,14 +188,24 @@ impl Scene {
         Ok(Self { contents: Contents::World(Box::new(world)), source })
     }
 
+    /// Read a scene file, such as those in the folder ``scenes``.
+    ///
+    /// Args:
+    ///     path: of the file; a schedule that it names is looked for beside it.
+    ///
+    /// Raises:
+    ///     ArgumentError: not a path.
+    ///     SceneError: no such file, or it says something that makes no scene: by name, value and what is expected.
     #[staticmethod]
     #[pyo3(signature = (path))]
-    fn from_toml(path: PathBuf) -> PyResult<Self> {
+    fn from_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let path: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a scene in TOML"))?;
         let text = std::fs::read_to_string(&path)
             .map_err(|error| SceneError::new_err(format!("{}: {error}", path.display())))?;
         Self::from_source(path, text)
     }
 
+    /// The walls: array of shape (n, 4), as given.
     #[getter]
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let walls = self.scene().walls();
@@ -149,16 +213,19 @@ impl Scene {
         PyArray1::from_vec(py, flat).reshape([walls.len(), 4])
     }
 
+    /// The indices of the openings, from which nothing comes back.
     #[getter]
     fn open(&self) -> Vec<usize> {
         self.with_faces(Faces::Open)
     }
 
+    /// The indices of the walls that reflect on both sides.
     #[getter]
     fn two_sided(&self) -> Vec<usize> {
         self.with_faces(Faces::Both)
     }
 
+    /// The poles: array of shape (m, 3) of x, y and radius in metres.
     #[getter]
     fn poles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let poles = self.scene().poles();
@@ -166,6 +233,7 @@ impl Scene {
         PyArray1::from_vec(py, flat).reshape([poles.len(), 3])
     }
 
+    /// How many robots there are.
     #[getter]
     fn robots(&self) -> usize {
         match &self.contents {
@@ -174,27 +242,54 @@ impl Scene {
         }
     }
 
+    /// The temperature of the air, in degrees Celsius.
     #[getter]
     fn temperature_c(&self) -> f64 {
         self.scene().air().temperature_c
     }
 
-    #[pyo3(signature = (source, receivers, max_order, max_length_m=f64::INFINITY))]
+    /// Every specular path from a source to some receivers, exactly, without the interpreter lock.
+    ///
+    /// Args:
+    ///     source: (x, y) in metres.
+    ///     receivers: array of shape (n, 2), or one point, in metres.
+    ///     max_order: the most bounces, 0 to 1000; those at poles count.
+    ///     max_length_m: the longest path, in metres, above 0; None for any length.
+    ///
+    /// Returns:
+    ///     The paths as arrays, sorted by receiver and then by length.
+    ///
+    /// Raises:
+    ///     ArgumentError: something of the wrong type, shape or range.
+    ///     PathsError: a point that is not finite or far from all walls, too high an order, or too many paths to keep.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> wall = sim.Scene([[5, 2, -5, 2]])
+    ///     >>> paths = wall.paths(source=(0, 0), receivers=[(3, 0)], max_order=1)
+    ///     >>> paths.order.tolist(), paths.length_m.tolist()
+    ///     ([0, 1], [3.0, 5.0])
+    #[pyo3(signature = (source, receivers, max_order, max_length_m=None), text_signature = "($self, source, receivers, max_order, max_length_m=None)")]
     fn paths(
         slf: &Bound<'_, Self>,
         source: &Bound<'_, PyAny>,
         receivers: &Bound<'_, PyAny>,
         max_order: &Bound<'_, PyAny>,
-        max_length_m: f64,
+        max_length_m: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Paths> {
         let at = points("source", source)?;
-        let [from] = at[..] else { return Err(wrong("source", source.repr()?, "one point (x, y) in metres")) };
+        let [from] = at[..] else { return Err(wrong("source", shown(source), "one point (x, y) in metres")) };
         let receivers = points("receivers", receivers)?;
         let max_order = whole("max_order", max_order, 0..=u32::MAX)?;
-        let scene = slf.get().scene();
-        let paths = slf.py().detach(|| scene.paths(from, &receivers, max_order, max_length_m));
-        let paths = paths.map_err(Raise::raise)?;
-        Ok(Paths { paths, source: from, receivers, scene: slf.clone().unbind() })
+        let max_length_m =
+            max_length_m.map_or(Ok(f64::INFINITY), |most| number("max_length_m", most, 0.0..=f64::INFINITY))?;
+        let (py, scene) = (slf.py(), slf.clone().unbind());
+        let few = slf.get().scene().walls().len() <= FEW && receivers.len() <= FEW && max_order <= LOW_ORDER;
+        let find = move |receivers: Vec<Point>| {
+            let paths = scene.get().scene().paths(from, &receivers, max_order, max_length_m).map_err(Raise::raise)?;
+            Ok(Paths { paths, source: from, receivers, scene, max_order, max_length_m })
+        };
+        if few { py.detach(|| find(receivers)) } else { aside(py, None, move |_| find(receivers)) }
     }
 
     fn __repr__(&self) -> String {

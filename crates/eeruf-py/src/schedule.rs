@@ -12,7 +12,27 @@ use crate::{
     report::Report,
 };
 
-/// When each sensor fires, in the two phases that alternate.
+/// When each sensor of a ring fires, in the two phases that alternate from period to period. Immutable; equal if all times are.
+///
+/// Sensor ``x`` fires ``t_lag_us[x] + t_wait_a_us[x]`` after the beginning of an even period (phase a) and ``t_lag_us[x] +
+/// t_wait_b_us[x]`` after that of an odd one (phase b). Times are whole microseconds below 2^32; sensors count from 0, and are
+/// printed from 1. Schedules compare, hash and pickle, and their ``repr`` can be pasted back.
+///
+/// Args:
+///     period_us: the period, ``T_p``.
+///     t_lag_us: ``T_lag`` of each sensor, 1 to 64 of them.
+///     t_wait_a_us: ``T_wait`` of each sensor in phase a.
+///     t_wait_b_us: ``T_wait`` of each sensor in phase b.
+///
+/// Raises:
+///     ArgumentError: a time is not a whole number of microseconds, or negative.
+///     ScheduleError: the lengths differ, there are no or more than 64 sensors, or one would fire after its period's end.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> two = eeruf.Schedule(40_000, t_lag_us=[0, 20_000], t_wait_a_us=[0, 0], t_wait_b_us=[2_000, 5_000])
+///     >>> two.t_fire_b_us
+///     (2000, 25000)
 #[pyclass(frozen, eq, hash, module = "eeruf")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Schedule(pub(crate) AnySchedule);
@@ -44,9 +64,9 @@ impl Schedule {
         min_interval_us: Option<&Bound<'_, PyAny>>,
         neighbours: Option<&Bound<'_, PyAny>>,
         layout: Option<&Bound<'_, PyAny>>,
-        criterion: &str,
+        criterion: Option<&Bound<'_, PyAny>>,
         window_us: Option<&Bound<'_, PyAny>>,
-        stale_echo: bool,
+        stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<OwnedRequirements> {
         let or_zero =
             |name, value: Option<&Bound<'_, PyAny>>| value.map_or(Ok(Micros::ZERO), |value| micros(name, value));
@@ -56,7 +76,7 @@ impl Schedule {
             layout: OwnedLayout::new(layout, arguments::neighbours(neighbours)?)?,
             criterion: arguments::criterion(criterion)?,
             window: or_zero("window_us", window_us)?,
-            stale_echo,
+            stale_echo: arguments::flag("stale_echo", stale_echo, false)?,
         };
         if t_delta_us.is_none() {
             // The most that the schedule allows.
@@ -82,6 +102,21 @@ impl Schedule {
         AnySchedule::from_slices(period, &lag, [&a, &b]).map(Self).map_err(Raise::raise)
     }
 
+    /// Make a schedule of firing times instead of lags and waits.
+    ///
+    /// Args:
+    ///     period_us: the period, ``T_p``.
+    ///     t_fire_a_us: when each sensor fires in phase a, 1 to 64 times; below the period.
+    ///     t_fire_b_us: when each sensor fires in phase b, as many.
+    ///
+    /// Raises:
+    ///     ArgumentError: a time is not a whole number of microseconds, or negative.
+    ///     ScheduleError: as for ``Schedule``.
+    ///
+    /// Example:
+    ///     >>> from eeruf import Schedule
+    ///     >>> Schedule.from_firing(40_000, [0, 20_000], [2_000, 25_000]).sensors
+    ///     2
     #[staticmethod]
     #[pyo3(signature = (period_us, t_fire_a_us, t_fire_b_us))]
     fn from_firing(
@@ -94,64 +129,140 @@ impl Schedule {
         AnySchedule::from_slices(period, &vec![Micros::ZERO; a.len()], [&a, &b]).map(Self).map_err(Raise::raise)
     }
 
+    /// Read a schedule as ``eeruf design --emit toml`` and :meth:`to_toml` write it.
+    ///
+    /// Args:
+    ///     text: the contents of a file: ``period_us``, and ``t_lag_us``, ``t_wait_a_us``, ``t_wait_b_us`` or ``t_fire_a_us``,
+    ///         ``t_fire_b_us``.
+    ///
+    /// Raises:
+    ///     ArgumentError: not a text.
+    ///     ScheduleError: the text is no TOML, a key is missing, or the numbers make no schedule.
+    ///
+    /// Example:
+    ///     >>> from eeruf import Schedule
+    ///     >>> Schedule.from_toml("period_us = 40000\nt_fire_a_us = [0]\nt_fire_b_us = [2000]").period_us
+    ///     40000
     #[staticmethod]
     #[pyo3(signature = (text))]
-    fn from_toml(text: &str) -> PyResult<Self> {
+    fn from_toml(text: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let text = arguments::text("text", text, "a schedule in TOML")?;
         let file: ScheduleFile =
-            toml::from_str(text).map_err(|error| ScheduleError::new_err(error.message().to_owned()))?;
+            toml::from_str(&text).map_err(|error| ScheduleError::new_err(error.message().to_owned()))?;
         file.schedule().map(Self).map_err(ScheduleError::new_err)
     }
 
+    /// Read a schedule as :meth:`to_json` writes it, with the keys of :meth:`from_toml`.
+    ///
+    /// Args:
+    ///     text: one JSON object.
+    ///
+    /// Raises:
+    ///     ArgumentError: not a text.
+    ///     ScheduleError: the text is no JSON, a key is missing, or the numbers make no schedule.
+    ///
+    /// Example:
+    ///     >>> from eeruf import Schedule
+    ///     >>> Schedule.from_json('{"period_us": 40000, "t_fire_a_us": [0], "t_fire_b_us": [2000]}').sensors
+    ///     1
     #[staticmethod]
     #[pyo3(signature = (text))]
-    fn from_json(text: &str) -> PyResult<Self> {
+    fn from_json(text: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let text = arguments::text("text", text, "a schedule in JSON")?;
         let file: ScheduleFile =
-            serde_json::from_str(text).map_err(|error| ScheduleError::new_err(error.to_string()))?;
+            serde_json::from_str(&text).map_err(|error| ScheduleError::new_err(error.to_string()))?;
         file.schedule().map(Self).map_err(ScheduleError::new_err)
     }
 
+    /// The period ``T_p``, in microseconds.
     #[getter]
     fn period_us(&self) -> u32 {
         self.0.period().as_micros()
     }
 
+    /// How many sensors fire.
     #[getter]
     fn sensors(&self) -> usize {
         self.0.sensors()
     }
 
+    /// ``T_lag`` of each sensor, in microseconds; zeros if the schedule was made of firing times.
     #[getter]
     fn t_lag_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         tuple(py, self.0.t_lag())
     }
 
+    /// ``T_wait`` of each sensor in phase a, in microseconds.
     #[getter]
     fn t_wait_a_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         tuple(py, self.0.t_wait(Phase::A))
     }
 
+    /// ``T_wait`` of each sensor in phase b, in microseconds.
     #[getter]
     fn t_wait_b_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         tuple(py, self.0.t_wait(Phase::B))
     }
 
+    /// When each sensor fires in phase a, in microseconds from the beginning of the period.
     #[getter]
     fn t_fire_a_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         self.t_fire(py, Phase::A)
     }
 
+    /// When each sensor fires in phase b, in microseconds from the beginning of the period.
     #[getter]
     fn t_fire_b_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         self.t_fire(py, Phase::B)
     }
 
+    /// Multiply all times by ``num / den`` (Sec. 3.1, proportional scaling), rounded to whole microseconds.
+    ///
+    /// Args:
+    ///     num: the numerator, 1 to 2^32 - 1.
+    ///     den: the denominator, 1 to 2^32 - 1.
+    ///
+    /// Returns:
+    ///     The schedule; verify it again, since ``T_delta`` and the intervals scale as well.
+    ///
+    /// Raises:
+    ///     ArgumentError: not whole numbers.
+    ///     ScheduleError: one is zero, or the times become too long.
+    ///
+    /// Example:
+    ///     >>> from eeruf.tables import TABLE_I_D
+    ///     >>> TABLE_I_D.scaled(3, 5).period_us
+    ///     60000
     #[pyo3(signature = (num, den))]
     fn scaled(&self, num: &Bound<'_, PyAny>, den: &Bound<'_, PyAny>) -> PyResult<Self> {
         let (num, den) = (whole("num", num, 0..=u32::MAX)?, whole("den", den, 0..=u32::MAX)?);
         self.0.scaled(num, den).map(Self).map_err(Raise::raise)
     }
 
-    #[pyo3(signature = (t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion="exact", window_us=None, stale_echo=false))]
+    /// Check every condition of the paper, sensor by sensor.
+    ///
+    /// Args:
+    ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11).
+    ///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
+    ///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
+    ///     layout: how they stand: ``"line"``, ``"ring"`` (the last beside the first), ``"blocks"`` of ``neighbours``, or pairs of
+    ///         neighbours, such as ``[(0, 1), (1, 2)]``.
+    ///     criterion: how to read Eqs. (13a), (13b): ``"exact"``, or as the ``"paper"`` prints them.
+    ///     window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier.
+    ///     stale_echo: whether a sensor's own echo from the period before must be rejected too.
+    ///
+    /// Returns:
+    ///     The report, which is true if all conditions hold.
+    ///
+    /// Raises:
+    ///     ArgumentError: something of the wrong type or out of range.
+    ///
+    /// Example:
+    ///     >>> from eeruf.tables import TABLE_I_D
+    ///     >>> report = TABLE_I_D.verify(t_delta_us=999, min_interval_us=15_000)
+    ///     >>> report.ok, report.min_interval_us, report.max_t_delta_us
+    ///     (True, 17000, 999)
+    #[pyo3(signature = (t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None, stale_echo=None))]
     #[pyo3(
         text_signature = "($self, t_delta_us, min_interval_us=0, neighbours=4, layout=\"line\", criterion=\"exact\", window_us=0, stale_echo=False)"
     )]
@@ -162,9 +273,9 @@ impl Schedule {
         min_interval_us: Option<&Bound<'_, PyAny>>,
         neighbours: Option<&Bound<'_, PyAny>>,
         layout: Option<&Bound<'_, PyAny>>,
-        criterion: &str,
+        criterion: Option<&Bound<'_, PyAny>>,
         window_us: Option<&Bound<'_, PyAny>>,
-        stale_echo: bool,
+        stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Report> {
         let t_delta = Some(t_delta_us);
         let owned =
@@ -172,15 +283,46 @@ impl Schedule {
         Ok(Report::of(&self.0.verify(&owned.requirements())))
     }
 
+    /// Write a schedule file, as the program reads it.
+    ///
+    /// Example:
+    ///     >>> from eeruf import Schedule, tables
+    ///     >>> Schedule.from_toml(tables.TABLE_I_D.to_toml()) == tables.TABLE_I_D
+    ///     True
     fn to_toml(&self) -> String {
         self.0.to_toml().to_string()
     }
 
+    /// Write one JSON object with the keys of the schedule file.
+    ///
+    /// Example:
+    ///     >>> import json
+    ///     >>> from eeruf.tables import TABLE_I_D
+    ///     >>> json.loads(TABLE_I_D.to_json())["period_us"]
+    ///     100000
     fn to_json(&self) -> PyResult<String> {
         serde_json::to_string(&ScheduleFile::from(&self.0)).map_err(|error| ScheduleError::new_err(error.to_string()))
     }
 
-    #[pyo3(signature = (t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion="exact", window_us=None, stale_echo=false))]
+    /// Write a Rust constant for firmware, which is checked when it is compiled.
+    ///
+    /// Args:
+    ///     t_delta_us: what the constant is checked for; by default the most that the schedule allows.
+    ///     min_interval_us: as in :meth:`verify`, and so all others.
+    ///     neighbours: as in :meth:`verify`.
+    ///     layout: as in :meth:`verify`.
+    ///     criterion: as in :meth:`verify`.
+    ///     window_us: as in :meth:`verify`.
+    ///     stale_echo: as in :meth:`verify`.
+    ///
+    /// Raises:
+    ///     ArgumentError: something of the wrong type or out of range.
+    ///
+    /// Example:
+    ///     >>> from eeruf.tables import TABLE_I_D
+    ///     >>> "schedule!" in TABLE_I_D.to_rust(min_interval_us=15_000)
+    ///     True
+    #[pyo3(signature = (t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None, stale_echo=None))]
     #[pyo3(
         text_signature = "($self, t_delta_us=None, min_interval_us=0, neighbours=4, layout=\"line\", criterion=\"exact\", window_us=0, stale_echo=False)"
     )]
@@ -191,16 +333,34 @@ impl Schedule {
         min_interval_us: Option<&Bound<'_, PyAny>>,
         neighbours: Option<&Bound<'_, PyAny>>,
         layout: Option<&Bound<'_, PyAny>>,
-        criterion: &str,
+        criterion: Option<&Bound<'_, PyAny>>,
         window_us: Option<&Bound<'_, PyAny>>,
-        stale_echo: bool,
+        stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<String> {
         let owned =
             self.requirements(t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo)?;
         Ok(self.0.to_rust(&owned.requirements()).to_string())
     }
 
-    #[pyo3(signature = (t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion="exact", window_us=None, stale_echo=false))]
+    /// Write a C99 header with the firing times and what they were verified for.
+    ///
+    /// Args:
+    ///     t_delta_us: what the header says it was verified for; by default the most that the schedule allows.
+    ///     min_interval_us: as in :meth:`verify`, and so all others.
+    ///     neighbours: as in :meth:`verify`.
+    ///     layout: as in :meth:`verify`.
+    ///     criterion: as in :meth:`verify`.
+    ///     window_us: as in :meth:`verify`.
+    ///     stale_echo: as in :meth:`verify`.
+    ///
+    /// Raises:
+    ///     ArgumentError: something of the wrong type or out of range.
+    ///
+    /// Example:
+    ///     >>> from eeruf.tables import TABLE_I_D
+    ///     >>> "#include <stdint.h>" in TABLE_I_D.to_c(min_interval_us=15_000)
+    ///     True
+    #[pyo3(signature = (t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None, stale_echo=None))]
     #[pyo3(
         text_signature = "($self, t_delta_us=None, min_interval_us=0, neighbours=4, layout=\"line\", criterion=\"exact\", window_us=0, stale_echo=False)"
     )]
@@ -211,9 +371,9 @@ impl Schedule {
         min_interval_us: Option<&Bound<'_, PyAny>>,
         neighbours: Option<&Bound<'_, PyAny>>,
         layout: Option<&Bound<'_, PyAny>>,
-        criterion: &str,
+        criterion: Option<&Bound<'_, PyAny>>,
         window_us: Option<&Bound<'_, PyAny>>,
-        stale_echo: bool,
+        stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<String> {
         let owned =
             self.requirements(t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo)?;

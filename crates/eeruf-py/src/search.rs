@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use eeruf_core::{
-    MAX_SENSORS, Micros, Requirements,
+    Criterion, MAX_SENSORS, Micros, Requirements,
     search::{
         self, RingNeeds, SearchError, WaitNeeds, design as period,
         design::{Flow, Progress},
@@ -13,34 +13,51 @@ use eeruf_core::{
 use pyo3::{prelude::*, types::PyTuple};
 
 use crate::{
-    arguments::{self, OwnedLayout, micros, times, whole, whole_or, wrong},
+    arguments::{
+        self, OwnedLayout, choice, flag, instance, micros, number, text, times, whole, whole_or, whole_or_none,
+    },
     errors::Raise,
     schedule::Schedule,
-    watch::Watch,
+    watch::{Watch, aside},
 };
 
 /// How many nodes the choice among the shortest schedules may cost.
 const PREFERENCE_BUDGET: u64 = 100_000;
 /// How many nodes a search visits unless another budget is given.
 const DESIGN_BUDGET: u64 = 50_000_000;
+/// With so few sensors the engine asks often whether to go on. With more it may be a good part of a second between two nodes that
+/// ask, so that the search gets a thread of its own; a small search would wait for that thread longer than for its answer.
+const FEW_SENSORS: usize = 12;
 /// How many nodes of the search for waits lie between two looks at the clock.
 const POLL: u32 = 1 << 12;
 
-/// The answer of a search.
+/// The answer of a search: the best schedule it came to, and whether that is proven.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> found = eeruf.design(sensors=4, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
+///     >>> found.value_us, found.bound_us, found.proven
+///     (62000, 62000, True)
 #[pyclass(frozen, eq, module = "eeruf")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Found {
     schedule: Option<Schedule>,
+    /// What was sought of it, in microseconds: the period, the smallest interval or ``T_delta``; None without a schedule.
     #[pyo3(get)]
     value_us: Option<u32>,
+    /// No schedule is better than this, in microseconds; None if it is proven that there is none at all.
     #[pyo3(get)]
     bound_us: Option<u32>,
+    /// Whether no better schedule exists (or none at all, without a schedule).
     #[pyo3(get)]
     proven: bool,
+    /// How many nodes the search visited: the same on each machine.
     #[pyo3(get)]
     nodes: u64,
+    /// How long it took.
     #[pyo3(get)]
     seconds: f64,
+    /// Why the period is not shorter, in words; None from ``WaitSearch.best``.
     #[pyo3(get)]
     reason: Option<String>,
 }
@@ -64,18 +81,27 @@ impl Found {
     #[new]
     #[pyo3(signature = (schedule, value_us, bound_us, proven, nodes, seconds, reason=None))]
     fn new(
-        schedule: Option<PyRef<'_, Schedule>>,
-        value_us: Option<u32>,
-        bound_us: Option<u32>,
-        proven: bool,
-        nodes: u64,
-        seconds: f64,
-        reason: Option<String>,
-    ) -> Self {
-        let schedule = schedule.map(|schedule| Schedule(schedule.0));
-        Self { schedule, value_us, bound_us, proven, nodes, seconds, reason }
+        schedule: Option<&Bound<'_, PyAny>>,
+        value_us: Option<&Bound<'_, PyAny>>,
+        bound_us: Option<&Bound<'_, PyAny>>,
+        proven: &Bound<'_, PyAny>,
+        nodes: &Bound<'_, PyAny>,
+        seconds: &Bound<'_, PyAny>,
+        reason: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let schedule = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
+        Ok(Self {
+            schedule: schedule.transpose()?.map(|schedule| schedule.get().clone()),
+            value_us: whole_or_none("value_us", value_us, 0..=u32::MAX)?,
+            bound_us: whole_or_none("bound_us", bound_us, 0..=u32::MAX)?,
+            proven: flag("proven", Some(proven), false)?,
+            nodes: whole("nodes", nodes, 0..=u64::MAX)?,
+            seconds: number("seconds", seconds, 0.0..=f64::INFINITY)?,
+            reason: reason.map(|reason| text("reason", reason, "why")).transpose()?,
+        })
     }
 
+    /// The schedule; None if there is none, or none was found within the budget.
     #[getter]
     fn schedule(&self) -> Option<Schedule> {
         self.schedule.clone()
@@ -95,9 +121,37 @@ impl Found {
     }
 }
 
-/// The shortest period for a ring.
+/// Find the schedule with the shortest period for a ring, and prove that none is shorter.
+///
+/// Firing times are free, on a grid of ticks. Among all schedules of the shortest period it prefers a larger ``T_delta``, then a
+/// larger smallest interval, then evener firing. It runs on one core, without the interpreter lock; Ctrl-C ends it.
+///
+/// Args:
+///     sensors: how many, 1 to 64.
+///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11).
+///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
+///     window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier. 1 or more.
+///     tick_us: the grid of firing times and period, 1 or more.
+///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
+///     layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours, as in :meth:`Schedule.verify`.
+///     stale_echo: whether a sensor's own echo from the period before must be rejected too.
+///     budget: how many nodes to visit at most, 1 or more; 50 million by default.
+///     progress: True for a bar (tqdm if it is installed), or a callable that takes the share done (None: unknown) and a text.
+///
+/// Returns:
+///     The shortest period in ``value_us``, or the best found within the budget; ``proven`` says which.
+///
+/// Raises:
+///     ArgumentError: something of the wrong type or out of range.
+///     SearchError: needs that make no sense, or too large a grid.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> found = eeruf.design(sensors=8, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
+///     >>> found.value_us, found.proven
+///     (66000, True)
 #[pyfunction]
-#[pyo3(signature = (sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=false, budget=None, progress=None))]
+#[pyo3(signature = (sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None, budget=None, progress=None))]
 #[pyo3(
     text_signature = "(sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, layout=\"line\", stale_echo=False, budget=None, progress=None)"
 )]
@@ -111,7 +165,7 @@ pub(crate) fn design(
     tick_us: Option<&Bound<'_, PyAny>>,
     neighbours: Option<&Bound<'_, PyAny>>,
     layout: Option<&Bound<'_, PyAny>>,
-    stale_echo: bool,
+    stale_echo: Option<&Bound<'_, PyAny>>,
     budget: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Found> {
@@ -120,22 +174,25 @@ pub(crate) fn design(
     let (t_delta, min_interval) = (micros("t_delta_us", t_delta_us)?, micros("min_interval_us", min_interval_us)?);
     let window = whole("window_us", window_us, 1..=u32::MAX).map(Micros::new)?;
     let tick = Micros::new(whole_or("tick_us", tick_us, 1000, 1..=u32::MAX)?);
+    let stale_echo = flag("stale_echo", stale_echo, false)?;
     let budget = whole_or("budget", budget, DESIGN_BUDGET, 1..=u64::MAX)?;
-    let mut watch = Watch::new(progress)?;
     let began = Instant::now();
-    let designed = py.detach(|| {
-        let criterion = eeruf_core::Criterion::Exact;
-        let layout = layout.layout();
+    let work = move |go_on: &mut dyn FnMut(&Progress) -> bool| {
+        let (criterion, layout) = (Criterion::Exact, layout.layout());
         let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo };
         let needs = RingNeeds { sensors, requirements, tick };
-        let mut control = |at: &Progress| {
-            let text = || format!("{} nodes, period {} to {} ticks", at.nodes, at.bound, at.best);
-            if watch.go_on(None, text) { Flow::Continue } else { Flow::Stop }
-        };
-        shortest(&needs, budget, &mut control)
-    });
-    let found = designed.map(|(found, reason)| Found::of(&found, began, Some(reason))).map_err(Raise::raise);
-    watch.outcome(found)
+        let mut control = |at: &Progress| if go_on(at) { Flow::Continue } else { Flow::Stop };
+        shortest(&needs, budget, &mut control).map_err(Raise::raise)
+    };
+    let text = |at: &Progress| format!("{} nodes, period {} to {} ticks", at.nodes, at.bound, at.best);
+    let (found, reason) = if sensors <= FEW_SENSORS {
+        let mut watch = Watch::new(progress)?;
+        let designed = py.detach(|| work(&mut |at| watch.go_on(None, || text(at))));
+        watch.outcome(designed)?
+    } else {
+        aside(py, progress, move |aside| work(&mut |at| aside.go_on(None, || text(at))))?
+    };
+    Ok(Found::of(&found, began, Some(reason)))
 }
 
 fn shortest(
@@ -152,11 +209,35 @@ fn shortest(
     Ok((found, designed.reason().to_string()))
 }
 
-/// The paper's question.
+/// The paper's question: lags are given, waits are sought on a grid so that crosstalk never repeats (Sec. 3.1).
+///
+/// Args:
+///     sensors: how many, 1 to 64.
+///     period_us: ``T_p``, a whole number of ticks.
+///     wait_max_us: waits are 0, one tick, two ticks, up to this.
+///     tick_us: the grid, 1 or more.
+///     t_lag_us: ``T_lag`` of each sensor, in whole ticks; None spreads each group of ``neighbours`` over the period, as Table I-a.
+///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11).
+///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
+///     neighbours: how many adjacent sensors make a group, 1 to 64.
+///     layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours, as in :meth:`Schedule.verify`.
+///     criterion: how to read Eqs. (13a), (13b): as the ``"paper"`` prints them, or ``"exact"``.
+///
+/// Raises:
+///     ArgumentError: something of the wrong type or out of range.
+///     SearchError: needs that make no sense, or too large a grid.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> search = eeruf.WaitSearch(12, 100_000, 24_000, 1000, t_delta_us=999, min_interval_us=15_000)
+///     >>> search.best("interval").value_us
+///     19000
 #[pyclass(frozen, module = "eeruf")]
 pub(crate) struct WaitSearch {
     search: search::WaitSearch,
     sensors: usize,
+    period: Micros,
+    wait_max: Micros,
 }
 
 impl WaitSearch {
@@ -181,7 +262,7 @@ impl WaitSearch {
 #[pymethods]
 impl WaitSearch {
     #[new]
-    #[pyo3(signature = (sensors, period_us, wait_max_us, tick_us, t_lag_us=None, *, t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion="paper"))]
+    #[pyo3(signature = (sensors, period_us, wait_max_us, tick_us, t_lag_us=None, *, t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion=None))]
     #[pyo3(
         text_signature = "(sensors, period_us, wait_max_us, tick_us, t_lag_us=None, *, t_delta_us, min_interval_us=0, neighbours=4, layout=\"line\", criterion=\"paper\")"
     )]
@@ -196,51 +277,111 @@ impl WaitSearch {
         min_interval_us: Option<&Bound<'_, PyAny>>,
         neighbours: Option<&Bound<'_, PyAny>>,
         layout: Option<&Bound<'_, PyAny>>,
-        criterion: &str,
+        criterion: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let sensors = arguments::sensors(sensors)?;
         let t_lag = t_lag_us.map(|lags| times("t_lag_us", lags)).transpose()?;
         let neighbours = arguments::neighbours(neighbours)?;
         let layout = OwnedLayout::new(layout, neighbours)?;
+        let (period, wait_max) = (micros("period_us", period_us)?, micros("wait_max_us", wait_max_us)?);
         let needs = WaitNeeds {
             sensors,
-            period: micros("period_us", period_us)?,
-            wait_max: micros("wait_max_us", wait_max_us)?,
+            period,
+            wait_max,
             tick: micros("tick_us", tick_us)?,
             t_lag: t_lag.as_deref(),
             t_delta: micros("t_delta_us", t_delta_us)?,
             min_interval: min_interval_us.map_or(Ok(Micros::ZERO), |value| micros("min_interval_us", value))?,
             neighbours,
             layout: layout.layout(),
-            criterion: arguments::criterion(criterion)?,
+            criterion: choice("criterion", criterion, &[("paper", Criterion::Paper), ("exact", Criterion::Exact)])?,
         };
-        Ok(Self { search: search::WaitSearch::new(&needs).map_err(Raise::raise)?, sensors })
+        Ok(Self { search: search::WaitSearch::new(&needs).map_err(Raise::raise)?, sensors, period, wait_max })
     }
 
+    fn __repr__(&self) -> String {
+        format!("<WaitSearch: {} sensors, period {}, waits up to {}>", self.sensors, self.period, self.wait_max)
+    }
+
+    /// One table of waits, the same each time, or None if there is none. Ctrl-C ends the search.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> table = eeruf.WaitSearch(2, 40_000, 4_000, 1000, t_delta_us=999).first()
+    ///     >>> table.t_wait_a_us, table.t_wait_b_us
+    ///     ((2000, 0), (0, 0))
     fn first(&self, py: Python<'_>) -> PyResult<Option<Schedule>> {
         let words = wait::memory_words(self.sensors);
         let first = self.run(py, u64::MAX, |memory, control| self.search.first(memory, control), words)?;
         Ok(first.1.map(Schedule))
     }
 
+    /// How many tables there are, however many: counted without listing them where that is possible. Ctrl-C ends the search.
+    ///
+    /// Args:
+    ///     limit: where to stop counting, 1 or more; None counts all.
+    ///
+    /// Returns:
+    ///     The number of tables, or the limit if there are as many.
+    ///
+    /// Raises:
+    ///     ArgumentError: the limit is no such number.
+    ///     SearchError: more than can be counted.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> eeruf.WaitSearch(2, 40_000, 4_000, 1000, t_delta_us=999).count(limit=10)
+    ///     10
     #[pyo3(signature = (limit=None))]
     fn count(&self, py: Python<'_>, limit: Option<&Bound<'_, PyAny>>) -> PyResult<u128> {
         let limit = limit.map(|limit| whole("limit", limit, 1..=u64::MAX)).transpose()?.map(u128::from);
         let count = |memory: &mut [u32], control: &mut Control<'_>| self.search.count(limit, memory, control);
-        Ok(self.run(py, u64::MAX, count, wait::COUNT_WORDS)?.count)
+        let count = self.run(py, u64::MAX, count, wait::COUNT_WORDS)?.count;
+        // Core counts the last sensor's tables all at once, and so past the limit.
+        Ok(limit.map_or(count, |limit| count.min(limit)))
     }
 
+    /// All tables in lexical order, as an iterator of ``Schedule``.
+    ///
+    /// Raises:
+    ///     SearchError: too large to search.
+    ///
+    /// Example:
+    ///     >>> import itertools, eeruf
+    ///     >>> search = eeruf.WaitSearch(2, 40_000, 4_000, 1000, t_delta_us=999)
+    ///     >>> [table.t_wait_b_us for table in itertools.islice(search.all(), 2)]
+    ///     [(0, 2000), (0, 3000)]
     fn all(&self) -> PyResult<WaitTables> {
         Ok(WaitTables(Walk::try_new(self.search.clone(), search::WaitSearch::all).map_err(Raise::raise)?))
     }
 
-    #[pyo3(signature = (objective="interval", budget=None))]
-    fn best(&self, py: Python<'_>, objective: &str, budget: Option<&Bound<'_, PyAny>>) -> PyResult<Found> {
-        let objective = match objective {
-            "interval" => Objective::Interval,
-            "t_delta" => Objective::Separation,
-            other => return Err(wrong("objective", format_args!("{other:?}"), "\"interval\" or \"t_delta\"")),
-        };
+    /// The best table: the one whose smallest interval between neighbours, or whose ``T_delta``, is largest. Ctrl-C ends the search.
+    ///
+    /// Args:
+    ///     objective: ``"interval"`` or ``"t_delta"``.
+    ///     budget: how many nodes to visit at most, 1 or more; unlimited by default.
+    ///
+    /// Returns:
+    ///     The table, with the interval or ``T_delta`` as ``value_us``.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such objective or budget.
+    ///     SearchError: too large to search.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> found = eeruf.WaitSearch(4, 40_000, 8_000, 1000, t_delta_us=999).best("t_delta")
+    ///     >>> found.proven, found.schedule.verify(found.value_us).ok
+    ///     (True, True)
+    #[pyo3(signature = (objective=None, budget=None), text_signature = "($self, objective=\"interval\", budget=None)")]
+    fn best(
+        &self,
+        py: Python<'_>,
+        objective: Option<&Bound<'_, PyAny>>,
+        budget: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Found> {
+        let objectives = [("interval", Objective::Interval), ("t_delta", Objective::Separation)];
+        let objective = choice("objective", objective, &objectives)?;
         let budget = whole_or("budget", budget, u64::MAX, 1..=u64::MAX)?;
         let words = wait::memory_words(self.sensors);
         let began = Instant::now();
@@ -259,7 +400,13 @@ self_cell::self_cell!(
     }
 );
 
-/// All tables, one after the other.
+/// All tables of a ``WaitSearch``, one after the other: an iterator that Ctrl-C interrupts.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> tables = eeruf.WaitSearch(2, 40_000, 4_000, 1000, t_delta_us=999).all()
+///     >>> next(tables).sensors
+///     2
 #[pyclass(module = "eeruf")]
 pub(crate) struct WaitTables(Walk);
 

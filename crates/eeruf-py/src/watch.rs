@@ -1,11 +1,23 @@
 //! Long work: Ctrl-C ends it, and who wants to may follow it.
 
-use std::time::{Duration, Instant};
+use std::{
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{self, RecvTimeoutError},
+    },
+    thread,
+    time::{Duration, Instant},
+};
 
-use pyo3::{exceptions::PyKeyboardInterrupt, prelude::*, types::PyBool};
+use pyo3::{
+    exceptions::{PyKeyboardInterrupt, PyRuntimeError},
+    prelude::*,
+    types::PyBool,
+};
 
 /// How often Python is asked whether to go on.
-const EVERY: Duration = Duration::from_millis(50);
+const EVERY: Duration = Duration::from_millis(20);
 
 /// Asks Python now and then, from the thread that called, whether to go on.
 pub(crate) struct Watch {
@@ -27,7 +39,7 @@ impl Watch {
             Some(other) => {
                 return Err(crate::arguments::wrong(
                     "progress",
-                    other.repr()?,
+                    crate::arguments::shown(other),
                     "None, True or a callable (share, text)",
                 ));
             }
@@ -67,7 +79,55 @@ impl Watch {
     }
 }
 
-/// What is raised where work was stopped and nobody says why.
-pub(crate) fn interrupted() -> PyErr {
-    PyKeyboardInterrupt::new_err(())
+/// What work on a thread of its own tells the thread that called, and hears from it.
+#[derive(Default)]
+pub(crate) struct Aside {
+    stopped: AtomicBool,
+    told: Mutex<(Option<f64>, String)>,
+}
+
+impl Aside {
+    /// Whether to go on, with how far the work has come; from any thread.
+    pub(crate) fn go_on(&self, share: Option<f64>, text: impl FnOnce() -> String) -> bool {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        // Threads tell their shares in any order.
+        let share = share.map(|share| told.0.map_or(share, |before| share.max(before)));
+        *told = (share, text());
+        !self.stopped.load(Ordering::Relaxed)
+    }
+
+    fn told(&self) -> (Option<f64>, String) {
+        self.told.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+/// Has work done on a thread of its own, while the thread that called looks after Ctrl-C and progress: signals reach Python only
+/// there. When Python wants the work to end, the caller does not wait for it: it ends by itself when it next asks.
+pub(crate) fn aside<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&Aside) -> PyResult<T> + Send + 'static,
+) -> PyResult<T> {
+    let mut watch = Watch::new(progress)?;
+    let result = py.detach(|| {
+        let (ours, (tell, hear)) = (Arc::new(Aside::default()), mpsc::channel());
+        let theirs = Arc::clone(&ours);
+        // Nobody hears the result of work that was left behind.
+        thread::spawn(move || drop(tell.send(work(&theirs))));
+        loop {
+            match hear.recv_timeout(EVERY) {
+                Ok(result) => return result,
+                Err(RecvTimeoutError::Disconnected) => return Err(PyRuntimeError::new_err("the work ended early")),
+                Err(RecvTimeoutError::Timeout) => {
+                    let (share, text) = ours.told();
+                    if !watch.go_on(share, || text) {
+                        ours.stopped.store(true, Ordering::Relaxed);
+                        // The watch knows why.
+                        return Err(PyKeyboardInterrupt::new_err(()));
+                    }
+                }
+            }
+        }
+    });
+    watch.outcome(result)
 }

@@ -1,6 +1,7 @@
 //! The paper's experiments, made repeatable.
 
 mod error;
+mod going;
 pub mod set_one;
 pub mod set_two;
 mod spread;

@@ -1,14 +1,12 @@
 //! Set I over many geometries: every method's figures, and how they spread.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-
 use eeruf_core::Micros;
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use super::{Alcove, SENSORS};
 use crate::{
     best::Best,
-    experiments::{ExperimentError, Spread},
+    experiments::{ExperimentError, Spread, going::Going},
     method::Method,
     robot::Robot,
     simulate::{Options, simulate_while, sweep},
@@ -120,10 +118,12 @@ pub fn set_one(
     }
     let periods = readings.div_ceil(SENSORS as u32);
     let options = Options { best: best.map(|best| best.schedule), ..Options::periods(periods) };
-    let (done, stopped) = (AtomicU64::new(0), AtomicBool::new(false));
-    let all = seeds * methods.len() as u64;
+    let going = Going::new(seeds * methods.len() as u64, keep_going);
     let geometries: Vec<u64> = (0..seeds).collect();
     let runs = sweep(&geometries, |&number| {
+        if !going.go_on() {
+            return Err(ExperimentError::Stopped);
+        }
         let alcove = Alcove::random(number);
         let standard = alcove.world()?;
         let robot = Robot {
@@ -136,17 +136,14 @@ pub fn set_one(
         let mut summaries = Vec::with_capacity(methods.len());
         for &method in methods {
             let world = if method == Method::MultiEcho { &patient } else { &standard };
-            let readings = simulate_while(world, method, &options, |_| !stopped.load(Ordering::Relaxed))?;
+            let readings = simulate_while(world, method, &options, |_| going.go_on())?;
             summaries.push(readings.summary());
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if !keep_going(done as f64 / all as f64) {
-                stopped.store(true, Ordering::Relaxed);
-            }
+            going.one_done();
         }
         Ok(summaries)
     });
     let runs: Vec<Vec<Summary>> = runs.into_iter().collect::<Result<_, ExperimentError>>()?;
-    if stopped.into_inner() {
+    if going.stopped() {
         return Err(ExperimentError::Stopped);
     }
     let of = |place: usize| Figures::of(&runs.iter().map(|run| run[place]).collect::<Vec<_>>());

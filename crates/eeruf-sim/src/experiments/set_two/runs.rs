@@ -1,7 +1,5 @@
 //! Set II over many courses: every method's figures, and the speed that each bears.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-
 use eeruf_core::Micros;
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
@@ -12,7 +10,7 @@ use super::{
 use crate::{
     best::Best,
     events,
-    experiments::ExperimentError,
+    experiments::{ExperimentError, going::Going},
     labmate::LabMate,
     method::Method,
     plane::Point,
@@ -173,25 +171,19 @@ pub fn set_two(options: &SetTwoOptions, keep_going: &(dyn Fn(f64) -> bool + Sync
         .iter()
         .flat_map(|&method| (options.first..options.first + options.seeds).map(move |number| (method, number)))
         .collect();
-    let (done, stopped) = (AtomicU64::new(0), AtomicBool::new(false));
+    let going = Going::new(jobs.len() as u64, keep_going);
     let runs = sweep(&jobs, |&(method, number)| {
-        if stopped.load(Ordering::Relaxed) {
-            return Err(ExperimentError::Stopped);
-        }
-        let run = drive(options, method, number);
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        if !keep_going(done as f64 / jobs.len() as f64) {
-            stopped.store(true, Ordering::Relaxed);
-        }
-        run
+        let run = drive(options, method, number, &going)?;
+        going.one_done();
+        Ok(run)
     });
-    if stopped.into_inner() {
+    if going.stopped() {
         return Err(ExperimentError::Stopped);
     }
     let mut runs = runs.into_iter();
     let mut by_method = Vec::new();
     for _ in &options.methods {
-        by_method.push(runs.by_ref().take(options.seeds as usize).collect::<Result<Vec<_>, _>>()?);
+        by_method.push(runs.by_ref().take(options.seeds as usize).collect::<Result<Vec<_>, ExperimentError>>()?);
     }
     let methods = options.methods.iter().zip(&by_method).map(|(&method, runs)| (method, Figures::of(runs))).collect();
     let SetTwoOptions { seeds, second_robot, .. } = *options;
@@ -200,7 +192,10 @@ pub fn set_two(options: &SetTwoOptions, keep_going: &(dyn Fn(f64) -> bool + Sync
 }
 
 /// One course by one method.
-fn drive(options: &SetTwoOptions, method: Method, number: u64) -> Result<Run, ExperimentError> {
+fn drive(options: &SetTwoOptions, method: Method, number: u64, going: &Going<'_>) -> Result<Run, ExperimentError> {
+    if !going.go_on() {
+        return Err(ExperimentError::Stopped);
+    }
     let course = Course::random(number);
     let consecutive = if method == Method::MultiEcho { MULTI_ECHO_CONSECUTIVE } else { 2 };
     let robot = Robot { odometry: options.odometry, t_delta: options.t_delta, consecutive, ..course.robot() };
@@ -211,7 +206,7 @@ fn drive(options: &SetTwoOptions, method: Method, number: u64) -> Result<Run, Ex
     let period_s = f64::from(world.robots()[0].period.as_micros()) * 1e-6;
     let simulation =
         Options { best: options.best.map(|best| best.schedule), ..Options::periods((TIME_S / period_s).ceil() as u32) };
-    events::run(&world, method, &simulation, &mut pilot, |_| true)?;
+    events::run(&world, method, &simulation, &mut pilot, |_| going.go_on())?;
     Ok(pilot.finish())
 }
 

@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""Times the Python package against the same calls in Rust, in one run, and prints a table.
+
+    cargo xtask python                                             # makes target/python, with the wheel in it
+    cargo build --profile wheel -p eeruf-sim --example rust_side   # the same calls in Rust, built as the wheel is
+    target/python/bin/python benches/python/overhead.py
+
+Each call is timed by the best of many runs; what Python adds is the difference. Then: how long `import eeruf` takes, and how
+long Ctrl-C takes to end long work. Nothing else should run beside it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any, Callable
+
+import eeruf
+import numpy as np
+from eeruf import sim
+
+ROOT = Path(__file__).resolve().parents[2]
+NEEDS: dict[str, Any] = {"t_delta_us": 999, "min_interval_us": 15_000, "window_us": 36_000}
+# What Ctrl-C interrupts; each tells when it is under way, and would take minutes.
+LONG = {
+    "design": """
+import random
+chance = random.Random(3)
+pairs = [(x, y) for x in range(64) for y in range(x) if chance.random() < 0.3]
+eeruf.design(64, 499, 9_000, 36_000, layout=pairs, budget=2**60, progress=tell)
+""",
+    "simulate": """
+robots = [eeruf.sim.Robot((x, 0, 1.57), 12, 0.26, 0.3) for x in range(4)]
+walls = [[8, 3, -4, 3], [-4, 3, -4, -3], [-4, -3, 8, -3], [8, -3, 8, 3]]
+eeruf.sim.simulate(eeruf.sim.Scene(walls, robots=robots), periods=10_000_000, progress=tell)
+""",
+    "set_one": "eeruf.experiments.set_one(100_000, progress=tell)",
+    "set_two": "eeruf.experiments.set_two(100_000, second_robot='ahead', progress=tell)",
+}
+
+
+def best(call: Callable[[], Any]) -> float:
+    """Return the shortest time of many calls over half a second, in seconds."""
+    shortest, begin = float("inf"), time.perf_counter()
+    while time.perf_counter() - begin < 0.5:
+        start = time.perf_counter()
+        call()
+        shortest = min(shortest, time.perf_counter() - start)
+    return shortest
+
+
+def calls() -> dict[str, Callable[[], Any]]:
+    """Return the cases of `rust_side.rs`, to the number."""
+    wall = sim.Scene([[5, 2, -5, 2]])
+    alcove = sim.Scene([[0.85, 0, 0.85, 1.39], [0.85, 1.39, -0.85, 1.39], [-0.85, 1.39, -0.85, 0]])
+    eight = np.array([[0.05 * k, 0.3] for k in range(8)])
+    echoes = (9_000.0 + np.arange(1_000_000) * 7 % 600).reshape(-1, 8)
+    return {
+        "design, 2 sensors": lambda: eeruf.design(2, **NEEDS),
+        "design, 4 sensors": lambda: eeruf.design(4, **NEEDS),
+        "paths, wall": lambda: wall.paths((0.0, 0.2), eight[:1], 1),
+        "paths, alcove": lambda: alcove.paths((0.0, 0.2), eight, 3),
+        "push_many, 1,000,000": lambda: eeruf.EchoFilter(8, 500).push_many(echoes),
+    }
+
+
+def import_ms(what: str) -> float:
+    """Return how long a fresh interpreter takes to import something, in milliseconds: the median of 15."""
+    program = f"import time; start = time.perf_counter(); {what}; print(time.perf_counter() - start)"
+    runs = [subprocess.run([sys.executable, "-c", program], check=True, capture_output=True) for _ in range(15)]
+    return 1e3 * float(np.median([float(run.stdout) for run in runs]))
+
+
+def interrupted_ms(work: str) -> float:
+    """Return how long work goes on after Ctrl-C, in milliseconds: the worst of 10, to where the exception is caught."""
+    program = f"""
+import eeruf, sys, time
+def tell(share, text):
+    print("under way", flush=True)
+try:
+{chr(10).join("    " + line for line in work.strip().splitlines())}
+except KeyboardInterrupt:
+    print("ended", time.monotonic(), flush=True)
+"""
+    worst = 0.0
+    for round in range(10):
+        child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+        assert child.stdout is not None
+        child.stdout.readline()
+        time.sleep(0.3 + 0.007 * round)
+        began = time.monotonic()
+        child.send_signal(signal.SIGINT)
+        out, _ = child.communicate(timeout=60)
+        ended = float(out.split("ended")[1])
+        worst = max(worst, 1e3 * (ended - began))
+    return worst
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rust", default=ROOT / "target/wheel/examples/rust_side", help="the built example")
+    options = parser.parse_args()
+    rust = json.loads(subprocess.run([options.rust, "times"], check=True, capture_output=True, text=True).stdout)
+    print("| call | Rust | Python | ratio | Python adds |\n|---|---|---|---|---|")
+    for name, call in calls().items():
+        here, there = best(call), rust[name]
+        added, ratio = 1e6 * (here - there), here / there
+        print(f"| {name} | {1e6 * there:.1f} us | {1e6 * here:.1f} us | {ratio:.2f} | {added:.1f} us |")
+    alone_ms, numpy_ms, both_ms = (import_ms(f"import {what}") for what in ("eeruf", "numpy", "numpy, eeruf"))
+    print(f"\nimport eeruf: {alone_ms:.0f} ms; import numpy: {numpy_ms:.0f} ms; both: {both_ms:.0f} ms (medians of 15)")
+    print("\n| Ctrl-C in the middle of | ends within |\n|---|---|")
+    for name, work in LONG.items():
+        print(f"| {name} | {interrupted_ms(work):.0f} ms |")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,115 @@
+//! What Rust says and how long it takes, for Python to be held against. Prints one JSON object.
+//!
+//!     rust_side paths    every critical path of the shared corpus
+//!     rust_side times    seconds of one call of `design`, `paths` and `push_many`'s work, best of many
+//!
+//! `benches/python/overhead.py` times the same calls from Python; `tests/python/test_corpus.py` compares the paths bit for bit.
+
+use std::{hint::black_box, time::Instant};
+
+use eeruf_core::{
+    EchoFilter, Layout, MAX_SENSORS, Micros, Requirements,
+    search::{RingNeeds, design},
+};
+use eeruf_sim::{Air, Bounce, Scene, Wall};
+use serde_json::{Map, Value, json};
+
+#[path = "../tests/common/corpus.rs"]
+mod corpus;
+
+fn main() {
+    let told = match std::env::args().nth(1).as_deref() {
+        Some("paths") => paths(),
+        Some("times") => times(),
+        _ => {
+            eprintln!("usage: rust_side paths | times");
+            std::process::exit(2);
+        }
+    };
+    println!("{told}");
+}
+
+fn paths() -> Value {
+    let mut told = Map::new();
+    for case in corpus::corpus()["cases"].as_array().expect("cases") {
+        let order = case["max_order"].as_u64().expect("an order") as u32;
+        let scene = corpus::scene(case);
+        let source = corpus::point(&case["source"]);
+        let found = scene.paths(source, &corpus::receivers(case), order, f64::INFINITY).expect("a scene of the corpus");
+        let code = |bounce: &Bounce| match *bounce {
+            Bounce::Wall(wall) => i64::from(wall),
+            Bounce::Pole(pole) => -1 - i64::from(pole),
+        };
+        let walls: Vec<Vec<i64>> =
+            (0..found.len()).map(|path| found.bounces(path).iter().map(code).collect()).collect();
+        let columns = json!({
+            "receiver": found.receiver,
+            "length_m": found.length_m,
+            "order": found.order,
+            "departure_rad": found.departure_rad,
+            "arrival_rad": found.arrival_rad,
+            "amplitude": found.amplitude,
+            "walls": walls,
+        });
+        told.insert(case["id"].as_str().expect("an id").to_owned(), columns);
+    }
+    Value::Object(told)
+}
+
+/// The cases are those of `overhead.py`, to the number.
+fn times() -> Value {
+    let wall = Scene::new(vec![Wall::new(5.0, 2.0, -5.0, 2.0)], vec![], Air::default()).expect("a wall");
+    let alcove = [[0.85, 0.0], [0.85, 1.39], [-0.85, 1.39], [-0.85, 0.0]];
+    let alcove = Scene::new(Wall::polyline(&alcove).collect(), vec![], Air::default()).expect("three walls");
+    let eight: Vec<_> = (0..8).map(|k| eeruf_sim::Point::new(0.05 * f64::from(k), 0.3)).collect();
+    let source = eeruf_sim::Point::new(0.0, 0.2);
+    json!({
+        "design, 2 sensors": seconds(|| design_of(2)),
+        "design, 4 sensors": seconds(|| design_of(4)),
+        "paths, wall": seconds(|| wall.paths(source, &eight[..1], 1, f64::INFINITY)),
+        "paths, alcove": seconds(|| alcove.paths(source, &eight, 3, f64::INFINITY)),
+        "push_many, 1,000,000": million(),
+    })
+}
+
+/// What `eeruf.design` does: the shortest period, and of its schedules the one to prefer.
+fn design_of(sensors: usize) -> Option<Micros> {
+    let requirements = Requirements {
+        min_interval: Micros::from_millis(15),
+        layout: Layout::Line(4),
+        window: Micros::from_millis(36),
+        ..Requirements::new(Micros::new(999))
+    };
+    let needs = RingNeeds { sensors: black_box(sensors), requirements, tick: Micros::from_millis(1) };
+    let mut memory = vec![0; design::memory_words(sensors)];
+    let designed = needs.shortest::<MAX_SENSORS>(50_000_000, &mut memory, &mut ()).expect("a small ring");
+    black_box(needs.prefer(&designed, 100_000, &mut memory, &mut ()).expect("a small ring"));
+    designed.found.value
+}
+
+/// A million readings of 8 sensors, one by one.
+fn million() -> f64 {
+    let echoes: Vec<f64> = (0..1_000_000).map(|k| 9_000.0 + f64::from(k * 7 % 600)).collect();
+    seconds(|| {
+        let mut filter = EchoFilter::<MAX_SENSORS>::new(Micros::new(500), 2).expect("two readings");
+        let mut kinds = Vec::with_capacity(echoes.len());
+        for row in echoes.chunks_exact(8) {
+            for (sensor, &us) in row.iter().enumerate() {
+                let echo = (!us.is_nan()).then(|| Micros::new(us.round() as u32));
+                kinds.push(filter.push(sensor, echo).expect("a sensor").kind as u8);
+            }
+        }
+        kinds
+    })
+}
+
+/// The shortest of many runs over half a second.
+fn seconds<T>(mut run: impl FnMut() -> T) -> f64 {
+    let (mut best, begin) = (f64::INFINITY, Instant::now());
+    while begin.elapsed().as_secs_f64() < 0.5 {
+        let start = Instant::now();
+        black_box(run());
+        best = best.min(start.elapsed().as_secs_f64());
+    }
+    best
+}

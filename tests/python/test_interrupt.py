@@ -1,0 +1,57 @@
+"""Ctrl-C ends what takes long, wherever it is, with KeyboardInterrupt."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+# Each would take hours, and says so from the middle of it, or just before where there is no progress to follow.
+LONG = {
+    "design": "eeruf.design(64, 499, 9_000, 36_000, layout=pairs, budget=2**60, progress=tell)",
+    "simulate": "eeruf.sim.simulate(scene, periods=2**32 - 1, progress=tell)",
+    "set_one": "eeruf.experiments.set_one(100_000, progress=tell)",
+    "set_two": "eeruf.experiments.set_two(100_000, progress=tell)",
+    "speed_sweep": "eeruf.experiments.speed_sweep(seeds=100_000, progress=tell)",
+    "count": "tell(); waits.count()",
+    "all": "tell(); [None for table in waits.all()]",
+    "sweep": "tell(); eeruf.sweep(functools.partial(eeruf.sim.simulate, scene, 'eeruf', 2**32 - 1), range(4))",
+}
+BEFORE = """
+import eeruf, functools, random
+def tell(*_):
+    print("under way", flush=True)
+chance = random.Random(3)
+pairs = [(x, y) for x in range(64) for y in range(x) if chance.random() < 0.3]
+scene = eeruf.sim.Scene([[5, 2, -5, 2]], robots=[eeruf.sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)])
+waits = eeruf.WaitSearch(24, 200_000, 49_000, 1000, t_delta_us=999, min_interval_us=15_000, criterion="exact")
+"""
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_ctrl_c_ends_long_work(name: str) -> None:
+    program = f"{BEFORE}\n{LONG[name]}\nprint('completed')"
+    # A session of its own, since a terminal sends Ctrl-C to all processes of a sweep.
+    child = subprocess.Popen(
+        [sys.executable, "-c", program],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    assert child.stdout is not None
+    assert child.stdout.readline() == "under way\n"
+    if name in ("count", "all", "sweep"):
+        time.sleep(0.5)
+    os.killpg(child.pid, signal.SIGINT)
+    try:
+        out, err = child.communicate(timeout=100)
+    finally:
+        # Nothing is left behind, whatever went wrong.
+        if child.poll() is None:
+            os.killpg(child.pid, signal.SIGKILL)
+    assert "completed" not in out
+    assert "KeyboardInterrupt" in err.splitlines()[-1], err
+    assert child.returncode != 0

@@ -421,6 +421,10 @@ fn one_sensor_fires_as_often_as_its_window_allows() {
     let stale = Problem { stale_echo: true, ..problem };
     let found = shortest(&stale, 1000, &mut memory, &mut ()).unwrap();
     assert_eq!((found.period, found.proven()), (10, true));
+    // Twice |d| can exceed the period.
+    let alone = Problem { window: 1, ..stale };
+    let largest = largest_separation(&alone, 9, 1000, &mut memory, &mut ()).unwrap();
+    assert_eq!((largest.found.map(|(value, _)| value), largest.bound), (Some(16), Some(16)));
 }
 
 #[test]

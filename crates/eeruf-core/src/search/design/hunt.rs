@@ -62,7 +62,8 @@ impl Question {
         let needs = &self.needs;
         match axis {
             Axis::Period => firing.period(needs),
-            Axis::Separation => -firing.separation(needs, self.period),
+            // Twice `|d|` of a single sensor with the stale-echo option can exceed the period.
+            Axis::Separation => -firing.separation(needs, 2 * self.period),
             Axis::Interval => -firing.interval(needs, self.period, self.period),
             Axis::Window => -firing.window(self.period),
         }

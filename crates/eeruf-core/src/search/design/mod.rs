@@ -38,6 +38,7 @@
 //! ```
 
 mod bounds;
+mod changes;
 mod choose;
 mod classes;
 mod control;

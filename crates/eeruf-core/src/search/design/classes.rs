@@ -8,13 +8,13 @@
 //! T_p + d >= (n + c) I,  T_p - d >= (n - c) I,  that is  c I - sigma <= d <= c I + sigma.
 //! ```
 //!
-//! Its **class** is `|c|`. As long as `2 sigma < I` the classes are apart, and each has room for as many `|d|` as fit D apart into
+//! Its **class** is `|c|`. As long as `sigma < I` each class has room for as many `|d|` as fit D apart into
 //! `|c| I - sigma ..= |c| I + sigma`, cut off at `least` below and at the `T_p - R` that the window leaves above. The n values c are how far the
 //! places of a permutation move. That bounds one clique; a set of **disjoint cliques** shares the room of the classes.
 //!
 //! **Line** (each n adjacent sensors conflict). Sensors i and i + n both conflict with the n - 1 between them, whose firings leave
 //! `2 (n - 1)` gaps, in two periods end to end. A gap with u firings of sensor i and v of sensor i + n in it is at least `(1 + max(u, v)) I` long;
-//! together they are `2 T_p < (2 n + 1) I` long, so the sum of `max(u, v)` is at most 2. As u and v sum to 2 each, `u = v` in each gap: sensor
+//! if `2 sigma < I`, together they are `2 T_p < (2 n + 1) I` long, so the sum of `max(u, v)` is at most 2. As u and v sum to 2 each, `u = v` in each gap: sensor
 //! i + n takes the places of sensor i. (Should i be last in both phases, i + n may instead be first in both: that moves all places of the
 //! sensors between by one, in both phases alike.) So c of sensor x depends on `x mod n` alone, and *one* permutation places `floor(K / n)` sensors
 //! or one more for each of its places. For n that divides K and n = 4, that is `n I + D (L - 1)` with `L = K / n` at `R = I`.
@@ -34,7 +34,7 @@
 //! to the last `I + D`.) All n pairs of places, with I behind each place: `2 T_p >= 2 n I + n D`.
 //!
 //! Whether some permutation fits is found by trying them, place by place; there are few unless n is large, and then giving up says nothing.
-//! Where `2 sigma >= I` nothing is said: no bound of this kind exceeds `n I + I / 2`.
+//! Where `2 sigma >= I`, lines and rings take up [`changes`](super::changes); where `sigma >= I`, nothing is said.
 
 use super::MAX_SENSORS;
 use super::bounds;
@@ -349,6 +349,10 @@ pub(crate) struct Orders {
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
+
+    use std::vec;
+
     use super::super::Problem;
     use super::super::place::Places;
     use super::super::tree::{Outcome, Tree};
@@ -407,5 +411,43 @@ mod tests {
             }
         }
         assert!(proven > 350 && met > 200, "{proven} proven, {met} met");
+    }
+
+    #[test]
+    fn no_schedule_is_found_below_a_bound_beyond_half_an_interval_to_spare() {
+        let mut memory = vec![0; super::super::memory_words(14)];
+        let mut random = Random::new(1);
+        // By how the places may change: not, once in a line, twice in a ring.
+        let mut proven = [0; 3];
+        for _ in 0..4000 {
+            let layout = ["line", "ring", "ring"][random.below(3) as usize];
+            let n = 2 + random.below(4) as usize;
+            let sensors =
+                if layout == "ring" { n * 2 + n * random.below(2) as usize } else { n + 1 + random.below(9) as usize };
+            let (interval, separation) = (4 + random.below(30), 1 + random.below(6));
+            let reach = if random.below(2) == 0 { 4 } else { n as u32 * interval };
+            let window = interval + random.below(reach);
+            let rows = rows(sensors, n, layout);
+            let conflicts = &rows[..sensors.min(14)];
+            let problem = Problem { sensors, conflicts, separation, interval, window, stale_echo: false };
+            let Ok(needs) = problem.needs() else { continue };
+            let Some(classes) = Classes::new(&needs) else { continue };
+            let period = classes.period(&needs) - 1;
+            if 2 * (period - classes.clique() as i32 * needs.interval) < needs.interval {
+                continue;
+            }
+            let kind = match classes.changes(&needs, period) {
+                Changes::None => 0,
+                Changes::One => 1,
+                Changes::Two { .. } => 2,
+                Changes::Any => panic!("{problem:?}: a bound without an argument"),
+            };
+            match search(&needs, period, 4_000, &mut memory) {
+                Outcome::Found(_) => panic!("{layout} {n}: {problem:?} at {period}"),
+                Outcome::Exhausted => proven[kind] += 1,
+                Outcome::Spent => {}
+            }
+        }
+        assert!(proven.iter().all(|&proven| proven > 4), "{proven:?}");
     }
 }

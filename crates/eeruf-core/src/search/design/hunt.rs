@@ -282,7 +282,14 @@ impl<'h, C: Control> Hunt<'h, C> {
     }
 
     /// Whether a schedule is found at `ease` with a little luck.
-    pub(crate) fn finds(&mut self, question: &Question, axis: Axis, ease: i32, budget: u64, border: &mut Border) -> bool {
+    pub(crate) fn finds(
+        &mut self,
+        question: &Question,
+        axis: Axis,
+        ease: i32,
+        budget: u64,
+        border: &mut Border,
+    ) -> bool {
         matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_))
     }
 

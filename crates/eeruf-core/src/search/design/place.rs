@@ -4,7 +4,6 @@
 //! in place q of phase b and p of phase a has d within `(p - q) I +- sigma`, see [`classes`](super::classes). This decides all their orders, and
 //! tells how large each `|d|` is before the orders do. As `2 sigma < I` is asked for, d of each n-th sensor is confined in the same way.
 
-use super::changes::Changes;
 use super::classes::{Classes, Orders};
 use super::frame::{Frame, Kind};
 use super::network::Contradiction;
@@ -56,7 +55,7 @@ impl Places {
             return places;
         }
         // Beyond, the order of the sensors changes now and then, and deciding it pair by pair is as good.
-        if classes.changes(needs, period) != Changes::None || (classes.ring() && needs.sensors % n > 0) {
+        if 2 * spare >= needs.interval || (classes.ring() && needs.sensors % n > 0) {
             return places;
         }
         (places.count, places.spare, places.ring) = (n, spare, classes.ring());

@@ -42,6 +42,9 @@ pub(crate) struct Args {
     /// How many nodes to search at most before giving the best schedule so far
     #[arg(long, default_value_t = 50_000_000, value_name = "NODES")]
     budget: u64,
+    /// On how many threads to search; the answer is the same
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u8).range(1..))]
+    threads: u8,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -66,7 +69,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let bad = |error: SearchError| InputError::new(&args.file, None, error);
     let began = Instant::now();
     let mut watch = Watch::new();
-    let Some(design) = find(&spec, args.budget, &mut watch).map_err(bad)? else {
+    let Some(design) = find(&spec, args.budget, args.threads, &mut watch).map_err(bad)? else {
         println!(
             "{}: no schedule: good readings change more from period to period, the more sensors at this speed must be \
              kept apart; expected fewer sensors or a lower speed_m_s",
@@ -105,7 +108,12 @@ pub(crate) struct RingDesign {
 ///
 /// If `t_delta` must cover motion, it depends on the period, which depends on it: longer periods need a larger `t_delta`,
 /// which needs longer periods. Starting from a robot that stands, this climbs to the first pair that agrees.
-pub(crate) fn find(spec: &RingSpec, budget: u64, watch: &mut Watch) -> Result<Option<RingDesign>, SearchError> {
+pub(crate) fn find(
+    spec: &RingSpec,
+    budget: u64,
+    threads: u8,
+    watch: &mut Watch,
+) -> Result<Option<RingDesign>, SearchError> {
     let mut memory = vec![0; design::memory_words(spec.sensors)];
     let mut control = |progress: &Progress| {
         let how_far = || {
@@ -117,7 +125,11 @@ pub(crate) fn find(spec: &RingSpec, budget: u64, watch: &mut Watch) -> Result<Op
     let mut t_delta = spec.t_delta;
     loop {
         let needs = spec.needs(t_delta);
-        let designed = needs.shortest::<MAX_SENSORS>(budget, &mut memory, &mut control)?;
+        let designed: Designed<MAX_SENSORS> = if threads > 1 {
+            needs.shortest_on_threads(budget, threads.into(), &mut control)?
+        } else {
+            needs.shortest(budget, &mut memory, &mut control)?
+        };
         let preferred = if designed.found.proven {
             Some(needs.prefer(&designed, PREFERENCE_BUDGET, &mut memory, &mut control)?)
         } else {

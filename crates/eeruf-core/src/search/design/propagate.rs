@@ -27,6 +27,10 @@ impl Tree<'_, '_> {
             let before = self.net.changes();
             for (argument, begun) in begun.iter_mut().enumerate() {
                 let now = self.net.changes();
+                // The two that cost more wait until the others have nothing new.
+                if argument == 2 && now != before {
+                    break;
+                }
                 if core::mem::replace(begun, now) == now {
                     continue;
                 }

@@ -6,10 +6,10 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use comfy_table::{Table, presets};
-use eeruf_core::search::design::{self, Effect, Flow, Progress, Relaxations};
-use eeruf_core::search::{Designed, Preferred, SearchError};
+use eeruf_core::search::design::{self, Flow, Progress};
+use eeruf_core::search::{Designed, Preferred, RingNeeds, SearchError};
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{MAX_SENSORS, Micros, Phase, Requirements};
+use eeruf_core::{Layout, MAX_SENSORS, Micros, Phase, Requirements};
 use serde::Serialize;
 
 use crate::Answer;
@@ -42,6 +42,9 @@ pub(crate) struct Args {
     /// How many nodes to search at most before giving the best schedule so far
     #[arg(long, default_value_t = 50_000_000, value_name = "NODES")]
     budget: u64,
+    /// On how many threads to search; the answer is the same
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u8).range(1..))]
+    threads: u8,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -59,14 +62,14 @@ enum Form {
 /// How many nodes the choice among the shortest schedules may cost.
 const PREFERENCE_BUDGET: u64 = 100_000;
 /// How many nodes it may cost to find out what one need, relaxed, would bring.
-const RELAXATION_BUDGET: u64 = 20_000;
+const WHAT_IF_BUDGET: u64 = 20_000;
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let spec = read_ring(&args.file)?;
     let bad = |error: SearchError| InputError::new(&args.file, None, error);
     let began = Instant::now();
     let mut watch = Watch::new();
-    let Some(design) = find(&spec, args.budget, &mut watch).map_err(bad)? else {
+    let Some(design) = find(&spec, args.budget, args.threads, &mut watch).map_err(bad)? else {
         println!(
             "{}: no schedule: good readings change more from period to period, the more sensors at this speed must be \
              kept apart; expected fewer sensors or a lower speed_m_s",
@@ -98,14 +101,19 @@ pub(crate) struct RingDesign {
     pub(crate) t_delta: Micros,
     designed: Designed<MAX_SENSORS>,
     preferred: Option<Preferred<MAX_SENSORS>>,
-    relaxations: Option<Relaxations>,
+    what_if: Vec<WhatIf>,
 }
 
 /// Finds the shortest period, and the preferred schedule with it; `None` if the robot is too fast for any.
 ///
 /// If `t_delta` must cover motion, it depends on the period, which depends on it: longer periods need a larger `t_delta`,
 /// which needs longer periods. Starting from a robot that stands, this climbs to the first pair that agrees.
-pub(crate) fn find(spec: &RingSpec, budget: u64, watch: &mut Watch) -> Result<Option<RingDesign>, SearchError> {
+pub(crate) fn find(
+    spec: &RingSpec,
+    budget: u64,
+    threads: u8,
+    watch: &mut Watch,
+) -> Result<Option<RingDesign>, SearchError> {
     let mut memory = vec![0; design::memory_words(spec.sensors)];
     let mut control = |progress: &Progress| {
         let how_far = || {
@@ -117,7 +125,11 @@ pub(crate) fn find(spec: &RingSpec, budget: u64, watch: &mut Watch) -> Result<Op
     let mut t_delta = spec.t_delta;
     loop {
         let needs = spec.needs(t_delta);
-        let designed = needs.shortest::<MAX_SENSORS>(budget, &mut memory, &mut control)?;
+        let designed: Designed<MAX_SENSORS> = if threads > 1 {
+            needs.shortest_on_threads(budget, threads.into(), &mut control)?
+        } else {
+            needs.shortest(budget, &mut memory, &mut control)?
+        };
         let preferred = if designed.found.proven {
             Some(needs.prefer(&designed, PREFERENCE_BUDGET, &mut memory, &mut control)?)
         } else {
@@ -129,13 +141,9 @@ pub(crate) fn find(spec: &RingSpec, budget: u64, watch: &mut Watch) -> Result<Op
         let needed = t_delta_needed(spec, &schedule);
         let allowed = schedule.verify(&needs.requirements).max_t_delta();
         if allowed >= Some(needed) {
-            let relaxations = if designed.found.proven {
-                Some(needs.relaxations(&designed, RELAXATION_BUDGET, &mut memory, &mut control)?)
-            } else {
-                None
-            };
+            let what_if = if designed.found.proven { what_if(&needs, &mut memory, &mut control)? } else { Vec::new() };
             let t_delta = needed.max(t_delta);
-            return Ok(Some(RingDesign { schedule, t_delta, designed, preferred, relaxations }));
+            return Ok(Some(RingDesign { schedule, t_delta, designed, preferred, what_if }));
         }
         // Past this point a second of silence would not be enough either.
         if needed > Micros::from_millis(1000) {
@@ -187,7 +195,7 @@ impl RingDesign {
 }
 
 fn describe(name: &str, spec: &RingSpec, requirements: &Requirements<'_>, design: &RingDesign, seconds: f64) -> String {
-    let RingDesign { schedule, designed, preferred, relaxations, .. } = design;
+    let RingDesign { schedule, designed, preferred, what_if, .. } = design;
     let found = &designed.found;
     let report = schedule.verify(requirements);
     let period = schedule.period();
@@ -254,8 +262,8 @@ fn describe(name: &str, spec: &RingSpec, requirements: &Requirements<'_>, design
 
     let mut text = format!("{name}: {} sensors, {}\n{table}\n", spec.sensors, requirements.layout);
     _ = writeln!(text, "\nNot shorter because of {}.", design.reason());
-    if let Some(relaxations) = relaxations {
-        _ = writeln!(text, "{}", ways_to_get_faster(relaxations, spec.tick));
+    if !what_if.is_empty() {
+        _ = writeln!(text, "\n{}", ways_to_get_faster(what_if, period));
     }
     text.push('\n');
     text += &timing::diagram(schedule, requirements.window);
@@ -263,27 +271,79 @@ fn describe(name: &str, spec: &RingSpec, requirements: &Requirements<'_>, design
     text
 }
 
-/// What the designer may change to get faster.
-fn ways_to_get_faster(relaxations: &Relaxations, tick: Micros) -> String {
-    let Relaxations { separation, interval, window, .. } = *relaxations;
-    let needs = [("t_delta", separation), ("interval", interval), ("listening window", window)];
-    let those = |effect| {
-        let names: Vec<_> = needs.iter().filter(|need| need.1 == effect).map(|need| need.0).collect();
-        names.join(" or ")
+/// What one need, relaxed, would bring.
+struct WhatIf {
+    /// The relaxed need, in words.
+    need: String,
+    /// The shortest period with it, or the shortest found.
+    period: Option<Micros>,
+    proven: bool,
+}
+
+/// Relaxes one need after the other by a tenth, or by one tick if that is more, or by one neighbour.
+fn what_if(
+    needs: &RingNeeds<'_>,
+    memory: &mut [i32],
+    control: &mut impl design::Control,
+) -> Result<Vec<WhatIf>, SearchError> {
+    let Requirements { t_delta, min_interval, window, layout, .. } = needs.requirements;
+    let tick = needs.tick.as_micros().max(1);
+    // In whole ticks, as others are rounded up to them.
+    let less = |time: Micros| {
+        let us = time.as_micros();
+        Micros::new((us - us / 10).min(us.saturating_sub(1)) / tick * tick)
     };
-    let mut text = match those(Effect::Shorter) {
-        helpful if helpful.is_empty() => {
-            format!("To get faster: no single need, smaller by a tick of {tick}, allows a shorter period")
-        }
-        helpful => format!("To get faster: a smaller {helpful}, by a tick of {tick}, allows a shorter period"),
-    };
-    for (effect, verdict) in [(Effect::None, "changes nothing"), (Effect::Unknown, "was not found out")] {
-        let names = those(effect);
-        if !names.is_empty() && !text.contains("no single need") {
-            text += &format!("; a smaller {names} {verdict}");
-        }
+    let (shorter, listening) = (less(min_interval), less(window));
+    let separation = less(needs.requirements.separation()).as_micros();
+    let nearer = Micros::new(separation.saturating_sub(1) / 2);
+    let mut cases = Vec::new();
+    if shorter < min_interval {
+        let relaxed = Requirements { min_interval: shorter, ..needs.requirements };
+        cases.push((format!("{shorter} instead of {min_interval} between neighbours"), relaxed));
     }
-    text + "."
+    if nearer < t_delta {
+        cases.push((
+            format!("t_delta of {nearer} instead of {t_delta}"),
+            Requirements { t_delta: nearer, ..needs.requirements },
+        ));
+    }
+    if Micros::ZERO < listening && listening < window {
+        let relaxed = Requirements { window: listening, ..needs.requirements };
+        cases.push((format!("listening for {listening} instead of {window}"), relaxed));
+    }
+    let fewer = match layout {
+        Layout::Line(n) if n > 1 => Some((n, Layout::Line(n - 1))),
+        Layout::Ring(n) if n > 1 => Some((n, Layout::Ring(n - 1))),
+        _ => None,
+    };
+    if let Some((n, layout)) = fewer {
+        cases.push((
+            format!("any {} instead of {n} adjacent sensors apart", n - 1),
+            Requirements { layout, ..needs.requirements },
+        ));
+    }
+    let answer = |(need, requirements)| {
+        let relaxed = RingNeeds { requirements, ..*needs };
+        let found = relaxed.shortest::<MAX_SENSORS>(WHAT_IF_BUDGET, memory, control)?.found;
+        Ok(WhatIf { need, period: found.value, proven: found.proven })
+    };
+    cases.into_iter().map(answer).collect()
+}
+
+/// What the designer may change to get faster.
+fn ways_to_get_faster(cases: &[WhatIf], period: Micros) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    for WhatIf { need, period: with, proven } in cases {
+        let verdict = match with {
+            Some(with) if *with < period && *proven => format!("{with}"),
+            Some(with) if *with < period => format!("{with} or less"),
+            _ if *proven => "no shorter".to_owned(),
+            _ => "not found out".to_owned(),
+        };
+        table.add_row([need, &verdict]);
+    }
+    format!("To get faster than {period}, one change at a time:\n{table}")
 }
 
 /// The period to which Table I-d, cut to this many sensors, has to be scaled to meet the same requirements.

@@ -38,7 +38,9 @@ pub(crate) fn read_toml<T: DeserializeOwned>(file: &Path) -> Result<T, InputErro
     let text = fs::read_to_string(file).map_err(|error| InputError::new(file, None, error))?;
     toml::from_str(&text).map_err(|error| {
         let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count() as u64);
-        InputError::new(file, line, error.message())
+        // What a number may be, in the words of a user.
+        let message = error.message().replace("expected usize", "expected a whole number from 0 on");
+        InputError::new(file, line, message.replace("expected u32", "expected a whole number from 0 to 4294967295"))
     })
 }
 

@@ -38,6 +38,9 @@ pub(crate) struct Args {
     json: bool,
 }
 
+/// How many nodes it may cost to find out which need cannot be met.
+const REASON_BUDGET: u64 = 1_000_000;
+
 #[derive(Clone, Copy, ValueEnum)]
 enum What {
     Interval,
@@ -88,6 +91,9 @@ fn answer(args: &Args, spec: &WaitSpec) -> Result<Answer, SearchError> {
                 count.nodes,
                 began.elapsed().as_secs_f64()
             );
+            if exact && count.count == 0 {
+                println!("{}", search.why_none(REASON_BUDGET, &mut vec![0; memory_words(spec.needs().sensors)])?);
+            }
         }
         return Ok(if exact && count.count == 0 { Answer::No } else { Answer::Yes });
     }
@@ -117,6 +123,9 @@ fn answer(args: &Args, spec: &WaitSpec) -> Result<Answer, SearchError> {
         );
     } else {
         describe(args, &found, seconds);
+        if found.schedule.is_none() && found.proven {
+            println!("{}", search.why_none(REASON_BUDGET, &mut memory)?);
+        }
     }
     Ok(if found.schedule.is_none() && found.proven { Answer::No } else { Answer::Yes })
 }

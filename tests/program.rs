@@ -174,7 +174,16 @@ fn the_papers_ring_can_run_at_65_ms_and_the_answer_is_the_same_in_every_form() {
     assert_eq!((&report["ok"], &report["max_t_delta_us"]), (&true.into(), &999.into()));
 
     let told = eeruf(&["design", "rings/paper-12.toml"]);
-    for said in ["65 ms", "proven: no schedule is shorter", "1.54 times Table I-d", "Not shorter because", "# fires"] {
+    for said in [
+        "65 ms",
+        "proven: no schedule is shorter",
+        "1.54 times Table I-d",
+        "Not shorter because",
+        "To get faster than 65 ms, one change at a time:\n 13 ms instead of 15 ms between neighbours  59 ms",
+        "listening for 27 ms instead of 30 ms       no shorter",
+        "any 3 instead of 4 adjacent sensors apart  52 ms",
+        "# fires",
+    ] {
         assert!(told.out.contains(said), "{said}\n{}", told.out);
     }
 }
@@ -265,6 +274,19 @@ fn the_search_for_waits_counts_proves_and_finds() {
     let none = eeruf(&["search", file.to_str().unwrap()]);
     assert_eq!(none.code, Some(1));
     assert!(none.out.starts_with("there is no such table: all were searched"), "{}", none.out);
+    for (from, to, reason) in [
+        ("999", "1999", "t_delta alone cannot be met: 4 sensors need waits that differ by amounts 4 ms apart"),
+        ("5000", "15000", "the smallest interval alone cannot be met: with these lags and waits of at most 9 ms"),
+        ("5000", "9000", "t_delta and the smallest interval cannot be met together"),
+    ] {
+        let (_folder, file) = Scratch::new("waits.toml", &waits.replace(from, to));
+        for option in [None, Some("--count")] {
+            let asked: Vec<_> = ["search", file.to_str().unwrap()].into_iter().chain(option).collect();
+            let none = eeruf(&asked);
+            assert_eq!(none.code, Some(1));
+            assert!(none.out.lines().nth(1).is_some_and(|line| line.starts_with(reason)), "{}", none.out);
+        }
+    }
 }
 
 #[test]
@@ -282,6 +304,11 @@ fn impossible_rings_get_one_clear_line() {
         (ring("layout = \"star\""), ", line 5: "),
         (ring("layout = [[0, 8]]"), ": layout: neighbours [0, 8]; expected two different sensors from 0 to 7"),
         (ring("").replace("15000", "4294967295") + "tick_us = 1\n", ": firing one by one already takes "),
+        (
+            ring("").replace("15000", "4000000000"),
+            ": firing one by one already takes 32000 s; expected at most 268435.456 ms, so a shorter interval",
+        ),
+        (ring("").replace("= 8", "= -8"), ", line 1: invalid value: integer `-8`, expected a whole number from 0 on"),
     ];
     for (contents, expected) in cases {
         let (_folder, file) = Scratch::new("ring.toml", &contents);

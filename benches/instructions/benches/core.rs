@@ -9,20 +9,52 @@ use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Config, Criterion, EchoFilter, Event, Instant, Layout, Micros, Requirements, Ring, Schedule};
 use gungraun::{library_benchmark, library_benchmark_group, main};
 
-// The shortest period of the paper's half ring of twelve, proven.
-#[library_benchmark]
-fn design_paper_12() -> Option<Micros> {
+/// The shortest period of a ring with a separation of 2 ms, neighbours 15 ms apart, proven.
+fn design(sensors: usize, layout: Layout<'_>, window_ms: u32, tick: Micros) -> Option<Micros> {
     let needs = RingNeeds {
-        sensors: 12,
+        sensors,
         requirements: Requirements {
             min_interval: Micros::from_millis(15),
-            window: Micros::from_millis(30),
+            window: Micros::from_millis(window_ms),
+            layout,
             ..Requirements::new(Micros::new(999))
         },
-        tick: Micros::from_millis(1),
+        tick,
     };
-    let mut memory = vec![0; design::memory_words(12)];
-    black_box(needs).shortest::<12>(u64::MAX, &mut memory, &mut ()).ok()?.found.value
+    let mut memory = vec![0; design::memory_words(sensors)];
+    let found = black_box(needs).shortest::<24>(u64::MAX, &mut memory, &mut ()).ok()?.found;
+    assert!(found.proven);
+    found.value
+}
+
+// The paper's half ring of twelve.
+#[library_benchmark]
+fn design_paper_12() -> Option<Micros> {
+    design(12, Layout::Line(4), 30, Micros::from_millis(1))
+}
+
+// The same in ticks of 0.1 ms.
+#[library_benchmark]
+fn design_paper_12_fine() -> Option<Micros> {
+    design(12, Layout::Line(4), 30, Micros::new(100))
+}
+
+// A closed ring of eight, whose proof in fine ticks costs most, compared with that in ticks of 1 ms.
+#[library_benchmark]
+fn design_ring_8() -> Option<Micros> {
+    design(8, Layout::Ring(4), 30, Micros::from_millis(1))
+}
+
+// The same in ticks of 0.1 ms.
+#[library_benchmark]
+fn design_ring_8_fine() -> Option<Micros> {
+    design(8, Layout::Ring(4), 30, Micros::new(100))
+}
+
+// A line of 24.
+#[library_benchmark]
+fn design_line_24() -> Option<Micros> {
+    design(24, Layout::Line(4), 15, Micros::from_millis(1))
 }
 
 // The largest smallest interval of a table of waits for twelve sensors, proven.
@@ -79,6 +111,6 @@ fn ring_100_periods() -> u32 {
 
 library_benchmark_group!(
     name = core;
-    benchmarks = design_paper_12, best_interval_12, filter_1000_readings, ring_100_periods
+    benchmarks = design_paper_12, design_paper_12_fine, design_ring_8, design_ring_8_fine, design_line_24, best_interval_12, filter_1000_readings, ring_100_periods
 );
 main!(library_benchmark_groups = core);

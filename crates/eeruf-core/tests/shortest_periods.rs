@@ -215,6 +215,44 @@ fn a_tick_of_a_microsecond_needs_little_more_nodes_than_one_of_a_millisecond() {
 }
 
 #[test]
+fn ticks_of_a_tenth_of_a_millisecond_cost_at_most_three_times_the_nodes() {
+    for layout in ["line", "ring"] {
+        for sensors in [8, 12, 16, 24] {
+            let rows = conflicts(sensors, 4, layout);
+            let mut memory = vec![0; memory_words(sensors)];
+            for window in [15, 30, 45, 60] {
+                let mut nodes = |scale| {
+                    let problem = Problem { sensors, window: window * scale, ..paper_12(&rows, scale) };
+                    let found = shortest(&problem, u64::MAX, &mut memory, &mut ()).unwrap();
+                    assert!(found.proven());
+                    assert_serves(&problem, found.period, &found.firing);
+                    found.nodes
+                };
+                let (coarse, fine) = (nodes(1), nodes(10));
+                assert!(fine <= 3 * coarse, "{layout} {sensors} {window}: {coarse} and {fine}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bound_beyond_half_an_interval_to_spare_is_met_in_any_tick() {
+    // With 67.5 ms sensors may begin to change places; 68, 69.5 and 70 ms are proven without a search for all that.
+    for (sensors, layout, window, tenths) in
+        [(24, "line", 15, 680), (16, "ring", 30, 680), (12, "line", 45, 695), (12, "ring", 45, 700)]
+    {
+        let rows = conflicts(sensors, 4, layout);
+        let mut memory = vec![0; memory_words(sensors)];
+        for scale in [10, 100, 1000] {
+            let problem = Problem { sensors, window: window * scale, ..paper_12(&rows, scale) };
+            let found = shortest(&problem, 2_000, &mut memory, &mut ()).unwrap();
+            assert_eq!((found.period, found.bound), (tenths * scale / 10, tenths * scale / 10), "{layout} {sensors}");
+            assert!(matches!(found.reason, Reason::Bound(Bound::Classes { .. })));
+        }
+    }
+}
+
+#[test]
 fn the_same_question_gets_the_same_answer() {
     let rows = conflicts(12, 4, "ring");
     let problem = paper_12(&rows, 1);
@@ -277,9 +315,9 @@ fn a_small_budget_leaves_a_schedule_and_an_honest_bound() {
 
 #[test]
 fn the_control_sees_progress_and_can_stop() {
-    let rows = conflicts(12, 4, "line");
-    let problem = Problem { window: 45, ..paper_12(&rows, 1) };
-    let mut memory = vec![0; memory_words(12)];
+    let rows = conflicts(24, 4, "ring");
+    let problem = Problem { sensors: 24, window: 15, ..paper_12(&rows, 1) };
+    let mut memory = vec![0; memory_words(24)];
     let mut polls = Vec::new();
     let mut control = |progress: &Progress| {
         polls.push(*progress);
@@ -318,9 +356,10 @@ fn the_reason_names_what_to_relax() {
         "interval and separation together: 4 sensors that are all neighbours and fire 15 ticks apart leave too little time to tell 12 refire \
          times 2 ticks apart, which takes 65 ticks; a shorter interval, a smaller separation or fewer neighbours would help"
     );
-    let middling = Problem { window: 45, ..narrow };
-    let searched = shortest(&middling, u64::MAX, &mut memory, &mut ()).unwrap();
-    assert!(matches!(searched.reason, Reason::Exhausted { period: 69, .. }));
+    let rows_8 = conflicts(8, 4, "ring");
+    let ring = Problem { sensors: 8, ..paper_12(&rows_8, 1) };
+    let searched = shortest(&ring, u64::MAX, &mut memory, &mut ()).unwrap();
+    assert!(matches!(searched.reason, Reason::Exhausted { period: 64, .. }));
     let relaxed = relaxations(&narrow, 65, 1_000_000, &mut memory, &mut ()).unwrap();
     assert_eq!((relaxed.interval, relaxed.window), (Effect::Shorter, Effect::None));
 }
@@ -421,6 +460,10 @@ fn one_sensor_fires_as_often_as_its_window_allows() {
     let stale = Problem { stale_echo: true, ..problem };
     let found = shortest(&stale, 1000, &mut memory, &mut ()).unwrap();
     assert_eq!((found.period, found.proven()), (10, true));
+    // Twice |d| can exceed the period.
+    let alone = Problem { window: 1, ..stale };
+    let largest = largest_separation(&alone, 9, 1000, &mut memory, &mut ()).unwrap();
+    assert_eq!((largest.found.map(|(value, _)| value), largest.bound), (Some(16), Some(16)));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::grid::GridError;
 use super::{design, wait};
-use crate::schedule::{MAX_SENSORS, ScheduleError};
+use crate::schedule::{MAX_PERIOD, MAX_SENSORS, ScheduleError};
 
 /// Why a search cannot begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +23,11 @@ pub enum SearchError {
     },
     /// The needs make no sense or are too large.
     Design(design::ProblemError),
+    /// Even firing one by one takes longer than [`MAX_PERIOD`].
+    TooLong {
+        /// What it takes, in microseconds.
+        period_us: u64,
+    },
     /// The waits sought make no sense.
     Wait(wait::ProblemError),
     /// The schedule found does not fit the capacity asked for.
@@ -65,6 +70,12 @@ impl fmt::Display for SearchError {
             }
             Self::Lags { sensors, lags } => write!(f, "{lags} lags; expected one for each of {sensors} sensors"),
             Self::Design(error) => error.fmt(f),
+            Self::TooLong { period_us } => write!(
+                f,
+                "firing one by one already takes {} s; expected at most {MAX_PERIOD}, so a shorter interval or window, or a \
+                 smaller t_delta",
+                period_us / 1_000_000
+            ),
             Self::Wait(error) => error.fmt(f),
             Self::Schedule(error) => error.fmt(f),
         }

@@ -18,7 +18,7 @@ mod wait_needs;
 pub use error::SearchError;
 pub use grid::GridError;
 pub use ring_needs::{Designed, Preferred, RingNeeds};
-pub use wait_needs::{WaitNeeds, WaitSearch};
+pub use wait_needs::{WaitNeeds, WaitSearch, WhyNone};
 
 use crate::schedule::Schedule;
 use crate::time::Micros;

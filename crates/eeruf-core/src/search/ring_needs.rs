@@ -4,7 +4,7 @@ use super::design::{self, Control, Firing, InTime, Problem, Relaxations, Shortes
 use super::grid::Grid;
 use super::{Found, SearchError};
 use crate::conditions::{Criterion, Requirements};
-use crate::schedule::{MAX_SENSORS, Schedule};
+use crate::schedule::{MAX_PERIOD, MAX_SENSORS, Schedule};
 use crate::time::Micros;
 
 /// What a ring needs. Firing times are free: every sensor fires once per period, whenever it suits all.
@@ -51,6 +51,17 @@ pub struct Designed<const K: usize> {
 }
 
 impl<const K: usize> Designed<K> {
+    fn new(grid: Grid, shortest: Shortest) -> Result<Self, SearchError> {
+        let found = Found {
+            schedule: Some(schedule_of(grid, shortest.period, &shortest.firing)?),
+            value: Some(grid.time(shortest.period)),
+            bound: Some(grid.time(shortest.bound)),
+            proven: shortest.proven(),
+            nodes: shortest.nodes,
+        };
+        Ok(Self { found, shortest, grid })
+    }
+
     /// Why the period is not shorter, in words; times in microseconds or milliseconds.
     pub const fn reason(&self) -> InTime<'_> {
         self.shortest.reason.in_ticks_of(self.grid.tick())
@@ -87,15 +98,22 @@ impl RingNeeds<'_> {
         control: &mut impl Control,
     ) -> Result<Designed<K>, SearchError> {
         let (grid, rows) = self.grid()?;
-        let shortest = design::shortest(&self.problem(grid, &rows), budget, memory, control)?;
-        let found = Found {
-            schedule: Some(schedule_of(grid, shortest.period, &shortest.firing)?),
-            value: Some(grid.time(shortest.period)),
-            bound: Some(grid.time(shortest.bound)),
-            proven: shortest.proven(),
-            nodes: shortest.nodes,
-        };
-        Ok(Designed { found, shortest, grid })
+        Designed::new(grid, design::shortest(&self.problem(grid, &rows), budget, memory, control)?)
+    }
+
+    /// The same answer on up to `threads` threads besides the calling one, see [`design::shortest_on_threads`].
+    ///
+    /// # Errors
+    /// As for [`shortest`](Self::shortest).
+    #[cfg(feature = "std")]
+    pub fn shortest_on_threads<const K: usize>(
+        &self,
+        budget: u64,
+        threads: usize,
+        control: &mut impl Control,
+    ) -> Result<Designed<K>, SearchError> {
+        let (grid, rows) = self.grid()?;
+        Designed::new(grid, design::shortest_on_threads(&self.problem(grid, &rows), budget, threads, control)?)
     }
 
     /// Of all schedules with the period found, the one with the largest `t_delta`; of these, the one with the largest
@@ -177,7 +195,15 @@ impl RingNeeds<'_> {
         if self.requirements.criterion == Criterion::Paper {
             return Err(SearchError::PaperCriterion);
         }
-        Ok((Grid::new(self.tick)?, self.requirements.layout.rows(self.sensors)))
+        let (grid, rows) = (Grid::new(self.tick)?, self.requirements.layout.rows(self.sensors));
+        let Problem { sensors, separation, interval, window, .. } = self.problem(grid, &rows);
+        let ticks = design::one_by_one(sensors.min(MAX_SENSORS), separation, interval, window);
+        let period_us = ticks.saturating_mul(u64::from(self.tick.as_micros()));
+        // What is too long in ticks is for the search to refuse.
+        if ticks <= u64::from(design::MAX_TICKS) && period_us > u64::from(MAX_PERIOD.as_micros()) {
+            return Err(SearchError::TooLong { period_us });
+        }
+        Ok((grid, rows))
     }
 
     fn problem<'r>(&self, grid: Grid, rows: &'r [u64; MAX_SENSORS]) -> Problem<'r> {

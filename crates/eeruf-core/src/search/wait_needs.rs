@@ -1,5 +1,7 @@
 //! The paper's question, in microseconds: lags are given, and for each sensor two waits are sought.
 
+use core::fmt;
+
 use super::grid::Grid;
 use super::wait::{All, Best, Control, Count, Finish, Objective, Problem, Search};
 use super::{Found, SearchError};
@@ -73,6 +75,50 @@ pub struct WaitSearch {
     rows: [u64; MAX_SENSORS],
 }
 
+/// Why there is no table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum WhyNone {
+    /// `t_delta` alone cannot be met.
+    Separation {
+        /// K.
+        sensors: usize,
+        /// D, what `t_delta` needs between two values `|d|`.
+        separation: Micros,
+        /// The longest wait.
+        wait_max: Micros,
+    },
+    /// The smallest interval alone cannot be met.
+    Interval {
+        /// I.
+        interval: Micros,
+        /// The longest wait.
+        wait_max: Micros,
+        /// `T_p`.
+        period: Micros,
+    },
+    /// Neither of them, as far as known, is to blame alone.
+    Together,
+}
+
+impl fmt::Display for WhyNone {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Separation { sensors, separation, wait_max } => write!(
+                f,
+                "t_delta alone cannot be met: {sensors} sensors need waits that differ by amounts {separation} apart from each other, and \
+                 no wait is longer than {wait_max}"
+            ),
+            Self::Interval { interval, wait_max, period } => write!(
+                f,
+                "the smallest interval alone cannot be met: with these lags and waits of at most {wait_max}, neighbours cannot \
+                 keep {interval} in a period of {period}"
+            ),
+            Self::Together => f.write_str("t_delta and the smallest interval cannot be met together"),
+        }
+    }
+}
+
 impl WaitSearch {
     /// Checks the needs and puts them on the grid.
     ///
@@ -136,6 +182,27 @@ impl WaitSearch {
         let finish = self.ticks()?.first(memory, control, &mut a, &mut b)?;
         let schedule = if finish == Finish::Found { Some(self.schedule(&a, &b)?) } else { None };
         Ok((finish, schedule))
+    }
+
+    /// Which of the needs cannot be met, if there is no table: what is found with one of them at a time, within `budget` nodes each.
+    ///
+    /// # Errors
+    /// As for [`first`](Self::first).
+    pub fn why_none(&self, budget: u64, memory: &mut [u32]) -> Result<WhyNone, SearchError> {
+        let search = self.ticks()?;
+        let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
+        let mut without = |separation, interval| {
+            search.with(separation, interval).first(memory, &mut Control::nodes_at_most(budget), &mut a, &mut b)
+        };
+        if without(self.separation, 0)? == Finish::Exhausted {
+            let (separation, wait_max) = (self.grid.time(self.separation), self.grid.time(self.wait_max));
+            return Ok(WhyNone::Separation { sensors: self.sensors, separation, wait_max });
+        }
+        if without(0, self.interval)? == Finish::Exhausted {
+            let (interval, wait_max) = (self.grid.time(self.interval), self.grid.time(self.wait_max));
+            return Ok(WhyNone::Interval { interval, wait_max, period: self.grid.time(self.period) });
+        }
+        Ok(WhyNone::Together)
     }
 
     /// How many tables there are, exactly; it stops when it has counted `limit`.

@@ -8,13 +8,13 @@
 //! T_p + d >= (n + c) I,  T_p - d >= (n - c) I,  that is  c I - sigma <= d <= c I + sigma.
 //! ```
 //!
-//! Its **class** is `|c|`. As long as `2 sigma < I` the classes are apart, and each has room for as many `|d|` as fit D apart into
+//! Its **class** is `|c|`. As long as `sigma < I` each class has room for as many `|d|` as fit D apart into
 //! `|c| I - sigma ..= |c| I + sigma`, cut off at `least` below and at the `T_p - R` that the window leaves above. The n values c are how far the
 //! places of a permutation move. That bounds one clique; a set of **disjoint cliques** shares the room of the classes.
 //!
 //! **Line** (each n adjacent sensors conflict). Sensors i and i + n both conflict with the n - 1 between them, whose firings leave
 //! `2 (n - 1)` gaps, in two periods end to end. A gap with u firings of sensor i and v of sensor i + n in it is at least `(1 + max(u, v)) I` long;
-//! together they are `2 T_p < (2 n + 1) I` long, so the sum of `max(u, v)` is at most 2. As u and v sum to 2 each, `u = v` in each gap: sensor
+//! if `2 sigma < I`, together they are `2 T_p < (2 n + 1) I` long, so the sum of `max(u, v)` is at most 2. As u and v sum to 2 each, `u = v` in each gap: sensor
 //! i + n takes the places of sensor i. (Should i be last in both phases, i + n may instead be first in both: that moves all places of the
 //! sensors between by one, in both phases alike.) So c of sensor x depends on `x mod n` alone, and *one* permutation places `floor(K / n)` sensors
 //! or one more for each of its places. For n that divides K and n = 4, that is `n I + D (L - 1)` with `L = K / n` at `R = I`.
@@ -34,10 +34,11 @@
 //! to the last `I + D`.) All n pairs of places, with I behind each place: `2 T_p >= 2 n I + n D`.
 //!
 //! Whether some permutation fits is found by trying them, place by place; there are few unless n is large, and then giving up says nothing.
-//! Where `2 sigma >= I` nothing is said: no bound of this kind exceeds `n I + I / 2`.
+//! Where `2 sigma >= I`, lines and rings take up [`changes`]; where `sigma >= I`, nothing is said.
 
 use super::MAX_SENSORS;
 use super::bounds;
+use super::changes::{self, Changes};
 use super::problem::{Needs, common_divisor};
 use super::random::Random;
 use super::symmetry;
@@ -88,7 +89,7 @@ impl Classes {
     pub(crate) fn period(&self, needs: &Needs) -> i32 {
         // `ProblemError::TooLong` bounds n I.
         let clique = self.clique as i32 * needs.interval;
-        let (mut no, mut yes) = (clique - 1, clique + (needs.interval + 1) / 2);
+        let (mut no, mut yes) = (clique - 1, clique + needs.interval);
         while no + 1 < yes {
             let middle = no + (yes - no) / 2;
             if self.excludes(needs, middle) { no = middle } else { yes = middle }
@@ -111,6 +112,18 @@ impl Classes {
         self.shape == Shape::Ring
     }
 
+    /// How often sensors n apart may have different places.
+    pub(crate) fn changes(&self, needs: &Needs, period: i32) -> Changes {
+        let n = self.clique as i32;
+        match self.shape {
+            // There a class is a matter of one clique.
+            Shape::Cliques(_) if period - n * needs.interval < needs.interval => Changes::None,
+            Shape::Cliques(_) => Changes::Any,
+            Shape::Line => changes::in_line(needs, period, n),
+            Shape::Ring => changes::in_ring(needs, period, n),
+        }
+    }
+
     /// The number of sensors that were counted.
     pub(crate) fn sensors(&self, needs: &Needs) -> u32 {
         if let Shape::Cliques(cliques) = self.shape { cliques * self.clique } else { needs.sensors as u32 }
@@ -120,14 +133,18 @@ impl Classes {
     pub(crate) fn excludes(&self, needs: &Needs, period: i32) -> bool {
         let n = self.clique as i32;
         let spare = period - n * needs.interval;
-        if 2 * spare >= needs.interval {
-            return false;
-        }
         if spare < 0 {
             return true;
         }
+        match self.changes(needs, period) {
+            Changes::None => {}
+            Changes::One if !changes::one_fits(needs, self, period) => {}
+            Changes::Two { rigid } if !changes::two_fit(needs, self, period, rigid) => {}
+            _ => return false,
+        }
+        let passed = self.passed(needs);
         let sensors = needs.sensors as i32;
-        if self.shape == Shape::Ring && sensors == 2 * n && 2 * spare < n * needs.separation {
+        if self.shape == Shape::Ring && sensors == 2 * n && 2 * spare < needs.interval.min(n * needs.separation) {
             return true;
         }
         let mut room = Room { places: [0; MAX_SENSORS], crossed: n, values: [0; MAX_SENSORS] };
@@ -139,7 +156,7 @@ impl Classes {
         };
         let mut sum = 0;
         for class in 0..n {
-            let values = self.values(needs, period, class, false);
+            let values = self.values(needs, period, class, passed);
             // A move by at least m has n - m places to start from, in each direction.
             let most = if class > 0 { 2 * (n - class) } else { n };
             let places = if let Shape::Cliques(cliques) = self.shape {
@@ -156,8 +173,8 @@ impl Classes {
             Shape::Cliques(cliques) if cliques > 1 => sum < n * cliques as i32,
             _ if sum < n => true,
             shape => {
-                if shape == Shape::Ring {
-                    let crossed = i64::from(self.values(needs, period, 0, true)) * i64::from(per);
+                if passed > 0 {
+                    let crossed = i64::from(self.values_within(needs, period, 0, 0, passed)) * i64::from(per);
                     room.crossed = (crossed / i64::from(sensors)).min(i64::from(n)) as i32;
                 }
                 let none = [0; MAX_SENSORS];
@@ -181,6 +198,19 @@ impl Classes {
         }
     }
 
+    /// Whether some permutation has no more places in each class than these.
+    pub(super) fn permutes(&self, places: &[i32; MAX_SENSORS]) -> bool {
+        let n = self.clique as usize;
+        let room = Room { places: *places, crossed: i32::MAX, values: [0; MAX_SENSORS] };
+        // A clique has at most MAX_SENSORS sensors.
+        !matches!(room.permutation(&[1; MAX_SENSORS][..n], &[0; MAX_SENSORS], |_| true), Search::None)
+    }
+
+    /// What a sensor of a ring needs at the lower end of its class, as others pass it on both sides.
+    pub(super) fn passed(&self, needs: &Needs) -> i32 {
+        if self.ring() { needs.separation } else { 0 }
+    }
+
     /// Orders drawn by chance in which each n-th sensor has the same place, and for whose classes there is room.
     pub(crate) fn draw(&self, needs: &Needs, period: i32, random: &mut Random) -> Option<Orders> {
         let (k, n) = (needs.sensors, self.clique as usize);
@@ -190,7 +220,7 @@ impl Classes {
         let mut room = Room { places: [0; MAX_SENSORS], crossed: i32::MAX, values: [0; MAX_SENSORS] };
         // n is at most MAX_SENSORS; so are places, and numbers mod n.
         for class in 0..n {
-            room.places[class] = self.values(needs, period, class as i32, false);
+            room.places[class] = self.values(needs, period, class as i32, self.passed(needs));
         }
         let (mut at, mut offsets, mut sizes) = ([0u8; MAX_SENSORS], [0u8; MAX_SENSORS], [0; MAX_SENSORS]);
         for q in 0..n {
@@ -224,20 +254,18 @@ impl Classes {
         Some(orders)
     }
 
-    /// How many `|d|` fit into a class.
-    pub(super) fn values(&self, needs: &Needs, period: i32, class: i32, crossed: bool) -> i32 {
+    /// How many `|d|` fit into a class, if in all but class 0 the first `passed` ticks are lost.
+    pub(super) fn values(&self, needs: &Needs, period: i32, class: i32, passed: i32) -> i32 {
+        self.values_within(needs, period, class, if class > 0 { passed } else { 0 }, 0)
+    }
+
+    /// How many `|d|` fit into a class of which `below` and `above` are lost.
+    fn values_within(&self, needs: &Needs, period: i32, class: i32, below: i32, above: i32) -> i32 {
         let spare = period - self.clique as i32 * needs.interval;
         let middle = class * needs.interval;
-        let d = needs.separation;
-        let (mut low, mut high) = ((middle - spare).max(needs.least), middle + spare);
-        if self.shape == Shape::Ring && class > 0 {
-            low = low.max(middle - spare + d);
-        }
-        if crossed {
-            high -= d;
-        }
-        high = high.min(period - needs.window);
-        if low <= high { (high - low) / d + 1 } else { 0 }
+        let low = (middle - spare + below).max(needs.least);
+        let high = (middle + spare - above).min(period - needs.window);
+        if low <= high { (high - low) / needs.separation + 1 } else { 0 }
     }
 }
 
@@ -321,6 +349,10 @@ pub(crate) struct Orders {
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
+
+    use std::vec;
+
     use super::super::Problem;
     use super::super::place::Places;
     use super::super::tree::{Outcome, Tree};
@@ -379,5 +411,43 @@ mod tests {
             }
         }
         assert!(proven > 350 && met > 200, "{proven} proven, {met} met");
+    }
+
+    #[test]
+    fn no_schedule_is_found_below_a_bound_beyond_half_an_interval_to_spare() {
+        let mut memory = vec![0; super::super::memory_words(14)];
+        let mut random = Random::new(1);
+        // By how the places may change: not, once in a line, twice in a ring.
+        let mut proven = [0; 3];
+        for _ in 0..4000 {
+            let layout = ["line", "ring", "ring"][random.below(3) as usize];
+            let n = 2 + random.below(4) as usize;
+            let sensors =
+                if layout == "ring" { n * 2 + n * random.below(2) as usize } else { n + 1 + random.below(9) as usize };
+            let (interval, separation) = (4 + random.below(30), 1 + random.below(6));
+            let reach = if random.below(2) == 0 { 4 } else { n as u32 * interval };
+            let window = interval + random.below(reach);
+            let rows = rows(sensors, n, layout);
+            let conflicts = &rows[..sensors.min(14)];
+            let problem = Problem { sensors, conflicts, separation, interval, window, stale_echo: false };
+            let Ok(needs) = problem.needs() else { continue };
+            let Some(classes) = Classes::new(&needs) else { continue };
+            let period = classes.period(&needs) - 1;
+            if 2 * (period - classes.clique() as i32 * needs.interval) < needs.interval {
+                continue;
+            }
+            let kind = match classes.changes(&needs, period) {
+                Changes::None => 0,
+                Changes::One => 1,
+                Changes::Two { .. } => 2,
+                Changes::Any => panic!("{problem:?}: a bound without an argument"),
+            };
+            match search(&needs, period, 4_000, &mut memory) {
+                Outcome::Found(_) => panic!("{layout} {n}: {problem:?} at {period}"),
+                Outcome::Exhausted => proven[kind] += 1,
+                Outcome::Spent => {}
+            }
+        }
+        assert!(proven.iter().all(|&proven| proven > 4), "{proven:?}");
     }
 }

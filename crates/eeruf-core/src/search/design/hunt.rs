@@ -62,7 +62,8 @@ impl Question {
         let needs = &self.needs;
         match axis {
             Axis::Period => firing.period(needs),
-            Axis::Separation => -firing.separation(needs, self.period),
+            // Twice `|d|` of a single sensor with the stale-echo option can exceed the period.
+            Axis::Separation => -firing.separation(needs, 2 * self.period),
             Axis::Interval => -firing.interval(needs, self.period, self.period),
             Axis::Window => -firing.window(self.period),
         }
@@ -219,7 +220,7 @@ impl<'h, C: Control> Hunt<'h, C> {
         self.narrow(&question, Axis::Period, &mut found);
         (border.firing, border.guide) = (found.firing.in_fine_ticks(ticks as u32), found.guide);
         (self.meter.limit, self.meter.ticks) = (limit, 1);
-        (16 * coarse.sensors as u64).max((self.meter.nodes - begin) / 8)
+        (16 * coarse.sensors as u64).max((self.meter.nodes - begin) / 4)
     }
 
     /// Bounds are often met, so this starts at `border.no + 1` and goes up in growing steps until something is found, a few times with growing
@@ -281,7 +282,14 @@ impl<'h, C: Control> Hunt<'h, C> {
     }
 
     /// Whether a schedule is found at `ease` with a little luck.
-    fn finds(&mut self, question: &Question, axis: Axis, ease: i32, budget: u64, border: &mut Border) -> bool {
+    pub(crate) fn finds(
+        &mut self,
+        question: &Question,
+        axis: Axis,
+        ease: i32,
+        budget: u64,
+        border: &mut Border,
+    ) -> bool {
         matches!(self.ask(question, axis, ease, budget, false, border), Outcome::Found(_))
     }
 

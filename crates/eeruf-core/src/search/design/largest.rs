@@ -117,7 +117,7 @@ fn most(question: &Question, axis: Axis) -> i32 {
             } else {
                 period
             };
-            most.clamp(0, period)
+            most.max(0)
         }
         // The clique bound at two conflicting sensors; the search finds the rest at once.
         Axis::Interval => period,

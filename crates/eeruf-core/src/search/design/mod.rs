@@ -38,6 +38,7 @@
 //! ```
 
 mod bounds;
+mod changes;
 mod choose;
 mod classes;
 mod control;
@@ -62,6 +63,7 @@ mod tree;
 pub use bounds::Bound;
 pub use control::{Control, Flow, POLL, Progress};
 pub use largest::{Choice, Largest, Preferred, largest_interval, largest_separation, prefer};
+pub(super) use problem::one_by_one;
 pub use problem::{MAX_TICKS, Problem, ProblemError};
 pub use reason::{InTime, Reason};
 pub use schedule::Firing;

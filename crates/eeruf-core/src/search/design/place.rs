@@ -60,7 +60,7 @@ impl Places {
         }
         (places.count, places.spare, places.ring) = (n, spare, classes.ring());
         for class in 0..n {
-            places.room[class] = classes.values(needs, period, class as i32, false);
+            places.room[class] = classes.values(needs, period, class as i32, classes.passed(needs));
         }
         places
     }

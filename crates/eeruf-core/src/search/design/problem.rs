@@ -175,7 +175,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// A period at which firing one by one always works: see [`construct`](super::construct).
+/// A period at which firing one by one always works: see [`schedule::one_by_one`](super::schedule::one_by_one).
 pub(crate) fn one_by_one(sensors: usize, separation: u32, interval: u32, window: u32) -> u64 {
     let (k, d, i) = (sensors as u64, u64::from(separation), u64::from(interval));
     (k * (d + i) + d).max(u64::from(window) + k * d)

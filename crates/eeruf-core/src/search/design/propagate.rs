@@ -21,12 +21,26 @@ impl Tree<'_, '_> {
     /// Draws conclusions from all choices so far.
     pub(super) fn propagate(&mut self) -> Result<(), Contradiction> {
         let mut packed = Intervals::NONE;
+        // How many changes there were when each argument was last begun: without another since, it has nothing new to say.
+        let mut begun = [u64::MAX; 4];
         for _ in 0..ROUNDS {
             let before = self.net.changes();
-            self.force_orders()?;
-            self.space_ranks()?;
-            self.pack(&mut packed)?;
-            self.set_precedence()?;
+            for (argument, begun) in begun.iter_mut().enumerate() {
+                let now = self.net.changes();
+                // The two that cost more wait until the others have nothing new.
+                if argument == 2 && now != before {
+                    break;
+                }
+                if core::mem::replace(begun, now) == now {
+                    continue;
+                }
+                match argument {
+                    0 => self.force_orders()?,
+                    1 => self.space_ranks()?,
+                    2 => self.pack(&mut packed)?,
+                    _ => self.set_precedence()?,
+                }
+            }
             if self.net.changes() == before {
                 break;
             }

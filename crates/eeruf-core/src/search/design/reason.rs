@@ -105,7 +105,8 @@ impl fmt::Display for InTime<'_> {
             Reason::BudgetSpent { bound } => {
                 write!(
                     f,
-                    "the budget, which was spent: periods from {} on are neither found nor excluded",
+                    "the search, which ended early: periods from {} on are neither found nor excluded, and a larger budget may \
+                     settle that",
                     self.time(*bound)
                 )
             }

@@ -116,10 +116,15 @@ pub(crate) fn shortest_period<C: Control>(needs: &Needs, hunt: &mut Hunt<'_, C>)
     match needs.in_coarse_ticks() {
         None => hunt.narrow(&question, Axis::Period, &mut border),
         Some((coarse, ticks)) => {
-            let budget = hunt.narrow_in_coarse_ticks(&coarse, ticks, &mut border);
-            // As it is ticks that were multiplied, the times may serve at a shorter period still.
-            border.yes = border.firing.period(needs).max(border.no + 1);
-            hunt.close(&question, Axis::Period, budget, &mut border);
+            // A bound between two coarse ticks may be met, and then coarse ticks have no part in it.
+            let least = border.no + 1;
+            let between = least % ticks > 0;
+            if !(between && hunt.finds(&question, Axis::Period, least, 64 * needs.sensors as u64, &mut border)) {
+                let budget = hunt.narrow_in_coarse_ticks(&coarse, ticks, &mut border);
+                // As it is ticks that were multiplied, the times may serve at a shorter period still.
+                border.yes = border.firing.period(needs).max(border.no + 1);
+                hunt.close(&question, Axis::Period, budget, &mut border);
+            }
         }
     }
     let (period, bound) = (border.yes as u32, border.no as u32 + 1);

@@ -30,10 +30,10 @@ const BOARDS: [Board; 4] = [
     },
 ];
 
-/// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions). 80 is the budget of a
-/// firing; the ring's bookkeeping for its filter comes on top of the scheduler's share.
-const INSTRUCTIONS: [(&str, u32); 6] =
-    [("idle_poll", 40), ("echo", 60), ("stamp", 60), ("reading", 400), ("scheduler_fire", 80), ("fire", 95)];
+/// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions).
+const INSTRUCTIONS: [(&str, u32); 5] = [("idle_poll", 40), ("fire", 80), ("echo", 60), ("stamp", 60), ("reading", 400)];
+/// Compilers differ: only more than the budget and this part of it fails.
+const LEEWAY: f64 = 0.05;
 const FLASH: u64 = 4096;
 const RAM: u64 = 12 * 16 + 64;
 const STACK: u64 = 256;
@@ -94,7 +94,8 @@ fn measure_all() -> Result<String, Trouble> {
             text += &format!("| {} | {name} | {fewest} | {most} |\n", board.name);
             let most: u32 = most.parse().map_err(|_| Trouble::Failed(format!("{}: {line}", board.name)))?;
             for (budgeted, budget) in INSTRUCTIONS {
-                if board.name == "microbit" && name == budgeted && most > budget {
+                if board.name == "microbit" && name == budgeted && f64::from(most) > f64::from(budget) * (1.0 + LEEWAY)
+                {
                     over.push(format!("{name}: {most} instructions; the budget is {budget}"));
                 }
             }

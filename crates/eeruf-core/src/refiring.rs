@@ -12,7 +12,7 @@
 //! which the filter cannot tell from a true echo in (8), but can in (10a), (10b), where consecutive readings differ.
 
 use crate::schedule::{Phase, Schedule};
-use crate::scheduler::{Scheduler, Step};
+use crate::scheduler::Scheduler;
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
 
@@ -83,40 +83,35 @@ fn next_phase<const M: usize>(phase: u8) -> u8 {
 }
 
 impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
-    fn fire(&mut self, now: Instant) -> Option<Step> {
-        if let Some((sensor, due)) = self.first() {
-            if now.has_reached(due) {
-                self.listening.set(sensor, true);
-                let turn = self.sensors.get_mut(usize::from(sensor))?;
-                turn.at = now;
-                return Some(Step::Fire { sensor, phase: Phase(turn.phase), late: now.since(due) });
-            }
-        }
-        None
+    fn next_firing(&self) -> Option<(u8, Phase)> {
+        let (sensor, due) = self.first()?;
+        let turn = self.sensors.get(usize::from(sensor))?;
+        self.period_end().has_reached(due).then_some((sensor, Phase(turn.phase)))
     }
 
-    fn end_period(&mut self, now: Instant) -> Option<Step> {
+    fn fire(&mut self, now: Instant) {
+        let Some((sensor, _)) = self.first() else { return };
+        self.listening.set(sensor, true);
+        if let Some(turn) = self.sensors.get_mut(usize::from(sensor)) {
+            turn.at = now;
+        }
+    }
+
+    fn end_period(&mut self, now: Instant) -> (Phase, bool) {
+        let phase = Phase(self.phase);
+        self.phase = next_phase::<M>(self.phase);
+        self.period_start = self.period_end();
+        // After a long silence the periods missed are not told one by one.
         if now.has_reached(self.period_end()) {
-            let phase = Phase(self.phase);
-            self.phase = next_phase::<M>(self.phase);
-            self.period_start = self.period_end();
-            // After a long silence the periods missed are not told one by one.
-            if now.has_reached(self.period_end()) {
-                self.period_start = now;
-            }
-            // A disabled sensor stays due, but its instant must not fall half a turn of the clock behind.
-            for (x, turn) in self.sensors.iter_mut().enumerate() {
-                if !self.listening.contains(x as u8) && now.has_reached(turn.at) {
-                    turn.at = now;
-                }
-            }
-            return Some(Step::PeriodEnded { phase, changed: false });
+            self.period_start = now;
         }
-        None
-    }
-
-    fn next_sensor(&self) -> Option<u8> {
-        self.first().filter(|&(_, due)| self.period_end().has_reached(due)).map(|(sensor, _)| sensor)
+        // A disabled sensor stays due, but its instant must not fall half a turn of the clock behind.
+        for (x, turn) in self.sensors.iter_mut().enumerate() {
+            if !self.listening.contains(x as u8) && now.has_reached(turn.at) {
+                turn.at = now;
+            }
+        }
+        (phase, false)
     }
 
     fn deadline(&self) -> Instant {

@@ -9,7 +9,7 @@ use crate::filter::{Agreement, FilterError, NO_ECHO, Rule, Track, insert};
 use crate::reading::{Kind, Tally, Verdict};
 use crate::refiring::ImmediateRefiring;
 use crate::schedule::{Phase, Schedule};
-use crate::scheduler::{ScheduledFiring, Scheduler, Step};
+use crate::scheduler::{ScheduledFiring, Scheduler};
 use crate::time::{Instant, Micros};
 
 /// How a [`Ring`] listens and compares.
@@ -327,22 +327,20 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// fires again.
     #[inline]
     fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
-        let fires = if now.has_reached(self.scheduler.deadline()) { self.scheduler.next_sensor() } else { None };
+        let due = self.scheduler.deadline();
+        let fires = if now.has_reached(due) { self.scheduler.next_firing() } else { None };
         let told = match fires {
-            Some(sensor) => {
-                let fired = self.sensors.get_mut(usize::from(sensor));
-                let untold = |sensor: &&mut Sensor<E>| sensor.is(LISTENING) || (self.ready > 0 && sensor.is_ready());
-                match fired {
-                    Some(fired) if untold(&fired) => Some(sensor),
-                    fired => {
-                        let Step::Fire { phase, late, .. } = self.scheduler.fire(now)? else { return None };
-                        if let Some(fired) = fired {
-                            fired.fire(phase, now);
-                        }
-                        return self.fired(sensor, late, now);
+            Some((sensor, phase)) => match self.sensors.get_mut(usize::from(sensor)) {
+                Some(untold) if untold.is(LISTENING | READY) => Some(sensor),
+                fired => {
+                    if let Some(fired) = fired {
+                        fired.fire(phase, now);
                     }
+                    self.fired(sensor, now.since(due), now);
+                    self.scheduler.fire(now);
+                    return Some(Event::Fire(sensor));
                 }
-            }
+            },
             None => self.next_to_tell(now),
         };
         match told {
@@ -352,7 +350,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     }
 
     #[inline]
-    fn fired(&mut self, sensor: u8, late: Micros, now: Instant) -> Option<Event> {
+    fn fired(&mut self, sensor: u8, late: Micros, now: Instant) {
         if late.as_micros() > self.max_late_us.into() {
             self.fired_late(late);
         }
@@ -362,7 +360,6 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
                 self.tell_at = now + self.window;
             }
         }
-        Some(Event::Fire(sensor))
     }
 
     /// Nothing in this period has fired later yet.
@@ -379,7 +376,10 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
 
     #[inline(never)]
     fn end_period(&mut self, now: Instant) -> Option<Event> {
-        let Step::PeriodEnded { phase, changed } = self.scheduler.end_period(now)? else { return None };
+        if !now.has_reached(self.scheduler.deadline()) {
+            return None;
+        }
+        let (phase, changed) = self.scheduler.end_period(now);
         if changed {
             self.unsettled = 2;
         }
@@ -419,11 +419,11 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// A sensor with something to tell; the oldest before others, which saves the search where it costs most: the next
     /// oldest has then to be looked for, too.
     fn first_ready(&self) -> Option<u8> {
-        if self.sensor(self.oldest).is_some_and(Sensor::is_ready) {
+        if self.sensor(self.oldest).is_some_and(|oldest| oldest.is(READY)) {
             return Some(self.oldest);
         }
         for (x, sensor) in self.sensors.iter().enumerate() {
-            if sensor.is_ready() {
+            if sensor.is(READY) {
                 // At most 64 sensors.
                 return Some(x as u8);
             }
@@ -435,17 +435,17 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     fn tell(&mut self, sensor: u8, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
         let heard = self.sensors.get_mut(usize::from(sensor))?;
         let phase = heard.phase();
-        if heard.is_ready() {
+        let (listened, fired) = (heard.is(LISTENING), heard.fired);
+        let mut ended_at = fired + self.window;
+        if heard.is(READY) {
             // It was counted when its edge came.
             self.ready = self.ready.wrapping_sub(1);
+            ended_at = fired + heard.held().unwrap_or_default();
         }
-        let listened = heard.is(LISTENING);
-        let fired = heard.fired;
-        let ended_at = fired + heard.t_echo().filter(|_| E == 1).unwrap_or(self.window);
         let verdict = if listened {
             heard.judge(Rule { t_delta: self.t_delta, agreement: self.agreement }, || expected_change_us(sensor))
         } else {
-            Verdict { kind: Kind::Late, t_echo: heard.take_late(), previous: None, age: heard.track.age() }
+            heard.tell_late()
         };
         if listened {
             self.scheduler.ended(sensor, ended_at);
@@ -494,10 +494,11 @@ struct Sensor<const E: usize> {
 const PHASE: u8 = 0b111;
 /// It has fired, and what became of that is not yet told.
 const LISTENING: u8 = 1 << 3;
-/// The only edges so far came within the blanking time.
-const EARLY: u8 = 1 << 4;
-/// An edge came after the window, or none is to be told.
-const LATE: u8 = 1 << 5;
+/// It has a reading that can be told without waiting for its window to close.
+const READY: u8 = 1 << 4;
+/// The only edges so far came outside the window: within the blanking time while it listens, late once that is told. A
+/// sensor that has not fired is said to have had its late edge, so that none is told of it.
+const OUTSIDE: u8 = 1 << 5;
 /// The driver found the line stuck.
 const STUCK: u8 = 1 << 6;
 /// The next reading is not to be compared with its neighbours in time.
@@ -514,7 +515,7 @@ enum Edge {
 }
 
 impl<const E: usize> Sensor<E> {
-    const NEW: Self = Self { fired: Instant::from_micros(0), echoes: [NO_ECHO; E], track: Track::new(LATE) };
+    const NEW: Self = Self { fired: Instant::from_micros(0), echoes: [NO_ECHO; E], track: Track::new(OUTSIDE) };
 
     const fn is(&self, flag: u8) -> bool {
         self.track.flags & flag != 0
@@ -533,14 +534,14 @@ impl<const E: usize> Sensor<E> {
     }
 
     fn fire(&mut self, phase: Phase, now: Instant) {
-        self.fired = now;
         self.track.flags = (self.track.flags & DISTURBED) | LISTENING | phase.0;
+        self.fired = now;
     }
 
     fn drop_firing(&mut self) {
         self.echoes = [NO_ECHO; E];
         self.track.forget();
-        self.track.flags = LATE;
+        self.track.flags = OUTSIDE;
     }
 
     fn echo(&mut self, at: Instant, blanking: Micros, window: Micros) -> Edge {
@@ -550,10 +551,10 @@ impl<const E: usize> Sensor<E> {
             return Edge::Noted;
         }
         if !self.is(LISTENING) {
-            if t_echo <= window || self.is(LATE) {
+            if t_echo <= window || self.is(OUTSIDE) {
                 return Edge::Noted;
             }
-            self.set(LATE);
+            self.set(OUTSIDE | READY);
             self.hold(t_echo);
             return Edge::Ready;
         }
@@ -561,19 +562,22 @@ impl<const E: usize> Sensor<E> {
             return Edge::Late;
         }
         if t_echo < blanking {
-            if self.t_echo().is_none() {
-                self.set(EARLY);
+            if self.held().is_none() {
+                self.set(OUTSIDE);
                 self.hold(t_echo);
             }
             return Edge::Noted;
         }
-        if self.is(EARLY) {
-            self.clear(EARLY);
+        if self.is(OUTSIDE) {
+            self.clear(OUTSIDE);
             self.echoes = [NO_ECHO; E];
         }
-        let first = self.t_echo().is_none();
         insert(&mut self.echoes, t_echo.as_micros());
-        if first && E == 1 { Edge::Ready } else { Edge::Noted }
+        if E > 1 || self.is(READY) {
+            return Edge::Noted;
+        }
+        self.set(READY);
+        Edge::Ready
     }
 
     fn hold(&mut self, t_echo: Micros) {
@@ -582,22 +586,17 @@ impl<const E: usize> Sensor<E> {
         }
     }
 
-    /// The first edge held, if it is an echo.
-    fn t_echo(&self) -> Option<Micros> {
-        let &echo = self.echoes.first()?;
-        (echo != NO_ECHO && !self.is(EARLY)).then_some(Micros::new(echo))
+    /// The first edge held, of whatever kind.
+    fn held(&self) -> Option<Micros> {
+        self.echoes.first().filter(|&&echo| echo != NO_ECHO).map(|&echo| Micros::new(echo))
     }
 
-    fn take_late(&mut self) -> Option<Micros> {
-        let t_echo = self.t_echo();
+    /// The late edge.
+    fn tell_late(&mut self) -> Verdict {
+        let t_echo = self.held();
+        self.clear(READY);
         self.echoes = [NO_ECHO; E];
-        t_echo
-    }
-
-    /// Whether a reading can be told before the window closes: of a sensor with a single echo, or of a late edge.
-    fn is_ready(&self) -> bool {
-        let silent = self.echoes.first().is_none_or(|&echo| echo == NO_ECHO);
-        !silent && !self.is(EARLY) && (E == 1 || !self.is(LISTENING))
+        Verdict { kind: Kind::Late, t_echo, previous: None, age: self.track.age() }
     }
 
     /// Ends the firing.
@@ -608,16 +607,15 @@ impl<const E: usize> Sensor<E> {
         }
         let verdict = if self.is(STUCK) {
             self.track.skip(Kind::Stuck, None)
-        } else if self.is(EARLY) {
-            let edge = self.echoes.first().map(|&us| Micros::new(us));
-            self.track.skip(Kind::TooEarly, edge)
+        } else if self.is(OUTSIDE) {
+            self.track.skip(Kind::TooEarly, self.held())
         } else {
             self.track.push(rule, &self.echoes, expected_change_us())
         };
         if disturbed {
             self.track.forget();
         }
-        self.clear(LISTENING | EARLY | STUCK | DISTURBED);
+        self.track.flags &= PHASE;
         self.echoes = [NO_ECHO; E];
         verdict
     }

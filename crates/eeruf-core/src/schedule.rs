@@ -51,25 +51,25 @@ impl fmt::Display for Phase {
 // In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction.
 #[repr(C)]
 pub struct Schedule<const K: usize, const M: usize = 2> {
+    firings: [Firings<K>; M],
     period: Micros,
-    sensors: u8,
-    t_lag: [Micros; K],
-    t_wait: [[Micros; K]; M],
     /// The shortest time between two firings of one sensor. Kept, since working it out takes time and stack on a target.
     min_refire: Micros,
-    firings: [Firings<K>; M],
+    t_lag: [Micros; K],
+    t_wait: [[Micros; K]; M],
+    sensors: u8,
 }
 
 /// The firings of one phase in the order in which they come, so that the scheduler need not look for the next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(C)]
 struct Firings<const K: usize> {
-    /// From the last firing to the end of the period.
-    after_last: Micros,
-    /// How long each fires after the one before it, the first after the start of the period; then `after_last`.
-    gap: [Micros; K],
     /// The sensors by firing time; then nobody (255).
     order: [u8; K],
+    /// How long each fires after the one before it, the first after the start of the period; then `after_last`.
+    gap: [Micros; K],
+    /// From the last firing to the end of the period.
+    after_last: Micros,
 }
 
 impl<const K: usize, const M: usize> Schedule<K, M> {
@@ -222,15 +222,19 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     }
 
     /// The sensor at a place in the firing order of a phase, and how long it fires after the one before it; beyond the
-    /// last place nobody (255), and the time from the last firing to the end of the period. Each step of the scheduler asks.
+    /// last place a sensor that is not there (`K` or more), and the time from the last firing to the end of the period. Each
+    /// step of the scheduler asks.
     #[inline]
     pub(crate) const fn firing(&self, phase: u8, place: u8) -> (u8, Micros) {
-        let (phase, place) = (phase as usize, place as usize);
-        if phase >= M {
+        if phase as usize >= M {
             return (u8::MAX, self.period);
         }
-        let firings = &self.firings[phase];
-        if place < K { (firings.order[place], firings.gap[place]) } else { (u8::MAX, firings.after_last) }
+        let firings = &self.firings[phase as usize];
+        if (place as usize) < K {
+            (firings.order[place as usize], firings.gap[place as usize])
+        } else {
+            (place, firings.after_last)
+        }
     }
 
     /// From a sensor's firing in a phase to its next one, `T_p - d` or `T_p + d` with two phases: the `dt` over which a

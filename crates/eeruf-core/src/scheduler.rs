@@ -30,18 +30,29 @@ pub enum Step {
 /// Decides when each sensor of a ring fires: [`ScheduledFiring`], or
 /// [`ImmediateRefiring`](crate::refiring::ImmediateRefiring).
 pub trait Scheduler {
-    /// The next step that is due, if any. Call again until there is none.
+    /// The next step, if one is due. Call again until there is none.
+    #[inline]
     fn poll(&mut self, now: Instant) -> Option<Step> {
-        self.fire(now).or_else(|| self.end_period(now))
+        let due = self.deadline();
+        if !now.has_reached(due) {
+            return None;
+        }
+        let Some((sensor, phase)) = self.next_firing() else {
+            let (phase, changed) = self.end_period(now);
+            return Some(Step::PeriodEnded { phase, changed });
+        };
+        self.fire(now);
+        Some(Step::Fire { sensor, phase, late: now.since(due) })
     }
-    /// The next firing, if one is due.
-    fn fire(&mut self, now: Instant) -> Option<Step>;
-    /// The end of the period, if it is due and no firing is.
-    fn end_period(&mut self, now: Instant) -> Option<Step>;
-    /// The sensor that will fire next, if one will before the period ends.
-    fn next_sensor(&self) -> Option<u8>;
     /// When the next step is due.
     fn deadline(&self) -> Instant;
+    /// The sensor that fires next and the phase of its wait; none if the period ends next.
+    fn next_firing(&self) -> Option<(u8, Phase)>;
+    /// Takes the step of firing that sensor, `now`. To be called when it is due.
+    fn fire(&mut self, now: Instant);
+    /// Takes the step of ending the period, `now`, and tells its phase and whether another schedule begins with the next
+    /// one. To be called when that is due.
+    fn end_period(&mut self, now: Instant) -> (Phase, bool);
     /// A sensor has stopped listening: its echo came in, or its window closed, `at` this instant.
     fn ended(&mut self, sensor: u8, at: Instant);
     /// Has a sensor fire from its next turn on, or no more.
@@ -76,9 +87,9 @@ pub trait Scheduler {
 #[repr(C)]
 pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
     phase: u8,
-    /// Place in the firing order of the next sensor to fire; the number of sensors when all have.
-    place: u8,
-    /// The next sensor to fire, or [`NOBODY`] when all have.
+    /// Place in the firing order of the sensor after the next one.
+    following: u8,
+    /// The next sensor to fire; `K` or more when all have.
     next: u8,
     /// Whether any sensor is disabled, since asking all 64 takes time at every firing.
     some_disabled: bool,
@@ -91,8 +102,6 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
     next_schedule: Option<&'s Schedule<K, M>>,
 }
 
-const NOBODY: u8 = u8::MAX;
-
 impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     /// Begins the first period of `schedule` at `now`, with all sensors enabled.
     pub const fn new(schedule: &'s Schedule<K, M>, now: Instant) -> Self {
@@ -100,7 +109,7 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
         let (next, gap) = schedule.firing(0, 0);
         Self {
             phase: 0,
-            place: 0,
+            following: 1,
             next,
             some_disabled: false,
             due: Instant::from_micros(now.wrapping_add(gap.as_micros())),
@@ -124,13 +133,12 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
         self.next_schedule = Some(schedule);
     }
 
-    /// Turns to the sensor at the present place, `gap` after this instant, or to the next enabled one after it; if there is
-    /// none, to the end of the period.
+    /// Turns to the following sensor, its gap after this instant, or to the next enabled one after it; if there is none, to
+    /// the end of the period.
     #[inline]
-    fn turn_to(&mut self, from: Instant) {
-        let (next, gap) = self.schedule.firing(self.phase, self.place);
-        self.next = next;
-        self.due = from + gap;
+    fn turn(&mut self, from: Instant) {
+        self.due = from;
+        self.turn_once();
         if self.some_disabled {
             self.skip_disabled();
         }
@@ -138,12 +146,17 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
 
     #[cold]
     fn skip_disabled(&mut self) {
-        while self.next != NOBODY && self.disabled.contains(self.next) {
-            self.place += 1;
-            let (next, gap) = self.schedule.firing(self.phase, self.place);
-            self.next = next;
-            self.due += gap;
+        while usize::from(self.next) < K && self.disabled.contains(self.next) {
+            self.turn_once();
         }
+    }
+
+    #[inline]
+    fn turn_once(&mut self) {
+        let (next, gap) = self.schedule.firing(self.phase, self.following);
+        self.following = self.following.wrapping_add(1);
+        self.next = next;
+        self.due += gap;
     }
 
     /// When a period may begin that was not verified against what fired before.
@@ -153,8 +166,8 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
 
     fn begin_period(&mut self, phase: u8, start: Instant) {
         self.phase = phase;
-        self.place = 0;
-        self.turn_to(start);
+        self.following = 0;
+        self.turn(start);
     }
 }
 
@@ -169,22 +182,13 @@ const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>
 
 impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
     #[inline]
-    fn fire(&mut self, now: Instant) -> Option<Step> {
-        if self.next == NOBODY || !now.has_reached(self.due) {
-            return None;
-        }
-        let step = Step::Fire { sensor: self.next, phase: Phase(self.phase), late: now.since(self.due) };
+    fn fire(&mut self, now: Instant) {
         self.last_fired = now;
-        self.place += 1;
         // From now, not from when it was due: all that follows moves by as much as this firing is late.
-        self.turn_to(now);
-        Some(step)
+        self.turn(now);
     }
 
-    fn end_period(&mut self, now: Instant) -> Option<Step> {
-        if self.next != NOBODY || !now.has_reached(self.due) {
-            return None;
-        }
+    fn end_period(&mut self, now: Instant) -> (Phase, bool) {
         let phase = Phase(self.phase);
         // Periods in which nothing fired need not be caught up with.
         let mut start = if now.since(self.due) > self.schedule.period() { now } else { self.due };
@@ -198,12 +202,12 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         }
         let next_phase = if usize::from(self.phase) + 1 < M { self.phase + 1 } else { 0 };
         self.begin_period(next_phase, start);
-        Some(Step::PeriodEnded { phase, changed })
+        (phase, changed)
     }
 
     #[inline]
-    fn next_sensor(&self) -> Option<u8> {
-        (self.next != NOBODY).then_some(self.next)
+    fn next_firing(&self) -> Option<(u8, Phase)> {
+        (usize::from(self.next) < K).then_some((self.next, Phase(self.phase)))
     }
 
     #[inline]

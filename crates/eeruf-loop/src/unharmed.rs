@@ -70,7 +70,7 @@ impl Unharmed {
         };
         loop {
             let scheduler = self.ring.ring().scheduler();
-            let would_fire = scheduler.next_sensor().is_some() && now.has_reached(scheduler.deadline());
+            let would_fire = scheduler.next_firing().is_some() && now.has_reached(scheduler.deadline());
             if would_fire && fires.is_none() {
                 // Here a reading is already told that the board's ring has yet to tell before it fires.
                 return Ok(());

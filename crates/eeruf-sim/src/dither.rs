@@ -1,6 +1,6 @@
 //! Random dither: the conventional lags plus a wait drawn anew for each sensor in each period.
 
-use eeruf_core::{Instant, MAX_SENSORS, Micros, Phase, Scheduler, Step};
+use eeruf_core::{Instant, MAX_SENSORS, Micros, Phase, Scheduler};
 
 use crate::noise::Chance;
 
@@ -48,30 +48,19 @@ impl DitherFiring {
 }
 
 impl Scheduler for DitherFiring {
-    fn fire(&mut self, now: Instant) -> Option<Step> {
-        let &(due, sensor) = self.due.get(self.place)?;
-        let deadline = self.start + due;
-        if !now.has_reached(deadline) {
-            return None;
-        }
-        let late = now.since(deadline);
-        self.start += late;
+    fn next_firing(&self) -> Option<(u8, Phase)> {
+        self.due.get(self.place).map(|&(_, sensor)| (sensor, Phase::A))
+    }
+
+    fn fire(&mut self, now: Instant) {
+        self.start += now.since(self.deadline());
         self.place += 1;
         self.skip_disabled();
-        Some(Step::Fire { sensor, phase: Phase::A, late })
     }
 
-    fn end_period(&mut self, now: Instant) -> Option<Step> {
-        let deadline = self.deadline();
-        if self.place < self.due.len() || !now.has_reached(deadline) {
-            return None;
-        }
-        self.begin_period(deadline);
-        Some(Step::PeriodEnded { phase: Phase::A, changed: false })
-    }
-
-    fn next_sensor(&self) -> Option<u8> {
-        self.due.get(self.place).map(|&(_, sensor)| sensor)
+    fn end_period(&mut self, _now: Instant) -> (Phase, bool) {
+        self.begin_period(self.deadline());
+        (Phase::A, false)
     }
 
     fn deadline(&self) -> Instant {

@@ -14,7 +14,7 @@ eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
 
 #[inline(never)]
 fn fire(scheduler: &mut ScheduledFiring<'static, 12>, now: Instant) -> Option<Step> {
-    scheduler.fire(now)
+    scheduler.poll(now)
 }
 
 #[inline(never)]
@@ -32,11 +32,8 @@ fn main() -> ! {
     for round in 0..480_u32 {
         let now = scheduler.deadline();
         let (taken, step) = counts(|| fire(&mut scheduler, now));
-        match step {
-            Some(_) => firing.note(taken),
-            None => {
-                scheduler.end_period(now);
-            }
+        if let Some(Step::Fire { .. }) = step {
+            firing.note(taken);
         }
         let t_echo = black_box((round % 7 != 0).then_some(Micros::new(5_000 + 600 * (round / 50))));
         pushing.note(counts(|| push(&mut filter, (round % 12) as usize, t_echo)).0);

@@ -1,8 +1,9 @@
 //! How many readings a second are simulated on one core: a static world with its paths known, one that moves, and Set I with
-//! everything from the walls on.
+//! everything from the walls on; and how much faster than real time the courses of Set II are driven.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use eeruf_sim::experiments::set_one::Alcove;
+use eeruf_sim::experiments::set_two::{self as driven, SECOND_BEHIND, SetTwoOptions};
 use eeruf_sim::{Method, Motion, Options, Robot, Vector, World, simulate};
 
 /// Long enough that finding the paths once does not count.
@@ -48,5 +49,22 @@ fn moving(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, still, set_one, moving);
+/// Robots driven through courses. Elements are simulated milliseconds, so that thousands a second are times real time.
+fn set_two(criterion: &mut Criterion) {
+    let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
+    for (title, second_robot) in [("alone", None), ("beside a second robot", Some(SECOND_BEHIND))] {
+        let mut group = criterion.benchmark_group(format!("set two {title}, simulated ms"));
+        group.sample_size(10);
+        for method in [Method::Sequential, Method::Conventional, Method::Eeruf, Method::MultiEcho] {
+            let options = SetTwoOptions { seeds: 5, methods: vec![method], second_robot, ..SetTwoOptions::default() };
+            let drive = || one_core.install(|| driven::set_two(&options, &|_| true).expect("the courses have room"));
+            let simulated_s: f64 = drive().runs.iter().flatten().map(|run| run.time_s).sum();
+            group.throughput(Throughput::Elements((simulated_s * 1e3) as u64));
+            group.bench_function(method.as_str(), |bencher| bencher.iter(drive));
+        }
+        group.finish();
+    }
+}
+
+criterion_group!(benches, still, set_one, moving, set_two);
 criterion_main!(benches);

@@ -126,6 +126,23 @@ pub(crate) struct Growth<'a> {
     pub(crate) budget: usize,
     /// Beams of the last order serve receivers only, not poles, and may be dropped where no receiver is.
     pub(crate) last_for_receivers: bool,
+    /// Where the source heads, if no sound leaves it at right angles to that or further behind.
+    pub(crate) front: Option<Vector>,
+}
+
+impl Growth<'_> {
+    /// The part of a cone from the source into which sound leaves.
+    fn lit(&self, left: Vector, right: Vector) -> Option<(Vector, Vector)> {
+        let Some(front) = self.front else { return Some((left, right)) };
+        let ahead = |limit: Vector| limit.dot(&front) > -SAME_DIRECTION * (limit.x.abs() + limit.y.abs());
+        match (ahead(left), ahead(right)) {
+            (true, true) => Some((left, right)),
+            (true, false) => Some((left, Vector::new(front.y, -front.x))),
+            (false, true) => Some((Vector::new(-front.y, front.x), right)),
+            // A cone through the side of a triangle is narrower than what is lit.
+            (false, false) => None,
+        }
+    }
 }
 
 impl BeamTree {
@@ -217,7 +234,10 @@ impl BeamTree {
             for side in growth.mesh.sides(triangle) {
                 let (left, right) = (side.left - source, side.right - source);
                 // A side through the source shows it nothing; what is behind it belongs to a triangle of the list too.
-                if cross(right, left) > SAME_DIRECTION * (left - right).norm() * (left.norm() + right.norm()) {
+                if cross(right, left) <= SAME_DIRECTION * (left - right).norm() * (left.norm() + right.norm()) {
+                    continue;
+                }
+                if let Some((left, right)) = growth.lit(left, right) {
                     let go_on = growth.max_order > 0;
                     if let Some(gate) = self.meet(growth, &beam, 0, side.exit, left, right, go_on) {
                         self.stack.push(Cone { gate, left, right });

@@ -13,7 +13,7 @@ use crate::{
 /// it is a critical path, one that can cause crosstalk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CriticalPath {
-    /// Index of the sensor that fires.
+    /// Index of the sensor that fires; 0 if only one does.
     pub emitter: u32,
     /// Index of the sensor that hears it.
     pub receiver: u32,
@@ -40,6 +40,7 @@ impl CriticalPath {
 /// All paths between the sensors of a ring, by emitter, receiver and length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CrosstalkMatrix {
+    emitters: usize,
     sensors: usize,
     paths: Vec<CriticalPath>,
     /// Where each pair's paths begin; one more at the end.
@@ -73,18 +74,18 @@ impl CrosstalkMatrix {
         limits: Limits,
         floor: f64,
     ) -> Result<(), PathsError> {
-        self.fill(tracer, scene, sensors, 0..sensors.len(), transducer, limits, floor)
+        self.fill(tracer, scene, sensors, sensors, transducer, limits, floor)
     }
 
-    /// As [`compute`](Self::compute), but traces one emitter only: for a world in which things move from firing to firing.
-    /// All paths from other emitters are missing.
+    /// As [`compute`](Self::compute), but traces one emitter only, which is number 0 and need not be among the sensors: for a
+    /// world in which things move from firing to firing.
     ///
     /// # Errors
     /// As [`compute`](Self::compute).
     #[allow(clippy::too_many_arguments, reason = "as compute, and the emitter")]
     pub fn compute_from(
         &mut self,
-        emitter: usize,
+        emitter: &Pose,
         tracer: &mut Tracer,
         scene: &Scene,
         sensors: &[Pose],
@@ -92,7 +93,7 @@ impl CrosstalkMatrix {
         limits: Limits,
         floor: f64,
     ) -> Result<(), PathsError> {
-        self.fill(tracer, scene, sensors, emitter..emitter + 1, transducer, limits, floor)
+        self.fill(tracer, scene, core::slice::from_ref(emitter), sensors, transducer, limits, floor)
     }
 
     #[allow(clippy::too_many_arguments, reason = "as compute, and the emitters")]
@@ -100,36 +101,33 @@ impl CrosstalkMatrix {
         &mut self,
         tracer: &mut Tracer,
         scene: &Scene,
+        emitters: &[Pose],
         sensors: &[Pose],
-        emitters: core::ops::Range<usize>,
         transducer: &Transducer,
         limits: Limits,
         floor: f64,
     ) -> Result<(), PathsError> {
         let air = scene.air();
         let piston = transducer.piston(air);
-        self.sensors = 0;
+        (self.emitters, self.sensors) = (0, 0);
         self.paths.clear();
         self.starts.clear();
         self.bounces.clear();
         self.positions.clear();
         self.positions.extend(sensors.iter().map(|sensor| Point::from(sensor.translation.vector)));
         tracer.frequency_hz = transducer.frequency_hz;
-        for (emitter, pose) in sensors.iter().enumerate() {
-            if !emitters.contains(&emitter) {
-                self.starts.resize(self.starts.len() + sensors.len(), self.paths.len() as u32);
-                continue;
-            }
-            let gate = match &mut self.gate {
-                Some(gate) if gate.is_for(&piston) => gate,
-                gate => gate.insert(Gate::new(piston)),
-            };
-            let axes = sensors.iter().map(|sensor| sensor.rotation * Vector::x());
-            gate.aim(floor, pose.rotation.angle(), axes);
+        let gate = match &mut self.gate {
+            Some(gate) if gate.is_for(&piston) => gate,
+            gate => gate.insert(Gate::new(piston)),
+        };
+        gate.set_floor(floor, tracer.loss_per_m(air));
+        for (emitter, pose) in emitters.iter().enumerate() {
+            let heading_rad = pose.rotation.angle();
+            gate.aim(heading_rad, sensors.iter().map(|sensor| sensor.rotation * Vector::x()));
             // The wave correction may add a little to what a pole returns.
             let gate = if tracer.pole_waves { None } else { Some(&*gate) };
-            let (source, receivers) = (self.positions[emitter], &self.positions);
-            if let Err(error) = tracer.trace_through(gate, scene, source, receivers, limits, &mut self.found) {
+            let source = Point::from(pose.translation.vector);
+            if let Err(error) = tracer.trace_through(gate, scene, source, &self.positions, limits, &mut self.found) {
                 self.paths.clear();
                 self.starts.clear();
                 return Err(error);
@@ -140,6 +138,10 @@ impl CrosstalkMatrix {
                 self.starts.push(self.paths.len() as u32);
                 let range = next..found.of(receiver as u32).end;
                 next = range.end;
+                if range.is_empty() {
+                    continue;
+                }
+                let listens_rad = listener.rotation.angle();
                 for k in range {
                     let bare = found.amplitude[k];
                     // The patterns only take away, and cost more than anything else here.
@@ -147,8 +149,8 @@ impl CrosstalkMatrix {
                         continue;
                     }
                     let amplitude = bare
-                        * piston.pattern(found.departure_rad[k] - pose.rotation.angle())
-                        * piston.pattern(found.arrival_rad[k] - listener.rotation.angle());
+                        * piston.pattern(found.departure_rad[k] - heading_rad)
+                        * piston.pattern(found.arrival_rad[k] - listens_rad);
                     if transducer.received(amplitude, found.length_m[k], air) < floor {
                         continue;
                     }
@@ -168,7 +170,7 @@ impl CrosstalkMatrix {
             }
         }
         self.starts.push(self.paths.len() as u32);
-        self.sensors = sensors.len();
+        (self.emitters, self.sensors) = (emitters.len(), sensors.len());
         Ok(())
     }
 
@@ -179,7 +181,7 @@ impl CrosstalkMatrix {
 
     /// The paths from an emitter to a receiver, shortest first; none for sensors that do not exist.
     pub fn between(&self, emitter: usize, receiver: usize) -> &[CriticalPath] {
-        if emitter >= self.sensors || receiver >= self.sensors {
+        if emitter >= self.emitters || receiver >= self.sensors {
             return &[];
         }
         let pair = emitter * self.sensors + receiver;

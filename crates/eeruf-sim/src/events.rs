@@ -55,7 +55,7 @@ struct Course<'a, G> {
     /// Where each sensor's robot was then.
     fired: Vec<Option<Moment>>,
     chance: Chance,
-    normal: Normal,
+    normal: &'static Normal,
     judge: Judge,
     /// Firings from here on are not reported.
     end: u64,
@@ -179,7 +179,7 @@ impl<'a, G: Guide> Course<'a, G> {
             references: vec![NEVER; sensors],
             fired: vec![None; sensors],
             chance: seed.of(ARRIVALS),
-            normal: Normal::new(),
+            normal: Normal::shared(),
             judge,
             end,
         })

@@ -1,7 +1,7 @@
 //! Which paths are certainly too faint to be heard, told from where they point before anything dear is computed of them.
 //!
 //! Every bound is an upper one, so that nothing audible is lost: the patterns by their envelope, a pole by the most that it can
-//! return, surfaces and air as if they took nothing.
+//! return, the air by what it takes on a slightly shorter way.
 
 use crate::{
     piston::Piston,
@@ -15,6 +15,9 @@ const STEPS: usize = 1024;
 const ASIDE_RAD: f64 = 1.2 / FAR;
 /// Poles nearer than this many radii are not judged.
 const FAR: f64 = 60.0;
+/// How finely the loss in the air is known, in steps per metre, and how far.
+const STEPS_PER_M: f64 = 32.0;
+const REACH_M: f64 = 32.0;
 
 /// One question's emitter and receivers, and what is just heard.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +25,11 @@ pub(crate) struct Gate {
     piston: Piston,
     /// The highest square of the pattern from an angle on.
     envelope: Vec<f64>,
+    /// The amplitude that is just heard, and the natural logarithm of what the air leaves of one per metre, negative.
     floor: f64,
+    loss_per_m: f64,
+    /// After so many steps at least: the square of the amplitude that would just be heard if the air took nothing.
+    faint: Vec<f64>,
     /// Where the source heads, as an angle and as a direction.
     source_rad: f64,
     source: Vector,
@@ -42,20 +49,47 @@ impl Gate {
         }
         // An angle between two steps is judged by the lower one, where the envelope is no less.
         let ahead = Vector::x();
-        Self { piston, envelope, floor: 0.0, source_rad: 0.0, source: ahead, receivers: Vec::new() }
+        Self {
+            piston,
+            envelope,
+            floor: 0.0,
+            loss_per_m: 0.0,
+            faint: Vec::new(),
+            source_rad: 0.0,
+            source: ahead,
+            receivers: Vec::new(),
+        }
     }
 
     pub(crate) fn is_for(&self, piston: &Piston) -> bool {
         self.piston == *piston
     }
 
-    /// Sets where source and receivers head, and the amplitude that is just heard.
-    pub(crate) fn aim(&mut self, floor: f64, source_rad: f64, receivers: impl Iterator<Item = Vector>) {
-        self.floor = floor * (1.0 - 1e-9);
+    /// Sets the amplitude that is just heard, and the natural logarithm of what the air leaves of one per metre.
+    pub(crate) fn set_floor(&mut self, floor: f64, loss_per_m: f64) {
+        if (self.floor, self.loss_per_m) == (floor, loss_per_m) && !self.faint.is_empty() {
+            return;
+        }
+        (self.floor, self.loss_per_m) = (floor, loss_per_m);
+        self.faint.clear();
+        let steps = (REACH_M * STEPS_PER_M) as usize;
+        self.faint.extend((0..=steps).map(|step| {
+            let length_m = step as f64 / STEPS_PER_M;
+            (floor * (-loss_per_m * length_m).exp() * (1.0 - 1e-9)).powi(2)
+        }));
+    }
+
+    /// Sets where source and receivers head.
+    pub(crate) fn aim(&mut self, source_rad: f64, receivers: impl Iterator<Item = Vector>) {
         self.source_rad = source_rad;
         self.source = Vector::new(source_rad.cos(), source_rad.sin());
         self.receivers.clear();
         self.receivers.extend(receivers);
+    }
+
+    /// Where the source heads, as a direction. Nothing leaves it at right angles to that, or further behind.
+    pub(crate) fn source(&self) -> Vector {
+        self.source
     }
 
     /// Where the source heads, in radians.
@@ -70,31 +104,76 @@ impl Gate {
         self.envelope.get(step as usize).copied().unwrap_or(0.0)
     }
 
+    /// What the square of an amplitude is at least that is heard after this length, but for the air.
+    #[inline]
+    fn faint(&self, length_m: f64) -> f64 {
+        let step = ((length_m * STEPS_PER_M) as usize).min(self.faint.len().saturating_sub(1));
+        self.faint.get(step).copied().unwrap_or(0.0)
+    }
+
     /// Whether a path over walls may be heard that leaves at an angle with this cosine off the source's axis, and whose image
     /// the receiver sees in the direction `towards`, as long as the path.
     #[inline]
     pub(crate) fn walls(&self, departure_cos: f64, receiver: usize, towards: Vector, length_m: f64, kept: f64) -> bool {
         let Some(axis) = self.receivers.get(receiver) else { return true };
-        let square = self.square(departure_cos) * self.square(towards.dot(axis) / length_m);
-        square * kept * kept >= (self.floor * length_m).powi(2)
+        let (sent, least) = (self.square(departure_cos) * kept * kept, self.faint(length_m) * length_m * length_m);
+        // Most are turned away for what the source sends there.
+        sent >= least && sent * self.square(towards.dot(axis) / length_m) >= least
     }
 
-    /// Whether a path from source to receiver over one pole may be heard.
-    ///
-    /// ```text
-    /// A^2 <= (a / 2) / (s' s (s' + s))
-    /// ```
+    /// What falls on a pole.
+    pub(crate) fn light<'a>(&'a self, source: Point, pole: &'a Pole) -> Lit<'a> {
+        let out = pole.centre - source;
+        let far = out.norm();
+        let judged = far >= FAR * pole.radius_m;
+        let before_m = far - pole.radius_m;
+        let part = self.square(out.dot(&self.source) / far) * 0.5 * pole.radius_m / before_m;
+        Lit { gate: self, pole, before_m: judged.then_some(before_m), part }
+    }
+}
+
+/// A pole that the source shines at; which receivers may hear it?
+///
+/// ```text
+/// A^2 <= (a / 2) / (s' s (s' + s))
+/// ```
+pub(crate) struct Lit<'a> {
+    gate: &'a Gate,
+    pole: &'a Pole,
+    /// `s'`; none if the pole is too near to be judged.
+    before_m: Option<f64>,
+    /// What is known of `A^2`: all but the receiver's pattern and `s (s' + s)`.
+    part: f64,
+}
+
+impl Lit<'_> {
+    /// Whether certainly none of these receivers hears it.
     #[inline]
-    pub(crate) fn pole(&self, source: Point, receiver: usize, at: Point, pole: &Pole) -> bool {
-        let Some(axis) = self.receivers.get(receiver) else { return true };
-        let (out, home) = (pole.centre - source, pole.centre - at);
-        let (far_out, far_home) = (out.norm(), home.norm());
-        if far_out.min(far_home) < FAR * pole.radius_m {
+    pub(crate) fn is_dark(&self, receivers: &[Point]) -> bool {
+        if self.part == 0.0 && self.before_m.is_some() {
             return true;
         }
-        let (before, after) = (far_out - pole.radius_m, far_home - pole.radius_m);
-        let square = self.square(out.dot(&self.source) / far_out) * self.square(home.dot(axis) / far_home);
-        square * 0.5 * pole.radius_m >= self.floor * self.floor * before * after * (before + after)
+        let far2 = receivers.iter().map(|at| (self.pole.centre - at).norm_squared());
+        let nearest_m = far2.fold(f64::INFINITY, f64::min).sqrt();
+        nearest_m >= FAR * self.pole.radius_m && self.is_lost(self.part, nearest_m)
+    }
+
+    /// Whether a receiver may hear it.
+    #[inline]
+    pub(crate) fn may_be_heard(&self, receiver: usize, at: Point) -> bool {
+        let Some(axis) = self.gate.receivers.get(receiver) else { return true };
+        let home = self.pole.centre - at;
+        let far_m = home.norm();
+        far_m < FAR * self.pole.radius_m || !self.is_lost(self.part * self.gate.square(home.dot(axis) / far_m), far_m)
+    }
+
+    /// Whether `A^2 s (s' + s)` is too little this far from the pole's centre.
+    #[inline]
+    fn is_lost(&self, part: f64, far_m: f64) -> bool {
+        let Some(before_m) = self.before_m else { return false };
+        let after_m = far_m - self.pole.radius_m;
+        let length_m = before_m + after_m;
+        part < self.gate.faint(length_m) * after_m * length_m
     }
 }
 

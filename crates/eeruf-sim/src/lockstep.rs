@@ -21,7 +21,7 @@ pub struct LockStep<'w> {
     hearing: Hearing,
     detectors: Vec<Detector>,
     chance: Chance,
-    normal: Normal,
+    normal: &'static Normal,
 }
 
 impl<'w> LockStep<'w> {
@@ -46,7 +46,7 @@ impl<'w> LockStep<'w> {
         let detectors = vec![Detector::NEW; robot.sensors.len()];
         // The same chance as in a simulation.
         let chance = Chance::new(world.seed()).of(ARRIVALS);
-        Ok(Self { world, ways, hearing, detectors, chance, normal: Normal::new() })
+        Ok(Self { world, ways, hearing, detectors, chance, normal: Normal::shared() })
     }
 
     /// A sensor sends its sound and begins to listen, at this time in nanoseconds: not before the last call's, and not within

@@ -3,6 +3,8 @@
 //! What happens to one arrival is a function of the seed, the firing and the path alone ([`Chance::of`]), so that it does not
 //! depend on the order in which arrivals are looked at, on the method that is simulated, or on the number of threads.
 
+use std::sync::LazyLock;
+
 use crate::world::WorldError;
 
 /// How noisy a world is.
@@ -104,7 +106,13 @@ pub(crate) const FARTHEST: f32 = 4.0;
 pub(crate) struct Normal([f32; SHARES + 1]);
 
 impl Normal {
-    pub(crate) fn new() -> Self {
+    /// The table, made when it is first asked for.
+    pub(crate) fn shared() -> &'static Self {
+        static NORMAL: LazyLock<Normal> = LazyLock::new(Normal::new);
+        &NORMAL
+    }
+
+    fn new() -> Self {
         let mut quantiles = [0.0; SHARES + 1];
         for (i, quantile) in quantiles.iter_mut().enumerate() {
             *quantile = match i {

@@ -4,6 +4,7 @@
 use rayon::prelude::*;
 
 use crate::{
+    air::Air,
     amplitude::reflected,
     beam::{Beam, BeamTree, Growth, Sighting},
     error::PathsError,
@@ -122,6 +123,8 @@ pub struct Tracer {
     pub pole_waves: bool,
     /// The most bounces of a path with a pole, at most those of all others. [`MAX_ORDER`] to begin with.
     pub pole_order: u32,
+    /// What the air takes, for the air and the frequency asked for last.
+    loss: Option<(Air, f64, f64)>,
     tree: BeamTree,
     poles: PoleSearch,
     keys: Vec<u64>,
@@ -161,6 +164,7 @@ impl Tracer {
             frequency_hz,
             pole_waves: false,
             pole_order: MAX_ORDER,
+            loss: None,
             tree: BeamTree::default(),
             poles: PoleSearch::default(),
             keys: Vec::new(),
@@ -202,11 +206,11 @@ impl Tracer {
         paths: &mut Paths,
     ) -> Result<(), PathsError> {
         paths.clear();
-        self.sight(scene, source, receivers, limits)?;
+        let at_poles = Limits { max_order: limits.max_order.min(self.pole_order), ..limits };
+        self.grow(gate, scene, source, receivers, limits, at_poles)?;
         if let Some(gate) = gate {
             self.tree.drop_faint(gate, receivers);
         }
-        let at_poles = Limits { max_order: limits.max_order.min(self.pole_order), ..limits };
         if !self.poles.search(scene, &self.tree, source, receivers, at_poles, gate, MAX_BEAMS) {
             return Err(PathsError::Budget { beams: MAX_BEAMS });
         }
@@ -228,21 +232,33 @@ impl Tracer {
         receivers: &[Point],
         limits: Limits,
     ) -> Result<usize, PathsError> {
+        self.grow(None, scene, source, receivers, limits, limits)?;
+        Ok(self.tree.sightings.len())
+    }
+
+    fn grow(
+        &mut self,
+        gate: Option<&Gate>,
+        scene: &Scene,
+        source: Point,
+        receivers: &[Point],
+        limits: Limits,
+        at_poles: Limits,
+    ) -> Result<(), PathsError> {
         check(scene, source, receivers, limits)?;
         let growth = Growth {
             mesh: &scene.mesh,
             mirrors: &scene.mirrors,
             poles: scene.poles(),
-            pole_triangles: &scene.pole_triangles,
+            // A pole that is the only bounce is looked for without beams.
+            pole_triangles: if at_poles.max_order > 1 { &scene.pole_triangles } else { &[] },
             max_order: limits.max_order,
             max_length_m: limits.max_length_m,
             budget: MAX_BEAMS,
             last_for_receivers: true,
+            front: gate.map(Gate::source),
         };
-        if !self.tree.grow(&growth, source, receivers) {
-            return Err(PathsError::Budget { beams: MAX_BEAMS });
-        }
-        Ok(self.tree.sightings.len())
+        if self.tree.grow(&growth, source, receivers) { Ok(()) } else { Err(PathsError::Budget { beams: MAX_BEAMS }) }
     }
 
     /// How many beams the last question grew.
@@ -341,8 +357,20 @@ impl Tracer {
         self.sequence = sequence;
     }
 
-    fn write(&self, scene: &Scene, receivers: &[Point], paths: &mut Paths) {
-        let loss_per_m = -scene.air().absorption_db_per_m(self.frequency_hz) * core::f64::consts::LN_10 / 20.0;
+    /// The natural logarithm of what the air leaves of an amplitude per metre; negative.
+    pub(crate) fn loss_per_m(&mut self, air: Air) -> f64 {
+        match self.loss {
+            Some((known, frequency_hz, loss_per_m)) if known == air && frequency_hz == self.frequency_hz => loss_per_m,
+            _ => {
+                let loss_per_m = -air.absorption_db_per_m(self.frequency_hz) * core::f64::consts::LN_10 / 20.0;
+                self.loss = Some((air, self.frequency_hz, loss_per_m));
+                loss_per_m
+            }
+        }
+    }
+
+    fn write(&mut self, scene: &Scene, receivers: &[Point], paths: &mut Paths) {
+        let loss_per_m = self.loss_per_m(scene.air());
         let wave_number = core::f64::consts::TAU * self.frequency_hz / scene.air().speed_of_sound();
         paths.reserve(self.ranks.len());
         for rank in &self.ranks {

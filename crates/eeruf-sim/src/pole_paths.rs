@@ -68,10 +68,7 @@ impl PoleSearch {
             return true;
         }
         if limits.max_order == 1 {
-            in_sight(&tree.pole_cones, &mut self.firsts);
-            for (receiver, &at) in receivers.iter().enumerate() {
-                self.one_pole(scene, source, at, receiver as u32, limits, gate);
-            }
+            self.one_pole(scene, source, receivers, limits, gate);
             return true;
         }
         let cone_key = |cone: &PoleCone| (cone.pole, cone.triangle);
@@ -90,6 +87,7 @@ impl PoleSearch {
                 max_length_m: limits.max_length_m,
                 budget,
                 last_for_receivers: false,
+                front: None,
             };
             let mut back = core::mem::take(&mut self.back);
             let complete = back.grow(&growth, at, &[]);
@@ -161,32 +159,28 @@ impl PoleSearch {
     }
 
     /// Source, one pole, receiver, both in sight of it: no trees are needed.
-    fn one_pole(
-        &mut self,
-        scene: &Scene,
-        source: Point,
-        at: Point,
-        receiver: u32,
-        limits: Limits,
-        gate: Option<&Gate>,
-    ) {
-        for k in 0..self.firsts.len() {
-            let index = self.firsts[k];
-            let pole = &scene.poles()[index as usize];
-            if gate.is_some_and(|gate| !gate.pole(source, receiver as usize, at, pole)) {
+    fn one_pole(&mut self, scene: &Scene, source: Point, receivers: &[Point], limits: Limits, gate: Option<&Gate>) {
+        for (index, pole) in scene.poles().iter().enumerate() {
+            let lit = gate.map(|gate| gate.light(source, pole));
+            if lit.as_ref().is_some_and(|lit| lit.is_dark(receivers)) {
                 continue;
             }
-            let Some(hit) = alhazen(source, at, pole.centre, pole.radius_m) else { continue };
-            if hit.before_m + hit.after_m > limits.max_length_m
-                || !scene.mesh.sees(source, hit.point, &mut self.triangles)
-                || !scene.mesh.sees(hit.point, at, &mut self.triangles)
-            {
-                continue;
+            for (receiver, &at) in receivers.iter().enumerate() {
+                if lit.as_ref().is_some_and(|lit| !lit.may_be_heard(receiver, at)) {
+                    continue;
+                }
+                let Some(hit) = alhazen(source, at, pole.centre, pole.radius_m) else { continue };
+                if hit.before_m + hit.after_m > limits.max_length_m
+                    || !scene.mesh.sees(source, hit.point, &mut self.triangles)
+                    || !scene.mesh.sees(hit.point, at, &mut self.triangles)
+                {
+                    continue;
+                }
+                let start = self.bounces.len();
+                self.bounces.push(Bounce::Pole(index as u32));
+                let angles = [unfolded(hit.point - source, 0, 0.0), unfolded(hit.point - at, 0, 0.0)];
+                self.push(receiver as u32, at, 1, angles, &[(hit, pole.radius_m)], start);
             }
-            let start = self.bounces.len();
-            self.bounces.push(Bounce::Pole(index));
-            let angles = [unfolded(hit.point - source, 0, 0.0), unfolded(hit.point - at, 0, 0.0)];
-            self.push(receiver, at, 1, angles, &[(hit, pole.radius_m)], start);
         }
     }
 

@@ -43,8 +43,8 @@ pub(crate) struct Ways<'w> {
     tracer: Tracer,
     matrix: CrosstalkMatrix,
     moves: bool,
-    /// For the kind of transducer asked for last, how long a path may be that is heard.
-    loudest: Option<(Transducer, f64)>,
+    /// Of the kind of transducer asked for last.
+    hears: Option<Audible>,
     /// Whether it matters what a robot hears.
     listens: Vec<bool>,
     /// The ways from each emitter while nothing moves, with one more start at the end; else those of the last firing.
@@ -75,7 +75,7 @@ impl<'w> Ways<'w> {
             tracer: Tracer::new(),
             matrix: CrosstalkMatrix::new(),
             moves: guide.moves(),
-            loudest: None,
+            hears: None,
             listens: (0..world.robots().len()).map(|robot| guide.listens(robot)).collect(),
             ways: Vec::new(),
             starts: Vec::new(),
@@ -133,11 +133,11 @@ impl<'w> Ways<'w> {
             if self.world.robots()[..robot].iter().any(|before| before.transducer == crew.transducer) {
                 continue;
             }
-            self.trace(&crew.transducer, None)?;
+            let audible = self.trace(&crew.transducer, None)?;
             let matrix = core::mem::take(&mut self.matrix);
             for path in matrix.paths() {
                 let emitter = self.group[path.emitter as usize];
-                if let Some(way) = self.way(&matrix, path, &crew.transducer) {
+                if let Some(way) = self.way(emitter, &matrix, path, &audible) {
                     by_emitter[emitter].push(way);
                 }
             }
@@ -154,11 +154,11 @@ impl<'w> Ways<'w> {
     fn compute_from(&mut self, emitter: usize, now: u64, guide: &impl Guide) -> Result<(), PathsError> {
         self.place(now, guide);
         let transducer = &self.robot_of(emitter).transducer;
-        self.trace(transducer, Some(emitter))?;
-        let matrix = core::mem::take(&mut self.matrix);
         self.ways.clear();
+        let audible = self.trace(transducer, Some(emitter))?;
+        let matrix = core::mem::take(&mut self.matrix);
         for path in matrix.paths() {
-            if let Some(way) = self.way(&matrix, path, transducer) {
+            if let Some(way) = self.way(emitter, &matrix, path, &audible) {
                 self.ways.push(way);
             }
         }
@@ -179,39 +179,41 @@ impl<'w> Ways<'w> {
         }
     }
 
-    /// Fills the matrix for all sensors of one kind, or from one emitter to them. Paths that only the strongest fading lifts
-    /// over the detection floor are in it too.
-    fn trace(&mut self, transducer: &Transducer, emitter: Option<usize>) -> Result<(), PathsError> {
+    /// Fills the matrix for all sensors of one kind that matter, or from one emitter to them. Paths that only the strongest
+    /// fading lifts over the detection floor are in it too.
+    fn trace(&mut self, transducer: &Transducer, emitter: Option<usize>) -> Result<Audible, PathsError> {
         let concerned = |&sensor: &usize| {
-            let hears = emitter == Some(sensor) || self.listens[usize::from(self.ids[sensor].robot)];
+            let hears = emitter.is_none() || self.listens[usize::from(self.ids[sensor].robot)];
             hears && self.robot_of(sensor).transducer == *transducer
         };
         self.group = (0..self.ids.len()).filter(concerned).collect();
         let poses: Vec<_> = self.group.iter().map(|&sensor| self.poses[sensor]).collect();
         let scene = self.world.scene();
-        let lift = 10f64.powf(self.world.noise().fading_db_rms * f64::from(FARTHEST) / 20.0);
-        let floor = transducer.detection_floor(scene.air()) / lift;
-        let max_length_m = match self.loudest {
-            Some((kind, longest)) if kind == *transducer => longest,
-            _ => loudest_m(transducer, scene.air(), floor),
+        let audible = match self.hears {
+            Some(audible) if audible.transducer == *transducer => audible,
+            _ => *self.hears.insert(Audible::new(transducer, self.world)),
         };
-        self.loudest = Some((*transducer, max_length_m));
-        let limits = Limits { max_order: self.world.max_order(), max_length_m };
+        let limits = Limits { max_order: self.world.max_order(), max_length_m: audible.longest_m };
         self.tracer.pole_order = self.world.pole_order();
         // The receiver's gain depends on when the receiver fired, so it cannot be applied here.
         let flat = Transducer { gain: GainProfile::Constant, ..*transducer };
-        match emitter.and_then(|emitter| self.group.iter().position(|&sensor| sensor == emitter)) {
-            Some(only) => self.matrix.compute_from(only, &mut self.tracer, scene, &poses, &flat, limits, floor),
-            None => self.matrix.compute(&mut self.tracer, scene, &poses, &flat, limits, floor),
+        let (tracer, floor) = (&mut self.tracer, audible.faintest);
+        match emitter {
+            Some(emitter) => {
+                let emitter = &self.poses[emitter];
+                self.matrix.compute_from(emitter, tracer, scene, &poses, &flat, limits, floor)?;
+            }
+            None => self.matrix.compute(tracer, scene, &poses, &flat, limits, floor)?,
         }
+        Ok(audible)
     }
 
-    fn way(&mut self, matrix: &CrosstalkMatrix, path: &CriticalPath, transducer: &Transducer) -> Option<Way> {
-        let (emitter, receiver) = (self.group[path.emitter as usize], self.group[path.receiver as usize]);
-        let air = self.world.scene().air();
+    fn way(&mut self, emitter: usize, matrix: &CrosstalkMatrix, path: &CriticalPath, audible: &Audible) -> Option<Way> {
+        let receiver = self.group[path.receiver as usize];
         let velocity = self.velocities[receiver];
-        let met = reception_along(path.length_m, path.arrival_rad, velocity, air.speed_of_sound())?;
-        let margin_db = 20.0 * libm::log10(path.amplitude / transducer.detection_floor(air));
+        let c = self.world.scene().air().speed_of_sound();
+        let met = reception_along(path.length_m, path.arrival_rad, velocity, c)?;
+        let margin_db = 20.0 * libm::log10(path.amplitude / audible.floor);
         let path = self.number(emitter, receiver, path, matrix.bounces(path));
         Some(Way {
             receiver: receiver as u32,
@@ -247,6 +249,27 @@ impl<'w> Ways<'w> {
             bounces: bounces.into(),
         });
         number
+    }
+}
+
+/// What a kind of transducer hears in this world.
+#[derive(Clone, Copy, Debug)]
+struct Audible {
+    transducer: Transducer,
+    /// The amplitude that is just heard.
+    floor: f64,
+    /// The same if the strongest fading lifts it.
+    faintest: f64,
+    /// The longest path that is heard then, in metres.
+    longest_m: f64,
+}
+
+impl Audible {
+    fn new(transducer: &Transducer, world: &World) -> Self {
+        let air = world.scene().air();
+        let floor = transducer.detection_floor(air);
+        let faintest = floor / 10f64.powf(world.noise().fading_db_rms * f64::from(FARTHEST) / 20.0);
+        Self { transducer: *transducer, floor, faintest, longest_m: loudest_m(transducer, air, faintest) }
     }
 }
 

@@ -372,7 +372,7 @@ def course(
         >>> found = eeruf.experiments.set_two(seeds=1, methods=["eeruf"])
         >>> ax = eeruf.plot.course(found)
         >>> ax.get_title(loc="left")
-        'eeruf, course 0: finished after 8.6 s, 3 phantom echoes'
+        'eeruf, course 0: finished after 8.7 s, 4 phantom echoes'
 
     """
     run, name, second_robot_m = _chosen(result, method, course)

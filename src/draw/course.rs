@@ -62,7 +62,8 @@ fn outcome(run: &Run) -> String {
         Ending::TimeOut => "did not get through in time",
     };
     let mean = if run.time_s > 0.0 { run.way_m / run.time_s } else { 0.0 };
-    format!("{ending} after {:.1} s, mean {mean:.2} m/s, {} phantom echoes", run.time_s, run.phantom_echoes)
+    let echoes = if run.phantom_echoes == 1 { "echo" } else { "echoes" };
+    format!("{ending} after {:.1} s, mean {mean:.2} m/s, {} phantom {echoes}", run.time_s, run.phantom_echoes)
 }
 
 struct View {

@@ -50,12 +50,12 @@ impl Default for Piloting {
         let vfh = Vfh {
             smoothing: 3,
             threshold: 0.03,
-            wide: 16,
-            density_max: 1.0,
+            wide: 13,
+            density_max: 0.7,
             turn_max_rad_s: 360f64.to_radians(),
             ..Vfh::default()
         };
-        Self { vfh, turn_gain: 2.0, range_m: 2.5, growth: true }
+        Self { vfh, turn_gain: 3.0, range_m: 2.75, growth: true }
     }
 }
 

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import tracemalloc
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -121,20 +122,57 @@ def test_a_million_readings_are_read_in_place() -> None:
     assert peak > 8_000_000
 
 
-def test_a_ring_accepts_an_echo_that_repeats() -> None:
+def test_a_filter_of_several_echoes_judges_single_ones_as_one_of_single_echoes_does() -> None:
+    chance = np.random.default_rng(2)
+    echoes = np.where(chance.random((300, 3)) < 0.2, np.nan, chance.integers(0, 3, (300, 3)) * 300 + 9_000.0)
+    one, several = eeruf.EchoFilter(3, 500), eeruf.EchoFilter(3, 500, echoes=8)
+    assert (one.echoes, several.echoes, several.patience) == (1, 8, 0)
+    assert np.array_equal(one.push_many(echoes), several.push_many(echoes))
+
+
+def test_of_several_echoes_the_earliest_that_count_are_compared() -> None:
+    first, second = [14_000, 9_000, 20_000], [9_050, 14_000]
+    for echoes, accepted_us in ((1, 9_050), (2, 9_050), (8, 9_050)):
+        filter = eeruf.EchoFilter(1, 100, echoes=echoes)
+        filter.push_echoes(0, first)
+        assert filter.push_echoes(0, second).t_echo_us == accepted_us
+    # Another sensor's sound comes first, once.
+    for echoes, kind in ((1, "rejected"), (2, "accepted")):
+        filter = eeruf.EchoFilter(1, 100, echoes=echoes)
+        filter.push_echoes(0, [9_000])
+        assert filter.push_echoes(0, [4_000, 9_000]).kind == kind
+    assert eeruf.EchoFilter(1, 100, echoes=3).push_echoes(0, []).kind == "no_echo"
+
+
+def kinds_of_two_periods(t_echo_us: Callable[[int], int], expected_change_us: "list[int] | None") -> list[str]:
     ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
     kinds: list[str] = []
     now_us = 0
     while len(kinds) < 24:
-        event = ring.poll(now_us)
+        event = ring.poll(now_us, expected_change_us)
         if event is None:
             now_us = ring.next_deadline_us
         elif isinstance(event, eeruf.Fire):
-            ring.echo(event.sensor, now_us + 9_000)
+            ring.echo(event.sensor, now_us + t_echo_us(now_us))
         elif isinstance(event, eeruf.Reading):
             kinds.append(event.kind)
-            assert event.t_echo_us == 9_000
-    assert kinds == ["first"] * 12 + ["accepted"] * 12
+            assert event.t_echo_us is not None
+    return kinds
+
+
+def test_a_ring_accepts_an_echo_that_repeats() -> None:
+    assert kinds_of_two_periods(lambda _: 9_000, None) == ["first"] * 12 + ["accepted"] * 12
+
+
+def test_a_ring_accepts_an_echo_that_changes_as_it_should() -> None:
+    # By 1 ms from the first period of 100 ms to the second.
+    def approaching_us(now_us: int) -> int:
+        return 9_000 if now_us < 100_000 else 8_000
+
+    assert kinds_of_two_periods(approaching_us, None) == ["first"] * 12 + ["rejected"] * 12
+    assert kinds_of_two_periods(approaching_us, [-1_000] * 12) == ["first"] * 12 + ["accepted"] * 12
+    changes = [0] * 6 + [-1_000] * 6
+    assert kinds_of_two_periods(approaching_us, changes).count("accepted") == 6
 
 
 def test_a_callable_follows_the_work_and_its_error_ends_it() -> None:

@@ -108,8 +108,13 @@ pub(crate) fn number(name: &str, value: &Bound<'_, PyAny>, range: RangeInclusive
 
 /// One time for each sensor, in whole microseconds.
 pub(crate) fn times(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<Micros>> {
-    let expected = "a sequence of whole numbers of microseconds, one for each sensor";
-    let items = items(name, value, expected)?.into_iter().enumerate();
+    times_of(name, value, "sensor")
+}
+
+/// Times in whole microseconds.
+pub(crate) fn times_of(name: &str, value: &Bound<'_, PyAny>, each: &str) -> PyResult<Vec<Micros>> {
+    let expected = format!("a sequence of whole numbers of microseconds, one for each {each}");
+    let items = items(name, value, &expected)?.into_iter().enumerate();
     items.map(|(index, item)| micros(&format!("{name}[{index}]"), &item)).collect()
 }
 

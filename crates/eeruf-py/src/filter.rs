@@ -1,11 +1,11 @@
 //! `EchoFilter`.
 
-use eeruf_core::{MAX_SENSORS, Micros};
+use eeruf_core::{FilterError, MAX_SENSORS, Micros, Verdict};
 use numpy::{PyArray2, prelude::*};
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{self, matrix, micros, whole, whole_or, wrong},
+    arguments::{self, matrix, micros, times_of, whole, whole_or, wrong},
     errors::{ArgumentError, Raise},
     ring::Reading,
 };
@@ -16,10 +16,13 @@ use crate::{
 ///     sensors: how many, 1 to 64.
 ///     t_delta_us: ``T_delta``: readings that differ by no more are near-identical.
 ///     consecutive: how many readings running must agree, 2 to 8.
+///     echoes: how many echoes of one firing a sensor reports at most, 1 to 8; the earliest that repeats is accepted.
+///     patience: for how many firings an accepted echo that is missing is waited for before a later one is believed, 0 to 15; for
+///         sensors that report several.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
-///     FilterError: fewer than 2 or more than 8 readings to compare.
+///     FilterError: fewer than 2 or more than 8 readings to compare, or a patience of more than 15.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -28,7 +31,7 @@ use crate::{
 ///     ['first', 'accepted', 'rejected']
 #[pyclass(module = "eeruf")]
 pub(crate) struct EchoFilter {
-    filter: eeruf_core::EchoFilter<MAX_SENSORS>,
+    filter: Filter,
     /// How many sensors.
     #[pyo3(get)]
     sensors: usize,
@@ -38,21 +41,59 @@ pub(crate) struct EchoFilter {
     /// How many readings running must agree.
     #[pyo3(get)]
     consecutive: u8,
+    /// How many echoes of one firing count.
+    #[pyo3(get)]
+    echoes: usize,
+    /// For how many firings an accepted echo that is missing is waited for.
+    #[pyo3(get)]
+    patience: u8,
+}
+
+/// Most echoes of one firing.
+const MAX_ECHOES: usize = 8;
+
+/// For sensors that report one echo, which is smaller and faster, or several.
+enum Filter {
+    One(Box<eeruf_core::EchoFilter<MAX_SENSORS>>),
+    Several(Box<eeruf_core::EchoFilter<MAX_SENSORS, MAX_ECHOES>>),
+}
+
+impl Filter {
+    fn push(&mut self, sensor: usize, echoes: &[Micros], expected_change_us: i32) -> Result<Verdict, FilterError> {
+        match self {
+            Self::One(filter) => filter.push_echoes(sensor, echoes, expected_change_us),
+            Self::Several(filter) => filter.push_echoes(sensor, echoes, expected_change_us),
+        }
+    }
 }
 
 #[pymethods]
 impl EchoFilter {
     #[new]
-    #[pyo3(signature = (sensors, t_delta_us, consecutive=None), text_signature = "(sensors, t_delta_us, consecutive=2)")]
+    #[pyo3(signature = (sensors, t_delta_us, consecutive=None, *, echoes=None, patience=None))]
+    #[pyo3(text_signature = "(sensors, t_delta_us, consecutive=2, *, echoes=1, patience=0)")]
     fn new(
         sensors: &Bound<'_, PyAny>,
         t_delta_us: &Bound<'_, PyAny>,
         consecutive: Option<&Bound<'_, PyAny>>,
+        echoes: Option<&Bound<'_, PyAny>>,
+        patience: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (sensors, t_delta) = (arguments::sensors(sensors)?, micros("t_delta_us", t_delta_us)?);
         let consecutive = whole_or("consecutive", consecutive, 2, 0..=u8::MAX)?;
-        let filter = eeruf_core::EchoFilter::new(t_delta, consecutive).map_err(Raise::raise)?;
-        Ok(Self { filter, sensors, t_delta_us: t_delta.as_micros(), consecutive })
+        let echoes = whole_or("echoes", echoes, 1, 1..=MAX_ECHOES as u32)? as usize;
+        let patience = whole_or("patience", patience, 0, 0..=u8::MAX)?;
+        let filter = if echoes == 1 {
+            eeruf_core::EchoFilter::new(t_delta, consecutive)
+                .and_then(|filter| filter.with_patience(patience))
+                .map(|filter| Filter::One(Box::new(filter)))
+        } else {
+            eeruf_core::EchoFilter::new(t_delta, consecutive)
+                .and_then(|filter| filter.with_patience(patience))
+                .map(|filter| Filter::Several(Box::new(filter)))
+        };
+        let filter = filter.map_err(Raise::raise)?;
+        Ok(Self { filter, sensors, t_delta_us: t_delta.as_micros(), consecutive, echoes, patience })
     }
 
     /// Take in one firing of a sensor.
@@ -84,7 +125,43 @@ impl EchoFilter {
         let sensor = self.sensor(sensor)?;
         let echo = t_echo_us.map(|echo| micros("t_echo_us", echo)).transpose()?;
         let change = whole_or("expected_change_us", expected_change_us, 0, i32::MIN..=i32::MAX)?;
-        let verdict = self.filter.push_echoes(sensor, echo.as_slice(), change).map_err(Raise::raise)?;
+        let verdict = self.filter.push(sensor, echo.as_slice(), change).map_err(Raise::raise)?;
+        Ok(Reading::of_filter(sensor, &verdict))
+    }
+
+    /// Take in one firing of a sensor that reports several echoes.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///     t_echoes_us: the times of its echoes after firing in whole microseconds, in any order; the earliest ``echoes`` count.
+    ///     expected_change_us: as for ``push``.
+    ///
+    /// Returns:
+    ///     The reading, without phase and period, which a filter does not know.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor, or no such times.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> filter = eeruf.EchoFilter(1, 100, echoes=8, patience=4)
+    ///     >>> firings = [9_000, 14_000], [9_000, 14_000], [14_000], [14_000, 9_000]
+    ///     >>> [filter.push_echoes(0, firing).kind for firing in firings]
+    ///     ['first', 'accepted', 'rejected', 'accepted']
+    #[pyo3(signature = (sensor, t_echoes_us, expected_change_us=None))]
+    #[pyo3(text_signature = "($self, sensor, t_echoes_us, expected_change_us=0)")]
+    fn push_echoes(
+        &mut self,
+        sensor: &Bound<'_, PyAny>,
+        t_echoes_us: &Bound<'_, PyAny>,
+        expected_change_us: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Reading> {
+        let sensor = self.sensor(sensor)?;
+        let mut echoes = times_of("t_echoes_us", t_echoes_us, "echo")?;
+        echoes.sort_unstable();
+        echoes.truncate(self.echoes);
+        let change = whole_or("expected_change_us", expected_change_us, 0, i32::MIN..=i32::MAX)?;
+        let verdict = self.filter.push(sensor, &echoes, change).map_err(Raise::raise)?;
         Ok(Reading::of_filter(sensor, &verdict))
     }
 
@@ -120,12 +197,12 @@ impl EchoFilter {
                 for (sensor, (&us, kind)) in row.iter().zip(kinds).enumerate() {
                     // Rounded to whole microseconds, which core counts in; in range, as was just checked.
                     let echo = (!us.is_nan()).then(|| Micros::new(us.round() as u32));
-                    *kind = filter.push(sensor, echo)?.kind as u8;
+                    *kind = filter.push(sensor, echo.as_slice(), 0)?.kind as u8;
                 }
             }
             Ok(())
         });
-        pushed.map_err(|error: eeruf_core::FilterError| error.raise())?;
+        pushed.map_err(|error: FilterError| error.raise())?;
         numpy::PyArray1::from_vec(py, kinds).reshape([echoes.len() / self.sensors, self.sensors])
     }
 
@@ -147,13 +224,19 @@ impl EchoFilter {
     #[pyo3(signature = (sensor))]
     fn forget(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
-        self.filter.forget(sensor);
+        match &mut self.filter {
+            Filter::One(filter) => filter.forget(sensor),
+            Filter::Several(filter) => filter.forget(sensor),
+        }
         Ok(())
     }
 
     fn __repr__(&self) -> String {
-        let Self { sensors, t_delta_us, consecutive, .. } = self;
-        format!("EchoFilter(sensors={sensors}, t_delta_us={t_delta_us}, consecutive={consecutive})")
+        let Self { sensors, t_delta_us, consecutive, echoes, patience, .. } = self;
+        format!(
+            "EchoFilter(sensors={sensors}, t_delta_us={t_delta_us}, consecutive={consecutive}, echoes={echoes}, \
+             patience={patience})"
+        )
     }
 }
 

@@ -11,7 +11,7 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{choice, instance, micros, whole, whole_or, whole_or_none},
+    arguments::{choice, instance, items, micros, shown, whole, whole_or, whole_or_none, wrong},
     errors::Raise,
     schedule::Schedule,
 };
@@ -218,6 +218,17 @@ impl Ring {
     fn change(&mut self, change: impl FnOnce(&mut Scheduled<'_>)) {
         self.ring.with_dependent_mut(|_, ring| change(ring));
     }
+
+    fn changes(&self, changes: &Bound<'_, PyAny>) -> PyResult<Vec<i32>> {
+        let name = "expected_change_us";
+        let expected = format!("a sequence of {} whole numbers of microseconds, one for each sensor", self.sensors);
+        let items = items(name, changes, &expected)?;
+        if items.len() != self.sensors as usize {
+            return Err(wrong(name, shown(changes), expected));
+        }
+        let each = |(index, item)| whole(&format!("{name}[{index}]"), item, i32::MIN..=i32::MAX);
+        items.iter().enumerate().map(each).collect()
+    }
 }
 
 /// A moment on a clock that wraps at 2^32 us: larger numbers are what such a clock would show.
@@ -256,16 +267,24 @@ impl Ring {
     ///
     /// Args:
     ///     now_us: the present, 0 or more.
+    ///     expected_change_us: for each sensor, by how much a good reading should differ from the one before, from the robot's own
+    ///         motion: ``-2 v dt / c`` for an object approached at ``v``. None for a robot that stands.
     ///
     /// Returns:
     ///     A ``Fire``, a ``Reading``, a ``PeriodEnded``, or None if there is nothing to do now.
     ///
     /// Raises:
-    ///     ArgumentError: not such a time.
-    #[pyo3(signature = (now_us))]
-    fn poll<'py>(&mut self, now_us: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    ///     ArgumentError: not such a time, or not one change for each sensor.
+    #[pyo3(signature = (now_us, expected_change_us=None))]
+    fn poll<'py>(
+        &mut self,
+        now_us: &Bound<'py, PyAny>,
+        expected_change_us: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let (py, now) = (now_us.py(), instant("now_us", now_us)?);
-        let event = self.ring.with_dependent_mut(|_, ring| ring.poll(now));
+        let changes = expected_change_us.map(|changes| self.changes(changes)).transpose()?.unwrap_or_default();
+        let change = |sensor: u8| changes.get(usize::from(sensor)).copied().unwrap_or(0);
+        let event = self.ring.with_dependent_mut(|_, ring| ring.poll_expecting(now, change));
         let event = match event {
             None => return Ok(None),
             Some(Event::Fire(sensor)) => Fire { sensor }.into_bound_py_any(py),

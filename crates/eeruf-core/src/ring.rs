@@ -3,9 +3,12 @@
 //! The caller polls, fires what it is told to fire, hands in the instants of echo edges, and sleeps until the next
 //! deadline. Nothing here blocks, allocates, panics or reads a clock.
 
+mod sensor;
+
 use core::fmt;
 
-use crate::filter::{Agreement, FilterError, NO_ECHO, Rule, Track, insert};
+use self::sensor::{DISTURBED, Edge, LISTENING, READY, STUCK, Sensor};
+use crate::filter::{Agreement, FilterError, Rule};
 use crate::reading::{Kind, Tally, Verdict};
 use crate::refiring::ImmediateRefiring;
 use crate::schedule::{Phase, Schedule};
@@ -478,146 +481,6 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
 
     fn sensor(&self, sensor: u8) -> Option<&Sensor<E>> {
         self.sensors.get(usize::from(sensor))
-    }
-}
-
-/// What is known of one sensor between its firing and its next: 16 bytes where it reports one echo.
-#[derive(Clone, Copy, Debug)]
-struct Sensor<const E: usize> {
-    fired: Instant,
-    /// The echoes of the present firing; also, in the first place, the time of an early or late edge.
-    echoes: [u32; E],
-    track: Track<E>,
-}
-
-// The flags of a sensor, beside the phase in which it fired.
-const PHASE: u8 = 0b111;
-/// It has fired, and what became of that is not yet told.
-const LISTENING: u8 = 1 << 3;
-/// It has a reading that can be told without waiting for its window to close.
-const READY: u8 = 1 << 4;
-/// The only edges so far came outside the window: within the blanking time while it listens, late once that is told. A
-/// sensor that has not fired is said to have had its late edge, so that none is told of it.
-const OUTSIDE: u8 = 1 << 5;
-/// The driver found the line stuck.
-const STUCK: u8 = 1 << 6;
-/// The next reading is not to be compared with its neighbours in time.
-const DISTURBED: u8 = 1 << 7;
-
-/// What to do about an edge.
-enum Edge {
-    /// A reading can be told.
-    Ready,
-    /// It came after the window, which is not yet closed.
-    Late,
-    /// Nothing.
-    Noted,
-}
-
-impl<const E: usize> Sensor<E> {
-    const NEW: Self = Self { fired: Instant::from_micros(0), echoes: [NO_ECHO; E], track: Track::new(OUTSIDE) };
-
-    const fn is(&self, flag: u8) -> bool {
-        self.track.flags & flag != 0
-    }
-
-    fn set(&mut self, flag: u8) {
-        self.track.flags |= flag;
-    }
-
-    fn clear(&mut self, flag: u8) {
-        self.track.flags &= !flag;
-    }
-
-    const fn phase(&self) -> Phase {
-        Phase(self.track.flags & PHASE)
-    }
-
-    fn fire(&mut self, phase: Phase, now: Instant) {
-        self.track.flags = (self.track.flags & DISTURBED) | LISTENING | phase.0;
-        self.fired = now;
-    }
-
-    fn drop_firing(&mut self) {
-        self.echoes = [NO_ECHO; E];
-        self.track.forget();
-        self.track.flags = OUTSIDE;
-    }
-
-    fn echo(&mut self, at: Instant, blanking: Micros, window: Micros) -> Edge {
-        let t_echo = at.since(self.fired);
-        if !at.has_reached(self.fired) {
-            // From before it fired, or from a clock that has jumped.
-            return Edge::Noted;
-        }
-        if !self.is(LISTENING) {
-            if t_echo <= window || self.is(OUTSIDE) {
-                return Edge::Noted;
-            }
-            self.set(OUTSIDE | READY);
-            self.hold(t_echo);
-            return Edge::Ready;
-        }
-        if t_echo > window {
-            return Edge::Late;
-        }
-        if t_echo < blanking {
-            if self.held().is_none() {
-                self.set(OUTSIDE);
-                self.hold(t_echo);
-            }
-            return Edge::Noted;
-        }
-        if self.is(OUTSIDE) {
-            self.clear(OUTSIDE);
-            self.echoes = [NO_ECHO; E];
-        }
-        insert(&mut self.echoes, t_echo.as_micros());
-        if E > 1 || self.is(READY) {
-            return Edge::Noted;
-        }
-        self.set(READY);
-        Edge::Ready
-    }
-
-    fn hold(&mut self, t_echo: Micros) {
-        if let Some(echo) = self.echoes.first_mut() {
-            *echo = t_echo.as_micros();
-        }
-    }
-
-    /// The first edge held, of whatever kind.
-    fn held(&self) -> Option<Micros> {
-        self.echoes.first().filter(|&&echo| echo != NO_ECHO).map(|&echo| Micros::new(echo))
-    }
-
-    /// The late edge.
-    fn tell_late(&mut self) -> Verdict {
-        let t_echo = self.held();
-        self.clear(READY);
-        self.echoes = [NO_ECHO; E];
-        Verdict { kind: Kind::Late, t_echo, previous: None, age: self.track.age() }
-    }
-
-    /// Ends the firing.
-    fn judge(&mut self, rule: Rule, expected_change_us: impl FnOnce() -> i32) -> Verdict {
-        let disturbed = self.is(DISTURBED);
-        if disturbed {
-            self.track.forget();
-        }
-        let verdict = if self.is(STUCK) {
-            self.track.skip(Kind::Stuck, None)
-        } else if self.is(OUTSIDE) {
-            self.track.skip(Kind::TooEarly, self.held())
-        } else {
-            self.track.push(rule, &self.echoes, expected_change_us())
-        };
-        if disturbed {
-            self.track.forget();
-        }
-        self.track.flags &= PHASE;
-        self.echoes = [NO_ECHO; E];
-        verdict
     }
 }
 

@@ -20,6 +20,15 @@ fn of(found: &SetTwo, method: Method) -> Figures {
 }
 
 #[test]
+fn eeruf_finishes_95_of_100_courses_at_0_8_m_s_or_more_alone_and_beside_a_second_robot() {
+    for second_robot in [None, Some(SECOND_BEHIND)] {
+        let asked = SetTwoOptions { second_robot, ..options(100, &[Method::Eeruf]) };
+        let eeruf = of(&set_two(&asked, &|_| true).unwrap(), Method::Eeruf);
+        assert!(eeruf.finished >= 95 && eeruf.mean_speed_m_s >= 0.8, "{eeruf:?}");
+    }
+}
+
+#[test]
 fn eeruf_gets_through_where_constant_lags_fill_the_grid_with_phantoms() {
     for second_robot in [None, Some(SECOND_BEHIND)] {
         let asked = options(20, &[Method::Conventional, Method::Comparison, Method::Eeruf]);

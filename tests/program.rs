@@ -2,7 +2,8 @@
 
 mod common;
 
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
 use common::{Scratch, eeruf, json};
 
@@ -331,4 +332,23 @@ fn impossible_rings_get_one_clear_line() {
         let prefix = format!("eeruf: {}{expected}", file.display());
         assert!(outcome.err.starts_with(&prefix), "{}\n{prefix}", outcome.err);
     }
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_a_long_design_with_the_best_schedule_so_far() {
+    // Open after minutes of search.
+    let needs = "t_delta_us = 999\nmin_interval_us = 15_000\nwindow_us = 15_000\ntick_us = 100";
+    let (_scratch, ring) = Scratch::new("ring-15.toml", &format!("sensors = 15\nlayout = 'ring'\n{needs}\n"));
+    let mut program = Command::new(env!("CARGO_BIN_EXE_eeruf"));
+    let search =
+        program.arg("design").arg(&ring).args(["--budget", "1000000000"]).stdout(Stdio::piped()).spawn().unwrap();
+    // Long enough to begin, on a busy machine too.
+    std::thread::sleep(Duration::from_secs(2));
+    let signalled = Command::new("kill").args(["-INT", &search.id().to_string()]).status().unwrap();
+    assert!(signalled.success());
+    let outcome = search.wait_with_output().unwrap();
+    let out = String::from_utf8(outcome.stdout).unwrap();
+    assert_eq!(outcome.status.code(), Some(0), "{out}");
+    assert!(out.contains("not proven: it may be as short as") && out.contains("t_fire_a_us"), "{out}");
 }

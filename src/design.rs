@@ -47,6 +47,13 @@ pub(crate) struct Args {
     threads: u8,
 }
 
+impl Args {
+    /// What to print instead of a description.
+    fn form(&self) -> Option<Form> {
+        if self.json { Some(Form::Json) } else { self.emit }
+    }
+}
+
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Form {
     /// A schedule file
@@ -69,7 +76,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let bad = |error: SearchError| InputError::new(&args.file, None, error);
     let began = Instant::now();
     let mut watch = Watch::new();
-    let Some(design) = find(&spec, args.budget, args.threads, &mut watch).map_err(bad)? else {
+    let Some(design) = find(&spec, args, &mut watch).map_err(bad)? else {
         println!(
             "{}: no schedule: good readings change more from period to period, the more sensors at this speed must be \
              kept apart; expected fewer sensors or a lower speed_m_s",
@@ -83,8 +90,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     if let Some(file) = &args.svg {
         draw::timing_diagram(&design.schedule, &requirements).save(file)?;
     }
-    let form = if args.json { Some(Form::Json) } else { args.emit };
-    match form {
+    match args.form() {
         Some(Form::Toml) => print!("{}", design.schedule.to_toml()),
         Some(Form::Rust) => print!("{}", design.schedule.to_rust(&requirements)),
         Some(Form::C) => print!("{}", design.schedule.to_c(&requirements)),
@@ -95,12 +101,13 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 }
 
 /// A schedule for a ring file.
-pub(crate) struct RingDesign {
-    pub(crate) schedule: AnySchedule,
+struct RingDesign {
+    schedule: AnySchedule,
     /// What `t_delta` has to cover, motion included.
-    pub(crate) t_delta: Micros,
+    t_delta: Micros,
     designed: Designed<MAX_SENSORS>,
     preferred: Option<Preferred<MAX_SENSORS>>,
+    /// Only if the design is to be described.
     what_if: Vec<WhatIf>,
 }
 
@@ -108,12 +115,7 @@ pub(crate) struct RingDesign {
 ///
 /// If `t_delta` must cover motion, it depends on the period, which depends on it: longer periods need a larger `t_delta`,
 /// which needs longer periods. Starting from a robot that stands, this climbs to the first pair that agrees.
-pub(crate) fn find(
-    spec: &RingSpec,
-    budget: u64,
-    threads: u8,
-    watch: &mut Watch,
-) -> Result<Option<RingDesign>, SearchError> {
+fn find(spec: &RingSpec, args: &Args, watch: &mut Watch) -> Result<Option<RingDesign>, SearchError> {
     let mut memory = vec![0; design::memory_words(spec.sensors)];
     let mut control = |progress: &Progress| {
         let how_far = || {
@@ -125,10 +127,10 @@ pub(crate) fn find(
     let mut t_delta = spec.t_delta;
     loop {
         let needs = spec.needs(t_delta);
-        let designed: Designed<MAX_SENSORS> = if threads > 1 {
-            needs.shortest_on_threads(budget, threads.into(), &mut control)?
+        let designed: Designed<MAX_SENSORS> = if args.threads > 1 {
+            needs.shortest_on_threads(args.budget, args.threads.into(), &mut control)?
         } else {
-            needs.shortest(budget, &mut memory, &mut control)?
+            needs.shortest(args.budget, &mut memory, &mut control)?
         };
         let preferred = if designed.found.proven {
             Some(needs.prefer(&designed, PREFERENCE_BUDGET, &mut memory, &mut control)?)
@@ -141,7 +143,8 @@ pub(crate) fn find(
         let needed = t_delta_needed(spec, &schedule);
         let allowed = schedule.verify(&needs.requirements).max_t_delta();
         if allowed >= Some(needed) {
-            let what_if = if designed.found.proven { what_if(&needs, &mut memory, &mut control)? } else { Vec::new() };
+            let described = args.form().is_none() && designed.found.proven;
+            let what_if = if described { what_if(&needs, &mut memory, &mut control)? } else { Vec::new() };
             let t_delta = needed.max(t_delta);
             return Ok(Some(RingDesign { schedule, t_delta, designed, preferred, what_if }));
         }

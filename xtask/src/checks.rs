@@ -31,6 +31,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
             run(cargo.args(["build", "--package", "eeruf-core", "--release", "--locked", "--target", target]))
         });
     }
+    steps.step("lint of the firmware", crate::firmware::lint);
     for (version, packages) in packages_by_version(&metadata) {
         steps.step(&format!("minimum Rust {version}"), || {
             let mut cargo = cargo_of_version(&version)?;

@@ -21,6 +21,7 @@ fn main() -> ExitCode {
         ["test", "--nothing-skipped"] => checks::run_all(true),
         ["firmware"] => {
             let mut steps = steps::Steps::default();
+            steps.step("lint of the firmware", firmware::lint);
             steps.step("firmware on emulated boards", firmware::firmware);
             steps.finish(true)
         }

@@ -183,6 +183,9 @@ impl<'s, const K: usize, const M: usize> Ring<ImmediateRefiring<'s, K, M>, K> {
 }
 
 impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
+    /// Copied from flash, since an array made anew would first be made on the stack.
+    const SENSORS: [Sensor<E>; K] = [Sensor::NEW; K];
+
     /// A ring with a scheduler of the caller's and any number of echoes a firing.
     ///
     /// # Errors
@@ -212,7 +215,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             t_delta,
             blanking,
             period: 0,
-            sensors: [Sensor::NEW; K],
+            sensors: Self::SENSORS,
         })
     }
 

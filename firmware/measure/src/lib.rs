@@ -76,7 +76,7 @@ macro_rules! ring_in_static_memory {
         use core::cell::UnsafeCell;
         use core::hint::black_box;
         use core::mem::MaybeUninit;
-        use eeruf_core::{Event, Instant, Ring, Schedule, ScheduledRing};
+        use eeruf_core::{Event, Instant, Ring, RingError, Schedule, ScheduledRing};
 
         static SCHEDULE: Schedule<$k> = $crate::plain();
 
@@ -87,14 +87,8 @@ macro_rules! ring_in_static_memory {
 
         #[unsafe(no_mangle)]
         #[inline(never)]
-        fn ring_new(memory: &'static mut MaybeUninit<ScheduledRing<'static, $k>>, now: Instant) -> bool {
-            match Ring::new(&SCHEDULE, $crate::CONFIG, now) {
-                Ok(ring) => {
-                    memory.write(ring);
-                    true
-                }
-                Err(_) => false,
-            }
+        fn ring_new(now: Instant) -> Result<ScheduledRing<'static, $k>, RingError> {
+            Ring::new(&SCHEDULE, $crate::CONFIG, now)
         }
 
         #[unsafe(no_mangle)]
@@ -142,11 +136,8 @@ macro_rules! ring_in_static_memory {
         fn ring_program() {
             // SAFETY: the only use of the memory.
             let memory = unsafe { &mut *MEMORY.0.get() };
-            if !ring_new(memory, black_box(eeruf_board::now())) {
-                return;
-            }
-            // SAFETY: `ring_new` has written it.
-            let ring = unsafe { (*MEMORY.0.get()).assume_init_mut() };
+            let Ok(ring) = ring_new(black_box(eeruf_board::now())) else { return };
+            let ring = memory.write(ring);
             loop {
                 while let Some(event) = ring_poll(ring, eeruf_board::now()) {
                     if let Event::Fire(sensor) = black_box(event) {

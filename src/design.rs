@@ -1,13 +1,14 @@
 //! `eeruf design`: the shortest period for a ring, and why it is not shorter.
 
 use std::fmt::Write as _;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
 use comfy_table::{Table, presets};
-use eeruf_core::search::design::{self, Flow, Progress};
-use eeruf_core::search::{Designed, Preferred, RingNeeds, SearchError};
+use eeruf_core::search::design::{self, Progress};
+use eeruf_core::search::{PeriodProblem, Preferred, SearchError, ShortestPeriod};
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Layout, MAX_SENSORS, Micros, Phase, Requirements};
 use serde::Serialize;
@@ -105,7 +106,7 @@ struct RingDesign {
     schedule: AnySchedule,
     /// What `t_delta` has to cover, motion included.
     t_delta: Micros,
-    designed: Designed<MAX_SENSORS>,
+    designed: ShortestPeriod<MAX_SENSORS>,
     preferred: Option<Preferred<MAX_SENSORS>>,
     /// Only if the design is to be described.
     what_if: Vec<WhatIf>,
@@ -122,12 +123,12 @@ fn find(spec: &RingSpec, args: &Args, watch: &mut Watch) -> Result<Option<RingDe
             let (bound, best) = (progress.bound, progress.best);
             format!("{} nodes, period at least {bound} and at most {best} ticks of {}", progress.nodes, spec.tick)
         };
-        if watch.go_on(how_far) { Flow::Continue } else { Flow::Stop }
+        if watch.go_on(how_far) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     let mut t_delta = spec.t_delta;
     loop {
         let needs = spec.needs(t_delta);
-        let designed: Designed<MAX_SENSORS> = if args.threads > 1 {
+        let designed: ShortestPeriod<MAX_SENSORS> = if args.threads > 1 {
             needs.shortest_on_threads(args.budget, args.threads.into(), &mut control)?
         } else {
             needs.shortest(args.budget, &mut memory, &mut control)?
@@ -285,7 +286,7 @@ struct WhatIf {
 
 /// Relaxes one need after the other by a tenth, or by one tick if that is more, or by one neighbour.
 fn what_if(
-    needs: &RingNeeds<'_>,
+    needs: &PeriodProblem<'_>,
     memory: &mut [i32],
     control: &mut impl design::Control,
 ) -> Result<Vec<WhatIf>, SearchError> {
@@ -326,7 +327,7 @@ fn what_if(
         ));
     }
     let answer = |(need, requirements)| {
-        let relaxed = RingNeeds { requirements, ..*needs };
+        let relaxed = PeriodProblem { requirements, ..*needs };
         let found = relaxed.shortest::<MAX_SENSORS>(WHAT_IF_BUDGET, memory, control)?.found;
         Ok(WhatIf { need, period: found.value, proven: found.proven })
     };

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::PathBuf;
 
 use comfy_table::{CellAlignment, Table, presets};
-use eeruf_core::{EchoFilter, Kind, Micros, Tally};
+use eeruf_core::{EchoFilter, Micros, ReadingKind, Tally};
 use serde::Serialize;
 
 use crate::Answer;
@@ -50,7 +50,7 @@ fn positive(text: &str) -> Result<f64, String> {
 /// What the filter made of one sensor's readings, one for each row.
 pub(crate) struct Column {
     pub(crate) name: String,
-    pub(crate) kinds: Vec<Kind>,
+    pub(crate) kinds: Vec<ReadingKind>,
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
@@ -156,12 +156,12 @@ impl Counts {
         let of = |kind| tally.of(kind).into();
         Self {
             name: Some(column.name.clone()),
-            accepted: of(Kind::Accepted),
-            rejected: of(Kind::Rejected),
-            repeated: of(Kind::Repeated),
-            first: of(Kind::First),
-            no_echo: of(Kind::NoEcho),
-            clear: of(Kind::Clear),
+            accepted: of(ReadingKind::Accepted),
+            rejected: of(ReadingKind::Rejected),
+            repeated: of(ReadingKind::Repeated),
+            first: of(ReadingKind::First),
+            no_echo: of(ReadingKind::NoEcho),
+            clear: of(ReadingKind::Clear),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use eeruf_core::search::{RingNeeds, WaitNeeds};
+use eeruf_core::search::{PeriodProblem, WaitProblem};
 use eeruf_core::{Criterion, Layout, MAX_SENSORS, Micros, Requirements, SpeedOfSound};
 use serde::Deserialize;
 
@@ -124,7 +124,7 @@ pub(crate) struct RingSpec {
 
 impl RingSpec {
     /// What a schedule must meet if `t_delta` must cover this much.
-    pub(crate) fn needs(&self, t_delta: Micros) -> RingNeeds<'_> {
+    pub(crate) fn needs(&self, t_delta: Micros) -> PeriodProblem<'_> {
         let requirements = Requirements {
             t_delta,
             criterion: Criterion::Exact,
@@ -133,7 +133,7 @@ impl RingSpec {
             window: self.window,
             stale_echo: self.stale_echo,
         };
-        RingNeeds { sensors: self.sensors, requirements, tick: self.tick }
+        PeriodProblem { sensors: self.sensors, requirements, tick: self.tick }
     }
 }
 
@@ -236,10 +236,10 @@ pub(crate) fn read_waits(file: &Path) -> Result<WaitSpec, InputError> {
 }
 
 impl WaitSpec {
-    pub(crate) fn needs(&self) -> WaitNeeds<'_> {
+    pub(crate) fn needs(&self) -> WaitProblem<'_> {
         let WaitFile { sensors, period_us, wait_max_us, tick_us, t_delta_us, min_interval_us, neighbours, .. } =
             self.file;
-        WaitNeeds {
+        WaitProblem {
             sensors,
             period: Micros::new(period_us),
             wait_max: Micros::new(wait_max_us),

@@ -1,12 +1,13 @@
 //! `eeruf study`: every firing method in one scene, side by side on the same seed, and who was fooled by whom.
 
 use std::fmt::Write as _;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use comfy_table::{CellAlignment, Table, presets};
-use eeruf_core::search::design::{self, Flow, Progress};
-use eeruf_core::search::{RingNeeds, SearchError};
+use eeruf_core::search::design::{self, Progress};
+use eeruf_core::search::{PeriodProblem, SearchError};
 use eeruf_core::{Criterion, Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_sim::{
     Method, Options, Readings, Robot, SimulationError, Summary, World, simulate_while, sweep, table_i_d_for,
@@ -162,13 +163,13 @@ fn best_for(robot: &Robot, watch: &mut Watch) -> Result<Option<Best>, SearchErro
         window: robot.window,
         stale_echo: true,
     };
-    let needs = RingNeeds { sensors, requirements, tick: TICK };
+    let needs = PeriodProblem { sensors, requirements, tick: TICK };
     let mut memory = vec![0; design::memory_words(sensors)];
     let mut control = |progress: &Progress| {
         if watch.go_on(|| format!("designing eeruf_best, {} nodes", progress.nodes)) {
-            Flow::Continue
+            ControlFlow::Continue(())
         } else {
-            Flow::Stop
+            ControlFlow::Break(())
         }
     };
     let designed = needs.shortest::<MAX_SENSORS>(BUDGET, &mut memory, &mut control)?;

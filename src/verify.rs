@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use clap::ValueEnum;
 use comfy_table::{Table, presets};
-use eeruf_core::{Criterion, Interval, Layout, MAX_SENSORS, Micros, Report, Requirements};
+use eeruf_core::{Criterion, Interval, Layout, MAX_SENSORS, Micros, Requirements, Verification};
 use serde::Serialize;
 
 use crate::Answer;
@@ -142,8 +142,8 @@ struct ViolationJson {
     source: &'static str,
 }
 
-impl From<&Report<'_, MAX_SENSORS>> for ReportJson {
-    fn from(report: &Report<'_, MAX_SENSORS>) -> Self {
+impl From<&Verification<'_, MAX_SENSORS>> for ReportJson {
+    fn from(report: &Verification<'_, MAX_SENSORS>) -> Self {
         let violations = report.violations().map(|violation| ViolationJson {
             kind: violation.kind.as_str(),
             sensors: violation.sensors,
@@ -170,7 +170,7 @@ fn describe(
     name: &str,
     schedule: &AnySchedule,
     requirements: &Requirements<'_>,
-    report: &Report<'_, MAX_SENSORS>,
+    report: &Verification<'_, MAX_SENSORS>,
 ) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);

@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use eeruf_core::{Config, Event, Instant, Kind, Micros, Phase, Requirements, Ring, Schedule};
+use eeruf_core::{Instant, Micros, Phase, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Schedule};
 use proptest::prelude::*;
 
 prop_compose! {
@@ -44,12 +44,12 @@ prop_compose! {
 /// caller polls late by `stalls` now and then.
 fn readings_of_crosstalk(
     schedule: &Schedule<64>,
-    config: Config,
+    config: RingConfig,
     start: Instant,
     (emitter, receiver): (u8, u8),
     path: Micros,
     stalls: &[(u32, Micros)],
-) -> Vec<Kind> {
+) -> Vec<ReadingKind> {
     let mut ring = Ring::new(schedule, config, start).unwrap();
     let mut arrivals = VecDeque::new();
     let mut kinds = vec![];
@@ -71,8 +71,8 @@ fn readings_of_crosstalk(
         }
         while let Some(event) = ring.poll(now) {
             match event {
-                Event::Fire(sensor) if sensor == emitter => arrivals.push_back(now + path),
-                Event::Reading(reading) if reading.sensor == receiver => kinds.push(reading.kind),
+                RingEvent::Fire(sensor) if sensor == emitter => arrivals.push_back(now + path),
+                RingEvent::Reading(reading) if reading.sensor == receiver => kinds.push(reading.kind),
                 _ => {}
             }
         }
@@ -100,10 +100,10 @@ proptest! {
         } else {
             Micros::new((periods * f64::from(period)) as u32)
         };
-        let config = Config::new(t_delta, schedule.min_refire());
+        let config = RingConfig::new(t_delta, schedule.min_refire());
         let start = Instant::from_micros(start);
         let kinds = readings_of_crosstalk(&schedule, config, start, (emitter, receiver), path, &[]);
-        prop_assert!(!kinds.contains(&Kind::Accepted), "{kinds:?}");
+        prop_assert!(!kinds.contains(&ReadingKind::Accepted), "{kinds:?}");
     }
 
     #[test]
@@ -116,14 +116,14 @@ proptest! {
         let (emitter, receiver) = (pair.0.index(schedule.sensors()) as u8, pair.1.index(schedule.sensors()) as u8);
         prop_assume!(emitter != receiver);
         let path = Micros::new((periods * f64::from(schedule.min_refire().as_micros())) as u32);
-        let config = Config::new(t_delta, schedule.min_refire());
+        let config = RingConfig::new(t_delta, schedule.min_refire());
         let stalls: Vec<_> = stalls
             .into_iter()
             .map(|(poll, times)| (poll, Micros::new((times * f64::from(t_delta.as_micros() + 1)) as u32)))
             .collect();
         let kinds =
             readings_of_crosstalk(&schedule, config, Instant::default(), (emitter, receiver), path, &stalls);
-        prop_assert!(!kinds.contains(&Kind::Accepted), "{kinds:?}");
+        prop_assert!(!kinds.contains(&ReadingKind::Accepted), "{kinds:?}");
     }
 
     #[test]
@@ -133,7 +133,7 @@ proptest! {
         consecutive in 2..=8_u8,
     ) {
         let window = schedule.min_refire();
-        let config = Config { consecutive, ..Config::new(t_delta, window) };
+        let config = RingConfig { consecutive, ..RingConfig::new(t_delta, window) };
         let mut ring = Ring::new(&schedule, config, Instant::default()).unwrap();
         let mut t_echo = vec![f64::from(window.as_micros()) / 2.0; schedule.sensors()];
         let mut told = vec![0; schedule.sensors()];
@@ -141,23 +141,23 @@ proptest! {
             let now = ring.next_deadline();
             while let Some(event) = ring.poll(now) {
                 match event {
-                    Event::Fire(sensor) => {
+                    RingEvent::Fire(sensor) => {
                         let t_echo = &mut t_echo[usize::from(sensor)];
                         let step = steps[told[usize::from(sensor)] % steps.len()] * f64::from(t_delta.as_micros());
                         *t_echo = (*t_echo + step.trunc()).clamp(0.0, f64::from(window.as_micros()));
                         ring.echo(sensor, now + Micros::new(*t_echo as u32));
                     }
-                    Event::Reading(reading) => {
+                    RingEvent::Reading(reading) => {
                         let told = &mut told[usize::from(reading.sensor)];
                         *told += 1;
                         let expected = match *told {
-                            1 => Kind::First,
-                            n if n < usize::from(consecutive) => Kind::Repeated,
-                            _ => Kind::Accepted,
+                            1 => ReadingKind::First,
+                            n if n < usize::from(consecutive) => ReadingKind::Repeated,
+                            _ => ReadingKind::Accepted,
                         };
                         prop_assert_eq!(reading.kind, expected);
                     }
-                    Event::PeriodEnded(_) => {}
+                    RingEvent::PeriodEnded(_) => {}
                 }
             }
         }
@@ -174,11 +174,11 @@ fn with_constant_waits_the_same_crosstalk_is_believed_for_ever() {
         [&[Micros::ZERO; 2], &[Micros::ZERO; 2]],
     )
     .unwrap();
-    let config = Config::new(Micros::new(500), Micros::from_millis(36));
+    let config = RingConfig::new(Micros::new(500), Micros::from_millis(36));
     let path = Micros::from_millis(25);
     let kinds = readings_of_crosstalk(&schedule, config, Instant::default(), (0, 1), path, &[]);
-    assert_eq!(kinds[0], Kind::First);
-    assert!(kinds.len() > 8 && kinds[1..].iter().all(|&kind| kind == Kind::Accepted), "{kinds:?}");
+    assert_eq!(kinds[0], ReadingKind::First);
+    assert!(kinds.len() > 8 && kinds[1..].iter().all(|&kind| kind == ReadingKind::Accepted), "{kinds:?}");
 
     let alternating = Schedule::<64>::from_slices(
         Micros::from_millis(60),
@@ -188,5 +188,5 @@ fn with_constant_waits_the_same_crosstalk_is_believed_for_ever() {
     .unwrap();
     assert_eq!(alternating.t_wait(Phase::A).len(), 2);
     let kinds = readings_of_crosstalk(&alternating, config, Instant::default(), (0, 1), path, &[]);
-    assert!(kinds.len() > 8 && kinds[1..].iter().all(|&kind| kind == Kind::Rejected), "{kinds:?}");
+    assert!(kinds.len() > 8 && kinds[1..].iter().all(|&kind| kind == ReadingKind::Rejected), "{kinds:?}");
 }

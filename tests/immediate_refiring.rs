@@ -14,7 +14,7 @@
 
 use std::collections::VecDeque;
 
-use eeruf_core::{Config, Event, Instant, Kind, Micros, Ring, Schedule};
+use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Schedule};
 use proptest::prelude::*;
 
 const T_DELTA: u32 = 500;
@@ -24,11 +24,11 @@ const WINDOW: u32 = 60_000;
 type Waits = [u32; 2];
 
 /// What y reads, and the verdicts.
-fn readings_of_y(t_echo: u32, path: u32, lag_y: u32, x: Waits, y: Waits) -> Vec<(u32, Kind)> {
+fn readings_of_y(t_echo: u32, path: u32, lag_y: u32, x: Waits, y: Waits) -> Vec<(u32, ReadingKind)> {
     let us = |x, y| [Micros::new(x), Micros::new(y)];
     let schedule =
         Schedule::<2>::new(Micros::from_millis(200), us(0, lag_y), [us(x[0], y[0]), us(x[1], y[1])]).unwrap();
-    let config = Config::new(Micros::new(T_DELTA), Micros::new(WINDOW));
+    let config = RingConfig::new(Micros::new(T_DELTA), Micros::new(WINDOW));
     let mut ring = Ring::immediate(&schedule, config, Micros::ZERO, Instant::default()).unwrap();
     let mut heard = VecDeque::new();
     let mut readings = vec![];
@@ -41,11 +41,11 @@ fn readings_of_y(t_echo: u32, path: u32, lag_y: u32, x: Waits, y: Waits) -> Vec<
         }
         while let Some(event) = ring.poll(now) {
             match event {
-                Event::Fire(0) => {
+                RingEvent::Fire(0) => {
                     ring.echo(0, now + Micros::new(t_echo));
                     heard.push_back(now + Micros::new(path));
                 }
-                Event::Reading(reading) if reading.sensor == 1 => {
+                RingEvent::Reading(reading) if reading.sensor == 1 => {
                     readings.extend(reading.t_echo.map(|t| (t.as_micros(), reading.kind)));
                 }
                 _ => {}
@@ -66,7 +66,7 @@ proptest! {
         let readings = readings_of_y(t_echo, path, lag_y, [wait; 2], [wait; 2]);
         prop_assert!(readings.len() > 20);
         for &(t_err, kind) in &readings[3..] {
-            prop_assert_eq!((t_err, kind), (t_echo, Kind::Accepted)); // (8)
+            prop_assert_eq!((t_err, kind), (t_echo, ReadingKind::Accepted)); // (8)
         }
     }
 
@@ -88,7 +88,7 @@ proptest! {
             seen.sort_unstable();
             let sorted = |mut pair: [u32; 2]| { pair.sort_unstable(); pair };
             prop_assert!(seen == sorted(in_step) || seen == sorted(behind), "{seen:?} {in_step:?} {behind:?}");
-            let expected = if seen[1] - seen[0] <= T_DELTA { Kind::Accepted } else { Kind::Rejected };
+            let expected = if seen[1] - seen[0] <= T_DELTA { ReadingKind::Accepted } else { ReadingKind::Rejected };
             prop_assert_eq!(pair[1].1, expected);
         }
     }
@@ -97,10 +97,10 @@ proptest! {
 #[test]
 fn equal_waits_settle_on_the_other_sensors_echo_and_different_ones_never_settle() {
     // Equal waits: y reads x's 12 ms.
-    assert_eq!(readings_of_y(12_000, 17_000, 2_000, [5_000; 2], [5_000; 2])[3], (12_000, Kind::Accepted));
+    assert_eq!(readings_of_y(12_000, 17_000, 2_000, [5_000; 2], [5_000; 2])[3], (12_000, ReadingKind::Accepted));
     // Alternating waits: 12 + 8 - 2 and 12 + 4 - 6 ms in turn.
     let readings = readings_of_y(12_000, 17_000, 2_000, [8_000, 4_000], [2_000, 6_000]);
     let mut pair = [readings[3], readings[4]];
     pair.sort_unstable_by_key(|&(t_err, _)| t_err);
-    assert_eq!(pair, [(10_000, Kind::Rejected), (18_000, Kind::Rejected)]);
+    assert_eq!(pair, [(10_000, ReadingKind::Rejected), (18_000, ReadingKind::Rejected)]);
 }

@@ -3,7 +3,7 @@
 //! `PROPTEST_CASES=1000000 cargo test --release --test ring` is the long run.
 
 use eeruf_core::tables::{TABLE_I_D, THE_ONE_WITH_19_MS};
-use eeruf_core::{Config, Event, ImmediateRefiring, Instant, Layout, Micros, Ring, Schedule, Scheduler};
+use eeruf_core::{ImmediateRefiring, Instant, Layout, Micros, Ring, RingConfig, RingEvent, Schedule, Scheduler};
 use proptest::prelude::*;
 
 const LAYOUT: Layout = Layout::Line(4);
@@ -70,8 +70,8 @@ impl Watch {
     }
 }
 
-fn config() -> Config {
-    Config { blanking: Micros::new(500), ..Config::new(Micros::new(500), Micros::from_millis(30)) }
+fn config() -> RingConfig {
+    RingConfig { blanking: Micros::new(500), ..RingConfig::new(Micros::new(500), Micros::from_millis(30)) }
 }
 
 fn instant(us: u64) -> Instant {
@@ -101,7 +101,7 @@ proptest! {
                     // Polling at one instant comes to an end.
                     for left in (0..100).rev() {
                         match ring.poll(instant(now)) {
-                            Some(Event::Fire(sensor)) => watch.note(sensor, now, min_interval, min_refire),
+                            Some(RingEvent::Fire(sensor)) => watch.note(sensor, now, min_interval, min_refire),
                             Some(_) => {}
                             None => break,
                         }
@@ -110,7 +110,7 @@ proptest! {
                 }
                 Call::Poll(later) => {
                     now += later;
-                    if let Some(Event::Fire(sensor)) = ring.poll(instant(now)) {
+                    if let Some(RingEvent::Fire(sensor)) = ring.poll(instant(now)) {
                         watch.note(sensor, now, min_interval, min_refire);
                     }
                 }
@@ -131,7 +131,7 @@ proptest! {
         while now < end {
             now += u64::from(ring.next_deadline().since(instant(now)).as_micros()).min(10_000);
             while let Some(event) = ring.poll(instant(now)) {
-                if let Event::Fire(sensor) = event {
+                if let RingEvent::Fire(sensor) = event {
                     watch.note(sensor, now, min_interval, min_refire);
                 }
             }
@@ -170,7 +170,7 @@ fn survives_jumps<S: Scheduler>(mut ring: Ring<S, 12>, jumps: &[u32]) -> Result<
             now += Micros::from_millis(5);
             for _ in 0..100 {
                 match ring.poll(now) {
-                    Some(Event::Fire(_)) => fired += 1,
+                    Some(RingEvent::Fire(_)) => fired += 1,
                     Some(_) => {}
                     None => break,
                 }

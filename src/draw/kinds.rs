@@ -1,6 +1,6 @@
 //! What the filter made of recorded readings: one lane for each sensor, time to the right.
 
-use eeruf_core::Kind;
+use eeruf_core::ReadingKind;
 use plotters::style::RGBColor;
 
 use super::{ACCEPTED, Picture, REJECTED, SILENT, TITLE, UNCOMPARED};
@@ -46,11 +46,11 @@ pub(crate) fn kinds_over_time(columns: &[Column], t_delta_us: u32) -> Picture {
     picture
 }
 
-fn colour_of(kind: Kind) -> RGBColor {
+fn colour_of(kind: ReadingKind) -> RGBColor {
     match kind {
-        Kind::Accepted => ACCEPTED,
-        Kind::Rejected => REJECTED,
-        Kind::NoEcho | Kind::Clear => SILENT,
+        ReadingKind::Accepted => ACCEPTED,
+        ReadingKind::Rejected => REJECTED,
+        ReadingKind::NoEcho | ReadingKind::Clear => SILENT,
         _ => UNCOMPARED,
     }
 }

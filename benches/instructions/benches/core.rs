@@ -4,14 +4,14 @@
 use std::hint::black_box;
 
 use eeruf_core::search::wait::{Control, Objective, memory_words};
-use eeruf_core::search::{RingNeeds, WaitNeeds, WaitSearch, design};
+use eeruf_core::search::{PeriodProblem, WaitProblem, WaitSearch, design};
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{Config, Criterion, EchoFilter, Event, Instant, Layout, Micros, Requirements, Ring, Schedule};
+use eeruf_core::{Criterion, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingEvent, Schedule};
 use gungraun::{library_benchmark, library_benchmark_group, main};
 
 /// The shortest period of a ring with a separation of 2 ms, neighbours 15 ms apart, proven.
 fn design(sensors: usize, layout: Layout<'_>, window_ms: u32, tick: Micros) -> Option<Micros> {
-    let needs = RingNeeds {
+    let needs = PeriodProblem {
         sensors,
         requirements: Requirements {
             min_interval: Micros::from_millis(15),
@@ -60,7 +60,7 @@ fn design_line_24() -> Option<Micros> {
 // The largest smallest interval of a table of waits for twelve sensors, proven.
 #[library_benchmark]
 fn best_interval_12() -> Option<Micros> {
-    let needs = WaitNeeds {
+    let needs = WaitProblem {
         sensors: 12,
         period: Micros::from_millis(100),
         wait_max: Micros::from_millis(24),
@@ -93,16 +93,16 @@ fn filter_1000_readings() -> u32 {
 #[library_benchmark]
 fn ring_100_periods() -> u32 {
     static SCHEDULE: Schedule<12> = TABLE_I_D;
-    let config = Config::new(Micros::new(999), Micros::from_millis(36));
+    let config = RingConfig::new(Micros::new(999), Micros::from_millis(36));
     let Ok(mut ring) = Ring::new(&SCHEDULE, config, Instant::default()) else { return 0 };
     let (mut periods, mut readings) = (0, 0);
     while periods < 100 {
         let now = ring.next_deadline();
         while let Some(event) = ring.poll(now) {
             match event {
-                Event::Fire(sensor) => ring.echo(sensor, now + Micros::from_millis(black_box(12))),
-                Event::Reading(_) => readings += 1,
-                Event::PeriodEnded(_) => periods += 1,
+                RingEvent::Fire(sensor) => ring.echo(sensor, now + Micros::from_millis(black_box(12))),
+                RingEvent::Reading(_) => readings += 1,
+                RingEvent::PeriodEnded(_) => periods += 1,
             }
         }
     }

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::conditions::Requirements;
-use crate::reading::{Kind, Tally};
+use crate::reading::{ReadingKind, Tally};
 use crate::ring::PeriodStats;
 use crate::schedule::Schedule;
 use crate::sound::SpeedOfSound;
@@ -98,7 +98,7 @@ impl<'s, const K: usize> Adaptation<'s, K> {
 
     /// Takes in one period, and returns the schedule to change to when the present one should be left.
     pub fn observe(&mut self, stats: &PeriodStats) -> Option<&'s Schedule<K>> {
-        for kind in [Kind::Accepted, Kind::Rejected, Kind::Repeated] {
+        for kind in [ReadingKind::Accepted, ReadingKind::Rejected, ReadingKind::Repeated] {
             for _ in 0..stats.tally.of(kind) {
                 self.tally.count(kind);
             }
@@ -212,8 +212,8 @@ mod tests {
 
     fn period(accepted: u8, rejected: u8) -> PeriodStats {
         let mut tally = Tally::default();
-        (0..accepted).for_each(|_| tally.count(Kind::Accepted));
-        (0..rejected).for_each(|_| tally.count(Kind::Rejected));
+        (0..accepted).for_each(|_| tally.count(ReadingKind::Accepted));
+        (0..rejected).for_each(|_| tally.count(ReadingKind::Rejected));
         PeriodStats { period: 0, phase: Phase::A, tally, max_late: Micros::ZERO }
     }
 

@@ -10,7 +10,7 @@
 
 use core::fmt;
 
-use crate::reading::{Kind, Verdict};
+use crate::reading::{ReadingKind, Verdict};
 use crate::time::Micros;
 
 /// Stands for "no echo" inside this crate: longer than any listening window.
@@ -20,13 +20,13 @@ const NEVER: u16 = u16::MAX;
 /// Compares the consecutive readings of up to `K` sensors, each with up to `E` echoes a firing.
 ///
 /// ```
-/// use eeruf_core::{EchoFilter, Kind, Micros};
+/// use eeruf_core::{EchoFilter, ReadingKind, Micros};
 /// let mut filter = EchoFilter::<2>::new(Micros::new(500), 2)?;
 /// let mut push = |echo_us: u32| filter.push(1, Some(Micros::new(echo_us))).map(|verdict| verdict.kind);
-/// assert_eq!(push(9_000)?, Kind::First);
-/// assert_eq!(push(9_500)?, Kind::Accepted); // just within t_delta
-/// assert_eq!(push(10_001)?, Kind::Rejected); // just beyond
-/// assert_eq!(push(10_001)?, Kind::Accepted); // the new value was the one to compare with
+/// assert_eq!(push(9_000)?, ReadingKind::First);
+/// assert_eq!(push(9_500)?, ReadingKind::Accepted); // just within t_delta
+/// assert_eq!(push(10_001)?, ReadingKind::Rejected); // just beyond
+/// assert_eq!(push(10_001)?, ReadingKind::Accepted); // the new value was the one to compare with
 /// # Ok::<(), eeruf_core::FilterError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -62,16 +62,16 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// [`FilterError::Patience`] for more than 15.
     ///
     /// ```
-    /// use eeruf_core::{EchoFilter, Kind, Micros};
+    /// use eeruf_core::{EchoFilter, ReadingKind, Micros};
     /// let mut filter = EchoFilter::<1, 8>::new(Micros::new(100), 2)?.with_patience(4)?;
     /// let mut push = |echoes: &[u32]| {
     ///     let echoes: Vec<_> = echoes.iter().map(|&us| Micros::new(us)).collect();
     ///     filter.push_echoes(0, &echoes, 0).map(|verdict| verdict.kind)
     /// };
     /// push(&[9_000, 14_000])?;
-    /// assert_eq!(push(&[9_000, 14_000])?, Kind::Accepted);
-    /// assert_eq!(push(&[14_000])?, Kind::Rejected); // the wall behind is not believed at once
-    /// assert_eq!(push(&[9_000, 14_000])?, Kind::Accepted);
+    /// assert_eq!(push(&[9_000, 14_000])?, ReadingKind::Accepted);
+    /// assert_eq!(push(&[14_000])?, ReadingKind::Rejected); // the wall behind is not believed at once
+    /// assert_eq!(push(&[9_000, 14_000])?, ReadingKind::Accepted);
     /// # Ok::<(), eeruf_core::FilterError>(())
     /// ```
     pub const fn with_patience(self, patience: u8) -> Result<Self, FilterError> {
@@ -232,7 +232,7 @@ impl<const E: usize> Track<E> {
     }
 
     /// A firing that says nothing about the echo time: forgets, and only grows older.
-    pub(crate) fn skip(&mut self, kind: Kind, t_echo: Option<Micros>) -> Verdict {
+    pub(crate) fn skip(&mut self, kind: ReadingKind, t_echo: Option<Micros>) -> Verdict {
         self.forget();
         self.verdict(kind, t_echo, None)
     }
@@ -281,15 +281,15 @@ impl<const E: usize> Track<E> {
         let kind = match best.0 {
             standing if standing.is_believed() => {
                 if silent {
-                    Kind::Clear
+                    ReadingKind::Clear
                 } else {
-                    Kind::Accepted
+                    ReadingKind::Accepted
                 }
             }
-            _ if silent => Kind::NoEcho,
-            _ if earliest_before.is_none() => Kind::First,
-            Standing::NEW => Kind::Rejected,
-            _ => Kind::Repeated,
+            _ if silent => ReadingKind::NoEcho,
+            _ if earliest_before.is_none() => ReadingKind::First,
+            Standing::NEW => ReadingKind::Rejected,
+            _ => ReadingKind::Repeated,
         };
         self.verdict(kind, echo_time(best.1), best.2)
     }
@@ -307,9 +307,9 @@ impl<const E: usize> Track<E> {
         }
     }
 
-    fn verdict(&mut self, kind: Kind, t_echo: Option<Micros>, previous: Option<Micros>) -> Verdict {
+    fn verdict(&mut self, kind: ReadingKind, t_echo: Option<Micros>, previous: Option<Micros>) -> Verdict {
         self.age = match kind {
-            Kind::Accepted => 0,
+            ReadingKind::Accepted => 0,
             _ if self.age >= NEVER - 1 => self.age,
             _ => self.age + 1,
         };
@@ -374,7 +374,7 @@ mod tests {
         EchoFilter::new(Micros::new(t_delta), consecutive).unwrap()
     }
 
-    fn kinds<const E: usize>(filter: &mut EchoFilter<1, E>, firings: &[&[u32]]) -> Vec<Kind> {
+    fn kinds<const E: usize>(filter: &mut EchoFilter<1, E>, firings: &[&[u32]]) -> Vec<ReadingKind> {
         firings
             .iter()
             .map(|echoes| {
@@ -386,14 +386,14 @@ mod tests {
 
     #[test]
     fn two_readings_are_compared_as_the_paper_says() {
-        use Kind::*;
+        use ReadingKind::*;
         let seen = kinds(&mut filter::<1>(100, 2), &[&[], &[], &[5000], &[5100], &[5201], &[], &[5201], &[5201], &[]]);
         assert_eq!(seen, [NoEcho, Clear, First, Accepted, Rejected, NoEcho, First, Accepted, NoEcho]);
     }
 
     #[test]
     fn three_readings_must_each_agree_with_the_one_before() {
-        use Kind::*;
+        use ReadingKind::*;
         let seen =
             kinds(&mut filter::<1>(100, 3), &[&[5000], &[5100], &[5200], &[5300], &[5401], &[5401], &[], &[], &[]]);
         assert_eq!(seen, [First, Repeated, Accepted, Accepted, Rejected, Repeated, NoEcho, NoEcho, Clear]);
@@ -408,7 +408,7 @@ mod tests {
         assert_eq!(
             verdict,
             Verdict {
-                kind: Kind::Accepted,
+                kind: ReadingKind::Accepted,
                 t_echo: Some(Micros::new(9050)),
                 previous: Some(Micros::new(9000)),
                 age: Some(0)
@@ -430,14 +430,14 @@ mod tests {
         let mut filter = filter::<1>(50, 2);
         let mut push = |us, change| filter.push_echoes(0, &[Micros::new(us)], change).unwrap().kind;
         push(10_000, 0);
-        assert_eq!(push(9_000, -1_000), Kind::Accepted);
-        assert_eq!(push(8_051, -1_000), Kind::Rejected);
-        assert_eq!(push(u32::MAX - 1, i32::MAX), Kind::Rejected);
+        assert_eq!(push(9_000, -1_000), ReadingKind::Accepted);
+        assert_eq!(push(8_051, -1_000), ReadingKind::Rejected);
+        assert_eq!(push(u32::MAX - 1, i32::MAX), ReadingKind::Rejected);
     }
 
     #[test]
     fn an_accepted_echo_that_fades_is_waited_for_before_a_later_one_is_believed() {
-        use Kind::*;
+        use ReadingKind::*;
         let mut filter = filter::<4>(100, 2).with_patience(3).unwrap();
         let mut seen = |firings: &[&[u32]]| kinds(&mut filter, firings);
         assert_eq!(seen(&[&[5000, 9000], &[5000, 9000], &[5000, 9000]]), [First, Accepted, Accepted]);
@@ -447,7 +447,7 @@ mod tests {
 
     #[test]
     fn silence_is_not_believed_while_an_echo_is_waited_for() {
-        use Kind::*;
+        use ReadingKind::*;
         let firings: [&[u32]; 9] = [&[], &[], &[5000], &[5000], &[], &[], &[], &[5000], &[]];
         let mut patient = filter::<2>(100, 2).with_patience(2).unwrap();
         let seen = kinds(&mut patient, &firings);
@@ -462,7 +462,7 @@ mod tests {
             let mut filter = filter::<8>(100, 2).with_patience(patience).unwrap();
             let firings = [[3000, 9000], [7000, 12_000]].into_iter().cycle().take(60).collect::<Vec<_>>();
             let firings: Vec<&[u32]> = firings.iter().map(|echoes| &echoes[..]).collect();
-            assert!(!kinds(&mut filter, &firings).contains(&Kind::Accepted));
+            assert!(!kinds(&mut filter, &firings).contains(&ReadingKind::Accepted));
         }
     }
 
@@ -477,7 +477,7 @@ mod tests {
             push(&[t_echo]);
         }
         push(&[]);
-        assert_eq!(push(&[6_000]), Kind::Accepted);
+        assert_eq!(push(&[6_000]), ReadingKind::Accepted);
         for _ in 0..20 {
             push(&[]);
         }
@@ -502,7 +502,7 @@ mod tests {
         }
         filter.forget(0);
         let verdict = filter.push(0, Some(Micros::new(1000))).unwrap();
-        assert_eq!((verdict.kind, verdict.age), (Kind::First, Some(1)));
+        assert_eq!((verdict.kind, verdict.age), (ReadingKind::First, Some(1)));
     }
 
     #[test]

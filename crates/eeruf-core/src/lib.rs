@@ -29,7 +29,7 @@ extern crate std;
 
 mod adaptation;
 mod conditions;
-mod emit;
+pub mod emit;
 mod filter;
 mod interop;
 mod layout;
@@ -47,19 +47,18 @@ mod verify;
 
 pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
 pub use conditions::{Criterion, Interval, Requirements, Separation};
-pub use emit::{CHeader, RustSource, Toml};
 pub use filter::{EchoFilter, FilterError};
 pub use layout::Layout;
-pub use reading::{Kind, Tally, Verdict};
+pub use reading::{ReadingKind, Tally, Verdict};
 pub use refiring::ImmediateRefiring;
-pub use ring::{Config, Event, PeriodStats, Reading, Ring, RingError, ScheduledRing};
+pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError};
-pub use scheduler::{ScheduledFiring, Scheduler, Step};
+pub use scheduler::{ScheduledFiring, Scheduler, SchedulerStep};
 pub use sound::SpeedOfSound;
 pub use time::{Instant, Micros};
 #[doc(hidden)]
 pub use verify::{__checked, __micros};
-pub use verify::{Report, Violation, ViolationKind, Violations};
+pub use verify::{Verification, Violation, ViolationKind, Violations};
 
 /// The listings of the README compile and hold.
 #[cfg(doctest)]

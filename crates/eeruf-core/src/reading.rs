@@ -1,17 +1,17 @@
-//! What becomes of one firing: the [`Kind`] of reading, never a magic number, and [`Tally`], which counts them.
+//! What becomes of one firing: the [`ReadingKind`] of reading, never a magic number, and [`Tally`], which counts them.
 
 use core::fmt;
 
 use crate::time::Micros;
 
-/// What one firing of one sensor told. Each firing yields exactly one kind, but for [`Kind::Late`], which may follow.
+/// What one firing of one sensor told. Each firing yields exactly one kind, but for [`ReadingKind::Late`], which may follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[repr(u8)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
-pub enum Kind {
+pub enum ReadingKind {
     /// An echo with nothing to compare it with: at the start, or after a firing without echo.
     First,
     /// Near-identical to the reading before (Eq. 11), as many times running as the filter wants: believe it.
@@ -32,7 +32,7 @@ pub enum Kind {
     Stuck,
 }
 
-impl Kind {
+impl ReadingKind {
     /// Every kind, in the order of the enumeration.
     pub const ALL: [Self; 9] = [
         Self::First,
@@ -62,7 +62,7 @@ impl Kind {
     }
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for ReadingKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.as_str())
     }
@@ -74,7 +74,7 @@ impl fmt::Display for Kind {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Verdict {
     /// What the firing told.
-    pub kind: Kind,
+    pub kind: ReadingKind,
     /// The echo time: the accepted one, or else the earliest; `None` without echo.
     #[doc(alias = "T_echo")]
     pub t_echo: Option<Micros>,
@@ -89,13 +89,13 @@ pub struct Verdict {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tally<N = u32> {
-    counts: [N; Kind::ALL.len()],
+    counts: [N; ReadingKind::ALL.len()],
 }
 
 impl<N: Copy + Into<u32> + TryFrom<u32>> Tally<N> {
     /// Counts one more reading of this kind.
-    pub fn count(&mut self, kind: Kind) {
-        // `Kind` is numbered in the order of `ALL`, so the index is in range.
+    pub fn count(&mut self, kind: ReadingKind) {
+        // `ReadingKind` is numbered in the order of `ALL`, so the index is in range.
         if let Some(count) = self.counts.get_mut(kind as usize) {
             let more: u32 = (*count).into().saturating_add(1);
             if let Ok(more) = N::try_from(more) {
@@ -105,15 +105,15 @@ impl<N: Copy + Into<u32> + TryFrom<u32>> Tally<N> {
     }
 
     /// The number of readings of one kind.
-    pub fn of(&self, kind: Kind) -> u32 {
+    pub fn of(&self, kind: ReadingKind) -> u32 {
         self.counts.get(kind as usize).map_or(0, |&count| count.into())
     }
 
     /// The rejection rate (end of Sec. 3.1): rejected readings of all that were compared, in thousandths; `None` if
     /// none was compared.
     pub fn rejection_permille(&self) -> Option<u16> {
-        let rejected = u64::from(self.of(Kind::Rejected));
-        let compared = rejected + u64::from(self.of(Kind::Accepted)) + u64::from(self.of(Kind::Repeated));
+        let rejected = u64::from(self.of(ReadingKind::Rejected));
+        let compared = rejected + u64::from(self.of(ReadingKind::Accepted)) + u64::from(self.of(ReadingKind::Repeated));
         // At most 1000.
         (1000 * rejected).checked_div(compared).map(|permille| permille as u16)
     }
@@ -127,13 +127,13 @@ mod tests {
     fn a_tally_counts_each_kind_apart_and_saturates() {
         let mut tally = Tally::<u8>::default();
         for _ in 0..300 {
-            tally.count(Kind::Clear);
+            tally.count(ReadingKind::Clear);
         }
-        for kind in Kind::ALL {
+        for kind in ReadingKind::ALL {
             tally.count(kind);
         }
-        assert_eq!(tally.of(Kind::Clear), 255);
-        assert_eq!(tally.of(Kind::Stuck), 1);
+        assert_eq!(tally.of(ReadingKind::Clear), 255);
+        assert_eq!(tally.of(ReadingKind::Stuck), 1);
         assert_eq!(tally.rejection_permille(), Some(333));
         assert_eq!(Tally::<u32>::default().rejection_permille(), None);
     }

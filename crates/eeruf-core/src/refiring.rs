@@ -38,7 +38,7 @@ struct Turn {
 
 impl<'s, const K: usize, const M: usize> ImmediateRefiring<'s, K, M> {
     /// Begins at `now`. The lags and waits are those of `schedule`; its period only says how often
-    /// [`Step::PeriodEnded`](crate::Step::PeriodEnded) comes. No sensor fires again sooner than `min_refire` after it has fired.
+    /// [`SchedulerStep::PeriodEnded`](crate::SchedulerStep::PeriodEnded) comes. No sensor fires again sooner than `min_refire` after it has fired.
     pub fn new(schedule: &'s Schedule<K, M>, min_refire: Micros, now: Instant) -> Self {
         let sensors = [Turn { at: now, phase: 0 }; K];
         let mut refiring = Self {

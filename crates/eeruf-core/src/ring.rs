@@ -9,7 +9,7 @@ use core::fmt;
 
 use self::sensor::{DISTURBED, Edge, LISTENING, READY, STUCK, Sensor};
 use crate::filter::{Agreement, FilterError, Rule};
-use crate::reading::{Kind, Tally, Verdict};
+use crate::reading::{ReadingKind, Tally, Verdict};
 use crate::refiring::ImmediateRefiring;
 use crate::schedule::{Phase, Schedule};
 use crate::scheduler::{ScheduledFiring, Scheduler};
@@ -19,7 +19,7 @@ use crate::time::{Instant, Micros};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Config {
+pub struct RingConfig {
     /// `T_delta`: consecutive readings that differ by no more are near-identical.
     pub t_delta: Micros,
     /// `T_wind`: how long a sensor listens after it has fired. An echo at this very time still counts.
@@ -33,7 +33,7 @@ pub struct Config {
     pub patience: u8,
 }
 
-impl Config {
+impl RingConfig {
     /// This `t_delta` and window, no blanking, two readings compared and no patience, as in the paper.
     pub const fn new(t_delta: Micros, window: Micros) -> Self {
         Self { t_delta, window, blanking: Micros::ZERO, consecutive: 2, patience: 0 }
@@ -43,7 +43,7 @@ impl Config {
 /// What a [`Ring`] tells its caller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Event {
+pub enum RingEvent {
     /// Fire this sensor (from 0), now.
     Fire(u8),
     /// What became of an earlier firing.
@@ -64,7 +64,7 @@ pub struct Reading {
     /// The period in which it fired, counted from 0.
     pub period: u32,
     /// What the firing told.
-    pub kind: Kind,
+    pub kind: ReadingKind,
     /// The echo time; `None` without echo.
     pub t_echo: Option<Micros>,
     /// The echo time that it was compared with.
@@ -91,18 +91,18 @@ pub struct PeriodStats {
 /// number of echoes a sensor reports of one firing.
 ///
 /// ```
-/// use eeruf_core::{Config, Event, Instant, Kind, Micros, Ring, tables::TABLE_I_D};
+/// use eeruf_core::{RingConfig, RingEvent, Instant, ReadingKind, Micros, Ring, tables::TABLE_I_D};
 ///
-/// let config = Config::new(Micros::new(999), Micros::from_millis(36));
+/// let config = RingConfig::new(Micros::new(999), Micros::from_millis(36));
 /// let mut ring = Ring::new(&TABLE_I_D, config, Instant::from_micros(0))?;
 /// let mut accepted = 0;
 /// for _ in 0..1000 {
 ///     let now = ring.next_deadline(); // where firmware would sleep
 ///     while let Some(event) = ring.poll(now) {
 ///         match event {
-///             Event::Fire(sensor) => ring.echo(sensor, now + Micros::from_millis(12)), // a wall 2 m away
-///             Event::Reading(reading) => accepted += u32::from(reading.kind == Kind::Accepted),
-///             Event::PeriodEnded(stats) => assert_eq!(stats.max_late, Micros::ZERO),
+///             RingEvent::Fire(sensor) => ring.echo(sensor, now + Micros::from_millis(12)), // a wall 2 m away
+///             RingEvent::Reading(reading) => accepted += u32::from(reading.kind == ReadingKind::Accepted),
+///             RingEvent::PeriodEnded(stats) => assert_eq!(stats.max_late, Micros::ZERO),
 ///         }
 ///     }
 /// }
@@ -142,7 +142,7 @@ impl<'s, const K: usize, const M: usize> Ring<ScheduledFiring<'s, K, M>, K> {
     ///
     /// # Errors
     /// As for [`Ring::with_scheduler`].
-    pub fn new(schedule: &'s Schedule<K, M>, config: Config, now: Instant) -> Result<Self, RingError> {
+    pub fn new(schedule: &'s Schedule<K, M>, config: RingConfig, now: Instant) -> Result<Self, RingError> {
         Self::with_scheduler(ScheduledFiring::new(schedule, now), config, now)
     }
 }
@@ -174,7 +174,7 @@ impl<'s, const K: usize, const M: usize> Ring<ImmediateRefiring<'s, K, M>, K> {
     /// As for [`Ring::with_scheduler`].
     pub fn immediate(
         schedule: &'s Schedule<K, M>,
-        config: Config,
+        config: RingConfig,
         min_refire: Micros,
         now: Instant,
     ) -> Result<Self, RingError> {
@@ -191,8 +191,8 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// # Errors
     /// [`RingError`] if a sensor would fire again while it still listens, if the window ends within the blanking time,
     /// or if the number of consecutive readings is not 2 to 8 or the patience more than 15.
-    pub fn with_scheduler(scheduler: S, config: Config, now: Instant) -> Result<Self, RingError> {
-        let Config { t_delta, window, blanking, consecutive, patience } = config;
+    pub fn with_scheduler(scheduler: S, config: RingConfig, now: Instant) -> Result<Self, RingError> {
+        let RingConfig { t_delta, window, blanking, consecutive, patience } = config;
         // No echo time within a window can then be mistaken for an instant before the firing.
         let longest = scheduler.longest_window().min(Micros::new(u32::MAX / 2));
         if window > longest {
@@ -228,7 +228,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// more than `t_delta` the readings of about two periods are compared with nothing, since crosstalk has shifted by as
     /// much.
     #[inline]
-    pub fn poll(&mut self, now: Instant) -> Option<Event> {
+    pub fn poll(&mut self, now: Instant) -> Option<RingEvent> {
         self.poll_expecting(now, |_| 0)
     }
 
@@ -237,7 +237,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     ///
     /// [`EchoFilter::push_echoes`]: crate::EchoFilter::push_echoes
     #[inline]
-    pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
+    pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         let due = self.scheduler.deadline();
         if now.has_reached(due) || (self.has_to_tell() && now.has_reached(self.tell_at)) {
             return self.advance(now, expected_change_us);
@@ -271,13 +271,13 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
                 }
                 self.ready = self.ready.saturating_add(1);
             }
-            Edge::Late => self.tally.count(Kind::Late),
+            Edge::Late => self.tally.count(ReadingKind::Late),
             Edge::Noted => {}
         }
     }
 
     /// Reports that the echo line of a sensor was already high when it was to fire: the firing just told counts as
-    /// [`Kind::Stuck`], whatever edges follow.
+    /// [`ReadingKind::Stuck`], whatever edges follow.
     pub fn stuck(&mut self, sensor: u8) {
         if let Some(stuck) = self.sensors.get_mut(usize::from(sensor)) {
             if stuck.is(LISTENING) {
@@ -332,7 +332,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// Something is due. Firing comes first, since it should be on time; but a sensor tells what it heard before it
     /// fires again.
     #[inline]
-    fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
+    fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         let due = self.scheduler.deadline();
         let fires = if now.has_reached(due) { self.scheduler.next_firing() } else { None };
         let told = match fires {
@@ -344,7 +344,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
                     }
                     self.fired(sensor, now.since(due), now);
                     self.scheduler.fire(now);
-                    return Some(Event::Fire(sensor));
+                    return Some(RingEvent::Fire(sensor));
                 }
             },
             None => self.next_to_tell(now),
@@ -381,7 +381,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     }
 
     #[inline(never)]
-    fn end_period(&mut self, now: Instant) -> Option<Event> {
+    fn end_period(&mut self, now: Instant) -> Option<RingEvent> {
         if !now.has_reached(self.scheduler.deadline()) {
             return None;
         }
@@ -400,7 +400,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             max_late: Micros::new(core::mem::take(&mut self.max_late_us).into()),
         };
         self.period = self.period.wrapping_add(1);
-        Some(Event::PeriodEnded(stats))
+        Some(RingEvent::PeriodEnded(stats))
     }
 
     /// Firings have shifted against each other, by lateness or by a change of schedule, so (13a), (13b) say nothing about
@@ -438,7 +438,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     }
 
     #[inline(never)]
-    fn tell(&mut self, sensor: u8, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<Event> {
+    fn tell(&mut self, sensor: u8, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         let heard = self.sensors.get_mut(usize::from(sensor))?;
         let phase = heard.phase();
         let (listened, fired) = (heard.is(LISTENING), heard.fired);
@@ -467,7 +467,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         self.tally.count(verdict.kind);
         let Verdict { kind, t_echo, previous, age } = verdict;
         let period = self.period.wrapping_sub(self.scheduler.periods_since(phase).into());
-        Some(Event::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age }))
+        Some(RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age }))
     }
 
     /// The oldest, which fired at `before`, listens no more: which one is it now? All others fired later.

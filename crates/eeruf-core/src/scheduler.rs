@@ -8,7 +8,7 @@ use crate::time::{Instant, Micros};
 
 /// What a scheduler wants done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum SchedulerStep {
     /// Fire this sensor, now.
     Fire {
         /// The sensor, from 0.
@@ -32,17 +32,17 @@ pub enum Step {
 pub trait Scheduler {
     /// The next step, if one is due. Call again until there is none.
     #[inline]
-    fn poll(&mut self, now: Instant) -> Option<Step> {
+    fn poll(&mut self, now: Instant) -> Option<SchedulerStep> {
         let due = self.deadline();
         if !now.has_reached(due) {
             return None;
         }
         let Some((sensor, phase)) = self.next_firing() else {
             let (phase, changed) = self.end_period(now);
-            return Some(Step::PeriodEnded { phase, changed });
+            return Some(SchedulerStep::PeriodEnded { phase, changed });
         };
         self.fire(now);
-        Some(Step::Fire { sensor, phase, late: now.since(due) })
+        Some(SchedulerStep::Fire { sensor, phase, late: now.since(due) })
     }
     /// When the next step is due.
     fn deadline(&self) -> Instant;
@@ -75,12 +75,12 @@ pub trait Scheduler {
 /// no two firings ever come closer than in the schedule, however late the caller is.
 ///
 /// ```
-/// use eeruf_core::{Instant, Micros, Phase, ScheduledFiring, Scheduler, Step, tables::TABLE_I_D};
+/// use eeruf_core::{Instant, Micros, Phase, ScheduledFiring, Scheduler, SchedulerStep, tables::TABLE_I_D};
 /// let mut scheduler = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
 /// let first = scheduler.deadline();
 /// assert_eq!(first, Instant::from_micros(24_000));
 /// assert_eq!(scheduler.poll(Instant::from_micros(23_999)), None);
-/// assert_eq!(scheduler.poll(first), Some(Step::Fire { sensor: 0, phase: Phase::A, late: Micros::ZERO }));
+/// assert_eq!(scheduler.poll(first), Some(SchedulerStep::Fire { sensor: 0, phase: Phase::A, late: Micros::ZERO }));
 /// ```
 #[derive(Clone, Debug)]
 // In this order for the short offsets of a Cortex-M0: see `Ring`.

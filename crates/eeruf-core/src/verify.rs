@@ -1,6 +1,6 @@
 //! The verifier: holds a [`Schedule`] against its [`Requirements`] and names every violation.
 //!
-//! It is the judge of everything the search returns and shares nothing with it. Nothing is stored: a [`Report`] borrows
+//! It is the judge of everything the search returns and shares nothing with it. Nothing is stored: a [`Verification`] borrows
 //! the schedule, and its violations are worked out while they are read.
 
 use core::fmt;
@@ -10,20 +10,20 @@ use crate::schedule::{Phase, Schedule};
 use crate::time::Micros;
 
 impl<const K: usize> Schedule<K> {
-    /// Checks the schedule against `requirements`: see [`Report`].
-    pub const fn verify<'r>(&'r self, requirements: &'r Requirements<'r>) -> Report<'r, K> {
-        Report { schedule: self, requirements }
+    /// Checks the schedule against `requirements`: see [`Verification`].
+    pub const fn verify<'r>(&'r self, requirements: &'r Requirements<'r>) -> Verification<'r, K> {
+        Verification { schedule: self, requirements }
     }
 }
 
 /// What [`Schedule::verify`] found.
 #[derive(Clone, Copy, Debug)]
-pub struct Report<'r, const K: usize> {
+pub struct Verification<'r, const K: usize> {
     schedule: &'r Schedule<K>,
     requirements: &'r Requirements<'r>,
 }
 
-impl<'r, const K: usize> Report<'r, K> {
+impl<'r, const K: usize> Verification<'r, K> {
     /// Whether every requirement holds.
     pub const fn ok(&self) -> bool {
         self.violations().advance().is_none()
@@ -167,10 +167,10 @@ impl fmt::Display for Violation {
     }
 }
 
-/// The violations of a [`Report`], one after the other.
+/// The violations of a [`Verification`], one after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Violations<'r, const K: usize> {
-    report: Report<'r, K>,
+    report: Verification<'r, K>,
     check: u8,
     x: usize,
     y: usize,

@@ -1,10 +1,11 @@
 //! The shortest periods of the shared corpus come out of the search, proven, with schedules that a slow and obvious judge accepts; on tiny
 //! problems the search agrees with plain nested loops.
 
+use std::ops::ControlFlow;
 use std::sync::OnceLock;
 
 use eeruf_core::search::design::{
-    Answer, Bound, Effect, Firing, Flow, Problem, ProblemError, Progress, Reason, decide, largest_interval,
+    Answer, Bound, Effect, Firing, Problem, ProblemError, Progress, Reason, decide, largest_interval,
     largest_separation, memory_words, prefer, relaxations, shortest,
 };
 use proptest::prelude::*;
@@ -292,7 +293,7 @@ fn threads_stop_when_the_control_says_so() {
     let mut control = |progress: &Progress| {
         assert!(progress.bound <= progress.best || progress.best == 0);
         polls += 1;
-        if polls < 5 { Flow::Continue } else { Flow::Stop }
+        if polls < 5 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     let found = shortest_on_threads(&problem, u64::MAX, 2, &mut control).unwrap();
     assert_eq!(polls, 5);
@@ -321,7 +322,7 @@ fn the_control_sees_progress_and_can_stop() {
     let mut polls = Vec::new();
     let mut control = |progress: &Progress| {
         polls.push(*progress);
-        if polls.len() < 3 { Flow::Continue } else { Flow::Stop }
+        if polls.len() < 3 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     let found = shortest(&problem, u64::MAX, &mut memory, &mut control).unwrap();
     assert_eq!(polls.len(), 3);

@@ -6,7 +6,7 @@
 //!
 //! - edges within 100 us of the trigger, which are the trigger itself seen through the cable;
 //! - pulses too short for an echo, and further pulses of a line that chatters;
-//! - a line stuck high: the sensor is not triggered, and the firing is told as [`Kind::Stuck`](eeruf_core::Kind::Stuck);
+//! - a line stuck high: the sensor is not triggered, and the firing is told as [`ReadingKind::Stuck`](eeruf_core::ReadingKind::Stuck);
 //! - a sensor that is not there, or edges that get lost on the way: [`HcSr04Ring::health`] says so;
 //! - a schedule that would trigger a sensor again too soon: it is refused when the ring is set up.
 //!
@@ -19,18 +19,18 @@
 //! # use eeruf_hc_sr04::Pins as P;
 //! # fn run<T: OutputPin, I: InputPin>(pins: [P<T, I>; 12], delay: impl DelayNs, now: fn() -> eeruf_core::Instant)
 //! # -> Result<(), eeruf_hc_sr04::SetupError> {
-//! use eeruf_core::{Config, Event, Kind, Micros, Ring, tables::TABLE_I_D};
+//! use eeruf_core::{RingConfig, RingEvent, ReadingKind, Micros, Ring, tables::TABLE_I_D};
 //! use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
 //!
 //! static EDGES: EdgeQueue<32> = EdgeQueue::new(); // filled by the edge interrupt
 //!
-//! let config = Config::new(Micros::new(999), Micros::from_millis(40));
+//! let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
 //! let ring = Ring::new(&TABLE_I_D, config, now())?;
 //! let mut ring = HcSr04Ring::new(ring, pins, delay, Settings::default())?;
 //! loop {
 //!     while let Some(event) = ring.poll_with_edges(&EDGES, now()) {
-//!         if let Event::Reading(reading) = event {
-//!             if reading.kind == Kind::Accepted { /* believe reading.t_echo */ }
+//!         if let RingEvent::Reading(reading) = event {
+//!             if reading.kind == ReadingKind::Accepted { /* believe reading.t_echo */ }
 //!         }
 //!     }
 //!     sleep_until(ring.next_deadline());
@@ -43,7 +43,7 @@ mod edges;
 
 use core::fmt;
 
-use eeruf_core::{Event, Instant, Micros, Ring, RingError, Scheduler};
+use eeruf_core::{Instant, Micros, Ring, RingError, RingEvent, Scheduler};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
 
@@ -176,12 +176,12 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
         Ok(Self { ring, pins, delay, lines: [line; K], settings })
     }
 
-    /// As [`Ring::poll`]. [`Event::Fire`] is told for information: the sensor has been triggered.
+    /// As [`Ring::poll`]. [`RingEvent::Fire`] is told for information: the sensor has been triggered.
     ///
     /// A trigger takes [`Settings::trigger`], 10 us, during which the driver waits: setting an alarm would take as long.
-    pub fn poll(&mut self, now: Instant) -> Option<Event> {
+    pub fn poll(&mut self, now: Instant) -> Option<RingEvent> {
         let event = self.ring.poll(now)?;
-        if let Event::Fire(sensor) = event {
+        if let RingEvent::Fire(sensor) = event {
             self.trigger(sensor, now);
         }
         Some(event)
@@ -189,7 +189,7 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
 
     /// Hands in all edges that wait, then [polls](Self::poll). Read the clock for `now` just before: whatever held the main
     /// loop up since it was here, no window closes on an edge that came in time.
-    pub fn poll_with_edges<const N: usize>(&mut self, edges: &EdgeQueue<N>, now: Instant) -> Option<Event> {
+    pub fn poll_with_edges<const N: usize>(&mut self, edges: &EdgeQueue<N>, now: Instant) -> Option<RingEvent> {
         while let Some(edge) = edges.pop() {
             self.edge(edge);
         }

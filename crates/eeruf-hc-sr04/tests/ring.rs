@@ -1,6 +1,6 @@
 //! Real wiring against the driver: every fault costs only the sensor that has it, and is named.
 
-use eeruf_core::{Config, Event, Instant, Kind, Micros, Ring, Schedule, ScheduledFiring, Tally};
+use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledFiring, Tally};
 use eeruf_hc_sr04::{Edge, EdgeQueue, HcSr04Ring, Health, Pins, Settings, SetupError};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::digital::{Mock, State, Transaction};
@@ -13,7 +13,7 @@ fn schedule(period_ms: u32) -> Schedule<K> {
     Schedule::from_firing(Micros::from_millis(period_ms), [ms([24, 44, 64]), ms([20, 38, 56])]).unwrap()
 }
 
-const CONFIG: Config = Config::new(Micros::new(500), Micros::from_millis(40));
+const CONFIG: RingConfig = RingConfig::new(Micros::new(500), Micros::from_millis(40));
 
 /// What a sensor does after a trigger: edges as (time in us, high).
 type Line<'a> = &'a dyn Fn(u32) -> Vec<(u32, bool)>;
@@ -55,13 +55,13 @@ fn run(periods: u32, high: bool, lines: [Line<'_>; K]) -> ([Tally<u32>; K], [Hea
         }
         while let Some(event) = driver.poll(now) {
             match event {
-                Event::Fire(sensor) => {
+                RingEvent::Fire(sensor) => {
                     let line = lines[usize::from(sensor)];
                     let us = |us| now + Micros::new(us);
                     edges.extend(line(ended).into_iter().map(|(at, high)| Edge { sensor, high, at: us(at) }));
                 }
-                Event::Reading(reading) => tallies[usize::from(reading.sensor)].count(reading.kind),
-                Event::PeriodEnded(_) => ended += 1,
+                RingEvent::Reading(reading) => tallies[usize::from(reading.sensor)].count(reading.kind),
+                RingEvent::PeriodEnded(_) => ended += 1,
             }
         }
     }
@@ -77,7 +77,10 @@ fn run(periods: u32, high: bool, lines: [Line<'_>; K]) -> ([Tally<u32>; K], [Hea
 /// The others read as if nothing were wrong.
 fn others_are_well(tallies: &[Tally<u32>; K], health: &[Health; K]) {
     for x in [0, 2] {
-        assert_eq!((tallies[x].of(Kind::First), tallies[x].of(Kind::Accepted), health[x]), (1, 9, Health::Well));
+        assert_eq!(
+            (tallies[x].of(ReadingKind::First), tallies[x].of(ReadingKind::Accepted), health[x]),
+            (1, 9, Health::Well)
+        );
     }
 }
 
@@ -85,7 +88,7 @@ fn others_are_well(tallies: &[Tally<u32>; K], health: &[Health; K]) {
 fn the_width_of_the_pulse_is_the_echo_time_and_two_that_agree_are_accepted() {
     let (tallies, health) = run(10, false, [&echo(5_000), &echo(12_000), &echo(20_000)]);
     others_are_well(&tallies, &health);
-    assert_eq!((tallies[1].of(Kind::Accepted), health[1]), (9, Health::Well));
+    assert_eq!((tallies[1].of(ReadingKind::Accepted), health[1]), (9, Health::Well));
 }
 
 #[test]
@@ -93,15 +96,18 @@ fn edges_within_100_us_of_the_trigger_are_not_echoes() {
     let noisy = |_| vec![(20, true), (60, false), (99, true), (450, true), (12_450, false)];
     let (tallies, health) = run(10, false, [&echo(5_000), &noisy, &echo(20_000)]);
     others_are_well(&tallies, &health);
-    assert_eq!((tallies[1].of(Kind::Accepted), health[1]), (9, Health::Well));
+    assert_eq!((tallies[1].of(ReadingKind::Accepted), health[1]), (9, Health::Well));
 }
 
 #[test]
 fn a_line_stuck_high_is_not_triggered_and_told_as_stuck() {
     let (tallies, health) = run(10, true, [&echo(5_000), &|_| vec![], &echo(20_000)]);
     others_are_well(&tallies, &health);
-    assert_eq!(tallies[1].of(Kind::Stuck) + tallies[1].of(Kind::NoEcho) + tallies[1].of(Kind::Clear), 10);
-    assert_eq!((tallies[1].of(Kind::Stuck), health[1]), (10, Health::StuckHigh));
+    assert_eq!(
+        tallies[1].of(ReadingKind::Stuck) + tallies[1].of(ReadingKind::NoEcho) + tallies[1].of(ReadingKind::Clear),
+        10
+    );
+    assert_eq!((tallies[1].of(ReadingKind::Stuck), health[1]), (10, Health::StuckHigh));
 }
 
 #[test]
@@ -110,7 +116,7 @@ fn a_missing_sensor_is_named_after_three_firings_without_a_pulse() {
     assert_eq!(run(3, false, [&echo(5_000), none, &echo(20_000)]).1[1], Health::Well);
     let (tallies, health) = run(10, false, [&echo(5_000), none, &echo(20_000)]);
     others_are_well(&tallies, &health);
-    assert_eq!((tallies[1].of(Kind::Clear), health[1]), (9, Health::Missing));
+    assert_eq!((tallies[1].of(ReadingKind::Clear), health[1]), (9, Health::Missing));
 }
 
 #[test]
@@ -118,7 +124,7 @@ fn a_chattering_line_counts_with_its_first_true_pulse_and_is_named() {
     let chatters = |_| vec![(450, true), (480, false), (500, true), (12_500, false), (13_000, true), (14_000, false)];
     let (tallies, health) = run(10, false, [&echo(5_000), &chatters, &echo(20_000)]);
     others_are_well(&tallies, &health);
-    assert_eq!((tallies[1].of(Kind::Accepted), health[1]), (9, Health::Chatters));
+    assert_eq!((tallies[1].of(ReadingKind::Accepted), health[1]), (9, Health::Chatters));
 }
 
 #[test]
@@ -126,11 +132,11 @@ fn a_line_whose_edges_get_lost_is_named_and_no_width_is_made_of_what_is_left() {
     let rises_lost = |_| vec![(12_450, false)];
     let (tallies, health) = run(10, false, [&echo(5_000), &rises_lost, &echo(20_000)]);
     others_are_well(&tallies, &health);
-    assert_eq!((tallies[1].of(Kind::Clear), health[1]), (9, Health::LosesEdges));
+    assert_eq!((tallies[1].of(ReadingKind::Clear), health[1]), (9, Health::LosesEdges));
     let falls_lost = |_| vec![(450, true)];
     let (tallies, health) = run(10, false, [&echo(5_000), &falls_lost, &echo(20_000)]);
     others_are_well(&tallies, &health);
-    assert_eq!((tallies[1].of(Kind::Clear), health[1]), (9, Health::LosesEdges));
+    assert_eq!((tallies[1].of(ReadingKind::Clear), health[1]), (9, Health::LosesEdges));
 }
 
 #[test]
@@ -138,14 +144,14 @@ fn the_trigger_seen_across_the_end_of_the_deaf_time_is_no_lost_edge() {
     let long_glitch = |_| vec![(20, true), (110, false), (450, true), (12_450, false)];
     let (tallies, health) = run(10, false, [&echo(5_000), &long_glitch, &echo(20_000)]);
     others_are_well(&tallies, &health);
-    assert_eq!((tallies[1].of(Kind::Accepted), health[1]), (9, Health::Well));
+    assert_eq!((tallies[1].of(ReadingKind::Accepted), health[1]), (9, Health::Well));
 }
 
 #[test]
 fn the_sensors_own_time_out_is_no_echo_and_no_fault() {
     let (tallies, health) = run(10, false, [&echo(5_000), &echo(38_000), &echo(20_000)]);
     others_are_well(&tallies, &health);
-    assert_eq!((tallies[1].of(Kind::Clear), health[1]), (9, Health::Well));
+    assert_eq!((tallies[1].of(ReadingKind::Clear), health[1]), (9, Health::Well));
 }
 
 #[test]
@@ -163,16 +169,16 @@ fn an_echo_that_came_in_time_is_heard_however_long_an_event_took() {
     let mut driver: Driver<'_> = HcSr04Ring::new(ring, pins, NoopDelay, Settings::default()).unwrap();
     let edges = EdgeQueue::<8>::new();
     let ms = |ms: u32| Instant::from_micros(1000 * ms);
-    assert_eq!(driver.poll_with_edges(&edges, ms(24)), Some(Event::Fire(0)));
+    assert_eq!(driver.poll_with_edges(&edges, ms(24)), Some(RingEvent::Fire(0)));
     // Here the caller is held up for 50 ms, and its edges wait.
     edges.push(Edge { sensor: 0, high: true, at: ms(25) });
     edges.push(Edge { sensor: 0, high: false, at: ms(31) });
     let events: Vec<_> = std::iter::from_fn(|| driver.poll_with_edges(&edges, ms(74))).take(2).collect();
-    assert_eq!(events[0], Event::Fire(1));
-    let Event::Reading(reading) = events[1] else { panic!("{events:?}") };
+    assert_eq!(events[0], RingEvent::Fire(1));
+    let RingEvent::Reading(reading) = events[1] else { panic!("{events:?}") };
     assert_eq!((reading.sensor, reading.t_echo), (0, Some(Micros::from_millis(6))));
     let third = std::iter::from_fn(|| driver.poll_with_edges(&edges, ms(94))).next();
-    assert_eq!(third, Some(Event::Fire(2)));
+    assert_eq!(third, Some(RingEvent::Fire(2)));
     drop(driver);
     for mut mock in mocks {
         mock.done();

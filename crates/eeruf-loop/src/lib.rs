@@ -10,7 +10,7 @@
 //! word.
 #![no_std]
 
-use eeruf_core::{Config, Event, Instant, Micros, Reading, Schedule};
+use eeruf_core::{Instant, Micros, Reading, RingConfig, RingEvent, Schedule};
 use eeruf_hc_sr04::{Edge, Health};
 
 /// How many sensors there are.
@@ -29,7 +29,7 @@ pub const SCHEDULE: Schedule<SENSORS> = {
 };
 
 /// How the ring listens and compares: as `scenes/alcove-hc-sr04.toml` says, with a window for the longest pulse and its delay.
-pub const CONFIG: Config = Config::new(Micros::new(500), Micros::from_millis(40));
+pub const CONFIG: RingConfig = RingConfig::new(Micros::new(500), Micros::from_millis(40));
 
 /// What the host says first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,19 +163,19 @@ impl Record {
     }
 
     /// What a poll told.
-    pub fn told(event: Option<&Event>) -> Self {
+    pub fn told(event: Option<&RingEvent>) -> Self {
         match event {
             None => Self::new(Topic::Told, 0, 0, [0; 5]),
-            Some(&Event::Fire(sensor)) => Self::new(Topic::Told, sensor, 1, [0; 5]),
-            Some(&Event::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age })) => {
+            Some(&RingEvent::Fire(sensor)) => Self::new(Topic::Told, sensor, 1, [0; 5]),
+            Some(&RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age })) => {
                 let us = |time: Option<Micros>| time.map_or(NONE, Micros::as_micros);
                 let kind = kind as u32 | u32::from(phase.0) << 8;
                 let age = age.map_or(NONE, u32::from);
                 Self::new(Topic::Told, sensor, 2, [kind, period, us(t_echo), us(previous), age])
             }
-            Some(Event::PeriodEnded(stats)) => {
+            Some(RingEvent::PeriodEnded(stats)) => {
                 // Seven bits for each count, of about eight readings a period.
-                let counts = eeruf_core::Kind::ALL.iter();
+                let counts = eeruf_core::ReadingKind::ALL.iter();
                 let counts = counts.fold(0_u64, |sum, &kind| sum << 7 | u64::from(stats.tally.of(kind)));
                 let [low, high] = [counts as u32, (counts >> 32) as u32];
                 let late = stats.max_late.as_micros();
@@ -214,7 +214,7 @@ impl Record {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eeruf_core::{Kind, PeriodStats, Phase, Tally};
+    use eeruf_core::{PeriodStats, Phase, ReadingKind, Tally};
 
     #[test]
     fn what_the_host_says_arrives_as_it_was_said() {
@@ -233,18 +233,18 @@ mod tests {
             sensor: 3,
             phase: Phase::A,
             period: 5,
-            kind: Kind::Accepted,
+            kind: ReadingKind::Accepted,
             t_echo: Some(Micros::new(4000)),
             previous: Some(Micros::new(4001)),
             age: Some(0),
         };
-        let record = |reading| Record::told(Some(&Event::Reading(reading)));
+        let record = |reading| Record::told(Some(&RingEvent::Reading(reading)));
         assert_eq!(record(reading), record(reading));
         for other in [
             Reading { sensor: 2, ..reading },
             Reading { phase: Phase::B, ..reading },
             Reading { period: 6, ..reading },
-            Reading { kind: Kind::Rejected, ..reading },
+            Reading { kind: ReadingKind::Rejected, ..reading },
             Reading { t_echo: Some(Micros::new(4002)), ..reading },
             Reading { t_echo: None, ..reading },
             Reading { previous: None, ..reading },
@@ -257,8 +257,8 @@ mod tests {
     #[test]
     fn period_ends_that_differ_in_any_count_are_different_records() {
         let stats = PeriodStats { period: 1, phase: Phase::A, tally: Tally::default(), max_late: Micros::ZERO };
-        let record = |stats| Record::told(Some(&Event::PeriodEnded(stats)));
-        for kind in Kind::ALL {
+        let record = |stats| Record::told(Some(&RingEvent::PeriodEnded(stats)));
+        for kind in ReadingKind::ALL {
             let mut other = stats;
             other.tally.count(kind);
             assert_ne!(record(other), record(stats), "{kind}");

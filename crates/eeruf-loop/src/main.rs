@@ -12,7 +12,7 @@ mod unharmed;
 use std::path::Path;
 use std::process::ExitCode;
 
-use eeruf_core::Kind;
+use eeruf_core::ReadingKind;
 use eeruf_sim::{Method, Options, Readings, World, simulate, sweep};
 
 use crate::run::{Fault, PERIODS, Run, run};
@@ -66,13 +66,13 @@ fn tables(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
 fn rows(world: &World, simulated: &Readings, board: &str, emulator: &[String]) -> Result<Rows, String> {
     let in_run = |fault: Fault| move |error: String| format!("{fault}: {error}");
     let whole = run(world, Fault::None, emulator).map_err(in_run(Fault::None))?;
-    let count = |kind: Kind| whole.read.iter().flatten().filter(|reading| reading.kind == kind).count();
+    let count = |kind: ReadingKind| whole.read.iter().flatten().filter(|reading| reading.kind == kind).count();
     let (same, within) = whole.as_simulated(simulated)?;
     let row = format!(
         "| {board} | {} | all | {} | {} | {same} | {within} us | {} | {} |\n",
         whole.count(),
-        count(Kind::Accepted),
-        count(Kind::Rejected),
+        count(ReadingKind::Accepted),
+        count(ReadingKind::Rejected),
         whole.latest_edge,
         whole.max_late,
     );

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use eeruf_core::{Event, Instant, Kind, Micros, Reading};
+use eeruf_core::{Instant, Micros, Reading, ReadingKind, RingEvent};
 use eeruf_hc_sr04::{Edge, Health};
 use eeruf_loop::{Orders, SENSORS, Topic};
 use eeruf_sim::{Readings, World};
@@ -113,8 +113,8 @@ pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Ru
                     let event = twin.poll(record.instant())?;
                     unharmed.follow(record.instant(), event.as_ref())?;
                     match event {
-                        Some(Event::Reading(reading)) => run.take(reading),
-                        Some(Event::PeriodEnded(stats)) => {
+                        Some(RingEvent::Reading(reading)) => run.take(reading),
+                        Some(RingEvent::PeriodEnded(stats)) => {
                             run.max_late = run.max_late.max(stats.max_late);
                             periods += 1;
                         }
@@ -237,7 +237,7 @@ impl Run {
             for (mine, without) in mine.iter().zip(without) {
                 if mine.kind != without.kind {
                     change.kinds += 1;
-                    let compared = [Kind::Accepted, Kind::Rejected].contains(&mine.kind);
+                    let compared = [ReadingKind::Accepted, ReadingKind::Rejected].contains(&mine.kind);
                     if fault != Fault::Stall || compared || !(STALL_AFTER..=STALL_AFTER + 4).contains(&mine.period) {
                         return Err(format!("{mine:?} would be {without:?} without the fault"));
                     }

@@ -6,7 +6,7 @@ use core::cell::RefCell;
 use core::convert::Infallible;
 use std::rc::Rc;
 
-use eeruf_core::{Event, Instant, Reading, Ring, ScheduledFiring};
+use eeruf_core::{Instant, Reading, Ring, RingEvent, ScheduledFiring};
 use eeruf_hc_sr04::{Edge, HcSr04Ring, Health, Pins, Settings};
 use eeruf_loop::{CONFIG, Record, SCHEDULE, SENSORS, Topic};
 use embedded_hal::delay::DelayNs;
@@ -130,7 +130,7 @@ impl<'w> Twin<'w> {
     }
 
     /// Polls, and compares what that tells with what it told the board.
-    pub(crate) fn poll(&mut self, now: Instant) -> Result<Option<Event>, String> {
+    pub(crate) fn poll(&mut self, now: Instant) -> Result<Option<RingEvent>, String> {
         let event = self.ring.poll(now);
         let mut session = self.session.borrow_mut();
         if let Some(wrong) = session.wrong.take() {

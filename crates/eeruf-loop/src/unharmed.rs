@@ -3,7 +3,7 @@
 
 use core::convert::Infallible;
 
-use eeruf_core::{Event, Instant, Micros, Scheduler};
+use eeruf_core::{Instant, Micros, RingEvent, Scheduler};
 use eeruf_hc_sr04::Edge;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
@@ -60,12 +60,12 @@ impl Unharmed {
     }
 
     /// Follows a poll of the board's ring at `now` that told `event`: fires when that fired, and not otherwise.
-    pub(crate) fn follow(&mut self, now: Instant, event: Option<&Event>) -> Result<(), String> {
+    pub(crate) fn follow(&mut self, now: Instant, event: Option<&RingEvent>) -> Result<(), String> {
         while let Some(edge) = self.ahead.pop_if(|edge| now.has_reached(edge.at)) {
             self.ring.edge(edge);
         }
         let fires = match event {
-            Some(&Event::Fire(sensor)) => Some(sensor),
+            Some(&RingEvent::Fire(sensor)) => Some(sensor),
             _ => None,
         };
         loop {
@@ -76,22 +76,22 @@ impl Unharmed {
                 return Ok(());
             }
             match self.ring.poll(now) {
-                Some(Event::Fire(sensor)) if fires == Some(sensor) => {
+                Some(RingEvent::Fire(sensor)) if fires == Some(sensor) => {
                     if sensor == self.well {
                         let edge = |high, after| Edge { sensor, high, at: now + after };
                         self.ahead = vec![edge(false, FALL), edge(true, RISE)];
                     }
                     return Ok(());
                 }
-                Some(Event::Fire(sensor)) => {
+                Some(RingEvent::Fire(sensor)) => {
                     return Err(format!("without the fault sensor {} would fire at another time", sensor + 1));
                 }
-                Some(Event::Reading(reading)) => {
+                Some(RingEvent::Reading(reading)) => {
                     if let Some(read) = self.read.get_mut(usize::from(reading.sensor)) {
                         read.push(reading);
                     }
                 }
-                Some(Event::PeriodEnded(_)) => {}
+                Some(RingEvent::PeriodEnded(_)) => {}
                 None if fires.is_none() => return Ok(()),
                 None => return Err("without the fault nothing would fire where the board's ring fires".to_owned()),
             }

@@ -50,7 +50,7 @@ mod _eeruf {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        let kinds = eeruf_core::Kind::ALL.map(eeruf_core::Kind::as_str);
+        let kinds = eeruf_core::ReadingKind::ALL.map(eeruf_core::ReadingKind::as_str);
         module.add("KINDS", PyTuple::new(module.py(), kinds)?)?;
         let methods = eeruf_sim::Method::ALL.map(eeruf_sim::Method::as_str);
         module.add("METHODS", PyTuple::new(module.py(), methods)?)?;

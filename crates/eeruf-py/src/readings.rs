@@ -1,6 +1,6 @@
 //! `sim.simulate` and the `Readings` it returns.
 
-use eeruf_core::Kind;
+use eeruf_core::ReadingKind;
 use eeruf_sim::{Cause, HeardPath, Method, NO_PATH, Options, SensorId, best::best_for, simulate_while};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::{
@@ -393,7 +393,7 @@ pub(crate) fn readings_from_columns(
         period: column(columns, "period")?,
         phase: column(columns, "phase")?,
         fired_s: column(columns, "fired_s")?,
-        kind: code("kind", Kind::ALL.len())?.into_iter().map(|kind| Kind::ALL[kind]).collect(),
+        kind: code("kind", ReadingKind::ALL.len())?.into_iter().map(|kind| ReadingKind::ALL[kind]).collect(),
         t_echo_us: column(columns, "t_echo_us")?,
         earliest_us: column(columns, "earliest_us")?,
         reference_us: column(columns, "reference_us")?,

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use eeruf_core::{Config, Event, Instant, Kind, MAX_SENSORS, Micros, ScheduledRing, Verdict};
+use eeruf_core::{Instant, MAX_SENSORS, Micros, ReadingKind, RingConfig, RingEvent, ScheduledRing, Verdict};
 use eeruf_sim::AnySchedule;
 use pyo3::{
     IntoPyObjectExt,
@@ -105,7 +105,7 @@ impl Reading {
     ) -> PyResult<Self> {
         Ok(Self {
             sensor: whole("sensor", sensor, SENSORS)?,
-            kind: choice("kind", Some(kind), &Kind::ALL.map(|kind| (kind.as_str(), kind.as_str())))?,
+            kind: choice("kind", Some(kind), &ReadingKind::ALL.map(|kind| (kind.as_str(), kind.as_str())))?,
             t_echo_us: whole_or_none("t_echo_us", t_echo_us, 0..=u32::MAX)?,
             previous_us: whole_or_none("previous_us", previous_us, 0..=u32::MAX)?,
             age: whole_or_none("age", age, 0..=u16::MAX)?,
@@ -249,10 +249,10 @@ impl Ring {
         blanking_us: Option<&Bound<'_, PyAny>>,
         consecutive: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let config = Config {
+        let config = RingConfig {
             blanking: blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?,
             consecutive: whole_or("consecutive", consecutive, 2, 0..=u8::MAX)?,
-            ..Config::new(micros("t_delta_us", t_delta_us)?, micros("window_us", window_us)?)
+            ..RingConfig::new(micros("t_delta_us", t_delta_us)?, micros("window_us", window_us)?)
         };
         let now = now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))?;
         let schedule = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
@@ -287,8 +287,8 @@ impl Ring {
         let event = self.ring.with_dependent_mut(|_, ring| ring.poll_expecting(now, change));
         let event = match event {
             None => return Ok(None),
-            Some(Event::Fire(sensor)) => Fire { sensor }.into_bound_py_any(py),
-            Some(Event::Reading(reading)) => Reading {
+            Some(RingEvent::Fire(sensor)) => Fire { sensor }.into_bound_py_any(py),
+            Some(RingEvent::Reading(reading)) => Reading {
                 sensor: reading.sensor,
                 kind: reading.kind.as_str(),
                 t_echo_us: reading.t_echo.map(Micros::as_micros),
@@ -298,9 +298,9 @@ impl Ring {
                 period: Some(reading.period),
             }
             .into_bound_py_any(py),
-            Some(Event::PeriodEnded(stats)) => {
+            Some(RingEvent::PeriodEnded(stats)) => {
                 let tally = PyDict::new(py);
-                for kind in Kind::ALL {
+                for kind in ReadingKind::ALL {
                     tally.set_item(kind.as_str(), stats.tally.of(kind))?;
                 }
                 let (period, phase, max_late_us) = (stats.period, stats.phase.0, stats.max_late.as_micros());

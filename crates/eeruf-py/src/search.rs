@@ -1,12 +1,13 @@
 //! `design`, `WaitSearch` and what they find.
 
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 use eeruf_core::{
     Criterion, MAX_SENSORS, Micros, Requirements,
     search::{
-        self, RingNeeds, SearchError, WaitNeeds, design as period,
-        design::{Flow, Progress},
+        self, PeriodProblem, SearchError, WaitProblem, design as period,
+        design::Progress,
         wait::{self, All, Control, Finish, Objective},
     },
 };
@@ -180,8 +181,8 @@ pub(crate) fn design(
     let work = move |go_on: &mut dyn FnMut(&Progress) -> bool| {
         let (criterion, layout) = (Criterion::Exact, layout.layout());
         let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo };
-        let needs = RingNeeds { sensors, requirements, tick };
-        let mut control = |at: &Progress| if go_on(at) { Flow::Continue } else { Flow::Stop };
+        let needs = PeriodProblem { sensors, requirements, tick };
+        let mut control = |at: &Progress| if go_on(at) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
         shortest(&needs, budget, &mut control).map_err(Raise::raise)
     };
     let text = |at: &Progress| format!("{} nodes, period {} to {} ticks", at.nodes, at.bound, at.best);
@@ -196,7 +197,7 @@ pub(crate) fn design(
 }
 
 fn shortest(
-    needs: &RingNeeds<'_>,
+    needs: &PeriodProblem<'_>,
     budget: u64,
     control: &mut impl period::Control,
 ) -> Result<(search::Found<MAX_SENSORS>, String), SearchError> {
@@ -284,7 +285,7 @@ impl WaitSearch {
         let neighbours = arguments::neighbours(neighbours)?;
         let layout = OwnedLayout::new(layout, neighbours)?;
         let (period, wait_max) = (micros("period_us", period_us)?, micros("wait_max_us", wait_max_us)?);
-        let needs = WaitNeeds {
+        let needs = WaitProblem {
             sensors,
             period,
             wait_max,

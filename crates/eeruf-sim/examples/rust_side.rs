@@ -9,7 +9,7 @@ use std::{hint::black_box, time::Instant};
 
 use eeruf_core::{
     EchoFilter, Layout, MAX_SENSORS, Micros, Requirements,
-    search::{RingNeeds, design},
+    search::{PeriodProblem, design},
 };
 use eeruf_sim::{Air, Bounce, Scene, Wall};
 use serde_json::{Map, Value, json};
@@ -80,7 +80,7 @@ fn design_of(sensors: usize) -> Option<Micros> {
         window: Micros::from_millis(36),
         ..Requirements::new(Micros::new(999))
     };
-    let needs = RingNeeds { sensors: black_box(sensors), requirements, tick: Micros::from_millis(1) };
+    let needs = PeriodProblem { sensors: black_box(sensors), requirements, tick: Micros::from_millis(1) };
     let mut memory = vec![0; design::memory_words(sensors)];
     let designed = needs.shortest::<MAX_SENSORS>(50_000_000, &mut memory, &mut ()).expect("a small ring");
     black_box(needs.prefer(&designed, 100_000, &mut memory, &mut ()).expect("a small ring"));

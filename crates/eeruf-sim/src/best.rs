@@ -3,10 +3,11 @@
 use eeruf_core::{
     Criterion, Layout, MAX_SENSORS, Micros, Requirements,
     search::{
-        RingNeeds, SearchError,
-        design::{self, Flow, Progress},
+        PeriodProblem, SearchError,
+        design::{self, Progress},
     },
 };
+use std::ops::ControlFlow;
 
 use crate::{
     method::{AnySchedule, table_i_d_for},
@@ -60,9 +61,10 @@ pub fn best_for(
     mut keep_going: impl FnMut(&Progress) -> bool,
 ) -> Result<Best, SearchError> {
     let sensors = robot.sensors.len();
-    let needs = RingNeeds { sensors, requirements: needs_of(robot), tick: TICK };
+    let needs = PeriodProblem { sensors, requirements: needs_of(robot), tick: TICK };
     let mut memory = vec![0; design::memory_words(sensors)];
-    let mut control = |progress: &Progress| if keep_going(progress) { Flow::Continue } else { Flow::Stop };
+    let mut control =
+        |progress: &Progress| if keep_going(progress) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
     let designed = needs.shortest::<MAX_SENSORS>(budget, &mut memory, &mut control)?;
     let proven = designed.found.proven;
     let found = designed.found.schedule.filter(|_| !proven);

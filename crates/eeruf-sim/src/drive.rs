@@ -2,8 +2,8 @@
 //! the target, driven by simulated time.
 
 use eeruf_core::{
-    Adaptation, Config, Event, ImmediateRefiring, Instant, Ladder, MAX_SENSORS, Micros, Requirements, Ring, RingError,
-    ScheduledFiring, ScheduledRing, Scheduler,
+    Adaptation, ImmediateRefiring, Instant, Ladder, MAX_SENSORS, Micros, Requirements, Ring, RingConfig, RingError,
+    RingEvent, ScheduledFiring, ScheduledRing, Scheduler,
 };
 
 use crate::{
@@ -17,13 +17,13 @@ use crate::{
 
 /// A ring of any kind.
 pub(crate) trait Drive {
-    fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<Event>;
+    fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent>;
     fn next_deadline(&self) -> Instant;
     fn echo(&mut self, sensor: u8, at: Instant);
 }
 
 impl<S: Scheduler, const K: usize, const E: usize> Drive for Ring<S, K, E> {
-    fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<Event> {
+    fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         self.poll_expecting(now, expected_change_us)
     }
 
@@ -43,9 +43,9 @@ struct AdaptiveRing<'s> {
 }
 
 impl Drive for AdaptiveRing<'_> {
-    fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<Event> {
+    fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         let event = self.ring.poll_expecting(now, expected_change_us)?;
-        if let Event::PeriodEnded(stats) = event
+        if let RingEvent::PeriodEnded(stats) = event
             && let Some(schedule) = self.adaptation.observe(&stats)
         {
             // Every rung was checked against the window, so this cannot fail.
@@ -103,7 +103,7 @@ pub(crate) fn drive<'s>(
     now: Instant,
 ) -> Result<Box<dyn Drive + 's>, SimulationError> {
     let &Robot { t_delta, window, blanking, consecutive, patience, .. } = robot;
-    let config = Config { t_delta, window, blanking, consecutive, patience };
+    let config = RingConfig { t_delta, window, blanking, consecutive, patience };
     let ring_error = |error| SimulationError::Ring { robot: index, method, error };
     // At least one rung, by construction.
     let schedule = &rungs[0];
@@ -133,7 +133,7 @@ pub(crate) fn drive<'s>(
 fn boxed<'s, S: Scheduler + 's, const E: usize>(
     sensors: usize,
     scheduler: S,
-    config: Config,
+    config: RingConfig,
     now: Instant,
 ) -> Result<Box<dyn Drive + 's>, RingError> {
     Ok(match sensors {

@@ -4,7 +4,7 @@
 //! two moments for each robot, the earlier one first and an echo before the ring on a tie. What is on its way is kept with
 //! the sensor that it will reach ([`Detector`]).
 
-use eeruf_core::{Event, Instant};
+use eeruf_core::{Instant, RingEvent};
 
 use crate::{
     clock::Ticker,
@@ -206,8 +206,8 @@ impl<'a, G: Guide> Course<'a, G> {
             };
             match crew.ring.poll(instant, &change) {
                 None => break,
-                Some(Event::Fire(sensor)) => self.fire(crews, index, crew_sensor(index, crews, sensor), now)?,
-                Some(Event::Reading(reading)) => {
+                Some(RingEvent::Fire(sensor)) => self.fire(crews, index, crew_sensor(index, crews, sensor), now)?,
+                Some(RingEvent::Reading(reading)) => {
                     let place = crew.sensors.start + usize::from(reading.sensor);
                     if let Some(detector) = self.detectors.get_mut(place) {
                         let told = self.judge.tell(place, &reading, detector, self.references[place]);
@@ -217,7 +217,7 @@ impl<'a, G: Guide> Course<'a, G> {
                         }
                     }
                 }
-                Some(Event::PeriodEnded(_)) => {}
+                Some(RingEvent::PeriodEnded(_)) => {}
             }
         }
         let crew = &mut crews[index];

@@ -1,7 +1,7 @@
 //! What becomes of a reading under a method, and its place in the report: what it says, what it came from, and what the
 //! sensor would have read alone.
 
-use eeruf_core::{Kind, Micros, Reading};
+use eeruf_core::{Micros, Reading, ReadingKind};
 
 use crate::{
     detector::{Detector, EXTERNAL, Heard, NEVER},
@@ -55,7 +55,7 @@ impl Judge {
         detector: &Detector,
         reference: u64,
     ) -> Option<&Readings> {
-        if reading.kind == Kind::Late || detector.fired >= self.end {
+        if reading.kind == ReadingKind::Late || detector.fired >= self.end {
             return None;
         }
         let earliest = detector.heard().next().copied();
@@ -97,12 +97,12 @@ impl Judge {
         Some(out)
     }
 
-    fn median(&mut self, place: usize, earliest: Option<Heard>) -> (Kind, Option<Heard>) {
+    fn median(&mut self, place: usize, earliest: Option<Heard>) -> (ReadingKind, Option<Heard>) {
         let history = &mut self.history[place];
         history.heard[history.count % self.median_of] = earliest;
         history.count += 1;
         if history.count < self.median_of {
-            return (if earliest.is_some() { Kind::First } else { Kind::NoEcho }, earliest);
+            return (if earliest.is_some() { ReadingKind::First } else { ReadingKind::NoEcho }, earliest);
         }
         let mut last = history.heard;
         let last = &mut last[..self.median_of];
@@ -134,6 +134,6 @@ impl Judge {
     }
 }
 
-fn believed(told: Option<Heard>) -> Kind {
-    if told.is_some() { Kind::Accepted } else { Kind::Clear }
+fn believed(told: Option<Heard>) -> ReadingKind {
+    if told.is_some() { ReadingKind::Accepted } else { ReadingKind::Clear }
 }

@@ -1,7 +1,7 @@
 //! What a simulation returns: every reading of every sensor as arrays of equal length, each with what caused it and with
 //! what the sensor would have read alone.
 
-use eeruf_core::Kind;
+use eeruf_core::ReadingKind;
 
 use crate::{method::Method, paths::Bounce};
 
@@ -79,8 +79,8 @@ pub struct Readings {
     pub phase: Vec<u8>,
     /// When it fired, in seconds of true time.
     pub fired_s: Vec<f64>,
-    /// What the method made of the reading. Methods that believe everything know [`Kind::Accepted`] and [`Kind::Clear`].
-    pub kind: Vec<Kind>,
+    /// What the method made of the reading. Methods that believe everything know [`ReadingKind::Accepted`] and [`ReadingKind::Clear`].
+    pub kind: Vec<ReadingKind>,
     /// The echo time that the method tells, in microseconds of the robot's clock: the firing's earliest echo, but for
     /// `multi_echo` the one that repeats, and for `median` the median.
     pub t_echo_us: Vec<f64>,
@@ -138,7 +138,7 @@ impl Readings {
 
     /// Whether the method believes the reading: an accepted echo, or confirmed that nothing is in range.
     pub fn is_accepted(&self, reading: usize) -> bool {
-        matches!(self.kind[reading], Kind::Accepted | Kind::Clear)
+        matches!(self.kind[reading], ReadingKind::Accepted | ReadingKind::Clear)
     }
 
     /// Whether what the reading says is wrong, believed or not: more than `tolerance_us` off the reference, an echo where the

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use eeruf_core::{Kind, Micros};
+use eeruf_core::{Micros, ReadingKind};
 use eeruf_sim::experiments::set_one::Alcove;
 use eeruf_sim::*;
 
@@ -86,7 +86,7 @@ fn every_reading_knows_to_the_microsecond_what_caused_it() {
         // The second sensor hears the first one's sound 15 ms earlier by its own reckoning.
         let (t_echo, cause, emitter, order) =
             if first { (own_us, Cause::Own, 0, 1) } else { (crossed_us - 15_000.0, Cause::Crosstalk, 0, 1) };
-        assert_eq!(readings.kind[reading], Kind::Accepted);
+        assert_eq!(readings.kind[reading], ReadingKind::Accepted);
         assert_eq!(readings.t_echo_us[reading], t_echo, "{reading}");
         assert_eq!(readings.cause[reading], cause);
         assert!((readings.reference_us[reading] - 6.0 / C * 1e6).abs() < 1e-3);

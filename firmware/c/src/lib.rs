@@ -8,7 +8,8 @@
 use core::mem::MaybeUninit;
 
 use eeruf_core::{
-    Config, Event, Instant, Kind, Layout, Micros, Requirements, Ring, RingError, Schedule, ScheduleError, ScheduledRing,
+    Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule,
+    ScheduleError, ScheduledRing,
 };
 
 /// The most sensors of a ring.
@@ -259,10 +260,10 @@ pub unsafe extern "C" fn eeruf_ring_init(
     if ring.is_null() {
         return EERUF_NULL;
     }
-    let config = Config {
+    let config = RingConfig {
         blanking: Micros::new(config.blanking_us),
         consecutive: config.consecutive,
-        ..Config::new(Micros::new(config.t_delta_us), Micros::new(config.window_us))
+        ..RingConfig::new(Micros::new(config.t_delta_us), Micros::new(config.window_us))
     };
     match Ring::new(schedule, config, Instant::from_micros(now_us)) {
         Ok(value) => {
@@ -301,27 +302,27 @@ pub unsafe extern "C" fn eeruf_ring_poll(ring: *mut EerufRing, now_us: u32, even
     };
     match ring.poll(Instant::from_micros(now_us)) {
         None => return EERUF_OK,
-        Some(Event::Fire(sensor)) => told.sensor = sensor,
-        Some(Event::Reading(reading)) => {
+        Some(RingEvent::Fire(sensor)) => told.sensor = sensor,
+        Some(RingEvent::Reading(reading)) => {
             told.kind = EerufEventKind::EERUF_READING;
             told.sensor = reading.sensor;
             told.period = reading.period;
             told.has_echo = reading.t_echo.is_some();
             told.t_echo_us = reading.t_echo.map_or(0, Micros::as_micros);
             told.reading = match reading.kind {
-                Kind::First => EERUF_FIRST,
-                Kind::Accepted => EERUF_ACCEPTED,
-                Kind::Rejected => EERUF_REJECTED,
-                Kind::Repeated => EERUF_REPEATED,
-                Kind::NoEcho => EERUF_NO_ECHO,
-                Kind::Clear => EERUF_CLEAR,
-                Kind::TooEarly => EERUF_TOO_EARLY,
-                Kind::Late => EERUF_LATE,
+                ReadingKind::First => EERUF_FIRST,
+                ReadingKind::Accepted => EERUF_ACCEPTED,
+                ReadingKind::Rejected => EERUF_REJECTED,
+                ReadingKind::Repeated => EERUF_REPEATED,
+                ReadingKind::NoEcho => EERUF_NO_ECHO,
+                ReadingKind::Clear => EERUF_CLEAR,
+                ReadingKind::TooEarly => EERUF_TOO_EARLY,
+                ReadingKind::Late => EERUF_LATE,
                 // The last there is.
                 _ => EERUF_STUCK,
             };
         }
-        Some(Event::PeriodEnded(stats)) => {
+        Some(RingEvent::PeriodEnded(stats)) => {
             told.kind = EerufEventKind::EERUF_PERIOD_ENDED;
             told.period = stats.period;
         }

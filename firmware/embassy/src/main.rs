@@ -8,7 +8,7 @@ mod time_driver;
 use eeruf_board::say::leave;
 use eeruf_board::world;
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{Config, Event, Instant, Kind, Micros, Ring, Tally};
+use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Tally};
 use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
 use embassy_executor::Spawner;
 use embassy_futures::select::select;
@@ -48,18 +48,18 @@ async fn main(_spawner: Spawner) {
     for sensor in 0..12 {
         world::put(sensor, Some(Micros::new(5_000 + 1_000 * sensor as u32)));
     }
-    let config = Config::new(Micros::new(999), Micros::from_millis(40));
+    let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
     let Ok(ring) = Ring::new(&TABLE_I_D, config, now()) else { leave(2) };
     let Ok(mut ring) = HcSr04Ring::new(ring, world::pins(), world::Delay, Settings::default()) else { leave(3) };
     let mut readings = Tally::<u32>::default();
     loop {
         while let Some(event) = ring.poll_with_edges(&EDGES, now()) {
             match event {
-                Event::Fire(_) => {}
-                Event::Reading(reading) => readings.count(reading.kind),
-                Event::PeriodEnded(stats) => {
+                RingEvent::Fire(_) => {}
+                RingEvent::Reading(reading) => readings.count(reading.kind),
+                RingEvent::PeriodEnded(stats) => {
                     if stats.period == 99 {
-                        let accepted = readings.of(Kind::Accepted);
+                        let accepted = readings.of(ReadingKind::Accepted);
                         eeruf_board::say!("embassy on ", eeruf_board::NAME, ": accepted ", accepted);
                         leave(0);
                     }

@@ -8,7 +8,7 @@ mod lines;
 
 use eeruf_board::say::leave;
 use eeruf_board::world::Delay;
-use eeruf_core::{Event, Micros, Ring};
+use eeruf_core::{Micros, Ring, RingEvent};
 use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Pins, Settings};
 use eeruf_loop::{CONFIG, Record, SCHEDULE};
 
@@ -53,7 +53,7 @@ fn main() -> ! {
             host.say(Record::told(event.as_ref()));
             match event {
                 None => break,
-                Some(Event::PeriodEnded(stats)) => {
+                Some(RingEvent::PeriodEnded(stats)) => {
                     host.say(Record::state(core::array::from_fn(|x| ring.health(x as u8)), EDGES.lost()));
                     if stats.period + 1 == orders.periods {
                         host.flush();

@@ -5,7 +5,7 @@
 use core::hint::black_box;
 
 use eeruf_board::{COUNTS_PER_1000_INSTRUCTIONS, say};
-use eeruf_core::{Config, Micros, Schedule};
+use eeruf_core::{Micros, RingConfig, Schedule};
 
 /// The paper's schedule for `K` sensors: groups of four, waits of `2 K` ms in phase a and 0, 2, 4, .. ms in phase b.
 pub const fn plain<const K: usize>() -> Schedule<K> {
@@ -26,7 +26,7 @@ pub const fn plain<const K: usize>() -> Schedule<K> {
 }
 
 /// The configuration of all measured rings.
-pub const CONFIG: Config = Config::new(Micros::new(999), Micros::from_millis(36));
+pub const CONFIG: RingConfig = RingConfig::new(Micros::new(999), Micros::from_millis(36));
 
 /// The fewest and the most instructions that one kind of call took.
 #[derive(Debug)]
@@ -76,7 +76,7 @@ macro_rules! ring_in_static_memory {
         use core::cell::UnsafeCell;
         use core::hint::black_box;
         use core::mem::MaybeUninit;
-        use eeruf_core::{Event, Instant, Ring, RingError, Schedule, ScheduledRing};
+        use eeruf_core::{Instant, Ring, RingError, RingEvent, Schedule, ScheduledRing};
 
         static SCHEDULE: Schedule<$k> = $crate::plain();
 
@@ -93,7 +93,7 @@ macro_rules! ring_in_static_memory {
 
         #[unsafe(no_mangle)]
         #[inline(never)]
-        fn ring_poll(ring: &mut ScheduledRing<'static, $k>, now: Instant) -> Option<Event> {
+        fn ring_poll(ring: &mut ScheduledRing<'static, $k>, now: Instant) -> Option<RingEvent> {
             ring.poll(now)
         }
 
@@ -140,7 +140,7 @@ macro_rules! ring_in_static_memory {
             let ring = memory.write(ring);
             loop {
                 while let Some(event) = ring_poll(ring, eeruf_board::now()) {
-                    if let Event::Fire(sensor) = black_box(event) {
+                    if let RingEvent::Fire(sensor) = black_box(event) {
                         ring_echo(ring, sensor, eeruf_board::now());
                     }
                 }

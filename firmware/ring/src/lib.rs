@@ -2,7 +2,7 @@
 #![no_std]
 
 use eeruf_board::world::{Delay, Echo, Trigger};
-use eeruf_core::{Event, ScheduledFiring};
+use eeruf_core::{RingEvent, ScheduledFiring};
 use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring};
 
 /// A ring on the pins of this board.
@@ -12,7 +12,7 @@ pub type BoardRing<const K: usize> = HcSr04Ring<ScheduledFiring<'static, K>, Tri
 pub fn run<const K: usize, const N: usize>(
     mut ring: BoardRing<K>,
     edges: &EdgeQueue<N>,
-    mut told: impl FnMut(&BoardRing<K>, Event),
+    mut told: impl FnMut(&BoardRing<K>, RingEvent),
 ) -> ! {
     loop {
         while let Some(event) = ring.poll_with_edges(edges, eeruf_board::now()) {

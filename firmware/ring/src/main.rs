@@ -5,7 +5,7 @@
 use eeruf_board::say::leave;
 use eeruf_board::{say, world};
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{Config, Event, Kind, Micros, Ring, Tally};
+use eeruf_core::{Micros, ReadingKind, Ring, RingConfig, RingEvent, Tally};
 use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Health, Settings};
 use eeruf_ring::run;
 
@@ -31,20 +31,20 @@ fn main() -> ! {
         // Walls 0.9 m to 2.8 m away, and no sensor in place 6.
         world::put(sensor, (sensor != 5).then_some(Micros::new(5_000 + 1_000 * sensor as u32)));
     }
-    let config = Config::new(Micros::new(999), Micros::from_millis(40));
+    let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
     let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
     let Ok(ring) = HcSr04Ring::new(ring, world::pins(), world::Delay, Settings::default()) else { leave(3) };
 
     let mut readings = Tally::<u32>::default();
     let mut max_late = Micros::ZERO;
     run(ring, &EDGES, |ring, event| match event {
-        Event::Fire(_) => {}
-        Event::Reading(reading) => readings.count(reading.kind),
-        Event::PeriodEnded(stats) => {
+        RingEvent::Fire(_) => {}
+        RingEvent::Reading(reading) => readings.count(reading.kind),
+        RingEvent::PeriodEnded(stats) => {
             max_late = max_late.max(stats.max_late);
             if stats.period + 1 == PERIODS {
                 say!(eeruf_board::NAME, ": ", PERIODS, " periods");
-                for kind in Kind::ALL {
+                for kind in ReadingKind::ALL {
                     say!("  ", kind.as_str(), " ", readings.of(kind));
                 }
                 for sensor in 0..12 {

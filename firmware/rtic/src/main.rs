@@ -11,7 +11,7 @@ mod app {
     use eeruf_board::world::{self, Delay, Echo, Trigger};
     use eeruf_board::{say, set_alarm};
     use eeruf_core::tables::TABLE_I_D;
-    use eeruf_core::{Config, Event, Kind, Micros, Ring, ScheduledFiring, Tally};
+    use eeruf_core::{Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledFiring, Tally};
     use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
 
     static EDGES: EdgeQueue<32> = EdgeQueue::new();
@@ -31,7 +31,7 @@ mod app {
         for sensor in 0..12 {
             world::put(sensor, Some(Micros::new(5_000 + 1_000 * sensor as u32)));
         }
-        let config = Config::new(Micros::new(999), Micros::from_millis(40));
+        let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
         let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
         let Ok(ring) = HcSr04Ring::new(ring, world::pins(), Delay, Settings::default()) else { leave(3) };
         set_alarm(ring.next_deadline());
@@ -61,11 +61,11 @@ mod app {
         eeruf_board::clear_alarm();
         while let Some(event) = ring.poll_with_edges(&EDGES, eeruf_board::now()) {
             match event {
-                Event::Fire(_) => {}
-                Event::Reading(reading) => readings.count(reading.kind),
-                Event::PeriodEnded(stats) => {
+                RingEvent::Fire(_) => {}
+                RingEvent::Reading(reading) => readings.count(reading.kind),
+                RingEvent::PeriodEnded(stats) => {
                     if stats.period == 99 {
-                        say!("rtic on ", eeruf_board::NAME, ": accepted ", readings.of(Kind::Accepted));
+                        say!("rtic on ", eeruf_board::NAME, ": accepted ", readings.of(ReadingKind::Accepted));
                         leave(0);
                     }
                 }

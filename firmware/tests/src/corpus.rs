@@ -5,7 +5,8 @@
 use eeruf_core::search::wait::{Control, Finish, Problem, Search};
 use eeruf_core::tables::{TABLE_I_A, TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{
-    Config, Criterion, Event, Instant, Kind, Layout, Micros, Phase, Requirements, Ring, Schedule, ScheduledRing, Tally,
+    Criterion, Instant, Layout, Micros, Phase, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Schedule,
+    ScheduledRing, Tally,
 };
 use eeruf_on_target::{run, tests};
 
@@ -99,7 +100,7 @@ fn exactly_one_rearrangement_of_table_i_keeps_19_ms_between_any_four_adjacent_se
 
 /// Walls 0.9 m to 2.8 m away: sensor `x` hears its echo after `5 + x` ms.
 fn a_ring_believes_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock() {
-    let config = Config::new(Micros::new(999), Micros::from_millis(36));
+    let config = RingConfig::new(Micros::new(999), Micros::from_millis(36));
     let mut ring: ScheduledRing<12> =
         Ring::new(&TABLE_I_D, config, Instant::from_micros(u32::MAX - 1_000_000)).expect("a ring");
     let mut tally = Tally::<u32>::default();
@@ -108,13 +109,13 @@ fn a_ring_believes_standing_walls_from_the_second_period_on_through_a_wrap_of_th
         let now = ring.next_deadline();
         while let Some(event) = ring.poll(now) {
             match event {
-                Event::Fire(sensor) => ring.echo(sensor, now + Micros::from_millis(5 + u32::from(sensor))),
-                Event::Reading(reading) => {
+                RingEvent::Fire(sensor) => ring.echo(sensor, now + Micros::from_millis(5 + u32::from(sensor))),
+                RingEvent::Reading(reading) => {
                     assert_eq!(reading.t_echo, Some(Micros::from_millis(5 + u32::from(reading.sensor))));
                     assert!(reading.phase == Phase((reading.period % 2) as u8));
                     tally.count(reading.kind);
                 }
-                Event::PeriodEnded(stats) => {
+                RingEvent::PeriodEnded(stats) => {
                     assert_eq!(stats.max_late, Micros::ZERO);
                     periods += 1;
                 }
@@ -122,12 +123,12 @@ fn a_ring_believes_standing_walls_from_the_second_period_on_through_a_wrap_of_th
         }
     }
     // Every reading but the first of each sensor, and perhaps some of the last period still to come.
-    assert_eq!(tally.of(Kind::First), 12);
-    assert!(tally.of(Kind::Accepted) >= 39 * 12 - 12 && tally.of(Kind::Rejected) == 0);
+    assert_eq!(tally.of(ReadingKind::First), 12);
+    assert!(tally.of(ReadingKind::Accepted) >= 39 * 12 - 12 && tally.of(ReadingKind::Rejected) == 0);
 }
 
 fn readings_that_alternate_as_crosstalk_does_are_all_rejected() {
-    let config = Config::new(Micros::new(999), Micros::from_millis(36));
+    let config = RingConfig::new(Micros::new(999), Micros::from_millis(36));
     let mut ring: ScheduledRing<12> = Ring::new(&TABLE_I_D, config, Instant::default()).expect("a ring");
     let mut tally = Tally::<u32>::default();
     let (mut periods, mut phase) = (0, Phase::A);
@@ -136,24 +137,24 @@ fn readings_that_alternate_as_crosstalk_does_are_all_rejected() {
         while let Some(event) = ring.poll(now) {
             match event {
                 // Sound of sensor 1, 20 ms under way, heard by all others.
-                Event::Fire(sensor) if sensor > 0 => {
+                RingEvent::Fire(sensor) if sensor > 0 => {
                     let at = |x| TABLE_I_D.t_fire(phase, x).map_or(0, Micros::as_micros);
                     let reading = (30_000 + at(0)).wrapping_sub(at(usize::from(sensor)));
                     if reading < 36_000 {
                         ring.echo(sensor, now + Micros::new(reading));
                     }
                 }
-                Event::Fire(_) => {}
-                Event::Reading(reading) => tally.count(reading.kind),
-                Event::PeriodEnded(_) => {
+                RingEvent::Fire(_) => {}
+                RingEvent::Reading(reading) => tally.count(reading.kind),
+                RingEvent::PeriodEnded(_) => {
                     periods += 1;
                     phase = Phase(periods % 2);
                 }
             }
         }
     }
-    assert_eq!(tally.of(Kind::Accepted), 0);
-    assert!(tally.of(Kind::Rejected) > 20);
+    assert_eq!(tally.of(ReadingKind::Accepted), 0);
+    assert!(tally.of(ReadingKind::Rejected) > 20);
 }
 
 #[eeruf_board::entry]

@@ -1,7 +1,7 @@
 //! What a ring knows of one of its sensors.
 
 use crate::filter::{NO_ECHO, Rule, Track, insert};
-use crate::reading::{Kind, Verdict};
+use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::Phase;
 use crate::time::{Instant, Micros};
 
@@ -121,7 +121,7 @@ impl<const E: usize> Sensor<E> {
         let t_echo = self.held();
         self.clear(READY);
         self.echoes = [NO_ECHO; E];
-        Verdict { kind: Kind::Late, t_echo, previous: None, age: self.track.age() }
+        Verdict { kind: ReadingKind::Late, t_echo, previous: None, age: self.track.age() }
     }
 
     /// Ends the firing.
@@ -131,9 +131,9 @@ impl<const E: usize> Sensor<E> {
             self.track.forget();
         }
         let verdict = if self.is(STUCK) {
-            self.track.skip(Kind::Stuck, None)
+            self.track.skip(ReadingKind::Stuck, None)
         } else if self.is(OUTSIDE) {
-            self.track.skip(Kind::TooEarly, self.held())
+            self.track.skip(ReadingKind::TooEarly, self.held())
         } else {
             self.track.push(rule, &self.echoes, expected_change_us())
         };

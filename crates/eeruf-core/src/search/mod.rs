@@ -1,6 +1,6 @@
 //! Search for schedules, exhaustive and proven.
 //!
-//! - [`RingNeeds`]: the user's question. Firing times are free; the shortest period is sought, or the largest `t_delta` or
+//! - [`PeriodProblem`]: the user's question. Firing times are free; the shortest period is sought, or the largest `t_delta` or
 //!   interval at a given period.
 //! - [`WaitSearch`]: the paper's question. Lags are given, waits are sought on a grid: one table, all, how many, the best.
 //!
@@ -11,14 +11,14 @@
 pub mod design;
 mod error;
 mod grid;
-mod ring_needs;
+mod period_problem;
 pub mod wait;
-mod wait_needs;
+mod wait_problem;
 
 pub use error::SearchError;
 pub use grid::GridError;
-pub use ring_needs::{Designed, Preferred, RingNeeds};
-pub use wait_needs::{WaitNeeds, WaitSearch, WhyNone};
+pub use period_problem::{PeriodProblem, Preferred, ShortestPeriod};
+pub use wait_problem::{Infeasible, WaitProblem, WaitSearch};
 
 use crate::schedule::Schedule;
 use crate::time::Micros;

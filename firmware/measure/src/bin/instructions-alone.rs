@@ -6,14 +6,14 @@ use core::hint::black_box;
 
 use eeruf_board::say::leave;
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{EchoFilter, Instant, Micros, ScheduledFiring, Scheduler, Step, Verdict};
+use eeruf_core::{EchoFilter, Instant, Micros, ScheduledFiring, Scheduler, SchedulerStep, Verdict};
 use eeruf_measure::{CONFIG, Range, counts};
 
 eeruf_board::no_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
 
 #[inline(never)]
-fn fire(scheduler: &mut ScheduledFiring<'static, 12>, now: Instant) -> Option<Step> {
+fn fire(scheduler: &mut ScheduledFiring<'static, 12>, now: Instant) -> Option<SchedulerStep> {
     scheduler.poll(now)
 }
 
@@ -32,7 +32,7 @@ fn main() -> ! {
     for round in 0..480_u32 {
         let now = scheduler.deadline();
         let (taken, step) = counts(|| fire(&mut scheduler, now));
-        if let Some(Step::Fire { .. }) = step {
+        if let Some(SchedulerStep::Fire { .. }) = step {
             firing.note(taken);
         }
         let t_echo = black_box((round % 7 != 0).then_some(Micros::new(5_000 + 600 * (round / 50))));

@@ -9,7 +9,7 @@ use core::hint::black_box;
 
 use eeruf_board::say::leave;
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{Event, Instant, Kind, Micros, Ring, ScheduledRing};
+use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingEvent, ScheduledRing};
 use eeruf_hc_sr04::{Edge, EdgeQueue};
 use eeruf_measure::{CONFIG, Range, counts};
 
@@ -19,7 +19,7 @@ eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
 static EDGES: EdgeQueue<32> = EdgeQueue::new();
 
 #[inline(never)]
-fn poll(ring: &mut ScheduledRing<'static, 12>, now: Instant) -> Option<Event> {
+fn poll(ring: &mut ScheduledRing<'static, 12>, now: Instant) -> Option<RingEvent> {
     ring.poll(now)
 }
 
@@ -58,7 +58,7 @@ fn main() -> ! {
                     idle.note(taken);
                     break;
                 }
-                Some(Event::Fire(sensor)) => {
+                Some(RingEvent::Fire(sensor)) => {
                     fire.note(taken);
                     // Every kind of reading: near and far, moving, and none at all.
                     let t_echo = match (sensor, periods % 4) {
@@ -73,13 +73,13 @@ fn main() -> ! {
                         EDGES.pop();
                     }
                 }
-                Some(Event::Reading(told)) => {
+                Some(RingEvent::Reading(told)) => {
                     reading.note(taken);
-                    if told.kind == Kind::Stuck {
+                    if told.kind == ReadingKind::Stuck {
                         leave(3);
                     }
                 }
-                Some(Event::PeriodEnded(_)) => {
+                Some(RingEvent::PeriodEnded(_)) => {
                     ended.note(taken);
                     periods += 1;
                 }

@@ -6,7 +6,7 @@
 use eeruf_board::say::leave;
 use eeruf_board::{say, world};
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{Config, Event, Kind, Micros, Ring, Tally};
+use eeruf_core::{Micros, ReadingKind, Ring, RingConfig, RingEvent, Tally};
 use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
 use eeruf_ring::run;
 
@@ -29,15 +29,15 @@ fn main() -> ! {
         // All echoes of a group come together, when the next group fires: the worst case.
         world::put(sensor, Some(Micros::new(24_500)));
     }
-    let config = Config::new(Micros::new(999), Micros::from_millis(40));
+    let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
     let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
     let Ok(ring) = HcSr04Ring::new(ring, world::pins(), world::Delay, Settings::default()) else { leave(3) };
     let mut readings = Tally::<u32>::default();
     let (mut most, mut sum) = (0, 0);
     run(ring, &EDGES, |_, event| match event {
-        Event::Fire(_) => {}
-        Event::Reading(reading) => readings.count(reading.kind),
-        Event::PeriodEnded(stats) => {
+        RingEvent::Fire(_) => {}
+        RingEvent::Reading(reading) => readings.count(reading.kind),
+        RingEvent::PeriodEnded(stats) => {
             most = stats.max_late.as_micros().max(most);
             sum += stats.max_late.as_micros();
             if stats.period == 199 {
@@ -49,9 +49,9 @@ fn main() -> ! {
                     " edges_lost ",
                     EDGES.lost(),
                     " accepted ",
-                    readings.of(Kind::Accepted),
+                    readings.of(ReadingKind::Accepted),
                     " rejected ",
-                    readings.of(Kind::Rejected)
+                    readings.of(ReadingKind::Rejected)
                 );
                 leave(0);
             }

@@ -1,5 +1,7 @@
 //! How the caller limits, watches and stops a search.
 
+use core::ops::ControlFlow;
+
 /// How far a search has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -14,19 +16,10 @@ pub struct Progress {
     pub best: u32,
 }
 
-/// Whether to go on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Flow {
-    /// Go on.
-    Continue,
-    /// Stop; the answer is the best found so far, with its bound.
-    Stop,
-}
-
 /// Asked every [`POLL`] nodes or so. `()` always goes on and costs nothing.
 pub trait Control {
     /// Whether to go on, given how far the search has come.
-    fn poll(&mut self, progress: &Progress) -> Flow;
+    fn poll(&mut self, progress: &Progress) -> ControlFlow<()>;
 }
 
 /// The nodes between two polls.
@@ -34,13 +27,13 @@ pub const POLL: u64 = 256;
 
 impl Control for () {
     #[inline(always)]
-    fn poll(&mut self, _: &Progress) -> Flow {
-        Flow::Continue
+    fn poll(&mut self, _: &Progress) -> ControlFlow<()> {
+        ControlFlow::Continue(())
     }
 }
 
-impl<F: FnMut(&Progress) -> Flow> Control for F {
-    fn poll(&mut self, progress: &Progress) -> Flow {
+impl<F: FnMut(&Progress) -> ControlFlow<()>> Control for F {
+    fn poll(&mut self, progress: &Progress) -> ControlFlow<()> {
         self(progress)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::bounds;
 use super::classes::Classes;
-use super::control::{Control, Flow, POLL, Progress};
+use super::control::{Control, POLL, Progress};
 use super::problem::Needs;
 use super::random::Random;
 use super::schedule::{self, Firing};
@@ -115,7 +115,7 @@ impl<C: Control> Meter<'_, C> {
             }
             let period = period as u32 * self.ticks;
             let progress = Progress { nodes: self.nodes, period, bound: self.bound, best: self.best };
-            self.stopped |= self.control.poll(&progress) == Flow::Stop;
+            self.stopped |= self.control.poll(&progress).is_break();
             if !self.may_go_on() {
                 return Outcome::Spent;
             }

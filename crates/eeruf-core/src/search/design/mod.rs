@@ -61,7 +61,7 @@ mod threads;
 mod tree;
 
 pub use bounds::Bound;
-pub use control::{Control, Flow, POLL, Progress};
+pub use control::{Control, POLL, Progress};
 pub use largest::{Choice, Largest, Preferred, largest_interval, largest_separation, prefer};
 pub(super) use problem::one_by_one;
 pub use problem::{MAX_TICKS, Problem, ProblemError};

@@ -6,6 +6,7 @@
 //! the replay begins again; when it meets no missing answer, it is the hunt as one thread would have gone through it. Threads that work
 //! on a question which is no longer on the way are stopped.
 
+use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicBool, Ordering};
 use core::time::Duration;
 use std::sync::Arc;
@@ -14,7 +15,7 @@ use std::thread;
 use std::vec;
 use std::vec::Vec;
 
-use super::control::{Control, Flow, Progress};
+use super::control::{Control, Progress};
 use super::hunt::{Ask, Hunt, Meter};
 use super::memory_words;
 use super::problem::{Needs, Problem, ProblemError};
@@ -88,7 +89,8 @@ struct Worker {
 /// Answers a question on a thread of its own, unless told to stop.
 fn work(ask: &Ask, stop: &AtomicBool, answers: &Sender<Option<Known>>) {
     let mut memory = vec![0; memory_words(ask.question.needs.sensors)];
-    let mut control = |_: &Progress| if stop.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue };
+    let mut control =
+        |_: &Progress| if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     let mut hunt = Hunt::new(&mut memory, &mut control, u64::MAX);
     let outcome = hunt.decide(ask);
     let (nodes, stopped) = (hunt.meter.nodes, hunt.meter.stopped);
@@ -135,7 +137,7 @@ pub fn shortest_on_threads<C: Control>(
                 }
             }
             loop {
-                if control.poll(&progress) == Flow::Stop {
+                if control.poll(&progress).is_break() {
                     for worker in &workers {
                         worker.stop.store(true, Ordering::Relaxed);
                     }

@@ -1,7 +1,7 @@
 //! The closed loop: accepted readings fill the histogram grid from where they were taken, the vector field histogram says
 //! where to steer and how fast, and the platform follows as well as it can.
 
-use eeruf_core::Kind;
+use eeruf_core::ReadingKind;
 use serde::Serialize;
 
 use super::course::{FINISH_X_M, POLE_RADIUS_M, ROOM_M, TARGET};
@@ -297,7 +297,7 @@ impl Guide for Pilot<'_> {
         }
         self.run.wrong += u32::from(readings.is_wrong(last, DEFAULT_TOLERANCE_US));
         let range_m = readings.t_echo_us[last] * metres_per_us;
-        if readings.kind[last] != Kind::Accepted || range_m > self.piloting.range_m {
+        if readings.kind[last] != ReadingKind::Accepted || range_m > self.piloting.range_m {
             self.grid.clear(at, heading, near_m, self.piloting.range_m);
             return;
         }

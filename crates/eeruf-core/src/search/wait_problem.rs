@@ -12,7 +12,7 @@ use crate::time::Micros;
 
 /// What a table of waits must meet (Sec. 3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct WaitNeeds<'a> {
+pub struct WaitProblem<'a> {
     /// The number of sensors, 1 to 64.
     pub sensors: usize,
     /// `T_p`, a whole number of ticks.
@@ -39,10 +39,10 @@ pub struct WaitNeeds<'a> {
 /// A search for tables of waits, in memory that the caller lends ([`wait::memory_words`](super::wait::memory_words)).
 ///
 /// ```
-/// use eeruf_core::search::{WaitNeeds, WaitSearch, wait};
+/// use eeruf_core::search::{WaitProblem, WaitSearch, wait};
 /// use eeruf_core::{Criterion, Layout, Micros};
 ///
-/// let needs = WaitNeeds {
+/// let needs = WaitProblem {
 ///     sensors: 12,
 ///     period: Micros::from_millis(100),
 ///     wait_max: Micros::from_millis(24),
@@ -78,7 +78,7 @@ pub struct WaitSearch {
 /// Why there is no table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum WhyNone {
+pub enum Infeasible {
     /// `t_delta` alone cannot be met.
     Separation {
         /// K.
@@ -101,7 +101,7 @@ pub enum WhyNone {
     Together,
 }
 
-impl fmt::Display for WhyNone {
+impl fmt::Display for Infeasible {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Separation { sensors, separation, wait_max } => write!(
@@ -125,7 +125,7 @@ impl WaitSearch {
     /// # Errors
     /// [`SearchError`] if a number is out of range, a period or lag is not a whole number of ticks, or a sensor could fire
     /// after its period has ended.
-    pub fn new(needs: &WaitNeeds<'_>) -> Result<Self, SearchError> {
+    pub fn new(needs: &WaitProblem<'_>) -> Result<Self, SearchError> {
         let grid = Grid::new(needs.tick)?;
         let sensors = needs.t_lag.map_or(needs.sensors, <[Micros]>::len);
         if needs.sensors == 0 || needs.sensors > MAX_SENSORS || sensors != needs.sensors {
@@ -188,7 +188,7 @@ impl WaitSearch {
     ///
     /// # Errors
     /// As for [`first`](Self::first).
-    pub fn why_none(&self, budget: u64, memory: &mut [u32]) -> Result<WhyNone, SearchError> {
+    pub fn why_none(&self, budget: u64, memory: &mut [u32]) -> Result<Infeasible, SearchError> {
         let search = self.ticks()?;
         let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
         let mut without = |separation, interval| {
@@ -196,13 +196,13 @@ impl WaitSearch {
         };
         if without(self.separation, 0)? == Finish::Exhausted {
             let (separation, wait_max) = (self.grid.time(self.separation), self.grid.time(self.wait_max));
-            return Ok(WhyNone::Separation { sensors: self.sensors, separation, wait_max });
+            return Ok(Infeasible::Separation { sensors: self.sensors, separation, wait_max });
         }
         if without(0, self.interval)? == Finish::Exhausted {
             let (interval, wait_max) = (self.grid.time(self.interval), self.grid.time(self.wait_max));
-            return Ok(WhyNone::Interval { interval, wait_max, period: self.grid.time(self.period) });
+            return Ok(Infeasible::Interval { interval, wait_max, period: self.grid.time(self.period) });
         }
-        Ok(WhyNone::Together)
+        Ok(Infeasible::Together)
     }
 
     /// How many tables there are, exactly; it stops when it has counted `limit`.
@@ -265,7 +265,7 @@ impl WaitSearch {
 }
 
 /// Table I-a: sensor `x` of a group of `n` lags by `x mod n` parts in `n` of the period.
-fn default_lag(needs: &WaitNeeds<'_>, x: usize) -> Micros {
+fn default_lag(needs: &WaitProblem<'_>, x: usize) -> Micros {
     let n = u64::from(needs.neighbours.max(1));
     let part = u64::from(needs.period.as_micros()) * (x as u64 % n) / n;
     // Below the period.

@@ -10,11 +10,11 @@ use crate::time::Micros;
 /// What a ring needs. Firing times are free: every sensor fires once per period, whenever it suits all.
 ///
 /// ```
-/// use eeruf_core::search::{RingNeeds, design};
+/// use eeruf_core::search::{PeriodProblem, design};
 /// use eeruf_core::{Micros, Requirements};
 ///
 /// // The paper's half ring of twelve: 2 ms separation, any four neighbours 15 ms apart, listening for 30 ms.
-/// let needs = RingNeeds {
+/// let needs = PeriodProblem {
 ///     sensors: 12,
 ///     requirements: Requirements {
 ///         min_interval: Micros::from_millis(15),
@@ -32,7 +32,7 @@ use crate::time::Micros;
 /// # Ok::<(), eeruf_core::search::SearchError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RingNeeds<'a> {
+pub struct PeriodProblem<'a> {
     /// The number of sensors, 1 to 64.
     pub sensors: usize,
     /// What the schedule must meet, under [`Criterion::Exact`].
@@ -43,14 +43,14 @@ pub struct RingNeeds<'a> {
 
 /// The shortest period for a ring, or the best found, and why it is not shorter.
 #[derive(Clone, Copy, Debug)]
-pub struct Designed<const K: usize> {
+pub struct ShortestPeriod<const K: usize> {
     /// The schedule, with the period as its value and the bound below which there is none.
     pub found: Found<K>,
     shortest: Shortest,
     grid: Grid,
 }
 
-impl<const K: usize> Designed<K> {
+impl<const K: usize> ShortestPeriod<K> {
     fn new(grid: Grid, shortest: Shortest) -> Result<Self, SearchError> {
         let found = Found {
             schedule: Some(schedule_of(grid, shortest.period, &shortest.firing)?),
@@ -68,7 +68,7 @@ impl<const K: usize> Designed<K> {
     }
 }
 
-/// Of all schedules with the shortest period, the one to prefer: see [`RingNeeds::prefer`].
+/// Of all schedules with the shortest period, the one to prefer: see [`PeriodProblem::prefer`].
 #[derive(Clone, Copy, Debug)]
 pub struct Preferred<const K: usize> {
     /// The schedule.
@@ -83,7 +83,7 @@ pub struct Preferred<const K: usize> {
     pub nodes: u64,
 }
 
-impl RingNeeds<'_> {
+impl PeriodProblem<'_> {
     /// The shortest period, proven unless `budget` nodes are spent first; then the shortest found.
     ///
     /// There is always a schedule, since firing one by one meets any needs. `memory` of
@@ -96,9 +96,9 @@ impl RingNeeds<'_> {
         budget: u64,
         memory: &mut [i32],
         control: &mut impl Control,
-    ) -> Result<Designed<K>, SearchError> {
+    ) -> Result<ShortestPeriod<K>, SearchError> {
         let (grid, rows) = self.grid()?;
-        Designed::new(grid, design::shortest(&self.problem(grid, &rows), budget, memory, control)?)
+        ShortestPeriod::new(grid, design::shortest(&self.problem(grid, &rows), budget, memory, control)?)
     }
 
     /// The same answer on up to `threads` threads besides the calling one, see [`design::shortest_on_threads`].
@@ -111,9 +111,9 @@ impl RingNeeds<'_> {
         budget: u64,
         threads: usize,
         control: &mut impl Control,
-    ) -> Result<Designed<K>, SearchError> {
+    ) -> Result<ShortestPeriod<K>, SearchError> {
         let (grid, rows) = self.grid()?;
-        Designed::new(grid, design::shortest_on_threads(&self.problem(grid, &rows), budget, threads, control)?)
+        ShortestPeriod::new(grid, design::shortest_on_threads(&self.problem(grid, &rows), budget, threads, control)?)
     }
 
     /// Of all schedules with the period found, the one with the largest `t_delta`; of these, the one with the largest
@@ -124,7 +124,7 @@ impl RingNeeds<'_> {
     /// As for [`shortest`](Self::shortest).
     pub fn prefer<const K: usize>(
         &self,
-        designed: &Designed<K>,
+        designed: &ShortestPeriod<K>,
         budget: u64,
         memory: &mut [i32],
         control: &mut impl Control,
@@ -147,7 +147,7 @@ impl RingNeeds<'_> {
     /// As for [`shortest`](Self::shortest).
     pub fn relaxations<const K: usize>(
         &self,
-        designed: &Designed<K>,
+        designed: &ShortestPeriod<K>,
         budget: u64,
         memory: &mut [i32],
         control: &mut impl Control,

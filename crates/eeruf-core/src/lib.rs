@@ -3,7 +3,7 @@
 //! Sensors that fire at the same time hear each other: *crosstalk*. Firing one by one avoids it and is slow. EERUF fires
 //! every sensor once per period `T_p` at `T_fire = T_lag + T_wait`, where `T_wait` alternates between two values that
 //! differ from sensor to sensor, and accepts a reading only if it is near-identical to the one before. A true echo does
-//! not depend on the waits; crosstalk shifts with them and is rejected.
+//! not depend on the waits; crosstalk shifts with them and is rejected. What is proven about it, and why: [`theory`].
 //!
 //! - [`Schedule`]: when each sensor fires. [`schedule!`] checks a table while the firmware is compiled.
 //! - [`Requirements`] and [`Schedule::verify`]: Eqs. (13a), (13b), the smallest interval between neighbours, and the
@@ -59,6 +59,13 @@ pub use time::{Instant, Micros};
 #[doc(hidden)]
 pub use verify::{__checked, __micros};
 pub use verify::{Verification, Violation, ViolationKind, Violations};
+
+/// What is proven, and why: `docs/theory.md`, for reading here.
+///
+/// The file in this crate is a link to it, so that a packed crate holds the text too.
+#[cfg(doc)]
+#[doc = include_str!("../theory.md")]
+pub mod theory {}
 
 /// The listings of the README compile and hold.
 #[cfg(doctest)]

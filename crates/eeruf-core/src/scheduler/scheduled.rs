@@ -1,73 +1,9 @@
-//! When to fire: [`Scheduler`], and *scheduled firing* (Sec. 3.1, Fig. 3).
-//!
-//! A scheduler never reads a clock. The caller passes `now`, and is told the next deadline.
+//! [`ScheduledFiring`]: every sensor fires once per period, by the table of a schedule (Sec. 3.1, Fig. 3).
 
+use super::contract::Scheduler;
 use crate::schedule::{Phase, Schedule};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
-
-/// What a scheduler wants done.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SchedulerStep {
-    /// Fire this sensor, now.
-    Fire {
-        /// The sensor, from 0.
-        sensor: u8,
-        /// The phase its wait belongs to.
-        phase: Phase,
-        /// How long ago it was due.
-        late: Micros,
-    },
-    /// A period has ended.
-    PeriodEnded {
-        /// Its phase.
-        phase: Phase,
-        /// Whether another schedule begins with the next one.
-        changed: bool,
-    },
-}
-
-/// Decides when each sensor of a ring fires: [`ScheduledFiring`], or
-/// [`ImmediateRefiring`](crate::refiring::ImmediateRefiring).
-pub trait Scheduler {
-    /// The next step, if one is due. Call again until there is none.
-    #[inline]
-    fn poll(&mut self, now: Instant) -> Option<SchedulerStep> {
-        let due = self.deadline();
-        if !now.has_reached(due) {
-            return None;
-        }
-        let Some((sensor, phase)) = self.next_firing() else {
-            let (phase, changed) = self.end_period(now);
-            return Some(SchedulerStep::PeriodEnded { phase, changed });
-        };
-        self.fire(now);
-        Some(SchedulerStep::Fire { sensor, phase, late: now.since(due) })
-    }
-    /// When the next step is due.
-    fn deadline(&self) -> Instant;
-    /// The sensor that fires next and the phase of its wait; none if the period ends next.
-    fn next_firing(&self) -> Option<(u8, Phase)>;
-    /// Takes the step of firing that sensor, `now`. To be called when it is due.
-    fn fire(&mut self, now: Instant);
-    /// Takes the step of ending the period, `now`, and tells its phase and whether another schedule begins with the next
-    /// one. To be called when that is due.
-    fn end_period(&mut self, now: Instant) -> (Phase, bool);
-    /// A sensor has stopped listening: its echo came in, or its window closed, `at` this instant.
-    fn ended(&mut self, sensor: u8, at: Instant);
-    /// Has a sensor fire from its next turn on, or no more.
-    fn set_enabled(&mut self, sensor: u8, enabled: bool);
-    /// Whether a sensor fires.
-    fn is_enabled(&self, sensor: u8) -> bool;
-    /// Begins anew with phase a, no sooner than `now`.
-    fn restart(&mut self, now: Instant);
-    /// How many periods ago the last period with this phase was, 0 for the present one; 0 without common phases.
-    fn periods_since(&self, phase: Phase) -> u8;
-    /// How long a sensor may listen: it never fires again within this time of firing, unless it has ended.
-    fn longest_window(&self) -> Micros;
-    /// No deadline lies further ahead than this, unless the clock has jumped.
-    fn horizon(&self) -> Micros;
-}
 
 /// Scheduled firing: every sensor fires once per period, at the time the [`Schedule`] gives for the phase.
 ///
@@ -133,8 +69,8 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
         self.next_schedule = Some(schedule);
     }
 
-    /// Turns to the following sensor, its gap after this instant, or to the next enabled one after it; if there is none, to
-    /// the end of the period.
+    /// Turns to the following sensor, its gap after this instant, or to the next enabled one after it; if there is
+    /// none, to the end of the period.
     #[inline]
     fn turn(&mut self, from: Instant) {
         self.due = from;
@@ -172,8 +108,8 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
 }
 
 /// How long to stay silent after the last firing of a schedule so that a period which was not verified against it may
-/// begin. Two neighbours fire once each per period, so no interval between them that the schedule always keeps is longer
-/// than half of it.
+/// begin. Two neighbours fire once each per period, so no interval between them that the schedule always keeps is
+/// longer than half of it.
 const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>) -> Micros {
     let half_period = Micros::new(schedule.period().as_micros().div_ceil(2));
     let min_refire = schedule.min_refire();

@@ -1,4 +1,5 @@
-//! *Immediate refiring* (Sec. 3, Figs. 2a and 2b): each sensor fires again as soon as its echo is in and its wait is over.
+//! [`ImmediateRefiring`]: each sensor fires again as soon as its echo is in and its wait is over (Sec. 3, Figs. 2a,
+//! 2b).
 //!
 //! There is no common period, so neighbours drift past each other; that is why the paper goes on to scheduled firing.
 //! With constant waits crosstalk locks in: a sensor y that hears x takes on x's rhythm, and its error becomes
@@ -9,14 +10,15 @@
 //! T_err,b = T_echo + T_x,b - T_y,b                                                  (10b)
 //! ```
 //!
-//! which the filter cannot tell from a true echo in (8), but can in (10a), (10b), where consecutive readings differ.
+//! In (8) the filter takes it for a true echo. In (10a), (10b) consecutive readings differ, and it does not.
 
+use super::contract::Scheduler;
 use crate::schedule::{Phase, Schedule};
-use crate::scheduler::Scheduler;
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
 
-/// Immediate refiring: a sensor fires again `T_wait` after it has stopped listening; the first time after `T_lag + T_wait`.
+/// Immediate refiring: a sensor fires again `T_wait` after it has stopped listening; the first time after `T_lag +
+/// T_wait`.
 #[derive(Clone, Debug)]
 pub struct ImmediateRefiring<'s, const K: usize, const M: usize = 2> {
     schedule: &'s Schedule<K, M>,
@@ -38,7 +40,8 @@ struct Turn {
 
 impl<'s, const K: usize, const M: usize> ImmediateRefiring<'s, K, M> {
     /// Begins at `now`. The lags and waits are those of `schedule`; its period only says how often
-    /// [`SchedulerStep::PeriodEnded`](crate::SchedulerStep::PeriodEnded) comes. No sensor fires again sooner than `min_refire` after it has fired.
+    /// [`SchedulerStep::PeriodEnded`](crate::SchedulerStep::PeriodEnded) comes. No sensor fires again sooner than
+    /// `min_refire` after it has fired.
     pub fn new(schedule: &'s Schedule<K, M>, min_refire: Micros, now: Instant) -> Self {
         let sensors = [Turn { at: now, phase: 0 }; K];
         let mut refiring = Self {
@@ -101,7 +104,7 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
         let phase = Phase(self.phase);
         self.phase = next_phase::<M>(self.phase);
         self.period_start = self.period_end();
-        // After a long silence the periods missed are not told one by one.
+        // After a long silence the missed periods are skipped, not ended one by one.
         if now.has_reached(self.period_end()) {
             self.period_start = now;
         }

@@ -1,13 +1,13 @@
-//! `eeruf-loop SCENE --board NAME EMULATOR .. [--board ..]`: hardware in the loop, without a fault and with each of six.
+//! `eeruf-hil SCENE --board NAME EMULATOR .. [--board ..]`: hardware in the loop, without a fault and with each of six.
 //!
-//! Prints two tables in Markdown: how the boards' rings agree with the host's, and what each fault did. Leaves with 1 if
-//! anything is not as it must be.
+//! Prints two tables in Markdown: how the boards' rings agree with the host's, and what each fault did. Leaves with 1
+//! if anything is not as it must be.
 
+mod control;
 mod emulator;
 mod lines;
+mod reference;
 mod run;
-mod twin;
-mod unharmed;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -27,7 +27,7 @@ fn main() -> ExitCode {
     let boards: Vec<Board<'_>> =
         parts.filter_map(<[String]>::split_first).map(|(name, emulator)| (&**name, emulator)).collect();
     let Some(scene) = scene.filter(|_| !boards.is_empty()) else {
-        eprintln!("usage: eeruf-loop SCENE --board NAME EMULATOR [ARGUMENT ..] [--board ..]");
+        eprintln!("usage: eeruf-hil SCENE --board NAME EMULATOR [ARGUMENT ..] [--board ..]");
         return ExitCode::from(2);
     };
     match tables(scene, &boards) {
@@ -52,41 +52,41 @@ fn tables(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
         rows(&world, &simulated, board, emulator).map_err(|error| format!("{board}: {error}"))
     };
     let rows: Vec<Rows> = sweep(boards, rows).into_iter().collect::<Result<_, _>>()?;
-    let (whole, faults): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
+    let (fault_free, faults): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
     Ok(format!(
         "| board | readings | as the host's ring | accepted | rejected | kind as simulated | echo time within | edge noticed \
          within | latest firing |\n|---|---:|---|---:|---:|---:|---:|---:|---:|\n{}\n\
          | board | fault | readings | as the host's ring | others of another kind | others' time moved by | named |\n\
          |---|---|---:|---|---:|---:|---|\n{}",
-        whole.concat(),
+        fault_free.concat(),
         faults.concat()
     ))
 }
 
 fn rows(world: &World, simulated: &Readings, board: &str, emulator: &[String]) -> Result<Rows, String> {
     let in_run = |fault: Fault| move |error: String| format!("{fault}: {error}");
-    let whole = run(world, Fault::None, emulator).map_err(in_run(Fault::None))?;
-    let count = |kind: ReadingKind| whole.read.iter().flatten().filter(|reading| reading.kind == kind).count();
-    let (same, within) = whole.as_simulated(simulated)?;
+    let fault_free = run(world, Fault::None, emulator).map_err(in_run(Fault::None))?;
+    let count = |kind: ReadingKind| fault_free.read.iter().flatten().filter(|reading| reading.kind == kind).count();
+    let (same, within) = fault_free.as_simulated(simulated)?;
     let row = format!(
         "| {board} | {} | all | {} | {} | {same} | {within} us | {} | {} |\n",
-        whole.count(),
+        fault_free.count(),
         count(ReadingKind::Accepted),
         count(ReadingKind::Rejected),
-        whole.latest_edge,
-        whole.max_late,
+        fault_free.latest_edge,
+        fault_free.max_late,
     );
     let mut rows = String::new();
     for fault in Fault::ALL {
-        let harmed = run(world, fault, emulator).map_err(in_run(fault))?;
-        rows += &fault_row(board, fault, &harmed, &whole).map_err(in_run(fault))?;
+        let faulty = run(world, fault, emulator).map_err(in_run(fault))?;
+        rows += &fault_row(board, fault, &faulty, &fault_free).map_err(in_run(fault))?;
     }
     Ok((row, rows))
 }
 
-fn fault_row(board: &str, fault: Fault, harmed: &Run, whole: &Run) -> Result<String, String> {
-    let named = harmed.report(fault)?;
-    let change = harmed.change_from(whole, fault)?;
-    let count = harmed.count();
+fn fault_row(board: &str, fault: Fault, faulty: &Run, fault_free: &Run) -> Result<String, String> {
+    let named = faulty.report(fault)?;
+    let change = faulty.change_from(fault_free, fault)?;
+    let count = faulty.count();
     Ok(format!("| {board} | {fault} | {count} | all | {} | {} | {named} |\n", change.kinds, change.moved))
 }

@@ -1,16 +1,16 @@
-//! One run of a board in its world, held against the twin.
+//! One run of a board in its simulated world, compared with the reference and the control.
 
 use core::fmt;
 
 use eeruf_core::{Instant, Micros, Reading, ReadingKind, RingEvent};
 use eeruf_hc_sr04::{Edge, Health};
-use eeruf_loop::{Orders, SENSORS, Topic};
+use eeruf_hil::{Orders, SENSORS, Topic};
 use eeruf_sim::{Readings, World};
 
+use crate::control::Control;
 use crate::emulator::Emulator;
 use crate::lines::{FAULTY, LineFault, Lines};
-use crate::twin::{Read, Session, Twin};
-use crate::unharmed::Unharmed;
+use crate::reference::{Read, Reference, Session};
 
 /// For how many periods each run lasts.
 pub(crate) const PERIODS: u32 = 1000;
@@ -20,7 +20,7 @@ pub(crate) const PERIODS: u32 = 1000;
 pub(crate) enum Fault {
     None,
     Line(LineFault),
-    /// The main loop is held up for 50 ms after a period's end.
+    /// The main loop stalls for 50 ms after a period's end.
     Stall,
     /// The clock wraps in the middle.
     Wrap,
@@ -69,7 +69,7 @@ pub(crate) struct Run {
     pub(crate) latest_edge: Micros,
     /// The latest firing.
     pub(crate) max_late: Micros,
-    /// What the driver called each sensor last that it did not call well.
+    /// The last health of each sensor that was not well.
     named: [Health; SENSORS],
     /// The period at whose end it first did.
     named_after: Option<u32>,
@@ -90,8 +90,8 @@ pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Ru
     let outcome = (|| {
         // The first thing that a board says is when it set up its ring.
         let now = session.borrow_mut().expect(Topic::Deadline, 0)?.instant();
-        let mut twin = Twin::new(&session, now)?;
-        let mut unharmed = Unharmed::new(now, FAULTY)?;
+        let mut reference = Reference::new(&session, now)?;
+        let mut control = Control::new(now, FAULTY)?;
         let mut run = Run {
             read: Default::default(),
             latest_edge: Micros::ZERO,
@@ -106,12 +106,12 @@ pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Ru
             match record.topic() {
                 Some(Topic::Edge) => {
                     let edge = Edge { sensor: record.sensor(), high: record.flag() != 0, at: record.instant() };
-                    twin.edge(edge)?;
-                    unharmed.edge(edge);
+                    reference.edge(edge)?;
+                    control.edge(edge);
                 }
                 Some(Topic::Poll) => {
-                    let event = twin.poll(record.instant())?;
-                    unharmed.follow(record.instant(), event.as_ref())?;
+                    let event = reference.poll(record.instant())?;
+                    control.follow(record.instant(), event.as_ref())?;
                     match event {
                         Some(RingEvent::Reading(reading)) => run.take(reading),
                         Some(RingEvent::PeriodEnded(stats)) => {
@@ -122,13 +122,13 @@ pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Ru
                     }
                 }
                 Some(Topic::State) => {
-                    twin.compare(record)?;
+                    reference.compare(record)?;
                     if record.flag() > 0 {
                         return Err(format!("{} edges found the queue full", record.flag()));
                     }
-                    run.name(twin.health(), periods);
+                    run.name(reference.health(), periods);
                 }
-                Some(Topic::Deadline) => twin.compare(record)?,
+                Some(Topic::Deadline) => reference.compare(record)?,
                 _ => return Err(format!("the board said {record:?} out of turn")),
             }
         }
@@ -136,7 +136,7 @@ pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Ru
             return Err(format!("the board ended after {periods} periods of {PERIODS}"));
         }
         if matches!(fault, Fault::Line(_)) {
-            run.others_are(&unharmed.read)?;
+            run.others_are(&control.read)?;
         }
         run.latest_edge = session.borrow().lines.latest;
         Ok(run)
@@ -171,8 +171,8 @@ impl Run {
     }
 
     /// Whether all other sensors read what they would have read without the fault.
-    fn others_are(&self, unharmed: &Read) -> Result<(), String> {
-        for (sensor, (read, without)) in self.read.iter().zip(unharmed).enumerate() {
+    fn others_are(&self, control: &Read) -> Result<(), String> {
+        for (sensor, (read, without)) in self.read.iter().zip(control).enumerate() {
             if sensor != usize::from(FAULTY) && read != without {
                 return Err(format!(
                     "sensor {} reads other than it would without the fault of sensor {}",
@@ -184,8 +184,8 @@ impl Run {
         Ok(())
     }
 
-    /// How many readings are of the kind that the simulator's own run of the same world has, and by how many microseconds
-    /// their echo times differ at most.
+    /// How many readings are of the kind that the simulator's own run of the same world has, and by how many
+    /// microseconds their echo times differ at most.
     pub(crate) fn as_simulated(&self, simulated: &Readings) -> Result<(usize, f64), String> {
         let (mut same, mut most) = (0, 0.0_f64);
         for k in 0..simulated.len() {
@@ -225,12 +225,13 @@ impl Run {
         })
     }
 
-    /// How others differ from a run without a fault. Firings and interrupts come some microseconds earlier or later when there
-    /// is more or less to do, so echo times move by as much; no kind of reading may change for it. A stall makes the ring
-    /// compare with nothing: the readings of three periods, those not yet told when it began, and the first ones after that.
-    pub(crate) fn change_from(&self, whole: &Self, fault: Fault) -> Result<Change, String> {
+    /// How other sensors differ from a run without a fault. Firings and interrupts come some microseconds earlier or
+    /// later when there is more or less to do, so echo times move by as much; no kind of reading may change for it. A
+    /// stall makes the ring compare with nothing: the readings of three periods, those not yet emitted when it began,
+    /// and the first ones after that.
+    pub(crate) fn change_from(&self, fault_free: &Self, fault: Fault) -> Result<Change, String> {
         let mut change = Change { kinds: 0, moved: Micros::ZERO };
-        for (sensor, (mine, without)) in self.read.iter().zip(&whole.read).enumerate() {
+        for (sensor, (mine, without)) in self.read.iter().zip(&fault_free.read).enumerate() {
             if sensor == usize::from(FAULTY) && matches!(fault, Fault::Line(_)) {
                 continue;
             }

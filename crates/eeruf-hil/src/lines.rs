@@ -4,10 +4,10 @@ use core::fmt;
 
 use eeruf_core::{Instant, Micros};
 use eeruf_hc_sr04::{Edge, Health};
-use eeruf_loop::{Ahead, MOST_AHEAD, SENSORS};
+use eeruf_hil::{Ahead, MOST_AHEAD, SENSORS};
 use eeruf_sim::{LockStep, World};
 
-/// The sensor that the faults befall, from 0.
+/// The sensor that has the faults, from 0.
 pub(crate) const FAULTY: u8 = 2;
 /// From the trigger's fall to the rise of the line, when the sound has been sent.
 const RISE_US: u64 = 450;
@@ -81,7 +81,8 @@ impl<'w> Lines<'w> {
         Ok(Self { world, fault, lines: Default::default(), clock: (start, 0), latest: Micros::ZERO })
     }
 
-    /// Microseconds since the start, without the clock's wrap: `at` is less than half an hour from what was asked before.
+    /// Microseconds since the start, without the clock's wrap: `at` is less than half an hour from what was asked
+    /// before.
     fn since_start(&mut self, at: Instant) -> u64 {
         let (known, us) = self.clock;
         let ahead = at.since(known).as_micros().cast_signed();
@@ -102,7 +103,8 @@ impl<'w> Lines<'w> {
         Ok(())
     }
 
-    /// The edges of a line after its last trigger, as far as is known: when, whether it rises, whether the interrupt is lost.
+    /// The edges of a line after its last trigger, as far as is known: when, whether it rises, whether the interrupt is
+    /// lost.
     fn edges(&self, sensor: u8) -> Vec<(u64, bool, bool)> {
         let Some(&line) = self.lines.get(usize::from(sensor)) else { return Vec::new() };
         let Some(triggered) = line.triggered_us else { return Vec::new() };
@@ -124,7 +126,8 @@ impl<'w> Lines<'w> {
         }
     }
 
-    /// What is to come on all lines, for a board whose clock reads `now`. Edges that it may just have noticed are among them.
+    /// What is to come on all lines, for a board whose clock reads `now`. Edges that it may just have noticed are among
+    /// them.
     pub(crate) fn ahead(&mut self, now: Instant) -> Result<Vec<Ahead>, String> {
         let now = self.since_start(now);
         let mut ahead = Vec::new();
@@ -147,15 +150,15 @@ impl<'w> Lines<'w> {
     /// The board has noticed an edge. It must be the next one of its line, at its time or a little later.
     pub(crate) fn notice(&mut self, edge: Edge) -> Result<(), String> {
         let noticed_at = self.since_start(edge.at);
-        let told = self.edges(edge.sensor);
+        let expected = self.edges(edge.sensor);
         let line = self.lines.get_mut(usize::from(edge.sensor));
         let line = line.ok_or_else(|| format!("an edge of sensor {}, which is not there", edge.sensor + 1))?;
-        let next = told.iter().filter(|&&(_, _, lost)| !lost).nth(line.noticed);
+        let next = expected.iter().filter(|&&(_, _, lost)| !lost).nth(line.noticed);
         let Some(&(at, ..)) =
             next.filter(|&&(at, high, _)| high == edge.high && (at..=at + LATEST_US).contains(&noticed_at))
         else {
             return Err(format!(
-                "sensor {}: the board noticed an edge {noticed_at} us after the start that does not follow from {told:?}",
+                "sensor {}: the board noticed an edge {noticed_at} us after the start that does not follow from {expected:?}",
                 edge.sensor + 1
             ));
         };
@@ -242,9 +245,9 @@ mod tests {
         let simulated = eeruf_sim::table_i_d_for(robot.sensors.len(), robot.period, robot.neighbours).unwrap();
         for sensor in 0..SENSORS {
             for phase in [eeruf_core::Phase::A, eeruf_core::Phase::B] {
-                assert_eq!(eeruf_loop::SCHEDULE.t_fire(phase, sensor), simulated.t_fire(phase, sensor));
+                assert_eq!(eeruf_hil::SCHEDULE.t_fire(phase, sensor), simulated.t_fire(phase, sensor));
             }
         }
-        assert_eq!(eeruf_loop::CONFIG.t_delta, robot.t_delta);
+        assert_eq!(eeruf_hil::CONFIG.t_delta, robot.t_delta);
     }
 }

@@ -1,5 +1,7 @@
-//! The unharmed ring: as the twin, fired at the board's very instants and handed the board's very edges, but for one sensor,
-//! whose line is well and always shows a wall. What it tells of all other sensors is what they would read without the fault.
+//! The control: a ring without the fault. It fires at the same instants as the board's ring and gets the same edges,
+//! except for one sensor, whose line is well and always shows a wall.
+//!
+//! What it reads with all other sensors is what they would read without the fault.
 
 use core::convert::Infallible;
 
@@ -7,8 +9,9 @@ use eeruf_core::{Instant, Micros, RingEvent, Scheduler};
 use eeruf_hc_sr04::Edge;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
-use crate::twin::{HostRing, Read, ring};
+use crate::reference::{HostRing, Read, ring};
 
+/// When the line of the sensor that is well rises and falls after its trigger: a wall 2 m away.
 const RISE: Micros = Micros::new(460);
 const FALL: Micros = Micros::new(12_460);
 
@@ -39,7 +42,8 @@ impl InputPin for Idle {
     }
 }
 
-pub(crate) struct Unharmed {
+/// The ring without the fault, and what it reads.
+pub(crate) struct Control {
     ring: HostRing<Idle>,
     /// The sensor that is well here.
     well: u8,
@@ -48,7 +52,7 @@ pub(crate) struct Unharmed {
     pub(crate) read: Read,
 }
 
-impl Unharmed {
+impl Control {
     pub(crate) fn new(now: Instant, well: u8) -> Result<Self, String> {
         Ok(Self { ring: ring(now, |_| Idle)?, well, ahead: Vec::new(), read: Default::default() })
     }
@@ -59,7 +63,7 @@ impl Unharmed {
         }
     }
 
-    /// Follows a poll of the board's ring at `now` that told `event`: fires when that fired, and not otherwise.
+    /// Follows a poll of the board's ring at `now` that returned `event`: fires if that fired, and not otherwise.
     pub(crate) fn follow(&mut self, now: Instant, event: Option<&RingEvent>) -> Result<(), String> {
         while let Some(edge) = self.ahead.pop_if(|edge| now.has_reached(edge.at)) {
             self.ring.edge(edge);
@@ -72,7 +76,7 @@ impl Unharmed {
             let scheduler = self.ring.ring().scheduler();
             let would_fire = scheduler.next_firing().is_some() && now.has_reached(scheduler.deadline());
             if would_fire && fires.is_none() {
-                // Here a reading is already told that the board's ring has yet to tell before it fires.
+                // The board's ring must emit a reading before it fires; here that reading is emitted already.
                 return Ok(());
             }
             match self.ring.poll(now) {

@@ -1,6 +1,7 @@
-//! The twin: a ring on the host that is handed every input of the ring on the board, in the same order, and must tell the same.
+//! The reference: a ring on the host that gets every input of the ring on the board, in the same order, and must emit
+//! the same events.
 //!
-//! Its trigger pins are what fires into the simulated world, and only when the board has said that it triggers, too.
+//! Its trigger pins fire into the simulated world, and only when the board has said that it triggers, too.
 
 use core::cell::RefCell;
 use core::convert::Infallible;
@@ -8,14 +9,14 @@ use std::rc::Rc;
 
 use eeruf_core::{Instant, Reading, Ring, RingEvent, ScheduledFiring};
 use eeruf_hc_sr04::{Edge, HcSr04Ring, Health, Pins, Settings};
-use eeruf_loop::{CONFIG, Record, SCHEDULE, SENSORS, Topic};
+use eeruf_hil::{CONFIG, Record, SCHEDULE, SENSORS, Topic};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
 use crate::emulator::Emulator;
 use crate::lines::Lines;
 
-/// What ring and pins share: the board, the world, and what first went wrong.
+/// What ring and pins share: the board, its lines, and the first error.
 pub(crate) struct Session<'w> {
     pub(crate) board: Emulator,
     pub(crate) lines: Lines<'w>,
@@ -50,8 +51,8 @@ impl<'w> Session<'w> {
         self.board.answer(&ahead)
     }
 
-    /// Pins cannot fail in the driver's eyes, so that a failure waits here until the poll is over.
-    fn note<T: Default>(&mut self, result: Result<T, String>) -> T {
+    /// The driver takes pins that cannot fail, so a failure is stored here until the poll is over.
+    fn store_error<T: Default>(&mut self, result: Result<T, String>) -> T {
         result.unwrap_or_else(|wrong| {
             self.wrong.get_or_insert(wrong);
             T::default()
@@ -59,7 +60,7 @@ impl<'w> Session<'w> {
     }
 }
 
-/// A trigger or echo pin of the twin.
+/// A trigger or echo pin of the reference.
 pub(crate) struct Pin<'w> {
     session: Shared<'w>,
     sensor: u8,
@@ -77,7 +78,7 @@ impl OutputPin for Pin<'_> {
     fn set_low(&mut self) -> Result<(), Infallible> {
         let mut session = self.session.borrow_mut();
         let result = session.trigger(self.sensor);
-        session.note(result);
+        session.store_error(result);
         Ok(())
     }
 }
@@ -86,7 +87,7 @@ impl InputPin for Pin<'_> {
     fn is_high(&mut self) -> Result<bool, Infallible> {
         let mut session = self.session.borrow_mut();
         let result = session.level(self.sensor);
-        Ok(session.note(result))
+        Ok(session.store_error(result))
     }
 
     fn is_low(&mut self) -> Result<bool, Infallible> {
@@ -112,12 +113,12 @@ pub(crate) fn ring<P: OutputPin + InputPin>(now: Instant, pin: impl Fn(u8) -> P)
 }
 
 /// The ring on the host.
-pub(crate) struct Twin<'w> {
+pub(crate) struct Reference<'w> {
     session: Shared<'w>,
     ring: HostRing<Pin<'w>>,
 }
 
-impl<'w> Twin<'w> {
+impl<'w> Reference<'w> {
     pub(crate) fn new(session: &Shared<'w>, now: Instant) -> Result<Self, String> {
         let pin = |sensor| Pin { session: Rc::clone(session), sensor };
         Ok(Self { session: Rc::clone(session), ring: ring(now, pin)? })
@@ -129,19 +130,19 @@ impl<'w> Twin<'w> {
         Ok(())
     }
 
-    /// Polls, and compares what that tells with what it told the board.
+    /// Polls, and compares the event with the one that the board got.
     pub(crate) fn poll(&mut self, now: Instant) -> Result<Option<RingEvent>, String> {
         let event = self.ring.poll(now);
         let mut session = self.session.borrow_mut();
         if let Some(wrong) = session.wrong.take() {
             return Err(wrong);
         }
-        let mine = Record::told(event.as_ref());
-        let board = session.expect(Topic::Told, mine.sensor())?;
+        let mine = Record::event(event.as_ref());
+        let board = session.expect(Topic::Event, mine.sensor())?;
         if board == mine {
             Ok(event)
         } else {
-            Err(format!("the host's ring told {event:?}, {:x?}; the board's {:x?}", mine.0, board.0))
+            Err(format!("the host's ring emitted {event:?}, {:x?}; the board's {:x?}", mine.0, board.0))
         }
     }
 

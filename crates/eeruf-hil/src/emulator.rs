@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use eeruf_loop::{Ahead, Orders, Record};
+use eeruf_hil::{Ahead, Orders, Record};
 
 /// A run takes seconds; a board that hangs is ended after this.
 const LONGEST: Duration = Duration::from_secs(120);
@@ -90,8 +90,8 @@ impl Emulator {
         Ok(Some(Record(core::array::from_fn(|n| u32::from_le_bytes(words[n])))))
     }
 
-    /// Ends a board that has said its last, or with which something is wrong. Fails unless all went well and it left with 0;
-    /// what it said as text is then part of the error.
+    /// Ends a board that has said its last, or with which something is wrong. Fails unless all went well and it left
+    /// with 0; what it said as text is then part of the error.
     pub(crate) fn finish(mut self, outcome: Result<(), String>) -> Result<(), String> {
         let status = {
             let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);

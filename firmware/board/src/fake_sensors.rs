@@ -1,7 +1,7 @@
-//! The world of a board on its own: sensors with a wall in front of each, seen through their pins.
+//! Fake sensors for a board on its own: HC-SR04 modules with a wall in front of each, seen through their pins.
 //!
-//! Each sensor behaves as an HC-SR04. After a trigger its line rises, falls when the echo is in, and makes the echo
-//! interrupt both times. All of it is played by the echo timer.
+//! After a trigger the line of a sensor rises, and falls when the echo is in. Both edges raise the echo interrupt; a
+//! timer of the board makes them.
 
 use core::cell::Cell;
 use core::convert::Infallible;
@@ -12,10 +12,10 @@ use eeruf_hc_sr04::{Edge, Pins};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
-/// The most sensors that can be played.
-pub const MAX_SENSORS: usize = 12;
+/// The most sensors there can be: as many as the paper has.
+pub const MAX_FAKE_SENSORS: usize = 12;
 
-/// From trigger to the rise of the line.
+/// From trigger to the rise of the line: how long an HC-SR04 sends.
 const RISE: Micros = Micros::new(450);
 
 #[derive(Clone, Copy)]
@@ -28,11 +28,11 @@ struct Line {
     high: bool,
 }
 
-struct World {
-    lines: [Cell<Line>; MAX_SENSORS],
+struct Sensors {
+    lines: [Cell<Line>; MAX_FAKE_SENSORS],
 }
 
-impl World {
+impl Sensors {
     /// Sets the timer to the next edge of any line.
     fn set_timer(&self) {
         let mut next: Option<Instant> = None;
@@ -50,18 +50,18 @@ impl World {
     }
 }
 
-static WORLD: Mutex<World> = Mutex::new(World {
-    lines: [const { Cell::new(Line { t_echo: None, rise: None, fall: None, high: false }) }; MAX_SENSORS],
+static SENSORS: Mutex<Sensors> = Mutex::new(Sensors {
+    lines: [const { Cell::new(Line { t_echo: None, rise: None, fall: None, high: false }) }; MAX_FAKE_SENSORS],
 });
 
-fn with<R>(f: impl FnOnce(CriticalSection<'_>, &World) -> R) -> R {
-    critical_section::with(|token| f(token, WORLD.borrow(token)))
+fn with<R>(f: impl FnOnce(CriticalSection<'_>, &Sensors) -> R) -> R {
+    critical_section::with(|token| f(token, SENSORS.borrow(token)))
 }
 
 /// Puts a wall in front of a sensor, at this echo time, or takes the sensor away.
 pub fn put(sensor: usize, t_echo: Option<Micros>) {
-    with(|_, world| {
-        if let Some(line) = world.lines.get(sensor) {
+    with(|_, sensors| {
+        if let Some(line) = sensors.lines.get(sensor) {
             line.set(Line { t_echo, ..line.get() });
         }
     });
@@ -70,22 +70,22 @@ pub fn put(sensor: usize, t_echo: Option<Micros>) {
 /// Triggers a sensor now.
 fn trigger(sensor: usize) {
     let now = crate::now();
-    with(|_, world| {
-        let Some(cell) = world.lines.get(sensor) else { return };
+    with(|_, sensors| {
+        let Some(cell) = sensors.lines.get(sensor) else { return };
         let line = cell.get();
         if let Some(t_echo) = line.t_echo {
             cell.set(Line { rise: Some(now + RISE), fall: Some(now + RISE + t_echo), ..line });
         }
-        world.set_timer();
+        sensors.set_timer();
     });
 }
 
-/// What the interrupt controller would say of the lines: the edge that has come, if one has. To be called by the echo
-/// interrupt's handler until there is none.
+/// The edge that has come, if one has, as an interrupt controller would report it. The handler of the echo interrupt
+/// calls this until there is none.
 pub fn edge() -> Option<Edge> {
     let at = crate::now();
-    with(|_, world| {
-        for (x, cell) in world.lines.iter().enumerate() {
+    with(|_, sensors| {
+        for (x, cell) in sensors.lines.iter().enumerate() {
             let mut line = cell.get();
             let Some(due) = line.rise.or(line.fall) else { continue };
             if !at.has_reached(due) {
@@ -98,7 +98,7 @@ pub fn edge() -> Option<Edge> {
             cell.set(line);
             return Some(Edge { sensor: x as u8, high: line.high, at });
         }
-        world.set_timer();
+        sensors.set_timer();
         None
     })
 }
@@ -138,7 +138,7 @@ impl ErrorType for Echo {
 
 impl InputPin for Echo {
     fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(with(|_, world| world.lines.get(usize::from(self.0)).is_some_and(|line| line.get().high)))
+        Ok(with(|_, sensors| sensors.lines.get(usize::from(self.0)).is_some_and(|line| line.get().high)))
     }
 
     fn is_low(&mut self) -> Result<bool, Infallible> {

@@ -1,4 +1,4 @@
-//! The echo lines as the host says they will be, and the pins that the driver sees.
+//! The echo lines, whose edges the host sends ahead of time, and the pins that the driver sees.
 
 use core::cell::RefCell;
 use core::convert::Infallible;
@@ -6,7 +6,7 @@ use core::convert::Infallible;
 use critical_section::Mutex;
 use eeruf_core::Instant;
 use eeruf_hc_sr04::Edge;
-use eeruf_loop::{Ahead, MOST_AHEAD, Record, SENSORS};
+use eeruf_hil::{Ahead, MOST_AHEAD, Record, SENSORS};
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
 use crate::host::Host;
@@ -67,7 +67,7 @@ impl Lines {
         None
     }
 
-    /// Takes the host's word for what is to come. What has come already is part of that.
+    /// Replaces the edges to come by the host's answer, which may also hold edges that have come already.
     fn replace(&mut self, ahead: impl Iterator<Item = Ahead>) {
         self.next = 0;
         self.count = 0;
@@ -81,8 +81,8 @@ impl Lines {
     }
 }
 
-/// What the interrupt controller would say of the lines: the edge that has come, if one has. To be called by the echo
-/// interrupt's handler until there is none.
+/// The edge that has come, if one has, as an interrupt controller would report it. The handler of the echo interrupt
+/// calls this until there is none.
 pub(crate) fn edge() -> Option<Edge> {
     with(Lines::edge)
 }

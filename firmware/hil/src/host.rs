@@ -1,16 +1,16 @@
-//! The host, by the debugger's file access: records go to the emulator's standard output, answers come from its standard
-//! input. The emulated time stands still while we wait for them.
+//! The host, by the debugger's file access: records go to the emulator's standard output, answers come from its
+//! standard input. The emulated time stands still while we wait for them.
 
 use core::cell::RefCell;
 
 use eeruf_board::say;
 use eeruf_board::say::leave;
 use eeruf_core::Instant;
-use eeruf_loop::{MOST_AHEAD, Orders, Record};
+use eeruf_hil::{MOST_AHEAD, Orders, Record};
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 
-/// How many records are kept before they are sent.
+/// How many records are buffered before they are sent.
 const KEPT: usize = 64;
 
 /// The host.
@@ -27,7 +27,7 @@ impl Host {
     /// Asks for orders.
     pub(crate) fn open() -> (Self, Orders) {
         let (Ok(mut input), Ok(output)) = (File::open(c"/dev/stdin"), File::create(c"/dev/stdout")) else {
-            say!("no host: this program runs under eeruf-loop");
+            say!("no host: this program runs under eeruf-hil");
             leave(4)
         };
         let mut words = [[0; 4]; 4];
@@ -36,7 +36,7 @@ impl Host {
         (Self(RefCell::new(pipes)), Orders::from_words(words.map(u32::from_le_bytes)))
     }
 
-    /// Says something, in time.
+    /// Says something, at the latest when the buffer is full.
     pub(crate) fn say(&self, record: Record) {
         let mut pipes = self.0.borrow_mut();
         if pipes.count == KEPT {

@@ -1,13 +1,14 @@
 //! Hardware in the loop: what the board and the host agree on.
 //!
-//! The board runs a ring of eight HC-SR04 sensors as it would run on a robot; the host plays the echo lines. Both speak in
-//! [`Record`]s over two pipes, in lock step. The board says everything that goes into its ring and everything that comes out:
-//! each edge, each poll, each look at a pin, each event. It waits for an answer only when it has triggered a sensor: the time
-//! of an emulated board stands still while it waits. The answer is every edge to come on any line ([`Ahead`]), as far as is
-//! known by then; it replaces the answer before, since sound that a later firing sends may be heard first.
+//! The board runs a ring of eight HC-SR04 sensors as it would run on a robot; the host plays the echo lines. They
+//! exchange [`Record`]s over two pipes, in lock step. The board reports everything that goes into its ring and
+//! everything that comes out: each edge, each poll, each look at a pin, each event. It waits for an answer only when it
+//! has triggered a sensor: the time of an emulated board stands still while it waits. The answer is every edge to come
+//! on any line ([`Ahead`]), as far as is known by then; it replaces the answer before, since the sound of a later
+//! firing may be heard first.
 //!
-//! The host, a program that this crate is too, hands the same inputs to a ring of its own and compares what comes out, word by
-//! word.
+//! The host, which is the binary of this crate, hands the same inputs to a ring of its own (the reference) and compares
+//! what comes out, word by word.
 #![no_std]
 
 use eeruf_core::{Instant, Micros, Reading, RingConfig, RingEvent, Schedule};
@@ -28,7 +29,8 @@ pub const SCHEDULE: Schedule<SENSORS> = {
     }
 };
 
-/// How the ring listens and compares: as `scenes/alcove-hc-sr04.toml` says, with a window for the longest pulse and its delay.
+/// How the ring listens and compares: as `scenes/alcove-hc-sr04.toml` says, with a window for the longest pulse and its
+/// delay.
 pub const CONFIG: RingConfig = RingConfig::new(Micros::new(500), Micros::from_millis(40));
 
 /// What the host says first.
@@ -64,7 +66,7 @@ pub const MOST_AHEAD: usize = 48;
 pub struct Ahead {
     /// The edge, and when.
     pub edge: Edge,
-    /// Whether its interrupt gets lost: the line changes, and nobody is told.
+    /// Whether its interrupt gets lost: the line changes, and no interrupt says so.
     pub lost: bool,
 }
 
@@ -100,8 +102,8 @@ pub enum Topic {
     Level,
     /// A trigger pin has fallen: the sensor sends its sound. The board waits for the answer.
     Trigger,
-    /// What the poll told.
-    Told,
+    /// The event that the poll returned, or that there was none.
+    Event,
     /// Until when the board sleeps.
     Deadline,
     /// How the sensors are at a period's end, and how many edges found the queue full.
@@ -110,7 +112,7 @@ pub enum Topic {
 
 impl Topic {
     const ALL: [Self; 7] =
-        [Self::Edge, Self::Poll, Self::Level, Self::Trigger, Self::Told, Self::Deadline, Self::State];
+        [Self::Edge, Self::Poll, Self::Level, Self::Trigger, Self::Event, Self::Deadline, Self::State];
 }
 
 const NONE: u32 = u32::MAX;
@@ -162,16 +164,16 @@ impl Record {
         Self::at(Topic::Deadline, 0, 0, at)
     }
 
-    /// What a poll told.
-    pub fn told(event: Option<&RingEvent>) -> Self {
+    /// The event that a poll returned, or that there was none.
+    pub fn event(event: Option<&RingEvent>) -> Self {
         match event {
-            None => Self::new(Topic::Told, 0, 0, [0; 5]),
-            Some(&RingEvent::Fire(sensor)) => Self::new(Topic::Told, sensor, 1, [0; 5]),
+            None => Self::new(Topic::Event, 0, 0, [0; 5]),
+            Some(&RingEvent::Fire(sensor)) => Self::new(Topic::Event, sensor, 1, [0; 5]),
             Some(&RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age })) => {
                 let us = |time: Option<Micros>| time.map_or(NONE, Micros::as_micros);
                 let kind = kind as u32 | u32::from(phase.0) << 8;
                 let age = age.map_or(NONE, u32::from);
-                Self::new(Topic::Told, sensor, 2, [kind, period, us(t_echo), us(previous), age])
+                Self::new(Topic::Event, sensor, 2, [kind, period, us(t_echo), us(previous), age])
             }
             Some(RingEvent::PeriodEnded(stats)) => {
                 // Seven bits for each count, of about eight readings a period.
@@ -179,7 +181,7 @@ impl Record {
                 let counts = counts.fold(0_u64, |sum, &kind| sum << 7 | u64::from(stats.tally.of(kind)));
                 let [low, high] = [counts as u32, (counts >> 32) as u32];
                 let late = stats.max_late.as_micros();
-                Self::new(Topic::Told, 0, 3, [stats.phase.0.into(), stats.period, late, low, high])
+                Self::new(Topic::Event, 0, 3, [stats.phase.0.into(), stats.period, late, low, high])
             }
         }
     }
@@ -238,7 +240,7 @@ mod tests {
             previous: Some(Micros::new(4001)),
             age: Some(0),
         };
-        let record = |reading| Record::told(Some(&RingEvent::Reading(reading)));
+        let record = |reading| Record::event(Some(&RingEvent::Reading(reading)));
         assert_eq!(record(reading), record(reading));
         for other in [
             Reading { sensor: 2, ..reading },
@@ -257,7 +259,7 @@ mod tests {
     #[test]
     fn period_ends_that_differ_in_any_count_are_different_records() {
         let stats = PeriodStats { period: 1, phase: Phase::A, tally: Tally::default(), max_late: Micros::ZERO };
-        let record = |stats| Record::told(Some(&RingEvent::PeriodEnded(stats)));
+        let record = |stats| Record::event(Some(&RingEvent::PeriodEnded(stats)));
         for kind in ReadingKind::ALL {
             let mut other = stats;
             other.tally.count(kind);

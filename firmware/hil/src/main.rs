@@ -1,16 +1,17 @@
-//! A ring of eight HC-SR04 sensors whose world is the simulator on the host, in lock step. The main loop is that of any
-//! other ring, but for what it tells the host: everything that goes into the ring, and everything that comes out.
+//! A ring of eight HC-SR04 sensors whose surroundings are the simulator on the host, in lock step. The main loop is
+//! that of any other ring, and also reports to the host everything that goes into the ring and everything that comes
+//! out.
 #![no_std]
 #![no_main]
 
 mod host;
 mod lines;
 
+use eeruf_board::fake_sensors::Delay;
 use eeruf_board::say::leave;
-use eeruf_board::world::Delay;
 use eeruf_core::{Micros, Ring, RingEvent};
 use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Pins, Settings};
-use eeruf_loop::{CONFIG, Record, SCHEDULE};
+use eeruf_hil::{CONFIG, Record, SCHEDULE};
 
 use crate::host::Host;
 use crate::lines::Pin;
@@ -50,7 +51,7 @@ fn main() -> ! {
             }
             host.say(Record::poll(now));
             let event = ring.poll(now);
-            host.say(Record::told(event.as_ref()));
+            host.say(Record::event(event.as_ref()));
             match event {
                 None => break,
                 Some(RingEvent::PeriodEnded(stats)) => {
@@ -74,7 +75,7 @@ fn main() -> ! {
     }
 }
 
-/// Holds the main loop up, as something else that it does might.
+/// Delays the main loop, as other work in it might.
 fn stall(time: Micros) {
     let end = eeruf_board::now() + time;
     while !eeruf_board::now().has_reached(end) {}

@@ -178,9 +178,9 @@ fn emulator(board: &Board, image: &Path, shift: u32) -> Command {
 /// The boards' rings in the simulated world, in lock step with the host's; the tables that come of it.
 fn in_the_loop() -> Result<String, Trouble> {
     let mut cargo = Command::new("cargo");
-    cargo.args(["run", "--quiet", "--locked", "--package", "eeruf-loop", "--", "scenes/alcove-hc-sr04.toml"]);
+    cargo.args(["run", "--quiet", "--locked", "--package", "eeruf-hil", "--", "scenes/alcove-hc-sr04.toml"]);
     for board in &BOARDS {
-        let qemu = emulator(board, &image(board, "eeruf-loop-board")?, 6);
+        let qemu = emulator(board, &image(board, "eeruf-hil-board")?, 6);
         cargo.args(["--board", board.name]).arg(qemu.get_program()).args(qemu.get_args());
     }
     let what = |why: &dyn std::fmt::Display| Trouble::Failed(format!("hardware in the loop: {why}"));

@@ -99,7 +99,7 @@ fn exactly_one_rearrangement_of_table_i_keeps_19_ms_between_any_four_adjacent_se
 }
 
 /// Walls 0.9 m to 2.8 m away: sensor `x` hears its echo after `5 + x` ms.
-fn a_ring_believes_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock() {
+fn a_ring_accepts_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock() {
     let config = RingConfig::new(Micros::new(999), Micros::from_millis(36));
     let mut ring: ScheduledRing<12> =
         Ring::new(&TABLE_I_D, config, Instant::from_micros(u32::MAX - 1_000_000)).expect("a ring");
@@ -165,7 +165,7 @@ fn main() -> ! {
         table_i_d_keeps_19_ms_in_its_blocks_and_17_ms_on_the_line,
         every_schedule_of_the_shared_cases_meets_its_requirements,
         exactly_one_rearrangement_of_table_i_keeps_19_ms_between_any_four_adjacent_sensors,
-        a_ring_believes_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock,
+        a_ring_accepts_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock,
         readings_that_alternate_as_crosstalk_does_are_all_rejected,
     ])
 }

@@ -6,9 +6,8 @@ use std::time::Instant;
 use eeruf_core::{
     Criterion, MAX_SENSORS, Micros, Requirements,
     search::{
-        self, PeriodProblem, SearchError, WaitProblem, design as period,
-        design::Progress,
-        wait::{self, All, Control, Finish, Objective},
+        self, Control, Outcome, PeriodProblem, Progress, SearchError, WaitProblem, design as period,
+        wait::{self, Budget, Enumeration, Objective},
     },
 };
 use pyo3::{prelude::*, types::PyTuple};
@@ -182,10 +181,13 @@ pub(crate) fn design(
         let (criterion, layout) = (Criterion::Exact, layout.layout());
         let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo };
         let needs = PeriodProblem { sensors, requirements, tick };
-        let mut control = |at: &Progress| if go_on(at) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+        let mut control = |at: &Progress| control_flow(go_on(at));
         shortest(&needs, budget, &mut control).map_err(Raise::raise)
     };
-    let text = |at: &Progress| format!("{} nodes, period {} to {} ticks", at.nodes, at.bound, at.best);
+    let text = |at: &Progress| {
+        let (bound, best) = (at.bound.unwrap_or(0), at.best.unwrap_or(0));
+        format!("{} nodes, period {bound} to {best} ticks", at.nodes)
+    };
     let (found, reason) = if sensors <= FEW_SENSORS {
         let mut watch = Watch::new(progress)?;
         let designed = py.detach(|| work(&mut |at| watch.go_on(None, || text(at))));
@@ -196,10 +198,15 @@ pub(crate) fn design(
     Ok(Found::of(&found, began, Some(reason)))
 }
 
+/// What a watcher says, as the search reads it.
+fn control_flow(go_on: bool) -> ControlFlow<()> {
+    if go_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+}
+
 fn shortest(
     needs: &PeriodProblem<'_>,
     budget: u64,
-    control: &mut impl period::Control,
+    control: &mut impl Control,
 ) -> Result<(search::Found<MAX_SENSORS>, String), SearchError> {
     let mut memory = vec![0; period::memory_words(needs.sensors)];
     let designed = needs.shortest::<MAX_SENSORS>(budget, &mut memory, control)?;
@@ -207,7 +214,7 @@ fn shortest(
     if found.proven {
         found.schedule = Some(needs.prefer(&designed, PREFERENCE_BUDGET, &mut memory, control)?.schedule);
     }
-    Ok((found, designed.reason().to_string()))
+    Ok((found, designed.explanation().to_string()))
 }
 
 /// The paper's question: lags are given, waits are sought on a grid so that crosstalk never repeats (Sec. 3.1).
@@ -247,14 +254,14 @@ impl WaitSearch {
         &self,
         py: Python<'_>,
         budget: u64,
-        work: impl FnOnce(&mut [u32], &mut Control<'_>) -> Result<T, SearchError> + Send,
+        work: impl FnOnce(&mut [u32], &mut Budget<'_>) -> Result<T, SearchError> + Send,
         words: usize,
     ) -> PyResult<T> {
         let mut watch = Watch::new(None)?;
         let result = py.detach(|| {
-            let mut watcher = |_| watch.go_on(None, String::new);
-            let mut control = Control::nodes_at_most(budget).watched(POLL, &mut watcher);
-            work(&mut vec![0; words], &mut control)
+            let mut watcher = |_: &Progress| control_flow(watch.go_on(None, String::new));
+            let mut budget = Budget::nodes_at_most(budget).watched(POLL, &mut watcher);
+            work(&mut vec![0; words], &mut budget)
         });
         watch.outcome(result.map_err(Raise::raise))
     }
@@ -313,7 +320,7 @@ impl WaitSearch {
     ///     ((2000, 0), (0, 0))
     fn first(&self, py: Python<'_>) -> PyResult<Option<Schedule>> {
         let words = wait::memory_words(self.sensors);
-        let first = self.run(py, u64::MAX, |memory, control| self.search.first(memory, control), words)?;
+        let first = self.run(py, u64::MAX, |memory, budget| self.search.first(memory, budget), words)?;
         Ok(first.1.map(Schedule))
     }
 
@@ -336,7 +343,7 @@ impl WaitSearch {
     #[pyo3(signature = (limit=None))]
     fn count(&self, py: Python<'_>, limit: Option<&Bound<'_, PyAny>>) -> PyResult<u128> {
         let limit = limit.map(|limit| whole("limit", limit, 1..=u64::MAX)).transpose()?.map(u128::from);
-        let count = |memory: &mut [u32], control: &mut Control<'_>| self.search.count(limit, memory, control);
+        let count = |memory: &mut [u32], budget: &mut Budget<'_>| self.search.count(limit, memory, budget);
         let count = self.run(py, u64::MAX, count, wait::COUNT_WORDS)?.count;
         // Core counts the last sensor's tables all at once, and so past the limit.
         Ok(limit.map_or(count, |limit| count.min(limit)))
@@ -353,7 +360,7 @@ impl WaitSearch {
     ///     >>> [table.t_wait_b_us for table in itertools.islice(search.all(), 2)]
     ///     [(0, 2000), (0, 3000)]
     fn all(&self) -> PyResult<WaitTables> {
-        Ok(WaitTables(Walk::try_new(self.search.clone(), search::WaitSearch::all).map_err(Raise::raise)?))
+        Ok(WaitTables(Walk::try_new(self.search.clone(), search::WaitSearch::enumerate).map_err(Raise::raise)?))
     }
 
     /// The best table: the one whose smallest interval between neighbours, or whose ``T_delta``, is largest. Ctrl-C ends the search.
@@ -386,7 +393,7 @@ impl WaitSearch {
         let budget = whole_or("budget", budget, u64::MAX, 1..=u64::MAX)?;
         let words = wait::memory_words(self.sensors);
         let began = Instant::now();
-        let best = |memory: &mut [u32], control: &mut Control<'_>| self.search.best(objective, memory, control);
+        let best = |memory: &mut [u32], budget: &mut Budget<'_>| self.search.best(objective, memory, budget);
         let found: search::Found<MAX_SENSORS> = self.run(py, budget, best, words)?;
         Ok(Found::of(&found, began, None))
     }
@@ -397,7 +404,7 @@ self_cell::self_cell!(
     struct Walk {
         owner: search::WaitSearch,
         #[covariant]
-        dependent: All,
+        dependent: Enumeration,
     }
 );
 
@@ -420,12 +427,12 @@ impl WaitTables {
     fn __next__(&mut self, py: Python<'_>) -> PyResult<Option<Schedule>> {
         let mut watch = Watch::new(None)?;
         let next = py.detach(|| {
-            self.0.with_dependent_mut(|search, all| {
+            self.0.with_dependent_mut(|search, tables| {
                 let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-                let mut watcher = |_| watch.go_on(None, String::new);
-                let mut control = Control::nodes_at_most(u64::MAX).watched(POLL, &mut watcher);
-                match all.next_into(&mut control, &mut a, &mut b)? {
-                    Finish::Found => search.schedule(&a, &b).map(Some),
+                let mut watcher = |_: &Progress| control_flow(watch.go_on(None, String::new));
+                let mut budget = Budget::nodes_at_most(u64::MAX).watched(POLL, &mut watcher);
+                match tables.next_into(&mut budget, &mut a, &mut b)? {
+                    Outcome::Found(()) => search.schedule(&a, &b).map(Some),
                     _ => Ok(None),
                 }
             })

@@ -65,8 +65,7 @@ impl fmt::Display for SearchError {
             Self::TooLong { period_us } => write!(
                 f,
                 "firing one by one already takes {} s; expected at most {MAX_PERIOD}, so a shorter interval \
-                 or window, or a \
-                 smaller t_delta",
+                 or window, or a smaller t_delta",
                 period_us / 1_000_000
             ),
             Self::Schedule(error) => error.fmt(f),

@@ -109,14 +109,12 @@ impl fmt::Display for Infeasible {
             Self::Separation { sensors, separation, wait_max } => write!(
                 f,
                 "t_delta alone cannot be met: {sensors} sensors need waits that differ by amounts \
-                 {separation} apart from each other, and \
-                 no wait is longer than {wait_max}"
+                 {separation} apart from each other, and no wait is longer than {wait_max}"
             ),
             Self::Interval { interval, wait_max, period } => write!(
                 f,
                 "the smallest interval alone cannot be met: with these lags and waits of at most \
-                 {wait_max}, neighbours cannot \
-                 keep {interval} in a period of {period}"
+                 {wait_max}, neighbours cannot keep {interval} in a period of {period}"
             ),
             Self::Together => f.write_str("t_delta and the smallest interval cannot be met together"),
         }
@@ -160,7 +158,7 @@ impl WaitSearch {
     /// The same question in ticks, for what this type does not offer: assignments and the Pareto front.
     ///
     /// # Errors
-    /// None after [`WaitSearch::new`], which has asked already.
+    /// None after [`WaitSearch::new`], which has checked already.
     pub fn ticks(&self) -> Result<Search<'_>, SearchError> {
         Ok(Search::new(Problem {
             period: self.period,

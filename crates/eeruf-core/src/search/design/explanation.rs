@@ -33,7 +33,7 @@ impl Explanation {
     }
 }
 
-/// A [`Explanation`] in words: see [`Explanation::in_ticks_of`].
+/// An [`Explanation`] in words: see [`Explanation::in_ticks_of`].
 #[derive(Clone, Copy, Debug)]
 pub struct InTime<'r> {
     explanation: &'r Explanation,
@@ -75,10 +75,8 @@ impl InTime<'_> {
             Bound::Classes { clique, sensors, interval, separation, .. } => write!(
                 f,
                 "interval and separation together: {clique} sensors that are all neighbours and fire {} \
-                 apart leave too \
-                 little time to tell {sensors} refire times {} apart, which takes {period}; a shorter \
-                 interval, a smaller \
-                 separation or fewer neighbours would help",
+                 apart leave too little time to tell {sensors} refire times {} apart, which takes {period}; \
+                 a shorter interval, a smaller separation or fewer neighbours would help",
                 self.time(interval),
                 self.time(separation)
             ),
@@ -109,8 +107,7 @@ impl fmt::Display for InTime<'_> {
                 write!(
                     f,
                     "the search, which ended early: periods from {} on are neither found nor excluded, and \
-                     a larger budget may \
-                     settle that",
+                     a larger budget may settle that",
                     self.time(*bound)
                 )
             }

@@ -119,7 +119,7 @@ pub(crate) fn common_divisor(a: i32, b: i32) -> i32 {
     a
 }
 
-/// The period asked about, in signed ticks.
+/// The period of a query, in signed ticks.
 pub(crate) fn check_period(period: u32) -> Result<i32, ProblemError> {
     if period == 0 || period > MAX_TICKS {
         Err(ProblemError::Period { period, most: MAX_TICKS })

@@ -24,7 +24,7 @@ pub(crate) struct DifferenceBounds<'m> {
     /// Rows as they were before they changed: the cells, then the row's number.
     log: &'m mut [i32],
     used: usize,
-    /// A row is logged once per step; `saved` tells in which step that was last.
+    /// A row is logged once per step; `saved` says in which step that was last.
     step: u32,
     saved: [u32; MAX_NODES],
     /// The log ran over since the flag was last taken: nothing before now can be undone.

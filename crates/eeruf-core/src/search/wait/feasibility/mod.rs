@@ -6,16 +6,9 @@
 //! tick costs no more.
 //!
 //! **Where ranks suffice.** If conflicting sensors fire in the same order in both phases and the criterion is
-//! [`Criterion::Exact`], then a table exists only if one exists with `|d| = D r` exactly. Let `(a, b)` solve the
-//! problem, with `|d|` sorted as `v_0 < v_1 < ..`, and let `phi` be piecewise linear with `phi(0) = 0` and
-//! `phi(v_r) = D r`: neighbouring values lie at least `D` apart, so `phi` never expands a difference. Put
-//! `m = min(a, b)`, `a' = m + phi(d+)`, `b' = m + phi(d-)`, where `d+` and `d-` are the positive parts of `d` and `-d`.
-//! Exchanging the phases turns the set of constraints into itself; the minimum of two solutions of difference
-//! constraints is a solution, so `m` in both phases is one. A constraint `q >= p + w` holds for `m` and for `m + d+`
-//! (or `-`), and `phi(d_q) - phi(d_p)` lies between 0 and `d_q - d_p`, so it holds in between.
-//!
-//! In particular `n I + D (K - 1) <= T_p` for n mutual neighbours (`docs/theory.md`, section 5.2) needs no test of its
-//! own: the greatest rank finds no sensor.
+//! [`Criterion::Exact`], then a table exists only if one exists with `|d| = D r` exactly: `docs/theory.md`, section 7.1, has
+//! the proof. In particular `n I + D (K - 1) <= T_p` for n mutual neighbours (section 5.2) needs no test of its own: the
+//! greatest rank finds no sensor.
 
 mod branch;
 mod walk;

@@ -7,8 +7,7 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use comfy_table::{Table, presets};
-use eeruf_core::search::design::{self, Progress};
-use eeruf_core::search::{PeriodProblem, Preferred, SearchError, ShortestPeriod};
+use eeruf_core::search::{Control, PeriodProblem, Preferred, Progress, SearchError, ShortestPeriod, design};
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Layout, MAX_SENSORS, Micros, Phase, Requirements};
 use serde::Serialize;
@@ -120,7 +119,7 @@ fn find(spec: &RingSpec, args: &Args, watch: &mut Watch) -> Result<Option<RingDe
     let mut memory = vec![0; design::memory_words(spec.sensors)];
     let mut control = |progress: &Progress| {
         let how_far = || {
-            let (bound, best) = (progress.bound, progress.best);
+            let (bound, best) = (progress.bound.unwrap_or(0), progress.best.unwrap_or(0));
             format!("{} nodes, period at least {bound} and at most {best} ticks of {}", progress.nodes, spec.tick)
         };
         if watch.go_on(how_far) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
@@ -194,7 +193,7 @@ impl FoundJson {
 
 impl RingDesign {
     fn reason(&self) -> String {
-        self.designed.reason().to_string()
+        self.designed.explanation().to_string()
     }
 }
 
@@ -288,7 +287,7 @@ struct WhatIf {
 fn what_if(
     needs: &PeriodProblem<'_>,
     memory: &mut [i32],
-    control: &mut impl design::Control,
+    control: &mut impl Control,
 ) -> Result<Vec<WhatIf>, SearchError> {
     let Requirements { t_delta, min_interval, window, layout, .. } = needs.requirements;
     let tick = needs.tick.as_micros().max(1);

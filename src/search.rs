@@ -1,11 +1,12 @@
 //! `eeruf search`: the paper's problem, waits on a grid.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use eeruf_core::search::wait::{COUNT_WORDS, Control, Finish, Objective, Progress, memory_words};
-use eeruf_core::search::{Found, SearchError, WaitSearch};
+use eeruf_core::search::wait::{Budget, COUNT_WORDS, Objective, memory_words};
+use eeruf_core::search::{Found, Outcome, Progress, SearchError, WaitSearch};
 use eeruf_core::{MAX_SENSORS, Micros};
 use serde::Serialize;
 
@@ -76,11 +77,17 @@ fn answer(args: &Args, spec: &WaitSpec) -> Result<Answer, SearchError> {
     let search = WaitSearch::new(&spec.needs())?;
     let began = Instant::now();
     let mut watch = Watch::new();
-    let mut watcher = |progress: Progress| watch.go_on(|| format!("{} nodes", progress.nodes));
-    let mut control = Control::nodes_at_most(args.budget).watched(1 << 12, &mut watcher);
+    let mut watcher = |progress: &Progress| {
+        if watch.go_on(|| format!("{} nodes", progress.nodes)) {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
+    };
+    let mut budget = Budget::nodes_at_most(args.budget).watched(1 << 12, &mut watcher);
     if args.count {
-        let count = search.count(None, &mut vec![0; COUNT_WORDS], &mut control)?;
-        let exact = count.finish == Finish::Exhausted;
+        let count = search.count(None, &mut vec![0; COUNT_WORDS], &mut budget)?;
+        let exact = count.outcome == Outcome::Exhausted;
         if args.json {
             println!("{}", to_json(&CountJson { count: count.count, at_least: !exact }));
         } else {
@@ -99,11 +106,11 @@ fn answer(args: &Args, spec: &WaitSpec) -> Result<Answer, SearchError> {
     }
     let mut memory = vec![0; memory_words(spec.needs().sensors)];
     let found: Found<MAX_SENSORS> = match args.best {
-        Some(What::Interval) => search.best(Objective::Interval, &mut memory, &mut control)?,
-        Some(What::TDelta) => search.best(Objective::Separation, &mut memory, &mut control)?,
+        Some(What::Interval) => search.best(Objective::Interval, &mut memory, &mut budget)?,
+        Some(What::TDelta) => search.best(Objective::Separation, &mut memory, &mut budget)?,
         None => {
-            let (finish, schedule) = search.first(&mut memory, &mut control)?;
-            let (proven, nodes) = (finish != Finish::BudgetSpent, control.nodes());
+            let (outcome, schedule) = search.first(&mut memory, &mut budget)?;
+            let (proven, nodes) = (outcome != Outcome::BudgetSpent, budget.nodes());
             Found { schedule, value: None, bound: None, proven, nodes }
         }
     };

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use comfy_table::{CellAlignment, Table, presets};
-use eeruf_core::search::design::{self, Progress};
-use eeruf_core::search::{PeriodProblem, SearchError};
+use eeruf_core::search::{PeriodProblem, Progress, SearchError, design};
 use eeruf_core::{Criterion, Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_sim::{
     Method, Options, Readings, Robot, SimulationError, Summary, World, simulate_while, sweep, table_i_d_for,

@@ -1,10 +1,10 @@
 //! `design`: the shortest period.
 
-use std::{ops::ControlFlow, time::Instant};
+use std::time::Instant;
 
 use eeruf_core::{
     Criterion, MAX_SENSORS, Micros, Requirements,
-    search::{self, PeriodProblem, SearchError, design as period, design::Progress},
+    search::{self, Control, PeriodProblem, Progress, SearchError, design as period},
 };
 use pyo3::prelude::*;
 
@@ -13,7 +13,7 @@ use crate::{
     errors::Raise,
     found::Found,
     requirements::{self, OwnedLayout},
-    watch::{Watch, in_background},
+    watch::{Watch, control_flow, in_background},
 };
 
 /// How many nodes the choice among the shortest schedules may cost.
@@ -91,10 +91,13 @@ pub(crate) fn design(
         let (criterion, layout) = (Criterion::Exact, layout.layout());
         let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo };
         let needs = PeriodProblem { sensors, requirements, tick };
-        let mut control = |at: &Progress| if go_on(at) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+        let mut control = |at: &Progress| control_flow(go_on(at));
         shortest(&needs, budget, &mut control).map_err(Raise::raise)
     };
-    let text = |at: &Progress| format!("{} nodes, period {} to {} ticks", at.nodes, at.bound, at.best);
+    let text = |at: &Progress| {
+        let (bound, best) = (at.bound.unwrap_or(0), at.best.unwrap_or(0));
+        format!("{} nodes, period {bound} to {best} ticks", at.nodes)
+    };
     let (found, reason) = if sensors <= FEW_SENSORS {
         let mut watch = Watch::new(progress)?;
         let designed = py.detach(|| work(&mut |at| watch.go_on(None, || text(at))));
@@ -108,7 +111,7 @@ pub(crate) fn design(
 fn shortest(
     needs: &PeriodProblem<'_>,
     budget: u64,
-    control: &mut impl period::Control,
+    control: &mut impl Control,
 ) -> Result<(search::Found<MAX_SENSORS>, String), SearchError> {
     let mut memory = vec![0; period::memory_words(needs.sensors)];
     let designed = needs.shortest::<MAX_SENSORS>(budget, &mut memory, control)?;
@@ -116,5 +119,5 @@ fn shortest(
     if found.proven {
         found.schedule = Some(needs.prefer(&designed, PREFERENCE_BUDGET, &mut memory, control)?.schedule);
     }
-    Ok((found, designed.reason().to_string()))
+    Ok((found, designed.explanation().to_string()))
 }

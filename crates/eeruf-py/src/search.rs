@@ -5,8 +5,8 @@ use std::time::Instant;
 use eeruf_core::{
     Criterion, MAX_SENSORS, Micros,
     search::{
-        self, SearchError, WaitProblem,
-        wait::{self, All, Control, Finish, Objective},
+        self, Outcome, Progress, SearchError, WaitProblem,
+        wait::{self, Budget, Enumeration, Objective},
     },
 };
 use pyo3::prelude::*;
@@ -17,7 +17,7 @@ use crate::{
     found::Found,
     requirements::{self, OwnedLayout},
     schedule::Schedule,
-    watch::Watch,
+    watch::{Watch, control_flow},
 };
 
 /// How many nodes of the search for waits lie between two looks at the clock.
@@ -61,14 +61,14 @@ impl WaitSearch {
         &self,
         py: Python<'_>,
         budget: u64,
-        work: impl FnOnce(&mut [u32], &mut Control<'_>) -> Result<T, SearchError> + Send,
+        work: impl FnOnce(&mut [u32], &mut Budget<'_>) -> Result<T, SearchError> + Send,
         words: usize,
     ) -> PyResult<T> {
         let mut watch = Watch::new(None)?;
         let result = py.detach(|| {
-            let mut watcher = |_| watch.go_on(None, String::new);
-            let mut control = Control::nodes_at_most(budget).watched(POLL, &mut watcher);
-            work(&mut vec![0; words], &mut control)
+            let mut watcher = |_: &Progress| control_flow(watch.go_on(None, String::new));
+            let mut budget = Budget::nodes_at_most(budget).watched(POLL, &mut watcher);
+            work(&mut vec![0; words], &mut budget)
         });
         watch.outcome(result.map_err(Raise::raise))
     }
@@ -129,7 +129,7 @@ impl WaitSearch {
     ///     ((2000, 0), (0, 0))
     fn first(&self, py: Python<'_>) -> PyResult<Option<Schedule>> {
         let words = wait::memory_words(self.sensors);
-        let first = self.run(py, u64::MAX, |memory, control| self.search.first(memory, control), words)?;
+        let first = self.run(py, u64::MAX, |memory, budget| self.search.first(memory, budget), words)?;
         Ok(first.1.map(Schedule))
     }
 
@@ -153,7 +153,7 @@ impl WaitSearch {
     #[pyo3(signature = (limit=None))]
     fn count(&self, py: Python<'_>, limit: Option<&Bound<'_, PyAny>>) -> PyResult<u128> {
         let limit = limit.map(|limit| whole("limit", limit, 1..=u64::MAX)).transpose()?.map(u128::from);
-        let count = |memory: &mut [u32], control: &mut Control<'_>| self.search.count(limit, memory, control);
+        let count = |memory: &mut [u32], budget: &mut Budget<'_>| self.search.count(limit, memory, budget);
         let count = self.run(py, u64::MAX, count, wait::COUNT_WORDS)?.count;
         // Core counts the last sensor's tables all at once, and so past the limit.
         Ok(limit.map_or(count, |limit| count.min(limit)))
@@ -170,7 +170,7 @@ impl WaitSearch {
     ///     >>> [table.t_wait_b_us for table in itertools.islice(search.all(), 2)]
     ///     [(0, 2000), (0, 3000)]
     fn all(&self) -> PyResult<WaitTables> {
-        Ok(WaitTables(Walk::try_new(self.search.clone(), search::WaitSearch::all).map_err(Raise::raise)?))
+        Ok(WaitTables(Walk::try_new(self.search.clone(), search::WaitSearch::enumerate).map_err(Raise::raise)?))
     }
 
     /// The best table: the one whose smallest interval between neighbours, or whose ``T_delta``, is largest. Ctrl-C
@@ -204,7 +204,7 @@ impl WaitSearch {
         let budget = whole_or("budget", budget, u64::MAX, 1..=u64::MAX)?;
         let words = wait::memory_words(self.sensors);
         let began = Instant::now();
-        let best = |memory: &mut [u32], control: &mut Control<'_>| self.search.best(objective, memory, control);
+        let best = |memory: &mut [u32], budget: &mut Budget<'_>| self.search.best(objective, memory, budget);
         let found: search::Found<MAX_SENSORS> = self.run(py, budget, best, words)?;
         Ok(Found::of(&found, began, None))
     }
@@ -215,7 +215,7 @@ self_cell::self_cell!(
     struct Walk {
         owner: search::WaitSearch,
         #[covariant]
-        dependent: All,
+        dependent: Enumeration,
     }
 );
 
@@ -238,12 +238,12 @@ impl WaitTables {
     fn __next__(&mut self, py: Python<'_>) -> PyResult<Option<Schedule>> {
         let mut watch = Watch::new(None)?;
         let next = py.detach(|| {
-            self.0.with_dependent_mut(|search, all| {
+            self.0.with_dependent_mut(|search, tables| {
                 let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-                let mut watcher = |_| watch.go_on(None, String::new);
-                let mut control = Control::nodes_at_most(u64::MAX).watched(POLL, &mut watcher);
-                match all.next_into(&mut control, &mut a, &mut b)? {
-                    Finish::Found => search.schedule(&a, &b).map(Some),
+                let mut watcher = |_: &Progress| control_flow(watch.go_on(None, String::new));
+                let mut budget = Budget::nodes_at_most(u64::MAX).watched(POLL, &mut watcher);
+                match tables.next_into(&mut budget, &mut a, &mut b)? {
+                    Outcome::Found(()) => search.schedule(&a, &b).map(Some),
                     _ => Ok(None),
                 }
             })

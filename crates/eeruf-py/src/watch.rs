@@ -1,6 +1,7 @@
 //! Long work: Ctrl-C ends it, and its progress can be followed.
 
 use std::{
+    ops::ControlFlow,
     sync::{
         Arc, Mutex, PoisonError,
         atomic::{AtomicBool, Ordering},
@@ -18,6 +19,11 @@ use pyo3::{
 
 /// How often Python is asked whether to go on.
 const EVERY: Duration = Duration::from_millis(20);
+
+/// What a watcher says, as the search reads it.
+pub(crate) fn control_flow(go_on: bool) -> ControlFlow<()> {
+    if go_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+}
 
 /// Asks Python now and then, from the thread that called, whether to go on.
 pub(crate) struct Watch {

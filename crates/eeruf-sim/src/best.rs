@@ -2,10 +2,7 @@
 
 use eeruf_core::{
     Criterion, Layout, MAX_SENSORS, Micros, Requirements,
-    search::{
-        PeriodProblem, SearchError,
-        design::{self, Progress},
-    },
+    search::{PeriodProblem, Progress, SearchError, design},
 };
 use std::ops::ControlFlow;
 

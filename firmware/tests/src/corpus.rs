@@ -2,7 +2,8 @@
 #![no_std]
 #![no_main]
 
-use eeruf_core::search::wait::{Control, Finish, Problem, Search};
+use eeruf_core::search::Outcome;
+use eeruf_core::search::wait::{Budget, Problem, Search};
 use eeruf_core::tables::{TABLE_I_A, TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{
     Criterion, Instant, Layout, Micros, Phase, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Schedule,
@@ -91,11 +92,11 @@ fn exactly_one_rearrangement_of_table_i_keeps_19_ms_between_any_four_adjacent_se
         criterion: Criterion::Paper,
     };
     let search = Search::new(problem(19)).expect("a problem");
-    let count = search.rearrange(&pairs).expect("pairs").count(&mut Control::unlimited());
-    assert_eq!((count.finish, count.count), (Finish::Exhausted, 1));
+    let count = search.assign(&pairs).expect("pairs").count(&mut Budget::unlimited());
+    assert_eq!((count.outcome, count.count), (Outcome::Exhausted, 1));
     let (mut a, mut b) = ([0; 12], [0; 12]);
-    let found = search.rearrange(&pairs).expect("pairs").first(&mut Control::unlimited(), &mut a, &mut b);
-    assert_eq!((found, b), (Ok(Finish::Found), [22, 16, 10, 4, 20, 14, 8, 2, 18, 12, 6, 0]));
+    let found = search.assign(&pairs).expect("pairs").first(&mut Budget::unlimited(), &mut a, &mut b);
+    assert_eq!((found, b), (Ok(Outcome::Found(())), [22, 16, 10, 4, 20, 14, 8, 2, 18, 12, 6, 0]));
 }
 
 /// Walls 0.9 m to 2.8 m away: sensor `x` hears its echo after `5 + x` ms.

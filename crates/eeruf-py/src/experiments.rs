@@ -3,8 +3,7 @@
 
 use eeruf_core::Micros;
 use eeruf_sim::{
-    Method, Robot,
-    best::{Best, best_for},
+    BestSchedule, LabMate, Method, Robot, best_schedule_for,
     experiments::{
         set_one::{self as first_set, Alcove, READINGS},
         set_two::{
@@ -12,7 +11,6 @@ use eeruf_sim::{
             SpeedStep,
         },
     },
-    labmate::LabMate,
 };
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
@@ -46,10 +44,13 @@ fn methods(names: Option<&Bound<'_, PyAny>>, default: &[Method]) -> PyResult<Vec
 }
 
 /// What `eeruf_best` fires by, if it is asked for.
-fn best(methods: &[Method], robot: &Robot, aside: &Aside) -> PyResult<Option<Best>> {
+fn best(methods: &[Method], robot: &Robot, aside: &Aside) -> PyResult<Option<BestSchedule>> {
     let asked = methods.contains(&Method::EerufBest);
     asked
-        .then(|| best_for(robot, BEST_BUDGET, |_| aside.go_on(None, || "designing".to_owned())).map_err(Raise::raise))
+        .then(|| {
+            best_schedule_for(robot, BEST_BUDGET, |_| aside.go_on(None, || "designing".to_owned()))
+                .map_err(Raise::raise)
+        })
         .transpose()
 }
 

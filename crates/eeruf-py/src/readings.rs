@@ -1,7 +1,7 @@
 //! `sim.simulate` and the `Readings` it returns.
 
 use eeruf_core::ReadingKind;
-use eeruf_sim::{Cause, HeardPath, Method, NO_PATH, Options, SensorId, best::best_for, simulate_while};
+use eeruf_sim::{Cause, HeardPath, Method, NO_PATH, Options, SensorId, best_schedule_for, simulate_while};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::{
     prelude::*,
@@ -88,7 +88,7 @@ pub(crate) fn simulate(
     aside(py, progress, move |aside| {
         let world = scene.get().world()?;
         if let (Method::EerufBest, Some(robot)) = (method, world.robots().first()) {
-            let best = best_for(robot, BEST_BUDGET, |_| aside.go_on(None, || "designing".to_owned()));
+            let best = best_schedule_for(robot, BEST_BUDGET, |_| aside.go_on(None, || "designing".to_owned()));
             options.best = Some(best.map_err(Raise::raise)?.schedule);
         }
         let keep_going = |share| aside.go_on(Some(share), || format!("simulating {method}"));

@@ -29,7 +29,7 @@ fn time(scene: &Scene, source: Point, receivers: &[Point], order: u32) -> Value 
         tracer.trace(scene, source, receivers, limits, &mut paths).expect("a scene of the corpus");
     });
     let core = best_us(|| {
-        tracer.sight(scene, source, receivers, limits).expect("a scene of the corpus");
+        tracer.visible_images(scene, source, receivers, limits).expect("a scene of the corpus");
     });
     json!({"order": order, "core_us": core, "whole_us": whole, "paths": paths.len(), "beams": tracer.beams(),
            "paths_per_s": paths.len() as f64 / core * 1e6})

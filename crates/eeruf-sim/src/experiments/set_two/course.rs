@@ -1,20 +1,14 @@
 //! A course: a lab with poles about 1.6 m apart (Fig. 6), which a robot can certainly pass.
 
-use crate::{
-    air::Air,
-    clock::Clock,
-    experiments::set_one::{RADIUS_M, SENSORS, SPACING_DEG},
-    material::Material,
-    noise::{Chance, Noise},
-    plane::{Point, Pose, Vector},
-    pole::Pole,
-    robot::Robot,
-    scene::Scene,
-    transducer::Transducer,
-    wall::Wall,
-    world::{World, WorldError},
-};
 use eeruf_core::Micros;
+
+use crate::experiments::set_one::{RADIUS_M, SENSORS, SPACING_DEG};
+use crate::{
+    acoustics::Transducer,
+    geometry::{Point, Pose, Vector},
+    scene::{Air, Material, Pole, Scene, Wall},
+    world::{Chance, Clock, Noise, Robot, World, WorldError},
+};
 
 /// Length and width of the lab, in metres. The course runs along its length.
 pub const ROOM_M: [f64; 2] = [10.0, 6.0];

@@ -3,7 +3,8 @@
 //!     rust_side paths    every critical path of the shared corpus
 //!     rust_side times    seconds of one call of `design`, `paths` and `push_many`'s work, best of many
 //!
-//! `benches/python/overhead.py` times the same calls from Python; `tests/python/test_corpus.py` compares the paths bit for bit.
+//! `benches/python/overhead.py` times the same calls from Python; `tests/python/test_corpus.py` compares the paths bit
+//! for bit.
 
 use std::{hint::black_box, time::Instant};
 

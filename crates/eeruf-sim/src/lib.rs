@@ -1,14 +1,15 @@
-//! EERUF's simulator: which ways sound takes from one ultrasonic sensor to another, exactly, how loud it is when it arrives,
-//! and what whole rings make of it under each firing method.
+//! EERUF's simulator: which paths sound takes from one ultrasonic sensor to another, exactly, how loud it is when it
+//! arrives, and what whole rings make of it under each firing method.
 //!
-//! - A [`Scene`] is walls, poles and air, checked once. [`Scene::paths`] answers with *every* specular path; a [`Tracer`]
-//!   does so again and again without allocating.
-//! - [`Transducer`], [`Piston`], [`Material`] and [`Air`] turn a path into an amplitude; [`CrosstalkMatrix`] does so for a
-//!   whole ring and says who hears whom.
-//! - [`reception`] solves for the moment at which sound meets a moving receiver; [`Scene::contact`] for what a robot touches.
-//! - A [`World`] puts robots with rings, clocks and motions into a scene, from a TOML file or from code; [`simulate()`] runs
-//!   the ring of `eeruf-core` through simulated time under a [`Method`]. Every one of the [`Readings`] knows what caused it;
-//!   [`Summary`] counts the errors and [`Attribution`] says who was fooled by whom.
+//! - A [`Scene`] is walls, poles and air, checked once. [`Scene::paths`] answers with *every* specular path; a
+//!   [`Tracer`] does so again and again without allocating.
+//! - [`Transducer`], [`Piston`], [`Material`] and [`Air`] turn a path into an amplitude; [`CrosstalkMatrix`] does so
+//!   for a whole ring and says who hears whom.
+//! - [`reception`] solves for the moment at which sound meets a moving receiver; [`Scene::contact`] for what a robot
+//!   touches.
+//! - A [`World`] puts robots with rings, clocks and motions into a scene, from a TOML file or from code; [`simulate()`]
+//!   runs the ring of `eeruf-core` through simulated time under a [`Method`]. Every one of the [`Readings`] knows what
+//!   caused it; [`Summary`] counts the errors and [`Attribution`] says who was fooled by whom.
 //!
 //! The rooms, each of which uses only those before it:
 //!
@@ -25,12 +26,12 @@
 //! | [`navigation`] | grid, histogram and platform; uses only the first two |
 //! | [`experiments`] | the paper's two sets |
 //!
-//! Paths are found with a beam tree over a constrained triangulation of the scene, poles with Alhazen's problem; positions
-//! are good to about 1e-12 of the scene's size and sets of paths are complete. Units are metres, seconds and radians; walls,
-//! poles, sensors and receivers are counted from 0.
+//! Paths are found with a beam tree over a constrained triangulation of the scene, poles with Alhazen's problem;
+//! positions are good to about 1e-12 of the scene's size and sets of paths are complete. Units are metres, seconds and
+//! radians; walls, poles, sensors and receivers are counted from 0.
 //!
-//! The method that all this is for: J. Borenstein and Y. Koren, "Error Eliminating Rapid Ultrasonic Firing for Mobile Robot
-//! Obstacle Avoidance", IEEE Transactions on Robotics and Automation 11(1), 1995, pp. 132-138.
+//! The method that all this is for: J. Borenstein and Y. Koren, "Error Eliminating Rapid Ultrasonic Firing for Mobile
+//! Robot Obstacle Avoidance", IEEE Transactions on Robotics and Automation 11(1), 1995, pp. 132-138.
 //!
 //! ```
 //! use eeruf_sim::*;
@@ -77,5 +78,5 @@ pub use tracing::{
     paths_of_many, reception, reception_along,
 };
 pub use world::{
-    AnySchedule, Chance, Clock, Motion, Noise, Robot, ScheduleFile, World, WorldError, WorldFileError, ring_of,
+    AnySchedule, Clock, Motion, Noise, Random, Robot, ScheduleFile, World, WorldError, WorldFileError, ring_of,
 };

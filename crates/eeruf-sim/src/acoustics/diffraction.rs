@@ -3,8 +3,8 @@
 
 use core::f64::consts::{PI, TAU};
 
-/// Far scattered pressure of a rigid cylinder, `|p_s / p_i| sqrt(r / a)`, at wave number times radius `ka` and scattering
-/// angle `phi_rad`; pi is back towards the source.
+/// Far scattered pressure of a rigid cylinder, `|p_s / p_i| sqrt(r / a)`, at wave number times radius `ka` and
+/// scattering angle `phi_rad`; pi is back towards the source.
 ///
 /// ```text
 /// sqrt(2 / (pi k a)) | sum e_n J_n'(ka) / H_n'(ka) cos(n phi) |,    e_0 = 1, e_n = 2
@@ -50,9 +50,9 @@ pub fn pole_wave_correction(ka: f64, incidence_rad: f64) -> f64 {
 /// Keller's diffraction coefficient of a rigid edge, in the square root of a metre.
 ///
 /// `wave_number` in rad/m; `outside_rad` is the open angle around the edge (3 pi / 2 at a right-angle corner seen from
-/// outside); the two directions are measured from one of the walls. At distances `s'` and `s` the amplitude relative to 1 m
-/// is this over `sqrt(s' s (s' + s))`. It grows without bound where a wall's own reflection or shadow begins, and is no
-/// better than geometric optics there.
+/// outside); the two directions are measured from one of the walls. At distances `s'` and `s` the amplitude relative to
+/// 1 m is this over `sqrt(s' s (s' + s))`. It grows without bound where a wall's own reflection or shadow begins, and
+/// is no better than geometric optics there.
 pub fn edge_diffraction(wave_number: f64, outside_rad: f64, from_rad: f64, to_rad: f64) -> f64 {
     let n = outside_rad / PI;
     let turn = (PI / n).cos();

@@ -10,8 +10,8 @@ const FIRST_NULL: f64 = 3.831_705_970_207_512;
 pub struct Piston {
     /// Wave number times radius.
     pub ka: f64,
-    /// The least amplitude within the half circle in front. Nulls are an artefact of a single frequency; a short burst has
-    /// none.
+    /// The least amplitude within the half circle in front. Nulls are an artefact of a single frequency; a short burst
+    /// has none.
     pub floor: f64,
 }
 
@@ -53,8 +53,8 @@ impl Piston {
         (2.0 * libm::j1(x) / x).abs()
     }
 
-    /// The angle, within the main lobe, at which the pattern has fallen to a level in dB (negative). None if the lobe does
-    /// not fall that far within 90 degrees, or the level is above 0 dB.
+    /// The angle, within the main lobe, at which the pattern has fallen to a level in dB (negative). None if the lobe
+    /// does not fall that far within 90 degrees, or the level is above 0 dB.
     pub fn angle_at_db(&self, level_db: f64) -> Option<f64> {
         let level = 10f64.powf(level_db / 20.0);
         let (mut low, mut high) = (0.0, FIRST_NULL.min(self.ka));

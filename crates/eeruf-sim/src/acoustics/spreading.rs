@@ -10,8 +10,8 @@ use crate::geometry::Specular;
 /// 1 / rho = 1 / R + 2 / (a cos i),    A^2 = 1 / (s' L) * product of rho / (rho + s)
 /// ```
 ///
-/// where `R` is the wavefront's radius in the plane on arrival (`s'` at the first pole, the last `rho + s` after it). For one
-/// pole this is `(1 / s') sqrt(rho s' / ((rho + s)(s' + s)))`.
+/// where `R` is the wavefront's radius in the plane on arrival (`s'` at the first pole, the last `rho + s` after it).
+/// For one pole this is `(1 / s') sqrt(rho s' / ((rho + s)(s' + s)))`.
 pub(crate) fn pole_spread(hits: &[(Specular, f64)]) -> f64 {
     let mut length = 0.0;
     let mut wavefront_m = 0.0;

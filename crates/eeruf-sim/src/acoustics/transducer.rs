@@ -1,4 +1,5 @@
-//! Transducers and their ranging modules: frequency, size, burst, blanking, range, gain over time and what is just heard.
+//! Transducers and their ranging modules: frequency, size, burst, blanking, range, gain over time and what is just
+//! heard.
 
 use super::directivity::Piston;
 use crate::scene::Air;

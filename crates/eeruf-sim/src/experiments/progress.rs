@@ -1,4 +1,5 @@
-//! How far an experiment on many threads has come, and whether it goes on: whoever stops it should not wait for the end of the simulations that run.
+//! How far an experiment on many threads has come, and whether it goes on: one that is stopped should not wait for the
+//! simulations under way.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -11,7 +12,7 @@ pub(super) struct Progress<'a> {
 }
 
 impl<'a> Progress<'a> {
-    /// For so many simulations.
+    /// For this number of simulations.
     pub(super) fn new(all: u64, keep_going: &'a (dyn Fn(f64) -> bool + Sync)) -> Self {
         Self { keep_going, all, done: AtomicU64::new(0), stopped: AtomicBool::new(false) }
     }

@@ -16,12 +16,12 @@ pub struct Specular {
     pub after_m: f64,
 }
 
-/// Solves for the specular point to the last digits, or says that there is none: a point inside the circle, or the circle in
-/// between.
+/// Solves for the specular point to the last digits, or says that there is none: a point inside the circle, or the
+/// circle in between.
 ///
-/// With `t` the angle at the centre from the source's direction towards the receiver's, the angle of incidence seen from the
-/// source grows with `t` and the one seen from the receiver falls, so their difference has one root. Newton's method finds
-/// it; bisection takes over where a step would leave the bracket.
+/// With `t` the angle at the centre from the source's direction towards the receiver's, the angle of incidence seen
+/// from the source grows with `t` and the one seen from the receiver falls, so their difference has one root. Newton's
+/// method finds it; bisection takes over where a step would leave the bracket.
 ///
 /// ```
 /// use eeruf_sim::{Point, alhazen};
@@ -107,7 +107,8 @@ fn solve(source: Half, receiver: Half, between: f64) -> f64 {
 
 /// Source, one circle, another circle, receiver: the two specular points of the path that bounces once at each.
 ///
-/// Solving one circle with the other's point held still converges quickly, since a convex circle spreads what it reflects.
+/// Solving one circle with the other's point held still converges quickly, since a convex circle spreads what it
+/// reflects.
 pub fn alhazen_twice(
     source: Point,
     receiver: Point,
@@ -163,8 +164,10 @@ mod tests {
                 prop_assert!((cross(normal, back) + cross(normal, on)).abs() < 1e-9);
                 let (sin, cos) = 1e-4f64.sin_cos();
                 for turn in [sin, -sin] {
-                    let near = Point::new(cos * found.point.x - turn * found.point.y, turn * found.point.x + cos * found.point.y);
-                    prop_assert!((source - near).norm() + (near - receiver).norm() >= found.before_m + found.after_m - 1e-12);
+                    let Point { coords: at } = found.point;
+                    let near = Point::new(cos * at.x - turn * at.y, turn * at.x + cos * at.y);
+                    let longer = (source - near).norm() + (near - receiver).norm();
+                    prop_assert!(longer >= found.before_m + found.after_m - 1e-12);
                 }
                 let back = alhazen(receiver, source, Point::origin(), radius).unwrap();
                 prop_assert!((back.point - found.point).norm() < 1e-9);
@@ -173,12 +176,17 @@ mod tests {
 
         #[test]
         fn a_path_over_two_poles_has_equal_angles_at_both(
-            s in (-3.0..0.0f64, -3.0..3.0f64), r in (-3.0..0.0f64, -3.0..3.0f64), a in 0.002..0.3f64, b in 0.002..0.3f64,
+            s in (-3.0..0.0f64, -3.0..3.0f64),
+            r in (-3.0..0.0f64, -3.0..3.0f64),
+            a in 0.002..0.3f64,
+            b in 0.002..0.3f64,
         ) {
             let (source, receiver) = (Point::new(s.0, s.1), Point::new(r.0, r.1));
             let (first, second) = (Point::new(1.0, 1.0), Point::new(1.2, -1.0));
             if let Some((one, two)) = alhazen_twice(source, receiver, (first, a), (second, b)) {
-                for (circle, radius, before, here, after) in [(first, a, source, one.point, two.point), (second, b, one.point, two.point, receiver)] {
+                let bounces =
+                    [(first, a, source, one.point, two.point), (second, b, one.point, two.point, receiver)];
+                for (circle, radius, before, here, after) in bounces {
                     let normal = (here - circle) / radius;
                     let skew = cross(normal, (before - here).normalize()) + cross(normal, (after - here).normalize());
                     prop_assert!(skew.abs() < 1e-9, "{skew}");

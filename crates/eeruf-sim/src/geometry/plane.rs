@@ -15,7 +15,7 @@ pub type Pose = nalgebra::Isometry2<f64>;
 pub const TOUCH_M: f64 = 1e-9;
 
 /// An angle below this counts as none when a receiver is compared with a beam's limit. Rounding stays under 1e-15 per
-/// bounce, so the figure separates "exactly on the limit" from every honest miss.
+/// bounce, so the figure separates "exactly on the limit" from every real miss.
 pub(crate) const SAME_DIRECTION: f64 = 1e-12;
 
 /// Twice the signed area spanned by two vectors: positive when `b` points to the left of `a`.

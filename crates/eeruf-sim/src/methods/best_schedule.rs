@@ -24,9 +24,9 @@ pub struct BestSchedule {
     pub proven: bool,
 }
 
-/// What a ring must not give up against the schedule that it fires by: the robot's `t_delta` and window, the interval that
-/// its schedule (or the paper's table at its period) keeps between neighbours, and that a sensor's own stale echoes are
-/// rejected.
+/// What a ring must not give up against the schedule that it fires by: the robot's `t_delta` and window, the interval
+/// that its schedule (or the paper's table at its period) keeps between neighbours, and that a sensor's own stale
+/// echoes are rejected.
 pub fn requirements_of(robot: &Robot) -> Requirements<'static> {
     let own = robot.schedule.or_else(|| table_i_d_for(robot.sensors.len(), robot.period, robot.neighbours).ok());
     let layout = layout_of(robot);
@@ -41,8 +41,8 @@ pub fn requirements_of(robot: &Robot) -> Requirements<'static> {
     }
 }
 
-/// Searches `budget` nodes for the schedule with the shortest period that meets [`requirements_of`] a robot. `keep_going` is
-/// asked now and then; `None` if it stopped the search before anything was found.
+/// Searches `budget` nodes for the schedule with the shortest period that meets [`requirements_of`] a robot.
+/// `keep_going` is asked now and then; `None` if it stopped the search before anything was found.
 ///
 /// # Errors
 /// [`SearchError`] if the ring is too large to search.

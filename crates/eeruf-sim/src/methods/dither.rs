@@ -2,7 +2,7 @@
 
 use eeruf_core::{Instant, MAX_SENSORS, Micros, Phase, Scheduler};
 
-use crate::world::Chance;
+use crate::world::Random;
 
 /// Fires each sensor once per period, at its lag plus a random wait below `widest`.
 #[derive(Clone, Debug)]
@@ -10,7 +10,7 @@ pub(crate) struct DitherFiring {
     lags: Vec<Micros>,
     period: Micros,
     widest: Micros,
-    chance: Chance,
+    random: Random,
     start: Instant,
     /// Firing times of the present period, in order.
     due: Vec<(Micros, u8)>,
@@ -21,9 +21,9 @@ pub(crate) struct DitherFiring {
 
 impl DitherFiring {
     /// `lag + widest` must stay below the period.
-    pub(crate) fn new(lags: Vec<Micros>, period: Micros, widest: Micros, chance: Chance, now: Instant) -> Self {
+    pub(crate) fn new(lags: Vec<Micros>, period: Micros, widest: Micros, random: Random, now: Instant) -> Self {
         let due = Vec::with_capacity(lags.len());
-        let mut firing = Self { lags, period, widest, chance, start: now, due, next: 0, enabled: [true; MAX_SENSORS] };
+        let mut firing = Self { lags, period, widest, random, start: now, due, next: 0, enabled: [true; MAX_SENSORS] };
         firing.begin_period(now);
         firing
     }
@@ -33,7 +33,7 @@ impl DitherFiring {
         self.next = 0;
         self.due.clear();
         for (sensor, lag) in self.lags.iter().enumerate() {
-            let wait = self.chance.between(0.0, f64::from(self.widest.as_micros())) as u32;
+            let wait = self.random.between(0.0, f64::from(self.widest.as_micros())) as u32;
             // At most 64 sensors.
             self.due.push((lag.saturating_add(Micros::new(wait)), sensor as u8));
         }

@@ -1,5 +1,5 @@
-//! The table of firing methods: the one place where a method is added. Each row has the method's description, its name, how
-//! its schedule is made, how its ring is started, and which readings it believes.
+//! The table of firing methods: the one place where a method is added. Each row has the method's description, its name,
+//! how its schedule is made, how its ring is started, and which readings it believes.
 
 use core::fmt;
 use core::str::FromStr;
@@ -31,8 +31,8 @@ struct Row {
     refire: fn(&Robot) -> Micros,
 }
 
-/// What a row has where it does not say otherwise: one schedule, one echo, no firing while the sensor listens.
-const USUAL: Row = Row {
+/// What a row has by default: one schedule, one echo, no firing while the sensor listens.
+const DEFAULT: Row = Row {
     name: "",
     schedule: schedules::own,
     ring: ring_runner::scheduled::<1>,
@@ -44,11 +44,11 @@ const USUAL: Row = Row {
 
 /// Makes the enum, its list and its rows from the table.
 macro_rules! methods {
-    ($( $(#[doc = $description:literal])+ $method:ident = $name:literal { $($field:ident: $value:expr),+ } )+) => {
+    ($( $(#[doc = $description:literal])+ $method:ident = $name:literal { $($field:ident: $value:expr,)+ } )+) => {
         /// A way to fire a ring and to decide what to believe.
         ///
-        /// The first five and [`Median`](Self::Median) come from practice, the others are the paper's and what follows from
-        /// it.
+        /// The first five and [`Median`](Self::Median) come from practice, the others are the paper's and what follows
+        /// from it.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum Method {
@@ -62,7 +62,7 @@ macro_rules! methods {
             /// Its row of the table.
             const fn row(self) -> &'static Row {
                 match self {
-                    $( Self::$method => const { &Row { name: $name, $($field: $value,)+ ..USUAL } }, )+
+                    $( Self::$method => const { &Row { name: $name, $($field: $value,)+ ..DEFAULT } }, )+
                 }
             }
         }
@@ -71,34 +71,86 @@ macro_rules! methods {
 
 methods! {
     /// All sensors at once, once a period. Every echo is believed.
-    Simultaneous = "simultaneous" { schedule: schedules::together, ring: ring_runner::scheduled::<1>, belief: Belief::All }
+    Simultaneous = "simultaneous" {
+        schedule: schedules::together,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::All,
+    }
     /// One by one, each listening for the whole window before the next one fires. Every echo is believed.
-    Sequential = "sequential" { schedule: schedules::one_by_one, ring: ring_runner::scheduled::<1>, belief: Belief::All }
+    Sequential = "sequential" {
+        schedule: schedules::one_by_one,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::All,
+    }
     /// As sequential, but sensors as far apart as the ring's `neighbours` fire together. Every echo is believed.
-    FarGroups = "far_groups" { schedule: schedules::far_groups, ring: ring_runner::scheduled::<1>, belief: Belief::All }
-    /// The conventional lags plus a wait drawn anew for each sensor in each period, from as wide a range as the paper's waits
-    /// span. Consecutive readings are compared.
-    Dither = "dither" { schedule: schedules::conventional, ring: ring_runner::dithered, belief: Belief::Repeated }
+    FarGroups = "far_groups" {
+        schedule: schedules::far_groups,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::All,
+    }
+    /// The conventional lags plus a wait drawn anew for each sensor in each period, from as wide a range as the paper's
+    /// waits span. Consecutive readings are compared.
+    Dither = "dither" {
+        schedule: schedules::conventional,
+        ring: ring_runner::dithered,
+        belief: Belief::Repeated,
+    }
     /// Constant lags (Table I-a): neighbours fire `T_p / n` apart, every period alike. Every echo is believed.
-    Conventional = "conventional" { schedule: schedules::conventional, ring: ring_runner::scheduled::<1>, belief: Belief::All }
+    Conventional = "conventional" {
+        schedule: schedules::conventional,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::All,
+    }
     /// As conventional, but consecutive readings are compared: the negative control, the filter without alternation.
-    Comparison = "comparison" { schedule: schedules::conventional, ring: ring_runner::scheduled::<1>, belief: Belief::Repeated }
+    Comparison = "comparison" {
+        schedule: schedules::conventional,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::Repeated,
+    }
     /// As conventional, but the median of a sensor's last readings is believed.
-    Median = "median" { schedule: schedules::conventional, ring: ring_runner::scheduled::<1>, belief: Belief::Median }
+    Median = "median" {
+        schedule: schedules::conventional,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::Median,
+    }
     /// Immediate refiring with alternating waits (Figs. 2a, 2b): those of the paper's table, each longer by the robot's
     /// `min_refire`. Consecutive readings are compared.
-    EerufImmediate = "eeruf_immediate" { schedule: schedules::refiring, ring: ring_runner::immediate, belief: Belief::Repeated, refire: |robot| robot.min_refire }
+    EerufImmediate = "eeruf_immediate" {
+        schedule: schedules::refiring,
+        ring: ring_runner::immediate,
+        belief: Belief::Repeated,
+        refire: |robot| robot.min_refire,
+    }
     /// Scheduled firing (Fig. 3) by the robot's own schedule, or else by the paper's table at the robot's period (see
     /// [`table_i_d_for`]). Consecutive readings are compared.
-    Eeruf = "eeruf" { schedule: schedules::own, ring: ring_runner::scheduled::<1>, belief: Belief::Repeated }
+    Eeruf = "eeruf" {
+        schedule: schedules::own,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::Repeated,
+    }
     /// As [`Eeruf`](Self::Eeruf), by the best schedule that is known for the ring: what the caller puts in
     /// [`Options::best`](crate::Options::best).
-    EerufBest = "eeruf_best" { schedule: schedules::best, ring: ring_runner::scheduled::<1>, belief: Belief::Repeated }
-    /// As [`Eeruf`](Self::Eeruf), moving along a ladder of scaled schedules as the rejection rate asks for (end of Sec. 3.1).
-    Adaptive = "adaptive" { schedule: schedules::own, ring: adaptive::adaptive, belief: Belief::Repeated, ladder: adaptive::rungs }
+    EerufBest = "eeruf_best" {
+        schedule: schedules::best,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::Repeated,
+    }
+    /// As [`Eeruf`](Self::Eeruf), moving along a ladder of scaled schedules as the rejection rate asks for (end of Sec.
+    /// 3.1).
+    Adaptive = "adaptive" {
+        schedule: schedules::own,
+        ring: adaptive::adaptive,
+        belief: Belief::Repeated,
+        ladder: adaptive::rungs,
+    }
     /// As [`Eeruf`](Self::Eeruf), with sensors that report up to eight echoes of a firing: the earliest that repeats is
     /// believed.
-    MultiEcho = "multi_echo" { schedule: schedules::own, ring: ring_runner::scheduled::<MAX_ECHOES>, belief: Belief::Repeated, echoes: MAX_ECHOES }
+    MultiEcho = "multi_echo" {
+        schedule: schedules::own,
+        ring: ring_runner::scheduled::<MAX_ECHOES>,
+        belief: Belief::Repeated,
+        echoes: MAX_ECHOES,
+    }
 }
 
 impl Method {
@@ -167,7 +219,8 @@ impl FromStr for Method {
     /// ```
     /// use eeruf_sim::Method;
     /// assert_eq!("far_groups".parse(), Ok(Method::FarGroups));
-    /// assert!("eruf".parse::<Method>().unwrap_err().to_string().starts_with("no method `eruf`; expected simultaneous, "));
+    /// let error = "eruf".parse::<Method>().unwrap_err();
+    /// assert!(error.to_string().starts_with("no method `eruf`; expected simultaneous, "));
     /// ```
     fn from_str(name: &str) -> Result<Self, UnknownMethod> {
         Self::ALL.into_iter().find(|method| method.as_str() == name).ok_or_else(|| UnknownMethod(name.to_owned()))

@@ -1,5 +1,5 @@
-//! The firing methods that are compared: one table of them, the schedules that they fire by, and core's ring behind each.
-//! It uses `world` for the robots that fire; to add a method, add a row to the table in `method`.
+//! The firing methods that are compared: one table of them, the schedules that they fire by, and core's ring behind
+//! each. It uses `world` for the robots that fire; to add a method, add a row to the table in `method`.
 
 mod adaptive;
 mod best_schedule;

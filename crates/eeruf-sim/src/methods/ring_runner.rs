@@ -1,5 +1,5 @@
-//! Core's own [`Ring`] of whatever scheduler and number of echoes behind one trait: the same code as on the target, under
-//! simulated time.
+//! Core's own [`Ring`] of whatever scheduler and number of echoes behind one trait: the same code as on the target,
+//! under simulated time.
 
 use eeruf_core::{
     ImmediateRefiring, Instant, LadderError, MAX_SENSORS, Ring, RingConfig, RingError, RingEvent, ScheduledFiring,
@@ -8,11 +8,12 @@ use eeruf_core::{
 
 use super::dither::DitherFiring;
 use super::schedules::widest_dither;
-use crate::world::{AnySchedule, Chance, Robot};
+use crate::world::{AnySchedule, Random, Robot};
 
 /// A ring of any kind.
 pub(crate) trait RingRunner {
-    /// What the ring does now, if anything; `expected_change_us` says by how much a good reading of a sensor should change.
+    /// What the ring does now, if anything; `expected_change_us` says by how much a good reading of a sensor should
+    /// change.
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent>;
     /// When it is to be polled again.
     fn next_deadline(&self) -> Instant;
@@ -39,7 +40,7 @@ pub(crate) struct RingStart<'s> {
     pub(crate) robot: &'s Robot,
     /// The schedules that the method asked for, the one to start with first: at least one.
     pub(crate) schedules: &'s [AnySchedule],
-    pub(crate) chance: Chance,
+    pub(crate) random: Random,
     pub(crate) now: Instant,
 }
 
@@ -74,7 +75,8 @@ impl<'s> RingStart<'s> {
         RingConfig { t_delta, window, blanking, consecutive, patience }
     }
 
-    /// A ring of `E` echoes with this scheduler, no larger than it need be: some of its steps take time for each place.
+    /// A ring of `E` echoes with this scheduler, no larger than needed: some of its steps take time for each sensor
+    /// that it has room for.
     fn run<S: Scheduler + 's, const E: usize>(&self, scheduler: S) -> Started<'s> {
         let (config, now) = (self.config(), self.now);
         Ok(match self.robot.sensors.len() {
@@ -85,7 +87,7 @@ impl<'s> RingStart<'s> {
     }
 }
 
-/// Scheduled firing, with so many echoes of a firing.
+/// Scheduled firing, with up to `E` echoes of a firing.
 pub(super) fn scheduled<'s, const E: usize>(start: &RingStart<'s>) -> Started<'s> {
     start.run::<_, E>(ScheduledFiring::new(start.schedule(), start.now))
 }
@@ -98,5 +100,5 @@ pub(super) fn immediate<'s>(start: &RingStart<'s>) -> Started<'s> {
 /// The schedule's lags plus random waits.
 pub(super) fn dithered<'s>(start: &RingStart<'s>) -> Started<'s> {
     let (lags, period) = (start.schedule().t_lag().to_vec(), start.schedule().period());
-    start.run::<_, 1>(DitherFiring::new(lags, period, widest_dither(start.robot), start.chance, start.now))
+    start.run::<_, 1>(DitherFiring::new(lags, period, widest_dither(start.robot), start.random, start.now))
 }

@@ -48,9 +48,9 @@ pub(super) fn best(query: &ScheduleQuery<'_>) -> Made {
     }
 }
 
-/// The paper's waits for immediate refiring, each longer by the shortest refire time. Holding a sensor back until that time
-/// has passed would do as well for the transducer, but wherever it does so every wait is as good as any other, and nothing
-/// alternates.
+/// The paper's waits for immediate refiring, each longer by the shortest refire time. Holding a sensor back until that
+/// time has passed would do as well for the transducer, but wherever it does so every wait is as good as any other, and
+/// nothing alternates.
 pub(super) fn refiring(query: &ScheduleQuery<'_>) -> Made {
     let Robot { ref sensors, period, neighbours, min_refire, .. } = *query.robot;
     let table = table_i_d_for(sensors.len(), period, neighbours)?;
@@ -58,7 +58,7 @@ pub(super) fn refiring(query: &ScheduleQuery<'_>) -> Made {
     AnySchedule::from_slices(period.saturating_add(min_refire), table.t_lag(), [&longer(Phase::A), &longer(Phase::B)])
 }
 
-/// So many turns, each as long as the sensors listen.
+/// Sensors in turns, each turn as long as they listen.
 fn in_turns(robot: &Robot, turns: usize) -> Made {
     // A window that ends just when the next one begins still counts an echo at its very end.
     let turn = robot.window.saturating_add(Micros::new(1)).as_micros();
@@ -80,8 +80,8 @@ fn constant(period: Micros, lags: &[Micros]) -> Made {
 /// T_wait,b = D (L (n - 1 - i mod n) + floor(i / n))              D = W / (L n),  L = max(3, ceil(K / n))
 /// ```
 ///
-/// For up to twelve sensors and four neighbours these are the table's own waits, sensors 1 to K, times `T_p / 100 ms`; the
-/// separation is `D`, 2 % of the period. More sensors share the same range of waits, so `D` shrinks.
+/// For up to twelve sensors and four neighbours these are the table's own waits, sensors 1 to K, times `T_p / 100 ms`;
+/// the separation is `D`, 2 % of the period. More sensors share the same range of waits, so `D` shrinks.
 ///
 /// # Errors
 /// [`ScheduleError`] for no sensors, more than 64, or no period.
@@ -119,8 +119,8 @@ fn lags(sensors: usize, period: Micros, neighbours: u8) -> Vec<Micros> {
     (0..sensors).map(lag).collect()
 }
 
-/// How far dither moves a firing at most: as far as the paper's waits do, but never so far that a sensor would fire again
-/// while it listens.
+/// How far dither moves a firing at most: as far as the paper's waits do, but never so far that a sensor would fire
+/// again while it listens.
 pub(super) fn widest_dither(robot: &Robot) -> Micros {
     widest_wait(robot.period, robot.neighbours).min(robot.period.saturating_sub(robot.window))
 }

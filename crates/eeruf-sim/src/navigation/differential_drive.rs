@@ -1,5 +1,5 @@
-//! The platform of the paper's second set, TRC's `LabMate`: a box on two driven wheels, with limits to how fast it goes, turns,
-//! and changes either.
+//! The platform of the paper's second set, TRC's `LabMate`: a box on two driven wheels, with limits to how fast it
+//! goes, turns, and changes either.
 
 use crate::{
     geometry::{Moment, Pose, Vector},
@@ -22,8 +22,8 @@ pub struct LabMate {
 }
 
 impl Default for LabMate {
-    /// 75 x 75 cm and at most 1 m/s, as in the paper. The other limits are a choice, as heavy platforms of this size have
-    /// them: 1 m/s^2, 90 deg/s, 360 deg/s^2.
+    /// 75 x 75 cm and at most 1 m/s, as in the paper. The other limits are a choice, as heavy platforms of this size
+    /// have them: 1 m/s^2, 90 deg/s, 360 deg/s^2.
     fn default() -> Self {
         Self {
             side_m: 0.75,
@@ -59,8 +59,8 @@ impl Driven {
         Moment { pose, velocity, turn_rad_s: self.turn_rad_s }
     }
 
-    /// Along the arc that both speeds make, taken as the chord in its middle's direction: for the few milliseconds of a step
-    /// the difference is far below a micrometre.
+    /// Along the arc that both speeds make, taken as the chord in its middle's direction: for the few milliseconds of a
+    /// step the difference is far below a micrometre.
     fn carried(&self, for_s: f64) -> Pose {
         let heading = self.pose.rotation.angle();
         let turned = self.turn_rad_s * for_s;

@@ -1,5 +1,5 @@
-//! From range readings to motion: certainty grid (HIMM), vector field histogram (VFH) and a platform with two driven wheels.
-//! It uses `geometry`, and `scene` for the platform's outline; it can be used without sonar.
+//! From range readings to motion: certainty grid (HIMM), vector field histogram (VFH) and a platform with two driven
+//! wheels. It uses `geometry`, and `scene` for the platform's outline; it can be used without sonar.
 
 mod differential_drive;
 mod himm;

@@ -1,5 +1,5 @@
-//! Who was fooled by whom: the wrong readings of a simulation, counted by the sensor that made them, what caused them and
-//! along which path.
+//! Who was fooled by whom: the wrong readings of a simulation, counted by the sensor that made them, what caused them
+//! and along which path.
 
 use std::collections::HashMap;
 
@@ -45,8 +45,8 @@ impl Readings {
         rows
     }
 
-    /// The paths along which at least one believed reading was wrong, as indices into [`Readings::paths`], worst first: what
-    /// to draw.
+    /// The paths along which at least one believed reading was wrong, as indices into [`Readings::paths`], worst first:
+    /// what to draw.
     pub fn paths_that_fooled(&self, tolerance_us: f64) -> Vec<u32> {
         let rows = self.attribution(tolerance_us);
         rows.iter().filter(|row| row.accepted > 0 && row.path != NO_PATH).map(|row| row.path).collect()

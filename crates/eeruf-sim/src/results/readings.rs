@@ -1,5 +1,5 @@
-//! What a simulation returns: every reading of every sensor as arrays of equal length, each with what caused it and with
-//! what the sensor would have read alone.
+//! What a simulation returns: every reading of every sensor as arrays of equal length, each with what caused it and
+//! with what the sensor would have read alone.
 
 use eeruf_core::ReadingKind;
 
@@ -79,15 +79,17 @@ pub struct Readings {
     pub phase: Vec<u8>,
     /// When it fired, in seconds of true time.
     pub fired_s: Vec<f64>,
-    /// What the method made of the reading. Methods that believe everything know [`ReadingKind::Accepted`] and [`ReadingKind::Clear`].
+    /// What the method made of the reading. Methods that believe everything know [`ReadingKind::Accepted`] and
+    /// [`ReadingKind::Clear`].
     pub kind: Vec<ReadingKind>,
     /// The echo time that the method gives, in microseconds of the robot's clock: the firing's earliest echo, but for
     /// `multi_echo` the one that repeats, and for `median` the median.
     pub t_echo_us: Vec<f64>,
     /// The earliest echo of this firing, in microseconds of the robot's clock.
     pub earliest_us: Vec<f64>,
-    /// What the sensor would read if it fired alone at this place in quiet air: the first arrival of its own sound that is
-    /// loud enough, between blanking and the end of the window, without fading and jitter. In microseconds of true time.
+    /// What the sensor would read if it fired alone at this place in quiet air: the first arrival of its own sound that
+    /// is loud enough, between blanking and the end of the window, without fading and jitter. In microseconds of true
+    /// time.
     pub reference_us: Vec<f64>,
     /// What `t_echo_us` came from.
     pub cause: Vec<Cause>,
@@ -141,8 +143,8 @@ impl Readings {
         matches!(self.kind[reading], ReadingKind::Accepted | ReadingKind::Clear)
     }
 
-    /// Whether what the reading says is wrong, believed or not: more than `tolerance_us` off the reference, an echo where the
-    /// sensor alone hears none, or none where it hears one.
+    /// Whether what the reading says is wrong, believed or not: more than `tolerance_us` off the reference, an echo
+    /// where the sensor alone hears none, or none where it hears one.
     pub fn is_wrong(&self, reading: usize, tolerance_us: f64) -> bool {
         is_off(self.t_echo_us[reading], self.reference_us[reading], tolerance_us)
     }

@@ -1,4 +1,5 @@
-//! How good a method was: the figures that are always reported together, since each alone is easily made good at the cost of the others.
+//! How good a method was: the figures that are always reported together, since each alone is easily made good at the
+//! cost of the others.
 
 use serde::Serialize;
 
@@ -11,9 +12,10 @@ pub const DEFAULT_TOLERANCE_US: f64 = 500.0;
 
 /// A method's figures over one simulation, all robots together. Shares are fractions of 1.
 ///
-/// A reading is what one firing of one sensor gave. It is *accepted* if the method believes it (an echo it accepts, or that
-/// nothing is in range), *wrong* if what it says differs from the reference by more than the tolerance or says echo where the
-/// sensor alone hears none or the reverse, and *good* if the firing's earliest echo was not wrong, believed or not.
+/// A reading is what one firing of one sensor gave. It is *accepted* if the method believes it (an echo it accepts, or
+/// that nothing is in range), *wrong* if what it says differs from the reference by more than the tolerance or says
+/// echo where the sensor alone hears none or the reverse, and *good* if the firing's earliest echo was not wrong,
+/// believed or not.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Summary {
     /// The method.
@@ -24,14 +26,15 @@ pub struct Summary {
     pub accepted: usize,
     /// Share of all readings that were accepted and wrong: what does harm.
     pub wrong_of_all: f64,
-    /// The part of `wrong_of_all` that foreign or stale sound caused. The rest are the sensor's own doing: an echo just loud
-    /// enough that faded away once, so that the sensor reads what lies behind.
+    /// The part of `wrong_of_all` that foreign or stale sound caused. The rest are the sensor's own doing: an echo just
+    /// loud enough that faded away once, so that the sensor reads what lies behind.
     pub crosstalk_of_all: f64,
     /// Share of the accepted readings that were wrong; `None` if none was accepted.
     pub wrong_of_accepted: Option<f64>,
     /// Share of all readings that were not accepted: rejected, first of a pair, without echo once.
     pub rejected: f64,
-    /// Share of the good readings that were not accepted, the false rejections: what the method costs; `None` if no reading was good.
+    /// Share of the good readings that were not accepted, the false rejections: what the method costs; `None` if no
+    /// reading was good.
     pub good_lost: Option<f64>,
     /// Share of all readings that were not good: what would have been wrong without any filter.
     pub wrong_before_filter: f64,
@@ -43,8 +46,8 @@ pub struct Summary {
     pub starved: usize,
 }
 
-/// How old a sensor's last accepted reading is, in milliseconds, whenever it fires: from the firing that the accepted reading
-/// came from (from the start of the simulation before the first) to the present firing. At best one period.
+/// How old a sensor's last accepted reading is, in milliseconds, whenever it fires: from the firing that the accepted
+/// reading came from (from the start of the simulation before the first) to the present firing. At best one period.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Age {
     /// Half of the time no older than this.

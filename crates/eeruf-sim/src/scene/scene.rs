@@ -1,5 +1,5 @@
-//! A scene: checked walls and poles in air, with everything that is derived from them once (mesh, mirrors, broad phase).
-//! Robots, noise and seeds wrap around it; a scene itself never changes.
+//! A scene: checked walls and poles in air, with everything that is derived from them once (mesh, mirrors, broad
+//! phase). Robots, noise and seeds wrap around it; a scene itself never changes.
 
 use super::air::Air;
 use super::error::{MAX_COORDINATE_M, MAX_POLE_M, MAX_WALLS, MIN_WALL_M, SceneError};
@@ -74,8 +74,8 @@ impl Scene {
         self.air
     }
 
-    /// Whether a point lies inside something solid: within a pillar, or outside a closed room. A point in a pole is not;
-    /// see [`contact`](Self::contact).
+    /// Whether a point lies inside something solid: within a pillar, or outside a closed room. A point in a pole is
+    /// not; see [`contact`](Self::contact).
     pub fn is_solid(&self, point: Point) -> bool {
         self.mesh.is_solid(point)
     }

@@ -6,8 +6,8 @@ use crate::geometry::Point;
 /// What a wall does to a beam that meets it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Faces {
-    /// Reflects on the left of the direction `from` to `to`, where the free space is; the back swallows. A room is a loop
-    /// walked counter-clockwise, a pillar one walked clockwise.
+    /// Reflects on the left of the direction `from` to `to`, where the free space is; the back swallows. A room is a
+    /// loop walked counter-clockwise, a pillar one walked clockwise.
     #[default]
     Left,
     /// A free-standing panel: reflects on both sides.

@@ -1,8 +1,9 @@
-//! What reaches the receivers: the sound of a firing along its channels, with fading and jitter, and bursts from outside.
+//! What reaches the receivers: the sound of a firing along its channels, with fading and jitter, and bursts from
+//! outside.
 
 use super::channels::Channel;
 use super::receiver::{Arrival, EXTERNAL, NEVER, Receiver};
-use crate::world::{Chance, FARTHEST, Noise, Normal};
+use crate::world::{FARTHEST, Noise, Normal, Random};
 
 // What the streams of random numbers are for.
 const ARRIVALS: u64 = 1;
@@ -10,7 +11,7 @@ const BURSTS: u64 = 2;
 
 /// How sound fades and jitters on its way.
 pub(crate) struct Propagation {
-    random: Chance,
+    random: Random,
     normal: &'static Normal,
     fading_db: f32,
     jitter_ns: f32,
@@ -20,7 +21,7 @@ pub(crate) struct Propagation {
 
 impl Propagation {
     /// The noise of a world, from its seed.
-    pub(crate) fn new(noise: &Noise, seed: Chance) -> Self {
+    pub(crate) fn new(noise: &Noise, seed: Random) -> Self {
         let jitter_ns = (noise.jitter_us_rms * 1000.0) as f32;
         Self {
             random: seed.of(ARRIVALS),
@@ -31,8 +32,9 @@ impl Propagation {
         }
     }
 
-    /// Sends out the sound of an emitter's firing at `now`, its so-many-th. Each arrival that may matter to its receiver is
-    /// handed to `arrive` with the receiver's number; receivers that are not there are left out.
+    /// Sends out the sound of a firing at `now`; `emitter` and the number of its `firing` say which. Each arrival that
+    /// may matter to its receiver is handed to `arrive` with the receiver's number; receivers that are not there are
+    /// left out.
     #[inline]
     pub(crate) fn send(
         &self,
@@ -62,7 +64,7 @@ impl Propagation {
 
 /// Bursts from outside, one after the other.
 pub(crate) struct Bursts {
-    random: Chance,
+    random: Random,
     normal: &'static Normal,
     noise: Noise,
     /// When the next one comes, or [`NEVER`].
@@ -71,7 +73,7 @@ pub(crate) struct Bursts {
 
 impl Bursts {
     /// The bursts of a world, from its seed.
-    pub(crate) fn new(noise: &Noise, seed: Chance) -> Self {
+    pub(crate) fn new(noise: &Noise, seed: Random) -> Self {
         let mut bursts = Self { random: seed.of(BURSTS), normal: Normal::shared(), noise: *noise, next: 0 };
         bursts.advance();
         bursts

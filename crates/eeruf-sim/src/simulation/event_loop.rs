@@ -1,8 +1,8 @@
 //! The event simulation: rings fire, sound travels, sensors hear, in the order of true time.
 //!
-//! Only two things can happen next to a robot: its ring is due, or one of its sensors hears something. So the event queue is
-//! two moments for each robot, the earlier one first and an echo before the ring on a tie. What is on its way is kept with
-//! the sensor that it will reach ([`Receiver`]).
+//! Only two things can happen next to a robot: its ring is due, or one of its sensors hears something. So the event
+//! queue is two moments for each robot, the earlier one first and an echo before the ring on a tie. What is on its way
+//! is kept with the sensor that it will reach ([`Receiver`]).
 
 use eeruf_core::{Instant, RingEvent};
 
@@ -19,7 +19,7 @@ use crate::{
     methods::Method,
     results::Readings,
     tracing::PathsError,
-    world::{Chance, World},
+    world::{Random, World},
 };
 
 /// How many events go by between two calls of `keep_going`.
@@ -50,7 +50,7 @@ pub(crate) fn run<K: Kinematics>(
     kinematics: &mut K,
     mut keep_going: impl FnMut(f64) -> bool,
 ) -> Result<Readings, SimulationError> {
-    let seed = Chance::new(options.seed.unwrap_or(world.seed()));
+    let seed = Random::new(options.seed.unwrap_or(world.seed()));
     let plans = plans(world, method, options, kinematics)?;
     let mut events = EventLoop::new(world, method, options, kinematics, seed)?;
     let mut rings = start_all(world, &plans, &events.channels, seed)?;
@@ -92,7 +92,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         method: Method,
         options: &Options,
         kinematics: &'a mut K,
-        seed: Chance,
+        seed: Random,
     ) -> Result<Self, SimulationError> {
         let channels = Channels::new(world, kinematics).map_err(|error| SimulationError::paths(0, error))?;
         let sensors = channels.ids().len();

@@ -1,9 +1,9 @@
-//! Where robots are while they are simulated: as their motions have it, known from the start, or as a pilot steers them by
-//! what their sensors read.
+//! Where robots are while they are simulated: as their motions have it, known from the start, or as a pilot steers them
+//! by what their sensors read.
 
 use crate::{geometry::Moment, methods::Method, results::Readings, world::World};
 
-/// Says where robots are and takes in what their rings read. Time never goes back from call to call.
+/// Says where robots are, and receives what their rings read. Time never goes back from call to call.
 pub(crate) trait Kinematics {
     /// Whether anything ever moves.
     fn moves(&self) -> bool;

@@ -1,8 +1,8 @@
 //! [`LockStep`]: the world around a ring that runs elsewhere, on a real or an emulated microcontroller.
 //!
-//! The simulation proper calls the ring. Here the ring calls: it says which sensor sends its sound when, and learns what every
-//! sensor will hear next, as far as is known by then. A later firing may still change that: foreign sound that arrives first is
-//! what a listening sensor hears.
+//! The simulation proper calls the ring. Here the ring calls: it says which sensor sends its sound when, and learns
+//! what every sensor will hear next, as far as is known by then. A later firing may still change that: foreign sound
+//! that arrives first is what a listening sensor hears.
 
 use super::arrivals::Propagation;
 use super::channels::Channels;
@@ -10,7 +10,7 @@ use super::kinematics::Planned;
 use super::receiver::{Hearing, NEVER, Receiver};
 use crate::{
     tracing::PathsError,
-    world::{Chance, World},
+    world::{Random, World},
 };
 
 /// The first robot of a world, fired from outside. Sensors report one echo.
@@ -43,12 +43,12 @@ impl<'w> LockStep<'w> {
         };
         let receivers = vec![Receiver::NEW; robot.sensors.len()];
         // The same random numbers as in a simulation.
-        let propagation = Propagation::new(&world.noise(), Chance::new(world.seed()));
+        let propagation = Propagation::new(&world.noise(), Random::new(world.seed()));
         Ok(Self { world, channels, hearing, receivers, propagation })
     }
 
-    /// A sensor sends its sound and begins to listen, at this time in nanoseconds: not before the last call's, and not within
-    /// its window.
+    /// A sensor sends its sound and begins to listen, at this time in nanoseconds: not before the last call's, and not
+    /// within its window.
     ///
     /// # Errors
     /// As [`simulate`](crate::simulate()), for robots that move.
@@ -106,7 +106,7 @@ mod tests {
             }
         };
         for (at, sensor, period) in firings {
-            // What it heard since its firing before is settled.
+            // What it heard since its last firing cannot change any more.
             note(fired[sensor], sensor, outside.hears_at_ns(sensor));
             outside.fire(sensor, at).unwrap();
             fired[sensor] = Some((at, period));

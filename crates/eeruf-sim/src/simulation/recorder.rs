@@ -39,7 +39,8 @@ impl Recorder {
             return Err(SimulationError::Median { median_of: options.median_of });
         }
         let duration_s = end as f64 * 1e-9;
-        // Enough for one reading of each sensor in each period; a cap keeps absurd requests from taking all memory at once.
+        // Enough for one reading of each sensor in each period; a cap keeps absurd requests from taking all memory at
+        // once.
         let capacity = (options.periods as usize).saturating_mul(ids.len()).min(1 << 20);
         let belief = method.belief();
         let history = if belief == Belief::Median { vec![History::default(); ids.len()] } else { Vec::new() };
@@ -47,7 +48,7 @@ impl Recorder {
         Ok(Self { readings, belief, ids: ids.to_vec(), end, median_of, history })
     }
 
-    /// Takes in what the ring makes of a firing. `reference` is the travelling time of what the sensor hears alone. The
+    /// Records what the ring makes of a firing. `reference` is the travelling time of what the sensor hears alone. The
     /// answer is all readings with this one as the last; none if it does not count.
     pub(crate) fn record(
         &mut self,
@@ -74,7 +75,7 @@ impl Recorder {
             Some(Heard { arrival, of_this_firing, .. }) => {
                 let (cause, path) = match (arrival.path, of_this_firing) {
                     (EXTERNAL, _) => (Cause::External, NO_PATH),
-                    // Whether it is another sensor's sound is settled by `finish`, which knows the paths.
+                    // Whether it is another sensor's sound is decided by `finish`, which knows the paths.
                     (path, true) => (Cause::Own, path),
                     (path, false) => (Cause::Stale, path),
                 };

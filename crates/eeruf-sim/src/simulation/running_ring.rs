@@ -10,7 +10,7 @@ use super::receiver::{Hearing, NEVER, Receiver};
 use crate::{
     geometry::Moment,
     methods::{Method, RingRunner, RingStart},
-    world::{AnySchedule, Chance, Robot, Ticker, World, offset},
+    world::{AnySchedule, Random, Robot, Ticker, World, offset},
 };
 
 /// What the stream of random numbers is for.
@@ -55,16 +55,16 @@ pub(crate) fn start_all<'a>(
     world: &'a World,
     plans: &'a [(Method, Vec<AnySchedule>)],
     channels: &Channels<'_>,
-    seed: Chance,
+    seed: Random,
 ) -> Result<Vec<RunningRing<'a>>, SimulationError> {
     let speed_of_sound = world.scene().air().speed_of_sound();
     let mut rings = Vec::with_capacity(plans.len());
     for (index, (robot, (method, schedules))) in world.robots().iter().zip(plans).enumerate() {
         let clock = Ticker::new(robot.clock);
         let start = u64::from(robot.start.as_micros());
-        let chance = seed.of(DITHER).of(index as u64);
+        let random = seed.of(DITHER).of(index as u64);
         let ring = method
-            .start(&RingStart { robot, schedules, chance, now: clock.instant(start) })
+            .start(&RingStart { robot, schedules, random, now: clock.instant(start) })
             .map_err(|error| SimulationError::start(index, *method, error))?;
         let true_ns = |time: Micros| clock.true_ns(time.as_micros());
         let hearing = Hearing {
@@ -84,8 +84,8 @@ pub(crate) fn start_all<'a>(
     Ok(rings)
 }
 
-/// By how much a good reading of a sensor should have changed since its firing before: `-2 v dt / c`, with `v` the speed at
-/// which the robot carried it forward when it fired. Nothing without odometry.
+/// By how much a good reading of a sensor should have changed since its firing before: `-2 v dt / c`, with `v` the
+/// speed at which the robot carried it forward when it fired. Nothing without odometry.
 pub(crate) fn expected_change_us(
     robot: &Robot,
     receiver: &Receiver,

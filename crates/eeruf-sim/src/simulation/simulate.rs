@@ -16,7 +16,8 @@ use crate::{methods::Method, results::Readings, world::World};
 /// ```
 /// use eeruf_sim::*;
 /// let wall = Wall::new(5.0, 2.0, -5.0, 2.0);
-/// let robot = Robot::ring(Pose::rotation(std::f64::consts::FRAC_PI_2), 8, 15f64.to_radians(), 0.3, Transducer::POLAROID_6500);
+/// let pose = Pose::rotation(std::f64::consts::FRAC_PI_2);
+/// let robot = Robot::ring(pose, 8, 15f64.to_radians(), 0.3, Transducer::POLAROID_6500);
 /// let world = World::new(Scene::new(vec![wall], vec![], Air::default())?, vec![robot], Noise::default())?;
 /// let readings = simulate(&world, Method::Eeruf, &Options::periods(100))?;
 /// assert_eq!(readings.len(), 800);
@@ -27,8 +28,8 @@ pub fn simulate(world: &World, method: Method, options: &Options) -> Result<Read
     simulate_while(world, method, options, |_| true)
 }
 
-/// As [`simulate`], calling back now and then with the share of time that has passed, 0 to 1. When the answer is `false` it
-/// stops with [`SimulationError::Stopped`].
+/// As [`simulate`], calling back now and then with the share of time that has passed, 0 to 1. When the answer is
+/// `false` it stops with [`SimulationError::Stopped`].
 ///
 /// # Errors
 /// As [`simulate`].
@@ -41,8 +42,8 @@ pub fn simulate_while(
     event_loop::run(world, method, options, &mut Planned(world), keep_going)
 }
 
-/// Several simulations at once on all cores, the answers in the order of the jobs. What comes out does not depend on the
-/// number of threads.
+/// Several simulations at once on all cores, the answers in the order of the jobs. What comes out does not depend on
+/// the number of threads.
 ///
 /// ```
 /// assert_eq!(eeruf_sim::sweep(&[1, 2, 3], |seed| seed * seed), [1, 4, 9]);

@@ -1,4 +1,4 @@
-//! Short ways to ask: one source in a scene, or many sources on all cores.
+//! Short forms of the question: one source in a scene, or many sources on all cores.
 
 use rayon::prelude::*;
 
@@ -29,8 +29,8 @@ pub fn paths_of_many(
 }
 
 impl Scene {
-    /// Every specular path from a source to each receiver, at [`DEFAULT_FREQUENCY_HZ`](super::DEFAULT_FREQUENCY_HZ); see [`Tracer::trace`], which also
-    /// keeps the memory between questions.
+    /// Every specular path from a source to each receiver, at [`DEFAULT_FREQUENCY_HZ`](super::DEFAULT_FREQUENCY_HZ);
+    /// see [`Tracer::trace`], which also keeps the memory between questions.
     ///
     /// # Errors
     /// As [`Tracer::trace`].

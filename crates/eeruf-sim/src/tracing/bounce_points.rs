@@ -6,8 +6,8 @@ use crate::{
 };
 
 impl Scene {
-    /// The corners of a path: source, every bounce, receiver. `bounces` are those of a path between the two that was found
-    /// in this scene; for others the answer is none or meaningless.
+    /// The corners of a path: source, every bounce, receiver. `bounces` are those of a path between the two that was
+    /// found in this scene; for others the answer is none or meaningless.
     ///
     /// ```
     /// use eeruf_sim::{Air, Point, Scene, Wall};

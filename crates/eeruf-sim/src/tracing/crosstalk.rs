@@ -11,8 +11,8 @@ use crate::{
     scene::{Bounce, Scene},
 };
 
-/// One path from an emitter to a receiver that is heard. With `emitter == receiver` it is the sensor's own echo; otherwise
-/// it is a critical path, one that can cause crosstalk.
+/// One path from an emitter to a receiver that is heard. With `emitter == receiver` it is the sensor's own echo;
+/// otherwise it is a critical path, one that can cause crosstalk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CriticalPath {
     /// Index of the sensor that fires; 0 if only one does.
@@ -75,8 +75,8 @@ impl CrosstalkMatrix {
         Self::default()
     }
 
-    /// Traces each sensor once as the emitter and keeps what is heard. Use the matrix as long as nothing moves: it does not
-    /// depend on time.
+    /// Traces each sensor once as the emitter and keeps what is heard. Use the matrix as long as nothing moves: it does
+    /// not depend on time.
     ///
     /// # Errors
     /// As [`Tracer::trace`]; the matrix is empty then.
@@ -84,8 +84,8 @@ impl CrosstalkMatrix {
         self.fill(tracer, query.sensors, query)
     }
 
-    /// As [`compute`](Self::compute), but traces one emitter only, which is number 0 and need not be among the sensors: for a
-    /// world in which things move from firing to firing.
+    /// As [`compute`](Self::compute), but traces one emitter only, which is number 0 and need not be among the sensors:
+    /// for a world in which things move from firing to firing.
     ///
     /// # Errors
     /// As [`compute`](Self::compute).

@@ -69,8 +69,8 @@ impl PoleSearch {
         &self.bounces[path.bounces.0 as usize..path.bounces.1 as usize]
     }
 
-    /// Finds all paths over poles to these receivers, but for those that are certainly too faint. Returns whether the budget
-    /// sufficed.
+    /// Finds all paths over poles to these receivers, but for those that are certainly too faint. Returns whether the
+    /// budget sufficed.
     pub(crate) fn search(&mut self, query: &PoleQuery<'_>, receivers: &[Point]) -> bool {
         let PoleQuery { scene, tree, limits, budget, .. } = *query;
         self.found.clear();

@@ -1,5 +1,5 @@
-//! Reception at a moving receiver. Sound is emitted at one place and moment; the receiver meets it where it then is, which
-//! per image is a quadratic equation.
+//! Reception at a moving receiver. Sound is emitted at one place and moment; the receiver meets it where it then is,
+//! which per image is a quadratic equation.
 
 use crate::geometry::{Point, Vector};
 
@@ -15,8 +15,8 @@ pub struct Reception {
 /// Solves `|receiver + velocity t - image| = c t` for the first `t >= 0`.
 ///
 /// `image` is the source mirrored in the path's walls, `receiver` the position at emission, `velocity` in m/s and
-/// `speed_of_sound` in m/s. None if the receiver outruns the sound. Which walls a path meets is taken from the position at
-/// emission: at a metre per second a receiver moves a few millimetres while the sound is on its way.
+/// `speed_of_sound` in m/s. None if the receiver outruns the sound. Which walls a path meets is taken from the position
+/// at emission: at a metre per second a receiver moves a few millimetres while the sound is on its way.
 ///
 /// ```
 /// use eeruf_sim::{Point, Vector, reception};
@@ -31,8 +31,8 @@ pub fn reception(image: Point, receiver: Point, velocity: Vector, speed_of_sound
 
 /// The same from a path's length and direction of arrival instead of its image, in metres and radians.
 ///
-/// For a path over a pole the image moves a little with the receiver; the error is of the order of the pole's radius times
-/// the receiver's speed over that of sound.
+/// For a path over a pole the image moves a little with the receiver; the error is of the order of the pole's radius
+/// times the receiver's speed over that of sound.
 pub fn reception_along(length_m: f64, arrival_rad: f64, velocity: Vector, speed_of_sound: f64) -> Option<Reception> {
     let approach = velocity.x * arrival_rad.cos() + velocity.y * arrival_rad.sin();
     solve(length_m * length_m, -length_m * approach, velocity.norm_squared(), speed_of_sound)
@@ -64,7 +64,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_receiver_is_where_the_sound_is(x in -9.0..9.0f64, y in -9.0..9.0f64, vx in -30.0..30.0f64, vy in -30.0..30.0f64) {
+        fn the_receiver_is_where_the_sound_is(
+            x in -9.0..9.0f64,
+            y in -9.0..9.0f64,
+            vx in -30.0..30.0f64,
+            vy in -30.0..30.0f64,
+        ) {
             let (receiver, velocity) = (Point::new(x, y), Vector::new(vx, vy));
             let met = reception(Point::origin(), receiver, velocity, 343.2).unwrap();
             let there = receiver + velocity * met.time_s;

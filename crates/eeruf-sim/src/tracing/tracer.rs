@@ -58,8 +58,8 @@ impl Tracer {
     /// Writes every specular path from the source to each receiver into `paths`.
     ///
     /// A path may bounce at walls, at walls with one pole anywhere among them, or at two poles in turn. One through the
-    /// apex of a convex right-angle corner is found once. A receiver on top of the source does not hear the direct path of
-    /// no length.
+    /// apex of a convex right-angle corner is found once. A receiver on top of the source does not hear the direct path
+    /// of no length.
     ///
     /// # Errors
     /// A position that is not a number or far outside, an order or a length out of range, or a tree that outgrows
@@ -95,7 +95,7 @@ impl Tracer {
         if !self.poles.search(&query, receivers) {
             return Err(PathsError::Budget { beams: MAX_BEAMS });
         }
-        self.ranking.order(Found { tree: &self.tree, poles: &self.poles }, receivers.len());
+        self.ranking.rank(Found { tree: &self.tree, poles: &self.poles }, receivers.len());
         self.write(scene, receivers, paths);
         Ok(())
     }

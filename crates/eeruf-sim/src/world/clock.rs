@@ -1,7 +1,7 @@
 //! A robot's clock: a free-running microsecond counter that starts anywhere, runs a little fast or slow, and wraps.
 //!
-//! True time is counted in whole nanoseconds from the start of the simulation, so that the order of events never depends on
-//! rounding.
+//! True time is counted in whole nanoseconds from the start of the simulation, so that the order of events never
+//! depends on rounding.
 
 use eeruf_core::Instant;
 
@@ -77,7 +77,10 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_tick_is_reached_at_the_first_nanosecond_that_counts_it(ticks in 1u64..1u64 << 40, drift in -1000.0..1000.0f64) {
+        fn a_tick_is_reached_at_the_first_nanosecond_that_counts_it(
+            ticks in 1u64..1u64 << 40,
+            drift in -1000.0..1000.0f64,
+        ) {
             let clock = Ticker::new(Clock { offset_us: 7, drift_ppm: drift });
             let at = clock.reaches(ticks);
             prop_assert_eq!(clock.ticks(at), ticks);

@@ -18,8 +18,8 @@ pub enum Motion {
         /// Rate of turn in rad/s, counter-clockwise.
         turn_rad_s: f64,
     },
-    /// It drives along straight lines from its pose through these points, heading where it goes and turning on the spot,
-    /// and stops at the last.
+    /// It drives along straight lines from its pose through these points, heading where it goes and turning on the
+    /// spot, and stops at the last.
     Waypoints {
         /// The points, in metres.
         points: Vec<Point>,
@@ -42,7 +42,8 @@ impl Motion {
     ///
     /// ```
     /// use eeruf_sim::{Motion, Point, Pose, Vector};
-    /// let round_the_corner = Motion::Waypoints { points: vec![Point::new(2.0, 0.0), Point::new(2.0, 1.0)], speed_m_s: 0.5 };
+    /// let points = vec![Point::new(2.0, 0.0), Point::new(2.0, 1.0)];
+    /// let round_the_corner = Motion::Waypoints { points, speed_m_s: 0.5 };
     /// let moment = round_the_corner.at(&Pose::identity(), 5.0);
     /// assert!((moment.pose.translation.vector - Vector::new(2.0, 0.5)).norm() < 1e-12);
     /// assert!((moment.pose.rotation.angle() - std::f64::consts::FRAC_PI_2).abs() < 1e-12);

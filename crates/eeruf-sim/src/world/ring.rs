@@ -4,7 +4,8 @@ use crate::geometry::{Pose, Vector};
 
 /// Transducers evenly spread over an arc of a circle, facing outwards.
 ///
-/// `pose` is the robot's; the first sensor stands `first_rad` from its heading, the next ones `spacing_rad` further each.
+/// `pose` is the robot's; the first sensor stands `first_rad` from its heading, the next ones `spacing_rad` further
+/// each.
 ///
 /// ```
 /// use eeruf_sim::{Pose, ring_of};

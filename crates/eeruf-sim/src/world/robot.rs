@@ -43,9 +43,11 @@ pub struct Robot {
     /// How long a sensor is deaf after it has fired.
     pub blanking: Micros,
     /// With immediate refiring, how long a sensor rests at least between its echo and its next firing. The default is
-    /// 36 ms, as long as it listens: much sooner, and it hears its last sound fade away in the room, just after blanking, every time.
+    /// 36 ms, as long as it listens: much sooner, and it hears its last sound fade away in the room, just after
+    /// blanking, every time.
     pub min_refire: Micros,
-    /// How many adjacent sensors must not fire close together; the conventional lags repeat after as many. The default is 4.
+    /// How many adjacent sensors must not fire close together; the conventional lags repeat after as many. The default
+    /// is 4.
     pub neighbours: u8,
     /// How many consecutive readings must agree, 2 to 8. The default is 2, as in the paper.
     pub consecutive: u8,
@@ -96,8 +98,8 @@ impl Robot {
         }
     }
 
-    /// The radius in metres of the smallest disc about the robot's middle that holds all its sensors: its body, as far as
-    /// the simulator knows.
+    /// The radius in metres of the smallest disc about the robot's middle that holds all its sensors: its body, as far
+    /// as the simulator knows.
     pub fn radius_m(&self) -> f64 {
         self.sensors.iter().map(|sensor| offset(sensor).norm()).fold(0.0, f64::max)
     }

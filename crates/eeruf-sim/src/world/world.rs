@@ -1,5 +1,5 @@
-//! A world: a scene with robots in it, how noisy it is, and the seed that decides all that is random. Checked once, so that a
-//! simulation has nothing left to refuse but what a method asks for.
+//! A world: a scene with robots in it, how noisy it is, and the seed that decides all that is random. Checked once, so
+//! that a simulation has nothing left to refuse but what a method asks for.
 
 use super::check::check;
 use super::error::WorldError;
@@ -56,8 +56,8 @@ impl World {
         Ok(Self { max_order, ..self })
     }
 
-    /// The same world, with sound that meets a pole followed up to this order only, at most that of all other sound. Such
-    /// sound is faint, and by far the most expensive to follow.
+    /// The same world, with sound that meets a pole followed up to this order only, at most that of all other sound.
+    /// Such sound is faint, and by far the most expensive to follow.
     ///
     /// # Errors
     /// [`WorldError::Order`] above [`MAX_ORDER`].

@@ -15,8 +15,8 @@ fn matrix(scene: &Scene, sensors: &[Pose]) -> CrosstalkMatrix {
     matrix
 }
 
-/// Loudest direct path in dB above the detection floor, from a sensor to the one `away` places further on a ring of 24, off
-/// a flat wall that faces the middle between the two.
+/// Loudest direct path in dB above the detection floor, from a sensor to the one `away` places further on a ring of 24,
+/// off a flat wall that faces the middle between the two.
 fn over_floor_db(distance_m: f64, away: usize) -> f64 {
     let wall = Wall::new(5.0, 0.3 + distance_m, -5.0, 0.3 + distance_m).with_material(Material::PERFECT);
     let scene = Scene::new(vec![wall], vec![], Air::default()).unwrap();

@@ -1,8 +1,8 @@
-//! A second opinion on the paths: plain image sources over all wall sequences, followed back from the receiver with parry's
-//! ray casts. It shares no code with the beam tree; it is slow and says when it cannot tell.
+//! A second opinion on the paths: plain image sources over all wall sequences, followed back from the receiver with
+//! parry's ray casts. It shares no code with the beam tree; it is slow and says when it cannot tell.
 
 use crate::random::{free_point, scene};
-use eeruf_sim::{Air, Bounce, Chance, Faces, Point, Pole, Scene, Wall};
+use eeruf_sim::{Air, Bounce, Faces, Point, Pole, Random, Scene, Wall};
 use parry2d_f64::{
     math::Vector,
     query::{Ray, RayCast},
@@ -145,7 +145,7 @@ fn image_sources(scene: &Scene, source: Point, receiver: Point, max_order: usize
 
 #[test]
 fn beam_tree_and_image_sources_agree_on_thousands_of_random_rooms() {
-    let mut random = Chance::from_state(7);
+    let mut random = Random::from_state(7);
     let (mut rooms, mut doubtful, mut paths) = (0, 0, 0);
     while rooms < 3000 {
         // Now and then a large room at a low order.
@@ -189,7 +189,7 @@ fn shortest_over(from: Point, to: Point, pole: &Pole) -> Option<Point> {
 
 #[test]
 fn pole_paths_agree_with_a_plain_search_over_image_sources() {
-    let mut random = Chance::from_state(11);
+    let mut random = Random::from_state(11);
     let (mut rooms, mut doubtful, mut paths) = (0, 0, 0);
     while rooms < 150 {
         let bare = scene(&mut random, 5);

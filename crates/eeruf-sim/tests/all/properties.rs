@@ -1,7 +1,7 @@
 //! What must hold for every scene: reciprocity, motion, scale, and what changing walls or the order may do.
 
 use crate::random::{free_point, scene};
-use eeruf_sim::{Air, Bounce, Chance, Faces, Paths, Point, Pole, Pose, Scene, Vector, Wall};
+use eeruf_sim::{Air, Bounce, Faces, Paths, Point, Pole, Pose, Random, Scene, Vector, Wall};
 use proptest::prelude::*;
 
 /// Paths of one receiver as sortable rows.
@@ -17,10 +17,10 @@ fn same(a: &[(Vec<Bounce>, f64)], b: &[(Vec<Bounce>, f64)], scale: f64) -> bool 
 
 /// A random scene with two poles, a source and a receiver.
 fn setting(seed: u64) -> (Scene, Point, Point) {
-    let mut random = Chance::from_state(seed);
+    let mut random = Random::from_state(seed);
     let bare = scene(&mut random, 8);
     let (source, receiver) = (free_point(&mut random, &bare), free_point(&mut random, &bare));
-    let pole = |random: &mut Chance| {
+    let pole = |random: &mut Random| {
         let at = free_point(random, &bare);
         Pole::new(at.x, at.y, random.between(0.002, 0.1))
     };
@@ -134,7 +134,12 @@ proptest! {
 
     #[test]
     fn a_path_through_a_convex_right_angle_corner_is_one(
-        turn in -3.1..3.1f64, x in -5.0..5.0f64, y in -5.0..5.0f64, aim in 0.05..1.52f64, s in 0.2..3.0f64, r in 0.2..3.0f64,
+        turn in -3.1..3.1f64,
+        x in -5.0..5.0f64,
+        y in -5.0..5.0f64,
+        aim in 0.05..1.52f64,
+        s in 0.2..3.0f64,
+        r in 0.2..3.0f64,
     ) {
         let pose = Pose::new(Vector::new(x, y), turn);
         let corner = [(10.0, 0.0), (0.0, 0.0), (0.0, 10.0)].map(|(x, y)| pose * Point::new(x, y));
@@ -142,20 +147,22 @@ proptest! {
         let on = |far: f64| pose * Point::new(far * aim.cos(), far * aim.sin());
         let (source, receiver) = (on(s), on(r));
         // From inside: the wall along x first keeps the free space on its left.
-        let inside = Scene::new(vec![wall(corner[1], corner[0]), wall(corner[2], corner[1])], vec![], Air::default()).unwrap();
+        let walls = vec![wall(corner[1], corner[0]), wall(corner[2], corner[1])];
+        let inside = Scene::new(walls, vec![], Air::default()).unwrap();
         let paths = inside.paths(source, &[receiver], 3, FAR).unwrap();
         let twice = paths.order.iter().filter(|order| **order == 2).count();
         prop_assert_eq!((paths.len(), twice), (4, 1));
         // From outside the same apex is a reflex corner and returns nothing.
         let far = |p: Point| p + (corner[1] - p) * 2.0;
-        let outside = Scene::new(vec![wall(corner[0], corner[1]), wall(corner[1], corner[2])], vec![], Air::default()).unwrap();
+        let walls = vec![wall(corner[0], corner[1]), wall(corner[1], corner[2])];
+        let outside = Scene::new(walls, vec![], Air::default()).unwrap();
         let paths = outside.paths(far(source), &[far(receiver)], 3, FAR).unwrap();
         prop_assert_eq!(paths.len(), 1);
     }
 }
 
-/// Sources and receivers on a lattice: paths through corners, along the mesh's own diagonals and through the joints of walls
-/// that were cut at lattice points.
+/// Sources and receivers on a lattice: paths through corners, along the mesh's own diagonals and through the joints of
+/// walls that were cut at lattice points.
 #[test]
 fn a_rectangle_has_one_path_per_image_even_on_a_lattice() {
     let cut = |corners: &[[f64; 2]]| Scene::new(Wall::polyline(corners).collect(), vec![], Air::default()).unwrap();

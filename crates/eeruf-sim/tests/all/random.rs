@@ -1,6 +1,6 @@
 //! What several tests draw: points, rooms and scenes, from a raw state of the simulator's own generator.
 
-use eeruf_sim::{Air, Chance, Faces, Point, Scene, Wall};
+use eeruf_sim::{Air, Faces, Point, Random, Scene, Wall};
 
 /// What tests draw besides numbers in a range.
 pub(crate) trait Draw {
@@ -10,7 +10,7 @@ pub(crate) trait Draw {
     fn point(&mut self, half: f64) -> Point;
 }
 
-impl Draw for Chance {
+impl Draw for Random {
     fn below(&mut self, count: u64) -> u64 {
         self.bits() % count
     }
@@ -21,7 +21,7 @@ impl Draw for Chance {
 }
 
 /// A star-shaped room around the origin with `walls` walls.
-pub(crate) fn star(random: &mut Chance, walls: usize) -> Vec<Wall> {
+pub(crate) fn star(random: &mut Random, walls: usize) -> Vec<Wall> {
     let tau = std::f64::consts::TAU;
     let corners: Vec<_> = (0..walls)
         .map(|k| {
@@ -34,7 +34,7 @@ pub(crate) fn star(random: &mut Chance, walls: usize) -> Vec<Wall> {
 }
 
 /// A random scene: a star, sometimes with an opening, panels or a pillar; never one that [`Scene::new`] refuses.
-pub(crate) fn scene(random: &mut Chance, most_walls: usize) -> Scene {
+pub(crate) fn scene(random: &mut Random, most_walls: usize) -> Scene {
     loop {
         let count = 3 + random.below(most_walls as u64 - 2) as usize;
         let mut walls = star(random, count);
@@ -62,7 +62,7 @@ pub(crate) fn scene(random: &mut Chance, most_walls: usize) -> Scene {
 }
 
 /// A point that is not inside anything solid.
-pub(crate) fn free_point(random: &mut Chance, scene: &Scene) -> Point {
+pub(crate) fn free_point(random: &mut Random, scene: &Scene) -> Point {
     loop {
         let at = random.point(3.0);
         if !scene.is_solid(at) {

@@ -1,4 +1,4 @@
-//! The event simulation: Set I, ground truth, motion, clocks, bursts, chance.
+//! The event simulation: Set I, ground truth, motion, clocks, bursts, random numbers.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -136,7 +136,7 @@ fn good_readings_of_a_moving_robot_differ_by_2_v_dt_over_c() {
         }
         assert_eq!(readings.summary().wrong_of_all, 0.0);
     }
-    // At that speed over such a period nothing passes, unless odometry tells what to expect.
+    // At that speed over such a period nothing passes, unless odometry says what to expect.
     robot.motion = Motion::Constant { velocity: Vector::new(0.0, 1.0), turn_rad_s: 0.0 };
     for (odometry, accepted) in [(false, 0), (true, 38)] {
         let robot = Robot { odometry, ..robot.clone() };
@@ -179,8 +179,8 @@ fn crosstalk_between_robots_wanders_with_their_clocks() {
     let readings = run(&world, Method::Conventional, 300);
     let robots = &readings.robot;
     let of = |robot| (0..readings.len()).filter(move |&reading| robots[reading] == robot);
-    // The first robot fires 3 ms before the second, which therefore hears it 3 ms early, and then ever less so: its clock
-    // gains 18 us in a period.
+    // The first robot fires 3 ms before the second, which therefore hears it 3 ms early, and then ever less so: its
+    // clock gains 18 us in a period.
     let fooled: Vec<_> = of(1).filter(|&reading| readings.cause[reading] == Cause::Crosstalk).collect();
     assert!((160..=170).contains(&fooled.len()), "{}", fooled.len());
     let change = readings.t_echo_us[fooled[100]] - readings.t_echo_us[fooled[0]];
@@ -194,7 +194,7 @@ fn bursts_from_outside_are_heard_and_the_filter_refuses_them() {
     let world = world(vec![wall_at(5.0)], vec![single()], noise);
     let conventional = run(&world, Method::Conventional, 1000);
     let bursts = conventional.cause.iter().filter(|&&cause| cause == Cause::External).count();
-    // One comes between blanking and the echo at 29 ms with a chance of 10/s times 26.8 ms, about 23 %.
+    // One comes between blanking and the echo at 29 ms with a probability of 10/s times 26.8 ms, about 23 %.
     assert!((190..290).contains(&bursts), "{bursts}");
     let eeruf = run(&world, Method::Eeruf, 1000).summary();
     assert!(conventional.summary().wrong_of_all > 0.15 && eeruf.wrong_of_all < 0.01);

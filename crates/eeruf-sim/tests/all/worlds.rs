@@ -61,7 +61,8 @@ fn a_bad_world_gets_one_line_that_names_file_line_field_value_and_what_is_expect
     );
     assert_eq!(
         robot_error("schedule = { period_us = 10 }"),
-        "w.toml, line 6: schedule: expected either t_lag_us, t_wait_a_us and t_wait_b_us, or t_fire_a_us and t_fire_b_us, one number for each sensor"
+        "w.toml, line 6: schedule: expected either t_lag_us, t_wait_a_us and t_wait_b_us, \
+         or t_fire_a_us and t_fire_b_us, one number for each sensor"
     );
 }
 
@@ -91,8 +92,8 @@ fn a_window_beyond_the_schedules_own_refire_time_is_refused() {
     );
     assert_eq!(
         robot_error(&more),
-        "w.toml, line 6: robot 1: window_us is 36000; expected at most 20000, after which a sensor of its schedule fires \
-         again"
+        "w.toml, line 6: robot 1: window_us is 36000; expected at most 20000, after which a sensor of its schedule \
+         fires again"
     );
 }
 

@@ -4,7 +4,7 @@ use crate::{
     acoustics::Transducer,
     geometry::{Pose, Vector},
     scene::{Air, Scene, SceneError, Wall},
-    world::{Chance, Noise, Robot, World, WorldError},
+    world::{Noise, Random, Robot, World, WorldError},
 };
 
 /// How many sensors the ring has.
@@ -31,14 +31,14 @@ pub struct Alcove {
 impl Alcove {
     /// The alcove that a number stands for: one of the set's random geometries.
     pub fn random(number: u64) -> Self {
-        let mut chance = Chance::new(number);
-        let width_m = chance.between(1.0, 2.4);
-        let depth_m = chance.between(0.9, 2.0);
+        let mut random = Random::new(number);
+        let width_m = random.between(1.0, 2.4);
+        let depth_m = random.between(0.9, 2.0);
         // Five centimetres stay free on either side of the ring.
         let aside = 0.5 * width_m - RADIUS_M - 0.05;
-        let robot_m = [chance.between(-aside, aside), chance.between(-0.4, 0.3)];
+        let robot_m = [random.between(-aside, aside), random.between(-0.4, 0.3)];
         let most = 20f64.to_radians();
-        Self { width_m, depth_m, robot_m, heading_rad: chance.between(-most, most) }
+        Self { width_m, depth_m, robot_m, heading_rad: random.between(-most, most) }
     }
 
     /// The three walls.

@@ -18,14 +18,16 @@ use crate::{
 /// How many readings the paper has of one set-up; of the conventional method, and of all others in the same time.
 pub const READINGS: u32 = 8000;
 
-/// `T_delta` of [`Method::MultiEcho`]. With up to eight echoes a firing, pairs of them agree by accident in proportion to
-/// `T_delta`: at the 0.5 ms of the other methods every tenth reading is such a pair. Those 0.5 ms are for motion; a robot that
-/// stands, or that knows how it moves, needs no more than jitter asks for: 15 us rms at either end, times five.
+/// `T_delta` of [`Method::MultiEcho`]. With up to eight echoes a firing, pairs of them agree by accident in proportion
+/// to `T_delta`: at the 0.5 ms of the other methods every tenth reading is such a pair. Those 0.5 ms are for motion; a
+/// robot that stands, or that knows how it moves, needs no more than jitter asks for: 15 us rms at either end, times
+/// five.
 pub const MULTI_ECHO_T_DELTA: Micros = Micros::new(100);
 
-/// How many readings [`Method::MultiEcho`] compares, and for how long it waits for an echo that is missing. Where several
-/// echoes are known, one that fades must not be taken for gone, or what lies behind it is believed: with two readings and no
-/// patience 10 % of the readings are wrong for that reason. The price is that a new echo is believed after five periods.
+/// How many readings [`Method::MultiEcho`] compares, and for how long it waits for an echo that is missing. Where
+/// several echoes are known, one that fades must not be taken for gone, or what lies behind it is believed: with two
+/// readings and no patience 10 % of the readings are wrong for that reason. The price is that a new echo is believed
+/// after five periods.
 pub const MULTI_ECHO_CONSECUTIVE: u8 = 5;
 /// See [`MULTI_ECHO_CONSECUTIVE`].
 pub const MULTI_ECHO_PATIENCE: u8 = 12;
@@ -91,8 +93,8 @@ impl Figures {
 /// method take ([`READINGS`] in the paper), on all cores. `best` is what [`Method::EerufBest`] fires by, see
 /// [`best_schedule_for`](crate::best_schedule_for).
 ///
-/// `keep_going` is called now and then, by several threads, with the share that is done, 0 to 1; when its answer is `false`
-/// the run stops. The result does not depend on the number of threads.
+/// `keep_going` is called now and then, by several threads, with the share that is done, 0 to 1; when its answer is
+/// `false` the run stops. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// [`ExperimentError`] for no geometries or no methods, and if it was stopped.

@@ -14,8 +14,8 @@ use crate::{
 pub struct SetTwoOptions {
     /// How many courses. The default is 100.
     pub seeds: u64,
-    /// The first course's number, so that whoever tunes something need not do so on the courses that it is tried on. The
-    /// default is 0.
+    /// The first course's number, so that parameters can be tuned on other courses than those that they are tested on.
+    /// The default is 0.
     pub first: u64,
     /// The methods.
     pub methods: Vec<Method>,
@@ -27,7 +27,8 @@ pub struct SetTwoOptions {
     pub labmate: LabMate,
     /// Whether odometry gives the ring by how much readings should change from the robot's own motion.
     pub odometry: bool,
-    /// `T_delta`. With odometry it need not leave room for motion, and readings agree by accident the more rarely the smaller it is.
+    /// `T_delta`. With odometry it need not leave room for motion, and readings agree by accident the more rarely the
+    /// smaller it is.
     pub t_delta: Micros,
     /// How it steers.
     pub piloting: Piloting,

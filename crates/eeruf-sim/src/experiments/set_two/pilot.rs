@@ -1,5 +1,5 @@
-//! The closed loop: accepted readings fill the histogram grid from where they were taken, the vector field histogram says
-//! where to steer and how fast, and the platform follows as well as it can.
+//! The closed loop: accepted readings fill the histogram grid from where they were taken, the vector field histogram
+//! says where to steer and how fast, and the platform follows as well as it can.
 
 use eeruf_core::ReadingKind;
 

@@ -20,8 +20,8 @@ use crate::{
 /// For how long a robot may try.
 const TIME_S: f64 = 40.0;
 
-/// How many readings [`Method::MultiEcho`] compares. Pairs of many echoes agree by accident, the more the more foreign sound
-/// there is; three running do so far more rarely, and a sensor that hears past foreign sound can afford them.
+/// How many readings [`Method::MultiEcho`] compares. Pairs of many echoes agree by accident, the more the more foreign
+/// sound there is; three running do so far more rarely, and a sensor that hears past foreign sound can afford them.
 pub const MULTI_ECHO_CONSECUTIVE: u8 = 3;
 
 /// Set II over many courses.
@@ -41,8 +41,9 @@ pub struct SetTwo {
     pub runs: Vec<Vec<Run>>,
 }
 
-/// Runs Set II: every course by every method, on all cores. `keep_going` is called now and then, by several threads, with the
-/// share that is done, 0 to 1; when its answer is `false` the run stops. The result does not depend on the number of threads.
+/// Runs Set II: every course by every method, on all cores. `keep_going` is called now and then, by several threads,
+/// with the share that is done, 0 to 1; when its answer is `false` the run stops. The result does not depend on the
+/// number of threads.
 ///
 /// # Errors
 /// [`ExperimentError`] for no courses or no methods, and if it was stopped.

@@ -1,9 +1,10 @@
-//! Histogramic in-motion mapping (HIMM): a grid of certainty values that range readings fill and clear while the robot drives.
+//! Histogramic in-motion mapping (HIMM): a grid of certainty values that range readings fill and clear while the robot
+//! drives.
 //!
-//! J. Borenstein and Y. Koren, "Histogramic in-motion mapping for mobile robot obstacle avoidance", IEEE Transactions on
-//! Robotics and Automation 7(4), 1991, pp. 535-539. A reading counts only on the sensor's acoustic axis: the cell at the
-//! measured range gains 3, each cell on the way there loses 1, and values stay between 0 and 15. A real obstacle is met again
-//! and again and grows quickly; a phantom is met once and is cleared by the next readings that look past it.
+//! J. Borenstein and Y. Koren, "Histogramic in-motion mapping for mobile robot obstacle avoidance", IEEE Transactions
+//! on Robotics and Automation 7(4), 1991, pp. 535-539. A reading counts only on the sensor's acoustic axis: the cell at
+//! the measured range gains 3, each cell on the way there loses 1, and values stay between 0 and 15. A real obstacle is
+//! met again and again and grows quickly; a phantom is met once and is cleared by the next readings that look past it.
 
 #[cfg(test)]
 mod tests;
@@ -17,8 +18,8 @@ pub const INCREMENT: u8 = 3;
 /// What each cell on the way there loses.
 pub const DECREMENT: u8 = 1;
 
-/// The certainty grid. Cells lie on a lattice fixed in the scene; the grid holds a square of them, which can be moved along
-/// with the robot.
+/// The certainty grid. Cells lie on a lattice fixed in the scene; the grid holds a square of them, which can be moved
+/// along with the robot.
 ///
 /// ```
 /// use eeruf_sim::{Himm, Point};
@@ -29,7 +30,8 @@ pub const DECREMENT: u8 = 1;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Himm {
-    /// Row by row; a cell's index here is its lattice index modulo `side`, so that nothing is copied when the window moves.
+    /// Row by row; a cell's index here is its lattice index modulo `side`, so that nothing is copied when the window
+    /// moves.
     values: Vec<u8>,
     side: i64,
     cell_m: f64,
@@ -46,8 +48,8 @@ pub struct Himm {
 }
 
 impl Himm {
-    /// An empty grid of `side` times `side` cells, each `cell_m` metres wide, around the scene's origin. The papers use 33
-    /// cells of 0.1 m.
+    /// An empty grid of `side` times `side` cells, each `cell_m` metres wide, around the scene's origin. The papers use
+    /// 33 cells of 0.1 m.
     ///
     /// A side of none counts as one, one above 4096 as 4096, and a width that is not positive as 0.1 m.
     pub fn new(side: usize, cell_m: f64) -> Self {
@@ -68,7 +70,8 @@ impl Himm {
         self.side as usize
     }
 
-    /// Moves the window so that `place` is in its middle cell. Cells that leave it are forgotten, those that enter are empty.
+    /// Moves the window so that `place` is in its middle cell. Cells that leave it are forgotten, those that enter are
+    /// empty.
     pub fn move_to(&mut self, place: Point) {
         let first = self.first_around(place);
         for axis in 0..2 {
@@ -86,8 +89,8 @@ impl Himm {
         }
     }
 
-    /// Takes in an echo: an obstacle `range_m` metres from `sensor` in the direction `heading_rad`, and nothing before it.
-    /// Cells within `near_m` metres of the sensor, where it is deaf, are left as they are.
+    /// Enters an echo: an obstacle `range_m` metres from `sensor` in the direction `heading_rad`, and nothing before
+    /// it. Cells within `near_m` metres of the sensor, where it is deaf, are left as they are.
     pub fn echo(&mut self, sensor: Point, heading_rad: f64, near_m: f64, range_m: f64) {
         if !(is_number(sensor, heading_rad) && (0.0..1e4).contains(&range_m)) {
             return;
@@ -101,7 +104,7 @@ impl Himm {
         }
     }
 
-    /// Takes in that nothing is between `near_m` and `range_m` metres from `sensor` in the direction `heading_rad`.
+    /// Enters that nothing is between `near_m` and `range_m` metres from `sensor` in the direction `heading_rad`.
     pub fn clear(&mut self, sensor: Point, heading_rad: f64, near_m: f64, range_m: f64) {
         if is_number(sensor, heading_rad) {
             self.clear_until(sensor, heading_rad, near_m, range_m, None);
@@ -114,8 +117,8 @@ impl Himm {
         self.holds(cell).then(|| self.values[self.index(cell)])
     }
 
-    /// The cells that are not empty, with their middles, in a square of `side` cells around a point, or in all of the window
-    /// where that is smaller.
+    /// The cells that are not empty, with their middles, in a square of `side` cells around a point, or in all of the
+    /// window where that is smaller.
     pub fn occupied(&self, around: Point, side: usize) -> impl Iterator<Item = (Point, u8)> + '_ {
         let middle = self.cell_of(around);
         let half = (side.clamp(1, 8192) as i64) / 2;
@@ -154,7 +157,8 @@ impl Himm {
         cells.map(|cell| self.values[self.index(cell)]).sum()
     }
 
-    /// Takes one from each cell that the axis crosses between the two ranges, but not from `hit` or what lies behind it.
+    /// Takes one from each cell that the axis crosses between the two ranges, but not from `hit` or what lies behind
+    /// it.
     fn clear_until(&mut self, sensor: Point, heading_rad: f64, near_m: f64, range_m: f64, hit: Option<[i64; 2]>) {
         let near_m = near_m.max(0.0);
         if !(range_m > near_m && range_m < 1e4) {

@@ -1,8 +1,9 @@
 //! The vector field histogram (VFH): from a certainty grid to where to steer and how fast to go.
 //!
-//! J. Borenstein and Y. Koren, "The vector field histogram - fast obstacle avoidance for mobile robots", IEEE Transactions on
-//! Robotics and Automation 7(3), 1991, pp. 278-288. In two steps: the cells around the robot become a histogram of obstacle
-//! density over 72 sectors of 5 degrees; then, among its valleys, the one nearest the target is steered for.
+//! J. Borenstein and Y. Koren, "The vector field histogram - fast obstacle avoidance for mobile robots", IEEE
+//! Transactions on Robotics and Automation 7(3), 1991, pp. 278-288. In two steps: the cells around the robot become a
+//! histogram of obstacle density over 72 sectors of 5 degrees; then, among its valleys, the one nearest the target is
+//! steered for.
 //!
 //! Directions are in the scene's frame, in radians counter-clockwise.
 
@@ -75,8 +76,8 @@ pub struct Steering {
     pub direction_rad: f64,
     /// The valley that was chosen.
     pub valley: Valley,
-    /// The direction leads away from the target, more than 90 degrees off: the way there is blocked, and the robot is, or
-    /// soon will be, in a dead end.
+    /// The direction leads away from the target, more than 90 degrees off: the way there is blocked, and the robot is,
+    /// or soon will be, in a dead end.
     pub trapped: bool,
 }
 
@@ -148,9 +149,9 @@ impl Vfh {
     /// Where to steer to come to a target in the direction `target_rad`: into the valley nearest to it. `None` if every
     /// direction is blocked.
     ///
-    /// A narrow valley is steered through its middle. Of a wide one only the `s_max` sectors nearest to the target count as the
-    /// valley, so that an obstacle is passed at a distance of half as many sectors, unless the target itself lies farther from
-    /// it.
+    /// A narrow valley is steered through its middle. Of a wide one only the `s_max` sectors nearest to the target
+    /// count as the valley, so that an obstacle is passed at a distance of half as many sectors, unless the target
+    /// itself lies farther from it.
     pub fn choose(&self, smoothed: &Histogram, target_rad: f64) -> Option<Steering> {
         let valleys = self.valleys(smoothed);
         let target = wrap_angle(target_rad);

@@ -18,8 +18,8 @@ impl Mesh {
         landmarks: impl Iterator<Item = Point>,
     ) -> Result<Self, SceneError> {
         let (middle, extent) = bounds(vertices.iter().copied().chain(landmarks));
-        // Far corners let source and receiver stand outside the walls. They never become the limit of a beam that meets a
-        // wall, because nothing lies behind them.
+        // Far corners let source and receiver stand outside the walls. They never become the limit of a beam that meets
+        // a wall, because nothing lies behind them.
         let reach_m = 1000.0 + 10.0 * extent;
         let half_m = reach_m + extent;
         let first_corner = vertices.len();

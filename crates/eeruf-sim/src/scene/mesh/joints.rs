@@ -1,5 +1,5 @@
-//! Where walls meet: ends that touch become one vertex of the mesh, a wall on which another ends is cut there, and walls that
-//! cross or overlap are refused.
+//! Where walls meet: ends that touch become one vertex of the mesh, a wall on which another ends is cut there, and
+//! walls that cross or overlap are refused.
 
 use super::Piece;
 use crate::geometry::{Point, TOUCH_M, cross};
@@ -15,7 +15,8 @@ pub(crate) fn wall_box(wall: &Wall) -> Aabb {
 
 /// Merges end points that touch and cuts walls where others end on them.
 pub(crate) fn join_walls(walls: &[Wall], boxes: &Bvh) -> Result<(Vec<Point>, Vec<Piece>), SceneError> {
-    // Corner 2 i is where wall i starts, 2 i + 1 where it ends; `same` leads from a corner to the first one at its place.
+    // Corner 2 i is where wall i starts, 2 i + 1 where it ends; `same` leads from a corner to the first one at its
+    // place.
     let corner = |c: usize| {
         if c.is_multiple_of(2) { walls[c / 2].from } else { walls[c / 2].to }
     };

@@ -149,8 +149,8 @@ impl Mesh {
     /// Walks from a hint to a triangle that contains the point.
     fn locate(&self, point: Point) -> u32 {
         let mut triangle = self.hints.near(point);
-        // A visibility walk may circle in a mesh that is not Delaunay everywhere; turning the first side tried makes that
-        // rare, and a plain scan ends it for good.
+        // A visibility walk may circle in a mesh that is not Delaunay everywhere; turning the first side tried makes
+        // that rare, and a plain scan ends it for good.
         for step in 0..64 + self.len().min(4096) {
             let corners = self.corners(triangle);
             let mut moved = false;

@@ -27,8 +27,8 @@ impl HearingRange {
     }
 }
 
-/// The longest path that sound could be heard after, in metres: a millimetre more than where it has fallen to `floor` without
-/// any loss but spreading and the air's.
+/// The longest path that sound could be heard after, in metres: a millimetre more than where it has fallen to `floor`
+/// without any loss but spreading and the air's.
 fn loudest_m(transducer: &Transducer, air: Air, floor: f64) -> f64 {
     let loss_db_per_m = air.absorption_db_per_m(transducer.frequency_hz);
     let (mut near, mut far) = (0.0, 1.0 / floor);

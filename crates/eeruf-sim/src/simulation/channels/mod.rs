@@ -43,7 +43,8 @@ pub(crate) struct Channels<'w> {
     range: Option<HearingRange>,
     /// Whether it matters what a robot hears.
     listens: Vec<bool>,
-    /// The channels from each emitter while nothing moves, with one more start at the end; else those of the last firing.
+    /// The channels from each emitter while nothing moves, with one more start at the end; else those of the last
+    /// firing.
     channels: Vec<Channel>,
     starts: Vec<usize>,
     /// Every path met so far.
@@ -179,8 +180,8 @@ impl<'w> Channels<'w> {
         }
     }
 
-    /// Fills the matrix for all sensors of one kind that matter, or from one emitter to them. Paths that only the strongest
-    /// fading lifts over the detection floor are in it too.
+    /// Fills the matrix for all sensors of one kind that matter, or from one emitter to them. Paths that only the
+    /// strongest fading lifts over the detection floor are in it too.
     fn trace(&mut self, transducer: &Transducer, emitter: Option<usize>) -> Result<HearingRange, PathsError> {
         let concerned = |&sensor: &usize| {
             let hears = emitter.is_none() || self.listens[usize::from(self.ids[sensor].robot)];

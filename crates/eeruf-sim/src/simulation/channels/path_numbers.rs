@@ -31,7 +31,8 @@ impl PathNumbers {
         while let Some(&number) = self.numbers.get(&key) {
             let known = &self.paths[number as usize];
             if known.emitter == emitter && known.receiver == receiver && *known.bounces == *bounces {
-                // One emitter has one image in a sequence of walls, so this is the same path, if need be from elsewhere.
+                // One emitter has one image in a sequence of walls, so this is the same path, perhaps from another
+                // position.
                 return number;
             }
             key = key.wrapping_add(1);

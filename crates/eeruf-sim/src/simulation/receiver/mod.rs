@@ -1,7 +1,8 @@
 //! One sensor's receiver: what is on its way to it, what it hears while it listens, and what that came from.
 //!
-//! It hears the first arrival above the detection floor between blanking and the end of the window; one that reports several
-//! echoes goes on listening after a dead time of one burst. Arrivals that may still matter to a later firing are kept.
+//! It hears the first arrival above the detection floor between blanking and the end of the window; one that reports
+//! several echoes goes on listening after a dead time of one burst. Arrivals that may still matter to a later firing
+//! are kept.
 
 #[cfg(test)]
 mod tests;
@@ -31,8 +32,8 @@ pub(crate) struct Heard {
     /// Since the firing, by the robot's clock.
     pub(crate) t_echo_us: u32,
     pub(crate) arrival: Arrival,
-    /// Whether it was sent at the very moment at which the sensor fired: its own sound, or that of one which fired together
-    /// with it.
+    /// Whether it was sent at the very moment at which the sensor fired: its own sound, or that of one which fired
+    /// together with it.
     pub(crate) of_this_firing: bool,
 }
 
@@ -74,7 +75,7 @@ pub(crate) struct Receiver {
     /// Until when: the end of the window, or the next arrival for a sensor that reports one echo.
     until: u64,
     /// Arrivals up to this moment matter to the present firing only.
-    settled: u64,
+    own_until: u64,
     /// When it last fired, and the time before.
     pub(crate) fired: u64,
     pub(crate) fired_before: u64,
@@ -92,7 +93,7 @@ impl Receiver {
     pub(crate) const NEW: Self = Self {
         open: NEVER,
         until: 0,
-        settled: 0,
+        own_until: 0,
         fired: 0,
         fired_before: 0,
         firings: 0,
@@ -112,7 +113,7 @@ impl Receiver {
     #[inline]
     pub(crate) fn cares(&self, at: u64, slack: u64) -> bool {
         let latest = at + slack;
-        latest > self.settled || (latest >= self.open && at <= self.until.saturating_add(slack))
+        latest > self.own_until || (latest >= self.open && at <= self.until.saturating_add(slack))
     }
 
     /// Begins to listen.
@@ -121,7 +122,7 @@ impl Receiver {
         self.firings += 1;
         self.open = now + hearing.blanking;
         self.until = now + hearing.window;
-        self.settled = now + hearing.refire;
+        self.own_until = now + hearing.refire;
         self.next = None;
         self.heard_count = 0;
         // What still waits is handed in again, behind the old entries.
@@ -139,7 +140,7 @@ impl Receiver {
         let in_window = arrival.at >= self.open && arrival.at <= self.until;
         if !in_window || !hearing.audible(arrival.level_over_threshold_db, arrival.at - self.fired) {
             // Whether a later firing hears it is decided then.
-            if arrival.at > self.settled {
+            if arrival.at > self.own_until {
                 self.pending.push(arrival);
             }
             return;
@@ -151,7 +152,7 @@ impl Receiver {
         if hearing.echoes == 1 {
             self.until = self.next_at();
         }
-        if let Some(later) = later.filter(|later| hearing.echoes > 1 || later.at > self.settled) {
+        if let Some(later) = later.filter(|later| hearing.echoes > 1 || later.at > self.own_until) {
             self.pending.push(later);
         }
     }
@@ -171,12 +172,13 @@ impl Receiver {
         let mut soonest: Option<usize> = None;
         let mut index = 0;
         while let Some(&waiting) = self.pending.get(index) {
-            if waiting.at < self.open && waiting.at <= self.settled {
+            if waiting.at < self.open && waiting.at <= self.own_until {
                 self.pending.swap_remove(index);
                 continue;
             }
             let in_window = waiting.at >= self.open && waiting.at <= self.until;
-            // Of two at once the one handed in with the lower path number, so that the order in `pending` does not matter.
+            // Of two at once the one handed in with the lower path number, so that the order in `pending` does not
+            // matter.
             let key = |arrival: &Arrival| (arrival.at, arrival.path, arrival.sent);
             let sooner = soonest.is_none_or(|soonest| key(&waiting) < key(&self.pending[soonest]));
             if in_window && sooner && hearing.audible(waiting.level_over_threshold_db, waiting.at - self.fired) {
@@ -191,7 +193,7 @@ impl Receiver {
     pub(crate) fn stop(&mut self) {
         self.open = NEVER;
         self.until = 0;
-        if let Some(missed) = self.next.take().filter(|missed| missed.at > self.settled) {
+        if let Some(missed) = self.next.take().filter(|missed| missed.at > self.own_until) {
             self.pending.push(missed);
         }
     }

@@ -1,7 +1,8 @@
-//! Which paths are certainly too faint to be heard: decided from where they point, before anything expensive is computed.
+//! Which paths are certainly too faint to be heard: decided from where they point, before anything expensive is
+//! computed.
 //!
-//! Every bound is an upper one, so that nothing audible is lost: the patterns by their envelope, a pole by the most that it can
-//! return, the air by what it takes on a slightly shorter way.
+//! Every bound is an upper one, so that nothing audible is lost: the patterns by their envelope, a pole by the most
+//! that it can return, the air by what it takes on a slightly shorter way.
 
 mod ensonified;
 #[cfg(test)]
@@ -33,7 +34,8 @@ pub(crate) struct Audibility {
     /// The amplitude that is just heard, and the natural logarithm of what the air leaves of one per metre, negative.
     floor: f64,
     loss_per_m: f64,
-    /// After so many steps at least: the square of the amplitude that would just be heard if the air took nothing.
+    /// By steps of length: a lower bound on the square of the amplitude that would just be heard if the air took
+    /// nothing.
     faint: Vec<f64>,
     /// Where the source heads, as an angle and as a direction.
     source_rad: f64,
@@ -116,8 +118,8 @@ impl Audibility {
         self.faint.get(step).copied().unwrap_or(0.0)
     }
 
-    /// Whether a path over walls may be heard that leaves at an angle with this cosine off the source's axis, and whose image
-    /// the receiver sees in the direction `towards`, as long as the path.
+    /// Whether a path over walls may be heard that leaves at an angle with this cosine off the source's axis, and whose
+    /// image the receiver sees in the direction `towards`, as long as the path.
     #[inline]
     pub(crate) fn may_hear_image(
         &self,

@@ -2,12 +2,12 @@ use crate::*;
 
 /// A room with poles and a ring in it, by a number.
 fn random(number: u64) -> (Scene, Vec<Pose>) {
-    let mut chance = Chance::new(number);
+    let mut random = Random::new(number);
     let corners = [[0.0, 0.0], [9.0, 0.0], [9.0, 3.0], [6.0, 3.0], [6.0, 5.0], [0.0, 5.0], [0.0, 0.0]];
-    let poles = (0..12).map(|_| Pole::new(chance.between(0.1, 8.9), chance.between(0.1, 2.9), 0.004)).collect();
+    let poles = (0..12).map(|_| Pole::new(random.between(0.1, 8.9), random.between(0.1, 2.9), 0.004)).collect();
     let scene = Scene::new(Wall::polyline(&corners).collect(), poles, Air::default()).unwrap();
-    let place = Vector::new(chance.between(0.5, 8.5), chance.between(0.5, 2.5));
-    let robot = Pose::new(place, chance.between(-3.0, 3.0));
+    let place = Vector::new(random.between(0.5, 8.5), random.between(0.5, 2.5));
+    let robot = Pose::new(place, random.between(-3.0, 3.0));
     (scene, ring_of(&robot, 8, 0.3, -0.9, 0.26).collect())
 }
 
@@ -34,8 +34,8 @@ fn nothing_that_is_heard_is_kept_back() {
                         >= floor
                 });
                 let expected: Vec<_> = loud.map(|k| (all.length_m[k], all.bounces(k))).collect();
-                let kept = matrix.between(emitter, receiver);
-                let found: Vec<_> = kept.iter().map(|path| (path.length_m, matrix.bounces(path))).collect();
+                let heard_here = matrix.between(emitter, receiver);
+                let found: Vec<_> = heard_here.iter().map(|path| (path.length_m, matrix.bounces(path))).collect();
                 assert_eq!(found, expected, "{number}: {emitter} to {receiver}");
                 heard += found.len();
                 over_poles += found.iter().filter(|path| path.1.iter().any(|b| matches!(b, Bounce::Pole(_)))).count();

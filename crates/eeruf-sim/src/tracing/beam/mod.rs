@@ -1,9 +1,10 @@
 //! The beam tree: every wall sequence along which something of the source's sound really gets through.
 //!
 //! A beam is an image of the source and a cone that looks through one visible piece of wall. It is walked through the
-//! triangles of the mesh; a corner inside the cone splits it, a wall turns it into a beam of the next order. The limits of a
-//! cone always point at mirrored *corners* of the scene, never at computed points of intersection, so that errors do not
-//! build up: a node is one piece of wall that is truly seen, and the tree grows about quadratically with the order.
+//! triangles of the mesh; a corner inside the cone splits it, a wall turns it into a beam of the next order. The limits
+//! of a cone always point at mirrored *corners* of the scene, never at computed points of intersection, so that errors
+//! do not build up: a node is one piece of wall that is really seen, and the tree grows about quadratically with the
+//! order.
 
 mod growth;
 mod readout;
@@ -25,13 +26,13 @@ pub(crate) struct Beam {
     pub(super) right: Vector,
     /// The last wall's side of the mesh, by which the beam enters.
     pub(super) gate: u32,
-    /// The beam that it came from; [`NONE`] for the source's own.
+    /// The beam that it came from; `NONE` for the source's own.
     pub(crate) parent: u32,
     /// The last wall.
     pub(crate) wall: u32,
     pub(crate) order: u32,
-    /// Directions in the image's world are `turn + d` after an even number of bounces, `turn - d` after an odd one, with `d`
-    /// the direction of departure.
+    /// Directions in the image's world are `turn + d` after an even number of bounces, `turn - d` after an odd one,
+    /// with `d` the direction of departure.
     pub(crate) turn: f64,
     /// The product of the walls' reflections.
     pub(super) reflection_gain: f64,
@@ -47,7 +48,7 @@ pub(crate) struct VisibleImage {
     pub(crate) reflection_gain: f64,
     pub(crate) receiver: u32,
     pub(crate) order: u32,
-    /// The beam before the last wall, or [`NONE`] when there was no wall.
+    /// The beam before the last wall, or `NONE` when there was no wall.
     pub(crate) parent: u32,
     /// The last wall.
     pub(crate) wall: u32,

@@ -5,7 +5,7 @@ use crate::scene::Bounce;
 use crate::tracing::beam::{BeamTree, VisibleImage};
 use crate::tracing::pole_paths::{PolePath, PoleSearch};
 
-/// Everything that was found, numbered through.
+/// Everything that was found, numbered in one sequence.
 #[derive(Clone, Copy)]
 pub(in crate::tracing) struct Found<'a> {
     pub(in crate::tracing) tree: &'a BeamTree,

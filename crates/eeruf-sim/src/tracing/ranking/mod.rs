@@ -7,8 +7,8 @@ use crate::geometry::TOUCH_M;
 use crate::scene::Bounce;
 pub(super) use found::{Found, FoundPath};
 
-/// The low bits of a sorting key hold the index of the path, the high ones those of its length: lengths are positive, so
-/// their bits are in the same order as they are.
+/// The low bits of a sorting key hold the index of the path, the high ones those of its length: lengths are positive,
+/// so their bits are in the same order as they are.
 const INDEX: u64 = (1 << 24) - 1;
 const _: () = assert!(MAX_BEAMS as u64 <= INDEX);
 
@@ -27,13 +27,13 @@ pub(super) struct Ranking {
     ranks: Vec<Rank>,
     starts: Vec<u32>,
     // Two wall sequences to be compared.
-    kept: Vec<Bounce>,
+    known: Vec<Bounce>,
     other: Vec<Bounce>,
 }
 
 impl Ranking {
-    /// Orders what was found for so many receivers.
-    pub(super) fn order(&mut self, found: Found<'_>, receivers: usize) {
+    /// Sorts what was found for this number of receivers.
+    pub(super) fn rank(&mut self, found: Found<'_>, receivers: usize) {
         self.sort(found, receivers);
         self.remove_doubles(found, receivers);
     }
@@ -68,8 +68,8 @@ impl Ranking {
         }
     }
 
-    /// Puts the sorted paths in exact order and keeps one of several with the same order and image: what both wall orders
-    /// of a right-angle corner, or two pieces of one straight wall, find at their common point.
+    /// Puts the sorted paths in exact order and keeps one of several with the same order and image: what both wall
+    /// orders of a right-angle corner, or two pieces of one straight wall, find at their common point.
     fn remove_doubles(&mut self, found: Found<'_>, receivers: usize) {
         self.ranks.clear();
         for receiver in 0..receivers {
@@ -92,9 +92,9 @@ impl Ranking {
                     None => self.ranks.insert(at_rank, Rank { length_m, index }),
                     Some(k) => {
                         // The smaller wall sequence stays, whatever the mesh looked like.
-                        found.read_bounces(self.ranks[k].index, &mut self.kept);
+                        found.read_bounces(self.ranks[k].index, &mut self.known);
                         found.read_bounces(index, &mut self.other);
-                        if self.other < self.kept {
+                        if self.other < self.known {
                             self.ranks[k].index = index;
                         }
                     }

@@ -51,8 +51,8 @@ impl Source {
         WorldFileError { file: self.file.clone(), line, message: message.to_string() }
     }
 
-    /// The line on which a field is set, which begins with its name or holds it in braces; entries of arrays of tables span
-    /// from their header on.
+    /// The line on which a field is set, which begins with its name or holds it in braces; entries of arrays of tables
+    /// span from their header on.
     fn line(&self, part: Range<usize>, field: &str) -> usize {
         let end = part.end.min(self.text.len());
         let start = part.start.min(end);

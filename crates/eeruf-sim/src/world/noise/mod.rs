@@ -1,7 +1,8 @@
 //! Noise: how echoes fade and jitter, how many bursts come from outside, and the generator behind both.
 //!
-//! What happens to one arrival is a function of the seed, the firing and the path alone ([`Chance::of`]), so that it does not
-//! depend on the order in which arrivals are looked at, on the method that is simulated, or on the number of threads.
+//! What happens to one arrival is a function of the seed, the firing and the path alone ([`Random::of`]), so that it
+//! does not depend on the order in which arrivals are looked at, on the method that is simulated, or on the number of
+//! threads.
 
 mod normal;
 mod random;
@@ -9,7 +10,7 @@ mod random;
 use super::error::WorldError;
 
 pub(crate) use normal::{FARTHEST, Normal};
-pub use random::Chance;
+pub use random::Random;
 
 /// How noisy a world is.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -62,16 +62,16 @@ fn quantile_of(p: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::random::Chance;
+    use super::super::random::Random;
     use super::*;
 
     #[test]
     fn normal_numbers_have_mean_zero_and_standard_deviation_one() {
-        let (normal, mut chance) = (Normal::new(), Chance::new(3));
+        let (normal, mut random) = (Normal::new(), Random::new(3));
         let n = 200_000;
         let (mut sum, mut squares, mut beyond_two, mut product) = (0.0, 0.0, 0, 0.0);
         for _ in 0..n {
-            let [a, b] = normal.pair(chance.bits()).map(f64::from);
+            let [a, b] = normal.pair(random.bits()).map(f64::from);
             sum += a + b;
             squares += a * a + b * b;
             product += a * b;

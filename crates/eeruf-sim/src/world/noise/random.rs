@@ -1,9 +1,9 @@
 //! Seeded pseudo-random numbers, the same on every machine.
 
-/// A stream of pseudo-random numbers: `SplitMix64` (Steele, Lea and Flood, 2014), whose finaliser also serves as the hash
-/// behind [`Chance::of`].
+/// A stream of pseudo-random numbers: `SplitMix64` (Steele, Lea and Flood, 2014), whose finaliser also serves as the
+/// hash behind [`Random::of`].
 #[derive(Clone, Copy, Debug)]
-pub struct Chance(u64);
+pub struct Random(u64);
 
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
@@ -15,7 +15,7 @@ const fn mix(state: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-impl Chance {
+impl Random {
     /// The stream that a seed starts.
     pub const fn new(seed: u64) -> Self {
         Self(mix(seed.wrapping_add(GOLDEN)))
@@ -59,16 +59,16 @@ mod tests {
 
     #[test]
     fn streams_of_different_keys_differ_and_of_the_same_key_agree() {
-        let chance = Chance::new(1);
-        assert_eq!(chance.of(5).bits(), chance.of(5).bits());
-        assert_ne!(chance.of(5).bits(), chance.of(6).bits());
-        assert_ne!(Chance::new(2).of(5).bits(), chance.of(5).bits());
+        let random = Random::new(1);
+        assert_eq!(random.of(5).bits(), random.of(5).bits());
+        assert_ne!(random.of(5).bits(), random.of(6).bits());
+        assert_ne!(Random::new(2).of(5).bits(), random.of(5).bits());
     }
 
     #[test]
     fn bursts_come_as_often_as_asked() {
-        let mut chance = Chance::new(9);
-        let total: f64 = (0..50_000).map(|_| chance.until_next(20.0)).sum();
+        let mut random = Random::new(9);
+        let total: f64 = (0..50_000).map(|_| random.until_next(20.0)).sum();
         assert!((total / 50_000.0 - 0.05).abs() < 0.001);
     }
 }

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use comfy_table::{CellAlignment, Table, presets};
-use eeruf_sim::paths::Bounce;
-use eeruf_sim::{Cause, HeardPath, Method, Readings, SensorId};
+use eeruf_sim::{Bounce, Cause, HeardPath, Method, Readings, SensorId};
 use serde::Serialize;
 
 /// The most rows that are printed.

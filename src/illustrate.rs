@@ -79,7 +79,7 @@ fn corners(world: &World, readings: &Readings, index: u32, path: &HeardPath) -> 
     };
     let sent_s = readings.emitted_s[first];
     let heard_s = sent_s + path.length_m / world.scene().air().speed_of_sound();
-    world.scene().polyline(place(path.emitter, sent_s)?, place(path.receiver, heard_s)?, &path.bounces)
+    world.scene().bounce_points(place(path.emitter, sent_s)?, place(path.receiver, heard_s)?, &path.bounces)
 }
 
 /// The robot and sensor that were fooled most and farthest under one method, and have readings believed under the other: of

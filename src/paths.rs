@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 
 use comfy_table::{CellAlignment, Table, presets};
-use eeruf_sim::paths::MAX_ORDER;
-use eeruf_sim::{CrosstalkMatrix, Limits, Tracer, World};
+use eeruf_sim::{CrosstalkMatrix, CrosstalkQuery, Limits, MAX_ORDER, Tracer, World};
 use serde::Serialize;
 
 use crate::Answer;
@@ -72,7 +71,8 @@ fn critical_paths(world: &World, max_order: u32) -> Result<PathsJson, eeruf_sim:
     let ring: Vec<_> = world.sensors(0, 0.0).collect();
     let floor = transducer.detection_floor(scene.air());
     let mut matrix = CrosstalkMatrix::new();
-    matrix.compute(&mut Tracer::new(), scene, &ring, transducer, Limits::order(max_order), floor)?;
+    let query = CrosstalkQuery { scene, sensors: &ring, transducer, limits: Limits::order(max_order), floor };
+    matrix.compute(&mut Tracer::new(), &query)?;
     for path in matrix.paths().iter().filter(|path| path.emitter != path.receiver) {
         let received = transducer.received(path.amplitude, path.length_m, scene.air());
         out.emitter.push(path.emitter);

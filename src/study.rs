@@ -1,22 +1,20 @@
 //! `eeruf study`: every firing method in one scene, side by side on the same seed, and who was fooled by whom.
 
 use std::fmt::Write as _;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use comfy_table::{CellAlignment, Table, presets};
-use eeruf_core::search::{PeriodProblem, Progress, SearchError, design};
-use eeruf_core::{Criterion, Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_sim::{
-    Method, Options, Readings, Robot, SimulationError, Summary, World, simulate_while, sweep, table_i_d_for,
+    BestSchedule, Method, Options, Readings, SimulationError, Summary, World, shortest_schedule_for, simulate_while,
+    sweep,
 };
 use serde::{Serialize, Serializer};
 
 use crate::Answer;
 use crate::fooled::{self, Fooled, FooledJson};
 use crate::illustrate;
-use crate::input::{AnySchedule, InputError, ScheduleFile, to_json};
+use crate::input::{InputError, ScheduleFile, to_json};
 use crate::watch::Watch;
 
 /// Simulate every firing method in a scene, on the same seed: which readings were wrong, and who was fooled by whom.
@@ -52,12 +50,10 @@ pub(crate) struct Args {
 const PERIODS: u32 = 2000;
 /// Paths have to be found anew for every firing then.
 const PERIODS_IF_MOVING: u32 = 250;
-/// The grid on which `eeruf_best` looks for its firing times.
-const TICK: Micros = Micros::new(100);
-/// How many nodes the search for it may cost.
+/// How many nodes the search for `eeruf_best` may cost.
 const BUDGET: u64 = 20_000;
 /// By how much a reading may be off before it counts as wrong.
-pub(crate) const TOLERANCE_US: f64 = eeruf_sim::summary::DEFAULT_TOLERANCE_US;
+pub(crate) const TOLERANCE_US: f64 = eeruf_sim::DEFAULT_TOLERANCE_US;
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let world = read_world(&args.file)?;
@@ -88,7 +84,7 @@ pub(crate) struct Study {
     pub(crate) runs: Vec<Readings>,
     /// Methods that cannot be simulated here, and why.
     left_out: Vec<(Method, String)>,
-    best: Option<Best>,
+    best: Option<BestSchedule>,
     periods: u32,
     seed: u64,
 }
@@ -99,12 +95,6 @@ impl Study {
     }
 }
 
-/// What `eeruf_best` fires by.
-struct Best {
-    schedule: AnySchedule,
-    proven: bool,
-}
-
 fn study(args: &Args, world: &World) -> Result<Study, InputError> {
     let asked: Vec<Method> = Method::ALL.into_iter().filter(|method| args.methods.contains(method)).collect();
     let methods = if asked.is_empty() { Method::ALL.to_vec() } else { asked };
@@ -112,7 +102,10 @@ fn study(args: &Args, world: &World) -> Result<Study, InputError> {
     let mut watch = Watch::new();
     let best = if methods.contains(&Method::EerufBest) {
         let robot = world.robots().first().ok_or_else(|| bad(&"no robot"))?;
-        best_for(robot, &mut watch).map_err(|error| bad(&error))?
+        shortest_schedule_for(robot, BUDGET, |progress| {
+            watch.go_on(|| format!("designing eeruf_best, {} nodes", progress.nodes))
+        })
+        .map_err(|error| bad(&error))?
     } else {
         None
     };
@@ -145,46 +138,6 @@ fn study(args: &Args, world: &World) -> Result<Study, InputError> {
         }
     }
     Ok(Study { runs, left_out, best, periods, seed })
-}
-
-/// The schedule with the shortest period that guarantees what the robot's own does: the robot's `t_delta` and window, and no
-/// two neighbours closer together. `None` if Ctrl-C came first.
-fn best_for(robot: &Robot, watch: &mut Watch) -> Result<Option<Best>, SearchError> {
-    let sensors = robot.sensors.len();
-    let layout = layout_of(robot);
-    let own = robot.schedule.or_else(|| table_i_d_for(sensors, robot.period, robot.neighbours).ok());
-    let interval = own.and_then(|schedule| schedule.min_interval(layout));
-    let requirements = Requirements {
-        t_delta: robot.t_delta,
-        criterion: Criterion::Exact,
-        min_interval: interval.map_or(Micros::ZERO, |interval| interval.value),
-        layout,
-        window: robot.window,
-        stale_echo: true,
-    };
-    let needs = PeriodProblem { sensors, requirements, tick: TICK };
-    let mut memory = vec![0; design::memory_words(sensors)];
-    let mut control = |progress: &Progress| {
-        if watch.go_on(|| format!("designing eeruf_best, {} nodes", progress.nodes)) {
-            ControlFlow::Continue(())
-        } else {
-            ControlFlow::Break(())
-        }
-    };
-    let designed = needs.shortest::<MAX_SENSORS>(BUDGET, &mut memory, &mut control)?;
-    let proven = designed.found.proven;
-    Ok(designed.found.schedule.map(|schedule| Best { schedule, proven }))
-}
-
-/// A ring if its sensors go all the way round, or else a line.
-fn layout_of(robot: &Robot) -> Layout<'static> {
-    let sensors = &robot.sensors;
-    let turn = |from: usize, to: usize| match (sensors.get(from), sensors.get(to)) {
-        (Some(from), Some(to)) => (from.rotation.inverse() * to.rotation).angle().abs(),
-        _ => 0.0,
-    };
-    let closes = sensors.len() > 2 && turn(sensors.len() - 1, 0) <= 1.5 * turn(0, 1);
-    if closes { Layout::Ring(robot.neighbours) } else { Layout::Line(robot.neighbours) }
 }
 
 /// One robot's readings alone.
@@ -299,7 +252,7 @@ fn describe(args: &Args, world: &World, study: &Study) -> String {
         text += &fooled.describe();
         text += &verdict(&runs, sensors);
     }
-    if let Some(Best { schedule, proven }) = &study.best {
+    if let Some(BestSchedule { schedule, proven }) = &study.best {
         let proof =
             if *proven { "proven: no schedule with the same guarantees is shorter" } else { "not proven shortest" };
         _ = writeln!(text, "\neeruf_best fires with a period of {} ({proof}).", schedule.period());

@@ -1,7 +1,6 @@
 //! A scene seen from above: walls, poles, the ring with its beams, and the critical paths that fooled someone (Figs. 1, 4).
 
-use eeruf_sim::wall::Faces;
-use eeruf_sim::{Point, Pose, Vector, World};
+use eeruf_sim::{Faces, Point, Pose, Vector, World};
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color, RGBAColor};
 

@@ -2,11 +2,10 @@
 
 use std::fs;
 
-use eeruf_sim::Method;
-use eeruf_sim::best::{Best, best_for};
 use eeruf_sim::experiments::set_one::{
     Alcove, Figures, MULTI_ECHO_CONSECUTIVE, MULTI_ECHO_PATIENCE, MULTI_ECHO_T_DELTA, READINGS, SetOne, set_one,
 };
+use eeruf_sim::{BestSchedule, Method, best_schedule_for};
 
 use super::{Common, bad, median, percents, table, watched};
 use crate::draw;
@@ -37,8 +36,9 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     let seeds = args.common.seeds.unwrap_or(SEEDS);
     let mut watch = Watch::new();
     let designing = |nodes: u64| format!("designing eeruf_best, {nodes} nodes");
-    let best = best_for(&Alcove::random(0).robot(), BUDGET, |progress| watch.go_on(|| designing(progress.nodes)))
-        .map_err(|error| bad(&error))?;
+    let best =
+        best_schedule_for(&Alcove::random(0).robot(), BUDGET, |progress| watch.go_on(|| designing(progress.nodes)))
+            .map_err(|error| bad(&error))?;
     drop(watch);
     let watched = watched(format!("{seeds} alcoves by {} methods", methods.len()));
     let found = set_one(seeds, READINGS, &methods, Some(&best), &watched).map_err(|error| bad(&error))?;
@@ -66,7 +66,7 @@ fn paper(method: Method) -> &'static str {
     }
 }
 
-fn describe(found: &SetOne, best: &Best) -> String {
+fn describe(found: &SetOne, best: &BestSchedule) -> String {
     let header = [
         "method",
         "paper: wrong %",

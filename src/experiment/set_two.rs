@@ -3,13 +3,11 @@
 use std::fs;
 
 use eeruf_core::Micros;
-use eeruf_sim::best::best_for;
 use eeruf_sim::experiments::set_two::{
     Course, Figures, MULTI_ECHO_CONSECUTIVE, SECOND_AHEAD, SECOND_BEHIND, SetTwo, SetTwoOptions, SpeedStep, set_two,
     speed_sweep,
 };
-use eeruf_sim::labmate::LabMate;
-use eeruf_sim::{Method, Point, Robot};
+use eeruf_sim::{LabMate, Method, Point, Robot, best_schedule_for};
 use serde::Serialize;
 
 use super::{Common, bad, percent, table, watched};
@@ -93,7 +91,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         let mut watch = Watch::new();
         let designing = |nodes: u64| format!("designing eeruf_best, {nodes} nodes");
         let robot = Robot { t_delta: options.t_delta, ..Course::random(0).robot() };
-        let best = best_for(&robot, BUDGET, |progress| watch.go_on(|| designing(progress.nodes)));
+        let best = best_schedule_for(&robot, BUDGET, |progress| watch.go_on(|| designing(progress.nodes)));
         options.best = Some(best.map_err(|error| bad(&error))?);
     }
     let watched = watched(format!("{} courses by {} methods", options.seeds, options.methods.len()));

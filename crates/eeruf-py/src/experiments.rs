@@ -3,7 +3,7 @@
 
 use eeruf_core::Micros;
 use eeruf_sim::{
-    Method, Robot,
+    LabMate, Method, Robot,
     experiments::{
         set_one::{self as first_set, Alcove, READINGS},
         set_two::{
@@ -11,7 +11,6 @@ use eeruf_sim::{
             SpeedStep,
         },
     },
-    labmate::LabMate,
 };
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{

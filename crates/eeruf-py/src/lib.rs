@@ -69,6 +69,6 @@ mod _eeruf {
         module.add("CAUSES", PyTuple::new(module.py(), crate::readings::CAUSES)?)?;
         // What the picture of a course shows.
         module.add("_ROOM_M", eeruf_sim::experiments::set_two::ROOM_M)?;
-        module.add("_SIDE_M", eeruf_sim::labmate::LabMate::default().side_m)
+        module.add("_SIDE_M", eeruf_sim::LabMate::default().side_m)
     }
 }

@@ -1,9 +1,6 @@
 //! Firing methods by name, and the schedule that `eeruf_best` fires by.
 
-use eeruf_sim::{
-    Method, Robot,
-    best::{Best, best_for},
-};
+use eeruf_sim::{BestSchedule, Method, Robot, best_schedule_for};
 use pyo3::prelude::*;
 
 use crate::{
@@ -29,11 +26,12 @@ pub(crate) fn methods(names: Option<&Bound<'_, PyAny>>, default: &[Method]) -> P
 }
 
 /// What `eeruf_best` fires by, if it is asked for.
-pub(crate) fn best(methods: &[Method], robot: &Robot, background: &Background) -> PyResult<Option<Best>> {
+pub(crate) fn best(methods: &[Method], robot: &Robot, background: &Background) -> PyResult<Option<BestSchedule>> {
     let asked = methods.contains(&Method::EerufBest);
     asked
         .then(|| {
-            best_for(robot, BEST_BUDGET, |_| background.go_on(None, || "designing".to_owned())).map_err(Raise::raise)
+            best_schedule_for(robot, BEST_BUDGET, |_| background.go_on(None, || "designing".to_owned()))
+                .map_err(Raise::raise)
         })
         .transpose()
 }

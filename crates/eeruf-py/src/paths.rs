@@ -117,7 +117,7 @@ impl Paths {
         let receiver = self.paths.receiver.get(path).and_then(|&receiver| self.receivers.get(receiver as usize));
         let receiver = receiver.copied().unwrap_or(self.source);
         let scene = self.contents.scene();
-        let corners = scene.polyline(self.source, receiver, self.paths.bounces(path)).unwrap_or_default();
+        let corners = scene.bounce_points(self.source, receiver, self.paths.bounces(path)).unwrap_or_default();
         let flat: Vec<f64> = corners.iter().flat_map(|corner| [corner.x, corner.y]).collect();
         PyArray1::from_vec(py, flat).reshape([corners.len(), 2])
     }

@@ -1,8 +1,6 @@
 //! The verbs `study` and `paths` as their users call them: what they print, draw and refuse.
 
-mod common;
-
-use common::{Scratch, eeruf, json};
+use crate::common::{Scratch, eeruf, json};
 use serde_json::Value;
 
 const METHODS: [&str; 12] = [

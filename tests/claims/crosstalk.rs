@@ -1,5 +1,5 @@
-//! The promise of the method: where the conditions hold, no crosstalk passes twice running, whatever its path; and a true
-//! echo always passes.
+//! The promise of the method: where the conditions hold, no crosstalk passes twice running, whatever its path; and a
+//! true echo always passes.
 
 use std::collections::VecDeque;
 
@@ -7,7 +7,7 @@ use eeruf_core::{Instant, Micros, Phase, ReadingKind, Requirements, Ring, RingCo
 use proptest::prelude::*;
 
 prop_compose! {
-    /// A schedule that meets Exact with stale echoes for a `t_delta` at its limit, with everything else left to chance.
+    /// A schedule that meets Exact with stale echoes for a `t_delta` at its limit; everything else is random.
     fn verified_schedule()(sensors in 2..=8_usize, separation in 2..3000_u32, slack in 1..60_000_u32)(
         gaps in prop::collection::vec(0..separation, sensors),
         signs in prop::collection::vec(any::<bool>(), sensors),
@@ -136,21 +136,21 @@ proptest! {
         let config = RingConfig { consecutive, ..RingConfig::new(t_delta, window) };
         let mut ring = Ring::new(&schedule, config, Instant::default()).unwrap();
         let mut t_echo = vec![f64::from(window.as_micros()) / 2.0; schedule.sensors()];
-        let mut told = vec![0; schedule.sensors()];
+        let mut readings = vec![0; schedule.sensors()];
         for _ in 0..30 * schedule.sensors() {
             let now = ring.next_deadline();
             while let Some(event) = ring.poll(now) {
                 match event {
                     RingEvent::Fire(sensor) => {
                         let t_echo = &mut t_echo[usize::from(sensor)];
-                        let step = steps[told[usize::from(sensor)] % steps.len()] * f64::from(t_delta.as_micros());
+                        let step = steps[readings[usize::from(sensor)] % steps.len()] * f64::from(t_delta.as_micros());
                         *t_echo = (*t_echo + step.trunc()).clamp(0.0, f64::from(window.as_micros()));
                         ring.echo(sensor, now + Micros::new(*t_echo as u32));
                     }
                     RingEvent::Reading(reading) => {
-                        let told = &mut told[usize::from(reading.sensor)];
-                        *told += 1;
-                        let expected = match *told {
+                        let readings = &mut readings[usize::from(reading.sensor)];
+                        *readings += 1;
+                        let expected = match *readings {
                             1 => ReadingKind::First,
                             n if n < usize::from(consecutive) => ReadingKind::Repeated,
                             _ => ReadingKind::Accepted,
@@ -161,7 +161,7 @@ proptest! {
                 }
             }
         }
-        prop_assert!(told.iter().all(|&told| told >= 10));
+        prop_assert!(readings.iter().all(|&readings| readings >= 10));
     }
 }
 

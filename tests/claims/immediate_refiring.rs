@@ -1,7 +1,7 @@
 //! Immediate refiring (Sec. 3, Figs. 2a and 2b), to the microsecond: Eqs. (1)-(10).
 //!
-//! Sensor x sees a true echo after `T_echo`. Sensor y sees nothing of its own, but hears x over a critical path of length
-//! `L` (all in microseconds). With `t_x(i)`, `t_y(i)` for the i-th firings and `W` for the wait before a firing:
+//! Sensor x sees a true echo after `T_echo`. Sensor y sees nothing of its own, but hears x over a critical path of
+//! length `L` (all in microseconds). With `t_x(i)`, `t_y(i)` for the i-th firings and `W` for the wait before a firing:
 //!
 //! ```text
 //! t_x(i+1) = t_x(i) + T_echo + W_x          x fires again after its echo and its wait
@@ -9,8 +9,8 @@
 //! t_y(i+1) = t_y(i) + T_err(i) + W_y        y fires again after what it takes for its echo, and its wait
 //! ```
 //!
-//! and so, whatever `L` is and whenever they began, `T_err(i+1) = T_echo + W_x - W_y`: (8) for constant waits, (10a) and
-//! (10b) for alternating ones.
+//! and so, whatever `L` is and whenever they began, `T_err(i+1) = T_echo + W_x - W_y`: (8) for constant waits, (10a)
+//! and (10b) for alternating ones.
 
 use std::collections::VecDeque;
 

@@ -1,5 +1,5 @@
-//! Eqs. (13a), (13b): the fast check of `eeruf-core`, which sorts, against their longhand definition, which compares all
-//! pairs; and the facts that the paper claims for Table I.
+//! Eqs. (13a), (13b): the fast check of `eeruf-core`, which sorts, against their longhand definition, which compares
+//! all pairs; and the facts that the paper claims for Table I.
 
 use eeruf_core::tables::{TABLE_I_A, TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, ViolationKind};

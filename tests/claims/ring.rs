@@ -1,6 +1,7 @@
-//! `Ring` under arbitrary calls: it never fires neighbours together or a sensor too soon, never panics, and goes on firing.
+//! `Ring` under arbitrary calls: it never fires neighbours together or a sensor too soon, never panics, and goes on
+//! firing.
 //!
-//! `PROPTEST_CASES=1000000 cargo test --release --test ring` is the long run.
+//! `PROPTEST_CASES=1000000 cargo test --release --test claims ring::` is the long run.
 
 use eeruf_core::tables::{TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{ImmediateRefiring, Instant, Layout, Micros, Ring, RingConfig, RingEvent, Schedule, Scheduler};
@@ -148,7 +149,10 @@ proptest! {
     }
 
     #[test]
-    fn a_clock_that_jumps_anywhere_never_stops_a_ring(jumps in prop::collection::vec(any::<u32>(), 1..20), scheduled: bool) {
+    fn a_clock_that_jumps_anywhere_never_stops_a_ring(
+        jumps in prop::collection::vec(any::<u32>(), 1..20),
+        scheduled: bool,
+    ) {
         if scheduled {
             survives_jumps(Ring::new(&TABLE_I_D, config(), Instant::default()).unwrap(), &jumps)?;
         } else {

@@ -1,47 +1,7 @@
-//! The verb `experiment`: the tables in docs/experiments.md are what it prints, its JSON has the names that others rely on,
-//! and its pictures can be drawn.
+//! The verb `experiment`: its JSON has the names that others rely on, and its pictures can be drawn.
 
-mod common;
-
-use common::{Scratch, eeruf, json};
+use crate::common::{Scratch, eeruf, json};
 use serde_json::Value;
-
-/// What a table of the docs begins with, and the command that prints it.
-const PRINTED_BY: &str = "<!-- printed by: eeruf ";
-const END: &str = "<!-- end -->";
-
-/// Commands with up to this many seeds are run again here.
-const SMALL: u64 = 3;
-
-#[test]
-fn the_small_tables_in_the_docs_are_what_the_commands_print() {
-    let docs = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/experiments.md")).unwrap();
-    let mut sets = Vec::new();
-    for block in docs.split(PRINTED_BY).skip(1) {
-        let (command, rest) = block.split_once(" -->\n").unwrap();
-        let (expected, _) = rest.split_once(END).unwrap();
-        let words: Vec<&str> = command.split_whitespace().collect();
-        let seeds =
-            words.iter().position(|word| *word == "--seeds").map(|place| words[place + 1].parse::<u64>().unwrap());
-        if seeds.is_some_and(|seeds| seeds <= SMALL) {
-            assert_eq!(eeruf(&words).out.trim(), expected.trim(), "{command}");
-            sets.push(words[1]);
-        }
-    }
-    assert!(sets.contains(&"set-one") && sets.contains(&"set-two"), "{sets:?}");
-}
-
-#[test]
-fn every_picture_in_the_docs_exists_and_is_small() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/");
-    let docs = std::fs::read_to_string(folder.to_owned() + "experiments.md").unwrap();
-    let pictures: Vec<&str> = docs.split("](pictures/").skip(1).filter_map(|rest| rest.split(')').next()).collect();
-    assert!(pictures.len() >= 3, "{pictures:?}");
-    for picture in pictures {
-        let size = std::fs::metadata(format!("{folder}pictures/{picture}")).unwrap().len();
-        assert!(size < 300_000, "{picture}: {size}");
-    }
-}
 
 #[test]
 fn json_of_set_one_has_quantiles_for_each_method() {

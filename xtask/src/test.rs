@@ -5,7 +5,7 @@ use std::process::{Command, ExitCode};
 
 use cargo_metadata::{Metadata, MetadataCommand, Package};
 
-use crate::steps::{Steps, Trouble, run};
+use crate::steps::{Steps, Trouble, output, run};
 use crate::toolchain::{cargo_for_target, cargo_of_version};
 
 /// The smallest core that firmware runs on; the others are tried with the firmware itself.
@@ -14,6 +14,7 @@ const BARE_TARGETS: [&str; 1] = ["thumbv6m-none-eabi"];
 pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     let mut steps = Steps::default();
     steps.step("formatting", || run_cargo(&["fmt", "--all", "--check"]));
+    steps.step("listings of the documents", crate::listings::check_all);
     steps.step("clippy", || {
         run_cargo(&["clippy", "--workspace", "--all-targets", "--locked", "--", "--deny", "warnings"])
     });
@@ -32,7 +33,12 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
         });
     }
     steps.step("lint of the firmware", crate::firmware::lint);
+    // What the default compiler can build, Clippy has just built with it.
+    let default = version_of_default();
     for (version, packages) in packages_by_version(&metadata) {
+        if default.as_deref() == Some(&*version) {
+            continue;
+        }
         steps.step(&format!("minimum Rust {version}"), || {
             let mut cargo = cargo_of_version(&version)?;
             cargo.args(["check", "--locked"]);
@@ -43,12 +49,19 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
         });
     }
     steps.step("tests and doctests", || run_cargo(&["test", "--workspace", "--locked"]));
-    steps.step("benches, each once", || run_cargo(&["test", "--package", "eeruf", "--benches", "--locked"]));
+    // With the features of the whole workspace, as built for the tests; those of instructions need a runner.
+    steps.step("benches, each once", || {
+        let benches = ["design", "paths", "simulation", "wait"].map(|name| ["--bench", name]).concat();
+        run_cargo(&[&["test", "--workspace", "--locked"], &benches[..]].concat())
+    });
+    steps.step("small tables in the documents", || {
+        crate::printed::check(&crate::printed::documents()?, crate::printed::Which::SmallOfOthers)
+    });
     steps.step("tests of the core's conversions", || {
         run_cargo(&["test", "--package", "eeruf-core", "--lib", "--locked", "--features", "fugit,serde", "interop"])
     });
     steps.step("Python package", crate::python::python);
-    steps.step("firmware on emulated boards", crate::firmware::firmware);
+    steps.step("firmware on emulated boards", || crate::firmware::firmware(false));
     steps.step("documentation", || {
         run(Command::new("cargo")
             .args(["doc", "--workspace", "--no-deps", "--locked"])
@@ -81,4 +94,11 @@ fn packages_by_version(metadata: &Metadata) -> BTreeMap<String, Vec<&Package>> {
         }
     }
     packages
+}
+
+/// The version of the default compiler, as "1.95".
+fn version_of_default() -> Option<String> {
+    let said = output(Command::new("rustc").arg("--version"))?;
+    let (version, _) = said.strip_prefix("rustc ")?.rsplit_once('.')?;
+    Some(version.split('.').take(2).collect::<Vec<_>>().join("."))
 }

@@ -30,7 +30,7 @@ pub(crate) fn files() -> Result<Vec<String>, Trouble> {
 pub(crate) fn packages<'a>(metadata: &'a Metadata, files: &[String]) -> Vec<&'a Package> {
     let root = metadata.workspace_root.as_std_path();
     let folder = |package: &Package| -> String {
-        let folder = package.manifest_path.parent().map(|path| path.as_std_path());
+        let folder = package.manifest_path.parent().map(cargo_metadata::camino::Utf8Path::as_std_path);
         let relative = folder.and_then(|folder| folder.strip_prefix(root).ok()).unwrap_or(Path::new(""));
         relative.display().to_string()
     };

@@ -55,8 +55,8 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
         Some(event)
     }
 
-    /// Hands in all edges in the queue, then [polls](Self::poll). Read the clock for `now` just before: then no window closes
-    /// on an edge that came in time, however long the main loop was busy elsewhere.
+    /// Hands in all edges in the queue, then [polls](Self::poll). Read the clock for `now` just before: then no window
+    /// closes on an edge that came in time, however long the main loop was busy elsewhere.
     pub fn poll_with_edges<const N: usize>(&mut self, edges: &EdgeQueue<N>, now: Instant) -> Option<RingEvent> {
         while let Some(edge) = edges.pop() {
             self.edge(edge);
@@ -77,8 +77,8 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
         }
     }
 
-    /// How a sensor was at its last complete firing, as far as its line shows it; [`Health::Missing`] for one that the ring
-    /// does not have.
+    /// How a sensor was at its last complete firing, as far as its line shows it; [`Health::Missing`] for one that the
+    /// ring does not have.
     pub fn health(&self, sensor: u8) -> Health {
         self.lines.get(usize::from(sensor)).map_or(Health::Missing, |line| line.health)
     }

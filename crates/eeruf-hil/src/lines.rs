@@ -158,7 +158,8 @@ impl<'w> Lines<'w> {
             next.filter(|&&(at, high, _)| high == edge.high && (at..=at + LATEST_US).contains(&noticed_at))
         else {
             return Err(format!(
-                "sensor {}: the board noticed an edge {noticed_at} us after the start that does not follow from {expected:?}",
+                "sensor {}: the board noticed an edge {noticed_at} us after the start that does not follow from \
+                 {expected:?}",
                 edge.sensor + 1
             ));
         };

@@ -54,8 +54,8 @@ fn tables(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
     let rows: Vec<Rows> = sweep(boards, rows).into_iter().collect::<Result<_, _>>()?;
     let (fault_free, faults): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
     Ok(format!(
-        "| board | readings | as the host's ring | accepted | rejected | kind as simulated | echo time within | edge noticed \
-         within | latest firing |\n|---|---:|---|---:|---:|---:|---:|---:|---:|\n{}\n\
+        "| board | readings | as the host's ring | accepted | rejected | kind as simulated | echo time within \
+         | edge noticed within | latest firing |\n|---|---:|---|---:|---:|---:|---:|---:|---:|\n{}\n\
          | board | fault | readings | as the host's ring | others of another kind | others' time moved by | named |\n\
          |---|---|---:|---|---:|---:|---|\n{}",
         fault_free.concat(),

@@ -46,8 +46,8 @@ fn the_reason_names_what_to_relax() {
 
 #[test]
 fn at_100_ms_with_the_paper_s_refire_times_the_half_ring_could_keep_20_ms() {
-    // With |d| of at most 24 ms, as in the paper's tables, the window is 76 ms. With the paper's lags the answer is 19 ms;
-    // here lags are free.
+    // With |d| of at most 24 ms, as in the paper's tables, the window is 76 ms. With the paper's lags the answer is 19
+    // ms; here lags are free.
     let rows = naive::conflicts(Layout::Line, 12, 4);
     let problem = Problem { window: 76, ..paper_12(&rows, 1) };
     let mut memory = vec![0; memory_words(12)];

@@ -8,6 +8,7 @@ mod period_small;
 mod period_threads;
 mod period_ticks;
 mod period_variants;
+mod theory;
 mod wait_limits;
 mod wait_small;
 mod wait_tables;

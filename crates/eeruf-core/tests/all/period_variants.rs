@@ -18,8 +18,9 @@ fn the_reason_names_what_to_relax() {
     assert!(matches!(found.explanation, Explanation::Bound(Bound::Capacity { .. })));
     assert_eq!(
         found.explanation.to_string(),
-        "window and separation: 12 sensors need 12 refire times 2 ticks apart, and the shortest must leave a window of 60 \
-         ticks, which takes 82 ticks; a shorter window, a smaller separation or fewer sensors would help, a shorter interval would not"
+        "window and separation: 12 sensors need 12 refire times 2 ticks apart, and the shortest must leave \
+         a window of 60 ticks, which takes 82 ticks; a shorter window, a smaller separation or fewer sensors would help, \
+         a shorter interval would not"
     );
     let relaxed = relaxations(&wide, 82, 100_000, &mut memory, &mut ()).unwrap();
     assert_eq!(
@@ -46,8 +47,8 @@ fn the_reason_names_what_to_relax() {
 
 #[test]
 fn at_100_ms_with_the_paper_s_refire_times_the_half_ring_could_keep_20_ms() {
-    // With |d| of at most 24 ms, as in the paper's tables, the window is 76 ms. With the paper's lags the answer is 19 ms;
-    // here lags are free.
+    // With |d| of at most 24 ms, as in the paper's tables, the window is 76 ms. With the paper's lags the answer is 19
+    // ms; here lags are free.
     let rows = naive::conflicts(Layout::Line, 12, 4);
     let problem = Problem { window: 76, ..paper_12(&rows, 1) };
     let mut memory = vec![0; memory_words(12)];

@@ -32,7 +32,7 @@ impl Maximum {
 /// then the answer is the period.
 ///
 /// # Errors
-/// As for [`decide`](super::decide).
+/// As for [`decide`](super::decide()).
 pub fn maximize_separation<C: Control>(
     problem: &Problem<'_>,
     period: u32,
@@ -50,7 +50,7 @@ pub fn maximize_separation<C: Control>(
 /// Without any conflict the answer is the period.
 ///
 /// # Errors
-/// As for [`decide`](super::decide).
+/// As for [`decide`](super::decide()).
 pub fn maximize_interval<C: Control>(
     problem: &Problem<'_>,
     period: u32,

@@ -18,11 +18,11 @@
 //! says, in ticks, how far apart all `|d|` must be (the separation), how far apart conflicting sensors fire (the
 //! interval) and how long each listens (the window).
 //!
-//! - [`shortest`] minimises the period and says why it is not shorter ([`Explanation`]); [`relaxations`] says which
+//! - [`shortest()`] minimises the period and says why it is not shorter ([`Explanation`]); [`relaxations()`] says which
 //!   need to relax.
-//! - [`decide`] answers for one period: found, exhausted (a proof that there is none), or budget spent.
+//! - [`decide()`] answers for one period: found, exhausted (a proof that there is none), or budget spent.
 //! - [`maximize_separation`] and [`maximize_interval`] take the period as given.
-//! - [`prefer`] picks, among the schedules with the shortest period, the one with most to spare.
+//! - [`prefer()`] picks, among the schedules with the shortest period, the one with most to spare.
 //!
 //! With the feature `std`, `shortest_on_threads` comes to the same answer on several threads.
 //!

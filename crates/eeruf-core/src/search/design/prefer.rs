@@ -50,7 +50,7 @@ pub struct Preferred {
 /// at most, a third on each. A value that was not proven best is the best found.
 ///
 /// # Errors
-/// As for [`decide`](super::decide).
+/// As for [`decide`](super::decide()).
 pub fn prefer<C: Control>(
     problem: &Problem<'_>,
     shortest: &Shortest,

@@ -41,8 +41,8 @@
 //! places, with I behind each place: `2 T_p >= 2 n I + n D`.
 //!
 //! Whether some permutation fits is found by trying them, place by place; there are few unless n is large, and then
-//! giving up says nothing. Where `2 sigma >= I`, lines and rings take up [`changes`]; where `sigma >= I`, nothing is
-//! said.
+//! giving up says nothing. Where `2 sigma >= I`, lines and rings take up [`changes`](super::changes); where
+//! `sigma >= I`, nothing is said.
 
 use super::super::problem::CheckedProblem;
 use super::super::symmetry;

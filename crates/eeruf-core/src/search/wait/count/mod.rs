@@ -41,7 +41,7 @@ impl Search<'_> {
     /// Counts the tables; stops early when there are `limit` or more. More `memory` makes it faster ([`COUNT_WORDS`]);
     /// it may be empty.
     ///
-    /// Without a limit, a count beyond `u128` ends with [`Outcome::Found(())`] at its maximum.
+    /// Without a limit, a count beyond `u128` ends with [`Outcome::Found`] at its maximum.
     pub fn count(&self, limit: Option<u128>, memory: &mut [u32], budget: &mut Budget<'_>) -> Count {
         let before = budget.nodes();
         let limit = limit.unwrap_or(u128::MAX);

@@ -7,7 +7,7 @@ use eeruf_core::search::{Found, PeriodProblem, WaitProblem, WaitSearch, design, 
 use eeruf_core::tables::{TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{Criterion, Interval, Layout, Micros, Phase, Requirements, Schedule};
 
-const THEORY: &str = include_str!("../../../docs/theory.md");
+const THEORY: &str = include_str!("../../../../docs/theory.md");
 
 const fn ms(ms: u32) -> Micros {
     Micros::from_millis(ms)
@@ -64,7 +64,7 @@ fn waits(sensors: usize, t_delta_us: u32, tick_us: u32) -> WaitSearch {
 
 fn best_interval(search: &WaitSearch) -> Found<24> {
     let mut memory = vec![0; wait::memory_words(24)];
-    search.best(wait::Objective::Interval, &mut memory, &mut wait::Control::unlimited()).expect("memory suffices")
+    search.best(wait::Objective::Interval, &mut memory, &mut wait::Budget::unlimited()).expect("memory suffices")
 }
 
 #[test]
@@ -196,7 +196,7 @@ fn by_formula(layout: &str, sensors: u32, window: u32) -> u32 {
 #[test]
 fn section_5_3_the_shortest_periods_are_those_of_the_corpus_and_28_of_32_follow_from_formulas() {
     let corpus: serde_json::Value =
-        serde_json::from_str(include_str!("../../../tests/data/shortest-periods.json")).unwrap();
+        serde_json::from_str(include_str!("../../../../tests/data/shortest-periods.json")).unwrap();
     let rows = table("ring");
     let (mut cells, mut exceptions) = (0, Vec::new());
     for row in &rows[1..] {
@@ -271,7 +271,7 @@ fn section_7_the_best_interval_takes_a_few_dozen_nodes_and_three_neighbours_have
         criterion: Criterion::Paper,
     };
     let search = WaitSearch::new(&problem).unwrap();
-    assert_eq!(search.count(None, &mut [], &mut wait::Control::unlimited()).unwrap().count, 3912);
+    assert_eq!(search.count(None, &mut [], &mut wait::Budget::unlimited()).unwrap().count, 3912);
 }
 
 #[test]

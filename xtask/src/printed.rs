@@ -1,8 +1,8 @@
 //! What documents quote of programs' output: `<!-- printed by: COMMAND -->` stands before it, `<!-- end -->` after it.
 //!
 //! The command is `eeruf ARGUMENTS` or `cargo ARGUMENTS`. Words in brackets say more, as in
-//! `<!-- printed by (large, decimals are timings): COMMAND -->`: what takes long, and where numbers with a decimal point
-//! are timings, which are not compared.
+//! `<!-- printed by (large, decimals are timings): COMMAND -->`: what takes long, and where numbers with a decimal
+//! point are timings, which are not compared.
 
 use std::fs;
 use std::process::Command;

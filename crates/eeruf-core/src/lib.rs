@@ -3,7 +3,7 @@
 //! Sensors that fire at the same time hear each other: *crosstalk*. Firing one by one avoids it and is slow. EERUF
 //! fires every sensor once per period `T_p` at `T_fire = T_lag + T_wait`, where `T_wait` alternates between two values
 //! that differ from sensor to sensor, and accepts a reading only if it is near-identical to the one before. A true echo
-//! does not depend on the waits; crosstalk shifts with them and is rejected. What is proven about it, and why: [`theory`].
+//! does not depend on the waits; crosstalk shifts with them and is rejected. What is proven, and why: [`theory`].
 //!
 //! - [`Schedule`]: when each sensor fires. [`schedule!`] checks a table while the firmware is compiled.
 //! - [`Requirements`] and [`Schedule::verify`]: Eqs. (13a), (13b), the smallest interval between neighbours, and the

@@ -19,8 +19,8 @@ fn the_reason_names_what_to_relax() {
     assert_eq!(
         found.explanation.to_string(),
         "window and separation: 12 sensors need 12 refire times 2 ticks apart, and the shortest must leave \
-         a window of 60 ticks, which takes 82 ticks; a shorter window, a smaller separation or fewer sensors would help, \
-         a shorter interval would not"
+         a window of 60 ticks, which takes 82 ticks; a shorter window, a smaller separation or fewer sensors would \
+         help, a shorter interval would not"
     );
     let relaxed = relaxations(&wide, 82, 100_000, &mut memory, &mut ()).unwrap();
     assert_eq!(

@@ -4,8 +4,8 @@
 //! A = D(departure) D(arrival) * product of R_i * 10^(-alpha L / 20) / L
 //! ```
 //!
-//! The patterns `D` belong to transducers and are applied in [`CrosstalkMatrix`](crate::CrosstalkMatrix); a pole replaces `1 / L`
-//! by the spreading that its curvature causes.
+//! The patterns `D` belong to transducers and are applied in [`CrosstalkMatrix`](crate::CrosstalkMatrix); a pole
+//! replaces `1 / L` by the spreading that its curvature causes.
 
 use crate::geometry::Vector;
 use crate::scene::{Bounce, Material, Scene};

@@ -92,10 +92,10 @@ impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::WallCoordinate { wall, value } => {
-                write!(f, "wall {wall} has a coordinate {value} m; expected a number within {} m", MAX_COORDINATE_M)
+                write!(f, "wall {wall} has a coordinate {value} m; expected a number within {MAX_COORDINATE_M} m")
             }
             Self::WallTooShort { wall, length_m } => {
-                write!(f, "wall {wall} is {length_m} m long; expected at least {} m", MIN_WALL_M)
+                write!(f, "wall {wall} is {length_m} m long; expected at least {MIN_WALL_M} m")
             }
             Self::WallsOverlap { walls: [a, b] } => {
                 write!(f, "walls {a} and {b} lie on top of each other; they may share one point only")
@@ -103,15 +103,14 @@ impl fmt::Display for SceneError {
             Self::WallsCross { walls: [a, b], at: [x, y] } => {
                 write!(f, "walls {a} and {b} cross at ({x:.4}, {y:.4}); end one of them there")
             }
-            Self::TooManyWalls { count } => write!(f, "{count} walls; expected at most {}", MAX_WALLS),
+            Self::TooManyWalls { count } => write!(f, "{count} walls; expected at most {MAX_WALLS}"),
             Self::WallMaterial { wall } => {
                 write!(f, "the material of wall {wall} {OUT_OF_RANGE}")
             }
             Self::Pole { pole, value } => {
                 write!(
                     f,
-                    "pole {pole} has {value} m; expected finite coordinates and a radius above 0 and up to {} m",
-                    MAX_POLE_M
+                    "pole {pole} has {value} m; expected finite coordinates and a radius above 0 and up to {MAX_POLE_M} m"
                 )
             }
             Self::PoleMaterial { pole } => {

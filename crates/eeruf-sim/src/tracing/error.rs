@@ -51,7 +51,7 @@ impl fmt::Display for PathsError {
                 write!(f, "receiver {receiver} is at ({x}, {y}) m; expected a point within {reach_m} m of the walls")
             }
             Self::Order { max_order } => {
-                write!(f, "paths up to order {max_order}; expected at most {}", MAX_ORDER)
+                write!(f, "paths up to order {max_order}; expected at most {MAX_ORDER}")
             }
             Self::Length { max_length_m } => write!(f, "paths up to {max_length_m} m; expected a positive length"),
             Self::Budget { beams } => write!(f, "more than {beams} beams; lower the order or the longest path"),

@@ -146,11 +146,10 @@ impl BeamTree {
                 if cross(right, left) <= SAME_DIRECTION * (left - right).norm() * (left.norm() + right.norm()) {
                     continue;
                 }
-                if let Some((left, right)) = growth.ensonified(left, right) {
-                    if let Some(gate) = self.leave_through(&flight, side.exit, left, right) {
+                if let Some((left, right)) = growth.ensonified(left, right)
+                    && let Some(gate) = self.leave_through(&flight, side.exit, left, right) {
                         self.stack.push(Cone { gate, left, right });
                     }
-                }
             }
         }
         self.walk(&flight);

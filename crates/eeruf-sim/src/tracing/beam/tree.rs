@@ -147,9 +147,10 @@ impl BeamTree {
                     continue;
                 }
                 if let Some((left, right)) = growth.ensonified(left, right)
-                    && let Some(gate) = self.leave_through(&flight, side.exit, left, right) {
-                        self.stack.push(Cone { gate, left, right });
-                    }
+                    && let Some(gate) = self.leave_through(&flight, side.exit, left, right)
+                {
+                    self.stack.push(Cone { gate, left, right });
+                }
             }
         }
         self.walk(&flight);

@@ -89,7 +89,7 @@ impl Sweep {
     pub(crate) fn describe(&self) -> String {
         let mut header = vec!["method".to_owned()];
         header.extend(self.steps.iter().map(|step| format!("{} m/s", step.speed_m_s)));
-        header.push("borne m/s".to_owned());
+        header.push("sustained m/s".to_owned());
         let rows =
             self.borne_m_s.iter().enumerate().map(|(index, (method, sustained))| {
                 let mut row = vec![method.to_string()];
@@ -100,7 +100,7 @@ impl Sweep {
                 row
             });
         let mut text = format!(
-            "Set II: {} courses at several top speeds{}: finished %, and (mean speed in m/s). Borne is\n\
+            "Set II: {} courses at several top speeds{}: finished %, and (mean speed in m/s). Sustained is\n\
              the highest speed at which {:.0} % of the courses are finished; \
              multi_echo compares {MULTI_ECHO_CONSECUTIVE} readings, the other filters 2.\n\n",
             self.seeds,

@@ -14,7 +14,7 @@
 use eeruf_core::{Instant, Micros, Reading, RingConfig, RingEvent, Schedule};
 use eeruf_hc_sr04::{Edge, Health};
 
-/// How many sensors there are.
+/// How many sensors there are: as many as in `scenes/alcove-hc-sr04.toml`.
 pub const SENSORS: usize = 8;
 
 /// The paper's Table I-d for the first eight of its twelve sensors.
@@ -58,7 +58,7 @@ impl Orders {
     }
 }
 
-/// The most edges that an answer holds.
+/// The most edges that an answer holds: a choice; the host refuses a run that needs more.
 pub const MOST_AHEAD: usize = 48;
 
 /// An edge to come on an echo line.

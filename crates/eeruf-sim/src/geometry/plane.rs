@@ -11,7 +11,8 @@ pub type Vector = Vector2<f64>;
 /// Position and heading of a robot or a transducer.
 pub type Pose = nalgebra::Isometry2<f64>;
 
-/// Two points nearer than this are one: joined walls, doubles of one path, a source on top of its receiver.
+/// Two points nearer than this are one: joined walls, doubles of one path, a source on top of its receiver. A choice:
+/// above rounding in a room, below any real length.
 pub const TOUCH_M: f64 = 1e-9;
 
 /// An angle below this counts as none when a receiver is compared with a beam's limit. Rounding stays under 1e-15 per

@@ -7,7 +7,8 @@ use super::quantiles::quantile;
 use super::readings::{Cause, Readings};
 use crate::methods::Method;
 
-/// By how much a reading may miss the reference, unless another tolerance is asked for: 0.5 ms, 8.6 cm.
+/// By how much a reading may miss the reference, unless another tolerance is asked for: 0.5 ms, 8.6 cm. Set I's
+/// measure of an error, as large as its `T_delta`.
 pub const DEFAULT_TOLERANCE_US: f64 = 500.0;
 
 /// A method's figures over one simulation, all robots together. Shares are fractions of 1.

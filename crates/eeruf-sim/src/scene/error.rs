@@ -3,13 +3,13 @@
 
 use core::fmt;
 
-/// The most walls a scene may have.
+/// The most walls a scene may have: a choice of memory.
 pub const MAX_WALLS: usize = 10_000_000;
-/// No coordinate may be farther from the origin, in metres.
+/// No coordinate may be farther from the origin, in metres: a choice; an `f64` still resolves 1e-11 m there.
 pub const MAX_COORDINATE_M: f64 = 1e5;
-/// The shortest wall, in metres.
+/// The shortest wall, in metres: a choice, a thousand times the distance at which two points are one.
 pub const MIN_WALL_M: f64 = 1e-6;
-/// The thickest pole's radius, in metres.
+/// The thickest pole's radius, in metres: a choice; whatever is rounder is a wall.
 pub const MAX_POLE_M: f64 = 100.0;
 
 /// Why a scene cannot be built.

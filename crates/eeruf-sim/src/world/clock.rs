@@ -14,7 +14,8 @@ pub struct Clock {
     pub drift_ppm: f64,
 }
 
-/// The fastest and slowest clock that makes sense, in parts per million.
+/// The fastest and slowest clock that makes sense, in parts per million: a choice, ten times a
+/// crystal's and about an RC oscillator's.
 pub const MAX_DRIFT_PPM: f64 = 1000.0;
 
 /// A clock with its drift as a ratio of whole numbers.

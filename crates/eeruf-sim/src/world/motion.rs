@@ -2,7 +2,7 @@
 
 use crate::geometry::{Moment, Point, Pose, Vector};
 
-/// The fastest motion, in m/s and rad/s.
+/// The fastest motion, in m/s and rad/s: a choice, beyond any robot, so that more is a mistake in the input.
 pub const MAX_SPEED: f64 = 50.0;
 
 /// How a robot moves from its first pose on.

@@ -10,7 +10,7 @@ use crate::{
     geometry::{Pose, Vector},
 };
 
-/// The most robots in one world.
+/// The most robots in one world: a choice, beyond any use, so that more is a mistake in the input.
 pub const MAX_ROBOTS: usize = 64;
 /// A schedule whose number of sensors is known only at run time.
 pub type AnySchedule = Schedule<MAX_SENSORS>;

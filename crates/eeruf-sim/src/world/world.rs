@@ -7,7 +7,8 @@ use super::noise::Noise;
 use super::robot::{MAX_ROBOTS, Robot};
 use crate::{geometry::Pose, scene::Scene, tracing::MAX_ORDER};
 
-/// The highest order that a world follows sound to, unless another is asked for.
+/// The highest order that a world follows sound to, unless another is asked for: the order at which Set I is
+/// evaluated.
 pub const DEFAULT_ORDER: u32 = 6;
 /// A scene, robots, noise and a seed.
 #[derive(Debug)]

@@ -3,7 +3,7 @@
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::{ProblemError, check_conflicts};
 
-/// The longest time the search computes with, in ticks (67 s of 1 us).
+/// The longest time the search computes with, in ticks (67 s of 1 us), so that sums of a few times fit 32 bits.
 pub const MAX_TICKS: u32 = 1 << 26;
 
 /// What the sensors need. All times are in ticks of the caller's choice.

@@ -7,11 +7,11 @@ use crate::{
     world::{Noise, Random, Robot, World, WorldError},
 };
 
-/// How many sensors the ring has.
+/// How many sensors the ring has: a choice, as the paper leaves Set I open (see `docs/experiments.md`).
 pub const SENSORS: usize = 8;
-/// Their spacing, in degrees.
+/// Their spacing, in degrees: that of the paper's ring.
 pub const SPACING_DEG: f64 = 15.0;
-/// The radius of the arc that they stand on, in metres.
+/// The radius of the arc that they stand on, in metres: a choice.
 pub const RADIUS_M: f64 = 0.30;
 
 /// Measures of one alcove and of the robot before it. The mouth lies on the x axis around the origin, the back wall at

@@ -10,9 +10,9 @@ use crate::{
     world::{Clock, Noise, Random, Robot, World, WorldError},
 };
 
-/// Length and width of the lab, in metres. The course runs along its length.
+/// Length and width of the lab, in metres: a choice, as the paper gives none. The course runs along its length.
 pub const ROOM_M: [f64; 2] = [10.0, 6.0];
-/// The poles are 8 mm thick.
+/// The poles are 8 mm thick (Sec. 4).
 pub const POLE_RADIUS_M: f64 = 0.004;
 /// Between poles of the unshaken lattice, in metres.
 const SPACING_M: f64 = 1.6;

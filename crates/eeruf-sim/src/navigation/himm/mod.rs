@@ -11,11 +11,11 @@ mod tests;
 
 use crate::geometry::{Point, Vector};
 
-/// The highest certainty value.
+/// The highest certainty value, as in the paper on HIMM.
 pub const MAX_VALUE: u8 = 15;
-/// What the cell at the measured range gains.
+/// What the cell at the measured range gains, as in the paper on HIMM.
 pub const INCREMENT: u8 = 3;
-/// What each cell on the way there loses.
+/// What each cell on the way there loses, as in the paper on HIMM.
 pub const DECREMENT: u8 = 1;
 
 /// The certainty grid. Cells lie on a lattice fixed in the scene; the grid holds a square of them, which can be moved

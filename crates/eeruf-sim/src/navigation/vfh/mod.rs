@@ -15,7 +15,7 @@ mod tests;
 use super::himm::{Himm, MAX_VALUE};
 use crate::geometry::{Point, Vector, wrap_angle};
 
-/// How many sectors the histogram has.
+/// How many sectors the histogram has, as in the paper on VFH.
 pub const SECTORS: usize = 72;
 /// The width of a sector in radians: 5 degrees.
 pub const SECTOR_RAD: f64 = TAU / SECTORS as f64;

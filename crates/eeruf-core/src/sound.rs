@@ -17,7 +17,7 @@ pub struct SpeedOfSound {
 }
 
 impl SpeedOfSound {
-    /// At 20 C.
+    /// At 20 C: 343.2 m/s (ISO 9613-1).
     pub const AT_20_CELSIUS: Self = Self { mm_per_s: 343_200 };
 
     /// This speed, in mm/s.

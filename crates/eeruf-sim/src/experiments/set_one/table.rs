@@ -15,7 +15,7 @@ use crate::{
     world::{Robot, World, WorldError},
 };
 
-/// How many readings the paper has of one set-up (Sec. 4); of the conventional method, and of all others in the same time.
+/// How many readings the paper has of one set-up (Sec. 4): of the conventional method, and of all others in that time.
 pub const READINGS: u32 = 8000;
 
 /// `T_delta` of [`Method::MultiEcho`]. With up to eight echoes a firing, pairs of them agree by accident in proportion

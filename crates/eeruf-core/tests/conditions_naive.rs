@@ -1,7 +1,8 @@
 //! The conditions and the verifier against plain formulas, pair by pair, on seeded pseudo-random schedules.
 
 use eeruf_core::{
-    Criterion, Interval, Layout, Micros, Phase, Requirements, Schedule, Separation, SpeedOfSound, ViolationKind,
+    Criterion, Instant, Interval, Layout, Micros, Phase, ReadingKind, Requirements, Schedule, Separation, SpeedOfSound,
+    ViolationKind,
 };
 
 const SENSORS: usize = 5;
@@ -119,7 +120,8 @@ fn the_separation_is_the_smallest_left_side_of_all_pairs() {
             assert_eq!(i64::from(value.as_micros()), least, "{criterion} {schedule:?}");
             assert!(x < y);
             let sides = left_sides(&schedule, criterion, x.into(), y.into());
-            // Under the stronger criterion the two are told from the closest waits, of which only some sides come that close.
+            // Under the stronger criterion the two are told from the closest waits, of which only some sides come that
+            // close.
             assert!(criterion == Criterion::Paper || sides.contains(&least), "{criterion} {schedule:?}");
         }
     }
@@ -190,6 +192,9 @@ fn the_verifier_names_every_violation_and_no_other() {
         }
         assert_eq!(found, expected, "{requirements:?} {schedule:?}");
         assert_eq!(report.ok(), expected.is_empty());
+        assert_eq!(report.separation(), schedule.separation(requirements.criterion));
+        assert_eq!(report.min_interval(), schedule.min_interval(requirements.layout));
+        assert_eq!(report.min_refire(), schedule.min_refire());
         let max_t_delta = report.max_t_delta().map(|t_delta| i64::from(t_delta.as_micros()));
         assert_eq!(max_t_delta, (least > 0).then(|| (least - 1) / 2));
     }
@@ -221,6 +226,60 @@ fn neighbours_stand_less_than_so_many_steps_apart() {
         assert!(layout.neighbours(3, 0, 2));
         assert!(!layout.neighbours(2, 0, 2) && !layout.neighbours(2, 2, 0) && !layout.neighbours(2, 5, 9));
     }
+    // Words and bits that are not there name nobody.
+    assert!(!Layout::Graph(&[0b10]).neighbours(3, 1, 2) && !Layout::Graph(&[1]).neighbours(65, 0, 64));
+}
+
+#[test]
+fn a_violation_says_who_when_how_much_and_what_is_expected() {
+    let us = |us: [u32; 2]| us.map(Micros::new);
+    let schedule = Schedule::from_firing(Micros::new(100), [us([10, 20]), us([30, 45])]).unwrap();
+    let requirements = Requirements {
+        min_interval: Micros::new(86),
+        window: Micros::new(86),
+        stale_echo: true,
+        ..Requirements::new(Micros::new(25))
+    };
+    let said: Vec<_> = schedule
+        .verify(&requirements)
+        .violations()
+        .map(|violation| format!("{}: {violation}", violation.kind.as_str()))
+        .collect();
+    let crosstalk = "from one reading to the next; to be rejected it needs at least 51 us";
+    let own = "(Eq. (13b) with x = y)";
+    let neighbours = "neighbours need at least 86 us (Sec. 3.1 c)";
+    assert_eq!(
+        said,
+        [
+            format!("crosstalk_a: crosstalk between sensors 1 and 2 moves by 5 us {crosstalk} (Eq. (13a))"),
+            format!("crosstalk_b: crosstalk between sensors 1 and 2 moves by 45 us {crosstalk} (Eq. (13b))"),
+            format!("stale_echo: an echo of sensor 1 from the period before moves by 40 us {crosstalk} {own}"),
+            format!("stale_echo: an echo of sensor 2 from the period before moves by 50 us {crosstalk} {own}"),
+            format!("interval: sensors 1 and 2 fire 10 us apart in phase a; {neighbours}"),
+            format!("interval: sensors 1 and 2 fire 15 us apart in phase b; {neighbours}"),
+            format!("interval: sensors 2 and 1 fire 65 us apart between phases b and a; {neighbours}"),
+            "window: sensor 1 fires again 80 us after phase b; it listens for 86 us (T_wind)".to_owned(),
+            "window: sensor 2 fires again 75 us after phase b; it listens for 86 us (T_wind)".to_owned(),
+        ]
+    );
+}
+
+#[test]
+fn a_reading_is_printed_by_its_name() {
+    let names = ["first", "accepted", "rejected", "repeated", "no_echo", "clear", "too_early", "late", "stuck"];
+    assert_eq!(ReadingKind::ALL.map(ReadingKind::as_str), names);
+    assert_eq!(format!("{:>9}|{}", ReadingKind::Clear, ReadingKind::Late), "    clear|late");
+}
+
+#[test]
+fn times_add_and_subtract_as_far_as_they_go_and_instants_wrap() {
+    let (one, two, most) = (Micros::new(1), Micros::new(2), Micros::MAX);
+    assert_eq!((one.checked_add(two), most.checked_add(one)), (Some(Micros::new(3)), None));
+    assert_eq!((two.checked_sub(one), one.checked_sub(two)), (Some(one), None));
+    let mut now = Instant::from_micros(u32::MAX);
+    now += two;
+    assert_eq!((now.as_micros(), Instant::from_micros(7).as_micros()), (1, 7));
+    assert!(now.has_reached(Instant::from_micros(u32::MAX)));
 }
 
 #[test]

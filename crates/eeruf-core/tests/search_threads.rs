@@ -1,5 +1,5 @@
-//! The shortest period on threads is that of one thread, however the threads come and go: random problems, budgets and numbers of threads,
-//! with a control that yields, sleeps and stops at seeded moments.
+//! The shortest period on threads is that of one thread, however the threads come and go: random problems, budgets and
+//! numbers of threads, with a control that yields, sleeps and stops at seeded moments.
 //!
 //! `EERUF_THREAD_SEEDS=2000` tries so many seeds instead of a few dozen.
 #![cfg(feature = "std")]
@@ -11,7 +11,8 @@ use std::time::Duration;
 
 use eeruf_core::search::design::{Problem, Progress, Reason, memory_words, shortest, shortest_on_threads};
 
-/// Far longer than any of these searches takes, on however slow a machine: only a search that hangs is still at it then.
+/// Far longer than any of these searches takes, on however slow a machine: only a search that hangs is still at it
+/// then.
 const HANGS: Duration = Duration::from_secs(300);
 
 /// A seeded pseudo-random sequence, the same on every machine (splitmix64).

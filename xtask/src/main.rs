@@ -6,6 +6,7 @@
 mod checks;
 mod firmware;
 mod listings;
+mod mutants;
 mod printed;
 mod python;
 mod steps;
@@ -30,13 +31,14 @@ fn main() -> ExitCode {
             steps.step("Python package", python::python);
             steps.finish(true)
         }
+        ["mutants", ref args @ ..] => mutants::run(args),
         ["reprint", document] => {
             let mut steps = steps::Steps::default();
             steps.step("what the program prints", || printed::reprint(document));
             steps.finish(true)
         }
         _ => {
-            eprintln!("usage: cargo xtask test [--nothing-skipped] | firmware | python | reprint DOCUMENT");
+            eprintln!("usage: cargo xtask test [--nothing-skipped] | firmware | python | mutants | reprint DOCUMENT");
             ExitCode::from(2)
         }
     }

@@ -8,6 +8,7 @@ mod changed;
 mod firmware;
 mod listings;
 mod measured;
+mod mutants;
 mod periods;
 mod printed;
 mod python;
@@ -59,6 +60,8 @@ enum Verb {
         #[arg(value_name = "DOCUMENT", required_unless_present = "check")]
         document: Option<String>,
     },
+    /// Break the core in one place at a time, and see whether a test notices (hours; takes up where it stopped)
+    Mutants(mutants::Plan),
     /// Print the table of shortest periods that docs/search.md shows
     Periods {
         /// What to pass to the example `shortest_periods` of eeruf-core
@@ -93,6 +96,7 @@ fn main() -> ExitCode {
                 ExitCode::FAILURE
             }
         },
+        Verb::Mutants(plan) => mutants::run(&plan),
     }
 }
 

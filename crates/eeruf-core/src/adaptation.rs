@@ -239,6 +239,16 @@ mod tests {
     }
 
     #[test]
+    fn noisy_is_more_than_the_one_limit_and_calm_no_more_than_the_other() {
+        let rungs = rungs();
+        let mut adaptation = Adaptation::new(Ladder::new(&rungs, &REQUIREMENTS).unwrap());
+        assert_eq!(changes(&mut adaptation, period(70, 30), 160), []);
+        assert_eq!(changes(&mut adaptation, period(69, 31), 32), [(16, 80), (32, 100)]);
+        assert_eq!(changes(&mut adaptation, period(89, 11), 160), []);
+        assert_eq!(changes(&mut adaptation, period(90, 10), 160), [(64, 80), (128, 60)]);
+    }
+
+    #[test]
     fn silence_is_neither_noisy_nor_calm() {
         let rungs = rungs();
         let mut adaptation = Adaptation::new(Ladder::new(&rungs, &REQUIREMENTS).unwrap());

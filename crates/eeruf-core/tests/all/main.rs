@@ -1,6 +1,8 @@
 //! The searches against shared tables, slow and obvious judges, and their own limits, in one binary.
 
+mod brute_force;
 mod common;
+mod conditions_naive;
 mod period_corpus;
 mod period_limits;
 mod period_small;
@@ -8,6 +10,8 @@ mod period_small;
 mod period_threads;
 mod period_ticks;
 mod period_variants;
+#[cfg(feature = "std")]
+mod search_threads;
 mod theory;
 mod wait_limits;
 mod wait_small;

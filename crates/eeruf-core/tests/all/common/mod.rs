@@ -4,6 +4,7 @@
 
 pub mod naive;
 pub mod naive_period;
+pub mod random;
 pub mod tables;
 
 use eeruf_core::Criterion;

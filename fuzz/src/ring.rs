@@ -1,0 +1,237 @@
+//! The ring against a slow and obvious account of what its documentation promises.
+//!
+//! The [`Model`] keeps true time in 64 bits, while the ring sees a counter that wraps. It knows for each sensor the
+//! firing under way with the edges handed in since, and the echoes of the firings before. It does not know when the
+//! ring will say something, only what it may say:
+//!
+//! - a firing is of an enabled sensor, and no sooner after the one before than in the schedule; on time if the ring was
+//!   polled on time;
+//! - after a restart or a change of schedule no two sensors fire closer together than the schedule before always keeps
+//!   them;
+//! - each firing gives one reading, with the sensor's own phase, period and echo, before that sensor fires again and as
+//!   soon as it is known;
+//! - a late edge gives at most one reading more;
+//! - what is accepted was heard in as many firings running as must agree; when nothing disturbed the comparison,
+//!   nothing else is said;
+//! - counts, ages and periods go on one by one, and the ring never falls silent.
+
+mod model;
+
+use arbitrary::Arbitrary;
+use eeruf_core::{Instant, Micros, Ring, RingConfig, RingEvent, Schedule, ScheduledRing, Tally};
+
+use self::model::{Model, instant};
+
+/// Sensors of the ring.
+pub const SENSORS: usize = 4;
+
+/// What the fuzzer makes up.
+#[derive(Arbitrary, Debug)]
+pub struct Input {
+    /// Where the clock starts; it wraps soon after the larger values.
+    pub start: u32,
+    pub tables: [Table; 2],
+    pub t_delta: u16,
+    pub window: u16,
+    pub blanking: u8,
+    pub consecutive: u8,
+    pub steps: Vec<Step>,
+}
+
+/// A schedule: the period in units of 256 us, and firing times in fractions of it.
+#[derive(Arbitrary, Debug)]
+pub struct Table {
+    pub period: u16,
+    pub fire: [[u8; SENSORS]; 2],
+}
+
+/// Something that happens to the ring.
+#[derive(Arbitrary, Debug)]
+pub enum Step {
+    /// Sleep until the next deadline, then so many microseconds more, and poll.
+    Sleep {
+        late: Option<u16>,
+    },
+    /// Let so much time pass, in units of 64 us, and poll; deadlines may pass unseen.
+    Pass(u16),
+    /// Let a minute or two pass.
+    PassLong(u8),
+    /// An edge so many microseconds ago.
+    Edge {
+        sensor: u8,
+        ago: u16,
+    },
+    /// An edge after the sensor's last firing, see `t_echo_of`, or now if that is sooner.
+    Echo {
+        sensor: u8,
+        t_echo: u16,
+    },
+    Stuck(u8),
+    Disable(u8),
+    Enable(u8),
+    Restart,
+    Change(bool),
+}
+
+fn table(table: &Table) -> Option<Schedule<SENSORS>> {
+    let period = 256 * (u32::from(table.period % 1024) + 4);
+    let fire = table.fire.map(|fire| fire.map(|part| Micros::new(period / 256 * u32::from(part))));
+    Schedule::from_firing(Micros::new(period), fire).ok()
+}
+
+/// Where many of the numbers that the fuzzer makes up are one that matters: close to the borders of window and
+/// blanking, or close to one another.
+fn t_echo_of(made_up: u16, config: &RingConfig) -> u64 {
+    let (which, rest) = (made_up % 4, u64::from(made_up / 4));
+    let near = |border: Micros| (u64::from(border.as_micros()) + rest % 4).saturating_sub(2);
+    match which {
+        0 => near(config.window),
+        1 => near(config.blanking),
+        2 => u64::from(config.window.as_micros()) / 2 + rest % 8 * u64::from(config.t_delta.as_micros()) / 4,
+        _ => 4 * rest,
+    }
+}
+
+/// The nearest time in 64 bits to an instant that is not far from `now`.
+fn time_of(instant_: Instant, now: u64) -> u64 {
+    let ahead = instant_.as_micros().wrapping_sub(now as u32) as i32;
+    now.saturating_add_signed(ahead.into())
+}
+
+/// Does all steps with the ring and the model.
+pub fn check(input: &Input) {
+    let (Some(first), Some(second)) = (table(&input.tables[0]), table(&input.tables[1])) else { return };
+    let mut config = RingConfig::new(Micros::new(input.t_delta.into()), Micros::new(input.window.into()));
+    config.blanking = Micros::new(16 * u32::from(input.blanking));
+    config.consecutive = 2 + input.consecutive % 3;
+    let mut now = (1 << 32) + u64::from(input.start);
+    let Ok(mut ring) = Ring::new(&first, config, instant(now)) else { return };
+    let begin = now;
+    let mut model = Model {
+        now,
+        config,
+        enabled: [true; SENSORS],
+        schedule: &first,
+        next_schedule: None,
+        period: 0,
+        since: 0,
+        phase: 0,
+        last: None,
+        epoch: 0,
+        before: None,
+        on_time: true,
+        tally: Tally::default(),
+        quiet_periods: 0,
+        sensors: Default::default(),
+    };
+    for step in input.steps.iter().take(400) {
+        let known = |sensor: &u8| usize::from(*sensor) < SENSORS;
+        match step {
+            Step::Sleep { late } => {
+                let deadline = time_of(ring.next_deadline(), now).max(now);
+                now = deadline + u64::from(late.unwrap_or(0));
+            }
+            Step::Pass(units) => now += 64 * u64::from(*units),
+            // The order of instants is lost half a turn of the clock apart.
+            Step::PassLong(units) if now - begin < 1 << 30 => now += u64::from(*units) << 20,
+            Step::PassLong(_) => {}
+            Step::Edge { sensor, ago } => {
+                let at = now - u64::from(*ago);
+                ring.echo(*sensor, instant(at));
+                if known(sensor) {
+                    model.edge((*sensor).into(), at);
+                }
+                continue;
+            }
+            Step::Echo { sensor, t_echo } => {
+                // Of any sensor that there is.
+                let x = usize::from(*sensor) % SENSORS;
+                let Some(fired) = model.sensors[x].last_fired else { continue };
+                let t_echo = t_echo_of(*t_echo, &config);
+                let at = (fired.at + t_echo).min(now);
+                ring.echo(x as u8, instant(at));
+                model.edge(x, at);
+                continue;
+            }
+            Step::Stuck(sensor) => {
+                ring.stuck(*sensor);
+                if known(sensor) {
+                    if let Some(open) = &mut model.sensors[usize::from(*sensor)].open {
+                        open.stuck = true;
+                    }
+                }
+                continue;
+            }
+            Step::Disable(sensor) => {
+                ring.disable(*sensor);
+                if known(sensor) {
+                    model.enabled[usize::from(*sensor)] = false;
+                    model.on_time = false;
+                }
+                continue;
+            }
+            Step::Enable(sensor) => {
+                ring.enable(*sensor);
+                if known(sensor) {
+                    let x = usize::from(*sensor);
+                    if !model.enabled[x] {
+                        model.sensors[x].heard.clear();
+                        model.sensors[x].undisturbed = 0;
+                    }
+                    model.enabled[x] = true;
+                }
+                continue;
+            }
+            Step::Restart => {
+                ring.restart(instant(now));
+                let same = model.schedule;
+                model.new_epoch(same);
+                model.phase = 0;
+                for sensor in &mut model.sensors {
+                    (sensor.open, sensor.told, sensor.late) = (None, None, None);
+                    sensor.heard.clear();
+                }
+                continue;
+            }
+            Step::Change(which) => {
+                let schedule = if *which { &second } else { &first };
+                if ring.change_schedule(schedule).is_ok() {
+                    model.next_schedule = Some(schedule);
+                } else {
+                    assert!(config.window > schedule.min_refire(), "refused without cause");
+                }
+                continue;
+            }
+        }
+        model.now = now;
+        drain(&mut ring, &mut model);
+    }
+}
+
+/// Polls until there is nothing more to do or to say.
+fn drain(ring: &mut ScheduledRing<'_, SENSORS>, model: &mut Model<'_>) {
+    let now = model.now;
+    for turn in 0.. {
+        assert!(turn < 1000, "the ring never comes to rest");
+        let deadline = time_of(ring.next_deadline(), now);
+        model.on_time &= deadline >= now;
+        let Some(event) = ring.poll(instant(now)) else { break };
+        match event {
+            RingEvent::Fire(sensor) => model.fired(sensor, deadline),
+            RingEvent::Reading(reading) => model.told(&reading),
+            RingEvent::PeriodEnded(stats) => model.ended(&stats),
+        }
+    }
+    model.drained();
+    let deadline = time_of(ring.next_deadline(), now);
+    assert!(deadline > now, "a deadline in the past, and nothing to do");
+    let longest = 3 * u64::from(model.schedule.period().as_micros().max(longest_before(model)));
+    assert!(deadline - now <= longest, "silent for {} us", deadline - now);
+    for x in 0..SENSORS as u8 {
+        assert_eq!(ring.is_enabled(x), model.enabled[usize::from(x)]);
+    }
+}
+
+fn longest_before(model: &Model<'_>) -> u32 {
+    model.before.map_or(0, |before| before.period().as_micros())
+}

@@ -1,0 +1,270 @@
+//! What the ring may say and do, told from what happened to it.
+
+use eeruf_core::{Instant, Micros, PeriodStats, Phase, Reading, ReadingKind, RingConfig, Schedule, Tally};
+
+use super::SENSORS;
+
+/// Whether a restart keeps the intervals between different sensors too.
+const RESTARTS_KEEP_INTERVALS: bool = true;
+
+/// A firing whose reading is not yet told.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Open {
+    pub(super) at: u64,
+    pub(super) phase: u8,
+    pub(super) period: u32,
+    /// The earliest edge within the window, and the first one within the blanking time.
+    pub(super) echo: Option<u32>,
+    pub(super) early: Option<u32>,
+    pub(super) stuck: bool,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sensor {
+    pub(super) open: Option<Open>,
+    /// The last firing that was told, and its late edge that is not.
+    pub(super) told: Option<Open>,
+    pub(super) late: Option<u32>,
+    pub(super) had_late: bool,
+    pub(super) last_fired: Option<Last>,
+    /// The echoes of the firings before, newest last, as far as they count; `Some(None)` stands for silence, `None` for
+    /// nothing known.
+    pub(super) heard: Vec<Option<Option<u32>>>,
+    /// Readings since the comparison was last disturbed.
+    pub(super) undisturbed: u32,
+    pub(super) age: Option<u16>,
+}
+
+/// What is known of the last firing of all.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Last {
+    pub(super) at: u64,
+    /// Where the schedule has it, in microseconds from the start of the period with number 0 since the restart.
+    pub(super) planned: u64,
+    /// How often the ring had restarted or changed its schedule.
+    pub(super) epoch: u32,
+}
+
+pub(super) struct Model<'s> {
+    pub(super) now: u64,
+    pub(super) config: RingConfig,
+    pub(super) enabled: [bool; SENSORS],
+    pub(super) schedule: &'s Schedule<SENSORS>,
+    pub(super) next_schedule: Option<&'s Schedule<SENSORS>>,
+    /// Periods since the ring began, and since it restarted or changed.
+    pub(super) period: u32,
+    pub(super) since: u64,
+    pub(super) phase: u8,
+    pub(super) last: Option<Last>,
+    pub(super) epoch: u32,
+    /// The schedule of the epoch before.
+    pub(super) before: Option<&'s Schedule<SENSORS>>,
+    /// Nothing was polled late since the last firing.
+    pub(super) on_time: bool,
+    pub(super) tally: Tally<u8>,
+    /// Periods that have ended since something disturbed the comparison.
+    pub(super) quiet_periods: u32,
+    pub(super) sensors: [Sensor; SENSORS],
+}
+
+pub(super) fn instant(time: u64) -> Instant {
+    Instant::from_micros(time as u32)
+}
+
+pub(super) fn planned(schedule: &Schedule<SENSORS>, period: u64, phase: u8, sensor: usize) -> u64 {
+    let t_fire = schedule.t_fire(Phase(phase), sensor).expect("the sensor is there");
+    period * u64::from(schedule.period().as_micros()) + u64::from(t_fire.as_micros())
+}
+
+/// The shortest time that a schedule always keeps between firings of `x` and `y`.
+pub(super) fn always_kept(schedule: &Schedule<SENSORS>, x: usize, y: usize) -> u64 {
+    let firings = |sensor| (0..3).map(move |period| planned(schedule, period, (period % 2) as u8, sensor));
+    let mut least = u64::MAX;
+    for s in firings(x) {
+        for t in firings(y) {
+            least = least.min(s.abs_diff(t));
+        }
+    }
+    least
+}
+
+impl<'s> Model<'s> {
+    pub(super) fn disturb(&mut self) {
+        self.quiet_periods = 0;
+        for sensor in &mut self.sensors {
+            sensor.undisturbed = 0;
+        }
+    }
+
+    pub(super) fn fired(&mut self, sensor: u8, deadline: u64) {
+        let x = usize::from(sensor);
+        assert!(x < SENSORS && self.enabled[x], "sensor {sensor} is not to fire");
+        assert!(self.now >= deadline, "fired before the deadline");
+        let at = planned(self.schedule, self.since, self.phase, x);
+        match self.last {
+            Some(last) if last.epoch == self.epoch => {
+                let (passed, gap) = (self.now - last.at, at - last.planned);
+                assert!(passed >= gap, "{passed} us after the firing before, {gap} us in the schedule");
+                assert!(
+                    !self.on_time || passed == gap,
+                    "{passed} us after the firing before, {gap} us in the schedule"
+                );
+                if passed > gap {
+                    // By how much is for the ring to judge; to be compared it must have been on time for a while.
+                    self.disturb();
+                }
+            }
+            _ => self.disturb(),
+        }
+        if let Some(before) = self.before {
+            // What fired under the schedule before.
+            for y in 0..SENSORS {
+                let last = self.sensors[y].last_fired.filter(|last| last.epoch + 1 == self.epoch);
+                let kept = match x == y {
+                    true => before.min_refire().as_micros().into(),
+                    false if RESTARTS_KEEP_INTERVALS => always_kept(before, y, x),
+                    false => 0,
+                };
+                let passed = last.map_or(u64::MAX, |last| self.now - last.at);
+                assert!(passed >= kept, "sensors {y} and {x} {passed} us apart, kept {kept}");
+            }
+        }
+        let fired = Last { at: self.now, planned: at, epoch: self.epoch };
+        self.last = Some(fired);
+        self.on_time = true;
+        let sensor = &mut self.sensors[x];
+        assert!(sensor.open.is_none() && sensor.late.is_none(), "fired before its reading was told");
+        sensor.open =
+            Some(Open { at: self.now, phase: self.phase, period: self.period, echo: None, early: None, stuck: false });
+        (sensor.told, sensor.had_late) = (None, false);
+        sensor.last_fired = Some(fired);
+    }
+
+    pub(super) fn told(&mut self, reading: &Reading) {
+        let config = self.config;
+        let x = usize::from(reading.sensor);
+        let quiet = self.quiet_periods >= 4;
+        let sensor = &mut self.sensors[x];
+        if reading.kind == ReadingKind::Late {
+            let late = sensor.late.take().expect("a late edge came in");
+            let told = sensor.told.expect("it was told before");
+            assert_eq!((reading.t_echo, reading.previous, reading.age), (Some(Micros::new(late)), None, sensor.age));
+            assert_eq!(reading.phase, Phase(told.phase));
+            self.tally.count(ReadingKind::Late);
+            return;
+        }
+        let open = sensor.open.take().expect("it has fired");
+        assert_eq!((reading.phase, reading.period), (Phase(open.phase), open.period));
+        assert!(
+            open.echo.is_some() || self.now >= open.at + u64::from(config.window.as_micros()),
+            "told before its window closed"
+        );
+        let micros = |us: Option<u32>| us.map(Micros::new);
+        let (heard, kind) = match open {
+            Open { stuck: true, .. } => (None, Some(ReadingKind::Stuck)),
+            Open { echo: None, early: Some(early), .. } => {
+                assert_eq!(reading.t_echo, Some(Micros::new(early)));
+                (None, Some(ReadingKind::TooEarly))
+            }
+            Open { echo, .. } => {
+                assert_eq!(reading.t_echo, micros(echo));
+                (Some(echo), None)
+            }
+        };
+        sensor.heard.push(heard);
+        sensor.undisturbed += 1;
+        let t_delta = config.t_delta.as_micros();
+        let agree = |pair: &[Option<Option<u32>>]| match pair {
+            [Some(Some(s)), Some(Some(t))] => s.abs_diff(*t) <= t_delta,
+            [Some(None), Some(None)] => true,
+            _ => false,
+        };
+        let running = 1 + sensor.heard.windows(2).rev().take_while(|pair| agree(pair)).count();
+        let enough = running >= usize::from(config.consecutive);
+        let before = sensor.heard.len().checked_sub(2).and_then(|place| sensor.heard[place]).flatten();
+        let possible: &[ReadingKind] = match (kind, heard.flatten()) {
+            (Some(ReadingKind::Stuck), _) => &[ReadingKind::Stuck],
+            (Some(_), _) => &[ReadingKind::TooEarly],
+            (None, None) if enough => &[ReadingKind::Clear, ReadingKind::NoEcho],
+            (None, None) => &[ReadingKind::NoEcho],
+            (None, Some(_)) if enough => &[ReadingKind::Accepted, ReadingKind::Repeated, ReadingKind::First],
+            (None, Some(_)) if running > 1 => &[ReadingKind::Repeated, ReadingKind::First],
+            (None, Some(_)) if before.is_some() => &[ReadingKind::Rejected, ReadingKind::First],
+            (None, Some(_)) => &[ReadingKind::First],
+        };
+        // Where nothing disturbed the comparison, the first of them is the one.
+        let sure = quiet && sensor.undisturbed > u32::from(config.consecutive) + 4;
+        let possible = if sure { &possible[..1] } else { possible };
+        assert!(possible.contains(&reading.kind), "{reading:?}, possible: {possible:?}; heard {:?}", sensor.heard);
+        if matches!(reading.kind, ReadingKind::Accepted | ReadingKind::Rejected | ReadingKind::Repeated) {
+            assert_eq!(reading.previous, micros(before), "compared with the firing before");
+        }
+        sensor.age = match sensor.age {
+            _ if reading.kind == ReadingKind::Accepted => Some(0),
+            Some(age) => Some(age.saturating_add(1)),
+            None => None,
+        };
+        assert_eq!(reading.age, sensor.age);
+        sensor.told = Some(open);
+        self.tally.count(reading.kind);
+    }
+
+    pub(super) fn edge(&mut self, x: usize, at: u64) {
+        let window = u64::from(self.config.window.as_micros());
+        let sensor = &mut self.sensors[x];
+        if let Some(open) = &mut sensor.open {
+            let Some(t_echo) = at.checked_sub(open.at) else { return };
+            if t_echo > window {
+                self.tally.count(ReadingKind::Late);
+            } else if t_echo < u64::from(self.config.blanking.as_micros()) {
+                // The first to come in, unless an echo was there before.
+                if open.early.is_none() && open.echo.is_none() {
+                    open.early = Some(t_echo as u32);
+                }
+            } else {
+                open.echo = Some(open.echo.map_or(t_echo as u32, |echo| echo.min(t_echo as u32)));
+            }
+        } else if let Some(told) = sensor.told {
+            let late = at.checked_sub(told.at).filter(|&late| late > window);
+            if let Some(late) = late.filter(|_| !sensor.had_late) {
+                (sensor.late, sensor.had_late) = (Some(late as u32), true);
+            }
+        }
+    }
+
+    pub(super) fn ended(&mut self, stats: &PeriodStats) {
+        assert_eq!((stats.period, stats.phase), (self.period, Phase(self.phase)));
+        assert_eq!(stats.tally, self.tally);
+        self.tally = Tally::default();
+        self.period += 1;
+        self.phase = 1 - self.phase;
+        self.since += 1;
+        self.quiet_periods += 1;
+        if let Some(next) = self.next_schedule.take() {
+            self.new_epoch(next);
+            // It begins with the phase that would have come.
+            self.since = u64::from(self.phase);
+        }
+    }
+
+    /// Another schedule, or the same anew.
+    pub(super) fn new_epoch(&mut self, schedule: &'s Schedule<SENSORS>) {
+        self.before = Some(self.schedule);
+        self.epoch += 1;
+        self.schedule = schedule;
+        self.since = 0;
+        self.disturb();
+    }
+
+    /// All that could be told has been.
+    pub(super) fn drained(&self) {
+        for (x, sensor) in self.sensors.iter().enumerate() {
+            assert!(sensor.late.is_none(), "sensor {x} has a late edge to tell");
+            if let Some(open) = sensor.open {
+                assert!(open.echo.is_none(), "sensor {x} has an echo to tell");
+                let closes = open.at + u64::from(self.config.window.as_micros());
+                assert!(self.now < closes, "the window of sensor {x} has closed");
+            }
+        }
+    }
+}

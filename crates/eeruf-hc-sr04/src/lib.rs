@@ -2,7 +2,7 @@
 //!
 //! The echo line of an HC-SR04 rises about half a millisecond after the trigger and falls when the echo is in; the echo
 //! time is the width of that pulse. Without an echo the line falls after the sensor's own time-out, 38 ms or more. The
-//! driver turns pulses into echoes for [`Ring`], and keeps out what real wiring adds:
+//! driver turns pulses into echoes for [`Ring`](eeruf_core::Ring), and keeps out what real wiring adds:
 //!
 //! - edges within 100 us of the trigger, which are the trigger itself seen through the cable;
 //! - pulses too short for an echo, and further pulses of a line that chatters;

@@ -122,7 +122,7 @@ methods! {
         refire: |robot| robot.min_refire,
     }
     /// Scheduled firing (Fig. 3) by the robot's own schedule, or else by the paper's table at the robot's period (see
-    /// [`table_i_d_for`]). Consecutive readings are compared.
+    /// [`table_i_d_for`](crate::table_i_d_for)). Consecutive readings are compared.
     Eeruf = "eeruf" {
         schedule: schedules::own,
         ring: ring_runner::scheduled::<1>,

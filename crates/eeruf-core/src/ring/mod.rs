@@ -6,6 +6,7 @@
 mod config;
 mod error;
 mod events;
+mod lateness;
 mod sensor;
 mod steps;
 
@@ -15,6 +16,7 @@ use crate::schedule::Schedule;
 use crate::scheduler::{ImmediateRefiring, ScheduledFiring, Scheduler};
 use crate::time::{Instant, Micros};
 
+use lateness::Lateness;
 use sensor::{Edge, LISTENING, STUCK, Sensor};
 
 pub use config::RingConfig;
@@ -52,10 +54,8 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     /// How many sensors have a reading to emit before their window closes.
     ready: u8,
     agreement: Agreement,
-    /// At how many more period ends the readings kept for comparison are invalidated.
-    uncomparable_periods: u8,
-    max_late_us: u16,
     tally: Tally<u8>,
+    lateness: Lateness,
     scheduler: S,
     /// When the next reading can be emitted: when an edge came, or when the window of the oldest closes.
     emit_at: Instant,
@@ -64,6 +64,9 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     blanking: Micros,
     period: u32,
     sensors: [Sensor<E>; K],
+    /// The sum of lateness at each sensor's last firing (see [`Lateness`]); in an array of its own, since a sensor's
+    /// other fields fill their words.
+    totals: [u16; K],
 }
 
 /// A [`Ring`] with scheduled firing by a schedule of the paper's kind.
@@ -140,9 +143,8 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             oldest: NOBODY,
             ready: 0,
             agreement,
-            uncomparable_periods: 0,
-            max_late_us: 0,
             tally: Tally::default(),
+            lateness: Lateness::NEW,
             scheduler,
             emit_at: now,
             window,
@@ -150,6 +152,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             blanking,
             period: 0,
             sensors: Self::SENSORS,
+            totals: [0; K],
         })
     }
 
@@ -157,9 +160,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// [`next_deadline`](Self::next_deadline).
     ///
     /// Hand in the echo edges you know of before you poll: an edge that comes after the poll that closed its window is
-    /// lost. A late poll loses nothing: firings that are due are postponed, and all later ones with them. After one
-    /// that is late by more than `t_delta` the readings of about two periods are compared with nothing, since crosstalk
-    /// has shifted by as much.
+    /// lost. A late poll loses nothing: firings that are due are postponed, and all later ones with them. Where late
+    /// firings shift crosstalk by more than the schedule has to spare, readings are not compared with the ones before;
+    /// that all firings are late alike shifts nothing. [`PeriodStats`] says how late they were.
     #[inline]
     pub fn poll(&mut self, now: Instant) -> Option<RingEvent> {
         self.poll_expecting(now, |_| 0)
@@ -249,6 +252,8 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         }
         self.oldest = NOBODY;
         self.ready = 0;
+        // Sound from before may still be heard in the first period.
+        self.lateness.begin_anew(&mut self.totals);
     }
 
     /// The scheduler.

@@ -21,7 +21,8 @@ pub enum SchedulerStep {
     PeriodEnded {
         /// Its phase.
         phase: Phase,
-        /// Whether another schedule begins with the next one.
+        /// Whether the next one does not follow on it as the schedule says: another schedule begins, or periods in
+        /// which nothing fired were left out.
         changed: bool,
     },
 }
@@ -29,6 +30,8 @@ pub enum SchedulerStep {
 /// Decides when each sensor of a ring fires: [`ScheduledFiring`](super::ScheduledFiring) or
 /// [`ImmediateRefiring`](super::ImmediateRefiring).
 pub trait Scheduler {
+    /// Whether a late firing delays all that follow by as much, as a common timetable does.
+    const DELAYS_ALL: bool = false;
     /// The next step, if one is due. Call again until there is none.
     #[inline]
     fn poll(&mut self, now: Instant) -> Option<SchedulerStep> {
@@ -49,8 +52,8 @@ pub trait Scheduler {
     fn next_firing(&self) -> Option<(u8, Phase)>;
     /// Fires that sensor, `now`. To be called when it is due.
     fn fire(&mut self, now: Instant);
-    /// Ends the period, `now`. Returns its phase, and whether another schedule begins with the next one. To be called
-    /// when that is due.
+    /// Ends the period, `now`. Returns its phase, and whether the next one does not follow on it as the schedule says:
+    /// because another schedule begins, or because periods were left out. To be called when that is due.
     fn end_period(&mut self, now: Instant) -> (Phase, bool);
     /// A sensor has stopped listening: its echo came in, or its window closed, `at` this instant.
     fn ended(&mut self, sensor: u8, at: Instant);

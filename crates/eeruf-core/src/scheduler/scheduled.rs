@@ -117,6 +117,8 @@ const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>
 }
 
 impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
+    const DELAYS_ALL: bool = true;
+
     #[inline]
     fn fire(&mut self, now: Instant) {
         self.last_fired = now;
@@ -127,8 +129,9 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
     fn end_period(&mut self, now: Instant) -> (Phase, bool) {
         let phase = Phase(self.phase);
         // Periods in which nothing fired need not be caught up with.
-        let mut start = if now.since(self.due) > self.schedule.period() { now } else { self.due };
-        let changed = self.next_schedule.is_some();
+        let left_out = now.since(self.due) > self.schedule.period();
+        let mut start = if left_out { now } else { self.due };
+        let changed = left_out || self.next_schedule.is_some();
         if let Some(next) = self.next_schedule.take() {
             let settled = self.settled();
             if settled.has_reached(start) {

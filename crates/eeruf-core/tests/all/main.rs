@@ -1,6 +1,7 @@
 //! The searches against shared tables, slow and obvious judges, and their own limits, in one binary.
 
 mod common;
+mod lateness;
 mod period_corpus;
 mod period_limits;
 mod period_small;

@@ -94,8 +94,14 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s
     /// before and after the change are not compared.
     ///
     /// # Errors
-    /// [`RingError::Window`] if a sensor would fire again while it still listens.
+    /// [`RingError::Window`] if a sensor would fire again while it still listens; [`RingError::TDelta`] if the schedule
+    /// was verified for a smaller `t_delta`.
     pub fn change_schedule(&mut self, schedule: &'s Schedule<K, M>) -> Result<(), RingError> {
+        if let Some(promise) = schedule.promise() {
+            if self.t_delta > promise.t_delta {
+                return Err(RingError::TDelta { t_delta: self.t_delta, verified: promise.t_delta });
+            }
+        }
         if self.window > schedule.min_refire() {
             return Err(RingError::Window { window: self.window, min_refire: schedule.min_refire() });
         }
@@ -126,10 +132,19 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// A ring with the caller's own scheduler and any number of echoes a firing.
     ///
     /// # Errors
-    /// [`RingError`] if a sensor would fire again while it still listens, if the window ends within the blanking time,
-    /// or if the number of consecutive readings is not 2 to 8 or the patience more than 15.
+    /// [`RingError`] if the ring is smaller than its scheduler, if a sensor would fire again while it still listens, if
+    /// the window ends within the blanking time, if `t_delta` is no shorter than the window or longer than what the
+    /// schedule was verified for, or if the number of consecutive readings is not 2 to 8 or the patience more than 15.
     pub fn with_scheduler(scheduler: S, config: RingConfig, now: Instant) -> Result<Self, RingError> {
         let RingConfig { t_delta, window, blanking, consecutive, patience } = config;
+        if scheduler.sensors() > K {
+            return Err(RingError::Sensors { sensors: scheduler.sensors(), capacity: K });
+        }
+        if let Some(verified) = scheduler.verified_t_delta() {
+            if t_delta > verified {
+                return Err(RingError::TDelta { t_delta, verified });
+            }
+        }
         // No echo time within a window can then be mistaken for an instant before the firing.
         let longest = scheduler.longest_window().min(Micros::new(u32::MAX / 2));
         if window > longest {
@@ -137,6 +152,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         }
         if window <= blanking {
             return Err(RingError::Blanking { blanking, window });
+        }
+        if t_delta >= window {
+            return Err(RingError::CoarseTDelta { t_delta, window });
         }
         let agreement = Agreement::new(consecutive, patience)?;
         Ok(Self {

@@ -68,8 +68,11 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// By how much two stretches may differ: by so little that crosstalk still moves by more than `t_delta`, and that no
     /// firing of an emitter is skipped.
     fn tolerated(&self) -> u16 {
-        let not_skipped = self.scheduler.longest_window().as_micros().saturating_sub(self.t_delta.as_micros());
-        let tolerated = self.t_delta.as_micros().min(not_skipped.saturating_sub(1));
+        let t_delta = self.t_delta.as_micros();
+        // It is below the window, and that below half of the range.
+        let separation = self.scheduler.separation().map_or(2 * t_delta + 1, Micros::as_micros);
+        let separation = separation.min(self.scheduler.longest_window().as_micros());
+        let tolerated = separation.saturating_sub(t_delta + 1);
         u16::try_from(tolerated).unwrap_or(MOST_TOLERATED).min(MOST_TOLERATED)
     }
 

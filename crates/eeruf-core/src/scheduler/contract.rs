@@ -37,6 +37,10 @@ pub trait Scheduler {
     fn poll(&mut self, now: Instant) -> Option<SchedulerStep> {
         let due = self.deadline();
         if !now.has_reached(due) {
+            if due.since(now) > self.horizon() {
+                // The clock has jumped, or nobody polled for half a turn of it.
+                self.restart(now);
+            }
             return None;
         }
         let Some((sensor, phase)) = self.next_firing() else {
@@ -57,6 +61,8 @@ pub trait Scheduler {
     fn end_period(&mut self, now: Instant) -> (Phase, bool);
     /// A sensor has stopped listening: its echo came in, or its window closed, `at` this instant.
     fn ended(&mut self, sensor: u8, at: Instant);
+    /// How many sensors it fires.
+    fn sensors(&self) -> usize;
     /// Lets a sensor fire from its next turn on, or stops it.
     fn set_enabled(&mut self, sensor: u8, enabled: bool);
     /// Whether a sensor fires.
@@ -65,6 +71,14 @@ pub trait Scheduler {
     fn restart(&mut self, now: Instant);
     /// How many periods ago the last period with this phase was, 0 for the present one; 0 without common phases.
     fn periods_since(&self, phase: Phase) -> u8;
+    /// The `t_delta` that its schedule was verified for, if it was; a change to another schedule does not come into it.
+    fn verified_t_delta(&self) -> Option<Micros> {
+        None
+    }
+    /// By how much crosstalk moves at least from one reading to the next, where that is known.
+    fn separation(&self) -> Option<Micros> {
+        None
+    }
     /// How long a sensor may listen: it never fires again within this time of firing, unless it has ended.
     fn longest_window(&self) -> Micros;
     /// No deadline lies further ahead than this, unless the clock has jumped.

@@ -181,6 +181,28 @@ fn no_repeating_pattern_of_lateness_gets_crosstalk_accepted() {
 }
 
 #[test]
+fn a_verified_schedule_tolerates_lateness_up_to_its_separation_and_not_a_microsecond_more() {
+    // Table I-d separates by 2 ms, so that at 999 us 1,000 us are tolerated, at 300 us 1,699 us.
+    for (t_delta, tolerated) in [(999, 1000), (300, 1699)] {
+        let asked = Requirements::new(Micros::new(t_delta));
+        let table = TABLE_I_D.verify(&asked).verified().unwrap();
+        let mut closest = u32::MAX;
+        for late in tolerated - 1..tolerated + 4 {
+            for (ahead, place) in (1..12).flat_map(|ahead| (0..24).map(move |place| (ahead, place))) {
+                let hear = |receiver: u8| Heard { emitter: (receiver + ahead) % 12, path: Micros::new(40_000) };
+                let heard: Vec<_> = (0..12).map(hear).collect();
+                let late = |n| if n > 30 && n % 24 == place { late } else { 0 };
+                let outcome = run(table.schedule(), t_delta, &heard, 100, late);
+                assert_eq!(outcome.accepted, 0);
+                closest = closest.min(outcome.closest.unwrap_or(u32::MAX));
+            }
+        }
+        // At the limit they are still compared.
+        assert_eq!(closest, t_delta + 1);
+    }
+}
+
+#[test]
 fn firings_that_are_all_late_by_50_us_lose_nothing_good() {
     for steady in [0, 50] {
         let mut ring = ring(&TABLE_I_D, 999);

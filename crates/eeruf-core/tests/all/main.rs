@@ -9,6 +9,7 @@ mod period_small;
 mod period_threads;
 mod period_ticks;
 mod period_variants;
+mod promises;
 mod theory;
 mod wait_limits;
 mod wait_small;

@@ -48,7 +48,7 @@ typedef enum EerufStatus {
   EERUF_FIRE = -5,
   /*
    The window is longer than the shortest time between two firings of a sensor, or not longer than the blanking
-   time.
+   time or t_delta.
    */
   EERUF_WINDOW = -6,
   /*
@@ -142,7 +142,7 @@ typedef struct EerufRing {
   /*
    Not for the caller.
    */
-  uint64_t private_words[64];
+  uint64_t private_words[72];
 } EerufRing;
 
 /*

@@ -35,7 +35,9 @@ prop_compose! {
         let schedule =
             Schedule::from_slices(Micros::new(period), &vec![Micros::ZERO; sensors], [&a, &b]).unwrap();
         let asked = Requirements { stale_echo: true, ..Requirements::new(Micros::ZERO) };
-        let t_delta = schedule.verify(&asked).max_t_delta().unwrap();
+        // Shorter than the window too, as a ring asks for.
+        let shorter = Micros::new(schedule.min_refire().as_micros().saturating_sub(1));
+        let t_delta = schedule.verify(&asked).max_t_delta().unwrap().min(shorter);
         (schedule, t_delta)
     }
 }

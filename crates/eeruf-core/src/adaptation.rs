@@ -217,7 +217,14 @@ mod tests {
         let mut tally = Tally::default();
         (0..accepted).for_each(|_| tally.count(ReadingKind::Accepted));
         (0..rejected).for_each(|_| tally.count(ReadingKind::Rejected));
-        PeriodStats { period: 0, phase: Phase::A, tally, max_late: Micros::ZERO }
+        PeriodStats {
+            period: 0,
+            phase: Phase::A,
+            tally,
+            max_late: Micros::ZERO,
+            sum_late: Micros::ZERO,
+            max_shift: Micros::ZERO,
+        }
     }
 
     /// The periods after which the schedule changes, and its new period in ms.

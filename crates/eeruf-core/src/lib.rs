@@ -44,6 +44,7 @@ mod sensor_set;
 mod sound;
 pub mod tables;
 mod time;
+mod verified;
 mod verify;
 
 pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
@@ -58,6 +59,7 @@ pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, Schedul
 pub use scheduler::{ImmediateRefiring, ScheduledFiring, Scheduler, SchedulerStep};
 pub use sound::SpeedOfSound;
 pub use time::{Instant, Micros};
+pub use verified::VerifiedSchedule;
 pub use verify::{Verification, Violation, ViolationKind, Violations};
 
 /// What is proven, and why: `docs/theory.md`, for reading here.

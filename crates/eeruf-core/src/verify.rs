@@ -24,6 +24,14 @@ pub struct Verification<'r, const K: usize> {
 }
 
 impl<'r, const K: usize> Verification<'r, K> {
+    pub(crate) const fn schedule(&self) -> &'r Schedule<K> {
+        self.schedule
+    }
+
+    pub(crate) const fn requirements(&self) -> &'r Requirements<'r> {
+        self.requirements
+    }
+
     /// Whether every requirement holds.
     pub const fn ok(&self) -> bool {
         self.violations().advance().is_none()
@@ -74,7 +82,7 @@ impl<'r, const K: usize> Verification<'r, K> {
     }
 }
 
-const fn stale_separation<const K: usize>(schedule: &Schedule<K>, sensor: usize) -> Micros {
+pub(crate) const fn stale_separation<const K: usize>(schedule: &Schedule<K>, sensor: usize) -> Micros {
     Micros::new(2 * schedule.shift_us(sensor).unsigned_abs())
 }
 

@@ -180,8 +180,10 @@ impl Record {
                 let counts = eeruf_core::ReadingKind::ALL.iter();
                 let counts = counts.fold(0_u64, |sum, &kind| sum << 7 | u64::from(stats.tally.of(kind)));
                 let [low, high] = [counts as u32, (counts >> 32) as u32];
-                let late = stats.max_late.as_micros();
-                Self::new(Topic::Event, 0, 3, [stats.phase.0.into(), stats.period, late, low, high])
+                // Each of the three is at most 65,535 us.
+                let late = stats.max_late.as_micros() << 16 | u32::from(stats.phase.0);
+                let sums = stats.sum_late.as_micros() << 16 | stats.max_shift.as_micros();
+                Self::new(Topic::Event, 0, 3, [late, stats.period, sums, low, high])
             }
         }
     }
@@ -258,14 +260,27 @@ mod tests {
 
     #[test]
     fn period_ends_that_differ_in_any_count_are_different_records() {
-        let stats = PeriodStats { period: 1, phase: Phase::A, tally: Tally::default(), max_late: Micros::ZERO };
+        let stats = PeriodStats {
+            period: 1,
+            phase: Phase::A,
+            tally: Tally::default(),
+            max_late: Micros::ZERO,
+            sum_late: Micros::ZERO,
+            max_shift: Micros::ZERO,
+        };
         let record = |stats| Record::event(Some(&RingEvent::PeriodEnded(stats)));
         for kind in ReadingKind::ALL {
             let mut other = stats;
             other.tally.count(kind);
             assert_ne!(record(other), record(stats), "{kind}");
         }
-        assert_ne!(record(PeriodStats { max_late: Micros::new(1), ..stats }), record(stats));
+        for late in [
+            PeriodStats { max_late: Micros::new(1), ..stats },
+            PeriodStats { sum_late: Micros::new(1), ..stats },
+            PeriodStats { max_shift: Micros::new(1), ..stats },
+        ] {
+            assert_ne!(record(late), record(stats), "{late:?}");
+        }
     }
 
     #[test]

@@ -227,8 +227,7 @@ impl Run {
 
     /// How other sensors differ from a run without a fault. Firings and interrupts come some microseconds earlier or
     /// later when there is more or less to do, so echo times move by as much; no kind of reading may change for it. A
-    /// stall makes the ring compare with nothing: the readings of three periods, those not yet emitted when it began,
-    /// and the first ones after that.
+    /// stall makes the ring compare some with nothing: those not yet emitted when it ended, and those of three periods.
     pub(crate) fn change_from(&self, fault_free: &Self, fault: Fault) -> Result<Change, String> {
         let mut change = Change { kinds: 0, moved: Micros::ZERO };
         for (sensor, (mine, without)) in self.read.iter().zip(&fault_free.read).enumerate() {

@@ -145,8 +145,14 @@ pub(crate) struct PeriodEnded {
     period: u32,
     /// Its phase: 0 for a, 1 for b.
     phase: u8,
-    /// How long after it was due the latest firing was polled for, in microseconds, at most 65,535.
+    /// How long after it was due the latest of its firings and its end was polled for, in microseconds, at most
+    /// 65,535.
     max_late_us: u32,
+    /// The lateness of all its firings together, in microseconds, at most 65,535.
+    sum_late_us: u32,
+    /// By how much, at most, crosstalk may have moved because of lateness from one reading to the next, in
+    /// microseconds, at most 65,535; where that is too much, readings are not compared.
+    max_shift_us: u32,
     /// How many readings of each kind were emitted since the period before ended: a dict by the names in
     /// ``eeruf.KINDS``.
     tally: Py<PyDict>,
@@ -155,9 +161,10 @@ pub(crate) struct PeriodEnded {
 #[pymethods]
 impl PeriodEnded {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let Self { period, phase, max_late_us, tally } = self;
+        let Self { period, phase, max_late_us, sum_late_us, max_shift_us, tally } = self;
         let tally = tally.bind(py).repr()?;
-        Ok(format!("<PeriodEnded period={period} phase={phase} max_late_us={max_late_us} tally={tally}>"))
+        let late = format!("max_late_us={max_late_us} sum_late_us={sum_late_us} max_shift_us={max_shift_us}");
+        Ok(format!("<PeriodEnded period={period} phase={phase} {late} tally={tally}>"))
     }
 }
 
@@ -180,8 +187,15 @@ pub(crate) fn to_python<'py>(py: Python<'py>, event: &RingEvent) -> PyResult<Bou
             for kind in ReadingKind::ALL {
                 tally.set_item(kind.as_str(), stats.tally.of(kind))?;
             }
-            let (period, phase, max_late_us) = (stats.period, stats.phase.0, stats.max_late.as_micros());
-            PeriodEnded { period, phase, max_late_us, tally: tally.unbind() }.into_bound_py_any(py)
+            PeriodEnded {
+                period: stats.period,
+                phase: stats.phase.0,
+                max_late_us: stats.max_late.as_micros(),
+                sum_late_us: stats.sum_late.as_micros(),
+                max_shift_us: stats.max_shift.as_micros(),
+                tally: tally.unbind(),
+            }
+            .into_bound_py_any(py)
         }
     }
 }

@@ -34,7 +34,7 @@ pub enum EerufStatus {
     /// A sensor would fire after its period has ended.
     EERUF_FIRE = -5,
     /// The window is longer than the shortest time between two firings of a sensor, or not longer than the blanking
-    /// time.
+    /// time or t_delta.
     EERUF_WINDOW = -6,
     /// The number of consecutive readings is not 2 to 8.
     EERUF_CONSECUTIVE = -7,
@@ -58,7 +58,7 @@ pub struct EerufSchedule {
 #[repr(C)]
 pub struct EerufRing {
     /// Not for the caller.
-    private_words: [u64; 64],
+    private_words: [u64; 72],
 }
 
 /// How a ring listens and compares.

@@ -120,7 +120,8 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
         };
         let mut earliest = [NO_ECHO; E];
         for echo in echoes {
-            insert(&mut earliest, echo.as_micros());
+            // The longest duration stands for silence.
+            insert(&mut earliest, echo.as_micros().min(NO_ECHO - 1));
         }
         Ok(tracker.push(self.rule, &earliest, expected_change_us))
     }

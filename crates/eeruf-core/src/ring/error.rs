@@ -24,6 +24,27 @@ pub enum RingError {
         /// The window asked for.
         window: Micros,
     },
+    /// The scheduler fires more sensors than the ring has.
+    Sensors {
+        /// How many it fires.
+        sensors: usize,
+        /// How many the ring has.
+        capacity: usize,
+    },
+    /// The schedule was verified for a smaller `t_delta`.
+    TDelta {
+        /// The `t_delta` asked for.
+        t_delta: Micros,
+        /// The one that the schedule was verified for.
+        verified: Micros,
+    },
+    /// Any two readings within the window would be near-identical.
+    CoarseTDelta {
+        /// The `t_delta` asked for.
+        t_delta: Micros,
+        /// The window asked for.
+        window: Micros,
+    },
     /// The filter cannot compare so many readings.
     Filter(FilterError),
 }
@@ -44,6 +65,15 @@ impl fmt::Display for RingError {
             ),
             Self::Blanking { blanking, window } => {
                 write!(f, "a blanking time of {blanking}; expected less than the window of {window}")
+            }
+            Self::Sensors { sensors, capacity } => {
+                write!(f, "a scheduler of {sensors} sensors; expected at most the {capacity} of the ring")
+            }
+            Self::TDelta { t_delta, verified } => {
+                write!(f, "a t_delta of {t_delta}; expected at most {verified}, which the schedule was verified for")
+            }
+            Self::CoarseTDelta { t_delta, window } => {
+                write!(f, "a t_delta of {t_delta}; expected less than the window of {window}")
             }
             Self::Filter(error) => error.fmt(f),
         }

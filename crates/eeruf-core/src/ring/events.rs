@@ -47,6 +47,13 @@ pub struct PeriodStats {
     pub phase: Phase,
     /// The readings emitted since the period before ended, by kind.
     pub tally: Tally<u8>,
-    /// The latest firing: how long after it was due it was polled for, at most 65,535 us.
+    /// The latest of its firings and its end: how long after it was due it was polled for, at most 65,535 us.
     pub max_late: Micros,
+    /// The lateness of all its firings together, by which the timetable got longer; at most 65,535 us.
+    pub sum_late: Micros,
+    /// By how much, at most, crosstalk may have moved because of lateness, from one reading to the next: the largest
+    /// difference between how much longer than scheduled one sensor and another waited between two firings, in this
+    /// period and the one before. Where it is more than the schedule has to spare, `t_delta` or more, readings are not
+    /// compared. At most 65,535 us.
+    pub max_shift: Micros,
 }

@@ -6,6 +6,7 @@
 mod config;
 mod error;
 mod events;
+mod lateness;
 mod sensor;
 mod steps;
 
@@ -15,6 +16,7 @@ use crate::schedule::Schedule;
 use crate::scheduler::{ImmediateRefiring, ScheduledFiring, Scheduler};
 use crate::time::{Instant, Micros};
 
+use lateness::Lateness;
 use sensor::{Edge, LISTENING, STUCK, Sensor};
 
 pub use config::RingConfig;
@@ -52,10 +54,8 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     /// How many sensors have a reading to emit before their window closes.
     ready: u8,
     agreement: Agreement,
-    /// At how many more period ends the readings kept for comparison are invalidated.
-    uncomparable_periods: u8,
-    max_late_us: u16,
     tally: Tally<u8>,
+    lateness: Lateness,
     scheduler: S,
     /// When the next reading can be emitted: when an edge came, or when the window of the oldest closes.
     emit_at: Instant,
@@ -64,6 +64,9 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     blanking: Micros,
     period: u32,
     sensors: [Sensor<E>; K],
+    /// The sum of lateness at each sensor's last firing (see [`Lateness`]); in an array of its own, since a sensor's
+    /// other fields fill their words.
+    totals: [u16; K],
 }
 
 /// A [`Ring`] with scheduled firing by a schedule of the paper's kind.
@@ -91,8 +94,14 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s
     /// before and after the change are not compared.
     ///
     /// # Errors
-    /// [`RingError::Window`] if a sensor would fire again while it still listens.
+    /// [`RingError::Window`] if a sensor would fire again while it still listens; [`RingError::TDelta`] if the schedule
+    /// was verified for a smaller `t_delta`.
     pub fn change_schedule(&mut self, schedule: &'s Schedule<K, M>) -> Result<(), RingError> {
+        if let Some(promise) = schedule.promise() {
+            if self.t_delta > promise.t_delta {
+                return Err(RingError::TDelta { t_delta: self.t_delta, verified: promise.t_delta });
+            }
+        }
         if self.window > schedule.min_refire() {
             return Err(RingError::Window { window: self.window, min_refire: schedule.min_refire() });
         }
@@ -123,10 +132,19 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// A ring with the caller's own scheduler and any number of echoes a firing.
     ///
     /// # Errors
-    /// [`RingError`] if a sensor would fire again while it still listens, if the window ends within the blanking time,
-    /// or if the number of consecutive readings is not 2 to 8 or the patience more than 15.
+    /// [`RingError`] if the ring is smaller than its scheduler, if a sensor would fire again while it still listens, if
+    /// the window ends within the blanking time, if `t_delta` is no shorter than the window or longer than what the
+    /// schedule was verified for, or if the number of consecutive readings is not 2 to 8 or the patience more than 15.
     pub fn with_scheduler(scheduler: S, config: RingConfig, now: Instant) -> Result<Self, RingError> {
         let RingConfig { t_delta, window, blanking, consecutive, patience } = config;
+        if scheduler.sensors() > K {
+            return Err(RingError::Sensors { sensors: scheduler.sensors(), capacity: K });
+        }
+        if let Some(verified) = scheduler.verified_t_delta() {
+            if t_delta > verified {
+                return Err(RingError::TDelta { t_delta, verified });
+            }
+        }
         // No echo time within a window can then be mistaken for an instant before the firing.
         let longest = scheduler.longest_window().min(Micros::new(u32::MAX / 2));
         if window > longest {
@@ -135,14 +153,16 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if window <= blanking {
             return Err(RingError::Blanking { blanking, window });
         }
+        if t_delta >= window {
+            return Err(RingError::CoarseTDelta { t_delta, window });
+        }
         let agreement = Agreement::new(consecutive, patience)?;
         Ok(Self {
             oldest: NOBODY,
             ready: 0,
             agreement,
-            uncomparable_periods: 0,
-            max_late_us: 0,
             tally: Tally::default(),
+            lateness: Lateness::NEW,
             scheduler,
             emit_at: now,
             window,
@@ -150,6 +170,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             blanking,
             period: 0,
             sensors: Self::SENSORS,
+            totals: [0; K],
         })
     }
 
@@ -157,9 +178,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// [`next_deadline`](Self::next_deadline).
     ///
     /// Hand in the echo edges you know of before you poll: an edge that comes after the poll that closed its window is
-    /// lost. A late poll loses nothing: firings that are due are postponed, and all later ones with them. After one
-    /// that is late by more than `t_delta` the readings of about two periods are compared with nothing, since crosstalk
-    /// has shifted by as much.
+    /// lost. A late poll loses nothing: firings that are due are postponed, and all later ones with them. Where late
+    /// firings shift crosstalk by more than the schedule has to spare, readings are not compared with the ones before;
+    /// that all firings are late alike shifts nothing. [`PeriodStats`] says how late they were.
     #[inline]
     pub fn poll(&mut self, now: Instant) -> Option<RingEvent> {
         self.poll_expecting(now, |_| 0)
@@ -249,6 +270,8 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         }
         self.oldest = NOBODY;
         self.ready = 0;
+        // Sound from before may still be heard in the first period.
+        self.lateness.begin_anew(&mut self.totals);
     }
 
     /// The scheduler.

@@ -1,6 +1,7 @@
 //! What a poll of a [`Ring`] does when something is due: fire, emit a reading, end the period.
 
-use super::sensor::{COMPARE_WITH_NOTHING, LISTENING, READY, Sensor};
+use super::lateness::{MOST_TOLERATED, PeriodLateness};
+use super::sensor::{LISTENING, READY, Sensor, UNCOMPARABLE};
 use super::{NOBODY, PeriodStats, Reading, Ring, RingEvent};
 use crate::filter::Rule;
 use crate::reading::Verdict;
@@ -36,8 +37,8 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
 
     #[inline]
     fn fired(&mut self, sensor: u8, late: Micros, now: Instant) {
-        if late.as_micros() > self.max_late_us.into() {
-            self.fired_late(late);
+        if late != Micros::ZERO || self.lateness.is_watching() {
+            self.fired_late(sensor, late);
         }
         if self.oldest == NOBODY {
             self.oldest = sensor;
@@ -47,50 +48,69 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         }
     }
 
-    /// Later than any firing of this period so far.
+    /// A firing came late, or has a stretch because others did.
     #[inline(never)]
-    fn fired_late(&mut self, late: Micros) {
-        self.max_late_us = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
-        if late > self.t_delta {
-            // Sound sent before this moment may be heard for a period, and its readings compared for one more. A
-            // further late firing in this period changes nothing: until its end all readings are compared with nothing
-            // already.
-            self.uncomparable_periods = 2;
-            self.invalidate();
+    fn fired_late(&mut self, sensor: u8, late: Micros) {
+        let late = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
+        if late > 0 {
+            self.lateness.watch(&mut self.totals);
+            self.lateness.note(late);
+            self.lateness.add(late);
         }
+        let Some(total) = self.totals.get_mut(usize::from(sensor)) else { return };
+        let stretch = self.lateness.stretch(total);
+        let stretch = if S::DELAYS_ALL { stretch } else { late };
+        if !self.lateness.comparable(stretch, self.tolerated()) {
+            self.uncompare_pending();
+        }
+    }
+
+    /// By how much two stretches may differ: by so little that crosstalk still moves by more than `t_delta`, and that no
+    /// firing of an emitter is skipped.
+    fn tolerated(&self) -> u16 {
+        let t_delta = self.t_delta.as_micros();
+        // It is below the window, and that below half of the range.
+        let separation = self.scheduler.separation().map_or(2 * t_delta + 1, Micros::as_micros);
+        let separation = separation.min(self.scheduler.longest_window().as_micros());
+        let tolerated = separation.saturating_sub(t_delta + 1);
+        u16::try_from(tolerated).unwrap_or(MOST_TOLERATED).min(MOST_TOLERATED)
     }
 
     #[inline(never)]
     fn end_period(&mut self, now: Instant) -> Option<RingEvent> {
-        if !now.has_reached(self.scheduler.deadline()) {
+        let due = self.scheduler.deadline();
+        if !now.has_reached(due) {
             return None;
         }
+        self.lateness.note(u16::try_from(now.since(due).as_micros()).unwrap_or(u16::MAX));
         let (phase, changed) = self.scheduler.end_period(now);
+        let PeriodLateness { latest, sum, difference } = self.lateness.end_period(&mut self.totals);
         if changed {
-            self.uncomparable_periods = 2;
-        }
-        if self.uncomparable_periods > 0 {
-            self.uncomparable_periods -= 1;
-            self.invalidate();
+            self.lateness.begin_anew(&mut self.totals);
+            self.uncompare_pending();
         }
         let stats = PeriodStats {
             period: self.period,
             phase,
             tally: core::mem::take(&mut self.tally),
-            max_late: Micros::new(core::mem::take(&mut self.max_late_us).into()),
+            max_late: Micros::new(latest.into()),
+            sum_late: Micros::new(sum.into()),
+            max_shift: Micros::new(difference.into()),
         };
         self.period = self.period.wrapping_add(1);
         Some(RingEvent::PeriodEnded(stats))
     }
 
     /// Firings have shifted against each other, by lateness or by a change of schedule. (13a), (13b) say nothing about
-    /// a reading of sound from before compared with one of sound from after. The next reading of each sensor may be of
-    /// either, so it is compared with nothing.
+    /// a reading of sound from before compared with one of sound from after. Sound of the last firing can be in the
+    /// readings that are pending, its own among them, and in no earlier one.
     #[cold]
     #[inline(never)]
-    fn invalidate(&mut self) {
+    fn uncompare_pending(&mut self) {
         for sensor in &mut self.sensors {
-            sensor.set(COMPARE_WITH_NOTHING);
+            if sensor.is(LISTENING) {
+                sensor.set(UNCOMPARABLE);
+            }
         }
     }
 

@@ -132,7 +132,8 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
             }
             phase += 1;
         }
-        let mut schedule = Self { period, sensors: sensors as u8, t_lag, t_wait, min_refire: Micros::MAX, firings };
+        let (sensors, min_refire, promise) = (sensors as u8, Micros::MAX, None);
+        let mut schedule = Self { period, sensors, t_lag, t_wait, min_refire, firings, promise };
         schedule.min_refire = schedule.shortest_refire();
         Ok(schedule)
     }

@@ -5,12 +5,16 @@
 mod build;
 mod error;
 mod limits;
+mod promise;
 mod refire;
+
+use core::hash::{Hash, Hasher};
 
 use crate::time::Micros;
 
 pub use error::ScheduleError;
 pub use limits::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase};
+pub(crate) use promise::Promise;
 
 /// When each sensor fires: once per period, at `T_fire = T_lag + T_wait`, where `T_wait` changes with the phase (Sec.
 /// 3.1).
@@ -30,7 +34,7 @@ pub use limits::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase};
 /// assert_eq!(ring.t_fire(Phase::B, 1), Some(Micros::from_millis(25)));
 /// # Ok::<(), eeruf_core::ScheduleError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug)]
 // In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction.
 #[repr(C)]
 pub struct Schedule<const K: usize, const M: usize = 2> {
@@ -42,10 +46,12 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
     t_lag: [Micros; K],
     t_wait: [[Micros; K]; M],
     sensors: u8,
+    /// Only in a [`VerifiedSchedule`](crate::VerifiedSchedule), and in copies of what it holds.
+    promise: Option<Promise>,
 }
 
 /// The firings of one phase in the order in which they come, so that the scheduler need not look for the next one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct Firings<const K: usize> {
     /// The sensors by firing time; then nobody (255).
@@ -54,6 +60,21 @@ struct Firings<const K: usize> {
     gap: [Micros; K],
     /// From the last firing to the end of the period.
     after_last: Micros,
+}
+
+/// Two schedules are equal if their lags, waits and periods are, whether or not they have been verified.
+impl<const K: usize, const M: usize> PartialEq for Schedule<K, M> {
+    fn eq(&self, other: &Self) -> bool {
+        (self.period, self.sensors, self.t_lag, self.t_wait) == (other.period, other.sensors, other.t_lag, other.t_wait)
+    }
+}
+
+impl<const K: usize, const M: usize> Eq for Schedule<K, M> {}
+
+impl<const K: usize, const M: usize> Hash for Schedule<K, M> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        (self.period, self.sensors, self.t_lag, self.t_wait).hash(state);
+    }
 }
 
 impl<const K: usize, const M: usize> Schedule<K, M> {
@@ -114,6 +135,15 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         } else {
             (place, firings.after_last)
         }
+    }
+
+    /// What it was verified for, if it was.
+    pub(crate) const fn promise(&self) -> Option<Promise> {
+        self.promise
+    }
+
+    pub(crate) const fn with_promise(self, promise: Promise) -> Self {
+        Self { promise: Some(promise), ..self }
     }
 
     /// For indices already known to be in range; the optimiser does not know that `sensors` is at most `K`, and the

@@ -21,7 +21,8 @@ pub enum SchedulerStep {
     PeriodEnded {
         /// Its phase.
         phase: Phase,
-        /// Whether another schedule begins with the next one.
+        /// Whether the next one does not follow on it as the schedule says: another schedule begins, or periods in
+        /// which nothing fired were left out.
         changed: bool,
     },
 }
@@ -29,11 +30,17 @@ pub enum SchedulerStep {
 /// Decides when each sensor of a ring fires: [`ScheduledFiring`](super::ScheduledFiring) or
 /// [`ImmediateRefiring`](super::ImmediateRefiring).
 pub trait Scheduler {
+    /// Whether a late firing delays all that follow by as much, as a common timetable does.
+    const DELAYS_ALL: bool = false;
     /// The next step, if one is due. Call again until there is none.
     #[inline]
     fn poll(&mut self, now: Instant) -> Option<SchedulerStep> {
         let due = self.deadline();
         if !now.has_reached(due) {
+            if due.since(now) > self.horizon() {
+                // The clock has jumped, or nobody polled for half a turn of it.
+                self.restart(now);
+            }
             return None;
         }
         let Some((sensor, phase)) = self.next_firing() else {
@@ -49,11 +56,13 @@ pub trait Scheduler {
     fn next_firing(&self) -> Option<(u8, Phase)>;
     /// Fires that sensor, `now`. To be called when it is due.
     fn fire(&mut self, now: Instant);
-    /// Ends the period, `now`. Returns its phase, and whether another schedule begins with the next one. To be called
-    /// when that is due.
+    /// Ends the period, `now`. Returns its phase, and whether the next one does not follow on it as the schedule says:
+    /// because another schedule begins, or because periods were left out. To be called when that is due.
     fn end_period(&mut self, now: Instant) -> (Phase, bool);
     /// A sensor has stopped listening: its echo came in, or its window closed, `at` this instant.
     fn ended(&mut self, sensor: u8, at: Instant);
+    /// How many sensors it fires.
+    fn sensors(&self) -> usize;
     /// Lets a sensor fire from its next turn on, or stops it.
     fn set_enabled(&mut self, sensor: u8, enabled: bool);
     /// Whether a sensor fires.
@@ -62,6 +71,14 @@ pub trait Scheduler {
     fn restart(&mut self, now: Instant);
     /// How many periods ago the last period with this phase was, 0 for the present one; 0 without common phases.
     fn periods_since(&self, phase: Phase) -> u8;
+    /// The `t_delta` that its schedule was verified for, if it was; a change to another schedule does not come into it.
+    fn verified_t_delta(&self) -> Option<Micros> {
+        None
+    }
+    /// By how much crosstalk moves at least from one reading to the next, where that is known.
+    fn separation(&self) -> Option<Micros> {
+        None
+    }
     /// How long a sensor may listen: it never fires again within this time of firing, unless it has ended.
     fn longest_window(&self) -> Micros;
     /// No deadline lies further ahead than this, unless the clock has jumped.

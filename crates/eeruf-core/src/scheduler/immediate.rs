@@ -13,7 +13,7 @@
 //! In (8) the filter takes it for a true echo. In (10a), (10b) consecutive readings differ, and it does not.
 
 use super::contract::Scheduler;
-use crate::schedule::{Phase, Schedule};
+use crate::schedule::{MAX_PERIOD, Phase, Schedule};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
 
@@ -41,9 +41,11 @@ struct Turn {
 impl<'s, const K: usize, const M: usize> ImmediateRefiring<'s, K, M> {
     /// Begins at `now`. The lags and waits are those of `schedule`; its period only says how often
     /// [`SchedulerStep::PeriodEnded`](crate::SchedulerStep::PeriodEnded) comes. No sensor fires again sooner than
-    /// `min_refire` after it has fired.
+    /// `min_refire` after it has fired; more than [`MAX_PERIOD`](crate::MAX_PERIOD) counts as that.
     pub fn new(schedule: &'s Schedule<K, M>, min_refire: Micros, now: Instant) -> Self {
         let sensors = [Turn { at: now, phase: 0 }; K];
+        // Instants further ahead than half a turn of the clock would count as past.
+        let min_refire = min_refire.min(MAX_PERIOD);
         let mut refiring = Self {
             schedule,
             min_refire,
@@ -143,6 +145,10 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
 
     fn set_enabled(&mut self, sensor: u8, enabled: bool) {
         self.enabled.set(sensor, enabled);
+    }
+
+    fn sensors(&self) -> usize {
+        self.schedule.sensors()
     }
 
     fn is_enabled(&self, sensor: u8) -> bool {

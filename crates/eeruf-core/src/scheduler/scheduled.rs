@@ -1,7 +1,7 @@
 //! [`ScheduledFiring`]: every sensor fires once per period, by the table of a schedule (Sec. 3.1, Fig. 3).
 
 use super::contract::Scheduler;
-use crate::schedule::{Phase, Schedule};
+use crate::schedule::{MAX_SENSORS, Phase, Schedule};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
 
@@ -25,7 +25,7 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
     phase: u8,
     /// Place in the firing order of the sensor after the next one.
     following: u8,
-    /// The next sensor to fire; `K` or more when all have.
+    /// The next sensor to fire; one that is not there when all have.
     next: u8,
     /// Whether any sensor is disabled, since asking all 64 takes time at every firing.
     some_disabled: bool,
@@ -63,8 +63,9 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
 
     /// Changes to another schedule when the present period ends.
     ///
-    /// Since neither schedule was verified against the other, its first period begins late enough after the last firing
-    /// to keep every interval and every refire time that the present schedule keeps.
+    /// Neither schedule was verified against the other, so its first period begins late enough after the last firing to
+    /// keep every refire time of the present schedule and every interval that both were verified for, and those of one
+    /// that was not verified.
     pub const fn change_schedule(&mut self, schedule: &'s Schedule<K, M>) {
         self.next_schedule = Some(schedule);
     }
@@ -82,7 +83,7 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
 
     #[cold]
     fn skip_disabled(&mut self) {
-        while usize::from(self.next) < K && self.disabled.contains(self.next) {
+        while is_sensor::<K>(self.next) && self.disabled.contains(self.next) {
             self.turn_once();
         }
     }
@@ -107,16 +108,27 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     }
 }
 
-/// How long to stay silent after the last firing of a schedule so that a period which was not verified against it may
-/// begin. Two neighbours fire once each per period, so no interval between them that the schedule always keeps is
-/// longer than half of it.
+/// Whether a number in the firing order is a sensor's. A schedule with room for more has no more.
+const fn is_sensor<const K: usize>(sensor: u8) -> bool {
+    (sensor as usize) < K && (sensor as usize) < MAX_SENSORS
+}
+
+/// How long to stay silent after the last firing so that a period which was not verified against it may begin. Where
+/// nothing was verified a whole period: two neighbours fire within one, so no interval can be longer.
 const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>) -> Micros {
-    let half_period = Micros::new(schedule.period().as_micros().div_ceil(2));
-    let min_refire = schedule.min_refire();
-    if min_refire.as_micros() > half_period.as_micros() { min_refire } else { half_period }
+    match schedule.promise() {
+        Some(promise) => longer(promise.min_interval, schedule.min_refire()),
+        None => longer(schedule.period(), schedule.min_refire()),
+    }
+}
+
+const fn longer(one: Micros, other: Micros) -> Micros {
+    if one.as_micros() > other.as_micros() { one } else { other }
 }
 
 impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
+    const DELAYS_ALL: bool = true;
+
     #[inline]
     fn fire(&mut self, now: Instant) {
         self.last_fired = now;
@@ -127,10 +139,17 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
     fn end_period(&mut self, now: Instant) -> (Phase, bool) {
         let phase = Phase(self.phase);
         // Periods in which nothing fired need not be caught up with.
-        let mut start = if now.since(self.due) > self.schedule.period() { now } else { self.due };
-        let changed = self.next_schedule.is_some();
+        let left_out = now.since(self.due) > self.schedule.period();
+        let mut start = if left_out { now } else { self.due };
+        let changed = left_out || self.next_schedule.is_some();
+        // It must not fall half a turn of the clock behind while no sensor is enabled.
+        let settling = settling_time(self.schedule);
+        if start.since(self.last_fired) > settling {
+            self.last_fired = Instant::from_micros(start.as_micros().wrapping_sub(settling.as_micros()));
+        }
         if let Some(next) = self.next_schedule.take() {
-            let settled = self.settled();
+            let min_interval = next.promise().map_or(Micros::ZERO, |promise| promise.min_interval);
+            let settled = self.last_fired + longer(settling, min_interval);
             if settled.has_reached(start) {
                 start = settled;
             }
@@ -143,7 +162,7 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
 
     #[inline]
     fn next_firing(&self) -> Option<(u8, Phase)> {
-        (usize::from(self.next) < K).then_some((self.next, Phase(self.phase)))
+        is_sensor::<K>(self.next).then_some((self.next, Phase(self.phase)))
     }
 
     #[inline]
@@ -157,6 +176,10 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         self.disabled.set(sensor, !enabled);
         self.some_disabled = self.disabled != SensorSet::NONE;
         self.skip_disabled();
+    }
+
+    fn sensors(&self) -> usize {
+        self.schedule.sensors()
     }
 
     fn is_enabled(&self, sensor: u8) -> bool {
@@ -174,6 +197,14 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
     fn periods_since(&self, phase: Phase) -> u8 {
         // At most `MAX_PHASES` phases.
         if self.phase >= phase.0 { self.phase - phase.0 } else { (self.phase + M as u8).saturating_sub(phase.0) }
+    }
+
+    fn verified_t_delta(&self) -> Option<Micros> {
+        self.schedule.promise().map(|promise| promise.t_delta)
+    }
+
+    fn separation(&self) -> Option<Micros> {
+        self.schedule.promise().map(|promise| promise.separation)
     }
 
     fn longest_window(&self) -> Micros {

@@ -3,6 +3,7 @@
 mod brute_force;
 mod common;
 mod conditions_naive;
+mod lateness;
 mod period_corpus;
 mod period_limits;
 mod period_small;
@@ -10,6 +11,7 @@ mod period_small;
 mod period_threads;
 mod period_ticks;
 mod period_variants;
+mod promises;
 #[cfg(feature = "std")]
 mod search_threads;
 mod theory;

@@ -38,8 +38,10 @@ const RUNGS: [(u32, u32); 4] = [(5, 6), (1, 1), (4, 3), (5, 3)];
 /// The rungs of a robot's ladder, from the schedule that it starts from.
 pub(super) fn rungs(robot: &Robot, base: AnySchedule) -> Result<Vec<AnySchedule>, StartError> {
     let requirements = requirements(robot);
-    let fits = |schedule: &AnySchedule| schedule.verify(&requirements).ok();
-    let rungs: Vec<_> = RUNGS.iter().filter_map(|&(num, den)| base.scaled(num, den).ok()).filter(fits).collect();
+    // Copies of verified schedules remember that they are, so that changing between them takes no longer than it must.
+    let verified = |schedule: AnySchedule| Some(*schedule.verify(&requirements).verified().ok()?.schedule());
+    let scaled = RUNGS.iter().filter_map(|&(num, den)| base.scaled(num, den).ok());
+    let rungs: Vec<_> = scaled.filter_map(verified).collect();
     if rungs.is_empty() {
         return match Ladder::new(&[base], &requirements).err() {
             Some(error) => Err(StartError::Ladder(error)),

@@ -77,6 +77,10 @@ impl Scheduler for DitherFiring {
         self.skip_disabled();
     }
 
+    fn sensors(&self) -> usize {
+        self.lags.len()
+    }
+
     fn is_enabled(&self, sensor: u8) -> bool {
         usize::from(sensor) < self.lags.len() && self.enabled.get(usize::from(sensor)).is_some_and(|&enabled| enabled)
     }

@@ -1,5 +1,6 @@
-//! Instructions of each call of a ring of twelve sensors, the fewest and the most over forty periods. To be run with
-//! `-icount shift=10`, where every instruction takes 1024 ns, so that a hardware timer counts instructions.
+//! Instructions of each call of a ring of twelve sensors, the fewest and the most over forty periods on time and forty in
+//! which every firing is late. To be run with `-icount shift=10`, where every instruction takes 1024 ns, so that a
+//! hardware timer counts instructions.
 //!
 //! Prints one line per kind of call: name, fewest, most. Call and return count; reading the timer does not.
 #![no_std]
@@ -47,10 +48,15 @@ fn main() -> ! {
     let mut stamped = Range::new("stamp");
     let mut reading = Range::new("reading");
     let mut ended = Range::new("period_ended");
+    // As of period 40 every firing comes late, each by another time.
+    let mut fire_late = Range::new("fire_late");
+    let mut ended_late = Range::new("period_ended_late");
 
     let mut periods = 0;
-    while periods < 40 {
-        let now = black_box(ring.next_deadline());
+    while periods < 80 {
+        let on_time = periods < 40;
+        let late = if on_time { 0 } else { 20 + 37 * periods % 100 };
+        let now = black_box(ring.next_deadline() + Micros::new(late));
         loop {
             let (taken, event) = counts(|| poll(ring, now));
             match event {
@@ -59,7 +65,7 @@ fn main() -> ! {
                     break;
                 }
                 Some(RingEvent::Fire(sensor)) => {
-                    fire.note(taken);
+                    if on_time { &mut fire } else { &mut fire_late }.note(taken);
                     // Every kind of reading: near and far, moving, and none at all.
                     let t_echo = match (sensor, periods % 4) {
                         (0, _) | (2, 1) => None,
@@ -80,13 +86,13 @@ fn main() -> ! {
                     }
                 }
                 Some(RingEvent::PeriodEnded(_)) => {
-                    ended.note(taken);
+                    if on_time { &mut ended } else { &mut ended_late }.note(taken);
                     periods += 1;
                 }
             }
         }
     }
-    for range in [&idle, &fire, &heard, &stamped, &reading, &ended] {
+    for range in [&idle, &fire, &fire_late, &heard, &stamped, &reading, &ended, &ended_late] {
         range.say();
     }
     leave(0)

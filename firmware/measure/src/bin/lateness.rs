@@ -1,5 +1,6 @@
-//! Lateness of firings while echoes keep interrupting: twelve sensors, all with an echo, 200 periods. Prints how many
-//! firings were how late. Run it at several speeds of the core (`-icount shift=N`: 2^N ns an instruction).
+//! Lateness of firings while echoes keep interrupting: twelve sensors, all with an echo, 200 periods. Prints how late
+//! firings were, and how far that shifted crosstalk. Run it at several speeds of the core (`-icount shift=N`: 2^N ns an
+//! instruction).
 #![no_std]
 #![no_main]
 
@@ -34,19 +35,22 @@ fn main() -> ! {
     let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
     let Ok(ring) = HcSr04Ring::new(ring, fake_sensors::pins(), Delay, Settings::default()) else { leave(3) };
     let mut readings = Tally::<u32>::default();
-    let (mut most, mut sum) = (0, 0);
+    let (mut most, mut sum, mut shift) = (0, 0, 0);
     run(ring, &EDGES, |_, event| match event {
         RingEvent::Fire(_) => {}
         RingEvent::Reading(reading) => readings.count(reading.kind),
         RingEvent::PeriodEnded(stats) => {
             most = stats.max_late.as_micros().max(most);
             sum += stats.max_late.as_micros();
+            shift = stats.max_shift.as_micros().max(shift);
             if stats.period == 199 {
                 say!(
                     "latest_us ",
                     most,
                     " mean_of_latest_us ",
                     sum / 200,
+                    " max_shift_us ",
+                    shift,
                     " edges_lost ",
                     EDGES.lost(),
                     " accepted ",

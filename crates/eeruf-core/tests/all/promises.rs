@@ -183,3 +183,25 @@ fn the_longest_echo_time_is_an_echo_and_no_silence() {
     assert_eq!(filter.push(0, Some(Micros::MAX)).unwrap().kind, ReadingKind::Accepted);
     assert_eq!(filter.push(0, None).unwrap().kind, ReadingKind::NoEcho);
 }
+
+#[test]
+fn a_change_to_a_faster_schedule_is_no_jump_of_the_clock() {
+    let us = Micros::new;
+    let slow = Schedule::<1>::from_firing(us(262_912), [[us(261_885)], [us(261_885)]]).unwrap();
+    let fast = Schedule::<1>::from_firing(us(101_632), [[us(97_265)], [us(101_235)]]).unwrap();
+    let mut ring = Ring::new(&slow, RingConfig::new(us(999), us(16_705)), Instant::from_micros(0)).unwrap();
+    let fired = Instant::from_micros(261_885);
+    assert_eq!(ring.poll(fired), Some(RingEvent::Fire(0)));
+    ring.change_schedule(&fast).unwrap();
+    let (mut now, mut events) = (fired, vec![]);
+    while !events.contains(&RingEvent::Fire(0)) {
+        while let Some(event) = ring.poll(now) {
+            events.push(event);
+        }
+        if !events.contains(&RingEvent::Fire(0)) {
+            now = ring.next_deadline();
+        }
+    }
+    assert!(events.iter().any(|event| matches!(event, RingEvent::Reading(_))), "{events:?}");
+    assert!(now.since(fired) >= slow.min_refire());
+}

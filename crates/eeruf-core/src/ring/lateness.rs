@@ -35,7 +35,7 @@ impl Stretches {
 pub(super) struct Lateness {
     /// At how many more period ends something late is still remembered; 0 while all is on time.
     watched: u8,
-    /// For how many periods, with this one, no reading is compared; or [`FIRST_PERIOD`].
+    /// At how many more period ends the next reading of every sensor becomes uncomparable; or [`FIRST_PERIOD`].
     uncomparable: u8,
     /// The latest step of this period.
     latest: u16,
@@ -51,8 +51,6 @@ pub(super) struct Lateness {
 const FIRST_PERIOD: u8 = u8::MAX;
 /// Lateness in one period stretches firings of the next, whose sound may be heard in the one after that.
 const WATCHED: u8 = 3;
-/// A reading of the first period may hold sound of another timetable, and is what the next one is compared with.
-const OTHER_TIMETABLE: u8 = 2;
 /// No difference of two stretches that are known is tolerated if it is more than this, so that it has half of the range.
 pub(super) const MOST_TOLERATED: u16 = u16::MAX / 2;
 
@@ -62,6 +60,8 @@ pub(super) struct PeriodLateness {
     pub(super) latest: u16,
     pub(super) sum: u16,
     pub(super) difference: u16,
+    /// Whether the next reading of every sensor is uncomparable.
+    pub(super) uncomparable: bool,
 }
 
 impl Lateness {
@@ -100,15 +100,18 @@ impl Lateness {
     /// The timetable has begun anew, in this period or with it.
     pub(super) fn begin_anew(&mut self, totals: &mut [u16]) {
         self.watch(totals);
-        self.uncomparable = OTHER_TIMETABLE;
+        // A reading of the first period may hold sound from before, and is what the next one would be compared with.
+        self.uncomparable = 1;
     }
 
-    /// The sum of lateness grows; if it can no longer be told, stretches mean nothing until two periods have passed.
-    pub(super) fn add(&mut self, late: u16) {
+    /// The sum of lateness grows. Returns whether it still can be told: if not, stretches mean nothing until two periods
+    /// have ended.
+    pub(super) fn add(&mut self, late: u16) -> bool {
         self.total = self.total.saturating_add(late);
         if self.total == u16::MAX {
-            self.uncomparable = WATCHED;
+            self.uncomparable = 2;
         }
+        self.total != u16::MAX
     }
 
     /// The stretch of a firing, and its sensor's total for the next time.
@@ -126,17 +129,16 @@ impl Lateness {
         }
         let Stretches { least, most } = self.stretches.and(self.stretches_before);
         self.stretches = self.stretches.and(Stretches { least: stretch, most: stretch });
-        self.uncomparable == 0
-            && stretch.saturating_sub(least) <= tolerated
-            && most.saturating_sub(stretch) <= tolerated
+        stretch.saturating_sub(least) <= tolerated && most.saturating_sub(stretch) <= tolerated
     }
 
     /// Ends the period.
     pub(super) fn end_period(&mut self, totals: &mut [u16]) -> PeriodLateness {
         let latest = core::mem::take(&mut self.latest);
-        self.uncomparable = if self.uncomparable == FIRST_PERIOD { 0 } else { self.uncomparable.saturating_sub(1) };
+        let uncomparable = !matches!(self.uncomparable, 0 | FIRST_PERIOD);
+        self.uncomparable = if uncomparable { self.uncomparable - 1 } else { 0 };
         if self.watched == 0 {
-            return PeriodLateness { latest, ..PeriodLateness::default() };
+            return PeriodLateness { latest, uncomparable, ..PeriodLateness::default() };
         }
         self.watched -= 1;
         let sum = self.total.saturating_sub(self.total_before);
@@ -149,6 +151,6 @@ impl Lateness {
         }
         self.total -= forgotten;
         self.total_before = self.total;
-        PeriodLateness { latest, sum, difference }
+        PeriodLateness { latest, sum, difference, uncomparable }
     }
 }

@@ -25,7 +25,7 @@ pub(super) const READY: u8 = 1 << 4;
 const OUTSIDE: u8 = 1 << 5;
 /// The driver found the line stuck.
 pub(super) const STUCK: u8 = 1 << 6;
-/// The reading that is pending is not to be compared with the one before it.
+/// The next reading is not to be compared with the one before it, nor with the one after it.
 pub(super) const UNCOMPARABLE: u8 = 1 << 7;
 
 /// What to do about an edge.
@@ -59,7 +59,7 @@ impl<const E: usize> Sensor<E> {
     }
 
     pub(super) fn fire(&mut self, phase: Phase, now: Instant) {
-        self.tracker.flags = LISTENING | phase.0;
+        self.tracker.flags = (self.tracker.flags & UNCOMPARABLE) | LISTENING | phase.0;
         self.fired = now;
     }
 
@@ -126,7 +126,8 @@ impl<const E: usize> Sensor<E> {
 
     /// Ends the firing, and compares its reading with the one before.
     pub(super) fn compare(&mut self, rule: Rule, expected_change_us: impl FnOnce() -> i32) -> Verdict {
-        if self.is(UNCOMPARABLE) {
+        let uncomparable = self.is(UNCOMPARABLE);
+        if uncomparable {
             self.tracker.forget();
         }
         let verdict = if self.is(STUCK) {
@@ -136,6 +137,9 @@ impl<const E: usize> Sensor<E> {
         } else {
             self.tracker.push(rule, &self.echoes, expected_change_us())
         };
+        if uncomparable {
+            self.tracker.forget();
+        }
         self.tracker.flags &= PHASE;
         self.echoes = [NO_ECHO; E];
         verdict

@@ -55,7 +55,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if late > 0 {
             self.lateness.watch(&mut self.totals);
             self.lateness.note(late);
-            self.lateness.add(late);
+            if !self.lateness.add(late) {
+                self.uncompare_next();
+            }
         }
         let Some(total) = self.totals.get_mut(usize::from(sensor)) else { return };
         let stretch = self.lateness.stretch(total);
@@ -84,10 +86,12 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         }
         self.lateness.note(u16::try_from(now.since(due).as_micros()).unwrap_or(u16::MAX));
         let (phase, changed) = self.scheduler.end_period(now);
-        let PeriodLateness { latest, sum, difference } = self.lateness.end_period(&mut self.totals);
+        let PeriodLateness { latest, sum, difference, uncomparable } = self.lateness.end_period(&mut self.totals);
         if changed {
             self.lateness.begin_anew(&mut self.totals);
-            self.uncompare_pending();
+        }
+        if changed || uncomparable {
+            self.uncompare_next();
         }
         let stats = PeriodStats {
             period: self.period,
@@ -101,8 +105,18 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         Some(RingEvent::PeriodEnded(stats))
     }
 
-    /// Firings have shifted against each other, by lateness or by a change of schedule. (13a), (13b) say nothing about
-    /// a reading of sound from before compared with one of sound from after. Sound of the last firing can be in the
+    /// Firings have shifted against each other by something else than lateness that is known. (13a), (13b) say nothing
+    /// about a reading of sound from before compared with one of sound from after. The next reading of each sensor may
+    /// be of either.
+    #[cold]
+    #[inline(never)]
+    fn uncompare_next(&mut self) {
+        for sensor in &mut self.sensors {
+            sensor.set(UNCOMPARABLE);
+        }
+    }
+
+    /// Firings have shifted against each other by lateness. Sound of the last firing can be in the
     /// readings that are pending, its own among them, and in no earlier one.
     #[cold]
     #[inline(never)]

@@ -190,8 +190,12 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         let settled = self.settled();
         // A clock that has jumped says nothing about when the last firing was.
         let soon = !now.has_reached(settled) && settled.since(now) <= self.horizon();
-        let start = if soon { settled } else { now };
-        self.begin_period(0, start);
+        if !soon {
+            // No last firing is further back than matters: the clock may jump again.
+            self.last_fired =
+                Instant::from_micros(now.as_micros().wrapping_sub(settling_time(self.schedule).as_micros()));
+        }
+        self.begin_period(0, if soon { settled } else { now });
     }
 
     fn periods_since(&self, phase: Phase) -> u8 {

@@ -19,7 +19,7 @@ fn paths(criterion: &mut Criterion) {
         tracer.trace(&scene, source, &receivers, limits, &mut found).expect("paths");
         group.throughput(Throughput::Elements(found.len() as u64));
         group.bench_function(format!("{id}/core"), |bencher| {
-            bencher.iter(|| black_box(tracer.sight(&scene, black_box(source), &receivers, limits)));
+            bencher.iter(|| black_box(tracer.visible_images(&scene, black_box(source), &receivers, limits)));
         });
         group.bench_function(format!("{id}/whole"), |bencher| {
             bencher.iter(|| black_box(tracer.trace(&scene, black_box(source), &receivers, limits, &mut found)));

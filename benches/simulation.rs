@@ -1,5 +1,5 @@
-//! How many readings a second are simulated on one core: a static world with its paths known, one that moves, and Set I with
-//! everything from the walls on; and how much faster than real time the courses of Set II are driven.
+//! How many readings a second are simulated on one core: a static world with its paths known, one that moves, and Set I
+//! with everything from the walls on; and how much faster than real time the courses of Set II are driven.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use eeruf_sim::experiments::set_one::Alcove;

@@ -1,9 +1,9 @@
-//! What the wait search costs: the best interval over sensors and ticks, Table I rearranged, and counting against plain nested
-//! loops in the same run (the first lines print the ratio).
+//! What the wait search costs: the best interval over sensors and ticks, Table I rearranged, and counting against plain
+//! nested loops in the same run (the first lines print the ratio).
 
 #![allow(missing_docs)]
 
-#[path = "../crates/eeruf-core/tests/common/mod.rs"]
+#[path = "../crates/eeruf-core/tests/all/common/mod.rs"]
 mod common;
 
 use std::hint::black_box;
@@ -13,7 +13,7 @@ use common::Owned;
 use common::naive::Layout;
 use common::tables::{Case, File};
 use criterion::{Criterion, criterion_group};
-use eeruf_core::search::wait::{COUNT_WORDS, Control, MEMORY_WORDS, Objective, Problem};
+use eeruf_core::search::wait::{Budget, COUNT_WORDS, MEMORY_WORDS, Objective, Problem};
 
 /// The problems counted: those of the shared tables with many tables, and two of more nodes.
 fn counts() -> Vec<Case> {
@@ -45,8 +45,8 @@ fn best_interval(c: &mut Criterion) {
             let name = format!("best interval/{sensors} sensors, D {separation} ms, {per_ms} ticks a ms");
             c.bench_function(&name, |bench| {
                 bench.iter(|| {
-                    let mut control = Control::unlimited();
-                    owned.search().best(Objective::Interval, &mut memory, &mut control, &mut a, &mut b)
+                    let mut budget = Budget::unlimited();
+                    owned.search().best(Objective::Interval, &mut memory, &mut budget, &mut a, &mut b)
                 });
             });
         }
@@ -59,9 +59,9 @@ fn rearrange(c: &mut Criterion) {
     for layout in [Layout::Line, Layout::Ring, Layout::Blocks] {
         let owned = Owned::paper(12, layout, 2, 1, eeruf_core::Criterion::Paper);
         let search = owned.search();
-        let arrangements = search.rearrange(&pairs).unwrap();
+        let arrangements = search.assign(&pairs).unwrap();
         c.bench_function(&format!("Table I rearranged/{layout:?}"), |bench| {
-            bench.iter(|| arrangements.best_interval(&mut Control::unlimited(), &mut a, &mut b));
+            bench.iter(|| arrangements.best_interval(&mut Budget::unlimited(), &mut a, &mut b));
         });
     }
 }
@@ -71,13 +71,13 @@ fn count(c: &mut Criterion) {
     for case in counts() {
         let owned = Owned::of(&case);
         c.bench_function(&format!("count/{} {}", case.count, case.criterion), |bench| {
-            bench.iter(|| owned.search().count(None, &mut memory, &mut Control::unlimited()));
+            bench.iter(|| owned.search().count(None, &mut memory, &mut Budget::unlimited()));
         });
     }
 }
 
-/// Plain nested loops as one would write them for speed: pairs in order, each checked against the sensors before it; the body of the
-/// innermost loop counts.
+/// Plain nested loops as one would write them for speed: pairs in order, each checked against the sensors before it;
+/// the body of the innermost loop counts.
 fn nested_loops(problem: &Problem<'_>) -> u64 {
     fn fits(p: &Problem<'_>, k: usize, wait: &[(i32, i32)], a: i32, b: i32) -> bool {
         let period = p.period as i32;
@@ -127,7 +127,7 @@ fn ratios() {
     let mut memory = vec![0; COUNT_WORDS];
     for case in counts() {
         let owned = Owned::of(&case);
-        let (fast, counted) = time(20, || owned.search().count(None, &mut memory, &mut Control::unlimited()).count);
+        let (fast, counted) = time(20, || owned.search().count(None, &mut memory, &mut Budget::unlimited()).count);
         let (slow, naive) = time(1, || nested_loops(&owned.problem()));
         assert_eq!((counted, u128::from(naive)), (case.count, case.count));
         let ratio = slow / fast;

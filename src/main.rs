@@ -1,28 +1,19 @@
 //! The program `eeruf`: design, verify and study firing schedules, and see what the filter makes of recorded readings.
 //!
-//! One module for each verb; `input` reads files and reports what is wrong with them in one line.
+//! `commands` has one file for each verb; `files` is what they read, `report` what they print and draw.
 
 // Doc comments of arguments are what --help prints in a terminal, where backticks only disturb.
 #![allow(clippy::doc_markdown)]
 
-mod design;
-mod draw;
-mod experiment;
-mod fooled;
-mod illustrate;
-mod input;
-mod paths;
-mod replay;
-mod ring_file;
-mod search;
-mod study;
-mod timing;
-mod verify;
-mod watch;
+mod commands;
+mod files;
+mod report;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::Parser;
+
+use crate::commands::{Answer, Verb};
 
 /// Fire all ultrasonic sensors of a robot five to ten times faster than one by one, without believing each other's
 /// echoes.
@@ -35,36 +26,8 @@ struct Cli {
     verb: Verb,
 }
 
-#[derive(Subcommand)]
-enum Verb {
-    Design(design::Args),
-    Verify(verify::Args),
-    Search(search::Args),
-    Study(study::Args),
-    Paths(paths::Args),
-    Replay(replay::Args),
-    Experiment(experiment::Args),
-}
-
-/// What a verb's answer is, and with it the exit code.
-enum Answer {
-    /// Exit code 0.
-    Yes,
-    /// Not verified, or infeasible: exit code 1.
-    No,
-}
-
 fn main() -> ExitCode {
-    let answer = match Cli::parse().verb {
-        Verb::Design(args) => design::run(&args),
-        Verb::Verify(args) => verify::run(&args),
-        Verb::Search(args) => search::run(&args),
-        Verb::Study(args) => study::run(&args),
-        Verb::Paths(args) => paths::run(&args),
-        Verb::Replay(args) => replay::run(&args),
-        Verb::Experiment(args) => experiment::run(&args),
-    };
-    match answer {
+    match Cli::parse().verb.run() {
         Ok(Answer::Yes) => ExitCode::SUCCESS,
         Ok(Answer::No) => ExitCode::from(1),
         Err(error) => {

@@ -47,7 +47,8 @@ typedef enum EerufStatus {
    */
   EERUF_FIRE = -5,
   /*
-   The window is longer than the shortest time between two firings of a sensor, or not longer than the blanking time.
+   The window is longer than the shortest time between two firings of a sensor, or not longer than the blanking
+   time.
    */
   EERUF_WINDOW = -6,
   /*
@@ -83,7 +84,7 @@ typedef enum EerufEventKind {
 } EerufEventKind;
 
 /*
- What a firing told.
+ What came of a firing.
  */
 typedef enum EerufReadingKind {
   /*
@@ -91,7 +92,7 @@ typedef enum EerufReadingKind {
    */
   EERUF_FIRST = 0,
   /*
-   Near-identical to the reading before: believe it.
+   Near-identical to the reading before: it counts.
    */
   EERUF_ACCEPTED = 1,
   /*
@@ -175,7 +176,7 @@ typedef struct EerufEvent {
    */
   enum EerufEventKind kind;
   /*
-   What the firing told; for a reading.
+   What came of the firing; for a reading.
    */
   enum EerufReadingKind reading;
   /*
@@ -201,8 +202,8 @@ extern "C" {
 #endif // __cplusplus
 
 /*
- Makes a schedule of the firing times of each sensor in phases a and b, `sensors` times each, in microseconds from the
- start of the period.
+ Makes a schedule of the firing times of each sensor in phases a and b, `sensors` times each, in microseconds from
+ the start of the period.
 
  # Safety
  `schedule` is null or memory for a schedule; `fire_a_us` and `fire_b_us` are null or `sensors` long.
@@ -228,7 +229,8 @@ enum EerufStatus eeruf_schedule_verify(const struct EerufSchedule *schedule,
                                        uint32_t window_us);
 
 /*
- Makes a ring that fires by a schedule from `now_us` on. The schedule must stay where it is as long as the ring is used.
+ Makes a ring that fires by a schedule from `now_us` on. The schedule must stay where it is as long as the ring is
+ used.
 
  # Safety
  `ring`, `schedule` and `config` are null or memory of their types.
@@ -239,8 +241,8 @@ enum EerufStatus eeruf_ring_init(struct EerufRing *ring,
                                  uint32_t now_us);
 
 /*
- EERUF_EVENT with the next thing to do or to know, or EERUF_OK if there is none at `now_us`: then sleep until the next
- deadline.
+ EERUF_EVENT with the next thing to do or to know, or EERUF_OK if there is none at `now_us`: then sleep until the
+ next deadline.
 
  # Safety
  `ring` and `event` are null or memory of their types.

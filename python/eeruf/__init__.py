@@ -1,4 +1,4 @@
-"""Fire all ultrasonic sensors of a ring at once per period, and do not believe each other's echoes.
+"""Fire all ultrasonic sensors of a ring at once per period, and reject each other's echoes.
 
 EERUF (J. Borenstein and Y. Koren, IEEE T-RA 11(1), 1995) lets every sensor wait a little before it fires, by one of two waits
 that alternate and differ from sensor to sensor. A true echo does not care; crosstalk moves, and is rejected.

@@ -51,7 +51,7 @@ def sweep(
     """
     if not callable(function):
         raise ArgumentError(f"function = {function!r}; expected something to call with one case")
-    tell = _tell(progress)
+    report = _reporter(progress)
     try:
         one_by_one = iter(cases)
     except TypeError:
@@ -60,11 +60,11 @@ def sweep(
     if executor is not None and not callable(getattr(executor, "submit", None)):
         raise ArgumentError(f"executor = {executor!r:.60}; expected a concurrent.futures.Executor")
     if executor is None:
-        return _run_here(function, todo, tell)
-    return _run(function, todo, executor, tell)
+        return _run_here(function, todo, report)
+    return _run(function, todo, executor, report)
 
 
-def _tell(progress: Any) -> Callable[[float | None, str], Any] | None:
+def _reporter(progress: Any) -> Callable[[float | None, str], Any] | None:
     if progress is None or progress is False:
         return None
     if progress is True:
@@ -78,7 +78,7 @@ def _tell(progress: Any) -> Callable[[float | None, str], Any] | None:
 
 
 def _run_here(
-    function: Callable[[Case], Result], cases: list[Case], tell: Callable[[float | None, str], Any] | None
+    function: Callable[[Case], Result], cases: list[Case], report: Callable[[float | None, str], Any] | None
 ) -> list[Result]:
     """Run on processes of our own, which end with us."""
     # Not before it is needed: multiprocessing is most of what importing eeruf would cost.
@@ -88,7 +88,7 @@ def _run_here(
     others = set(multiprocessing.active_children())
     with ProcessPoolExecutor(max_workers=max(1, min(len(cases), os.cpu_count() or 1))) as processes:
         try:
-            return _run(function, cases, processes, tell)
+            return _run(function, cases, processes, report)
         except BaseException:
             # A case may take hours, and what was handed to a process can no longer be cancelled.
             for process in set(multiprocessing.active_children()) - others:
@@ -100,15 +100,15 @@ def _run(
     function: Callable[[Case], Result],
     cases: list[Case],
     executor: Executor,
-    tell: Callable[[float | None, str], Any] | None,
+    report: Callable[[float | None, str], Any] | None,
 ) -> list[Result]:
     futures = [executor.submit(function, case) for case in cases]
     results = []
     try:
         for done, future in enumerate(futures, start=1):
             results.append(future.result())
-            if tell is not None:
-                tell(done / len(futures), f"{done} of {len(futures)}")
+            if report is not None:
+                report(done / len(futures), f"{done} of {len(futures)}")
     finally:
         # After an error or Ctrl-C nobody waits for the rest.
         for future in futures:

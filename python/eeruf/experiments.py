@@ -159,7 +159,7 @@ def set_two(
     first: int = 0,
     progress: _Progress = None,
 ) -> SetTwo:
-    """Set II: a LabMate drives through random courses of 8 mm poles about 1.6 m apart, steered by what its ring tells.
+    """Set II: a LabMate drives through random courses of 8 mm poles about 1.6 m apart, steered by what its ring reads.
 
     Accepted readings fill a histogram grid (HIMM), the vector field histogram steers. Every method drives the same courses,
     for at most 40 s each. Runs on all cores; Ctrl-C ends it.
@@ -171,7 +171,7 @@ def set_two(
         second_robot: where another robot stands that fires 24 times in 80 ms: ``"behind"`` the start, ``"ahead"`` in the
             reflective corner that all sensors face, or a point (x, y) in metres of the lab, which is 10 m by 6 m.
         speed_m_s: the platform's highest speed, 0.1 to 5 m/s.
-        odometry: whether the robot tells its ring by how much readings should change from its own motion.
+        odometry: whether the robot hands its ring the changes that its own motion should cause.
         t_delta_us: readings that differ by no more are near-identical; by default 150 with odometry and 500 without.
         first: the first course's number, so that what is tuned on some courses can be tried on others.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
@@ -207,7 +207,7 @@ def speed_sweep(
     first: int = 0,
     progress: _Progress = None,
 ) -> dict[str, Any]:
-    """Set II at several top speeds: which speed each method bears. Ctrl-C ends it.
+    """Set II at several top speeds: which speed each method sustains. Ctrl-C ends it.
 
     Args:
         speeds_m_s: the platform's highest speeds, each 0.1 to 5 m/s.

@@ -184,11 +184,11 @@ def scene(
 
         orders = np.asarray(paths.order)
         shades = colormaps["viridis"](np.linspace(0.05, 0.85, int(orders.max(initial=0)) + 1))
-        told: set[int] = set()
+        labelled: set[int] = set()
         for path in np.argsort(paths.length_m, kind="stable")[:most]:
             points, order = np.asarray(paths.points(int(path))), int(orders[path])
-            label = None if order in told else f"{order} bounce{'s' * (order != 1)}"
-            told.add(order)
+            label = None if order in labelled else f"{order} bounce{'s' * (order != 1)}"
+            labelled.add(order)
             ax.plot(points[:, 0], points[:, 1], color=shades[order], linewidth=0.9, alpha=0.8, label=label)
         handles, labels = ax.get_legend_handles_labels()
         if handles:
@@ -441,7 +441,7 @@ def course(
 def _chosen(
     result: SetTwo | Run, method: str | None, course: int | None
 ) -> tuple[Run, str | None, tuple[float, float] | None]:
-    """A run, its method and where the second robot stood, as far as the result tells."""
+    """A run, its method and where the second robot stood, as far as the result says."""
     from eeruf.experiments import Run, SetTwo
 
     if isinstance(result, Run):

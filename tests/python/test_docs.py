@@ -62,10 +62,10 @@ def test_every_public_class_and_function_has_an_example(name: str) -> None:
 @pytest.mark.parametrize("name", [name for name, thing in DOCUMENTED.items() if ">>>" in (thing.__doc__ or "")])
 def test_an_example_in_a_docstring_holds(name: str) -> None:
     test = doctest.DocTestParser().get_doctest(DOCUMENTED[name].__doc__, {}, name, None, None)
-    told: list[str] = []
-    failed, tried = doctest.DocTestRunner().run(test, out=told.append)
+    printed: list[str] = []
+    failed, tried = doctest.DocTestRunner().run(test, out=printed.append)
     assert tried > 0
-    assert failed == 0, "".join(told)
+    assert failed == 0, "".join(printed)
 
 
 @pytest.mark.parametrize("module", MODULES, ids=lambda module: str(module.__name__))

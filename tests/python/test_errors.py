@@ -170,13 +170,13 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
 
 
 @pytest.mark.parametrize(("call", "error", "message"), BAD, ids=[message for _, _, message in BAD])
-def test_bad_input_is_told_by_name_value_and_expectation(
+def test_bad_input_is_refused_with_its_name_value_and_expectation(
     call: Callable[[], Any], error: type[Exception], message: str
 ) -> None:
-    with pytest.raises(error, match=message) as told:
+    with pytest.raises(error, match=message) as raised:
         call()
-    assert isinstance(told.value, eeruf.EerufError)
-    assert isinstance(told.value, ValueError)
+    assert isinstance(raised.value, eeruf.EerufError)
+    assert isinstance(raised.value, ValueError)
 
 
 # Whole calls of all kinds; numbers stay small where more would only take long.

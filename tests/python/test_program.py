@@ -32,18 +32,18 @@ def program(*words: str) -> Any:
 
 @pytest.mark.parametrize("method", [method for method in sim.METHODS if method != "eeruf_best"])
 def test_a_simulation_has_the_figures_that_the_program_prints(method: str) -> None:
-    told = program("study", "scenes/alcove.toml", "--periods", "200")["methods"][method]
+    printed = program("study", "scenes/alcove.toml", "--periods", "200")["methods"][method]
     readings = sim.simulate(sim.Scene.from_toml(ROOT / "scenes/alcove.toml"), method, periods=200)
     summary = readings.summary()
-    shared = set(told) & set(summary)
+    shared = set(printed) & set(summary)
     assert {"wrong_of_all", "rejected", "good_lost", "readings_per_s"} <= shared
-    assert {name: told[name] for name in shared} == {name: summary[name] for name in shared}
+    assert {name: printed[name] for name in shared} == {name: summary[name] for name in shared}
 
 
 def test_set_one_is_the_programs() -> None:
     methods = ["conventional", "eeruf", "eeruf_best", "multi_echo"]
-    told = program("experiment", "set-one", "--seeds", "2", "--method", ",".join(methods))
-    assert eeruf.experiments.set_one(seeds=2, methods=methods) == told
+    printed = program("experiment", "set-one", "--seeds", "2", "--method", ",".join(methods))
+    assert eeruf.experiments.set_one(seeds=2, methods=methods) == printed
 
 
 @pytest.mark.parametrize(
@@ -57,60 +57,60 @@ def test_set_one_is_the_programs() -> None:
 )
 def test_set_two_is_the_programs(words: list[str], arguments: dict[str, Any]) -> None:
     methods = ["conventional", "eeruf", "eeruf_best"]
-    told = program("experiment", "set-two", "--seeds", "2", "--method", ",".join(methods), *words)
-    assert eeruf.experiments.set_two(seeds=2, methods=methods, **arguments) == told
+    printed = program("experiment", "set-two", "--seeds", "2", "--method", ",".join(methods), *words)
+    assert eeruf.experiments.set_two(seeds=2, methods=methods, **arguments) == printed
 
 
 def test_a_sweep_of_speeds_is_the_programs() -> None:
-    told = program("experiment", "set-two", "--sweep", "--seeds", "1", "--method", "eeruf,comparison")
-    assert eeruf.experiments.speed_sweep(seeds=1, methods=["comparison", "eeruf"]) == told
+    printed = program("experiment", "set-two", "--sweep", "--seeds", "1", "--method", "eeruf,comparison")
+    assert eeruf.experiments.speed_sweep(seeds=1, methods=["comparison", "eeruf"]) == printed
 
 
 @pytest.mark.parametrize("ring", ["paper-12", "ring-24"])
 def test_a_design_is_the_programs(ring: str) -> None:
-    told = program("design", f"rings/{ring}.toml")
+    printed = program("design", f"rings/{ring}.toml")
     arguments: dict[str, Any] = (
         {"sensors": 12, "layout": "line"} if ring == "paper-12" else {"sensors": 24, "layout": "ring"}
     )
     found = eeruf.design(t_delta_us=999, min_interval_us=15_000, window_us=30_000, **arguments)
-    del told["seconds"]
-    assert Schedule.from_firing(**told.pop("schedule")) == found.schedule
-    assert {name: getattr(found, name) for name in told} == told
-    assert {"value_us", "bound_us", "proven", "nodes", "reason"} == set(told)
+    del printed["seconds"]
+    assert Schedule.from_firing(**printed.pop("schedule")) == found.schedule
+    assert {name: getattr(found, name) for name in printed} == printed
+    assert {"value_us", "bound_us", "proven", "nodes", "reason"} == set(printed)
 
 
 def test_the_best_table_of_waits_is_the_programs() -> None:
-    told = program("search", "rings/table-i-waits.toml", "--best", "interval")
+    printed = program("search", "rings/table-i-waits.toml", "--best", "interval")
     needs: dict[str, Any] = {"t_delta_us": 999, "min_interval_us": 15_000, "criterion": "paper"}
     found = eeruf.WaitSearch(12, 100_000, 24_000, 1_000, **needs).best("interval")
-    assert Schedule(**told["schedule"]) == found.schedule
-    assert [told[name] for name in ("value_us", "bound_us", "nodes")] == [found.value_us, found.bound_us, found.nodes]
+    assert Schedule(**printed["schedule"]) == found.schedule
+    assert [printed[name] for name in ("value_us", "bound_us", "nodes")] == [found.value_us, found.bound_us, found.nodes]
 
 
 def test_a_log_is_judged_as_by_the_program() -> None:
     log = "tests/data/scitos-g5-24-sonars.csv"
-    told = program("replay", log, "--t-delta-us", "500")["total"]
+    printed = program("replay", log, "--t-delta-us", "500")["total"]
     metres = np.genfromtxt(ROOT / log, delimiter=",", skip_header=1, usecols=range(24))
     echoes_us = np.where(metres >= 5.0, np.nan, 2e6 * metres / 343.2)
     kinds = eeruf.EchoFilter(24, 500).push_many(echoes_us)
     counted = np.bincount(kinds.ravel(), minlength=len(eeruf.KINDS))
-    assert {name: counted[eeruf.KINDS.index(name)] for name in told if name in eeruf.KINDS} == {
-        name: count for name, count in told.items() if name in eeruf.KINDS
+    assert {name: counted[eeruf.KINDS.index(name)] for name in printed if name in eeruf.KINDS} == {
+        name: count for name, count in printed.items() if name in eeruf.KINDS
     }
-    assert told["accepted"] > 1000
+    assert printed["accepted"] > 1000
 
 
 def test_a_report_is_the_programs() -> None:
-    told = program("verify", "rings/table-i-b.toml", "--t-delta-us", "999", "--min-interval-us", "15000")
+    printed = program("verify", "rings/table-i-b.toml", "--t-delta-us", "999", "--min-interval-us", "15000")
     report = tables.TABLE_I_B.verify(999, min_interval_us=15_000)
     shown = {
         name: getattr(report, name)
         for name in ("ok", "separation_us", "max_t_delta_us", "min_interval_us", "min_refire_us")
     }
-    assert shown == {name: told[name] for name in shown}
+    assert shown == {name: printed[name] for name in shown}
     fields: list[dict[str, Any]] = [
         {name: tuple(value) if isinstance(value, list) else value for name, value in violation.items()}
-        for violation in told["violations"]
+        for violation in printed["violations"]
     ]
     violations = [Violation(**violation) for violation in fields]
     assert list(report.violations) == violations

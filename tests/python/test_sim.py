@@ -72,13 +72,13 @@ def test_every_reading_of_crosstalk_knows_its_path_and_keeps_it_in_a_pickle() ->
     copy = pickle.loads(pickle.dumps(readings))
     crosstalk = readings.cause == sim.CAUSES.index("crosstalk")
     assert crosstalk.sum() > 100
-    for told in (readings, copy):
-        paths, along = told.paths, told.path[crosstalk]
+    for same in (readings, copy):
+        paths, along = same.paths, same.path[crosstalk]
         assert along.min() >= 0
-        assert np.array_equal(paths["receiver"][along], told.sensor[crosstalk])
-        assert (paths["emitter"][along] != told.sensor[crosstalk]).all()
+        assert np.array_equal(paths["receiver"][along], same.sensor[crosstalk])
+        assert (paths["emitter"][along] != same.sensor[crosstalk]).all()
         assert [len(paths["walls"][path]) for path in along] == paths["order"][along].tolist()
-        flight_us = told.fired_s[crosstalk] * 1e6 + told.t_echo_us[crosstalk] - told.emitted_s[crosstalk] * 1e6
+        flight_us = same.fired_s[crosstalk] * 1e6 + same.t_echo_us[crosstalk] - same.emitted_s[crosstalk] * 1e6
         # At 343 m/s, give or take jitter of a robot's clock and of its sensors.
         assert np.allclose(flight_us * 343.2e-6, paths["length_m"][along], atol=0.05)
     assert (readings.path[readings.cause == sim.CAUSES.index("nothing")] == -1).all()

@@ -4,10 +4,12 @@
 //! compiler wrote down. The budgets of a Cortex-M0 with twelve sensors are checked.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::env::consts::EXE_SUFFIX;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::measured::{self, Tables};
 use crate::steps::{Trouble, output, run};
 use crate::toolchain::cargo_for_target;
 
@@ -32,18 +34,26 @@ const BOARDS: [Board; 4] = [
 
 /// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions).
 const INSTRUCTIONS: [(&str, u32); 5] = [("idle_poll", 40), ("fire", 80), ("echo", 60), ("stamp", 60), ("reading", 400)];
+/// The program on the host that puts the boards into a simulated world, and the boards' side of it.
+const HARNESS: &str = "eeruf-hil";
+const BOARD_PROGRAM: &str = "eeruf-hil-board";
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
 const FLASH: u64 = 4096;
 const RAM: u64 = 12 * 16 + 64;
 const STACK: u64 = 256;
 
-/// Builds, runs and measures everything; prints the tables of `docs/firmware.md`.
-pub(crate) fn firmware() -> Result<(), Trouble> {
-    crate::listings::check("docs/firmware.md")?;
-    let tables = measure_all()?;
-    println!("\n{tables}");
-    Ok(())
+/// Builds, runs and measures everything; prints the tables of `docs/firmware.md`, and compares them with what stands
+/// there or writes them.
+pub(crate) fn firmware(write: bool) -> Result<(), Trouble> {
+    let (tables, over) = measure_all()?;
+    for (name, table) in &tables {
+        println!("\n{name}:\n\n{table}");
+    }
+    if !over.is_empty() {
+        return Err(Trouble::Failed(over.join("; ")));
+    }
+    if write { measured::write(&tables) } else { measured::check(&tables) }
 }
 
 /// Formatting, and Clippy for all but RTIC's program, which is of another target.
@@ -64,8 +74,9 @@ pub(crate) fn lint() -> Result<(), Trouble> {
     run(Command::new("cargo").current_dir("firmware").args(host))
 }
 
-fn measure_all() -> Result<String, Trouble> {
-    let mut text = String::new();
+/// The tables, and which budgets are exceeded.
+fn measure_all() -> Result<(Tables, Vec<String>), Trouble> {
+    let mut tables = Tables::new();
     let mut instructions = Vec::new();
     let mut sizes = Vec::new();
     let mut lateness = Vec::new();
@@ -92,8 +103,13 @@ fn measure_all() -> Result<String, Trouble> {
     c_examples(lm3s6965)?;
     let in_the_loop = in_the_loop()?;
 
+    let mut text = "| board | compiler |\n|---|---|\n".to_owned();
+    for board in &BOARDS {
+        text += &format!("| {} | {} |\n", board.name, compiler(board)?);
+    }
+    tables.insert(measured::COMPILERS, text);
     let mut over = Vec::new();
-    text += "| board | call | fewest instructions | most |\n|---|---|---:|---:|\n";
+    let mut text = "| board | call | fewest instructions | most |\n|---|---|---:|---:|\n".to_owned();
     for (board, said) in &instructions {
         for line in said.lines() {
             let [name, fewest, most] = line.split(' ').collect::<Vec<_>>()[..] else { continue };
@@ -107,7 +123,8 @@ fn measure_all() -> Result<String, Trouble> {
             }
         }
     }
-    text += "\n| board | sensors | flash (text) | data + bss |\n|---|---:|---:|---:|\n";
+    tables.insert("instructions", text);
+    let mut text = "| board | sensors | flash (text) | data + bss |\n|---|---:|---:|---:|\n".to_owned();
     for (board, with, bare) in sizes {
         let bare = bare?;
         for (k, with) in [8, 12, 24].into_iter().zip(with) {
@@ -119,7 +136,8 @@ fn measure_all() -> Result<String, Trouble> {
             }
         }
     }
-    text += "\n| board | function | worst stack, bytes |\n|---|---|---:|\n";
+    tables.insert("size", text);
+    let mut text = "| board | function | worst stack, bytes |\n|---|---|---:|\n".to_owned();
     for board in [microbit, lm3s6965] {
         for (function, bytes) in stack(board)? {
             text += &format!("| {} | `{function}` | {bytes} |\n", board.name);
@@ -128,13 +146,27 @@ fn measure_all() -> Result<String, Trouble> {
             }
         }
     }
-    text += "\n| board | ns per instruction | lateness under echo load |\n|---|---:|---|\n";
+    tables.insert("stack", text);
+    let mut text = "| board | ns per instruction | lateness under echo load |\n|---|---:|---|\n".to_owned();
     for (board, shift, said) in lateness {
         text += &format!("| {} | {} | {} |\n", board.name, 1 << shift, said.trim());
     }
+    tables.insert("lateness", text);
     let search = run_image(lm3s6965, "search", 6)?;
-    text += &format!("\nSearch on {}: {}\n\n{in_the_loop}", lm3s6965.name, search.trim());
-    if over.is_empty() { Ok(text) } else { Err(Trouble::Failed(format!("{text}\n{}", over.join("; ")))) }
+    tables.insert("search", format!("| board | search |\n|---|---|\n| {} | {} |\n", lm3s6965.name, search.trim()));
+    tables.insert("in a simulated world", in_the_loop);
+    Ok((tables, over))
+}
+
+/// The compiler that a board's figures are of, as "rustc 1.95".
+fn compiler(board: &Board) -> Result<String, Trouble> {
+    let debian = cargo(board)?.get_program() == "/usr/bin/cargo";
+    let rustc = if debian { "/usr/bin/rustc" } else { "rustc" };
+    let said = output(Command::new(rustc).arg("--version")).unwrap_or_default();
+    let version = said.strip_prefix("rustc ").and_then(|rest| rest.split('.').nth(1).map(|minor| (rest, minor)));
+    let (rest, minor) = version.ok_or_else(|| Trouble::Failed(format!("{rustc} --version says {said}")))?;
+    let major = rest.split('.').next().unwrap_or_default();
+    Ok(format!("rustc {major}.{minor}"))
 }
 
 /// `cargo` for a board, in the firmware's own workspace.
@@ -177,14 +209,16 @@ fn emulator(board: &Board, image: &Path, shift: u32) -> Command {
 
 /// The boards' rings in the simulated world, in lock step with the host's; the tables that come of it.
 fn in_the_loop() -> Result<String, Trouble> {
-    let mut cargo = Command::new("cargo");
-    cargo.args(["run", "--quiet", "--locked", "--package", "eeruf-loop", "--", "scenes/alcove-hc-sr04.toml"]);
+    // With the features of the whole workspace, as built for the tests.
+    run(Command::new("cargo").args(["build", "--quiet", "--locked", "--workspace", "--bin", HARNESS]))?;
+    let mut harness = Command::new(format!("target/debug/{HARNESS}{EXE_SUFFIX}"));
+    harness.arg("scenes/alcove-hc-sr04.toml");
     for board in &BOARDS {
-        let qemu = emulator(board, &image(board, "eeruf-loop-board")?, 6);
-        cargo.args(["--board", board.name]).arg(qemu.get_program()).args(qemu.get_args());
+        let qemu = emulator(board, &image(board, BOARD_PROGRAM)?, 6);
+        harness.args(["--board", board.name]).arg(qemu.get_program()).args(qemu.get_args());
     }
     let what = |why: &dyn std::fmt::Display| Trouble::Failed(format!("hardware in the loop: {why}"));
-    let said = cargo.stderr(Stdio::inherit()).output().map_err(|error| what(&error))?;
+    let said = harness.stderr(Stdio::inherit()).output().map_err(|error| what(&error))?;
     let tables = String::from_utf8_lossy(&said.stdout).into_owned();
     if said.status.success() { Ok(tables) } else { Err(what(&said.status)) }
 }
@@ -300,8 +334,8 @@ fn llvm(tool: &str, args: &[&str], image: &Path) -> Result<String, Trouble> {
     Err(Trouble::Skipped(format!("no llvm-{tool}; install llvm-22")))
 }
 
-/// The worst stack of each public function of `Ring`, over all calls it can lead to: the compiler writes the size of each
-/// frame, the disassembly says who calls whom.
+/// The worst stack of each public function of `Ring`, over all calls it can lead to: the compiler writes the size of
+/// each frame, the disassembly says who calls whom.
 fn stack(board: &Board) -> Result<Vec<(String, u64)>, Trouble> {
     let mut cargo = cargo(board)?;
     let target_dir = cargo.get_envs().find(|(key, _)| *key == "CARGO_TARGET_DIR").and_then(|(_, value)| value);

@@ -3,12 +3,17 @@
 
 use std::fs;
 
+use crate::printed::documents;
 use crate::steps::Trouble;
 
-/// Compares each listing of a document with its file.
-///
-/// The lines are those from the first that contains the text after `from` to the next that contains the text after `to`.
-pub(crate) fn check(document: &str) -> Result<(), Trouble> {
+/// Compares each listing of every document with its file.
+pub(crate) fn check_all() -> Result<(), Trouble> {
+    documents()?.iter().try_for_each(|document| check(document))
+}
+
+/// The lines are those from the first that contains the text after `from` to the next that contains the text after
+/// `to`.
+fn check(document: &str) -> Result<(), Trouble> {
     let text = read(document)?;
     let mut rest = text.as_str();
     let mut listings = 0;
@@ -30,7 +35,9 @@ pub(crate) fn check(document: &str) -> Result<(), Trouble> {
         listings += 1;
         rest = after;
     }
-    println!("{document}: {listings} listings are as in their files");
+    if listings > 0 {
+        println!("{document}: {listings} listings are as in their files");
+    }
     Ok(())
 }
 

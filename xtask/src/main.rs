@@ -1,43 +1,103 @@
 //! The project's own commands.
 //!
-//! `cargo xtask test` runs every check there is, the cheap ones first. A check whose tools are not installed is skipped
-//! with a loud word on what to install; with `--nothing-skipped`, as in CI, that counts as a failure.
+//! `cargo xtask test` runs every check there is, the cheap ones first. A check whose tools are not installed is
+//! skipped, and says loudly what to install; with `--nothing-skipped`, as in CI, that counts as a failure.
 
-mod checks;
+mod blocks;
+mod changed;
 mod firmware;
 mod listings;
+mod measured;
+mod periods;
 mod printed;
 mod python;
+mod quick;
 mod steps;
+mod test;
 mod toolchain;
 
 use std::process::ExitCode;
 
+use clap::{Parser, Subcommand};
+
+use crate::steps::{Steps, Trouble};
+
+/// The project's own commands: check everything, a part, or what changed; print the tables of the documents anew.
+#[derive(Parser)]
+#[command(bin_name = "cargo xtask", max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    /// Run every check that CI runs, the cheap ones first; each step prints how long it took
+    Test {
+        /// Only formatting, lints, the documents' listings, and the unit tests of the packages that changed since the
+        /// branch left the main one
+        #[arg(long, conflicts_with = "nothing_skipped")]
+        quick: bool,
+        /// Fail where a tool is not installed, instead of skipping what needs it
+        #[arg(long)]
+        nothing_skipped: bool,
+    },
+    /// Build the firmware, run it on emulated boards, and compare its figures with those of docs/firmware.md
+    Firmware {
+        /// Put the tables into the document instead of comparing them
+        #[arg(long)]
+        write: bool,
+    },
+    /// Build the wheel and test it: types, examples, and against what Rust says
+    Python,
+    /// Run the commands that printed the documents' tables again, and put what they print in place of what stands there
+    Reprint {
+        /// Only compare, all documents if none is named; timings are left alone
+        #[arg(long)]
+        check: bool,
+        /// The document
+        #[arg(value_name = "DOCUMENT", required_unless_present = "check")]
+        document: Option<String>,
+    },
+    /// Print the table of shortest periods that docs/search.md shows
+    Periods {
+        /// What to pass to the example `shortest_periods` of eeruf-core
+        #[arg(value_name = "ARGUMENT")]
+        arguments: Vec<String>,
+    },
+}
+
 fn main() -> ExitCode {
-    let args: Vec<String> = std::env::args().skip(1).collect();
-    let args: Vec<&str> = args.iter().map(String::as_str).collect();
-    match args[..] {
-        ["test"] => checks::run_all(false),
-        ["test", "--nothing-skipped"] => checks::run_all(true),
-        ["firmware"] => {
-            let mut steps = steps::Steps::default();
+    match Cli::parse().verb {
+        Verb::Test { quick: true, .. } => quick::run_quick(),
+        Verb::Test { nothing_skipped, .. } => test::run_all(nothing_skipped),
+        Verb::Firmware { write } => {
+            let mut steps = Steps::default();
             steps.step("lint of the firmware", firmware::lint);
-            steps.step("firmware on emulated boards", firmware::firmware);
+            steps.step("firmware on emulated boards", || firmware::firmware(write));
             steps.finish(true)
         }
-        ["python"] => {
-            let mut steps = steps::Steps::default();
-            steps.step("Python package", python::python);
-            steps.finish(true)
-        }
-        ["reprint", document] => {
-            let mut steps = steps::Steps::default();
-            steps.step("what the program prints", || printed::reprint(document));
-            steps.finish(true)
-        }
-        _ => {
-            eprintln!("usage: cargo xtask test [--nothing-skipped] | firmware | python | reprint DOCUMENT");
-            ExitCode::from(2)
-        }
+        Verb::Python => one_step("Python package", python::python),
+        Verb::Reprint { check, document } => one_step("what the programs print", || match document {
+            Some(document) if check => printed::check(&[document], printed::Which::All),
+            Some(document) => printed::reprint(&document),
+            None => printed::check(&printed::documents()?, printed::Which::All),
+        }),
+        Verb::Periods { arguments } => match periods::table(&arguments) {
+            Ok(table) => {
+                print!("{table}");
+                ExitCode::SUCCESS
+            }
+            Err(Trouble::Failed(why) | Trouble::Skipped(why)) => {
+                eprintln!("{why}");
+                ExitCode::FAILURE
+            }
+        },
     }
+}
+
+fn one_step(name: &str, run: impl FnOnce() -> Result<(), Trouble>) -> ExitCode {
+    let mut steps = Steps::default();
+    steps.step(name, run);
+    steps.finish(true)
 }

@@ -1,31 +1,142 @@
-//! What documents quote of the program's output: `<!-- printed by: eeruf ARGUMENTS -->` stands before it, `<!-- end -->`
-//! after it.
+//! What documents quote of programs' output: `<!-- printed by: COMMAND -->` stands before it, `<!-- end -->` after it.
+//!
+//! The command is `eeruf ARGUMENTS` or `cargo ARGUMENTS`. Words in brackets say more, as in
+//! `<!-- printed by (large, decimals are timings): COMMAND -->`: what takes long, and where numbers with a decimal
+//! point are timings, which are not compared.
 
 use std::fs;
 use std::process::Command;
 
-use crate::steps::{Trouble, output, run};
+use crate::blocks::{Block, blocks, replaced};
+use crate::steps::{Trouble, run};
 
-const PRINTED_BY: &str = "<!-- printed by: eeruf ";
-const END: &str = "<!-- end -->";
+const PRINTED_BY: &str = "<!-- printed by";
 
-/// Runs every such command of a document again and puts what it prints in place of what stands there.
-pub(crate) fn reprint(document: &str) -> Result<(), Trouble> {
-    run(Command::new("cargo").args(["build", "--release", "--locked", "--package", "eeruf", "--bin", "eeruf"]))?;
-    let failed = |why: String| Trouble::Failed(format!("{document}: {why}"));
-    let text = fs::read_to_string(document).map_err(|error| failed(error.to_string()))?;
-    let mut fresh = String::new();
-    for (place, block) in text.split(PRINTED_BY).enumerate() {
-        if place == 0 {
-            fresh += block;
-            continue;
+/// Which parts of a document to compare.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Which {
+    All,
+    /// Those that are neither large nor by `eeruf`, whose small ones the program's own tests compare.
+    SmallOfOthers,
+}
+
+/// How a part was printed.
+#[derive(Debug, PartialEq, Eq)]
+struct Mark<'a> {
+    large: bool,
+    decimals_are_timings: bool,
+    command: &'a str,
+}
+
+fn mark<'a>(block: &Block<'a>) -> Result<Mark<'a>, Trouble> {
+    let bad = || Trouble::Failed(format!("`printed by{}`; expected `printed by (WORDS): COMMAND`", block.label));
+    let (words, command) = block.label.split_once(": ").ok_or_else(bad)?;
+    let words = words.trim().trim_start_matches('(').trim_end_matches(')');
+    let mut mark = Mark { large: false, decimals_are_timings: false, command };
+    for word in words.split(", ").filter(|word| !word.is_empty()) {
+        match word {
+            "large" => mark.large = true,
+            "decimals are timings" => mark.decimals_are_timings = true,
+            _ => return Err(bad()),
         }
-        let (arguments, rest) = block.split_once(" -->\n").ok_or_else(|| failed("a comment has no end".to_owned()))?;
-        let (_, after) = rest.split_once(END).ok_or_else(|| failed(format!("no end after {arguments}")))?;
-        println!("eeruf {arguments}");
-        let printed = output(Command::new("target/release/eeruf").args(arguments.split_whitespace()))
-            .ok_or_else(|| failed(format!("eeruf {arguments} fails")))?;
-        fresh += &format!("{PRINTED_BY}{arguments} -->\n\n{printed}\n\n{END}{after}");
     }
-    fs::write(document, fresh).map_err(|error| failed(error.to_string()))
+    Ok(mark)
+}
+
+/// The README, and all documents in `docs`.
+pub(crate) fn documents() -> Result<Vec<String>, Trouble> {
+    let failed = |error: std::io::Error| Trouble::Failed(format!("docs: {error}"));
+    let mut all = vec!["README.md".to_owned()];
+    for entry in fs::read_dir("docs").map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if path.extension().is_some_and(|ending| ending == "md") {
+            all.push(path.display().to_string());
+        }
+    }
+    all.sort();
+    Ok(all)
+}
+
+/// Compares what stands in documents with what their commands print now.
+pub(crate) fn check(documents: &[String], which: Which) -> Result<(), Trouble> {
+    let mut differ = Vec::new();
+    let mut same = 0;
+    for document in documents {
+        for block in blocks(&read(document)?, PRINTED_BY)? {
+            let mark = mark(&block)?;
+            if which == Which::SmallOfOthers && (mark.large || mark.command.starts_with("eeruf ")) {
+                continue;
+            }
+            let printed = output_of(mark.command)?;
+            let compared =
+                |text: &str| if mark.decimals_are_timings { without_decimals(text) } else { text.to_owned() };
+            if compared(block.body.trim()) == compared(printed.trim()) {
+                same += 1;
+            } else {
+                println!("{document}: {} prints\n{printed}", mark.command);
+                differ.push(format!("{document}: {}", mark.command));
+            }
+        }
+    }
+    println!("{same} parts of documents are as printed");
+    if differ.is_empty() { Ok(()) } else { Err(Trouble::Failed(format!("not as printed: {}", differ.join("; ")))) }
+}
+
+/// Puts what the commands of a document print now in place of what stands there.
+pub(crate) fn reprint(document: &str) -> Result<(), Trouble> {
+    let fresh = replaced(&read(document)?, PRINTED_BY, |block| output_of(mark(block)?.command))?;
+    fs::write(document, fresh).map_err(|error| Trouble::Failed(format!("{document}: {error}")))
+}
+
+fn read(document: &str) -> Result<String, Trouble> {
+    fs::read_to_string(document).map_err(|error| Trouble::Failed(format!("{document}: {error}")))
+}
+
+/// What a command prints on standard output.
+fn output_of(command: &str) -> Result<String, Trouble> {
+    println!("{command}");
+    let failed = |why: &dyn std::fmt::Display| Trouble::Failed(format!("{command}: {why}"));
+    let mut words = command.split_whitespace();
+    let mut process = match words.next() {
+        Some("eeruf") => {
+            let program = ["build", "--quiet", "--release", "--locked", "--package", "eeruf", "--bin", "eeruf"];
+            run(Command::new("cargo").args(program))?;
+            Command::new("target/release/eeruf")
+        }
+        Some("cargo") => Command::new("cargo"),
+        _ => return Err(failed(&"expected eeruf or cargo")),
+    };
+    let output = process.args(words).output().map_err(|error| failed(&error))?;
+    if !output.status.success() {
+        return Err(failed(&String::from_utf8_lossy(&output.stderr)));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// The text with each number that has a decimal point left out, and without the spaces that align columns.
+fn without_decimals(text: &str) -> String {
+    let is_timing = |word: &str| word.contains('.') && word.replace(',', "").parse::<f64>().is_ok();
+    let words = text.split(|letter: char| letter.is_whitespace() || "()".contains(letter));
+    words.filter(|word| !word.is_empty() && !is_timing(word)).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mark_says_what_is_large_and_what_are_timings() {
+        let of = |label| mark(&Block { label, body: "" }).ok();
+        let plain = Mark { large: false, decimals_are_timings: false, command: "eeruf design" };
+        assert_eq!(of(": eeruf design"), Some(plain));
+        let both = Mark { large: true, decimals_are_timings: true, command: "cargo run" };
+        assert_eq!(of(" (large, decimals are timings): cargo run"), Some(both));
+        assert_eq!(of(" (huge): cargo run"), None);
+    }
+
+    #[test]
+    fn timings_are_left_alone_and_nothing_else() {
+        assert_eq!(without_decimals("| 62 (26 / 0.1) |"), without_decimals("| 62 (26 / 12.75)  |"));
+        assert_ne!(without_decimals("| 62 (26 / 0.1) |"), without_decimals("| 62 (27 / 0.1) |"));
+    }
 }

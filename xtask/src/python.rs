@@ -1,5 +1,5 @@
-//! `cargo xtask python`: builds the wheel once, installs it into a virtual environment of its own, and holds it against its
-//! tests, its types and its examples, and against what Rust says.
+//! `cargo xtask python`: builds the wheel once, installs it into a virtual environment of its own, and holds it against
+//! its tests, its types and its examples, and against what Rust says.
 
 use std::env::consts::EXE_SUFFIX;
 use std::fs;
@@ -32,7 +32,8 @@ pub(crate) fn python() -> Result<(), Trouble> {
     fresh(&wheel)?;
     // What Python is held against: the program, and the paths of the corpus.
     let mut cargo = Command::new("cargo");
-    cargo.args(["build", "--locked", "--package", "eeruf", "--package", "eeruf-sim"]);
+    // With the features of the whole workspace, as built for the tests.
+    cargo.args(["build", "--locked", "--workspace"]);
     run(cargo.args(["--bin", "eeruf", "--example", "rust_side"]))?;
     let built = |name: &str| std::path::absolute(format!("target/debug/{name}{EXE_SUFFIX}"));
     let (program, rust_side) = match (built("eeruf"), built("examples/rust_side")) {

@@ -3,7 +3,7 @@
 
 use std::hint::black_box;
 
-use eeruf_core::search::wait::{Control, Objective, memory_words};
+use eeruf_core::search::wait::{Budget, Objective, memory_words};
 use eeruf_core::search::{PeriodProblem, WaitProblem, WaitSearch, design};
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Criterion, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingEvent, Schedule};
@@ -74,7 +74,7 @@ fn best_interval_12() -> Option<Micros> {
     };
     let search = WaitSearch::new(&black_box(needs)).ok()?;
     let mut memory = vec![0; memory_words(12)];
-    search.best::<12>(Objective::Interval, &mut memory, &mut Control::unlimited()).ok()?.value
+    search.best::<12>(Objective::Interval, &mut memory, &mut Budget::unlimited()).ok()?.value
 }
 
 // A thousand readings of one sensor.
@@ -111,6 +111,7 @@ fn ring_100_periods() -> u32 {
 
 library_benchmark_group!(
     name = core;
-    benchmarks = design_paper_12, design_paper_12_fine, design_ring_8, design_ring_8_fine, design_line_24, best_interval_12, filter_1000_readings, ring_100_periods
+    benchmarks = design_paper_12, design_paper_12_fine, design_ring_8, design_ring_8_fine, design_line_24,
+        best_interval_12, filter_1000_readings, ring_100_periods
 );
 main!(library_benchmark_groups = core);

@@ -1,21 +1,14 @@
-//! Prints the table of shortest periods with what each cost: `cargo run --release --example shortest_periods [ticks-per-ms] [separation-ms]
-//! [sensors,..] [neighbours] [layout,..] [budget] [window-ms,..]
-//! [threads]`, the last with the feature `std`; without arguments the table of the theory, 8 to 24 sensors in a line and in a ring.
+//! Prints the table of shortest periods with what each cost: `cargo run --release --example shortest_periods
+//! [ticks-per-ms] [separation-ms] [sensors,..] [neighbours] [layout,..] [budget] [window-ms,..] [threads]`, the last
+//! with the feature `std`; without arguments the table of `docs/search.md`, 8 to 24 sensors in a line and in a ring.
 //!
 //! The columns are read by `benches/peers/design_cpsat.py`; keep them in step.
 
 use std::time::Instant;
 
-use eeruf_core::search::design::{Problem, ProblemError, Shortest, memory_words, shortest};
-
-fn conflicts(sensors: usize, neighbours: usize, layout: &str) -> Vec<u64> {
-    let conflict = |x: usize, y: usize| match layout {
-        "ring" => x.abs_diff(y).min(sensors - x.abs_diff(y)) < neighbours,
-        "blocks" => x / neighbours == y / neighbours,
-        _ => x.abs_diff(y) < neighbours,
-    };
-    (0..sensors).map(|x| (0..sensors).filter(|&y| x != y && conflict(x, y)).map(|y| 1 << y).sum()).collect()
-}
+use eeruf_core::Layout;
+use eeruf_core::search::ProblemError;
+use eeruf_core::search::design::{Problem, Shortest, memory_words, shortest};
 
 fn list<T: std::str::FromStr>(text: &str) -> Vec<T> {
     text.split(',').filter_map(|item| item.parse().ok()).collect()
@@ -36,7 +29,7 @@ fn main() {
     let argument = |i: usize, default: &'static str| arguments.get(i).map_or(default, String::as_str).to_owned();
     let ticks = list::<u32>(&argument(0, "1"))[0];
     let separation = list::<u32>(&argument(1, "2"))[0] * ticks;
-    let neighbours = list::<usize>(&argument(3, "4"))[0];
+    let neighbours = list::<u8>(&argument(3, "4"))[0];
     let budget = list::<u64>(&argument(5, "100000000"))[0];
     let windows = list::<u32>(&argument(6, "15,30,45,60"));
     let threads = list::<usize>(&argument(7, "0"))[0];
@@ -44,12 +37,17 @@ fn main() {
     let (mut times, begin) = (Vec::new(), Instant::now());
     for layout in list::<String>(&argument(4, "line,ring")) {
         for sensors in list::<usize>(&argument(2, "8,12,16,24")) {
-            let rows = conflicts(sensors, neighbours, &layout);
+            let rows = match layout.as_str() {
+                "ring" => Layout::Ring(neighbours),
+                "blocks" => Layout::Blocks(neighbours),
+                _ => Layout::Line(neighbours),
+            }
+            .rows(sensors);
             let mut memory = vec![0; memory_words(sensors)];
             for &window in &windows {
                 let problem = Problem {
                     sensors,
-                    conflicts: &rows,
+                    conflicts: &rows[..sensors],
                     separation,
                     interval: 15 * ticks,
                     window: window * ticks,
@@ -61,7 +59,7 @@ fn main() {
                 times.push(milliseconds);
                 println!(
                     "{layout} {sensors} {window} {} {} {} {milliseconds:.2} {}",
-                    found.period, found.bound, found.nodes, found.reason
+                    found.period, found.bound, found.nodes, found.explanation
                 );
             }
         }

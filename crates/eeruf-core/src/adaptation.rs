@@ -1,4 +1,5 @@
-//! Adaptive scheduling (end of Sec. 3.1): fire more slowly where too much is rejected, and faster again when it is calm.
+//! Adaptive scheduling (end of Sec. 3.1): fire more slowly where too much is rejected, and faster again when it is
+//! calm.
 
 use core::fmt;
 
@@ -45,22 +46,24 @@ impl<'s, const K: usize> Ladder<'s, K> {
     }
 }
 
-/// Watches the rejection rate over windows of some periods, and says when to change to another schedule of a [`Ladder`].
+/// Watches the rejection rate over windows of some periods, and says when to change to another schedule of a
+/// [`Ladder`].
 ///
-/// One noisy window moves one rung up, to a longer period; only several calm windows running move one rung down. Feed it
-/// the [`PeriodStats`] of a [`Ring`](crate::Ring) that began with the shortest period, and hand what it returns to
+/// One noisy window moves one rung up, to a longer period; only several calm windows running move one rung down. Feed
+/// it the [`PeriodStats`] of a [`Ring`](crate::Ring) that began with the shortest period, and hand what it returns to
 /// [`Ring::change_schedule`](crate::Ring::change_schedule).
 #[derive(Clone, Debug)]
 pub struct Adaptation<'s, const K: usize> {
     ladder: Ladder<'s, K>,
     rung: usize,
-    /// Above this rejection rate, in thousandths, it fires more slowly. 300 to begin with.
+    /// Above this rejection rate, in thousandths, it fires more slowly. Default: 300, a choice of ours; the paper names
+    /// none.
     pub noisy_permille: u16,
-    /// Up to this rejection rate, in thousandths, a window is calm. 100 to begin with.
+    /// Up to this rejection rate, in thousandths, a window is calm. Default: 100.
     pub calm_permille: u16,
-    /// The number of periods in a window. 16 to begin with; 0 counts as 1.
+    /// The number of periods in a window. Default: 16; 0 counts as 1.
     pub window: u8,
-    /// How many calm windows running it takes to fire faster. 4 to begin with; 0 counts as 1.
+    /// How many calm windows running it takes to fire faster. Default: 4; 0 counts as 1.
     pub patience: u8,
     periods: u8,
     calm_windows: u8,

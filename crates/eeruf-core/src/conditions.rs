@@ -8,18 +8,18 @@
 //! ```
 //!
 //! where `T` are the waits of phases a and b. Read literally this fails on the paper's own tables (it reaches -22 ms on
-//! Tables I-b and I-d). With the absolute value of the whole left side they have exactly the 2 ms that the paper claims:
-//! [`Criterion::Paper`]. What the derivation from (10a), (10b) really needs is weaker, [`Criterion::Exact`]: with
-//! `d_i = T_i,a - T_i,b`,
+//! Tables I-b and I-d). With the absolute value of the whole left side they have exactly the 2 ms that the paper
+//! claims: [`Criterion::Paper`]. What the derivation from (10a), (10b) really needs is weaker, [`Criterion::Exact`]:
+//! with `d_i = T_i,a - T_i,b`,
 //!
 //! ```text
 //! |d_x - d_y| > 2 T_delta   and   |d_x + d_y| > 2 T_delta
 //! ```
 //!
-//! The first is how far crosstalk from x to y moves between consecutive readings if it arrives an even number of periods
-//! after it was sent, the second for an odd number. Since `||p| - |q|| = min(|p - q|, |p + q|)`, both criteria are
-//! packings on a line, which sorting checks: Exact holds if and only if the `|d_i|` are pairwise separated, and Paper if
-//! and only if the sums `T_i,a + T_i,b` are separated as well.
+//! The first is how far crosstalk from x to y moves between consecutive readings if it arrives an even number of
+//! periods after it was sent, the second for an odd number. Since `||p| - |q|| = min(|p - q|, |p + q|)`, both criteria
+//! are packings on a line, which sorting checks: Exact holds if and only if the `|d_i|` are pairwise separated, and
+//! Paper if and only if the sums `T_i,a + T_i,b` are separated as well.
 //!
 //! Times are whole microseconds and *near-identical* means `difference <= T_delta`, so `> 2 T_delta` is
 //! `>= 2 T_delta + 1 us`.

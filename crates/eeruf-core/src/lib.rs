@@ -1,9 +1,9 @@
 //! *Error Eliminating Rapid Ultrasonic Firing* (EERUF) for rings of ultrasonic range sensors, without an allocator.
 //!
-//! Sensors that fire at the same time hear each other: *crosstalk*. Firing one by one avoids it and is slow. EERUF fires
-//! every sensor once per period `T_p` at `T_fire = T_lag + T_wait`, where `T_wait` alternates between two values that
-//! differ from sensor to sensor, and accepts a reading only if it is near-identical to the one before. A true echo does
-//! not depend on the waits; crosstalk shifts with them and is rejected.
+//! Sensors that fire at the same time hear each other: *crosstalk*. Firing one by one avoids it and is slow. EERUF
+//! fires every sensor once per period `T_p` at `T_fire = T_lag + T_wait`, where `T_wait` alternates between two values
+//! that differ from sensor to sensor, and accepts a reading only if it is near-identical to the one before. A true echo
+//! does not depend on the waits; crosstalk shifts with them and is rejected. What is proven, and why: [`theory`].
 //!
 //! - [`Schedule`]: when each sensor fires. [`schedule!`] checks a table while the firmware is compiled.
 //! - [`Requirements`] and [`Schedule::verify`]: Eqs. (13a), (13b), the smallest interval between neighbours, and the
@@ -14,27 +14,28 @@
 //! - [`SpeedOfSound`]: distances from echo times.
 //!
 //! The crate is `no_std` and uses no allocator, no floats and no clock: the caller passes `now` in and sleeps until the
-//! deadline it is told, so the same code runs in an interrupt, in a simulator and in a test. Sensors are counted from 0
-//! in code and printed from 1, as in the paper.
+//! deadline it gets back, so the same code runs in an interrupt, in a simulator and in a test. Sensors are counted from
+//! 0 in code and printed from 1, as in the paper.
 //!
-//! Features, all off by default, for crates that firmware already uses: `defmt` (formats), `serde` (readings and times),
-//! `fugit` and `embassy-time` (conversions of times); and `std` (threads for the search of the shortest period).
+//! Features, all off by default, for crates that firmware already uses: `defmt` (formats), `serde` (readings and
+//! times), `fugit` and `embassy-time` (conversions of times); and `std` (threads for the search of the shortest
+//! period).
 //!
-//! Equations and sections are those of J. Borenstein and Y. Koren, *Error Eliminating Rapid Ultrasonic Firing for Mobile
-//! Robot Obstacle Avoidance*, IEEE Transactions on Robotics and Automation 11(1), February 1995, pp. 132-138.
+//! Equations and sections are those of J. Borenstein and Y. Koren, *Error Eliminating Rapid Ultrasonic Firing for
+//! Mobile Robot Obstacle Avoidance*, IEEE Transactions on Robotics and Automation 11(1), February 1995, pp. 132-138.
 #![no_std]
 
 #[cfg(feature = "std")]
 extern crate std;
 
 mod adaptation;
+mod checked;
 mod conditions;
 pub mod emit;
 mod filter;
 mod interop;
 mod layout;
 mod reading;
-mod refiring;
 mod ring;
 mod schedule;
 mod scheduler;
@@ -46,19 +47,25 @@ mod time;
 mod verify;
 
 pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
+#[doc(hidden)]
+pub use checked::{__checked, __micros};
 pub use conditions::{Criterion, Interval, Requirements, Separation};
 pub use filter::{EchoFilter, FilterError};
 pub use layout::Layout;
 pub use reading::{ReadingKind, Tally, Verdict};
-pub use refiring::ImmediateRefiring;
 pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError};
-pub use scheduler::{ScheduledFiring, Scheduler, SchedulerStep};
+pub use scheduler::{ImmediateRefiring, ScheduledFiring, Scheduler, SchedulerStep};
 pub use sound::SpeedOfSound;
 pub use time::{Instant, Micros};
-#[doc(hidden)]
-pub use verify::{__checked, __micros};
 pub use verify::{Verification, Violation, ViolationKind, Violations};
+
+/// What is proven, and why: `docs/theory.md`, for reading here.
+///
+/// The file in this crate is a link to it, so that a packed crate holds the text too.
+#[cfg(doc)]
+#[doc = include_str!("../theory.md")]
+pub mod theory {}
 
 /// The listings of the README compile and hold.
 #[cfg(doctest)]

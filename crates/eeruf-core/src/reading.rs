@@ -1,10 +1,11 @@
-//! What becomes of one firing: the [`ReadingKind`] of reading, never a magic number, and [`Tally`], which counts them.
+//! What comes of one firing: a [`ReadingKind`], never a magic number; and [`Tally`], which counts the kinds.
 
 use core::fmt;
 
 use crate::time::Micros;
 
-/// What one firing of one sensor told. Each firing yields exactly one kind, but for [`ReadingKind::Late`], which may follow.
+/// What came of one firing of one sensor. Each firing yields exactly one kind; only [`ReadingKind::Late`] may follow
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[repr(u8)]
@@ -14,7 +15,7 @@ use crate::time::Micros;
 pub enum ReadingKind {
     /// An echo with nothing to compare it with: at the start, or after a firing without echo.
     First,
-    /// Near-identical to the reading before (Eq. 11), as many times running as the filter wants: believe it.
+    /// Near-identical to the reading before (Eq. 11), as many times in a row as the filter wants: it counts.
     Accepted,
     /// Not near-identical to the reading before: crosstalk, noise, or an object that moved too fast.
     Rejected,
@@ -22,9 +23,10 @@ pub enum ReadingKind {
     Repeated,
     /// No echo within the window, once.
     NoEcho,
-    /// No echo as many times running as the filter wants: nothing is in range.
+    /// No echo as many times in a row as the filter wants: nothing is in range.
     Clear,
-    /// Nothing but an edge within the blanking time: ringing of the transducer, or an object closer than it can measure.
+    /// Nothing but an edge within the blanking time: ringing of the transducer, or an object closer than it can
+    /// measure.
     TooEarly,
     /// An edge after the window has ended; it is compared with nothing.
     Late,
@@ -73,7 +75,7 @@ impl fmt::Display for ReadingKind {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Verdict {
-    /// What the firing told.
+    /// What came of the firing.
     pub kind: ReadingKind,
     /// The echo time: the accepted one, or else the earliest; `None` without echo.
     #[doc(alias = "T_echo")]

@@ -1,7 +1,7 @@
 //! The verifier: holds a [`Schedule`] against its [`Requirements`] and names every violation.
 //!
-//! It is the judge of everything the search returns and shares nothing with it. Nothing is stored: a [`Verification`] borrows
-//! the schedule, and its violations are worked out while they are read.
+//! Everything the search returns is checked here, by code that shares nothing with the search. Nothing is stored: a
+//! [`Verification`] borrows the schedule, and its violations are worked out while they are read.
 
 use core::fmt;
 
@@ -70,7 +70,7 @@ impl<'r, const K: usize> Verification<'r, K> {
 
     /// Every violation: first (13a), then (13b), stale echoes, intervals, and windows.
     pub const fn violations(&self) -> Violations<'r, K> {
-        Violations { report: *self, check: 0, x: 0, y: 0, phase: 0 }
+        Violations { verification: *self, check: 0, x: 0, y: 0, phase: 0 }
     }
 }
 
@@ -170,7 +170,7 @@ impl fmt::Display for Violation {
 /// The violations of a [`Verification`], one after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Violations<'r, const K: usize> {
-    report: Verification<'r, K>,
+    verification: Verification<'r, K>,
     check: u8,
     x: usize,
     y: usize,
@@ -179,7 +179,7 @@ pub struct Violations<'r, const K: usize> {
 
 impl<const K: usize> Violations<'_, K> {
     /// `Iterator::next` as a `const fn`, so that a table can be checked when it is compiled.
-    const fn advance(&mut self) -> Option<Violation> {
+    pub(crate) const fn advance(&mut self) -> Option<Violation> {
         while self.check < 6 {
             let found = self.examine();
             self.step();
@@ -192,7 +192,7 @@ impl<const K: usize> Violations<'_, K> {
 
     /// To the next sensor `y`, then the next `x`, phase and check.
     const fn step(&mut self) {
-        let sensors = self.report.schedule.sensors();
+        let sensors = self.verification.schedule.sensors();
         self.y += 1;
         if self.y == sensors {
             self.y = 0;
@@ -209,7 +209,7 @@ impl<const K: usize> Violations<'_, K> {
     }
 
     const fn examine(&self) -> Option<Violation> {
-        let (schedule, requirements) = (self.report.schedule, self.report.requirements);
+        let (schedule, requirements) = (self.verification.schedule, self.verification.requirements);
         let (x, y, phase) = (self.x, self.y, self.phase);
         let pair = x < y && phase == 0;
         let neighbours = requirements.layout.neighbours(schedule.sensors(), x, y);
@@ -250,106 +250,4 @@ impl<const K: usize> Iterator for Violations<'_, K> {
     fn next(&mut self) -> Option<Violation> {
         self.advance()
     }
-}
-
-/// A [`Schedule`] that is checked while the program is compiled: a table that breaks a condition does not build.
-///
-/// Times are whole microseconds. The table is given by lags and waits or by firing times, and `meets` is the
-/// [`Requirements`] to hold; `eeruf design --emit rust` writes the whole call.
-///
-/// ```
-/// use eeruf_core::{Layout, Micros, Requirements, Schedule, schedule};
-///
-/// const FRONT: Schedule<4> = schedule! {
-///     period_us: 60_000,
-///     t_fire_a_us: [0, 15_000, 30_000, 45_000],
-///     t_fire_b_us: [0, 17_000, 34_000, 51_000],
-///     meets: Requirements { min_interval: Micros::from_millis(9), ..Requirements::new(Micros::new(999)) },
-/// };
-/// assert_eq!(FRONT.sensors(), 4);
-/// ```
-///
-/// The same table does not compile when 15 ms between neighbours are asked for, since sensor 4 in phase b and sensor 1
-/// in phase a fire 9 ms apart:
-///
-/// ```compile_fail
-/// use eeruf_core::{Layout, Micros, Requirements, Schedule, schedule};
-///
-/// const FRONT: Schedule<4> = schedule! {
-///     period_us: 60_000,
-///     t_fire_a_us: [0, 15_000, 30_000, 45_000],
-///     t_fire_b_us: [0, 17_000, 34_000, 51_000],
-///     meets: Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) },
-/// };
-/// # assert_eq!(FRONT.sensors(), 4);
-/// ```
-#[macro_export]
-macro_rules! schedule {
-    (
-        period_us: $period:expr,
-        t_lag_us: $t_lag:expr,
-        t_wait_a_us: $t_wait_a:expr,
-        t_wait_b_us: $t_wait_b:expr,
-        meets: $requirements:expr $(,)?
-    ) => {
-        const {
-            $crate::__checked(
-                $crate::Schedule::new(
-                    $crate::Micros::new($period),
-                    $crate::__micros($t_lag),
-                    [$crate::__micros($t_wait_a), $crate::__micros($t_wait_b)],
-                ),
-                &$requirements,
-            )
-        }
-    };
-    (
-        period_us: $period:expr,
-        t_fire_a_us: $t_fire_a:expr,
-        t_fire_b_us: $t_fire_b:expr,
-        meets: $requirements:expr $(,)?
-    ) => {
-        const {
-            $crate::__checked(
-                $crate::Schedule::from_firing(
-                    $crate::Micros::new($period),
-                    [$crate::__micros($t_fire_a), $crate::__micros($t_fire_b)],
-                ),
-                &$requirements,
-            )
-        }
-    };
-}
-
-/// For `schedule!`, which evaluates it when the program is compiled: its panics are compile errors.
-#[doc(hidden)]
-pub const fn __checked<const K: usize>(
-    schedule: Result<Schedule<K>, crate::schedule::ScheduleError>,
-    requirements: &Requirements<'_>,
-) -> Schedule<K> {
-    match schedule {
-        Ok(schedule) => match schedule.verify(requirements).violations().advance() {
-            None => schedule,
-            Some(violation) => match violation.kind {
-                ViolationKind::CrosstalkA => panic!("two sensors' crosstalk would be accepted, Eq. (13a)"),
-                ViolationKind::CrosstalkB => panic!("two sensors' crosstalk would be accepted, Eq. (13b)"),
-                ViolationKind::StaleEcho => panic!("a sensor's stale echo would be accepted, Eq. (13b) with x = y"),
-                ViolationKind::Interval => panic!("two neighbours fire closer together than min_interval, Sec. 3.1 c"),
-                ViolationKind::Window => panic!("a sensor fires again while it still listens, T_wind"),
-            },
-        },
-        Err(error) => panic!("{}", error.as_str()),
-    }
-}
-
-/// For `schedule!`.
-#[doc(hidden)]
-pub const fn __micros<const K: usize>(us: [u32; K]) -> [Micros; K] {
-    let mut times = [Micros::ZERO; K];
-    let mut i = 0;
-    while i < K {
-        times[i] = Micros::new(us[i]);
-        i += 1;
-    }
-    times
 }

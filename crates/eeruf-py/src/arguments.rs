@@ -3,9 +3,9 @@
 use core::fmt::Display;
 use std::ops::RangeInclusive;
 
-use eeruf_core::{Criterion, Layout, MAX_SENSORS, Micros, Requirements};
+use eeruf_core::Micros;
 use numpy::{PyReadonlyArray2, prelude::*};
-use pyo3::{prelude::*, types::PyList};
+use pyo3::prelude::*;
 
 use crate::errors::ArgumentError;
 
@@ -146,87 +146,4 @@ pub(crate) fn points(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<eeruf
         .map_err(|_| wrong(name, shown(value), "an array of floats of shape (2,) or (n, 2), in metres"))?;
     let matrix = matrix(name, &array, 2)?;
     Ok(matrix.as_array().rows().into_iter().map(|row| eeruf_sim::Point::new(row[0], row[1])).collect())
-}
-
-/// How the sensors stand, with the rows of the graph if it is one.
-pub(crate) enum OwnedLayout {
-    Named(Layout<'static>),
-    Graph(Vec<u64>),
-}
-
-impl OwnedLayout {
-    pub(crate) fn new(layout: Option<&Bound<'_, PyAny>>, neighbours: u8) -> PyResult<Self> {
-        let Some(layout) = layout else { return Ok(Self::Named(Layout::Line(neighbours))) };
-        let expected = "\"line\", \"ring\", \"blocks\", or pairs of neighbours such as [(0, 1), (1, 2)]";
-        if let Ok(name) = layout.extract::<String>() {
-            return match name.as_str() {
-                "line" => Ok(Self::Named(Layout::Line(neighbours))),
-                "ring" => Ok(Self::Named(Layout::Ring(neighbours))),
-                "blocks" => Ok(Self::Named(Layout::Blocks(neighbours))),
-                _ => Err(wrong("layout", shown(layout), expected)),
-            };
-        }
-        let pairs: Vec<(usize, usize)> = layout
-            .try_iter()
-            .and_then(|items| PyList::new(layout.py(), items.collect::<PyResult<Vec<_>>>()?)?.extract())
-            .map_err(|_| wrong("layout", shown(layout), expected))?;
-        let mut rows = vec![0_u64; MAX_SENSORS];
-        for (x, y) in pairs {
-            if x >= MAX_SENSORS || y >= MAX_SENSORS || x == y {
-                return Err(wrong(
-                    "layout",
-                    format_args!("[({x}, {y})]"),
-                    "pairs of two different sensors from 0 to 63",
-                ));
-            }
-            rows[x] |= 1 << y;
-            rows[y] |= 1 << x;
-        }
-        Ok(Self::Graph(rows))
-    }
-
-    pub(crate) fn layout(&self) -> Layout<'_> {
-        match self {
-            Self::Named(layout) => *layout,
-            Self::Graph(rows) => Layout::Graph(rows),
-        }
-    }
-}
-
-/// How to read (13a), (13b): exactly unless it is said.
-pub(crate) fn criterion(value: Option<&Bound<'_, PyAny>>) -> PyResult<Criterion> {
-    choice("criterion", value, &[("exact", Criterion::Exact), ("paper", Criterion::Paper)])
-}
-
-/// What a schedule must meet, as `verify`, `to_rust` and `to_c` take it.
-pub(crate) struct OwnedRequirements {
-    pub(crate) t_delta: Micros,
-    pub(crate) min_interval: Micros,
-    pub(crate) layout: OwnedLayout,
-    pub(crate) criterion: Criterion,
-    pub(crate) window: Micros,
-    pub(crate) stale_echo: bool,
-}
-
-impl OwnedRequirements {
-    pub(crate) fn requirements(&self) -> Requirements<'_> {
-        Requirements {
-            t_delta: self.t_delta,
-            criterion: self.criterion,
-            min_interval: self.min_interval,
-            layout: self.layout.layout(),
-            window: self.window,
-            stale_echo: self.stale_echo,
-        }
-    }
-}
-
-/// The number of neighbours: four, or what is said.
-pub(crate) fn neighbours(value: Option<&Bound<'_, PyAny>>) -> PyResult<u8> {
-    whole_or("neighbours", value, 4, 1..=MAX_SENSORS as u8)
-}
-
-/// The number of sensors.
-pub(crate) fn sensors(value: &Bound<'_, PyAny>) -> PyResult<usize> {
-    whole("sensors", value, 1..=MAX_SENSORS as u32).map(|sensors| sensors as usize)
 }

@@ -1,4 +1,5 @@
-//! One exception for each enum of errors in Rust, with the same messages, all of them `EerufError`, which is a `ValueError`.
+//! One exception for each enum of errors in Rust, with the same messages. All are `EerufError`s, and that is a
+//! `ValueError`.
 
 use pyo3::{create_exception, exceptions::PyValueError, prelude::*};
 
@@ -99,7 +100,8 @@ Example:
     >>> scene = eeruf.sim.Scene([[5, 2, -5, 2]], robots=[robot])
     >>> eeruf.sim.simulate(scene)
     Traceback (most recent call last):
-    eeruf.SimulationError: robot 1, method eeruf: a listening window of 90 ms; a sensor of this schedule fires again after 45.6 ms, expected a window no longer than that (T_wind)
+    eeruf.SimulationError: robot 1, method eeruf: a listening window of 90 ms; a sensor of this schedule fires \
+    again after 45.6 ms, expected a window no longer than that (T_wind)
 " from eeruf_sim::SimulationError;
     ExperimentError "An experiment that cannot be run.
 

@@ -1,10 +1,9 @@
-//! The paper's experiments. Their tables come as JSON, with the names that `eeruf experiment --json` uses; what users call is
-//! in `python/eeruf/experiments.py`.
+//! The paper's experiments. Their tables come as JSON, with the names that `eeruf experiment --json` uses; what users
+//! call is in `python/eeruf/experiments.py`.
 
 use eeruf_core::Micros;
 use eeruf_sim::{
-    Method, Robot,
-    best::{Best, best_for},
+    LabMate, Method, Robot,
     experiments::{
         set_one::{self as first_set, Alcove, READINGS},
         set_two::{
@@ -12,7 +11,6 @@ use eeruf_sim::{
             SpeedStep,
         },
     },
-    labmate::LabMate,
 };
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
@@ -24,12 +22,10 @@ use serde::Serialize;
 use crate::{
     arguments::{flag, items, micros, number, points, shown, whole, whole_or, wrong},
     errors::{ArgumentError, Raise},
-    readings::method,
-    watch::{Aside, aside},
+    methods::{best, methods as methods_named},
+    watch::{Background, in_background},
 };
 
-/// How many nodes the search for `eeruf_best` may cost, as in the program; it is proven shortest long before.
-pub(crate) const BEST_BUDGET: u64 = 300_000;
 /// As many as the program allows.
 const SEEDS_MOST: u64 = 100_000;
 /// `T_delta` of a robot that does not know how it moves, as in the program.
@@ -37,20 +33,6 @@ const WITHOUT_ODOMETRY: Micros = Micros::new(500);
 
 fn json(table: &impl Serialize) -> PyResult<String> {
     serde_json::to_string(table).map_err(|error| ArgumentError::new_err(error.to_string()))
-}
-
-fn methods(names: Option<&Bound<'_, PyAny>>, default: &[Method]) -> PyResult<Vec<Method>> {
-    let Some(names) = names else { return Ok(default.to_vec()) };
-    let names = items("methods", names, "a sequence of names of eeruf.sim.METHODS")?;
-    names.iter().map(|name| method("methods", name)).collect()
-}
-
-/// What `eeruf_best` fires by, if it is asked for.
-fn best(methods: &[Method], robot: &Robot, aside: &Aside) -> PyResult<Option<Best>> {
-    let asked = methods.contains(&Method::EerufBest);
-    asked
-        .then(|| best_for(robot, BEST_BUDGET, |_| aside.go_on(None, || "designing".to_owned())).map_err(Raise::raise))
-        .transpose()
 }
 
 /// Set I over many geometries.
@@ -65,10 +47,10 @@ pub(crate) fn set_one(
 ) -> PyResult<String> {
     let seeds = whole("seeds", seeds, 1..=SEEDS_MOST)?;
     let readings = whole_or("readings", readings, READINGS, 1..=u32::MAX)?;
-    let methods = self::methods(methods, &Method::ALL)?;
-    aside(py, progress, move |aside| {
-        let best = best(&methods, &Alcove::random(0).robot(), aside)?;
-        let keep_going = |done| aside.go_on(Some(done), || format!("{seeds} alcoves"));
+    let methods = methods_named(methods, &Method::ALL)?;
+    in_background(py, progress, move |background| {
+        let best = best(&methods, &Alcove::random(0).robot(), background)?;
+        let keep_going = |done| background.go_on(Some(done), || format!("{seeds} alcoves"));
         let table = first_set::set_one(seeds, readings, &methods, best.as_ref(), &keep_going).map_err(Raise::raise)?;
         json(&table)
     })
@@ -99,7 +81,7 @@ impl Asked<'_> {
         Ok(SetTwoOptions {
             seeds: whole("seeds", &self.seeds, 1..=SEEDS_MOST)?,
             first: whole("first", &self.first, 0..=u64::from(u32::MAX))?,
-            methods: methods(self.methods.as_ref(), &default.methods)?,
+            methods: methods_named(self.methods.as_ref(), &default.methods)?,
             second_robot: self.second_robot.as_ref().map(corner).transpose()?,
             labmate: LabMate { speed_max_m_s: speed("speed_m_s", &self.speed_m_s)?, ..default.labmate },
             odometry,
@@ -122,9 +104,9 @@ fn corner(value: &Bound<'_, PyAny>) -> PyResult<eeruf_sim::Point> {
     }
 }
 
-fn with_best(options: SetTwoOptions, aside: &Aside) -> PyResult<SetTwoOptions> {
+fn with_best(options: SetTwoOptions, background: &Background) -> PyResult<SetTwoOptions> {
     let robot = Robot { t_delta: options.t_delta, ..Course::random(0).robot() };
-    Ok(SetTwoOptions { best: best(&options.methods, &robot, aside)?, ..options })
+    Ok(SetTwoOptions { best: best(&options.methods, &robot, background)?, ..options })
 }
 
 /// Set II over many courses: the table, and for each method the fields of each run.
@@ -136,9 +118,9 @@ pub(crate) fn set_two<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(String, Bound<'py, PyDict>)> {
     let options = asked.options()?;
-    let found = aside(py, progress, move |aside| {
-        let options = with_best(options, aside)?;
-        let keep_going = |done| aside.go_on(Some(done), || format!("{} courses", options.seeds));
+    let found = in_background(py, progress, move |background| {
+        let options = with_best(options, background)?;
+        let keep_going = |done| background.go_on(Some(done), || format!("{} courses", options.seeds));
         second_set::set_two(&options, &keep_going).map_err(Raise::raise)
     })?;
     let runs = PyDict::new(py);
@@ -149,7 +131,7 @@ pub(crate) fn set_two<'py>(
     Ok((json(&found)?, runs))
 }
 
-/// What a sweep tells, under the program's names.
+/// What a sweep returns, under the program's names.
 #[derive(Serialize)]
 struct Sweep {
     seeds: u64,
@@ -174,10 +156,10 @@ pub(crate) fn speed_sweep(
         return Err(wrong("speeds_m_s", "[]", expected));
     }
     let options = asked.options()?;
-    aside(py, progress, move |aside| {
-        let options = with_best(options, aside)?;
+    in_background(py, progress, move |background| {
+        let options = with_best(options, background)?;
         let keep_going =
-            |done| aside.go_on(Some(done), || format!("{} courses at {} speeds", options.seeds, speeds.len()));
+            |done| background.go_on(Some(done), || format!("{} courses at {} speeds", options.seeds, speeds.len()));
         let steps = second_set::speed_sweep(&options, &speeds, &keep_going).map_err(Raise::raise)?;
         let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);
         json(&Sweep { seeds: options.seeds, second_robot_m, steps })

@@ -5,9 +5,10 @@ use numpy::{PyArray2, prelude::*};
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{self, matrix, micros, times_of, whole, whole_or, wrong},
+    arguments::{matrix, micros, times_of, whole, whole_or, wrong},
     errors::{ArgumentError, Raise},
-    ring::Reading,
+    requirements,
+    ring_events::Reading,
 };
 
 /// Compares the consecutive readings of each sensor, and accepts those that are near-identical (Eq. 11).
@@ -15,10 +16,10 @@ use crate::{
 /// Args:
 ///     sensors: how many, 1 to 64.
 ///     t_delta_us: ``T_delta``: readings that differ by no more are near-identical.
-///     consecutive: how many readings running must agree, 2 to 8.
+///     consecutive: how many readings in a row must agree, 2 to 8.
 ///     echoes: how many echoes of one firing a sensor reports at most, 1 to 8; the earliest that repeats is accepted.
-///     patience: for how many firings an accepted echo that is missing is waited for before a later one is believed, 0 to 15; for
-///         sensors that report several.
+///     patience: for how many firings an accepted echo that is missing is waited for before a later one is accepted, 0
+///         to 15; for sensors that report several.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
@@ -38,7 +39,7 @@ pub(crate) struct EchoFilter {
     /// ``T_delta``, in microseconds.
     #[pyo3(get)]
     t_delta_us: u32,
-    /// How many readings running must agree.
+    /// How many readings in a row must agree.
     #[pyo3(get)]
     consecutive: u8,
     /// How many echoes of one firing count.
@@ -79,7 +80,7 @@ impl EchoFilter {
         echoes: Option<&Bound<'_, PyAny>>,
         patience: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let (sensors, t_delta) = (arguments::sensors(sensors)?, micros("t_delta_us", t_delta_us)?);
+        let (sensors, t_delta) = (requirements::sensors(sensors)?, micros("t_delta_us", t_delta_us)?);
         let consecutive = whole_or("consecutive", consecutive, 2, 0..=u8::MAX)?;
         let echoes = whole_or("echoes", echoes, 1, 1..=MAX_ECHOES as u32)? as usize;
         let patience = whole_or("patience", patience, 0, 0..=u8::MAX)?;
@@ -101,8 +102,8 @@ impl EchoFilter {
     /// Args:
     ///     sensor: which one, from 0.
     ///     t_echo_us: the time of its echo after firing in whole microseconds, or None for no echo.
-    ///     expected_change_us: by how much a good reading should differ from the one before, from the robot's own motion: ``-2 v dt /
-    ///         c`` for an object approached at ``v``.
+    ///     expected_change_us: by how much a good reading should differ from the one before, from the robot's own
+    ///         motion: ``-2 v dt / c`` for an object approached at ``v``.
     ///
     /// Returns:
     ///     The reading, without phase and period, which a filter does not know.
@@ -115,7 +116,8 @@ impl EchoFilter {
     ///     >>> filter = eeruf.EchoFilter(1, 100)
     ///     >>> [filter.push(0, us, expected_change_us=-400).kind for us in (9_000, 8_610)]
     ///     ['first', 'accepted']
-    #[pyo3(signature = (sensor, t_echo_us, expected_change_us=None), text_signature = "($self, sensor, t_echo_us, expected_change_us=0)")]
+    #[pyo3(signature = (sensor, t_echo_us, expected_change_us=None))]
+    #[pyo3(text_signature = "($self, sensor, t_echo_us, expected_change_us=0)")]
     fn push(
         &mut self,
         sensor: &Bound<'_, PyAny>,
@@ -133,7 +135,8 @@ impl EchoFilter {
     ///
     /// Args:
     ///     sensor: which one, from 0.
-    ///     t_echoes_us: the times of its echoes after firing in whole microseconds, in any order; the earliest ``echoes`` count.
+    ///     t_echoes_us: the times of its echoes after firing in whole microseconds, in any order; the earliest
+    ///         ``echoes`` count.
     ///     expected_change_us: as for ``push``.
     ///
     /// Returns:
@@ -168,8 +171,8 @@ impl EchoFilter {
     /// Take in many firings at once, without the interpreter lock.
     ///
     /// Args:
-    ///     t_echo_us: array of shape (periods, sensors): echo times in microseconds, rounded to whole ones; NaN for no echo. An array of
-    ///         contiguous float64 is read in place, anything else is converted first.
+    ///     t_echo_us: array of shape (periods, sensors): echo times in microseconds, rounded to whole ones; NaN for no
+    ///         echo. An array of contiguous float64 is read in place, anything else is converted first.
     ///
     /// Returns:
     ///     Array of uint8 of the same shape: indices into ``eeruf.KINDS``.

@@ -1,6 +1,6 @@
-//! `eeruf._eeruf`: the compiled part of the Python package. One file for each concept; what they do is in `eeruf-core` and
-//! `eeruf-sim`, here it only changes its clothes: microseconds as `int`, many numbers as `NumPy` arrays, errors as exceptions.
-//! What users read is in `python/eeruf`.
+//! `eeruf._eeruf`: the compiled part of the Python package, one file for each concept. `eeruf-core` and `eeruf-sim` do
+//! the work; here arguments and results are converted: microseconds to `int`, many numbers to `NumPy` arrays, errors to
+//! exceptions. What users read is in `python/eeruf`.
 
 #![allow(
     clippy::doc_markdown,
@@ -10,17 +10,25 @@
 )]
 
 mod arguments;
+mod contents;
+mod design;
 mod errors;
 mod experiments;
 mod filter;
+mod found;
+mod methods;
 mod paths;
 mod readings;
 mod report;
+mod requirements;
 mod ring;
+mod ring_events;
 mod robot;
 mod scene;
 mod schedule;
 mod search;
+mod simulate;
+mod unpickle;
 mod watch;
 
 use pyo3::prelude::*;
@@ -29,21 +37,25 @@ use pyo3::prelude::*;
 mod _eeruf {
     #[pymodule_export]
     use crate::{
+        design::design,
         errors::{
             ArgumentError, EerufError, ExperimentError, FilterError, PathsError, RingError, SceneError, ScheduleError,
             SearchError, SimulationError,
         },
         experiments::{set_one, set_two, speed_sweep},
         filter::EchoFilter,
+        found::Found,
         paths::Paths,
         readings::Readings,
-        readings::{readings_from_columns, simulate},
         report::{Report, Violation},
-        ring::{Fire, PeriodEnded, Reading, Ring},
+        ring::Ring,
+        ring_events::{Fire, PeriodEnded, Reading},
         robot::Robot,
         scene::{Scene, scene_from_text},
         schedule::Schedule,
-        search::{Found, WaitSearch, WaitTables, design},
+        search::{WaitSearch, WaitTables},
+        simulate::simulate,
+        unpickle::readings_from_columns,
     };
     use pyo3::prelude::*;
     use pyo3::types::PyTuple;
@@ -57,6 +69,6 @@ mod _eeruf {
         module.add("CAUSES", PyTuple::new(module.py(), crate::readings::CAUSES)?)?;
         // What the picture of a course shows.
         module.add("_ROOM_M", eeruf_sim::experiments::set_two::ROOM_M)?;
-        module.add("_SIDE_M", eeruf_sim::labmate::LabMate::default().side_m)
+        module.add("_SIDE_M", eeruf_sim::LabMate::default().side_m)
     }
 }

@@ -1,5 +1,7 @@
 //! `Paths`: arrays of equal length.
 
+use std::sync::Arc;
+
 use eeruf_sim::{Bounce, Point};
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
@@ -7,9 +9,10 @@ use pyo3::{
     types::{PyList, PyTuple},
 };
 
-use crate::{arguments::whole, scene::Scene};
+use crate::{arguments::whole, contents::Contents};
 
-/// Every path from a source to some receivers: arrays of equal length, sorted by receiver and then by length. The arrays are copies.
+/// Every path from a source to some receivers: arrays of equal length, sorted by receiver and then by length. The
+/// arrays are copies.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -21,7 +24,9 @@ pub(crate) struct Paths {
     pub(crate) paths: eeruf_sim::Paths,
     pub(crate) source: Point,
     pub(crate) receivers: Vec<Point>,
-    pub(crate) scene: Py<Scene>,
+    pub(crate) contents: Arc<Contents>,
+    /// The `Scene` that was asked.
+    pub(crate) scene: Py<PyAny>,
     pub(crate) max_order: u32,
     pub(crate) max_length_m: f64,
 }
@@ -81,7 +86,8 @@ impl Paths {
         PyArray1::from_slice(py, &self.paths.amplitude)
     }
 
-    /// For each path its bounces from source to receiver, a list of tuples: a wall by its index, a pole by -1 minus its index.
+    /// For each path its bounces from source to receiver, a list of tuples: a wall by its index, a pole by -1 minus its
+    /// index.
     #[getter]
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let sequences = (0..self.paths.len()).map(|path| PyTuple::new(py, coded(self.paths.bounces(path))));
@@ -110,8 +116,8 @@ impl Paths {
         let path = whole("path", path, 0..=most)? as usize;
         let receiver = self.paths.receiver.get(path).and_then(|&receiver| self.receivers.get(receiver as usize));
         let receiver = receiver.copied().unwrap_or(self.source);
-        let scene = self.scene.get().scene();
-        let corners = scene.polyline(self.source, receiver, self.paths.bounces(path)).unwrap_or_default();
+        let scene = self.contents.scene();
+        let corners = scene.bounce_points(self.source, receiver, self.paths.bounces(path)).unwrap_or_default();
         let flat: Vec<f64> = corners.iter().flat_map(|corner| [corner.x, corner.y]).collect();
         PyArray1::from_vec(py, flat).reshape([corners.len(), 2])
     }

@@ -76,11 +76,12 @@ impl Violation {
 #[pyclass(frozen, eq, hash, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Report {
-    /// The smaller left side of (13a), (13b) of the pair that is closest to failing, in microseconds; None for a single sensor.
+    /// The smaller left side of (13a), (13b) of the pair that is closest to failing, in microseconds; None for a single
+    /// sensor.
     #[pyo3(get)]
     separation_us: Option<u32>,
-    /// The largest ``T_delta`` at which (13a), (13b) (and the stale echo condition, if asked for) hold, in microseconds; None if none
-    /// does.
+    /// The largest ``T_delta`` at which (13a), (13b) (and the stale echo condition, if asked for) hold, in
+    /// microseconds; None if none does.
     #[pyo3(get)]
     max_t_delta_us: Option<u32>,
     /// The smallest time between the firings of two neighbours, in microseconds; None without neighbours.

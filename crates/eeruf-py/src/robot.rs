@@ -6,6 +6,7 @@ use pyo3::{prelude::*, types::PyTuple};
 
 use crate::{
     arguments::{self, choice, instance, micros, number, shown, whole_or, wrong},
+    requirements,
     schedule::Schedule,
 };
 
@@ -21,7 +22,7 @@ use crate::{
 ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical.
 ///     window_us: ``T_wind``: how long a sensor listens.
 ///     schedule: what the EERUF methods fire by; None for the paper's table, scaled to the period.
-///     consecutive: how many readings running must agree, 2 to 8.
+///     consecutive: how many readings in a row must agree, 2 to 8.
 ///     patience: for how many firings ``multi_echo`` waits for an accepted echo that is missing, 0 to 15.
 ///
 /// Raises:
@@ -55,9 +56,13 @@ const TRANSDUCERS: [(&str, Transducer); 2] =
 #[pymethods]
 impl Robot {
     #[new]
-    #[pyo3(signature = (pose, sensors, spacing_rad, radius_m, transducer=None, *, period_us=None, t_delta_us=None, window_us=None, schedule=None, consecutive=None, patience=None))]
+    #[pyo3(signature = (
+        pose, sensors, spacing_rad, radius_m, transducer=None, *, period_us=None, t_delta_us=None, window_us=None,
+        schedule=None, consecutive=None, patience=None
+    ))]
     #[pyo3(
-        text_signature = "(pose, sensors, spacing_rad, radius_m, transducer=\"polaroid_6500\", *, period_us=60000, t_delta_us=500, window_us=36000, schedule=None, consecutive=2, patience=0)"
+        text_signature = "(pose, sensors, spacing_rad, radius_m, transducer=\"polaroid_6500\", *, period_us=60000, \
+            t_delta_us=500, window_us=36000, schedule=None, consecutive=2, patience=0)"
     )]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
@@ -83,7 +88,7 @@ impl Robot {
         let at = Pose::new(Vector::new(pose.0, pose.1), pose.2);
         let (name, transducer) =
             choice("transducer", transducer, &TRANSDUCERS.map(|(name, kind)| (name, (name, kind))))?;
-        let mut robot = eeruf_sim::Robot::ring(at, arguments::sensors(sensors)?, spacing_rad, radius_m, transducer);
+        let mut robot = eeruf_sim::Robot::ring(at, requirements::sensors(sensors)?, spacing_rad, radius_m, transducer);
         let set = |name, value: Option<&Bound<'_, PyAny>>, field: &mut Micros| {
             value.map_or(Ok(()), |value| micros(name, value).map(|us| *field = us))
         };
@@ -130,7 +135,7 @@ impl Robot {
         self.robot.schedule.map(Schedule)
     }
 
-    /// How many readings running must agree.
+    /// How many readings in a row must agree.
     #[getter]
     fn consecutive(&self) -> u8 {
         self.robot.consecutive
@@ -146,7 +151,8 @@ impl Robot {
         let schedule = self.schedule().into_pyobject(py)?.repr()?.to_string();
         let Self { pose, spacing_rad, radius_m, transducer, .. } = self;
         Ok(format!(
-            "Robot(pose={pose:?}, sensors={}, spacing_rad={spacing_rad:?}, radius_m={radius_m:?}, transducer='{transducer}', \
+            "Robot(pose={pose:?}, sensors={}, spacing_rad={spacing_rad:?}, radius_m={radius_m:?}, \
+             transducer='{transducer}', \
              period_us={}, t_delta_us={}, window_us={}, schedule={schedule}, consecutive={}, patience={})",
             self.sensors(),
             self.period_us(),

@@ -1,6 +1,7 @@
 //! `sim.Scene`: walls and poles, and the robots among them if there are any.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use eeruf_sim::{Air, Faces, Noise, Point, Pole, Wall, World};
 use numpy::{PyArray1, PyArray2, prelude::*};
@@ -11,22 +12,17 @@ use pyo3::{
 
 use crate::{
     arguments::{self, instance, matrix, number, points, shown, whole, whole_or, wrong},
+    contents::Contents,
     errors::{Raise, SceneError},
     paths::Paths,
     robot::Robot,
-    watch::aside,
+    watch::in_background,
 };
 
-/// Up to so many walls, receivers and bounces, paths are found before anybody could press Ctrl-C, and sooner than a thread would
-/// start.
+/// Up to so many walls and receivers, and so many bounces, paths are found sooner than a thread would start, and before
+/// anybody could press Ctrl-C.
 const FEW: usize = 32;
 const LOW_ORDER: u32 = 6;
-
-/// Walls alone, or a world with robots.
-enum Contents {
-    Walls(Box<eeruf_sim::Scene>),
-    World(Box<World>),
-}
 
 /// How a scene was made: what it takes to make it again.
 enum Source {
@@ -36,8 +32,8 @@ enum Source {
 
 /// Walls, poles and robots from above, in metres. Immutable; scenes pickle.
 ///
-/// A wall reflects on its left side, seen from its first end to its second, and its back swallows: a room is a loop walked
-/// counter-clockwise, a pillar one walked clockwise.
+/// A wall reflects on its left side, seen from its first end to its second, and its back swallows: a room is a loop
+/// walked counter-clockwise, a pillar one walked clockwise.
 ///
 /// Args:
 ///     walls: array of shape (n, 4): x, y of one end and x, y of the other.
@@ -61,30 +57,24 @@ enum Source {
 ///     <Scene: 3 walls, 0 poles, 0 robots>
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Scene {
-    contents: Contents,
+    contents: Arc<Contents>,
     source: Source,
 }
 
 impl Scene {
-    pub(crate) fn scene(&self) -> &eeruf_sim::Scene {
-        match &self.contents {
-            Contents::Walls(scene) => scene,
-            Contents::World(world) => world.scene(),
-        }
+    fn scene(&self) -> &eeruf_sim::Scene {
+        self.contents.scene()
     }
 
     pub(crate) fn world(&self) -> PyResult<&World> {
-        match &self.contents {
-            Contents::World(world) => Ok(world),
-            Contents::Walls(_) => Err(SceneError::new_err("a scene of 0 robots; expected 1 or more to simulate")),
-        }
+        self.contents.world().ok_or_else(|| SceneError::new_err("a scene of 0 robots; expected 1 or more to simulate"))
     }
 
     fn from_source(file: PathBuf, text: String) -> PyResult<Self> {
         let world = World::from_text(&file, &text).map_err(Raise::raise)?;
         // Whoever unpickles it may not have the files beside it.
         let text = with_schedules(&file, &text).unwrap_or(text);
-        Ok(Self { contents: Contents::World(Box::new(world)), source: Source::Toml { file, text } })
+        Ok(Self { contents: Arc::new(Contents::World(world)), source: Source::Toml { file, text } })
     }
 }
 
@@ -125,10 +115,12 @@ fn indices(name: &str, value: Option<&Bound<'_, PyAny>>, walls: usize) -> PyResu
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (walls, open=None, two_sided=None, poles=None, *, temperature_c=None, robots=None, noise=None, seed=None, max_order=None))]
-    #[pyo3(
-        text_signature = "(walls, open=None, two_sided=None, poles=None, *, temperature_c=20.0, robots=(), noise=True, seed=1, max_order=6)"
-    )]
+    #[pyo3(signature = (
+        walls, open=None, two_sided=None, poles=None, *, temperature_c=None, robots=None, noise=None, seed=None,
+        max_order=None
+    ))]
+    #[pyo3(text_signature = "(walls, open=None, two_sided=None, poles=None, *, temperature_c=20.0, robots=(), \
+            noise=True, seed=1, max_order=6)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         py: Python<'_>,
@@ -145,20 +137,20 @@ impl Scene {
         let made_of = PyDict::new(py);
         let rows = matrix("walls", walls, 4)?;
         made_of.set_item("walls", PyArray2::from_array(py, &rows.as_array()))?;
-        let mut built: Vec<_> =
+        let mut built_walls: Vec<_> =
             rows.as_array().rows().into_iter().map(|row| Wall::new(row[0], row[1], row[2], row[3])).collect();
         for (name, which, faces) in [("open", open, Faces::Open), ("two_sided", two_sided, Faces::Both)] {
-            let indices = indices(name, which, built.len())?;
+            let indices = indices(name, which, built_walls.len())?;
             made_of.set_item(name, &indices)?;
             for index in indices {
-                built[index].faces = faces;
+                built_walls[index].faces = faces;
             }
         }
-        let mut standing = vec![];
+        let mut built_poles = vec![];
         if let Some(poles) = poles {
             let rows = matrix("poles", poles, 3)?;
             made_of.set_item("poles", PyArray2::from_array(py, &rows.as_array()))?;
-            standing.extend(rows.as_array().rows().into_iter().map(|row| Pole::new(row[0], row[1], row[2])));
+            built_poles.extend(rows.as_array().rows().into_iter().map(|row| Pole::new(row[0], row[1], row[2])));
         }
         let celsius = temperature_c.map_or(Ok(20.0), |celsius| number("temperature_c", celsius, -100.0..=100.0))?;
         let expected = "a sequence of eeruf.sim.Robot";
@@ -174,10 +166,11 @@ impl Scene {
         made_of.set_item("noise", noise)?;
         made_of.set_item("seed", seed)?;
         made_of.set_item("max_order", order)?;
-        let scene = py.detach(|| eeruf_sim::Scene::new(built, standing, Air::at(celsius))).map_err(Raise::raise)?;
+        let scene =
+            py.detach(|| eeruf_sim::Scene::new(built_walls, built_poles, Air::at(celsius))).map_err(Raise::raise)?;
         let source = Source::Code(made_of.unbind());
         if robots.is_empty() {
-            return Ok(Self { contents: Contents::Walls(Box::new(scene)), source });
+            return Ok(Self { contents: Arc::new(Contents::Walls(scene)), source });
         }
         let noise = if noise { Noise::default() } else { Noise::NONE };
         let robots = robots.into_iter().map(|robot| robot.robot).collect();
@@ -185,7 +178,7 @@ impl Scene {
         if let Some(order) = order {
             world = world.with_max_order(order).map_err(Raise::raise)?;
         }
-        Ok(Self { contents: Contents::World(Box::new(world)), source })
+        Ok(Self { contents: Arc::new(Contents::World(world)), source })
     }
 
     /// Read a scene file, such as those in the folder ``scenes``.
@@ -236,10 +229,7 @@ impl Scene {
     /// How many robots there are.
     #[getter]
     fn robots(&self) -> usize {
-        match &self.contents {
-            Contents::Walls(_) => 0,
-            Contents::World(world) => world.robots().len(),
-        }
+        self.contents.world().map_or(0, |world| world.robots().len())
     }
 
     /// The temperature of the air, in degrees Celsius.
@@ -269,7 +259,8 @@ impl Scene {
     ///     >>> paths = wall.paths(source=(0, 0), receivers=[(3, 0)], max_order=1)
     ///     >>> paths.order.tolist(), paths.length_m.tolist()
     ///     ([0, 1], [3.0, 5.0])
-    #[pyo3(signature = (source, receivers, max_order, max_length_m=None), text_signature = "($self, source, receivers, max_order, max_length_m=None)")]
+    #[pyo3(signature = (source, receivers, max_order, max_length_m=None))]
+    #[pyo3(text_signature = "($self, source, receivers, max_order, max_length_m=None)")]
     fn paths(
         slf: &Bound<'_, Self>,
         source: &Bound<'_, PyAny>,
@@ -286,10 +277,12 @@ impl Scene {
         let (py, scene) = (slf.py(), slf.clone().unbind());
         let few = slf.get().scene().walls().len() <= FEW && receivers.len() <= FEW && max_order <= LOW_ORDER;
         let find = move |receivers: Vec<Point>| {
-            let paths = scene.get().scene().paths(from, &receivers, max_order, max_length_m).map_err(Raise::raise)?;
-            Ok(Paths { paths, source: from, receivers, scene, max_order, max_length_m })
+            let contents = Arc::clone(&scene.get().contents);
+            let paths = contents.scene().paths(from, &receivers, max_order, max_length_m).map_err(Raise::raise)?;
+            let scene = scene.into_any();
+            Ok(Paths { paths, source: from, receivers, contents, scene, max_order, max_length_m })
         };
-        if few { py.detach(|| find(receivers)) } else { aside(py, None, move |_| find(receivers)) }
+        if few { py.detach(|| find(receivers)) } else { in_background(py, None, move |_| find(receivers)) }
     }
 
     fn __repr__(&self) -> String {

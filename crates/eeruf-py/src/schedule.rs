@@ -7,16 +7,19 @@ use eeruf_sim::{AnySchedule, ScheduleFile};
 use pyo3::{prelude::*, types::PyTuple};
 
 use crate::{
-    arguments::{self, OwnedLayout, OwnedRequirements, micros, times, whole},
+    arguments::{self, micros, times, whole},
     errors::{Raise, ScheduleError},
     report::Report,
+    requirements::RequirementArguments,
 };
 
-/// When each sensor of a ring fires, in the two phases that alternate from period to period. Immutable; equal if all times are.
+/// When each sensor of a ring fires, in the two phases that alternate from period to period. Immutable; equal if all
+/// times are.
 ///
-/// Sensor ``x`` fires ``t_lag_us[x] + t_wait_a_us[x]`` after the beginning of an even period (phase a) and ``t_lag_us[x] +
-/// t_wait_b_us[x]`` after that of an odd one (phase b). Times are whole microseconds below 2^32; sensors count from 0, and are
-/// printed from 1. Schedules compare, hash and pickle, and their ``repr`` can be pasted back.
+/// Sensor ``x`` fires ``t_lag_us[x] + t_wait_a_us[x]`` after the beginning of an even period (phase a) and
+/// ``t_lag_us[x] + t_wait_b_us[x]`` after that of an odd one (phase b). Times are whole microseconds below 2^32;
+/// sensors count from 0, and are printed from 1. Schedules compare, hash and pickle, and their ``repr`` can be pasted
+/// back.
 ///
 /// Args:
 ///     period_us: the period, ``T_p``.
@@ -26,7 +29,8 @@ use crate::{
 ///
 /// Raises:
 ///     ArgumentError: a time is not a whole number of microseconds, or negative.
-///     ScheduleError: the lengths differ, there are no or more than 64 sensors, or one would fire after its period's end.
+///     ScheduleError: the lengths differ, there are no or more than 64 sensors, or one would fire after its period's
+///         end.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -55,34 +59,6 @@ impl Schedule {
 
     fn has_lags(&self) -> bool {
         self.0.t_lag().iter().any(|&lag| lag != Micros::ZERO)
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "the keyword arguments of verify")]
-    fn requirements(
-        &self,
-        t_delta_us: Option<&Bound<'_, PyAny>>,
-        min_interval_us: Option<&Bound<'_, PyAny>>,
-        neighbours: Option<&Bound<'_, PyAny>>,
-        layout: Option<&Bound<'_, PyAny>>,
-        criterion: Option<&Bound<'_, PyAny>>,
-        window_us: Option<&Bound<'_, PyAny>>,
-        stale_echo: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<OwnedRequirements> {
-        let or_zero =
-            |name, value: Option<&Bound<'_, PyAny>>| value.map_or(Ok(Micros::ZERO), |value| micros(name, value));
-        let mut requirements = OwnedRequirements {
-            t_delta: or_zero("t_delta_us", t_delta_us)?,
-            min_interval: or_zero("min_interval_us", min_interval_us)?,
-            layout: OwnedLayout::new(layout, arguments::neighbours(neighbours)?)?,
-            criterion: arguments::criterion(criterion)?,
-            window: or_zero("window_us", window_us)?,
-            stale_echo: arguments::flag("stale_echo", stale_echo, false)?,
-        };
-        if t_delta_us.is_none() {
-            // The most that the schedule allows.
-            requirements.t_delta = self.0.verify(&requirements.requirements()).max_t_delta().unwrap_or(Micros::ZERO);
-        }
-        Ok(requirements)
     }
 }
 
@@ -132,8 +108,8 @@ impl Schedule {
     /// Read a schedule as ``eeruf design --emit toml`` and :meth:`to_toml` write it.
     ///
     /// Args:
-    ///     text: the contents of a file: ``period_us``, and ``t_lag_us``, ``t_wait_a_us``, ``t_wait_b_us`` or ``t_fire_a_us``,
-    ///         ``t_fire_b_us``.
+    ///     text: the contents of a file: ``period_us``, and ``t_lag_us``, ``t_wait_a_us``, ``t_wait_b_us`` or
+    ///         ``t_fire_a_us``, ``t_fire_b_us``.
     ///
     /// Raises:
     ///     ArgumentError: not a text.
@@ -245,8 +221,8 @@ impl Schedule {
     ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11).
     ///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
     ///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
-    ///     layout: how they stand: ``"line"``, ``"ring"`` (the last beside the first), ``"blocks"`` of ``neighbours``, or pairs of
-    ///         neighbours, such as ``[(0, 1), (1, 2)]``.
+    ///     layout: how they stand: ``"line"``, ``"ring"`` (the last beside the first), ``"blocks"`` of ``neighbours``,
+    ///         or pairs of neighbours, such as ``[(0, 1), (1, 2)]``.
     ///     criterion: how to read Eqs. (13a), (13b): ``"exact"``, or as the ``"paper"`` prints them.
     ///     window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier.
     ///     stale_echo: whether a sensor's own echo from the period before must be rejected too.
@@ -262,10 +238,11 @@ impl Schedule {
     ///     >>> report = TABLE_I_D.verify(t_delta_us=999, min_interval_us=15_000)
     ///     >>> report.ok, report.min_interval_us, report.max_t_delta_us
     ///     (True, 17000, 999)
-    #[pyo3(signature = (t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None, stale_echo=None))]
-    #[pyo3(
-        text_signature = "($self, t_delta_us, min_interval_us=0, neighbours=4, layout=\"line\", criterion=\"exact\", window_us=0, stale_echo=False)"
-    )]
+    #[pyo3(signature = (
+        t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None, stale_echo=None
+    ))]
+    #[pyo3(text_signature = "($self, t_delta_us, min_interval_us=0, neighbours=4, layout=\"line\", \
+            criterion=\"exact\", window_us=0, stale_echo=False)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn verify(
         &self,
@@ -277,9 +254,10 @@ impl Schedule {
         window_us: Option<&Bound<'_, PyAny>>,
         stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Report> {
-        let t_delta = Some(t_delta_us);
+        let t_delta_us = Some(t_delta_us);
         let owned =
-            self.requirements(t_delta, min_interval_us, neighbours, layout, criterion, window_us, stale_echo)?;
+            RequirementArguments { t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo }
+                .owned(&self.0)?;
         Ok(Report::of(&self.0.verify(&owned.requirements())))
     }
 
@@ -322,10 +300,12 @@ impl Schedule {
     ///     >>> from eeruf.tables import TABLE_I_D
     ///     >>> "schedule!" in TABLE_I_D.to_rust(min_interval_us=15_000)
     ///     True
-    #[pyo3(signature = (t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None, stale_echo=None))]
-    #[pyo3(
-        text_signature = "($self, t_delta_us=None, min_interval_us=0, neighbours=4, layout=\"line\", criterion=\"exact\", window_us=0, stale_echo=False)"
-    )]
+    #[pyo3(signature = (
+        t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None,
+        stale_echo=None
+    ))]
+    #[pyo3(text_signature = "($self, t_delta_us=None, min_interval_us=0, neighbours=4, layout=\"line\", \
+            criterion=\"exact\", window_us=0, stale_echo=False)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn to_rust(
         &self,
@@ -338,7 +318,8 @@ impl Schedule {
         stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<String> {
         let owned =
-            self.requirements(t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo)?;
+            RequirementArguments { t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo }
+                .owned(&self.0)?;
         Ok(self.0.to_rust(&owned.requirements()).to_string())
     }
 
@@ -360,10 +341,12 @@ impl Schedule {
     ///     >>> from eeruf.tables import TABLE_I_D
     ///     >>> "#include <stdint.h>" in TABLE_I_D.to_c(min_interval_us=15_000)
     ///     True
-    #[pyo3(signature = (t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None, stale_echo=None))]
-    #[pyo3(
-        text_signature = "($self, t_delta_us=None, min_interval_us=0, neighbours=4, layout=\"line\", criterion=\"exact\", window_us=0, stale_echo=False)"
-    )]
+    #[pyo3(signature = (
+        t_delta_us=None, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None,
+        stale_echo=None
+    ))]
+    #[pyo3(text_signature = "($self, t_delta_us=None, min_interval_us=0, neighbours=4, layout=\"line\", \
+            criterion=\"exact\", window_us=0, stale_echo=False)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn to_c(
         &self,
@@ -376,7 +359,8 @@ impl Schedule {
         stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<String> {
         let owned =
-            self.requirements(t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo)?;
+            RequirementArguments { t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo }
+                .owned(&self.0)?;
         Ok(self.0.to_c(&owned.requirements()).to_string())
     }
 

@@ -1,214 +1,27 @@
-//! `design`, `WaitSearch` and what they find.
+//! `WaitSearch`: the waits for given lags, and all tables of them one after the other.
 
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 use eeruf_core::{
-    Criterion, MAX_SENSORS, Micros, Requirements,
+    Criterion, MAX_SENSORS, Micros,
     search::{
-        self, PeriodProblem, SearchError, WaitProblem, design as period,
-        design::Progress,
-        wait::{self, All, Control, Finish, Objective},
+        self, Outcome, Progress, SearchError, WaitProblem,
+        wait::{self, Budget, Enumeration, Objective},
     },
 };
-use pyo3::{prelude::*, types::PyTuple};
+use pyo3::prelude::*;
 
 use crate::{
-    arguments::{
-        self, OwnedLayout, choice, flag, instance, micros, number, text, times, whole, whole_or, whole_or_none,
-    },
+    arguments::{choice, micros, times, whole, whole_or},
     errors::Raise,
+    found::Found,
+    requirements::{self, OwnedLayout},
     schedule::Schedule,
-    watch::{Watch, aside},
+    watch::{Watch, control_flow},
 };
 
-/// How many nodes the choice among the shortest schedules may cost.
-const PREFERENCE_BUDGET: u64 = 100_000;
-/// How many nodes a search visits unless another budget is given.
-const DESIGN_BUDGET: u64 = 50_000_000;
-/// With so few sensors the engine asks often whether to go on. With more it may be a good part of a second between two nodes that
-/// ask, so that the search gets a thread of its own; a small search would wait for that thread longer than for its answer.
-const FEW_SENSORS: usize = 12;
 /// How many nodes of the search for waits lie between two looks at the clock.
 const POLL: u32 = 1 << 12;
-
-/// The answer of a search: the best schedule it came to, and whether that is proven.
-///
-/// Example:
-///     >>> import eeruf
-///     >>> found = eeruf.design(sensors=4, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
-///     >>> found.value_us, found.bound_us, found.proven
-///     (62000, 62000, True)
-#[pyclass(frozen, eq, module = "eeruf")]
-#[derive(Clone, PartialEq)]
-pub(crate) struct Found {
-    schedule: Option<Schedule>,
-    /// What was sought of it, in microseconds: the period, the smallest interval or ``T_delta``; None without a schedule.
-    #[pyo3(get)]
-    value_us: Option<u32>,
-    /// No schedule is better than this, in microseconds; None if it is proven that there is none at all.
-    #[pyo3(get)]
-    bound_us: Option<u32>,
-    /// Whether no better schedule exists (or none at all, without a schedule).
-    #[pyo3(get)]
-    proven: bool,
-    /// How many nodes the search visited: the same on each machine.
-    #[pyo3(get)]
-    nodes: u64,
-    /// How long it took.
-    #[pyo3(get)]
-    seconds: f64,
-    /// Why the period is not shorter, in words; None from ``WaitSearch.best``.
-    #[pyo3(get)]
-    reason: Option<String>,
-}
-
-impl Found {
-    fn of(found: &search::Found<MAX_SENSORS>, began: Instant, reason: Option<String>) -> Self {
-        Self {
-            schedule: found.schedule.map(Schedule),
-            value_us: found.value.map(Micros::as_micros),
-            bound_us: found.bound.map(Micros::as_micros),
-            proven: found.proven,
-            nodes: found.nodes,
-            seconds: began.elapsed().as_secs_f64(),
-            reason,
-        }
-    }
-}
-
-#[pymethods]
-impl Found {
-    #[new]
-    #[pyo3(signature = (schedule, value_us, bound_us, proven, nodes, seconds, reason=None))]
-    fn new(
-        schedule: Option<&Bound<'_, PyAny>>,
-        value_us: Option<&Bound<'_, PyAny>>,
-        bound_us: Option<&Bound<'_, PyAny>>,
-        proven: &Bound<'_, PyAny>,
-        nodes: &Bound<'_, PyAny>,
-        seconds: &Bound<'_, PyAny>,
-        reason: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
-        let schedule = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
-        Ok(Self {
-            schedule: schedule.transpose()?.map(|schedule| schedule.get().clone()),
-            value_us: whole_or_none("value_us", value_us, 0..=u32::MAX)?,
-            bound_us: whole_or_none("bound_us", bound_us, 0..=u32::MAX)?,
-            proven: flag("proven", Some(proven), false)?,
-            nodes: whole("nodes", nodes, 0..=u64::MAX)?,
-            seconds: number("seconds", seconds, 0.0..=f64::INFINITY)?,
-            reason: reason.map(|reason| text("reason", reason, "why")).transpose()?,
-        })
-    }
-
-    /// The schedule; None if there is none, or none was found within the budget.
-    #[getter]
-    fn schedule(&self) -> Option<Schedule> {
-        self.schedule.clone()
-    }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        let fields = ["schedule", "value_us", "bound_us", "proven", "nodes", "seconds", "reason"];
-        let shown = fields.map(|field| Ok(format!("{field}={}", slf.getattr(field)?.repr()?)));
-        Ok(format!("Found({})", shown.into_iter().collect::<PyResult<Vec<_>>>()?.join(", ")))
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let this = slf.get();
-        let Self { value_us, bound_us, proven, nodes, seconds, .. } = *this;
-        let arguments = (this.schedule.clone(), value_us, bound_us, proven, nodes, seconds, this.reason.clone());
-        Ok((slf.get_type().into_any(), arguments.into_pyobject(slf.py())?))
-    }
-}
-
-/// Find the schedule with the shortest period for a ring, and prove that none is shorter.
-///
-/// Firing times are free, on a grid of ticks. Among all schedules of the shortest period it prefers a larger ``T_delta``, then a
-/// larger smallest interval, then evener firing. It runs on one core, without the interpreter lock; Ctrl-C ends it.
-///
-/// Args:
-///     sensors: how many, 1 to 64.
-///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11).
-///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
-///     window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier. 1 or more.
-///     tick_us: the grid of firing times and period, 1 or more.
-///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
-///     layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours, as in :meth:`Schedule.verify`.
-///     stale_echo: whether a sensor's own echo from the period before must be rejected too.
-///     budget: how many nodes to visit at most, 1 or more; 50 million by default.
-///     progress: True for a bar (tqdm if it is installed), or a callable that takes the share done (None: unknown) and a text.
-///
-/// Returns:
-///     The shortest period in ``value_us``, or the best found within the budget; ``proven`` says which.
-///
-/// Raises:
-///     ArgumentError: something of the wrong type or out of range.
-///     SearchError: needs that make no sense, or too large a grid.
-///
-/// Example:
-///     >>> import eeruf
-///     >>> found = eeruf.design(sensors=8, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
-///     >>> found.value_us, found.proven
-///     (66000, True)
-#[pyfunction]
-#[pyo3(signature = (sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None, budget=None, progress=None))]
-#[pyo3(
-    text_signature = "(sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, layout=\"line\", stale_echo=False, budget=None, progress=None)"
-)]
-#[expect(clippy::too_many_arguments, reason = "keyword arguments")]
-pub(crate) fn design(
-    py: Python<'_>,
-    sensors: &Bound<'_, PyAny>,
-    t_delta_us: &Bound<'_, PyAny>,
-    min_interval_us: &Bound<'_, PyAny>,
-    window_us: &Bound<'_, PyAny>,
-    tick_us: Option<&Bound<'_, PyAny>>,
-    neighbours: Option<&Bound<'_, PyAny>>,
-    layout: Option<&Bound<'_, PyAny>>,
-    stale_echo: Option<&Bound<'_, PyAny>>,
-    budget: Option<&Bound<'_, PyAny>>,
-    progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Found> {
-    let sensors = arguments::sensors(sensors)?;
-    let layout = OwnedLayout::new(layout, arguments::neighbours(neighbours)?)?;
-    let (t_delta, min_interval) = (micros("t_delta_us", t_delta_us)?, micros("min_interval_us", min_interval_us)?);
-    let window = whole("window_us", window_us, 1..=u32::MAX).map(Micros::new)?;
-    let tick = Micros::new(whole_or("tick_us", tick_us, 1000, 1..=u32::MAX)?);
-    let stale_echo = flag("stale_echo", stale_echo, false)?;
-    let budget = whole_or("budget", budget, DESIGN_BUDGET, 1..=u64::MAX)?;
-    let began = Instant::now();
-    let work = move |go_on: &mut dyn FnMut(&Progress) -> bool| {
-        let (criterion, layout) = (Criterion::Exact, layout.layout());
-        let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo };
-        let needs = PeriodProblem { sensors, requirements, tick };
-        let mut control = |at: &Progress| if go_on(at) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
-        shortest(&needs, budget, &mut control).map_err(Raise::raise)
-    };
-    let text = |at: &Progress| format!("{} nodes, period {} to {} ticks", at.nodes, at.bound, at.best);
-    let (found, reason) = if sensors <= FEW_SENSORS {
-        let mut watch = Watch::new(progress)?;
-        let designed = py.detach(|| work(&mut |at| watch.go_on(None, || text(at))));
-        watch.outcome(designed)?
-    } else {
-        aside(py, progress, move |aside| work(&mut |at| aside.go_on(None, || text(at))))?
-    };
-    Ok(Found::of(&found, began, Some(reason)))
-}
-
-fn shortest(
-    needs: &PeriodProblem<'_>,
-    budget: u64,
-    control: &mut impl period::Control,
-) -> Result<(search::Found<MAX_SENSORS>, String), SearchError> {
-    let mut memory = vec![0; period::memory_words(needs.sensors)];
-    let designed = needs.shortest::<MAX_SENSORS>(budget, &mut memory, control)?;
-    let mut found = designed.found;
-    if found.proven {
-        found.schedule = Some(needs.prefer(&designed, PREFERENCE_BUDGET, &mut memory, control)?.schedule);
-    }
-    Ok((found, designed.reason().to_string()))
-}
 
 /// The paper's question: lags are given, waits are sought on a grid so that crosstalk never repeats (Sec. 3.1).
 ///
@@ -217,7 +30,8 @@ fn shortest(
 ///     period_us: ``T_p``, a whole number of ticks.
 ///     wait_max_us: waits are 0, one tick, two ticks, up to this.
 ///     tick_us: the grid, 1 or more.
-///     t_lag_us: ``T_lag`` of each sensor, in whole ticks; None spreads each group of ``neighbours`` over the period, as Table I-a.
+///     t_lag_us: ``T_lag`` of each sensor, in whole ticks; None spreads each group of ``neighbours`` over the period,
+///         as Table I-a.
 ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11).
 ///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
 ///     neighbours: how many adjacent sensors make a group, 1 to 64.
@@ -247,14 +61,14 @@ impl WaitSearch {
         &self,
         py: Python<'_>,
         budget: u64,
-        work: impl FnOnce(&mut [u32], &mut Control<'_>) -> Result<T, SearchError> + Send,
+        work: impl FnOnce(&mut [u32], &mut Budget<'_>) -> Result<T, SearchError> + Send,
         words: usize,
     ) -> PyResult<T> {
         let mut watch = Watch::new(None)?;
         let result = py.detach(|| {
-            let mut watcher = |_| watch.go_on(None, String::new);
-            let mut control = Control::nodes_at_most(budget).watched(POLL, &mut watcher);
-            work(&mut vec![0; words], &mut control)
+            let mut watcher = |_: &Progress| control_flow(watch.go_on(None, String::new));
+            let mut budget = Budget::nodes_at_most(budget).watched(POLL, &mut watcher);
+            work(&mut vec![0; words], &mut budget)
         });
         watch.outcome(result.map_err(Raise::raise))
     }
@@ -263,10 +77,12 @@ impl WaitSearch {
 #[pymethods]
 impl WaitSearch {
     #[new]
-    #[pyo3(signature = (sensors, period_us, wait_max_us, tick_us, t_lag_us=None, *, t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion=None))]
-    #[pyo3(
-        text_signature = "(sensors, period_us, wait_max_us, tick_us, t_lag_us=None, *, t_delta_us, min_interval_us=0, neighbours=4, layout=\"line\", criterion=\"paper\")"
-    )]
+    #[pyo3(signature = (
+        sensors, period_us, wait_max_us, tick_us, t_lag_us=None, *, t_delta_us, min_interval_us=None, neighbours=None,
+        layout=None, criterion=None
+    ))]
+    #[pyo3(text_signature = "(sensors, period_us, wait_max_us, tick_us, t_lag_us=None, *, t_delta_us, \
+            min_interval_us=0, neighbours=4, layout=\"line\", criterion=\"paper\")")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         sensors: &Bound<'_, PyAny>,
@@ -280,9 +96,9 @@ impl WaitSearch {
         layout: Option<&Bound<'_, PyAny>>,
         criterion: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let sensors = arguments::sensors(sensors)?;
+        let sensors = requirements::sensors(sensors)?;
         let t_lag = t_lag_us.map(|lags| times("t_lag_us", lags)).transpose()?;
-        let neighbours = arguments::neighbours(neighbours)?;
+        let neighbours = requirements::neighbours(neighbours)?;
         let layout = OwnedLayout::new(layout, neighbours)?;
         let (period, wait_max) = (micros("period_us", period_us)?, micros("wait_max_us", wait_max_us)?);
         let needs = WaitProblem {
@@ -313,11 +129,12 @@ impl WaitSearch {
     ///     ((2000, 0), (0, 0))
     fn first(&self, py: Python<'_>) -> PyResult<Option<Schedule>> {
         let words = wait::memory_words(self.sensors);
-        let first = self.run(py, u64::MAX, |memory, control| self.search.first(memory, control), words)?;
+        let first = self.run(py, u64::MAX, |memory, budget| self.search.first(memory, budget), words)?;
         Ok(first.1.map(Schedule))
     }
 
-    /// How many tables there are, however many: counted without listing them where that is possible. Ctrl-C ends the search.
+    /// How many tables there are, however many: counted without listing them where that is possible. Ctrl-C ends the
+    /// search.
     ///
     /// Args:
     ///     limit: where to stop counting, 1 or more; None counts all.
@@ -336,7 +153,7 @@ impl WaitSearch {
     #[pyo3(signature = (limit=None))]
     fn count(&self, py: Python<'_>, limit: Option<&Bound<'_, PyAny>>) -> PyResult<u128> {
         let limit = limit.map(|limit| whole("limit", limit, 1..=u64::MAX)).transpose()?.map(u128::from);
-        let count = |memory: &mut [u32], control: &mut Control<'_>| self.search.count(limit, memory, control);
+        let count = |memory: &mut [u32], budget: &mut Budget<'_>| self.search.count(limit, memory, budget);
         let count = self.run(py, u64::MAX, count, wait::COUNT_WORDS)?.count;
         // Core counts the last sensor's tables all at once, and so past the limit.
         Ok(limit.map_or(count, |limit| count.min(limit)))
@@ -353,10 +170,11 @@ impl WaitSearch {
     ///     >>> [table.t_wait_b_us for table in itertools.islice(search.all(), 2)]
     ///     [(0, 2000), (0, 3000)]
     fn all(&self) -> PyResult<WaitTables> {
-        Ok(WaitTables(Walk::try_new(self.search.clone(), search::WaitSearch::all).map_err(Raise::raise)?))
+        Ok(WaitTables(Walk::try_new(self.search.clone(), search::WaitSearch::enumerate).map_err(Raise::raise)?))
     }
 
-    /// The best table: the one whose smallest interval between neighbours, or whose ``T_delta``, is largest. Ctrl-C ends the search.
+    /// The best table: the one whose smallest interval between neighbours, or whose ``T_delta``, is largest. Ctrl-C
+    /// ends the search.
     ///
     /// Args:
     ///     objective: ``"interval"`` or ``"t_delta"``.
@@ -386,7 +204,7 @@ impl WaitSearch {
         let budget = whole_or("budget", budget, u64::MAX, 1..=u64::MAX)?;
         let words = wait::memory_words(self.sensors);
         let began = Instant::now();
-        let best = |memory: &mut [u32], control: &mut Control<'_>| self.search.best(objective, memory, control);
+        let best = |memory: &mut [u32], budget: &mut Budget<'_>| self.search.best(objective, memory, budget);
         let found: search::Found<MAX_SENSORS> = self.run(py, budget, best, words)?;
         Ok(Found::of(&found, began, None))
     }
@@ -397,7 +215,7 @@ self_cell::self_cell!(
     struct Walk {
         owner: search::WaitSearch,
         #[covariant]
-        dependent: All,
+        dependent: Enumeration,
     }
 );
 
@@ -420,12 +238,12 @@ impl WaitTables {
     fn __next__(&mut self, py: Python<'_>) -> PyResult<Option<Schedule>> {
         let mut watch = Watch::new(None)?;
         let next = py.detach(|| {
-            self.0.with_dependent_mut(|search, all| {
+            self.0.with_dependent_mut(|search, tables| {
                 let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-                let mut watcher = |_| watch.go_on(None, String::new);
-                let mut control = Control::nodes_at_most(u64::MAX).watched(POLL, &mut watcher);
-                match all.next_into(&mut control, &mut a, &mut b)? {
-                    Finish::Found => search.schedule(&a, &b).map(Some),
+                let mut watcher = |_: &Progress| control_flow(watch.go_on(None, String::new));
+                let mut budget = Budget::nodes_at_most(u64::MAX).watched(POLL, &mut watcher);
+                match tables.next_into(&mut budget, &mut a, &mut b)? {
+                    Outcome::Found(()) => search.schedule(&a, &b).map(Some),
                     _ => Ok(None),
                 }
             })

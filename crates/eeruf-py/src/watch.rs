@@ -1,6 +1,7 @@
-//! Long work: Ctrl-C ends it, and who wants to may follow it.
+//! Long work: Ctrl-C ends it, and its progress can be followed.
 
 use std::{
+    ops::ControlFlow,
     sync::{
         Arc, Mutex, PoisonError,
         atomic::{AtomicBool, Ordering},
@@ -18,6 +19,11 @@ use pyo3::{
 
 /// How often Python is asked whether to go on.
 const EVERY: Duration = Duration::from_millis(20);
+
+/// What a watcher says, as the search reads it.
+pub(crate) fn control_flow(go_on: bool) -> ControlFlow<()> {
+    if go_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+}
 
 /// Asks Python now and then, from the thread that called, whether to go on.
 pub(crate) struct Watch {
@@ -79,47 +85,48 @@ impl Watch {
     }
 }
 
-/// What work on a thread of its own tells the thread that called, and hears from it.
+/// What work on a thread of its own shares with the thread that called: how far it is, and whether to stop.
 #[derive(Default)]
-pub(crate) struct Aside {
+pub(crate) struct Background {
     stopped: AtomicBool,
-    told: Mutex<(Option<f64>, String)>,
+    /// The share done, and a text.
+    reached: Mutex<(Option<f64>, String)>,
 }
 
-impl Aside {
+impl Background {
     /// Whether to go on, with how far the work has come; from any thread.
     pub(crate) fn go_on(&self, share: Option<f64>, text: impl FnOnce() -> String) -> bool {
-        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        // Threads tell their shares in any order.
-        let share = share.map(|share| told.0.map_or(share, |before| share.max(before)));
-        *told = (share, text());
+        let mut reached = self.reached.lock().unwrap_or_else(PoisonError::into_inner);
+        // Threads report their shares in any order.
+        let share = share.map(|share| reached.0.map_or(share, |before| share.max(before)));
+        *reached = (share, text());
         !self.stopped.load(Ordering::Relaxed)
     }
 
-    fn told(&self) -> (Option<f64>, String) {
-        self.told.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    fn reached(&self) -> (Option<f64>, String) {
+        self.reached.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }
 
-/// Has work done on a thread of its own, while the thread that called looks after Ctrl-C and progress: signals reach Python only
-/// there. When Python wants the work to end, the caller does not wait for it: it ends by itself when it next asks.
-pub(crate) fn aside<T: Send + 'static>(
+/// Does work on a thread of its own, while the thread that called looks after Ctrl-C and progress: signals reach Python
+/// only there. When Python wants the work to end, the caller does not wait for it: it ends by itself when it next asks.
+pub(crate) fn in_background<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
-    work: impl FnOnce(&Aside) -> PyResult<T> + Send + 'static,
+    work: impl FnOnce(&Background) -> PyResult<T> + Send + 'static,
 ) -> PyResult<T> {
     let mut watch = Watch::new(progress)?;
     let result = py.detach(|| {
-        let (ours, (tell, hear)) = (Arc::new(Aside::default()), mpsc::channel());
+        let (ours, (send, receive)) = (Arc::new(Background::default()), mpsc::channel());
         let theirs = Arc::clone(&ours);
-        // Nobody hears the result of work that was left behind.
-        thread::spawn(move || drop(tell.send(work(&theirs))));
+        // Nobody receives the result of work that was left behind.
+        thread::spawn(move || drop(send.send(work(&theirs))));
         loop {
-            match hear.recv_timeout(EVERY) {
+            match receive.recv_timeout(EVERY) {
                 Ok(result) => return result,
                 Err(RecvTimeoutError::Disconnected) => return Err(PyRuntimeError::new_err("the work ended early")),
                 Err(RecvTimeoutError::Timeout) => {
-                    let (share, text) = ours.told();
+                    let (share, text) = ours.reached();
                     if !watch.go_on(share, || text) {
                         ours.stopped.store(true, Ordering::Relaxed);
                         // The watch knows why.

@@ -3,7 +3,8 @@
 //!     rust_side paths    every critical path of the shared corpus
 //!     rust_side times    seconds of one call of `design`, `paths` and `push_many`'s work, best of many
 //!
-//! `benches/python/overhead.py` times the same calls from Python; `tests/python/test_corpus.py` compares the paths bit for bit.
+//! `benches/python/overhead.py` times the same calls from Python; `tests/python/test_corpus.py` compares the paths bit
+//! for bit.
 
 use std::{hint::black_box, time::Instant};
 
@@ -18,7 +19,7 @@ use serde_json::{Map, Value, json};
 mod corpus;
 
 fn main() {
-    let told = match std::env::args().nth(1).as_deref() {
+    let answer = match std::env::args().nth(1).as_deref() {
         Some("paths") => paths(),
         Some("times") => times(),
         _ => {
@@ -26,11 +27,11 @@ fn main() {
             std::process::exit(2);
         }
     };
-    println!("{told}");
+    println!("{answer}");
 }
 
 fn paths() -> Value {
-    let mut told = Map::new();
+    let mut answer = Map::new();
     for case in corpus::corpus()["cases"].as_array().expect("cases") {
         let order = case["max_order"].as_u64().expect("an order") as u32;
         let scene = corpus::scene(case);
@@ -51,9 +52,9 @@ fn paths() -> Value {
             "amplitude": found.amplitude,
             "walls": walls,
         });
-        told.insert(case["id"].as_str().expect("an id").to_owned(), columns);
+        answer.insert(case["id"].as_str().expect("an id").to_owned(), columns);
     }
-    Value::Object(told)
+    Value::Object(answer)
 }
 
 /// The cases are those of `overhead.py`, to the number.

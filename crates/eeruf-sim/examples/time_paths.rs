@@ -1,6 +1,6 @@
-//! Times the path finder on the scenes of the shared corpus and prints one JSON object: per scene the microseconds of the
-//! core (images seen) and of the whole answer (sorted, with angles and amplitudes), single thread, best of many runs.
-//! An argument names the only scene to time.
+//! Times the path finder on the scenes of the shared corpus and prints one JSON object: per scene the microseconds of
+//! the core (images seen) and of the whole answer (sorted, with angles and amplitudes), single thread, best of many
+//! runs. An argument names the only scene to time.
 
 use eeruf_sim::{Air, Limits, Paths, Point, Scene, Tracer, Wall};
 use serde_json::{Value, json};
@@ -29,7 +29,7 @@ fn time(scene: &Scene, source: Point, receivers: &[Point], order: u32) -> Value 
         tracer.trace(scene, source, receivers, limits, &mut paths).expect("a scene of the corpus");
     });
     let core = best_us(|| {
-        tracer.sight(scene, source, receivers, limits).expect("a scene of the corpus");
+        tracer.visible_images(scene, source, receivers, limits).expect("a scene of the corpus");
     });
     json!({"order": order, "core_us": core, "whole_us": whole, "paths": paths.len(), "beams": tracer.beams(),
            "paths_per_s": paths.len() as f64 / core * 1e6})

@@ -90,7 +90,7 @@ pub(crate) fn pend_echo() {
 }
 
 /// Sleeps until the next interrupt, unless `awake` says that there is something to do. No interrupt can come between
-/// that answer and the sleep: it is held back until the core has been told to sleep, which it then does not.
+/// that answer and the sleep: it is held back until the sleep instruction, which then does not sleep.
 pub fn sleep_unless(awake: impl FnOnce() -> bool) {
     cortex_m::interrupt::disable();
     if !awake() {

@@ -8,8 +8,8 @@
 //! | `rv_virt` | `riscv32imac-unknown-none-elf` | RV32IMAC |
 //!
 //! Each module has the same functions: a clock in microseconds, a one-shot alarm that does nothing but end a sleep, a
-//! second timer whose interrupt stands for an edge on an echo line, and a counter for measuring. [`world`] plays the
-//! sensors, [`say`] speaks through the debugger.
+//! second timer whose interrupt stands for an edge on an echo line, and a counter for measuring. [`fake_sensors`] plays
+//! the sensors, [`say`] prints through the debugger.
 #![no_std]
 
 #[cfg_attr(board = "microbit", path = "microbit.rs")]
@@ -19,10 +19,10 @@
 mod chip;
 #[cfg(target_arch = "arm")]
 mod cortex_m_common;
+pub mod fake_sensors;
 pub mod say;
 #[cfg(any(board = "lm3s6965", board = "an386"))]
 mod systick_clock;
-pub mod world;
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -42,10 +42,10 @@ pub use cortex_m_rt::entry;
 #[cfg(target_arch = "riscv32")]
 pub use riscv_rt::entry;
 
-/// What the clock read at the start.
+/// The reading of the clock at the start.
 static CLOCK_AT_START: AtomicU32 = AtomicU32::new(0);
 
-/// Has the clock begin with another reading than 0, to see it wrap. To be called before it is read.
+/// Starts the clock at another reading than 0, to see it wrap. To be called before the clock is read.
 pub fn begin_clock_at(start: Instant) {
     CLOCK_AT_START.store(start.as_micros(), Ordering::Relaxed);
 }

@@ -1,7 +1,7 @@
 //! Stellaris LM3S6965 evaluation board: Cortex-M3. SysTick is the clock, GPTM 0 the alarm, GPTM 1 the echo lines.
 //!
-//! The general-purpose timers of the emulated chip cannot be read while they run, hence SysTick, which runs at 4 MHz and
-//! must be read every 4 s.
+//! The general-purpose timers of the emulated chip cannot be read while they run, hence SysTick, which runs at 4 MHz
+//! and must be read every 4 s.
 
 use crate::cortex_m_common::{Register, enable_interrupts};
 use crate::systick_clock;

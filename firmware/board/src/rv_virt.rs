@@ -135,7 +135,7 @@ pub fn count() -> u32 {
 }
 
 /// Sleeps until the next interrupt, unless `awake` says that there is something to do. No interrupt can come between
-/// that answer and the sleep: it is held back until the core has been told to sleep, which it then does not.
+/// that answer and the sleep: it is held back until the sleep instruction, which then does not sleep.
 pub fn sleep_unless(awake: impl FnOnce() -> bool) {
     riscv::interrupt::disable();
     if !awake() {

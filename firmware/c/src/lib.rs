@@ -33,7 +33,8 @@ pub enum EerufStatus {
     EERUF_PERIOD = -4,
     /// A sensor would fire after its period has ended.
     EERUF_FIRE = -5,
-    /// The window is longer than the shortest time between two firings of a sensor, or not longer than the blanking time.
+    /// The window is longer than the shortest time between two firings of a sensor, or not longer than the blanking
+    /// time.
     EERUF_WINDOW = -6,
     /// The number of consecutive readings is not 2 to 8.
     EERUF_CONSECUTIVE = -7,
@@ -86,13 +87,13 @@ pub enum EerufEventKind {
     EERUF_PERIOD_ENDED = 2,
 }
 
-/// What a firing told.
+/// What came of a firing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub enum EerufReadingKind {
     /// An echo with nothing to compare it with.
     EERUF_FIRST = 0,
-    /// Near-identical to the reading before: believe it.
+    /// Near-identical to the reading before: it counts.
     EERUF_ACCEPTED = 1,
     /// Not near-identical to the reading before.
     EERUF_REJECTED = 2,
@@ -117,7 +118,7 @@ use EerufReadingKind::*;
 pub struct EerufEvent {
     /// Which of the following count.
     pub kind: EerufEventKind,
-    /// What the firing told; for a reading.
+    /// What came of the firing; for a reading.
     pub reading: EerufReadingKind,
     /// The sensor, from 0; for a firing and a reading.
     pub sensor: u8,
@@ -149,7 +150,7 @@ const _: () = {
 };
 
 unsafe fn schedule_in<'a>(schedule: *const EerufSchedule) -> Result<&'a Schedule<K>, EerufStatus> {
-    // SAFETY: the caller hands in null or memory of the asserted size; `ready` tells whether it was set up.
+    // SAFETY: the caller hands in null or memory of the asserted size; `ready` says whether it was set up.
     match unsafe { schedule.cast::<ReadySchedule>().as_ref() } {
         None => Err(EERUF_NULL),
         Some(memory) if memory.ready != SCHEDULE_READY => Err(EERUF_NOT_SET_UP),
@@ -166,8 +167,8 @@ unsafe fn ring_in<'a>(ring: *mut EerufRing) -> Result<&'a mut ScheduledRing<'sta
     }
 }
 
-/// Makes a schedule of the firing times of each sensor in phases a and b, `sensors` times each, in microseconds from the
-/// start of the period.
+/// Makes a schedule of the firing times of each sensor in phases a and b, `sensors` times each, in microseconds from
+/// the start of the period.
 ///
 /// # Safety
 /// `schedule` is null or memory for a schedule; `fire_a_us` and `fire_b_us` are null or `sensors` long.
@@ -239,7 +240,8 @@ pub unsafe extern "C" fn eeruf_schedule_verify(
     if schedule.verify(&requirements).ok() { EERUF_OK } else { EERUF_NOT_MET }
 }
 
-/// Makes a ring that fires by a schedule from `now_us` on. The schedule must stay where it is as long as the ring is used.
+/// Makes a ring that fires by a schedule from `now_us` on. The schedule must stay where it is as long as the ring is
+/// used.
 ///
 /// # Safety
 /// `ring`, `schedule` and `config` are null or memory of their types.
@@ -277,8 +279,8 @@ pub unsafe extern "C" fn eeruf_ring_init(
     }
 }
 
-/// EERUF_EVENT with the next thing to do or to know, or EERUF_OK if there is none at `now_us`: then sleep until the next
-/// deadline.
+/// EERUF_EVENT with the next thing to do or to know, or EERUF_OK if there is none at `now_us`: then sleep until the
+/// next deadline.
 ///
 /// # Safety
 /// `ring` and `event` are null or memory of their types.
@@ -292,7 +294,7 @@ pub unsafe extern "C" fn eeruf_ring_poll(ring: *mut EerufRing, now_us: u32, even
         Ok(ring) => ring,
         Err(status) => return status,
     };
-    let mut told = EerufEvent {
+    let mut written = EerufEvent {
         kind: EerufEventKind::EERUF_FIRE_SENSOR,
         reading: EERUF_FIRST,
         sensor: 0,
@@ -302,14 +304,14 @@ pub unsafe extern "C" fn eeruf_ring_poll(ring: *mut EerufRing, now_us: u32, even
     };
     match ring.poll(Instant::from_micros(now_us)) {
         None => return EERUF_OK,
-        Some(RingEvent::Fire(sensor)) => told.sensor = sensor,
+        Some(RingEvent::Fire(sensor)) => written.sensor = sensor,
         Some(RingEvent::Reading(reading)) => {
-            told.kind = EerufEventKind::EERUF_READING;
-            told.sensor = reading.sensor;
-            told.period = reading.period;
-            told.has_echo = reading.t_echo.is_some();
-            told.t_echo_us = reading.t_echo.map_or(0, Micros::as_micros);
-            told.reading = match reading.kind {
+            written.kind = EerufEventKind::EERUF_READING;
+            written.sensor = reading.sensor;
+            written.period = reading.period;
+            written.has_echo = reading.t_echo.is_some();
+            written.t_echo_us = reading.t_echo.map_or(0, Micros::as_micros);
+            written.reading = match reading.kind {
                 ReadingKind::First => EERUF_FIRST,
                 ReadingKind::Accepted => EERUF_ACCEPTED,
                 ReadingKind::Rejected => EERUF_REJECTED,
@@ -323,12 +325,12 @@ pub unsafe extern "C" fn eeruf_ring_poll(ring: *mut EerufRing, now_us: u32, even
             };
         }
         Some(RingEvent::PeriodEnded(stats)) => {
-            told.kind = EerufEventKind::EERUF_PERIOD_ENDED;
-            told.period = stats.period;
+            written.kind = EerufEventKind::EERUF_PERIOD_ENDED;
+            written.period = stats.period;
         }
     }
     // SAFETY: not null, and the caller's.
-    unsafe { event.write(told) };
+    unsafe { event.write(written) };
     EERUF_EVENT
 }
 

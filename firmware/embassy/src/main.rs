@@ -5,8 +5,8 @@
 
 mod time_driver;
 
+use eeruf_board::fake_sensors::{self, Delay};
 use eeruf_board::say::leave;
-use eeruf_board::world;
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Tally};
 use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
@@ -24,7 +24,7 @@ static EDGE: Signal<CriticalSectionRawMutex, ()> = Signal::new();
 
 fn echo_interrupt() {
     eeruf_board::clear_echo();
-    while let Some(edge) = world::edge() {
+    while let Some(edge) = fake_sensors::edge() {
         EDGES.push(edge);
     }
     EDGE.signal(());
@@ -46,11 +46,11 @@ async fn sleep_until(deadline: Instant) {
 async fn main(_spawner: Spawner) {
     eeruf_board::start();
     for sensor in 0..12 {
-        world::put(sensor, Some(Micros::new(5_000 + 1_000 * sensor as u32)));
+        fake_sensors::put(sensor, Some(Micros::new(5_000 + 1_000 * sensor as u32)));
     }
     let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
     let Ok(ring) = Ring::new(&TABLE_I_D, config, now()) else { leave(2) };
-    let Ok(mut ring) = HcSr04Ring::new(ring, world::pins(), world::Delay, Settings::default()) else { leave(3) };
+    let Ok(mut ring) = HcSr04Ring::new(ring, fake_sensors::pins(), Delay, Settings::default()) else { leave(3) };
     let mut readings = Tally::<u32>::default();
     loop {
         while let Some(event) = ring.poll_with_edges(&EDGES, now()) {

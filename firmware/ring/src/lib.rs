@@ -1,22 +1,22 @@
 //! The main loop of a ring on bare metal: asleep between deadlines.
 #![no_std]
 
-use eeruf_board::world::{Delay, Echo, Trigger};
+use eeruf_board::fake_sensors::{Delay, Echo, Trigger};
 use eeruf_core::{RingEvent, ScheduledFiring};
 use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring};
 
 /// A ring on the pins of this board.
 pub type BoardRing<const K: usize> = HcSr04Ring<ScheduledFiring<'static, K>, Trigger, Echo, Delay, K>;
 
-/// Runs a ring for ever; what it tells goes to `told`.
+/// Runs a ring forever and passes each event to `on_event`.
 pub fn run<const K: usize, const N: usize>(
     mut ring: BoardRing<K>,
     edges: &EdgeQueue<N>,
-    mut told: impl FnMut(&BoardRing<K>, RingEvent),
+    mut on_event: impl FnMut(&BoardRing<K>, RingEvent),
 ) -> ! {
     loop {
         while let Some(event) = ring.poll_with_edges(edges, eeruf_board::now()) {
-            told(&ring, event);
+            on_event(&ring, event);
         }
         let deadline = ring.next_deadline();
         eeruf_board::set_alarm(deadline);

@@ -1,9 +1,11 @@
-//! A ring of twelve HC-SR04 sensors on bare metal. The echo interrupt only time-stamps; the main loop is that of the library.
+//! A ring of twelve HC-SR04 sensors on bare metal. The echo interrupt only time-stamps; the main loop is that of the
+//! library.
 #![no_std]
 #![no_main]
 
+use eeruf_board::fake_sensors::{self, Delay};
+use eeruf_board::say;
 use eeruf_board::say::leave;
-use eeruf_board::{say, world};
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Micros, ReadingKind, Ring, RingConfig, RingEvent, Tally};
 use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Health, Settings};
@@ -17,7 +19,7 @@ static EDGES: EdgeQueue<32> = EdgeQueue::new();
 
 fn echo_interrupt() {
     eeruf_board::clear_echo();
-    while let Some(edge) = world::edge() {
+    while let Some(edge) = fake_sensors::edge() {
         EDGES.push(edge);
     }
 }
@@ -29,11 +31,11 @@ fn main() -> ! {
     eeruf_board::start();
     for sensor in 0..12 {
         // Walls 0.9 m to 2.8 m away, and no sensor in place 6.
-        world::put(sensor, (sensor != 5).then_some(Micros::new(5_000 + 1_000 * sensor as u32)));
+        fake_sensors::put(sensor, (sensor != 5).then_some(Micros::new(5_000 + 1_000 * sensor as u32)));
     }
     let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
     let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
-    let Ok(ring) = HcSr04Ring::new(ring, world::pins(), world::Delay, Settings::default()) else { leave(3) };
+    let Ok(ring) = HcSr04Ring::new(ring, fake_sensors::pins(), Delay, Settings::default()) else { leave(3) };
 
     let mut readings = Tally::<u32>::default();
     let mut max_late = Micros::ZERO;

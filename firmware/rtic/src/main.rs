@@ -7,8 +7,8 @@ eeruf_board::no_panic!();
 
 #[rtic::app(device = eeruf_board::device, peripherals = false)]
 mod app {
+    use eeruf_board::fake_sensors::{self, Delay, Echo, Trigger};
     use eeruf_board::say::leave;
-    use eeruf_board::world::{self, Delay, Echo, Trigger};
     use eeruf_board::{say, set_alarm};
     use eeruf_core::tables::TABLE_I_D;
     use eeruf_core::{Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledFiring, Tally};
@@ -29,11 +29,11 @@ mod app {
     fn init(_: init::Context) -> (Shared, Local) {
         eeruf_board::start();
         for sensor in 0..12 {
-            world::put(sensor, Some(Micros::new(5_000 + 1_000 * sensor as u32)));
+            fake_sensors::put(sensor, Some(Micros::new(5_000 + 1_000 * sensor as u32)));
         }
         let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
         let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
-        let Ok(ring) = HcSr04Ring::new(ring, world::pins(), Delay, Settings::default()) else { leave(3) };
+        let Ok(ring) = HcSr04Ring::new(ring, fake_sensors::pins(), Delay, Settings::default()) else { leave(3) };
         set_alarm(ring.next_deadline());
         (Shared {}, Local { ring, readings: Tally::default() })
     }
@@ -49,7 +49,7 @@ mod app {
     #[task(binds = ECHO, priority = 2)]
     fn edge(_: edge::Context) {
         eeruf_board::clear_echo();
-        while let Some(edge) = world::edge() {
+        while let Some(edge) = fake_sensors::edge() {
             EDGES.push(edge);
         }
         rtic::pend(eeruf_board::device::Interrupt::ALARM);

@@ -2,7 +2,8 @@
 #![no_std]
 #![no_main]
 
-use eeruf_core::search::wait::{Control, Finish, Problem, Search};
+use eeruf_core::search::Outcome;
+use eeruf_core::search::wait::{Budget, Problem, Search};
 use eeruf_core::tables::{TABLE_I_A, TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{
     Criterion, Instant, Layout, Micros, Phase, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Schedule,
@@ -91,15 +92,15 @@ fn exactly_one_rearrangement_of_table_i_keeps_19_ms_between_any_four_adjacent_se
         criterion: Criterion::Paper,
     };
     let search = Search::new(problem(19)).expect("a problem");
-    let count = search.rearrange(&pairs).expect("pairs").count(&mut Control::unlimited());
-    assert_eq!((count.finish, count.count), (Finish::Exhausted, 1));
+    let count = search.assign(&pairs).expect("pairs").count(&mut Budget::unlimited());
+    assert_eq!((count.outcome, count.count), (Outcome::Exhausted, 1));
     let (mut a, mut b) = ([0; 12], [0; 12]);
-    let found = search.rearrange(&pairs).expect("pairs").first(&mut Control::unlimited(), &mut a, &mut b);
-    assert_eq!((found, b), (Ok(Finish::Found), [22, 16, 10, 4, 20, 14, 8, 2, 18, 12, 6, 0]));
+    let found = search.assign(&pairs).expect("pairs").first(&mut Budget::unlimited(), &mut a, &mut b);
+    assert_eq!((found, b), (Ok(Outcome::Found(())), [22, 16, 10, 4, 20, 14, 8, 2, 18, 12, 6, 0]));
 }
 
 /// Walls 0.9 m to 2.8 m away: sensor `x` hears its echo after `5 + x` ms.
-fn a_ring_believes_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock() {
+fn a_ring_accepts_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock() {
     let config = RingConfig::new(Micros::new(999), Micros::from_millis(36));
     let mut ring: ScheduledRing<12> =
         Ring::new(&TABLE_I_D, config, Instant::from_micros(u32::MAX - 1_000_000)).expect("a ring");
@@ -165,7 +166,7 @@ fn main() -> ! {
         table_i_d_keeps_19_ms_in_its_blocks_and_17_ms_on_the_line,
         every_schedule_of_the_shared_cases_meets_its_requirements,
         exactly_one_rearrangement_of_table_i_keeps_19_ms_between_any_four_adjacent_sensors,
-        a_ring_believes_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock,
+        a_ring_accepts_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock,
         readings_that_alternate_as_crosstalk_does_are_all_rejected,
     ])
 }

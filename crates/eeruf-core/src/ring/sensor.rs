@@ -1,6 +1,6 @@
 //! What a ring knows of one of its sensors.
 
-use crate::filter::{NO_ECHO, Rule, Track, insert};
+use crate::filter::{NO_ECHO, Rule, Tracker, insert};
 use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::Phase;
 use crate::time::{Instant, Micros};
@@ -11,73 +11,73 @@ pub(super) struct Sensor<const E: usize> {
     pub(super) fired: Instant,
     /// The echoes of the present firing; also, in the first place, the time of an early or late edge.
     echoes: [u32; E],
-    pub(super) track: Track<E>,
+    pub(super) tracker: Tracker<E>,
 }
 
 // The flags of a sensor, beside the phase in which it fired.
 const PHASE: u8 = 0b111;
-/// It has fired, and what became of that is not yet told.
+/// It has fired, and its reading is pending.
 pub(super) const LISTENING: u8 = 1 << 3;
-/// It has a reading that can be told without waiting for its window to close.
+/// It has a reading that can be emitted before its window closes.
 pub(super) const READY: u8 = 1 << 4;
-/// The only edges so far came outside the window: within the blanking time while it listens, late once that is told. A
-/// sensor that has not fired is said to have had its late edge, so that none is told of it.
+/// The only edges so far came outside the window: within the blanking time while it listens, late after its reading. A
+/// sensor that has not fired counts as having had its late edge, so that none is emitted for it.
 const OUTSIDE: u8 = 1 << 5;
 /// The driver found the line stuck.
 pub(super) const STUCK: u8 = 1 << 6;
-/// The next reading is not to be compared with its neighbours in time.
-pub(super) const DISTURBED: u8 = 1 << 7;
+/// The next reading is not to be compared with the one before it, nor with the one after it.
+pub(super) const COMPARE_WITH_NOTHING: u8 = 1 << 7;
 
 /// What to do about an edge.
 pub(super) enum Edge {
-    /// A reading can be told.
+    /// It makes a reading that can be emitted.
     Ready,
     /// It came after the window, which is not yet closed.
     Late,
-    /// Nothing.
-    Noted,
+    /// Nothing: it is stored, or ignored.
+    Stored,
 }
 
 impl<const E: usize> Sensor<E> {
     pub(super) const NEW: Self =
-        Self { fired: Instant::from_micros(0), echoes: [NO_ECHO; E], track: Track::new(OUTSIDE) };
+        Self { fired: Instant::from_micros(0), echoes: [NO_ECHO; E], tracker: Tracker::new(OUTSIDE) };
 
     pub(super) const fn is(&self, flag: u8) -> bool {
-        self.track.flags & flag != 0
+        self.tracker.flags & flag != 0
     }
 
     pub(super) fn set(&mut self, flag: u8) {
-        self.track.flags |= flag;
+        self.tracker.flags |= flag;
     }
 
     fn clear(&mut self, flag: u8) {
-        self.track.flags &= !flag;
+        self.tracker.flags &= !flag;
     }
 
     pub(super) const fn phase(&self) -> Phase {
-        Phase(self.track.flags & PHASE)
+        Phase(self.tracker.flags & PHASE)
     }
 
     pub(super) fn fire(&mut self, phase: Phase, now: Instant) {
-        self.track.flags = (self.track.flags & DISTURBED) | LISTENING | phase.0;
+        self.tracker.flags = (self.tracker.flags & COMPARE_WITH_NOTHING) | LISTENING | phase.0;
         self.fired = now;
     }
 
     pub(super) fn drop_firing(&mut self) {
         self.echoes = [NO_ECHO; E];
-        self.track.forget();
-        self.track.flags = OUTSIDE;
+        self.tracker.forget();
+        self.tracker.flags = OUTSIDE;
     }
 
     pub(super) fn echo(&mut self, at: Instant, blanking: Micros, window: Micros) -> Edge {
         let t_echo = at.since(self.fired);
         if !at.has_reached(self.fired) {
             // From before it fired, or from a clock that has jumped.
-            return Edge::Noted;
+            return Edge::Stored;
         }
         if !self.is(LISTENING) {
             if t_echo <= window || self.is(OUTSIDE) {
-                return Edge::Noted;
+                return Edge::Stored;
             }
             self.set(OUTSIDE | READY);
             self.hold(t_echo);
@@ -91,7 +91,7 @@ impl<const E: usize> Sensor<E> {
                 self.set(OUTSIDE);
                 self.hold(t_echo);
             }
-            return Edge::Noted;
+            return Edge::Stored;
         }
         if self.is(OUTSIDE) {
             self.clear(OUTSIDE);
@@ -99,7 +99,7 @@ impl<const E: usize> Sensor<E> {
         }
         insert(&mut self.echoes, t_echo.as_micros());
         if E > 1 || self.is(READY) {
-            return Edge::Noted;
+            return Edge::Stored;
         }
         self.set(READY);
         Edge::Ready
@@ -116,31 +116,31 @@ impl<const E: usize> Sensor<E> {
         self.echoes.first().filter(|&&echo| echo != NO_ECHO).map(|&echo| Micros::new(echo))
     }
 
-    /// The late edge.
-    pub(super) fn tell_late(&mut self) -> Verdict {
+    /// The reading that a late edge makes.
+    pub(super) fn take_late(&mut self) -> Verdict {
         let t_echo = self.held();
         self.clear(READY);
         self.echoes = [NO_ECHO; E];
-        Verdict { kind: ReadingKind::Late, t_echo, previous: None, age: self.track.age() }
+        Verdict { kind: ReadingKind::Late, t_echo, previous: None, age: self.tracker.age() }
     }
 
-    /// Ends the firing.
-    pub(super) fn judge(&mut self, rule: Rule, expected_change_us: impl FnOnce() -> i32) -> Verdict {
-        let disturbed = self.is(DISTURBED);
-        if disturbed {
-            self.track.forget();
+    /// Ends the firing, and compares its reading with the one before.
+    pub(super) fn compare(&mut self, rule: Rule, expected_change_us: impl FnOnce() -> i32) -> Verdict {
+        let uncomparable = self.is(COMPARE_WITH_NOTHING);
+        if uncomparable {
+            self.tracker.forget();
         }
         let verdict = if self.is(STUCK) {
-            self.track.skip(ReadingKind::Stuck, None)
+            self.tracker.skip(ReadingKind::Stuck, None)
         } else if self.is(OUTSIDE) {
-            self.track.skip(ReadingKind::TooEarly, self.held())
+            self.tracker.skip(ReadingKind::TooEarly, self.held())
         } else {
-            self.track.push(rule, &self.echoes, expected_change_us())
+            self.tracker.push(rule, &self.echoes, expected_change_us())
         };
-        if disturbed {
-            self.track.forget();
+        if uncomparable {
+            self.tracker.forget();
         }
-        self.track.flags &= PHASE;
+        self.tracker.flags &= PHASE;
         self.echoes = [NO_ECHO; E];
         verdict
     }

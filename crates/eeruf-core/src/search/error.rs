@@ -1,12 +1,12 @@
-//! Why a search cannot begin.
+//! Why a search cannot start: times off the grid, or a problem that makes no sense.
 
 use core::fmt;
 
-use super::grid::GridError;
-use super::{design, wait};
+use super::common::ProblemError;
 use crate::schedule::{MAX_PERIOD, MAX_SENSORS, ScheduleError};
+use crate::time::Micros;
 
-/// Why a search cannot begin.
+/// Why a search cannot start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SearchError {
@@ -21,15 +21,13 @@ pub enum SearchError {
         /// The number of lags.
         lags: usize,
     },
-    /// The needs make no sense or are too large.
-    Design(design::ProblemError),
+    /// The problem makes no sense or is too large.
+    Problem(ProblemError),
     /// Even firing one by one takes longer than [`MAX_PERIOD`].
     TooLong {
         /// What it takes, in microseconds.
         period_us: u64,
     },
-    /// The waits sought make no sense.
-    Wait(wait::ProblemError),
     /// The schedule found does not fit the capacity asked for.
     Schedule(ScheduleError),
 }
@@ -40,15 +38,9 @@ impl From<GridError> for SearchError {
     }
 }
 
-impl From<design::ProblemError> for SearchError {
-    fn from(error: design::ProblemError) -> Self {
-        Self::Design(error)
-    }
-}
-
-impl From<wait::ProblemError> for SearchError {
-    fn from(error: wait::ProblemError) -> Self {
-        Self::Wait(error)
+impl From<ProblemError> for SearchError {
+    fn from(error: ProblemError) -> Self {
+        Self::Problem(error)
     }
 }
 
@@ -69,17 +61,46 @@ impl fmt::Display for SearchError {
                 write!(f, "{sensors} sensors; expected 1 to {MAX_SENSORS}")
             }
             Self::Lags { sensors, lags } => write!(f, "{lags} lags; expected one for each of {sensors} sensors"),
-            Self::Design(error) => error.fmt(f),
+            Self::Problem(error) => error.fmt(f),
             Self::TooLong { period_us } => write!(
                 f,
-                "firing one by one already takes {} s; expected at most {MAX_PERIOD}, so a shorter interval or window, or a \
-                 smaller t_delta",
+                "firing one by one already takes {} s; expected at most {MAX_PERIOD}, so a shorter interval \
+                 or window, or a smaller t_delta",
                 period_us / 1_000_000
             ),
-            Self::Wait(error) => error.fmt(f),
             Self::Schedule(error) => error.fmt(f),
         }
     }
 }
 
 impl core::error::Error for SearchError {}
+
+/// Why times do not fit a grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum GridError {
+    /// A tick of no length.
+    NoTick,
+    /// A time that should be a whole number of ticks.
+    OffGrid {
+        /// What the time is.
+        what: &'static str,
+        /// The time.
+        time: Micros,
+        /// The tick.
+        tick: Micros,
+    },
+}
+
+impl fmt::Display for GridError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NoTick => f.write_str("a tick of 0 us; expected 1 us or more"),
+            Self::OffGrid { what, time, tick } => {
+                write!(f, "{what} of {time}; expected a whole number of ticks of {tick}")
+            }
+        }
+    }
+}
+
+impl core::error::Error for GridError {}

@@ -1,8 +1,6 @@
 //! Between microseconds, in which a ring is described, and the whole ticks of a grid, in which it is searched.
 
-use core::fmt;
-
-use super::SearchError;
+use super::error::{GridError, SearchError};
 use crate::schedule::{MAX_SENSORS, Schedule};
 use crate::time::Micros;
 
@@ -78,36 +76,6 @@ impl Grid {
         Micros::new(ticks.saturating_mul(self.tick_us))
     }
 }
-
-/// Why times do not fit a grid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum GridError {
-    /// A tick of no length.
-    NoTick,
-    /// A time that should be a whole number of ticks.
-    OffGrid {
-        /// What the time is.
-        what: &'static str,
-        /// The time.
-        time: Micros,
-        /// The tick.
-        tick: Micros,
-    },
-}
-
-impl fmt::Display for GridError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::NoTick => f.write_str("a tick of 0 us; expected 1 us or more"),
-            Self::OffGrid { what, time, tick } => {
-                write!(f, "{what} of {time}; expected a whole number of ticks of {tick}")
-            }
-        }
-    }
-}
-
-impl core::error::Error for GridError {}
 
 #[cfg(test)]
 mod tests {

@@ -1,8 +1,10 @@
 //! The user's question, in microseconds: what a ring needs, and the best schedule that meets it.
 
-use super::design::{self, Control, Firing, InTime, Problem, Relaxations, Shortest};
+use super::common::Control;
+use super::design::{self, Firing, InTime, Problem, Relaxations, Shortest};
+use super::error::SearchError;
+use super::found::Found;
 use super::grid::Grid;
-use super::{Found, SearchError};
 use crate::conditions::{Criterion, Requirements};
 use crate::schedule::{MAX_PERIOD, MAX_SENSORS, Schedule};
 use crate::time::Micros;
@@ -14,7 +16,7 @@ use crate::time::Micros;
 /// use eeruf_core::{Micros, Requirements};
 ///
 /// // The paper's half ring of twelve: 2 ms separation, any four neighbours 15 ms apart, listening for 30 ms.
-/// let needs = PeriodProblem {
+/// let problem = PeriodProblem {
 ///     sensors: 12,
 ///     requirements: Requirements {
 ///         min_interval: Micros::from_millis(15),
@@ -24,11 +26,11 @@ use crate::time::Micros;
 ///     tick: Micros::from_millis(1),
 /// };
 /// let mut memory = vec![0; design::memory_words(12)];
-/// let shortest = needs.shortest::<12>(u64::MAX, &mut memory, &mut ())?;
+/// let shortest = problem.shortest::<12>(u64::MAX, &mut memory, &mut ())?;
 /// // 65 ms instead of the paper's 100, and no schedule is shorter.
 /// assert_eq!(shortest.found.value, Some(Micros::from_millis(65)));
 /// assert!(shortest.found.proven);
-/// assert!(shortest.found.schedule.unwrap().verify(&needs.requirements).ok());
+/// assert!(shortest.found.schedule.unwrap().verify(&problem.requirements).ok());
 /// # Ok::<(), eeruf_core::search::SearchError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,8 +65,8 @@ impl<const K: usize> ShortestPeriod<K> {
     }
 
     /// Why the period is not shorter, in words; times in microseconds or milliseconds.
-    pub const fn reason(&self) -> InTime<'_> {
-        self.shortest.reason.in_ticks_of(self.grid.tick())
+    pub const fn explanation(&self) -> InTime<'_> {
+        self.shortest.explanation.in_ticks_of(self.grid.tick())
     }
 }
 
@@ -117,8 +119,8 @@ impl PeriodProblem<'_> {
     }
 
     /// Of all schedules with the period found, the one with the largest `t_delta`; of these, the one with the largest
-    /// smallest interval; of these, the one with the longest time before a sensor fires again. A gain in a later one never
-    /// makes up for a loss in an earlier one. What is not proven within the budget is the best found.
+    /// smallest interval; of these, the one with the longest time before a sensor fires again. A gain in a later one
+    /// never makes up for a loss in an earlier one. What is not proven within the budget is the best found.
     ///
     /// # Errors
     /// As for [`shortest`](Self::shortest).
@@ -140,8 +142,8 @@ impl PeriodProblem<'_> {
         })
     }
 
-    /// Which of the needs to relax for a shorter period: for each of separation, interval and window, what one tick less of
-    /// it would do. `budget` nodes each.
+    /// Which of the needs to relax for a shorter period: for each of separation, interval and window, what one tick
+    /// less of it would do. `budget` nodes each.
     ///
     /// # Errors
     /// As for [`shortest`](Self::shortest).
@@ -170,7 +172,7 @@ impl PeriodProblem<'_> {
     ) -> Result<Found<K>, SearchError> {
         let (grid, rows) = self.grid()?;
         let ticks = grid.exactly("the period", period)?;
-        let largest = design::largest_separation(&self.problem(grid, &rows), ticks, budget, memory, control)?;
+        let largest = design::maximize_separation(&self.problem(grid, &rows), ticks, budget, memory, control)?;
         largest_found(grid, ticks, largest, |separation| grid.t_delta(separation))
     }
 
@@ -187,7 +189,7 @@ impl PeriodProblem<'_> {
     ) -> Result<Found<K>, SearchError> {
         let (grid, rows) = self.grid()?;
         let ticks = grid.exactly("the period", period)?;
-        let largest = design::largest_interval(&self.problem(grid, &rows), ticks, budget, memory, control)?;
+        let largest = design::maximize_interval(&self.problem(grid, &rows), ticks, budget, memory, control)?;
         largest_found(grid, ticks, largest, |interval| Some(grid.time(interval)))
     }
 
@@ -223,7 +225,7 @@ impl PeriodProblem<'_> {
 fn largest_found<const K: usize>(
     grid: Grid,
     period: u32,
-    largest: design::Largest,
+    largest: design::Maximum,
     value_of: impl Fn(u32) -> Option<Micros>,
 ) -> Result<Found<K>, SearchError> {
     let schedule = match &largest.found {

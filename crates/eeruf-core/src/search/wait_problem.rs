@@ -2,9 +2,11 @@
 
 use core::fmt;
 
+use super::common::Outcome;
+use super::error::SearchError;
+use super::found::Found;
 use super::grid::Grid;
-use super::wait::{All, Best, Control, Count, Finish, Objective, Problem, Search};
-use super::{Found, SearchError};
+use super::wait::{Best, Budget, Count, Enumeration, Objective, Problem, Search};
 use crate::conditions::Criterion;
 use crate::layout::Layout;
 use crate::schedule::{MAX_SENSORS, Schedule};
@@ -21,8 +23,8 @@ pub struct WaitProblem<'a> {
     pub wait_max: Micros,
     /// The grid of the waits.
     pub tick: Micros,
-    /// `T_lag` of each sensor, in whole ticks; `None` spreads each group of [`neighbours`](Self::neighbours) sensors over the
-    /// period, as Table I-a does.
+    /// `T_lag` of each sensor, in whole ticks; `None` spreads each group of [`neighbours`](Self::neighbours) sensors
+    /// over the period, as Table I-a does.
     pub t_lag: Option<&'a [Micros]>,
     /// `T_delta`: near-identical readings differ by no more.
     pub t_delta: Micros,
@@ -42,7 +44,7 @@ pub struct WaitProblem<'a> {
 /// use eeruf_core::search::{WaitProblem, WaitSearch, wait};
 /// use eeruf_core::{Criterion, Layout, Micros};
 ///
-/// let needs = WaitProblem {
+/// let problem = WaitProblem {
 ///     sensors: 12,
 ///     period: Micros::from_millis(100),
 ///     wait_max: Micros::from_millis(24),
@@ -54,9 +56,9 @@ pub struct WaitProblem<'a> {
 ///     layout: Layout::Line(4),
 ///     criterion: Criterion::Exact,
 /// };
-/// let search = WaitSearch::new(&needs)?;
+/// let search = WaitSearch::new(&problem)?;
 /// let mut memory = vec![0; wait::memory_words(12)];
-/// let best = search.best::<12>(wait::Objective::Interval, &mut memory, &mut wait::Control::unlimited())?;
+/// let best = search.best::<12>(wait::Objective::Interval, &mut memory, &mut wait::Budget::unlimited())?;
 /// // n I + D (K - 1) <= T_p: no table keeps any four neighbours further apart than 19 ms.
 /// assert_eq!(best.value, Some(Micros::from_millis(19)));
 /// assert!(best.proven);
@@ -83,7 +85,7 @@ pub enum Infeasible {
     Separation {
         /// K.
         sensors: usize,
-        /// D, what `t_delta` needs between two values `|d|`.
+        /// D, what `t_delta` problem between two values `|d|`.
         separation: Micros,
         /// The longest wait.
         wait_max: Micros,
@@ -106,13 +108,13 @@ impl fmt::Display for Infeasible {
         match self {
             Self::Separation { sensors, separation, wait_max } => write!(
                 f,
-                "t_delta alone cannot be met: {sensors} sensors need waits that differ by amounts {separation} apart from each other, and \
-                 no wait is longer than {wait_max}"
+                "t_delta alone cannot be met: {sensors} sensors need waits that differ by amounts \
+                 {separation} apart from each other, and no wait is longer than {wait_max}"
             ),
             Self::Interval { interval, wait_max, period } => write!(
                 f,
-                "the smallest interval alone cannot be met: with these lags and waits of at most {wait_max}, neighbours cannot \
-                 keep {interval} in a period of {period}"
+                "the smallest interval alone cannot be met: with these lags and waits of at most \
+                 {wait_max}, neighbours cannot keep {interval} in a period of {period}"
             ),
             Self::Together => f.write_str("t_delta and the smallest interval cannot be met together"),
         }
@@ -120,43 +122,43 @@ impl fmt::Display for Infeasible {
 }
 
 impl WaitSearch {
-    /// Checks the needs and puts them on the grid.
+    /// Checks the problem and puts it on the grid.
     ///
     /// # Errors
-    /// [`SearchError`] if a number is out of range, a period or lag is not a whole number of ticks, or a sensor could fire
-    /// after its period has ended.
-    pub fn new(needs: &WaitProblem<'_>) -> Result<Self, SearchError> {
-        let grid = Grid::new(needs.tick)?;
-        let sensors = needs.t_lag.map_or(needs.sensors, <[Micros]>::len);
-        if needs.sensors == 0 || needs.sensors > MAX_SENSORS || sensors != needs.sensors {
-            return Err(SearchError::Lags { sensors: needs.sensors, lags: sensors });
+    /// [`SearchError`] if a number is out of range, a period or lag is not a whole number of ticks, or a sensor could
+    /// fire after its period has ended.
+    pub fn new(problem: &WaitProblem<'_>) -> Result<Self, SearchError> {
+        let grid = Grid::new(problem.tick)?;
+        let sensors = problem.t_lag.map_or(problem.sensors, <[Micros]>::len);
+        if problem.sensors == 0 || problem.sensors > MAX_SENSORS || sensors != problem.sensors {
+            return Err(SearchError::Lags { sensors: problem.sensors, lags: sensors });
         }
         let mut lag = [0; MAX_SENSORS];
         for (x, lag) in lag.iter_mut().enumerate().take(sensors) {
-            *lag = match needs.t_lag {
+            *lag = match problem.t_lag {
                 Some(lags) => grid.exactly("a lag", lags.get(x).copied().unwrap_or(Micros::ZERO))?,
-                None => grid.exactly("a lag", default_lag(needs, x))?,
+                None => grid.exactly("a lag", default_lag(problem, x))?,
             };
         }
         let search = Self {
             grid,
             sensors,
-            period: grid.exactly("the period", needs.period)?,
-            wait_max: grid.at_most(needs.wait_max),
-            separation: grid.separation(needs.t_delta),
-            interval: grid.at_least(needs.min_interval),
-            criterion: needs.criterion,
+            period: grid.exactly("the period", problem.period)?,
+            wait_max: grid.at_most(problem.wait_max),
+            separation: grid.separation(problem.t_delta),
+            interval: grid.at_least(problem.min_interval),
+            criterion: problem.criterion,
             lag,
-            rows: needs.layout.rows(sensors),
+            rows: problem.layout.rows(sensors),
         };
         search.ticks()?;
         Ok(search)
     }
 
-    /// The same question in ticks, for what this type does not offer: rearrangements and the Pareto front.
+    /// The same question in ticks, for what this type does not offer: assignments and the Pareto front.
     ///
     /// # Errors
-    /// None after [`WaitSearch::new`], which has asked already.
+    /// None after [`WaitSearch::new`], which has checked already.
     pub fn ticks(&self) -> Result<Search<'_>, SearchError> {
         Ok(Search::new(Problem {
             period: self.period,
@@ -176,15 +178,16 @@ impl WaitSearch {
     pub fn first<const K: usize>(
         &self,
         memory: &mut [u32],
-        control: &mut Control<'_>,
-    ) -> Result<(Finish, Option<Schedule<K>>), SearchError> {
+        budget: &mut Budget<'_>,
+    ) -> Result<(Outcome, Option<Schedule<K>>), SearchError> {
         let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-        let finish = self.ticks()?.first(memory, control, &mut a, &mut b)?;
-        let schedule = if finish == Finish::Found { Some(self.schedule(&a, &b)?) } else { None };
-        Ok((finish, schedule))
+        let outcome = self.ticks()?.first(memory, budget, &mut a, &mut b)?;
+        let schedule = if outcome == Outcome::Found(()) { Some(self.schedule(&a, &b)?) } else { None };
+        Ok((outcome, schedule))
     }
 
-    /// Which of the needs cannot be met, if there is no table: what is found with one of them at a time, within `budget` nodes each.
+    /// Which of the two needs, separation or interval, cannot be met, if there is no table: what is found with one of
+    /// them at a time, within `budget` nodes each.
     ///
     /// # Errors
     /// As for [`first`](Self::first).
@@ -192,13 +195,13 @@ impl WaitSearch {
         let search = self.ticks()?;
         let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
         let mut without = |separation, interval| {
-            search.with(separation, interval).first(memory, &mut Control::nodes_at_most(budget), &mut a, &mut b)
+            search.with(separation, interval).first(memory, &mut Budget::nodes_at_most(budget), &mut a, &mut b)
         };
-        if without(self.separation, 0)? == Finish::Exhausted {
+        if without(self.separation, 0)? == Outcome::Exhausted {
             let (separation, wait_max) = (self.grid.time(self.separation), self.grid.time(self.wait_max));
             return Ok(Infeasible::Separation { sensors: self.sensors, separation, wait_max });
         }
-        if without(0, self.interval)? == Finish::Exhausted {
+        if without(0, self.interval)? == Outcome::Exhausted {
             let (interval, wait_max) = (self.grid.time(self.interval), self.grid.time(self.wait_max));
             return Ok(Infeasible::Interval { interval, wait_max, period: self.grid.time(self.period) });
         }
@@ -213,12 +216,12 @@ impl WaitSearch {
         &self,
         limit: Option<u128>,
         memory: &mut [u32],
-        control: &mut Control<'_>,
+        budget: &mut Budget<'_>,
     ) -> Result<Count, SearchError> {
-        Ok(self.ticks()?.count(limit, memory, control))
+        Ok(self.ticks()?.count(limit, memory, budget))
     }
 
-    /// The table with the largest smallest interval or the largest `t_delta`; the other one as in the needs.
+    /// The table with the largest smallest interval or the largest `t_delta`; the other one as in the problem.
     ///
     /// # Errors
     /// As for [`first`](Self::first).
@@ -226,33 +229,33 @@ impl WaitSearch {
         &self,
         objective: Objective,
         memory: &mut [u32],
-        control: &mut Control<'_>,
+        budget: &mut Budget<'_>,
     ) -> Result<Found<K>, SearchError> {
         let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-        let best @ Best { value, bound, nodes, .. } = self.ticks()?.best(objective, memory, control, &mut a, &mut b)?;
+        let best @ Best { value, bound, nodes, .. } = self.ticks()?.best(objective, memory, budget, &mut a, &mut b)?;
         let time = |ticks| match objective {
             Objective::Interval => Some(self.grid.time(ticks)),
             Objective::Separation => self.grid.t_delta(ticks),
         };
         let schedule = if value.is_some() { Some(self.schedule(&a, &b)?) } else { None };
-        let bound = if best.finish == Finish::Exhausted { None } else { time(bound) };
+        let bound = if best.outcome == Outcome::Exhausted { None } else { time(bound) };
         Ok(Found { schedule, value: value.and_then(time), bound, proven: best.proven(), nodes })
     }
 
-    /// All tables, one after the other: each [`All::next_into`] gives the waits of one in ticks, for
+    /// All tables, one after the other: each [`Enumeration::next_into`] gives the waits of one in ticks, for
     /// [`schedule`](Self::schedule) to make a schedule of.
     ///
     /// # Errors
     /// None after [`WaitSearch::new`].
-    pub fn all(&self) -> Result<All<'_>, SearchError> {
-        Ok(self.ticks()?.all())
+    pub fn enumerate(&self) -> Result<Enumeration<'_>, SearchError> {
+        Ok(self.ticks()?.enumerate())
     }
 
     /// The schedule with these waits, in ticks.
     ///
     /// # Errors
-    /// [`SearchError::Schedule`] if there are fewer waits than sensors, if they are too long, or for a capacity `K` below the
-    /// number of sensors.
+    /// [`SearchError::Schedule`] if there are fewer waits than sensors, if they are too long, or for a capacity `K`
+    /// below the number of sensors.
     pub fn schedule<const K: usize>(&self, wait_a: &[u32], wait_b: &[u32]) -> Result<Schedule<K>, SearchError> {
         let waits = |ticks: &'_ [u32]| ticks.len().min(self.sensors);
         self.grid.schedule(
@@ -265,9 +268,9 @@ impl WaitSearch {
 }
 
 /// Table I-a: sensor `x` of a group of `n` lags by `x mod n` parts in `n` of the period.
-fn default_lag(needs: &WaitProblem<'_>, x: usize) -> Micros {
-    let n = u64::from(needs.neighbours.max(1));
-    let part = u64::from(needs.period.as_micros()) * (x as u64 % n) / n;
+fn default_lag(problem: &WaitProblem<'_>, x: usize) -> Micros {
+    let n = u64::from(problem.neighbours.max(1));
+    let part = u64::from(problem.period.as_micros()) * (x as u64 % n) / n;
     // Below the period.
     Micros::new(part as u32)
 }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::{simulate::SimulationError, world::WorldError};
+use crate::{simulation::SimulationError, world::WorldError};
 
 /// Why an experiment cannot be run.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::summary::quantile;
+use crate::results::quantile;
 
 /// Quantiles of a figure over many runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

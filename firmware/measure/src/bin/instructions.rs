@@ -73,9 +73,9 @@ fn main() -> ! {
                         EDGES.pop();
                     }
                 }
-                Some(RingEvent::Reading(told)) => {
+                Some(RingEvent::Reading(emitted)) => {
                     reading.note(taken);
-                    if told.kind == ReadingKind::Stuck {
+                    if emitted.kind == ReadingKind::Stuck {
                         leave(3);
                     }
                 }

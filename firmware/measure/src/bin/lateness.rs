@@ -3,8 +3,9 @@
 #![no_std]
 #![no_main]
 
+use eeruf_board::fake_sensors::{self, Delay};
+use eeruf_board::say;
 use eeruf_board::say::leave;
-use eeruf_board::{say, world};
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Micros, ReadingKind, Ring, RingConfig, RingEvent, Tally};
 use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
@@ -17,7 +18,7 @@ static EDGES: EdgeQueue<32> = EdgeQueue::new();
 
 fn echo_interrupt() {
     eeruf_board::clear_echo();
-    while let Some(edge) = world::edge() {
+    while let Some(edge) = fake_sensors::edge() {
         EDGES.push(edge);
     }
 }
@@ -27,11 +28,11 @@ fn main() -> ! {
     eeruf_board::start();
     for sensor in 0..12 {
         // All echoes of a group come together, when the next group fires: the worst case.
-        world::put(sensor, Some(Micros::new(24_500)));
+        fake_sensors::put(sensor, Some(Micros::new(24_500)));
     }
     let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
     let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
-    let Ok(ring) = HcSr04Ring::new(ring, world::pins(), world::Delay, Settings::default()) else { leave(3) };
+    let Ok(ring) = HcSr04Ring::new(ring, fake_sensors::pins(), Delay, Settings::default()) else { leave(3) };
     let mut readings = Tally::<u32>::default();
     let (mut most, mut sum) = (0, 0);
     run(ring, &EDGES, |_, event| match event {

@@ -5,7 +5,8 @@
 
 use eeruf_board::say;
 use eeruf_board::say::leave;
-use eeruf_core::search::wait::{Control, Finish, Problem, Search};
+use eeruf_core::search::Outcome;
+use eeruf_core::search::wait::{Budget, Problem, Search};
 use eeruf_core::{Criterion, Layout};
 
 eeruf_board::say_panic!();
@@ -28,13 +29,13 @@ fn main() -> ! {
     };
     let start = eeruf_board::now();
     let Ok(search) = Search::new(problem) else { leave(2) };
-    let Ok(rearrange) = search.rearrange(&pairs) else { leave(3) };
+    let Ok(assignment) = search.assign(&pairs) else { leave(3) };
     let (mut a, mut b) = ([0; 12], [0; 12]);
-    let Ok(Finish::Found) = rearrange.first(&mut Control::unlimited(), &mut a, &mut b) else { leave(4) };
-    let count = rearrange.count(&mut Control::unlimited());
+    let Ok(Outcome::Found(())) = assignment.first(&mut Budget::unlimited(), &mut a, &mut b) else { leave(4) };
+    let count = assignment.count(&mut Budget::unlimited());
     // 64 ns an instruction.
     let instructions = u64::from(eeruf_board::now().since(start).as_micros()) * 1000 / 64;
-    if (count.finish, count.count) != (Finish::Exhausted, 1) || b != [22, 16, 10, 4, 20, 14, 8, 2, 18, 12, 6, 0] {
+    if (count.outcome, count.count) != (Outcome::Exhausted, 1) || b != [22, 16, 10, 4, 20, 14, 8, 2, 18, 12, 6, 0] {
         leave(5);
     }
     say!("found and proven unique: nodes ", count.nodes as u32, ", instructions ", instructions as u32);

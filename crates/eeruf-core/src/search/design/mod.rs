@@ -1,27 +1,43 @@
 //! The shortest period for a ring of sensors, proven; and how much separation or interval fits into a given one.
 //!
-//! Each sensor fires once in phase a and once in phase b, and `d` is the difference of the two times. A [`Problem`] says, in ticks, how far
-//! apart all `|d|` must be (the separation), how far apart conflicting sensors fire (the interval) and how long each listens (the window).
+//! Firing times that keep given distances from each other are a *simple temporal network* (Dechter, Meiri and Pearl
+//! 1991). Which of two neighbours fires first, and which sensor has the larger `|d|`, is *disjunctive*: the search
+//! branches on it. In detail:
 //!
-//! - [`shortest`] minimises the period and says why it is not shorter ([`Reason`]); [`relaxations`] tells which need is the one to relax.
-//! - [`decide`] answers for one period: found, exhausted (a proof that there is none), or budget spent.
-//! - [`largest_separation`] and [`largest_interval`] turn the question round.
-//! - [`prefer`] picks, among the schedules with the shortest period, the one with most to spare.
+//! - the network is a *difference-bound matrix* (Dill 1989), kept closed as each bound is added;
+//! - *Hall intervals* (Puget 1998) space the `|d|` of all sensors, as unary tasks of equal length;
+//! - short descents from a fixed seed find schedules, with *Luby restarts* (Luby, Sinclair and Zuckerman 1993), and a
+//!   full depth-first search proves that there are none;
+//! - the period is found by galloping up from a bound that follows by counting ([`Bound`]), and by bisection: what is
+//!   possible at one period is possible at any longer one;
+//! - fine ticks start with what coarse ones have found.
 //!
-//! How it works: bounds that follow by counting ([`Bound`]) give the lowest period worth trying, and for most lines, rings and blocks they
-//! are met. One period is decided by a depth-first search over firing orders, then ranks of `|d|`; times stay intervals in a matrix of
-//! differences, and fine ticks begin with what coarse ones have found. What is possible at one period is possible at any longer one, so halving
-//! is exact. Descents of a few hundred nodes from a fixed seed find schedules, the full search proves that there are none; the answer depends
-//! on the problem and the budget alone.
+//! `docs/theory.md`, sections 5 and 6, has the arguments. The answer depends on the problem and the budget alone.
+//!
+//! Each sensor fires once in phase a and once in phase b, and `d` is the difference of the two times. A [`Problem`]
+//! says, in ticks, how far apart all `|d|` must be (the separation), how far apart conflicting sensors fire (the
+//! interval) and how long each listens (the window).
+//!
+//! - [`shortest()`] minimises the period and says why it is not shorter ([`Explanation`]); [`relaxations()`] says which
+//!   need to relax.
+//! - [`decide()`] answers for one period: found, exhausted (a proof that there is none), or budget spent.
+//! - [`maximize_separation`] and [`maximize_interval`] take the period as given.
+//! - [`prefer()`] picks, among the schedules with the shortest period, the one with most to spare.
 //!
 //! With the feature `std`, `shortest_on_threads` comes to the same answer on several threads.
 //!
-//! All memory is lent by the caller, see [`memory_words`]; besides that a search needs less than 12 KiB of stack.
+//! All memory is lent by the caller, see [`memory_words`]; besides that a search needs less than 12 KiB of stack. The
+//! room uses nothing but the common vocabulary of the searches.
+//!
+//! References: R. Dechter, I. Meiri, J. Pearl, *Temporal constraint networks*, Artificial Intelligence 49 (1991). D. L.
+//! Dill, *Timing assumptions and verification of finite-state concurrent systems*, LNCS 407 (1989). J.-F. Puget, *A
+//! fast algorithm for the bound consistency of alldiff constraints*, AAAI (1998). M. Luby, A. Sinclair, D. Zuckerman,
+//! *Optimal speedup of Las Vegas algorithms*, Information Processing Letters 47 (1993).
 //!
 //! ```
 //! use eeruf_core::search::design::{Problem, memory_words, shortest};
 //!
-//! // Four sensors side by side, none of which may fire within 15 ms of another; readings are told apart by 2 ms.
+//! // Four sensors side by side, none of which may fire within 15 ms of another; different readings differ by 2 ms.
 //! let problem = Problem {
 //!     sensors: 4,
 //!     conflicts: &[0b1110, 0b1101, 0b1011, 0b0111],
@@ -34,55 +50,45 @@
 //! let found = shortest(&problem, 100_000, &mut memory, &mut ())?;
 //! assert!(found.proven());
 //! assert_eq!(found.period, 66);
-//! # Ok::<(), eeruf_core::search::design::ProblemError>(())
+//! # Ok::<(), eeruf_core::search::ProblemError>(())
 //! ```
 
+mod bisect;
 mod bounds;
-mod changes;
-mod choose;
-mod classes;
-mod control;
-mod frame;
-mod hunt;
-mod largest;
-mod network;
-mod packing;
-mod place;
+mod decide;
+mod explanation;
+mod firing;
+mod maximize;
+mod prefer;
 mod problem;
-mod propagate;
 mod random;
-mod ranks;
-mod reason;
-mod schedule;
+mod relaxations;
 mod shortest;
+mod solver;
+#[cfg(feature = "std")]
+mod speculation;
 mod symmetry;
-#[cfg(feature = "std")]
-mod threads;
-mod tree;
+#[cfg(test)]
+mod tests;
 
+pub use bisect::POLL;
 pub use bounds::Bound;
-pub use control::{Control, POLL, Progress};
-pub use largest::{Choice, Largest, Preferred, largest_interval, largest_separation, prefer};
+pub use decide::{Decided, decide};
+pub use explanation::{Explanation, InTime};
+pub use firing::Firing;
+pub use maximize::{Maximum, maximize_interval, maximize_separation};
+pub use prefer::{Optimum, Preferred, prefer};
 pub(super) use problem::one_by_one;
-pub use problem::{MAX_TICKS, Problem, ProblemError};
-pub use reason::{InTime, Reason};
-pub use schedule::Firing;
-pub use shortest::{Answer, Decision, Effect, Relaxations, Shortest, decide, relaxations, shortest};
+pub use problem::{MAX_TICKS, Problem};
+pub use relaxations::{Effect, Relaxations, relaxations};
+pub use shortest::{Shortest, shortest};
 #[cfg(feature = "std")]
-pub use threads::shortest_on_threads;
-
-use crate::schedule::MAX_SENSORS;
+pub use speculation::shortest_on_threads;
 
 /// The words of memory that every search over `sensors` sensors needs: 52 KiB for 12 sensors, 4.4 MiB for 64.
 ///
 /// It is `const`, so the memory can be an array of `[i32; memory_words(12)]`, in a `static` or on the stack.
 #[must_use]
 pub const fn memory_words(sensors: usize) -> usize {
-    tree::words(sensors)
-}
-
-/// The memory, if it is large enough.
-fn check_memory(memory: &mut [i32], sensors: usize) -> Result<&mut [i32], ProblemError> {
-    let (words, needed) = (memory.len(), memory_words(sensors));
-    if words < needed { Err(ProblemError::Memory { words, needed }) } else { Ok(memory) }
+    solver::memory_words(sensors)
 }

@@ -1,15 +1,12 @@
-//! The shortest period, why it is not shorter, and what would have to give way.
+//! The shortest period, and why it is not shorter.
 
-use core::fmt;
-
+use super::bisect::{Bisection, Bracket, Objective, Query};
 use super::bounds;
-use super::control::Control;
-use super::hunt::{Axis, Border, Hunt, Question};
-use super::problem::{Needs, Problem, ProblemError};
-use super::reason::Reason;
-use super::schedule::{self, Firing};
-use super::tree::Outcome;
-use super::{MAX_TICKS, check_memory};
+use super::explanation::Explanation;
+use super::firing::{self, Firing};
+use super::problem::{CheckedProblem, Problem};
+use super::solver::check_memory;
+use crate::search::common::{Control, ProblemError};
 
 /// The shortest period found, with its proof or lower bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +21,7 @@ pub struct Shortest {
     /// Nodes visited.
     pub nodes: u64,
     /// Why it is not shorter.
-    pub reason: Reason,
+    pub explanation: Explanation,
 }
 
 impl Shortest {
@@ -35,62 +32,10 @@ impl Shortest {
     }
 }
 
-/// What a search of one period came to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(clippy::large_enum_variant, reason = "there is no allocator to box it with, and one exists at a time")]
-pub enum Answer {
-    /// A schedule.
-    Found(Firing),
-    /// There is none: all were searched, or counting excludes them.
-    Exhausted,
-    /// Neither found nor excluded within the budget.
-    BudgetSpent,
-}
-
-/// An [`Answer`] and what it cost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Decision {
-    /// What came out.
-    pub answer: Answer,
-    /// Nodes visited.
-    pub nodes: u64,
-}
-
-/// Whether there is a schedule with a period of `period` ticks, within `budget` nodes.
-///
-/// # Errors
-/// If the problem makes no sense, the period is 0 or too long, or the memory is smaller than [`memory_words`](super::memory_words).
-pub fn decide<C: Control>(
-    problem: &Problem<'_>,
-    period: u32,
-    budget: u64,
-    memory: &mut [i32],
-    control: &mut C,
-) -> Result<Decision, ProblemError> {
-    let needs = problem.needs()?;
-    let memory = check_memory(memory, needs.sensors)?;
-    let period = check_period(period)?;
-    if period < bounds::largest(&needs).period() as i32 {
-        return Ok(Decision { answer: Answer::Exhausted, nodes: 0 });
-    }
-    let mut hunt = Hunt::new(memory, control, budget);
-    let answer = match hunt.settle(&Question { needs, period }, budget) {
-        Outcome::Found(firing) => Answer::Found(firing),
-        Outcome::Exhausted => Answer::Exhausted,
-        Outcome::Spent => Answer::BudgetSpent,
-    };
-    Ok(Decision { answer, nodes: hunt.meter.nodes })
-}
-
-pub(crate) fn check_period(period: u32) -> Result<i32, ProblemError> {
-    if period == 0 || period > MAX_TICKS { Err(ProblemError::Period(period)) } else { Ok(period as i32) }
-}
-
 /// The shortest period, within `budget` nodes.
 ///
-/// If the budget ends first, the shortest found so far comes back with the bound proven so far. There is always a schedule: firing one by
-/// one. The answer depends on nothing but the problem and the budget.
+/// If the budget ends first, the shortest found so far comes back with the bound proven so far. There is always a
+/// schedule: firing one by one. The answer depends on nothing but the problem and the budget.
 ///
 /// # Errors
 /// If the problem makes no sense, or the memory is smaller than [`memory_words`](super::memory_words).
@@ -100,117 +45,48 @@ pub fn shortest<C: Control>(
     memory: &mut [i32],
     control: &mut C,
 ) -> Result<Shortest, ProblemError> {
-    let needs = problem.needs()?;
-    let memory = check_memory(memory, needs.sensors)?;
-    let mut hunt = Hunt::new(memory, control, budget);
-    Ok(shortest_period(&needs, &mut hunt))
+    let problem = problem.checked()?;
+    let memory = check_memory(memory, problem.sensors)?;
+    let mut bisection = Bisection::new(memory, control, budget);
+    Ok(shortest_period(&problem, &mut bisection))
 }
 
-/// In fine ticks the same problem is solved in coarse ones first, if all times are multiples of one: a schedule in coarse ticks is one in fine
-/// ticks as well, and hardly ever is there a better one. That is then all that remains to be proven.
-pub(crate) fn shortest_period<C: Control>(needs: &Needs, hunt: &mut Hunt<'_, C>) -> Shortest {
-    let counted = bounds::largest(needs);
-    let firing = schedule::one_by_one(needs);
-    let mut border = Border { no: counted.period() as i32 - 1, yes: firing.period(needs), firing, guide: false };
-    let question = Question { needs: *needs, period: border.yes };
-    match needs.in_coarse_ticks() {
-        None => hunt.narrow(&question, Axis::Period, &mut border),
+/// In fine ticks the same problem is solved in coarse ones first, if all times are multiples of one: a schedule in
+/// coarse ticks is one in fine ticks as well, and hardly ever is there a better one. That is then all that remains to
+/// be proven.
+pub(crate) fn shortest_period<C: Control>(problem: &CheckedProblem, bisection: &mut Bisection<'_, C>) -> Shortest {
+    let counted = bounds::strongest(problem);
+    let firing = firing::one_by_one(problem);
+    let query = Query { problem: *problem, period: firing.period(problem) };
+    let mut bracket = Bracket {
+        query: &query,
+        objective: Objective::Period,
+        infeasible: counted.period() as i32 - 1,
+        feasible: query.period,
+        firing,
+        searched: false,
+    };
+    match problem.in_coarse_ticks() {
+        None => bisection.minimize(&mut bracket),
         Some((coarse, ticks)) => {
-            // A bound between two coarse ticks may be met, and then coarse ticks have no part in it.
-            let least = border.no + 1;
+            // A bound between two coarse ticks may be met, and then coarse ticks cannot meet it.
+            let least = bracket.infeasible + 1;
             let between = least % ticks > 0;
-            if !(between && hunt.finds(&question, Axis::Period, least, 64 * needs.sensors as u64, &mut border)) {
-                let budget = hunt.narrow_in_coarse_ticks(&coarse, ticks, &mut border);
-                // As it is ticks that were multiplied, the times may serve at a shorter period still.
-                border.yes = border.firing.period(needs).max(border.no + 1);
-                hunt.close(&question, Axis::Period, budget, &mut border);
+            if !(between && bisection.finds(least, 64 * problem.sensors as u64, &mut bracket)) {
+                let budget = bisection.minimize_in_coarse_ticks(&coarse, ticks, &mut bracket);
+                // As ticks were multiplied, the times may serve at a period that is shorter still.
+                bracket.feasible = bracket.firing.period(problem).max(bracket.infeasible + 1);
+                bisection.bisect(budget, &mut bracket);
             }
         }
     }
-    let (period, bound) = (border.yes as u32, border.no as u32 + 1);
-    let reason = if bound < period {
-        Reason::BudgetSpent { bound }
+    let (period, bound) = (bracket.feasible as u32, bracket.infeasible as u32 + 1);
+    let explanation = if bound < period {
+        Explanation::BudgetSpent { bound }
     } else if period == counted.period() {
-        Reason::Bound(counted)
+        Explanation::Bound(counted)
     } else {
-        Reason::Exhausted { period: period - 1, counted }
+        Explanation::Exhausted { period: period - 1, counted }
     };
-    Shortest { firing: border.firing, period, bound, nodes: hunt.meter.nodes, reason }
-}
-
-/// What one tick less of one need would do to the period.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Effect {
-    /// A shorter period is possible.
-    Shorter,
-    /// The period stays.
-    None,
-    /// Neither found within the budget.
-    Unknown,
-}
-
-/// Which of the needs is the one to relax: see [`relaxations`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Relaxations {
-    /// A separation one tick smaller.
-    pub separation: Effect,
-    /// An interval one tick shorter.
-    pub interval: Effect,
-    /// A window one tick shorter.
-    pub window: Effect,
-    /// Nodes visited.
-    pub nodes: u64,
-}
-
-impl fmt::Display for Relaxations {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let all = [("separation", self.separation), ("interval", self.interval), ("window", self.window)];
-        let mut first = true;
-        for (effect, words) in [
-            (Effect::Shorter, "one tick less of it allows a shorter period"),
-            (Effect::None, "one tick less of it changes nothing"),
-            (Effect::Unknown, "what one tick less of it does was not found out"),
-        ] {
-            for (need, _) in all.iter().filter(|(_, is)| *is == effect) {
-                write!(f, "{}{need}: {words}", if first { "" } else { "; " })?;
-                first = false;
-            }
-        }
-        Ok(())
-    }
-}
-
-/// For each need, whether one tick less of it allows a period below `period`, with `budget` nodes each.
-///
-/// # Errors
-/// As for [`decide`].
-pub fn relaxations<C: Control>(
-    problem: &Problem<'_>,
-    period: u32,
-    budget: u64,
-    memory: &mut [i32],
-    control: &mut C,
-) -> Result<Relaxations, ProblemError> {
-    let mut nodes = 0;
-    let mut effect = |relaxed: Problem<'_>, possible: bool| {
-        if !possible || period <= 1 {
-            return Ok(Effect::None);
-        }
-        let decision = decide(&relaxed, period - 1, budget, memory, control)?;
-        nodes += decision.nodes;
-        Ok(match decision.answer {
-            Answer::Found(_) => Effect::Shorter,
-            Answer::Exhausted => Effect::None,
-            Answer::BudgetSpent => Effect::Unknown,
-        })
-    };
-    check_period(period)?;
-    problem.check()?;
-    let less = |value: u32| value.saturating_sub(1);
-    let separation =
-        effect(Problem { separation: less(problem.separation).max(1), ..*problem }, problem.separation > 1)?;
-    let interval = effect(Problem { interval: less(problem.interval), ..*problem }, problem.interval > 0)?;
-    let window = effect(Problem { window: less(problem.window), ..*problem }, problem.window > 0)?;
-    Ok(Relaxations { separation, interval, window, nodes })
+    Shortest { firing: bracket.firing, period, bound, nodes: bisection.meter.nodes, explanation }
 }

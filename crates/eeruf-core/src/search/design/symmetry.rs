@@ -1,64 +1,68 @@
-//! Renamings of the sensors that leave the conflicts as they are, and what may be demanded of a schedule because of them.
+//! Renamings of the sensors that leave the conflicts as they are, and what may be demanded of a schedule because of
+//! them.
 //!
-//! Of all schedules that are the same but for a renaming, the search needs only one. It picks the sensor with the largest `|d|` from
-//! [`representatives`], and among the renamings that leave that sensor alone it sorts the interchangeable ones by their time in phase a
-//! ([`Sorting`]). Exchanging the phases or reversing time negates every d, so that the largest may be taken as positive.
+//! Of all schedules that are the same but for a renaming, the search needs only one. It picks the sensor with the
+//! largest `|d|` from [`representatives`], and among the renamings that leave that sensor alone it sorts the
+//! interchangeable ones by their time in phase a ([`Sorting`]). Exchanging the phases or reversing time negates every
+//! d, so that the largest may be taken as positive.
 //!
-//! Indices: sensors are below `needs.sensors` and so below `MAX_SENSORS`; renamings map them to such.
+//! Indices: sensors are below `problem.sensors` and so below `MAX_SENSORS`; renamings map them to such.
 
-use super::MAX_SENSORS;
-use super::problem::{Needs, Sensors};
+use super::problem::CheckedProblem;
+use crate::schedule::MAX_SENSORS;
+use crate::search::common::Members;
 
 /// Whether sensor i may be renamed to `to(i)` for all i at once.
-fn keeps_conflicts(needs: &Needs, to: impl Fn(usize) -> usize) -> bool {
-    (0..needs.sensors).all(|x| {
-        let renamed = Sensors(needs.conflicts[x]).fold(0, |set, y| set | 1 << to(y));
-        needs.conflicts[to(x)] == renamed
+fn keeps_conflicts(problem: &CheckedProblem, to: impl Fn(usize) -> usize) -> bool {
+    (0..problem.sensors).all(|x| {
+        let renamed = Members(problem.conflicts[x]).fold(0, |set, y| set | 1 << to(y));
+        problem.conflicts[to(x)] == renamed
     })
 }
 
 /// Whether the sensors stand on a closed ring: each sees the same as the next.
-pub(crate) fn is_ring(needs: &Needs) -> bool {
-    keeps_conflicts(needs, |i| (i + 1) % needs.sensors)
+pub(crate) fn is_ring(problem: &CheckedProblem) -> bool {
+    keeps_conflicts(problem, |i| (i + 1) % problem.sensors)
 }
 
-fn mirrored(needs: &Needs) -> bool {
-    keeps_conflicts(needs, |i| needs.sensors - 1 - i)
+fn mirrored(problem: &CheckedProblem) -> bool {
+    keeps_conflicts(problem, |i| problem.sensors - 1 - i)
 }
 
 /// Sensors that conflict with each other and with the same others are interchangeable: the lowest such sensor for `x`.
-fn twin(needs: &Needs, x: usize) -> usize {
-    let seen = |i: usize| needs.conflicts[i] | 1 << i;
+fn twin(problem: &CheckedProblem, x: usize) -> usize {
+    let seen = |i: usize| problem.conflicts[i] | 1 << i;
     (0..x).find(|&y| seen(y) == seen(x)).unwrap_or(x)
 }
 
 /// If all sensors form disjoint blocks of one size, each sensor conflicting with its whole block: that size.
-fn block_size(needs: &Needs) -> Option<u32> {
-    let size = needs.conflicts[0].count_ones() + 1;
+fn block_size(problem: &CheckedProblem) -> Option<u32> {
+    let size = problem.conflicts[0].count_ones() + 1;
     let alike = |x: usize| {
-        let block = needs.conflicts[x] | 1 << x;
-        block.count_ones() == size && Sensors(block).all(|y| needs.conflicts[y] | 1 << y == block)
+        let block = problem.conflicts[x] | 1 << x;
+        block.count_ones() == size && Members(block).all(|y| problem.conflicts[y] | 1 << y == block)
     };
-    (0..needs.sensors).all(alike).then_some(size)
+    (0..problem.sensors).all(alike).then_some(size)
 }
 
 /// Sensors of which one may be assumed to have the largest `|d|`.
-pub(crate) fn representatives(needs: &Needs) -> u64 {
-    if is_ring(needs) || block_size(needs).is_some() {
+pub(crate) fn representatives(problem: &CheckedProblem) -> u64 {
+    if is_ring(problem) || block_size(problem).is_some() {
         return 1;
     }
     let mut set = 0;
-    for x in 0..needs.sensors {
-        let mut lowest = twin(needs, x);
-        if mirrored(needs) {
-            lowest = lowest.min(twin(needs, needs.sensors - 1 - x));
+    for x in 0..problem.sensors {
+        let mut lowest = twin(problem, x);
+        if mirrored(problem) {
+            lowest = lowest.min(twin(problem, problem.sensors - 1 - x));
         }
         set |= 1 << lowest;
     }
     set
 }
 
-/// Pairs (x, y) of which x may be assumed to fire before y, or together with it, in phase a, when `top` has the largest `|d|`.
+/// Pairs (x, y) of which x may be assumed to fire before y, or together with it, in phase a, when `top` has the largest
+/// `|d|`.
 #[derive(Clone, Copy)]
 pub(crate) struct Sorting {
     /// For each sensor y, x + 1, or 0 if nothing is assumed.
@@ -66,23 +70,23 @@ pub(crate) struct Sorting {
 }
 
 impl Sorting {
-    pub(crate) fn new(needs: &Needs, top: usize) -> Self {
+    pub(crate) fn new(problem: &CheckedProblem, top: usize) -> Self {
         let mut after = [0; MAX_SENSORS];
-        let k = needs.sensors;
+        let k = problem.sensors;
         let mut twins = false;
         for y in 0..k {
             // The next lower twin other than `top`.
-            let lower = (0..y).rev().find(|&x| x != top && y != top && twin(needs, x) == twin(needs, y));
-            twins |= twin(needs, y) != y;
+            let lower = (0..y).rev().find(|&x| x != top && y != top && twin(problem, x) == twin(problem, y));
+            twins |= twin(problem, y) != y;
             if let Some(x) = lower {
                 after[y] = x as u8 + 1;
             }
         }
         // Blocks as wholes, by the first sensor of each, which is the first to fire once twins are sorted.
-        if block_size(needs).is_some() {
+        if block_size(problem).is_some() {
             let mut before = None;
             for y in 0..k {
-                if twin(needs, y) != y || needs.conflict(y, top) || y == top {
+                if twin(problem, y) != y || problem.conflict(y, top) || y == top {
                     continue;
                 }
                 if let Some(x) = before {
@@ -93,7 +97,7 @@ impl Sorting {
         } else if !twins && k > 2 {
             // The mirror image with `top` in place.
             let (left, right) = ((top + k - 1) % k, (top + 1) % k);
-            if left != right && keeps_conflicts(needs, |i| (2 * top + k - i) % k) {
+            if left != right && keeps_conflicts(problem, |i| (2 * top + k - i) % k) {
                 after[left] = right as u8 + 1;
             }
         }

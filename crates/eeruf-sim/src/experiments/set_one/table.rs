@@ -1,30 +1,33 @@
 //! Set I over many geometries: every method's figures, and how they spread.
 
 use eeruf_core::Micros;
-use serde::{Serialize, Serializer, ser::SerializeMap};
+use serde::Serialize;
 
-use super::{Alcove, SENSORS};
+use super::alcove::{Alcove, SENSORS};
+use crate::experiments::by_name::by_name;
+use crate::experiments::error::ExperimentError;
+use crate::experiments::progress::Progress;
+use crate::experiments::spread::Spread;
 use crate::{
-    best::Best,
-    experiments::{ExperimentError, Spread, going::Going},
-    method::Method,
-    robot::Robot,
-    simulate::{Options, simulate_while, sweep},
-    summary::Summary,
-    world::{World, WorldError},
+    methods::{BestSchedule, Method},
+    results::Summary,
+    simulation::{Options, simulate_while, sweep},
+    world::{Robot, World, WorldError},
 };
 
-/// How many readings the paper has of one set-up; of the conventional method, and of all others in the same time.
+/// How many readings the paper has of one set-up (Sec. 4): of the conventional method, and of all others in that time.
 pub const READINGS: u32 = 8000;
 
-/// `T_delta` of [`Method::MultiEcho`]. With up to eight echoes a firing, chance makes pairs of them agree in proportion to
-/// `T_delta`: at the 0.5 ms of the other methods every tenth reading is such a pair. Those 0.5 ms are for motion; a robot that
-/// stands, or that knows how it moves, needs no more than jitter asks for: 15 us rms at either end, times five.
+/// `T_delta` of [`Method::MultiEcho`]. With up to eight echoes a firing, pairs of them agree by accident in proportion
+/// to `T_delta`: at the 0.5 ms of the other methods every tenth reading is such a pair. Those 0.5 ms are for motion; a
+/// robot that stands, or that knows how it moves, needs no more than jitter asks for: 15 us rms at either end, times
+/// five.
 pub const MULTI_ECHO_T_DELTA: Micros = Micros::new(100);
 
-/// How many readings [`Method::MultiEcho`] compares, and for how long it waits for an echo that is missing. Where several
-/// echoes are known, one that fades must not be taken for gone, or what lies behind it is believed: with two readings and no
-/// patience 10 % of the readings are wrong for that reason. The price is that a new echo is believed after five periods.
+/// How many readings [`Method::MultiEcho`] compares, and for how long it waits for an echo that is missing. Where
+/// several echoes are known, one that fades must not be taken for gone, or what lies behind it is believed: with two
+/// readings and no patience 10 % of the readings are wrong for that reason. The price is that a new echo is believed
+/// after five periods.
 pub const MULTI_ECHO_CONSECUTIVE: u8 = 5;
 /// See [`MULTI_ECHO_CONSECUTIVE`].
 pub const MULTI_ECHO_PATIENCE: u8 = 12;
@@ -70,7 +73,7 @@ pub struct Figures {
 impl Figures {
     fn of(summaries: &[Summary]) -> Self {
         let spread = |value: fn(&Summary) -> Option<f64>| Spread::of(summaries.iter().filter_map(value));
-        let starved: usize = summaries.iter().map(|summary| summary.starved).sum();
+        let blind: usize = summaries.iter().map(|summary| summary.starved).sum();
         Self {
             wrong_of_all: spread(|s| Some(s.wrong_of_all)),
             crosstalk_of_all: spread(|s| Some(s.crosstalk_of_all)),
@@ -81,17 +84,17 @@ impl Figures {
             age_ms: spread(|s| Some(s.age_ms.median)),
             age_p99_ms: spread(|s| Some(s.age_ms.p99)),
             readings_per_s: spread(|s| Some(s.readings_per_s)),
-            starved: starved as f64 / summaries.len().max(1) as f64,
+            starved: blind as f64 / summaries.len().max(1) as f64,
         }
     }
 }
 
 /// Runs Set I: geometries 0 to `seeds`, each under every method for as long as `readings` readings of the conventional
 /// method take ([`READINGS`] in the paper), on all cores. `best` is what [`Method::EerufBest`] fires by, see
-/// [`best_for`](crate::best::best_for).
+/// [`best_schedule_for`](crate::best_schedule_for).
 ///
-/// `keep_going` is called now and then, by several threads, with the share that is done, 0 to 1; when its answer is `false`
-/// the run stops. The result does not depend on the number of threads.
+/// `keep_going` is called now and then, by several threads, with the share that is done, 0 to 1; when its answer is
+/// `false` the run stops. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// [`ExperimentError`] for no geometries or no methods, and if it was stopped.
@@ -107,7 +110,7 @@ pub fn set_one(
     seeds: u64,
     readings: u32,
     methods: &[Method],
-    best: Option<&Best>,
+    best: Option<&BestSchedule>,
     keep_going: &(dyn Fn(f64) -> bool + Sync),
 ) -> Result<SetOne, ExperimentError> {
     if seeds == 0 {
@@ -118,10 +121,10 @@ pub fn set_one(
     }
     let periods = readings.div_ceil(SENSORS as u32);
     let options = Options { best: best.map(|best| best.schedule), ..Options::periods(periods) };
-    let going = Going::new(seeds * methods.len() as u64, keep_going);
+    let progress = Progress::new(seeds * methods.len() as u64, keep_going);
     let geometries: Vec<u64> = (0..seeds).collect();
     let runs = sweep(&geometries, |&number| {
-        if !going.go_on() {
+        if !progress.go_on() {
             return Err(ExperimentError::Stopped);
         }
         let alcove = Alcove::random(number);
@@ -136,25 +139,17 @@ pub fn set_one(
         let mut summaries = Vec::with_capacity(methods.len());
         for &method in methods {
             let world = if method == Method::MultiEcho { &patient } else { &standard };
-            let readings = simulate_while(world, method, &options, |_| going.go_on())?;
+            let readings = simulate_while(world, method, &options, |_| progress.go_on())?;
             summaries.push(readings.summary());
-            going.one_done();
+            progress.one_done();
         }
         Ok(summaries)
     });
     let runs: Vec<Vec<Summary>> = runs.into_iter().collect::<Result<_, ExperimentError>>()?;
-    if going.stopped() {
+    if progress.stopped() {
         return Err(ExperimentError::Stopped);
     }
-    let of = |place: usize| Figures::of(&runs.iter().map(|run| run[place]).collect::<Vec<_>>());
-    let methods = methods.iter().enumerate().map(|(place, &method)| (method, of(place))).collect();
+    let of = |column: usize| Figures::of(&runs.iter().map(|run| run[column]).collect::<Vec<_>>());
+    let methods = methods.iter().enumerate().map(|(column, &method)| (method, of(column))).collect();
     Ok(SetOne { seeds, periods, methods })
-}
-
-fn by_name<S: Serializer>(methods: &[(Method, Figures)], serializer: S) -> Result<S::Ok, S::Error> {
-    let mut map = serializer.serialize_map(Some(methods.len()))?;
-    for (method, figures) in methods {
-        map.serialize_entry(method, figures)?;
-    }
-    map.end()
 }

@@ -1,24 +1,18 @@
 //! A course: a lab with poles about 1.6 m apart (Fig. 6), which a robot can certainly pass.
 
-use crate::{
-    air::Air,
-    clock::Clock,
-    experiments::set_one::{RADIUS_M, SENSORS, SPACING_DEG},
-    material::Material,
-    noise::{Chance, Noise},
-    plane::{Point, Pose, Vector},
-    pole::Pole,
-    robot::Robot,
-    scene::Scene,
-    transducer::Transducer,
-    wall::Wall,
-    world::{World, WorldError},
-};
 use eeruf_core::Micros;
 
-/// Length and width of the lab, in metres. The course runs along its length.
+use crate::experiments::set_one::{RADIUS_M, SENSORS, SPACING_DEG};
+use crate::{
+    acoustics::Transducer,
+    geometry::{Point, Pose, Vector},
+    scene::{Air, Material, Pole, Scene, Wall},
+    world::{Clock, Noise, Random, Robot, World, WorldError},
+};
+
+/// Length and width of the lab, in metres: a choice, as the paper gives none. The course runs along its length.
 pub const ROOM_M: [f64; 2] = [10.0, 6.0];
-/// The poles are 8 mm thick.
+/// The poles are 8 mm thick (Sec. 4).
 pub const POLE_RADIUS_M: f64 = 0.004;
 /// Between poles of the unshaken lattice, in metres.
 const SPACING_M: f64 = 1.6;
@@ -36,8 +30,8 @@ pub(super) const FINISH_X_M: f64 = 8.2;
 /// What it steers for.
 pub(super) const TARGET: Point = Point::new(9.4, 3.0);
 
-/// Places for a second robot, out of the first one's way: in the corner behind it, and in the reflective corner ahead, which
-/// all its sensors face.
+/// Places for a second robot, out of the first one's way: in the corner behind it, and in the reflective corner ahead,
+/// which all its sensors face.
 pub const SECOND_BEHIND: Point = Point::new(0.6, 5.4);
 /// See [`SECOND_BEHIND`].
 pub const SECOND_AHEAD: Point = Point::new(9.4, 5.3);
@@ -52,12 +46,13 @@ pub struct Course {
 }
 
 impl Course {
-    /// The course that a number stands for. Poles are drawn, shaken from a lattice of triangles, until no two are nearer than
-    /// 1.4 m and a disc of radius 0.6 m can roll from the start to the finish; a search over cells of 10 cm proves that.
+    /// The course that a number stands for. Poles are drawn, shaken from a lattice of triangles, until no two are
+    /// nearer than 1.4 m and a disc of radius 0.6 m can roll from the start to the finish; a search over cells of 10 cm
+    /// proves that.
     pub fn random(number: u64) -> Self {
-        let mut chance = Chance::new(number).of(2);
+        let mut random = Random::new(number).of(2);
         loop {
-            let course = Self { number, poles: shaken(&mut chance) };
+            let course = Self { number, poles: shaken(&mut random) };
             if course.gap_m() >= LEAST_GAP_M && course.is_passable() {
                 return course;
             }
@@ -118,22 +113,22 @@ impl Course {
         Robot::ring(pose, SENSORS, SPACING_DEG.to_radians(), RADIUS_M, Transducer::POLAROID_6500)
     }
 
-    /// The other robot: 24 sensors all around that fire 24 times in 80 ms, standing at a place, its clock 40 ppm fast and
-    /// started at any time.
+    /// The other robot: 24 sensors all around that fire 24 times in 80 ms, standing at a place, its clock 40 ppm fast
+    /// and started at any time.
     pub fn second_robot(&self, at: Point) -> Robot {
-        let mut chance = Chance::new(self.number).of(3);
-        let pose = Pose::new(at.coords, chance.between(-3.1, 3.1));
+        let mut random = Random::new(self.number).of(3);
+        let pose = Pose::new(at.coords, random.between(-3.1, 3.1));
         let ring = Robot::ring(pose, 24, 15f64.to_radians(), RADIUS_M, Transducer::POLAROID_6500);
         Robot {
             period: Micros::from_millis(80),
-            clock: Clock { offset_us: chance.bits() as u32, drift_ppm: 40.0 },
-            start: Micros::new(chance.between(0.0, 80_000.0) as u32),
+            clock: Clock { offset_us: random.bits() as u32, drift_ppm: 40.0 },
+            start: Micros::new(random.between(0.0, 80_000.0) as u32),
             ..ring
         }
     }
 
-    /// The lab with its robots. Sound is followed for two bounces at walls, or one at a pole: a choice, for speed. Fainter
-    /// sound over more bounces is left out.
+    /// The lab with its robots. Sound is followed for two bounces at walls, or one at a pole: a choice, for speed.
+    /// Fainter sound over more bounces is left out.
     ///
     /// # Errors
     /// [`WorldError`] if something does not fit.
@@ -150,14 +145,14 @@ const ORDER: u32 = 2;
 const POLE_ORDER: u32 = 1;
 
 /// A lattice of triangles over the middle of the lab, every pole shaken and the whole lattice moved.
-fn shaken(chance: &mut Chance) -> Vec<Point> {
+fn shaken(random: &mut Random) -> Vec<Point> {
     let column_m = SPACING_M * 0.75f64.sqrt();
-    let aside = chance.between(-0.5 * SPACING_M, 0.5 * SPACING_M);
+    let aside = random.between(-0.5 * SPACING_M, 0.5 * SPACING_M);
     let mut poles = Vec::new();
     for column in 0..4 {
         let shift = aside + if column % 2 == 0 { 0.0 } else { 0.5 * SPACING_M };
         for row in -3..=3 {
-            let shake = [chance.between(-SHAKE_M, SHAKE_M), chance.between(-SHAKE_M, SHAKE_M)];
+            let shake = [random.between(-SHAKE_M, SHAKE_M), random.between(-SHAKE_M, SHAKE_M)];
             let x = 2.8 + column_m * f64::from(column) + shake[0];
             let y = 0.5 * ROOM_M[1] + shift + SPACING_M * f64::from(row) + shake[1];
             if (0.3..ROOM_M[1] - 0.3).contains(&y) {

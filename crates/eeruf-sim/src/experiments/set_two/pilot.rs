@@ -1,20 +1,16 @@
-//! The closed loop: accepted readings fill the histogram grid from where they were taken, the vector field histogram says
-//! where to steer and how fast, and the platform follows as well as it can.
+//! The closed loop: accepted readings fill the histogram grid from where they were taken, the vector field histogram
+//! says where to steer and how fast, and the platform follows as well as it can.
 
 use eeruf_core::ReadingKind;
-use serde::Serialize;
 
 use super::course::{FINISH_X_M, POLE_RADIUS_M, ROOM_M, TARGET};
+use super::run::{Cell, Ending, Place, Run};
 use crate::{
-    guide::Guide,
-    himm::Himm,
-    labmate::{Driven, LabMate},
-    method::Method,
-    motion::Moment,
-    plane::{Point, wrap_angle},
-    readings::Readings,
-    summary::DEFAULT_TOLERANCE_US,
-    vfh::{SECTORS, Vfh},
+    geometry::{Moment, Point, Vector, wrap_angle},
+    methods::Method,
+    navigation::{Driven, Himm, LabMate, SECTORS, Vfh},
+    results::{DEFAULT_TOLERANCE_US, Readings},
+    simulation::Kinematics,
     world::World,
 };
 
@@ -59,79 +55,6 @@ impl Default for Piloting {
     }
 }
 
-/// How a course ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Ending {
-    /// Over the finishing line.
-    Finished,
-    /// It touched a pole or a wall.
-    Contact,
-    /// It was still under way, or stuck, when the time was over.
-    TimeOut,
-}
-
-/// Where the robot was at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Place {
-    /// In seconds.
-    pub time_s: f64,
-    /// In metres.
-    pub x_m: f64,
-    /// In metres.
-    pub y_m: f64,
-    /// In radians.
-    pub heading_rad: f64,
-    /// In m/s.
-    pub speed_m_s: f64,
-}
-
-/// A cell of the grid that is not empty.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Cell {
-    /// Its middle, in metres.
-    pub x_m: f64,
-    /// Its middle, in metres.
-    pub y_m: f64,
-    /// Its certainty, 1 to 15.
-    pub value: u8,
-}
-
-/// What came of one course under one method.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Run {
-    /// Which course.
-    pub course: u64,
-    /// How it ended.
-    pub ending: Ending,
-    /// For how long it drove, in seconds.
-    pub time_s: f64,
-    /// How far it drove, in metres.
-    pub way_m: f64,
-    /// Its highest speed, in m/s.
-    pub top_speed_m_s: f64,
-    /// How near its outline came to a pole, in metres.
-    pub nearest_m: f64,
-    /// How many readings its sensors took.
-    pub readings: u32,
-    /// How many of them were not accepted.
-    pub rejected: u32,
-    /// How many were accepted and wrong.
-    pub wrong: u32,
-    /// How many echoes were entered into the grid where nothing is.
-    pub phantom_echoes: u32,
-    /// How many cells of the grid are certain in the end though nothing is there.
-    pub phantom_cells: u32,
-    /// How many poles the robot came near.
-    pub poles_passed: u32,
-    /// How many of them never had an echo entered into the grid.
-    pub poles_missed: u32,
-    /// Where it drove, every 30 ms.
-    pub track: Vec<Place>,
-    /// The grid in the end.
-    pub grid: Vec<Cell>,
-}
-
 /// Steers the first robot of a world.
 pub(super) struct Pilot<'w> {
     world: &'w World,
@@ -149,23 +72,6 @@ pub(super) struct Pilot<'w> {
 
 impl<'w> Pilot<'w> {
     pub(super) fn new(world: &'w World, course: u64, labmate: LabMate, piloting: Piloting, time_s: f64) -> Self {
-        let run = Run {
-            course,
-            ending: Ending::TimeOut,
-            time_s: 0.0,
-            way_m: 0.0,
-            top_speed_m_s: 0.0,
-            nearest_m: f64::INFINITY,
-            readings: 0,
-            rejected: 0,
-            wrong: 0,
-            phantom_echoes: 0,
-            phantom_cells: 0,
-            poles_passed: 0,
-            poles_missed: 0,
-            track: Vec::new(),
-            grid: Vec::new(),
-        };
         // One grid for all of the lab; the active window moves over it.
         let side = (1.3 * ROOM_M[0] / CELL_M) as usize;
         let mut grid = Himm::new(side, CELL_M);
@@ -181,7 +87,7 @@ impl<'w> Pilot<'w> {
             grid,
             wanted: (0.0, 0.0),
             poles: vec![(false, f64::INFINITY); world.scene().poles().len()],
-            run,
+            run: Run::begun(course),
         }
     }
 
@@ -260,7 +166,7 @@ impl<'w> Pilot<'w> {
     }
 }
 
-impl Guide for Pilot<'_> {
+impl Kinematics for Pilot<'_> {
     fn moves(&self) -> bool {
         true
     }
@@ -283,7 +189,7 @@ impl Guide for Pilot<'_> {
         true
     }
 
-    fn told(&mut self, readings: &Readings, fired: &Moment) {
+    fn on_reading(&mut self, readings: &Readings, fired: &Moment) {
         let Some(last) = readings.len().checked_sub(1).filter(|&last| readings.robot[last] == 0) else { return };
         let robot = &self.world.robots()[0];
         let sensor = fired.pose * robot.sensors[usize::from(readings.sensor[last])];
@@ -302,7 +208,7 @@ impl Guide for Pilot<'_> {
             return;
         }
         self.grid.echo(at, heading, near_m, range_m);
-        let hit = Point::from(at.coords + (sensor.rotation * crate::plane::Vector::x()) * range_m);
+        let hit = Point::from(at.coords + (sensor.rotation * Vector::x()) * range_m);
         self.run.phantom_echoes += u32::from(self.is_phantom(hit));
         for (pole, (seen, _)) in self.world.scene().poles().iter().zip(&mut self.poles) {
             *seen |= (pole.centre - hit).norm() <= PHANTOM_M;

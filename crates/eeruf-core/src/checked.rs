@@ -1,0 +1,108 @@
+//! [`schedule!`](crate::schedule!): a schedule that the compiler checks.
+
+use crate::conditions::Requirements;
+use crate::schedule::{Schedule, ScheduleError};
+use crate::time::Micros;
+use crate::verify::ViolationKind;
+
+/// A [`Schedule`] that is checked while the program is compiled: a table that breaks a condition does not build.
+///
+/// Times are whole microseconds. The table is given by lags and waits or by firing times, and `meets` is the
+/// [`Requirements`] to hold; `eeruf design --emit rust` writes the whole call.
+///
+/// ```
+/// use eeruf_core::{Layout, Micros, Requirements, Schedule, schedule};
+///
+/// const FRONT: Schedule<4> = schedule! {
+///     period_us: 60_000,
+///     t_fire_a_us: [0, 15_000, 30_000, 45_000],
+///     t_fire_b_us: [0, 17_000, 34_000, 51_000],
+///     meets: Requirements { min_interval: Micros::from_millis(9), ..Requirements::new(Micros::new(999)) },
+/// };
+/// assert_eq!(FRONT.sensors(), 4);
+/// ```
+///
+/// The same table does not compile when 15 ms between neighbours are asked for, since sensor 4 in phase b and sensor 1
+/// in phase a fire 9 ms apart:
+///
+/// ```compile_fail
+/// use eeruf_core::{Layout, Micros, Requirements, Schedule, schedule};
+///
+/// const FRONT: Schedule<4> = schedule! {
+///     period_us: 60_000,
+///     t_fire_a_us: [0, 15_000, 30_000, 45_000],
+///     t_fire_b_us: [0, 17_000, 34_000, 51_000],
+///     meets: Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) },
+/// };
+/// # assert_eq!(FRONT.sensors(), 4);
+/// ```
+#[macro_export]
+macro_rules! schedule {
+    (
+        period_us: $period:expr,
+        t_lag_us: $t_lag:expr,
+        t_wait_a_us: $t_wait_a:expr,
+        t_wait_b_us: $t_wait_b:expr,
+        meets: $requirements:expr $(,)?
+    ) => {
+        const {
+            $crate::__checked(
+                $crate::Schedule::new(
+                    $crate::Micros::new($period),
+                    $crate::__micros($t_lag),
+                    [$crate::__micros($t_wait_a), $crate::__micros($t_wait_b)],
+                ),
+                &$requirements,
+            )
+        }
+    };
+    (
+        period_us: $period:expr,
+        t_fire_a_us: $t_fire_a:expr,
+        t_fire_b_us: $t_fire_b:expr,
+        meets: $requirements:expr $(,)?
+    ) => {
+        const {
+            $crate::__checked(
+                $crate::Schedule::from_firing(
+                    $crate::Micros::new($period),
+                    [$crate::__micros($t_fire_a), $crate::__micros($t_fire_b)],
+                ),
+                &$requirements,
+            )
+        }
+    };
+}
+
+/// For `schedule!`, which evaluates it when the program is compiled: its panics are compile errors.
+#[doc(hidden)]
+pub const fn __checked<const K: usize>(
+    schedule: Result<Schedule<K>, ScheduleError>,
+    requirements: &Requirements<'_>,
+) -> Schedule<K> {
+    match schedule {
+        Ok(schedule) => match schedule.verify(requirements).violations().advance() {
+            None => schedule,
+            Some(violation) => match violation.kind {
+                ViolationKind::CrosstalkA => panic!("two sensors' crosstalk would be accepted, Eq. (13a)"),
+                ViolationKind::CrosstalkB => panic!("two sensors' crosstalk would be accepted, Eq. (13b)"),
+                ViolationKind::StaleEcho => panic!("a sensor's stale echo would be accepted, Eq. (13b) with x = y"),
+                ViolationKind::Interval => panic!("two neighbours fire closer together than min_interval, Sec. 3.1 c"),
+                ViolationKind::Window => panic!("a sensor fires again while it still listens, T_wind"),
+            },
+        },
+        Err(error) => panic!("{}", error.as_str()),
+    }
+}
+
+/// For `schedule!`.
+#[doc(hidden)]
+pub const fn __micros<const K: usize>(us: [u32; K]) -> [Micros; K] {
+    let mut times = [Micros::ZERO; K];
+    let mut i = 0;
+    while i < K {
+        times[i] = Micros::new(us[i]);
+        i += 1;
+    }
+    times
+}

@@ -1,0 +1,41 @@
+//! Why a filter cannot do what is asked.
+
+use core::fmt;
+
+/// Why a filter cannot do what is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum FilterError {
+    /// Too few or too many consecutive readings.
+    Consecutive {
+        /// How many were asked for.
+        consecutive: u8,
+    },
+    /// Too much patience.
+    Patience {
+        /// How much was asked for.
+        patience: u8,
+    },
+    /// A sensor that is not there.
+    Sensor {
+        /// The sensor, from 0.
+        sensor: usize,
+        /// How many there are.
+        sensors: usize,
+    },
+}
+
+impl fmt::Display for FilterError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Consecutive { consecutive } => write!(f, "{consecutive} consecutive readings; expected 2 to 8"),
+            Self::Patience { patience } => write!(f, "a patience of {patience} firings; expected 0 to 15"),
+            Self::Sensor { sensor, sensors } => {
+                write!(f, "sensor {}; expected 1 to {sensors}", sensor.saturating_add(1))
+            }
+        }
+    }
+}
+
+impl core::error::Error for FilterError {}

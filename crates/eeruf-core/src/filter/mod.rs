@@ -1,0 +1,134 @@
+//! The filter: a reading counts only if it is near-identical to the one before (Eq. 11).
+//!
+//! ```text
+//! |T_i - T_(i-1)| <= T_delta      (11)
+//! ```
+//!
+//! A true echo does not depend on the waits and passes; crosstalk moves by more than `T_delta` whenever the schedule
+//! meets (13a), (13b), and is rejected. Sensors that report several echoes of one firing hand in all of them, and the
+//! earliest that repeats is accepted: crosstalk that arrives before the true echo then no longer hides it.
+//!
+//! The room holds the public filter and the tracker behind it; it uses readings and times, and knows nothing of
+//! schedules.
+
+mod agreement;
+mod echoes;
+mod error;
+mod rule;
+mod state;
+#[cfg(test)]
+mod tests;
+mod tracker;
+
+use crate::reading::Verdict;
+use crate::time::Micros;
+
+pub(crate) use agreement::Agreement;
+pub(crate) use echoes::{NO_ECHO, insert};
+pub use error::FilterError;
+pub(crate) use rule::Rule;
+pub(crate) use tracker::Tracker;
+
+/// Compares the consecutive readings of up to `K` sensors, each with up to `E` echoes a firing.
+///
+/// ```
+/// use eeruf_core::{EchoFilter, ReadingKind, Micros};
+/// let mut filter = EchoFilter::<2>::new(Micros::new(500), 2)?;
+/// let mut push = |echo_us: u32| filter.push(1, Some(Micros::new(echo_us))).map(|verdict| verdict.kind);
+/// assert_eq!(push(9_000)?, ReadingKind::First);
+/// assert_eq!(push(9_500)?, ReadingKind::Accepted); // just within t_delta
+/// assert_eq!(push(10_001)?, ReadingKind::Rejected); // just beyond
+/// assert_eq!(push(10_001)?, ReadingKind::Accepted); // the new value was the one to compare with
+/// # Ok::<(), eeruf_core::FilterError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct EchoFilter<const K: usize, const E: usize = 1> {
+    trackers: [Tracker<E>; K],
+    rule: Rule,
+}
+
+impl<const K: usize, const E: usize> EchoFilter<K, E> {
+    /// A filter that accepts a reading when `consecutive` readings in a row (2 in the paper) are each within `t_delta`
+    /// of the one before.
+    ///
+    /// # Errors
+    /// [`FilterError::Consecutive`] unless 2 to 8 readings are compared.
+    pub const fn new(t_delta: Micros, consecutive: u8) -> Result<Self, FilterError> {
+        match Agreement::new(consecutive, 0) {
+            Ok(agreement) => Ok(Self { trackers: [Tracker::new(0); K], rule: Rule { t_delta, agreement } }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// A filter that waits for an accepted echo that is missing, as faint echoes are now and then. While it waits, no
+    /// later echo is accepted in its place; when the echo comes back it is accepted again.
+    ///
+    /// Each echo has a track with a score. The score grows by one with each firing that the echo is in, up to
+    /// `patience` (or `consecutive`, if that is more), and shrinks by one with each firing that it is missing from. A
+    /// track is *confirmed* once its score has reached `consecutive`, and until its score is used up; a confirmed track
+    /// whose echo is missing is *coasting*. With a patience of 0, as in the paper, no track coasts.
+    ///
+    /// This is for schedules of two phases, and for sensors that report several echoes; with `E` = 1 it changes
+    /// nothing. The price: an object that has gone is still waited for.
+    ///
+    /// # Errors
+    /// [`FilterError::Patience`] for more than 15.
+    ///
+    /// ```
+    /// use eeruf_core::{EchoFilter, ReadingKind, Micros};
+    /// let mut filter = EchoFilter::<1, 8>::new(Micros::new(100), 2)?.with_patience(4)?;
+    /// let mut push = |echoes: &[u32]| {
+    ///     let echoes: Vec<_> = echoes.iter().map(|&us| Micros::new(us)).collect();
+    ///     filter.push_echoes(0, &echoes, 0).map(|verdict| verdict.kind)
+    /// };
+    /// push(&[9_000, 14_000])?;
+    /// assert_eq!(push(&[9_000, 14_000])?, ReadingKind::Accepted);
+    /// assert_eq!(push(&[14_000])?, ReadingKind::Rejected); // the wall behind is not accepted at once
+    /// assert_eq!(push(&[9_000, 14_000])?, ReadingKind::Accepted);
+    /// # Ok::<(), eeruf_core::FilterError>(())
+    /// ```
+    pub const fn with_patience(self, patience: u8) -> Result<Self, FilterError> {
+        match Agreement::new(self.rule.agreement.consecutive(), patience) {
+            Ok(agreement) => Ok(Self { rule: Rule { agreement, ..self.rule }, ..self }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Takes in one firing of a sensor (from 0): the time of its echo, or `None` without echo.
+    ///
+    /// # Errors
+    /// [`FilterError::Sensor`] for a sensor that is not there.
+    pub fn push(&mut self, sensor: usize, t_echo: Option<Micros>) -> Result<Verdict, FilterError> {
+        self.push_echoes(sensor, t_echo.as_slice(), 0)
+    }
+
+    /// As [`push`](Self::push), with all echoes of the firing in any order (the earliest `E` count) and the change in
+    /// microseconds that a good reading is expected to show since the firing before: `-2 v dt / c` for an object
+    /// approached at `v`, where `dt` is the time between the two firings (see
+    /// [`Schedule::refire_after`](crate::Schedule::refire_after)).
+    ///
+    /// # Errors
+    /// [`FilterError::Sensor`] for a sensor that is not there.
+    pub fn push_echoes(
+        &mut self,
+        sensor: usize,
+        echoes: &[Micros],
+        expected_change_us: i32,
+    ) -> Result<Verdict, FilterError> {
+        let Some(tracker) = self.trackers.get_mut(sensor) else {
+            return Err(FilterError::Sensor { sensor, sensors: K });
+        };
+        let mut earliest = [NO_ECHO; E];
+        for echo in echoes {
+            insert(&mut earliest, echo.as_micros());
+        }
+        Ok(tracker.push(self.rule, &earliest, expected_change_us))
+    }
+
+    /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
+    pub fn forget(&mut self, sensor: usize) {
+        if let Some(tracker) = self.trackers.get_mut(sensor) {
+            tracker.forget();
+        }
+    }
+}

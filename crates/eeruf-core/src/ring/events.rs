@@ -1,0 +1,52 @@
+//! [`RingEvent`]: what a ring hands to its caller.
+
+use crate::reading::{ReadingKind, Tally};
+use crate::schedule::Phase;
+use crate::time::Micros;
+
+/// What a [`Ring`](super::Ring) hands to its caller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum RingEvent {
+    /// Fire this sensor (from 0), now.
+    Fire(u8),
+    /// What came of an earlier firing.
+    Reading(Reading),
+    /// A period has ended.
+    PeriodEnded(PeriodStats),
+}
+
+/// What came of one firing of one sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Reading {
+    /// The sensor, from 0.
+    pub sensor: u8,
+    /// The phase in which it fired.
+    pub phase: Phase,
+    /// The period in which it fired, counted from 0.
+    pub period: u32,
+    /// What came of the firing.
+    pub kind: ReadingKind,
+    /// The echo time; `None` without echo.
+    pub t_echo: Option<Micros>,
+    /// The echo time that it was compared with.
+    pub previous: Option<Micros>,
+    /// How many firings ago this sensor's last reading was accepted; `None` if none ever was.
+    pub age: Option<u16>,
+}
+
+/// What happened since the end of the period before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct PeriodStats {
+    /// The period, counted from 0.
+    pub period: u32,
+    /// Its phase.
+    pub phase: Phase,
+    /// The readings emitted since the period before ended, by kind.
+    pub tally: Tally<u8>,
+    /// The latest firing: how long after it was due it was polled for, at most 65,535 us.
+    pub max_late: Micros,
+}

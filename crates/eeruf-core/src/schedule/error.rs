@@ -1,0 +1,90 @@
+//! Why raw numbers do not make a schedule.
+
+use core::fmt;
+
+use super::limits::{MAX_PERIOD, MAX_PHASES, Phase};
+use crate::time::Micros;
+
+/// Why raw numbers do not make a [`Schedule`](crate::Schedule).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum ScheduleError {
+    /// No sensors, or more than fit.
+    Sensors {
+        /// How many were given.
+        sensors: usize,
+        /// How many fit.
+        capacity: usize,
+    },
+    /// No phase, or more than eight.
+    Phases {
+        /// How many were given.
+        phases: usize,
+    },
+    /// A phase lists waits for more or fewer sensors than there are lags.
+    Waits {
+        /// The phase.
+        phase: Phase,
+        /// How many waits it has.
+        waits: usize,
+        /// How many sensors there are.
+        sensors: usize,
+    },
+    /// The period is zero or beyond [`MAX_PERIOD`].
+    Period {
+        /// The period given.
+        period: Micros,
+    },
+    /// A sensor would fire after its period has ended.
+    Fire {
+        /// The sensor, from 0.
+        sensor: u8,
+        /// The phase.
+        phase: Phase,
+        /// `T_lag + T_wait`.
+        t_fire: Micros,
+        /// The period.
+        period: Micros,
+    },
+    /// A scale with a zero denominator.
+    Scale {
+        /// Its numerator.
+        num: u32,
+    },
+}
+
+impl ScheduleError {
+    /// The kind of error as fixed text, for compile-time checks, which cannot print numbers.
+    pub const fn as_str(&self) -> &'static str {
+        match self {
+            Self::Sensors { .. } => "a schedule has 1 to 64 sensors",
+            Self::Phases { .. } => "a schedule has 1 to 8 phases",
+            Self::Waits { .. } => "each phase needs one wait for each sensor",
+            Self::Period { .. } => "a period is 1 us to 268 s",
+            Self::Fire { .. } => "each sensor must fire inside its period: t_lag + t_wait < period",
+            Self::Scale { .. } => "a scale needs a denominator above zero",
+        }
+    }
+}
+
+impl fmt::Display for ScheduleError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Sensors { sensors, capacity } => write!(f, "{sensors} sensors; expected 1 to {capacity}"),
+            Self::Phases { phases } => write!(f, "{phases} phases; expected 1 to {MAX_PHASES}"),
+            Self::Waits { phase, waits, sensors } => {
+                write!(f, "phase {phase} has {waits} waits; expected one for each of {sensors} sensors")
+            }
+            Self::Period { period } => write!(f, "a period of {period}; expected 1 us to {MAX_PERIOD}"),
+            Self::Fire { sensor, phase, t_fire, period } => write!(
+                f,
+                "sensor {} fires {t_fire} into phase {phase}; expected less than the period of {period}",
+                sensor + 1
+            ),
+            Self::Scale { num } => write!(f, "a scale of {num}/0; expected a denominator above zero"),
+        }
+    }
+}
+
+impl core::error::Error for ScheduleError {}

@@ -1,0 +1,217 @@
+//! [`Schedule`]: when each sensor fires, checked once so that everything else may rely on it.
+//!
+//! The room holds the table, its limits and its errors; it uses nothing but [`time`](crate::time).
+
+mod build;
+mod error;
+mod limits;
+mod refire;
+
+use crate::time::Micros;
+
+pub use error::ScheduleError;
+pub use limits::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase};
+
+/// When each sensor fires: once per period, at `T_fire = T_lag + T_wait`, where `T_wait` changes with the phase (Sec.
+/// 3.1).
+///
+/// `K` is the number of sensors a table written as arrays has; for tables whose size is known only at run time it is
+/// the capacity, and [`sensors`](Self::sensors) counts (see [`from_slices`](Self::from_slices)). `M` is the number of
+/// phases: two in the paper, one for the conventional method with constant waits.
+///
+/// A `Schedule` is proof of a check: 1 to 64 sensors, each firing inside its period, in every phase. That its waits
+/// meet Eqs. (13a), (13b) is another matter: see [`verify`](Schedule::verify), or [`schedule!`](crate::schedule!) for a
+/// table that is checked when the firmware is compiled.
+///
+/// ```
+/// use eeruf_core::{Micros, Phase, Schedule};
+/// let ms = |ms: [u32; 3]| ms.map(Micros::from_millis);
+/// let ring = Schedule::new(Micros::from_millis(60), ms([0, 20, 40]), [ms([9, 9, 9]), ms([7, 5, 3])])?;
+/// assert_eq!(ring.t_fire(Phase::B, 1), Some(Micros::from_millis(25)));
+/// # Ok::<(), eeruf_core::ScheduleError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+// In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction.
+#[repr(C)]
+pub struct Schedule<const K: usize, const M: usize = 2> {
+    firings: [Firings<K>; M],
+    period: Micros,
+    /// The shortest time between two firings of one sensor. Kept, since working it out takes time and stack on a
+    /// target.
+    min_refire: Micros,
+    t_lag: [Micros; K],
+    t_wait: [[Micros; K]; M],
+    sensors: u8,
+}
+
+/// The firings of one phase in the order in which they come, so that the scheduler need not look for the next one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(C)]
+struct Firings<const K: usize> {
+    /// The sensors by firing time; then nobody (255).
+    order: [u8; K],
+    /// How long each fires after the one before it, the first after the start of the period; then `after_last`.
+    gap: [Micros; K],
+    /// From the last firing to the end of the period.
+    after_last: Micros,
+}
+
+impl<const K: usize, const M: usize> Schedule<K, M> {
+    /// `T_p`: every sensor fires once in each period.
+    #[doc(alias = "T_p")]
+    pub const fn period(&self) -> Micros {
+        self.period
+    }
+
+    /// The number of sensors, 1 to 64.
+    pub const fn sensors(&self) -> usize {
+        self.sensors as usize
+    }
+
+    /// The number of phases, 1 to 8.
+    pub const fn phases(&self) -> usize {
+        M
+    }
+
+    /// `T_lag` of each sensor.
+    #[doc(alias = "T_lag")]
+    pub const fn t_lag(&self) -> &[Micros] {
+        used(&self.t_lag, self.sensors)
+    }
+
+    /// `T_wait` of each sensor in a phase; empty for a phase the schedule does not have.
+    #[doc(alias = "T_wait")]
+    pub const fn t_wait(&self, phase: Phase) -> &[Micros] {
+        if (phase.0 as usize) < M { used(&self.t_wait[phase.0 as usize], self.sensors) } else { &[] }
+    }
+
+    /// `T_fire = T_lag + T_wait` after the start of the period, or `None` for a sensor or phase that is not there.
+    #[doc(alias = "T_fire")]
+    pub const fn t_fire(&self, phase: Phase, sensor: usize) -> Option<Micros> {
+        if sensor < self.sensors as usize && (phase.0 as usize) < M {
+            Some(self.fire_at(phase.0 as usize, sensor))
+        } else {
+            None
+        }
+    }
+
+    /// The sensors of a phase in the order in which they fire; empty for a phase the schedule does not have.
+    pub const fn firing_order(&self, phase: Phase) -> &[u8] {
+        if (phase.0 as usize) < M { used(&self.firings[phase.0 as usize].order, self.sensors) } else { &[] }
+    }
+
+    /// The sensor at a place in the firing order of a phase, and how long it fires after the one before it; beyond the
+    /// last place a sensor that is not there (`K` or more), and the time from the last firing to the end of the period.
+    /// Each step of the scheduler asks.
+    #[inline]
+    pub(crate) const fn firing(&self, phase: u8, place: u8) -> (u8, Micros) {
+        if phase as usize >= M {
+            return (u8::MAX, self.period);
+        }
+        let firings = &self.firings[phase as usize];
+        if (place as usize) < K {
+            (firings.order[place as usize], firings.gap[place as usize])
+        } else {
+            (place, firings.after_last)
+        }
+    }
+
+    /// For indices already known to be in range; the optimiser does not know that `sensors` is at most `K`, and the
+    /// check spares a firmware image the code for a panic. Cannot overflow: both terms are at most `MAX_PERIOD`.
+    pub(crate) const fn fire_at(&self, phase: usize, sensor: usize) -> Micros {
+        if phase < M && sensor < K {
+            Micros::new(self.t_lag[sensor].as_micros() + self.t_wait[phase][sensor].as_micros())
+        } else {
+            Micros::ZERO
+        }
+    }
+}
+
+/// The part of a table that is in use. Without `split_at`, whose panic would stay in a firmware image.
+const fn used<T>(table: &[T], sensors: u8) -> &[T] {
+    match table.split_at_checked(sensors as usize) {
+        Some((used, _)) => used,
+        // Never: a schedule has at most `K` sensors.
+        None => table,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::tables::TABLE_I_D;
+    use std::string::ToString;
+
+    fn ms<const K: usize>(times: [u32; K]) -> [Micros; K] {
+        times.map(Micros::from_millis)
+    }
+
+    #[test]
+    fn each_error_names_sensor_value_and_what_is_expected() {
+        let late = Schedule::new(Micros::from_millis(40), ms([0, 30]), [ms([9, 9]), ms([3, 10])]);
+        assert_eq!(
+            late.unwrap_err().to_string(),
+            "sensor 2 fires 40 ms into phase b; expected less than the period of 40 ms"
+        );
+        let none = Schedule::<0>::new(Micros::from_millis(40), [], [[], []]);
+        assert_eq!(none.unwrap_err().to_string(), "0 sensors; expected 1 to 64");
+        let many = Schedule::<65>::from_firing(Micros::from_millis(40), [[Micros::ZERO; 65]; 2]);
+        assert_eq!(many.unwrap_err().to_string(), "65 sensors; expected 1 to 64");
+        let still = Schedule::<1>::from_firing(Micros::ZERO, [[Micros::ZERO]; 2]);
+        assert_eq!(still.unwrap_err().to_string(), "a period of 0 us; expected 1 us to 268435.456 ms");
+        let short = Schedule::<4>::from_slices(Micros::from_millis(9), &ms([1, 2]), [&ms([1, 1]), &ms([1])]);
+        assert_eq!(short.unwrap_err().to_string(), "phase b has 1 waits; expected one for each of 2 sensors");
+        let huge = Schedule::new(Micros::from_millis(9), [Micros::MAX], [[Micros::MAX]; 2]);
+        assert!(matches!(huge, Err(ScheduleError::Fire { t_fire: Micros::MAX, .. })));
+        assert_eq!(
+            TABLE_I_D.scaled(1, 0).unwrap_err().to_string(),
+            "a scale of 1/0; expected a denominator above zero"
+        );
+    }
+
+    #[test]
+    fn a_table_of_run_time_size_equals_the_same_table_as_arrays_in_all_it_tells() {
+        let lags = ms([0, 20, 40]);
+        let (a, b) = (ms([9, 9, 9]), ms([7, 5, 3]));
+        let fixed = Schedule::new(Micros::from_millis(60), lags, [a, b]).unwrap();
+        let sized = Schedule::<64>::from_slices(Micros::from_millis(60), &lags, [&a, &b]).unwrap();
+        assert_eq!(sized.sensors(), 3);
+        assert_eq!(sized.t_lag(), fixed.t_lag());
+        for phase in [Phase::A, Phase::B, Phase(2)] {
+            assert_eq!(sized.t_wait(phase), fixed.t_wait(phase));
+            assert_eq!(sized.firing_order(phase), fixed.firing_order(phase));
+            assert_eq!(sized.t_fire(phase, 3), None);
+        }
+        assert_eq!((sized.min_refire(), sized.max_refire()), (fixed.min_refire(), fixed.max_refire()));
+    }
+
+    #[test]
+    fn the_firing_order_follows_the_firing_times() {
+        for phase in [Phase::A, Phase::B] {
+            let order = TABLE_I_D.firing_order(phase);
+            let times: std::vec::Vec<_> = order.iter().map(|&x| TABLE_I_D.t_fire(phase, x.into())).collect();
+            assert!(times.is_sorted());
+            let mut all = order.to_vec();
+            all.sort_unstable();
+            assert!(all.into_iter().eq(0..12));
+        }
+    }
+
+    #[test]
+    fn table_i_d_refires_after_76_to_124_ms() {
+        assert_eq!(TABLE_I_D.min_refire(), Micros::from_millis(76));
+        assert_eq!(TABLE_I_D.max_refire(), Micros::from_millis(124));
+        // Sec. 3.1: 999 us at 343.2 m/s allow 1.38 m/s.
+        assert_eq!(TABLE_I_D.max_speed_mm_s(Micros::new(999), 343_200), 1382);
+    }
+
+    #[test]
+    fn scaling_rounds_each_time_to_the_nearest_microsecond() {
+        let scaled = TABLE_I_D.scaled(3, 5).unwrap();
+        assert_eq!(scaled.period(), Micros::from_millis(60));
+        assert_eq!(scaled.t_wait(Phase::A)[0], Micros::new(14_400));
+        assert_eq!(TABLE_I_D.scaled(1, 3).unwrap().t_wait(Phase::B)[9], Micros::new(5333));
+        assert!(TABLE_I_D.scaled(0, 5).is_err() && TABLE_I_D.scaled(u32::MAX, 1).is_err());
+    }
+}

@@ -1,0 +1,180 @@
+//! [`ImmediateRefiring`]: each sensor fires again as soon as its echo is in and its wait is over (Sec. 3, Figs. 2a,
+//! 2b).
+//!
+//! There is no common period, so neighbours drift past each other; that is why the paper goes on to scheduled firing.
+//! With constant waits crosstalk locks in: a sensor y that hears x takes on x's rhythm, and its error becomes
+//!
+//! ```text
+//! T_err = T_echo + T_wait,x - T_wait,y                 = T_echo for equal waits      (8)
+//! T_err,a = T_echo + T_x,a - T_y,a                                                  (10a)
+//! T_err,b = T_echo + T_x,b - T_y,b                                                  (10b)
+//! ```
+//!
+//! In (8) the filter takes it for a true echo. In (10a), (10b) consecutive readings differ, and it does not.
+
+use super::contract::Scheduler;
+use crate::schedule::{Phase, Schedule};
+use crate::sensor_set::SensorSet;
+use crate::time::{Instant, Micros};
+
+/// Immediate refiring: a sensor fires again `T_wait` after it has stopped listening; the first time after `T_lag +
+/// T_wait`.
+#[derive(Clone, Debug)]
+pub struct ImmediateRefiring<'s, const K: usize, const M: usize = 2> {
+    schedule: &'s Schedule<K, M>,
+    min_refire: Micros,
+    sensors: [Turn; K],
+    /// Sensors that have fired and not yet ended.
+    listening: SensorSet,
+    enabled: SensorSet,
+    period_start: Instant,
+    phase: u8,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    /// When the sensor fires next; while it listens, when it fired.
+    at: Instant,
+    phase: u8,
+}
+
+impl<'s, const K: usize, const M: usize> ImmediateRefiring<'s, K, M> {
+    /// Begins at `now`. The lags and waits are those of `schedule`; its period only says how often
+    /// [`SchedulerStep::PeriodEnded`](crate::SchedulerStep::PeriodEnded) comes. No sensor fires again sooner than
+    /// `min_refire` after it has fired.
+    pub fn new(schedule: &'s Schedule<K, M>, min_refire: Micros, now: Instant) -> Self {
+        let sensors = [Turn { at: now, phase: 0 }; K];
+        let mut refiring = Self {
+            schedule,
+            min_refire,
+            sensors,
+            listening: SensorSet::NONE,
+            enabled: SensorSet::ALL,
+            period_start: now,
+            phase: 0,
+        };
+        refiring.restart(now);
+        refiring
+    }
+
+    /// The enabled sensor that is due first, measured from the start of the period: all times lie within half a turn of
+    /// the clock of it.
+    fn first(&self) -> Option<(u8, Instant)> {
+        let mut first: Option<(u8, Instant)> = None;
+        for (x, turn) in self.sensors.iter().take(self.schedule.sensors()).enumerate() {
+            // At most 64 sensors.
+            let x = x as u8;
+            let waits = self.is_enabled(x) && !self.listening.contains(x);
+            if waits && first.is_none_or(|(_, at)| !turn.at.has_reached(at)) {
+                first = Some((x, turn.at));
+            }
+        }
+        first
+    }
+
+    fn period_end(&self) -> Instant {
+        self.period_start + self.schedule.period()
+    }
+
+    fn wait(&self, phase: u8, sensor: u8) -> Micros {
+        self.schedule.t_wait(Phase(phase)).get(usize::from(sensor)).copied().unwrap_or(Micros::ZERO)
+    }
+}
+
+fn next_phase<const M: usize>(phase: u8) -> u8 {
+    if usize::from(phase) + 1 < M { phase + 1 } else { 0 }
+}
+
+impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
+    fn next_firing(&self) -> Option<(u8, Phase)> {
+        let (sensor, due) = self.first()?;
+        let turn = self.sensors.get(usize::from(sensor))?;
+        self.period_end().has_reached(due).then_some((sensor, Phase(turn.phase)))
+    }
+
+    fn fire(&mut self, now: Instant) {
+        let Some((sensor, _)) = self.first() else { return };
+        self.listening.set(sensor, true);
+        if let Some(turn) = self.sensors.get_mut(usize::from(sensor)) {
+            turn.at = now;
+        }
+    }
+
+    fn end_period(&mut self, now: Instant) -> (Phase, bool) {
+        let phase = Phase(self.phase);
+        self.phase = next_phase::<M>(self.phase);
+        self.period_start = self.period_end();
+        // After a long silence the missed periods are skipped, not ended one by one.
+        if now.has_reached(self.period_end()) {
+            self.period_start = now;
+        }
+        // A disabled sensor stays due, but its instant must not fall half a turn of the clock behind.
+        for (x, turn) in self.sensors.iter_mut().enumerate() {
+            if !self.listening.contains(x as u8) && now.has_reached(turn.at) {
+                turn.at = now;
+            }
+        }
+        (phase, false)
+    }
+
+    fn deadline(&self) -> Instant {
+        match self.first() {
+            Some((_, due)) if self.period_end().has_reached(due) => due,
+            _ => self.period_end(),
+        }
+    }
+
+    fn ended(&mut self, sensor: u8, at: Instant) {
+        let Some(&Turn { at: fired, phase }) = self.sensors.get(usize::from(sensor)) else { return };
+        if !self.listening.contains(sensor) {
+            return;
+        }
+        self.listening.set(sensor, false);
+        let phase = next_phase::<M>(phase);
+        let mut next = at + self.wait(phase, sensor);
+        let soonest = fired + self.min_refire;
+        if soonest.has_reached(next) {
+            next = soonest;
+        }
+        if let Some(turn) = self.sensors.get_mut(usize::from(sensor)) {
+            *turn = Turn { at: next, phase };
+        }
+    }
+
+    fn set_enabled(&mut self, sensor: u8, enabled: bool) {
+        self.enabled.set(sensor, enabled);
+    }
+
+    fn is_enabled(&self, sensor: u8) -> bool {
+        usize::from(sensor) < self.schedule.sensors() && self.enabled.contains(sensor)
+    }
+
+    fn restart(&mut self, now: Instant) {
+        self.listening = SensorSet::NONE;
+        self.period_start = now;
+        self.phase = 0;
+        for (x, turn) in self.sensors.iter_mut().enumerate() {
+            let t_fire = self.schedule.t_fire(Phase::A, x).unwrap_or(Micros::ZERO);
+            let soonest = turn.at + self.min_refire;
+            let mut at = now + t_fire;
+            if soonest.has_reached(at) && soonest.since(at) <= self.min_refire {
+                at = soonest;
+            }
+            *turn = Turn { at, phase: 0 };
+        }
+    }
+
+    fn periods_since(&self, _phase: Phase) -> u8 {
+        0
+    }
+
+    fn longest_window(&self) -> Micros {
+        // It fires only what has ended.
+        Micros::MAX
+    }
+
+    fn horizon(&self) -> Micros {
+        // The end of the period is always among the deadlines.
+        self.schedule.period().saturating_add(self.schedule.period())
+    }
+}

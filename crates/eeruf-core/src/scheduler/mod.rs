@@ -1,0 +1,11 @@
+//! When to fire: the trait [`Scheduler`], *scheduled firing* and *immediate refiring*.
+//!
+//! The room uses [`time`](crate::time), [`schedule`](crate::schedule) and sets of sensors; it knows nothing of echoes.
+
+mod contract;
+mod immediate;
+mod scheduled;
+
+pub use contract::{Scheduler, SchedulerStep};
+pub use immediate::ImmediateRefiring;
+pub use scheduled::ScheduledFiring;

@@ -1,0 +1,35 @@
+//! How the caller watches and stops a search.
+
+use core::ops::ControlFlow;
+
+/// How far a search has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Progress {
+    /// Nodes visited so far.
+    pub nodes: u64,
+    /// The best value found so far, in ticks, where one is sought: the shortest period, the largest interval or
+    /// separation.
+    pub best: Option<u32>,
+    /// No value is better than this, in ticks, as far as is proven.
+    pub bound: Option<u32>,
+}
+
+/// Polled every few hundred nodes, or as often as the caller asks. `()` always goes on and costs nothing.
+pub trait Control {
+    /// Whether to go on, given how far the search has come.
+    fn poll(&mut self, progress: &Progress) -> ControlFlow<()>;
+}
+
+impl Control for () {
+    #[inline(always)]
+    fn poll(&mut self, _: &Progress) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+impl<F: FnMut(&Progress) -> ControlFlow<()>> Control for F {
+    fn poll(&mut self, progress: &Progress) -> ControlFlow<()> {
+        self(progress)
+    }
+}

@@ -1,0 +1,19 @@
+//! The three ways in which a search ends.
+
+/// How a search ended. A search that hands its answer out elsewhere, as those for waits do, finds `()`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Outcome<T = ()> {
+    /// Found.
+    Found(T),
+    /// Every possibility was searched or excluded: a proof that there is none, or none left.
+    Exhausted,
+    /// The budget was spent or the caller stopped the search: neither found nor excluded.
+    BudgetSpent,
+}
+
+impl<T> Outcome<T> {
+    /// Whether something was found.
+    pub const fn is_found(&self) -> bool {
+        matches!(self, Self::Found(_))
+    }
+}

@@ -1,0 +1,140 @@
+//! Lower bounds on the period: below them no schedule exists, by counting alone.
+//!
+//! Write I for the interval, D for the separation, R for the window, and `own = min(I, R)` for the time that a firing
+//! keeps free of the sensor's own next one (the window, or as much of it as matters).
+//!
+//! - **Capacity.** The K values `|d|` are D apart and the smallest is at least `least` (0, or half of D with the
+//!   stale-echo option), so the largest is at least `least + D (K - 1)`; that sensor fires twice within `T_p - |d|`,
+//!   which the window bounds: `T_p >= R + least + D (K - 1)`.
+//! - **Clique.** w sensors that all conflict fire 2 w times in two periods. Between consecutive ones of these firings
+//!   pass at least I, or at least R where both are of the same sensor, which happens only where one phase ends and the
+//!   next begins, twice in two periods: `T_p >= (w - 1) I + own`; with n neighbours and `R >= I` this is `n I`. Within
+//!   one phase: `T_p >= (w - 1) I + 1`.
+//! - **Density.** At any time at most alpha of the intervals `[t, t + I)` that begin with a firing are open, as sensors
+//!   with open intervals do not conflict. Each sensor keeps at least `I + own` open in two periods:
+//!   `2 alpha T_p >= K (I + own)`. Here alpha is the size of the largest set without conflicts, or a number of cliques
+//!   that cover all sensors, which is no smaller.
+//! - **Classes.** How few `|d|` fit where clique and interval leave little to spare: [`classes`].
+//!
+//! The counting is that of `docs/theory.md`, section 5. It uses the problem and its symmetry alone, nothing of the
+//! search.
+
+mod changes;
+mod classes;
+mod cliques;
+mod exclusion;
+mod orders;
+mod permutation;
+
+#[cfg(test)]
+pub(super) use changes::Changes;
+pub(super) use classes::Classes;
+pub(super) use cliques::cliques;
+pub(super) use orders::Orders;
+
+use super::problem::CheckedProblem;
+use cliques::ring_at_once;
+
+/// A lower bound with the argument that gives it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Bound {
+    /// The window, and behind it all `|d|` with their separation.
+    Capacity {
+        /// K.
+        sensors: u32,
+        /// D in ticks.
+        separation: u32,
+        /// R in ticks.
+        window: u32,
+        /// The smallest `|d|`, not 0 only with the stale-echo option.
+        least: u32,
+    },
+    /// Sensors that all conflict with each other fire one after the other.
+    Clique {
+        /// The number of such sensors.
+        sensors: u32,
+        /// I in ticks.
+        interval: u32,
+        /// What follows the last of them: I, or the window if that is shorter.
+        own: u32,
+    },
+    /// At most so many sensors can keep their interval at the same time.
+    Density {
+        /// K.
+        sensors: u32,
+        /// At most so many at once.
+        at_once: u32,
+        /// I in ticks.
+        interval: u32,
+        /// What each sensor keeps after its second firing: I, or the window if that is shorter.
+        own: u32,
+    },
+    /// Sensors that all conflict fire one after the other, and too few `|d|` fit into the little time that leaves.
+    Classes {
+        /// The number of such sensors.
+        clique: u32,
+        /// The number of sensors whose `|d|` must fit.
+        sensors: u32,
+        /// I in ticks.
+        interval: u32,
+        /// D in ticks.
+        separation: u32,
+        /// The period from which on they may fit, in ticks.
+        period: u32,
+    },
+    /// A period has at least one tick.
+    OneTick,
+}
+
+impl Bound {
+    /// The period below which there is no schedule, in ticks.
+    #[must_use]
+    pub fn period(&self) -> u32 {
+        match *self {
+            Self::Capacity { sensors, separation, window, least } => {
+                (window + least + separation * sensors.saturating_sub(1)).max(1)
+            }
+            Self::Clique { sensors, interval, own } => interval * sensors.saturating_sub(1) + own.max(1),
+            Self::Density { sensors, at_once, interval, own } => {
+                (sensors * (interval + own)).div_ceil(2 * at_once.max(1))
+            }
+            Self::Classes { period, .. } => period,
+            Self::OneTick => 1,
+        }
+    }
+}
+
+/// The largest of the bounds.
+pub(crate) fn strongest(problem: &CheckedProblem) -> Bound {
+    // All times are checked to be positive and below 2^26, the products below 2^32 (`ProblemError::TooLong`).
+    let k = problem.sensors as u32;
+    let (interval, window) = (problem.interval as u32, problem.window as u32);
+    let own = interval.min(window);
+    let capacity =
+        Bound::Capacity { sensors: k, separation: problem.separation as u32, window, least: problem.least as u32 };
+    let (clique, cover) = cliques(problem);
+    let mut best = capacity;
+    // A single sensor, or none that conflict: then the interval plays no part.
+    if clique >= 2 {
+        let density = Bound::Density { sensors: k, at_once: ring_at_once(problem).unwrap_or(cover), interval, own };
+        for bound in [Bound::Clique { sensors: clique, interval, own }, density] {
+            if bound.period() > best.period() {
+                best = bound;
+            }
+        }
+    }
+    if let Some(classes) = Classes::new(problem) {
+        let period = classes.period(problem) as u32;
+        if period > best.period() {
+            best = Bound::Classes {
+                clique: classes.clique(),
+                sensors: classes.sensors(problem),
+                interval,
+                separation: problem.separation as u32,
+                period,
+            };
+        }
+    }
+    if best.period() <= 1 { Bound::OneTick } else { best }
+}

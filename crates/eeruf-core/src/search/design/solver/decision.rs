@@ -1,0 +1,83 @@
+//! One decision of the search with its remaining alternatives, packed into lent words.
+
+/// Words of one decision.
+pub(crate) const DECISION_WORDS: usize = 6;
+
+/// What a decision branches on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Branch {
+    /// The sensor with the largest `|d|`.
+    Top,
+    /// The positions of a sensor in both phases, among adjacent sensors.
+    Positions,
+    /// Which of two firings in the same phase comes first.
+    Order,
+    /// The sensor with the smallest `|d|` of those without a rank, and its sign.
+    Low,
+    /// The sensor with the largest `|d|` of those without a rank, and its sign.
+    High,
+    /// The value of `|d|` of a sensor.
+    Value,
+}
+
+/// A decision, with the alternative being tried in `x`, `y` and `tried`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Decision {
+    pub(crate) branch: Branch,
+    /// A sensor; for [`Branch::Order`] the node to fire first in the first alternative.
+    pub(crate) x: u8,
+    /// For [`Branch::Order`] the other node; for ranks 1 if d is negative; for [`Branch::Positions`] the pair of
+    /// positions.
+    pub(crate) y: u8,
+    /// Alternatives started, for [`Branch::Order`] and [`Branch::Value`].
+    pub(crate) tried: u8,
+    /// Where the log of the difference bounds stood before the decision.
+    pub(crate) mark: u32,
+    /// Remaining sensors with positive d; for [`Branch::Value`] the smallest value, for [`Branch::Positions`]
+    /// the remaining pairs of positions.
+    pub(crate) positive: u64,
+    /// Remaining sensors with negative d; for [`Branch::Value`] the largest value.
+    pub(crate) negative: u64,
+}
+
+impl Decision {
+    pub(crate) fn new(branch: Branch) -> Self {
+        Self { branch, x: 0, y: 0, tried: 0, mark: 0, positive: 0, negative: 0 }
+    }
+
+    pub(crate) fn pack(&self) -> [i32; DECISION_WORDS] {
+        let branch = match self.branch {
+            Branch::Top => 0,
+            Branch::Order => 1,
+            Branch::Low => 2,
+            Branch::High => 3,
+            Branch::Value => 4,
+            Branch::Positions => 5,
+        };
+        [
+            i32::from_le_bytes([branch, self.x, self.y, self.tried]),
+            self.mark as i32,
+            self.positive as i32,
+            (self.positive >> 32) as i32,
+            self.negative as i32,
+            (self.negative >> 32) as i32,
+        ]
+    }
+
+    pub(crate) fn unpack(words: &[i32]) -> Self {
+        let [first, mark, p, q, r, s] = *words else {
+            return Self::new(Branch::Value);
+        };
+        let [branch, x, y, tried] = first.to_le_bytes();
+        let branch = match branch {
+            0 => Branch::Top,
+            1 => Branch::Order,
+            2 => Branch::Low,
+            3 => Branch::High,
+            5 => Branch::Positions,
+            _ => Branch::Value,
+        };
+        let join = |low: i32, high: i32| u64::from(high as u32) << 32 | u64::from(low as u32);
+        Self { branch, x, y, tried, mark: mark as u32, positive: join(p, q), negative: join(r, s) }
+    }
+}

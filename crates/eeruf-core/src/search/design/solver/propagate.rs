@@ -1,0 +1,222 @@
+//! What follows from the decisions made so far (`docs/theory.md`, sections 6.1 to 6.3).
+//!
+//! Four arguments, repeated until nothing is new: an order that has become impossible leaves the other one; ranked
+//! neighbours are D apart; K values `|d|` must fit ([`spacing`](super::spacing)); and where the difference `d_y - d_x`
+//! is forced for several x, these x are D apart among themselves, so y is that far behind the last of them.
+//!
+//! Indices: sensors are below `problem.sensors` and so below `MAX_SENSORS`; a chain holds each sensor at most once, a
+//! set at most the conflicting ones.
+
+use super::difference_bounds::Conflict;
+use super::spacing::Intervals;
+use super::state::State;
+use crate::schedule::MAX_SENSORS;
+use crate::search::common::Members;
+
+/// Rounds after each decision. Almost always a few are enough. In fine ticks conclusions can go round in circles and
+/// gain a tick each time: then it is far cheaper to go on here than to let the search try value by value.
+const ROUNDS: usize = 400;
+
+impl State<'_, '_> {
+    /// Draws conclusions from all decisions so far.
+    pub(super) fn propagate(&mut self) -> Result<(), Conflict> {
+        let mut spaced = Intervals::NONE;
+        // How many bounds were new when each argument last started: without another since, it finds nothing.
+        let mut started = [u64::MAX; 4];
+        for _ in 0..ROUNDS {
+            let before = self.differences.changes();
+            for (argument, started) in started.iter_mut().enumerate() {
+                let now = self.differences.changes();
+                // The two that cost more wait until the others have nothing new.
+                if argument == 2 && now != before {
+                    break;
+                }
+                if core::mem::replace(started, now) == now {
+                    continue;
+                }
+                match argument {
+                    0 => self.force_orders()?,
+                    1 => self.space_ranks()?,
+                    2 => self.space_sizes(&mut spaced)?,
+                    _ => self.set_precedence()?,
+                }
+            }
+            if self.differences.changes() == before {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Where one order of two conflicting firings is impossible, adds the other.
+    fn force_orders(&mut self) -> Result<(), Conflict> {
+        let interval = self.problem.interval;
+        if interval == 0 {
+            return Ok(());
+        }
+        loop {
+            let before = self.differences.changes();
+            for x in 1..self.problem.sensors {
+                for y in Members(self.problem.conflicts[x] & ((1 << x) - 1)) {
+                    for phase in 0..2 {
+                        let (u, v) = (self.node(x, phase), self.node(y, phase));
+                        if self.differences.at_most(u, v) < interval {
+                            self.differences.add_bound(u, v, -interval)?;
+                        } else if self.differences.at_most(v, u) < interval {
+                            self.differences.add_bound(v, u, -interval)?;
+                        }
+                    }
+                }
+            }
+            if self.differences.changes() == before {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Adds the separation between sensors whose order of `|d|` is known.
+    fn space_ranks(&mut self) -> Result<(), Conflict> {
+        let mut chain = [0u8; MAX_SENSORS];
+        let (lows, highs) = (self.ranks.lows().len(), self.ranks.highs().len());
+        chain[..lows].copy_from_slice(self.ranks.lows());
+        for (slot, &x) in chain[lows..].iter_mut().zip(self.ranks.highs().iter().rev()) {
+            *slot = x;
+        }
+        let unranked = self.problem.all() & !self.ranks.ranked;
+        for i in 1..lows + highs {
+            if i != lows || unranked == 0 {
+                self.behind(usize::from(chain[i - 1]), usize::from(chain[i]))?;
+            }
+        }
+        for x in Members(unranked) {
+            if lows > 0 {
+                self.behind(usize::from(chain[lows - 1]), x)?;
+            }
+            if highs > 0 {
+                self.behind(x, usize::from(chain[lows]))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The nodes whose difference is `|d|` of sensor `x`, later first; `None` while the sign is open.
+    fn signed(&self, x: usize) -> Option<(usize, usize)> {
+        let (low, high) = self.span(x);
+        let (a, b) = (self.node(x, 0), self.node(x, 1));
+        if low >= 0 {
+            Some((a, b))
+        } else if high <= 0 {
+            Some((b, a))
+        } else {
+            None
+        }
+    }
+
+    /// Adds `|d_x| + D <= |d_y|`: of four times, each pair of differences bounds the other.
+    fn behind(&mut self, x: usize, y: usize) -> Result<(), Conflict> {
+        let (Some((late_x, early_x)), Some((late_y, early_y))) = (self.signed(x), self.signed(y)) else {
+            return Ok(());
+        };
+        let d = self.problem.separation;
+        // (late_y - early_y) + (early_x - late_x) >= D
+        self.differences.add_bound(early_y, late_y, self.differences.at_most(early_x, late_x) - d)?;
+        self.differences.add_bound(late_x, early_x, self.differences.at_most(late_y, early_y) - d)?;
+        // (late_y - late_x) + (early_x - early_y) >= D
+        self.differences.add_bound(late_x, late_y, self.differences.at_most(early_x, early_y) - d)?;
+        self.differences.add_bound(early_y, early_x, self.differences.at_most(late_y, late_x) - d)
+    }
+
+    /// Adds that `|d|` of sensor `x` is within `low..=high`, as far as the sign is known; for ranked sensors it is.
+    pub(super) fn bound_size(&mut self, x: usize, low: i32, high: i32) -> Result<(), Conflict> {
+        if low > high {
+            return Err(Conflict);
+        }
+        let (a, b) = (self.node(x, 0), self.node(x, 1));
+        self.differences.add_bound(a, b, high)?;
+        self.differences.add_bound(b, a, high)?;
+        let (least, most) = self.span(x);
+        let ranked = self.ranks.ranked >> x & 1 == 1;
+        let negative = self.ranks.negative >> x & 1 == 1;
+        if (ranked && !negative) || -low < least {
+            self.differences.add_bound(b, a, -low)?;
+        }
+        if (ranked && negative) || low > most {
+            self.differences.add_bound(a, b, -low)?;
+        }
+        Ok(())
+    }
+
+    /// All `|d|` must fit with the separation between them; `spaced` is what came out the last time.
+    fn space_sizes(&mut self, spaced: &mut Intervals) -> Result<(), Conflict> {
+        let mut intervals = self.intervals();
+        let k = self.problem.sensors;
+        if intervals.low[..k] == spaced.low[..k] && intervals.high[..k] == spaced.high[..k] {
+            return Ok(());
+        }
+        if (0..k).any(|x| intervals.low[x] > intervals.high[x]) {
+            return Err(Conflict);
+        }
+        intervals.round(k, self.problem.separation, self.problem.least, self.widest)?;
+        intervals.enforce(k, self.problem.separation)?;
+        for x in 0..k {
+            self.bound_size(x, intervals.low[x], intervals.high[x])?;
+        }
+        *spaced = intervals;
+        Ok(())
+    }
+
+    /// Sensors whose d lies a forced distance before or behind that of several others.
+    fn set_precedence(&mut self) -> Result<(), Conflict> {
+        for y in 0..self.problem.sensors {
+            self.behind_set(y, false)?;
+            self.behind_set(y, true)?;
+        }
+        Ok(())
+    }
+
+    /// `d_y` against those conflicting x with forced `d_y - d_x > 0`; with `mirrored`, `d_x - d_y > 0`.
+    fn behind_set(&mut self, y: usize, mirrored: bool) -> Result<(), Conflict> {
+        let separation = self.problem.separation;
+        // (forced distance, low end of d_x), largest distance first.
+        let mut set = [(0, 0); MAX_SENSORS];
+        let mut count = 0;
+        let (ya, yb) = (self.node(y, 0), self.node(y, 1));
+        for x in Members(self.problem.conflicts[y]) {
+            let (xa, xb) = (self.node(x, 0), self.node(x, 1));
+            let (low, high) = self.span(x);
+            let (forced, low) = if mirrored {
+                (-(self.differences.at_most(ya, xa) + self.differences.at_most(xb, yb)), -high)
+            } else {
+                (-(self.differences.at_most(xa, ya) + self.differences.at_most(yb, xb)), low)
+            };
+            if forced > 0 {
+                let forced = forced.max(separation);
+                let mut at = count;
+                while at > 0 && set[at - 1].0 < forced {
+                    set[at] = set[at - 1];
+                    at -= 1;
+                }
+                set[at] = (forced, low);
+                count += 1;
+            }
+        }
+        if count == 0 {
+            return Ok(());
+        }
+        let mut least = i32::MIN;
+        let mut lows = [0; MAX_SENSORS];
+        for i in 0..count {
+            let (forced, low) = set[i];
+            let mut at = i;
+            while at > 0 && lows[at - 1] > low {
+                lows[at] = lows[at - 1];
+                at -= 1;
+            }
+            lows[at] = low;
+            // All d of the set, D apart: where the last one is at the earliest.
+            let last = lows[1..=i].iter().fold(lows[0], |last, &low| low.max(last + separation));
+            least = least.max(last + forced);
+        }
+        if mirrored { self.differences.add_bound(ya, yb, -least) } else { self.differences.add_bound(yb, ya, -least) }
+    }
+}

@@ -1,0 +1,14 @@
+//! The searches against shared tables, slow and obvious judges, and their own limits, in one binary.
+
+mod common;
+mod period_corpus;
+mod period_limits;
+mod period_small;
+#[cfg(feature = "std")]
+mod period_threads;
+mod period_ticks;
+mod period_variants;
+mod theory;
+mod wait_limits;
+mod wait_small;
+mod wait_tables;

@@ -1,0 +1,91 @@
+//! What a problem costs in nodes: larger neighbourhoods, and the same problem in finer ticks.
+
+use eeruf_core::search::design::{Bound, Explanation, Problem, memory_words, shortest};
+
+use crate::common::naive::{self, Layout};
+use crate::common::naive_period::{assert_serves, paper_12};
+
+#[test]
+fn the_half_ring_of_twelve_runs_at_65_ms_and_also_in_microseconds() {
+    let rows = naive::conflicts(Layout::Line, 12, 4);
+    let mut memory = vec![0; memory_words(12)];
+    for scale in [1, 1000] {
+        let problem = paper_12(&rows, scale);
+        let found = shortest(&problem, u64::MAX, &mut memory, &mut ()).unwrap();
+        assert_eq!((found.period, found.proven()), (65 * scale, true));
+        assert_serves(&problem, found.period, &found.firing);
+    }
+}
+
+#[test]
+fn a_tick_of_a_microsecond_needs_little_more_nodes_than_one_of_a_millisecond() {
+    let rows = naive::conflicts(Layout::Ring, 8, 4);
+    let mut memory = vec![0; memory_words(8)];
+    for scale in [1, 100, 1000] {
+        let problem = Problem { sensors: 8, window: 30 * scale, ..paper_12(&rows, scale) };
+        let found = shortest(&problem, 20_000, &mut memory, &mut ()).unwrap();
+        assert_eq!((found.period, found.bound), (65 * scale, 65 * scale));
+        assert_serves(&problem, found.period, &found.firing);
+    }
+}
+
+#[test]
+fn ticks_of_a_tenth_of_a_millisecond_cost_at_most_three_times_the_nodes() {
+    for layout in [Layout::Line, Layout::Ring] {
+        for sensors in [8, 12, 16, 24] {
+            let rows = naive::conflicts(layout, sensors, 4);
+            let mut memory = vec![0; memory_words(sensors)];
+            for window in [15, 30, 45, 60] {
+                let mut nodes = |scale| {
+                    let problem = Problem { sensors, window: window * scale, ..paper_12(&rows, scale) };
+                    let found = shortest(&problem, u64::MAX, &mut memory, &mut ()).unwrap();
+                    assert!(found.proven());
+                    assert_serves(&problem, found.period, &found.firing);
+                    found.nodes
+                };
+                let (coarse, fine) = (nodes(1), nodes(10));
+                assert!(fine <= 3 * coarse, "{layout:?} {sensors} {window}: {coarse} and {fine}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bound_beyond_half_an_interval_to_spare_is_met_in_any_tick() {
+    // With 67.5 ms sensors may begin to change places; 68, 69.5 and 70 ms are proven without a search for all that.
+    for (sensors, layout, window, tenths) in [
+        (24, Layout::Line, 15, 680),
+        (16, Layout::Ring, 30, 680),
+        (12, Layout::Line, 45, 695),
+        (12, Layout::Ring, 45, 700),
+    ] {
+        let rows = naive::conflicts(layout, sensors, 4);
+        let mut memory = vec![0; memory_words(sensors)];
+        for scale in [10, 100, 1000] {
+            let problem = Problem { sensors, window: window * scale, ..paper_12(&rows, scale) };
+            let found = shortest(&problem, 2_000, &mut memory, &mut ()).unwrap();
+            assert_eq!((found.period, found.bound), (tenths * scale / 10, tenths * scale / 10), "{layout:?} {sensors}");
+            assert!(matches!(found.explanation, Explanation::Bound(Bound::Classes { .. })));
+        }
+    }
+}
+
+#[test]
+fn larger_neighbourhoods_are_proven_within_few_nodes() {
+    for (sensors, neighbours, layout, separation, window, period) in [
+        (8, 6, Layout::Line, 2, 15, 91),
+        (12, 6, Layout::Line, 2, 15, 93),
+        (12, 6, Layout::Ring, 2, 15, 96),
+        (16, 8, Layout::Line, 2, 15, 122),
+        (16, 8, Layout::Ring, 2, 60, 128),
+        (15, 5, Layout::Ring, 1, 30, 79),
+        (10, 5, Layout::Blocks, 1, 15, 76),
+    ] {
+        let rows = naive::conflicts(layout, sensors, neighbours);
+        let problem = Problem { sensors, conflicts: &rows, separation, interval: 15, window, stale_echo: false };
+        let mut memory = vec![0; memory_words(sensors)];
+        let found = shortest(&problem, 40_000, &mut memory, &mut ()).unwrap();
+        assert_eq!((found.period, found.bound), (period, period), "{problem:?}");
+        assert_serves(&problem, found.period, &found.firing);
+    }
+}

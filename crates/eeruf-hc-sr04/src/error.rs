@@ -1,0 +1,40 @@
+//! [`SetupError`]: why a ring of sensors cannot be set up as asked.
+
+use core::fmt;
+
+use eeruf_core::{Micros, RingError};
+
+/// Why a ring of sensors cannot be set up as asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SetupError {
+    /// A sensor would be triggered again too soon.
+    Retrigger {
+        /// The shortest time between two firings of one sensor.
+        min_refire: Micros,
+        /// The time that a sensor needs.
+        min_retrigger: Micros,
+    },
+    /// The ring itself.
+    Ring(RingError),
+}
+
+impl From<RingError> for SetupError {
+    fn from(error: RingError) -> Self {
+        Self::Ring(error)
+    }
+}
+
+impl fmt::Display for SetupError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Retrigger { min_refire, min_retrigger } => write!(
+                f,
+                "a sensor of this schedule fires again after {min_refire}; an HC-SR04 needs at least {min_retrigger}"
+            ),
+            Self::Ring(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for SetupError {}

@@ -1,0 +1,35 @@
+//! [`Health`]: what the echo line of a sensor says about the sensor.
+
+use core::fmt;
+
+/// How a sensor is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Health {
+    /// Its line answers, or it has not been asked often enough to know.
+    #[default]
+    Well,
+    /// Nothing comes from its line when it is triggered: no sensor there, a cut wire, or no interrupts at all.
+    Missing,
+    /// Its line was high when it was to be triggered.
+    StuckHigh,
+    /// Several pulses followed one trigger.
+    Chatters,
+    /// Its line fell without having risen, or rose and was low again without having fallen: edges get lost on the way.
+    LosesEdges,
+    /// One of its pins reported an error.
+    PinError,
+}
+
+impl fmt::Display for Health {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Well => "well",
+            Self::Missing => "missing",
+            Self::StuckHigh => "stuck high",
+            Self::Chatters => "chatters",
+            Self::LosesEdges => "loses edges",
+            Self::PinError => "pin error",
+        })
+    }
+}

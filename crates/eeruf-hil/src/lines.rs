@@ -1,0 +1,254 @@
+//! The echo lines of eight HC-SR04 sensors in a simulated world, and what goes wrong with one of them.
+
+use core::fmt;
+
+use eeruf_core::{Instant, Micros};
+use eeruf_hc_sr04::{Edge, Health};
+use eeruf_hil::{Ahead, MOST_AHEAD, SENSORS};
+use eeruf_sim::{LockStep, World};
+
+/// The sensor that has the faults, from 0.
+pub(crate) const FAULTY: u8 = 2;
+/// From the trigger's fall to the rise of the line, when the sound has been sent.
+const RISE_US: u64 = 450;
+/// The module's own time-out, after which its line falls without an echo.
+const TIME_OUT_US: u64 = 38_000;
+/// No interrupt comes later than this: some instructions at 64 ns each, and other interrupts before it.
+const LATEST_US: u64 = 200;
+
+/// What is wrong with the line of [`FAULTY`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LineFault {
+    None,
+    /// There is no sensor: neither sound nor edges.
+    Missing,
+    /// The line stays high from the twentieth firing on.
+    StuckHigh,
+    /// Each rise comes twice, and another pulse follows the true one.
+    Chatters,
+    /// Every fifth rise and every seventh fall make no interrupt.
+    InterruptsLost,
+}
+
+impl LineFault {
+    /// What the driver should call it.
+    pub(crate) fn name(self) -> Health {
+        match self {
+            Self::None => Health::Well,
+            Self::Missing => Health::Missing,
+            Self::StuckHigh => Health::StuckHigh,
+            Self::Chatters => Health::Chatters,
+            Self::InterruptsLost => Health::LosesEdges,
+        }
+    }
+}
+
+impl fmt::Display for LineFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::None => "well",
+            Self::Missing => "missing",
+            Self::StuckHigh => "stuck high",
+            Self::Chatters => "chattering",
+            Self::InterruptsLost => "losing interrupts",
+        })
+    }
+}
+
+/// One line since its sensor was triggered.
+#[derive(Clone, Copy, Default)]
+struct Line {
+    triggered_us: Option<u64>,
+    firings: u32,
+    /// How many edges of this firing the board has noticed.
+    noticed: usize,
+}
+
+/// All lines, in the board's time.
+pub(crate) struct Lines<'w> {
+    world: LockStep<'w>,
+    fault: LineFault,
+    lines: [Line; SENSORS],
+    /// A reading of the board's clock, and which microsecond since the start that was.
+    clock: (Instant, u64),
+    /// The latest that an edge was noticed.
+    pub(crate) latest: Micros,
+}
+
+impl<'w> Lines<'w> {
+    pub(crate) fn new(world: &'w World, fault: LineFault, start: Instant) -> Result<Self, String> {
+        let world = LockStep::new(world).map_err(|error| error.to_string())?;
+        Ok(Self { world, fault, lines: Default::default(), clock: (start, 0), latest: Micros::ZERO })
+    }
+
+    /// Microseconds since the start, without the clock's wrap: `at` is less than half an hour from what was asked
+    /// before.
+    fn since_start(&mut self, at: Instant) -> u64 {
+        let (known, us) = self.clock;
+        let ahead = at.since(known).as_micros().cast_signed();
+        self.clock = (at, us.saturating_add_signed(ahead.into()));
+        self.clock.1
+    }
+
+    /// A sensor is triggered.
+    pub(crate) fn trigger(&mut self, sensor: u8, at: Instant) -> Result<(), String> {
+        let at = self.since_start(at);
+        self.all_noticed(sensor)?;
+        let x = usize::from(sensor);
+        if !(self.fault == LineFault::Missing && sensor == FAULTY) {
+            self.world.fire(x, (at + RISE_US) * 1000).map_err(|error| error.to_string())?;
+        }
+        let line = self.lines.get_mut(x).ok_or_else(|| format!("there is no sensor {}", sensor + 1))?;
+        *line = Line { triggered_us: Some(at), firings: line.firings + 1, noticed: 0 };
+        Ok(())
+    }
+
+    /// The edges of a line after its last trigger, as far as is known: when, whether it rises, whether the interrupt is
+    /// lost.
+    fn edges(&self, sensor: u8) -> Vec<(u64, bool, bool)> {
+        let Some(&line) = self.lines.get(usize::from(sensor)) else { return Vec::new() };
+        let Some(triggered) = line.triggered_us else { return Vec::new() };
+        let rise = triggered + RISE_US;
+        let fall = self.world.hears_at_ns(sensor.into()).map_or(rise + TIME_OUT_US, |ns| ns / 1000);
+        let fault = if sensor == FAULTY { self.fault } else { LineFault::None };
+        match fault {
+            LineFault::None => vec![(rise, true, false), (fall, false, false)],
+            LineFault::Missing => vec![],
+            LineFault::StuckHigh if line.firings < 20 => vec![(rise, true, false), (fall, false, false)],
+            LineFault::StuckHigh => vec![(rise, true, false)],
+            LineFault::Chatters => {
+                let at = [rise, rise + 30, rise + 60, fall, fall + 500, fall + 1_500];
+                at.into_iter().enumerate().map(|(n, at)| (at, n % 2 == 0, false)).collect()
+            }
+            LineFault::InterruptsLost => {
+                vec![(rise, true, line.firings % 5 == 0), (fall, false, line.firings % 7 == 0)]
+            }
+        }
+    }
+
+    /// What is to come on all lines, for a board whose clock reads `now`. Edges that it may just have noticed are among
+    /// them.
+    pub(crate) fn ahead(&mut self, now: Instant) -> Result<Vec<Ahead>, String> {
+        let now = self.since_start(now);
+        let mut ahead = Vec::new();
+        for sensor in 0..SENSORS as u8 {
+            ahead.extend(self.edges(sensor).into_iter().map(|(at, high, lost)| (at, sensor, high, lost)));
+        }
+        ahead.retain(|&(at, ..)| at + LATEST_US >= now);
+        ahead.sort_unstable();
+        if ahead.len() > MOST_AHEAD {
+            return Err(format!("{} edges to come; an answer holds {MOST_AHEAD}", ahead.len()));
+        }
+        let (known, us) = self.clock;
+        let ahead = ahead.into_iter().map(|(at, sensor, high, lost)| {
+            let at = Instant::from_micros(known.as_micros().wrapping_add(at.wrapping_sub(us) as u32));
+            Ahead { edge: Edge { sensor, high, at }, lost }
+        });
+        Ok(ahead.collect())
+    }
+
+    /// The board has noticed an edge. It must be the next one of its line, at its time or a little later.
+    pub(crate) fn notice(&mut self, edge: Edge) -> Result<(), String> {
+        let noticed_at = self.since_start(edge.at);
+        let expected = self.edges(edge.sensor);
+        let line = self.lines.get_mut(usize::from(edge.sensor));
+        let line = line.ok_or_else(|| format!("an edge of sensor {}, which is not there", edge.sensor + 1))?;
+        let next = expected.iter().filter(|&&(_, _, lost)| !lost).nth(line.noticed);
+        let Some(&(at, ..)) =
+            next.filter(|&&(at, high, _)| high == edge.high && (at..=at + LATEST_US).contains(&noticed_at))
+        else {
+            return Err(format!(
+                "sensor {}: the board noticed an edge {noticed_at} us after the start that does not follow from \
+                 {expected:?}",
+                edge.sensor + 1
+            ));
+        };
+        line.noticed += 1;
+        self.latest = self.latest.max(Micros::new((noticed_at - at) as u32));
+        Ok(())
+    }
+
+    /// Before a sensor is triggered again all edges of its last firing must have been noticed.
+    fn all_noticed(&self, sensor: u8) -> Result<(), String> {
+        let edges = self.edges(sensor).iter().filter(|&&(_, _, lost)| !lost).count();
+        let noticed = self.lines.get(usize::from(sensor)).map_or(0, |line| line.noticed);
+        if edges == noticed {
+            Ok(())
+        } else {
+            Err(format!("sensor {}: the board noticed {noticed} of {edges} edges of a firing", sensor + 1))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn alcove() -> World {
+        World::from_toml(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/alcove-hc-sr04.toml")).unwrap()
+    }
+
+    fn at(us: u32) -> Instant {
+        Instant::from_micros(us)
+    }
+
+    #[test]
+    fn every_line_rises_when_its_sound_is_sent_and_falls_when_something_is_heard() {
+        let world = alcove();
+        let mut lines = Lines::new(&world, LineFault::None, at(0)).unwrap();
+        lines.trigger(4, at(1_000)).unwrap();
+        let ahead = lines.ahead(at(1_000)).unwrap();
+        let [rise, fall] = ahead[..] else { panic!("{ahead:?}") };
+        assert_eq!(rise.edge, Edge { sensor: 4, high: true, at: at(1_450) });
+        assert!(fall.edge.sensor == 4 && !fall.edge.high && fall.edge.at.has_reached(at(2_000)));
+    }
+
+    #[test]
+    fn a_later_firing_amends_what_a_listening_sensor_will_hear() {
+        let world = alcove();
+        let amended = (0..8).flat_map(|x| (0..8).map(move |y| (x, y))).filter(|&(x, y)| {
+            let mut lines = Lines::new(&world, LineFault::None, at(0)).unwrap();
+            lines.trigger(y, at(0)).unwrap();
+            let alone = lines.edges(y);
+            x != y && {
+                lines.trigger(x, at(300)).unwrap();
+                lines.edges(y) != alone
+            }
+        });
+        assert!(amended.count() > 3);
+    }
+
+    #[test]
+    fn edges_that_do_not_follow_from_the_world_are_refused() {
+        let world = alcove();
+        let fresh = || {
+            let mut lines = Lines::new(&world, LineFault::None, at(u32::MAX - 99)).unwrap();
+            lines.trigger(0, at(u32::MAX - 99)).unwrap();
+            lines
+        };
+        // 450 us later, through the wrap of the clock.
+        let edge = |sensor, high, us| Edge { sensor, high, at: at(us) };
+        assert_eq!(fresh().notice(edge(0, true, 353)), Ok(()));
+        for wrong in
+            [edge(0, false, 353), edge(0, true, 349), edge(0, true, 351 + LATEST_US as u32), edge(1, true, 353)]
+        {
+            assert!(fresh().notice(wrong).is_err(), "{wrong:?}");
+        }
+        let error = fresh().trigger(0, at(80_000)).unwrap_err();
+        assert_eq!(error, "sensor 1: the board noticed 0 of 2 edges of a firing");
+    }
+
+    #[test]
+    fn the_ring_fires_as_the_simulator_does_in_this_scene() {
+        let world = alcove();
+        let robot = &world.robots()[0];
+        let simulated = eeruf_sim::table_i_d_for(robot.sensors.len(), robot.period, robot.neighbours).unwrap();
+        for sensor in 0..SENSORS {
+            for phase in [eeruf_core::Phase::A, eeruf_core::Phase::B] {
+                assert_eq!(eeruf_hil::SCHEDULE.t_fire(phase, sensor), simulated.t_fire(phase, sensor));
+            }
+        }
+        assert_eq!(eeruf_hil::CONFIG.t_delta, robot.t_delta);
+    }
+}

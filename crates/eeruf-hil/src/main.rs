@@ -1,0 +1,92 @@
+//! `eeruf-hil SCENE --board NAME EMULATOR .. [--board ..]`: hardware in the loop, without a fault and with each of six.
+//!
+//! Prints two tables in Markdown: how the boards' rings agree with the host's, and what each fault did. Leaves with 1
+//! if anything is not as it must be.
+
+mod control;
+mod emulator;
+mod lines;
+mod reference;
+mod run;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use eeruf_core::ReadingKind;
+use eeruf_sim::{Method, Options, Readings, World, simulate, sweep};
+
+use crate::run::{Fault, PERIODS, Run, run};
+
+/// A board's name, and the command that emulates it.
+type Board<'a> = (&'a str, &'a [String]);
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut parts = arguments.split(|argument| argument == "--board");
+    let scene = parts.next().and_then(<[String]>::first);
+    let boards: Vec<Board<'_>> =
+        parts.filter_map(<[String]>::split_first).map(|(name, emulator)| (&**name, emulator)).collect();
+    let Some(scene) = scene.filter(|_| !boards.is_empty()) else {
+        eprintln!("usage: eeruf-hil SCENE --board NAME EMULATOR [ARGUMENT ..] [--board ..]");
+        return ExitCode::from(2);
+    };
+    match tables(scene, &boards) {
+        Ok(tables) => {
+            print!("{tables}");
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("hardware in the loop: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// One row without a fault, and the rows of all faults.
+type Rows = (String, String);
+
+fn tables(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
+    let world = World::from_toml(Path::new(scene)).map_err(|error| error.to_string())?;
+    let simulated = simulate(&world, Method::Eeruf, &Options::periods(PERIODS)).map_err(|error| error.to_string())?;
+    let rows = |&(board, emulator): &Board<'_>| -> Result<Rows, String> {
+        rows(&world, &simulated, board, emulator).map_err(|error| format!("{board}: {error}"))
+    };
+    let rows: Vec<Rows> = sweep(boards, rows).into_iter().collect::<Result<_, _>>()?;
+    let (fault_free, faults): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
+    Ok(format!(
+        "| board | readings | as the host's ring | accepted | rejected | kind as simulated | echo time within \
+         | edge noticed within | latest firing |\n|---|---:|---|---:|---:|---:|---:|---:|---:|\n{}\n\
+         | board | fault | readings | as the host's ring | others of another kind | others' time moved by | named |\n\
+         |---|---|---:|---|---:|---:|---|\n{}",
+        fault_free.concat(),
+        faults.concat()
+    ))
+}
+
+fn rows(world: &World, simulated: &Readings, board: &str, emulator: &[String]) -> Result<Rows, String> {
+    let in_run = |fault: Fault| move |error: String| format!("{fault}: {error}");
+    let fault_free = run(world, Fault::None, emulator).map_err(in_run(Fault::None))?;
+    let count = |kind: ReadingKind| fault_free.read.iter().flatten().filter(|reading| reading.kind == kind).count();
+    let (same, within) = fault_free.as_simulated(simulated)?;
+    let row = format!(
+        "| {board} | {} | all | {} | {} | {same} | {within} us | {} | {} |\n",
+        fault_free.count(),
+        count(ReadingKind::Accepted),
+        count(ReadingKind::Rejected),
+        fault_free.latest_edge,
+        fault_free.max_late,
+    );
+    let mut rows = String::new();
+    for fault in Fault::ALL {
+        let faulty = run(world, fault, emulator).map_err(in_run(fault))?;
+        rows += &fault_row(board, fault, &faulty, &fault_free).map_err(in_run(fault))?;
+    }
+    Ok((row, rows))
+}
+
+fn fault_row(board: &str, fault: Fault, faulty: &Run, fault_free: &Run) -> Result<String, String> {
+    let named = faulty.report(fault)?;
+    let change = faulty.change_from(fault_free, fault)?;
+    let count = faulty.count();
+    Ok(format!("| {board} | {fault} | {count} | all | {} | {} | {named} |\n", change.kinds, change.moved))
+}

@@ -1,0 +1,169 @@
+//! The reference: a ring on the host that gets every input of the ring on the board, in the same order, and must emit
+//! the same events.
+//!
+//! Its trigger pins fire into the simulated world, and only when the board has said that it triggers, too.
+
+use core::cell::RefCell;
+use core::convert::Infallible;
+use std::rc::Rc;
+
+use eeruf_core::{Instant, Reading, Ring, RingEvent, ScheduledFiring};
+use eeruf_hc_sr04::{Edge, HcSr04Ring, Health, Pins, Settings};
+use eeruf_hil::{CONFIG, Record, SCHEDULE, SENSORS, Topic};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
+
+use crate::emulator::Emulator;
+use crate::lines::Lines;
+
+/// What ring and pins share: the board, its lines, and the first error.
+pub(crate) struct Session<'w> {
+    pub(crate) board: Emulator,
+    pub(crate) lines: Lines<'w>,
+    wrong: Option<String>,
+}
+
+pub(crate) type Shared<'w> = Rc<RefCell<Session<'w>>>;
+
+impl<'w> Session<'w> {
+    pub(crate) fn new(board: Emulator, lines: Lines<'w>) -> Shared<'w> {
+        Rc::new(RefCell::new(Self { board, lines, wrong: None }))
+    }
+
+    /// The board's next record, which must be about this.
+    pub(crate) fn expect(&mut self, topic: Topic, sensor: u8) -> Result<Record, String> {
+        let record = self.board.next()?.ok_or_else(|| format!("the board ended where {topic:?} was expected"))?;
+        if record.topic() == Some(topic) && record.sensor() == sensor {
+            return Ok(record);
+        }
+        let (said, of) = (record.topic(), record.sensor() + 1);
+        Err(format!("the host's ring expected {topic:?} of sensor {}, the board said {said:?} of {of}", sensor + 1))
+    }
+
+    fn level(&mut self, sensor: u8) -> Result<bool, String> {
+        Ok(self.expect(Topic::Level, sensor)?.flag() != 0)
+    }
+
+    fn trigger(&mut self, sensor: u8) -> Result<(), String> {
+        let at = self.expect(Topic::Trigger, sensor)?.instant();
+        self.lines.trigger(sensor, at)?;
+        let ahead = self.lines.ahead(at)?;
+        self.board.answer(&ahead)
+    }
+
+    /// The driver takes pins that cannot fail, so a failure is stored here until the poll is over.
+    fn store_error<T: Default>(&mut self, result: Result<T, String>) -> T {
+        result.unwrap_or_else(|wrong| {
+            self.wrong.get_or_insert(wrong);
+            T::default()
+        })
+    }
+}
+
+/// A trigger or echo pin of the reference.
+pub(crate) struct Pin<'w> {
+    session: Shared<'w>,
+    sensor: u8,
+}
+
+impl ErrorType for Pin<'_> {
+    type Error = Infallible;
+}
+
+impl OutputPin for Pin<'_> {
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        let mut session = self.session.borrow_mut();
+        let result = session.trigger(self.sensor);
+        session.store_error(result);
+        Ok(())
+    }
+}
+
+impl InputPin for Pin<'_> {
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        let mut session = self.session.borrow_mut();
+        let result = session.level(self.sensor);
+        Ok(session.store_error(result))
+    }
+
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        self.is_high().map(|high| !high)
+    }
+}
+
+/// The board says when things happen; nothing has to be waited for.
+pub(crate) struct NoDelay;
+
+impl DelayNs for NoDelay {
+    fn delay_ns(&mut self, _: u32) {}
+}
+
+/// A ring as the board's, on pins of this kind.
+pub(crate) type HostRing<P> = HcSr04Ring<ScheduledFiring<'static, SENSORS>, P, P, NoDelay, SENSORS>;
+
+/// Sets up a ring as the board does, at the same instant.
+pub(crate) fn ring<P: OutputPin + InputPin>(now: Instant, pin: impl Fn(u8) -> P) -> Result<HostRing<P>, String> {
+    let ring = Ring::new(&SCHEDULE, CONFIG, now).map_err(|error| error.to_string())?;
+    let pins = core::array::from_fn(|x| Pins { trigger: pin(x as u8), echo: pin(x as u8) });
+    HcSr04Ring::new(ring, pins, NoDelay, Settings::default()).map_err(|error| error.to_string())
+}
+
+/// The ring on the host.
+pub(crate) struct Reference<'w> {
+    session: Shared<'w>,
+    ring: HostRing<Pin<'w>>,
+}
+
+impl<'w> Reference<'w> {
+    pub(crate) fn new(session: &Shared<'w>, now: Instant) -> Result<Self, String> {
+        let pin = |sensor| Pin { session: Rc::clone(session), sensor };
+        Ok(Self { session: Rc::clone(session), ring: ring(now, pin)? })
+    }
+
+    pub(crate) fn edge(&mut self, edge: Edge) -> Result<(), String> {
+        self.session.borrow_mut().lines.notice(edge)?;
+        self.ring.edge(edge);
+        Ok(())
+    }
+
+    /// Polls, and compares the event with the one that the board got.
+    pub(crate) fn poll(&mut self, now: Instant) -> Result<Option<RingEvent>, String> {
+        let event = self.ring.poll(now);
+        let mut session = self.session.borrow_mut();
+        if let Some(wrong) = session.wrong.take() {
+            return Err(wrong);
+        }
+        let mine = Record::event(event.as_ref());
+        let board = session.expect(Topic::Event, mine.sensor())?;
+        if board == mine {
+            Ok(event)
+        } else {
+            Err(format!("the host's ring emitted {event:?}, {:x?}; the board's {:x?}", mine.0, board.0))
+        }
+    }
+
+    /// Compares the deadline, and how the sensors are, with what the board says of them.
+    pub(crate) fn compare(&self, said: Record) -> Result<(), String> {
+        let mine = match said.topic() {
+            Some(Topic::Deadline) => Record::deadline(self.ring.next_deadline()),
+            // How many edges were lost before they came to the ring is the board's to know.
+            _ => Record::state(self.health(), said.flag()),
+        };
+        if said == mine {
+            Ok(())
+        } else {
+            Err(format!("the host's ring is at {:x?}, the board's at {:x?}", mine.0, said.0))
+        }
+    }
+
+    pub(crate) fn health(&self) -> [Health; SENSORS] {
+        core::array::from_fn(|sensor| self.ring.health(sensor as u8))
+    }
+}
+
+/// What every sensor read, in the order of its firings.
+pub(crate) type Read = [Vec<Reading>; SENSORS];

@@ -1,0 +1,256 @@
+//! One run of a board in its simulated world, compared with the reference and the control.
+
+use core::fmt;
+
+use eeruf_core::{Instant, Micros, Reading, ReadingKind, RingEvent};
+use eeruf_hc_sr04::{Edge, Health};
+use eeruf_hil::{Orders, SENSORS, Topic};
+use eeruf_sim::{Readings, World};
+
+use crate::control::Control;
+use crate::emulator::Emulator;
+use crate::lines::{FAULTY, LineFault, Lines};
+use crate::reference::{Read, Reference, Session};
+
+/// For how many periods each run lasts.
+pub(crate) const PERIODS: u32 = 1000;
+
+/// What goes wrong in a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fault {
+    None,
+    Line(LineFault),
+    /// The main loop stalls for 50 ms after a period's end.
+    Stall,
+    /// The clock wraps in the middle.
+    Wrap,
+}
+
+const STALL_AFTER: u32 = 500;
+const STALL: Micros = Micros::from_millis(50);
+
+/// Echo times of the same sound move by no more than this from run to run.
+const MOST_MOVED: Micros = Micros::new(25);
+
+impl Fault {
+    /// All but none.
+    pub(crate) const ALL: [Self; 6] = [
+        Self::Line(LineFault::Missing),
+        Self::Line(LineFault::StuckHigh),
+        Self::Line(LineFault::Chatters),
+        Self::Line(LineFault::InterruptsLost),
+        Self::Stall,
+        Self::Wrap,
+    ];
+
+    fn orders(self) -> Orders {
+        // Half of 1,000 periods of 100 ms before the wrap.
+        let start = if self == Self::Wrap { 0_u32.wrapping_sub(50_000_000) } else { 0 };
+        let stall = if self == Self::Stall { STALL } else { Micros::ZERO };
+        Orders { start: Instant::from_micros(start), periods: PERIODS, stall_after: STALL_AFTER, stall }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None => f.write_str("none"),
+            Self::Line(fault) => write!(f, "sensor {} {fault}", FAULTY + 1),
+            Self::Stall => write!(f, "main loop stalls for {STALL}"),
+            Self::Wrap => f.write_str("clock wraps"),
+        }
+    }
+}
+
+/// What came of a run.
+pub(crate) struct Run {
+    pub(crate) read: Read,
+    /// The latest that an edge was noticed.
+    pub(crate) latest_edge: Micros,
+    /// The latest firing.
+    pub(crate) max_late: Micros,
+    /// The last health of each sensor that was not well.
+    named: [Health; SENSORS],
+    /// The period at whose end it first did.
+    named_after: Option<u32>,
+}
+
+/// How the sensors without a fault differ from a run without one.
+pub(crate) struct Change {
+    /// Readings of another kind.
+    pub(crate) kinds: usize,
+    /// By how much echo times moved.
+    pub(crate) moved: Micros,
+}
+
+pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Run, String> {
+    let orders = fault.orders();
+    let line_fault = if let Fault::Line(fault) = fault { fault } else { LineFault::None };
+    let session = Session::new(Emulator::start(emulator, orders)?, Lines::new(world, line_fault, orders.start)?);
+    let outcome = (|| {
+        // The first thing that a board says is when it set up its ring.
+        let now = session.borrow_mut().expect(Topic::Deadline, 0)?.instant();
+        let mut reference = Reference::new(&session, now)?;
+        let mut control = Control::new(now, FAULTY)?;
+        let mut run = Run {
+            read: Default::default(),
+            latest_edge: Micros::ZERO,
+            max_late: Micros::ZERO,
+            named: [Health::Well; SENSORS],
+            named_after: None,
+        };
+        let mut periods = 0;
+        loop {
+            let record = session.borrow_mut().board.next()?;
+            let Some(record) = record else { break };
+            match record.topic() {
+                Some(Topic::Edge) => {
+                    let edge = Edge { sensor: record.sensor(), high: record.flag() != 0, at: record.instant() };
+                    reference.edge(edge)?;
+                    control.edge(edge);
+                }
+                Some(Topic::Poll) => {
+                    let event = reference.poll(record.instant())?;
+                    control.follow(record.instant(), event.as_ref())?;
+                    match event {
+                        Some(RingEvent::Reading(reading)) => run.take(reading),
+                        Some(RingEvent::PeriodEnded(stats)) => {
+                            run.max_late = run.max_late.max(stats.max_late);
+                            periods += 1;
+                        }
+                        _ => {}
+                    }
+                }
+                Some(Topic::State) => {
+                    reference.compare(record)?;
+                    if record.flag() > 0 {
+                        return Err(format!("{} edges found the queue full", record.flag()));
+                    }
+                    run.name(reference.health(), periods);
+                }
+                Some(Topic::Deadline) => reference.compare(record)?,
+                _ => return Err(format!("the board said {record:?} out of turn")),
+            }
+        }
+        if periods != PERIODS {
+            return Err(format!("the board ended after {periods} periods of {PERIODS}"));
+        }
+        if matches!(fault, Fault::Line(_)) {
+            run.others_are(&control.read)?;
+        }
+        run.latest_edge = session.borrow().lines.latest;
+        Ok(run)
+    })();
+    let Ok(session) = std::rc::Rc::try_unwrap(session) else { return Err("pins outlive their ring".to_owned()) };
+    let (run, outcome) = match outcome {
+        Ok(run) => (Some(run), Ok(())),
+        Err(error) => (None, Err(error)),
+    };
+    session.into_inner().board.finish(outcome)?;
+    run.ok_or_else(|| "nothing came of the run".to_owned())
+}
+
+impl Run {
+    fn take(&mut self, reading: Reading) {
+        if let Some(read) = self.read.get_mut(usize::from(reading.sensor)) {
+            read.push(reading);
+        }
+    }
+
+    fn name(&mut self, health: [Health; SENSORS], period: u32) {
+        for (named, health) in self.named.iter_mut().zip(health) {
+            if health != Health::Well {
+                *named = health;
+                self.named_after.get_or_insert(period);
+            }
+        }
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.read.iter().map(Vec::len).sum()
+    }
+
+    /// Whether all other sensors read what they would have read without the fault.
+    fn others_are(&self, control: &Read) -> Result<(), String> {
+        for (sensor, (read, without)) in self.read.iter().zip(control).enumerate() {
+            if sensor != usize::from(FAULTY) && read != without {
+                return Err(format!(
+                    "sensor {} reads other than it would without the fault of sensor {}",
+                    sensor + 1,
+                    FAULTY + 1
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// How many readings are of the kind that the simulator's own run of the same world has, and by how many
+    /// microseconds their echo times differ at most.
+    pub(crate) fn as_simulated(&self, simulated: &Readings) -> Result<(usize, f64), String> {
+        let (mut same, mut most) = (0, 0.0_f64);
+        for k in 0..simulated.len() {
+            let (sensor, period) = (usize::from(simulated.sensor[k]), simulated.period[k] as usize);
+            let reading = self.read.get(sensor).and_then(|read| read.get(period));
+            let Some(reading) = reading.filter(|reading| reading.kind == simulated.kind[k]) else { continue };
+            same += 1;
+            if let Some(t_echo) = reading.t_echo {
+                most = most.max((f64::from(t_echo.as_micros()) - simulated.earliest_us[k]).abs());
+            }
+        }
+        // Kinds may differ where two readings are just about T_delta apart.
+        if 1000 * same < 999 * simulated.len() {
+            return Err(format!("{same} of {} readings are of the kind that was simulated", simulated.len()));
+        }
+        Ok((same, most))
+    }
+
+    /// What the report calls the fault; it must be this one, and nothing else.
+    pub(crate) fn report(&self, fault: Fault) -> Result<String, String> {
+        let mut expected = [Health::Well; SENSORS];
+        if let (Fault::Line(fault), Some(expected)) = (fault, expected.get_mut(usize::from(FAULTY))) {
+            *expected = fault.name();
+        }
+        if self.named != expected {
+            return Err(format!("sensors are called {:?}; expected {expected:?}", self.named));
+        }
+        let late = fault == Fault::Stall;
+        // The next firing is due up to 24 ms after the stall began.
+        if late != (self.max_late >= Micros::from_millis(26)) {
+            return Err(format!("the latest firing came {}", self.max_late));
+        }
+        Ok(match (fault, self.named_after) {
+            (Fault::Line(fault), Some(period)) => format!("{} after {period} periods", fault.name()),
+            (Fault::Stall, _) => format!("a firing {} late", self.max_late),
+            _ => "nothing to name".to_owned(),
+        })
+    }
+
+    /// How other sensors differ from a run without a fault. Firings and interrupts come some microseconds earlier or
+    /// later when there is more or less to do, so echo times move by as much; no kind of reading may change for it. A
+    /// stall makes the ring compare with nothing: the readings of three periods, those not yet emitted when it began,
+    /// and the first ones after that.
+    pub(crate) fn change_from(&self, fault_free: &Self, fault: Fault) -> Result<Change, String> {
+        let mut change = Change { kinds: 0, moved: Micros::ZERO };
+        for (sensor, (mine, without)) in self.read.iter().zip(&fault_free.read).enumerate() {
+            if sensor == usize::from(FAULTY) && matches!(fault, Fault::Line(_)) {
+                continue;
+            }
+            for (mine, without) in mine.iter().zip(without) {
+                if mine.kind != without.kind {
+                    change.kinds += 1;
+                    let compared = [ReadingKind::Accepted, ReadingKind::Rejected].contains(&mine.kind);
+                    if fault != Fault::Stall || compared || !(STALL_AFTER..=STALL_AFTER + 4).contains(&mine.period) {
+                        return Err(format!("{mine:?} would be {without:?} without the fault"));
+                    }
+                }
+                if let (Some(mine), Some(without)) = (mine.t_echo, without.t_echo) {
+                    change.moved = change.moved.max(mine.abs_diff(without));
+                }
+            }
+        }
+        if change.moved > MOST_MOVED {
+            return Err(format!("echo times moved by {}; expected at most {MOST_MOVED}", change.moved));
+        }
+        Ok(change)
+    }
+}

@@ -1,0 +1,26 @@
+//! What stands in a scene: shared between a `Scene` and the `Paths` found in it.
+
+use eeruf_sim::{Scene, World};
+
+/// Walls alone, or a world with robots.
+pub(crate) enum Contents {
+    Walls(Scene),
+    World(World),
+}
+
+impl Contents {
+    pub(crate) fn scene(&self) -> &Scene {
+        match self {
+            Self::Walls(scene) => scene,
+            Self::World(world) => world.scene(),
+        }
+    }
+
+    /// The world, if there are robots.
+    pub(crate) fn world(&self) -> Option<&World> {
+        match self {
+            Self::Walls(_) => None,
+            Self::World(world) => Some(world),
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! `design`: the shortest period.
+
+use std::time::Instant;
+
+use eeruf_core::{
+    Criterion, MAX_SENSORS, Micros, Requirements,
+    search::{self, Control, PeriodProblem, Progress, SearchError, design as period},
+};
+use pyo3::prelude::*;
+
+use crate::{
+    arguments::{flag, micros, whole, whole_or},
+    errors::Raise,
+    found::Found,
+    requirements::{self, OwnedLayout},
+    watch::{Watch, control_flow, in_background},
+};
+
+/// How many nodes the choice among the shortest schedules may cost.
+const PREFERENCE_BUDGET: u64 = 100_000;
+/// How many nodes a search visits unless another budget is given.
+const DESIGN_BUDGET: u64 = 50_000_000;
+/// Up to so many sensors the engine asks often whether to go on. With more, a good part of a second may lie between two
+/// nodes that ask, so the search gets a thread of its own. A small search would wait for that thread longer than for
+/// its answer.
+const FEW_SENSORS: usize = 12;
+
+/// Find the schedule with the shortest period for a ring, and prove that none is shorter.
+///
+/// Firing times are free, on a grid of ticks. Among all schedules of the shortest period it prefers a larger
+/// ``T_delta``, then a larger smallest interval, then evener firing. It runs on one core, without the interpreter lock;
+/// Ctrl-C ends it.
+///
+/// Args:
+///     sensors: how many, 1 to 64.
+///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11).
+///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
+///     window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier. 1 or more.
+///     tick_us: the grid of firing times and period, 1 or more.
+///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
+///     layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours, as in :meth:`Schedule.verify`.
+///     stale_echo: whether a sensor's own echo from the period before must be rejected too.
+///     budget: how many nodes to visit at most, 1 or more; 50 million by default.
+///     progress: True for a bar (tqdm if it is installed), or a callable that takes the share done (None: unknown) and
+///         a text.
+///
+/// Returns:
+///     The shortest period in ``value_us``, or the best found within the budget; ``proven`` says which.
+///
+/// Raises:
+///     ArgumentError: something of the wrong type or out of range.
+///     SearchError: needs that make no sense, or too large a grid.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> found = eeruf.design(sensors=8, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
+///     >>> found.value_us, found.proven
+///     (66000, True)
+#[pyfunction]
+#[pyo3(signature = (
+    sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None,
+    budget=None, progress=None
+))]
+#[pyo3(
+    text_signature = "(sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, layout=\"line\", \
+        stale_echo=False, budget=None, progress=None)"
+)]
+#[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+pub(crate) fn design(
+    py: Python<'_>,
+    sensors: &Bound<'_, PyAny>,
+    t_delta_us: &Bound<'_, PyAny>,
+    min_interval_us: &Bound<'_, PyAny>,
+    window_us: &Bound<'_, PyAny>,
+    tick_us: Option<&Bound<'_, PyAny>>,
+    neighbours: Option<&Bound<'_, PyAny>>,
+    layout: Option<&Bound<'_, PyAny>>,
+    stale_echo: Option<&Bound<'_, PyAny>>,
+    budget: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Found> {
+    let sensors = requirements::sensors(sensors)?;
+    let layout = OwnedLayout::new(layout, requirements::neighbours(neighbours)?)?;
+    let (t_delta, min_interval) = (micros("t_delta_us", t_delta_us)?, micros("min_interval_us", min_interval_us)?);
+    let window = whole("window_us", window_us, 1..=u32::MAX).map(Micros::new)?;
+    let tick = Micros::new(whole_or("tick_us", tick_us, 1000, 1..=u32::MAX)?);
+    let stale_echo = flag("stale_echo", stale_echo, false)?;
+    let budget = whole_or("budget", budget, DESIGN_BUDGET, 1..=u64::MAX)?;
+    let began = Instant::now();
+    let work = move |go_on: &mut dyn FnMut(&Progress) -> bool| {
+        let (criterion, layout) = (Criterion::Exact, layout.layout());
+        let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo };
+        let needs = PeriodProblem { sensors, requirements, tick };
+        let mut control = |at: &Progress| control_flow(go_on(at));
+        shortest(&needs, budget, &mut control).map_err(Raise::raise)
+    };
+    let text = |at: &Progress| {
+        let (bound, best) = (at.bound.unwrap_or(0), at.best.unwrap_or(0));
+        format!("{} nodes, period {bound} to {best} ticks", at.nodes)
+    };
+    let (found, reason) = if sensors <= FEW_SENSORS {
+        let mut watch = Watch::new(progress)?;
+        let designed = py.detach(|| work(&mut |at| watch.go_on(None, || text(at))));
+        watch.outcome(designed)?
+    } else {
+        in_background(py, progress, move |background| work(&mut |at| background.go_on(None, || text(at))))?
+    };
+    Ok(Found::of(&found, began, Some(reason)))
+}
+
+fn shortest(
+    needs: &PeriodProblem<'_>,
+    budget: u64,
+    control: &mut impl Control,
+) -> Result<(search::Found<MAX_SENSORS>, String), SearchError> {
+    let mut memory = vec![0; period::memory_words(needs.sensors)];
+    let designed = needs.shortest::<MAX_SENSORS>(budget, &mut memory, control)?;
+    let mut found = designed.found;
+    if found.proven {
+        found.schedule = Some(needs.prefer(&designed, PREFERENCE_BUDGET, &mut memory, control)?.schedule);
+    }
+    Ok((found, designed.explanation().to_string()))
+}

@@ -1,0 +1,102 @@
+//! `Found`: what a search returns.
+
+use std::time::Instant;
+
+use eeruf_core::{MAX_SENSORS, Micros, search};
+use pyo3::{prelude::*, types::PyTuple};
+
+use crate::{
+    arguments::{flag, instance, number, text, whole, whole_or_none},
+    schedule::Schedule,
+};
+
+/// The answer of a search: the best schedule it came to, and whether that is proven.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> found = eeruf.design(sensors=4, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
+///     >>> found.value_us, found.bound_us, found.proven
+///     (62000, 62000, True)
+#[pyclass(frozen, eq, module = "eeruf")]
+#[derive(Clone, PartialEq)]
+pub(crate) struct Found {
+    schedule: Option<Schedule>,
+    /// What was sought of it, in microseconds: the period, the smallest interval or ``T_delta``; None without a
+    /// schedule.
+    #[pyo3(get)]
+    value_us: Option<u32>,
+    /// No schedule is better than this, in microseconds; None if it is proven that there is none at all.
+    #[pyo3(get)]
+    bound_us: Option<u32>,
+    /// Whether no better schedule exists (or none at all, without a schedule).
+    #[pyo3(get)]
+    proven: bool,
+    /// How many nodes the search visited: the same on each machine.
+    #[pyo3(get)]
+    nodes: u64,
+    /// How long it took.
+    #[pyo3(get)]
+    seconds: f64,
+    /// Why the period is not shorter, in words; None from ``WaitSearch.best``.
+    #[pyo3(get)]
+    reason: Option<String>,
+}
+
+impl Found {
+    pub(crate) fn of(found: &search::Found<MAX_SENSORS>, began: Instant, reason: Option<String>) -> Self {
+        Self {
+            schedule: found.schedule.map(Schedule),
+            value_us: found.value.map(Micros::as_micros),
+            bound_us: found.bound.map(Micros::as_micros),
+            proven: found.proven,
+            nodes: found.nodes,
+            seconds: began.elapsed().as_secs_f64(),
+            reason,
+        }
+    }
+}
+
+#[pymethods]
+impl Found {
+    #[new]
+    #[pyo3(signature = (schedule, value_us, bound_us, proven, nodes, seconds, reason=None))]
+    fn new(
+        schedule: Option<&Bound<'_, PyAny>>,
+        value_us: Option<&Bound<'_, PyAny>>,
+        bound_us: Option<&Bound<'_, PyAny>>,
+        proven: &Bound<'_, PyAny>,
+        nodes: &Bound<'_, PyAny>,
+        seconds: &Bound<'_, PyAny>,
+        reason: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let schedule = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
+        Ok(Self {
+            schedule: schedule.transpose()?.map(|schedule| schedule.get().clone()),
+            value_us: whole_or_none("value_us", value_us, 0..=u32::MAX)?,
+            bound_us: whole_or_none("bound_us", bound_us, 0..=u32::MAX)?,
+            proven: flag("proven", Some(proven), false)?,
+            nodes: whole("nodes", nodes, 0..=u64::MAX)?,
+            seconds: number("seconds", seconds, 0.0..=f64::INFINITY)?,
+            reason: reason.map(|reason| text("reason", reason, "why")).transpose()?,
+        })
+    }
+
+    /// The schedule; None if there is none, or none was found within the budget.
+    #[getter]
+    fn schedule(&self) -> Option<Schedule> {
+        self.schedule.clone()
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        let fields = ["schedule", "value_us", "bound_us", "proven", "nodes", "seconds", "reason"];
+        let shown = fields.map(|field| Ok(format!("{field}={}", slf.getattr(field)?.repr()?)));
+        Ok(format!("Found({})", shown.into_iter().collect::<PyResult<Vec<_>>>()?.join(", ")))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let this = slf.get();
+        let Self { value_us, bound_us, proven, nodes, seconds, .. } = *this;
+        let arguments = (this.schedule.clone(), value_us, bound_us, proven, nodes, seconds, this.reason.clone());
+        Ok((slf.get_type().into_any(), arguments.into_pyobject(slf.py())?))
+    }
+}

@@ -1,0 +1,187 @@
+//! What a `Ring` hands out: `Fire`, `Reading` and `PeriodEnded`.
+
+use std::ops::RangeInclusive;
+
+use eeruf_core::{MAX_SENSORS, Micros, ReadingKind, RingEvent, Verdict};
+use pyo3::{
+    IntoPyObjectExt,
+    prelude::*,
+    types::{PyDict, PyTuple},
+};
+
+use crate::arguments::{choice, whole, whole_or_none};
+
+/// Sensors that can be.
+const SENSORS: RangeInclusive<u8> = 0..=MAX_SENSORS as u8 - 1;
+
+/// The ring is to fire a sensor, now.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000).poll(24_000)
+///     Fire(sensor=0)
+#[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Fire {
+    /// Which sensor, from 0.
+    sensor: u8,
+}
+
+#[pymethods]
+impl Fire {
+    #[new]
+    #[pyo3(signature = (sensor))]
+    fn new(sensor: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self { sensor: whole("sensor", sensor, SENSORS)? })
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Fire(sensor={})", self.sensor)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        Ok((slf.get_type().into_any(), (slf.get().sensor,).into_pyobject(slf.py())?))
+    }
+}
+
+/// What came of one firing of one sensor.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> eeruf.EchoFilter(1, 500).push(0, 9_000)
+///     Reading(sensor=0, kind='first', t_echo_us=9000, previous_us=None, age=None, phase=None, period=None)
+#[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Reading {
+    /// Which sensor, from 0.
+    sensor: u8,
+    /// What came of it, one of ``eeruf.KINDS``; only ``"accepted"`` and ``"clear"`` (nothing in range) count.
+    kind: &'static str,
+    /// The time of the echo after firing, in microseconds; None without echo.
+    t_echo_us: Option<u32>,
+    /// What it was compared with, in microseconds; None if with nothing.
+    previous_us: Option<u32>,
+    /// How many firings ago the sensor's last accepted reading was: 0 for this one, None if there never was one.
+    age: Option<u16>,
+    /// The phase in which the sensor fired: 0 for a, 1 for b; None from a filter alone.
+    phase: Option<u8>,
+    /// The period in which the sensor fired, from 0; None from a filter alone.
+    period: Option<u32>,
+}
+
+impl Reading {
+    /// From a filter alone, which knows no phases.
+    pub(crate) fn of_filter(sensor: usize, verdict: &Verdict) -> Self {
+        Self {
+            // Below 64.
+            sensor: sensor as u8,
+            kind: verdict.kind.as_str(),
+            t_echo_us: verdict.t_echo.map(Micros::as_micros),
+            previous_us: verdict.previous.map(Micros::as_micros),
+            age: verdict.age,
+            phase: None,
+            period: None,
+        }
+    }
+}
+
+#[pymethods]
+impl Reading {
+    #[new]
+    #[pyo3(signature = (sensor, kind, t_echo_us=None, previous_us=None, age=None, phase=None, period=None))]
+    fn new(
+        sensor: &Bound<'_, PyAny>,
+        kind: &Bound<'_, PyAny>,
+        t_echo_us: Option<&Bound<'_, PyAny>>,
+        previous_us: Option<&Bound<'_, PyAny>>,
+        age: Option<&Bound<'_, PyAny>>,
+        phase: Option<&Bound<'_, PyAny>>,
+        period: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            sensor: whole("sensor", sensor, SENSORS)?,
+            kind: choice("kind", Some(kind), &ReadingKind::ALL.map(|kind| (kind.as_str(), kind.as_str())))?,
+            t_echo_us: whole_or_none("t_echo_us", t_echo_us, 0..=u32::MAX)?,
+            previous_us: whole_or_none("previous_us", previous_us, 0..=u32::MAX)?,
+            age: whole_or_none("age", age, 0..=u16::MAX)?,
+            phase: whole_or_none("phase", phase, 0..=u8::MAX)?,
+            period: whole_or_none("period", period, 0..=u32::MAX)?,
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        let shown = |value: Option<u32>| value.map_or_else(|| "None".to_owned(), |value| value.to_string());
+        format!(
+            "Reading(sensor={}, kind='{}', t_echo_us={}, previous_us={}, age={}, phase={}, period={})",
+            self.sensor,
+            self.kind,
+            shown(self.t_echo_us),
+            shown(self.previous_us),
+            shown(self.age.map(u32::from)),
+            shown(self.phase.map(u32::from)),
+            shown(self.period)
+        )
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let Self { sensor, kind, t_echo_us, previous_us, age, phase, period } = slf.get();
+        let arguments = (sensor, kind, t_echo_us, previous_us, age, phase, period).into_pyobject(slf.py())?;
+        Ok((slf.get_type().into_any(), arguments))
+    }
+}
+
+/// A period of the ring has ended.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+///     >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.PeriodEnded):
+///     ...     pass
+///     >>> event.period, event.phase, event.tally["no_echo"] <= 12
+///     (0, 0, True)
+#[pyclass(frozen, get_all, module = "eeruf")]
+pub(crate) struct PeriodEnded {
+    /// Which period, from 0.
+    period: u32,
+    /// Its phase: 0 for a, 1 for b.
+    phase: u8,
+    /// How long after it was due the latest firing was polled for, in microseconds, at most 65,535.
+    max_late_us: u32,
+    /// How many readings of each kind were emitted since the period before ended: a dict by the names in
+    /// ``eeruf.KINDS``.
+    tally: Py<PyDict>,
+}
+
+#[pymethods]
+impl PeriodEnded {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let Self { period, phase, max_late_us, tally } = self;
+        let tally = tally.bind(py).repr()?;
+        Ok(format!("<PeriodEnded period={period} phase={phase} max_late_us={max_late_us} tally={tally}>"))
+    }
+}
+
+/// An event as Python sees it.
+pub(crate) fn to_python<'py>(py: Python<'py>, event: &RingEvent) -> PyResult<Bound<'py, PyAny>> {
+    match *event {
+        RingEvent::Fire(sensor) => Fire { sensor }.into_bound_py_any(py),
+        RingEvent::Reading(reading) => Reading {
+            sensor: reading.sensor,
+            kind: reading.kind.as_str(),
+            t_echo_us: reading.t_echo.map(Micros::as_micros),
+            previous_us: reading.previous.map(Micros::as_micros),
+            age: reading.age,
+            phase: Some(reading.phase.0),
+            period: Some(reading.period),
+        }
+        .into_bound_py_any(py),
+        RingEvent::PeriodEnded(stats) => {
+            let tally = PyDict::new(py);
+            for kind in ReadingKind::ALL {
+                tally.set_item(kind.as_str(), stats.tally.of(kind))?;
+            }
+            let (period, phase, max_late_us) = (stats.period, stats.phase.0, stats.max_late.as_micros());
+            PeriodEnded { period, phase, max_late_us, tally: tally.unbind() }.into_bound_py_any(py)
+        }
+    }
+}

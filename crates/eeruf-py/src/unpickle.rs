@@ -1,0 +1,112 @@
+//! `Readings` out of their columns, as a pickle holds them.
+
+use eeruf_core::ReadingKind;
+use eeruf_sim::{Cause, HeardPath, NO_PATH, SensorId};
+use numpy::PyReadonlyArray1;
+use pyo3::{prelude::*, types::PyDict};
+
+use crate::{
+    arguments::wrong,
+    methods::method as method_named,
+    paths::bounce,
+    readings::{CAUSES, Readings},
+};
+
+/// The causes in the order of their codes, as [`CAUSES`].
+const CAUSE_OF: [Cause; 5] = [Cause::Nothing, Cause::Own, Cause::Stale, Cause::Crosstalk, Cause::External];
+
+fn column<T: numpy::Element + Copy>(columns: &Bound<'_, PyDict>, name: &str) -> PyResult<Vec<T>> {
+    let column = columns.as_any().get_item(name)?;
+    let array: PyReadonlyArray1<'_, T> = column.extract().map_err(|_| wrong(name, &column, "a column of Readings"))?;
+    Ok(array.as_array().iter().copied().collect())
+}
+
+fn heard_paths(columns: &Bound<'_, PyDict>) -> PyResult<Vec<HeardPath>> {
+    let ends = |robot, sensor| -> PyResult<Vec<SensorId>> {
+        let (robots, sensors): (Vec<u16>, Vec<u8>) = (column(columns, robot)?, column(columns, sensor)?);
+        Ok(robots.into_iter().zip(sensors).map(|(robot, sensor)| SensorId { robot, sensor }).collect())
+    };
+    let walls: Vec<Vec<i64>> = columns.as_any().get_item("walls")?.extract()?;
+    let (emitter, receiver) = (ends("emitter_robot", "emitter")?, ends("receiver_robot", "receiver")?);
+    let (order, length_m): (Vec<u32>, Vec<f64>) = (column(columns, "order")?, column(columns, "length_m")?);
+    let angles: (Vec<f64>, Vec<f64>) = (column(columns, "departure_rad")?, column(columns, "arrival_rad")?);
+    let lengths = [emitter.len(), receiver.len(), order.len(), length_m.len(), angles.0.len(), angles.1.len()];
+    equally_long(walls.len(), &lengths)?;
+    let path = |path: usize| HeardPath {
+        emitter: emitter[path],
+        receiver: receiver[path],
+        order: order[path],
+        length_m: length_m[path],
+        departure_rad: angles.0[path],
+        arrival_rad: angles.1[path],
+        bounces: walls[path].iter().map(|&code| bounce(code)).collect(),
+    };
+    Ok((0..walls.len()).map(path).collect())
+}
+
+fn equally_long(expected: usize, lengths: &[usize]) -> PyResult<()> {
+    match lengths.iter().find(|&&length| length != expected) {
+        Some(length) => Err(wrong("length of a column", length, expected)),
+        None => Ok(()),
+    }
+}
+
+/// Readings from their columns, as a pickle holds them.
+#[pyfunction]
+#[pyo3(name = "_readings_from_columns", signature = (method, duration_s, sensors, columns, paths))]
+pub(crate) fn readings_from_columns(
+    method: &Bound<'_, PyAny>,
+    duration_s: f64,
+    sensors: usize,
+    columns: &Bound<'_, PyDict>,
+    paths: &Bound<'_, PyDict>,
+) -> PyResult<Readings> {
+    let robot: Vec<u16> = column(columns, "robot")?;
+    let code = |name, codes: usize| -> PyResult<Vec<usize>> {
+        let values: Vec<u8> = column(columns, name)?;
+        match values.iter().find(|&&value| usize::from(value) >= codes) {
+            Some(value) => Err(wrong(name, value, format_args!("0 to {}", codes - 1))),
+            None => Ok(values.into_iter().map(usize::from).collect()),
+        }
+    };
+    let paths = heard_paths(paths)?;
+    let path = |index: i64| match u32::try_from(index) {
+        Ok(path) if (path as usize) < paths.len() => Ok(path),
+        Err(_) if index == -1 => Ok(NO_PATH),
+        _ => Err(wrong("path", index, format_args!("-1 to {}", paths.len() as i64 - 1))),
+    };
+    let path = column::<i64>(columns, "path")?.into_iter().map(path).collect::<PyResult<Vec<_>>>()?;
+    let readings = eeruf_sim::Readings {
+        method: method_named("method", method)?,
+        duration_s,
+        sensors,
+        sensor: column(columns, "sensor")?,
+        period: column(columns, "period")?,
+        phase: column(columns, "phase")?,
+        fired_s: column(columns, "fired_s")?,
+        kind: code("kind", ReadingKind::ALL.len())?.into_iter().map(|kind| ReadingKind::ALL[kind]).collect(),
+        t_echo_us: column(columns, "t_echo_us")?,
+        earliest_us: column(columns, "earliest_us")?,
+        reference_us: column(columns, "reference_us")?,
+        cause: code("cause", CAUSES.len())?.into_iter().map(|cause| CAUSE_OF[cause]).collect(),
+        emitted_s: column(columns, "emitted_s")?,
+        path,
+        paths,
+        robot,
+    };
+    let lengths = [
+        readings.sensor.len(),
+        readings.period.len(),
+        readings.phase.len(),
+        readings.fired_s.len(),
+        readings.kind.len(),
+        readings.t_echo_us.len(),
+        readings.earliest_us.len(),
+        readings.reference_us.len(),
+        readings.cause.len(),
+        readings.path.len(),
+        readings.emitted_s.len(),
+    ];
+    equally_long(readings.robot.len(), &lengths)?;
+    Ok(Readings(readings))
+}

@@ -1,0 +1,14 @@
+//! How loud sound is: directivity and gain of transducers, reflection, spreading, and waves at poles and edges.
+//! It uses `geometry` and `scene`; `tracing` applies it to the paths that it finds.
+
+mod diffraction;
+mod directivity;
+mod reflection;
+mod spreading;
+mod transducer;
+
+pub use diffraction::{edge_diffraction, pole_wave_correction, rigid_cylinder_form};
+pub use directivity::Piston;
+pub(crate) use reflection::reflected;
+pub(crate) use spreading::pole_spread;
+pub use transducer::{GainProfile, Transducer};

@@ -1,0 +1,144 @@
+//! Transducers and their ranging modules: frequency, size, burst, blanking, range, gain over time and what is just
+//! heard.
+
+use super::directivity::Piston;
+use crate::scene::Air;
+
+/// How a receiver's gain grows while it listens. The step table of the Polaroid 6500 is not public, so the shape is a
+/// parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum GainProfile {
+    /// The same all the time.
+    #[default]
+    Constant,
+    /// With the square root of time.
+    SquareRoot,
+    /// In proportion to time, which makes up for spherical spreading.
+    Linear,
+}
+
+impl GainProfile {
+    /// Gain at a time after firing, relative to the gain at `full_s`, from which on it stays 1.
+    ///
+    /// ```
+    /// use eeruf_sim::GainProfile;
+    /// assert_eq!(GainProfile::Linear.gain(0.01, 0.04), 0.25);
+    /// assert_eq!(GainProfile::SquareRoot.gain(0.01, 0.04), 0.5);
+    /// ```
+    pub fn gain(self, time_s: f64, full_s: f64) -> f64 {
+        let share = (time_s / full_s).clamp(0.0, 1.0);
+        match self {
+            Self::Constant => 1.0,
+            Self::SquareRoot => share.sqrt(),
+            Self::Linear => share,
+        }
+    }
+}
+
+/// An ultrasonic transducer with its ranging module.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transducer {
+    /// Frequency in Hz.
+    pub frequency_hz: f64,
+    /// Radius of the piston in metres.
+    pub radius_m: f64,
+    /// Least amplitude of the pattern in front, see [`Piston::floor`].
+    pub pattern_floor: f64,
+    /// Length of the burst in cycles.
+    pub cycles: u32,
+    /// Deaf time after firing, in seconds.
+    pub blanking_s: f64,
+    /// Nearest range in metres.
+    pub min_range_m: f64,
+    /// Farthest range in metres.
+    pub max_range_m: f64,
+    /// Shortest time between two firings that the maker advises, in seconds.
+    pub cycle_s: f64,
+    /// Gain over time.
+    pub gain: GainProfile,
+}
+
+impl Transducer {
+    /// Polaroid 600 series electrostatic transducer with the 6500 module.
+    pub const POLAROID_6500: Self = Self {
+        frequency_hz: 49_400.0,
+        radius_m: 19.2e-3,
+        pattern_floor: Piston::DEFAULT_FLOOR,
+        cycles: 16,
+        blanking_s: 2.38e-3,
+        min_range_m: 0.15,
+        max_range_m: 10.7,
+        cycle_s: 0.1,
+        gain: GainProfile::Constant,
+    };
+
+    /// HC-SR04 module. Its time-out without an echo is 38 ms.
+    pub const HC_SR04: Self = Self {
+        frequency_hz: 40_000.0,
+        radius_m: 8.0e-3,
+        pattern_floor: Piston::DEFAULT_FLOOR,
+        cycles: 8,
+        blanking_s: 0.117e-3,
+        min_range_m: 0.02,
+        max_range_m: 4.0,
+        cycle_s: 0.06,
+        gain: GainProfile::Constant,
+    };
+
+    /// `k = 2 pi f / c` in rad/m.
+    pub fn wave_number(&self, air: Air) -> f64 {
+        core::f64::consts::TAU * self.frequency_hz / air.speed_of_sound()
+    }
+
+    /// Its pattern in this air.
+    pub fn piston(&self, air: Air) -> Piston {
+        Piston { floor: self.pattern_floor, ..Piston::new(self.wave_number(air), self.radius_m) }
+    }
+
+    /// Length of the burst in seconds.
+    pub fn burst_s(&self) -> f64 {
+        f64::from(self.cycles) / self.frequency_hz
+    }
+
+    /// The least amplitude that is heard: a perfect wall at the farthest range, on axis.
+    ///
+    /// ```
+    /// use eeruf_sim::{Air, Transducer};
+    /// let floor = Transducer::POLAROID_6500.detection_floor(Air::default());
+    /// assert!((floor - 8.190e-4).abs() < 1e-7); // -61.7 dB
+    /// ```
+    pub fn detection_floor(&self, air: Air) -> f64 {
+        let length_m = 2.0 * self.max_range_m;
+        10f64.powf(-air.absorption_db_per_m(self.frequency_hz) * length_m / 20.0) / length_m
+    }
+
+    /// Received level after the time-varying gain, on the scale of [`detection_floor`](Self::detection_floor).
+    pub fn received(&self, amplitude: f64, length_m: f64, air: Air) -> f64 {
+        let c = air.speed_of_sound();
+        amplitude * self.gain.gain(length_m / c, 2.0 * self.max_range_m / c)
+    }
+}
+
+impl Default for Transducer {
+    fn default() -> Self {
+        Self::POLAROID_6500
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polaroid_blanks_the_first_forty_one_centimetres() {
+        let range = Transducer::POLAROID_6500.blanking_s * Air::default().speed_of_sound() / 2.0;
+        assert!((range - 0.41).abs() < 0.005);
+    }
+
+    #[test]
+    fn presets_have_the_ka_of_their_data_sheets() {
+        let air = Air::default();
+        assert!((Transducer::POLAROID_6500.piston(air).ka - 17.364_439_394_387_222).abs() < 1e-9);
+        assert!((Transducer::HC_SR04.piston(air).ka - 5.858_447_838_862_085_5).abs() < 1e-9);
+    }
+}

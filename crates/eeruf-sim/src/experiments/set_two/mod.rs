@@ -1,0 +1,18 @@
+//! Set II (Sec. 4): a `LabMate` drives through a course of thin poles, steered by what its ring reads: HIMM grid,
+//! vector field histogram, platform, in a closed loop.
+//!
+//! The ring is core's own under the event simulation, as everywhere; only where the robot is is not known beforehand.
+
+mod course;
+mod figures;
+mod options;
+mod pilot;
+mod run;
+mod runs;
+
+pub use course::{Course, POLE_RADIUS_M, ROOM_M, SECOND_AHEAD, SECOND_BEHIND};
+pub use figures::Figures;
+pub use options::SetTwoOptions;
+pub use pilot::Piloting;
+pub use run::{Cell, Ending, Place, Run};
+pub use runs::{MULTI_ECHO_CONSECUTIVE, SetTwo, SpeedStep, set_two, speed_sweep};

@@ -1,0 +1,99 @@
+//! What comes of one course under one method.
+
+use serde::Serialize;
+
+/// How a course ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ending {
+    /// Over the finishing line.
+    Finished,
+    /// It touched a pole or a wall.
+    Contact,
+    /// It was still under way, or stuck, when the time was over.
+    TimeOut,
+}
+
+/// Where the robot was at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Place {
+    /// In seconds.
+    pub time_s: f64,
+    /// In metres.
+    pub x_m: f64,
+    /// In metres.
+    pub y_m: f64,
+    /// In radians.
+    pub heading_rad: f64,
+    /// In m/s.
+    pub speed_m_s: f64,
+}
+
+/// A cell of the grid that is not empty.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Cell {
+    /// Its middle, in metres.
+    pub x_m: f64,
+    /// Its middle, in metres.
+    pub y_m: f64,
+    /// Its certainty, 1 to 15.
+    pub value: u8,
+}
+
+/// What came of one course under one method.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Run {
+    /// Which course.
+    pub course: u64,
+    /// How it ended.
+    pub ending: Ending,
+    /// For how long it drove, in seconds.
+    pub time_s: f64,
+    /// How far it drove, in metres.
+    pub way_m: f64,
+    /// Its highest speed, in m/s.
+    pub top_speed_m_s: f64,
+    /// How near its outline came to a pole, in metres.
+    pub nearest_m: f64,
+    /// How many readings its sensors took.
+    pub readings: u32,
+    /// How many of them were not accepted.
+    pub rejected: u32,
+    /// How many were accepted and wrong.
+    pub wrong: u32,
+    /// How many echoes were entered into the grid where nothing is.
+    pub phantom_echoes: u32,
+    /// How many cells of the grid are certain in the end though nothing is there.
+    pub phantom_cells: u32,
+    /// How many poles the robot came near.
+    pub poles_passed: u32,
+    /// How many of them never had an echo entered into the grid.
+    pub poles_missed: u32,
+    /// Where it drove, every 30 ms.
+    pub track: Vec<Place>,
+    /// The grid in the end.
+    pub grid: Vec<Cell>,
+}
+
+impl Run {
+    /// A course that has just begun; it runs out of time unless something else happens.
+    pub(super) fn begun(course: u64) -> Self {
+        Self {
+            course,
+            ending: Ending::TimeOut,
+            time_s: 0.0,
+            way_m: 0.0,
+            top_speed_m_s: 0.0,
+            nearest_m: f64::INFINITY,
+            readings: 0,
+            rejected: 0,
+            wrong: 0,
+            phantom_echoes: 0,
+            phantom_cells: 0,
+            poles_passed: 0,
+            poles_missed: 0,
+            track: Vec::new(),
+            grid: Vec::new(),
+        }
+    }
+}

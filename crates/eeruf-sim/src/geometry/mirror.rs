@@ -1,0 +1,63 @@
+//! The line of a wall as a mirror: images of points, turned directions, angles of incidence.
+
+use super::plane::{Point, Vector};
+
+/// The line of a wall as a mirror.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mirror {
+    on: Point,
+    normal: Vector,
+    /// Twice the line's own angle: reflection sends a direction `theta` to `turn - theta`.
+    pub(crate) turn: f64,
+    /// What a flat wall of its material returns.
+    pub(crate) reflection: f64,
+}
+
+impl Mirror {
+    /// The mirror along the line through two different points; its normal is on the left of `from` to `to`.
+    pub(crate) fn through(from: Point, to: Point, reflection: f64) -> Self {
+        let along = (to - from).normalize();
+        Self { on: from, normal: Vector::new(-along.y, along.x), turn: 2.0 * along.y.atan2(along.x), reflection }
+    }
+
+    /// Signed distance, positive on the left.
+    #[inline(always)]
+    pub(crate) fn distance(&self, point: Point) -> f64 {
+        (point - self.on).dot(&self.normal)
+    }
+
+    /// The mirrored point, given its [`distance`](Self::distance).
+    #[inline(always)]
+    pub(crate) fn image(&self, point: Point, distance: f64) -> Point {
+        point - self.normal * (2.0 * distance)
+    }
+
+    /// The mirrored direction.
+    #[inline(always)]
+    pub(crate) fn turned(&self, direction: Vector) -> Vector {
+        direction - self.normal * (2.0 * direction.dot(&self.normal))
+    }
+
+    /// Cosine of the angle of incidence of a unit direction.
+    pub(crate) fn cos_incidence(&self, direction: Vector) -> f64 {
+        direction.dot(&self.normal).abs()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::plane::wrap_angle;
+    use super::*;
+
+    #[test]
+    fn reflecting_twice_returns_the_point_and_the_direction() {
+        let mirror = Mirror::through(Point::new(1.0, 2.0), Point::new(4.0, -1.5), 1.0);
+        let point = Point::new(0.3, 7.0);
+        let image = mirror.image(point, mirror.distance(point));
+        assert!((mirror.image(image, mirror.distance(image)) - point).norm() < 1e-14);
+        let direction = Vector::new(0.6, -0.8);
+        let turned = mirror.turned(direction);
+        let angle = wrap_angle(mirror.turn - direction.y.atan2(direction.x));
+        assert!((turned.y.atan2(turned.x) - angle).abs() < 1e-14);
+    }
+}

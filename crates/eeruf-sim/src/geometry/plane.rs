@@ -1,0 +1,66 @@
+//! Points and the few operations on them that everything else is made of.
+//! The types are nalgebra's; what is added is the cross product as an orientation test, and
+//! angles.
+
+use nalgebra::{Point2, Vector2};
+
+/// A point of the plane, in metres.
+pub type Point = Point2<f64>;
+/// A displacement or direction in the plane.
+pub type Vector = Vector2<f64>;
+/// Position and heading of a robot or a transducer.
+pub type Pose = nalgebra::Isometry2<f64>;
+
+/// Two points nearer than this are one: joined walls, doubles of one path, a source on top of its receiver. A choice:
+/// above rounding in a room, below any real length.
+pub const TOUCH_M: f64 = 1e-9;
+
+/// An angle below this counts as none when a receiver is compared with a beam's limit. Rounding stays under 1e-15 per
+/// bounce, so the figure separates "exactly on the limit" from every real miss.
+pub(crate) const SAME_DIRECTION: f64 = 1e-12;
+
+/// Twice the signed area spanned by two vectors: positive when `b` points to the left of `a`.
+#[inline(always)]
+pub(crate) fn cross(a: Vector, b: Vector) -> f64 {
+    a.x * b.y - a.y * b.x
+}
+
+/// Wraps an angle into (-pi, pi].
+#[inline]
+pub(crate) fn wrap_angle(angle_rad: f64) -> f64 {
+    use core::f64::consts::{PI, TAU};
+    if angle_rad > -PI && angle_rad <= PI {
+        return angle_rad;
+    }
+    // A conversion to an integer and back rounds without a call.
+    let turns = (angle_rad / TAU + 0.5f64.copysign(angle_rad)) as i64;
+    let wrapped = angle_rad - TAU * turns as f64;
+    if wrapped <= -PI {
+        wrapped + TAU
+    } else if wrapped > PI {
+        wrapped - TAU
+    } else {
+        wrapped
+    }
+}
+
+/// The opposite of a direction in (-pi, pi], in the same range.
+#[inline]
+pub(crate) fn opposite(angle_rad: f64) -> f64 {
+    use core::f64::consts::PI;
+    if angle_rad > 0.0 { angle_rad - PI } else { angle_rad + PI }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_wrap_to_the_half_open_circle() {
+        use core::f64::consts::PI;
+        assert_eq!(wrap_angle(PI), PI);
+        assert_eq!(wrap_angle(-PI), PI);
+        assert_eq!((opposite(PI), opposite(0.0)), (0.0, PI));
+        assert!((wrap_angle(7.0 * PI + 0.25) - (0.25 - PI)).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,104 @@
+//! The best schedule for a robot's ring: the shortest period that guarantees what the robot's own schedule does.
+
+use eeruf_core::{
+    Criterion, Layout, MAX_SENSORS, Micros, Requirements,
+    search::{PeriodProblem, Progress, SearchError, design},
+};
+use std::ops::ControlFlow;
+
+use super::schedules::table_i_d_for;
+use crate::world::{AnySchedule, Robot};
+
+/// The grid on which firing times are sought: a choice; finer ticks seldom gain (`docs/theory.md`, section 5.5).
+pub const TICK: Micros = Micros::new(100);
+
+/// What [`Method::EerufBest`](crate::Method::EerufBest) fires by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BestSchedule {
+    /// The schedule.
+    pub schedule: AnySchedule,
+    /// Whether it is proven that no schedule for the same requirements has a shorter period.
+    pub proven: bool,
+}
+
+/// What a ring must not give up against the schedule that it fires by: the robot's `t_delta` and window, the interval
+/// that its schedule (or the paper's table at its period) keeps between neighbours, and that a sensor's own stale
+/// echoes are rejected.
+pub fn requirements_of(robot: &Robot) -> Requirements<'static> {
+    let own = robot.schedule.or_else(|| table_i_d_for(robot.sensors.len(), robot.period, robot.neighbours).ok());
+    let layout = layout_of(robot);
+    let interval = own.and_then(|schedule| schedule.min_interval(layout));
+    Requirements {
+        t_delta: robot.t_delta,
+        criterion: Criterion::Exact,
+        min_interval: interval.map_or(Micros::ZERO, |interval| interval.value),
+        layout,
+        window: robot.window,
+        stale_echo: true,
+    }
+}
+
+/// Searches `budget` nodes for the schedule with the shortest period that meets [`requirements_of`] a robot.
+/// `keep_going` is asked now and then; `None` if it stopped the search before anything was found.
+///
+/// # Errors
+/// [`SearchError`] if the ring is too large to search.
+pub fn shortest_schedule_for(
+    robot: &Robot,
+    budget: u64,
+    keep_going: impl FnMut(&Progress) -> bool,
+) -> Result<Option<BestSchedule>, SearchError> {
+    let (problem, mut memory) = problem_of(robot);
+    let designed = problem.shortest::<MAX_SENSORS>(budget, &mut memory, &mut control(keep_going))?;
+    let proven = designed.found.proven;
+    Ok(designed.found.schedule.map(|schedule| BestSchedule { schedule, proven }))
+}
+
+/// As [`shortest_schedule_for`], and of all schedules of that period the one to prefer, if the period is proven.
+///
+/// # Errors
+/// [`SearchError`] if the ring is too large to search.
+///
+/// ```
+/// use eeruf_sim::{best_schedule_for, experiments::set_one::Alcove};
+/// let best = best_schedule_for(&Alcove::random(0).robot(), 100_000, |_| true)?;
+/// assert!(best.proven && best.schedule.period().as_micros() < 60_000);
+/// # Ok::<(), eeruf_core::search::SearchError>(())
+/// ```
+pub fn best_schedule_for(
+    robot: &Robot,
+    budget: u64,
+    keep_going: impl FnMut(&Progress) -> bool,
+) -> Result<BestSchedule, SearchError> {
+    let (problem, mut memory) = problem_of(robot);
+    let mut control = control(keep_going);
+    let designed = problem.shortest::<MAX_SENSORS>(budget, &mut memory, &mut control)?;
+    let proven = designed.found.proven;
+    let found = designed.found.schedule.filter(|_| !proven);
+    let schedule = match found {
+        Some(schedule) => schedule,
+        None => problem.prefer(&designed, budget, &mut memory, &mut control)?.schedule,
+    };
+    Ok(BestSchedule { schedule, proven })
+}
+
+/// The question to core's search, and the memory that it needs.
+fn problem_of(robot: &Robot) -> (PeriodProblem<'static>, Vec<i32>) {
+    let sensors = robot.sensors.len();
+    let problem = PeriodProblem { sensors, requirements: requirements_of(robot), tick: TICK };
+    (problem, vec![0; design::memory_words(sensors)])
+}
+
+fn control(mut keep_going: impl FnMut(&Progress) -> bool) -> impl FnMut(&Progress) -> ControlFlow<()> {
+    move |progress| if keep_going(progress) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+}
+
+/// A ring if the sensors go all the way round, or else a line.
+fn layout_of(robot: &Robot) -> Layout<'static> {
+    let turn = |from: usize, to: usize| match (robot.sensors.get(from), robot.sensors.get(to)) {
+        (Some(from), Some(to)) => (from.rotation.inverse() * to.rotation).angle().abs(),
+        _ => 0.0,
+    };
+    let closes = robot.sensors.len() > 2 && turn(robot.sensors.len() - 1, 0) <= 1.5 * turn(0, 1);
+    if closes { Layout::Ring(robot.neighbours) } else { Layout::Line(robot.neighbours) }
+}

@@ -1,0 +1,99 @@
+//! Random dither: the conventional lags plus a wait drawn anew for each sensor in each period.
+
+use eeruf_core::{Instant, MAX_SENSORS, Micros, Phase, Scheduler};
+
+use crate::world::Random;
+
+/// Fires each sensor once per period, at its lag plus a random wait below `widest`.
+#[derive(Clone, Debug)]
+pub(crate) struct DitherFiring {
+    lags: Vec<Micros>,
+    period: Micros,
+    widest: Micros,
+    random: Random,
+    start: Instant,
+    /// Firing times of the present period, in order.
+    due: Vec<(Micros, u8)>,
+    /// The next of them.
+    next: usize,
+    enabled: [bool; MAX_SENSORS],
+}
+
+impl DitherFiring {
+    /// `lag + widest` must stay below the period.
+    pub(crate) fn new(lags: Vec<Micros>, period: Micros, widest: Micros, random: Random, now: Instant) -> Self {
+        let due = Vec::with_capacity(lags.len());
+        let mut firing = Self { lags, period, widest, random, start: now, due, next: 0, enabled: [true; MAX_SENSORS] };
+        firing.begin_period(now);
+        firing
+    }
+
+    fn begin_period(&mut self, start: Instant) {
+        self.start = start;
+        self.next = 0;
+        self.due.clear();
+        for (sensor, lag) in self.lags.iter().enumerate() {
+            let wait = self.random.between(0.0, f64::from(self.widest.as_micros())) as u32;
+            // At most 64 sensors.
+            self.due.push((lag.saturating_add(Micros::new(wait)), sensor as u8));
+        }
+        self.due.sort_unstable();
+        self.skip_disabled();
+    }
+
+    fn skip_disabled(&mut self) {
+        while self.due.get(self.next).is_some_and(|&(_, sensor)| !self.is_enabled(sensor)) {
+            self.next += 1;
+        }
+    }
+}
+
+impl Scheduler for DitherFiring {
+    fn next_firing(&self) -> Option<(u8, Phase)> {
+        self.due.get(self.next).map(|&(_, sensor)| (sensor, Phase::A))
+    }
+
+    fn fire(&mut self, now: Instant) {
+        self.start += now.since(self.deadline());
+        self.next += 1;
+        self.skip_disabled();
+    }
+
+    fn end_period(&mut self, _now: Instant) -> (Phase, bool) {
+        self.begin_period(self.deadline());
+        (Phase::A, false)
+    }
+
+    fn deadline(&self) -> Instant {
+        self.start + self.due.get(self.next).map_or(self.period, |&(due, _)| due)
+    }
+
+    fn ended(&mut self, _sensor: u8, _at: Instant) {}
+
+    fn set_enabled(&mut self, sensor: u8, enabled: bool) {
+        if let Some(entry) = self.enabled.get_mut(usize::from(sensor)) {
+            *entry = enabled;
+        }
+        self.skip_disabled();
+    }
+
+    fn is_enabled(&self, sensor: u8) -> bool {
+        usize::from(sensor) < self.lags.len() && self.enabled.get(usize::from(sensor)).is_some_and(|&enabled| enabled)
+    }
+
+    fn restart(&mut self, now: Instant) {
+        self.begin_period(now);
+    }
+
+    fn periods_since(&self, _phase: Phase) -> u8 {
+        0
+    }
+
+    fn longest_window(&self) -> Micros {
+        self.period.saturating_sub(self.widest)
+    }
+
+    fn horizon(&self) -> Micros {
+        self.period.saturating_add(self.period)
+    }
+}

@@ -1,0 +1,241 @@
+//! The table of firing methods: the one place where a method is added. Each row has the method's description, its name,
+//! how its schedule is made, how its ring is started, and which readings it believes.
+
+use core::fmt;
+use core::str::FromStr;
+
+use eeruf_core::{Micros, ScheduleError};
+use serde::{Serialize, Serializer};
+
+use super::adaptive;
+use super::ring_runner::{self, RingRunner, RingStart, StartError, Started};
+use super::schedules::{self, Made, ScheduleQuery};
+use crate::world::{AnySchedule, Robot};
+
+/// The most echoes that a sensor reports of one firing.
+pub(crate) const MAX_ECHOES: usize = 8;
+
+/// How a method fires and believes.
+struct Row {
+    name: &'static str,
+    /// The schedule that a robot's ring starts with; for dither the lags alone.
+    schedule: fn(&ScheduleQuery<'_>) -> Made,
+    /// The ring, ready to run.
+    ring: for<'s> fn(&RingStart<'s>) -> Started<'s>,
+    belief: Belief,
+    /// All schedules that the ring may change to.
+    ladder: fn(&Robot, AnySchedule) -> Result<Vec<AnySchedule>, StartError>,
+    /// How many echoes of a firing a sensor reports.
+    echoes: usize,
+    /// How soon a sensor may fire again.
+    refire: fn(&Robot) -> Micros,
+}
+
+/// What a row has by default: one schedule, one echo, no firing while the sensor listens.
+const DEFAULT: Row = Row {
+    name: "",
+    schedule: schedules::own,
+    ring: ring_runner::scheduled::<1>,
+    belief: Belief::Repeated,
+    ladder: |_, schedule| Ok(vec![schedule]),
+    echoes: 1,
+    refire: |robot| robot.window,
+};
+
+/// Makes the enum, its list and its rows from the table.
+macro_rules! methods {
+    ($( $(#[doc = $description:literal])+ $method:ident = $name:literal { $($field:ident: $value:expr,)+ } )+) => {
+        /// A way to fire a ring and to decide what to believe.
+        ///
+        /// The first five and [`Median`](Self::Median) come from practice, the others are the paper's and what follows
+        /// from it.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[non_exhaustive]
+        pub enum Method {
+            $( $(#[doc = $description])+ $method, )+
+        }
+
+        impl Method {
+            /// Every method, in the order in which tables list them.
+            pub const ALL: [Self; [$($name),+].len()] = [$(Self::$method),+];
+
+            /// Its row of the table.
+            const fn row(self) -> &'static Row {
+                match self {
+                    $( Self::$method => const { &Row { name: $name, $($field: $value,)+ ..DEFAULT } }, )+
+                }
+            }
+        }
+    };
+}
+
+methods! {
+    /// All sensors at once, once a period. Every echo is believed.
+    Simultaneous = "simultaneous" {
+        schedule: schedules::together,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::All,
+    }
+    /// One by one, each listening for the whole window before the next one fires. Every echo is believed.
+    Sequential = "sequential" {
+        schedule: schedules::one_by_one,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::All,
+    }
+    /// As sequential, but sensors as far apart as the ring's `neighbours` fire together. Every echo is believed.
+    FarGroups = "far_groups" {
+        schedule: schedules::far_groups,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::All,
+    }
+    /// The conventional lags plus a wait drawn anew for each sensor in each period, from as wide a range as the paper's
+    /// waits span. Consecutive readings are compared.
+    Dither = "dither" {
+        schedule: schedules::conventional,
+        ring: ring_runner::dithered,
+        belief: Belief::Repeated,
+    }
+    /// Constant lags (Table I-a): neighbours fire `T_p / n` apart, every period alike. Every echo is believed.
+    Conventional = "conventional" {
+        schedule: schedules::conventional,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::All,
+    }
+    /// As conventional, but consecutive readings are compared: the negative control, the filter without alternation.
+    Comparison = "comparison" {
+        schedule: schedules::conventional,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::Repeated,
+    }
+    /// As conventional, but the median of a sensor's last readings is believed.
+    Median = "median" {
+        schedule: schedules::conventional,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::Median,
+    }
+    /// Immediate refiring with alternating waits (Figs. 2a, 2b): those of the paper's table, each longer by the robot's
+    /// `min_refire`. Consecutive readings are compared.
+    EerufImmediate = "eeruf_immediate" {
+        schedule: schedules::refiring,
+        ring: ring_runner::immediate,
+        belief: Belief::Repeated,
+        refire: |robot| robot.min_refire,
+    }
+    /// Scheduled firing (Fig. 3) by the robot's own schedule, or else by the paper's table at the robot's period (see
+    /// [`table_i_d_for`]). Consecutive readings are compared.
+    Eeruf = "eeruf" {
+        schedule: schedules::own,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::Repeated,
+    }
+    /// As [`Eeruf`](Self::Eeruf), by the best schedule that is known for the ring: what the caller puts in
+    /// [`Options::best`](crate::Options::best).
+    EerufBest = "eeruf_best" {
+        schedule: schedules::best,
+        ring: ring_runner::scheduled::<1>,
+        belief: Belief::Repeated,
+    }
+    /// As [`Eeruf`](Self::Eeruf), moving along a ladder of scaled schedules as the rejection rate asks for (end of Sec.
+    /// 3.1).
+    Adaptive = "adaptive" {
+        schedule: schedules::own,
+        ring: adaptive::adaptive,
+        belief: Belief::Repeated,
+        ladder: adaptive::rungs,
+    }
+    /// As [`Eeruf`](Self::Eeruf), with sensors that report up to eight echoes of a firing: the earliest that repeats is
+    /// believed.
+    MultiEcho = "multi_echo" {
+        schedule: schedules::own,
+        ring: ring_runner::scheduled::<MAX_ECHOES>,
+        belief: Belief::Repeated,
+        echoes: MAX_ECHOES,
+    }
+}
+
+impl Method {
+    /// Its name in files, in `--json` and in Python.
+    pub const fn as_str(self) -> &'static str {
+        self.row().name
+    }
+
+    /// Which readings it believes.
+    pub(crate) const fn belief(self) -> Belief {
+        self.row().belief
+    }
+
+    /// How many echoes of a firing a sensor reports.
+    pub(crate) const fn echoes(self) -> usize {
+        self.row().echoes
+    }
+
+    /// How soon a sensor may fire again.
+    pub(crate) fn soonest_refire(self, robot: &Robot) -> Micros {
+        (self.row().refire)(robot)
+    }
+
+    /// The schedule that a robot's ring starts with.
+    pub(crate) fn schedule(self, robot: &Robot, best: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
+        (self.row().schedule)(&ScheduleQuery { robot, best })
+    }
+
+    /// The schedules that a robot's ring may change to, the one to start with first.
+    pub(crate) fn ladder(self, robot: &Robot, schedule: AnySchedule) -> Result<Vec<AnySchedule>, StartError> {
+        (self.row().ladder)(robot, schedule)
+    }
+
+    /// A robot's ring, ready to run.
+    pub(crate) fn start<'s>(self, start: &RingStart<'s>) -> Result<Box<dyn RingRunner + 's>, StartError> {
+        (self.row().ring)(start)
+    }
+}
+
+/// Which readings a method believes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Belief {
+    /// Every one.
+    All,
+    /// The median of the last few.
+    Median,
+    /// What the ring's own filter accepts.
+    Repeated,
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+impl Serialize for Method {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.as_str())
+    }
+}
+
+impl FromStr for Method {
+    type Err = UnknownMethod;
+
+    /// ```
+    /// use eeruf_sim::Method;
+    /// assert_eq!("far_groups".parse(), Ok(Method::FarGroups));
+    /// let error = "eruf".parse::<Method>().unwrap_err();
+    /// assert!(error.to_string().starts_with("no method `eruf`; expected simultaneous, "));
+    /// ```
+    fn from_str(name: &str) -> Result<Self, UnknownMethod> {
+        Self::ALL.into_iter().find(|method| method.as_str() == name).ok_or_else(|| UnknownMethod(name.to_owned()))
+    }
+}
+
+/// A name that no method has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownMethod(pub String);
+
+impl fmt::Display for UnknownMethod {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names = Method::ALL.map(Method::as_str).join(", ");
+        write!(f, "no method `{}`; expected {names}", self.0)
+    }
+}
+
+impl core::error::Error for UnknownMethod {}

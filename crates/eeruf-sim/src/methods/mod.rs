@@ -1,0 +1,15 @@
+//! The firing methods that are compared: one table of them, the schedules that they fire by, and core's ring behind
+//! each. It uses `world` for the robots that fire; to add a method, add a row to the table in `method`.
+
+mod adaptive;
+mod best_schedule;
+mod dither;
+mod method;
+mod ring_runner;
+mod schedules;
+
+pub use best_schedule::{BestSchedule, TICK, best_schedule_for, requirements_of, shortest_schedule_for};
+pub(crate) use method::{Belief, MAX_ECHOES};
+pub use method::{Method, UnknownMethod};
+pub(crate) use ring_runner::{RingRunner, RingStart, StartError};
+pub use schedules::table_i_d_for;

@@ -1,0 +1,104 @@
+//! Core's own [`Ring`] of whatever scheduler and number of echoes behind one trait: the same code as on the target,
+//! under simulated time.
+
+use eeruf_core::{
+    ImmediateRefiring, Instant, LadderError, MAX_SENSORS, Ring, RingConfig, RingError, RingEvent, ScheduledFiring,
+    Scheduler,
+};
+
+use super::dither::DitherFiring;
+use super::schedules::widest_dither;
+use crate::world::{AnySchedule, Random, Robot};
+
+/// A ring of any kind.
+pub(crate) trait RingRunner {
+    /// What the ring does now, if anything; `expected_change_us` says by how much a good reading of a sensor should
+    /// change.
+    fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent>;
+    /// When it is to be polled again.
+    fn next_deadline(&self) -> Instant;
+    /// A sensor hears an echo.
+    fn echo(&mut self, sensor: u8, at: Instant);
+}
+
+impl<S: Scheduler, const K: usize, const E: usize> RingRunner for Ring<S, K, E> {
+    fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
+        self.poll_expecting(now, expected_change_us)
+    }
+
+    fn next_deadline(&self) -> Instant {
+        Ring::next_deadline(self)
+    }
+
+    fn echo(&mut self, sensor: u8, at: Instant) {
+        Ring::echo(self, sensor, at);
+    }
+}
+
+/// What a ring is started with.
+pub(crate) struct RingStart<'s> {
+    pub(crate) robot: &'s Robot,
+    /// The schedules that the method asked for, the one to start with first: at least one.
+    pub(crate) schedules: &'s [AnySchedule],
+    pub(crate) random: Random,
+    pub(crate) now: Instant,
+}
+
+/// Why a ring cannot be started.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum StartError {
+    /// It cannot listen as asked.
+    Ring(RingError),
+    /// No ladder of schedules keeps `t_delta`.
+    Ladder(LadderError),
+}
+
+impl From<RingError> for StartError {
+    fn from(error: RingError) -> Self {
+        Self::Ring(error)
+    }
+}
+
+/// A running ring, if it can be started.
+pub(super) type Started<'s> = Result<Box<dyn RingRunner + 's>, StartError>;
+
+impl<'s> RingStart<'s> {
+    /// The schedule to start with.
+    pub(super) fn schedule(&self) -> &'s AnySchedule {
+        // At least one, by construction.
+        &self.schedules[0]
+    }
+
+    /// How the robot's ring listens and compares.
+    pub(super) fn config(&self) -> RingConfig {
+        let &Robot { t_delta, window, blanking, consecutive, patience, .. } = self.robot;
+        RingConfig { t_delta, window, blanking, consecutive, patience }
+    }
+
+    /// A ring of `E` echoes with this scheduler, no larger than needed: some of its steps take time for each sensor
+    /// that it has room for.
+    fn run<S: Scheduler + 's, const E: usize>(&self, scheduler: S) -> Started<'s> {
+        let (config, now) = (self.config(), self.now);
+        Ok(match self.robot.sensors.len() {
+            ..=8 => Box::new(Ring::<S, 8, E>::with_scheduler(scheduler, config, now)?),
+            9..=24 => Box::new(Ring::<S, 24, E>::with_scheduler(scheduler, config, now)?),
+            _ => Box::new(Ring::<S, MAX_SENSORS, E>::with_scheduler(scheduler, config, now)?),
+        })
+    }
+}
+
+/// Scheduled firing, with up to `E` echoes of a firing.
+pub(super) fn scheduled<'s, const E: usize>(start: &RingStart<'s>) -> Started<'s> {
+    start.run::<_, E>(ScheduledFiring::new(start.schedule(), start.now))
+}
+
+/// Immediate refiring.
+pub(super) fn immediate<'s>(start: &RingStart<'s>) -> Started<'s> {
+    start.run::<_, 1>(ImmediateRefiring::new(start.schedule(), start.robot.min_refire, start.now))
+}
+
+/// The schedule's lags plus random waits.
+pub(super) fn dithered<'s>(start: &RingStart<'s>) -> Started<'s> {
+    let (lags, period) = (start.schedule().t_lag().to_vec(), start.schedule().period());
+    start.run::<_, 1>(DitherFiring::new(lags, period, widest_dither(start.robot), start.random, start.now))
+}

@@ -1,0 +1,157 @@
+//! The schedules that methods fire by, made for a robot's ring.
+
+use eeruf_core::{Micros, Phase, ScheduleError};
+
+use crate::world::{AnySchedule, Robot};
+
+/// What a schedule is made for: a robot, and the best schedule for its ring where the caller knows one.
+pub(super) struct ScheduleQuery<'a> {
+    pub(super) robot: &'a Robot,
+    pub(super) best: Option<&'a AnySchedule>,
+}
+
+/// A schedule, if the robot allows it.
+pub(super) type Made = Result<AnySchedule, ScheduleError>;
+
+/// All sensors at once.
+pub(super) fn together(query: &ScheduleQuery<'_>) -> Made {
+    constant(query.robot.period, &vec![Micros::ZERO; query.robot.sensors.len()])
+}
+
+/// One sensor after the other.
+pub(super) fn one_by_one(query: &ScheduleQuery<'_>) -> Made {
+    in_turns(query.robot, query.robot.sensors.len())
+}
+
+/// Sensors far apart together, group after group.
+pub(super) fn far_groups(query: &ScheduleQuery<'_>) -> Made {
+    in_turns(query.robot, query.robot.sensors.len().min(usize::from(query.robot.neighbours)))
+}
+
+/// The conventional lags, every period alike (Table I-a).
+pub(super) fn conventional(query: &ScheduleQuery<'_>) -> Made {
+    let Robot { ref sensors, period, neighbours, .. } = *query.robot;
+    constant(period, &lags(sensors.len(), period, neighbours))
+}
+
+/// The robot's own schedule, or else the paper's table at its period.
+pub(super) fn own(query: &ScheduleQuery<'_>) -> Made {
+    let Robot { ref sensors, period, neighbours, schedule, .. } = *query.robot;
+    schedule.map_or_else(|| table_i_d_for(sensors.len(), period, neighbours), Ok)
+}
+
+/// The best schedule that is known, if it is for as many sensors.
+pub(super) fn best(query: &ScheduleQuery<'_>) -> Made {
+    match query.best {
+        Some(best) if best.sensors() == query.robot.sensors.len() => Ok(*best),
+        _ => own(query),
+    }
+}
+
+/// The paper's waits for immediate refiring, each longer by the shortest refire time. Holding a sensor back until that
+/// time has passed would do as well for the transducer, but wherever it does so every wait is as good as any other, and
+/// nothing alternates.
+pub(super) fn refiring(query: &ScheduleQuery<'_>) -> Made {
+    let Robot { ref sensors, period, neighbours, min_refire, .. } = *query.robot;
+    let table = table_i_d_for(sensors.len(), period, neighbours)?;
+    let longer = |phase| table.t_wait(phase).iter().map(|wait| wait.saturating_add(min_refire)).collect::<Vec<_>>();
+    AnySchedule::from_slices(period.saturating_add(min_refire), table.t_lag(), [&longer(Phase::A), &longer(Phase::B)])
+}
+
+/// Sensors in turns, each turn as long as they listen.
+fn in_turns(robot: &Robot, turns: usize) -> Made {
+    // A window that ends just when the next one begins still counts an echo at its very end.
+    let turn = robot.window.saturating_add(Micros::new(1)).as_micros();
+    let sensors = 0..robot.sensors.len();
+    let times: Vec<_> = sensors.map(|i| Micros::new(turn.saturating_mul((i % turns) as u32))).collect();
+    constant(Micros::new(turn.saturating_mul(turns as u32)), &times)
+}
+
+/// The same lags in both phases.
+fn constant(period: Micros, lags: &[Micros]) -> Made {
+    let none = vec![Micros::ZERO; lags.len()];
+    AnySchedule::from_slices(period, lags, [&none, &none])
+}
+
+/// The paper's Table I-d at another period, continued for more sensors or another number `n` of neighbours:
+///
+/// ```text
+/// T_lag = (i mod n) T_p / n                                      T_wait,a = W = 0.96 T_p / n
+/// T_wait,b = D (L (n - 1 - i mod n) + floor(i / n))              D = W / (L n),  L = max(3, ceil(K / n))
+/// ```
+///
+/// For up to twelve sensors and four neighbours these are the table's own waits, sensors 1 to K, times `T_p / 100 ms`;
+/// the separation is `D`, 2 % of the period. More sensors share the same range of waits, so `D` shrinks.
+///
+/// # Errors
+/// [`ScheduleError`] for no sensors, more than 64, or no period.
+///
+/// ```
+/// use eeruf_core::{Micros, Phase, tables::TABLE_I_D};
+/// let schedule = eeruf_sim::table_i_d_for(12, Micros::from_millis(100), 4)?;
+/// for phase in [Phase::A, Phase::B] {
+///     assert_eq!(schedule.t_wait(phase), TABLE_I_D.t_wait(phase));
+/// }
+/// # Ok::<(), eeruf_core::ScheduleError>(())
+/// ```
+pub fn table_i_d_for(sensors: usize, period: Micros, neighbours: u8) -> Result<AnySchedule, ScheduleError> {
+    let n = usize::from(neighbours.max(1));
+    let rows = sensors.div_ceil(n).max(3);
+    let widest = widest_wait(period, neighbours);
+    // D times a whole number, rounded once.
+    let wait_b = |i: usize| {
+        let steps = (rows * (n - 1 - i % n) + i / n) as u64;
+        Micros::new((steps * u64::from(widest.as_micros()) / (rows * n) as u64) as u32)
+    };
+    let waits: Vec<_> = (0..sensors).map(wait_b).collect();
+    AnySchedule::from_slices(period, &lags(sensors, period, neighbours), [&vec![widest; sensors], &waits])
+}
+
+/// The widest range of waits that leaves every firing in its period: 24 ms of 100 ms with four neighbours.
+fn widest_wait(period: Micros, neighbours: u8) -> Micros {
+    Micros::new((u64::from(period.as_micros()) * 96 / (100 * u64::from(neighbours.max(1)))) as u32)
+}
+
+/// `T_lag = (i mod n) T_p / n` (Table I-a).
+fn lags(sensors: usize, period: Micros, neighbours: u8) -> Vec<Micros> {
+    let n = u64::from(neighbours.max(1));
+    let lag = |i: usize| Micros::new((u64::from(period.as_micros()) * (i as u64 % n) / n) as u32);
+    (0..sensors).map(lag).collect()
+}
+
+/// How far dither moves a firing at most: as far as the paper's waits do, but never so far that a sensor would fire
+/// again while it listens.
+pub(super) fn widest_dither(robot: &Robot) -> Micros {
+    widest_wait(robot.period, robot.neighbours).min(robot.period.saturating_sub(robot.window))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eeruf_core::{Criterion, Requirements, tables::TABLE_I_D};
+
+    #[test]
+    fn the_table_continues_to_any_number_of_sensors_with_all_pairs_apart() {
+        for (sensors, n) in [(1, 4), (8, 4), (12, 4), (24, 4), (64, 4), (16, 8), (5, 1), (9, 2)] {
+            let schedule = table_i_d_for(sensors, Micros::from_millis(100), n).unwrap();
+            let Some(separation) = schedule.separation(Criterion::Exact) else {
+                assert_eq!(sensors, 1);
+                continue;
+            };
+            let rows = sensors.div_ceil(usize::from(n)).max(3) as u32;
+            let step = 96_000 / u32::from(n) / (rows * u32::from(n));
+            assert!(separation.value.as_micros() >= step, "{sensors} {n}: {}", separation.value);
+        }
+    }
+
+    #[test]
+    fn set_one_fires_by_the_first_eight_rows_of_table_i_d_times_six_tenths() {
+        let schedule = table_i_d_for(8, Micros::from_millis(60), 4).unwrap();
+        let table = TABLE_I_D.scaled(3, 5).unwrap();
+        for phase in [Phase::A, Phase::B] {
+            assert_eq!(schedule.t_wait(phase), &table.t_wait(phase)[..8]);
+        }
+        assert_eq!(schedule.t_lag(), &table.t_lag()[..8]);
+        assert!(schedule.verify(&Requirements::new(Micros::new(500))).ok());
+    }
+}

@@ -1,0 +1,217 @@
+//! The vector field histogram (VFH): from a certainty grid to where to steer and how fast to go.
+//!
+//! J. Borenstein and Y. Koren, "The vector field histogram - fast obstacle avoidance for mobile robots", IEEE
+//! Transactions on Robotics and Automation 7(3), 1991, pp. 278-288. In two steps: the cells around the robot become a
+//! histogram of obstacle density over 72 sectors of 5 degrees; then, among its valleys, the one nearest the target is
+//! steered for.
+//!
+//! Directions are in the scene's frame, in radians counter-clockwise.
+
+use core::f64::consts::{PI, TAU};
+
+#[cfg(test)]
+mod tests;
+
+use super::himm::{Himm, MAX_VALUE};
+use crate::geometry::{Point, Vector, wrap_angle};
+
+/// How many sectors the histogram has, as in the paper on VFH.
+pub const SECTORS: usize = 72;
+/// The width of a sector in radians: 5 degrees.
+pub const SECTOR_RAD: f64 = TAU / SECTORS as f64;
+
+/// An obstacle density for each sector; sector `k` begins at `k` times 5 degrees.
+pub type Histogram = [f64; SECTORS];
+
+/// The method's parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vfh {
+    /// How many cells the active window has on a side. 33 as in the paper.
+    pub window: usize,
+    /// `l`: over how many sectors to either side the histogram is smoothed. 5 as in the paper.
+    pub smoothing: usize,
+    /// A sector with a lower density is free. Densities are in units of a fully certain cell beside the robot.
+    pub threshold: f64,
+    /// `s_max`: a valley of more sectors is wide. 18 as in the paper.
+    pub wide: usize,
+    /// `h_m`: the density ahead at which the robot goes no faster than `speed_min_m_s`.
+    pub density_max: f64,
+    /// `V_max`, in m/s.
+    pub speed_max_m_s: f64,
+    /// `V_min`, in m/s.
+    pub speed_min_m_s: f64,
+    /// `Omega_max`: the rate of turn at which the robot goes no faster than `speed_min_m_s`, in rad/s.
+    pub turn_max_rad_s: f64,
+}
+
+impl Default for Vfh {
+    /// The paper's window, smoothing and valleys; the density figures suit robots about 0.8 m wide at up to 1 m/s.
+    fn default() -> Self {
+        Self {
+            window: 33,
+            smoothing: 5,
+            threshold: 0.35,
+            wide: 18,
+            density_max: 3.0,
+            speed_max_m_s: 1.0,
+            speed_min_m_s: 0.04,
+            turn_max_rad_s: 120f64.to_radians(),
+        }
+    }
+}
+
+/// A run of free sectors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Valley {
+    /// Its first sector.
+    pub first: usize,
+    /// How many sectors it has; [`SECTORS`] if nothing is near.
+    pub sectors: usize,
+}
+
+/// Where to steer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steering {
+    /// The direction.
+    pub direction_rad: f64,
+    /// The valley that was chosen.
+    pub valley: Valley,
+    /// The direction leads away from the target, more than 90 degrees off: the way there is blocked, and the robot is,
+    /// or soon will be, in a dead end.
+    pub trapped: bool,
+}
+
+impl Vfh {
+    /// The polar histogram around a place: the sum of what each cell of the active window contributes,
+    ///
+    /// ```text
+    /// m = c^2 (a - b d)        with a - b d_max = 0
+    /// ```
+    ///
+    /// with `c` its certainty as a share of the highest, `d` its distance, and `d_max` that of the window's corner.
+    pub fn histogram(&self, grid: &Himm, place: Point) -> Histogram {
+        let mut histogram = [0.0; SECTORS];
+        let d_max = core::f64::consts::SQRT_2 * 0.5 * self.window.saturating_sub(1) as f64 * grid.cell_m();
+        if !(d_max > 0.0) {
+            return histogram;
+        }
+        for (cell, value) in grid.occupied(place, self.window) {
+            let way = cell - place;
+            let certainty = f64::from(value) / f64::from(MAX_VALUE);
+            let magnitude = certainty * certainty * (1.0 - way.norm() / d_max).max(0.0);
+            histogram[sector_of(direction(way))] += magnitude;
+        }
+        histogram
+    }
+
+    /// The smoothed histogram: each density becomes the weighted mean of its neighbours' within `l` sectors,
+    ///
+    /// ```text
+    /// h'_k = (h_{k-l} + 2 h_{k-l+1} + ... + (l+1) h_k + ... + 2 h_{k+l-1} + h_{k+l}) / (2 l + 1)
+    /// ```
+    ///
+    /// The paper prints `l h_k` in the middle; with 2 l + 1 terms that rise by one, it is `l + 1`.
+    pub fn smoothed(&self, histogram: &Histogram) -> Histogram {
+        let l = self.smoothing.min(SECTORS / 2 - 1);
+        let mut smoothed = [0.0; SECTORS];
+        for (k, sum) in smoothed.iter_mut().enumerate() {
+            for i in 0..=2 * l {
+                let weight = (i + 1).min(2 * l + 1 - i) as f64;
+                *sum += weight * histogram[(k + SECTORS + i - l) % SECTORS];
+            }
+            *sum /= (2 * l + 1) as f64;
+        }
+        smoothed
+    }
+
+    /// The valleys of a smoothed histogram, by their first sectors; none if every direction is blocked.
+    pub fn valleys(&self, smoothed: &Histogram) -> Vec<Valley> {
+        let free = |k: usize| smoothed[k % SECTORS] < self.threshold;
+        let Some(blocked) = (0..SECTORS).find(|&k| !free(k)) else {
+            return vec![Valley { first: 0, sectors: SECTORS }];
+        };
+        // Once round from a blocked sector, so that no valley is cut in two.
+        let mut valleys: Vec<Valley> = Vec::new();
+        for k in blocked + 1..blocked + SECTORS {
+            match valleys.last_mut() {
+                _ if !free(k) => {}
+                Some(valley) if valley.first + valley.sectors == k => valley.sectors += 1,
+                _ => valleys.push(Valley { first: k, sectors: 1 }),
+            }
+        }
+        for valley in &mut valleys {
+            valley.first %= SECTORS;
+        }
+        valleys.sort_by_key(|valley| valley.first);
+        valleys
+    }
+
+    /// Where to steer to come to a target in the direction `target_rad`: into the valley nearest to it. `None` if every
+    /// direction is blocked.
+    ///
+    /// A narrow valley is steered through its middle. Of a wide one only the `s_max` sectors nearest to the target
+    /// count as the valley, so that an obstacle is passed at a distance of half as many sectors, unless the target
+    /// itself lies farther from it.
+    pub fn choose(&self, smoothed: &Histogram, target_rad: f64) -> Option<Steering> {
+        let valleys = self.valleys(smoothed);
+        let target = wrap_angle(target_rad);
+        let nearest = valleys.into_iter().min_by(|a, b| off(a, target).total_cmp(&off(b, target)))?;
+        let direction_rad = self.through(&nearest, target);
+        let trapped = wrap_angle(direction_rad - target).abs() > 0.5 * PI;
+        Some(Steering { direction_rad, valley: nearest, trapped })
+    }
+
+    /// All steps at once: where to steer from `place` to come to `target`.
+    ///
+    /// ```
+    /// use eeruf_sim::{Himm, Point, Vfh};
+    /// let free = Himm::new(33, 0.1);
+    /// let steering = Vfh::default().steer(&free, Point::origin(), Point::new(0.0, 5.0)).unwrap();
+    /// assert!((steering.direction_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-12 && !steering.trapped);
+    /// ```
+    pub fn steer(&self, grid: &Himm, place: Point, target: Point) -> Option<Steering> {
+        self.choose(&self.smoothed(&self.histogram(grid, place)), direction(target - place))
+    }
+
+    /// The speed in m/s for the density in the direction of motion and the rate of turn in rad/s:
+    ///
+    /// ```text
+    /// V' = V_max (1 - min(h'_c, h_m) / h_m)        V = V' (1 - Omega / Omega_max) + V_min, at most V_max
+    /// ```
+    pub fn speed(&self, smoothed: &Histogram, heading_rad: f64, turn_rad_s: f64) -> f64 {
+        let density = smoothed[sector_of(heading_rad)];
+        let calm = 1.0 - (density / self.density_max).clamp(0.0, 1.0);
+        let straight = 1.0 - (turn_rad_s.abs() / self.turn_max_rad_s).clamp(0.0, 1.0);
+        (self.speed_max_m_s * calm * straight + self.speed_min_m_s).min(self.speed_max_m_s)
+    }
+
+    /// The direction that a valley is taken in.
+    fn through(&self, valley: &Valley, target: f64) -> f64 {
+        if valley.sectors == SECTORS {
+            return target;
+        }
+        let half = 0.5 * valley.sectors as f64 * SECTOR_RAD;
+        let middle = valley.first as f64 * SECTOR_RAD + half;
+        let from_middle = wrap_angle(target - middle);
+        // As far from either border as half of a wide valley, or in the middle of a narrow one.
+        let slack = (half - 0.5 * self.wide as f64 * SECTOR_RAD).max(0.0);
+        wrap_angle(middle + from_middle.clamp(-slack, slack))
+    }
+}
+
+/// How far a direction is outside a valley, in radians; none inside.
+fn off(valley: &Valley, direction_rad: f64) -> f64 {
+    let half = 0.5 * valley.sectors as f64 * SECTOR_RAD;
+    let middle = valley.first as f64 * SECTOR_RAD + half;
+    (wrap_angle(direction_rad - middle).abs() - half).max(0.0)
+}
+
+fn direction(way: Vector) -> f64 {
+    way.y.atan2(way.x)
+}
+
+/// The sector that a direction lies in.
+pub fn sector_of(direction_rad: f64) -> usize {
+    // Rounding may take a direction just below none to a full turn; what is no number counts as none.
+    (direction_rad.rem_euclid(TAU) / SECTOR_RAD) as usize % SECTORS
+}

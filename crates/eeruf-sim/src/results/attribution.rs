@@ -1,0 +1,54 @@
+//! Who was fooled by whom: the wrong readings of a simulation, counted by the sensor that made them, what caused them
+//! and along which path.
+
+use std::collections::HashMap;
+
+use serde::Serialize;
+
+use super::readings::{Cause, NO_PATH, Readings, SensorId};
+
+/// Wrong readings of one sensor from one cause.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Attribution {
+    /// The sensor that was fooled.
+    pub receiver: SensorId,
+    /// By what. [`Cause::Nothing`]: it heard nothing where it should have.
+    pub cause: Cause,
+    /// By whom, if a sensor was the cause.
+    pub emitter: Option<SensorId>,
+    /// Along which of [`Readings::paths`], or [`NO_PATH`].
+    pub path: u32,
+    /// How many bounces that path has.
+    pub order: Option<u32>,
+    /// How many readings were wrong this way, believed or not.
+    pub wrong: usize,
+    /// How many of those the method believed.
+    pub accepted: usize,
+}
+
+impl Readings {
+    /// The wrong readings by receiver, cause and path, those believed most often first.
+    pub fn attribution(&self, tolerance_us: f64) -> Vec<Attribution> {
+        let mut rows: HashMap<(SensorId, Cause, u32), Attribution> = HashMap::new();
+        for reading in (0..self.len()).filter(|&reading| self.is_wrong(reading, tolerance_us)) {
+            let (receiver, cause, path) = (self.id(reading), self.cause[reading], self.path[reading]);
+            let row = rows.entry((receiver, cause, path)).or_insert_with(|| {
+                let heard = self.path_of(reading);
+                let (emitter, order) = (heard.map(|heard| heard.emitter), heard.map(|heard| heard.order));
+                Attribution { receiver, cause, emitter, path, order, wrong: 0, accepted: 0 }
+            });
+            row.wrong += 1;
+            row.accepted += usize::from(self.is_accepted(reading));
+        }
+        let mut rows: Vec<_> = rows.into_values().collect();
+        rows.sort_by_key(|row| (core::cmp::Reverse((row.accepted, row.wrong)), row.receiver, row.cause, row.path));
+        rows
+    }
+
+    /// The paths along which at least one believed reading was wrong, as indices into [`Readings::paths`], worst first:
+    /// what to draw.
+    pub fn paths_that_fooled(&self, tolerance_us: f64) -> Vec<u32> {
+        let rows = self.attribution(tolerance_us);
+        rows.iter().filter(|row| row.accepted > 0 && row.path != NO_PATH).map(|row| row.path).collect()
+    }
+}

@@ -1,0 +1,12 @@
+//! What came out: every reading with its cause, the figures of a method, and who was fooled by whom.
+//! It uses `methods` and `scene` for the names of things; `simulation` fills it.
+
+mod attribution;
+mod quantiles;
+mod readings;
+mod summary;
+
+pub use attribution::Attribution;
+pub use quantiles::quantile;
+pub use readings::{Cause, HeardPath, NO_PATH, Readings, SensorId};
+pub use summary::{Age, DEFAULT_TOLERANCE_US, Summary};

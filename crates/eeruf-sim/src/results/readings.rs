@@ -1,0 +1,169 @@
+//! What a simulation returns: every reading of every sensor as arrays of equal length, each with what caused it and
+//! with what the sensor would have read alone.
+
+use eeruf_core::ReadingKind;
+
+use crate::{methods::Method, scene::Bounce};
+
+/// A sensor of a world, both counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+pub struct SensorId {
+    /// The robot.
+    pub robot: u16,
+    /// The sensor on its ring.
+    pub sensor: u8,
+}
+
+/// What a reading came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+#[repr(u8)]
+pub enum Cause {
+    /// No echo came.
+    Nothing,
+    /// The sensor's own sound, sent by this firing.
+    Own,
+    /// The sensor's own sound, sent by an earlier firing.
+    Stale,
+    /// Another sensor's sound, of this robot or of another: crosstalk.
+    Crosstalk,
+    /// A burst from outside.
+    External,
+}
+
+/// Stands for "no path" in [`Readings::path`].
+pub const NO_PATH: u32 = u32::MAX;
+
+/// A path along which sound reached a sensor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeardPath {
+    /// The sensor that sent it.
+    pub emitter: SensorId,
+    /// The sensor that heard it.
+    pub receiver: SensorId,
+    /// How many bounces.
+    pub order: u32,
+    /// Its length in metres, when it was first heard if something moves.
+    pub length_m: f64,
+    /// Where it leaves, in the scene's frame.
+    pub departure_rad: f64,
+    /// Where the receiver looks to see it, in the scene's frame.
+    pub arrival_rad: f64,
+    /// Its bounces, emitter to receiver. [`Scene::bounce_points`](crate::Scene::bounce_points) says where they are.
+    pub bounces: Box<[Bounce]>,
+}
+
+impl HeardPath {
+    /// Whether it causes *direct* crosstalk: straight over or by a single reflection.
+    pub fn is_direct(&self) -> bool {
+        self.order <= 1
+    }
+}
+
+/// Readings as arrays of equal length, in the order in which the rings gave them. Times without a value are NaN.
+#[derive(Clone, Debug)]
+pub struct Readings {
+    /// The method that was simulated.
+    pub method: Method,
+    /// For how long, in seconds of true time; readings of all firings within it are here.
+    pub duration_s: f64,
+    /// How many sensors the world has.
+    pub sensors: usize,
+    /// The robot, from 0.
+    pub robot: Vec<u16>,
+    /// The sensor on its ring, from 0.
+    pub sensor: Vec<u8>,
+    /// The period of the robot's ring in which it fired, from 0.
+    pub period: Vec<u32>,
+    /// The phase in which it fired, from 0.
+    pub phase: Vec<u8>,
+    /// When it fired, in seconds of true time.
+    pub fired_s: Vec<f64>,
+    /// What the method made of the reading. Methods that believe everything know [`ReadingKind::Accepted`] and
+    /// [`ReadingKind::Clear`].
+    pub kind: Vec<ReadingKind>,
+    /// The echo time that the method gives, in microseconds of the robot's clock: the firing's earliest echo, but for
+    /// `multi_echo` the one that repeats, and for `median` the median.
+    pub t_echo_us: Vec<f64>,
+    /// The earliest echo of this firing, in microseconds of the robot's clock.
+    pub earliest_us: Vec<f64>,
+    /// What the sensor would read if it fired alone at this place in quiet air: the first arrival of its own sound that
+    /// is loud enough, between blanking and the end of the window, without fading and jitter. In microseconds of true
+    /// time.
+    pub reference_us: Vec<f64>,
+    /// What `t_echo_us` came from.
+    pub cause: Vec<Cause>,
+    /// Along which of `paths`, or [`NO_PATH`].
+    pub path: Vec<u32>,
+    /// When the sound behind `t_echo_us` was sent, in seconds of true time.
+    pub emitted_s: Vec<f64>,
+    /// Every path that some reading came along.
+    pub paths: Vec<HeardPath>,
+}
+
+impl Readings {
+    pub(crate) fn new(method: Method, duration_s: f64, sensors: usize, capacity: usize) -> Self {
+        Self {
+            method,
+            duration_s,
+            sensors,
+            robot: Vec::with_capacity(capacity),
+            sensor: Vec::with_capacity(capacity),
+            period: Vec::with_capacity(capacity),
+            phase: Vec::with_capacity(capacity),
+            fired_s: Vec::with_capacity(capacity),
+            kind: Vec::with_capacity(capacity),
+            t_echo_us: Vec::with_capacity(capacity),
+            earliest_us: Vec::with_capacity(capacity),
+            reference_us: Vec::with_capacity(capacity),
+            cause: Vec::with_capacity(capacity),
+            path: Vec::with_capacity(capacity),
+            emitted_s: Vec::with_capacity(capacity),
+            paths: Vec::new(),
+        }
+    }
+
+    /// How many readings there are.
+    pub fn len(&self) -> usize {
+        self.robot.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.robot.is_empty()
+    }
+
+    /// Which sensor a reading is of.
+    pub fn id(&self, reading: usize) -> SensorId {
+        SensorId { robot: self.robot[reading], sensor: self.sensor[reading] }
+    }
+
+    /// Whether the method believes the reading: an accepted echo, or confirmed that nothing is in range.
+    pub fn is_accepted(&self, reading: usize) -> bool {
+        matches!(self.kind[reading], ReadingKind::Accepted | ReadingKind::Clear)
+    }
+
+    /// Whether what the reading says is wrong, believed or not: more than `tolerance_us` off the reference, an echo
+    /// where the sensor alone hears none, or none where it hears one.
+    pub fn is_wrong(&self, reading: usize, tolerance_us: f64) -> bool {
+        is_off(self.t_echo_us[reading], self.reference_us[reading], tolerance_us)
+    }
+
+    /// Whether the firing's earliest echo is right by the same measure, so that a reading was there to be had.
+    pub fn is_good(&self, reading: usize, tolerance_us: f64) -> bool {
+        !is_off(self.earliest_us[reading], self.reference_us[reading], tolerance_us)
+    }
+
+    /// The path that a reading came along.
+    pub fn path_of(&self, reading: usize) -> Option<&HeardPath> {
+        self.paths.get(self.path[reading] as usize)
+    }
+}
+
+fn is_off(t_echo_us: f64, reference_us: f64, tolerance_us: f64) -> bool {
+    match (t_echo_us.is_nan(), reference_us.is_nan()) {
+        (true, true) => false,
+        (false, false) => (t_echo_us - reference_us).abs() > tolerance_us,
+        _ => true,
+    }
+}

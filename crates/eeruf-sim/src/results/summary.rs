@@ -1,0 +1,106 @@
+//! How good a method was: the figures that are always reported together, since each alone is easily made good at the
+//! cost of the others.
+
+use serde::Serialize;
+
+use super::quantiles::quantile;
+use super::readings::{Cause, Readings};
+use crate::methods::Method;
+
+/// By how much a reading may miss the reference, unless another tolerance is asked for: 0.5 ms, 8.6 cm. Set I's
+/// measure of an error, as large as its `T_delta`.
+pub const DEFAULT_TOLERANCE_US: f64 = 500.0;
+
+/// A method's figures over one simulation, all robots together. Shares are fractions of 1.
+///
+/// A reading is what one firing of one sensor gave. It is *accepted* if the method believes it (an echo it accepts, or
+/// that nothing is in range), *wrong* if what it says differs from the reference by more than the tolerance or says
+/// echo where the sensor alone hears none or the reverse, and *good* if the firing's earliest echo was not wrong,
+/// believed or not.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// The method.
+    pub method: Method,
+    /// How many readings there were.
+    pub readings: usize,
+    /// How many of them were accepted.
+    pub accepted: usize,
+    /// Share of all readings that were accepted and wrong: what does harm.
+    pub wrong_of_all: f64,
+    /// The part of `wrong_of_all` that foreign or stale sound caused. The rest are the sensor's own doing: an echo just
+    /// loud enough that faded away once, so that the sensor reads what lies behind.
+    pub crosstalk_of_all: f64,
+    /// Share of the accepted readings that were wrong; `None` if none was accepted.
+    pub wrong_of_accepted: Option<f64>,
+    /// Share of all readings that were not accepted: rejected, first of a pair, without echo once.
+    pub rejected: f64,
+    /// Share of the good readings that were not accepted, the false rejections: what the method costs; `None` if no
+    /// reading was good.
+    pub good_lost: Option<f64>,
+    /// Share of all readings that were not good: what would have been wrong without any filter.
+    pub wrong_before_filter: f64,
+    /// Age of the last accepted reading.
+    pub age_ms: Age,
+    /// Accepted readings in a second of simulated time, all sensors together.
+    pub readings_per_s: f64,
+    /// How many sensors never had a reading accepted, and so are blind.
+    pub starved: usize,
+}
+
+/// How old a sensor's last accepted reading is, in milliseconds, whenever it fires: from the firing that the accepted
+/// reading came from (from the start of the simulation before the first) to the present firing. At best one period.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Age {
+    /// Half of the time no older than this.
+    pub median: f64,
+    /// 99 % of the time no older than this.
+    pub p99: f64,
+}
+
+impl Readings {
+    /// The figures with [`DEFAULT_TOLERANCE_US`].
+    pub fn summary(&self) -> Summary {
+        self.summary_within(DEFAULT_TOLERANCE_US)
+    }
+
+    /// The figures with another tolerance, in microseconds.
+    pub fn summary_within(&self, tolerance_us: f64) -> Summary {
+        let (mut accepted, mut wrong, mut crosstalk, mut good, mut false_rejections) = (0, 0, 0, 0, 0);
+        let mut ages = Vec::with_capacity(self.len());
+        // Per robot and sensor: when the last accepted reading was fired.
+        let mut last =
+            vec![[None; eeruf_core::MAX_SENSORS]; self.robot.iter().max().map_or(0, |&r| usize::from(r) + 1)];
+        for reading in 0..self.len() {
+            let believed = self.is_accepted(reading);
+            let is_good = self.is_good(reading, tolerance_us);
+            accepted += usize::from(believed);
+            let fooled = believed && self.is_wrong(reading, tolerance_us);
+            wrong += usize::from(fooled);
+            let foreign = matches!(self.cause[reading], Cause::Stale | Cause::Crosstalk | Cause::External);
+            crosstalk += usize::from(fooled && foreign);
+            good += usize::from(is_good);
+            false_rejections += usize::from(is_good && !believed);
+            let last_accepted = &mut last[usize::from(self.robot[reading])][usize::from(self.sensor[reading])];
+            ages.push(1e3 * (self.fired_s[reading] - last_accepted.unwrap_or(0.0)));
+            if believed {
+                *last_accepted = Some(self.fired_s[reading]);
+            }
+        }
+        let seeing = last.iter().flatten().filter(|last| last.is_some()).count();
+        let share = |count: usize, of: usize| if of == 0 { 0.0 } else { count as f64 / of as f64 };
+        Summary {
+            method: self.method,
+            readings: self.len(),
+            accepted,
+            wrong_of_all: share(wrong, self.len()),
+            crosstalk_of_all: share(crosstalk, self.len()),
+            wrong_of_accepted: (accepted > 0).then(|| share(wrong, accepted)),
+            rejected: share(self.len() - accepted, self.len()),
+            good_lost: (good > 0).then(|| share(false_rejections, good)),
+            wrong_before_filter: share(self.len() - good, self.len()),
+            age_ms: Age { median: quantile(&mut ages, 0.5), p99: quantile(&mut ages, 0.99) },
+            readings_per_s: if self.duration_s > 0.0 { accepted as f64 / self.duration_s } else { 0.0 },
+            starved: self.sensors - seeing,
+        }
+    }
+}

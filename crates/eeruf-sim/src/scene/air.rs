@@ -1,0 +1,101 @@
+//! The air between the walls: how fast sound is in it and how much of it is lost on the way (ISO 9613-1).
+
+use super::error::SceneError;
+
+/// State of the air.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Air {
+    /// Temperature in degrees Celsius, -50 to 60.
+    pub temperature_c: f64,
+    /// Relative humidity in per cent, 0 to 100.
+    pub humidity_percent: f64,
+    /// Pressure in kilopascal, 20 to 200.
+    pub pressure_kpa: f64,
+}
+
+impl Default for Air {
+    /// A room: 20 C, 50 %, 101.325 kPa.
+    fn default() -> Self {
+        Self { temperature_c: 20.0, humidity_percent: 50.0, pressure_kpa: 101.325 }
+    }
+}
+
+impl Air {
+    /// The default air at another temperature.
+    pub fn at(temperature_c: f64) -> Self {
+        Self { temperature_c, ..Self::default() }
+    }
+
+    pub(crate) fn check(&self) -> Result<(), SceneError> {
+        for (quantity, value, low, high, expected) in [
+            ("temperature", self.temperature_c, -50.0, 60.0, "-50 to 60 C"),
+            ("humidity", self.humidity_percent, 0.0, 100.0, "0 to 100 %"),
+            ("pressure", self.pressure_kpa, 20.0, 200.0, "20 to 200 kPa"),
+        ] {
+            if !(low..=high).contains(&value) {
+                return Err(SceneError::Air { quantity, value, expected });
+            }
+        }
+        Ok(())
+    }
+
+    /// Speed of sound in m/s:
+    ///
+    /// ```text
+    /// c = 343.2 sqrt(T / 293.15 K)
+    /// ```
+    ///
+    /// ```
+    /// assert_eq!(eeruf_sim::Air::default().speed_of_sound(), 343.2);
+    /// ```
+    pub fn speed_of_sound(&self) -> f64 {
+        343.2 * ((self.temperature_c + 273.15) / 293.15).sqrt()
+    }
+
+    /// Absorption in dB per metre at a frequency in Hz, ISO 9613-1 Eqs. (3) to (5) with the saturation pressure of its
+    /// Annex B.
+    ///
+    /// ```
+    /// let alpha = eeruf_sim::Air::default().absorption_db_per_m(49_400.0);
+    /// assert!((alpha - 1.64140).abs() < 1e-5);
+    /// ```
+    pub fn absorption_db_per_m(&self, frequency_hz: f64) -> f64 {
+        let t = self.temperature_c + 273.15;
+        let t_rel = t / 293.15;
+        let p_rel = self.pressure_kpa / 101.325;
+        // Annex B: molar concentration of water vapour, in per cent; 273.16 K is the triple point.
+        let saturation = 10f64.powf(-6.8346 * (273.16 / t).powf(1.261) + 4.6151);
+        let h = self.humidity_percent * saturation / p_rel;
+        // Eqs. (3) and (4): relaxation frequencies of oxygen and nitrogen.
+        let oxygen = p_rel * (24.0 + 4.04e4 * h * (0.02 + h) / (0.391 + h));
+        let nitrogen = p_rel * t_rel.powf(-0.5) * (9.0 + 280.0 * h * (-4.170 * (t_rel.powf(-1.0 / 3.0) - 1.0)).exp());
+        // Eq. (5).
+        let f2 = frequency_hz * frequency_hz;
+        let classical = 1.84e-11 / p_rel * t_rel.sqrt();
+        let relaxation = t_rel.powf(-2.5)
+            * (0.01275 * (-2239.1 / t).exp() / (oxygen + f2 / oxygen)
+                + 0.1068 * (-3352.0 / t).exp() / (nitrogen + f2 / nitrogen));
+        8.686 * f2 * (classical + relaxation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn absorption_at_ten_degrees_is_two_thirds_of_that_at_twenty() {
+        for (frequency, expected) in [(40_000.0, 0.84791), (49_400.0, 1.00754), (50_000.0, 1.01822)] {
+            let alpha = Air::at(10.0).absorption_db_per_m(frequency);
+            assert!((alpha - expected).abs() < 1e-5, "{frequency} Hz: {alpha}");
+        }
+        assert!((Air::default().absorption_db_per_m(50_000.0) - 1.66112).abs() < 1e-5);
+    }
+
+    #[test]
+    fn sound_is_slower_in_the_cold() {
+        for (t, c) in [(0.0, 331.286), (10.0, 337.296), (30.0, 349.005)] {
+            assert!((Air::at(t).speed_of_sound() - c).abs() < 1e-3);
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! What a path meets on its way: one of the scene's walls or poles.
+
+/// One bounce of a path.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum Bounce {
+    /// At the wall with this index.
+    Wall(u32),
+    /// At the pole with this index.
+    Pole(u32),
+}

@@ -1,0 +1,23 @@
+//! What stands there: walls, poles and air, checked once, with the mesh and the mirrors that are derived from them.
+//! It uses `geometry` only; robots, noise and seeds wrap around it in `world`.
+
+mod air;
+mod bounce;
+mod contact;
+mod error;
+mod material;
+mod mesh;
+mod pole;
+#[allow(clippy::module_inception, reason = "the scene itself")]
+mod scene;
+mod wall;
+
+pub use air::Air;
+pub use bounce::Bounce;
+pub use contact::{Body, Contact};
+pub use error::{MAX_COORDINATE_M, MAX_POLE_M, MAX_WALLS, MIN_WALL_M, SceneError};
+pub use material::Material;
+pub(crate) use mesh::{Beyond, Exit, Mesh, NONE};
+pub use pole::Pole;
+pub use scene::Scene;
+pub use wall::{Faces, Wall};

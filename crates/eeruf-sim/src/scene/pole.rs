@@ -1,0 +1,22 @@
+//! A pole: an upright cylinder, a circle in the plane. It reflects, but is too thin to cast a shadow that matters.
+
+use super::material::Material;
+use crate::geometry::Point;
+
+/// An upright cylinder that reflects and does not occlude.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pole {
+    /// Its axis.
+    pub centre: Point,
+    /// Radius in metres.
+    pub radius_m: f64,
+    /// Its surface.
+    pub material: Material,
+}
+
+impl Pole {
+    /// A perfectly reflecting pole, all in metres.
+    pub fn new(x: f64, y: f64, radius_m: f64) -> Self {
+        Self { centre: Point::new(x, y), radius_m, material: Material::PERFECT }
+    }
+}

@@ -1,0 +1,70 @@
+//! A wall: a straight reflecting piece between two points, and what its two sides do.
+
+use super::material::Material;
+use crate::geometry::Point;
+
+/// What a wall does to a beam that meets it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Faces {
+    /// Reflects on the left of the direction `from` to `to`, where the free space is; the back swallows. A room is a
+    /// loop walked counter-clockwise, a pillar one walked clockwise.
+    #[default]
+    Left,
+    /// A free-standing panel: reflects on both sides.
+    Both,
+    /// An opening: nothing comes back from either side.
+    Open,
+}
+
+/// A straight wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall {
+    /// Where it starts.
+    pub from: Point,
+    /// Where it ends.
+    pub to: Point,
+    /// Which sides reflect.
+    pub faces: Faces,
+    /// What its surface does to the amplitude.
+    pub material: Material,
+}
+
+impl Wall {
+    /// A smooth wall with the free space on its left, coordinates in metres.
+    pub fn new(x1: f64, y1: f64, x2: f64, y2: f64) -> Self {
+        Self { from: Point::new(x1, y1), to: Point::new(x2, y2), faces: Faces::Left, material: Material::SMOOTH }
+    }
+
+    /// The same wall with other faces.
+    #[must_use]
+    pub fn with_faces(self, faces: Faces) -> Self {
+        Self { faces, ..self }
+    }
+
+    /// The same wall of another material.
+    #[must_use]
+    pub fn with_material(self, material: Material) -> Self {
+        Self { material, ..self }
+    }
+
+    /// The walls of a polyline in order; the free space is on its left. Repeat the first corner at the end to close it.
+    ///
+    /// ```
+    /// use eeruf_sim::Wall;
+    /// let room = Wall::polyline(&[[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0], [0.0, 0.0]]);
+    /// assert_eq!(room.count(), 4);
+    /// ```
+    pub fn polyline(corners: &[[f64; 2]]) -> impl Iterator<Item = Self> + '_ {
+        corners.windows(2).map(|pair| Self::new(pair[0][0], pair[0][1], pair[1][0], pair[1][1]))
+    }
+
+    /// Whether it is an opening.
+    pub fn is_open(&self) -> bool {
+        self.faces == Faces::Open
+    }
+
+    /// Length in metres.
+    pub fn length_m(&self) -> f64 {
+        (self.to - self.from).norm()
+    }
+}

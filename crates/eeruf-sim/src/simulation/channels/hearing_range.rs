@@ -1,0 +1,41 @@
+//! How faint sound may be and how far it may come to be heard by a kind of transducer.
+
+use crate::{
+    acoustics::Transducer,
+    scene::Air,
+    world::{FARTHEST, World},
+};
+
+/// What a kind of transducer hears in this world.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HearingRange {
+    pub(super) transducer: Transducer,
+    /// The amplitude that is just heard.
+    pub(super) floor: f64,
+    /// The same if the strongest fading lifts it.
+    pub(super) faintest: f64,
+    /// The longest path that is heard then, in metres.
+    pub(super) longest_m: f64,
+}
+
+impl HearingRange {
+    pub(super) fn new(transducer: &Transducer, world: &World) -> Self {
+        let air = world.scene().air();
+        let floor = transducer.detection_floor(air);
+        let faintest = floor / 10f64.powf(world.noise().fading_db_rms * f64::from(FARTHEST) / 20.0);
+        Self { transducer: *transducer, floor, faintest, longest_m: loudest_m(transducer, air, faintest) }
+    }
+}
+
+/// The longest path that sound could be heard after, in metres: a millimetre more than where it has fallen to `floor`
+/// without any loss but spreading and the air's.
+fn loudest_m(transducer: &Transducer, air: Air, floor: f64) -> f64 {
+    let loss_db_per_m = air.absorption_db_per_m(transducer.frequency_hz);
+    let (mut near, mut far) = (0.0, 1.0 / floor);
+    while far - near > 1e-3 {
+        let middle = 0.5 * (near + far);
+        let heard = 10f64.powf(-loss_db_per_m * middle / 20.0) / middle >= floor;
+        *(if heard { &mut near } else { &mut far }) = middle;
+    }
+    far + 1e-3
+}

@@ -1,0 +1,83 @@
+//! Why a simulation cannot be run.
+
+use core::fmt;
+
+use eeruf_core::{LadderError, RingError, ScheduleError};
+
+use crate::methods::{Method, StartError};
+use crate::tracing::PathsError;
+
+/// Why a simulation cannot be run. Robots are counted from 0 in code and printed from 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// The method has no schedule for a robot.
+    Schedule {
+        /// The robot.
+        robot: usize,
+        /// The method.
+        method: Method,
+        /// Why.
+        error: ScheduleError,
+    },
+    /// A robot's ring cannot listen as asked under the method.
+    Ring {
+        /// The robot.
+        robot: usize,
+        /// The method.
+        method: Method,
+        /// Why.
+        error: RingError,
+    },
+    /// No ladder of schedules keeps a robot's `t_delta` for [`Method::Adaptive`].
+    Ladder {
+        /// The robot.
+        robot: usize,
+        /// Why.
+        error: LadderError,
+    },
+    /// The median of none or of too many readings.
+    Median {
+        /// How many were asked for.
+        median_of: u8,
+    },
+    /// Paths could not be found, most often because a robot has moved out of the scene's reach.
+    Paths {
+        /// When, in seconds.
+        at_s: f64,
+        /// Why.
+        error: PathsError,
+    },
+    /// The caller asked to stop.
+    Stopped,
+}
+
+impl SimulationError {
+    /// A ring that cannot be started.
+    pub(super) fn start(robot: usize, method: Method, error: StartError) -> Self {
+        match error {
+            StartError::Ring(error) => Self::Ring { robot, method, error },
+            StartError::Ladder(error) => Self::Ladder { robot, error },
+        }
+    }
+
+    /// Paths that cannot be found at a time in true nanoseconds.
+    pub(super) fn paths(at: u64, error: PathsError) -> Self {
+        Self::Paths { at_s: at as f64 * 1e-9, error }
+    }
+}
+
+impl fmt::Display for SimulationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Schedule { robot, method, error } => write!(f, "robot {}, method {method}: {error}", robot + 1),
+            Self::Ring { robot, method, error } => write!(f, "robot {}, method {method}: {error}", robot + 1),
+            Self::Ladder { robot, error } => write!(f, "robot {}, method adaptive: {error}", robot + 1),
+            Self::Median { median_of } => write!(f, "the median of {median_of} readings; expected 1 to 15"),
+            Self::Paths { at_s, error } => write!(f, "at {at_s:.3} s: {error}"),
+            Self::Stopped => write!(f, "stopped"),
+        }
+    }
+}
+
+impl core::error::Error for SimulationError {}

@@ -1,0 +1,128 @@
+//! [`LockStep`]: the world around a ring that runs elsewhere, on a real or an emulated microcontroller.
+//!
+//! The simulation proper calls the ring. Here the ring calls: it says which sensor sends its sound when, and learns
+//! what every sensor will hear next, as far as is known by then. A later firing may still change that: foreign sound
+//! that arrives first is what a listening sensor hears.
+
+use super::arrivals::Propagation;
+use super::channels::Channels;
+use super::kinematics::Planned;
+use super::receiver::{Hearing, NEVER, Receiver};
+use crate::{
+    tracing::PathsError,
+    world::{Random, World},
+};
+
+/// The first robot of a world, fired from outside. Sensors report one echo.
+pub struct LockStep<'w> {
+    world: &'w World,
+    channels: Channels<'w>,
+    hearing: Hearing,
+    receivers: Vec<Receiver>,
+    propagation: Propagation,
+}
+
+impl<'w> LockStep<'w> {
+    /// A world in which nothing has fired yet. The robot's `blanking` and `window` say when its sensors hear anything.
+    ///
+    /// # Errors
+    /// As [`simulate`](crate::simulate()).
+    pub fn new(world: &'w World) -> Result<Self, PathsError> {
+        // A world has at least one robot.
+        let robot = &world.robots()[0];
+        let ns = |time: eeruf_core::Micros| u64::from(time.as_micros()) * 1000;
+        let channels = Channels::new(world, &Planned(world))?;
+        let hearing = Hearing {
+            blanking: ns(robot.blanking),
+            window: ns(robot.window),
+            refire: ns(robot.window),
+            dead_time: (robot.transducer.burst_s() * 1e9) as u64,
+            echoes: 1,
+            gain: robot.transducer.gain,
+            gain_full_s: 2.0 * robot.transducer.max_range_m / world.scene().air().speed_of_sound(),
+        };
+        let receivers = vec![Receiver::NEW; robot.sensors.len()];
+        // The same random numbers as in a simulation.
+        let propagation = Propagation::new(&world.noise(), Random::new(world.seed()));
+        Ok(Self { world, channels, hearing, receivers, propagation })
+    }
+
+    /// A sensor sends its sound and begins to listen, at this time in nanoseconds: not before the last call's, and not
+    /// within its window.
+    ///
+    /// # Errors
+    /// As [`simulate`](crate::simulate()), for robots that move.
+    pub fn fire(&mut self, sensor: usize, at_ns: u64) -> Result<(), PathsError> {
+        let Some(receiver) = self.receivers.get_mut(sensor) else { return Ok(()) };
+        self.channels.prepare(sensor, at_ns, &Planned(self.world))?;
+        receiver.fire(at_ns, &self.hearing);
+        let firing = [sensor as u64, receiver.firings.into()];
+        // Another robot's sensors are silent here, and have no receivers.
+        let (channels, hearing) = (self.channels.from(sensor), &self.hearing);
+        self.propagation.send(firing, at_ns, channels, &mut self.receivers, |_, receiver, arrival| {
+            receiver.insert(arrival, hearing);
+        });
+        Ok(())
+    }
+
+    /// When a sensor hears what it hears since it last fired, in nanoseconds, as far as is known; `None` for nothing.
+    pub fn hears_at_ns(&self, sensor: usize) -> Option<u64> {
+        self.receivers.get(sensor).map(Receiver::next_at).filter(|&at| at != NEVER)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::*;
+    use eeruf_core::Phase;
+
+    #[test]
+    fn a_ring_fired_from_outside_hears_to_the_microsecond_what_it_hears_in_a_simulation() {
+        const PERIODS: usize = 20;
+        let walls = [[1.0, -0.8], [1.0, 0.8], [-0.9, 0.8], [-0.9, -0.8], [1.0, -0.8]];
+        let scene = Scene::new(Wall::polyline(&walls).collect(), vec![], Air::default()).unwrap();
+        let robot = Robot::ring(Pose::rotation(0.2), 8, 15f64.to_radians(), 0.3, Transducer::HC_SR04);
+        let schedule = table_i_d_for(8, robot.period, 4).unwrap();
+        let world = World::new(scene, vec![robot], Noise::default()).unwrap();
+        let readings = simulate(&world, Method::Eeruf, &Options::periods(PERIODS as u32)).unwrap();
+
+        let mut firings = Vec::new();
+        for period in 0..PERIODS {
+            for sensor in 0..8 {
+                let phase = if period % 2 == 0 { Phase::A } else { Phase::B };
+                let t_fire = schedule.t_fire(phase, sensor).unwrap().as_micros() as usize;
+                let us = period * schedule.period().as_micros() as usize + t_fire;
+                firings.push((us as u64 * 1000, sensor, period));
+            }
+        }
+        firings.sort_unstable();
+        let mut outside = LockStep::new(&world).unwrap();
+        let mut fired = [None; 8];
+        let mut heard = [[f64::NAN; PERIODS]; 8];
+        let mut note = |fired: Option<(u64, usize)>, sensor: usize, heard_at: Option<u64>| {
+            if let (Some((at, period)), Some(heard_at)) = (fired, heard_at) {
+                heard[sensor][period] = (heard_at / 1000 - at / 1000) as f64;
+            }
+        };
+        for (at, sensor, period) in firings {
+            // What it heard since its last firing cannot change any more.
+            note(fired[sensor], sensor, outside.hears_at_ns(sensor));
+            outside.fire(sensor, at).unwrap();
+            fired[sensor] = Some((at, period));
+        }
+        for sensor in 0..8 {
+            note(fired[sensor], sensor, outside.hears_at_ns(sensor));
+        }
+        assert_eq!(readings.len(), 8 * PERIODS);
+        for k in 0..readings.len() {
+            let (simulated, heard) =
+                (readings.earliest_us[k], heard[usize::from(readings.sensor[k])][readings.period[k] as usize]);
+            assert!(
+                simulated == heard || (simulated.is_nan() && heard.is_nan()),
+                "reading {k}: {simulated} and {heard}"
+            );
+        }
+        assert!(readings.cause.iter().filter(|&&cause| cause == Cause::Crosstalk).count() > 10);
+    }
+}

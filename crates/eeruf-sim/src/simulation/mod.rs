@@ -1,0 +1,21 @@
+//! What happens in time: rings fire, sound travels along channels, receivers hear, and a recorder writes down the
+//! readings. It uses all rooms from `geometry` to `results`; a pilot who steers by the readings is a `Kinematics`.
+
+mod arrivals;
+mod channels;
+mod error;
+mod event_loop;
+mod kinematics;
+mod lock_step;
+mod options;
+mod receiver;
+mod recorder;
+mod running_ring;
+mod simulate;
+
+pub use error::SimulationError;
+pub(crate) use event_loop::run;
+pub(crate) use kinematics::Kinematics;
+pub use lock_step::LockStep;
+pub use options::Options;
+pub use simulate::{simulate, simulate_while, sweep};

@@ -1,0 +1,205 @@
+//! One sensor's receiver: what is on its way to it, what it hears while it listens, and what that came from.
+//!
+//! It hears the first arrival above the detection floor between blanking and the end of the window; one that reports
+//! several echoes goes on listening after a dead time of one burst. Arrivals that may still matter to a later firing
+//! are kept.
+
+#[cfg(test)]
+mod tests;
+
+use crate::{acoustics::GainProfile, methods::MAX_ECHOES};
+
+/// No moment of any simulation.
+pub(crate) const NEVER: u64 = u64::MAX;
+/// Stands for a burst from outside in [`Arrival::path`].
+pub(crate) const EXTERNAL: u32 = u32::MAX - 1;
+
+/// Sound that reaches a sensor. Times are true nanoseconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Arrival {
+    pub(crate) at: u64,
+    /// When it was sent.
+    pub(crate) sent: u64,
+    /// Along which path, or [`EXTERNAL`].
+    pub(crate) path: u32,
+    /// Level above the detection floor, fading included, the receiver's gain left out.
+    pub(crate) level_over_threshold_db: f32,
+}
+
+/// An echo that was handed to the ring.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Heard {
+    /// Since the firing, by the robot's clock.
+    pub(crate) t_echo_us: u32,
+    pub(crate) arrival: Arrival,
+    /// Whether it was sent at the very moment at which the sensor fired: its own sound, or that of one which fired
+    /// together with it.
+    pub(crate) of_this_firing: bool,
+}
+
+/// What all receivers of one robot have in common. Times are true nanoseconds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hearing {
+    pub(crate) blanking: u64,
+    pub(crate) window: u64,
+    /// No sensor fires again within this time of firing.
+    pub(crate) refire: u64,
+    /// How long a sensor that reports several echoes is deaf after each.
+    pub(crate) dead_time: u64,
+    pub(crate) echoes: usize,
+    pub(crate) gain: GainProfile,
+    /// When the gain is full, in seconds.
+    pub(crate) gain_full_s: f64,
+}
+
+impl Hearing {
+    /// Whether sound is heard that arrives this long after the receiver has fired.
+    #[inline]
+    pub(crate) fn audible(&self, level_over_threshold_db: f32, after: u64) -> bool {
+        match self.gain {
+            GainProfile::Constant => level_over_threshold_db >= 0.0,
+            gain => {
+                f64::from(level_over_threshold_db)
+                    + 20.0 * libm::log10(gain.gain(after as f64 * 1e-9, self.gain_full_s))
+                    >= 0.0
+            }
+        }
+    }
+}
+
+/// One sensor's receiver.
+#[derive(Clone, Debug)]
+pub(crate) struct Receiver {
+    /// From when on an arrival would be heard; [`NEVER`] while it does not listen.
+    open: u64,
+    /// Until when: the end of the window, or the next arrival for a sensor that reports one echo.
+    until: u64,
+    /// Arrivals up to this moment matter to the present firing only.
+    own_until: u64,
+    /// When it last fired, and the time before.
+    pub(crate) fired: u64,
+    pub(crate) fired_before: u64,
+    /// How often it has fired.
+    pub(crate) firings: u32,
+    /// What it will hear next.
+    next: Option<Arrival>,
+    /// Arrivals yet to come, in no order.
+    pending: Vec<Arrival>,
+    heard: [Option<Heard>; MAX_ECHOES],
+    heard_count: usize,
+}
+
+impl Receiver {
+    pub(crate) const NEW: Self = Self {
+        open: NEVER,
+        until: 0,
+        own_until: 0,
+        fired: 0,
+        fired_before: 0,
+        firings: 0,
+        next: None,
+        pending: Vec::new(),
+        heard: [None; MAX_ECHOES],
+        heard_count: 0,
+    };
+
+    /// When it will hear what is next, as far as is known now.
+    #[inline]
+    pub(crate) fn next_at(&self) -> u64 {
+        self.next.map_or(NEVER, |next| next.at)
+    }
+
+    /// Whether an arrival about this time, give or take `slack`, can matter. Most cannot, and need not be drawn at all.
+    #[inline]
+    pub(crate) fn cares(&self, at: u64, slack: u64) -> bool {
+        let latest = at + slack;
+        latest > self.own_until || (latest >= self.open && at <= self.until.saturating_add(slack))
+    }
+
+    /// Begins to listen.
+    pub(crate) fn fire(&mut self, now: u64, hearing: &Hearing) {
+        (self.fired_before, self.fired) = (self.fired, now);
+        self.firings += 1;
+        self.open = now + hearing.blanking;
+        self.until = now + hearing.window;
+        self.own_until = now + hearing.refire;
+        self.next = None;
+        self.heard_count = 0;
+        // What still waits is handed in again, behind the old entries.
+        let held = self.pending.len();
+        for index in 0..held {
+            let arrival = self.pending[index];
+            self.insert(arrival, hearing);
+        }
+        self.pending.drain(..held);
+    }
+
+    /// Adds an arrival. Those before the present moment are not handed in.
+    #[inline]
+    pub(crate) fn insert(&mut self, arrival: Arrival, hearing: &Hearing) {
+        let in_window = arrival.at >= self.open && arrival.at <= self.until;
+        if !in_window || !hearing.audible(arrival.level_over_threshold_db, arrival.at - self.fired) {
+            // Whether a later firing hears it is decided then.
+            if arrival.at > self.own_until {
+                self.pending.push(arrival);
+            }
+            return;
+        }
+        let later = match self.next {
+            Some(next) if next.at <= arrival.at => Some(arrival),
+            _ => self.next.replace(arrival),
+        };
+        if hearing.echoes == 1 {
+            self.until = self.next_at();
+        }
+        if let Some(later) = later.filter(|later| hearing.echoes > 1 || later.at > self.own_until) {
+            self.pending.push(later);
+        }
+    }
+
+    /// Hears what was next, `t_echo_us` after firing by the robot's clock.
+    pub(crate) fn hear(&mut self, t_echo_us: u32, hearing: &Hearing) {
+        let Some(arrival) = self.next.take() else { return };
+        if let Some(entry) = self.heard.get_mut(self.heard_count) {
+            *entry = Some(Heard { t_echo_us, arrival, of_this_firing: arrival.sent == self.fired });
+            self.heard_count += 1;
+        }
+        if self.heard_count >= hearing.echoes {
+            self.stop();
+            return;
+        }
+        self.open = arrival.at + hearing.dead_time;
+        let mut soonest: Option<usize> = None;
+        let mut index = 0;
+        while let Some(&waiting) = self.pending.get(index) {
+            if waiting.at < self.open && waiting.at <= self.own_until {
+                self.pending.swap_remove(index);
+                continue;
+            }
+            let in_window = waiting.at >= self.open && waiting.at <= self.until;
+            // Of two at once the one handed in with the lower path number, so that the order in `pending` does not
+            // matter.
+            let key = |arrival: &Arrival| (arrival.at, arrival.path, arrival.sent);
+            let sooner = soonest.is_none_or(|soonest| key(&waiting) < key(&self.pending[soonest]));
+            if in_window && sooner && hearing.audible(waiting.level_over_threshold_db, waiting.at - self.fired) {
+                soonest = Some(index);
+            }
+            index += 1;
+        }
+        self.next = soonest.map(|index| self.pending.swap_remove(index));
+    }
+
+    /// Stops listening.
+    pub(crate) fn stop(&mut self) {
+        self.open = NEVER;
+        self.until = 0;
+        if let Some(missed) = self.next.take().filter(|missed| missed.at > self.own_until) {
+            self.pending.push(missed);
+        }
+    }
+
+    /// What it heard since it fired, earliest first.
+    pub(crate) fn heard(&self) -> impl Iterator<Item = &Heard> {
+        self.heard[..self.heard_count].iter().flatten()
+    }
+}

@@ -1,0 +1,64 @@
+use super::*;
+
+const HEARING: Hearing = Hearing {
+    blanking: 10,
+    window: 100,
+    refire: 100,
+    dead_time: 5,
+    echoes: 1,
+    gain: GainProfile::Constant,
+    gain_full_s: 1.0,
+};
+
+fn arrival(at: u64, level_over_threshold_db: f32) -> Arrival {
+    Arrival { at, sent: 0, path: at as u32, level_over_threshold_db }
+}
+
+fn hears(hearing: &Hearing, arrivals: &[(u64, f32)]) -> Vec<u64> {
+    let mut receiver = Receiver::NEW;
+    receiver.fire(1000, hearing);
+    for &(at, level_over_threshold_db) in arrivals {
+        receiver.insert(arrival(at, level_over_threshold_db), hearing);
+    }
+    while receiver.next_at() != NEVER {
+        receiver.hear((receiver.next_at() - 1000) as u32, hearing);
+    }
+    receiver.heard().map(|heard| heard.arrival.at).collect()
+}
+
+#[test]
+fn the_first_loud_arrival_within_the_window_is_heard() {
+    assert_eq!(hears(&HEARING, &[(1009, 9.0), (1060, 3.0), (1050, 3.0), (1040, -0.1)]), [1050]);
+    assert_eq!(hears(&HEARING, &[(1010, 0.0)]), [1010]);
+    assert_eq!(hears(&HEARING, &[(1100, 0.0)]), [1100]);
+    assert_eq!(hears(&HEARING, &[(1101, 9.0)]), []);
+}
+
+#[test]
+fn several_echoes_are_a_burst_apart_and_eight_at_the_most() {
+    let several = Hearing { echoes: 8, ..HEARING };
+    assert_eq!(hears(&several, &[(1033, 1.0), (1020, 1.0), (1024, 1.0), (1028, 1.0)]), [1020, 1028, 1033]);
+    let many: Vec<_> = (0..12).map(|i| (1095 - 6 * i, 1.0)).collect();
+    assert_eq!(hears(&several, &many).len(), 8);
+}
+
+#[test]
+fn what_comes_too_late_for_one_firing_is_heard_by_the_next() {
+    let mut receiver = Receiver::NEW;
+    receiver.fire(1000, &HEARING);
+    receiver.insert(arrival(1250, 1.0), &HEARING);
+    receiver.stop();
+    receiver.fire(1200, &HEARING);
+    assert_eq!(receiver.next_at(), 1250);
+    receiver.insert(arrival(1240, 1.0), &HEARING);
+    assert_eq!(receiver.next_at(), 1240);
+    assert!(!receiver.cares(1245, 4) && receiver.cares(1235, 4) && receiver.cares(1301, 0));
+}
+
+#[test]
+fn the_gain_of_the_receiver_grows_from_its_own_firing() {
+    let linear = Hearing { gain: GainProfile::Linear, gain_full_s: 100e-9, ..HEARING };
+    // Half way the gain is 6 dB down.
+    assert_eq!(hears(&linear, &[(1050, 6.0)]), []);
+    assert_eq!(hears(&linear, &[(1050, 6.1)]), [1050]);
+}

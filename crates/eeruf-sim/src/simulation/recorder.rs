@@ -1,0 +1,141 @@
+//! What becomes of a reading under a method, and its entry in the record: what it says, what it came from, and what the
+//! sensor would have read alone.
+
+use eeruf_core::{Micros, Reading, ReadingKind};
+
+use super::error::SimulationError;
+use super::options::Options;
+use super::receiver::{EXTERNAL, Heard, NEVER, Receiver};
+use crate::{
+    methods::{Belief, Method},
+    results::{Cause, HeardPath, NO_PATH, Readings, SensorId},
+};
+
+/// The most readings that a median is taken of.
+const MAX_MEDIAN: usize = 15;
+
+/// Writes down the readings.
+pub(crate) struct Recorder {
+    readings: Readings,
+    belief: Belief,
+    ids: Vec<SensorId>,
+    end: u64,
+    median_of: usize,
+    /// The last readings of each sensor, for the median.
+    history: Vec<History>,
+}
+
+/// The last few firings of a sensor: what each heard first, if anything.
+#[derive(Clone, Copy, Default)]
+struct History {
+    heard: [Option<Heard>; MAX_MEDIAN],
+    count: usize,
+}
+
+impl Recorder {
+    pub(crate) fn new(method: Method, options: &Options, end: u64, ids: &[SensorId]) -> Result<Self, SimulationError> {
+        let median_of = usize::from(options.median_of);
+        if median_of == 0 || median_of > MAX_MEDIAN {
+            return Err(SimulationError::Median { median_of: options.median_of });
+        }
+        let duration_s = end as f64 * 1e-9;
+        // Enough for one reading of each sensor in each period; a cap keeps absurd requests from taking all memory at
+        // once.
+        let capacity = (options.periods as usize).saturating_mul(ids.len()).min(1 << 20);
+        let belief = method.belief();
+        let history = if belief == Belief::Median { vec![History::default(); ids.len()] } else { Vec::new() };
+        let readings = Readings::new(method, duration_s, ids.len(), capacity);
+        Ok(Self { readings, belief, ids: ids.to_vec(), end, median_of, history })
+    }
+
+    /// Records what the ring makes of a firing. `reference` is the travelling time of what the sensor hears alone. The
+    /// answer is all readings with this one as the last; none if it does not count.
+    pub(crate) fn record(
+        &mut self,
+        sensor: usize,
+        reading: &Reading,
+        receiver: &Receiver,
+        reference: u64,
+    ) -> Option<&Readings> {
+        if reading.kind == ReadingKind::Late || receiver.fired >= self.end {
+            return None;
+        }
+        let earliest = receiver.heard().next().copied();
+        let (kind, chosen) = match self.belief {
+            Belief::Repeated => {
+                let t_echo_us = reading.t_echo.map(Micros::as_micros);
+                let chosen = receiver.heard().find(|heard| Some(heard.t_echo_us) == t_echo_us);
+                (reading.kind, chosen.copied())
+            }
+            Belief::All => (believed(earliest), earliest),
+            Belief::Median => self.median(sensor, earliest),
+        };
+        let (cause, path, emitted_s) = match chosen {
+            None => (Cause::Nothing, NO_PATH, f64::NAN),
+            Some(Heard { arrival, of_this_firing, .. }) => {
+                let (cause, path) = match (arrival.path, of_this_firing) {
+                    (EXTERNAL, _) => (Cause::External, NO_PATH),
+                    // Whether it is another sensor's sound is decided by `finish`, which knows the paths.
+                    (path, true) => (Cause::Own, path),
+                    (path, false) => (Cause::Stale, path),
+                };
+                (cause, path, arrival.sent as f64 * 1e-9)
+            }
+        };
+        let time_us = |heard: Option<Heard>| heard.map_or(f64::NAN, |heard| f64::from(heard.t_echo_us));
+        let out = &mut self.readings;
+        out.robot.push(self.ids[sensor].robot);
+        out.sensor.push(self.ids[sensor].sensor);
+        out.period.push(reading.period);
+        out.phase.push(reading.phase.0);
+        out.fired_s.push(receiver.fired as f64 * 1e-9);
+        out.kind.push(kind);
+        out.t_echo_us.push(time_us(chosen));
+        out.earliest_us.push(time_us(earliest));
+        out.reference_us.push(if reference == NEVER { f64::NAN } else { reference as f64 * 1e-3 });
+        out.cause.push(cause);
+        out.path.push(path);
+        out.emitted_s.push(emitted_s);
+        Some(out)
+    }
+
+    fn median(&mut self, sensor: usize, earliest: Option<Heard>) -> (ReadingKind, Option<Heard>) {
+        let history = &mut self.history[sensor];
+        history.heard[history.count % self.median_of] = earliest;
+        history.count += 1;
+        if history.count < self.median_of {
+            return (if earliest.is_some() { ReadingKind::First } else { ReadingKind::NoEcho }, earliest);
+        }
+        let mut last = history.heard;
+        let last = &mut last[..self.median_of];
+        // Without echo counts as beyond all echoes.
+        last.sort_by_key(|heard| heard.map_or(u32::MAX, |heard| heard.t_echo_us));
+        let middle = last[(self.median_of - 1) / 2];
+        (believed(middle), middle)
+    }
+
+    /// The record, with only the paths that some reading came along.
+    pub(crate) fn finish(self, paths: Vec<HeardPath>) -> Readings {
+        let mut readings = self.readings;
+        let mut number = vec![NO_PATH; paths.len()];
+        for path in readings.path.iter().filter(|&&path| path != NO_PATH) {
+            number[*path as usize] = 0;
+        }
+        for (path, number) in paths.into_iter().zip(&mut number).filter(|(_, number)| **number == 0) {
+            *number = readings.paths.len() as u32;
+            readings.paths.push(path);
+        }
+        for (path, cause) in readings.path.iter_mut().zip(&mut readings.cause).filter(|(path, _)| **path != NO_PATH) {
+            *path = number[*path as usize];
+            let heard = &readings.paths[*path as usize];
+            if heard.emitter != heard.receiver {
+                *cause = Cause::Crosstalk;
+            }
+        }
+        readings
+    }
+}
+
+fn believed(chosen: Option<Heard>) -> ReadingKind {
+    if chosen.is_some() { ReadingKind::Accepted } else { ReadingKind::Clear }
+}

@@ -1,0 +1,105 @@
+//! One robot's ring under way: core's ring, the robot's clock, and when something happens to it next.
+
+use eeruf_core::Micros;
+
+use super::channels::Channels;
+use super::error::SimulationError;
+use super::kinematics::Kinematics;
+use super::options::Options;
+use super::receiver::{Hearing, NEVER, Receiver};
+use crate::{
+    geometry::Moment,
+    methods::{Method, RingRunner, RingStart},
+    world::{AnySchedule, Random, Robot, Ticker, World, offset},
+};
+
+/// What the stream of random numbers is for.
+const DITHER: u64 = 3;
+
+/// A ring under way.
+pub(crate) struct RunningRing<'a> {
+    pub(crate) robot: &'a Robot,
+    pub(crate) ring: Box<dyn RingRunner + 'a>,
+    pub(crate) clock: Ticker,
+    pub(crate) hearing: Hearing,
+    /// Its sensors among all of the world's.
+    pub(crate) sensors: core::ops::Range<usize>,
+    /// When its ring is due.
+    pub(crate) wakes: u64,
+    /// When one of its sensors hears something.
+    pub(crate) hears: u64,
+}
+
+/// By which method each robot fires, with the schedules that it may change to.
+pub(crate) fn plans(
+    world: &World,
+    method: Method,
+    options: &Options,
+    kinematics: &impl Kinematics,
+) -> Result<Vec<(Method, Vec<AnySchedule>)>, SimulationError> {
+    let plan = |(index, robot): (usize, &Robot)| {
+        let method = kinematics.method(index, method);
+        let first = method.schedule(robot, options.best.as_ref()).map_err(|error| SimulationError::Schedule {
+            robot: index,
+            method,
+            error,
+        })?;
+        let all = method.ladder(robot, first).map_err(|error| SimulationError::start(index, method, error))?;
+        Ok((method, all))
+    };
+    world.robots().iter().enumerate().map(plan).collect()
+}
+
+/// Starts every robot's ring as planned.
+pub(crate) fn start_all<'a>(
+    world: &'a World,
+    plans: &'a [(Method, Vec<AnySchedule>)],
+    channels: &Channels<'_>,
+    seed: Random,
+) -> Result<Vec<RunningRing<'a>>, SimulationError> {
+    let speed_of_sound = world.scene().air().speed_of_sound();
+    let mut rings = Vec::with_capacity(plans.len());
+    for (index, (robot, (method, schedules))) in world.robots().iter().zip(plans).enumerate() {
+        let clock = Ticker::new(robot.clock);
+        let start = u64::from(robot.start.as_micros());
+        let random = seed.of(DITHER).of(index as u64);
+        let ring = method
+            .start(&RingStart { robot, schedules, random, now: clock.instant(start) })
+            .map_err(|error| SimulationError::start(index, *method, error))?;
+        let true_ns = |time: Micros| clock.true_ns(time.as_micros());
+        let hearing = Hearing {
+            blanking: true_ns(robot.blanking),
+            window: true_ns(robot.window),
+            // Two ticks less, since the clock rounds.
+            refire: true_ns(method.soonest_refire(robot)).saturating_sub(2000),
+            dead_time: (robot.transducer.burst_s() * 1e9) as u64,
+            echoes: method.echoes(),
+            gain: robot.transducer.gain,
+            gain_full_s: 2.0 * robot.transducer.max_range_m / speed_of_sound,
+        };
+        let first = channels.first_of(index);
+        let sensors = first..first + robot.sensors.len();
+        rings.push(RunningRing { robot, ring, clock, hearing, sensors, wakes: clock.reaches(start), hears: NEVER });
+    }
+    Ok(rings)
+}
+
+/// By how much a good reading of a sensor should have changed since its firing before: `-2 v dt / c`, with `v` the
+/// speed at which the robot carried it forward when it fired. Nothing without odometry.
+pub(crate) fn expected_change_us(
+    robot: &Robot,
+    receiver: &Receiver,
+    fired: &Moment,
+    sensor: u8,
+    speed_of_sound: f64,
+) -> i32 {
+    let Some(pose) = robot.sensors.get(usize::from(sensor)) else { return 0 };
+    if !robot.odometry || receiver.firings < 2 {
+        return 0;
+    }
+    let heading = fired.pose.rotation * pose.rotation;
+    let velocity = fired.velocity_at(fired.pose.rotation * offset(pose));
+    let v = velocity.x * heading.re + velocity.y * heading.im;
+    let dt_us = (receiver.fired - receiver.fired_before) as f64 * 1e-3;
+    (-2.0 * v * dt_us / speed_of_sound).round() as i32
+}

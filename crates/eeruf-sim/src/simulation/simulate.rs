@@ -1,0 +1,53 @@
+//! Running a world under a method, and many simulations at once.
+
+use rayon::prelude::*;
+
+use super::error::SimulationError;
+use super::event_loop;
+use super::kinematics::Planned;
+use super::options::Options;
+use crate::{methods::Method, results::Readings, world::World};
+
+/// Simulates a world under a method. The same world, method and options give the same readings, bit for bit.
+///
+/// # Errors
+/// If a robot's ring cannot fire by the method as it should listen, or if something moves out of the scene's reach.
+///
+/// ```
+/// use eeruf_sim::*;
+/// let wall = Wall::new(5.0, 2.0, -5.0, 2.0);
+/// let pose = Pose::rotation(std::f64::consts::FRAC_PI_2);
+/// let robot = Robot::ring(pose, 8, 15f64.to_radians(), 0.3, Transducer::POLAROID_6500);
+/// let world = World::new(Scene::new(vec![wall], vec![], Air::default())?, vec![robot], Noise::default())?;
+/// let readings = simulate(&world, Method::Eeruf, &Options::periods(100))?;
+/// assert_eq!(readings.len(), 800);
+/// assert!(readings.summary().wrong_of_all < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn simulate(world: &World, method: Method, options: &Options) -> Result<Readings, SimulationError> {
+    simulate_while(world, method, options, |_| true)
+}
+
+/// As [`simulate`], calling back now and then with the share of time that has passed, 0 to 1. When the answer is
+/// `false` it stops with [`SimulationError::Stopped`].
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_while(
+    world: &World,
+    method: Method,
+    options: &Options,
+    keep_going: impl FnMut(f64) -> bool,
+) -> Result<Readings, SimulationError> {
+    event_loop::run(world, method, options, &mut Planned(world), keep_going)
+}
+
+/// Several simulations at once on all cores, the answers in the order of the jobs. What comes out does not depend on
+/// the number of threads.
+///
+/// ```
+/// assert_eq!(eeruf_sim::sweep(&[1, 2, 3], |seed| seed * seed), [1, 4, 9]);
+/// ```
+pub fn sweep<J: Sync, T: Send>(jobs: &[J], run: impl Fn(&J) -> T + Sync + Send) -> Vec<T> {
+    jobs.par_iter().map(run).collect()
+}

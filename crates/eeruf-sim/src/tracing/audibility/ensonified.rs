@@ -1,0 +1,50 @@
+//! A bound on what one pole returns, by which receivers are ruled out before its reflection is solved for.
+
+use super::{Audibility, FAR};
+use crate::{geometry::Point, scene::Pole};
+
+/// A pole that the source's sound reaches; which receivers may hear it?
+///
+/// ```text
+/// A^2 <= (a / 2) / (s' s (s' + s))
+/// ```
+pub(crate) struct EnsonifiedPole<'a> {
+    pub(super) audibility: &'a Audibility,
+    pub(super) pole: &'a Pole,
+    /// `s'`; none if the pole is too near for the bound.
+    pub(super) before_m: Option<f64>,
+    /// What is known of `A^2`: all but the receiver's pattern and `s (s' + s)`.
+    pub(super) part: f64,
+}
+
+impl EnsonifiedPole<'_> {
+    /// Whether certainly none of these receivers hears it.
+    #[inline]
+    pub(crate) fn is_inaudible(&self, receivers: &[Point]) -> bool {
+        if self.part == 0.0 && self.before_m.is_some() {
+            return true;
+        }
+        let far2 = receivers.iter().map(|at| (self.pole.centre - at).norm_squared());
+        let nearest_m = far2.fold(f64::INFINITY, f64::min).sqrt();
+        nearest_m >= FAR * self.pole.radius_m && self.is_too_faint(self.part, nearest_m)
+    }
+
+    /// Whether a receiver may hear it.
+    #[inline]
+    pub(crate) fn may_be_heard(&self, receiver: usize, at: Point) -> bool {
+        let Some(axis) = self.audibility.receivers.get(receiver) else { return true };
+        let home = self.pole.centre - at;
+        let far_m = home.norm();
+        far_m < FAR * self.pole.radius_m
+            || !self.is_too_faint(self.part * self.audibility.square(home.dot(axis) / far_m), far_m)
+    }
+
+    /// Whether `A^2 s (s' + s)` is too little this far from the pole's centre.
+    #[inline]
+    fn is_too_faint(&self, part: f64, far_m: f64) -> bool {
+        let Some(before_m) = self.before_m else { return false };
+        let after_m = far_m - self.pole.radius_m;
+        let length_m = before_m + after_m;
+        part < self.audibility.faint(length_m) * after_m * length_m
+    }
+}

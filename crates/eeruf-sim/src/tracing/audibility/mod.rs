@@ -1,0 +1,150 @@
+//! Which paths are certainly too faint to be heard: decided from where they point, before anything expensive is
+//! computed.
+//!
+//! Every bound is an upper one, so that nothing audible is lost: the patterns by their envelope, a pole by the most
+//! that it can return, the air by what it takes on a slightly shorter way.
+
+mod ensonified;
+#[cfg(test)]
+mod tests;
+
+use crate::{
+    acoustics::Piston,
+    geometry::{Point, Vector},
+    scene::Pole,
+};
+pub(super) use ensonified::EnsonifiedPole;
+
+/// How finely the envelope is known: in equal steps of `sin(angle / 2)`.
+const STEPS: usize = 1024;
+/// By how much a path to a pole's surface may point past its axis, in radians, if the pole is [`FAR`] or farther.
+const ASIDE_RAD: f64 = 1.2 / FAR;
+/// Poles nearer than this many radii count as audible.
+const FAR: f64 = 60.0;
+/// How finely the loss in the air is known, in steps per metre, and how far.
+const STEPS_PER_M: f64 = 32.0;
+const REACH_M: f64 = 32.0;
+
+/// One question's emitter and receivers, and what is just heard.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Audibility {
+    piston: Piston,
+    /// The highest square of the pattern from an angle on.
+    envelope: Vec<f64>,
+    /// The amplitude that is just heard, and the natural logarithm of what the air leaves of one per metre, negative.
+    floor: f64,
+    loss_per_m: f64,
+    /// By steps of length: a lower bound on the square of the amplitude that would just be heard if the air took
+    /// nothing.
+    faint: Vec<f64>,
+    /// Where the source heads, as an angle and as a direction.
+    source_rad: f64,
+    source: Vector,
+    receivers: Vec<Vector>,
+}
+
+impl Audibility {
+    pub(crate) fn new(piston: Piston) -> Self {
+        let mut envelope = vec![0.0; STEPS + 1];
+        let mut highest: f64 = 0.0;
+        // From behind to the front; each entry stands for all angles up to the next one's.
+        for step in (0..=STEPS).rev() {
+            let angle = 2.0 * (step as f64 / STEPS as f64).asin();
+            let shifted = piston.pattern((angle - ASIDE_RAD).max(0.0));
+            highest = highest.max(shifted * shifted).max(piston.pattern(angle).powi(2));
+            envelope[step] = highest;
+        }
+        // An angle between two steps takes the value of the lower one, where the envelope is no less.
+        let ahead = Vector::x();
+        Self {
+            piston,
+            envelope,
+            floor: 0.0,
+            loss_per_m: 0.0,
+            faint: Vec::new(),
+            source_rad: 0.0,
+            source: ahead,
+            receivers: Vec::new(),
+        }
+    }
+
+    pub(crate) fn is_for(&self, piston: &Piston) -> bool {
+        self.piston == *piston
+    }
+
+    /// Sets the amplitude that is just heard, and the natural logarithm of what the air leaves of one per metre.
+    pub(crate) fn set_floor(&mut self, floor: f64, loss_per_m: f64) {
+        if (self.floor, self.loss_per_m) == (floor, loss_per_m) && !self.faint.is_empty() {
+            return;
+        }
+        (self.floor, self.loss_per_m) = (floor, loss_per_m);
+        self.faint.clear();
+        let steps = (REACH_M * STEPS_PER_M) as usize;
+        self.faint.extend((0..=steps).map(|step| {
+            let length_m = step as f64 / STEPS_PER_M;
+            (floor * (-loss_per_m * length_m).exp() * (1.0 - 1e-9)).powi(2)
+        }));
+    }
+
+    /// Sets where source and receivers head.
+    pub(crate) fn aim(&mut self, source_rad: f64, receivers: impl Iterator<Item = Vector>) {
+        self.source_rad = source_rad;
+        self.source = Vector::new(source_rad.cos(), source_rad.sin());
+        self.receivers.clear();
+        self.receivers.extend(receivers);
+    }
+
+    /// Where the source heads, as a direction. Nothing leaves it at right angles to that, or further behind.
+    pub(crate) fn source(&self) -> Vector {
+        self.source
+    }
+
+    /// Where the source heads, in radians.
+    pub(crate) fn source_rad(&self) -> f64 {
+        self.source_rad
+    }
+
+    /// The square of the pattern at most, by the cosine of the angle off the axis.
+    #[inline]
+    fn square(&self, cos: f64) -> f64 {
+        let step = (0.5 - 0.5 * cos).max(0.0).sqrt() * STEPS as f64;
+        self.envelope.get(step as usize).copied().unwrap_or(0.0)
+    }
+
+    /// What the square of an amplitude is at least that is heard after this length, but for the air.
+    #[inline]
+    fn faint(&self, length_m: f64) -> f64 {
+        let step = ((length_m * STEPS_PER_M) as usize).min(self.faint.len().saturating_sub(1));
+        self.faint.get(step).copied().unwrap_or(0.0)
+    }
+
+    /// Whether a path over walls may be heard that leaves at an angle with this cosine off the source's axis, and whose
+    /// image the receiver sees in the direction `towards`, as long as the path.
+    #[inline]
+    pub(crate) fn may_hear_image(
+        &self,
+        departure_cos: f64,
+        receiver: usize,
+        towards: Vector,
+        length_m: f64,
+        reflection_gain: f64,
+    ) -> bool {
+        let Some(axis) = self.receivers.get(receiver) else { return true };
+        let (sent, least) = (
+            self.square(departure_cos) * reflection_gain * reflection_gain,
+            self.faint(length_m) * length_m * length_m,
+        );
+        // Most fail by what the source sends there.
+        sent >= least && sent * self.square(towards.dot(axis) / length_m) >= least
+    }
+
+    /// What sound falls on a pole.
+    pub(crate) fn ensonify<'a>(&'a self, source: Point, pole: &'a Pole) -> EnsonifiedPole<'a> {
+        let out = pole.centre - source;
+        let far = out.norm();
+        let bounded = far >= FAR * pole.radius_m;
+        let before_m = far - pole.radius_m;
+        let part = self.square(out.dot(&self.source) / far) * 0.5 * pole.radius_m / before_m;
+        EnsonifiedPole { audibility: self, pole, before_m: bounded.then_some(before_m), part }
+    }
+}

@@ -1,0 +1,63 @@
+use crate::*;
+
+/// A room with poles and a ring in it, by a number.
+fn random(number: u64) -> (Scene, Vec<Pose>) {
+    let mut random = Random::new(number);
+    let corners = [[0.0, 0.0], [9.0, 0.0], [9.0, 3.0], [6.0, 3.0], [6.0, 5.0], [0.0, 5.0], [0.0, 0.0]];
+    let poles = (0..12).map(|_| Pole::new(random.between(0.1, 8.9), random.between(0.1, 2.9), 0.004)).collect();
+    let scene = Scene::new(Wall::polyline(&corners).collect(), poles, Air::default()).unwrap();
+    let place = Vector::new(random.between(0.5, 8.5), random.between(0.5, 2.5));
+    let robot = Pose::new(place, random.between(-3.0, 3.0));
+    (scene, ring_of(&robot, 8, 0.3, -0.9, 0.26).collect())
+}
+
+#[test]
+fn nothing_that_is_heard_is_kept_back() {
+    let transducer = Transducer::POLAROID_6500;
+    let (mut heard, mut over_poles) = (0, 0);
+    for number in 0..40 {
+        let (scene, ring) = random(number);
+        let floor = 0.5 * transducer.detection_floor(scene.air());
+        let piston = transducer.piston(scene.air());
+        let mut matrix = CrosstalkMatrix::new();
+        let (sensors, limits) = (&ring[..], Limits::order(3));
+        let query = CrosstalkQuery { scene: &scene, sensors, transducer: &transducer, limits, floor };
+        matrix.compute(&mut Tracer::new(), &query).unwrap();
+        let places: Vec<_> = ring.iter().map(|sensor| Point::from(sensor.translation.vector)).collect();
+        for (emitter, source) in ring.iter().enumerate() {
+            let all = scene.paths(places[emitter], &places, 3, f64::INFINITY).unwrap();
+            for (receiver, listener) in ring.iter().enumerate() {
+                let loud = all.of(receiver as u32).filter(|&k| {
+                    all.amplitude[k]
+                        * piston.pattern(all.departure_rad[k] - source.rotation.angle())
+                        * piston.pattern(all.arrival_rad[k] - listener.rotation.angle())
+                        >= floor
+                });
+                let expected: Vec<_> = loud.map(|k| (all.length_m[k], all.bounces(k))).collect();
+                let heard_here = matrix.between(emitter, receiver);
+                let found: Vec<_> = heard_here.iter().map(|path| (path.length_m, matrix.bounces(path))).collect();
+                assert_eq!(found, expected, "{number}: {emitter} to {receiver}");
+                heard += found.len();
+                over_poles += found.iter().filter(|path| path.1.iter().any(|b| matches!(b, Bounce::Pole(_)))).count();
+            }
+        }
+    }
+    assert!(heard > 2000 && over_poles > 500, "{heard} {over_poles}");
+}
+
+#[test]
+fn single_poles_are_the_same_whether_or_not_longer_paths_are_sought() {
+    let mut seen = 0;
+    for number in 0..40 {
+        let (scene, ring) = random(number);
+        let places: Vec<_> = ring.iter().map(|sensor| Point::from(sensor.translation.vector)).collect();
+        let alone = |max_order| {
+            let paths = scene.paths(places[0], &places, max_order, f64::INFINITY).unwrap();
+            let poles = (0..paths.len()).filter(|&k| matches!(paths.bounces(k), [Bounce::Pole(_)]));
+            poles.map(|k| (paths.receiver[k], paths.length_m[k], paths.bounces(k).to_vec())).collect::<Vec<_>>()
+        };
+        assert_eq!(alone(1), alone(2), "{number}");
+        seen += alone(1).len();
+    }
+    assert!(seen > 1000);
+}

@@ -1,0 +1,36 @@
+//! What a beam tree is grown for: the scene, how far, and for whom.
+
+use crate::{
+    geometry::{Mirror, SAME_DIRECTION, Vector},
+    scene::{Mesh, Pole},
+};
+
+/// What a tree is grown for.
+pub(crate) struct Growth<'a> {
+    pub(crate) mesh: &'a Mesh,
+    pub(crate) mirrors: &'a [Mirror],
+    pub(crate) poles: &'a [Pole],
+    pub(crate) pole_triangles: &'a [(u32, u32)],
+    pub(crate) max_order: u32,
+    pub(crate) max_length_m: f64,
+    pub(crate) budget: usize,
+    /// Beams of the last order serve receivers only, not poles, and may be dropped where no receiver is.
+    pub(crate) last_for_receivers: bool,
+    /// Where the source heads, if no sound leaves it at right angles to that or further behind.
+    pub(crate) forward: Option<Vector>,
+}
+
+impl Growth<'_> {
+    /// The part of a cone from the source into which sound leaves.
+    pub(super) fn ensonified(&self, left: Vector, right: Vector) -> Option<(Vector, Vector)> {
+        let Some(forward) = self.forward else { return Some((left, right)) };
+        let ahead = |limit: Vector| limit.dot(&forward) > -SAME_DIRECTION * (limit.x.abs() + limit.y.abs());
+        match (ahead(left), ahead(right)) {
+            (true, true) => Some((left, right)),
+            (true, false) => Some((left, Vector::new(forward.y, -forward.x))),
+            (false, true) => Some((Vector::new(-forward.y, forward.x), right)),
+            // A cone through the side of a triangle is narrower than what is ensonified.
+            (false, false) => None,
+        }
+    }
+}

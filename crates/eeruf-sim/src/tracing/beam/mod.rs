@@ -1,0 +1,85 @@
+//! The beam tree: every wall sequence along which something of the source's sound really gets through.
+//!
+//! A beam is an image of the source and a cone that looks through one visible piece of wall. It is walked through the
+//! triangles of the mesh; a corner inside the cone splits it, a wall turns it into a beam of the next order. The limits
+//! of a cone always point at mirrored *corners* of the scene, never at computed points of intersection, so that errors
+//! do not build up: a node is one piece of wall that is really seen, and the tree grows about quadratically with the
+//! order.
+
+mod growth;
+mod readout;
+mod receiver_block;
+mod tree;
+
+use crate::geometry::{Point, SAME_DIRECTION, Vector, cross};
+
+pub(super) use growth::Growth;
+pub(super) use tree::BeamTree;
+
+/// A node of the tree.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Beam {
+    /// The source, mirrored in every wall of the sequence.
+    pub(crate) image: Point,
+    /// The limits of its cone.
+    pub(super) left: Vector,
+    pub(super) right: Vector,
+    /// The last wall's side of the mesh, by which the beam enters.
+    pub(super) gate: u32,
+    /// The beam that it came from; `NONE` for the source's own.
+    pub(crate) parent: u32,
+    /// The last wall.
+    pub(crate) wall: u32,
+    pub(crate) order: u32,
+    /// Directions in the image's world are `turn + d` after an even number of bounces, `turn - d` after an odd one,
+    /// with `d` the direction of departure.
+    pub(crate) turn: f64,
+    /// The product of the walls' reflections.
+    pub(super) reflection_gain: f64,
+}
+
+/// An image of the source that a receiver sees over walls.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct VisibleImage {
+    pub(crate) length_m: f64,
+    pub(crate) image: Point,
+    pub(crate) turn: f64,
+    /// The product of the walls' reflections, if all were flat.
+    pub(crate) reflection_gain: f64,
+    pub(crate) receiver: u32,
+    pub(crate) order: u32,
+    /// The beam before the last wall, or `NONE` when there was no wall.
+    pub(crate) parent: u32,
+    /// The last wall.
+    pub(crate) wall: u32,
+}
+
+/// A cone that passes a triangle in which a pole stands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PoleCone {
+    pub(crate) pole: u32,
+    pub(crate) triangle: u32,
+    pub(crate) beam: u32,
+    pub(super) left: Vector,
+    pub(super) right: Vector,
+}
+
+impl PoleCone {
+    /// Whether a point seen from the beam's image is in the cone, its limits included.
+    pub(crate) fn holds(&self, ahead: Vector) -> bool {
+        cone_holds(self.left, self.right, ahead)
+    }
+}
+
+/// Inclusive, with the relative tolerance that makes a path through the apex of a corner visible to both walls.
+#[inline(always)]
+pub(super) fn cone_holds(left: Vector, right: Vector, ahead: Vector) -> bool {
+    let (l, r) = (cross(ahead, left), cross(right, ahead));
+    if l >= 0.0 && r >= 0.0 {
+        return true;
+    }
+    let near = SAME_DIRECTION * (ahead.x.abs() + ahead.y.abs());
+    l >= -near * (left.x.abs() + left.y.abs())
+        && r >= -near * (right.x.abs() + right.y.abs())
+        && (ahead.dot(&left) > 0.0 || ahead.dot(&right) > 0.0)
+}

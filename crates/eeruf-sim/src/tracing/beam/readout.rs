@@ -1,0 +1,62 @@
+//! What is read from a grown tree: the bounces of a path, and which images are loud enough.
+
+use super::tree::BeamTree;
+use super::{Beam, VisibleImage};
+use crate::tracing::audibility::Audibility;
+use crate::{
+    geometry::{Point, Vector},
+    scene::{Bounce, NONE},
+};
+
+impl BeamTree {
+    /// Appends the bounces of a path over walls, source to receiver.
+    #[inline]
+    pub(crate) fn push_bounces(&self, image: &VisibleImage, bounces: &mut Vec<Bounce>) {
+        push_walls(&self.beams, image, bounces);
+    }
+
+    /// Appends the walls of a beam from the last to the first.
+    pub(crate) fn push_chain(&self, mut beam: u32, bounces: &mut Vec<Bounce>) {
+        while let Some(node) = self.beams.get(beam as usize).filter(|node| node.wall != NONE) {
+            bounces.push(Bounce::Wall(node.wall));
+            beam = node.parent;
+        }
+    }
+
+    /// Forgets what is certainly too faint.
+    pub(crate) fn drop_faint(&mut self, audibility: &Audibility, receivers: &[Point]) {
+        // Images of one beam follow each other.
+        let (mut turn, mut order, mut axis) = (f64::NAN, 0, Vector::zeros());
+        self.visible_images.retain(|image| {
+            if turn != image.turn || order != image.order % 2 {
+                (turn, order) = (image.turn, image.order % 2);
+                // Where the source heads, as seen in the image's world.
+                let heading = if order == 0 { audibility.source_rad() + turn } else { turn - audibility.source_rad() };
+                axis = Vector::new(heading.cos(), heading.sin());
+            }
+            let Some(at) = receivers.get(image.receiver as usize) else { return true };
+            let ahead = at - image.image;
+            let departure_cos = ahead.dot(&axis) / image.length_m;
+            audibility.may_hear_image(
+                departure_cos,
+                image.receiver as usize,
+                -ahead,
+                image.length_m,
+                image.reflection_gain,
+            )
+        });
+    }
+}
+
+/// Appends the walls over which an image is seen, source to receiver.
+#[inline]
+fn push_walls(beams: &[Beam], image: &VisibleImage, bounces: &mut Vec<Bounce>) {
+    let start = bounces.len();
+    bounces.resize(start + image.order as usize, Bounce::Wall(image.wall));
+    let mut beam = image.parent;
+    for bounce in bounces[start..].iter_mut().rev().skip(1) {
+        let node = &beams[beam as usize];
+        *bounce = Bounce::Wall(node.wall);
+        beam = node.parent;
+    }
+}

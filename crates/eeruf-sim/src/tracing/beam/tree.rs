@@ -1,0 +1,279 @@
+//! Grows the beam tree: beams leave the source, walk through the mesh and are reflected at walls.
+
+use super::growth::Growth;
+use super::receiver_block::ReceiverBlock;
+use super::{Beam, PoleCone, VisibleImage, cone_holds};
+use crate::{
+    geometry::{Point, SAME_DIRECTION, TOUCH_M, Vector, cross},
+    scene::{Beyond, Exit, NONE},
+};
+
+/// Marks a target as a pole.
+const POLE: u32 = 1 << 31;
+/// Something to be found in a triangle; a list per triangle.
+#[derive(Clone, Copy, Debug)]
+struct Target {
+    at: Point,
+    /// A receiver, or a pole with its bit set.
+    what: u32,
+    triangle: u32,
+    next: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Cone {
+    gate: u32,
+    left: Vector,
+    right: Vector,
+}
+
+/// A beam on its way through the mesh.
+#[derive(Clone, Copy)]
+struct Flight<'a> {
+    growth: &'a Growth<'a>,
+    beam: &'a Beam,
+    /// The beam's number in the tree.
+    index: u32,
+    /// Whether walls reflect it: not after the last order.
+    reflects: bool,
+}
+
+/// The tree and its buffers; used again and again without allocating.
+#[derive(Debug, Default)]
+pub(crate) struct BeamTree {
+    pub(crate) beams: Vec<Beam>,
+    pub(crate) visible_images: Vec<VisibleImage>,
+    pub(crate) pole_cones: Vec<PoleCone>,
+    /// First target of each triangle; all [`NONE`] between questions.
+    heads: Vec<u32>,
+    targets: Vec<Target>,
+    stack: Vec<Cone>,
+    triangles: Vec<u32>,
+    block: ReceiverBlock,
+}
+
+impl BeamTree {
+    /// Grows the tree of a source. All points must be covered by the mesh. Returns whether the budget sufficed.
+    pub(crate) fn grow(&mut self, growth: &Growth<'_>, source: Point, receivers: &[Point]) -> bool {
+        self.beams.clear();
+        self.visible_images.clear();
+        self.pole_cones.clear();
+        self.set_targets(growth, receivers);
+        let complete = self.spread(growth, source);
+        for target in &self.targets {
+            self.heads[target.triangle as usize] = NONE;
+        }
+        self.targets.clear();
+        complete
+    }
+
+    fn set_targets(&mut self, growth: &Growth<'_>, receivers: &[Point]) {
+        if self.heads.len() < growth.mesh.len() {
+            self.heads.resize(growth.mesh.len(), NONE);
+        }
+        let mut triangles = core::mem::take(&mut self.triangles);
+        for (receiver, &at) in receivers.iter().enumerate() {
+            growth.mesh.containing(at, &mut triangles);
+            for &triangle in &triangles {
+                self.put(at, receiver as u32, triangle);
+            }
+        }
+        self.triangles = triangles;
+        for &(triangle, pole) in growth.pole_triangles {
+            self.put(growth.poles[pole as usize].centre, POLE | pole, triangle);
+        }
+        self.block.fill(receivers);
+    }
+
+    fn put(&mut self, at: Point, what: u32, triangle: u32) {
+        let head = &mut self.heads[triangle as usize];
+        let target = Target { at, what, triangle, next: *head };
+        *head = self.targets.len() as u32;
+        self.targets.push(target);
+    }
+
+    fn spread(&mut self, growth: &Growth<'_>, source: Point) -> bool {
+        self.beams.push(Beam {
+            image: source,
+            left: Vector::zeros(),
+            right: Vector::zeros(),
+            gate: NONE,
+            parent: NONE,
+            wall: NONE,
+            order: 0,
+            turn: 0.0,
+            reflection_gain: 1.0,
+        });
+        let mut triangles = core::mem::take(&mut self.triangles);
+        growth.mesh.containing(source, &mut triangles);
+        self.leave(growth, source, &triangles);
+        self.triangles = triangles;
+        let mut next = 1;
+        while let Some(&beam) = self.beams.get(next) {
+            if self.beams.len() + self.visible_images.len() + self.pole_cones.len() > growth.budget {
+                return false;
+            }
+            self.stack.push(Cone { gate: beam.gate, left: beam.left, right: beam.right });
+            let reflects = beam.order < growth.max_order;
+            self.walk(&Flight { growth, beam: &beam, index: next as u32, reflects });
+            next += 1;
+        }
+        true
+    }
+
+    /// From the source's own triangle (two on a side, a fan on a corner) out through its sides.
+    fn leave(&mut self, growth: &Growth<'_>, source: Point, triangles: &[u32]) {
+        let beam = self.beams[0];
+        let flight = Flight { growth, beam: &beam, index: 0, reflects: growth.max_order > 0 };
+        for &triangle in triangles {
+            let mut target = self.heads[triangle as usize];
+            while target != NONE {
+                let Target { at, what, next, .. } = self.targets[target as usize];
+                // All around the source lies in its triangle, so there is no cone to test.
+                let ahead = at - source;
+                if what & POLE != 0 {
+                    for (left, right) in [(Vector::y(), -Vector::y()), (-Vector::y(), Vector::y())] {
+                        self.pole_cones.push(PoleCone { pole: what & !POLE, triangle, beam: 0, left, right });
+                    }
+                } else if ahead.norm() <= growth.max_length_m {
+                    self.see(&beam, NONE, what, ahead.norm());
+                }
+                target = next;
+            }
+            for side in growth.mesh.sides(triangle) {
+                let (left, right) = (side.left - source, side.right - source);
+                // A side through the source shows it nothing; what is behind it belongs to a triangle of the list too.
+                if cross(right, left) <= SAME_DIRECTION * (left - right).norm() * (left.norm() + right.norm()) {
+                    continue;
+                }
+                if let Some((left, right)) = growth.ensonified(left, right)
+                    && let Some(gate) = self.leave_through(&flight, side.exit, left, right)
+                {
+                    self.stack.push(Cone { gate, left, right });
+                }
+            }
+        }
+        self.walk(&flight);
+    }
+
+    /// Follows the cones on the stack through the mesh to the walls.
+    fn walk(&mut self, flight: &Flight<'_>) {
+        let beam = flight.beam;
+        let gates = flight.growth.mesh.gates.as_slice();
+        while let Some(Cone { mut gate, mut left, right }) = self.stack.pop() {
+            loop {
+                let head = self.heads[gate as usize / 3];
+                if head != NONE {
+                    self.look(flight, head, gate / 3, left, right);
+                }
+                let here = &gates[gate as usize];
+                let apex = here.apex - beam.image;
+                // A corner on a limit counts as outside: a cone without width sees nothing.
+                let exit = if cross(left, apex) >= 0.0 {
+                    here.right
+                } else if cross(right, apex) <= 0.0 {
+                    here.left
+                } else {
+                    if let Some(gate) = self.leave_through(flight, here.left, left, apex) {
+                        self.stack.push(Cone { gate, left, right: apex });
+                    }
+                    left = apex;
+                    here.right
+                };
+                match self.leave_through(flight, exit, left, right) {
+                    Some(next) => gate = next,
+                    None => break,
+                }
+            }
+        }
+    }
+
+    /// Goes through an exit: into the next triangle (returned), or to a wall, where the beam of the next order starts.
+    #[inline(always)]
+    fn leave_through(&mut self, flight: &Flight<'_>, exit: Exit, left: Vector, right: Vector) -> Option<u32> {
+        match exit.beyond() {
+            Beyond::Gate(gate) => return Some(gate),
+            Beyond::Wall(gate) if flight.reflects => self.reflect(flight, gate, left, right),
+            Beyond::Wall(_) | Beyond::Swallow => {}
+        }
+        None
+    }
+
+    #[inline]
+    fn reflect(&mut self, flight: &Flight<'_>, gate: u32, left: Vector, right: Vector) {
+        let Flight { growth, beam, index, .. } = *flight;
+        let wall = growth.mesh.walls[gate as usize];
+        let mirror = &growth.mirrors[wall as usize];
+        let distance = mirror.distance(beam.image);
+        if distance.abs() > growth.max_length_m {
+            return;
+        }
+        let next = Beam {
+            image: mirror.image(beam.image, distance),
+            // Mirroring swaps the sides.
+            left: mirror.turned(right),
+            right: mirror.turned(left),
+            gate,
+            parent: index,
+            wall,
+            order: beam.order + 1,
+            turn: mirror.turn - beam.turn,
+            reflection_gain: beam.reflection_gain * mirror.reflection,
+        };
+        if growth.last_for_receivers
+            && next.order == growth.max_order
+            && !self.block.may_see(next.image, next.left, next.right)
+        {
+            return;
+        }
+        self.beams.push(next);
+    }
+
+    /// Looks for receivers and poles in a triangle that the cone passes.
+    #[inline]
+    fn look(&mut self, flight: &Flight<'_>, head: u32, triangle: u32, left: Vector, right: Vector) {
+        let Flight { growth, beam, index, .. } = *flight;
+        let mut target = head;
+        while target != NONE {
+            let Target { at, what, next, .. } = self.targets[target as usize];
+            target = next;
+            let ahead = at - beam.image;
+            if what & POLE != 0 {
+                let cone = PoleCone { pole: what & !POLE, triangle, beam: index, left, right };
+                self.pass_pole(growth, ahead, cone);
+            } else if cone_holds(left, right, ahead) {
+                let length = ahead.norm();
+                if length <= growth.max_length_m {
+                    self.see(beam, beam.wall, what, length);
+                }
+            }
+        }
+    }
+
+    #[cold]
+    fn pass_pole(&mut self, growth: &Growth<'_>, ahead: Vector, cone: PoleCone) {
+        let radius = growth.poles[cone.pole as usize].radius_m * (1.0 + 1e-9);
+        if cross(ahead, cone.left) >= -radius * cone.left.norm()
+            && cross(cone.right, ahead) >= -radius * cone.right.norm()
+        {
+            self.pole_cones.push(cone);
+        }
+    }
+
+    #[inline]
+    fn see(&mut self, beam: &Beam, wall: u32, receiver: u32, length_m: f64) {
+        if beam.order == 0 && length_m <= TOUCH_M {
+            return; // a sensor does not hear itself along a path of no length
+        }
+        self.visible_images.push(VisibleImage {
+            length_m,
+            image: beam.image,
+            turn: beam.turn,
+            reflection_gain: beam.reflection_gain,
+            receiver,
+            order: beam.order,
+            parent: beam.parent,
+            wall,
+        });
+    }
+}

@@ -1,0 +1,73 @@
+//! Where a path runs: the points at which it bounces, for drawing and for checks.
+
+use crate::{
+    geometry::{Mirror, Point, alhazen, alhazen_twice},
+    scene::{Bounce, Scene},
+};
+
+impl Scene {
+    /// The corners of a path: source, every bounce, receiver. `bounces` are those of a path between the two that was
+    /// found in this scene; for others the answer is none or meaningless.
+    ///
+    /// ```
+    /// use eeruf_sim::{Air, Point, Scene, Wall};
+    /// let scene = Scene::new(vec![Wall::new(-9.0, 0.0, 9.0, 0.0)], vec![], Air::default())?;
+    /// let (source, receiver) = (Point::new(0.0, 1.0), Point::new(1.0, 1.0));
+    /// let paths = scene.paths(source, &[receiver], 1, f64::INFINITY)?;
+    /// let corners = scene.bounce_points(source, receiver, paths.bounces(1)).unwrap();
+    /// assert!((corners[1] - Point::new(0.5, 0.0)).norm() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn bounce_points(&self, source: Point, receiver: Point, bounces: &[Bounce]) -> Option<Vec<Point>> {
+        let mirrors = |bounces: &[Bounce]| -> Option<Vec<&Mirror>> {
+            let walls = bounces.iter().map(|bounce| match *bounce {
+                Bounce::Wall(wall) => self.mirrors.get(wall as usize),
+                Bounce::Pole(_) => None,
+            });
+            walls.collect()
+        };
+        let pole = |bounce: &Bounce| match *bounce {
+            Bounce::Pole(pole) => self.poles().get(pole as usize).map(|pole| (pole.centre, pole.radius_m)),
+            Bounce::Wall(_) => None,
+        };
+        let mut corners = vec![source];
+        let Some(first) = bounces.iter().position(|bounce| matches!(bounce, Bounce::Pole(_))) else {
+            unfold(source, &mirrors(bounces)?, receiver, &mut corners);
+            corners.push(receiver);
+            return Some(corners);
+        };
+        let (before, rest) = bounces.split_at(first);
+        let circle = pole(rest.first()?)?;
+        if let Some(second) = rest.get(1).and_then(pole) {
+            let (one, two) = alhazen_twice(source, receiver, circle, second)?;
+            corners.extend([one.point, two.point, receiver]);
+            return Some(corners);
+        }
+        let (before, mut after) = (mirrors(before)?, mirrors(rest.get(1..)?)?);
+        after.reverse();
+        let hit = alhazen(image(source, &before), image(receiver, &after), circle.0, circle.1)?.point;
+        unfold(source, &before, hit, &mut corners);
+        corners.push(hit);
+        let mut back = vec![receiver];
+        unfold(receiver, &after, hit, &mut back);
+        corners.extend(back.into_iter().rev());
+        Some(corners)
+    }
+}
+
+fn image(start: Point, mirrors: &[&Mirror]) -> Point {
+    mirrors.iter().fold(start, |at, mirror| mirror.image(at, mirror.distance(at)))
+}
+
+/// Appends the bounces of the way from `start` over the mirrors to `end`.
+fn unfold(start: Point, mirrors: &[&Mirror], end: Point, corners: &mut Vec<Point>) {
+    let first = corners.len();
+    let mut at = end;
+    for depth in (0..mirrors.len()).rev() {
+        let target = image(start, &mirrors[..=depth]);
+        let (here, there) = (mirrors[depth].distance(at), mirrors[depth].distance(target));
+        at += (target - at) * (here / (here - there));
+        corners.push(at);
+    }
+    corners[first..].reverse();
+}

@@ -1,0 +1,195 @@
+//! Who hears whom: all critical paths of a ring at one pose, from each emitter to each receiver, that are loud enough.
+
+use super::audibility::Audibility;
+use super::error::PathsError;
+use super::limits::Limits;
+use super::paths::Paths;
+use super::tracer::Tracer;
+use crate::{
+    acoustics::Transducer,
+    geometry::{Point, Pose, Vector},
+    scene::{Bounce, Scene},
+};
+
+/// One path from an emitter to a receiver that is heard. With `emitter == receiver` it is the sensor's own echo;
+/// otherwise it is a critical path, one that can cause crosstalk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CriticalPath {
+    /// Index of the sensor that fires; 0 if only one does.
+    pub emitter: u32,
+    /// Index of the sensor that hears it.
+    pub receiver: u32,
+    /// Length in metres.
+    pub length_m: f64,
+    /// Amplitude relative to 1 m on axis, both patterns included.
+    pub amplitude: f64,
+    /// How many bounces.
+    pub order: u32,
+    /// Where the path leaves, in the scene's frame.
+    pub departure_rad: f64,
+    /// Where the receiver looks to see it, in the scene's frame.
+    pub arrival_rad: f64,
+    bounces: [u32; 2],
+}
+
+impl CriticalPath {
+    /// Whether it causes *direct* crosstalk: straight over or by a single reflection. All others are *indirect*.
+    pub fn is_direct(&self) -> bool {
+        self.order <= 1
+    }
+}
+
+/// What is asked of a [`CrosstalkMatrix`]: which sensors, and what they hear.
+#[derive(Clone, Copy, Debug)]
+pub struct CrosstalkQuery<'a> {
+    /// What the sound meets.
+    pub scene: &'a Scene,
+    /// The transducers' places and headings in the scene; each heads along its pose's x axis.
+    pub sensors: &'a [Pose],
+    /// What kind of transducer they are.
+    pub transducer: &'a Transducer,
+    /// How far to follow the sound.
+    pub limits: Limits,
+    /// What is heard: the [received level](Transducer::received) at or above this.
+    pub floor: f64,
+}
+
+/// All paths between the sensors of a ring, by emitter, receiver and length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CrosstalkMatrix {
+    emitters: usize,
+    sensors: usize,
+    paths: Vec<CriticalPath>,
+    /// Where each pair's paths begin; one more at the end.
+    starts: Vec<u32>,
+    bounces: Vec<Bounce>,
+    // Kept between computations only for their memory.
+    positions: Vec<Point>,
+    found: Paths,
+    audibility: Option<Audibility>,
+}
+
+impl CrosstalkMatrix {
+    /// An empty matrix, to be [computed](Self::compute).
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Traces each sensor once as the emitter and keeps what is heard. Use the matrix as long as nothing moves: it does
+    /// not depend on time.
+    ///
+    /// # Errors
+    /// As [`Tracer::trace`]; the matrix is empty then.
+    pub fn compute(&mut self, tracer: &mut Tracer, query: &CrosstalkQuery<'_>) -> Result<(), PathsError> {
+        self.fill(tracer, query.sensors, query)
+    }
+
+    /// As [`compute`](Self::compute), but traces one emitter only, which is number 0 and need not be among the sensors:
+    /// for a world in which things move from firing to firing.
+    ///
+    /// # Errors
+    /// As [`compute`](Self::compute).
+    pub fn compute_from(
+        &mut self,
+        emitter: &Pose,
+        tracer: &mut Tracer,
+        query: &CrosstalkQuery<'_>,
+    ) -> Result<(), PathsError> {
+        self.fill(tracer, core::slice::from_ref(emitter), query)
+    }
+
+    fn fill(&mut self, tracer: &mut Tracer, emitters: &[Pose], query: &CrosstalkQuery<'_>) -> Result<(), PathsError> {
+        let CrosstalkQuery { scene, sensors, transducer, limits, floor } = *query;
+        let air = scene.air();
+        let piston = transducer.piston(air);
+        (self.emitters, self.sensors) = (0, 0);
+        self.paths.clear();
+        self.starts.clear();
+        self.bounces.clear();
+        self.positions.clear();
+        self.positions.extend(sensors.iter().map(|sensor| Point::from(sensor.translation.vector)));
+        tracer.frequency_hz = transducer.frequency_hz;
+        let audibility = match &mut self.audibility {
+            Some(audibility) if audibility.is_for(&piston) => audibility,
+            audibility => audibility.insert(Audibility::new(piston)),
+        };
+        audibility.set_floor(floor, tracer.loss_per_m(air));
+        for (emitter, pose) in emitters.iter().enumerate() {
+            let heading_rad = pose.rotation.angle();
+            audibility.aim(heading_rad, sensors.iter().map(|sensor| sensor.rotation * Vector::x()));
+            // The wave correction may add a little to what a pole returns.
+            let audibility = if tracer.pole_waves { None } else { Some(&*audibility) };
+            let source = Point::from(pose.translation.vector);
+            if let Err(error) =
+                tracer.trace_audible(audibility, scene, source, &self.positions, limits, &mut self.found)
+            {
+                self.paths.clear();
+                self.starts.clear();
+                return Err(error);
+            }
+            let found = &self.found;
+            let mut next = 0;
+            for (receiver, listener) in sensors.iter().enumerate() {
+                self.starts.push(self.paths.len() as u32);
+                let range = next..found.of(receiver as u32).end;
+                next = range.end;
+                if range.is_empty() {
+                    continue;
+                }
+                let listens_rad = listener.rotation.angle();
+                for k in range {
+                    let bare = found.amplitude[k];
+                    // The patterns only take away, and cost more than anything else here.
+                    if transducer.received(bare, found.length_m[k], air) < floor {
+                        continue;
+                    }
+                    let amplitude = bare
+                        * piston.pattern(found.departure_rad[k] - heading_rad)
+                        * piston.pattern(found.arrival_rad[k] - listens_rad);
+                    if transducer.received(amplitude, found.length_m[k], air) < floor {
+                        continue;
+                    }
+                    let start = self.bounces.len() as u32;
+                    self.bounces.extend_from_slice(found.bounces(k));
+                    self.paths.push(CriticalPath {
+                        emitter: emitter as u32,
+                        receiver: receiver as u32,
+                        length_m: found.length_m[k],
+                        amplitude,
+                        order: found.order[k],
+                        departure_rad: found.departure_rad[k],
+                        arrival_rad: found.arrival_rad[k],
+                        bounces: [start, self.bounces.len() as u32],
+                    });
+                }
+            }
+        }
+        self.starts.push(self.paths.len() as u32);
+        (self.emitters, self.sensors) = (emitters.len(), sensors.len());
+        Ok(())
+    }
+
+    /// How many sensors the ring has.
+    pub fn sensors(&self) -> usize {
+        self.sensors
+    }
+
+    /// The paths from an emitter to a receiver, shortest first; none for sensors that do not exist.
+    pub fn between(&self, emitter: usize, receiver: usize) -> &[CriticalPath] {
+        if emitter >= self.emitters || receiver >= self.sensors {
+            return &[];
+        }
+        let pair = emitter * self.sensors + receiver;
+        &self.paths[self.starts[pair] as usize..self.starts[pair + 1] as usize]
+    }
+
+    /// All paths, by emitter, receiver and length.
+    pub fn paths(&self) -> &[CriticalPath] {
+        &self.paths
+    }
+
+    /// The bounces of one of this matrix's paths, emitter to receiver.
+    pub fn bounces(&self, path: &CriticalPath) -> &[Bounce] {
+        self.bounces.get(path.bounces[0] as usize..path.bounces[1] as usize).unwrap_or(&[])
+    }
+}

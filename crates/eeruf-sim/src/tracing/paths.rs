@@ -1,0 +1,69 @@
+//! The answer to a question about paths: flat arrays that are used again from question to question.
+
+use crate::scene::Bounce;
+
+/// Paths as arrays of equal length, sorted by receiver, then by length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Paths {
+    /// Index of the receiver.
+    pub receiver: Vec<u32>,
+    /// Length in metres.
+    pub length_m: Vec<f64>,
+    /// How many bounces, those at poles included.
+    pub order: Vec<u32>,
+    /// Direction in which the path leaves the source, in (-pi, pi].
+    pub departure_rad: Vec<f64>,
+    /// Direction from which it reaches the receiver: where the receiver looks to see it, in (-pi, pi].
+    pub arrival_rad: Vec<f64>,
+    /// Amplitude relative to 1 m in free air, with the transducers' patterns left out.
+    pub amplitude: Vec<f64>,
+    /// Where each path's bounces end.
+    pub(super) ends: Vec<u32>,
+    pub(super) bounces: Vec<Bounce>,
+}
+
+impl Paths {
+    /// How many paths there are.
+    pub fn len(&self) -> usize {
+        self.length_m.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.length_m.is_empty()
+    }
+
+    /// The bounces of a path from source to receiver; empty for one that does not exist.
+    pub fn bounces(&self, path: usize) -> &[Bounce] {
+        let end_of = |path: usize| self.ends.get(path).map_or(0, |end| *end as usize);
+        let start = if path == 0 { 0 } else { end_of(path - 1) };
+        self.bounces.get(start..end_of(path)).unwrap_or(&[])
+    }
+
+    /// The indices of one receiver's paths.
+    pub fn of(&self, receiver: u32) -> core::ops::Range<usize> {
+        self.receiver.partition_point(|&r| r < receiver)..self.receiver.partition_point(|&r| r <= receiver)
+    }
+
+    pub(super) fn reserve(&mut self, more: usize) {
+        self.receiver.reserve(more);
+        self.length_m.reserve(more);
+        self.order.reserve(more);
+        self.departure_rad.reserve(more);
+        self.arrival_rad.reserve(more);
+        self.amplitude.reserve(more);
+        self.ends.reserve(more);
+    }
+
+    /// Forgets the paths, keeps the memory.
+    pub fn clear(&mut self) {
+        self.receiver.clear();
+        self.length_m.clear();
+        self.order.clear();
+        self.departure_rad.clear();
+        self.arrival_rad.clear();
+        self.amplitude.clear();
+        self.ends.clear();
+        self.bounces.clear();
+    }
+}

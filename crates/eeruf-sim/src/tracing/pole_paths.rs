@@ -1,0 +1,272 @@
+//! Paths that bounce at a pole. Walls before the pole mirror the source forward, walls after it mirror the receiver
+//! backward; between the two images remains one problem of Alhazen, whose answer must lie in a beam of each.
+
+use super::audibility::Audibility;
+use super::beam::{BeamTree, Growth, PoleCone};
+use super::limits::Limits;
+use crate::{
+    acoustics::pole_spread,
+    geometry::{Point, Specular, Vector, alhazen, alhazen_twice, wrap_angle},
+    scene::{Bounce, Scene},
+};
+
+/// The most problems of Alhazen that one question may try, some ten seconds.
+const MAX_TRIED: usize = 1 << 25;
+
+/// A path with one pole, or two in turn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PolePath {
+    pub(crate) receiver: u32,
+    pub(crate) length_m: f64,
+    pub(crate) order: u32,
+    pub(crate) departure_rad: f64,
+    pub(crate) arrival_rad: f64,
+    /// Where the source seems to be, by which doubles are recognised.
+    pub(crate) image: Point,
+    /// What the legs and the poles' curvature leave of the amplitude.
+    pub(crate) spread: f64,
+    pub(crate) cos_incidence: [f64; 2],
+    bounces: (u32, u32),
+}
+
+/// What is asked for: a source whose tree is grown, and how far to follow its sound.
+#[derive(Clone, Copy)]
+pub(crate) struct PoleQuery<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) tree: &'a BeamTree,
+    pub(crate) source: Point,
+    pub(crate) limits: Limits,
+    /// What is certainly too faint may be left out.
+    pub(crate) audibility: Option<&'a Audibility>,
+    /// How many beams and paths there may be.
+    pub(crate) budget: usize,
+}
+
+/// One receiver of a query.
+#[derive(Clone, Copy)]
+struct Receiver {
+    index: u32,
+    at: Point,
+}
+
+/// Finds them; holds the buffers.
+#[derive(Debug, Default)]
+pub(crate) struct PoleSearch {
+    pub(crate) found: Vec<PolePath>,
+    bounces: Vec<Bounce>,
+    from_source: Vec<PoleCone>,
+    back: BeamTree,
+    triangles: [Vec<u32>; 2],
+    /// Poles in plain sight of the source, and of the receiver.
+    firsts: Vec<u32>,
+    lasts: Vec<u32>,
+    /// Problems of Alhazen tried so far.
+    tried: usize,
+}
+
+impl PoleSearch {
+    pub(crate) fn bounces(&self, path: &PolePath) -> &[Bounce] {
+        &self.bounces[path.bounces.0 as usize..path.bounces.1 as usize]
+    }
+
+    /// Finds all paths over poles to these receivers, but for those that are certainly too faint. Returns whether the
+    /// budget sufficed.
+    pub(crate) fn search(&mut self, query: &PoleQuery<'_>, receivers: &[Point]) -> bool {
+        let PoleQuery { scene, tree, limits, budget, .. } = *query;
+        self.found.clear();
+        self.bounces.clear();
+        self.tried = 0;
+        if scene.poles().is_empty() || limits.max_order == 0 {
+            return true;
+        }
+        if limits.max_order == 1 {
+            self.one_pole(query, receivers);
+            return true;
+        }
+        let cone_key = |cone: &PoleCone| (cone.pole, cone.triangle);
+        self.from_source.clear();
+        self.from_source.extend_from_slice(&tree.pole_cones);
+        // Within one key the beams stay in the order of their tree, lowest order first.
+        self.from_source.sort_by_key(|cone| (cone_key(cone), cone.beam));
+        in_sight(&self.from_source, &mut self.firsts);
+        for (index, &at) in receivers.iter().enumerate() {
+            let receiver = Receiver { index: index as u32, at };
+            let growth = Growth {
+                mesh: &scene.mesh,
+                mirrors: &scene.mirrors,
+                poles: scene.poles(),
+                pole_triangles: &scene.pole_triangles,
+                max_order: limits.max_order - 1,
+                max_length_m: limits.max_length_m,
+                budget,
+                last_for_receivers: false,
+                forward: None,
+            };
+            let mut back = core::mem::take(&mut self.back);
+            let complete = back.grow(&growth, at, &[]);
+            for behind in &back.pole_cones {
+                let home_order = back.beams[behind.beam as usize].order;
+                let start = self.from_source.partition_point(|cone| cone_key(cone) < cone_key(behind));
+                for index in start..self.from_source.len() {
+                    let before = self.from_source[index];
+                    if cone_key(&before) != cone_key(behind)
+                        || tree.beams[before.beam as usize].order + home_order >= limits.max_order
+                        || self.tried > MAX_TRIED
+                    {
+                        break;
+                    }
+                    self.between(query, &before, &back, behind, receiver);
+                }
+            }
+            in_sight(&back.pole_cones, &mut self.lasts);
+            self.back = back;
+            if !complete || self.found.len() > budget || self.tried > MAX_TRIED {
+                return false;
+            }
+            if limits.max_order >= 2 {
+                self.two_poles(query, receiver);
+            }
+        }
+        true
+    }
+
+    /// One pole between a beam of the source and a beam of the receiver.
+    fn between(
+        &mut self,
+        query: &PoleQuery<'_>,
+        before: &PoleCone,
+        back: &BeamTree,
+        behind: &PoleCone,
+        receiver: Receiver,
+    ) {
+        let PoleQuery { scene, tree, limits, .. } = *query;
+        let (out, home) = (&tree.beams[before.beam as usize], &back.beams[behind.beam as usize]);
+        let order = out.order + 1 + home.order;
+        let pole = &scene.poles()[before.pole as usize];
+        let (far_out, far_home) = ((out.image - pole.centre).norm(), (home.image - pole.centre).norm());
+        if far_out + far_home > limits.max_length_m + 2.0 * pole.radius_m {
+            return;
+        }
+        self.tried += 1;
+        let Some(hit) = alhazen(out.image, home.image, pole.centre, pole.radius_m) else {
+            return;
+        };
+        let length_m = hit.before_m + hit.after_m;
+        if length_m > limits.max_length_m
+            || !before.holds(hit.point - out.image)
+            || !behind.holds(hit.point - home.image)
+            || !scene.mesh.touches(before.triangle, hit.point)
+        {
+            return;
+        }
+        let start = self.bounces.len();
+        tree.push_chain(before.beam, &mut self.bounces);
+        self.bounces[start..].reverse();
+        self.bounces.push(Bounce::Pole(before.pole));
+        back.push_chain(behind.beam, &mut self.bounces);
+        let departure_rad = unfolded(hit.point - out.image, out.order, out.turn);
+        let arrival_rad = unfolded(hit.point - home.image, home.order, home.turn);
+        self.push(receiver, order, [departure_rad, arrival_rad], &[(hit, pole.radius_m)], start);
+    }
+
+    /// Source, one pole, receiver, both in sight of it: no trees are needed.
+    fn one_pole(&mut self, query: &PoleQuery<'_>, receivers: &[Point]) {
+        let PoleQuery { scene, source, limits, audibility, .. } = *query;
+        for (index, pole) in scene.poles().iter().enumerate() {
+            let ensonified = audibility.map(|audibility| audibility.ensonify(source, pole));
+            if ensonified.as_ref().is_some_and(|pole| pole.is_inaudible(receivers)) {
+                continue;
+            }
+            for (receiver, &at) in receivers.iter().enumerate() {
+                if ensonified.as_ref().is_some_and(|pole| !pole.may_be_heard(receiver, at)) {
+                    continue;
+                }
+                let Some(hit) = alhazen(source, at, pole.centre, pole.radius_m) else { continue };
+                if hit.before_m + hit.after_m > limits.max_length_m
+                    || !scene.mesh.sees(source, hit.point, &mut self.triangles)
+                    || !scene.mesh.sees(hit.point, at, &mut self.triangles)
+                {
+                    continue;
+                }
+                let start = self.bounces.len();
+                self.bounces.push(Bounce::Pole(index as u32));
+                let angles = [unfolded(hit.point - source, 0, 0.0), unfolded(hit.point - at, 0, 0.0)];
+                self.push(Receiver { index: receiver as u32, at }, 1, angles, &[(hit, pole.radius_m)], start);
+            }
+        }
+    }
+
+    /// Source, one pole, another pole, receiver, all in sight of each other.
+    fn two_poles(&mut self, query: &PoleQuery<'_>, receiver: Receiver) {
+        let PoleQuery { scene, source, limits, .. } = *query;
+        let at = receiver.at;
+        let poles = scene.poles();
+        for a in 0..self.firsts.len() {
+            for b in 0..self.lasts.len() {
+                let (a, b) = (self.firsts[a], self.lasts[b]);
+                if a == b {
+                    continue;
+                }
+                self.tried += 1;
+                let (first, second) = (&poles[a as usize], &poles[b as usize]);
+                let circles = ((first.centre, first.radius_m), (second.centre, second.radius_m));
+                let Some((one, two)) = alhazen_twice(source, at, circles.0, circles.1) else {
+                    continue;
+                };
+                if one.before_m + two.before_m + two.after_m > limits.max_length_m
+                    || !scene.mesh.sees(source, one.point, &mut self.triangles)
+                    || !scene.mesh.sees(one.point, two.point, &mut self.triangles)
+                    || !scene.mesh.sees(two.point, at, &mut self.triangles)
+                {
+                    continue;
+                }
+                let start = self.bounces.len();
+                self.bounces.extend([Bounce::Pole(a), Bounce::Pole(b)]);
+                let angles = [unfolded(one.point - source, 0, 0.0), unfolded(two.point - at, 0, 0.0)];
+                self.push(receiver, 2, angles, &[(one, circles.0.1), (two, circles.1.1)], start);
+            }
+        }
+    }
+
+    fn push(
+        &mut self,
+        receiver: Receiver,
+        order: u32,
+        [departure_rad, arrival_rad]: [f64; 2],
+        hits: &[(Specular, f64)],
+        start: usize,
+    ) {
+        let length_m =
+            hits.iter().map(|(hit, _)| hit.before_m).sum::<f64>() + hits.last().map_or(0.0, |(hit, _)| hit.after_m);
+        let mut cos_incidence = [1.0; 2];
+        for (cos, (hit, _)) in cos_incidence.iter_mut().zip(hits) {
+            *cos = hit.incidence_rad.cos();
+        }
+        let (sin, cos) = arrival_rad.sin_cos();
+        self.found.push(PolePath {
+            receiver: receiver.index,
+            length_m,
+            order,
+            departure_rad,
+            arrival_rad,
+            image: receiver.at + Vector::new(cos, sin) * length_m,
+            spread: pole_spread(hits),
+            cos_incidence,
+            bounces: (start as u32, self.bounces.len() as u32),
+        });
+    }
+}
+
+/// The poles that the source's own, unreflected cones pass.
+fn in_sight(cones: &[PoleCone], poles: &mut Vec<u32>) {
+    poles.clear();
+    poles.extend(cones.iter().filter(|cone| cone.beam == 0).map(|cone| cone.pole));
+    poles.sort_unstable();
+    poles.dedup();
+}
+
+/// The direction at the source of what is `ahead` in the image's world.
+fn unfolded(ahead: Vector, order: u32, turn: f64) -> f64 {
+    let there = ahead.y.atan2(ahead.x);
+    wrap_angle(if order.is_multiple_of(2) { there - turn } else { turn - there })
+}

@@ -1,0 +1,240 @@
+//! The tracer: grows the beam tree of a source, searches for paths over poles, and writes all of them in order.
+
+use super::audibility::Audibility;
+use super::beam::{BeamTree, Growth};
+use super::error::PathsError;
+use super::limits::{DEFAULT_FREQUENCY_HZ, Limits, MAX_BEAMS, MAX_ORDER};
+use super::paths::Paths;
+use super::pole_paths::{PolePath, PoleQuery, PoleSearch};
+use super::ranking::{Found, FoundPath, Rank, Ranking};
+use crate::{
+    acoustics::{pole_wave_correction, reflected},
+    geometry::{Point, opposite, wrap_angle},
+    scene::{Air, Bounce, Scene},
+};
+
+/// Finds paths; holds the buffers, so that asking again does not allocate. Keep one per thread.
+#[derive(Debug)]
+pub struct Tracer {
+    /// The frequency that absorption and roughness are taken at, in Hz.
+    pub frequency_hz: f64,
+    /// Whether poles return what a rigid cylinder does at this frequency instead of what geometric optics says; see
+    /// [`pole_wave_correction`]. Off by default.
+    pub pole_waves: bool,
+    /// The most bounces of a path with a pole, at most those of all others. The default is [`MAX_ORDER`].
+    pub pole_order: u32,
+    /// What the air takes, for the air and the frequency asked for last.
+    loss: Option<(Air, f64, f64)>,
+    tree: BeamTree,
+    poles: PoleSearch,
+    ranking: Ranking,
+}
+
+impl Default for Tracer {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Tracer {
+    /// A tracer at [`DEFAULT_FREQUENCY_HZ`].
+    pub fn new() -> Self {
+        Self::at(DEFAULT_FREQUENCY_HZ)
+    }
+
+    /// A tracer for amplitudes at a frequency.
+    pub fn at(frequency_hz: f64) -> Self {
+        Self {
+            frequency_hz,
+            pole_waves: false,
+            pole_order: MAX_ORDER,
+            loss: None,
+            tree: BeamTree::default(),
+            poles: PoleSearch::default(),
+            ranking: Ranking::default(),
+        }
+    }
+
+    /// Writes every specular path from the source to each receiver into `paths`.
+    ///
+    /// A path may bounce at walls, at walls with one pole anywhere among them, or at two poles in turn. One through the
+    /// apex of a convex right-angle corner is found once. A receiver on top of the source does not hear the direct path
+    /// of no length.
+    ///
+    /// # Errors
+    /// A position that is not a number or far outside, an order or a length out of range, or a tree that outgrows
+    /// [`MAX_BEAMS`]. `paths` is empty then.
+    pub fn trace(
+        &mut self,
+        scene: &Scene,
+        source: Point,
+        receivers: &[Point],
+        limits: Limits,
+        paths: &mut Paths,
+    ) -> Result<(), PathsError> {
+        self.trace_audible(None, scene, source, receivers, limits, paths)
+    }
+
+    /// As [`trace`](Self::trace), without paths that are certainly too faint.
+    pub(crate) fn trace_audible(
+        &mut self,
+        audibility: Option<&Audibility>,
+        scene: &Scene,
+        source: Point,
+        receivers: &[Point],
+        limits: Limits,
+        paths: &mut Paths,
+    ) -> Result<(), PathsError> {
+        paths.clear();
+        let at_poles = Limits { max_order: limits.max_order.min(self.pole_order), ..limits };
+        self.grow(audibility, scene, source, receivers, limits, at_poles)?;
+        if let Some(audibility) = audibility {
+            self.tree.drop_faint(audibility, receivers);
+        }
+        let query = PoleQuery { scene, tree: &self.tree, source, limits: at_poles, audibility, budget: MAX_BEAMS };
+        if !self.poles.search(&query, receivers) {
+            return Err(PathsError::Budget { beams: MAX_BEAMS });
+        }
+        self.ranking.rank(Found { tree: &self.tree, poles: &self.poles }, receivers.len());
+        self.write(scene, receivers, paths);
+        Ok(())
+    }
+
+    /// The core alone: finds the images that each receiver sees over walls and returns how many, unsorted and with the
+    /// doubles of corners. This is what other image-source programs time as their own.
+    ///
+    /// # Errors
+    /// As [`trace`](Self::trace).
+    pub fn visible_images(
+        &mut self,
+        scene: &Scene,
+        source: Point,
+        receivers: &[Point],
+        limits: Limits,
+    ) -> Result<usize, PathsError> {
+        self.grow(None, scene, source, receivers, limits, limits)?;
+        Ok(self.tree.visible_images.len())
+    }
+
+    fn grow(
+        &mut self,
+        audibility: Option<&Audibility>,
+        scene: &Scene,
+        source: Point,
+        receivers: &[Point],
+        limits: Limits,
+        at_poles: Limits,
+    ) -> Result<(), PathsError> {
+        check(scene, source, receivers, limits)?;
+        let growth = Growth {
+            mesh: &scene.mesh,
+            mirrors: &scene.mirrors,
+            poles: scene.poles(),
+            // A pole that is the only bounce is looked for without beams.
+            pole_triangles: if at_poles.max_order > 1 { &scene.pole_triangles } else { &[] },
+            max_order: limits.max_order,
+            max_length_m: limits.max_length_m,
+            budget: MAX_BEAMS,
+            last_for_receivers: true,
+            forward: audibility.map(Audibility::source),
+        };
+        if self.tree.grow(&growth, source, receivers) { Ok(()) } else { Err(PathsError::Budget { beams: MAX_BEAMS }) }
+    }
+
+    /// How many beams the last question grew.
+    pub fn beams(&self) -> usize {
+        self.tree.beams.len()
+    }
+
+    /// The natural logarithm of what the air leaves of an amplitude per metre; negative.
+    pub(crate) fn loss_per_m(&mut self, air: Air) -> f64 {
+        match self.loss {
+            Some((known, frequency_hz, loss_per_m)) if known == air && frequency_hz == self.frequency_hz => loss_per_m,
+            _ => {
+                let loss_per_m = -air.absorption_db_per_m(self.frequency_hz) * core::f64::consts::LN_10 / 20.0;
+                self.loss = Some((air, self.frequency_hz, loss_per_m));
+                loss_per_m
+            }
+        }
+    }
+
+    fn write(&mut self, scene: &Scene, receivers: &[Point], paths: &mut Paths) {
+        let loss_per_m = self.loss_per_m(scene.air());
+        let wave_number = core::f64::consts::TAU * self.frequency_hz / scene.air().speed_of_sound();
+        paths.reserve(self.ranking.ranks().len());
+        let found = Found { tree: &self.tree, poles: &self.poles };
+        for &Rank { length_m, index } in self.ranking.ranks() {
+            let start = paths.bounces.len();
+            let amplitude;
+            match found.get(index) {
+                FoundPath::Walls(image) => {
+                    self.tree.push_bounces(image, &mut paths.bounces);
+                    let ahead = receivers[image.receiver as usize] - image.image;
+                    let there = ahead.y.atan2(ahead.x);
+                    let departure = if image.order.is_multiple_of(2) { there - image.turn } else { image.turn - there };
+                    let angles = [wrap_angle(departure), opposite(there)];
+                    let reflection_gain = if scene.rough {
+                        reflected(scene, &paths.bounces[start..], angles, [1.0; 2], wave_number)
+                    } else {
+                        image.reflection_gain
+                    };
+                    amplitude = reflection_gain / image.length_m;
+                    paths.receiver.push(image.receiver);
+                    paths.order.push(image.order);
+                    paths.departure_rad.push(angles[0]);
+                    paths.arrival_rad.push(angles[1]);
+                }
+                FoundPath::Pole(path) => {
+                    paths.bounces.extend_from_slice(self.poles.bounces(path));
+                    let angles = [path.departure_rad, path.arrival_rad];
+                    let reflection_gain =
+                        reflected(scene, &paths.bounces[start..], angles, path.cos_incidence, wave_number);
+                    amplitude = reflection_gain
+                        * path.spread
+                        * self.pole_waves(path, &paths.bounces[start..], scene, wave_number);
+                    paths.receiver.push(path.receiver);
+                    paths.order.push(path.order);
+                    paths.departure_rad.push(angles[0]);
+                    paths.arrival_rad.push(angles[1]);
+                }
+            }
+            paths.length_m.push(length_m);
+            paths.amplitude.push(amplitude * (loss_per_m * length_m).exp());
+            paths.ends.push(paths.bounces.len() as u32);
+        }
+    }
+
+    /// The wave correction of a path's poles, if it is asked for.
+    fn pole_waves(&self, path: &PolePath, bounces: &[Bounce], scene: &Scene, wave_number: f64) -> f64 {
+        if !self.pole_waves {
+            return 1.0;
+        }
+        let poles = bounces.iter().filter_map(|bounce| match *bounce {
+            Bounce::Pole(pole) => scene.poles().get(pole as usize),
+            Bounce::Wall(_) => None,
+        });
+        let corrections = poles
+            .zip(path.cos_incidence)
+            .map(|(pole, cos)| pole_wave_correction(wave_number * pole.radius_m, cos.min(1.0).acos()));
+        corrections.product()
+    }
+}
+
+fn check(scene: &Scene, source: Point, receivers: &[Point], limits: Limits) -> Result<(), PathsError> {
+    let reach_m = scene.mesh.reach_m;
+    if limits.max_order > MAX_ORDER {
+        return Err(PathsError::Order { max_order: limits.max_order });
+    }
+    if limits.max_length_m.is_nan() || limits.max_length_m <= 0.0 {
+        return Err(PathsError::Length { max_length_m: limits.max_length_m });
+    }
+    if !scene.mesh.covers(source) {
+        return Err(PathsError::Source { at: [source.x, source.y], reach_m });
+    }
+    match receivers.iter().position(|&at| !scene.mesh.covers(at)) {
+        Some(receiver) => {
+            Err(PathsError::Receiver { receiver, at: [receivers[receiver].x, receivers[receiver].y], reach_m })
+        }
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,98 @@
+//! Whether a robot makes sense, and stands free in its scene.
+
+use eeruf_core::{MAX_PERIOD, MAX_SENSORS, Micros};
+
+use super::clock::MAX_DRIFT_PPM;
+use super::error::WorldError;
+use super::motion::{MAX_SPEED, Motion};
+use super::robot::Robot;
+use crate::scene::{Body, MAX_COORDINATE_M, Scene};
+
+/// Whether a number is one, and not farther from zero than `most`.
+fn within(value: f64, most: f64) -> bool {
+    (-most..=most).contains(&value)
+}
+
+/// Finds the first thing wrong with a robot.
+pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), WorldError> {
+    if robot.sensors.is_empty() || robot.sensors.len() > MAX_SENSORS {
+        return Err(WorldError::Sensors { robot: index, sensors: robot.sensors.len() });
+    }
+    let fail = |field, value, expected| Err(WorldError::Field { robot: index, field, value, expected });
+    let poses = [("pose", &robot.pose)].into_iter().chain(robot.sensors.iter().map(|sensor| ("sensors", sensor)));
+    for (field, pose) in poses {
+        for value in [pose.translation.x, pose.translation.y, pose.rotation.angle()] {
+            if !within(value, MAX_COORDINATE_M) {
+                return fail(field, value, "a number within 100000 m");
+            }
+        }
+    }
+    let speed = "at most 50 m/s and 50 rad/s";
+    match &robot.motion {
+        Motion::Still => {}
+        Motion::Constant { velocity, turn_rad_s } => {
+            for value in [velocity.x, velocity.y, *turn_rad_s] {
+                if !within(value, MAX_SPEED) {
+                    return fail("motion", value, speed);
+                }
+            }
+        }
+        Motion::Waypoints { points, speed_m_s } => {
+            if !(0.0..=MAX_SPEED).contains(speed_m_s) {
+                return fail("speed_m_s", *speed_m_s, speed);
+            }
+            for value in points.iter().flat_map(|point| [point.x, point.y]) {
+                if !within(value, MAX_COORDINATE_M) {
+                    return fail("waypoints_m", value, "a number within 100000 m");
+                }
+            }
+        }
+    }
+    if !within(robot.clock.drift_ppm, MAX_DRIFT_PPM) {
+        return fail("drift_ppm", robot.clock.drift_ppm, "-1000 to 1000");
+    }
+    let transducer = &robot.transducer;
+    for (field, value) in [
+        ("frequency_hz", transducer.frequency_hz),
+        ("radius_m", transducer.radius_m),
+        ("max_range_m", transducer.max_range_m),
+    ] {
+        if !(value > 0.0 && value.is_finite()) {
+            return fail(field, value, "a positive number");
+        }
+    }
+    for (field, value) in
+        [("period_us", robot.period), ("window_us", robot.window), ("min_refire_us", robot.min_refire)]
+    {
+        if value == Micros::ZERO || value > MAX_PERIOD {
+            return fail(field, f64::from(value.as_micros()), "1 to 268435456");
+        }
+    }
+    if robot.window <= robot.blanking {
+        return fail("window_us", f64::from(robot.window.as_micros()), "more than the blanking time");
+    }
+    if robot.neighbours == 0 || usize::from(robot.neighbours) > MAX_SENSORS {
+        return fail("neighbours", f64::from(robot.neighbours), "1 to 64");
+    }
+    if !(2..=8).contains(&robot.consecutive) {
+        return fail("consecutive", f64::from(robot.consecutive), "2 to 8");
+    }
+    if robot.patience > 15 {
+        return fail("patience", f64::from(robot.patience), "0 to 15");
+    }
+    if let Some(schedule) = &robot.schedule {
+        if schedule.sensors() != robot.sensors.len() {
+            let (sensors, expected) = (schedule.sensors(), robot.sensors.len());
+            return Err(WorldError::Schedule { robot: index, sensors, expected });
+        }
+        if robot.window > schedule.min_refire() {
+            return Err(WorldError::Window { robot: index, window: robot.window, min_refire: schedule.min_refire() });
+        }
+    }
+    // A body without extent still stands somewhere.
+    let body = Body::Disc(robot.radius_m().max(1e-6));
+    match scene.contact(&body, &robot.pose) {
+        Some(contact) => Err(WorldError::Contact { robot: index, contact }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,123 @@
+//! Why a world cannot be.
+
+use core::fmt;
+
+use eeruf_core::{MAX_SENSORS, Micros};
+
+use super::robot::MAX_ROBOTS;
+use crate::scene::{Contact, SceneError};
+use crate::tracing::MAX_ORDER;
+
+/// Why a world cannot be. Robots are counted from 0 in code and printed from 1; walls and poles from 0, as in files.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum WorldError {
+    /// The scene itself.
+    Scene(SceneError),
+    /// No robots, or too many.
+    Robots {
+        /// How many were given.
+        robots: usize,
+    },
+    /// A robot without sensors, or with too many.
+    Sensors {
+        /// The robot.
+        robot: usize,
+        /// How many sensors it has.
+        sensors: usize,
+    },
+    /// A number that makes no sense.
+    Field {
+        /// The robot.
+        robot: usize,
+        /// The field, by its name in files.
+        field: &'static str,
+        /// The offending number.
+        value: f64,
+        /// What is expected.
+        expected: &'static str,
+    },
+    /// A schedule for another number of sensors.
+    Schedule {
+        /// The robot.
+        robot: usize,
+        /// How many sensors the schedule has.
+        sensors: usize,
+        /// How many the robot has.
+        expected: usize,
+    },
+    /// A sensor would fire again while it still listens.
+    Window {
+        /// The robot.
+        robot: usize,
+        /// The window asked for.
+        window: Micros,
+        /// The shortest time between two firings of one sensor.
+        min_refire: Micros,
+    },
+    /// A robot that starts inside something.
+    Contact {
+        /// The robot.
+        robot: usize,
+        /// What it touches.
+        contact: Contact,
+    },
+    /// A number of the noise that makes no sense.
+    Noise {
+        /// The field, by its name in files.
+        field: &'static str,
+        /// The offending number.
+        value: f64,
+        /// What is expected.
+        expected: &'static str,
+    },
+    /// An order beyond what paths can be asked for.
+    Order {
+        /// What was asked for.
+        max_order: u32,
+    },
+}
+
+impl From<SceneError> for WorldError {
+    fn from(error: SceneError) -> Self {
+        Self::Scene(error)
+    }
+}
+
+impl fmt::Display for WorldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Scene(error) => error.fmt(f),
+            Self::Robots { robots } => write!(f, "{robots} robots; expected 1 to {MAX_ROBOTS}"),
+            Self::Sensors { robot, sensors } => {
+                write!(f, "robot {} has {sensors} sensors; expected 1 to {MAX_SENSORS}", robot + 1)
+            }
+            Self::Field { robot, field, value, expected } => {
+                write!(f, "robot {}: {field} is {value}; expected {expected}", robot + 1)
+            }
+            Self::Schedule { robot, sensors, expected } => {
+                write!(f, "robot {}: a schedule for {sensors} sensors; expected one for its {expected}", robot + 1)
+            }
+            Self::Window { robot, window, min_refire } => write!(
+                f,
+                "robot {}: window_us is {}; expected at most {}, after which a sensor of its schedule fires again",
+                robot + 1,
+                window.as_micros(),
+                min_refire.as_micros()
+            ),
+            Self::Contact { robot, contact } => {
+                let robot = robot + 1;
+                match contact {
+                    Contact::Wall(wall) => write!(f, "robot {robot} touches wall {wall}")?,
+                    Contact::Pole(pole) => write!(f, "robot {robot} touches pole {pole}")?,
+                    Contact::Solid => write!(f, "robot {robot} is inside a wall or outside the room")?,
+                }
+                write!(f, "; expected it to stand free at its pose")
+            }
+            Self::Noise { field, value, expected } => write!(f, "noise: {field} is {value}; expected {expected}"),
+            Self::Order { max_order } => write!(f, "max_order is {max_order}; expected at most {MAX_ORDER}"),
+        }
+    }
+}
+
+impl core::error::Error for WorldError {}

@@ -1,0 +1,218 @@
+//! The tables and keys of a world file, as serde reads them, and what plain ones stand for.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::{
+    geometry::{Pose, Vector},
+    scene::{Air, Material},
+    world::{noise::Noise, world::DEFAULT_ORDER},
+};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WorldFile {
+    #[serde(default = "default_seed")]
+    pub(super) seed: u64,
+    #[serde(default = "default_order")]
+    pub(super) max_order: u32,
+    pub(super) air: Option<Spanned<AirFile>>,
+    pub(super) noise: Option<Spanned<NoiseFile>>,
+    #[serde(default, rename = "wall")]
+    pub(super) walls: Vec<Spanned<WallFile>>,
+    #[serde(default, rename = "pole")]
+    pub(super) poles: Vec<Spanned<PoleFile>>,
+    #[serde(default, rename = "robot")]
+    pub(super) robots: Vec<Spanned<RobotFile>>,
+}
+
+fn default_seed() -> u64 {
+    1
+}
+
+fn default_order() -> u32 {
+    DEFAULT_ORDER
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AirFile {
+    pub(super) temperature_c: Option<f64>,
+    pub(super) humidity_percent: Option<f64>,
+    pub(super) pressure_kpa: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct NoiseFile {
+    pub(super) fading_db_rms: Option<f64>,
+    pub(super) jitter_us_rms: Option<f64>,
+    pub(super) bursts_per_s: Option<f64>,
+    pub(super) burst_db: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WallFile {
+    pub(super) points_m: Vec<[f64; 2]>,
+    #[serde(default)]
+    pub(super) closed: bool,
+    #[serde(default)]
+    pub(super) faces: FacesFile,
+    pub(super) material: Option<MaterialFile>,
+    pub(super) reflection: Option<f64>,
+    pub(super) roughness_m: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PoleFile {
+    pub(super) at_m: [f64; 2],
+    pub(super) radius_m: f64,
+    pub(super) material: Option<MaterialFile>,
+    pub(super) reflection: Option<f64>,
+    pub(super) roughness_m: Option<f64>,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum FacesFile {
+    #[default]
+    Left,
+    Both,
+    Open,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum MaterialFile {
+    Smooth,
+    Painted,
+    Soft,
+    Perfect,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RobotFile {
+    pub(super) pose: PoseFile,
+    pub(super) ring: Option<RingFile>,
+    pub(super) sensors: Option<Vec<PoseFile>>,
+    #[serde(default)]
+    pub(super) transducer: TransducerFile,
+    #[serde(default)]
+    pub(super) gain: GainFile,
+    pub(super) motion: Option<MotionFile>,
+    pub(super) clock: Option<ClockFile>,
+    pub(super) schedule: Option<Spanned<toml::Value>>,
+    pub(super) start_us: Option<u32>,
+    pub(super) period_us: Option<u32>,
+    pub(super) t_delta_us: Option<u32>,
+    pub(super) window_us: Option<u32>,
+    pub(super) blanking_us: Option<u32>,
+    pub(super) min_refire_us: Option<u32>,
+    pub(super) neighbours: Option<u8>,
+    pub(super) consecutive: Option<u8>,
+    pub(super) patience: Option<u8>,
+    #[serde(default)]
+    pub(super) odometry: bool,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PoseFile {
+    pub(super) x_m: f64,
+    pub(super) y_m: f64,
+    #[serde(default)]
+    pub(super) heading_deg: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RingFile {
+    pub(super) sensors: usize,
+    pub(super) spacing_deg: f64,
+    pub(super) radius_m: f64,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum TransducerFile {
+    #[default]
+    #[serde(rename = "polaroid_6500")]
+    Polaroid6500,
+    HcSr04,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum GainFile {
+    #[default]
+    Constant,
+    SquareRoot,
+    Linear,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MotionFile {
+    pub(super) velocity_m_s: Option<[f64; 2]>,
+    pub(super) turn_deg_s: Option<f64>,
+    pub(super) waypoints_m: Option<Vec<[f64; 2]>>,
+    pub(super) speed_m_s: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ClockFile {
+    #[serde(default)]
+    pub(super) offset_us: u32,
+    #[serde(default)]
+    pub(super) drift_ppm: f64,
+}
+
+impl AirFile {
+    pub(super) fn air(&self) -> Air {
+        let default = Air::default();
+        Air {
+            temperature_c: self.temperature_c.unwrap_or(default.temperature_c),
+            humidity_percent: self.humidity_percent.unwrap_or(default.humidity_percent),
+            pressure_kpa: self.pressure_kpa.unwrap_or(default.pressure_kpa),
+        }
+    }
+}
+
+impl NoiseFile {
+    pub(super) fn noise(&self) -> Noise {
+        let default = Noise::default();
+        Noise {
+            fading_db_rms: self.fading_db_rms.unwrap_or(default.fading_db_rms),
+            jitter_us_rms: self.jitter_us_rms.unwrap_or(default.jitter_us_rms),
+            bursts_per_s: self.bursts_per_s.unwrap_or(default.bursts_per_s),
+            burst_db: self.burst_db.unwrap_or(default.burst_db),
+        }
+    }
+}
+
+impl PoseFile {
+    pub(super) fn pose(self) -> Pose {
+        Pose::new(Vector::new(self.x_m, self.y_m), self.heading_deg.to_radians())
+    }
+}
+
+/// A material by its name, with what is set apart from it.
+pub(super) fn material(
+    default: Material,
+    named: Option<MaterialFile>,
+    reflection: Option<f64>,
+    roughness: Option<f64>,
+) -> Material {
+    let base = match named {
+        None => default,
+        Some(MaterialFile::Smooth) => Material::SMOOTH,
+        Some(MaterialFile::Painted) => Material::PAINTED,
+        Some(MaterialFile::Soft) => Material::SOFT,
+        Some(MaterialFile::Perfect) => Material::PERFECT,
+    };
+    Material { reflection: reflection.unwrap_or(base.reflection), roughness_m: roughness.unwrap_or(base.roughness_m) }
+}

@@ -1,0 +1,85 @@
+//! Worlds in TOML files: walls, poles, air, robots, noise and seed. Whatever is wrong with one is reported in one line:
+//! file, line, field, value, what is expected.
+
+mod format;
+mod robot;
+mod scene;
+mod schedule_file;
+mod source;
+
+use core::ops::Range;
+use std::path::Path;
+
+use toml::Spanned;
+
+use super::error::WorldError;
+use super::noise::Noise;
+use super::world::World;
+use format::WorldFile;
+use robot::robot;
+use scene::scene;
+use source::Source;
+
+pub use schedule_file::ScheduleFile;
+pub use source::WorldFileError;
+
+impl World {
+    /// Reads a world from a TOML file. Schedules that it names are looked for beside it.
+    ///
+    /// # Errors
+    /// The first thing found wrong.
+    pub fn from_toml(file: &Path) -> Result<Self, WorldFileError> {
+        Self::parse(&Source::read(file)?)
+    }
+
+    /// The same from a text; `file` stands in errors, and schedules are looked for beside it.
+    ///
+    /// # Errors
+    /// As [`from_toml`](Self::from_toml).
+    ///
+    /// ```
+    /// use eeruf_sim::World;
+    /// let text = "
+    ///     [[wall]]
+    ///     points_m = [[2, -1], [2, 1]]
+    ///     [[robot]]
+    ///     pose = { x_m = 0, y_m = 0 }
+    ///     ring = { sensors = 65, spacing_deg = 5, radius_m = 0.3 }
+    /// ";
+    /// let error = World::from_text("pillars.toml".as_ref(), text).unwrap_err();
+    /// assert_eq!(error.to_string(), "pillars.toml, line 6: robot 1 has 65 sensors; expected 1 to 64");
+    /// ```
+    pub fn from_text(file: &Path, text: &str) -> Result<Self, WorldFileError> {
+        Self::parse(&Source { file: file.to_owned(), text: text.to_owned() })
+    }
+
+    fn parse(source: &Source) -> Result<Self, WorldFileError> {
+        let file: WorldFile = source.toml()?;
+        let scene = scene(source, &file)?;
+        let mut robots = Vec::new();
+        for (index, entry) in file.robots.iter().enumerate() {
+            robots.push(robot(source, index, entry)?);
+        }
+        let noise = file.noise.as_ref().map_or(Noise::default(), |noise| noise.get_ref().noise());
+        let world = Self::new(scene, robots, noise).and_then(|world| world.with_max_order(file.max_order));
+        world.map(|world| world.with_seed(file.seed)).map_err(|error| {
+            let (part, field) = blame(&file, &error);
+            source.error(part, field, error)
+        })
+    }
+}
+
+/// Which part of the file an error is about, and which field of it.
+fn blame(file: &WorldFile, error: &WorldError) -> (Option<Range<usize>>, &'static str) {
+    let robot = |robot: usize| file.robots.get(robot).map(Spanned::span);
+    match *error {
+        WorldError::Sensors { robot: index, .. } => (robot(index), "ring"),
+        WorldError::Field { robot: index, field, .. } => (robot(index), field),
+        WorldError::Schedule { robot: index, .. } => (robot(index), "schedule"),
+        WorldError::Window { robot: index, .. } => (robot(index), "window_us"),
+        WorldError::Contact { robot: index, .. } => (robot(index), "pose"),
+        WorldError::Noise { field, .. } => (file.noise.as_ref().map(Spanned::span), field),
+        WorldError::Order { .. } => (Some(0..usize::MAX), "max_order"),
+        WorldError::Scene(_) | WorldError::Robots { .. } => (None, ""),
+    }
+}

@@ -1,0 +1,93 @@
+//! The robots of a world file.
+
+use std::path::Path;
+
+use eeruf_core::{MAX_SENSORS, Micros};
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::format::{GainFile, MotionFile, RobotFile, TransducerFile};
+use super::schedule_file::ScheduleFile;
+use super::source::{Source, WorldFileError};
+use crate::{
+    acoustics::{GainProfile, Transducer},
+    geometry::{Point, Vector},
+    world::{clock::Clock, motion::Motion, robot::AnySchedule, robot::Robot},
+};
+
+/// Builds the robot with this index.
+pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -> Result<Robot, WorldFileError> {
+    let file = entry.get_ref();
+    let fail =
+        |field, message: String| source.error(Some(entry.span()), field, format!("robot {}{message}", index + 1));
+    let gain = match file.gain {
+        GainFile::Constant => GainProfile::Constant,
+        GainFile::SquareRoot => GainProfile::SquareRoot,
+        GainFile::Linear => GainProfile::Linear,
+    };
+    let preset = match file.transducer {
+        TransducerFile::Polaroid6500 => Transducer::POLAROID_6500,
+        TransducerFile::HcSr04 => Transducer::HC_SR04,
+    };
+    let transducer = Transducer { gain, ..preset };
+    let pose = file.pose.pose();
+    let mut robot = match (&file.ring, &file.sensors) {
+        (Some(ring), None) => {
+            // Checked here, before as many poses are made.
+            if ring.sensors == 0 || ring.sensors > MAX_SENSORS {
+                return Err(fail("ring", format!(" has {} sensors; expected 1 to {MAX_SENSORS}", ring.sensors)));
+            }
+            Robot::ring(pose, ring.sensors, ring.spacing_deg.to_radians(), ring.radius_m, transducer)
+        }
+        (None, Some(sensors)) => {
+            Robot::with_sensors(pose, sensors.iter().map(|sensor| sensor.pose()).collect(), transducer)
+        }
+        _ => return Err(fail("pose", ": expected either ring or sensors".to_owned())),
+    };
+    if let Some(motion) = &file.motion {
+        robot.motion = match motion {
+            MotionFile { waypoints_m: Some(points), speed_m_s: Some(speed), velocity_m_s: None, turn_deg_s: None } => {
+                Motion::Waypoints { points: points.iter().map(|&[x, y]| Point::new(x, y)).collect(), speed_m_s: *speed }
+            }
+            MotionFile { waypoints_m: None, speed_m_s: None, velocity_m_s, turn_deg_s } => {
+                let [x, y] = velocity_m_s.unwrap_or_default();
+                Motion::Constant { velocity: Vector::new(x, y), turn_rad_s: turn_deg_s.unwrap_or(0.0).to_radians() }
+            }
+            _ => {
+                let expected = ": motion needs either waypoints_m and speed_m_s, or velocity_m_s, turn_deg_s or both";
+                return Err(fail("motion", expected.to_owned()));
+            }
+        };
+    }
+    if let Some(clock) = &file.clock {
+        robot.clock = Clock { offset_us: clock.offset_us, drift_ppm: clock.drift_ppm };
+    }
+    if let Some(schedule) = &file.schedule {
+        robot.schedule = Some(self::schedule(source, schedule)?);
+    }
+    let set = |field: &mut Micros, value: Option<u32>| *field = value.map_or(*field, Micros::new);
+    set(&mut robot.start, file.start_us);
+    set(&mut robot.period, file.period_us);
+    set(&mut robot.t_delta, file.t_delta_us);
+    set(&mut robot.window, file.window_us);
+    set(&mut robot.blanking, file.blanking_us);
+    set(&mut robot.min_refire, file.min_refire_us);
+    robot.neighbours = file.neighbours.unwrap_or(robot.neighbours);
+    robot.consecutive = file.consecutive.unwrap_or(robot.consecutive);
+    robot.patience = file.patience.unwrap_or(robot.patience);
+    robot.odometry = file.odometry;
+    Ok(robot)
+}
+
+/// A schedule in the file itself, or the name of a file beside it.
+fn schedule(source: &Source, value: &Spanned<toml::Value>) -> Result<AnySchedule, WorldFileError> {
+    let here = |message: String| source.error(Some(value.span()), "", format!("schedule: {message}"));
+    if let toml::Value::String(name) = value.get_ref() {
+        let beside = source.file.parent().unwrap_or(Path::new("")).join(name);
+        let source = Source::read(&beside)?;
+        let file: ScheduleFile = source.toml()?;
+        return file.schedule().map_err(|message| source.error(None, "", message));
+    }
+    let file = ScheduleFile::deserialize(value.get_ref().clone()).map_err(|error| here(error.message().to_owned()))?;
+    file.schedule().map_err(here)
+}

@@ -1,0 +1,25 @@
+//! Who is there: robots with rings, clocks and motions in a scene, how noisy it is, and the seed; from code or a TOML
+//! file. It uses `geometry`, `scene`, `acoustics` and `tracing`; nothing happens here, time passes in `simulation`.
+
+mod check;
+mod clock;
+mod error;
+mod file;
+mod motion;
+mod noise;
+mod ring;
+mod robot;
+#[allow(clippy::module_inception, reason = "the world itself")]
+mod world;
+
+pub(crate) use clock::Ticker;
+pub use clock::{Clock, MAX_DRIFT_PPM};
+pub use error::WorldError;
+pub use file::{ScheduleFile, WorldFileError};
+pub use motion::{MAX_SPEED, Motion};
+pub(crate) use noise::{FARTHEST, Normal};
+pub use noise::{Noise, Random};
+pub use ring::ring_of;
+pub(crate) use robot::offset;
+pub use robot::{AnySchedule, MAX_ROBOTS, Robot};
+pub use world::{DEFAULT_ORDER, World};

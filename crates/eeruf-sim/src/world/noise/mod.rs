@@ -1,0 +1,54 @@
+//! Noise: how echoes fade and jitter, how many bursts come from outside, and the generator behind both.
+//!
+//! What happens to one arrival is a function of the seed, the firing and the path alone ([`Random::of`]), so that it
+//! does not depend on the order in which arrivals are looked at, on the method that is simulated, or on the number of
+//! threads.
+
+mod normal;
+mod random;
+
+use super::error::WorldError;
+
+pub(crate) use normal::{FARTHEST, Normal};
+pub use random::Random;
+
+/// How noisy a world is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Root mean square by which each arrival's level fades or grows, in dB.
+    pub fading_db_rms: f64,
+    /// Root mean square by which each arrival is early or late, in microseconds.
+    pub jitter_us_rms: f64,
+    /// How many bursts from outside (compressed air, keys, another make of sensor) are heard in a second, on average.
+    pub bursts_per_s: f64,
+    /// How far they are above what is just heard, in dB.
+    pub burst_db: f64,
+}
+
+impl Default for Noise {
+    /// 1.5 dB, 15 us, no bursts.
+    fn default() -> Self {
+        Self { fading_db_rms: 1.5, jitter_us_rms: 15.0, bursts_per_s: 0.0, burst_db: 20.0 }
+    }
+}
+
+impl Noise {
+    /// None at all.
+    pub const NONE: Self = Self { fading_db_rms: 0.0, jitter_us_rms: 0.0, bursts_per_s: 0.0, burst_db: 0.0 };
+
+    pub(crate) fn check(&self) -> Result<(), WorldError> {
+        for (field, value, most, expected) in [
+            ("fading_db_rms", self.fading_db_rms, 20.0, "0 to 20"),
+            ("jitter_us_rms", self.jitter_us_rms, 10_000.0, "0 to 10000"),
+            ("bursts_per_s", self.bursts_per_s, 10_000.0, "0 to 10000"),
+        ] {
+            if !(0.0..=most).contains(&value) {
+                return Err(WorldError::Noise { field, value, expected });
+            }
+        }
+        if !(-200.0..=200.0).contains(&self.burst_db) {
+            return Err(WorldError::Noise { field: "burst_db", value: self.burst_db, expected: "-200 to 200" });
+        }
+        Ok(())
+    }
+}

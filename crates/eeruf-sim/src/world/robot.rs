@@ -1,0 +1,111 @@
+//! A robot: its transducers, where it is and how it moves, its clock, and how it fires and listens.
+
+use eeruf_core::{MAX_SENSORS, Micros, Schedule};
+
+use super::clock::Clock;
+use super::motion::Motion;
+use super::ring::ring_of;
+use crate::{
+    acoustics::Transducer,
+    geometry::{Pose, Vector},
+};
+
+/// The most robots in one world: a choice, beyond any use, so that more is a mistake in the input.
+pub const MAX_ROBOTS: usize = 64;
+/// A schedule whose number of sensors is known only at run time.
+pub type AnySchedule = Schedule<MAX_SENSORS>;
+
+/// A robot with its ring. Make one with [`Robot::ring`] and change what differs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robot {
+    /// Place and heading of each sensor relative to the robot, 1 to 64 of them.
+    pub sensors: Vec<Pose>,
+    /// What kind of transducer they are. Robots with different kinds do not hear each other: the frequencies of the
+    /// presets are kilohertz apart.
+    pub transducer: Transducer,
+    /// Where the robot is at the start.
+    pub pose: Pose,
+    /// How it moves from there.
+    pub motion: Motion,
+    /// Its clock.
+    pub clock: Clock,
+    /// When its ring begins to fire, by its own clock, after the start of the simulation.
+    pub start: Micros,
+    /// The schedule that the `eeruf` methods use; `None` for the paper's own (see
+    /// [`table_i_d_for`](crate::table_i_d_for)).
+    pub schedule: Option<AnySchedule>,
+    /// `T_p`, for all methods that do not bring their own schedule. The default is 60 ms.
+    pub period: Micros,
+    /// `T_delta`: consecutive readings that differ by no more are near-identical. The default is 0.5 ms.
+    pub t_delta: Micros,
+    /// `T_wind`: how long a sensor listens. The default is 36 ms, 6.2 m.
+    pub window: Micros,
+    /// How long a sensor is deaf after it has fired.
+    pub blanking: Micros,
+    /// With immediate refiring, how long a sensor rests at least between its echo and its next firing. The default is
+    /// 36 ms, as long as it listens: much sooner, and it hears its last sound fade away in the room, just after
+    /// blanking, every time.
+    pub min_refire: Micros,
+    /// How many adjacent sensors must not fire close together; the conventional lags repeat after as many. The default
+    /// is 4.
+    pub neighbours: u8,
+    /// How many consecutive readings must agree, 2 to 8. The default is 2, as in the paper.
+    pub consecutive: u8,
+    /// For how many firings an accepted echo that is missing is waited for, 0 to 15
+    /// ([`EchoFilter::with_patience`](eeruf_core::EchoFilter::with_patience)). The default is 0, as in the paper.
+    pub patience: u8,
+    /// Whether odometry gives the ring by how much a good reading should change from the robot's own motion.
+    pub odometry: bool,
+}
+
+impl Robot {
+    /// `sensors` transducers `spacing_rad` apart on an arc of radius `radius_m`, the middle of the arc ahead.
+    ///
+    /// ```
+    /// use eeruf_sim::{Pose, Robot, Transducer};
+    /// let robot = Robot::ring(Pose::identity(), 8, 15f64.to_radians(), 0.3, Transducer::POLAROID_6500);
+    /// assert!((robot.sensors[0].rotation.angle() + 52.5f64.to_radians()).abs() < 1e-12);
+    /// assert_eq!(robot.blanking.as_micros(), 2380);
+    /// ```
+    pub fn ring(pose: Pose, sensors: usize, spacing_rad: f64, radius_m: f64, transducer: Transducer) -> Self {
+        let first_rad = -0.5 * spacing_rad * sensors.saturating_sub(1) as f64;
+        Self::with_sensors(
+            pose,
+            ring_of(&Pose::identity(), sensors, radius_m, first_rad, spacing_rad).collect(),
+            transducer,
+        )
+    }
+
+    /// Transducers at any places relative to the robot.
+    pub fn with_sensors(pose: Pose, sensors: Vec<Pose>, transducer: Transducer) -> Self {
+        Self {
+            sensors,
+            transducer,
+            pose,
+            motion: Motion::Still,
+            clock: Clock::default(),
+            start: Micros::ZERO,
+            schedule: None,
+            period: Micros::from_millis(60),
+            t_delta: Micros::new(500),
+            window: Micros::from_millis(36),
+            blanking: Micros::new((transducer.blanking_s * 1e6).round() as u32),
+            min_refire: Micros::from_millis(36),
+            neighbours: 4,
+            consecutive: 2,
+            patience: 0,
+            odometry: false,
+        }
+    }
+
+    /// The radius in metres of the smallest disc about the robot's middle that holds all its sensors: its body, as far
+    /// as the simulator knows.
+    pub fn radius_m(&self) -> f64 {
+        self.sensors.iter().map(|sensor| offset(sensor).norm()).fold(0.0, f64::max)
+    }
+}
+
+/// Where a sensor stands relative to its robot's middle.
+pub(crate) fn offset(sensor: &Pose) -> Vector {
+    sensor.translation.vector
+}

@@ -1,0 +1,120 @@
+//! A world: a scene with robots in it, how noisy it is, and the seed that decides all that is random. Checked once, so
+//! that a simulation has nothing left to refuse but what a method asks for.
+
+use super::check::check;
+use super::error::WorldError;
+use super::noise::Noise;
+use super::robot::{MAX_ROBOTS, Robot};
+use crate::{geometry::Pose, scene::Scene, tracing::MAX_ORDER};
+
+/// The highest order that a world follows sound to, unless another is asked for: the order at which Set I is
+/// evaluated.
+pub const DEFAULT_ORDER: u32 = 6;
+/// A scene, robots, noise and a seed.
+#[derive(Debug)]
+pub struct World {
+    scene: Scene,
+    robots: Vec<Robot>,
+    noise: Noise,
+    max_order: u32,
+    pole_order: u32,
+    seed: u64,
+}
+
+impl World {
+    /// Checks the robots and the noise against the scene. The order is [`DEFAULT_ORDER`], the seed 1.
+    ///
+    /// # Errors
+    /// The first thing found wrong, naming the robot by its index.
+    ///
+    /// ```
+    /// use eeruf_sim::*;
+    /// let scene = Scene::new(vec![Wall::new(2.0, 5.0, 2.0, -5.0).with_faces(Faces::Both)], vec![], Air::default())?;
+    /// let robot = Robot::ring(Pose::translation(1.8, 0.0), 8, 0.26, 0.3, Transducer::POLAROID_6500);
+    /// let error = World::new(scene, vec![robot], Noise::default()).unwrap_err();
+    /// assert_eq!(error.to_string(), "robot 1 touches wall 0; expected it to stand free at its pose");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn new(scene: Scene, robots: Vec<Robot>, noise: Noise) -> Result<Self, WorldError> {
+        if robots.is_empty() || robots.len() > MAX_ROBOTS {
+            return Err(WorldError::Robots { robots: robots.len() });
+        }
+        for (index, robot) in robots.iter().enumerate() {
+            check(&scene, index, robot)?;
+        }
+        noise.check()?;
+        Ok(Self { scene, robots, noise, max_order: DEFAULT_ORDER, pole_order: MAX_ORDER, seed: 1 })
+    }
+
+    /// The same world, with sound followed up to another order.
+    ///
+    /// # Errors
+    /// [`WorldError::Order`] above [`MAX_ORDER`].
+    pub fn with_max_order(self, max_order: u32) -> Result<Self, WorldError> {
+        if max_order > MAX_ORDER {
+            return Err(WorldError::Order { max_order });
+        }
+        Ok(Self { max_order, ..self })
+    }
+
+    /// The same world, with sound that meets a pole followed up to this order only, at most that of all other sound.
+    /// Such sound is faint, and by far the most expensive to follow.
+    ///
+    /// # Errors
+    /// [`WorldError::Order`] above [`MAX_ORDER`].
+    pub fn with_pole_order(self, pole_order: u32) -> Result<Self, WorldError> {
+        if pole_order > MAX_ORDER {
+            return Err(WorldError::Order { max_order: pole_order });
+        }
+        Ok(Self { pole_order, ..self })
+    }
+
+    /// The same world with another seed.
+    #[must_use]
+    pub fn with_seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+
+    /// Walls, poles and air.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The robots, at least one.
+    pub fn robots(&self) -> &[Robot] {
+        &self.robots
+    }
+
+    /// How noisy it is.
+    pub fn noise(&self) -> Noise {
+        self.noise
+    }
+
+    /// The most bounces that sound is followed for.
+    pub fn max_order(&self) -> u32 {
+        self.max_order
+    }
+
+    /// The most bounces that sound is followed for if one of them is at a pole.
+    pub fn pole_order(&self) -> u32 {
+        self.pole_order.min(self.max_order)
+    }
+
+    /// What decides all that is random.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Whether any robot ever moves.
+    pub fn moves(&self) -> bool {
+        self.robots.iter().any(|robot| !robot.motion.is_still())
+    }
+
+    /// The places and headings of one robot's sensors at a time in seconds; none for a robot that is not there.
+    pub fn sensors(&self, robot: usize, time_s: f64) -> impl Iterator<Item = Pose> + '_ {
+        self.robots.get(robot).into_iter().flat_map(move |robot| {
+            let pose = robot.motion.at(&robot.pose, time_s).pose;
+            robot.sensors.iter().map(move |sensor| pose * sensor)
+        })
+    }
+}

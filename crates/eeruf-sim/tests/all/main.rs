@@ -1,0 +1,14 @@
+//! The integration tests as one binary, since linking takes longer than running most of them.
+
+mod amplitudes;
+mod corpus;
+#[path = "../common/corpus.rs"]
+mod corpus_reader;
+mod facts;
+mod image_source;
+mod properties;
+mod random;
+mod set_one;
+mod set_two;
+mod simulation;
+mod worlds;

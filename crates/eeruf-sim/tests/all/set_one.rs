@@ -1,0 +1,81 @@
+//! Set I over many geometries, as `eeruf experiment set-one` runs it.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use eeruf_sim::{
+    Method, best_schedule_for,
+    experiments::{
+        ExperimentError,
+        set_one::{Alcove, Figures, READINGS, SetOne, set_one},
+    },
+    requirements_of,
+};
+
+const METHODS: [Method; 6] =
+    [Method::Conventional, Method::Comparison, Method::Eeruf, Method::EerufBest, Method::Adaptive, Method::MultiEcho];
+
+fn run(seeds: u64, readings: u32, methods: &[Method]) -> SetOne {
+    let best = best_schedule_for(&Alcove::random(0).robot(), 100_000, |_| true).unwrap();
+    set_one(seeds, readings, methods, Some(&best), &|_| true).unwrap()
+}
+
+fn of(table: &SetOne, method: Method) -> Figures {
+    table.methods.iter().find(|(of, _)| *of == method).unwrap().1
+}
+
+#[test]
+fn alternation_removes_the_errors_that_comparison_alone_leaves_and_several_echoes_lose_hardly_a_good_reading() {
+    let table = run(80, READINGS, &[Method::Conventional, Method::Comparison, Method::Eeruf, Method::MultiEcho]);
+    let wrong = |method| of(&table, method).wrong_of_all.unwrap().median;
+    assert!(wrong(Method::Conventional) > 0.3, "{}", wrong(Method::Conventional));
+    assert!(wrong(Method::Comparison) > 0.15, "{}", wrong(Method::Comparison));
+    assert!(wrong(Method::Eeruf) < 0.03, "{}", wrong(Method::Eeruf));
+    // What else several echoes get wrong is a first echo just loud enough that faded away.
+    assert!(wrong(Method::MultiEcho) < 0.03, "{}", wrong(Method::MultiEcho));
+    let crosstalk = of(&table, Method::MultiEcho).crosstalk_of_all.unwrap().median;
+    assert!(crosstalk < 0.01, "{crosstalk}");
+    let lost = |method| of(&table, method).good_lost.unwrap().median;
+    assert!(lost(Method::MultiEcho) < lost(Method::Eeruf) / 4.0, "{} {}", lost(Method::MultiEcho), lost(Method::Eeruf));
+}
+
+#[test]
+fn the_best_schedule_guarantees_what_the_table_does_in_a_period_a_fifth_shorter() {
+    let robot = Alcove::random(0).robot();
+    let best = best_schedule_for(&robot, 100_000, |_| true).unwrap();
+    assert!(best.proven && best.schedule.verify(&requirements_of(&robot)).ok());
+    assert_eq!(best.schedule.period().as_micros(), 47_900);
+}
+
+#[test]
+fn set_one_is_the_same_on_any_number_of_threads() {
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| run(3, 800, &METHODS))
+    };
+    assert_eq!(on(1), on(2));
+}
+
+#[test]
+fn json_names_methods_and_quantiles() {
+    let json = serde_json::to_value(run(2, 80, &METHODS)).unwrap();
+    for method in METHODS {
+        let figures = &json["methods"][method.as_str()];
+        for figure in ["wrong_of_all", "wrong_of_accepted", "rejected", "good_lost", "age_ms", "readings_per_s"] {
+            for quantile in ["p10", "median", "p90"] {
+                assert!(figures[figure][quantile].is_f64() || figures[figure].is_null(), "{method} {figure}");
+            }
+        }
+        assert!(figures["rejected"]["median"].is_f64());
+    }
+}
+
+#[test]
+fn set_one_stops_when_it_is_told_to_and_refuses_to_do_nothing() {
+    let calls = AtomicUsize::new(0);
+    let stop = |_| calls.fetch_add(1, Ordering::Relaxed) < 2;
+    assert_eq!(set_one(1000, READINGS, &[Method::Eeruf], None, &stop), Err(ExperimentError::Stopped));
+    assert!(calls.into_inner() < 20);
+    let error = |seeds, methods: &[Method]| set_one(seeds, 80, methods, None, &|_| true).unwrap_err().to_string();
+    assert_eq!(error(0, &METHODS), "0 seeds; expected at least one");
+    assert_eq!(error(1, &[]), "no methods; expected at least one");
+}

@@ -1,0 +1,107 @@
+//! Set II over many courses, as `eeruf experiment set-two` runs it.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use eeruf_sim::{
+    LabMate, Method,
+    experiments::{
+        ExperimentError,
+        set_two::{Ending, Figures, SECOND_AHEAD, SECOND_BEHIND, SetTwo, SetTwoOptions, set_two, speed_sweep},
+    },
+};
+
+fn options(seeds: u64, methods: &[Method]) -> SetTwoOptions {
+    SetTwoOptions { seeds, methods: methods.to_vec(), ..SetTwoOptions::default() }
+}
+
+fn of(found: &SetTwo, method: Method) -> Figures {
+    found.methods.iter().find(|(of, _)| *of == method).unwrap().1
+}
+
+#[test]
+fn eeruf_finishes_95_of_100_courses_at_0_8_m_s_or_more_alone_and_beside_a_second_robot() {
+    for second_robot in [None, Some(SECOND_BEHIND)] {
+        let asked = SetTwoOptions { second_robot, ..options(100, &[Method::Eeruf]) };
+        let eeruf = of(&set_two(&asked, &|_| true).unwrap(), Method::Eeruf);
+        assert!(eeruf.finished >= 95 && eeruf.mean_speed_m_s >= 0.8, "{eeruf:?}");
+    }
+}
+
+#[test]
+fn eeruf_gets_through_where_constant_lags_fill_the_grid_with_phantoms() {
+    for second_robot in [None, Some(SECOND_BEHIND)] {
+        let asked = options(20, &[Method::Conventional, Method::Comparison, Method::Eeruf]);
+        let found = set_two(&SetTwoOptions { second_robot, ..asked }, &|_| true).unwrap();
+        let eeruf = of(&found, Method::Eeruf);
+        assert!(eeruf.finished >= 19, "{eeruf:?}");
+        for method in [Method::Conventional, Method::Comparison] {
+            let other = of(&found, method);
+            assert!(other.finished <= 10 && other.phantom_echoes > 10.0 * eeruf.phantom_echoes, "{method} {other:?}");
+        }
+    }
+}
+
+#[test]
+fn every_course_tells_where_the_robot_drove_and_how_it_ended() {
+    let found = set_two(&options(6, &[Method::Conventional, Method::Eeruf]), &|_| true).unwrap();
+    for ((method, figures), runs) in found.methods.iter().zip(&found.runs) {
+        assert_eq!((figures.courses, runs.len()), (6, 6));
+        assert_eq!(figures.finished + figures.contacts + figures.timed_out, 6);
+        for run in runs {
+            let last = run.track.last().unwrap();
+            match run.ending {
+                Ending::Finished => assert!(last.x_m > 8.1 && run.nearest_m > 0.0, "{method}"),
+                Ending::Contact => assert!(last.x_m < 9.7, "{method}"),
+                Ending::TimeOut => assert!(run.time_s >= 39.9, "{method}"),
+            }
+            // It drives no faster than it can, and along its heading.
+            for pair in run.track.windows(2) {
+                let (dx, dy) = (pair[1].x_m - pair[0].x_m, pair[1].y_m - pair[0].y_m);
+                assert!(dx.hypot(dy) <= 1.0 * (pair[1].time_s - pair[0].time_s) + 1e-9);
+                let heading = 0.5 * (pair[0].heading_rad + pair[1].heading_rad);
+                let turned = (pair[1].heading_rad - pair[0].heading_rad).abs() < 1.0;
+                assert!(!turned || (dy * heading.cos() - dx * heading.sin()).abs() < 1e-3);
+            }
+            assert!(run.grid.iter().all(|cell| (1..=15).contains(&cell.value)));
+        }
+    }
+}
+
+#[test]
+fn set_two_is_the_same_on_any_number_of_threads() {
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let asked =
+            SetTwoOptions { second_robot: Some(SECOND_AHEAD), ..options(3, &[Method::Eeruf, Method::Adaptive]) };
+        pool.install(|| set_two(&asked, &|_| true).unwrap())
+    };
+    assert_eq!(on(1), on(2));
+}
+
+#[test]
+fn a_sweep_tells_at_each_speed_what_a_run_at_that_speed_tells() {
+    let asked = options(4, &[Method::Eeruf, Method::Sequential]);
+    let steps = speed_sweep(&asked, &[0.5, 1.5], &|_| true).unwrap();
+    assert_eq!(steps.iter().map(|step| step.speed_m_s).collect::<Vec<_>>(), [0.5, 1.5]);
+    for step in &steps {
+        let labmate = LabMate { speed_max_m_s: step.speed_m_s, ..LabMate::default() };
+        let found = set_two(&SetTwoOptions { labmate, ..asked.clone() }, &|_| true).unwrap();
+        for (place, (method, figures)) in found.methods.iter().enumerate() {
+            assert_eq!(step.finished[place], (*method, figures.finished as f64 / 4.0));
+            assert_eq!(step.mean_speed_m_s[place], (*method, figures.mean_speed_m_s));
+            assert!(figures.top_speed_m_s <= step.speed_m_s && figures.mean_speed_m_s < figures.top_speed_m_s);
+        }
+    }
+    assert!(steps[1].mean_speed_m_s[0].1 > 1.5 * steps[0].mean_speed_m_s[0].1);
+}
+
+#[test]
+fn set_two_stops_when_it_is_told_to_and_refuses_to_do_nothing() {
+    let calls = AtomicUsize::new(0);
+    let stop = |_| calls.fetch_add(1, Ordering::Relaxed) < 2;
+    assert_eq!(set_two(&options(1000, &[Method::Eeruf]), &stop), Err(ExperimentError::Stopped));
+    assert!(calls.into_inner() < 20);
+    let error = |asked: &SetTwoOptions| set_two(asked, &|_| true).unwrap_err().to_string();
+    assert_eq!(error(&options(0, &[Method::Eeruf])), "0 seeds; expected at least one");
+    assert_eq!(error(&options(1, &[])), "no methods; expected at least one");
+}

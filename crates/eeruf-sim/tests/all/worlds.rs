@@ -1,0 +1,107 @@
+//! World files: those that are shipped work, and bad ones get one clear line.
+
+use std::path::Path;
+
+use eeruf_sim::{Method, Options, World, simulate};
+
+const WALL: &str = "[[wall]]\npoints_m = [[3, -2], [3, 2]]\n";
+const ROBOT: &str =
+    "[[robot]]\npose = { x_m = 0, y_m = 0 }\nring = { sensors = 8, spacing_deg = 15, radius_m = 0.3 }\n";
+
+fn error(text: &str) -> String {
+    World::from_text(Path::new("w.toml"), text).unwrap_err().to_string()
+}
+
+/// The error for a robot with more lines, after `WALL`: its own lines are 3 to 5, the additional ones begin at 6.
+fn robot_error(more: &str) -> String {
+    error(&format!("{WALL}{ROBOT}{more}"))
+}
+
+#[test]
+fn the_worlds_that_are_shipped_can_be_simulated() {
+    for name in ["alcove", "wall", "lab", "pole-course"] {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenes/{name}.toml"));
+        let world = World::from_toml(&file).unwrap();
+        let readings = simulate(&world, Method::Eeruf, &Options::periods(4)).unwrap();
+        assert!(readings.len() > 20, "{name}");
+    }
+}
+
+#[test]
+fn a_bad_world_gets_one_line_that_names_file_line_field_value_and_what_is_expected() {
+    assert_eq!(error(WALL), "w.toml: 0 robots; expected 1 to 64");
+    let crossing = format!("{WALL}[[wall]]\npoints_m = [[2, 0], [4, 0]]\n{ROBOT}");
+    assert_eq!(error(&crossing), "w.toml, line 4: walls 0 and 1 cross at (3.0000, 0.0000); end one of them there");
+    let touching = format!("{WALL}{ROBOT}").replace("x_m = 0", "x_m = 2.9");
+    assert_eq!(error(&touching), "w.toml, line 4: robot 1 touches wall 0; expected it to stand free at its pose");
+    let nan = format!("{WALL}{ROBOT}").replace("y_m = 0", "y_m = nan");
+    assert_eq!(error(&nan), "w.toml, line 4: robot 1: pose is NaN; expected a number within 100000 m");
+    let none = format!("{WALL}{ROBOT}").replace("sensors = 8", "sensors = 0");
+    assert_eq!(error(&none), "w.toml, line 5: robot 1 has 0 sensors; expected 1 to 64");
+    assert_eq!(robot_error("neighbours = 0"), "w.toml, line 6: robot 1: neighbours is 0; expected 1 to 64");
+    assert_eq!(
+        robot_error("# a comment on window_us\nwindow_us = 2000"),
+        "w.toml, line 7: robot 1: window_us is 2000; expected more than the blanking time"
+    );
+    assert_eq!(
+        robot_error("schedule = { period_us = 10, t_fire_a_us = [1], t_fire_b_us = [2] }"),
+        "w.toml, line 6: robot 1: a schedule for 1 sensors; expected one for its 8"
+    );
+    assert_eq!(
+        robot_error("motion = { speed_m_s = 1.0 }"),
+        "w.toml, line 6: robot 1: motion needs either waypoints_m and speed_m_s, or velocity_m_s, turn_deg_s or both"
+    );
+    assert_eq!(
+        robot_error("clock = { drift_ppm = 1e9 }"),
+        "w.toml, line 6: robot 1: drift_ppm is 1000000000; expected -1000 to 1000"
+    );
+    assert_eq!(
+        robot_error("[noise]\nfading_db_rms = -1.0"),
+        "w.toml, line 7: noise: fading_db_rms is -1; expected 0 to 20"
+    );
+    assert_eq!(
+        robot_error("schedule = { period_us = 10 }"),
+        "w.toml, line 6: schedule: expected either t_lag_us, t_wait_a_us and t_wait_b_us, \
+         or t_fire_a_us and t_fire_b_us, one number for each sensor"
+    );
+}
+
+#[test]
+fn an_unknown_field_or_word_is_named_with_its_line() {
+    let unknown = robot_error("windw_us = 3");
+    assert!(
+        unknown.starts_with("w.toml, line 6: unknown field `windw_us`, expected one of `pose`, `ring`"),
+        "{unknown}"
+    );
+    let preset = robot_error("transducer = \"bat\"");
+    assert!(
+        preset.starts_with("w.toml, line 6: unknown variant `bat`, expected `polaroid_6500` or `hc_sr04`"),
+        "{preset}"
+    );
+    let negative = robot_error("period_us = -5");
+    assert!(negative.starts_with("w.toml, line 6: invalid value: integer `-5`, expected u32"), "{negative}");
+    let missing = World::from_toml(Path::new("no-such.toml")).unwrap_err().to_string();
+    assert!(missing.starts_with("no-such.toml: "), "{missing}");
+}
+
+#[test]
+fn a_window_beyond_the_schedules_own_refire_time_is_refused() {
+    let schedule = "[100, 200, 300, 400, 500, 600, 700, 800]";
+    let more = format!(
+        "window_us = 36000\nschedule = {{ period_us = 20000, t_fire_a_us = {schedule}, t_fire_b_us = {schedule} }}"
+    );
+    assert_eq!(
+        robot_error(&more),
+        "w.toml, line 6: robot 1: window_us is 36000; expected at most 20000, after which a sensor of its schedule \
+         fires again"
+    );
+}
+
+#[test]
+fn an_unknown_method_is_answered_with_the_list_of_all() {
+    let error = "erruf".parse::<Method>().unwrap_err().to_string();
+    assert!(error.starts_with("no method `erruf`; expected simultaneous, sequential, far_groups"), "{error}");
+    for method in Method::ALL {
+        assert_eq!(method.as_str().parse(), Ok(method));
+    }
+}

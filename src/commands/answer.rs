@@ -1,0 +1,8 @@
+//! What a command answers, and with it the exit code.
+
+pub(crate) enum Answer {
+    /// Exit code 0.
+    Yes,
+    /// Not verified, or infeasible: exit code 1.
+    No,
+}

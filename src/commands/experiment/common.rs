@@ -1,0 +1,64 @@
+//! What both sets are asked, and how both show how far they are.
+
+use std::fmt;
+use std::fs;
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+
+use eeruf_core::search::Progress;
+
+use crate::files::error::InputError;
+use crate::report::draw::Picture;
+use crate::report::watch::Watch;
+
+/// How many nodes the search for `eeruf_best` may cost; it is proven shortest long before.
+pub(crate) const BUDGET: u64 = 300_000;
+
+/// What both sets are asked.
+#[derive(clap::Args)]
+pub(crate) struct Common {
+    /// How many geometries or courses
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub(crate) seeds: Option<u64>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Draw SVG pictures into this folder
+    #[arg(long, value_name = "DIR")]
+    svg: Option<PathBuf>,
+    /// Draw the same pictures as PNG
+    #[arg(long, value_name = "DIR")]
+    png: Option<PathBuf>,
+}
+
+impl Common {
+    /// Draws a picture in each form that was asked for; the folders are made if need be.
+    pub(crate) fn draw(&self, name: &str, picture: impl Fn() -> Picture) -> Result<(), InputError> {
+        for (folder, ending) in [(&self.svg, "svg"), (&self.png, "png")] {
+            if let Some(folder) = folder {
+                fs::create_dir_all(folder).map_err(|error| InputError::new(folder, None, error))?;
+                picture().save(&folder.join(name).with_extension(ending))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// How far the search for `eeruf_best` is.
+pub(crate) fn designing(progress: &Progress) -> String {
+    format!("designing eeruf_best, {} nodes", progress.nodes)
+}
+
+/// An experiment has no file; what is wrong with it is said after its name.
+pub(crate) fn bad(set: &'static str) -> impl Fn(&dyn fmt::Display) -> InputError {
+    move |error| InputError::new(set.as_ref(), None, error)
+}
+
+/// Watches a run of several threads.
+pub(crate) fn watched(what: String) -> impl Fn(f64) -> bool + Sync {
+    let watch = Mutex::new(Watch::new());
+    move |done| {
+        let mut watch = watch.lock().unwrap_or_else(PoisonError::into_inner);
+        watch.go_on(|| format!("{what}, {:.0} % done", 100.0 * done))
+    }
+}

@@ -1,0 +1,114 @@
+//! `eeruf experiment set-two`: a LabMate drives through a course of thin poles, over many courses.
+
+use eeruf_core::Micros;
+use eeruf_sim::LabMate;
+use eeruf_sim::best_schedule_for;
+use eeruf_sim::experiments::set_two::{Course, SECOND_AHEAD, SECOND_BEHIND, SetTwoOptions, set_two, speed_sweep};
+use eeruf_sim::{Method, Point, Robot};
+
+use super::common::{BUDGET, Common, bad, designing, watched};
+use crate::commands::methods::chosen;
+use crate::files::error::InputError;
+use crate::report::draw;
+use crate::report::experiment::set_two::{Sweep, describe};
+use crate::report::json::to_json;
+use crate::report::watch::Watch;
+
+/// Set II: a LabMate drives through a course of 8 mm poles, about 1.6 m apart, steered by what its eight sensors
+/// read.
+///
+/// The ring fills a histogram grid (HIMM), the vector field histogram steers. Every method drives the same seeded
+/// courses.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    common: Common,
+    /// Drive by these methods only; by default sequential, conventional, comparison, eeruf, eeruf_best, adaptive and
+    /// multi_echo
+    #[arg(long = "method", value_name = "NAME", num_args = 1.., value_delimiter = ',')]
+    methods: Vec<Method>,
+    /// Let another robot with 24 sensors fire 24 times in 80 ms in a corner of the lab: behind the start, or ahead,
+    /// where all sensors face it
+    #[arg(long, value_name = "WHERE", num_args = 0..=1, default_missing_value = "behind")]
+    second_robot: Option<Corner>,
+    /// The platform's highest speed in m/s
+    #[arg(long, value_name = "M/S", default_value_t = 1.0, value_parser = speed)]
+    speed: f64,
+    /// Do not pass the ring the change that the robot's own motion makes in readings, and compare within 500 us instead
+    #[arg(long)]
+    no_odometry: bool,
+    /// Drive all courses at several top speeds instead, and give the highest that each method sustains
+    #[arg(long, conflicts_with = "speed")]
+    sweep: bool,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Corner {
+    Behind,
+    Ahead,
+}
+
+impl Corner {
+    fn position(self) -> Point {
+        match self {
+            Self::Behind => SECOND_BEHIND,
+            Self::Ahead => SECOND_AHEAD,
+        }
+    }
+}
+
+const SEEDS: u64 = 100;
+/// Wide enough for a robot at 1 m/s: 2 v dt / c is at most 0.434 ms.
+const PAPERS_T_DELTA: Micros = Micros::new(500);
+/// The top speeds of a sweep, in m/s.
+const SPEEDS: [f64; 7] = [0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0];
+
+fn speed(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(speed) if (0.1..=5.0).contains(&speed) => Ok(speed),
+        _ => Err("expected 0.1 to 5".to_owned()),
+    }
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), InputError> {
+    let bad = bad("set-two");
+    let mut options = SetTwoOptions {
+        seeds: args.common.seeds.unwrap_or(SEEDS),
+        second_robot: args.second_robot.map(Corner::position),
+        labmate: LabMate { speed_max_m_s: args.speed, ..LabMate::default() },
+        odometry: !args.no_odometry,
+        t_delta: if args.no_odometry { PAPERS_T_DELTA } else { SetTwoOptions::default().t_delta },
+        ..SetTwoOptions::default()
+    };
+    if !args.methods.is_empty() {
+        options.methods = chosen(&args.methods);
+    }
+    if options.methods.contains(&Method::EerufBest) {
+        let mut watch = Watch::new();
+        let robot = Robot { t_delta: options.t_delta, ..Course::random(0).robot() };
+        let best = best_schedule_for(&robot, BUDGET, |progress| watch.go_on(|| designing(progress)));
+        options.best = Some(best.map_err(|error| bad(&error))?);
+    }
+    let watched = watched(format!("{} courses by {} methods", options.seeds, options.methods.len()));
+    if args.sweep {
+        let steps = speed_sweep(&options, &SPEEDS, &watched).map_err(|error| bad(&error))?;
+        drop(watched);
+        let sweep = Sweep::of(&options, steps);
+        print!("{}", if args.common.json { to_json(&sweep) + "\n" } else { sweep.describe() });
+        return Ok(());
+    }
+    let found = set_two(&options, &watched).map_err(|error| bad(&error))?;
+    drop(watched);
+    let name = match args.second_robot {
+        None => "set-two",
+        Some(Corner::Behind) => "set-two-second-behind",
+        Some(Corner::Ahead) => "set-two-second-ahead",
+    };
+    args.common.draw(name, || draw::courses(&found))?;
+    if args.common.json {
+        println!("{}", to_json(&found));
+    } else {
+        print!("{}", describe(&found));
+    }
+    Ok(())
+}

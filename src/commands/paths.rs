@@ -1,0 +1,74 @@
+//! `eeruf paths`: every critical path of a ring, the ways along which one sensor hears another.
+
+use std::path::PathBuf;
+
+use eeruf_sim::MAX_ORDER;
+use eeruf_sim::{CrosstalkMatrix, CrosstalkQuery, Limits, Tracer, World};
+
+use super::answer::Answer;
+use crate::files::error::InputError;
+use crate::files::toml::read_world;
+use crate::report::bounces::{by_way_of, wall_numbers};
+use crate::report::json::to_json;
+use crate::report::paths::PathsJson;
+
+/// List every critical path of the first robot's ring: along which ways each sensor hears which other.
+///
+/// A path counts if its sound is loud enough to be heard. Sensors are printed from 1; walls and poles from 0, as in
+/// files.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The scene
+    #[arg(value_name = "SCENE.toml")]
+    file: PathBuf,
+    /// The most bounces, if not the scene's max_order
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_ORDER)))]
+    order: Option<u32>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    let world = read_world(&args.file)?;
+    let max_order = args.order.unwrap_or(world.max_order());
+    let bad = |error| InputError::new(&args.file, None, error);
+    let paths = critical_paths(&world, max_order).map_err(|error| bad(error.to_string()))?;
+    if args.json {
+        println!("{}", to_json(&paths));
+    } else {
+        println!(
+            "{}: {} critical paths of up to {max_order} bounces; levels in dB above what is just heard",
+            args.file.display(),
+            paths.order.len()
+        );
+        println!("{}", paths.table());
+    }
+    Ok(Answer::Yes)
+}
+
+fn critical_paths(world: &World, max_order: u32) -> Result<PathsJson, eeruf_sim::PathsError> {
+    let mut out = PathsJson::default();
+    let Some(robot) = world.robots().first() else { return Ok(out) };
+    let (scene, transducer) = (world.scene(), &robot.transducer);
+    let ring: Vec<_> = world.sensors(0, 0.0).collect();
+    let floor = transducer.detection_floor(scene.air());
+    let mut matrix = CrosstalkMatrix::new();
+    let query = CrosstalkQuery { scene, sensors: &ring, transducer, limits: Limits::order(max_order), floor };
+    matrix.compute(&mut Tracer::new(), &query)?;
+    for path in matrix.paths().iter().filter(|path| path.emitter != path.receiver) {
+        let received = transducer.received(path.amplitude, path.length_m, scene.air());
+        out.emitter.push(path.emitter);
+        out.receiver.push(path.receiver);
+        out.length_m.push(path.length_m);
+        out.order.push(path.order);
+        out.departure_rad.push(path.departure_rad);
+        out.arrival_rad.push(path.arrival_rad);
+        out.amplitude.push(path.amplitude);
+        out.level_db.push(20.0 * (received / floor).log10());
+        let bounces = matrix.bounces(path);
+        out.walls.push(wall_numbers(bounces));
+        out.by_way_of.push(by_way_of(bounces));
+    }
+    Ok(out)
+}

@@ -1,0 +1,113 @@
+//! `eeruf study`: every firing method in one scene, side by side on the same seed, and who was fooled by whom.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+
+use eeruf_sim::{Method, Options, SimulationError, World, shortest_schedule_for, simulate_while, sweep};
+
+use super::answer::Answer;
+use super::methods::chosen;
+use crate::files::error::InputError;
+use crate::files::toml::read_world;
+use crate::report::json::to_json;
+use crate::report::study::found::Study;
+use crate::report::study::json::StudyJson;
+use crate::report::study::{pictures, text};
+use crate::report::watch::Watch;
+
+/// Simulate every firing method in a scene, on the same seed: which readings were wrong, and who was fooled by whom.
+///
+/// The methods: simultaneous, sequential, far_groups, dither, conventional (constant lags, every echo accepted),
+/// comparison (constant lags, consecutive readings compared), median, eeruf_immediate, eeruf (the paper's table scaled
+/// to the period, or the robot's own schedule), eeruf_best (the shortest schedule with the same guarantees), adaptive,
+/// multi_echo.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The scene
+    #[arg(value_name = "SCENE.toml")]
+    file: PathBuf,
+    /// For how many of the first robot's periods; by default 2000, or 250 if anything moves
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    periods: Option<u32>,
+    /// Draw SVG pictures into this folder: scene, timing, readings and methods
+    #[arg(long, value_name = "DIR")]
+    svg: Option<PathBuf>,
+    /// Draw the same pictures as PNG
+    #[arg(long, value_name = "DIR")]
+    png: Option<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Simulate only these methods
+    #[arg(long = "method", value_name = "NAME", num_args = 1.., value_delimiter = ',')]
+    methods: Vec<Method>,
+    /// Another seed than the scene's
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+}
+
+const PERIODS: u32 = 2000;
+/// Paths have to be found anew for every firing then.
+const PERIODS_IF_MOVING: u32 = 250;
+/// How many nodes the search for `eeruf_best` may cost.
+const BUDGET: u64 = 20_000;
+
+pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    let world = read_world(&args.file)?;
+    let study = study(args, &world)?;
+    for (folder, ending) in [(&args.svg, "svg"), (&args.png, "png")] {
+        if let Some(folder) = folder {
+            pictures::pictures(folder, ending, &world, &study)?;
+        }
+    }
+    if args.json {
+        println!("{}", to_json(&StudyJson::new(&args.file, &world, &study)));
+    } else {
+        print!("{}", text::describe(&args.file, &world, &study));
+    }
+    Ok(Answer::Yes)
+}
+
+fn study(args: &Args, world: &World) -> Result<Study, InputError> {
+    let methods = chosen(&args.methods);
+    let bad = |error: &dyn std::fmt::Display| InputError::new(&args.file, None, error);
+    let mut watch = Watch::new();
+    let best = if methods.contains(&Method::EerufBest) {
+        let robot = world.robots().first().ok_or_else(|| bad(&"no robot"))?;
+        shortest_schedule_for(robot, BUDGET, |progress| {
+            watch.go_on(|| format!("designing eeruf_best, {} nodes", progress.nodes))
+        })
+        .map_err(|error| bad(&error))?
+    } else {
+        None
+    };
+    let periods = args.periods.unwrap_or(if world.moves() { PERIODS_IF_MOVING } else { PERIODS });
+    let seed = args.seed.unwrap_or(world.seed());
+    let options =
+        Options { seed: Some(seed), best: best.as_ref().map(|best| best.schedule), ..Options::periods(periods) };
+    let shared = Mutex::new((watch, vec![0.0; methods.len()]));
+    let jobs: Vec<_> = methods.iter().copied().enumerate().collect();
+    let results = sweep(&jobs, |&(index, method)| {
+        let readings = simulate_while(world, method, &options, |share| {
+            let mut shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
+            let (watch, shares) = &mut *shared;
+            shares[index] = share;
+            let done = shares.iter().sum::<f64>() / shares.len() as f64;
+            watch.go_on(|| format!("{periods} periods of {} methods, {:.0} % done", shares.len(), 100.0 * done))
+        });
+        (method, readings)
+    });
+    let (mut runs, mut left_out) = (vec![], vec![]);
+    for (method, result) in results {
+        match result {
+            Ok(readings) => runs.push(readings),
+            Err(SimulationError::Stopped) => return Err(bad(&"stopped by Ctrl-C")),
+            // Asked for by name, or nothing to do with the method: then it is the answer to the question.
+            Err(error) if !args.methods.is_empty() || matches!(error, SimulationError::Paths { .. }) => {
+                return Err(bad(&error));
+            }
+            Err(error) => left_out.push((method, error.to_string())),
+        }
+    }
+    Ok(Study { runs, left_out, best, periods, seed })
+}

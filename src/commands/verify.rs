@@ -1,0 +1,122 @@
+//! `eeruf verify`: holds a schedule file against the conditions of the paper.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::ValueEnum;
+use eeruf_core::{Criterion, Layout, MAX_SENSORS, Micros, Requirements};
+
+use super::answer::Answer;
+use crate::files::error::InputError;
+use crate::files::toml::read_schedule;
+use crate::report::json::to_json;
+use crate::report::verify::{ReportJson, describe};
+
+/// Check a schedule: do crosstalk readings always move by more than 2 T_delta, and do neighbours keep their distance?
+///
+/// Prints the separation under both readings of Eqs. (13a), (13b), the largest T_delta, the smallest interval between
+/// neighbours and the shortest time between two firings of one sensor, and names every violation. Exit code 0 if the
+/// schedule meets everything asked for, 1 if not, 2 for bad input.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The schedule: period_us with t_lag_us, t_wait_a_us, t_wait_b_us, or with t_fire_a_us, t_fire_b_us
+    #[arg(value_name = "SCHEDULE.toml")]
+    file: PathBuf,
+    /// T_delta: readings that differ by no more are near-identical
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    t_delta_us: u32,
+    /// The least time between the firings of two neighbours
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    min_interval_us: u32,
+    /// How many adjacent sensors are neighbours
+    #[arg(long, default_value_t = 4, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
+    neighbours: u8,
+    /// How the sensors stand: line, ring, blocks, or the pairs of neighbours themselves, counted from 0: 0-1,1-2
+    #[arg(long, default_value = "line", value_name = "LAYOUT")]
+    layout: LayoutArg,
+    /// How to read (13a), (13b)
+    #[arg(long, value_enum, default_value_t = CriterionArg::Exact)]
+    criterion: CriterionArg,
+    /// T_wind: how long a sensor listens
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    window_us: u32,
+    /// Also reject a sensor's own echo from the period before
+    #[arg(long)]
+    stale_echo: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum CriterionArg {
+    /// What rejecting all crosstalk needs
+    Exact,
+    /// As printed, with an outer absolute value
+    Paper,
+}
+
+/// The layout as the command line gives it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum LayoutArg {
+    Line,
+    Ring,
+    Blocks,
+    Pairs(Box<[u64; MAX_SENSORS]>),
+}
+
+impl FromStr for LayoutArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "line" => return Ok(Self::Line),
+            "ring" => return Ok(Self::Ring),
+            "blocks" => return Ok(Self::Blocks),
+            _ => {}
+        }
+        let mut rows = Box::new([0; MAX_SENSORS]);
+        for pair in text.split(',') {
+            let sensor = |text: &str| text.trim().parse().ok().filter(|&sensor: &usize| sensor < MAX_SENSORS);
+            let ends = pair.split_once('-').and_then(|(x, y)| Some((sensor(x)?, sensor(y)?)));
+            let (x, y) = ends.ok_or_else(|| {
+                format!("`{pair}`; expected line, ring, blocks, or pairs of sensors from 0 to 63 such as 0-1,1-2")
+            })?;
+            rows[x] |= 1 << y;
+        }
+        Ok(Self::Pairs(rows))
+    }
+}
+
+impl LayoutArg {
+    fn layout(&self, neighbours: u8) -> Layout<'_> {
+        match self {
+            Self::Line => Layout::Line(neighbours),
+            Self::Ring => Layout::Ring(neighbours),
+            Self::Blocks => Layout::Blocks(neighbours),
+            Self::Pairs(rows) => Layout::Graph(rows.as_slice()),
+        }
+    }
+}
+
+pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    let schedule = read_schedule(&args.file)?;
+    let requirements = Requirements {
+        t_delta: Micros::new(args.t_delta_us),
+        criterion: match args.criterion {
+            CriterionArg::Exact => Criterion::Exact,
+            CriterionArg::Paper => Criterion::Paper,
+        },
+        min_interval: Micros::new(args.min_interval_us),
+        layout: args.layout.layout(args.neighbours),
+        window: Micros::new(args.window_us),
+        stale_echo: args.stale_echo,
+    };
+    let report = schedule.verify(&requirements);
+    if args.json {
+        println!("{}", to_json(&ReportJson::from(&report)));
+    } else {
+        print!("{}", describe(&args.file.display().to_string(), &schedule, &requirements, &report));
+    }
+    Ok(if report.ok() { Answer::Yes } else { Answer::No })
+}

@@ -1,0 +1,32 @@
+//! What numbers a ring file may hold.
+
+use eeruf_core::MAX_SENSORS;
+
+/// The default of `neighbours`.
+pub(crate) const fn four() -> u8 {
+    4
+}
+
+pub(crate) fn sensors_in_range(sensors: usize) -> Result<(), String> {
+    if (1..=MAX_SENSORS).contains(&sensors) {
+        Ok(())
+    } else {
+        Err(format!("{sensors} sensors; expected 1 to {MAX_SENSORS}"))
+    }
+}
+
+pub(crate) fn neighbours_in_range(neighbours: u8) -> Result<(), String> {
+    if (1..=MAX_SENSORS).contains(&usize::from(neighbours)) {
+        Ok(())
+    } else {
+        Err(format!("neighbours = {neighbours}; expected 1 to {MAX_SENSORS}"))
+    }
+}
+
+pub(crate) fn number(name: &str, value: f64, least: f64, most: f64) -> Result<f64, String> {
+    if (least..=most).contains(&value) {
+        Ok(value)
+    } else {
+        Err(format!("{name} = {value}; expected {least} to {most}"))
+    }
+}

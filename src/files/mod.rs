@@ -1,0 +1,12 @@
+//! The files that a user names: what may stand in them, what is wrong with them, and writing those that are asked for.
+//!
+//! Uses the libraries only; knows neither commands nor what is printed.
+
+pub(crate) mod error;
+pub(crate) mod layout;
+pub(crate) mod limits;
+pub(crate) mod log;
+pub(crate) mod ring;
+pub(crate) mod toml;
+pub(crate) mod waits;
+pub(crate) mod write;

@@ -1,0 +1,33 @@
+//! Reading TOML: any file of ours, schedules, and scenes.
+
+use std::fs;
+use std::path::Path;
+
+use eeruf_sim::{AnySchedule, ScheduleFile, World};
+use serde::de::DeserializeOwned;
+
+use super::error::InputError;
+
+/// Reads a TOML file.
+pub(crate) fn read_toml<T: DeserializeOwned>(file: &Path) -> Result<T, InputError> {
+    let text = fs::read_to_string(file).map_err(|error| InputError::new(file, None, error))?;
+    toml::from_str(&text).map_err(|error| {
+        let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count() as u64);
+        // What a number may be, in the words of a user.
+        let message = error.message().replace("expected usize", "expected a whole number from 0 on");
+        InputError::new(file, line, message.replace("expected u32", "expected a whole number from 0 to 4294967295"))
+    })
+}
+
+/// Reads a schedule file.
+pub(crate) fn read_schedule(file: &Path) -> Result<AnySchedule, InputError> {
+    read_toml::<ScheduleFile>(file)?.schedule().map_err(|message| InputError::new(file, None, message))
+}
+
+/// Reads a scene with its robots.
+pub(crate) fn read_world(file: &Path) -> Result<World, InputError> {
+    World::from_toml(file).map_err(|error| {
+        // A scene names the file that is to blame, which may be that of a schedule.
+        InputError::new(&error.file, error.line.map(|line| line as u64), &error.message)
+    })
+}

@@ -1,0 +1,170 @@
+//! What `design` found, as text and as JSON.
+
+use std::fmt::Write as _;
+
+use comfy_table::{Table, presets};
+use eeruf_core::search::{Preferred, ShortestPeriod};
+use eeruf_core::tables::TABLE_I_D;
+use eeruf_core::{MAX_SENSORS, Micros, Phase, Requirements};
+use eeruf_sim::{AnySchedule, ScheduleFile};
+
+use super::found::FoundJson;
+use super::timing;
+use crate::files::ring::RingSpec;
+
+/// A schedule for a ring file.
+pub(crate) struct RingDesign {
+    pub(crate) schedule: AnySchedule,
+    /// What `t_delta` has to cover, motion included.
+    pub(crate) t_delta: Micros,
+    pub(crate) designed: ShortestPeriod<MAX_SENSORS>,
+    pub(crate) preferred: Option<Preferred<MAX_SENSORS>>,
+    /// Only if the design is to be described.
+    pub(crate) what_if: Vec<WhatIf>,
+}
+
+/// What one need, relaxed, would bring.
+pub(crate) struct WhatIf {
+    /// The relaxed need, in words.
+    pub(crate) need: String,
+    /// The shortest period with it, or the shortest found.
+    pub(crate) period: Option<Micros>,
+    pub(crate) proven: bool,
+}
+
+impl RingDesign {
+    pub(crate) fn json(&self, seconds: f64) -> FoundJson {
+        FoundJson {
+            schedule: Some(ScheduleFile::from(&self.schedule)),
+            reason: Some(self.reason()),
+            ..FoundJson::new(&self.designed.found, seconds)
+        }
+    }
+
+    fn reason(&self) -> String {
+        self.designed.explanation().to_string()
+    }
+}
+
+pub(crate) fn describe(
+    name: &str,
+    spec: &RingSpec,
+    requirements: &Requirements<'_>,
+    design: &RingDesign,
+    seconds: f64,
+) -> String {
+    let RingDesign { schedule, designed, preferred, what_if, .. } = design;
+    let found = &designed.found;
+    let report = schedule.verify(requirements);
+    let period = schedule.period();
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    let proof = if found.proven {
+        "proven: no schedule is shorter".to_owned()
+    } else {
+        format!("not proven: it may be as short as {}", found.bound.unwrap_or(period))
+    };
+    table.add_row(["period", &period.to_string(), &proof]);
+    let best = |proven: Option<bool>| match proven {
+        Some(true) => ", and no schedule of this period has more",
+        Some(false) => ", the best found",
+        None => "",
+    };
+    table.add_row([
+        "t_delta".to_owned(),
+        report.max_t_delta().map_or_else(|| "none".to_owned(), |t_delta| t_delta.to_string()),
+        format!("needed: {}{}", requirements.t_delta, best(preferred.map(|p| p.t_delta_proven))),
+    ]);
+    if let Some(interval) = report.min_interval() {
+        table.add_row([
+            "smallest interval".to_owned(),
+            interval.value.to_string(),
+            format!("needed: {}{}", requirements.min_interval, best(preferred.map(|p| p.min_interval_proven))),
+        ]);
+    }
+    table.add_row([
+        "listening".to_owned(),
+        requirements.window.to_string(),
+        format!(
+            "{:.2} m; no sensor fires again within {}",
+            f64::from(spec.c.distance_mm(requirements.window)) / 1000.0,
+            report.min_refire()
+        ),
+    ]);
+    let speed = schedule.max_speed_mm_s(report.max_t_delta().unwrap_or(Micros::ZERO), spec.c.mm_per_s());
+    table.add_row([
+        "motion".to_owned(),
+        format!("{:.2} m/s", f64::from(speed) / 1000.0),
+        format!("before good readings differ by more than t_delta ({} at most between firings)", schedule.max_refire()),
+    ]);
+    let rate = |period: f64| 1e6 / period;
+    let one_by_one = f64::from(requirements.window.as_micros()) * spec.sensors as f64;
+    let us = f64::from(period.as_micros());
+    table.add_row([
+        "readings".to_owned(),
+        format!("{:.1} a second", rate(us)),
+        format!("of each sensor; {:.1} times one by one ({:.1} a second)", one_by_one / us, rate(one_by_one)),
+    ]);
+    if let Some(paper) = papers_period_us(spec, requirements) {
+        table.add_row([
+            String::new(),
+            String::new(),
+            format!("{:.2} times Table I-d scaled to the same needs ({:.1} a second)", paper / us, rate(paper)),
+        ]);
+    }
+    table.add_row([
+        "search".to_owned(),
+        format!("{:.1} ms", 1000.0 * seconds),
+        format!("{} nodes, and {} for the choice", found.nodes, preferred.map_or(0, |p| p.nodes)),
+    ]);
+
+    let mut text = format!("{name}: {} sensors, {}\n{table}\n", spec.sensors, requirements.layout);
+    _ = writeln!(text, "\nNot shorter because of {}.", design.reason());
+    if !what_if.is_empty() {
+        _ = writeln!(text, "\n{}", ways_to_get_faster(what_if, period));
+    }
+    text.push('\n');
+    text += &timing::diagram(schedule, requirements.window);
+    _ = writeln!(text, "\n{}", schedule.to_toml());
+    text
+}
+
+/// What the designer may change to get faster.
+fn ways_to_get_faster(cases: &[WhatIf], period: Micros) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    for WhatIf { need, period: with, proven } in cases {
+        let verdict = match with {
+            Some(with) if *with < period && *proven => format!("{with}"),
+            Some(with) if *with < period => format!("{with} or less"),
+            _ if *proven => "no shorter".to_owned(),
+            _ => "not found out".to_owned(),
+        };
+        table.add_row([need, &verdict]);
+    }
+    format!("To get faster than {period}, one change at a time:\n{table}")
+}
+
+/// The period to which Table I-d, cut to this many sensors, has to be scaled to meet the same requirements.
+fn papers_period_us(spec: &RingSpec, requirements: &Requirements<'_>) -> Option<f64> {
+    if spec.sensors > TABLE_I_D.sensors() {
+        return None;
+    }
+    let cut = |phase| TABLE_I_D.t_wait(phase).get(..spec.sensors);
+    let table = AnySchedule::from_slices(
+        TABLE_I_D.period(),
+        TABLE_I_D.t_lag().get(..spec.sensors)?,
+        [cut(Phase::A)?, cut(Phase::B)?],
+    )
+    .ok()?;
+    let report = table.verify(requirements);
+    let ratio = |needed: Micros, has: Micros| f64::from(needed.as_micros()) / f64::from(has.as_micros());
+    let mut scale = ratio(requirements.window, report.min_refire());
+    if let Some(max_t_delta) = report.max_t_delta() {
+        scale = scale.max(ratio(requirements.separation(), Micros::new(2 * max_t_delta.as_micros() + 1)));
+    }
+    if let Some(interval) = report.min_interval() {
+        scale = scale.max(ratio(requirements.min_interval, interval.value));
+    }
+    Some(scale * f64::from(TABLE_I_D.period().as_micros()))
+}

@@ -1,0 +1,81 @@
+//! Methods side by side: what is wrong among what is believed, what is rejected, what that costs.
+
+use eeruf_sim::{Method, Summary};
+use plotters::style::text_anchor::HPos;
+use plotters::style::{Color, RGBColor};
+
+use super::picture::Picture;
+use super::style::{ACCEPTED, CAPTION, INK, LISTENING, REJECTED, SMALL, TITLE, UNCOMPARED, grid_step, tick_label};
+
+const LEFT: f64 = 140.0;
+const WIDTH: f64 = 900.0;
+const TOP: f64 = 104.0;
+const LANE: f64 = 28.0;
+/// Room at the right of each column for the number at the end of its longest bar.
+const ROOM: f64 = 50.0;
+
+/// A figure: its name, its unit, its colour, and how to take it from a summary.
+type Column = (&'static str, &'static str, RGBColor, fn(&Summary) -> Option<f64>);
+
+fn in_percent(share: Option<f64>) -> Option<f64> {
+    share.map(|share| 100.0 * share)
+}
+
+/// One line for each method, one column of bars for each figure.
+pub(crate) fn methods_chart(title: &str, summaries: &[Summary]) -> Picture {
+    let bottom = TOP + LANE * summaries.len() as f64;
+    let mut picture = Picture::new(WIDTH, bottom + 44.0);
+    picture.text(title, (16.0, 22.0), TITLE);
+    for (lane, summary) in summaries.iter().enumerate() {
+        let y = TOP + LANE * (lane as f64 + 0.5);
+        if is_ours(summary.method) {
+            picture.rect([(8.0, y - 0.5 * LANE), (WIDTH - 8.0, y + 0.5 * LANE)], LISTENING.mix(0.3));
+        }
+        picture.text_in(summary.method.to_string(), (LEFT - 10.0, y), CAPTION, HPos::Right, INK);
+    }
+    let columns: [Column; 4] = [
+        ("wrong", "of accepted, %", REJECTED, |summary| in_percent(summary.wrong_of_accepted)),
+        ("rejected", "of all, %", UNCOMPARED, |summary| in_percent(Some(summary.rejected))),
+        ("good lost", "of good, %", LISTENING, |summary| in_percent(summary.good_lost)),
+        ("accepted", "readings a second", ACCEPTED, |summary| Some(summary.readings_per_s)),
+    ];
+    let column_width = (WIDTH - LEFT) / columns.len() as f64;
+    for (column, (name, unit, colour, value_of)) in columns.into_iter().enumerate() {
+        let left = LEFT + column as f64 * column_width;
+        let most = summaries.iter().filter_map(value_of).fold(0.0, f64::max).max(1.0);
+        let scale = (column_width - ROOM) / most;
+        picture.text(name, (left, 58.0), CAPTION);
+        picture.text_in(unit, (left, 80.0), SMALL, HPos::Left, INK.mix(0.75));
+        let step = grid_step(most, 3.0);
+        for line in 0..=(most / step) as u32 {
+            let value = f64::from(line) * step;
+            let x = left + value * scale;
+            picture.line((x, TOP - 4.0), (x, bottom + 4.0), 1.0, INK.mix(0.15));
+            picture.text_in(tick_label(value, step), (x, bottom + 16.0), SMALL, HPos::Center, INK);
+        }
+        for (lane, summary) in summaries.iter().enumerate() {
+            let y = TOP + LANE * (lane as f64 + 0.5);
+            let Some(value) = value_of(summary) else {
+                picture.text("none", (left + 4.0, y), SMALL);
+                continue;
+            };
+            let end = left + value * scale;
+            picture.rect([(left, y - 8.0), (end.max(left + 1.0), y + 8.0)], colour);
+            picture.text(rounded(value), (end + 5.0, y), SMALL);
+        }
+    }
+    picture
+}
+
+fn is_ours(method: Method) -> bool {
+    matches!(method, Method::EerufImmediate | Method::Eeruf | Method::EerufBest | Method::Adaptive | Method::MultiEcho)
+}
+
+fn rounded(value: f64) -> String {
+    match value {
+        0.0 => "0".to_owned(),
+        value if value < 0.1 => format!("{value:.2}"),
+        value if value < 99.95 => format!("{value:.1}"),
+        value => format!("{value:.0}"),
+    }
+}

@@ -1,0 +1,232 @@
+//! A picture as a list of shapes in pixels, saved as SVG or PNG by the file's ending.
+//!
+//! Plotters' two backends draw the shapes: SVG as they are, bitmaps four times as large and then halved, which smooths
+//! edges and leaves two pixels for each of the picture's. Text in bitmaps is set in a part of DejaVu Sans (see
+//! `font/`), which travels in the program: what a PNG looks like does not depend on the machine. Rendering the SVG
+//! instead would need a parser for it, a text shaper and a second rasteriser (`resvg`); this way a glyph outliner
+//! (`ab_glyph`) and `png` are enough.
+
+use std::path::Path;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::style::INK;
+use crate::files::error::InputError;
+use crate::files::write::write;
+
+const FONT: &str = "sans-serif";
+/// The font that bitmaps are lettered in.
+const FONT_FILE: &[u8] = include_bytes!("font/DejaVuSans-part.ttf");
+/// How much larger than in a bitmap plotters sets the same text in SVG, with this font.
+const SVG_TEXT_SCALE: f64 = 0.939;
+/// How far below that of a bitmap the baseline of the same text in SVG is, in sizes of the text.
+const SVG_TEXT_DROP: f64 = 0.129;
+
+/// Pixels of a PNG for each of the picture's.
+const DENSITY: usize = 2;
+/// How much larger than the PNG it is drawn.
+const OVERSAMPLING: usize = 2;
+
+/// A picture before it is known what file it becomes.
+pub(crate) struct Picture {
+    width: f64,
+    height: f64,
+    shapes: Vec<Shape>,
+}
+
+pub(crate) type At = (f64, f64);
+
+enum Shape {
+    Line { from: At, to: At, width: f64, colour: RGBAColor },
+    Area { corners: Vec<At>, colour: RGBAColor },
+    Rect { corners: [At; 2], colour: RGBAColor },
+    Dot { centre: At, radius: f64, colour: RGBAColor },
+    Text { text: String, at: At, size: f64, side: HPos, colour: RGBAColor },
+}
+
+impl Picture {
+    pub(crate) fn new(width: f64, height: f64) -> Self {
+        Self { width, height, shapes: Vec::new() }
+    }
+
+    pub(crate) fn line(&mut self, from: At, to: At, width: f64, colour: impl Into<RGBAColor>) {
+        self.shapes.push(Shape::Line { from, to, width, colour: colour.into() });
+    }
+
+    /// A line of dashes as long as the gaps between them.
+    pub(crate) fn dashes(&mut self, from: At, to: At, width: f64, colour: impl Into<RGBAColor> + Copy) {
+        const DASH: f64 = 4.0;
+        let length = (to.0 - from.0).hypot(to.1 - from.1);
+        let at = |way: f64| (from.0 + (to.0 - from.0) * way / length, from.1 + (to.1 - from.1) * way / length);
+        let mut way = 0.0;
+        while way < length {
+            self.line(at(way), at((way + DASH).min(length)), width, colour);
+            way += 2.0 * DASH;
+        }
+    }
+
+    pub(crate) fn area(&mut self, corners: Vec<At>, colour: impl Into<RGBAColor>) {
+        self.shapes.push(Shape::Area { corners, colour: colour.into() });
+    }
+
+    pub(crate) fn rect(&mut self, corners: [At; 2], colour: impl Into<RGBAColor>) {
+        self.shapes.push(Shape::Rect { corners, colour: colour.into() });
+    }
+
+    pub(crate) fn dot(&mut self, centre: At, radius: f64, colour: impl Into<RGBAColor>) {
+        self.shapes.push(Shape::Dot { centre, radius, colour: colour.into() });
+    }
+
+    pub(crate) fn cross(&mut self, (x, y): At, half: f64, colour: impl Into<RGBAColor> + Copy) {
+        self.line((x - half, y - half), (x + half, y + half), 2.0, colour);
+        self.line((x - half, y + half), (x + half, y - half), 2.0, colour);
+    }
+
+    /// An arrow head whose point is at `tip`.
+    pub(crate) fn arrow_head(&mut self, from: At, tip: At, size: f64, colour: impl Into<RGBAColor>) {
+        let (dx, dy) = (tip.0 - from.0, tip.1 - from.1);
+        let length = dx.hypot(dy).max(1e-9);
+        let (ux, uy) = (dx / length * size, dy / length * size);
+        let back = (tip.0 - ux, tip.1 - uy);
+        let corners = vec![tip, (back.0 - 0.45 * uy, back.1 + 0.45 * ux), (back.0 + 0.45 * uy, back.1 - 0.45 * ux)];
+        self.area(corners, colour);
+    }
+
+    /// Text to the right of a point, its middle at the height of it.
+    pub(crate) fn text(&mut self, text: impl Into<String>, at: At, size: f64) {
+        self.text_in(text, at, size, HPos::Left, INK);
+    }
+
+    pub(crate) fn text_in(
+        &mut self,
+        text: impl Into<String>,
+        at: At,
+        size: f64,
+        side: HPos,
+        colour: impl Into<RGBAColor>,
+    ) {
+        self.shapes.push(Shape::Text { text: text.into(), at, size, side, colour: colour.into() });
+    }
+
+    /// Puts another picture into this one.
+    pub(crate) fn insert(&mut self, other: Self, (left, top): At) {
+        let moved = |(x, y): At| (x + left, y + top);
+        self.shapes.extend(other.shapes.into_iter().map(|shape| match shape {
+            Shape::Line { from, to, width, colour } => Shape::Line { from: moved(from), to: moved(to), width, colour },
+            Shape::Area { corners, colour } => {
+                Shape::Area { corners: corners.into_iter().map(moved).collect(), colour }
+            }
+            Shape::Rect { corners, colour } => Shape::Rect { corners: corners.map(moved), colour },
+            Shape::Dot { centre, radius, colour } => Shape::Dot { centre: moved(centre), radius, colour },
+            Shape::Text { text, at, size, side, colour } => Shape::Text { text, at: moved(at), size, side, colour },
+        }));
+    }
+
+    /// Writes it: PNG if the file's name ends so, or else SVG.
+    pub(crate) fn save(&self, file: &Path) -> Result<(), InputError> {
+        if file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+            let png = self.to_png().map_err(|error| InputError::new(file, None, error))?;
+            return write(file, png);
+        }
+        write(file, self.to_svg())
+    }
+
+    pub(crate) fn to_svg(&self) -> String {
+        let mut svg = String::new();
+        let size = (self.width.round() as u32, self.height.round() as u32);
+        self.draw(&SVGBackend::with_string(&mut svg, size).into_drawing_area(), 1.0, false);
+        svg
+    }
+
+    fn to_png(&self) -> Result<Vec<u8>, png::EncodingError> {
+        // A font that cannot be read leaves a picture without text; a test sees to it that ours can.
+        _ = plotters::style::register_font(FONT, FontStyle::Normal, FONT_FILE);
+        let [width, height] = [self.width, self.height].map(|length| length.round() as usize * DENSITY);
+        let mut large = vec![0; 3 * width * height * OVERSAMPLING * OVERSAMPLING];
+        {
+            let size = ((width * OVERSAMPLING) as u32, (height * OVERSAMPLING) as u32);
+            let area = BitMapBackend::with_buffer(&mut large, size).into_drawing_area();
+            self.draw(&area, (DENSITY * OVERSAMPLING) as f64, true);
+        }
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, width as u32, height as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::High);
+        encoder.write_header()?.write_image_data(&shrunk(&large, width, height))?;
+        Ok(file)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>, scale: f64, bitmap: bool) {
+        // Drawing to memory does not fail; a picture is never worth a panic all the same.
+        _ = area.fill(&WHITE);
+        let px = |(x, y): At| ((x * scale).round() as i32, (y * scale).round() as i32);
+        let thick = |width: f64| (width * scale).round().max(1.0) as u32;
+        for shape in &self.shapes {
+            match shape {
+                Shape::Line { from, to, width, colour } => {
+                    _ = area.draw(&PathElement::new([px(*from), px(*to)], colour.stroke_width(thick(*width))));
+                }
+                Shape::Area { corners, colour } => {
+                    let corners: Vec<_> = corners.iter().map(|&corner| px(corner)).collect();
+                    _ = area.draw(&Polygon::new(corners, *colour));
+                }
+                Shape::Rect { corners, colour } => {
+                    let [from, mut to] = corners.map(px);
+                    // Bitmaps count the last pixel in, SVG does not.
+                    if bitmap {
+                        to = ((to.0 - 1).max(from.0), (to.1 - 1).max(from.1));
+                    }
+                    _ = area.draw(&Rectangle::new([from, to], colour.filled()));
+                }
+                Shape::Dot { centre, radius, colour } => {
+                    _ = area.draw(&Circle::new(px(*centre), thick(*radius) as i32, colour.filled()));
+                }
+                Shape::Text { text, at, size, side, colour } => {
+                    let (mut size, mut at) = (size * scale, *at);
+                    if bitmap {
+                        at.1 += SVG_TEXT_DROP * size / scale;
+                        size *= SVG_TEXT_SCALE;
+                    }
+                    let style = (FONT, size).into_font().color(colour).pos(Pos::new(*side, VPos::Center));
+                    _ = area.draw(&Text::new(text.as_str(), px(at), style));
+                }
+            }
+        }
+        _ = area.present();
+    }
+}
+
+/// Each pixel the mean of those that it was drawn as.
+fn shrunk(large: &[u8], width: usize, height: usize) -> Vec<u8> {
+    let mut small = Vec::with_capacity(3 * width * height);
+    let row = 3 * width * OVERSAMPLING;
+    for y in 0..height {
+        for x in 0..width {
+            for channel in 0..3 {
+                let first = y * OVERSAMPLING * row + 3 * x * OVERSAMPLING + channel;
+                let square =
+                    (0..OVERSAMPLING).flat_map(|down| (0..OVERSAMPLING).map(move |right| down * row + 3 * right));
+                let sum: usize = square.map(|step| usize::from(large[first + step])).sum();
+                small.push((sum / (OVERSAMPLING * OVERSAMPLING)) as u8);
+            }
+        }
+    }
+    small
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::style::TITLE;
+    use super::*;
+
+    #[test]
+    fn the_font_of_the_program_can_be_read_and_leaves_ink() {
+        let mut blank = Picture::new(40.0, 20.0);
+        let empty = blank.to_png().unwrap();
+        blank.text("µ 8", (4.0, 10.0), TITLE);
+        assert_ne!(blank.to_png().unwrap(), empty);
+    }
+}

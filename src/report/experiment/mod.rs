@@ -1,0 +1,4 @@
+//! What the experiments found, as tables.
+
+pub(crate) mod set_one;
+pub(crate) mod set_two;

@@ -1,0 +1,113 @@
+//! The tables of Set II: the courses at one top speed, or at several.
+
+use std::fmt::Write as _;
+
+use eeruf_sim::Method;
+use eeruf_sim::experiments::set_two::{Figures, MULTI_ECHO_CONSECUTIVE, SetTwo, SetTwoOptions, SpeedStep};
+use serde::Serialize;
+
+use crate::report::json::in_order;
+use crate::report::percent::percent;
+use crate::report::table::markdown;
+
+/// A method sustains a speed at which this share of the courses is finished.
+const SUSTAINED: f64 = 0.95;
+
+fn beside(second_robot_m: Option<[f64; 2]>) -> String {
+    second_robot_m
+        .map_or_else(String::new, |[x, y]| format!(", a second robot at ({x} m, {y} m) firing 24 times in 80 ms"))
+}
+
+pub(crate) fn describe(found: &SetTwo) -> String {
+    let header = [
+        "method",
+        "finished",
+        "contacts",
+        "timed out",
+        "mean m/s",
+        "top m/s",
+        "nearest m",
+        "rejected %",
+        "wrong %",
+        "phantom echoes",
+        "phantom cells",
+        "poles missed %",
+        "accepted/s",
+    ];
+    let mut text = format!(
+        "Set II: {} courses at up to {} m/s{}. Phantoms and the nearest pole are means over the courses;\n\
+         multi_echo compares {MULTI_ECHO_CONSECUTIVE} readings, the other filters 2.\n\n",
+        found.seeds,
+        found.speed_m_s,
+        beside(found.second_robot_m)
+    );
+    let rows = found.methods.iter().map(|(method, figures)| row(*method, figures));
+    _ = writeln!(text, "{}", markdown(&header, rows));
+    text
+}
+
+fn row(method: Method, figures: &Figures) -> Vec<String> {
+    vec![
+        method.to_string(),
+        format!("{} of {}", figures.finished, figures.courses),
+        figures.contacts.to_string(),
+        figures.timed_out.to_string(),
+        format!("{:.2}", figures.mean_speed_m_s),
+        format!("{:.2}", figures.top_speed_m_s),
+        format!("{:.2}", figures.nearest_m),
+        percent(figures.rejected),
+        percent(figures.wrong_of_all),
+        format!("{:.1}", figures.phantom_echoes),
+        format!("{:.1}", figures.phantom_cells),
+        percent(figures.poles_missed),
+        format!("{:.1}", figures.readings_per_s),
+    ]
+}
+
+/// What a sweep of top speeds found.
+#[derive(Serialize)]
+pub(crate) struct Sweep {
+    seeds: u64,
+    second_robot_m: Option<[f64; 2]>,
+    steps: Vec<SpeedStep>,
+    /// The highest speed at which nearly all courses are finished.
+    #[serde(serialize_with = "in_order")]
+    borne_m_s: Vec<(Method, Option<f64>)>,
+}
+
+impl Sweep {
+    pub(crate) fn of(options: &SetTwoOptions, steps: Vec<SpeedStep>) -> Self {
+        let sustained = |index: usize| {
+            let mut enough = steps.iter().filter(|step| step.finished[index].1 >= SUSTAINED);
+            enough.next_back().map(|step| step.speed_m_s)
+        };
+        let borne_m_s = options.methods.iter().enumerate().map(|(index, method)| (*method, sustained(index))).collect();
+        let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);
+        Self { seeds: options.seeds, second_robot_m, steps, borne_m_s }
+    }
+
+    pub(crate) fn describe(&self) -> String {
+        let mut header = vec!["method".to_owned()];
+        header.extend(self.steps.iter().map(|step| format!("{} m/s", step.speed_m_s)));
+        header.push("sustained m/s".to_owned());
+        let rows =
+            self.borne_m_s.iter().enumerate().map(|(index, (method, sustained))| {
+                let mut row = vec![method.to_string()];
+                row.extend(self.steps.iter().map(|step| {
+                    format!("{:.0} ({:.2})", 100.0 * step.finished[index].1, step.mean_speed_m_s[index].1)
+                }));
+                row.push(sustained.map_or_else(|| "-".to_owned(), |speed| speed.to_string()));
+                row
+            });
+        let mut text = format!(
+            "Set II: {} courses at several top speeds{}: finished %, and (mean speed in m/s). Sustained is\n\
+             the highest speed at which {:.0} % of the courses are finished; \
+             multi_echo compares {MULTI_ECHO_CONSECUTIVE} readings, the other filters 2.\n\n",
+            self.seeds,
+            beside(self.second_robot_m),
+            100.0 * SUSTAINED
+        );
+        _ = writeln!(text, "{}", markdown(&header, rows));
+        text
+    }
+}

@@ -1,0 +1,19 @@
+//! What is printed and drawn: tables, JSON, pictures, and how far a long task is.
+//!
+//! Uses the libraries and `files`; knows nothing of commands and their arguments.
+
+pub(crate) mod bounces;
+pub(crate) mod design;
+pub(crate) mod draw;
+pub(crate) mod experiment;
+pub(crate) mod found;
+pub(crate) mod json;
+pub(crate) mod paths;
+pub(crate) mod percent;
+pub(crate) mod replay;
+pub(crate) mod search;
+pub(crate) mod study;
+pub(crate) mod table;
+pub(crate) mod timing;
+pub(crate) mod verify;
+pub(crate) mod watch;

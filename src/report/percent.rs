@@ -1,0 +1,32 @@
+//! Shares in per cent.
+
+use eeruf_sim::experiments::Spread;
+
+/// A share in per cent, one digit after the point if it is below ten.
+pub(crate) fn percent(share: f64) -> String {
+    let digits = usize::from(share < 0.0995);
+    format!("{:.digits$}", 100.0 * share)
+}
+
+/// A share in per cent with more digits the smaller it is: one, two or three.
+pub(crate) fn fine_percent(share: f64) -> String {
+    let digits = match share {
+        _ if share > 0.0 && share < 0.000_95 => 3,
+        _ if share < 0.095 => 2,
+        _ => 1,
+    };
+    format!("{:.digits$}", 100.0 * share)
+}
+
+/// 10 %, median and 90 % of shares, in per cent.
+pub(crate) fn percents(spread: Option<Spread>) -> String {
+    spread.map_or_else(
+        || "-".to_owned(),
+        |Spread { p10, median, p90 }| format!("{} / {} / {}", percent(p10), percent(median), percent(p90)),
+    )
+}
+
+/// The median alone.
+pub(crate) fn median(spread: Option<Spread>, digits: usize) -> String {
+    spread.map_or_else(|| "-".to_owned(), |spread| format!("{:.digits$}", spread.median))
+}

@@ -1,0 +1,120 @@
+//! The pictures of a study: which methods, which sensor and which stretch of time show most.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use eeruf_sim::{Cause, HeardPath, Method, Point, Readings, SensorId, Summary, World};
+
+use super::found::{Study, TOLERANCE_US, of_robot};
+use crate::files::error::InputError;
+use crate::report::draw::{self, DrawnPath, Panel};
+
+/// The most paths that are drawn for one method.
+const MOST_PATHS: usize = 24;
+/// How many readings of one sensor are drawn.
+const SHOWN_READINGS: usize = 70;
+
+/// Draws `scene`, `timing`, `readings` and `methods` with this ending into a folder, which is made if need be.
+pub(crate) fn pictures(folder: &Path, ending: &str, world: &World, study: &Study) -> Result<(), InputError> {
+    fs::create_dir_all(folder).map_err(|error| InputError::new(folder, None, error))?;
+    let file = |name: &str| folder.join(name).with_extension(ending);
+    let summaries: Vec<Summary> = study.runs.iter().map(Readings::summary).collect();
+    draw::methods_chart("Firing methods in the same scene, on the same seed", &summaries).save(&file("methods"))?;
+    // Before and after, where both were simulated; or what there is.
+    let before = study.of(Method::Conventional).or_else(|| study.runs.first());
+    let after = study.of(Method::Eeruf).or_else(|| study.of(Method::EerufBest)).or_else(|| study.runs.last());
+    let (Some(before), Some(after)) = (before, after) else { return Ok(()) };
+    let shown: Vec<&Readings> = if before.method == after.method { vec![after] } else { vec![before, after] };
+    let panels: Vec<Panel> = shown.iter().map(|readings| panel(world, readings)).collect();
+    draw::scene_with_paths(world, &panels).save(&file("scene"))?;
+
+    let (robot, sensor) = most_helped(before, after);
+    let Some(body) = world.robots().get(robot) else { return Ok(()) };
+    let alone: Vec<Readings> = shown.iter().map(|readings| of_robot(readings, robot, body.sensors.len())).collect();
+    if let Some(after) = alone.last() {
+        let window_s = 1e-6 * f64::from(body.window.as_micros());
+        draw::two_periods(after, robot as u16, body.sensors.len(), window_s).save(&file("timing"))?;
+        let stretch = richest_stretch(after, sensor);
+        let metres_per_us = 0.5e-6 * world.scene().air().speed_of_sound();
+        let alone: Vec<&Readings> = alone.iter().collect();
+        draw::readings_over_time(&alone, sensor, stretch, metres_per_us, TOLERANCE_US).save(&file("readings"))?;
+    }
+    Ok(())
+}
+
+/// What a method believed of what it should not have, by path.
+fn panel(world: &World, readings: &Readings) -> Panel {
+    let entries = readings.attribution(TOLERANCE_US);
+    let foreign = |cause| matches!(cause, Cause::Crosstalk | Cause::Stale);
+    let fooled = entries.iter().filter(|entry| entry.accepted > 0 && foreign(entry.cause));
+    let paths: Vec<DrawnPath> = fooled
+        .clone()
+        .take(MOST_PATHS)
+        .filter_map(|entry| {
+            let path = readings.paths.get(entry.path as usize)?;
+            Some(DrawnPath {
+                emitter: usize::from(path.emitter.sensor),
+                corners: corners(world, readings, entry.path, path)?,
+                times: entry.accepted,
+            })
+        })
+        .collect();
+    let times: usize = fooled.map(|entry| entry.accepted).sum();
+    let accepted = (0..readings.len()).filter(|&reading| readings.is_accepted(reading)).count();
+    let share = 100.0 * times as f64 / accepted.max(1) as f64;
+    Panel {
+        title: readings.method.to_string(),
+        caption: format!("crosstalk in {share:.1} % of what it believes ({times} of {accepted})"),
+        paths,
+    }
+}
+
+/// Where a path ran when it first fooled its receiver; where nothing moves, always.
+fn corners(world: &World, readings: &Readings, index: u32, path: &HeardPath) -> Option<Vec<Point>> {
+    let first = (0..readings.len()).find(|&reading| readings.path[reading] == index)?;
+    let position = |id: SensorId, time_s: f64| {
+        let sensor = world.sensors(usize::from(id.robot), time_s).nth(usize::from(id.sensor))?;
+        Some(Point::from(sensor.translation.vector))
+    };
+    let sent_s = readings.emitted_s[first];
+    let heard_s = sent_s + path.length_m / world.scene().air().speed_of_sound();
+    world.scene().bounce_points(position(path.emitter, sent_s)?, position(path.receiver, heard_s)?, &path.bounces)
+}
+
+/// The robot and sensor that were fooled most and farthest under one method, and have readings accepted under the
+/// other: of a sensor that accepts nothing there is little to see.
+fn most_helped(before: &Readings, after: &Readings) -> (usize, u8) {
+    let mut scores = BTreeMap::new();
+    for reading in (0..before.len()).filter(|&reading| before.is_accepted(reading)) {
+        let off_us = (before.t_echo_us[reading] - before.reference_us[reading]).abs();
+        let foreign = matches!(before.cause[reading], Cause::Crosstalk | Cause::Stale | Cause::External);
+        if foreign && off_us > TOLERANCE_US {
+            scores.entry(before.id(reading)).or_insert((0.0, 0.0)).0 += off_us;
+        }
+    }
+    for reading in (0..after.len()).filter(|&reading| after.is_accepted(reading)) {
+        if let Some(score) = scores.get_mut(&after.id(reading)) {
+            score.1 += 1.0;
+        }
+    }
+    let score = |&(_, (off, believed)): &(SensorId, (f64, f64))| off * believed;
+    let most = scores.into_iter().max_by(|a, b| score(a).total_cmp(&score(b)));
+    most.map_or((0, 0), |(id, _)| (usize::from(id.robot), id.sensor))
+}
+
+/// From when to when a sensor's readings show most: the stretch where accepted and rejected ones are most balanced.
+fn richest_stretch(readings: &Readings, sensor: u8) -> (f64, f64) {
+    let own: Vec<usize> = (0..readings.len()).filter(|&reading| readings.sensor[reading] == sensor).collect();
+    let mixed = |stretch: &[usize]| {
+        let accepted = stretch.iter().filter(|&&reading| readings.is_accepted(reading)).count();
+        accepted.min(stretch.len() - accepted)
+    };
+    let stretches = own.chunks(SHOWN_READINGS).filter(|stretch| stretch.len() == SHOWN_READINGS);
+    // The first of equals.
+    let best = stretches.rev().max_by_key(|stretch| mixed(stretch)).unwrap_or(&own);
+    match best {
+        [first, .., last] => (readings.fired_s[*first] - 0.05, readings.fired_s[*last] + 0.05),
+        _ => (0.0, readings.duration_s.max(1e-3)),
+    }
+}

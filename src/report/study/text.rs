@@ -1,0 +1,125 @@
+//! A study in words and tables.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use comfy_table::Table;
+use eeruf_sim::BestSchedule;
+use eeruf_sim::{Method, Readings, Summary, World};
+
+use super::fooled::Fooled;
+use super::found::{Study, TOLERANCE_US, of_robot};
+use crate::report::percent::fine_percent;
+use crate::report::table::markdown;
+
+pub(crate) fn describe(file: &Path, world: &World, study: &Study) -> String {
+    let scene = world.scene();
+    let mut text = format!(
+        "{}: {} walls, {} poles, sound followed for up to {} bounces; seed {}\n",
+        file.display(),
+        scene.walls().len(),
+        scene.poles().len(),
+        world.max_order(),
+        study.seed
+    );
+    for (index, robot) in world.robots().iter().enumerate() {
+        let sensors = robot.sensors.len();
+        let runs: Vec<Readings> = study.runs.iter().map(|readings| of_robot(readings, index, sensors)).collect();
+        let seconds = runs.first().map_or(0.0, |readings| readings.duration_s);
+        _ = writeln!(
+            text,
+            "\nRobot {}: {sensors} sensors, period {}, listening for {}, t_delta {}; {seconds:.0} s simulated",
+            index + 1,
+            robot.period,
+            robot.window,
+            robot.t_delta,
+        );
+        _ = writeln!(text, "{}", table(&runs));
+        let fooled = Fooled::of(&runs, index, TOLERANCE_US);
+        text += &fooled.describe();
+        text += &verdict(&runs, sensors);
+    }
+    if let Some(BestSchedule { schedule, proven }) = &study.best {
+        let proof =
+            if *proven { "proven: no schedule with the same guarantees is shorter" } else { "not proven shortest" };
+        _ = writeln!(text, "\neeruf_best fires with a period of {} ({proof}).", schedule.period());
+    }
+    for (method, why) in &study.left_out {
+        _ = writeln!(text, "{method} is left out: {why}.");
+    }
+    text
+}
+
+fn table(runs: &[Readings]) -> Table {
+    let header = [
+        "method",
+        "wrong, % of all",
+        "% of accepted",
+        "rejected %",
+        "good lost %",
+        "age ms, median",
+        "99 %",
+        "accepted/s",
+        "starved",
+    ];
+    let row = |summary: Summary| {
+        let or_none = |share: Option<f64>| share.map_or_else(|| "-".to_owned(), fine_percent);
+        vec![
+            summary.method.to_string(),
+            fine_percent(summary.wrong_of_all),
+            or_none(summary.wrong_of_accepted),
+            fine_percent(summary.rejected),
+            or_none(summary.good_lost),
+            format!("{:.0}", summary.age_ms.median),
+            format!("{:.0}", summary.age_ms.p99),
+            format!("{:.1}", summary.readings_per_s),
+            if summary.starved == 0 { "-".to_owned() } else { summary.starved.to_string() },
+        ]
+    };
+    markdown(&header, runs.iter().map(|readings| row(readings.summary())))
+}
+
+/// What the table says, in words: why alternate, and what it costs.
+fn verdict(runs: &[Readings], sensors: usize) -> String {
+    let of = |method| runs.iter().find(|readings| readings.method == method).map(Readings::summary);
+    let wrong = |summary: &Summary| fine_percent(summary.wrong_of_accepted.unwrap_or(0.0));
+    let mut text = String::new();
+    let (Some(usual), Some(eeruf)) = (of(Method::Conventional), of(Method::Eeruf)) else {
+        return text;
+    };
+    _ = writeln!(text, "\nFiring with constant lags, {} % of what is believed is wrong.", wrong(&usual));
+    if let Some(control) = of(Method::Comparison) {
+        _ = writeln!(
+            text,
+            "Comparing each reading with the one before leaves {} %: crosstalk repeats as well as a true echo does.",
+            wrong(&control)
+        );
+    }
+    _ = writeln!(
+        text,
+        "EERUF lets each sensor's wait alternate, so that crosstalk moves from reading to reading: {} % is left.",
+        wrong(&eeruf)
+    );
+    _ = write!(text, "It costs {} % of the good readings", fine_percent(eeruf.good_lost.unwrap_or(0.0)));
+    if eeruf.starved > 0 {
+        _ = write!(
+            text,
+            ", and {} of {sensors} sensors never had one accepted: foreign sound always came first there",
+            eeruf.starved
+        );
+        if of(Method::MultiEcho).is_some_and(|several| several.starved < eeruf.starved) {
+            _ = write!(text, ".\nSensors that report several echoes get round that (multi_echo)");
+        }
+    }
+    _ = writeln!(text, ".");
+    if let Some(slow) = of(Method::Sequential)
+        && slow.readings_per_s > 0.0
+    {
+        _ = writeln!(
+            text,
+            "One by one, {:.1} readings are accepted a second; with EERUF {:.1}.",
+            slow.readings_per_s, eeruf.readings_per_s
+        );
+    }
+    text
+}

@@ -1,0 +1,128 @@
+//! What `verify` found, as text and as JSON.
+
+use std::fmt::Write as _;
+
+use comfy_table::{Table, presets};
+use eeruf_core::{Criterion, Interval, Layout, MAX_SENSORS, Micros, Requirements, Verification};
+use eeruf_sim::AnySchedule;
+use serde::Serialize;
+
+/// The report with the names that Python uses; sensors from 0.
+#[derive(Serialize)]
+pub(crate) struct ReportJson {
+    ok: bool,
+    separation_us: Option<u32>,
+    max_t_delta_us: Option<u32>,
+    min_interval_us: Option<u32>,
+    min_refire_us: u32,
+    violations: Vec<ViolationJson>,
+}
+
+#[derive(Serialize)]
+struct ViolationJson {
+    kind: &'static str,
+    sensors: (u8, u8),
+    phases: (String, String),
+    value_us: u32,
+    required_us: u32,
+    source: &'static str,
+}
+
+impl From<&Verification<'_, MAX_SENSORS>> for ReportJson {
+    fn from(report: &Verification<'_, MAX_SENSORS>) -> Self {
+        let violations = report.violations().map(|violation| ViolationJson {
+            kind: violation.kind.as_str(),
+            sensors: violation.sensors,
+            phases: (violation.phases.0.to_string(), violation.phases.1.to_string()),
+            value_us: violation.value.as_micros(),
+            required_us: violation.required.as_micros(),
+            source: violation.kind.source(),
+        });
+        Self {
+            ok: report.ok(),
+            separation_us: report.separation().map(|separation| separation.value.as_micros()),
+            max_t_delta_us: report.max_t_delta().map(Micros::as_micros),
+            min_interval_us: report.min_interval().map(|interval| interval.value.as_micros()),
+            min_refire_us: report.min_refire().as_micros(),
+            violations: violations.collect(),
+        }
+    }
+}
+
+/// How many violations to print before counting the rest.
+const PRINTED_VIOLATIONS: usize = 10;
+
+pub(crate) fn describe(
+    name: &str,
+    schedule: &AnySchedule,
+    requirements: &Requirements<'_>,
+    report: &Verification<'_, MAX_SENSORS>,
+) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    let us = |time: Micros| format!("{} us", time.as_micros());
+    for criterion in [Criterion::Paper, Criterion::Exact] {
+        let chosen = if criterion == requirements.criterion { "" } else { " (not asked for)" };
+        let (value, who) = match schedule.separation(criterion) {
+            Some(separation) => {
+                (us(separation.value), format!("sensors {} and {}", separation.sensors.0 + 1, separation.sensors.1 + 1))
+            }
+            None => ("-".to_owned(), "a single sensor".to_owned()),
+        };
+        table.add_row([format!("separation, criterion {criterion}{chosen}"), value, who]);
+    }
+    let t_delta = report.max_t_delta().map_or_else(|| "none".to_owned(), us);
+    table.add_row(["largest t_delta", &t_delta, "2 t_delta + 1 us <= separation"]);
+    for (label, layout) in layouts(requirements.layout) {
+        let (value, who) = match schedule.min_interval(layout) {
+            Some(interval) => (us(interval.value), describe_interval(interval)),
+            None => ("-".to_owned(), "no neighbours".to_owned()),
+        };
+        table.add_row([format!("smallest interval, {label}"), value, who]);
+    }
+    table.add_row(["shortest time between two firings of a sensor", &us(report.min_refire()), "T_wind at most"]);
+
+    let mut text = format!("{name}: {} sensors, period {}\n{table}\n", schedule.sensors(), us(schedule.period()));
+    let violations: Vec<_> = report.violations().collect();
+    for violation in violations.iter().take(PRINTED_VIOLATIONS) {
+        _ = writeln!(text, "  - {violation}");
+    }
+    if violations.len() > PRINTED_VIOLATIONS {
+        _ = writeln!(text, "  - and {} more", violations.len() - PRINTED_VIOLATIONS);
+    }
+    _ = match violations.len() {
+        0 => writeln!(text, "verified for t_delta = {}", us(requirements.t_delta)),
+        n => writeln!(text, "not verified for t_delta = {}: {n} violations", us(requirements.t_delta)),
+    };
+    text
+}
+
+/// The layout asked for first, then the other two common ones for comparison.
+fn layouts(asked: Layout<'_>) -> Vec<(String, Layout<'_>)> {
+    let label = |layout| match layout {
+        Layout::Line(n) => format!("line of {n}"),
+        Layout::Ring(n) => format!("ring of {n}"),
+        Layout::Blocks(n) => format!("blocks of {n}"),
+        Layout::Graph(_) => "the pairs given".to_owned(),
+    };
+    let others = match asked {
+        Layout::Line(n) | Layout::Ring(n) | Layout::Blocks(n) => {
+            vec![Layout::Line(n), Layout::Ring(n), Layout::Blocks(n)]
+        }
+        Layout::Graph(_) => vec![],
+    };
+    let mut all = vec![(label(asked), asked)];
+    for other in others.into_iter().filter(|&other| other != asked) {
+        all.push((label(other) + " (not asked for)", other));
+    }
+    all
+}
+
+fn describe_interval(interval: Interval) -> String {
+    let (x, y) = (interval.sensors.0 + 1, interval.sensors.1 + 1);
+    if interval.phases.0 == interval.phases.1 {
+        format!("sensors {x} and {y} in phase {}", interval.phases.0)
+    } else {
+        format!("sensors {x} and {y} from phase {} to {}", interval.phases.0, interval.phases.1)
+    }
+}

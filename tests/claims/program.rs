@@ -1,0 +1,258 @@
+//! The program as its users call it: what it prints, and the exit code.
+
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use crate::common::{Scratch, eeruf, json};
+
+#[test]
+fn table_i_d_is_verified_up_to_999_us_and_not_at_1000() {
+    for (t_delta, code) in [("999", 0), ("1000", 1)] {
+        for criterion in ["paper", "exact"] {
+            let outcome = eeruf(&["verify", "rings/table-i-d.toml", "--t-delta-us", t_delta, "--criterion", criterion]);
+            assert_eq!(outcome.code, Some(code), "{}", outcome.out);
+        }
+    }
+    let outcome = eeruf(&["verify", "rings/table-i-d.toml", "--t-delta-us", "999"]);
+    for said in ["2000 us", "999 us", "17000 us  sensors 2 and 5 in phase b", "19000 us"] {
+        assert!(outcome.out.contains(said), "{said}\n{}", outcome.out);
+    }
+}
+
+#[test]
+fn the_report_of_table_i_d_has_the_figures_of_the_paper_in_blocks_and_ours_in_a_line() {
+    for criterion in ["paper", "exact"] {
+        for (layout, min_interval) in [("line", 17_000), ("blocks", 19_000), ("0-1,1-2,2-3", 19_000)] {
+            let report =
+                json(&["verify", "rings/table-i-d.toml", "--json", "--layout", layout, "--criterion", criterion]);
+            assert_eq!(report["ok"], true);
+            assert_eq!(report["separation_us"], 2000);
+            assert_eq!(report["max_t_delta_us"], 999);
+            assert_eq!(report["min_interval_us"], min_interval);
+            assert_eq!(report["min_refire_us"], 76_000);
+            assert_eq!(report["violations"], serde_json::json!([]));
+        }
+    }
+}
+
+#[test]
+fn table_i_c_has_sensors_4_and_1_one_millisecond_apart() {
+    let asked = ["verify", "rings/table-i-c.toml", "--min-interval-us", "15000"];
+    let outcome = eeruf(&asked);
+    assert_eq!(outcome.code, Some(1));
+    assert!(outcome.out.contains("sensors 4 and 1 fire 1 ms apart between phases a and b"), "{}", outcome.out);
+    let report = json(&[&asked[..], &["--json"]].concat());
+    assert_eq!(report["min_interval_us"], 1000);
+    let violation = &report["violations"][0];
+    assert_eq!(violation["kind"], "interval");
+    assert_eq!(violation["sensors"], serde_json::json!([3, 0]));
+    assert_eq!((&violation["value_us"], &violation["required_us"]), (&1000.into(), &15_000.into()));
+    assert_eq!(violation["source"], "Sec. 3.1 c");
+}
+
+#[test]
+fn the_files_of_the_papers_tables_are_the_tables_of_the_core() {
+    use eeruf_core::tables;
+    let tables = [
+        ("table-i-a", tables::TABLE_I_A),
+        ("table-i-b", tables::TABLE_I_B),
+        ("table-i-c", tables::TABLE_I_C),
+        ("table-i-d", tables::TABLE_I_D),
+        ("table-i-19ms", tables::THE_ONE_WITH_19_MS),
+    ];
+    for (name, table) in tables {
+        let report = json(&["verify", &format!("rings/{name}.toml"), "--json"]);
+        let requirements = eeruf_core::Requirements::new(eeruf_core::Micros::ZERO);
+        let expected = table.verify(&requirements);
+        let interval = expected.min_interval().map(|interval| interval.value.as_micros());
+        assert_eq!(report["min_interval_us"].as_u64(), interval.map(u64::from), "{name}");
+        assert_eq!(report["min_refire_us"], expected.min_refire().as_micros(), "{name}");
+        assert_eq!(report["separation_us"], expected.separation().unwrap().value.as_micros(), "{name}");
+    }
+}
+
+#[test]
+fn the_log_of_a_real_robot_is_judged_reading_by_reading() {
+    let log = "tests/data/scitos-g5-24-sonars.csv";
+    for (t_delta, accepted, rejected) in [("1000", 101_332, 8257), ("500", 99_210, 10_379)] {
+        let replay = json(&["replay", log, "--t-delta-us", t_delta, "--json"]);
+        let expected = serde_json::json!({
+            "accepted": accepted, "rejected": rejected, "first": 3226, "no_echo": 3208, "clear": 14_921,
+        });
+        assert_eq!(replay["total"], expected);
+        let sensors = replay["sensors"].as_array().unwrap();
+        assert_eq!((sensors.len(), &sensors[23]["name"]), (24, &"S24".into()));
+        let sum: u64 = sensors.iter().map(|sensor| sensor["accepted"].as_u64().unwrap()).sum();
+        assert_eq!(sum, accepted);
+    }
+}
+
+#[test]
+fn a_replay_draws_what_it_counts() {
+    let (folder, log) = Scratch::new("log.csv", "left,note,right\n1.0,x,\n1.0,y,2.5\n1.5,z,2.5\n");
+    let picture = folder.path().join("picture.svg");
+    let outcome = eeruf(&["replay", log.to_str().unwrap(), "--t-delta-us", "100", "--svg", picture.to_str().unwrap()]);
+    assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
+    assert!(outcome.out.contains("| left   |        1 |        1 |         50.0 % |     1 |"), "{}", outcome.out);
+    // The first row of `right` has no echo; it is a sensor all the same, and `note` is none.
+    assert!(
+        outcome.out.contains("| right  |        1 |        0 |          0.0 % |     1 |       1 |"),
+        "{}",
+        outcome.out
+    );
+    assert!(!outcome.out.contains("note"), "{}", outcome.out);
+    let svg = std::fs::read_to_string(picture).unwrap();
+    assert!(svg.starts_with("<svg") && svg.contains("left") && svg.contains("3 firings"));
+}
+
+#[test]
+fn the_papers_ring_can_run_at_65_ms_and_the_answer_is_the_same_in_every_form() {
+    let found = json(&["design", "rings/paper-12.toml", "--emit", "json"]);
+    assert_eq!((&found["value_us"], &found["bound_us"]), (&65_000.into(), &65_000.into()));
+    assert_eq!(found["proven"], true);
+    assert_eq!(found["schedule"]["period_us"], 65_000);
+    assert_eq!(found["schedule"]["t_fire_a_us"].as_array().unwrap().len(), 12);
+    let again = json(&["design", "rings/paper-12.toml", "--json"]);
+    assert_eq!((&again["schedule"], &again["nodes"]), (&found["schedule"], &found["nodes"]));
+
+    // The schedule file passes what was asked for, and not a microsecond more of separation or window.
+    let toml = eeruf(&["design", "rings/paper-12.toml", "--emit", "toml"]);
+    let (_folder, file) = Scratch::new("schedule.toml", &toml.out);
+    let asked = ["--t-delta-us", "999", "--min-interval-us", "15000", "--window-us", "30000"];
+    let report = json(&[&["verify", file.to_str().unwrap(), "--json"], &asked[..]].concat());
+    assert_eq!((&report["ok"], &report["max_t_delta_us"]), (&true.into(), &999.into()));
+
+    let described = eeruf(&["design", "rings/paper-12.toml"]);
+    for said in [
+        "65 ms",
+        "proven: no schedule is shorter",
+        "1.54 times Table I-d",
+        "Not shorter because",
+        "To get faster than 65 ms, one change at a time:\n 13 ms instead of 15 ms between neighbours  59 ms",
+        "listening for 27 ms instead of 30 ms       no shorter",
+        "any 3 instead of 4 adjacent sensors apart  52 ms",
+        "# fires",
+    ] {
+        assert!(described.out.contains(said), "{said}\n{}", described.out);
+    }
+}
+
+#[test]
+fn every_ring_file_that_we_ship_gets_a_proven_schedule_with_a_picture() {
+    for (ring, period_us) in [("labmate-8", 48_300), ("ring-24", 76_000), ("hc-sr04-8", 63_000)] {
+        let (folder, _) = Scratch::new("unused", "");
+        let picture = folder.path().join("timing.svg");
+        let file = format!("rings/{ring}.toml");
+        let found = json(&["design", &file, "--json", "--svg", picture.to_str().unwrap()]);
+        assert_eq!((&found["value_us"], &found["proven"]), (&period_us.into(), &true.into()), "{ring}");
+        assert!(std::fs::read_to_string(picture).unwrap().contains("phase b"));
+    }
+}
+
+#[test]
+fn a_robot_that_moves_gets_a_t_delta_that_covers_its_motion() {
+    let still = "sensors = 8\nwindow_us = 20_000\nmin_interval_us = 10_000\njitter_us = 60\ntick_us = 100\n";
+    let (_folder, file) = Scratch::new("still.toml", still);
+    let still_period = json(&["design", file.to_str().unwrap(), "--json"])["value_us"].as_u64().unwrap();
+    let moving = format!("{still}speed_m_s = 1.0\n");
+    let (_folder, file) = Scratch::new("moving.toml", &moving);
+    let found = json(&["design", file.to_str().unwrap(), "--json"]);
+    assert!(found["value_us"].as_u64().unwrap() > still_period);
+    // No good reading changes by more than jitter and 2 v dt / c over the longest dt.
+    let times = |key: &str| -> Vec<i64> {
+        found["schedule"][key].as_array().unwrap().iter().map(|t| t.as_i64().unwrap()).collect()
+    };
+    let longest = times("t_fire_a_us").iter().zip(times("t_fire_b_us")).map(|(a, b)| (a - b).abs()).max().unwrap();
+    let change = 60.0 + 2.0 * (found["value_us"].as_i64().unwrap() + longest) as f64 / 343.2;
+    let toml = eeruf(&["design", file.to_str().unwrap(), "--emit", "toml"]);
+    let (_folder, schedule) = Scratch::new("schedule.toml", &toml.out);
+    let t_delta = change.floor().to_string();
+    assert_eq!(eeruf(&["verify", schedule.to_str().unwrap(), "--t-delta-us", &t_delta]).code, Some(0));
+
+    let (_folder, file) = Scratch::new("rocket.toml", &format!("{still}speed_m_s = 100.0\n"));
+    let rocket = eeruf(&["design", file.to_str().unwrap()]);
+    assert_eq!(rocket.code, Some(1));
+    assert!(rocket.out.contains("no schedule"), "{}", rocket.out);
+}
+
+#[test]
+fn emitted_rust_is_checked_by_the_compiler_and_emitted_c_compiles_without_a_warning() {
+    let rust = eeruf(&["design", "rings/paper-12.toml", "--emit", "rust"]).out;
+    // `emitted.rs` compiles that file.
+    assert_eq!(rust, include_str!("emitted/paper_12.rs"), "eeruf design rings/paper-12.toml --emit rust");
+    let c = eeruf(&["design", "rings/paper-12.toml", "--emit", "c"]).out;
+    let (folder, header) = Scratch::new("schedule.h", &c);
+    let user = folder.path().join("user.c");
+    std::fs::write(
+        &user,
+        format!(
+            "#include \"{}\"\nint main(void) {{ return eeruf_t_fire_us[1][EERUF_SENSORS - 1] >= EERUF_PERIOD_US; }}\n",
+            header.display()
+        ),
+    )
+    .unwrap();
+    for (compiler, standard) in [("gcc", "-std=c99"), ("g++", "-std=c++11")] {
+        let language = if compiler == "gcc" { "c" } else { "c++" };
+        let built = Command::new(compiler)
+            .args([standard, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-x", language])
+            .arg(&user)
+            .arg("-o")
+            .arg(folder.path().join("user"))
+            .status()
+            .expect("a C compiler");
+        assert!(built.success(), "{compiler}");
+        assert!(Command::new(folder.path().join("user")).status().unwrap().success());
+    }
+}
+
+#[test]
+fn the_search_for_waits_counts_proves_and_finds() {
+    let waits = "sensors = 4\nperiod_us = 40000\nwait_max_us = 9000\ntick_us = 1000\nt_delta_us = 999\n\
+                 min_interval_us = 5000\n";
+    for (criterion, count) in [("paper", 178_048), ("exact", 1_058_048)] {
+        let (_folder, file) = Scratch::new("waits.toml", &format!("{waits}criterion = \"{criterion}\"\n"));
+        let file = file.to_str().unwrap();
+        assert_eq!(json(&["search", file, "--count", "--json"]), serde_json::json!({ "count": count }));
+        let best = json(&["search", file, "--best", "interval", "--json"]);
+        assert_eq!((&best["value_us"], &best["bound_us"], &best["proven"]), (&8000.into(), &8000.into(), &true.into()));
+        let (_folder, schedule) = Scratch::new("schedule.toml", &eeruf(&["search", file]).out.replace("a table", "#"));
+        let asked = ["--t-delta-us", "999", "--min-interval-us", "5000", "--criterion", criterion];
+        assert_eq!(eeruf(&[&["verify", schedule.to_str().unwrap()], &asked[..]].concat()).code, Some(0));
+    }
+    let (_folder, file) = Scratch::new("waits.toml", &waits.replace("999", "1999"));
+    let none = eeruf(&["search", file.to_str().unwrap()]);
+    assert_eq!(none.code, Some(1));
+    assert!(none.out.starts_with("there is no such table: all were searched"), "{}", none.out);
+    for (from, to, reason) in [
+        ("999", "1999", "t_delta alone cannot be met: 4 sensors need waits that differ by amounts 4 ms apart"),
+        ("5000", "15000", "the smallest interval alone cannot be met: with these lags and waits of at most 9 ms"),
+        ("5000", "9000", "t_delta and the smallest interval cannot be met together"),
+    ] {
+        let (_folder, file) = Scratch::new("waits.toml", &waits.replace(from, to));
+        for option in [None, Some("--count")] {
+            let asked: Vec<_> = ["search", file.to_str().unwrap()].into_iter().chain(option).collect();
+            let none = eeruf(&asked);
+            assert_eq!(none.code, Some(1));
+            assert!(none.out.lines().nth(1).is_some_and(|line| line.starts_with(reason)), "{}", none.out);
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_a_long_design_with_the_best_schedule_so_far() {
+    // Open after minutes of search.
+    let needs = "t_delta_us = 999\nmin_interval_us = 15_000\nwindow_us = 15_000\ntick_us = 100";
+    let (_scratch, ring) = Scratch::new("ring-15.toml", &format!("sensors = 15\nlayout = 'ring'\n{needs}\n"));
+    let mut program = Command::new(env!("CARGO_BIN_EXE_eeruf"));
+    let search =
+        program.arg("design").arg(&ring).args(["--budget", "1000000000"]).stdout(Stdio::piped()).spawn().unwrap();
+    // Long enough to begin, on a busy machine too.
+    std::thread::sleep(Duration::from_secs(2));
+    let signalled = Command::new("kill").args(["-INT", &search.id().to_string()]).status().unwrap();
+    assert!(signalled.success());
+    let outcome = search.wait_with_output().unwrap();
+    let out = String::from_utf8(outcome.stdout).unwrap();
+    assert_eq!(outcome.status.code(), Some(0), "{out}");
+    assert!(out.contains("not proven: it may be as short as") && out.contains("t_fire_a_us"), "{out}");
+}

@@ -1,0 +1,154 @@
+//! Tables of measurements in docs/firmware.md: `<!-- measured: NAME -->` stands before each, `<!-- end -->` after it.
+//!
+//! Counts repeat on the same compiler and must be the same; on another one they may differ by as much as the document
+//! says. Timings differ a little from run to run.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use crate::blocks::{blocks, replaced};
+use crate::steps::Trouble;
+
+pub(crate) const DOCUMENT: &str = "docs/firmware.md";
+const MEASURED: &str = "<!-- measured: ";
+/// The table that says which compiler each board's figures are of.
+pub(crate) const COMPILERS: &str = "compilers";
+
+/// By how much a number may differ: by a share of the larger one, and by this much besides.
+#[derive(Clone, Copy)]
+struct Tolerance {
+    share: f64,
+    besides: f64,
+}
+
+const NONE: Tolerance = Tolerance { share: 0.0, besides: 0.0 };
+/// What another compiler makes of the same source; its `memcpy` may need 80 bytes of stack more.
+const OTHER_COMPILER: Tolerance = Tolerance { share: 0.15, besides: 0.0 };
+const OTHER_COMPILERS_STACK: Tolerance = Tolerance { share: 0.15, besides: 100.0 };
+/// The emulator does not take every interrupt at the very same instruction.
+const TIMING: Tolerance = Tolerance { share: 0.1, besides: 10.0 };
+
+/// Measured tables by their names.
+pub(crate) type Tables = BTreeMap<&'static str, String>;
+
+/// Puts the tables into the document.
+pub(crate) fn write(tables: &Tables) -> Result<(), Trouble> {
+    let fresh = replaced(&read()?, MEASURED, |block| {
+        tables.get(block.label).cloned().ok_or_else(|| failed(&format!("nothing is measured for {}", block.label)))
+    })?;
+    fs::write(DOCUMENT, fresh).map_err(|error| failed(&error))
+}
+
+/// Compares the tables with those of the document.
+pub(crate) fn check(tables: &Tables) -> Result<(), Trouble> {
+    let text = read()?;
+    let documented: BTreeMap<&str, &str> =
+        blocks(&text, MEASURED)?.iter().map(|block| (block.label, block.body)).collect();
+    let mut differ = Vec::new();
+    for (name, measured) in tables {
+        let expected = documented.get(name).ok_or_else(|| failed(&format!("has no `{MEASURED}{name} -->`")))?;
+        if *name != COMPILERS {
+            let now = rows(tables.get(COMPILERS).map_or("", String::as_str));
+            let then = rows(documented.get(COMPILERS).unwrap_or(&""));
+            differ.extend(differences(name, expected, measured, |board| {
+                now.iter().any(|row| row.first() == Some(&board) && then.contains(row))
+            }));
+        }
+    }
+    if differ.is_empty() {
+        println!("{DOCUMENT}: {} tables are as measured", tables.len());
+        return Ok(());
+    }
+    Err(failed(&format!("not as measured (`cargo xtask firmware --write` writes it):\n{}", differ.join("\n"))))
+}
+
+fn read() -> Result<String, Trouble> {
+    fs::read_to_string(DOCUMENT).map_err(|error| failed(&error))
+}
+
+fn failed(why: &dyn std::fmt::Display) -> Trouble {
+    Trouble::Failed(format!("{DOCUMENT}: {why}"))
+}
+
+/// The cells of each line.
+fn rows(table: &str) -> Vec<Vec<&str>> {
+    let lines = table.lines().map(str::trim).filter(|line| !line.is_empty());
+    lines.map(|line| line.trim_matches('|').split('|').map(str::trim).collect()).collect()
+}
+
+fn differences(
+    name: &str,
+    expected: &str,
+    measured: &str,
+    is_of_the_same_compiler: impl Fn(&str) -> bool,
+) -> Vec<String> {
+    let (expected, measured) = (rows(expected), rows(measured));
+    let mut differ = Vec::new();
+    if expected.len() != measured.len() {
+        differ.push(format!("{name}: {} lines; measured {}", expected.len(), measured.len()));
+    }
+    for (expected, measured) in expected.iter().zip(&measured) {
+        let other = match name {
+            _ if is_of_the_same_compiler(measured.first().unwrap_or(&"")) => NONE,
+            "stack" => OTHER_COMPILERS_STACK,
+            "instructions" | "size" | "search" => OTHER_COMPILER,
+            _ => NONE,
+        };
+        let same = |(expected, measured): (&&str, &&str)| is_same(expected, measured, other);
+        if expected.len() != measured.len() || !expected.iter().zip(measured).all(same) {
+            differ.push(format!("{name}: | {} |, measured | {} |", expected.join(" | "), measured.join(" | ")));
+        }
+    }
+    differ
+}
+
+/// Whether a cell is as measured. A number is a timing if it stands before `us` or `ms`, or after a word in `_us`.
+fn is_same(expected: &str, measured: &str, tolerance: Tolerance) -> bool {
+    let words = |cell: &str| cell.split_whitespace().map(|word| word.trim_end_matches(',').to_owned()).collect();
+    let (expected, measured): (Vec<String>, Vec<String>) = (words(expected), words(measured));
+    let is_timing = |index: usize| {
+        matches!(measured.get(index + 1).map(String::as_str), Some("us" | "ms"))
+            || index.checked_sub(1).and_then(|before| measured.get(before)).is_some_and(|word| word.ends_with("_us"))
+    };
+    let same = |(index, (expected, measured)): (usize, (&String, &String))| match (
+        expected.parse::<f64>(),
+        measured.parse::<f64>(),
+    ) {
+        (Ok(expected), Ok(measured)) => {
+            let Tolerance { share, besides } = if is_timing(index) { TIMING } else { tolerance };
+            (expected - measured).abs() <= share * expected.max(measured) + besides
+        }
+        _ => expected == measured,
+    };
+    expected.len() == measured.len() && expected.iter().zip(&measured).enumerate().all(same)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_must_be_the_same_on_the_same_compiler_and_near_on_another() {
+        assert!(is_same("362", "362", NONE) && !is_same("362", "363", NONE));
+        assert!(is_same("362", "397", OTHER_COMPILER) && !is_same("362", "450", OTHER_COMPILER));
+        assert!(is_same("24", "104", OTHER_COMPILERS_STACK));
+    }
+
+    #[test]
+    fn timings_may_differ_a_little_and_words_and_counts_beside_them_may_not() {
+        assert!(is_same("a firing 32.1 ms late", "a firing 32.073 ms late", NONE));
+        assert!(!is_same("a firing 32.1 ms late", "nothing to name", NONE));
+        assert!(is_same("latest_us 58 accepted 2386", "latest_us 61 accepted 2386", NONE));
+        assert!(!is_same("latest_us 58 accepted 2386", "latest_us 58 accepted 2385", NONE));
+    }
+
+    #[test]
+    fn a_line_that_differs_is_shown_as_it_stands_and_as_measured() {
+        let table = |value: u32| format!("| board | most |\n|---|---:|\n| microbit | {value} |\n");
+        assert!(differences("size", &table(3564), &table(3564), |_| true).is_empty());
+        assert_eq!(
+            differences("size", &table(3564), &table(3560), |_| true),
+            ["size: | microbit | 3564 |, measured | microbit | 3560 |"]
+        );
+    }
+}

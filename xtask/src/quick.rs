@@ -1,0 +1,45 @@
+//! `cargo xtask test --quick`: what is worth knowing while one works, in under two minutes.
+
+use std::process::{Command, ExitCode};
+
+use cargo_metadata::{MetadataCommand, TargetKind};
+
+use crate::changed;
+use crate::listings;
+use crate::steps::{Steps, Trouble, run};
+
+pub(crate) fn run_quick() -> ExitCode {
+    let mut steps = Steps::default();
+    steps.step("formatting", || cargo(&["fmt", "--all", "--check"]));
+    steps.step("listings of the documents", listings::check_all);
+    steps.step("clippy", || {
+        cargo(&["clippy", "--quiet", "--workspace", "--all-targets", "--locked", "--", "--deny", "warnings"])
+    });
+    steps.step("unit tests of what changed", unit_tests_of_what_changed);
+    steps.finish(false)
+}
+
+fn cargo(args: &[&str]) -> Result<(), Trouble> {
+    run(Command::new("cargo").args(args))
+}
+
+fn unit_tests_of_what_changed() -> Result<(), Trouble> {
+    let metadata = MetadataCommand::new().no_deps().exec().map_err(|error| Trouble::Failed(error.to_string()))?;
+    let files = changed::files()?;
+    let packages = changed::packages(&metadata, &files);
+    if packages.is_empty() {
+        println!("no package among {} changed files", files.len());
+        return Ok(());
+    }
+    let mut test = Command::new("cargo");
+    test.args(["test", "--quiet", "--locked", "--bins"]);
+    let has_library = |kind: &TargetKind| matches!(kind, TargetKind::Lib | TargetKind::RLib | TargetKind::CDyLib);
+    if packages.iter().any(|package| package.targets.iter().any(|target| target.kind.iter().any(has_library))) {
+        test.arg("--lib");
+    }
+    for package in packages {
+        println!("{}", package.name);
+        test.args(["--package", &package.name]);
+    }
+    run(&mut test)
+}

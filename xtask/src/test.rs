@@ -1,0 +1,104 @@
+//! `cargo xtask test`: everything that must hold before a change goes in.
+
+use std::collections::BTreeMap;
+use std::process::{Command, ExitCode};
+
+use cargo_metadata::{Metadata, MetadataCommand, Package};
+
+use crate::steps::{Steps, Trouble, output, run};
+use crate::toolchain::{cargo_for_target, cargo_of_version};
+
+/// The smallest core that firmware runs on; the others are tried with the firmware itself.
+const BARE_TARGETS: [&str; 1] = ["thumbv6m-none-eabi"];
+
+pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
+    let mut steps = Steps::default();
+    steps.step("formatting", || run_cargo(&["fmt", "--all", "--check"]));
+    steps.step("listings of the documents", crate::listings::check_all);
+    steps.step("clippy", || {
+        run_cargo(&["clippy", "--workspace", "--all-targets", "--locked", "--", "--deny", "warnings"])
+    });
+    let metadata = match MetadataCommand::new().no_deps().exec() {
+        Ok(metadata) => metadata,
+        Err(error) => {
+            steps.step("cargo metadata", || Err(Trouble::Failed(error.to_string())));
+            return steps.finish(nothing_skipped);
+        }
+    };
+    steps.step("each feature alone", || each_feature_alone(&metadata));
+    for target in BARE_TARGETS {
+        steps.step(&format!("eeruf-core without an operating system ({target})"), || {
+            let mut cargo = cargo_for_target(target)?;
+            run(cargo.args(["build", "--package", "eeruf-core", "--release", "--locked", "--target", target]))
+        });
+    }
+    steps.step("lint of the firmware", crate::firmware::lint);
+    // What the default compiler can build, Clippy has just built with it.
+    let default = version_of_default();
+    for (version, packages) in packages_by_version(&metadata) {
+        if default.as_deref() == Some(&*version) {
+            continue;
+        }
+        steps.step(&format!("minimum Rust {version}"), || {
+            let mut cargo = cargo_of_version(&version)?;
+            cargo.args(["check", "--locked"]);
+            for package in packages {
+                cargo.args(["--package", &package.name]);
+            }
+            run(&mut cargo)
+        });
+    }
+    steps.step("tests and doctests", || run_cargo(&["test", "--workspace", "--locked"]));
+    // With the features of the whole workspace, as built for the tests; those of instructions need a runner.
+    steps.step("benches, each once", || {
+        let benches = ["design", "paths", "simulation", "wait"].map(|name| ["--bench", name]).concat();
+        run_cargo(&[&["test", "--workspace", "--locked"], &benches[..]].concat())
+    });
+    steps.step("small tables in the documents", || {
+        crate::printed::check(&crate::printed::documents()?, crate::printed::Which::SmallOfOthers)
+    });
+    steps.step("tests of the core's conversions", || {
+        run_cargo(&["test", "--package", "eeruf-core", "--lib", "--locked", "--features", "fugit,serde", "interop"])
+    });
+    steps.step("Python package", crate::python::python);
+    steps.step("firmware on emulated boards", || crate::firmware::firmware(false));
+    steps.step("documentation", || {
+        run(Command::new("cargo")
+            .args(["doc", "--workspace", "--no-deps", "--locked"])
+            .env("RUSTDOCFLAGS", "--deny warnings"))
+    });
+    steps.finish(nothing_skipped)
+}
+
+fn run_cargo(args: &[&str]) -> Result<(), Trouble> {
+    run(Command::new("cargo").args(args))
+}
+
+fn each_feature_alone(metadata: &Metadata) -> Result<(), Trouble> {
+    for package in metadata.workspace_packages() {
+        run_cargo(&["check", "--package", &package.name, "--locked", "--no-default-features"])?;
+        for feature in package.features.keys().filter(|feature| *feature != "default") {
+            let features = ["--no-default-features", "--features", feature];
+            run_cargo(&[&["check", "--package", &package.name, "--locked"], &features[..]].concat())?;
+        }
+    }
+    Ok(())
+}
+
+/// The packages of the workspace by the minimum version of Rust that they declare, as "1.85".
+fn packages_by_version(metadata: &Metadata) -> BTreeMap<String, Vec<&Package>> {
+    let mut packages = BTreeMap::<_, Vec<_>>::new();
+    for package in metadata.workspace_packages() {
+        if let Some(version) = &package.rust_version {
+            packages.entry(format!("{}.{}", version.major, version.minor)).or_default().push(package);
+        }
+    }
+    packages
+}
+
+/// The version of the default compiler, as "1.95".
+fn version_of_default() -> Option<String> {
+    let said = output(Command::new("rustc").arg("--version"))?;
+    let (version, _) = said.strip_prefix("rustc ")?.rsplit_once('.')?;
+    Some(version.split('.').take(2).collect::<Vec<_>>().join("."))
+}

@@ -1,14 +1,12 @@
 #!/usr/bin/env python3
 """Checks a certificate that a firing schedule's period is the shortest one: python3 check_period.py FILE
 
-Python's standard library alone. Shares nothing with the search that found the schedule, nor with crates/eeruf-check.
-docs/certificate.md has the format, and the proofs at more length.
-
-Sensor x fires at a[x] in phase a and at b[x] in phase b, both in [0, T); the phases follow each other, each T long.
-d[x] = a[x] - b[x]. Required: |d| of two sensors differ by the larger of their separations D; 2 |d[x]| >= D[x] if
-stale_echo; T - |d[x]| >= window[x]; after x fires, y fires no sooner than gap[x][y]. A schedule for T is one for every
-longer period: times within a phase stay, those across phases grow. So refuting one period refutes all below it.
-"""
+Python's standard library alone; shares nothing with the search that found the schedule, nor with crates/eeruf-check.
+docs/certificate.md has problem and format; its sections "The rules" and "What the root may assume" have the proofs.
+Sensor x fires at a[x] in phase a, at b[x] in phase b, both in [0, T); d[x] = a[x] - b[x]. Required: |d| differ by the
+larger of two separations D; 2 |d[x]| >= D[x] if stale_echo; T - |d[x]| >= window[x]; after x, y fires no sooner than
+gap[x][y]. A schedule for T is one for longer periods: times within a phase stay, those across phases grow. So refuting
+one period refutes all below it."""
 import copy
 import sys
 from fractions import Fraction
@@ -18,58 +16,51 @@ LARGEST, SENSORS, DEPTH = 1 << 20, 64, 1000
 Refused = type("Refused", (Exception,), {})  # the certificate is not as it must be
 Refuted = type("Refuted", (Exception,), {})  # no schedule is in this part of the tree
 
-
 class Lines:
     """The lines of a certificate: a word, then numbers, with one space between."""
-
-    def __init__(self, text):
-        self.lines, self.read = text.split("\n"), 0
+    def __init__(self, text):  # one more at the end, so that there is always a next one
+        self.lines, self.read = [line.split(" ") for line in text.split("\n")] + [[""]], 0
 
     def require(self, condition, what):
         if not condition:
             raise Refused(f"line {max(self.read, 1)}: {what}")
 
     def is_next(self, word):
-        return self.read < len(self.lines) and self.lines[self.read].split(" ")[0] == word
+        return self.lines[self.read][0] == word
 
     def next(self, expected, count=None, least=0, most=LARGEST):
-        line = self.lines[self.read] if self.read < len(self.lines) else ""
-        word, *numbers = line.split(" ")
+        word, *numbers = self.lines[self.read]
         self.read += 1
-        self.require(word == expected, f"found {line[:40]!r}, expected a line {expected}")
+        self.require(word == expected, f"found {word[:40]!r}, expected a line {expected}")
         for number in numbers:
             plain = number.isascii() and number.isdigit() and len(number) < 8 and str(int(number)) == number
             self.require(plain and least <= int(number) <= most, f"found {number[:9]!r}, expected {least} to {most}")
         self.require(count in (None, len(numbers)), f"found {len(numbers)} numbers, expected {count}")
         return [int(number) for number in numbers]
 
-
 class Problem:
     """The problem, the schedule, which is checked longhand, and the claim."""
-
     def __init__(self, lines):
         lines.next("eeruf-certificate", 1, 1, 1)
         self.tick = Fraction(*lines.next("tick_us", 2, 1))
         self.sensors = count = lines.next("sensors", 1, 1, SENSORS)[0]
         self.separation, self.window = lines.next("separation", count, 1), lines.next("window", count, 1)
         self.stale_echo, self.over_reals = lines.next("stale_echo", 1, 0, 1)[0], lines.next("over_reals", 1, 0, 1)[0]
-        half = self.over_reals and self.stale_echo and any(D % 2 for D in self.separation)
-        lines.require(not half, "stale_echo over_reals needs even separations")
+        is_even = not any(D % 2 for D in self.separation)
+        lines.require(is_even or not self.over_reals * self.stale_echo, "stale_echo over_reals needs even separations")
         self.together, self.gap, last = [], [[0] * count for _ in range(count)], [-1, -1]
         while lines.is_next("together"):
             group, used = lines.next("together", None, 0, count - 1), set(sum(self.together, []))
-            fine = len(group) > 1 and group == sorted(set(group) - used)
-            lines.require(fine, "expected two or more, in ascending order, in no other group")
+            lines.require(group[1:] and group == sorted(set(group) - used), "expected two or more in ascending order")
             self.together.append(group)
         while lines.is_next("gap"):
             x, y, after_x, after_y = lines.next("gap", 4)
-            fine = x < y < count and [x, y] > last and after_x and after_y
-            lines.require(fine, "expected pairs x < y in ascending order, with gaps of 1 or more")
+            lines.require(last < [x, y] and x < y < count and after_x and after_y, "expected pairs in ascending order")
             self.gap[x][y], self.gap[y][x], last = after_x, after_y, [x, y]
-        self.period = lines.next("period", 1, 1)[0]
+        (self.period,) = lines.next("period", 1, 1)
         self.a, self.b = (lines.next(word, count, 0, self.period - 1) for word in ("fire_a", "fire_b"))
         self.check_schedule(lines.require)
-        self.bound = lines.next("no_period_below", 1, 1, self.period)[0]
+        (self.bound,) = lines.next("no_period_below", 1, 1, self.period)
         # Sensors that fire together have the same times, so they are one sensor with their strictest requirements.
         ones = sorted(self.together + [[x] for x in range(count) if x not in sum(self.together, [])])
         self.one = [next(one for one, group in enumerate(ones) if x in group) for x in range(count)]
@@ -77,87 +68,77 @@ class Problem:
         self.G = G = [[max(self.gap[x][y] for x in group for y in other) for other in ones] for group in ones]
         self.ends = [(1 + 2 * x, 2 + 2 * x) for x in range(len(ones))]  # the events of x in phases a and b
         # Two events, the least time from first to second, the bound if that order is impossible.
-        self.orders = [(self.ends[x][phase], self.ends[y][phase], 2 * G[x][y], -2 * G[y][x])
-                       for x in range(len(ones)) for y in range(len(ones)) if G[x][y] for phase in (0, 1)]
+        self.orders = [(self.ends[x][phase], self.ends[y][phase], 2 * gap, -2 * G[y][x])
+                       for x, row in enumerate(G) for y, gap in enumerate(row) if gap for phase in (0, 1)]
 
     def check_schedule(self, require):
         fire = [(a, self.period + b, 2 * self.period + a) for a, b in zip(self.a, self.b)]  # then it repeats
-        change = [abs(a - b) for a, b in zip(self.a, self.b)]
+        change, D = [abs(a - b) for a, b in zip(self.a, self.b)], self.separation
         for x, (first, second, third) in enumerate(fire):
             require(min(second - first, third - second) >= self.window[x], f"sensor {x} fires within its window")
-            require(not self.stale_echo or 2 * change[x] >= self.separation[x], f"sensor {x} would take a stale echo")
+            require(not self.stale_echo or 2 * change[x] >= D[x], f"sensor {x} would take a stale echo")
             for y in range(self.sensors):
                 if any(x in group and y in group for group in self.together):
                     require(fire[x] == fire[y], f"sensors {x} and {y} must fire together and do not")
                 elif x != y:
-                    apart = max(self.separation[x], self.separation[y])
-                    require(abs(change[x] - change[y]) >= apart, f"|d| of sensors {x} and {y} differ by too little")
+                    require(abs(change[x] - change[y]) >= max(D[x], D[y]), f"|d| of sensors {x} and {y} are too near")
                 if gap := self.gap[x][y]:  # at the same instant each is after the other
                     waits = [later - earlier for earlier in fire[x] for later in fire[y] if later >= earlier]
                     require(min(waits) >= gap, f"sensor {y} fires too soon after sensor {x}")
 
-
 class Node:
-    """What is known at a node. M[i][j] bounds t[j] - t[i]: 2 v says "at most v", 2 v - 1 "less than v"; event 0 is the
-    start of a phase, 1 + 2 x is x in phase a, 2 + 2 x in phase b. low[x] bounds |d[x]|: 2 v says "at least v", 2 v + 1
-    "more than v". below[y] are those with a smaller |d|, as bits. In whole ticks no bound is odd. Each rule only
-    tightens, and more if it is given more, so all orders of applying them end in the same state: the fixpoint."""
+    """What is known at a node. M[i][j] bounds t[j] - t[i]: 2 v says "at most v", 2 v - 1 "less than v" (not in whole
+    ticks); event 0 is the start of a phase, 1 + 2 x is x in phase a, 2 + 2 x in phase b. low[x] bounds |d[x]|: 2 v says
+    "at least v", 2 v + 1 "more than v". below[y] are those with a smaller |d|, as bits. Rules only tighten, and more if
+    given more, so all orders of applying them end in the same state: the fixpoint."""
 
-    def __init__(self, problem):
-        # Every period below the bound. In whole ticks T <= bound - 1, and firing times are <= T - 1.
-        self.problem, self.step, self.reverse, self.seen = problem, 2 - problem.over_reals, [], None
+    def __init__(self, problem, reverse):
+        self.problem, self.step, self.reverse, self.seen = problem, 2 - problem.over_reals, reverse, None
+        # Firing times are below T, and T below the bound; in whole ticks each by 1.
         latest, size = 2 * problem.bound - (1 if problem.over_reals else 4), 1 + 2 * len(problem.D)
-        if latest < 0:
-            raise Refuted
-        self.M = [[latest * (i != j) for j in range(size)] for i in range(size)]
-        # 2 |d| >= D: the bound 2 (D / 2) = D, in whole ticks rounded up to an even one.
-        self.low = [(D + D % 2 * (self.step - 1)) * problem.stale_echo for D in problem.D]
+        self.M = [[latest * (i != j and j > 0) for j in range(size)] for i in range(size)]
+        self.low = [(D + D % 2 * (self.step - 1)) * problem.stale_echo for D in problem.D]  # 2 |d| >= D, rounded up
         self.below = [0] * len(problem.D)
-        for x, (a, b) in enumerate(problem.ends):
-            self.M[a][0] = self.M[b][0] = 0
-            self.learn_high(x, 2 * (problem.bound - problem.R[x]) - self.step)
-            for gap, (next_a, next_b) in zip(problem.G[x], problem.ends):
-                if gap:  # after x in a phase, y in the next one
-                    self.learn(next_b, a, 2 * (problem.bound - gap) - self.step)
-                    self.learn(next_a, b, 2 * (problem.bound - gap) - self.step)
+
+    def assuming(self, *facts):
+        """The node with these facts and all that follows from them; None if it is refuted."""
+        node = copy.copy(self)
+        node.M, node.low, node.below = self.M[:], self.low[:], self.below[:]  # rows of M are only ever replaced
+        try:
+            for learn, *what in facts:
+                learn(node, *what)
+            while node.orders() | node.signs() | node.ranks() or node.precedence():
+                pass
+        except Refuted:
+            return None
+        return node
 
     def learn(self, i, j, bound):
-        """Rule 1, closure: t[j] - t[h] = (t[i] - t[h]) + (t[j] - t[i]), so bounds add along every way; a way round that
-        adds to less than 0 is impossible. After a new bound only ways through it need a look. "< v" and "< w" add to
-        "< v + w": of two odd numbers one -1 goes, so to an odd number even ones are added."""
-        M = self.M
+        """Rule 1, closure: t[j] - t[h] = (t[i] - t[h]) + (t[j] - t[i]): bounds add along ways; a way round is 0. And
+        "< v" and "< w" add to "< v + w": of two odd numbers one -1 goes, so to an odd number even ones are added."""
+        M, even = self.M, self.M[j]
         if bound >= M[i][j]:
             return False
         if bound + M[j][i] + (bound & M[j][i] & 1) < 0:
             raise Refuted
-        even = M[j]
         odd = [onward + (onward & 1) for onward in even] if self.step == 1 else even
         for h, row in enumerate(M):
-            through = row[i] + bound + (row[i] & bound & 1)
-            if through < row[j]:
-                onward = odd if through & 1 else even
-                M[h] = [old if old <= through + new else through + new for old, new in zip(row, onward)]
+            if (through := row[i] + bound + (row[i] & bound & 1)) < row[j]:
+                onward = zip(row, odd if through & 1 else even)
+                M[h] = [old if old <= through + new else through + new for old, new in onward]
         return True
 
     def high(self, x):  # the upper bound on |d[x]|
         return max(self.M[1 + 2 * x][2 + 2 * x], self.M[2 + 2 * x][1 + 2 * x])
-
     def learn_high(self, x, bound):
         return self.learn(2 + 2 * x, 1 + 2 * x, bound) | self.learn(1 + 2 * x, 2 + 2 * x, bound)
-
     def learn_low(self, x, bound):
         news, self.low[x] = bound > self.low[x], max(bound, self.low[x])
         if self.low[x] > self.high(x):
             raise Refuted
         return news
-
     def learn_below(self, x, y):
         self.below[y] |= 1 << x
-
-    def propagate(self):
-        while self.orders() | self.signs() | self.ranks() or self.precedence():
-            pass
-        return self
 
     def orders(self):
         """Rule 2: if y cannot come its gap after x, then y comes first, as one of two firings does."""
@@ -179,22 +160,19 @@ class Node:
         return news
 
     def ranks(self):
-        """Rule 4: if |d[x]| cannot be D above |d[y]|, it is below; below is transitive and not circular. Values each
-        max(D, D') apart span the sum of their D but the smallest or more: from the smallest outwards, each step is at
-        least the D it leads to. So |d[y]| is as far above the lowest of any set below it as the set with y spans; the
-        same upside down. Rule 5 (Hall): those whose |d| lies in an interval span no more than its width."""
+        """Rule 4: if |d[x]| cannot be D above |d[y]|, it is below; below is transitive, not circular. Values max(D, D')
+        apart span the sum of their D but the smallest: outwards from there, each step is the D it leads to or more. So
+        |d[y]| is above the lowest of any set below it by the span of the set with y; the same upside down.
+        Rule 5 (Hall): those whose |d| lies in an interval span no more than its width."""
         low, below, D, every = self.low, self.below, self.problem.D, range(len(self.low))
-        high = [self.high(x) for x in every]
-        seen, news = (high, low[:], below[:]), False
+        seen, news = (high := [self.high(x) for x in every], low[:], below[:]), False
         if self.seen == seen:
             return False
         for y in every:
-            known = below[y]
             for x in every:
-                if high[x] - low[y] < 2 * max(D[x], D[y]) and x != y or known >> x & 1:
-                    known |= 1 << x | below[x]
-            below[y] = known
-            if known >> y & 1:
+                if high[x] - low[y] < 2 * max(D[x], D[y]) and x != y or below[y] >> x & 1:
+                    below[y] |= 1 << x | below[x]
+            if below[y] >> y & 1:
                 raise Refuted
         for y in every:
             under = [(-low[x], D[x]) for x in every if below[y] >> x & 1]
@@ -222,73 +200,64 @@ class Node:
                     news |= self.learn(end, start, most + lead + (most & lead & 1))
         return news
 
-
 def beyond(values, own=()):
     """A bound on what is below all values, given as upper bounds and separations: see rule 4."""
     bounds, separations = zip(*sorted(values))
     spans, narrowest = list(accumulate(own + separations)), list(accumulate(own + separations, min))
     return min(bound - 2 * (span - D) for bound, span, D in zip(bounds, spans[len(own):], narrowest[len(own):]))
 
-
 def root(lines, problem):
-    """What may be assumed since each schedule has others like it. Permutations that take the problem to itself take
-    schedules to schedules: one brings the least |d| of an orbit to any sensor in it, and if it leaves earlier orbits
-    and their least as they are, it leaves what was assumed of them. Exchanging the phases turns all d to -d: one d is
-    not negative. Reversing time and exchanging the phases keeps all d; if y fires before x in both phases, then
-    x before y in both: assume that it is not y before x in both. That needs gaps alike both ways."""
-    every, one, gap, earlier, below = range(problem.sensors), problem.one, problem.gap, [], []
+    """What holds at the root. A permutation that keeps the problem takes schedules to schedules; if it keeps earlier
+    orbits and their least, it keeps what was assumed of them. So any sensor of an orbit may have its least |d|. To
+    exchange the phases turns all d to -d: one d is not negative. To reverse time as well keeps all d, and y before x in
+    both phases becomes x before y: assume that it is not so. That needs gaps alike both ways."""
+    every, one, gap, groups = range(problem.sensors), problem.one, problem.gap, problem.together
+    earlier, facts, reverse = [], [], []
+    period = 2 * (problem.bound - 1) + problem.over_reals  # below the bound, as a bound of M
+    for x, (a, b) in enumerate(problem.ends):
+        facts.append((Node.learn_high, x, period - 2 * problem.R[x]))
+        for wait, (next_a, next_b) in zip(problem.G[x], problem.ends):
+            if wait:  # after x in a phase, y in the next one
+                facts += [(Node.learn, next_b, a, period - 2 * wait), (Node.learn, next_a, b, period - 2 * wait)]
     while lines.is_next("permutation"):
         images, orbit = [], set()
         while lines.is_next("permutation"):
             images.append(image := lines.next("permutation", len(every), 0, len(every) - 1))
-            lines.require(sorted(image) == list(every), "expected a permutation")
-            for x, y in enumerate(image):
-                same = problem.separation[x] == problem.separation[y] and problem.window[x] == problem.window[y]
-                same = same and all(gap[x][z] == gap[y][image[z]] for z in every)
-                lines.require(same, f"sensor {x} is taken to sensor {y}, which differs")
-            groups = all(sorted(image[x] for x in group) in problem.together for group in problem.together)
-            stays = all(image[x] == x and {image[y] for y in others} == others for x, others in earlier)
-            lines.require(groups and stays, "expected groups to be taken to groups, and earlier orbits to stay")
+            kept = sorted(image) == [*every] and all(sorted(image[x] for x in group) in groups for group in groups)
+            kept = kept and all(row[x] == row[image[x]] for row in (problem.separation, problem.window) for x in every)
+            kept = kept and all(gap[x][y] == gap[image[x]][image[y]] for x in every for y in every)
+            kept = kept and all(image[x] == x and {image[y] for y in others} == others for x, others in earlier)
+            lines.require(kept, "expected a permutation that keeps the problem, and earlier orbits with their least")
         (least,) = new = lines.next("least", 1, 0, len(every) - 1)
         while new:
             orbit |= set(new)
             new = {image[x] for image in images for x in new} - orbit
         earlier.append((least, orbit))
-        below += [(one[least], one[x]) for x in orbit if one[x] != one[least]]
-    positive = lines.next("exchange", 1, 0, len(every) - 1) if lines.is_next("exchange") else []
-    reverse = []
+        facts += [(Node.learn_below, one[least], one[x]) for x in orbit if one[x] != one[least]]
+    if lines.is_next("exchange"):
+        facts.append((Node.learn, *problem.ends[one[lines.next("exchange", 1, 0, len(every) - 1)[0]]], 0))
     if lines.is_next("reverse"):
         x, y = (one[x] for x in lines.next("reverse", 2, 0, len(every) - 1))
-        (i, k), (j, l), fine = problem.ends[x], problem.ends[y], gap == [list(column) for column in zip(*gap)]
+        (i, k), (j, m), fine = problem.ends[x], problem.ends[y], gap == [list(column) for column in zip(*gap)]
         lines.require(problem.G[x][y] and fine, "expected two sensors with a gap, and all gaps alike both ways")
-        reverse = [(i, j, l, k, 2 * problem.G[x][y]), (k, l, j, i, 2 * problem.G[x][y])]
-    try:
-        node = Node(problem)
-        node.reverse = reverse
-        for x, y in below:
-            node.learn_below(x, y)
-        for x in positive:
-            node.learn(*problem.ends[one[x]], 0)
-        return node.propagate()
-    except Refuted:
-        return None
-
+        reverse = [(i, j, m, k, 2 * problem.G[x][y]), (k, m, j, i, 2 * problem.G[x][y])]
+    return Node(problem, reverse).assuming(*facts)
 
 def branching(lines, node):
-    """The two cases of the next line, one of which holds in every schedule: each a function that assumes it."""
+    """The two cases of the next line, one of which holds in every schedule: each what to learn."""
     problem, step, every = node.problem, node.step, node.problem.sensors - 1
     word = next((word for word in ("split", "sign", "rank", "b") if lines.is_next(word)), "a")
-    numbers = lines.next(word, 1 if word == "sign" else 2, 0, LARGEST if word == "split" else every)
-    lines.require(numbers[0] <= every, f"found sensor {numbers[0]}, expected 0 to {every}")
-    x, y = problem.one[numbers[0]], None if word in ("sign", "split") else problem.one[numbers[1]]
+    sensors = lines.next(word, 1 if word == "sign" else 2, 0, LARGEST if word == "split" else every)
+    lines.require(sensors[0] <= every, f"found sensor {sensors[0]}, expected 0 to {every}")
+    x, y = problem.one[sensors[0]], None if word in ("sign", "split") else problem.one[sensors[1]]
     if word == "split":
-        value = 2 * numbers[1]
+        value = 2 * sensors[1]
         decided = node.low[x] > value or node.high(x) <= value
-        cases = [lambda node: node.learn_high(x, value), lambda node: node.learn_low(x, value + step)]
+        cases = (Node.learn_high, x, value), (Node.learn_low, x, value + step)
     elif word == "rank":
         lines.require(x != y, "expected two sensors that do not fire together")
         decided = (node.below[y] >> x | node.below[x] >> y) & 1
-        cases = [lambda node: node.learn_below(x, y), lambda node: node.learn_below(y, x)]
+        cases = (Node.learn_below, x, y), (Node.learn_below, y, x)
     else:
         (i, j), bounds = problem.ends[x], (0, -step)  # d[x] >= 0, or d[x] < 0
         if word != "sign":
@@ -296,53 +265,36 @@ def branching(lines, node):
             (j, i), G = (problem.ends[one][word == "b"] for one in (x, y)), problem.G
             bounds = -2 * G[x][y], -2 * G[y][x]  # x first, or y
         decided = node.M[i][j] <= bounds[0] or node.M[j][i] <= bounds[1]
-        cases = [lambda node: node.learn(i, j, bounds[0]), lambda node: node.learn(j, i, bounds[1])]
+        cases = (Node.learn, i, j, bounds[0]), (Node.learn, j, i, bounds[1])
     lines.require(not decided, "here it is known which case holds, expected an open branching")
     return cases
 
-
 def check(text):
     """What the certificate proves, in words; raises Refused."""
-    lines = Lines(text)
-    problem = Problem(lines)
+    problem = Problem(lines := Lines(text))
     node, waiting = root(lines, problem), []  # open nodes with the cases still to come; the tree is in preorder
     while node or waiting:
         if node:  # not refuted, so it must branch
             lines.require(len(waiting) < DEPTH, f"the tree is deeper than {DEPTH}")
-            waiting.append((node, branching(lines, node)))
-        node, (case, *later) = waiting.pop()
-        if later:
-            waiting.append((node, later))
-        node = copy.copy(node)
-        node.M, node.low, node.below = node.M[:], node.low[:], node.below[:]  # rows of M are only ever replaced
-        try:
-            case(node)
-            node.propagate()
-        except Refuted:
-            node = None
+            waiting += [(node, case) for case in reversed(branching(lines, node))]
+        node, case = waiting.pop()
+        node = node.assuming(case)
     lines.next("end", 0)
-    lines.require(lines.lines[lines.read:] == [""], "expected nothing after the line end")
-    reals = " over the reals" if problem.over_reals else ""
+    lines.require(lines.lines[lines.read:] == [[""], [""]], "expected nothing after the line end")
+    reals, tick = " over the reals" if problem.over_reals else "", f"(tick {problem.tick} us)"
     period, bound = problem.period * problem.tick, problem.bound * problem.tick
     if period == bound:
-        return f"{period} us is the shortest period{reals} (tick {problem.tick} us)"
-    return f"no period below {bound} us{reals}; schedule of {period} us (tick {problem.tick} us)"
-
-
-def main(arguments):
-    try:
-        (path,) = arguments
-        with open(path, "rb") as file:
-            text = file.read().decode()
-        print(check(text))
-        return 0
-    except Refused as error:
-        print(f"refused: {path}: {error}")
-        return 1
-    except (ValueError, OSError) as error:
-        print(f"usage: check_period.py FILE: {error}", file=sys.stderr)
-        return 2
-
+        return f"{period} us is the shortest period{reals} {tick}"
+    return f"no period below {bound} us{reals}; schedule of {period} us {tick}"
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    try:
+        (path,) = sys.argv[1:]
+        with open(path, "rb") as file:
+            print(check(file.read().decode()))
+    except Refused as error:
+        print(f"refused: {path}: {error}")
+        sys.exit(1)
+    except (ValueError, OSError) as error:
+        print(f"usage: check_period.py FILE: {error}", file=sys.stderr)
+        sys.exit(2)

@@ -18,11 +18,15 @@ import check_period
 def tiny_problem(dice):
     """The head of a certificate without schedule: lines up to the gaps."""
     count, even = dice.randint(2, 4), dice.random() < 0.3
-    row = (lambda most: [dice.randint(1, most)] * count) if even else lambda most: [dice.randint(1, most) for _ in range(count)]
+
+    def row(most):
+        return [dice.randint(1, most)] * count if even else [dice.randint(1, most) for _ in range(count)]
+
     separation, window, together = row(3), row(5), []
     if count > 2 and dice.random() < 0.3:
         together = [sorted(dice.sample(range(count), 2))]
-    lines = ["eeruf-certificate 1", "tick_us 1 1", f"sensors {count}", text("separation", separation), text("window", window)]
+    lines = ["eeruf-certificate 1", "tick_us 1 1", f"sensors {count}"]
+    lines += [text("separation", separation), text("window", window)]
     lines += [f"stale_echo {dice.randint(0, 1)}", "over_reals 0"] + [text("together", group) for group in together]
     interval = dice.randint(1, 4)
     for x in range(count):
@@ -110,7 +114,11 @@ def mutated(dice, certificate):
         elif kind == "move":
             lines.insert(j, lines.pop(i))
         elif kind == "cut":
-            lines = lines[:i + 1] if dice.random() < 0.5 else lines[:i] + [lines[i][:dice.randint(0, len(lines[i]))]] + lines[i + 1:]
+            # The rest of the text, or of one line.
+            if dice.random() < 0.5:
+                lines = lines[:i + 1]
+            else:
+                lines[i] = lines[i][:dice.randint(0, len(lines[i]))]
         else:
             parts = lines[i].split(" ")
             at = dice.randrange(len(parts))
@@ -147,7 +155,7 @@ def holds(binaries, certificate, is_tiny):
 
 def main(arguments):
     binaries, count, seed = arguments[0], int(arguments[1]), int(arguments[2]) if len(arguments) > 2 else 1
-    dice, told = random.Random(seed), collections.Counter()
+    dice, counts = random.Random(seed), collections.Counter()
     given = [open(name).read() for name in arguments[3:]]
     for number in range(count):
         if number % 25 == 0:
@@ -157,22 +165,22 @@ def main(arguments):
                 sys.exit(f"unmutated: {here} / {there}\n{original}")
         certificate = mutated(dice, original)
         if certificate == original:
-            told["nothing changed"] += 1
+            counts["nothing changed"] += 1
             continue
         here, there = verdicts(binaries, certificate)
         if here != there:
             sys.exit(f"the checkers differ: {here} / {there}\n{certificate}")
         if here.startswith("line"):
-            told["refused"] += 1
+            counts["refused"] += 1
             continue
         head = certificate.split("no_period_below")[0]
         if head == original.split("no_period_below")[0] and here == check_period.check(original):
-            told["another proof of the same claim"] += 1
+            counts["another proof of the same claim"] += 1
         elif holds(binaries, certificate, not given):
-            told["another claim, which holds"] += 1
+            counts["another claim, which holds"] += 1
         else:
             sys.exit(f"a false claim was accepted: {here}\n{certificate}")
-    print(", ".join(f"{number} {what}" for what, number in told.most_common()))
+    print(", ".join(f"{number} {what}" for what, number in counts.most_common()))
 
 
 if __name__ == "__main__":

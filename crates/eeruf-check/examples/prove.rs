@@ -13,7 +13,7 @@ fn main() -> ExitCode {
     };
     let nodes = arguments.get(1).and_then(|nodes| nodes.parse().ok()).unwrap_or(1_000_000);
     let proof = read_claim(&text).map_err(|error| error.to_string());
-    match proof.and_then(|claim| prove(&claim, nodes).map_err(|error| format!("{error:?}"))) {
+    match proof.and_then(|claim| prove(&claim, nodes).map_err(|error| error.to_string())) {
         Ok(certificate) => {
             print!("{certificate}");
             ExitCode::SUCCESS

@@ -30,7 +30,7 @@ mod tree;
 use core::fmt;
 
 pub use error::CheckError;
-pub use problem::{MAX_NUMBER, MAX_SENSORS, Problem};
+pub use problem::{MAX_NUMBER, MAX_SENSORS, Problem, Uniform};
 pub use read::Claim;
 
 /// What a certificate that passed says.

@@ -2,6 +2,8 @@
 //!
 //! Nothing here needs to be trusted: what it writes goes through [`check`](crate::check) like any other certificate.
 
+use core::fmt;
+
 use crate::problem::Merged;
 use crate::read::{self, Claim};
 use crate::state::{State, event};
@@ -12,8 +14,10 @@ use crate::tree::Branching;
 /// Why there is no certificate.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoProof {
-    /// The budget of nodes is spent.
-    Budget,
+    /// The budget of so many nodes is spent.
+    Budget(usize),
+    /// The caller wanted no more.
+    Stopped,
     /// A branch is neither refuted nor is there anything left to branch on. In whole ticks the earliest firing times
     /// there are a schedule with a period of `bound - 1`.
     Feasible([Vec<u32>; 2]),
@@ -21,12 +25,39 @@ pub enum NoProof {
     Claim(String),
 }
 
+impl fmt::Display for NoProof {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Budget(nodes) => write!(f, "the proof has more than {nodes} nodes"),
+            Self::Stopped => f.write_str("the proof was stopped before its end"),
+            Self::Feasible([a, b]) => {
+                write!(f, "the claim is wrong: there is a schedule below the bound, firing at {a:?} and {b:?} ticks")
+            }
+            Self::Claim(what) => write!(f, "no claim that can be proven: {what}"),
+        }
+    }
+}
+
+impl core::error::Error for NoProof {}
+
 /// Writes a certificate of the claim, with a tree of at most `budget` nodes.
 ///
 /// # Errors
 ///
 /// See [`NoProof`].
 pub fn prove(claim: &Claim, budget: usize) -> Result<String, NoProof> {
+    prove_while(claim, budget, |_| true)
+}
+
+/// How many nodes lie between two questions whether to go on.
+const NODES_BETWEEN: usize = 64;
+
+/// The same as [`prove`], as long as `go_on` says so: it is asked now and then, with the number of nodes so far.
+///
+/// # Errors
+///
+/// See [`NoProof`].
+pub fn prove_while(claim: &Claim, budget: usize, mut go_on: impl FnMut(usize) -> bool) -> Result<String, NoProof> {
     let mut text = read::write(claim);
     read::claim(&mut Lines::new(&text)).map_err(|error| NoProof::Claim(error.to_string()))?;
     let merged = claim.problem.merged();
@@ -59,7 +90,10 @@ pub fn prove(claim: &Claim, budget: usize) -> Result<String, NoProof> {
         }
         nodes += 1;
         if nodes > budget {
-            return Err(NoProof::Budget);
+            return Err(NoProof::Budget(budget));
+        }
+        if nodes.is_multiple_of(NODES_BETWEEN) && !go_on(nodes) {
+            return Err(NoProof::Stopped);
         }
         reached = branching.assume(case, &mut state, &merged).map(|()| state);
     }

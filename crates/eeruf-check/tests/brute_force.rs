@@ -15,7 +15,7 @@ fn shortest(problem: &Problem, most: u32) -> Option<(u32, [Vec<u32>; 2])> {
 fn agree(seed: u64, problem: &Problem, most: u32) -> usize {
     let Some((period, fire)) = shortest(problem, most) else { return 0 };
     let claim = |bound| Claim { problem: problem.clone(), period, fire: fire.clone(), bound };
-    let text = prove(&claim(period), 100_000).unwrap_or_else(|error| panic!("seed {seed}: {error:?}: {problem:?}"));
+    let text = prove(&claim(period), 100_000).unwrap_or_else(|error| panic!("seed {seed}: {error}: {problem:?}"));
     let certified = check(&text).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
     assert_eq!(certified.claim, claim(period));
     // One tick longer has a schedule as well, and no proof may say otherwise.

@@ -1,4 +1,4 @@
-//! `eeruf-check FILE` checks a certificate of `eeruf design --certificate`.
+//! `eeruf-check FILE` checks a certificate; docs/certificate.md has the format.
 #![forbid(unsafe_code)]
 
 use std::process::ExitCode;

@@ -1,0 +1,136 @@
+//! The problem of a certificate, and what the checker makes of it.
+
+/// What a ring of sensors requires of its firing times, in ticks. Sensors count from 0.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// A tick is `tick_us.0 / tick_us.1` microseconds.
+    pub tick_us: (u32, u32),
+    /// Each sensor's separation D: `|d_x|` and `|d_y|` are at least `max(D_x, D_y)` apart.
+    pub separation: Vec<u32>,
+    /// Each sensor's listening window R: it fires again no sooner.
+    pub window: Vec<u32>,
+    /// Whether `2 |d_x| >= D_x`.
+    pub stale_echo: bool,
+    /// Whether the claim is about real firing times and periods; otherwise they are whole ticks.
+    pub over_reals: bool,
+    /// Groups of sensors that fire at the same instants; separation does not count within a group.
+    pub together: Vec<Vec<usize>>,
+    /// `(x, y, after_x, after_y)` with x < y: y fires no sooner than `after_x` after x, and x no sooner than `after_y`
+    /// after y.
+    pub gaps: Vec<(usize, usize, u32, u32)>,
+}
+
+/// Sensors that are all alike, with times in microseconds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Uniform {
+    /// The grid of firing times and period, 1 or more.
+    pub tick_us: u32,
+    /// How many sensors.
+    pub sensors: usize,
+    /// Readings that differ by no more are near-identical.
+    pub t_delta_us: u32,
+    /// How long a sensor listens.
+    pub window_us: u32,
+    /// The least time between the firings of the two of a pair.
+    pub interval_us: u32,
+    /// Whether a sensor's own echo from the period before must be rejected too.
+    pub stale_echo: bool,
+    /// The pairs x < y that keep the interval, in ascending order.
+    pub pairs: Vec<(usize, usize)>,
+}
+
+impl Uniform {
+    /// The problem in whole ticks: the separation is the smallest number of ticks above twice `t_delta`, window and
+    /// interval the smallest that are as long.
+    #[must_use]
+    pub fn problem(&self) -> Problem {
+        let ticks = |time_us: u32| time_us.div_ceil(self.tick_us);
+        let separation = 2 * u64::from(self.t_delta_us) / u64::from(self.tick_us) + 1;
+        let separation = u32::try_from(separation).unwrap_or(u32::MAX);
+        let interval = ticks(self.interval_us);
+        let pairs = self.pairs.iter().filter(|_| interval > 0);
+        Problem {
+            tick_us: (self.tick_us, 1),
+            separation: vec![separation; self.sensors],
+            window: vec![ticks(self.window_us); self.sensors],
+            stale_echo: self.stale_echo,
+            over_reals: false,
+            together: Vec::new(),
+            gaps: pairs.map(|&(x, y)| (x, y, interval, interval)).collect(),
+        }
+    }
+}
+
+/// The largest number of sensors.
+pub const MAX_SENSORS: usize = 64;
+/// The largest number in a certificate.
+pub const MAX_NUMBER: u32 = 1 << 20;
+
+/// The problem with each group of sensors that fire together taken as one sensor: they share their firing times, so
+/// the strictest requirement of the group is the requirement of all.
+#[derive(Clone, Debug)]
+pub(crate) struct Merged {
+    /// The one of each sensor.
+    pub(crate) of_sensor: Vec<usize>,
+    pub(crate) separation: Vec<i32>,
+    pub(crate) window: Vec<i32>,
+    pub(crate) stale_echo: bool,
+    pub(crate) over_reals: bool,
+    /// `gap[x][y]`: y fires no sooner than this after x; 0 where there is no requirement.
+    pub(crate) gap: Vec<Vec<i32>>,
+    /// The pairs x < y with a gap.
+    pub(crate) pairs: Vec<(usize, usize)>,
+    /// Those with which each has a gap.
+    pub(crate) neighbours: Vec<Vec<usize>>,
+}
+
+impl Problem {
+    /// The number of sensors.
+    #[must_use]
+    pub fn sensors(&self) -> usize {
+        self.separation.len()
+    }
+
+    pub(crate) fn merged(&self) -> Merged {
+        let mut of_sensor: Vec<usize> = (0..self.sensors()).collect();
+        for group in &self.together {
+            for &sensor in group {
+                of_sensor[sensor] = group[0];
+            }
+        }
+        // Number the first of each group in the order of the sensors.
+        let firsts: Vec<usize> = (0..self.sensors()).filter(|&sensor| of_sensor[sensor] == sensor).collect();
+        for one in &mut of_sensor {
+            *one = firsts.iter().position(|first| first == one).unwrap_or(0);
+        }
+        let count = firsts.len();
+        let (mut separation, mut window) = (vec![0; count], vec![0; count]);
+        let mut gap = vec![vec![0; count]; count];
+        for sensor in 0..self.sensors() {
+            let one = of_sensor[sensor];
+            separation[one] = separation[one].max(self.separation[sensor] as i32);
+            window[one] = window[one].max(self.window[sensor] as i32);
+        }
+        for &(x, y, after_x, after_y) in &self.gaps {
+            let (x, y) = (of_sensor[x], of_sensor[y]);
+            gap[x][y] = gap[x][y].max(after_x as i32);
+            gap[y][x] = gap[y][x].max(after_y as i32);
+        }
+        let pairs = (0..count).flat_map(|x| (x + 1..count).map(move |y| (x, y)));
+        let pairs = pairs.filter(|&(x, y)| gap[x][y] > 0).collect();
+        let neighbours = gap.iter().map(|row| (0..count).filter(|&y| row[y] > 0).collect()).collect();
+        let (stale_echo, over_reals) = (self.stale_echo, self.over_reals);
+        Merged { of_sensor, separation, window, stale_echo, over_reals, gap, pairs, neighbours }
+    }
+}
+
+impl Merged {
+    pub(crate) fn count(&self) -> usize {
+        self.separation.len()
+    }
+
+    /// How far apart `|d_x|` and `|d_y|` are, as a bound.
+    pub(crate) fn apart(&self, x: usize, y: usize) -> i32 {
+        2 * self.separation[x].max(self.separation[y])
+    }
+}

@@ -1,0 +1,126 @@
+//! Writes certificates: a depth-first search for a tree of branchings, with the checker's own rules.
+//!
+//! Nothing here needs to be trusted: what it writes goes through [`check`](crate::check) like any other certificate.
+
+use core::fmt;
+
+use crate::problem::Merged;
+use crate::read::{self, Claim};
+use crate::state::{State, event};
+use crate::symmetry;
+use crate::text::Lines;
+use crate::tree::Branching;
+
+/// Why there is no certificate.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NoProof {
+    /// The budget of so many nodes is spent.
+    Budget(usize),
+    /// The caller wanted no more.
+    Stopped,
+    /// A branch is neither refuted nor is there anything left to branch on. In whole ticks the earliest firing times
+    /// there are a schedule with a period of `bound - 1`.
+    Feasible([Vec<u32>; 2]),
+    /// The claim is wrong in itself.
+    Claim(String),
+}
+
+impl fmt::Display for NoProof {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Budget(nodes) => write!(f, "the proof has more than {nodes} nodes"),
+            Self::Stopped => f.write_str("the proof was stopped before its end"),
+            Self::Feasible([a, b]) => {
+                write!(f, "the claim is wrong: there is a schedule below the bound, firing at {a:?} and {b:?} ticks")
+            }
+            Self::Claim(what) => write!(f, "no claim that can be proven: {what}"),
+        }
+    }
+}
+
+impl core::error::Error for NoProof {}
+
+/// Writes a certificate of the claim, with a tree of at most `budget` nodes.
+///
+/// # Errors
+///
+/// See [`NoProof`].
+pub fn prove(claim: &Claim, budget: usize) -> Result<String, NoProof> {
+    prove_while(claim, budget, |_| true)
+}
+
+/// How many nodes lie between two questions whether to go on.
+const NODES_BETWEEN: usize = 64;
+
+/// The same as [`prove`], as long as `go_on` says so: it is asked now and then, with the number of nodes so far.
+///
+/// # Errors
+///
+/// See [`NoProof`].
+pub fn prove_while(claim: &Claim, budget: usize, mut go_on: impl FnMut(usize) -> bool) -> Result<String, NoProof> {
+    let mut text = read::write(claim);
+    read::claim(&mut Lines::new(&text)).map_err(|error| NoProof::Claim(error.to_string()))?;
+    let merged = claim.problem.merged();
+    let assumptions = symmetry::assumptions(&claim.problem);
+    text += &assumptions;
+    let root = symmetry::root(&mut Lines::new(&assumptions), &claim.problem, &merged, claim.bound);
+    let root = root.map_err(|error| NoProof::Claim(error.to_string()))?;
+    let firsts: Vec<usize> =
+        (0..merged.count()).map(|one| merged.of_sensor.iter().position(|of| *of == one).unwrap_or(0)).collect();
+    let mut nodes = 1;
+    let mut open: Vec<(State, Branching, usize)> = Vec::new();
+    let mut reached = root;
+    loop {
+        if let Ok(state) = reached {
+            let Some(branching) = choose(&state, &merged) else {
+                return Err(NoProof::Feasible([0, 1].map(|phase| {
+                    let times = merged.of_sensor.iter().map(|&one| -state.bounds.at(event(one, phase), 0) / 2);
+                    times.map(|time| time as u32).collect()
+                })));
+            };
+            text += &branching.line(&firsts);
+            open.push((state, branching, 0));
+        }
+        let Some((mut state, branching, case)) = open.pop() else {
+            return Ok(text + "end\n");
+        };
+        if case == 0 {
+            let next = (state.clone(), branching, 1);
+            open.push(next);
+        }
+        nodes += 1;
+        if nodes > budget {
+            return Err(NoProof::Budget(budget));
+        }
+        if nodes.is_multiple_of(NODES_BETWEEN) && !go_on(nodes) {
+            return Err(NoProof::Stopped);
+        }
+        reached = branching.assume(case, &mut state, &merged).map(|()| state);
+    }
+}
+
+/// What to branch on.
+fn choose(state: &State, merged: &Merged) -> Option<Branching> {
+    let count = merged.count();
+    // Firing orders first, sensor by sensor: all of phase a, then all of phase b.
+    for y in 0..count {
+        for (phase, x) in (0..2).flat_map(|phase| (0..y).map(move |x| (phase, x))) {
+            let order = Branching::Order(phase, x, y);
+            if merged.gap[x][y] > 0 && !order.is_decided(state, merged) {
+                return Some(order);
+            }
+        }
+    }
+    if let Some(x) = (0..count).find(|&x| !Branching::Sign(x).is_decided(state, merged)) {
+        return Some(Branching::Sign(x));
+    }
+    let width = |x: usize| state.high(x) - state.low[x];
+    let pairs = (0..count).flat_map(|y| (0..y).map(move |x| (x, y)));
+    let open = pairs.filter(|&(x, y)| !Branching::Rank(x, y).is_decided(state, merged));
+    if let Some((x, y)) = open.min_by_key(|&(x, y)| width(x) + width(y)) {
+        return Some(Branching::Rank(x, y));
+    }
+    let widest = (0..count).max_by_key(|&x| width(x))?;
+    let middle = Branching::Split(widest, ((state.low[widest] + state.high(widest)) / 4) as u32);
+    (!middle.is_decided(state, merged)).then_some(middle)
+}

@@ -1,0 +1,95 @@
+//! The proven periods of tests/data/shortest-periods.json get certificates, and those are accepted.
+
+mod common;
+
+use eeruf_check::prove::{NoProof, prove, prove_while};
+use eeruf_check::{Claim, Uniform, check};
+
+/// All but line 12 with a window of 45 ms and ring 24 with 15 ms, whose proofs have 23,000 of 31,000 nodes; with those
+/// two if `EERUF_ALL` is set.
+fn cases() -> Vec<(String, Claim)> {
+    let mut cases = common::table(1);
+    if std::env::var_os("EERUF_ALL").is_none() {
+        cases.retain(|(name, _)| name != "ring 24, window 15" && name != "line 12, window 45");
+    }
+    cases
+}
+
+#[test]
+fn the_periods_of_the_table_have_a_certificate_that_is_accepted() {
+    let (mut nodes, mut at_root) = (0, 0);
+    for (name, claim) in cases() {
+        let certificate = prove(&claim, 100_000).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let certified = check(&certificate).unwrap_or_else(|error| panic!("{name}: {error}"));
+        println!("{name}: {certified}, {} nodes", certified.nodes);
+        assert_eq!(certified.to_string(), format!("{}000 us is the shortest period (tick 1000 us)", claim.period));
+        assert_eq!(certified.claim, claim);
+        nodes += certified.nodes;
+        at_root += usize::from(certified.nodes == 1);
+        // Without a tree, or with one line less, it is no proof.
+        let mut lines: Vec<&str> = certificate.lines().collect();
+        lines.remove(lines.len() - 2);
+        if certified.nodes > 1 {
+            assert!(check(&(lines.join("\n") + "\n")).is_err(), "{name}");
+        }
+    }
+    println!("{nodes} nodes together");
+    assert_eq!(at_root, 14, "as many are refuted by the rules alone");
+    assert!(nodes < 35_000, "{nodes} nodes, there were 31,088");
+}
+
+#[test]
+fn a_proof_ends_when_the_caller_or_the_budget_wants_it_and_says_so() {
+    let (_, claim) = common::table(1).into_iter().find(|(name, _)| name == "line 8, window 15").expect("it is there");
+    let mut asked = Vec::new();
+    let stopped = prove_while(&claim, 100_000, |nodes| {
+        asked.push(nodes);
+        asked.len() < 3
+    });
+    assert_eq!(stopped, Err(NoProof::Stopped));
+    assert_eq!(asked, [64, 128, 192], "it is asked every 64 nodes");
+    let error = prove(&claim, 10).expect_err("11 nodes are needed at least");
+    assert_eq!(error.to_string(), "the proof has more than 10 nodes");
+    assert_eq!(prove_while(&claim, 100_000, |_| true), prove(&claim, 100_000));
+}
+
+#[test]
+fn times_in_microseconds_become_the_ticks_of_the_table() {
+    for (name, claim) in common::table(1) {
+        let problem = &claim.problem;
+        let (separation, window) = (problem.separation[0], problem.window[0]);
+        let uniform = |t_delta_us: u32, window_us: u32| Uniform {
+            tick_us: 1000,
+            sensors: problem.sensors(),
+            t_delta_us,
+            window_us,
+            interval_us: 1000 * problem.gaps[0].2 - 999,
+            stale_echo: false,
+            pairs: problem.gaps.iter().map(|gap| (gap.0, gap.1)).collect(),
+        };
+        // Rounded up: the largest t_delta below half a separation, the least window above one tick less.
+        assert_eq!(uniform(500 * separation - 1, 1000 * window - 999).problem(), *problem, "{name}");
+        assert_eq!(uniform(500 * separation, 1000 * window).problem().separation[0], separation + 1, "{name}");
+        assert_eq!(uniform(0, 1000 * window + 1).problem().window[0], window + 1, "{name}");
+    }
+}
+
+#[test]
+fn a_shorter_period_than_the_shortest_has_no_certificate() {
+    for (name, claim) in common::table(1).into_iter().filter(|(_, claim)| claim.problem.sensors() == 8) {
+        let claim = Claim { period: claim.period + 1, bound: claim.period + 1, ..claim };
+        assert!(matches!(prove(&claim, 100_000), Err(NoProof::Feasible(_))), "{name}");
+    }
+}
+
+#[test]
+fn line_12_with_a_window_of_45_ms_can_run_at_69_5_ms_and_no_real_period_is_shorter() {
+    let (_, mut claim) =
+        common::table(2).into_iter().find(|(name, _)| name == "line 12, window 45").expect("it is there");
+    assert_eq!(claim.period, 140);
+    let Err(NoProof::Feasible(fire)) = prove(&claim, 100_000) else { panic!("139 half ticks have a schedule") };
+    claim = Claim { period: 139, bound: 139, fire, ..claim };
+    claim.problem.over_reals = true;
+    let certified = check(&prove(&claim, 100_000).expect("a proof")).expect("accepted");
+    assert_eq!(certified.to_string(), "69500 us is the shortest period over the reals (tick 500 us)");
+}

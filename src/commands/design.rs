@@ -10,8 +10,10 @@ use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_sim::AnySchedule;
 
 use super::answer::Answer;
+use super::certificate;
 use crate::files::error::InputError;
 use crate::files::ring::{RingSpec, read_ring};
+use crate::files::write::write;
 use crate::report::design::{RingDesign, WhatIf, describe};
 use crate::report::draw;
 use crate::report::json::to_json;
@@ -38,6 +40,13 @@ pub(crate) struct Args {
     /// Draw the timing of two periods, as SVG or, if the name ends in .png, as PNG
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
+    /// Write a certificate that no period is shorter, or shorter than the bound where the search ended early; for
+    /// eeruf-check and checker/check_period.py
+    #[arg(long, value_name = "FILE")]
+    certificate: Option<PathBuf>,
+    /// How many nodes the certificate's proof may have
+    #[arg(long, default_value_t = 1_000_000, value_name = "NODES", requires = "certificate")]
+    certificate_budget: usize,
     /// How many nodes to search at most before giving the best schedule so far
     #[arg(long, default_value_t = 50_000_000, value_name = "NODES")]
     budget: u64,
@@ -84,11 +93,28 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         return Ok(Answer::No);
     };
     let seconds = began.elapsed().as_secs_f64();
+    let certificate = match &args.certificate {
+        Some(_) => Some(certificate::prove(&spec, &design, args.certificate_budget, &mut watch)),
+        None => None,
+    };
     drop(watch);
     let requirements = spec.problem(design.t_delta).requirements;
     if let Some(file) = &args.svg {
         draw::timing_diagram(&design.schedule, &requirements).save(file)?;
     }
+    let certified = match (&args.certificate, certificate) {
+        (Some(file), Some(Ok(text))) => {
+            write(file, &text)?;
+            let t_delta = spec.speed_mm_s.map_or(String::new(), |_| format!(", for a t_delta of {}", design.t_delta));
+            eprintln!("{}: {}{t_delta}", file.display(), certificate::claim(&text));
+            Answer::Yes
+        }
+        (Some(file), Some(Err(why))) => {
+            eprintln!("eeruf: {}: not written: {why}", file.display());
+            Answer::No
+        }
+        _ => Answer::Yes,
+    };
     match args.form() {
         Some(Form::Toml) => print!("{}", design.schedule.to_toml()),
         Some(Form::Rust) => print!("{}", design.schedule.to_rust(&requirements)),
@@ -96,7 +122,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         Some(Form::Json) => println!("{}", to_json(&design.json(seconds))),
         None => print!("{}", describe(&args.file.display().to_string(), &spec, &requirements, &design, seconds)),
     }
-    Ok(Answer::Yes)
+    Ok(certified)
 }
 
 /// Finds the shortest period, and the preferred schedule with it; `None` if the robot is too fast for any.

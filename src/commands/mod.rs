@@ -3,6 +3,7 @@
 //! Commands read with `files`, ask the libraries, and hand what they found to `report`; neither knows of them.
 
 mod answer;
+mod certificate;
 mod design;
 mod experiment;
 mod methods;

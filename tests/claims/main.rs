@@ -2,6 +2,7 @@
 
 mod common;
 
+mod certificates;
 mod conditions;
 mod crosstalk;
 mod documents;

@@ -4,8 +4,6 @@ mod common;
 mod period_corpus;
 mod period_limits;
 mod period_small;
-#[cfg(feature = "std")]
-mod period_threads;
 mod period_ticks;
 mod period_variants;
 mod theory;

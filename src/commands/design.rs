@@ -50,9 +50,6 @@ pub(crate) struct Args {
     /// How many nodes to search at most before giving the best schedule so far
     #[arg(long, default_value_t = 50_000_000, value_name = "NODES")]
     budget: u64,
-    /// On how many threads to search; the answer is the same
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u8).range(1..))]
-    threads: u8,
 }
 
 impl Args {
@@ -141,11 +138,7 @@ fn find(spec: &RingSpec, args: &Args, watch: &mut Watch) -> Result<Option<RingDe
     let mut t_delta = spec.t_delta;
     loop {
         let problem = spec.problem(t_delta);
-        let designed: ShortestPeriod<MAX_SENSORS> = if args.threads > 1 {
-            problem.shortest_on_threads(args.budget, args.threads.into(), &mut control)?
-        } else {
-            problem.shortest(args.budget, &mut memory, &mut control)?
-        };
+        let designed: ShortestPeriod<MAX_SENSORS> = problem.shortest(args.budget, &mut memory, &mut control)?;
         let preferred = if designed.found.proven {
             Some(problem.prefer(&designed, PREFERENCE_BUDGET, &mut memory, &mut control)?)
         } else {

@@ -51,7 +51,7 @@ fn both_checkers_refuse_a_certificate_for_a_period_that_is_not_the_shortest() {
 fn a_proof_that_is_given_too_few_nodes_is_not_written_and_the_answer_is_no() {
     let (_scratch, file) = Scratch::new("ring.cert", "");
     let certificate = file.display().to_string();
-    let asked = ["design", "rings/ring-24.toml", "--json", "--certificate", &certificate, "--certificate-budget", "1"];
+    let asked = ["design", "rings/paper-12.toml", "--json", "--certificate", &certificate, "--certificate-budget", "1"];
     let outcome = eeruf(&asked);
     assert_eq!(outcome.code, Some(1), "{}", outcome.err);
     assert!(outcome.err.contains("--certificate-budget"), "{}", outcome.err);

@@ -1,27 +1,15 @@
 //! Prints the table of shortest periods with what each cost: `cargo run --release --example shortest_periods
-//! [ticks-per-ms] [separation-ms] [sensors,..] [neighbours] [layout,..] [budget] [window-ms,..] [threads]`, the last
-//! with the feature `std`; without arguments the table of `docs/search.md`, 8 to 24 sensors in a line and in a ring.
+//! [ticks-per-ms] [separation-ms] [sensors,..] [neighbours] [layout,..] [budget] [window-ms,..]`; without arguments the table of `docs/search.md`, 8 to 24 sensors in a line and in a ring.
 //!
 //! The columns are read by `benches/peers/design_cpsat.py`; keep them in step.
 
 use std::time::Instant;
 
 use eeruf_core::Layout;
-use eeruf_core::search::ProblemError;
-use eeruf_core::search::design::{Problem, Shortest, memory_words, shortest};
+use eeruf_core::search::design::{Problem, memory_words, shortest};
 
 fn list<T: std::str::FromStr>(text: &str) -> Vec<T> {
     text.split(',').filter_map(|item| item.parse().ok()).collect()
-}
-
-/// On so many threads, or on this one alone.
-fn search(problem: &Problem<'_>, budget: u64, threads: usize, memory: &mut [i32]) -> Result<Shortest, ProblemError> {
-    #[cfg(feature = "std")]
-    if threads > 0 {
-        return eeruf_core::search::design::shortest_on_threads(problem, budget, threads, &mut ());
-    }
-    assert_eq!(threads, 0, "threads need the feature std");
-    shortest(problem, budget, memory, &mut ())
 }
 
 fn main() {
@@ -32,7 +20,6 @@ fn main() {
     let neighbours = list::<u8>(&argument(3, "4"))[0];
     let budget = list::<u64>(&argument(5, "100000000"))[0];
     let windows = list::<u32>(&argument(6, "15,30,45,60"));
-    let threads = list::<usize>(&argument(7, "0"))[0];
     println!("layout sensors window period bound nodes milliseconds reason");
     let (mut times, begin) = (Vec::new(), Instant::now());
     for layout in list::<String>(&argument(4, "line,ring")) {
@@ -54,7 +41,7 @@ fn main() {
                     stale_echo: false,
                 };
                 let begin = Instant::now();
-                let found = search(&problem, budget, threads, &mut memory).expect("the table makes sense");
+                let found = shortest(&problem, budget, &mut memory, &mut ()).expect("the table makes sense");
                 let milliseconds = begin.elapsed().as_secs_f64() * 1e3;
                 times.push(milliseconds);
                 println!(

@@ -18,15 +18,11 @@
 //! 0 in code and printed from 1, as in the paper.
 //!
 //! Features, all off by default, for crates that firmware already uses: `defmt` (formats), `serde` (readings and
-//! times), `fugit` and `embassy-time` (conversions of times); and `std` (threads for the search of the shortest
-//! period).
+//! times), `fugit` and `embassy-time` (conversions of times).
 //!
 //! Equations and sections are those of J. Borenstein and Y. Koren, *Error Eliminating Rapid Ultrasonic Firing for
 //! Mobile Robot Obstacle Avoidance*, IEEE Transactions on Robotics and Automation 11(1), February 1995, pp. 132-138.
 #![no_std]
-
-#[cfg(feature = "std")]
-extern crate std;
 
 mod adaptation;
 mod checked;

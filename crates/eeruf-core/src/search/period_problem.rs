@@ -1,7 +1,7 @@
 //! The user's question, in microseconds: what a ring needs, and the best schedule that meets it.
 
 use super::common::Control;
-use super::design::{self, Firing, InTime, Problem, Relaxations, Shortest};
+use super::design::{self, Firing, InTime, Problem, Shortest};
 use super::error::SearchError;
 use super::found::Found;
 use super::grid::Grid;
@@ -103,21 +103,6 @@ impl PeriodProblem<'_> {
         ShortestPeriod::new(grid, design::shortest(&self.problem(grid, &rows), budget, memory, control)?)
     }
 
-    /// The same answer on up to `threads` threads besides the calling one, see [`design::shortest_on_threads`].
-    ///
-    /// # Errors
-    /// As for [`shortest`](Self::shortest).
-    #[cfg(feature = "std")]
-    pub fn shortest_on_threads<const K: usize>(
-        &self,
-        budget: u64,
-        threads: usize,
-        control: &mut impl Control,
-    ) -> Result<ShortestPeriod<K>, SearchError> {
-        let (grid, rows) = self.grid()?;
-        ShortestPeriod::new(grid, design::shortest_on_threads(&self.problem(grid, &rows), budget, threads, control)?)
-    }
-
     /// Of all schedules with the period found, the one with the largest `t_delta`; of these, the one with the largest
     /// smallest interval; of these, the one with the longest time before a sensor fires again. A gain in a later one
     /// never makes up for a loss in an earlier one. What is not proven within the budget is the best found.
@@ -140,23 +125,6 @@ impl PeriodProblem<'_> {
             min_refire_proven: preferred.window.proven(),
             nodes: preferred.nodes,
         })
-    }
-
-    /// Which of the needs to relax for a shorter period: for each of separation, interval and window, what one tick
-    /// less of it would do. `budget` nodes each.
-    ///
-    /// # Errors
-    /// As for [`shortest`](Self::shortest).
-    pub fn relaxations<const K: usize>(
-        &self,
-        designed: &ShortestPeriod<K>,
-        budget: u64,
-        memory: &mut [i32],
-        control: &mut impl Control,
-    ) -> Result<Relaxations, SearchError> {
-        let (grid, rows) = self.grid()?;
-        let problem = self.problem(grid, &rows);
-        Ok(design::relaxations(&problem, designed.shortest.period, budget, memory, control)?)
     }
 
     /// The largest `t_delta` at a given period; that of the requirements is not looked at.

@@ -7,13 +7,9 @@ mod lateness;
 mod period_corpus;
 mod period_limits;
 mod period_small;
-#[cfg(feature = "std")]
-mod period_threads;
 mod period_ticks;
 mod period_variants;
 mod promises;
-#[cfg(feature = "std")]
-mod search_threads;
 mod theory;
 mod wait_limits;
 mod wait_small;

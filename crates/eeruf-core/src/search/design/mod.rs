@@ -18,13 +18,10 @@
 //! says, in ticks, how far apart all `|d|` must be (the separation), how far apart conflicting sensors fire (the
 //! interval) and how long each listens (the window).
 //!
-//! - [`shortest()`] minimises the period and says why it is not shorter ([`Explanation`]); [`relaxations()`] says which
-//!   need to relax.
+//! - [`shortest()`] minimises the period and says why it is not shorter ([`Explanation`]).
 //! - [`decide()`] answers for one period: found, exhausted (a proof that there is none), or budget spent.
 //! - [`maximize_separation`] and [`maximize_interval`] take the period as given.
 //! - [`prefer()`] picks, among the schedules with the shortest period, the one with most to spare.
-//!
-//! With the feature `std`, `shortest_on_threads` comes to the same answer on several threads.
 //!
 //! All memory is lent by the caller, see [`memory_words`]; besides that a search needs less than 12 KiB of stack. The
 //! room uses nothing but the common vocabulary of the searches.
@@ -62,11 +59,8 @@ mod maximize;
 mod prefer;
 mod problem;
 mod random;
-mod relaxations;
 mod shortest;
 mod solver;
-#[cfg(feature = "std")]
-mod speculation;
 mod symmetry;
 #[cfg(test)]
 mod tests;
@@ -80,10 +74,7 @@ pub use maximize::{Maximum, maximize_interval, maximize_separation};
 pub use prefer::{Optimum, Preferred, prefer};
 pub(super) use problem::one_by_one;
 pub use problem::{MAX_TICKS, Problem};
-pub use relaxations::{Effect, Relaxations, relaxations};
 pub use shortest::{Shortest, shortest};
-#[cfg(feature = "std")]
-pub use speculation::shortest_on_threads;
 
 /// The words of memory that every search over `sensors` sensors needs: 52 KiB for 12 sensors, 4.4 MiB for 64.
 ///

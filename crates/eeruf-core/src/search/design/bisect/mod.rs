@@ -5,14 +5,10 @@
 mod meter;
 mod minimize;
 mod query;
-#[cfg(feature = "std")]
-mod replay;
 
 use meter::Meter;
 pub use meter::POLL;
 pub(super) use query::{Bracket, Objective, Probe, Query};
-#[cfg(feature = "std")]
-pub(super) use replay::{Known, Replay};
 
 use super::bounds::Classes;
 use super::firing::Firing;
@@ -24,19 +20,11 @@ use crate::search::common::{Control, Outcome};
 pub(crate) struct Bisection<'h, C> {
     memory: &'h mut [i32],
     pub(crate) meter: Meter<'h, C>,
-    /// Outcomes found on other threads, instead of memory to search in.
-    #[cfg(feature = "std")]
-    pub(crate) replay: Option<&'h mut Replay>,
 }
 
 impl<'h, C: Control> Bisection<'h, C> {
     pub(crate) fn new(memory: &'h mut [i32], control: &'h mut C, limit: u64) -> Self {
-        Self {
-            memory,
-            meter: Meter { control, nodes: 0, limit, bound: 0, best: 0, ticks: 1, stopped: false },
-            #[cfg(feature = "std")]
-            replay: None,
-        }
+        Self { memory, meter: Meter { control, nodes: 0, limit, bound: 0, best: 0, ticks: 1, stopped: false } }
     }
 
     /// Decides a query with about the budget of the probe.
@@ -45,10 +33,6 @@ impl<'h, C: Control> Bisection<'h, C> {
     /// goes to an ordinary search, led by the guide, and the rest to short descents that start in different ways
     /// (*restarts*). For a proof all goes to the ordinary search.
     pub(crate) fn probe(&mut self, probe: &Probe) -> Outcome<Firing> {
-        #[cfg(feature = "std")]
-        if let Some(replay) = &mut self.replay {
-            return replay.outcome(probe, &mut self.meter);
-        }
         let Probe { query, budget, guide, thorough } = *probe;
         let mut solver = Solver::new(&query.problem, query.period, self.memory);
         let unit = 32 + 6 * query.problem.sensors as u64;

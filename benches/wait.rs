@@ -53,7 +53,7 @@ fn best_interval(c: &mut Criterion) {
     }
 }
 
-fn rearrange(c: &mut Criterion) {
+fn assignment(c: &mut Criterion) {
     let pairs: Vec<(u32, u32)> = (0..12).map(|k| (24, 2 * k)).collect();
     let (mut a, mut b) = ([0; 12], [0; 12]);
     for layout in [Layout::Line, Layout::Ring, Layout::Blocks] {
@@ -136,7 +136,7 @@ fn ratios() {
     }
 }
 
-criterion_group!(benches, best_interval, rearrange, count);
+criterion_group!(benches, best_interval, assignment, count);
 
 fn main() {
     // Under `cargo test`, which gives no such argument, the benches only have to run.

@@ -188,7 +188,7 @@ pub fn check(input: &Input) {
                 model.new_epoch(same);
                 model.phase = 0;
                 for sensor in &mut model.sensors {
-                    (sensor.open, sensor.told, sensor.late) = (None, None, None);
+                    (sensor.open, sensor.emitted, sensor.late) = (None, None, None);
                     sensor.heard.clear();
                 }
                 continue;
@@ -218,7 +218,7 @@ fn drain(ring: &mut ScheduledRing<'_, SENSORS>, model: &mut Model<'_>) {
         let Some(event) = ring.poll(instant(now)) else { break };
         match event {
             RingEvent::Fire(sensor) => model.fired(sensor, deadline),
-            RingEvent::Reading(reading) => model.told(&reading),
+            RingEvent::Reading(reading) => model.emitted(&reading),
             RingEvent::PeriodEnded(stats) => model.ended(&stats),
         }
     }

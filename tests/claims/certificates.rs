@@ -1,5 +1,5 @@
-//! Whoever doubts a period that `eeruf design` calls the shortest has it checked by two programs that share nothing with
-//! the search, nor with each other.
+//! Whoever doubts a period that `eeruf design` calls the shortest has it checked by two programs that share nothing
+//! with the search, nor with each other.
 
 use std::fs;
 use std::path::Path;

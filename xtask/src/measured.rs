@@ -17,8 +17,8 @@ pub(crate) const COMPILERS: &str = "compilers";
 /// Tables whose figures depend on the compiler.
 const COMPILED: [&str; 5] = ["instructions", "lateness", "search", "size", "stack"];
 
-/// By how much a timing may differ, as a share of the larger one and besides: the emulator does not take every interrupt
-/// at the very same instruction.
+/// By how much a timing may differ, as a share of the larger one and besides: the emulator does not take every
+/// interrupt at the very same instruction.
 const TIMING_SHARE: f64 = 0.1;
 const TIMING_BESIDES: f64 = 40.0;
 

@@ -1,4 +1,4 @@
-//! What the ring may say and do, told from what happened to it.
+//! What the ring may say and do, derived from what happened to it.
 
 use eeruf_core::{Instant, Micros, PeriodStats, Phase, Reading, ReadingKind, RingConfig, Schedule, Tally};
 
@@ -7,7 +7,7 @@ use super::SENSORS;
 /// Whether a restart keeps the intervals between different sensors too.
 const RESTARTS_KEEP_INTERVALS: bool = true;
 
-/// A firing whose reading is not yet told.
+/// A firing whose reading is not yet out.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Open {
     pub(super) at: u64,
@@ -22,8 +22,8 @@ pub(super) struct Open {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sensor {
     pub(super) open: Option<Open>,
-    /// The last firing that was told, and its late edge that is not.
-    pub(super) told: Option<Open>,
+    /// The last firing whose reading is out, and its late edge that is not.
+    pub(super) emitted: Option<Open>,
     pub(super) late: Option<u32>,
     pub(super) had_late: bool,
     pub(super) last_fired: Option<Last>,
@@ -89,7 +89,7 @@ pub(super) fn always_kept(schedule: &Schedule<SENSORS>, x: usize, y: usize) -> u
 }
 
 impl<'s> Model<'s> {
-    pub(super) fn disturb(&mut self) {
+    pub(super) fn invalidate(&mut self) {
         self.quiet_periods = 0;
         for sensor in &mut self.sensors {
             sensor.undisturbed = 0;
@@ -111,10 +111,10 @@ impl<'s> Model<'s> {
                 );
                 if passed > gap {
                     // By how much is for the ring to judge; to be compared it must have been on time for a while.
-                    self.disturb();
+                    self.invalidate();
                 }
             }
-            _ => self.disturb(),
+            _ => self.invalidate(),
         }
         if let Some(before) = self.before {
             // What fired under the schedule before.
@@ -133,23 +133,23 @@ impl<'s> Model<'s> {
         self.last = Some(fired);
         self.on_time = true;
         let sensor = &mut self.sensors[x];
-        assert!(sensor.open.is_none() && sensor.late.is_none(), "fired before its reading was told");
+        assert!(sensor.open.is_none() && sensor.late.is_none(), "fired before its reading was out");
         sensor.open =
             Some(Open { at: self.now, phase: self.phase, period: self.period, echo: None, early: None, stuck: false });
-        (sensor.told, sensor.had_late) = (None, false);
+        (sensor.emitted, sensor.had_late) = (None, false);
         sensor.last_fired = Some(fired);
     }
 
-    pub(super) fn told(&mut self, reading: &Reading) {
+    pub(super) fn emitted(&mut self, reading: &Reading) {
         let config = self.config;
         let x = usize::from(reading.sensor);
         let quiet = self.quiet_periods >= 4;
         let sensor = &mut self.sensors[x];
         if reading.kind == ReadingKind::Late {
             let late = sensor.late.take().expect("a late edge came in");
-            let told = sensor.told.expect("it was told before");
+            let emitted = sensor.emitted.expect("its reading was out before");
             assert_eq!((reading.t_echo, reading.previous, reading.age), (Some(Micros::new(late)), None, sensor.age));
-            assert_eq!(reading.phase, Phase(told.phase));
+            assert_eq!(reading.phase, Phase(emitted.phase));
             self.tally.count(ReadingKind::Late);
             return;
         }
@@ -157,7 +157,7 @@ impl<'s> Model<'s> {
         assert_eq!((reading.phase, reading.period), (Phase(open.phase), open.period));
         assert!(
             open.echo.is_some() || self.now >= open.at + u64::from(config.window.as_micros()),
-            "told before its window closed"
+            "emitted before its window closed"
         );
         let micros = |us: Option<u32>| us.map(Micros::new);
         let (heard, kind) = match open {
@@ -205,7 +205,7 @@ impl<'s> Model<'s> {
             None => None,
         };
         assert_eq!(reading.age, sensor.age);
-        sensor.told = Some(open);
+        sensor.emitted = Some(open);
         self.tally.count(reading.kind);
     }
 
@@ -224,8 +224,8 @@ impl<'s> Model<'s> {
             } else {
                 open.echo = Some(open.echo.map_or(t_echo as u32, |echo| echo.min(t_echo as u32)));
             }
-        } else if let Some(told) = sensor.told {
-            let late = at.checked_sub(told.at).filter(|&late| late > window);
+        } else if let Some(emitted) = sensor.emitted {
+            let late = at.checked_sub(emitted.at).filter(|&late| late > window);
             if let Some(late) = late.filter(|_| !sensor.had_late) {
                 (sensor.late, sensor.had_late) = (Some(late as u32), true);
             }
@@ -253,10 +253,10 @@ impl<'s> Model<'s> {
         self.epoch += 1;
         self.schedule = schedule;
         self.since = 0;
-        self.disturb();
+        self.invalidate();
     }
 
-    /// All that could be told has been.
+    /// All that could be emitted has been.
     pub(super) fn drained(&self) {
         for (x, sensor) in self.sensors.iter().enumerate() {
             assert!(sensor.late.is_none(), "sensor {x} has a late edge to tell");

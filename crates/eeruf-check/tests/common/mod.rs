@@ -114,7 +114,7 @@ fn gaps_fit(problem: &Problem, period: u32, fire: &[(u32, u32)], x: usize, y: us
     clear(&line(x), &line(y), after_x) && clear(&line(y), &line(x), after_y)
 }
 
-/// The certificates' claims of tests/data/shortest-periods.json, with a name each; all times `scale` times as many ticks.
+/// The claims of tests/data/shortest-periods.json, with a name each; all times `scale` times as many ticks.
 pub(crate) fn table(scale: u32) -> Vec<(String, Claim)> {
     let text = include_str!("../../../../tests/data/shortest-periods.json");
     text.split("{\"sensors\"").skip(1).map(|case| claim(&format!("\"sensors\"{case}"), scale)).collect()

@@ -3,8 +3,8 @@
 //! A late firing delays all that follow, so the *stretch* of a firing, the time since the same sensor's firing before
 //! less what the schedule says, is the sum of all lateness in between. From one reading to the next crosstalk moves by
 //! what the schedule says, and by the emitter's stretch less the receiver's. The reading of a firing is therefore
-//! compared only if no firing whose sound it may hold, of its own period, the one before or the one after, has a stretch
-//! that differs by more than is tolerated: `docs/theory.md` section 2.1.
+//! compared only if no firing whose sound it may hold, of its own period, the one before or the one after, has a
+//! stretch that differs by more than is tolerated: `docs/theory.md` section 2.1.
 
 /// The least and the largest stretch of some firings, in microseconds.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +51,7 @@ pub(super) struct Lateness {
 const FIRST_PERIOD: u8 = u8::MAX;
 /// Lateness in one period stretches firings of the next, whose sound may be heard in the one after that.
 const WATCHED: u8 = 3;
-/// No difference of two stretches that are known is tolerated if it is more than this, so that it has half of the range.
+/// No difference of two known stretches is tolerated if it is more than this, so that it has half of the range.
 pub(super) const MOST_TOLERATED: u16 = u16::MAX / 2;
 
 /// What a period's lateness came to.
@@ -104,7 +104,7 @@ impl Lateness {
         self.uncomparable = 1;
     }
 
-    /// The sum of lateness grows. Returns whether it still can be told: if not, stretches mean nothing until two periods
+    /// The sum of lateness grows. Returns whether it is still known: if not, stretches mean nothing until two periods
     /// have ended.
     pub(super) fn add(&mut self, late: u16) -> bool {
         self.total = self.total.saturating_add(late);

@@ -67,8 +67,8 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         }
     }
 
-    /// By how much two stretches may differ: by so little that crosstalk still moves by more than `t_delta`, and that no
-    /// firing of an emitter is skipped.
+    /// By how much two stretches may differ: by so little that crosstalk still moves by more than `t_delta`, and that
+    /// no firing of an emitter is skipped.
     fn tolerated(&self) -> u16 {
         let t_delta = self.t_delta.as_micros();
         // It is below the window, and that below half of the range.

@@ -218,7 +218,7 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
     #[inline]
     fn horizon(&self) -> Micros {
         // Settling takes less than two periods and the firing time less than one, and a period at most 2^28 us. After a
-        // change to a faster schedule it is the slower one that settles; the last firing is never kept longer than that.
+        // change to a faster schedule it is the slower one that settles; no last firing is further back than that.
         longer(Micros::new(3 * self.schedule.period().as_micros()), self.due.since(self.last_fired))
     }
 }

@@ -110,7 +110,8 @@ impl fmt::Display for SceneError {
             Self::Pole { pole, value } => {
                 write!(
                     f,
-                    "pole {pole} has {value} m; expected finite coordinates and a radius above 0 and up to {MAX_POLE_M} m"
+                    "pole {pole} has {value} m; expected finite coordinates and a radius above 0 and up to \
+                     {MAX_POLE_M} m"
                 )
             }
             Self::PoleMaterial { pole } => {

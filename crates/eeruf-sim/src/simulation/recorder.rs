@@ -67,7 +67,7 @@ impl Recorder {
                 let chosen = receiver.heard().find(|heard| Some(heard.t_echo_us) == t_echo_us);
                 (reading.kind, chosen.copied())
             }
-            Belief::All => (believed(earliest), earliest),
+            Belief::All => (accepted_or_silent(earliest), earliest),
             Belief::Median => self.median(sensor, earliest),
         };
         let (cause, path, emitted_s) = match chosen {
@@ -111,7 +111,7 @@ impl Recorder {
         // Without echo counts as beyond all echoes.
         last.sort_by_key(|heard| heard.map_or(u32::MAX, |heard| heard.t_echo_us));
         let middle = last[(self.median_of - 1) / 2];
-        (believed(middle), middle)
+        (accepted_or_silent(middle), middle)
     }
 
     /// The record, with only the paths that some reading came along.
@@ -136,6 +136,6 @@ impl Recorder {
     }
 }
 
-fn believed(chosen: Option<Heard>) -> ReadingKind {
+fn accepted_or_silent(chosen: Option<Heard>) -> ReadingKind {
     if chosen.is_some() { ReadingKind::Accepted } else { ReadingKind::Clear }
 }

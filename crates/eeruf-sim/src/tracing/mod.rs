@@ -1,7 +1,6 @@
 //! Which paths sound takes: every specular path from a source to its receivers, which of them are heard, and where they
 //! run. It uses `geometry`, `scene` and `acoustics`; time and noise belong to `simulation`.
 
-mod ask;
 mod audibility;
 mod beam;
 mod bounce_points;
@@ -12,12 +11,13 @@ mod paths;
 mod pole_paths;
 mod ranking;
 mod reception;
+mod short_forms;
 mod tracer;
 
-pub use ask::paths_of_many;
 pub use crosstalk::{CriticalPath, CrosstalkMatrix, CrosstalkQuery};
 pub use error::PathsError;
 pub use limits::{DEFAULT_FREQUENCY_HZ, Limits, MAX_BEAMS, MAX_ORDER};
 pub use paths::Paths;
 pub use reception::{Reception, reception, reception_along};
+pub use short_forms::paths_of_many;
 pub use tracer::Tracer;

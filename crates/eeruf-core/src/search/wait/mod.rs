@@ -55,23 +55,23 @@
 //! ```
 
 mod assignment;
-mod best;
 mod budget;
 mod count;
 mod difference_constraints;
 mod enumerate;
 mod feasibility;
+mod maximize;
 mod pareto;
 mod problem;
 
 use crate::schedule::MAX_SENSORS;
 
 pub use assignment::Assignment;
-pub use best::{Best, Objective};
 pub use budget::Budget;
 pub use count::{COUNT_WORDS, Count};
 pub use enumerate::Enumeration;
 pub use feasibility::memory_words;
+pub use maximize::{Best, Objective};
 pub use pareto::{Pareto, ParetoPoint};
 pub use problem::{MAX_PERIOD, Problem, Search};
 

@@ -1,5 +1,5 @@
-//! A brute force over firing times judges `search::design`: shortest periods, decisions near them and elsewhere, largest
-//! values and preferences, of random problems of up to six sensors and 40 ticks.
+//! A brute force over firing times judges `search::design`: shortest periods, decisions near them and elsewhere,
+//! largest values and preferences, of random problems of up to six sensors and 40 ticks.
 //!
 //! It is written from the definition in the documentation of [`Problem`] and shares nothing with the search. Each
 //! sensor has a set of pairs of firing times that are still open to it. Setting one sensor takes away from the others

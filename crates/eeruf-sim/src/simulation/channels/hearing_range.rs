@@ -23,13 +23,13 @@ impl HearingRange {
         let air = world.scene().air();
         let floor = transducer.detection_floor(air);
         let faintest = floor / 10f64.powf(world.noise().fading_db_rms * f64::from(FARTHEST) / 20.0);
-        Self { transducer: *transducer, floor, faintest, longest_m: loudest_m(transducer, air, faintest) }
+        Self { transducer: *transducer, floor, faintest, longest_m: longest_audible_m(transducer, air, faintest) }
     }
 }
 
 /// The longest path that sound could be heard after, in metres: a millimetre more than where it has fallen to `floor`
 /// without any loss but spreading and the air's.
-fn loudest_m(transducer: &Transducer, air: Air, floor: f64) -> f64 {
+fn longest_audible_m(transducer: &Transducer, air: Air, floor: f64) -> f64 {
     let loss_db_per_m = air.absorption_db_per_m(transducer.frequency_hz);
     let (mut near, mut far) = (0.0, 1.0 / floor);
     while far - near > 1e-3 {

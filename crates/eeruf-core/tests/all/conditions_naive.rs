@@ -110,7 +110,7 @@ fn the_separation_is_the_smallest_left_side_of_all_pairs() {
             assert_eq!(i64::from(value.as_micros()), least, "{criterion} {schedule:?}");
             assert!(x < y);
             let sides = left_sides(&schedule, criterion, x.into(), y.into());
-            // Under the stronger criterion the two come from the closest waits, of which only some sides are that close.
+            // Under the stronger criterion the two come from the closest waits; only some sides are that close.
             assert!(criterion == Criterion::Paper || sides.contains(&least), "{criterion} {schedule:?}");
         }
     }

@@ -1,6 +1,6 @@
 //! The table of firing methods, in which a method is added: a row has its description, its name, how its schedule is
-//! made, how its ring is started, and which readings it accepts. What is new in a method, a way to make a schedule or to
-//! start a ring, goes into `schedules.rs` or `ring_runner.rs`.
+//! made, how its ring is started, and which readings it accepts. What is new in a method, a way to make a schedule or
+//! to start a ring, goes into `schedules.rs` or `ring_runner.rs`.
 
 use core::fmt;
 use core::str::FromStr;

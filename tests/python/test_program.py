@@ -84,7 +84,11 @@ def test_the_best_table_of_waits_is_the_programs() -> None:
     needs: dict[str, Any] = {"t_delta_us": 999, "min_interval_us": 15_000, "criterion": "paper"}
     found = eeruf.WaitSearch(12, 100_000, 24_000, 1_000, **needs).best("interval")
     assert Schedule(**printed["schedule"]) == found.schedule
-    assert [printed[name] for name in ("value_us", "bound_us", "nodes")] == [found.value_us, found.bound_us, found.nodes]
+    assert [printed[name] for name in ("value_us", "bound_us", "nodes")] == [
+        found.value_us,
+        found.bound_us,
+        found.nodes,
+    ]
 
 
 def test_a_log_is_judged_as_by_the_program() -> None:

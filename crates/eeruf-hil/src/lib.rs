@@ -11,21 +11,23 @@
 //! what comes out, word by word.
 #![no_std]
 
-use eeruf_core::{Instant, Micros, Reading, RingConfig, RingEvent, Schedule};
+use eeruf_core::{Instant, Micros, Reading, RingConfig, RingEvent, Schedule, VerifiedSchedule};
 use eeruf_hc_sr04::{Edge, Health};
 
 /// How many sensors there are: as many as in `scenes/alcove-hc-sr04.toml`.
 pub const SENSORS: usize = 8;
 
-/// The paper's Table I-d for the first eight of its twelve sensors.
-pub const SCHEDULE: Schedule<SENSORS> = {
+/// The paper's Table I-d for the first eight of its twelve sensors, verified for as large a `t_delta` as it allows: the
+/// ring then knows how late firings may be.
+pub const SCHEDULE: VerifiedSchedule<SENSORS> = {
     let ms = Micros::from_millis;
     let lag = [ms(0), ms(25), ms(50), ms(75), ms(0), ms(25), ms(50), ms(75)];
     let wait_b = [ms(18), ms(12), ms(6), ms(0), ms(20), ms(14), ms(8), ms(2)];
-    match Schedule::new(ms(100), lag, [[ms(24); SENSORS], wait_b]) {
-        Ok(schedule) => schedule,
-        // Only ever evaluated when this crate is compiled.
-        Err(_) => panic!("not a schedule"),
+    // Only ever evaluated when this crate is compiled.
+    let Ok(schedule) = Schedule::new(ms(100), lag, [[ms(24); SENSORS], wait_b]) else { panic!("not a schedule") };
+    match schedule.verify(&Requirements::new(Micros::new(999))).verified() {
+        Ok(verified) => verified,
+        Err(_) => panic!("not a schedule for 999 us"),
     }
 };
 

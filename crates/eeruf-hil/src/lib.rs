@@ -11,7 +11,7 @@
 //! what comes out, word by word.
 #![no_std]
 
-use eeruf_core::{Instant, Micros, Reading, RingConfig, RingEvent, Schedule, VerifiedSchedule};
+use eeruf_core::{Instant, Micros, Reading, Requirements, RingConfig, RingEvent, Schedule, VerifiedSchedule};
 use eeruf_hc_sr04::{Edge, Health};
 
 /// How many sensors there are: as many as in `scenes/alcove-hc-sr04.toml`.

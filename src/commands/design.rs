@@ -90,10 +90,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         return Ok(Answer::No);
     };
     let seconds = began.elapsed().as_secs_f64();
-    let certificate = match &args.certificate {
-        Some(_) => Some(certificate::prove(&spec, &design, args.certificate_budget, &mut watch)),
-        None => None,
-    };
+    let prove = |_| certificate::prove(&spec, &design, args.certificate_budget, &mut watch);
+    let certificate = args.certificate.as_ref().map(prove);
     drop(watch);
     let requirements = spec.problem(design.t_delta).requirements;
     if let Some(file) = &args.svg {

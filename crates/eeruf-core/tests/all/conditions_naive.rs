@@ -43,11 +43,11 @@ fn left_sides(schedule: &Schedule<SENSORS>, criterion: Criterion, x: usize, y: u
     }
 }
 
+/// Two sensors, the phases in which they fire, and the time between.
+type Apart = ((u8, u8), (Phase, Phase), i64);
+
 /// All intervals between neighbours: the sensors, the phases, and the time between.
-fn intervals<const M: usize>(
-    schedule: &Schedule<SENSORS, M>,
-    layout: Layout<'_>,
-) -> Vec<((u8, u8), (Phase, Phase), i64)> {
+fn intervals<const M: usize>(schedule: &Schedule<SENSORS, M>, layout: Layout<'_>) -> Vec<Apart> {
     let mut intervals = vec![];
     for phase in 0..M {
         for x in 0..SENSORS {

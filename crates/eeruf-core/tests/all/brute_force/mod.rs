@@ -246,7 +246,7 @@ fn whether_one_tick_less_of_a_need_allows_a_shorter_period_is_decided_rightly() 
     let mut judged = Judged::default();
     for_each_problem(60, 6, |problem, memory, _| {
         let period = shortest(problem, u64::MAX, memory, &mut ()).unwrap().period;
-        if period < 2 || period > MOST_TICKS {
+        if !(2..=MOST_TICKS).contains(&period) {
             return;
         }
         let Problem { separation, interval, window, .. } = *problem;

@@ -10,6 +10,7 @@ _Progress = bool | Callable[[float | None, str], Any] | None
 
 KINDS: tuple[str, ...]
 METHODS: tuple[str, ...]
+EERUF_METHODS: tuple[str, ...]
 CAUSES: tuple[str, ...]
 
 class EerufError(ValueError): ...

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eeruf import _eeruf
-from eeruf._eeruf import ArgumentError
+from eeruf._eeruf import EERUF_METHODS, ArgumentError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -326,7 +326,7 @@ def methods(
     scale = 100.0 if share else 1.0
     low, median, high = (scale * np.array([spreads[name][key] for name in chosen]) for key in _QUANTILES)
     row = np.arange(len(chosen))
-    colours = [_BLUE if name.startswith(("eeruf", "adaptive", "multi_echo")) else _GREY for name in chosen]
+    colours = [_BLUE if name in EERUF_METHODS else _GREY for name in chosen]
     ax.barh(row, median, color=colours, height=0.6)
     if (low < high).any():
         ax.errorbar(median, row, xerr=[median - low, high - median], fmt="none", ecolor=_INK, elinewidth=1, capsize=3)

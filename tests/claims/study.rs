@@ -36,6 +36,14 @@ fn eeruf_believes_next_to_no_crosstalk_where_constant_lags_believe_it_with_and_w
 }
 
 #[test]
+fn the_help_names_every_method() {
+    let help = eeruf(&["study", "--help"]).out;
+    for method in METHODS {
+        assert!(help.contains(method), "{method} is missing in\n{help}");
+    }
+}
+
+#[test]
 fn json_has_every_method_with_shares_of_one_in_the_order_of_the_table() {
     let outcome = eeruf(&["study", "scenes/alcove.toml", "--periods", "60", "--json"]);
     let places: Vec<_> = METHODS.iter().map(|method| outcome.out.find(&format!("\"{method}\":{{"))).collect();

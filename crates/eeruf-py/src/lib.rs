@@ -64,8 +64,10 @@ mod _eeruf {
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         let kinds = eeruf_core::ReadingKind::ALL.map(eeruf_core::ReadingKind::as_str);
         module.add("KINDS", PyTuple::new(module.py(), kinds)?)?;
-        let methods = eeruf_sim::Method::ALL.map(eeruf_sim::Method::as_str);
-        module.add("METHODS", PyTuple::new(module.py(), methods)?)?;
+        let methods = eeruf_sim::Method::ALL;
+        module.add("METHODS", PyTuple::new(module.py(), methods.map(eeruf_sim::Method::as_str))?)?;
+        let eeruf = methods.into_iter().filter(|method| method.is_eeruf()).map(eeruf_sim::Method::as_str);
+        module.add("EERUF_METHODS", PyTuple::new(module.py(), eeruf.collect::<Vec<_>>())?)?;
         module.add("CAUSES", PyTuple::new(module.py(), crate::readings::CAUSES)?)?;
         // What the picture of a course shows.
         module.add("_ROOM_M", eeruf_sim::experiments::set_two::ROOM_M)?;

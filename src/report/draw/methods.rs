@@ -1,6 +1,6 @@
 //! Methods side by side: what is wrong among what is believed, what is rejected, what that costs.
 
-use eeruf_sim::{Method, Summary};
+use eeruf_sim::Summary;
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color, RGBColor};
 
@@ -28,7 +28,7 @@ pub(crate) fn methods_chart(title: &str, summaries: &[Summary]) -> Picture {
     picture.text(title, (16.0, 22.0), TITLE);
     for (lane, summary) in summaries.iter().enumerate() {
         let y = TOP + LANE * (lane as f64 + 0.5);
-        if is_ours(summary.method) {
+        if summary.method.is_eeruf() {
             picture.rect([(8.0, y - 0.5 * LANE), (WIDTH - 8.0, y + 0.5 * LANE)], LISTENING.mix(0.3));
         }
         picture.text_in(summary.method.to_string(), (LEFT - 10.0, y), CAPTION, HPos::Right, INK);
@@ -65,10 +65,6 @@ pub(crate) fn methods_chart(title: &str, summaries: &[Summary]) -> Picture {
         }
     }
     picture
-}
-
-fn is_ours(method: Method) -> bool {
-    matches!(method, Method::EerufImmediate | Method::Eeruf | Method::EerufBest | Method::Adaptive | Method::MultiEcho)
 }
 
 fn rounded(value: f64) -> String {

@@ -19,6 +19,8 @@ pub(crate) const MAX_ECHOES: usize = 8;
 /// How a method fires and believes.
 struct Row {
     name: &'static str,
+    /// Whether it is EERUF: waits alternate, and readings are compared.
+    eeruf: bool,
     /// The schedule that a robot's ring starts with; for dither the lags alone.
     schedule: fn(&ScheduleQuery<'_>) -> Made,
     /// The ring, ready to run.
@@ -35,6 +37,7 @@ struct Row {
 /// What a row has by default: one schedule, one echo, no firing while the sensor listens.
 const DEFAULT: Row = Row {
     name: "",
+    eeruf: false,
     schedule: schedules::own,
     ring: ring_runner::scheduled::<1>,
     belief: Belief::Repeated,
@@ -117,6 +120,7 @@ methods! {
     /// Immediate refiring with alternating waits (Figs. 2a, 2b): those of the paper's table, each longer by the robot's
     /// `min_refire`. Consecutive readings are compared.
     EerufImmediate = "eeruf_immediate" {
+        eeruf: true,
         schedule: schedules::refiring,
         ring: ring_runner::immediate,
         belief: Belief::Repeated,
@@ -125,6 +129,7 @@ methods! {
     /// Scheduled firing (Fig. 3) by the robot's own schedule, or else by the paper's table at the robot's period (see
     /// [`table_i_d_for`](crate::table_i_d_for)). Consecutive readings are compared.
     Eeruf = "eeruf" {
+        eeruf: true,
         schedule: schedules::own,
         ring: ring_runner::scheduled::<1>,
         belief: Belief::Repeated,
@@ -132,6 +137,7 @@ methods! {
     /// As [`Eeruf`](Self::Eeruf), by the best schedule that is known for the ring: what the caller puts in
     /// [`Options::best`](crate::Options::best).
     EerufBest = "eeruf_best" {
+        eeruf: true,
         schedule: schedules::best,
         ring: ring_runner::scheduled::<1>,
         belief: Belief::Repeated,
@@ -139,6 +145,7 @@ methods! {
     /// As [`Eeruf`](Self::Eeruf), moving along a ladder of scaled schedules as the rejection rate asks for (end of Sec.
     /// 3.1).
     Adaptive = "adaptive" {
+        eeruf: true,
         schedule: schedules::own,
         ring: adaptive::adaptive,
         belief: Belief::Repeated,
@@ -147,6 +154,7 @@ methods! {
     /// As [`Eeruf`](Self::Eeruf), with sensors that report up to eight echoes of a firing: the earliest that repeats is
     /// believed.
     MultiEcho = "multi_echo" {
+        eeruf: true,
         schedule: schedules::own,
         ring: ring_runner::scheduled::<MAX_ECHOES>,
         belief: Belief::Repeated,
@@ -158,6 +166,11 @@ impl Method {
     /// Its name in files, in `--json` and in Python.
     pub const fn as_str(self) -> &'static str {
         self.row().name
+    }
+
+    /// Whether it is the paper's method or follows from it: waits alternate, and consecutive readings are compared.
+    pub const fn is_eeruf(self) -> bool {
+        self.row().eeruf
     }
 
     /// Which readings it believes.

@@ -1,7 +1,7 @@
 """Rooms and robots: every critical path, and the ring in simulated time.
 
-``METHODS`` are the firing methods that :func:`simulate` knows, ``EERUF_METHODS`` the paper's among them and what follows
-from it; ``CAUSES`` is what ``Readings.cause`` counts through.
+``METHODS`` are the firing methods that :func:`simulate` knows, ``EERUF_METHODS`` the paper's among them and what
+follows from it; ``CAUSES`` is what ``Readings.cause`` counts through.
 """
 
 from eeruf._eeruf import CAUSES, EERUF_METHODS, METHODS, Paths, Readings, Robot, Scene, simulate

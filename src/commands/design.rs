@@ -1,7 +1,8 @@
 //! `eeruf design`: the shortest period for a ring, and why it is not shorter.
 
+use std::fmt;
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use eeruf_core::search::{Control, Progress, design};
@@ -44,12 +45,23 @@ pub(crate) struct Args {
     /// eeruf-check and checker/check_period.py
     #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
-    /// How many nodes the certificate's proof may have
+    /// How many nodes the certificate's proof may have; if they do not suffice, it certifies the bound that they prove
     #[arg(long, default_value_t = 1_000_000, value_name = "NODES", requires = "certificate")]
     certificate_budget: usize,
     /// How many nodes to search at most before giving the best schedule so far
     #[arg(long, default_value_t = 50_000_000, value_name = "NODES")]
     budget: u64,
+    /// How long to search at most before giving the best schedule so far, in seconds; as long again for the certificate
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    time_limit: Option<Duration>,
+}
+
+/// A time that may have a fraction.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| *seconds > 0.0);
+    seconds
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .ok_or_else(|| "expected seconds above 0".to_owned())
 }
 
 impl Args {
@@ -80,16 +92,16 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let spec = read_ring(&args.file)?;
     let bad = |error: SearchError| InputError::new(&args.file, None, error);
     let began = Instant::now();
-    let mut watch = Watch::new();
-    let Some(design) = find(&spec, args, &mut watch).map_err(bad)? else {
-        println!(
-            "{}: no schedule: good readings change more from period to period, the more sensors at this speed must be \
-             kept apart; expected fewer sensors or a lower speed_m_s",
-            args.file.display()
-        );
-        return Ok(Answer::No);
+    let mut watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
+    let design = match find(&spec, args, &mut watch).map_err(bad)? {
+        Ok(design) => design,
+        Err(none) => {
+            println!("{}: {none}", args.file.display());
+            return Ok(Answer::No);
+        }
     };
     let seconds = began.elapsed().as_secs_f64();
+    watch.begin_again();
     let prove = |_| certificate::prove(&spec, &design, args.certificate_budget, &mut watch);
     let certificate = args.certificate.as_ref().map(prove);
     drop(watch);
@@ -101,7 +113,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         (Some(file), Some(Ok(text))) => {
             write(file, &text)?;
             let t_delta = spec.speed_mm_s.map_or(String::new(), |_| format!(", for a t_delta of {}", design.t_delta));
-            eprintln!("{}: {}{t_delta}", file.display(), certificate::claim(&text));
+            eprintln!("{}: {}{t_delta}", file.display(), certificate::claim(&text, &design));
             Answer::Yes
         }
         (Some(file), Some(Err(why))) => {
@@ -120,11 +132,33 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(certified)
 }
 
-/// Finds the shortest period, and the preferred schedule with it; `None` if the robot is too fast for any.
+/// Why a robot that moves gets no schedule.
+#[derive(Clone, Copy)]
+enum NoSchedule {
+    TooFast,
+    EndedEarly,
+}
+
+impl fmt::Display for NoSchedule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::TooFast => {
+                "no schedule: good readings change more from period to period, the more sensors at this speed must be \
+                 kept apart; expected fewer sensors or a lower speed_m_s"
+            }
+            Self::EndedEarly => {
+                "no schedule yet: the search ended before its proof, and what it had found is too slow for this speed; \
+                 expected a larger --budget or --time-limit"
+            }
+        })
+    }
+}
+
+/// Finds the shortest period, and the preferred schedule with it.
 ///
 /// If `t_delta` must cover motion, it depends on the period, and the period on it: longer periods need a larger
 /// `t_delta`, which needs longer periods. Starting from a robot that stands, this climbs to the first pair that agrees.
-fn find(spec: &RingSpec, args: &Args, watch: &mut Watch) -> Result<Option<RingDesign>, SearchError> {
+fn find(spec: &RingSpec, args: &Args, watch: &mut Watch) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
     let mut memory = vec![0; design::memory_words(spec.sensors)];
     let mut control = |progress: &Progress| {
         let how_far = || {
@@ -142,8 +176,9 @@ fn find(spec: &RingSpec, args: &Args, watch: &mut Watch) -> Result<Option<RingDe
         } else {
             None
         };
+        let none = if designed.found.proven { NoSchedule::TooFast } else { NoSchedule::EndedEarly };
         let Some(schedule) = preferred.map_or(designed.found.schedule, |preferred| Some(preferred.schedule)) else {
-            return Ok(None);
+            return Ok(Err(none));
         };
         let needed = t_delta_needed(spec, &schedule);
         let allowed = schedule.verify(&problem.requirements).max_t_delta();
@@ -151,11 +186,11 @@ fn find(spec: &RingSpec, args: &Args, watch: &mut Watch) -> Result<Option<RingDe
             let described = args.form().is_none() && designed.found.proven;
             let what_if = if described { what_if(&problem, &mut memory, &mut control)? } else { Vec::new() };
             let t_delta = needed.max(t_delta);
-            return Ok(Some(RingDesign { schedule, t_delta, designed, preferred, what_if }));
+            return Ok(Ok(RingDesign { schedule, t_delta, designed, preferred, what_if }));
         }
         // Past this point a second of silence would not be enough either.
         if needed > Micros::from_millis(1000) {
-            return Ok(None);
+            return Ok(Err(none));
         }
         t_delta = needed;
     }

@@ -76,6 +76,14 @@ Example:
     Traceback (most recent call last):
     eeruf.SearchError: a lag of 10 ms; expected a whole number of ticks of 3 ms
 " from eeruf_core::search::SearchError;
+    CertificateError "A certificate that proves nothing, or not that a period is the shortest; the message names the line.
+
+Example:
+    >>> import eeruf
+    >>> eeruf.check_certificate(\"\")
+    Traceback (most recent call last):
+    eeruf.CertificateError: line 1: found \"\", expected eeruf-certificate
+" from eeruf_check::CheckError;
     SceneError "Walls, poles, robots or noise that make no scene.
 
 Example:

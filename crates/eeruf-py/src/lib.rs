@@ -37,10 +37,10 @@ use pyo3::prelude::*;
 mod _eeruf {
     #[pymodule_export]
     use crate::{
-        design::design,
+        design::{check_certificate, design},
         errors::{
-            ArgumentError, EerufError, ExperimentError, FilterError, PathsError, RingError, SceneError, ScheduleError,
-            SearchError, SimulationError,
+            ArgumentError, CertificateError, EerufError, ExperimentError, FilterError, PathsError, RingError,
+            SceneError, ScheduleError, SearchError, SimulationError,
         },
         experiments::{set_one, set_two, speed_sweep},
         filter::EchoFilter,

@@ -72,7 +72,6 @@ def test_a_time_limit_ends_the_search_of_64_sensors_with_schedule_bound_and_cert
         eeruf.design(8, 999, 15_000, 30_000, time_limit_s=0)
 
 
-
 def test_the_papers_table_leaves_neighbours_17_ms_and_separates_by_2_ms() -> None:
     report = tables.TABLE_I_D.verify(999, min_interval_us=15_000)
     assert report.ok

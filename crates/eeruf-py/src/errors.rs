@@ -82,7 +82,7 @@ Example:
     >>> import eeruf
     >>> eeruf.check_certificate(\"\")
     Traceback (most recent call last):
-    eeruf.CertificateError: line 1: found \"\", expected eeruf-certificate
+    eeruf.CertificateError: line 1: found \"\", expected a line eeruf-certificate
 " from eeruf_check::CheckError;
     SceneError "Walls, poles, robots or noise that make no scene.
 

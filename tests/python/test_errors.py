@@ -74,9 +74,24 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     ),
     (lambda: eeruf.design(4, 1, 1, 1, layout="star"), eeruf.ArgumentError, "layout = 'star'; expected \"line\""),
     (
-        lambda: eeruf.design(4, 1, 1, 1, layout=[(0, 64)]),
+        lambda: eeruf.design(3, 999, 12_000, 36_000, layout=[(1, 2), (2, 3)]),
         eeruf.ArgumentError,
-        r"layout = \[\(0, 64\)\]; expected pairs",
+        r"layout = \[\(2, 3\)\]; expected pairs of two different sensors from 0 to 2",
+    ),
+    (
+        lambda: eeruf.WaitSearch(4, 100, 10, 1, t_delta_us=1, layout=[(0, 4)]),
+        eeruf.ArgumentError,
+        r"layout = \[\(0, 4\)\]; expected pairs .* from 0 to 3",
+    ),
+    (
+        lambda: tables.TABLE_I_D.verify(999, layout=[(0, 12)]),
+        eeruf.ArgumentError,
+        r"layout = \[\(0, 12\)\]; expected pairs .* from 0 to 11",
+    ),
+    (
+        lambda: tables.TABLE_I_D.to_c(999, layout=[(0, 1), (1, 1)]),
+        eeruf.ArgumentError,
+        r"layout = \[\(1, 1\)\]; expected pairs of two different",
     ),
     (
         lambda: ANY.design(4, 1, 1, 1, progress=3),

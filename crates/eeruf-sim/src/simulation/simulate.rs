@@ -1,6 +1,4 @@
-//! Running a world under a method, and many simulations at once.
-
-use rayon::prelude::*;
+//! Running a world under a method.
 
 use super::error::SimulationError;
 use super::event_loop;
@@ -40,14 +38,4 @@ pub fn simulate_while(
     keep_going: impl FnMut(f64) -> bool,
 ) -> Result<Readings, SimulationError> {
     event_loop::run(world, method, options, &mut Planned(world), keep_going)
-}
-
-/// Several simulations at once on all cores, the answers in the order of the jobs. What comes out does not depend on
-/// the number of threads.
-///
-/// ```
-/// assert_eq!(eeruf_sim::sweep(&[1, 2, 3], |seed| seed * seed), [1, 4, 9]);
-/// ```
-pub fn sweep<J: Sync, T: Send>(jobs: &[J], run: impl Fn(&J) -> T + Sync + Send) -> Vec<T> {
-    jobs.par_iter().map(run).collect()
 }

@@ -13,7 +13,8 @@ use crate::experiments::progress::Progress;
 use crate::{
     methods::Method,
     navigation::LabMate,
-    simulation::{self, Options, sweep},
+    simulation::{self, Options},
+    threads::sweep,
     world::Robot,
 };
 

@@ -74,7 +74,7 @@ pub use results::{
     Age, Attribution, Cause, DEFAULT_TOLERANCE_US, HeardPath, NO_PATH, Readings, SensorId, Summary, quantile,
 };
 pub use scene::{Air, Body, Bounce, Contact, Faces, Material, Pole, Scene, SceneError, Wall};
-pub use simulation::{LockStep, Options, Simulation, SimulationError, simulate, simulate_while};
+pub use simulation::{LockStep, Options, Simulation, SimulationError, simulate, simulate_until, simulate_while};
 pub use threads::{Stop, sweep};
 pub use tracing::{
     CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, MAX_ORDER, Paths, PathsError, Reception, Tracer,

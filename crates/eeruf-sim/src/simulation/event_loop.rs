@@ -53,12 +53,13 @@ pub(crate) fn run(
     method: Method,
     options: &Options,
     kinematics: &mut impl Kinematics,
+    stop: &Stop,
     keep_going: impl FnMut(f64) -> bool,
 ) -> Result<Readings, SimulationError> {
     let plans = plans(world, method, options, kinematics)?;
     let end = end_of(world, options.periods);
     let mut events =
-        EventLoop::new(world, &plans, method, options, kinematics, Some(end), expected(world, end), Stop::default())?;
+        EventLoop::new(world, &plans, method, options, kinematics, Some(end), expected(world, end), stop.clone())?;
     events.run_until(u64::MAX, keep_going)?;
     Ok(events.take(end as f64 * 1e-9))
 }
@@ -240,6 +241,10 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         emitter: usize,
         now: u64,
     ) -> Result<(), PathsError> {
+        if self.channels.moves() {
+            // Paths are looked for anew, which takes as long as many events.
+            self.until_call = self.until_call.saturating_sub(EVENTS_PER_CALL / 64);
+        }
         self.fired[emitter] = Some(self.kinematics.moment(index, now));
         self.channels.prepare(emitter, now, &self.kinematics)?;
         let hearing = rings[index].hearing;
@@ -273,6 +278,11 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             }
         }
     }
+}
+
+/// About how many readings so many periods of a world's first robot give: what memory is asked for.
+pub fn expected_readings(world: &World, periods: u32) -> u64 {
+    expected(world, end_of(world, periods))
 }
 
 /// About how many readings all rings give until a time in true nanoseconds, one of each sensor in each period.

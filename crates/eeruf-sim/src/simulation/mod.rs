@@ -16,9 +16,10 @@ mod simulate;
 mod steered;
 
 pub use error::SimulationError;
+pub use event_loop::expected_readings;
 pub(crate) use event_loop::run;
 pub(crate) use kinematics::Kinematics;
 pub use lock_step::LockStep;
 pub use open::Simulation;
 pub use options::Options;
-pub use simulate::{simulate, simulate_while};
+pub use simulate::{simulate, simulate_until, simulate_while};

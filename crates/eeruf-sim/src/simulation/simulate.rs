@@ -4,7 +4,7 @@ use super::error::SimulationError;
 use super::event_loop;
 use super::kinematics::Planned;
 use super::options::Options;
-use crate::{methods::Method, results::Readings, world::World};
+use crate::{methods::Method, results::Readings, threads::Stop, world::World};
 
 /// Simulates a world under a method. The same world, method and options give the same readings, bit for bit.
 ///
@@ -37,5 +37,20 @@ pub fn simulate_while(
     options: &Options,
     keep_going: impl FnMut(f64) -> bool,
 ) -> Result<Readings, SimulationError> {
-    event_loop::run(world, method, options, &mut Planned(world), keep_going)
+    simulate_until(world, method, options, &Stop::default(), keep_going)
+}
+
+/// As [`simulate_while`], and `stop` ends it as well, from another thread: also while paths are looked for, before the
+/// first event.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_until(
+    world: &World,
+    method: Method,
+    options: &Options,
+    stop: &Stop,
+    keep_going: impl FnMut(f64) -> bool,
+) -> Result<Readings, SimulationError> {
+    event_loop::run(world, method, options, &mut Planned(world), stop, keep_going)
 }

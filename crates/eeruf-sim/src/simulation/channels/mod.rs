@@ -125,6 +125,11 @@ impl<'w> Channels<'w> {
         self.paths.paths()
     }
 
+    /// Whether paths are looked for at each firing.
+    pub(crate) fn moves(&self) -> bool {
+        self.moves
+    }
+
     /// From now on something moves, though nothing did before.
     pub(crate) fn set_moving(&mut self) {
         self.moves = true;

@@ -31,6 +31,7 @@ def test_what_compares_equal_pickles_and_prints_so_that_it_can_be_pasted() -> No
         found,
         report,
         report.violations[0],
+        eeruf.Violation("inter'val", (0, 1), ("a", "'b'"), 1, 2, 'Sec. "3.1" c'),
         eeruf.Fire(3),
         reading,
     )

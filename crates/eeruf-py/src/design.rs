@@ -89,7 +89,7 @@ pub(crate) fn design(
     time_limit_s: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Found> {
     let sensors = requirements::sensors(sensors)?;
-    let layout = OwnedLayout::new(layout, requirements::neighbours(neighbours)?)?;
+    let layout = OwnedLayout::new(layout, requirements::neighbours(neighbours)?, sensors)?;
     let (t_delta, min_interval) = (micros("t_delta_us", t_delta_us)?, micros("min_interval_us", min_interval_us)?);
     let window = whole("window_us", window_us, 1..=u32::MAX).map(Micros::new)?;
     let tick = Micros::new(whole_or("tick_us", tick_us, 1000, 1..=u32::MAX)?);

@@ -10,12 +10,14 @@
 )]
 
 mod arguments;
+mod columns;
 mod contents;
 mod design;
 mod errors;
 mod experiments;
 mod filter;
 mod found;
+mod memory;
 mod methods;
 mod paths;
 mod readings;
@@ -28,6 +30,7 @@ mod scene;
 mod schedule;
 mod search;
 mod simulate;
+mod simulation;
 mod unpickle;
 mod watch;
 
@@ -55,7 +58,9 @@ mod _eeruf {
         schedule::Schedule,
         search::{WaitSearch, WaitTables},
         simulate::simulate,
+        simulation::{ReadingBlocks, RobotState, Simulation, simulate_blocks},
         unpickle::readings_from_columns,
+        watch::{Switch, until_stopped},
     };
     use pyo3::prelude::*;
     use pyo3::types::PyTuple;

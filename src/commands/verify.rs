@@ -5,10 +5,10 @@ use std::str::FromStr;
 
 use clap::ValueEnum;
 use eeruf_core::{Criterion, Micros, Requirements};
+use eeruf_design::{LayoutKey, LayoutName};
 
 use super::answer::Answer;
 use crate::files::error::InputError;
-use crate::files::layout::{LayoutKey, LayoutName};
 use crate::files::toml::read_schedule;
 use crate::report::json::to_json;
 use crate::report::verify::{ReportJson, describe};

@@ -2,11 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use eeruf_check::{Answer, Uniform, prove::prove_what_can_be};
 use eeruf_core::{
-    Criterion, MAX_SENSORS, Micros, Phase, Requirements,
+    Criterion, MAX_SENSORS, Micros, Requirements,
     search::{self, Control, PeriodProblem, Progress, SearchError, design as period},
 };
+use eeruf_design::certificate;
 use pyo3::prelude::*;
 
 use crate::{
@@ -130,27 +130,10 @@ fn certify(
     found: &search::Found<MAX_SENSORS>,
     go_on: impl FnMut(usize) -> bool,
 ) -> PyResult<String> {
-    let PeriodProblem { sensors, requirements, tick } = *needs;
     let Some(schedule) = &found.schedule else {
         return Err(CertificateError::new_err("no schedule was found; expected one to certify"));
     };
-    let pairs = (0..sensors).flat_map(|x| (x + 1..sensors).map(move |y| (x, y)));
-    let uniform = Uniform {
-        tick_us: tick.as_micros(),
-        sensors,
-        t_delta_us: requirements.t_delta.as_micros(),
-        window_us: requirements.window.as_micros(),
-        interval_us: requirements.min_interval.as_micros(),
-        stale_echo: requirements.stale_echo,
-        pairs: pairs.filter(|&(x, y)| requirements.layout.neighbours(sensors, x, y)).collect(),
-    };
-    let fire_us = [Phase::A, Phase::B].map(|phase| {
-        let times = (0..sensors).map(|sensor| schedule.t_fire(phase, sensor).unwrap_or_default());
-        times.map(Micros::as_micros).collect()
-    });
-    let bound_us = found.bound.unwrap_or_default().as_micros();
-    let answer = Answer { period_us: schedule.period().as_micros(), fire_us, bound_us };
-    prove_what_can_be(&uniform.claim(&answer), CERTIFICATE_BUDGET, go_on)
+    certificate::certify(needs, schedule, found.bound, CERTIFICATE_BUDGET, go_on)
         .map_err(|error| CertificateError::new_err(error.to_string()))
 }
 

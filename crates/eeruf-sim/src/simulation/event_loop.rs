@@ -53,7 +53,7 @@ pub(crate) fn run<K: Kinematics>(
     let seed = Random::new(options.seed.unwrap_or(world.seed()));
     let plans = plans(world, method, options, kinematics)?;
     let mut events = EventLoop::new(world, method, options, kinematics, seed)?;
-    let mut rings = start_all(world, &plans, &events.channels, seed)?;
+    let mut rings = start_all(world, &plans, options, &events.channels, seed)?;
     let longest = rings.iter().map(|ring| ring.hearing.window).max().unwrap_or(0);
     let last = events.end + longest + 1000;
     let mut bursts = Bursts::new(&world.noise(), seed);

@@ -54,7 +54,7 @@ pub use filter::{EchoFilter, FilterError};
 pub use hopping::{
     HoppingCode, HoppingError, HoppingFiring, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings,
 };
-pub use layout::Layout;
+pub use layout::{Layout, LayoutError, neighbour_rows};
 pub use reading::{ReadingKind, Tally, Verdict};
 pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError};

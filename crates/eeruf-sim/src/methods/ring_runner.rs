@@ -2,8 +2,8 @@
 //! under simulated time.
 
 use eeruf_core::{
-    ImmediateRefiring, Instant, LadderError, MAX_SENSORS, Ring, RingConfig, RingError, RingEvent, ScheduledFiring,
-    Scheduler,
+    HoppingError, HoppingSettings, ImmediateRefiring, Instant, LadderError, MAX_SENSORS, Ring, RingConfig, RingError,
+    RingEvent, ScheduledFiring, Scheduler,
 };
 
 use super::dither::DitherFiring;
@@ -40,6 +40,8 @@ pub(crate) struct RingStart<'s> {
     pub(crate) robot: &'s Robot,
     /// The schedules that the method asked for, the one to start with first: at least one.
     pub(crate) schedules: &'s [AnySchedule],
+    /// How a hopping ring fires and believes.
+    pub(crate) hopping: HoppingSettings,
     pub(crate) random: Random,
     pub(crate) now: Instant,
 }
@@ -51,6 +53,17 @@ pub(crate) enum StartError {
     Ring(RingError),
     /// No ladder of schedules keeps `t_delta`.
     Ladder(LadderError),
+    /// It cannot hop as asked.
+    Hopping(HoppingError),
+}
+
+impl From<HoppingError> for StartError {
+    fn from(error: HoppingError) -> Self {
+        match error {
+            HoppingError::Ring(error) => Self::Ring(error),
+            error => Self::Hopping(error),
+        }
+    }
 }
 
 impl From<RingError> for StartError {

@@ -33,7 +33,13 @@ fn fire(ring: &mut HoppingRing<8>, periods: u32, hears: impl Fn(u8, usize) -> Op
                     }
                 }
                 RingEvent::Reading(_) => {}
-                RingEvent::PeriodEnded(_) => ended += 1,
+                RingEvent::PeriodEnded(_) => {
+                    ended += 1;
+                    // What fires at the same instant belongs to the next period.
+                    if ended == periods {
+                        break;
+                    }
+                }
             }
         }
     }

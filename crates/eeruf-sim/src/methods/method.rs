@@ -9,7 +9,7 @@ use eeruf_core::{Micros, ScheduleError};
 use serde::{Serialize, Serializer};
 
 use super::adaptive;
-use super::ring_runner::{self, RingRunner, RingStart, StartError, Started};
+use super::ring_runner::{self, Plan, RingRunner, RingStart, StartError, Started};
 use super::schedules::{self, Made, ScheduleQuery};
 use crate::world::{AnySchedule, Robot};
 
@@ -26,8 +26,8 @@ struct Row {
     /// The ring, ready to run.
     ring: for<'s> fn(&RingStart<'s>) -> Started<'s>,
     belief: Belief,
-    /// All schedules that the ring may change to.
-    ladder: fn(&Robot, AnySchedule) -> Result<Vec<AnySchedule>, StartError>,
+    /// What the ring fires by, from that schedule.
+    plan: fn(&Robot, AnySchedule) -> Result<Plan, StartError>,
     /// How many echoes of a firing a sensor reports.
     echoes: usize,
     /// How soon a sensor may fire again.
@@ -41,7 +41,7 @@ const DEFAULT: Row = Row {
     schedule: schedules::own,
     ring: ring_runner::scheduled::<1>,
     belief: Belief::Repeated,
-    ladder: |_, schedule| Ok(vec![schedule]),
+    plan: |_, schedule| Ok(Plan { schedule, ladder: vec![] }),
     echoes: 1,
     refire: |robot| robot.window,
 };
@@ -149,7 +149,7 @@ methods! {
         schedule: schedules::own,
         ring: adaptive::adaptive,
         belief: Belief::Repeated,
-        ladder: adaptive::rungs,
+        plan: adaptive::plan,
     }
     /// As [`Eeruf`](Self::Eeruf), with sensors that report up to eight echoes of a firing: the earliest that repeats is
     /// believed.
@@ -193,9 +193,9 @@ impl Method {
         (self.row().schedule)(&ScheduleQuery { robot, best })
     }
 
-    /// The schedules that a robot's ring may change to, the one to start with first.
-    pub(crate) fn ladder(self, robot: &Robot, schedule: AnySchedule) -> Result<Vec<AnySchedule>, StartError> {
-        (self.row().ladder)(robot, schedule)
+    /// What a robot's ring fires by, from the schedule that it starts with.
+    pub(crate) fn plan(self, robot: &Robot, schedule: AnySchedule) -> Result<Plan, StartError> {
+        (self.row().plan)(robot, schedule)
     }
 
     /// A robot's ring, ready to run.

@@ -9,8 +9,8 @@ use super::options::Options;
 use super::receiver::{Hearing, NEVER, Receiver};
 use crate::{
     geometry::Moment,
-    methods::{Method, RingRunner, RingStart},
-    world::{AnySchedule, Random, Robot, Ticker, World, offset},
+    methods::{Method, Plan, RingRunner, RingStart},
+    world::{Random, Robot, Ticker, World, offset},
 };
 
 /// What the stream of random numbers is for.
@@ -30,13 +30,13 @@ pub(crate) struct RunningRing<'a> {
     pub(crate) hears: u64,
 }
 
-/// By which method each robot fires, with the schedules that it may change to.
+/// By which method each robot fires, and what its ring fires by.
 pub(crate) fn plans(
     world: &World,
     method: Method,
     options: &Options,
     kinematics: &impl Kinematics,
-) -> Result<Vec<(Method, Vec<AnySchedule>)>, SimulationError> {
+) -> Result<Vec<(Method, Plan)>, SimulationError> {
     let plan = |(index, robot): (usize, &Robot)| {
         let method = kinematics.method(index, method);
         let first = method.schedule(robot, options.best.as_ref()).map_err(|error| SimulationError::Schedule {
@@ -44,8 +44,8 @@ pub(crate) fn plans(
             method,
             error,
         })?;
-        let all = method.ladder(robot, first).map_err(|error| SimulationError::start(index, method, error))?;
-        Ok((method, all))
+        let plan = method.plan(robot, first).map_err(|error| SimulationError::start(index, method, error))?;
+        Ok((method, plan))
     };
     world.robots().iter().enumerate().map(plan).collect()
 }
@@ -53,18 +53,18 @@ pub(crate) fn plans(
 /// Starts every robot's ring as planned.
 pub(crate) fn start_all<'a>(
     world: &'a World,
-    plans: &'a [(Method, Vec<AnySchedule>)],
+    plans: &'a [(Method, Plan)],
     channels: &Channels<'_>,
     seed: Random,
 ) -> Result<Vec<RunningRing<'a>>, SimulationError> {
     let speed_of_sound = world.scene().air().speed_of_sound();
     let mut rings = Vec::with_capacity(plans.len());
-    for (index, (robot, (method, schedules))) in world.robots().iter().zip(plans).enumerate() {
+    for (index, (robot, (method, plan))) in world.robots().iter().zip(plans).enumerate() {
         let clock = Ticker::new(robot.clock);
         let start = u64::from(robot.start.as_micros());
         let random = seed.of(DITHER).of(index as u64);
         let ring = method
-            .start(&RingStart { robot, schedules, random, now: clock.instant(start) })
+            .start(&RingStart { robot, plan, random, now: clock.instant(start) })
             .map_err(|error| SimulationError::start(index, *method, error))?;
         let true_ns = |time: Micros| clock.true_ns(time.as_micros());
         let hearing = Hearing {

@@ -7,11 +7,11 @@ use clap::ValueEnum;
 use eeruf_core::MAX_SENSORS;
 use eeruf_core::search::wait::{Budget, COUNT_WORDS, Objective, memory_words};
 use eeruf_core::search::{Found, Outcome, Progress, SearchError, WaitSearch};
+use eeruf_design::FoundJson;
 
 use super::answer::Answer;
 use crate::files::error::InputError;
 use crate::files::waits::{WaitSpec, read_waits};
-use crate::report::found::FoundJson;
 use crate::report::json::to_json;
 use crate::report::search::{CountJson, describe};
 use crate::report::watch::Watch;

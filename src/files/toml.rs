@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use eeruf_design::parse;
 use eeruf_sim::{AnySchedule, ScheduleFile, World};
 use serde::de::DeserializeOwned;
 
@@ -11,12 +12,7 @@ use super::error::InputError;
 /// Reads a TOML file.
 pub(crate) fn read_toml<T: DeserializeOwned>(file: &Path) -> Result<T, InputError> {
     let text = fs::read_to_string(file).map_err(|error| InputError::new(file, None, error))?;
-    toml::from_str(&text).map_err(|error| {
-        let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count() as u64);
-        // What a number may be, in the words of a user.
-        let message = error.message().replace("expected usize", "expected a whole number from 0 on");
-        InputError::new(file, line, message.replace("expected u32", "expected a whole number from 0 to 4294967295"))
-    })
+    parse(&text).map_err(|error| InputError::new(file, error.line, error.message))
 }
 
 /// Reads a schedule file.

@@ -4,11 +4,10 @@ use std::path::Path;
 
 use eeruf_core::search::WaitProblem;
 use eeruf_core::{Criterion, Micros};
+use eeruf_design::{LayoutKey, OwnedLayout, four, neighbours_in_range, sensors_in_range};
 use serde::Deserialize;
 
 use super::error::InputError;
-use super::layout::{LayoutKey, OwnedLayout};
-use super::limits::{four, neighbours_in_range, sensors_in_range};
 use super::toml::read_toml;
 
 /// A ring file for `search`: the paper's problem.

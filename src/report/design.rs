@@ -1,50 +1,14 @@
-//! What `design` found, as text and as JSON.
+//! What `design` found, as text.
 
 use std::fmt::Write as _;
 
 use comfy_table::{Table, presets};
-use eeruf_core::search::{Preferred, ShortestPeriod};
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{MAX_SENSORS, Micros, Phase, Requirements};
-use eeruf_sim::{AnySchedule, ScheduleFile};
+use eeruf_core::{Micros, Phase, Requirements};
+use eeruf_design::{RingDesign, RingSpec, WhatIf};
+use eeruf_sim::AnySchedule;
 
-use super::found::FoundJson;
 use super::timing;
-use crate::files::ring::RingSpec;
-
-/// A schedule for a ring file.
-pub(crate) struct RingDesign {
-    pub(crate) schedule: AnySchedule,
-    /// What `t_delta` has to cover, motion included.
-    pub(crate) t_delta: Micros,
-    pub(crate) designed: ShortestPeriod<MAX_SENSORS>,
-    pub(crate) preferred: Option<Preferred<MAX_SENSORS>>,
-    /// Only if the design is to be described.
-    pub(crate) what_if: Vec<WhatIf>,
-}
-
-/// What one need, relaxed, would bring.
-pub(crate) struct WhatIf {
-    /// The relaxed need, in words.
-    pub(crate) need: String,
-    /// The shortest period with it, or the shortest found.
-    pub(crate) period: Option<Micros>,
-    pub(crate) proven: bool,
-}
-
-impl RingDesign {
-    pub(crate) fn json(&self, seconds: f64) -> FoundJson {
-        FoundJson {
-            schedule: Some(ScheduleFile::from(&self.schedule)),
-            reason: Some(self.reason()),
-            ..FoundJson::new(&self.designed.found, seconds)
-        }
-    }
-
-    fn reason(&self) -> String {
-        self.designed.explanation().to_string()
-    }
-}
 
 pub(crate) fn describe(
     name: &str,

@@ -6,7 +6,6 @@ pub(crate) mod bounces;
 pub(crate) mod design;
 pub(crate) mod draw;
 pub(crate) mod experiment;
-pub(crate) mod found;
 pub(crate) mod json;
 pub(crate) mod paths;
 pub(crate) mod percent;

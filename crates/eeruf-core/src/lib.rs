@@ -52,7 +52,7 @@ pub use checked::{__checked, __micros};
 pub use conditions::{Criterion, Interval, Requirements, Separation};
 pub use edges::{Edge, EdgeQueue};
 pub use filter::{EchoFilter, FilterError};
-pub use layout::Layout;
+pub use layout::{Layout, LayoutError, neighbour_rows};
 pub use reading::{ReadingKind, Tally, Verdict};
 pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError, VerifiedFor};

@@ -4,7 +4,7 @@ use eeruf_core::{
     Adaptation, Instant, Ladder, MAX_SENSORS, Requirements, RingEvent, ScheduledRing, VerifiedSchedule, Violation,
 };
 
-use super::ring_runner::{Plan, RingRunner, RingStart, StartError, Started};
+use super::ring_runner::{FiringPlan, RingRunner, RingStart, StartError, Started};
 use crate::world::{AnySchedule, Robot};
 
 /// A ring that moves along a ladder of schedules (end of Sec. 3.1).
@@ -36,7 +36,7 @@ impl RingRunner for AdaptiveRing<'_> {
 const RUNGS: [(u32, u32); 4] = [(5, 6), (1, 1), (4, 3), (5, 3)];
 
 /// The rungs of a robot's ladder, from the schedule that it starts from.
-pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<Plan, StartError> {
+pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<FiringPlan, StartError> {
     let requirements = Requirements { window: robot.window, ..Requirements::new(robot.t_delta) };
     let verified = |schedule: AnySchedule| schedule.verify(&requirements).verified();
     let scaled = RUNGS.iter().filter_map(|&(num, den)| base.scaled(num, den).ok());
@@ -44,7 +44,7 @@ pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<Plan, StartError>
     if ladder.is_empty() {
         ladder.push(verified(base)?);
     }
-    Ok(Plan { schedule: base, ladder })
+    Ok(FiringPlan { schedule: base, ladder })
 }
 
 /// A ring on its ladder.

@@ -9,7 +9,7 @@ use eeruf_core::{Micros, ScheduleError};
 use serde::{Serialize, Serializer};
 
 use super::adaptive;
-use super::ring_runner::{self, Plan, RingRunner, RingStart, StartError, Started};
+use super::ring_runner::{self, FiringPlan, RingRunner, RingStart, StartError, Started};
 use super::schedules::{self, Made, ScheduleQuery};
 use crate::world::{AnySchedule, Robot};
 
@@ -27,7 +27,7 @@ struct Row {
     ring: for<'s> fn(&RingStart<'s>) -> Started<'s>,
     belief: Belief,
     /// What the ring fires by, from that schedule.
-    plan: fn(&Robot, AnySchedule) -> Result<Plan, StartError>,
+    plan: fn(&Robot, AnySchedule) -> Result<FiringPlan, StartError>,
     /// How many echoes of a firing a sensor reports.
     echoes: usize,
     /// How soon a sensor may fire again.
@@ -41,7 +41,7 @@ const DEFAULT: Row = Row {
     schedule: schedules::own,
     ring: ring_runner::scheduled::<1>,
     belief: Belief::Repeated,
-    plan: |_, schedule| Ok(Plan { schedule, ladder: vec![] }),
+    plan: |_, schedule| Ok(FiringPlan { schedule, ladder: vec![] }),
     echoes: 1,
     refire: |robot| robot.window,
 };
@@ -194,7 +194,7 @@ impl Method {
     }
 
     /// What a robot's ring fires by, from the schedule that it starts with.
-    pub(crate) fn plan(self, robot: &Robot, schedule: AnySchedule) -> Result<Plan, StartError> {
+    pub(crate) fn plan(self, robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
         (self.row().plan)(robot, schedule)
     }
 

@@ -11,7 +11,7 @@ use super::schedules::widest_dither;
 use crate::world::{AnySchedule, Random, Robot};
 
 /// A ring of any kind.
-pub(crate) trait RingRunner {
+pub(crate) trait RingRunner: Send {
     /// What the ring does now, if anything; `expected_change_us` says by how much a good reading of a sensor should
     /// change.
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent>;
@@ -21,7 +21,7 @@ pub(crate) trait RingRunner {
     fn echo(&mut self, sensor: u8, at: Instant);
 }
 
-impl<S: Scheduler, const K: usize, const E: usize> RingRunner for Ring<S, K, E> {
+impl<S: Scheduler + Send, const K: usize, const E: usize> RingRunner for Ring<S, K, E> {
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         self.poll_expecting(now, expected_change_us)
     }
@@ -37,7 +37,7 @@ impl<S: Scheduler, const K: usize, const E: usize> RingRunner for Ring<S, K, E> 
 }
 
 /// What a robot's ring fires by.
-pub(crate) struct Plan {
+pub(crate) struct FiringPlan {
     /// The schedule that the method asked for.
     pub(crate) schedule: AnySchedule,
     /// Where it adapts, all that it may change to, the first one first.
@@ -47,7 +47,7 @@ pub(crate) struct Plan {
 /// What a ring is started with.
 pub(crate) struct RingStart<'s> {
     pub(crate) robot: &'s Robot,
-    pub(crate) plan: &'s Plan,
+    pub(crate) plan: &'s FiringPlan,
     pub(crate) random: Random,
     pub(crate) now: Instant,
 }
@@ -87,7 +87,7 @@ impl<'s> RingStart<'s> {
 
     /// A ring of `E` echoes with this scheduler, no larger than needed: some of its steps take time for each sensor
     /// that it has room for.
-    fn run<S: Scheduler + 's, const E: usize>(&self, scheduler: S) -> Started<'s> {
+    fn run<S: Scheduler + Send + 's, const E: usize>(&self, scheduler: S) -> Started<'s> {
         let (config, now) = (self.config().with_echoes::<E>(), self.now);
         Ok(match self.robot.sensors.len() {
             ..=8 => Box::new(Ring::<S, 8, E>::with_scheduler(scheduler, config, now)?),

@@ -100,7 +100,7 @@ impl Readings {
             wrong_before_filter: share(self.len() - good, self.len()),
             age_ms: Age { median: quantile(&mut ages, 0.5), p99: quantile(&mut ages, 0.99) },
             readings_per_s: if self.duration_s > 0.0 { accepted as f64 / self.duration_s } else { 0.0 },
-            starved: self.sensors - seeing,
+            starved: self.sensors.saturating_sub(seeing),
         }
     }
 }

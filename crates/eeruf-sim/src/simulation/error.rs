@@ -5,6 +5,7 @@ use core::fmt;
 use eeruf_core::{LadderError, RingError, ScheduleError, Violation};
 
 use crate::methods::{Method, StartError};
+use crate::results::Readings;
 use crate::tracing::PathsError;
 
 /// Why a simulation cannot be run. Robots are counted from 0 in code and printed from 1.
@@ -55,6 +56,27 @@ pub enum SimulationError {
         /// Why.
         error: PathsError,
     },
+    /// There is not enough memory for as many readings.
+    Memory {
+        /// How many there would be.
+        readings: u64,
+    },
+    /// A robot that is not there.
+    Robot {
+        /// The robot.
+        robot: usize,
+        /// How many there are.
+        robots: usize,
+    },
+    /// A number that makes no sense.
+    Number {
+        /// What it is.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// What is expected.
+        expected: &'static str,
+    },
     /// The caller asked to stop.
     Stopped,
 }
@@ -71,6 +93,9 @@ impl SimulationError {
 
     /// Paths that cannot be found at a time in true nanoseconds.
     pub(super) fn paths(at: u64, error: PathsError) -> Self {
+        if error == PathsError::Stopped {
+            return Self::Stopped;
+        }
         Self::Paths { at_s: at as f64 * 1e-9, error }
     }
 }
@@ -84,6 +109,15 @@ impl fmt::Display for SimulationError {
             Self::Unverified { robot, violation } => write!(f, "robot {}, method adaptive: {violation}", robot + 1),
             Self::Median { median_of } => write!(f, "the median of {median_of} readings; expected 1 to 15"),
             Self::Paths { at_s, error } => write!(f, "at {at_s:.3} s: {error}"),
+            Self::Memory { readings } => {
+                let needed = Readings::bytes_for(*readings).div_ceil(1_000_000);
+                write!(
+                    f,
+                    "{readings} readings take {needed} MB; expected as many as fit into memory, or blocks of them"
+                )
+            }
+            Self::Robot { robot, robots } => write!(f, "robot {}; expected 1 to {robots}", robot + 1),
+            Self::Number { what, value, expected } => write!(f, "{what} is {value}; expected {expected}"),
             Self::Stopped => write!(f, "stopped"),
         }
     }

@@ -9,7 +9,7 @@ use super::options::Options;
 use super::receiver::{Hearing, NEVER, Receiver};
 use crate::{
     geometry::Moment,
-    methods::{Method, Plan, RingRunner, RingStart},
+    methods::{FiringPlan, Method, RingRunner, RingStart},
     world::{Random, Robot, Ticker, World, offset},
 };
 
@@ -30,13 +30,16 @@ pub(crate) struct RunningRing<'a> {
     pub(crate) hears: u64,
 }
 
+/// By which method a robot fires, and what its ring fires by.
+pub(crate) type Plan = (Method, FiringPlan);
+
 /// By which method each robot fires, and what its ring fires by.
 pub(crate) fn plans(
     world: &World,
     method: Method,
     options: &Options,
     kinematics: &impl Kinematics,
-) -> Result<Vec<(Method, Plan)>, SimulationError> {
+) -> Result<Vec<Plan>, SimulationError> {
     let plan = |(index, robot): (usize, &Robot)| {
         let method = kinematics.method(index, method);
         let first = method.schedule(robot, options.best.as_ref()).map_err(|error| SimulationError::Schedule {
@@ -53,7 +56,7 @@ pub(crate) fn plans(
 /// Starts every robot's ring as planned.
 pub(crate) fn start_all<'a>(
     world: &'a World,
-    plans: &'a [(Method, Plan)],
+    plans: &'a [Plan],
     channels: &Channels<'_>,
     seed: Random,
 ) -> Result<Vec<RunningRing<'a>>, SimulationError> {

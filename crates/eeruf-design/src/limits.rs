@@ -3,11 +3,15 @@
 use eeruf_core::MAX_SENSORS;
 
 /// The default of `neighbours`.
-pub(crate) const fn four() -> u8 {
+pub const fn four() -> u8 {
     4
 }
 
-pub(crate) fn sensors_in_range(sensors: usize) -> Result<(), String> {
+/// Whether a ring may have so many sensors.
+///
+/// # Errors
+/// The number and what is expected.
+pub fn sensors_in_range(sensors: usize) -> Result<(), String> {
     if (1..=MAX_SENSORS).contains(&sensors) {
         Ok(())
     } else {
@@ -15,7 +19,11 @@ pub(crate) fn sensors_in_range(sensors: usize) -> Result<(), String> {
     }
 }
 
-pub(crate) fn neighbours_in_range(neighbours: u8) -> Result<(), String> {
+/// Whether so many adjacent sensors may be neighbours.
+///
+/// # Errors
+/// The number and what is expected.
+pub fn neighbours_in_range(neighbours: u8) -> Result<(), String> {
     if (1..=MAX_SENSORS).contains(&usize::from(neighbours)) {
         Ok(())
     } else {

@@ -1,6 +1,6 @@
 //! How the sensors of a ring stand, as files spell it.
 
-use eeruf_core::Layout;
+use eeruf_core::{Layout, LayoutError, neighbour_rows};
 use serde::Deserialize;
 
 /// How the sensors stand, as files spell it.
@@ -9,32 +9,40 @@ use serde::Deserialize;
     untagged,
     expecting = "expected \"line\", \"ring\", \"blocks\", or pairs of neighbours such as [[0, 1], [1, 2]]"
 )]
-pub(crate) enum LayoutKey {
+pub enum LayoutKey {
+    /// No such key: a line.
     #[default]
     #[serde(skip)]
     Unsaid,
+    /// By its name.
     Named(LayoutName),
+    /// By its pairs of neighbours, sensors from 0.
     Pairs(Vec<(usize, usize)>),
 }
 
+/// The layouts that have a name.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum LayoutName {
+pub enum LayoutName {
+    /// The first and the last sensor are no neighbours.
     Line,
+    /// They are.
     Ring,
+    /// The sensors of a block are neighbours of each other only.
     Blocks,
 }
 
 /// A layout with the rows of a graph that it may need.
 #[derive(Clone, Debug)]
-pub(crate) struct OwnedLayout {
+pub struct OwnedLayout {
     name: Option<LayoutName>,
     neighbours: u8,
     rows: Vec<u64>,
 }
 
 impl OwnedLayout {
-    pub(crate) fn layout(&self) -> Layout<'_> {
+    /// The layout as core takes it.
+    pub fn layout(&self) -> Layout<'_> {
         match self.name {
             Some(LayoutName::Line) => Layout::Line(self.neighbours),
             Some(LayoutName::Ring) => Layout::Ring(self.neighbours),
@@ -45,23 +53,21 @@ impl OwnedLayout {
 }
 
 impl LayoutKey {
-    pub(crate) fn owned(&self, neighbours: u8, sensors: usize) -> Result<OwnedLayout, String> {
+    /// The layout of so many sensors, of which so many adjacent ones are neighbours.
+    ///
+    /// # Errors
+    /// A pair that names a sensor that is not there, or one twice.
+    pub fn owned(&self, neighbours: u8, sensors: usize) -> Result<OwnedLayout, String> {
         let pairs = match self {
             Self::Unsaid => return Ok(OwnedLayout { name: Some(LayoutName::Line), neighbours, rows: vec![] }),
             &Self::Named(name) => return Ok(OwnedLayout { name: Some(name), neighbours, rows: vec![] }),
             Self::Pairs(pairs) => pairs,
         };
-        let mut rows = vec![0; sensors];
-        for &(x, y) in pairs {
-            if x >= sensors || y >= sensors || x == y {
-                return Err(format!(
-                    "layout: neighbours [{x}, {y}]; expected two different sensors from 0 to {}",
-                    sensors - 1
-                ));
-            }
-            rows[x] |= 1_u64 << y;
-            rows[y] |= 1_u64 << x;
-        }
-        Ok(OwnedLayout { name: None, neighbours, rows })
+        let rows =
+            neighbour_rows(pairs.iter().copied(), sensors).map_err(|LayoutError { pair: (x, y), sensors }| {
+                // As the file counts them.
+                format!("layout: neighbours [{x}, {y}]; expected two different sensors from 0 to {}", sensors - 1)
+            })?;
+        Ok(OwnedLayout { name: None, neighbours, rows: rows.to_vec() })
     }
 }

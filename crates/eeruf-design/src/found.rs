@@ -7,20 +7,27 @@ use serde::Serialize;
 
 /// Found, as Python names it.
 #[derive(Serialize)]
-pub(crate) struct FoundJson {
-    pub(crate) schedule: Option<ScheduleFile>,
-    pub(crate) value_us: Option<u32>,
-    pub(crate) bound_us: Option<u32>,
-    pub(crate) proven: bool,
-    pub(crate) nodes: u64,
-    pub(crate) seconds: f64,
+pub struct FoundJson {
+    /// The schedule, if there is one.
+    pub schedule: Option<ScheduleFile>,
+    /// What was sought of it: the period, the smallest interval or `t_delta`.
+    pub value_us: Option<u32>,
+    /// No schedule is better than this.
+    pub bound_us: Option<u32>,
+    /// Whether no better schedule exists.
+    pub proven: bool,
+    /// Nodes visited.
+    pub nodes: u64,
+    /// How long it took.
+    pub seconds: f64,
     /// Why nothing is better; only `design` says it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) reason: Option<String>,
+    pub reason: Option<String>,
 }
 
 impl FoundJson {
-    pub(crate) fn new(found: &Found<MAX_SENSORS>, seconds: f64) -> Self {
+    /// As found, after so many seconds; without a reason.
+    pub fn new(found: &Found<MAX_SENSORS>, seconds: f64) -> Self {
         Self {
             schedule: found.schedule.as_ref().map(ScheduleFile::from),
             value_us: found.value.map(Micros::as_micros),

@@ -1,0 +1,203 @@
+//! The shortest period for a ring, the schedule to prefer of those that have it, and what would make it shorter.
+
+use std::error::Error;
+use std::fmt;
+
+use eeruf_core::search::{Control, PeriodProblem, Preferred, SearchError, ShortestPeriod, design};
+use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
+use eeruf_sim::{AnySchedule, ScheduleFile};
+
+use crate::found::FoundJson;
+use crate::ring::RingSpec;
+
+/// How many nodes the choice among the shortest schedules may cost.
+const PREFERENCE_BUDGET: u64 = 100_000;
+/// How many nodes it may cost to find out what one need, relaxed, would bring.
+const WHAT_IF_BUDGET: u64 = 20_000;
+
+/// How far to search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Search {
+    /// How many nodes to visit at most before giving the best schedule so far.
+    pub budget: u64,
+    /// Whether to look for what would make the period shorter.
+    pub what_if: bool,
+}
+
+impl Default for Search {
+    /// 50 million nodes, and no look at what would be shorter.
+    fn default() -> Self {
+        Self { budget: 50_000_000, what_if: false }
+    }
+}
+
+/// A schedule for a ring file.
+#[derive(Clone, Debug)]
+pub struct RingDesign {
+    /// The schedule.
+    pub schedule: AnySchedule,
+    /// What `t_delta` has to cover, motion included.
+    pub t_delta: Micros,
+    /// The shortest period, or the best found, and why it is not shorter.
+    pub designed: ShortestPeriod<MAX_SENSORS>,
+    /// What is known of the choice among the schedules of that period, if the period is proven.
+    pub preferred: Option<Preferred<MAX_SENSORS>>,
+    /// What would be shorter, if it was asked for.
+    pub what_if: Vec<WhatIf>,
+}
+
+/// Why a robot that moves gets no schedule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoSchedule {
+    /// Longer periods ask for more separation, and that for longer periods, without end.
+    TooFast,
+    /// The budget or the caller ended the search before its proof, and what it had found is too slow for the speed.
+    EndedEarly,
+}
+
+impl fmt::Display for NoSchedule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::TooFast => {
+                "no schedule: good readings change more from period to period, the more sensors at this speed must be \
+                 kept apart; expected fewer sensors or a lower speed_m_s"
+            }
+            Self::EndedEarly => {
+                "no schedule yet: the search ended before its proof, and what it had found is too slow for this speed; \
+                 expected a larger budget or time limit"
+            }
+        })
+    }
+}
+
+impl Error for NoSchedule {}
+
+/// What one need, relaxed, would bring.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WhatIf {
+    /// The relaxed need, in words.
+    pub need: String,
+    /// The shortest period with it, or the shortest found.
+    pub period: Option<Micros>,
+    /// Whether no schedule with it is shorter.
+    pub proven: bool,
+}
+
+impl RingDesign {
+    /// The answer as `--json` prints it.
+    pub fn json(&self, seconds: f64) -> FoundJson {
+        FoundJson {
+            schedule: Some(ScheduleFile::from(&self.schedule)),
+            reason: Some(self.reason()),
+            ..FoundJson::new(&self.designed.found, seconds)
+        }
+    }
+
+    /// Why the period is not shorter, in words.
+    pub fn reason(&self) -> String {
+        self.designed.explanation().to_string()
+    }
+}
+
+impl RingSpec {
+    /// Finds the shortest period, and the preferred schedule with it; or why there is none.
+    ///
+    /// If `t_delta` must cover motion, it depends on the period, and the period on it: longer periods need a larger
+    /// `t_delta`, which needs longer periods. Starting from a robot that stands, this climbs to the first pair that
+    /// agrees.
+    ///
+    /// # Errors
+    /// [`SearchError`] for needs that make no sense or are too large to search.
+    pub fn shortest(
+        &self,
+        search: &Search,
+        control: &mut impl Control,
+    ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
+        let mut memory = vec![0; design::memory_words(self.sensors)];
+        let mut t_delta = self.t_delta;
+        loop {
+            let problem = self.problem(t_delta);
+            let designed: ShortestPeriod<MAX_SENSORS> = problem.shortest(search.budget, &mut memory, control)?;
+            let preferred = if designed.found.proven {
+                Some(problem.prefer(&designed, PREFERENCE_BUDGET, &mut memory, control)?)
+            } else {
+                None
+            };
+            let none = if designed.found.proven { NoSchedule::TooFast } else { NoSchedule::EndedEarly };
+            let Some(schedule) = preferred.map_or(designed.found.schedule, |preferred| Some(preferred.schedule)) else {
+                return Ok(Err(none));
+            };
+            let needed = self.t_delta_needed(&schedule);
+            let allowed = schedule.verify(&problem.requirements).max_t_delta();
+            if allowed >= Some(needed) {
+                let relax = search.what_if && designed.found.proven;
+                let what_if = if relax { what_if(&problem, &mut memory, control)? } else { Vec::new() };
+                let t_delta = needed.max(t_delta);
+                return Ok(Ok(RingDesign { schedule, t_delta, designed, preferred, what_if }));
+            }
+            // Past this point a second of silence would not be enough either.
+            if needed > Micros::from_millis(1000) {
+                return Ok(Err(none));
+            }
+            t_delta = needed;
+        }
+    }
+
+    /// Jitter, and `2 v dt / c` for the longest `dt` of the schedule.
+    fn t_delta_needed(&self, schedule: &AnySchedule) -> Micros {
+        let speed = u64::from(self.speed_mm_s.unwrap_or(0));
+        let change = 2 * speed * u64::from(schedule.max_refire().as_micros());
+        let change = change.div_ceil(u64::from(self.c.mm_per_s()).max(1));
+        self.t_delta.saturating_add(Micros::new(u32::try_from(change).unwrap_or(u32::MAX)))
+    }
+}
+
+/// Relaxes one need after the other by a tenth, or by one tick if that is more, or by one neighbour.
+fn what_if(
+    problem: &PeriodProblem<'_>,
+    memory: &mut [i32],
+    control: &mut impl Control,
+) -> Result<Vec<WhatIf>, SearchError> {
+    let Requirements { t_delta, min_interval, window, layout, .. } = problem.requirements;
+    let tick = problem.tick.as_micros().max(1);
+    // In whole ticks, as others are rounded up to them.
+    let less = |time: Micros| {
+        let us = time.as_micros();
+        Micros::new((us - us / 10).min(us.saturating_sub(1)) / tick * tick)
+    };
+    let (shorter, listening) = (less(min_interval), less(window));
+    let separation = less(problem.requirements.separation()).as_micros();
+    let nearer = Micros::new(separation.saturating_sub(1) / 2);
+    let mut cases = Vec::new();
+    if shorter < min_interval {
+        let relaxed = Requirements { min_interval: shorter, ..problem.requirements };
+        cases.push((format!("{shorter} instead of {min_interval} between neighbours"), relaxed));
+    }
+    if nearer < t_delta {
+        cases.push((
+            format!("t_delta of {nearer} instead of {t_delta}"),
+            Requirements { t_delta: nearer, ..problem.requirements },
+        ));
+    }
+    if Micros::ZERO < listening && listening < window {
+        let relaxed = Requirements { window: listening, ..problem.requirements };
+        cases.push((format!("listening for {listening} instead of {window}"), relaxed));
+    }
+    let fewer = match layout {
+        Layout::Line(n) if n > 1 => Some((n, Layout::Line(n - 1))),
+        Layout::Ring(n) if n > 1 => Some((n, Layout::Ring(n - 1))),
+        _ => None,
+    };
+    if let Some((n, layout)) = fewer {
+        cases.push((
+            format!("any {} instead of {n} adjacent sensors apart", n - 1),
+            Requirements { layout, ..problem.requirements },
+        ));
+    }
+    let answer = |(need, requirements)| {
+        let relaxed = PeriodProblem { requirements, ..*problem };
+        let found = relaxed.shortest::<MAX_SENSORS>(WHAT_IF_BUDGET, memory, control)?.found;
+        Ok(WhatIf { need, period: found.value, proven: found.proven })
+    };
+    cases.into_iter().map(answer).collect()
+}

@@ -1,0 +1,37 @@
+//! From what a designer knows of a ring to its shortest firing period: what `eeruf design` and the page in a browser
+//! have in common, so that both give the same answer.
+//!
+//! | file | content |
+//! |---|---|
+//! | `text` | TOML, and what is wrong with it in one line |
+//! | `limits`, `layout` | what numbers a ring file may hold; how the sensors stand |
+//! | `ring` | the ring file, turned into what a schedule must meet |
+//! | `find` | the shortest period for it, and what would make it shorter |
+//! | `found` | the answer as it is printed in JSON |
+//! | `certificate` | the proof, as a text that others check |
+//!
+//! ```
+//! use eeruf_design::{RingSpec, Search};
+//! let ring = "sensors = 8\nt_delta_us = 999\nmin_interval_us = 15_000\nwindow_us = 36_000";
+//! let spec = RingSpec::from_text(ring)?;
+//! let design = spec.shortest(&Search::default(), &mut ()).map_err(|error| error.to_string())??;
+//! let period = design.designed.found.value;
+//! assert_eq!(period.map(|period| period.as_micros()), Some(66_000));
+//! assert_eq!(RingSpec::from_text("sensors = 65").unwrap_err().message, "65 sensors; expected 1 to 64");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod certificate;
+mod find;
+mod found;
+mod layout;
+mod limits;
+mod ring;
+mod text;
+
+pub use find::{NoSchedule, RingDesign, Search, WhatIf};
+pub use found::FoundJson;
+pub use layout::{LayoutKey, LayoutName, OwnedLayout};
+pub use limits::{four, neighbours_in_range, sensors_in_range};
+pub use ring::{RingFile, RingSpec};
+pub use text::{TextError, parse};

@@ -208,7 +208,7 @@ def beyond(values, own=()):
 
 def root(lines, problem):
     """What holds at the root. A permutation that keeps the problem takes schedules to schedules; if it keeps earlier
-    orbits and their least, it keeps what was assumed of them. So any sensor of an orbit may have its least |d|. To
+    orbits and their greatest, it keeps what was assumed of them. So any of an orbit may have its greatest |d|. To
     exchange the phases turns all d to -d: one d is not negative. To reverse time as well keeps all d, and y before x in
     both phases becomes x before y: assume that it is not so. That needs gaps alike both ways."""
     every, one, gap, groups = range(problem.sensors), problem.one, problem.gap, problem.together
@@ -227,13 +227,13 @@ def root(lines, problem):
             kept = kept and all(row[x] == row[image[x]] for row in (problem.separation, problem.window) for x in every)
             kept = kept and all(gap[x][y] == gap[image[x]][image[y]] for x in every for y in every)
             kept = kept and all(image[x] == x and {image[y] for y in others} == others for x, others in earlier)
-            lines.require(kept, "expected a permutation that keeps the problem, and earlier orbits with their least")
-        (least,) = new = lines.next("least", 1, 0, len(every) - 1)
+            lines.require(kept, "expected a permutation that keeps the problem, and earlier orbits with their greatest")
+        (greatest,) = new = lines.next("greatest", 1, 0, len(every) - 1)
         while new:
             orbit |= set(new)
             new = {image[x] for image in images for x in new} - orbit
-        earlier.append((least, orbit))
-        facts += [(Node.learn_below, one[least], one[x]) for x in orbit if one[x] != one[least]]
+        earlier.append((greatest, orbit))
+        facts += [(Node.learn_below, one[x], one[greatest]) for x in orbit if one[x] != one[greatest]]
     if lines.is_next("exchange"):
         facts.append((Node.learn, *problem.ends[one[lines.next("exchange", 1, 0, len(every) - 1)[0]]], 0))
     if lines.is_next("reverse"):

@@ -115,9 +115,5 @@ fn shortest(spec: &RingSpec, what_if: bool) -> Result<RingDesign, String> {
         std::ops::ControlFlow::Continue(())
     };
     let found = spec.shortest(&Search { budget: BUDGET, what_if }, &mut control);
-    found.map_err(|error: SearchError| error.to_string())?.ok_or_else(|| {
-        "there is no schedule: good readings change more from period to period, the more sensors at this speed must be \
-         kept apart; expected fewer sensors or a lower speed"
-            .to_owned()
-    })
+    found.map_err(|error: SearchError| error.to_string())?.map_err(|none| none.to_string())
 }

@@ -26,6 +26,7 @@ from eeruf import experiments, sim, tables
 from eeruf._eeruf import (
     KINDS,
     ArgumentError,
+    CertificateError,
     EchoFilter,
     EerufError,
     ExperimentError,
@@ -46,6 +47,7 @@ from eeruf._eeruf import (
     Violation,
     WaitSearch,
     WaitTables,
+    check_certificate,
     design,
 )
 from eeruf._sweep import sweep
@@ -56,6 +58,7 @@ if TYPE_CHECKING:
 __all__ = [
     "KINDS",
     "ArgumentError",
+    "CertificateError",
     "EchoFilter",
     "EerufError",
     "ExperimentError",
@@ -76,6 +79,7 @@ __all__ = [
     "Violation",
     "WaitSearch",
     "WaitTables",
+    "check_certificate",
     "design",
     "experiments",
     "plot",

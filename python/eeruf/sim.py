@@ -4,6 +4,32 @@
 follows from it; ``CAUSES`` is what ``Readings.cause`` counts through.
 """
 
-from eeruf._eeruf import CAUSES, EERUF_METHODS, METHODS, Paths, Readings, Robot, Scene, simulate
+from eeruf._eeruf import (
+    CAUSES,
+    EERUF_METHODS,
+    METHODS,
+    Paths,
+    ReadingBlocks,
+    Readings,
+    Robot,
+    RobotState,
+    Scene,
+    Simulation,
+    simulate,
+    simulate_blocks,
+)
 
-__all__ = ["CAUSES", "EERUF_METHODS", "METHODS", "Paths", "Readings", "Robot", "Scene", "simulate"]
+__all__ = [
+    "CAUSES",
+    "EERUF_METHODS",
+    "METHODS",
+    "Paths",
+    "ReadingBlocks",
+    "Readings",
+    "Robot",
+    "RobotState",
+    "Scene",
+    "Simulation",
+    "simulate",
+    "simulate_blocks",
+]

@@ -1,7 +1,7 @@
 //! `eeruf design`: the shortest period for a ring, and why it is not shorter.
 
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use eeruf_core::search::{Progress, SearchError};
@@ -42,12 +42,23 @@ pub(crate) struct Args {
     /// eeruf-check and checker/check_period.py
     #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
-    /// How many nodes the certificate's proof may have
+    /// How many nodes the certificate's proof may have; if they do not suffice, it certifies the bound that they prove
     #[arg(long, default_value_t = 1_000_000, value_name = "NODES", requires = "certificate")]
     certificate_budget: usize,
     /// How many nodes to search at most before giving the best schedule so far
     #[arg(long, default_value_t = 50_000_000, value_name = "NODES")]
     budget: u64,
+    /// How long to search at most before giving the best schedule so far, in seconds; as long again for the certificate
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    time_limit: Option<Duration>,
+}
+
+/// A time that may have a fraction.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| *seconds > 0.0);
+    seconds
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .ok_or_else(|| "expected seconds above 0".to_owned())
 }
 
 impl Args {
@@ -73,7 +84,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let spec = read_ring(&args.file)?;
     let bad = |error: SearchError| InputError::new(&args.file, None, error);
     let began = Instant::now();
-    let mut watch = Watch::new();
+    let mut watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
     let mut control = |progress: &Progress| {
         let how_far = || {
             let (bound, best) = (progress.bound.unwrap_or(0), progress.best.unwrap_or(0));
@@ -82,15 +93,15 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         watch.control_flow(how_far)
     };
     let search = Search { budget: args.budget, what_if: args.form().is_none() };
-    let Some(design) = spec.shortest(&search, &mut control).map_err(bad)? else {
-        println!(
-            "{}: no schedule: good readings change more from period to period, the more sensors at this speed must be \
-             kept apart; expected fewer sensors or a lower speed_m_s",
-            args.file.display()
-        );
-        return Ok(Answer::No);
+    let design = match spec.shortest(&search, &mut control).map_err(bad)? {
+        Ok(design) => design,
+        Err(none) => {
+            println!("{}: {none}", args.file.display());
+            return Ok(Answer::No);
+        }
     };
     let seconds = began.elapsed().as_secs_f64();
+    watch.begin_again();
     let prove = |_| certificate::prove(&spec, &design, args.certificate_budget, &mut watch);
     let certificate = args.certificate.as_ref().map(prove);
     drop(watch);
@@ -102,7 +113,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         (Some(file), Some(Ok(text))) => {
             write(file, &text)?;
             let t_delta = spec.speed_mm_s.map_or(String::new(), |_| format!(", for a t_delta of {}", design.t_delta));
-            eprintln!("{}: {}{t_delta}", file.display(), certificate::claim(&text));
+            eprintln!("{}: {}{t_delta}", file.display(), certificate::claim(&text, &design));
             Answer::Yes
         }
         (Some(file), Some(Err(why))) => {

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::ValueEnum;
-use eeruf_core::{Criterion, Layout, MAX_SENSORS, Micros, Requirements};
+use eeruf_core::{Criterion, Micros, Requirements};
+use eeruf_design::{LayoutKey, LayoutName};
 
 use super::answer::Answer;
 use crate::files::error::InputError;
@@ -62,7 +63,7 @@ enum LayoutArg {
     Line,
     Ring,
     Blocks,
-    Pairs(Box<[u64; MAX_SENSORS]>),
+    Pairs(Vec<(usize, usize)>),
 }
 
 impl FromStr for LayoutArg {
@@ -75,32 +76,30 @@ impl FromStr for LayoutArg {
             "blocks" => return Ok(Self::Blocks),
             _ => {}
         }
-        let mut rows = Box::new([0; MAX_SENSORS]);
-        for pair in text.split(',') {
-            let sensor = |text: &str| text.trim().parse().ok().filter(|&sensor: &usize| sensor < MAX_SENSORS);
+        let sensor = |text: &str| text.trim().parse().ok();
+        let pair = |pair: &str| {
             let ends = pair.split_once('-').and_then(|(x, y)| Some((sensor(x)?, sensor(y)?)));
-            let (x, y) = ends.ok_or_else(|| {
-                format!("`{pair}`; expected line, ring, blocks, or pairs of sensors from 0 to 63 such as 0-1,1-2")
-            })?;
-            rows[x] |= 1 << y;
-        }
-        Ok(Self::Pairs(rows))
+            ends.ok_or_else(|| format!("`{pair}`; expected line, ring, blocks, or pairs of sensors such as 0-1,1-2"))
+        };
+        text.split(',').map(pair).collect::<Result<_, _>>().map(Self::Pairs)
     }
 }
 
 impl LayoutArg {
-    fn layout(&self, neighbours: u8) -> Layout<'_> {
+    fn key(&self) -> LayoutKey {
         match self {
-            Self::Line => Layout::Line(neighbours),
-            Self::Ring => Layout::Ring(neighbours),
-            Self::Blocks => Layout::Blocks(neighbours),
-            Self::Pairs(rows) => Layout::Graph(rows.as_slice()),
+            Self::Line => LayoutKey::Named(LayoutName::Line),
+            Self::Ring => LayoutKey::Named(LayoutName::Ring),
+            Self::Blocks => LayoutKey::Named(LayoutName::Blocks),
+            Self::Pairs(pairs) => LayoutKey::Pairs(pairs.clone()),
         }
     }
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let schedule = read_schedule(&args.file)?;
+    let layout = args.layout.key().owned(args.neighbours, schedule.sensors());
+    let layout = layout.map_err(|message| InputError::new(&args.file, None, message))?;
     let requirements = Requirements {
         t_delta: Micros::new(args.t_delta_us),
         criterion: match args.criterion {
@@ -108,7 +107,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             CriterionArg::Paper => Criterion::Paper,
         },
         min_interval: Micros::new(args.min_interval_us),
-        layout: args.layout.layout(args.neighbours),
+        layout: layout.layout(),
         window: Micros::new(args.window_us),
         stale_echo: args.stale_echo,
     };

@@ -1,5 +1,5 @@
-//! What a search or simulation looks like while it runs: a progress line after two seconds, and Ctrl-C that ends it
-//! cleanly.
+//! What a search or simulation looks like while it runs: a progress line after two seconds, and Ctrl-C or a limit that
+//! ends it cleanly.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -26,21 +26,34 @@ fn interrupted() -> &'static AtomicBool {
 /// Watches one long task.
 pub(crate) struct Watch {
     began: Instant,
+    limit: Duration,
     bar: Option<ProgressBar>,
     interrupted: &'static AtomicBool,
 }
 
 impl Watch {
     pub(crate) fn new() -> Self {
-        Self { began: Instant::now(), bar: None, interrupted: interrupted() }
+        Self::ending_after(Duration::MAX)
+    }
+
+    /// One that ends the task when the time is over.
+    pub(crate) fn ending_after(limit: Duration) -> Self {
+        Self { began: Instant::now(), limit, bar: None, interrupted: interrupted() }
+    }
+
+    /// Begins with another task: it has as much time, and a Ctrl-C that ended the task before is forgotten.
+    pub(crate) fn begin_again(&mut self) {
+        self.began = Instant::now();
+        self.interrupted.store(false, Ordering::Relaxed);
     }
 
     /// Shows how far the task has come; `false` if it should stop.
     pub(crate) fn go_on(&mut self, how_far: impl FnOnce() -> String) -> bool {
-        if self.interrupted.load(Ordering::Relaxed) {
+        let elapsed = self.began.elapsed();
+        if self.interrupted.load(Ordering::Relaxed) || elapsed >= self.limit {
             return false;
         }
-        if self.began.elapsed() >= SHOWN_AFTER {
+        if elapsed >= SHOWN_AFTER {
             let bar = self.bar.get_or_insert_with(|| {
                 let bar = ProgressBar::new_spinner();
                 if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed}, Ctrl-C stops)") {

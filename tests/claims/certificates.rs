@@ -48,12 +48,48 @@ fn both_checkers_refuse_a_certificate_for_a_period_that_is_not_the_shortest() {
 }
 
 #[test]
-fn a_proof_that_is_given_too_few_nodes_is_not_written_and_the_answer_is_no() {
+fn a_proof_that_is_given_too_few_nodes_certifies_a_lower_bound_and_says_what_a_longer_one_would() {
     let (_scratch, file) = Scratch::new("ring.cert", "");
     let certificate = file.display().to_string();
-    let asked = ["design", "rings/paper-12.toml", "--json", "--certificate", &certificate, "--certificate-budget", "1"];
+    let asked =
+        ["design", "rings/paper-12.toml", "--json", "--certificate", &certificate, "--certificate-budget", "16"];
     let outcome = eeruf(&asked);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    let (certified, rest) = outcome.err.split_once("; a proof of 65 ms is longer").expect("it says so");
+    assert!(certified.contains("no period below ") && certified.contains("schedule of 65000 us"), "{certified}");
+    assert!(rest.contains("--certificate-budget"), "{rest}");
+    assert_eq!(python(&file).0, Some(0));
+    let bound = eeruf_check::read_claim(&fs::read_to_string(&file).expect("it is written")).expect("a claim").bound;
+    assert!((50..65).contains(&bound), "{bound}");
+}
+
+#[test]
+fn a_time_limit_ends_a_search_with_a_schedule_a_bound_and_its_certificate() {
+    let ring = "sensors = 24\nlayout = \"ring\"\nneighbours = 6\njitter_us = 100\ncrosstalk_range_m = 2.0\n\
+                max_range_m = 4.0\ntick_us = 100\n";
+    let (_scratch, file) = Scratch::new("ring.toml", ring);
+    let certificate = file.with_extension("cert");
+    let [ring_file, written] = [&file, &certificate].map(|path| path.display().to_string());
+    let outcome = eeruf(&["design", &ring_file, "--json", "--time-limit", "0.5", "--certificate", &written]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    assert!(outcome.out.contains("\"proven\":false"), "{}", outcome.out);
+    let text = fs::read_to_string(&certificate).expect("the certificate is written");
+    let certified = eeruf_check::check(&text).expect("the checker accepts it");
+    assert!(1 < certified.claim.bound && certified.claim.bound < certified.claim.period, "{certified}");
+    assert!(outcome.err.contains(&certified.to_string()), "{}", outcome.err);
+    // As a robot with 64 sensors moves, its t_delta follows from the period, and what was found so soon is too slow for it.
+    let many = ring.replace("24", "64") + "speed_m_s = 1.0\n";
+    fs::write(&file, many).expect("the folder can be written to");
+    let outcome = eeruf(&["design", &ring_file, "--time-limit", "0.5"]);
     assert_eq!(outcome.code, Some(1), "{}", outcome.err);
-    assert!(outcome.err.contains("--certificate-budget"), "{}", outcome.err);
-    assert_eq!(fs::read_to_string(&file).expect("it was there before"), "");
+    assert!(outcome.out.contains("the search ended before its proof"), "{}", outcome.out);
+}
+
+#[test]
+fn a_time_limit_is_a_time() {
+    for limit in ["0", "-1", "soon", "nan", "1e30"] {
+        let outcome = eeruf(&["design", "rings/paper-12.toml", &format!("--time-limit={limit}")]);
+        assert_eq!(outcome.code, Some(2), "{limit}");
+        assert!(outcome.err.contains("expected seconds above 0"), "{}", outcome.err);
+    }
 }

@@ -81,6 +81,11 @@ fn impossible_rings_get_one_clear_line() {
         assert!(outcome.err.starts_with(&prefix), "{}\n{prefix}", outcome.err);
         assert_eq!(outcome.err.lines().count(), 1, "{}", outcome.err);
     }
+    let foreign = eeruf(&["verify", "rings/table-i-d.toml", "--t-delta-us", "999", "--layout", "0-1,1-12"]);
+    assert_eq!((foreign.code, foreign.out.as_str()), (Some(2), ""));
+    let message =
+        "eeruf: rings/table-i-d.toml: layout: neighbours [1, 12]; expected two different sensors from 0 to 11";
+    assert_eq!(foreign.err.trim_end(), message);
     let waits = "sensors = 3\nperiod_us = 40000\nwait_max_us = 9000\ntick_us = 1000\nt_delta_us = 999\n";
     let cases = [
         (format!("{waits}t_lag_us = [0, 500, 10000]\n"), ": a lag of 500 us; expected a whole number of ticks of 1 ms"),

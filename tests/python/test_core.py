@@ -31,12 +31,46 @@ def test_what_compares_equal_pickles_and_prints_so_that_it_can_be_pasted() -> No
         found,
         report,
         report.violations[0],
+        eeruf.Violation("inter'val", (0, 1), ("a", "'b'"), 1, 2, 'Sec. "3.1" c'),
         eeruf.Fire(3),
         reading,
     )
     for value in values:
         assert pickle.loads(pickle.dumps(value)) == value
         assert eval(repr(value), names) == value
+
+
+def test_a_certificate_of_design_is_checked_and_survives_a_pickle() -> None:
+    found = eeruf.design(8, 999, 15_000, 30_000, certificate=True)
+    assert found.certificate is not None
+    assert eeruf.check_certificate(found.certificate) == found.value_us == 63_000
+    again = pickle.loads(pickle.dumps(found))
+    assert again == found
+    assert again.certificate == found.certificate
+    assert eeruf.design(8, 999, 15_000, 30_000).certificate is None
+
+
+def test_a_certificate_that_proves_less_is_an_error_that_says_what_it_proves() -> None:
+    certificate = eeruf.design(8, 999, 15_000, 30_000, certificate=True).certificate
+    assert certificate is not None
+    lines = certificate.splitlines(keepends=True)
+    with pytest.raises(eeruf.CertificateError, match=r"^line \d+: "):
+        eeruf.check_certificate("".join(lines[:-2] + lines[-1:]))
+    with pytest.raises(eeruf.ArgumentError, match="expected a certificate"):
+        eeruf.check_certificate(3)  # type: ignore[arg-type]
+
+
+def test_a_time_limit_ends_the_search_of_64_sensors_with_schedule_bound_and_certificate() -> None:
+    found = eeruf.design(
+        64, 999, 12_000, 45_000, tick_us=100, neighbours=6, layout="ring", time_limit_s=0.2, certificate=True
+    )
+    assert not found.proven
+    assert found.schedule is not None
+    assert found.certificate is not None
+    with pytest.raises(eeruf.CertificateError, match=rf"^no period below \d+ us; schedule of {found.value_us} us"):
+        eeruf.check_certificate(found.certificate)
+    with pytest.raises(eeruf.ArgumentError, match="time_limit_s = 0"):
+        eeruf.design(8, 999, 15_000, 30_000, time_limit_s=0)
 
 
 def test_the_papers_table_leaves_neighbours_17_ms_and_separates_by_2_ms() -> None:

@@ -11,21 +11,28 @@ import pytest
 # Each would take hours, and says so from the middle of it, or just before where there is no progress to follow.
 LONG = {
     "design": "eeruf.design(64, 499, 9_000, 36_000, layout=pairs, budget=2**60, progress=tell)",
-    "simulate": "eeruf.sim.simulate(scene, periods=2**32 - 1, progress=tell)",
+    "simulate": "eeruf.sim.simulate(scene, periods=3_000_000, progress=tell)",
+    "simulate_blocks": "[None for _ in eeruf.sim.simulate_blocks(scene, periods=2**32 - 1, progress=tell)]",
+    "step": "tell(); world.step(1e9)",
+    "paths": "poles.paths((-1.9, -1.9), [(1.9, 0.01 * y) for y in range(100)], 8, progress=tell)",
     "set_one": "eeruf.experiments.set_one(100_000, progress=tell)",
     "set_two": "eeruf.experiments.set_two(100_000, progress=tell)",
     "speed_sweep": "eeruf.experiments.speed_sweep(seeds=100_000, progress=tell)",
     "count": "tell(); waits.count()",
     "all": "tell(); [None for table in waits.all()]",
-    "sweep": "tell(); eeruf.sweep(functools.partial(eeruf.sim.simulate, scene, 'eeruf', 2**32 - 1), range(4))",
+    "sweep": "tell(); eeruf.sweep(functools.partial(eeruf.sim.simulate, scene, 'eeruf', 3_000_000), range(4))",
+    "sweep on processes": "tell(); eeruf.sweep(time.sleep, [1_000] * 4)",
 }
 BEFORE = """
-import eeruf, functools, random
+import eeruf, functools, random, time
 def tell(*_):
     print("under way", flush=True)
 chance = random.Random(3)
 pairs = [(x, y) for x in range(64) for y in range(x) if chance.random() < 0.3]
 scene = eeruf.sim.Scene([[5, 2, -5, 2]], robots=[eeruf.sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)])
+room = [[-2, -2, 2, -2], [2, -2, 2, 2], [2, 2, -2, 2], [-2, 2, -2, -2]]
+poles = eeruf.sim.Scene(room, poles=[[k % 50 * 0.07 - 1.7, k // 50 * 0.07 - 1.7, 0.004] for k in range(2500)])
+world = eeruf.sim.Simulation(scene)
 waits = eeruf.WaitSearch(24, 200_000, 49_000, 1000, t_delta_us=999, min_interval_us=15_000, criterion="exact")
 """
 
@@ -43,7 +50,7 @@ def test_ctrl_c_ends_long_work(name: str) -> None:
     )
     assert child.stdout is not None
     assert child.stdout.readline() == "under way\n"
-    if name in ("count", "all", "sweep"):
+    if name in ("count", "all", "step", "sweep", "sweep on processes"):
         time.sleep(0.5)
     os.killpg(child.pid, signal.SIGINT)
     try:

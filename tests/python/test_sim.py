@@ -3,6 +3,7 @@
 import functools
 import pickle
 from pathlib import Path
+from typing import Any
 
 import eeruf
 import numpy as np
@@ -51,6 +52,68 @@ def test_scenes_robots_and_readings_pickle() -> None:
         copy = pickle.loads(pickle.dumps(readings))
         assert same(readings, copy)
         assert copy.summary() == readings.summary()
+
+
+def test_columns_count_in_signed_numbers_and_are_views_that_cannot_be_written_to() -> None:
+    readings = sim.simulate(sim.Scene.from_toml(SCENES / "alcove.toml"), periods=40_000)
+    assert (np.diff(readings.period * 60_000) >= 0).all()
+    assert (readings.sensor - 5).min() == -5
+    for name, column in readings.columns().items():
+        assert column.dtype.kind in "if", name
+        assert getattr(readings, name) is column, name
+        with pytest.raises(ValueError, match="read-only"):
+            column[0] = 1
+    first = readings.fired_s[:3]
+    del readings, column
+    assert first[0] < 0.06
+    paths = sim.Scene(ALCOVE).paths((0.0, 0.2), [(0.1, 0.2)], 3)
+    assert paths.length_m is paths.length_m
+    assert (paths.order - 4).min() < 0
+    with pytest.raises(ValueError, match="read-only"):
+        paths.amplitude[0] = 1
+    assert eeruf.EchoFilter(1, 500).push_many([[9_000]]).dtype == np.int8
+
+
+def test_an_open_simulation_is_steered_step_by_step() -> None:
+    scene = sim.Scene([[5, 2, -5, 2]], robots=[sim.Robot((0, 0, 0), 8, 0.26, 0.3)])
+    world = sim.Simulation(scene, "eeruf", seed=3)
+    # The windows of the last firings have not closed.
+    first, whole = world.step(0.6), sim.simulate(scene, "eeruf", periods=10, seed=3)
+    assert 70 < len(first) < len(whole) == 80
+    assert np.array_equal(first.t_echo_us, whole.t_echo_us[: len(first)], equal_nan=True)
+    world.set_velocity(0, v_m_s=0.5, w_rad_s=0.0)
+    world.step(1.0)
+    assert world.robots[0].pose == pytest.approx((0.5, 0.0, 0.0))
+    assert world.robots[0].velocity_m_s == (0.5, 0.0)
+    assert world.time_s == pytest.approx(1.6)
+    assert not world.robots[0].touches
+    world.set_velocity(0, 0.0, np.pi)
+    world.step(0.5)
+    assert world.robots[0].pose[2] == pytest.approx(np.pi / 2)
+    world.set_velocity(0, 2.0, 0.0)
+    world.step(1.0)
+    assert world.robots[0].touches
+
+
+def test_a_tampered_pickle_is_refused() -> None:
+    readings = sim.simulate(sim.Scene.from_toml(SCENES / "alcove.toml"), "conventional", periods=20)
+    reduced: Any = readings.__reduce__()
+    rebuild, (method, duration_s, sensors, columns, paths) = reduced
+    assert rebuild(method, duration_s, sensors, columns, paths).summary() == readings.summary()
+    for name, value in [("sensor", 64), ("sensor", -1), ("robot", 64), ("robot", 2**40), ("phase", 99), ("kind", 99),
+                        ("kind", -1), ("cause", 5), ("path", 10**6), ("path", -2), ("period", -1)]:  # fmt: skip
+        column = columns[name].copy()
+        column[3] = value
+        with pytest.raises(eeruf.ArgumentError, match=f"{name} = {value}; expected"):
+            rebuild(method, duration_s, sensors, {**columns, name: column}, paths).summary()
+    for given, message in [
+        ((method, duration_s, 3, columns, paths), "sensors = 3; expected 8 or more"),
+        ((method, -1.0, sensors, columns, paths), "duration_s = -1"),
+        (("loud", duration_s, sensors, columns, paths), "no method `loud`"),
+        ((method, duration_s, sensors, {**columns, "period": columns["period"][1:]}, paths), "length"),
+    ]:
+        with pytest.raises(eeruf.ArgumentError, match=message):
+            rebuild(*given)
 
 
 def test_readings_become_a_data_frame() -> None:

@@ -4,6 +4,7 @@
 //! skipped, and says loudly what to install; with `--nothing-skipped`, as in CI, that counts as a failure.
 
 mod blocks;
+mod certificates;
 mod changed;
 mod classic;
 mod firmware;
@@ -71,6 +72,8 @@ enum Verb {
         #[arg(value_name = "DOCUMENT", required_unless_present = "check")]
         document: Option<String>,
     },
+    /// Certify the rings of the tables, and have both checkers judge them and mutated ones (minutes)
+    Certificates(certificates::Plan),
     /// Break the core in one place at a time, and see whether a test notices (hours; takes up where it stopped)
     Mutants(mutants::Plan),
     /// Print the table of shortest periods that docs/search.md shows
@@ -114,6 +117,11 @@ fn main() -> ExitCode {
                 ExitCode::FAILURE
             }
         },
+        Verb::Certificates(plan) => {
+            let mut steps = Steps::default();
+            certificates::run_all(&plan, &mut steps);
+            steps.finish(true)
+        }
         Verb::Mutants(plan) => mutants::run(&plan),
     }
 }

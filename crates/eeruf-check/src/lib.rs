@@ -13,6 +13,7 @@
 //! | `rules` | what follows from it |
 //! | `symmetry` | what the root may assume |
 //! | `tree` | the case distinctions |
+//! | `uniform`, `prove` | the claim of a search, and its proof |
 #![forbid(unsafe_code)]
 
 mod bounds;
@@ -26,12 +27,14 @@ mod state;
 mod symmetry;
 mod text;
 mod tree;
+mod uniform;
 
 use core::fmt;
 
 pub use error::CheckError;
-pub use problem::{MAX_NUMBER, MAX_SENSORS, Problem, Uniform};
+pub use problem::{MAX_NUMBER, MAX_SENSORS, Problem};
 pub use read::Claim;
+pub use uniform::{Answer, Uniform};
 
 /// What a certificate that passed says.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -20,7 +20,7 @@ pub(crate) fn root(
             state.learn_below(x, y);
         }
     };
-    // Families of |d|: each least one so far, and the sensors among which it is the least.
+    // Families of |d|: each greatest one so far, and the sensors among which it is the greatest.
     let mut earlier: Vec<(usize, Vec<usize>)> = Vec::new();
     loop {
         let mut generators: Vec<Vec<usize>> = Vec::new();
@@ -33,15 +33,15 @@ pub(crate) fn root(
         if generators.is_empty() {
             break;
         }
-        let least = lines.number("least", 0, problem.sensors() as u32 - 1)? as usize;
-        let orbit = orbit(least, &generators);
+        let greatest = lines.number("greatest", 0, problem.sensors() as u32 - 1)? as usize;
+        let orbit = orbit(greatest, &generators);
         for &sensor in &orbit {
-            let (x, y) = (merged.of_sensor[least], merged.of_sensor[sensor]);
+            let (x, y) = (merged.of_sensor[sensor], merged.of_sensor[greatest]);
             if x != y {
                 learn(&mut root, x, y);
             }
         }
-        earlier.push((least, orbit));
+        earlier.push((greatest, orbit));
     }
     if let Some(numbers) = lines.maybe("exchange")? {
         lines.expect(&numbers, 1, 0, problem.sensors() as u32 - 1)?;
@@ -99,10 +99,10 @@ fn verify(problem: &Problem, image: &[usize], earlier: &[(usize, Vec<usize>)]) -
             }
         }
     }
-    for (least, orbit) in earlier {
+    for (greatest, orbit) in earlier {
         let taken = sorted(orbit.iter().map(|&sensor| image[sensor]));
-        if image[*least] != *least || taken != *orbit {
-            return Err(format!("expected sensor {least} and {orbit:?}, among which it is least, to stay"));
+        if image[*greatest] != *greatest || taken != *orbit {
+            return Err(format!("expected sensor {greatest} and {orbit:?}, among which it is greatest, to stay"));
         }
     }
     Ok(())
@@ -145,12 +145,12 @@ pub(crate) fn assumptions(problem: &Problem) -> String {
     candidates.extend((0..sensors).flat_map(|y| (0..y).map(move |x| exchanged(x, y))));
     let mut earlier = Vec::new();
     let mut text = String::new();
-    for least in 0..sensors {
+    for greatest in 0..sensors {
         let mut generators: Vec<Vec<usize>> = Vec::new();
-        let mut found = vec![least];
+        let mut found = vec![greatest];
         for image in candidates.iter().filter(|image| verify(problem, image, &earlier).is_ok()) {
             generators.push(image.clone());
-            let wider = orbit(least, &generators);
+            let wider = orbit(greatest, &generators);
             if wider == found {
                 generators.pop();
             } else {
@@ -164,8 +164,8 @@ pub(crate) fn assumptions(problem: &Problem) -> String {
             let row: String = image.iter().map(|sensor| format!(" {sensor}")).collect();
             text += &format!("permutation{row}\n");
         }
-        text += &format!("least {least}\n");
-        earlier.push((least, found));
+        text += &format!("greatest {greatest}\n");
+        earlier.push((greatest, found));
     }
     text += "exchange 0\n";
     match problem.gaps.first() {

@@ -45,7 +45,7 @@ fn a_refusal_names_line_value_and_expectation() {
             "line 13: sensors 0 and 1 have the gaps 3 and 1, expected all gaps the same both ways",
         ),
         (
-            with(13, "permutation 1 0\nleast 0\nend"),
+            with(13, "permutation 1 0\ngreatest 0\nend"),
             "line 13: sensor 0 is taken to 1, which has another separation or window",
         ),
         (format!("{PAIR}end\n"), "line 13: expected nothing after the line end"),

@@ -2,23 +2,13 @@
 
 mod common;
 
-use eeruf_check::prove::{NoProof, prove, prove_while};
+use eeruf_check::prove::{NoProof, prove, prove_what_can_be, prove_while};
 use eeruf_check::{Claim, Uniform, check};
-
-/// All but line 12 with a window of 45 ms and ring 24 with 15 ms, whose proofs have 23,000 of 31,000 nodes; with those
-/// two if `EERUF_ALL` is set.
-fn cases() -> Vec<(String, Claim)> {
-    let mut cases = common::table(1);
-    if std::env::var_os("EERUF_ALL").is_none() {
-        cases.retain(|(name, _)| name != "ring 24, window 15" && name != "line 12, window 45");
-    }
-    cases
-}
 
 #[test]
 fn the_periods_of_the_table_have_a_certificate_that_is_accepted() {
     let (mut nodes, mut at_root) = (0, 0);
-    for (name, claim) in cases() {
+    for (name, claim) in common::table(1) {
         let certificate = prove(&claim, 100_000).unwrap_or_else(|error| panic!("{name}: {error}"));
         let certified = check(&certificate).unwrap_or_else(|error| panic!("{name}: {error}"));
         println!("{name}: {certified}, {} nodes", certified.nodes);
@@ -35,7 +25,7 @@ fn the_periods_of_the_table_have_a_certificate_that_is_accepted() {
     }
     println!("{nodes} nodes together");
     assert_eq!(at_root, 14, "as many are refuted by the rules alone");
-    assert!(nodes < 35_000, "{nodes} nodes, there were 31,088");
+    assert!(nodes < 17_000, "{nodes} nodes, there were 15,008");
 }
 
 #[test]
@@ -51,6 +41,20 @@ fn a_proof_ends_when_the_caller_or_the_budget_wants_it_and_says_so() {
     let error = prove(&claim, 10).expect_err("11 nodes are needed at least");
     assert_eq!(error.to_string(), "the proof has more than 10 nodes");
     assert_eq!(prove_while(&claim, 100_000, |_| true), prove(&claim, 100_000));
+}
+
+#[test]
+fn a_proof_that_ends_early_leaves_the_highest_bound_that_can_be_proven_with_less() {
+    let (_, claim) = common::table(1).into_iter().find(|(name, _)| name == "line 8, window 15").expect("it is there");
+    let bound = |text: Result<String, NoProof>| check(&text.expect("a proof")).expect("accepted").claim.bound;
+    assert_eq!(bound(prove_what_can_be(&claim, 100_000, |_| true)), claim.period);
+    let by_rules_alone = bound(prove_what_can_be(&claim, 100_000, |_| false));
+    let with_some_nodes = bound(prove_what_can_be(&claim, 340, |_| true));
+    assert!(1 < by_rules_alone && by_rules_alone < with_some_nodes && with_some_nodes < claim.period);
+    for (bound, nodes) in [(by_rules_alone, 1), (with_some_nodes, 340 / 16)] {
+        let higher = Claim { bound: bound + 1, ..claim.clone() };
+        assert_eq!(prove(&higher, nodes), Err(NoProof::Budget(nodes)), "{bound}");
+    }
 }
 
 #[test]

@@ -20,7 +20,72 @@ pub enum Layout<'a> {
     Graph(&'a [u64]),
 }
 
+/// A pair of neighbours that a ring of so many sensors does not have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LayoutError {
+    /// The two sensors, from 0.
+    pub pair: (usize, usize),
+    /// How many sensors there are.
+    pub sensors: usize,
+}
+
+impl fmt::Display for LayoutError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (x, y) = self.pair;
+        let (x, y) = (x.saturating_add(1), y.saturating_add(1));
+        write!(f, "sensors {x} and {y} as neighbours; expected two different sensors from 1 to {}", self.sensors)
+    }
+}
+
+impl core::error::Error for LayoutError {}
+
+/// The rows of a [`Layout::Graph`] whose neighbours are these pairs of sensors, counted from 0.
+///
+/// # Errors
+/// [`LayoutError`] for the first pair that names one sensor twice, or one that is not there: a layout that was meant for
+/// another ring would keep fewer sensors apart than it says.
+///
+/// ```
+/// use eeruf_core::{Layout, neighbour_rows};
+/// let rows = neighbour_rows([(0, 1), (1, 2)], 3)?;
+/// assert!(Layout::Graph(&rows).neighbours(3, 2, 1));
+/// let error = neighbour_rows([(1, 2), (2, 3)], 3).unwrap_err();
+/// assert_eq!(error.to_string(), "sensors 3 and 4 as neighbours; expected two different sensors from 1 to 3");
+/// # Ok::<(), eeruf_core::LayoutError>(())
+/// ```
+pub fn neighbour_rows(
+    pairs: impl IntoIterator<Item = (usize, usize)>,
+    sensors: usize,
+) -> Result<[u64; MAX_SENSORS], LayoutError> {
+    let mut rows = [0_u64; MAX_SENSORS];
+    let there = rows.get_mut(..sensors).unwrap_or(&mut []);
+    for (x, y) in pairs {
+        for (one, other) in [(x, y), (y, x)] {
+            match there.get_mut(one) {
+                Some(row) if one != other && other < sensors => *row |= 1 << other,
+                _ => return Err(LayoutError { pair: (x, y), sensors }),
+            }
+        }
+    }
+    Ok(rows)
+}
+
 impl Layout<'_> {
+    /// Whether all neighbours that a graph names are among `sensors`.
+    ///
+    /// # Errors
+    /// [`LayoutError`] for the first that is not.
+    pub fn check(&self, sensors: usize) -> Result<(), LayoutError> {
+        let Layout::Graph(rows) = *self else { return Ok(()) };
+        for (x, &row) in rows.iter().enumerate() {
+            let strange = (0..MAX_SENSORS).find(|&y| row >> y & 1 == 1 && (x >= sensors || y >= sensors));
+            if let Some(y) = strange {
+                return Err(LayoutError { pair: (x, y), sensors });
+            }
+        }
+        Ok(())
+    }
+
     /// Whether `x` and `y` (from 0) of `sensors` are neighbours; never for a sensor and itself.
     pub const fn neighbours(&self, sensors: usize, x: usize, y: usize) -> bool {
         if x == y || x >= sensors || y >= sensors {
@@ -87,6 +152,18 @@ mod tests {
         assert!(graph.neighbours(3, 0, 1) && graph.neighbours(3, 1, 0));
         assert!(graph.neighbours(3, 0, 2) && graph.neighbours(3, 2, 0));
         assert!(!graph.neighbours(3, 1, 2) && !graph.neighbours(2, 0, 2));
+    }
+
+    #[test]
+    fn a_graph_that_names_a_sensor_which_is_not_there_is_refused() {
+        assert_eq!(neighbour_rows([(0, 1), (2, 0)], 3).unwrap()[..4], [0b110, 0b001, 0b001, 0]);
+        for (pair, sensors) in [((2, 3), 3), ((3, 2), 3), ((1, 1), 3), ((0, 64), 64), ((usize::MAX, 0), 64)] {
+            assert_eq!(neighbour_rows([(0, 1), pair], sensors), Err(LayoutError { pair, sensors }));
+        }
+        let rows = neighbour_rows([(0, 1), (2, 5)], 6).unwrap();
+        assert_eq!(Layout::Graph(&rows).check(6), Ok(()));
+        assert_eq!(Layout::Graph(&rows).check(5), Err(LayoutError { pair: (2, 5), sensors: 5 }));
+        assert_eq!(Layout::Ring(9).check(2), Ok(()));
     }
 
     #[test]

@@ -10,6 +10,7 @@
 //!   listening window.
 //! - [`Ring`]: what firmware runs. It combines a [`Scheduler`] ([`ScheduledFiring`] or [`ImmediateRefiring`]) with the
 //!   filter; [`EchoFilter`] is the filter alone.
+//! - [`EchoTracker`]: believes an echo that readings from several phases support, for schedules of many phases.
 //! - [`Adaptation`]: moves along a ladder of schedules as the rejection rate asks for.
 //! - [`SpeedOfSound`]: distances from echo times.
 //!
@@ -29,6 +30,7 @@ mod checked;
 mod conditions;
 pub mod emit;
 mod filter;
+mod hopping;
 mod interop;
 mod layout;
 mod reading;
@@ -40,6 +42,7 @@ mod sensor_set;
 mod sound;
 pub mod tables;
 mod time;
+mod tracker;
 mod verified;
 mod verify;
 
@@ -48,13 +51,17 @@ pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
 pub use checked::{__checked, __micros};
 pub use conditions::{Criterion, Interval, Requirements, Separation};
 pub use filter::{EchoFilter, FilterError};
-pub use layout::Layout;
+pub use hopping::{
+    HoppingCode, HoppingError, HoppingFiring, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings,
+};
+pub use layout::{Layout, LayoutError, neighbour_rows};
 pub use reading::{ReadingKind, Tally, Verdict};
 pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError};
 pub use scheduler::{ImmediateRefiring, ScheduledFiring, Scheduler, SchedulerStep};
 pub use sound::SpeedOfSound;
 pub use time::{Instant, Micros};
+pub use tracker::{EchoTracker, Firing, TrackerError, TrackerSettings};
 pub use verified::VerifiedSchedule;
 pub use verify::{Verification, Violation, ViolationKind, Violations};
 

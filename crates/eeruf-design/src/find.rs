@@ -1,5 +1,8 @@
 //! The shortest period for a ring, the schedule to prefer of those that have it, and what would make it shorter.
 
+use std::error::Error;
+use std::fmt;
+
 use eeruf_core::search::{Control, PeriodProblem, Preferred, SearchError, ShortestPeriod, design};
 use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_sim::{AnySchedule, ScheduleFile};
@@ -43,6 +46,32 @@ pub struct RingDesign {
     pub what_if: Vec<WhatIf>,
 }
 
+/// Why a robot that moves gets no schedule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoSchedule {
+    /// Longer periods ask for more separation, and that for longer periods, without end.
+    TooFast,
+    /// The budget or the caller ended the search before its proof, and what it had found is too slow for the speed.
+    EndedEarly,
+}
+
+impl fmt::Display for NoSchedule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::TooFast => {
+                "no schedule: good readings change more from period to period, the more sensors at this speed must be \
+                 kept apart; expected fewer sensors or a lower speed_m_s"
+            }
+            Self::EndedEarly => {
+                "no schedule yet: the search ended before its proof, and what it had found is too slow for this speed; \
+                 expected a larger budget or time limit"
+            }
+        })
+    }
+}
+
+impl Error for NoSchedule {}
+
 /// What one need, relaxed, would bring.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WhatIf {
@@ -71,7 +100,7 @@ impl RingDesign {
 }
 
 impl RingSpec {
-    /// Finds the shortest period, and the preferred schedule with it; `None` if the robot is too fast for any.
+    /// Finds the shortest period, and the preferred schedule with it; or why there is none.
     ///
     /// If `t_delta` must cover motion, it depends on the period, and the period on it: longer periods need a larger
     /// `t_delta`, which needs longer periods. Starting from a robot that stands, this climbs to the first pair that
@@ -79,7 +108,11 @@ impl RingSpec {
     ///
     /// # Errors
     /// [`SearchError`] for needs that make no sense or are too large to search.
-    pub fn shortest(&self, search: &Search, control: &mut impl Control) -> Result<Option<RingDesign>, SearchError> {
+    pub fn shortest(
+        &self,
+        search: &Search,
+        control: &mut impl Control,
+    ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
         let mut memory = vec![0; design::memory_words(self.sensors)];
         let mut t_delta = self.t_delta;
         loop {
@@ -90,8 +123,9 @@ impl RingSpec {
             } else {
                 None
             };
+            let none = if designed.found.proven { NoSchedule::TooFast } else { NoSchedule::EndedEarly };
             let Some(schedule) = preferred.map_or(designed.found.schedule, |preferred| Some(preferred.schedule)) else {
-                return Ok(None);
+                return Ok(Err(none));
             };
             let needed = self.t_delta_needed(&schedule);
             let allowed = schedule.verify(&problem.requirements).max_t_delta();
@@ -99,11 +133,11 @@ impl RingSpec {
                 let relax = search.what_if && designed.found.proven;
                 let what_if = if relax { what_if(&problem, &mut memory, control)? } else { Vec::new() };
                 let t_delta = needed.max(t_delta);
-                return Ok(Some(RingDesign { schedule, t_delta, designed, preferred, what_if }));
+                return Ok(Ok(RingDesign { schedule, t_delta, designed, preferred, what_if }));
             }
             // Past this point a second of silence would not be enough either.
             if needed > Micros::from_millis(1000) {
-                return Ok(None);
+                return Ok(Err(none));
             }
             t_delta = needed;
         }

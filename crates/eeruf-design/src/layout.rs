@@ -1,6 +1,6 @@
 //! How the sensors of a ring stand, as files spell it.
 
-use eeruf_core::Layout;
+use eeruf_core::{Layout, LayoutError, neighbour_rows};
 use serde::Deserialize;
 
 /// How the sensors stand, as files spell it.
@@ -63,17 +63,11 @@ impl LayoutKey {
             &Self::Named(name) => return Ok(OwnedLayout { name: Some(name), neighbours, rows: vec![] }),
             Self::Pairs(pairs) => pairs,
         };
-        let mut rows = vec![0; sensors];
-        for &(x, y) in pairs {
-            if x >= sensors || y >= sensors || x == y {
-                return Err(format!(
-                    "layout: neighbours [{x}, {y}]; expected two different sensors from 0 to {}",
-                    sensors - 1
-                ));
-            }
-            rows[x] |= 1_u64 << y;
-            rows[y] |= 1_u64 << x;
-        }
-        Ok(OwnedLayout { name: None, neighbours, rows })
+        let rows =
+            neighbour_rows(pairs.iter().copied(), sensors).map_err(|LayoutError { pair: (x, y), sensors }| {
+                // As the file counts them.
+                format!("layout: neighbours [{x}, {y}]; expected two different sensors from 0 to {}", sensors - 1)
+            })?;
+        Ok(OwnedLayout { name: None, neighbours, rows: rows.to_vec() })
     }
 }

@@ -14,8 +14,8 @@
 //! use eeruf_design::{RingSpec, Search};
 //! let ring = "sensors = 8\nt_delta_us = 999\nmin_interval_us = 15_000\nwindow_us = 36_000";
 //! let spec = RingSpec::from_text(ring)?;
-//! let design = spec.shortest(&Search::default(), &mut ()).map_err(|error| error.to_string())?;
-//! let period = design.and_then(|design| design.designed.found.value);
+//! let design = spec.shortest(&Search::default(), &mut ()).map_err(|error| error.to_string())??;
+//! let period = design.designed.found.value;
 //! assert_eq!(period.map(|period| period.as_micros()), Some(66_000));
 //! assert_eq!(RingSpec::from_text("sensors = 65").unwrap_err().message, "65 sensors; expected 1 to 64");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -29,9 +29,9 @@ mod limits;
 mod ring;
 mod text;
 
-pub use find::{RingDesign, Search, WhatIf};
+pub use find::{NoSchedule, RingDesign, Search, WhatIf};
 pub use found::FoundJson;
-pub use layout::{LayoutKey, OwnedLayout};
+pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};
 pub use ring::{RingFile, RingSpec};
 pub use text::{TextError, parse};

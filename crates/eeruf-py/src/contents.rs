@@ -1,11 +1,13 @@
 //! What stands in a scene: shared between a `Scene` and the `Paths` found in it.
 
+use std::sync::Arc;
+
 use eeruf_sim::{Scene, World};
 
 /// Walls alone, or a world with robots.
 pub(crate) enum Contents {
-    Walls(Scene),
-    World(World),
+    Walls(Box<Scene>),
+    World(Arc<World>),
 }
 
 impl Contents {
@@ -17,7 +19,7 @@ impl Contents {
     }
 
     /// The world, if there are robots.
-    pub(crate) fn world(&self) -> Option<&World> {
+    pub(crate) fn world(&self) -> Option<&Arc<World>> {
         match self {
             Self::Walls(_) => None,
             Self::World(world) => Some(world),

@@ -1,16 +1,17 @@
-//! `design`: the shortest period.
+//! `design`: the shortest period, with its certificate.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use eeruf_core::{
     Criterion, MAX_SENSORS, Micros, Requirements,
     search::{self, Control, PeriodProblem, Progress, SearchError, design as period},
 };
+use eeruf_design::certificate;
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{flag, micros, whole, whole_or},
-    errors::Raise,
+    arguments::{flag, micros, number, whole, whole_or},
+    errors::{CertificateError, Raise},
     found::Found,
     requirements::{self, OwnedLayout},
     watch::{Watch, control_flow, in_background},
@@ -20,6 +21,8 @@ use crate::{
 const PREFERENCE_BUDGET: u64 = 100_000;
 /// How many nodes a search visits unless another budget is given.
 const DESIGN_BUDGET: u64 = 50_000_000;
+/// How many nodes the proof of a certificate may have.
+const CERTIFICATE_BUDGET: usize = 1_000_000;
 /// Up to so many sensors the engine asks often whether to go on. With more, a good part of a second may lie between two
 /// nodes that ask, so the search gets a thread of its own. A small search would wait for that thread longer than for
 /// its answer.
@@ -43,9 +46,13 @@ const FEW_SENSORS: usize = 12;
 ///     budget: how many nodes to visit at most, 1 or more; 50 million by default.
 ///     progress: True for a bar (tqdm if it is installed), or a callable that takes the share done (None: unknown) and
 ///         a text.
+///     certificate: whether to prove the answer to :func:`check_certificate`, in ``Found.certificate``: that no period
+///         is shorter, or none below ``bound_us``, or below a lower bound that a million nodes suffice for.
+///     time_limit_s: how long to search at most before giving the best schedule so far, above 0; as long again for the
+///         certificate. No limit by default.
 ///
 /// Returns:
-///     The shortest period in ``value_us``, or the best found within the budget; ``proven`` says which.
+///     The shortest period in ``value_us``, or the best found within budget and time; ``proven`` says which.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
@@ -59,11 +66,11 @@ const FEW_SENSORS: usize = 12;
 #[pyfunction]
 #[pyo3(signature = (
     sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None,
-    budget=None, progress=None
+    budget=None, progress=None, certificate=None, time_limit_s=None
 ))]
 #[pyo3(
     text_signature = "(sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, layout=\"line\", \
-        stale_echo=False, budget=None, progress=None)"
+        stale_echo=False, budget=None, progress=None, certificate=False, time_limit_s=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
 pub(crate) fn design(
@@ -78,34 +85,93 @@ pub(crate) fn design(
     stale_echo: Option<&Bound<'_, PyAny>>,
     budget: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
+    certificate: Option<&Bound<'_, PyAny>>,
+    time_limit_s: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Found> {
     let sensors = requirements::sensors(sensors)?;
-    let layout = OwnedLayout::new(layout, requirements::neighbours(neighbours)?)?;
+    let layout = OwnedLayout::new(layout, requirements::neighbours(neighbours)?, sensors)?;
     let (t_delta, min_interval) = (micros("t_delta_us", t_delta_us)?, micros("min_interval_us", min_interval_us)?);
     let window = whole("window_us", window_us, 1..=u32::MAX).map(Micros::new)?;
     let tick = Micros::new(whole_or("tick_us", tick_us, 1000, 1..=u32::MAX)?);
     let stale_echo = flag("stale_echo", stale_echo, false)?;
     let budget = whole_or("budget", budget, DESIGN_BUDGET, 1..=u64::MAX)?;
+    let certificate = flag("certificate", certificate, false)?;
+    let limit = time_limit_s.map(|seconds| number("time_limit_s", seconds, 1e-3..=1e9)).transpose()?;
+    let limit = limit.map_or(Duration::MAX, Duration::from_secs_f64);
     let began = Instant::now();
-    let work = move |go_on: &mut dyn FnMut(&Progress) -> bool| {
+    let work = move |go_on: &mut dyn FnMut(&dyn Fn() -> String) -> bool| {
         let (criterion, layout) = (Criterion::Exact, layout.layout());
         let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo };
         let needs = PeriodProblem { sensors, requirements, tick };
-        let mut control = |at: &Progress| control_flow(go_on(at));
-        shortest(&needs, budget, &mut control).map_err(Raise::raise)
+        let mut control = |at: &Progress| {
+            let (bound, best) = (at.bound.unwrap_or(0), at.best.unwrap_or(0));
+            let text = || format!("{} nodes, period {bound} to {best} ticks", at.nodes);
+            control_flow(began.elapsed() < limit && go_on(&text))
+        };
+        let (found, reason) = shortest(&needs, budget, &mut control).map_err(Raise::raise)?;
+        let proving = Instant::now();
+        let go_on = |nodes| proving.elapsed() < limit && go_on(&|| format!("certificate: {nodes} nodes"));
+        let certificate = certificate.then(|| certify(&needs, &found, go_on)).transpose()?;
+        Ok((found, reason, certificate))
     };
-    let text = |at: &Progress| {
-        let (bound, best) = (at.bound.unwrap_or(0), at.best.unwrap_or(0));
-        format!("{} nodes, period {bound} to {best} ticks", at.nodes)
-    };
-    let (found, reason) = if sensors <= FEW_SENSORS {
+    let (found, reason, certificate) = if sensors <= FEW_SENSORS {
         let mut watch = Watch::new(progress)?;
-        let designed = py.detach(|| work(&mut |at| watch.go_on(None, || text(at))));
+        let designed = py.detach(|| work(&mut |text| watch.go_on(None, text)));
         watch.outcome(designed)?
     } else {
-        in_background(py, progress, move |background| work(&mut |at| background.go_on(None, || text(at))))?
+        in_background(py, progress, move |background| work(&mut |text| background.go_on(None, text)))?
     };
-    Ok(Found::of(&found, began, Some(reason)))
+    Ok(Found::of(&found, began, Some(reason)).with_certificate(certificate))
+}
+
+/// The certificate of what was found.
+fn certify(
+    needs: &PeriodProblem<'_>,
+    found: &search::Found<MAX_SENSORS>,
+    go_on: impl FnMut(usize) -> bool,
+) -> PyResult<String> {
+    let Some(schedule) = &found.schedule else {
+        return Err(CertificateError::new_err("no schedule was found; expected one to certify"));
+    };
+    certificate::certify(needs, schedule, found.bound, CERTIFICATE_BUDGET, go_on)
+        .map_err(|error| CertificateError::new_err(error.to_string()))
+}
+
+/// Check a certificate: that its schedule keeps the requirements in it, and that no period is shorter.
+///
+/// The checker shares nothing with the search; ``checker/check_period.py`` in the repository is another, in 300 lines
+/// of Python, and ``docs/certificate.md`` has the format and the proof of each rule. A certificate speaks of the
+/// numbers that stand in it, and of nothing else.
+///
+/// Args:
+///     text: the certificate, as in ``design(..., certificate=True).certificate``.
+///
+/// Returns:
+///     The shortest period, in microseconds.
+///
+/// Raises:
+///     ArgumentError: no text.
+///     CertificateError: the first line that is wrong; or the certificate proves a bound only, which it names.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> found = eeruf.design(4, 999, 15_000, 36_000, certificate=True)
+///     >>> eeruf.check_certificate(found.certificate)
+///     62000
+///     >>> eeruf.check_certificate(found.certificate.replace("period 62", "period 63"))
+///     Traceback (most recent call last):
+///     eeruf.CertificateError: no period below 62000 us; schedule of 63000 us (tick 1000 us)
+#[pyfunction]
+#[pyo3(name = "check_certificate", signature = (text))]
+pub(crate) fn check_certificate(text: &Bound<'_, PyAny>) -> PyResult<u64> {
+    let text = crate::arguments::text("text", text, "a certificate")?;
+    let certified = eeruf_check::check(&text).map_err(Raise::raise)?;
+    let period = u64::from(certified.claim.period) * u64::from(certified.claim.problem.tick_us.0);
+    let fraction = u64::from(certified.claim.problem.tick_us.1);
+    if certified.claim.bound < certified.claim.period || !period.is_multiple_of(fraction) {
+        return Err(CertificateError::new_err(certified.to_string()));
+    }
+    Ok(period / fraction)
 }
 
 fn shortest(

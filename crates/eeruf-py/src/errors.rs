@@ -1,7 +1,12 @@
 //! One exception for each enum of errors in Rust, with the same messages. All are `EerufError`s, and that is a
 //! `ValueError`.
 
-use pyo3::{create_exception, exceptions::PyValueError, prelude::*};
+use eeruf_sim::SimulationError as SimulatorError;
+use pyo3::{
+    create_exception,
+    exceptions::{PyMemoryError, PyValueError},
+    prelude::*,
+};
 
 create_exception!(
     eeruf,
@@ -33,6 +38,15 @@ macro_rules! errors {
 /// Turns an error of Rust into its exception.
 pub(crate) trait Raise {
     fn raise(self) -> PyErr;
+}
+
+impl Raise for SimulatorError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::Memory { .. } => PyMemoryError::new_err(self.to_string()),
+            _ => SimulationError::new_err(self.to_string()),
+        }
+    }
 }
 
 errors! {
@@ -76,6 +90,14 @@ Example:
     Traceback (most recent call last):
     eeruf.SearchError: a lag of 10 ms; expected a whole number of ticks of 3 ms
 " from eeruf_core::search::SearchError;
+    CertificateError "A certificate that proves nothing, or not that a period is the shortest; the message names the line.
+
+Example:
+    >>> import eeruf
+    >>> eeruf.check_certificate(\"\")
+    Traceback (most recent call last):
+    eeruf.CertificateError: line 1: found \"\", expected a line eeruf-certificate
+" from eeruf_check::CheckError;
     SceneError "Walls, poles, robots or noise that make no scene.
 
 Example:
@@ -102,7 +124,7 @@ Example:
     Traceback (most recent call last):
     eeruf.SimulationError: robot 1, method eeruf: a listening window of 90 ms; a sensor of this schedule fires \
     again after 45.6 ms, expected a window no longer than that (T_wind)
-" from eeruf_sim::SimulationError;
+";
     ExperimentError "An experiment that cannot be run.
 
 Example:

@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 
 use crate::{
     arguments::{matrix, micros, times_of, whole, whole_or, wrong},
+    columns::room,
     errors::{ArgumentError, Raise},
     requirements,
     ring_events::Reading,
@@ -175,7 +176,7 @@ impl EchoFilter {
     ///         echo. An array of contiguous float64 is read in place, anything else is converted first.
     ///
     /// Returns:
-    ///     Array of uint8 of the same shape: indices into ``eeruf.KINDS``.
+    ///     Array of int8 of the same shape: indices into ``eeruf.KINDS``.
     ///
     /// Raises:
     ///     ArgumentError: another shape, or a time that is negative or 2^32 or more; nothing has been taken in then.
@@ -186,21 +187,22 @@ impl EchoFilter {
     ///     >>> [[eeruf.KINDS[kind] for kind in row] for row in kinds]
     ///     [['first', 'first'], ['accepted', 'no_echo']]
     #[pyo3(signature = (t_echo_us))]
-    fn push_many<'py>(&mut self, py: Python<'py>, t_echo_us: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<u8>>> {
+    fn push_many<'py>(&mut self, py: Python<'py>, t_echo_us: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<i8>>> {
         let echoes = matrix("t_echo_us", t_echo_us, self.sensors)?;
         let echoes = echoes.as_slice().map_err(|error| ArgumentError::new_err(error.to_string()))?;
         if let Some(at) = echoes.iter().position(|&us| !(us.is_nan() || (0.0..=f64::from(u32::MAX)).contains(&us))) {
             let name = format!("t_echo_us[{}, {}]", at / self.sensors, at % self.sensors);
             return Err(wrong(&name, echoes[at], format_args!("0 to {} microseconds, or nan for no echo", u32::MAX)));
         }
-        let mut kinds = vec![0; echoes.len()];
+        let mut kinds = room(echoes.len())?;
+        kinds.resize(echoes.len(), 0_i8);
         let (filter, sensors) = (&mut self.filter, self.sensors);
         let pushed = py.detach(|| {
             for (row, kinds) in echoes.chunks_exact(sensors).zip(kinds.chunks_exact_mut(sensors)) {
                 for (sensor, (&us, kind)) in row.iter().zip(kinds).enumerate() {
                     // Rounded to whole microseconds, which core counts in; in range, as was just checked.
                     let echo = (!us.is_nan()).then(|| Micros::new(us.round() as u32));
-                    *kind = filter.push(sensor, echo.as_slice(), 0)?.kind as u8;
+                    *kind = filter.push(sensor, echo.as_slice(), 0)?.kind as i8;
                 }
             }
             Ok(())

@@ -40,6 +40,9 @@ pub(crate) struct Found {
     /// Why the period is not shorter, in words; None from ``WaitSearch.best``.
     #[pyo3(get)]
     reason: Option<String>,
+    /// A proof for :func:`check_certificate`; None unless ``design`` was asked for one.
+    #[pyo3(get)]
+    certificate: Option<String>,
 }
 
 impl Found {
@@ -52,14 +55,20 @@ impl Found {
             nodes: found.nodes,
             seconds: began.elapsed().as_secs_f64(),
             reason,
+            certificate: None,
         }
+    }
+
+    pub(crate) fn with_certificate(self, certificate: Option<String>) -> Self {
+        Self { certificate, ..self }
     }
 }
 
 #[pymethods]
 impl Found {
     #[new]
-    #[pyo3(signature = (schedule, value_us, bound_us, proven, nodes, seconds, reason=None))]
+    #[pyo3(signature = (schedule, value_us, bound_us, proven, nodes, seconds, reason=None, certificate=None))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         schedule: Option<&Bound<'_, PyAny>>,
         value_us: Option<&Bound<'_, PyAny>>,
@@ -68,6 +77,7 @@ impl Found {
         nodes: &Bound<'_, PyAny>,
         seconds: &Bound<'_, PyAny>,
         reason: Option<&Bound<'_, PyAny>>,
+        certificate: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let schedule = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
         Ok(Self {
@@ -78,6 +88,7 @@ impl Found {
             nodes: whole("nodes", nodes, 0..=u64::MAX)?,
             seconds: number("seconds", seconds, 0.0..=f64::INFINITY)?,
             reason: reason.map(|reason| text("reason", reason, "why")).transpose()?,
+            certificate: certificate.map(|proof| text("certificate", proof, "a certificate")).transpose()?,
         })
     }
 
@@ -96,7 +107,8 @@ impl Found {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let this = slf.get();
         let Self { value_us, bound_us, proven, nodes, seconds, .. } = *this;
-        let arguments = (this.schedule.clone(), value_us, bound_us, proven, nodes, seconds, this.reason.clone());
+        let (schedule, reason, certificate) = (this.schedule.clone(), this.reason.clone(), this.certificate.clone());
+        let arguments = (schedule, value_us, bound_us, proven, nodes, seconds, reason, certificate);
         Ok((slf.get_type().into_any(), arguments.into_pyobject(slf.py())?))
     }
 }

@@ -10,12 +10,14 @@
 )]
 
 mod arguments;
+mod columns;
 mod contents;
 mod design;
 mod errors;
 mod experiments;
 mod filter;
 mod found;
+mod memory;
 mod methods;
 mod paths;
 mod readings;
@@ -28,6 +30,7 @@ mod scene;
 mod schedule;
 mod search;
 mod simulate;
+mod simulation;
 mod unpickle;
 mod watch;
 
@@ -37,10 +40,10 @@ use pyo3::prelude::*;
 mod _eeruf {
     #[pymodule_export]
     use crate::{
-        design::design,
+        design::{check_certificate, design},
         errors::{
-            ArgumentError, EerufError, ExperimentError, FilterError, PathsError, RingError, SceneError, ScheduleError,
-            SearchError, SimulationError,
+            ArgumentError, CertificateError, EerufError, ExperimentError, FilterError, PathsError, RingError,
+            SceneError, ScheduleError, SearchError, SimulationError,
         },
         experiments::{set_one, set_two, speed_sweep},
         filter::EchoFilter,
@@ -55,7 +58,9 @@ mod _eeruf {
         schedule::Schedule,
         search::{WaitSearch, WaitTables},
         simulate::simulate,
+        simulation::{ReadingBlocks, RobotState, Simulation, simulate_blocks},
         unpickle::readings_from_columns,
+        watch::{Switch, until_stopped},
     };
     use pyo3::prelude::*;
     use pyo3::types::PyTuple;

@@ -2,17 +2,21 @@
 
 use std::sync::Arc;
 
-use eeruf_sim::{Bounce, Point};
+use eeruf_sim::{Bounce, Limits, Point};
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
     types::{PyList, PyTuple},
 };
 
-use crate::{arguments::whole, contents::Contents};
+use crate::{
+    arguments::{shown, whole, wrong},
+    columns::Columns,
+    contents::Contents,
+};
 
 /// Every path from a source to some receivers: arrays of equal length, sorted by receiver and then by length. The
-/// arrays are copies.
+/// arrays are read-only.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -21,14 +25,27 @@ use crate::{arguments::whole, contents::Contents};
 ///     (2, [(), (0,)])
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Paths {
-    pub(crate) paths: eeruf_sim::Paths,
-    pub(crate) source: Point,
-    pub(crate) receivers: Vec<Point>,
-    pub(crate) contents: Arc<Contents>,
+    paths: eeruf_sim::Paths,
+    source: Point,
+    receivers: Vec<Point>,
+    contents: Arc<Contents>,
     /// The `Scene` that was asked.
-    pub(crate) scene: Py<PyAny>,
-    pub(crate) max_order: u32,
-    pub(crate) max_length_m: f64,
+    scene: Py<PyAny>,
+    limits: Limits,
+    columns: Columns<6>,
+}
+
+impl Paths {
+    pub(crate) fn new(
+        paths: eeruf_sim::Paths,
+        source: Point,
+        receivers: Vec<Point>,
+        contents: Arc<Contents>,
+        scene: Py<PyAny>,
+        limits: Limits,
+    ) -> Self {
+        Self { paths, source, receivers, contents, scene, limits, columns: Columns::default() }
+    }
 }
 
 /// A wall by its index, a pole by -1 minus its index.
@@ -50,40 +67,40 @@ impl Paths {
         self.paths.len()
     }
 
-    /// The index of the receiver: uint32.
+    /// The index of the receiver: int64.
     #[getter]
-    fn receiver<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, &self.paths.receiver)
+    fn receiver<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 0, self.paths.receiver.iter().map(|&index| i64::from(index)))
     }
 
     /// The length in metres: float64.
     #[getter]
-    fn length_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.paths.length_m)
+    fn length_m<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 1, self.paths.length_m.iter().copied())
     }
 
-    /// How many bounces, those at poles included: uint32.
+    /// How many bounces, those at poles included: int64.
     #[getter]
-    fn order<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, &self.paths.order)
+    fn order<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 2, self.paths.order.iter().map(|&index| i64::from(index)))
     }
 
     /// The direction in which the path leaves the source, in (-pi, pi]: float64.
     #[getter]
-    fn departure_rad<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.paths.departure_rad)
+    fn departure_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 3, self.paths.departure_rad.iter().copied())
     }
 
     /// The direction in which the receiver looks to see it, in (-pi, pi]: float64.
     #[getter]
-    fn arrival_rad<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.paths.arrival_rad)
+    fn arrival_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 4, self.paths.arrival_rad.iter().copied())
     }
 
     /// The amplitude relative to 1 m in free air, without the transducers' patterns: float64.
     #[getter]
-    fn amplitude<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.paths.amplitude)
+    fn amplitude<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 5, self.paths.amplitude.iter().copied())
     }
 
     /// For each path its bounces from source to receiver, a list of tuples: a wall by its index, a pole by -1 minus its
@@ -112,8 +129,10 @@ impl Paths {
     #[pyo3(signature = (path))]
     fn points<'py>(&self, path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let py = path.py();
-        let most = (self.paths.len() as u64).saturating_sub(1);
-        let path = whole("path", path, 0..=most)? as usize;
+        let Some(last) = self.paths.len().checked_sub(1) else {
+            return Err(wrong("path", shown(path), "no index where there are no paths"));
+        };
+        let path = whole("path", path, 0..=last as u64)? as usize;
         let receiver = self.paths.receiver.get(path).and_then(|&receiver| self.receivers.get(receiver as usize));
         let receiver = receiver.copied().unwrap_or(self.source);
         let scene = self.contents.scene();
@@ -126,7 +145,7 @@ impl Paths {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let (py, this) = (slf.py(), slf.get());
         let receivers: Vec<(f64, f64)> = this.receivers.iter().map(|at| (at.x, at.y)).collect();
-        let arguments = ((this.source.x, this.source.y), receivers, this.max_order, this.max_length_m);
+        let arguments = ((this.source.x, this.source.y), receivers, this.limits.max_order, this.limits.max_length_m);
         Ok((this.scene.bind(py).getattr("paths")?, arguments.into_pyobject(py)?))
     }
 

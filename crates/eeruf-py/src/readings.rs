@@ -1,13 +1,17 @@
 //! `Readings`: what `sim.simulate` returns, as arrays.
 
 use eeruf_sim::NO_PATH;
-use numpy::PyArray1;
 use pyo3::{
     prelude::*,
     types::{PyDict, PyTuple},
 };
 
-use crate::{arguments::number, errors::ArgumentError, paths::coded};
+use crate::{
+    arguments::number,
+    columns::{Columns, read_only},
+    errors::ArgumentError,
+    paths::coded,
+};
 
 /// The names of causes by their codes.
 pub(crate) const CAUSES: [&str; 5] = ["nothing", "own", "stale", "crosstalk", "external"];
@@ -16,7 +20,7 @@ pub(crate) const CAUSES: [&str; 5] = ["nothing", "own", "stale", "crosstalk", "e
 /// pickle.
 ///
 /// Each reading comes with what caused it and with what the sensor would have read alone. Times without a value are
-/// NaN. The arrays are copies.
+/// NaN. The arrays are read-only.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -25,107 +29,110 @@ pub(crate) const CAUSES: [&str; 5] = ["nothing", "own", "stale", "crosstalk", "e
 ///     >>> len(readings), readings.summary()["wrong_of_all"] < 0.01
 ///     (800, True)
 #[pyclass(frozen, module = "eeruf.sim")]
-pub(crate) struct Readings(pub(crate) eeruf_sim::Readings);
+pub(crate) struct Readings {
+    pub(crate) readings: eeruf_sim::Readings,
+    columns: Columns<13>,
+}
 
 fn tolerance(value: Option<&Bound<'_, PyAny>>) -> PyResult<f64> {
     value.map_or(Ok(eeruf_sim::DEFAULT_TOLERANCE_US), |us| number("tolerance_us", us, 0.0..=f64::INFINITY))
 }
 
 impl Readings {
-    fn array<'py, T: numpy::Element>(py: Python<'py>, values: impl Iterator<Item = T>) -> Bound<'py, PyAny> {
-        PyArray1::from_iter(py, values).into_any()
+    pub(crate) fn new(readings: eeruf_sim::Readings) -> Self {
+        Self { readings, columns: Columns::default() }
     }
 }
 
 #[pymethods]
 impl Readings {
     fn __len__(&self) -> usize {
-        self.0.len()
+        self.readings.len()
     }
 
     /// The method that was simulated, one of ``METHODS``.
     #[getter]
     fn method(&self) -> &'static str {
-        self.0.method.as_str()
+        self.readings.method.as_str()
     }
 
     /// For how long, in seconds.
     #[getter]
     fn duration_s(&self) -> f64 {
-        self.0.duration_s
+        self.readings.duration_s
     }
 
     /// How many sensors the scene has, of all robots together.
     #[getter]
     fn sensors(&self) -> usize {
-        self.0.sensors
+        self.readings.sensors
     }
 
-    /// The robot, from 0: uint16.
+    /// The robot, from 0: int64.
     #[getter]
-    fn robot<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        Self::array(py, self.0.robot.iter().copied())
+    fn robot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 0, self.readings.robot.iter().map(|&robot| i64::from(robot)))
     }
 
-    /// The sensor on its ring, from 0: uint8.
+    /// The sensor on its ring, from 0: int64.
     #[getter]
-    fn sensor<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        Self::array(py, self.0.sensor.iter().copied())
+    fn sensor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 1, self.readings.sensor.iter().map(|&sensor| i64::from(sensor)))
     }
 
-    /// The period in which it fired, from 0: uint32.
+    /// The period in which it fired, from 0: int64.
     #[getter]
-    fn period<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        Self::array(py, self.0.period.iter().copied())
+    fn period<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 2, self.readings.period.iter().map(|&period| i64::from(period)))
     }
 
-    /// The phase in which it fired, 0 for a and 1 for b: uint8.
+    /// The phase in which it fired, 0 for a and 1 for b: int64.
     #[getter]
-    fn phase<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        Self::array(py, self.0.phase.iter().copied())
+    fn phase<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 3, self.readings.phase.iter().map(|&phase| i64::from(phase)))
     }
 
     /// When it fired, in seconds: float64.
     #[getter]
-    fn fired_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        Self::array(py, self.0.fired_s.iter().copied())
+    fn fired_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 4, self.readings.fired_s.iter().copied())
     }
 
-    /// What the method made of it, an index into ``eeruf.KINDS``: uint8.
+    /// What the method made of it, an index into ``eeruf.KINDS``: int8.
     #[getter]
-    fn kind<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        Self::array(py, self.0.kind.iter().map(|&kind| kind as u8))
+    fn kind<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 5, self.readings.kind.iter().map(|&kind| kind as i8))
     }
 
     /// The echo time that the method reports, in microseconds: float64.
     #[getter]
-    fn t_echo_us<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        Self::array(py, self.0.t_echo_us.iter().copied())
+    fn t_echo_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 6, self.readings.t_echo_us.iter().copied())
     }
 
     /// The earliest echo of the firing, in microseconds: float64.
     #[getter]
-    fn earliest_us<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        Self::array(py, self.0.earliest_us.iter().copied())
+    fn earliest_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 7, self.readings.earliest_us.iter().copied())
     }
 
     /// What the sensor would have read alone in quiet air, in microseconds: float64.
     #[getter]
-    fn reference_us<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        Self::array(py, self.0.reference_us.iter().copied())
+    fn reference_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 8, self.readings.reference_us.iter().copied())
     }
 
-    /// What ``t_echo_us`` came from, an index into ``CAUSES``: uint8.
+    /// What ``t_echo_us`` came from, an index into ``CAUSES``: int8.
     #[getter]
-    fn cause<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        Self::array(py, self.0.cause.iter().map(|&cause| cause as u8))
+    fn cause<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 9, self.readings.cause.iter().map(|&cause| cause as i8))
     }
 
     /// Along which of ``paths`` the sound came, an index, or -1 for none: int64.
     #[getter]
-    fn path<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+    fn path<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let index = |&path: &u32| if path == NO_PATH { -1 } else { i64::from(path) };
-        Self::array(py, self.0.path.iter().map(index))
+        self.columns.get(py, 10, self.readings.path.iter().map(index))
     }
 
     /// Every path that some reading came along: a dict of arrays of equal length.
@@ -135,15 +142,15 @@ impl Readings {
     /// is a list of tuples as in ``Paths``.
     #[getter]
     fn paths<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (columns, paths) = (PyDict::new(py), &self.0.paths);
-        columns.set_item("emitter_robot", Self::array(py, paths.iter().map(|path| path.emitter.robot)))?;
-        columns.set_item("emitter", Self::array(py, paths.iter().map(|path| path.emitter.sensor)))?;
-        columns.set_item("receiver_robot", Self::array(py, paths.iter().map(|path| path.receiver.robot)))?;
-        columns.set_item("receiver", Self::array(py, paths.iter().map(|path| path.receiver.sensor)))?;
-        columns.set_item("order", Self::array(py, paths.iter().map(|path| path.order)))?;
-        columns.set_item("length_m", Self::array(py, paths.iter().map(|path| path.length_m)))?;
-        columns.set_item("departure_rad", Self::array(py, paths.iter().map(|path| path.departure_rad)))?;
-        columns.set_item("arrival_rad", Self::array(py, paths.iter().map(|path| path.arrival_rad)))?;
+        let (columns, paths) = (PyDict::new(py), &self.readings.paths);
+        columns.set_item("emitter_robot", read_only(py, paths.iter().map(|path| i64::from(path.emitter.robot)))?)?;
+        columns.set_item("emitter", read_only(py, paths.iter().map(|path| i64::from(path.emitter.sensor)))?)?;
+        columns.set_item("receiver_robot", read_only(py, paths.iter().map(|path| i64::from(path.receiver.robot)))?)?;
+        columns.set_item("receiver", read_only(py, paths.iter().map(|path| i64::from(path.receiver.sensor)))?)?;
+        columns.set_item("order", read_only(py, paths.iter().map(|path| i64::from(path.order)))?)?;
+        columns.set_item("length_m", read_only(py, paths.iter().map(|path| path.length_m))?)?;
+        columns.set_item("departure_rad", read_only(py, paths.iter().map(|path| path.departure_rad))?)?;
+        columns.set_item("arrival_rad", read_only(py, paths.iter().map(|path| path.arrival_rad))?)?;
         let walls = paths.iter().map(|path| PyTuple::new(py, coded(&path.bounces)));
         columns.set_item("walls", walls.collect::<PyResult<Vec<_>>>()?)?;
         Ok(columns)
@@ -151,14 +158,14 @@ impl Readings {
 
     /// When the sound behind ``t_echo_us`` was sent, in seconds: float64.
     #[getter]
-    fn emitted_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        Self::array(py, self.0.emitted_s.iter().copied())
+    fn emitted_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 11, self.readings.emitted_s.iter().copied())
     }
 
     /// Whether the method accepts the reading, an echo or that nothing is in range: bool.
     #[getter]
-    fn is_accepted<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        Self::array(py, (0..self.0.len()).map(|reading| self.0.is_accepted(reading)))
+    fn is_accepted<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 12, (0..self.readings.len()).map(|reading| self.readings.is_accepted(reading)))
     }
 
     /// Whether what the reading says is wrong, accepted or not.
@@ -174,7 +181,7 @@ impl Readings {
     #[pyo3(signature = (tolerance_us=None), text_signature = "($self, tolerance_us=500.0)")]
     fn is_wrong<'py>(&self, py: Python<'py>, tolerance_us: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         let tolerance_us = tolerance(tolerance_us)?;
-        Ok(Self::array(py, (0..self.0.len()).map(|reading| self.0.is_wrong(reading, tolerance_us))))
+        read_only(py, (0..self.readings.len()).map(|reading| self.readings.is_wrong(reading, tolerance_us)))
     }
 
     /// The figures that are always reported together.
@@ -192,7 +199,7 @@ impl Readings {
     #[pyo3(signature = (tolerance_us=None), text_signature = "($self, tolerance_us=500.0)")]
     fn summary<'py>(&self, py: Python<'py>, tolerance_us: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         let tolerance_us = tolerance(tolerance_us)?;
-        let summary = py.detach(|| self.0.summary_within(tolerance_us));
+        let summary = py.detach(|| self.readings.summary_within(tolerance_us));
         let json = serde_json::to_string(&summary).map_err(|error| ArgumentError::new_err(error.to_string()))?;
         py.import("json")?.call_method1("loads", (json,))
     }
@@ -225,15 +232,15 @@ impl Readings {
     fn __repr__(&self) -> String {
         format!(
             "<Readings: {} of {} sensors, {}, {:.3} s>",
-            self.0.len(),
-            self.0.sensors,
-            self.0.method,
-            self.0.duration_s
+            self.readings.len(),
+            self.readings.sensors,
+            self.readings.method,
+            self.readings.duration_s
         )
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let (py, this) = (slf.py(), &slf.get().0);
+        let (py, this) = (slf.py(), &slf.get().readings);
         let rebuild = py.import("eeruf._eeruf")?.getattr("_readings_from_columns")?;
         let (columns, paths) = (Self::columns(slf)?, slf.get().paths(py)?);
         Ok((rebuild, (this.method.as_str(), this.duration_s, this.sensors, columns, paths).into_pyobject(py)?))

@@ -1,7 +1,10 @@
 //! `Report` and its `Violation`s.
 
 use eeruf_core::{MAX_SENSORS, Micros};
-use pyo3::{prelude::*, types::PyTuple};
+use pyo3::{
+    prelude::*,
+    types::{PyString, PyTuple},
+};
 
 use crate::arguments::{instance, items, shown, text, whole, whole_or_none, wrong};
 
@@ -29,6 +32,10 @@ pub(crate) struct Violation {
     source: String,
 }
 
+fn quoted<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyString>> {
+    PyString::new(py, text).repr()
+}
+
 #[pymethods]
 impl Violation {
     #[new]
@@ -52,12 +59,13 @@ impl Violation {
         })
     }
 
-    fn __repr__(&self) -> String {
-        let Self { kind, sensors: (x, y), phases: (p, q), value_us, required_us, source } = self;
-        format!(
-            "Violation(kind='{kind}', sensors=({x}, {y}), phases=('{p}', '{q}'), value_us={value_us}, \
-             required_us={required_us}, source='{source}')"
-        )
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let Self { kind, sensors: (x, y), phases, value_us, required_us, source } = self;
+        let (kind, phases, source) = (quoted(py, kind)?, phases.into_pyobject(py)?.repr()?, quoted(py, source)?);
+        Ok(format!(
+            "Violation(kind={kind}, sensors=({x}, {y}), phases={phases}, value_us={value_us}, \
+             required_us={required_us}, source={source})"
+        ))
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {

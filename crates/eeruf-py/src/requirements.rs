@@ -1,6 +1,6 @@
 //! What a schedule must meet, out of keyword arguments: layout, neighbours, times.
 
-use eeruf_core::{Criterion, Layout, MAX_SENSORS, Micros, Requirements};
+use eeruf_core::{Criterion, Layout, LayoutError, MAX_SENSORS, Micros, Requirements, neighbour_rows};
 use eeruf_sim::AnySchedule;
 use pyo3::{prelude::*, types::PyList};
 
@@ -9,11 +9,11 @@ use crate::arguments::{choice, flag, micros, shown, whole, whole_or, wrong};
 /// How the sensors stand, with the rows of the graph if it is one.
 pub(crate) enum OwnedLayout {
     Named(Layout<'static>),
-    Graph(Vec<u64>),
+    Graph(Box<[u64; MAX_SENSORS]>),
 }
 
 impl OwnedLayout {
-    pub(crate) fn new(layout: Option<&Bound<'_, PyAny>>, neighbours: u8) -> PyResult<Self> {
+    pub(crate) fn new(layout: Option<&Bound<'_, PyAny>>, neighbours: u8, sensors: usize) -> PyResult<Self> {
         let Some(layout) = layout else { return Ok(Self::Named(Layout::Line(neighbours))) };
         let expected = "\"line\", \"ring\", \"blocks\", or pairs of neighbours such as [(0, 1), (1, 2)]";
         if let Ok(name) = layout.extract::<String>() {
@@ -28,25 +28,17 @@ impl OwnedLayout {
             .try_iter()
             .and_then(|items| PyList::new(layout.py(), items.collect::<PyResult<Vec<_>>>()?)?.extract())
             .map_err(|_| wrong("layout", shown(layout), expected))?;
-        let mut rows = vec![0_u64; MAX_SENSORS];
-        for (x, y) in pairs {
-            if x >= MAX_SENSORS || y >= MAX_SENSORS || x == y {
-                return Err(wrong(
-                    "layout",
-                    format_args!("[({x}, {y})]"),
-                    "pairs of two different sensors from 0 to 63",
-                ));
-            }
-            rows[x] |= 1 << y;
-            rows[y] |= 1 << x;
-        }
-        Ok(Self::Graph(rows))
+        let rows = neighbour_rows(pairs, sensors).map_err(|LayoutError { pair: (x, y), .. }| {
+            let expected = format!("pairs of two different sensors from 0 to {}", sensors - 1);
+            wrong("layout", format_args!("[({x}, {y})]"), expected)
+        })?;
+        Ok(Self::Graph(Box::new(rows)))
     }
 
     pub(crate) fn layout(&self) -> Layout<'_> {
         match self {
             Self::Named(layout) => *layout,
-            Self::Graph(rows) => Layout::Graph(rows),
+            Self::Graph(rows) => Layout::Graph(&rows[..]),
         }
     }
 }
@@ -108,7 +100,7 @@ impl RequirementArguments<'_, '_> {
         let mut requirements = OwnedRequirements {
             t_delta: or_zero("t_delta_us", self.t_delta_us)?,
             min_interval: or_zero("min_interval_us", self.min_interval_us)?,
-            layout: OwnedLayout::new(self.layout, neighbours(self.neighbours)?)?,
+            layout: OwnedLayout::new(self.layout, neighbours(self.neighbours)?, schedule.sensors())?,
             criterion: criterion(self.criterion)?,
             window: or_zero("window_us", self.window_us)?,
             stale_echo: flag("stale_echo", self.stale_echo, false)?,

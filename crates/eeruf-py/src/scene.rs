@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use eeruf_sim::{Air, Faces, Noise, Point, Pole, Wall, World};
+use eeruf_sim::{Air, Faces, Limits, Noise, Point, Pole, Stop, Tracer, Wall, World};
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
@@ -66,7 +66,7 @@ impl Scene {
         self.contents.scene()
     }
 
-    pub(crate) fn world(&self) -> PyResult<&World> {
+    pub(crate) fn world(&self) -> PyResult<&Arc<World>> {
         self.contents.world().ok_or_else(|| SceneError::new_err("a scene of 0 robots; expected 1 or more to simulate"))
     }
 
@@ -74,7 +74,7 @@ impl Scene {
         let world = World::from_text(&file, &text).map_err(Raise::raise)?;
         // Whoever unpickles it may not have the files beside it.
         let text = with_schedules(&file, &text).unwrap_or(text);
-        Ok(Self { contents: Arc::new(Contents::World(world)), source: Source::Toml { file, text } })
+        Ok(Self { contents: Arc::new(Contents::World(Arc::new(world))), source: Source::Toml { file, text } })
     }
 }
 
@@ -170,7 +170,7 @@ impl Scene {
             py.detach(|| eeruf_sim::Scene::new(built_walls, built_poles, Air::at(celsius))).map_err(Raise::raise)?;
         let source = Source::Code(made_of.unbind());
         if robots.is_empty() {
-            return Ok(Self { contents: Arc::new(Contents::Walls(scene)), source });
+            return Ok(Self { contents: Arc::new(Contents::Walls(Box::new(scene))), source });
         }
         let noise = if noise { Noise::default() } else { Noise::NONE };
         let robots = robots.into_iter().map(|robot| robot.robot).collect();
@@ -178,7 +178,7 @@ impl Scene {
         if let Some(order) = order {
             world = world.with_max_order(order).map_err(Raise::raise)?;
         }
-        Ok(Self { contents: Arc::new(Contents::World(world)), source })
+        Ok(Self { contents: Arc::new(Contents::World(Arc::new(world))), source })
     }
 
     /// Read a scene file, such as those in the folder ``scenes``.
@@ -238,13 +238,14 @@ impl Scene {
         self.scene().air().temperature_c
     }
 
-    /// Every specular path from a source to some receivers, exactly, without the interpreter lock.
+    /// Every specular path from a source to some receivers, exactly, without the interpreter lock. Ctrl-C ends it.
     ///
     /// Args:
     ///     source: (x, y) in metres.
     ///     receivers: array of shape (n, 2), or one point, in metres.
     ///     max_order: the most bounces, 0 to 1000; those at poles count.
     ///     max_length_m: the longest path, in metres, above 0; None for any length.
+    ///     progress: True for a bar (tqdm if it is installed), or a callable that takes None and a text now and then.
     ///
     /// Returns:
     ///     The paths as arrays, sorted by receiver and then by length.
@@ -259,14 +260,15 @@ impl Scene {
     ///     >>> paths = wall.paths(source=(0, 0), receivers=[(3, 0)], max_order=1)
     ///     >>> paths.order.tolist(), paths.length_m.tolist()
     ///     ([0, 1], [3.0, 5.0])
-    #[pyo3(signature = (source, receivers, max_order, max_length_m=None))]
-    #[pyo3(text_signature = "($self, source, receivers, max_order, max_length_m=None)")]
+    #[pyo3(signature = (source, receivers, max_order, max_length_m=None, *, progress=None))]
+    #[pyo3(text_signature = "($self, source, receivers, max_order, max_length_m=None, *, progress=None)")]
     fn paths(
         slf: &Bound<'_, Self>,
         source: &Bound<'_, PyAny>,
         receivers: &Bound<'_, PyAny>,
         max_order: &Bound<'_, PyAny>,
         max_length_m: Option<&Bound<'_, PyAny>>,
+        progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Paths> {
         let at = points("source", source)?;
         let [from] = at[..] else { return Err(wrong("source", shown(source), "one point (x, y) in metres")) };
@@ -275,14 +277,23 @@ impl Scene {
         let max_length_m =
             max_length_m.map_or(Ok(f64::INFINITY), |most| number("max_length_m", most, 0.0..=f64::INFINITY))?;
         let (py, scene) = (slf.py(), slf.clone().unbind());
-        let few = slf.get().scene().walls().len() <= FEW && receivers.len() <= FEW && max_order <= LOW_ORDER;
-        let find = move |receivers: Vec<Point>| {
+        let standing = slf.get().scene();
+        let few = standing.walls().len() + standing.poles().len() <= FEW && receivers.len() <= FEW;
+        let find = move |receivers: Vec<Point>, stop: Stop| {
             let contents = Arc::clone(&scene.get().contents);
-            let paths = contents.scene().paths(from, &receivers, max_order, max_length_m).map_err(Raise::raise)?;
-            let scene = scene.into_any();
-            Ok(Paths { paths, source: from, receivers, contents, scene, max_order, max_length_m })
+            let (limits, mut paths) = (Limits { max_order, max_length_m }, eeruf_sim::Paths::default());
+            let mut tracer = Tracer::new();
+            tracer.stop = stop;
+            tracer.trace(contents.scene(), from, &receivers, limits, &mut paths).map_err(Raise::raise)?;
+            Ok(Paths::new(paths, from, receivers, contents, scene.into_any(), limits))
         };
-        if few { py.detach(|| find(receivers)) } else { in_background(py, None, move |_| find(receivers)) }
+        if few && max_order <= LOW_ORDER && progress.is_none() {
+            return py.detach(|| find(receivers, Stop::default()));
+        }
+        in_background(py, progress, move |background| {
+            background.go_on(None, || format!("paths up to order {max_order}"));
+            find(receivers, background.stop().clone())
+        })
     }
 
     fn __repr__(&self) -> String {

@@ -99,7 +99,7 @@ impl WaitSearch {
         let sensors = requirements::sensors(sensors)?;
         let t_lag = t_lag_us.map(|lags| times("t_lag_us", lags)).transpose()?;
         let neighbours = requirements::neighbours(neighbours)?;
-        let layout = OwnedLayout::new(layout, neighbours)?;
+        let layout = OwnedLayout::new(layout, neighbours, sensors)?;
         let (period, wait_max) = (micros("period_us", period_us)?, micros("wait_max_us", wait_max_us)?);
         let needs = WaitProblem {
             sensors,

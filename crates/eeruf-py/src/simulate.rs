@@ -1,15 +1,18 @@
 //! `sim.simulate`.
 
-use eeruf_sim::{Method, Options, simulate_while};
+use std::sync::Arc;
+
+use eeruf_sim::{Method, Options, World, simulate_until, simulation::expected_readings};
 use pyo3::prelude::*;
 
 use crate::{
     arguments::{instance, whole, whole_or},
     errors::Raise,
+    memory,
     methods::{self, best},
     readings::Readings,
     scene::Scene,
-    watch::in_background,
+    watch::{Background, in_background},
 };
 
 /// Drive the rings of a scene through simulated time by a method: core's own scheduler and filter, as on the target.
@@ -31,6 +34,7 @@ use crate::{
 ///     ArgumentError: no such method, or something of the wrong type or out of range.
 ///     SceneError: the scene has no robot.
 ///     SimulationError: a ring cannot fire by the method as it should listen.
+///     MemoryError: so many readings do not fit into memory; :func:`simulate_blocks` gives them bit by bit.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -48,20 +52,47 @@ pub(crate) fn simulate(
     seed: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Readings> {
-    let scene = instance::<Scene>("scene", scene, "an eeruf.sim.Scene")?;
-    scene.get().world()?;
-    let method = method.map_or(Ok(Method::Eeruf), |name| methods::method("method", name))?;
-    let mut options = Options {
-        seed: seed.map(|seed| whole("seed", seed, 0..=u64::MAX)).transpose()?,
-        ..Options::periods(whole_or("periods", periods, 1000, 1..=u32::MAX)?)
-    };
-    let (py, scene) = (scene.py(), scene.clone().unbind());
-    in_background(py, progress, move |background| {
-        let world = scene.get().world()?;
-        if let Some(robot) = world.robots().first() {
-            options.best = best(&[method], robot, background)?.map(|best| best.schedule);
-        }
+    let asked = Asked::new(scene, method, periods, seed)?;
+    let readings = expected_readings(&asked.world, asked.options.periods);
+    let instead = "or simulate_blocks, which needs no more than a block";
+    memory::check(&format!("{readings} readings"), eeruf_sim::Readings::bytes_for(readings), instead)?;
+    in_background(scene.py(), progress, move |background| {
+        let Asked { world, method, options } = asked.with_best(background)?;
         let keep_going = |share| background.go_on(Some(share), || format!("simulating {method}"));
-        simulate_while(world, method, &options, keep_going).map(Readings).map_err(Raise::raise)
+        let readings = simulate_until(&world, method, &options, background.stop(), keep_going);
+        readings.map(Readings::new).map_err(Raise::raise)
     })
+}
+
+/// The arguments of [`simulate`] and its like.
+pub(crate) struct Asked {
+    pub(crate) world: Arc<World>,
+    pub(crate) method: Method,
+    pub(crate) options: Options,
+}
+
+impl Asked {
+    pub(crate) fn new(
+        scene: &Bound<'_, PyAny>,
+        method: Option<&Bound<'_, PyAny>>,
+        periods: Option<&Bound<'_, PyAny>>,
+        seed: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let scene = instance::<Scene>("scene", scene, "an eeruf.sim.Scene")?;
+        let world = Arc::clone(scene.get().world()?);
+        let method = method.map_or(Ok(Method::Eeruf), |name| methods::method("method", name))?;
+        let options = Options {
+            seed: seed.map(|seed| whole("seed", seed, 0..=u64::MAX)).transpose()?,
+            ..Options::periods(whole_or("periods", periods, 1000, 1..=u32::MAX)?)
+        };
+        Ok(Self { world, method, options })
+    }
+
+    /// With the schedule of `eeruf_best`, if that is the method.
+    pub(crate) fn with_best(mut self, background: &Background) -> PyResult<Self> {
+        if let Some(robot) = self.world.robots().first() {
+            self.options.best = best(&[self.method], robot, background)?.map(|best| best.schedule);
+        }
+        Ok(self)
+    }
 }

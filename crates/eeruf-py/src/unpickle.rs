@@ -1,7 +1,9 @@
 //! `Readings` out of their columns, as a pickle holds them.
 
-use eeruf_core::ReadingKind;
-use eeruf_sim::{Cause, HeardPath, NO_PATH, SensorId};
+use std::collections::HashSet;
+
+use eeruf_core::{MAX_PHASES, MAX_SENSORS, ReadingKind};
+use eeruf_sim::{Cause, HeardPath, NO_PATH, SensorId, world::MAX_ROBOTS};
 use numpy::PyReadonlyArray1;
 use pyo3::{prelude::*, types::PyDict};
 
@@ -21,14 +23,26 @@ fn column<T: numpy::Element + Copy>(columns: &Bound<'_, PyDict>, name: &str) -> 
     Ok(array.as_array().iter().copied().collect())
 }
 
+/// A column of whole numbers from 0 to below `end`.
+fn index<T: TryFrom<i64>>(columns: &Bound<'_, PyDict>, name: &str, end: i64) -> PyResult<Vec<T>> {
+    let each = |value: i64| {
+        let within = Some(value).filter(|value| (0..end).contains(value)).and_then(|value| T::try_from(value).ok());
+        within.ok_or_else(|| wrong(name, value, format_args!("0 to {}", end - 1)))
+    };
+    column::<i64>(columns, name)?.into_iter().map(each).collect()
+}
+
 fn heard_paths(columns: &Bound<'_, PyDict>) -> PyResult<Vec<HeardPath>> {
     let ends = |robot, sensor| -> PyResult<Vec<SensorId>> {
-        let (robots, sensors): (Vec<u16>, Vec<u8>) = (column(columns, robot)?, column(columns, sensor)?);
+        let robots: Vec<u16> = index(columns, robot, MAX_ROBOTS as i64)?;
+        let sensors: Vec<u8> = index(columns, sensor, MAX_SENSORS as i64)?;
+        equally_long(robots.len(), &[sensors.len()])?;
         Ok(robots.into_iter().zip(sensors).map(|(robot, sensor)| SensorId { robot, sensor }).collect())
     };
     let walls: Vec<Vec<i64>> = columns.as_any().get_item("walls")?.extract()?;
     let (emitter, receiver) = (ends("emitter_robot", "emitter")?, ends("receiver_robot", "receiver")?);
-    let (order, length_m): (Vec<u32>, Vec<f64>) = (column(columns, "order")?, column(columns, "length_m")?);
+    let order: Vec<u32> = index(columns, "order", i64::from(u32::MAX))?;
+    let length_m: Vec<f64> = column(columns, "length_m")?;
     let angles: (Vec<f64>, Vec<f64>) = (column(columns, "departure_rad")?, column(columns, "arrival_rad")?);
     let lengths = [emitter.len(), receiver.len(), order.len(), length_m.len(), angles.0.len(), angles.1.len()];
     equally_long(walls.len(), &lengths)?;
@@ -61,13 +75,12 @@ pub(crate) fn readings_from_columns(
     columns: &Bound<'_, PyDict>,
     paths: &Bound<'_, PyDict>,
 ) -> PyResult<Readings> {
-    let robot: Vec<u16> = column(columns, "robot")?;
+    let robot: Vec<u16> = index(columns, "robot", MAX_ROBOTS as i64)?;
     let code = |name, codes: usize| -> PyResult<Vec<usize>> {
-        let values: Vec<u8> = column(columns, name)?;
-        match values.iter().find(|&&value| usize::from(value) >= codes) {
-            Some(value) => Err(wrong(name, value, format_args!("0 to {}", codes - 1))),
-            None => Ok(values.into_iter().map(usize::from).collect()),
-        }
+        let values: Vec<i8> = column(columns, name)?;
+        let code = |value: i8| usize::try_from(value).ok().filter(|&code| code < codes);
+        let each = |value| code(value).ok_or_else(|| wrong(name, value, format_args!("0 to {}", codes - 1)));
+        values.into_iter().map(each).collect()
     };
     let paths = heard_paths(paths)?;
     let path = |index: i64| match u32::try_from(index) {
@@ -80,9 +93,9 @@ pub(crate) fn readings_from_columns(
         method: method_named("method", method)?,
         duration_s,
         sensors,
-        sensor: column(columns, "sensor")?,
-        period: column(columns, "period")?,
-        phase: column(columns, "phase")?,
+        sensor: index(columns, "sensor", MAX_SENSORS as i64)?,
+        period: index(columns, "period", i64::from(u32::MAX))?,
+        phase: index(columns, "phase", MAX_PHASES as i64)?,
         fired_s: column(columns, "fired_s")?,
         kind: code("kind", ReadingKind::ALL.len())?.into_iter().map(|kind| ReadingKind::ALL[kind]).collect(),
         t_echo_us: column(columns, "t_echo_us")?,
@@ -108,5 +121,16 @@ pub(crate) fn readings_from_columns(
         readings.emitted_s.len(),
     ];
     equally_long(readings.robot.len(), &lengths)?;
-    Ok(Readings(readings))
+    let seen: HashSet<SensorId> = (0..readings.len()).map(|reading| readings.id(reading)).collect();
+    if sensors < seen.len() {
+        return Err(wrong(
+            "sensors",
+            sensors,
+            format_args!("{} or more, as many as there are readings of", seen.len()),
+        ));
+    }
+    if !(0.0..f64::INFINITY).contains(&duration_s) {
+        return Err(wrong("duration_s", duration_s, "0 or more"));
+    }
+    Ok(Readings::new(readings))
 }

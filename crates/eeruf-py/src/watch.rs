@@ -1,16 +1,17 @@
 //! Long work: Ctrl-C ends it, and its progress can be followed.
 
 use std::{
+    cell::RefCell,
     ops::ControlFlow,
     sync::{
         Arc, Mutex, PoisonError,
-        atomic::{AtomicBool, Ordering},
         mpsc::{self, RecvTimeoutError},
     },
     thread,
     time::{Duration, Instant},
 };
 
+use eeruf_sim::Stop;
 use pyo3::{
     exceptions::{PyKeyboardInterrupt, PyRuntimeError},
     prelude::*,
@@ -20,6 +21,44 @@ use pyo3::{
 /// How often Python is asked whether to go on.
 const EVERY: Duration = Duration::from_millis(20);
 
+/// How long to wait for work that was stopped: it looks far more often.
+const PATIENCE: Duration = Duration::from_secs(3);
+
+thread_local! {
+    /// What ends the calls of this thread, as Ctrl-C does in the main thread.
+    static STOPPED_BY: RefCell<Option<Stop>> = const { RefCell::new(None) };
+}
+
+/// A switch that ends what :func:`_until_stopped` runs.
+#[pyclass(frozen, name = "_Stop", module = "eeruf._eeruf")]
+pub(crate) struct Switch(Stop);
+
+#[pymethods]
+impl Switch {
+    #[new]
+    fn new() -> Self {
+        Self(Stop::default())
+    }
+
+    fn stop(&self) {
+        self.0.stop();
+    }
+}
+
+/// Calls a function with one argument; what it calls of eeruf on this thread ends when the switch is thrown.
+#[pyfunction]
+#[pyo3(name = "_until_stopped")]
+pub(crate) fn until_stopped<'py>(
+    switch: &Bound<'py, Switch>,
+    function: &Bound<'py, PyAny>,
+    argument: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let before = STOPPED_BY.replace(Some(switch.get().0.clone()));
+    let result = function.call1((argument,));
+    STOPPED_BY.set(before);
+    result
+}
+
 /// What a watcher says, as the search reads it.
 pub(crate) fn control_flow(go_on: bool) -> ControlFlow<()> {
     if go_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
@@ -28,6 +67,7 @@ pub(crate) fn control_flow(go_on: bool) -> ControlFlow<()> {
 /// Asks Python now and then, from the thread that called, whether to go on.
 pub(crate) struct Watch {
     progress: Option<Py<PyAny>>,
+    stopped_by: Option<Stop>,
     last: Instant,
     error: Option<PyErr>,
 }
@@ -50,7 +90,8 @@ impl Watch {
                 ));
             }
         };
-        Ok(Self { progress: progress.map(Bound::unbind), last: Instant::now(), error: None })
+        let stopped_by = STOPPED_BY.with_borrow(Clone::clone);
+        Ok(Self { progress: progress.map(Bound::unbind), stopped_by, last: Instant::now(), error: None })
     }
 
     /// Whether to go on. Called as often as one likes: it looks at the clock first.
@@ -62,6 +103,10 @@ impl Watch {
             return true;
         }
         self.last = Instant::now();
+        if self.stopped_by.as_ref().is_some_and(Stop::is_stopped) {
+            self.error = Some(PyKeyboardInterrupt::new_err(()));
+            return false;
+        }
         let asked = Python::attach(|py| {
             py.check_signals()?;
             match &self.progress {
@@ -88,7 +133,7 @@ impl Watch {
 /// What work on a thread of its own shares with the thread that called: how far it is, and whether to stop.
 #[derive(Default)]
 pub(crate) struct Background {
-    stopped: AtomicBool,
+    stop: Stop,
     /// The share done, and a text.
     reached: Mutex<(Option<f64>, String)>,
 }
@@ -100,7 +145,12 @@ impl Background {
         // Threads report their shares in any order.
         let share = share.map(|share| reached.0.map_or(share, |before| share.max(before)));
         *reached = (share, text());
-        !self.stopped.load(Ordering::Relaxed)
+        !self.stop.is_stopped()
+    }
+
+    /// What ends the work.
+    pub(crate) fn stop(&self) -> &Stop {
+        &self.stop
     }
 
     fn reached(&self) -> (Option<f64>, String) {
@@ -109,7 +159,7 @@ impl Background {
 }
 
 /// Does work on a thread of its own, while the thread that called looks after Ctrl-C and progress: signals reach Python
-/// only there. When Python wants the work to end, the caller does not wait for it: it ends by itself when it next asks.
+/// only there. When Python wants the work to end, the caller waits until it has.
 pub(crate) fn in_background<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -119,8 +169,8 @@ pub(crate) fn in_background<T: Send + 'static>(
     let result = py.detach(|| {
         let (ours, (send, receive)) = (Arc::new(Background::default()), mpsc::channel());
         let theirs = Arc::clone(&ours);
-        // Nobody receives the result of work that was left behind.
-        thread::spawn(move || drop(send.send(work(&theirs))));
+        let spawned = thread::Builder::new().spawn(move || drop(send.send(work(&theirs))));
+        spawned.map_err(|error| PyRuntimeError::new_err(format!("no thread to work on: {error}")))?;
         loop {
             match receive.recv_timeout(EVERY) {
                 Ok(result) => return result,
@@ -128,7 +178,9 @@ pub(crate) fn in_background<T: Send + 'static>(
                 Err(RecvTimeoutError::Timeout) => {
                     let (share, text) = ours.reached();
                     if !watch.go_on(share, || text) {
-                        ours.stopped.store(true, Ordering::Relaxed);
+                        ours.stop.stop();
+                        // Nothing that was ended runs on.
+                        drop(receive.recv_timeout(PATIENCE));
                         // The watch knows why.
                         return Err(PyKeyboardInterrupt::new_err(()));
                     }

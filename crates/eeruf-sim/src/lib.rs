@@ -15,6 +15,7 @@
 //!
 //! | room | what is in it |
 //! |---|---|
+//! | [`threads`] | work on all cores, and how it ends early |
 //! | [`geometry`] | points, mirrors, Alhazen's problem |
 //! | [`scene`] | walls, poles and air, with the mesh over them |
 //! | [`acoustics`] | how loud: directivity, reflection, spreading, diffraction |
@@ -59,6 +60,7 @@ pub mod navigation;
 pub mod results;
 pub mod scene;
 pub mod simulation;
+pub mod threads;
 pub mod tracing;
 pub mod world;
 
@@ -72,7 +74,8 @@ pub use results::{
     Age, Attribution, Cause, DEFAULT_TOLERANCE_US, HeardPath, NO_PATH, Readings, SensorId, Summary, quantile,
 };
 pub use scene::{Air, Body, Bounce, Contact, Faces, Material, Pole, Scene, SceneError, Wall};
-pub use simulation::{LockStep, Options, SimulationError, simulate, simulate_while, sweep};
+pub use simulation::{LockStep, Options, Simulation, SimulationError, simulate, simulate_until, simulate_while};
+pub use threads::{Stop, sweep};
 pub use tracing::{
     CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, MAX_ORDER, Paths, PathsError, Reception, Tracer,
     paths_of_many, reception, reception_along,

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use super::common::ProblemError;
+use crate::layout::LayoutError;
 use crate::schedule::{MAX_PERIOD, MAX_SENSORS, ScheduleError};
 use crate::time::Micros;
 
@@ -21,6 +22,8 @@ pub enum SearchError {
         /// The number of lags.
         lags: usize,
     },
+    /// The layout names a sensor that is not there.
+    Layout(LayoutError),
     /// The problem makes no sense or is too large.
     Problem(ProblemError),
     /// Even firing one by one takes longer than [`MAX_PERIOD`].
@@ -35,6 +38,12 @@ pub enum SearchError {
 impl From<GridError> for SearchError {
     fn from(error: GridError) -> Self {
         Self::Grid(error)
+    }
+}
+
+impl From<LayoutError> for SearchError {
+    fn from(error: LayoutError) -> Self {
+        Self::Layout(error)
     }
 }
 
@@ -61,6 +70,7 @@ impl fmt::Display for SearchError {
                 write!(f, "{sensors} sensors; expected 1 to {MAX_SENSORS}")
             }
             Self::Lags { sensors, lags } => write!(f, "{lags} lags; expected one for each of {sensors} sensors"),
+            Self::Layout(error) => error.fmt(f),
             Self::Problem(error) => error.fmt(f),
             Self::TooLong { period_us } => write!(
                 f,

@@ -165,6 +165,7 @@ impl PeriodProblem<'_> {
         if self.requirements.criterion == Criterion::Paper {
             return Err(SearchError::PaperCriterion);
         }
+        self.requirements.layout.check(self.sensors)?;
         let (grid, rows) = (Grid::new(self.tick)?, self.requirements.layout.rows(self.sensors));
         let Problem { sensors, separation, interval, window, .. } = self.problem(grid, &rows);
         let ticks = design::one_by_one(sensors.min(MAX_SENSORS), separation, interval, window);

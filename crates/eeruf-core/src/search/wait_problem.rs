@@ -133,6 +133,7 @@ impl WaitSearch {
         if problem.sensors == 0 || problem.sensors > MAX_SENSORS || sensors != problem.sensors {
             return Err(SearchError::Lags { sensors: problem.sensors, lags: sensors });
         }
+        problem.layout.check(sensors)?;
         let mut lag = [0; MAX_SENSORS];
         for (x, lag) in lag.iter_mut().enumerate().take(sensors) {
             *lag = match problem.t_lag {

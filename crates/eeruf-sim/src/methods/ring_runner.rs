@@ -2,8 +2,8 @@
 //! under simulated time.
 
 use eeruf_core::{
-    ImmediateRefiring, Instant, LadderError, MAX_SENSORS, Ring, RingConfig, RingError, RingEvent, ScheduledFiring,
-    Scheduler,
+    HoppingError, HoppingSettings, ImmediateRefiring, Instant, LadderError, MAX_SENSORS, Ring, RingConfig, RingError,
+    RingEvent, ScheduledFiring, Scheduler,
 };
 
 use super::dither::DitherFiring;
@@ -11,7 +11,7 @@ use super::schedules::widest_dither;
 use crate::world::{AnySchedule, Random, Robot};
 
 /// A ring of any kind.
-pub(crate) trait RingRunner {
+pub(crate) trait RingRunner: Send {
     /// What the ring does now, if anything; `expected_change_us` says by how much a good reading of a sensor should
     /// change.
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent>;
@@ -21,7 +21,7 @@ pub(crate) trait RingRunner {
     fn echo(&mut self, sensor: u8, at: Instant);
 }
 
-impl<S: Scheduler, const K: usize, const E: usize> RingRunner for Ring<S, K, E> {
+impl<S: Scheduler + Send, const K: usize, const E: usize> RingRunner for Ring<S, K, E> {
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         self.poll_expecting(now, expected_change_us)
     }
@@ -40,6 +40,8 @@ pub(crate) struct RingStart<'s> {
     pub(crate) robot: &'s Robot,
     /// The schedules that the method asked for, the one to start with first: at least one.
     pub(crate) schedules: &'s [AnySchedule],
+    /// How a hopping ring fires and believes.
+    pub(crate) hopping: HoppingSettings,
     pub(crate) random: Random,
     pub(crate) now: Instant,
 }
@@ -51,6 +53,17 @@ pub(crate) enum StartError {
     Ring(RingError),
     /// No ladder of schedules keeps `t_delta`.
     Ladder(LadderError),
+    /// It cannot hop as asked.
+    Hopping(HoppingError),
+}
+
+impl From<HoppingError> for StartError {
+    fn from(error: HoppingError) -> Self {
+        match error {
+            HoppingError::Ring(error) => Self::Ring(error),
+            error => Self::Hopping(error),
+        }
+    }
 }
 
 impl From<RingError> for StartError {
@@ -77,7 +90,7 @@ impl<'s> RingStart<'s> {
 
     /// A ring of `E` echoes with this scheduler, no larger than needed: some of its steps take time for each sensor
     /// that it has room for.
-    fn run<S: Scheduler + 's, const E: usize>(&self, scheduler: S) -> Started<'s> {
+    fn run<S: Scheduler + Send + 's, const E: usize>(&self, scheduler: S) -> Started<'s> {
         let (config, now) = (self.config(), self.now);
         Ok(match self.robot.sensors.len() {
             ..=8 => Box::new(Ring::<S, 8, E>::with_scheduler(scheduler, config, now)?),

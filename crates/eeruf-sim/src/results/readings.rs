@@ -1,6 +1,8 @@
 //! What a simulation returns: every reading of every sensor as arrays of equal length, each with what caused it and
 //! with what the sensor would have read alone.
 
+use std::collections::TryReserveError;
+
 use eeruf_core::ReadingKind;
 
 use crate::{methods::Method, scene::Bounce};
@@ -102,25 +104,56 @@ pub struct Readings {
 }
 
 impl Readings {
-    pub(crate) fn new(method: Method, duration_s: f64, sensors: usize, capacity: usize) -> Self {
+    /// How much memory so many readings take, in bytes.
+    pub const fn bytes_for(readings: u64) -> u64 {
+        let whole = size_of::<(f64, f64, f64, f64, f64)>() + size_of::<(u32, u32)>() + size_of::<u16>();
+        readings.saturating_mul((whole + size_of::<(u8, u8, ReadingKind, Cause)>()) as u64)
+    }
+
+    /// None yet.
+    pub(crate) fn new(method: Method, duration_s: f64, sensors: usize) -> Self {
         Self {
             method,
             duration_s,
             sensors,
-            robot: Vec::with_capacity(capacity),
-            sensor: Vec::with_capacity(capacity),
-            period: Vec::with_capacity(capacity),
-            phase: Vec::with_capacity(capacity),
-            fired_s: Vec::with_capacity(capacity),
-            kind: Vec::with_capacity(capacity),
-            t_echo_us: Vec::with_capacity(capacity),
-            earliest_us: Vec::with_capacity(capacity),
-            reference_us: Vec::with_capacity(capacity),
-            cause: Vec::with_capacity(capacity),
-            path: Vec::with_capacity(capacity),
-            emitted_s: Vec::with_capacity(capacity),
+            robot: Vec::new(),
+            sensor: Vec::new(),
+            period: Vec::new(),
+            phase: Vec::new(),
+            fired_s: Vec::new(),
+            kind: Vec::new(),
+            t_echo_us: Vec::new(),
+            earliest_us: Vec::new(),
+            reference_us: Vec::new(),
+            cause: Vec::new(),
+            path: Vec::new(),
+            emitted_s: Vec::new(),
             paths: Vec::new(),
         }
+    }
+
+    /// Makes room for so many more, if the memory is there.
+    pub(crate) fn try_reserve(&mut self, more: usize) -> Result<(), TryReserveError> {
+        let Self { robot, sensor, period, phase, fired_s, kind, .. } = self;
+        robot.try_reserve(more)?;
+        sensor.try_reserve(more)?;
+        period.try_reserve(more)?;
+        phase.try_reserve(more)?;
+        fired_s.try_reserve(more)?;
+        kind.try_reserve(more)?;
+        let Self { t_echo_us, earliest_us, reference_us, cause, path, emitted_s, .. } = self;
+        t_echo_us.try_reserve(more)?;
+        earliest_us.try_reserve(more)?;
+        reference_us.try_reserve(more)?;
+        cause.try_reserve(more)?;
+        path.try_reserve(more)?;
+        emitted_s.try_reserve(more)
+    }
+
+    /// For how many more there is room.
+    pub(crate) fn room(&self) -> usize {
+        // Columns of like elements grow alike, and the widest grow last.
+        self.emitted_s.capacity() - self.emitted_s.len()
     }
 
     /// How many readings there are.
@@ -138,8 +171,14 @@ impl Readings {
         SensorId { robot: self.robot[reading], sensor: self.sensor[reading] }
     }
 
-    /// Whether the method believes the reading: an accepted echo, or confirmed that nothing is in range.
+    /// Whether the method believes the reading: an accepted echo, if only tentatively, or confirmed that nothing is in
+    /// range.
     pub fn is_accepted(&self, reading: usize) -> bool {
+        self.is_confirmed(reading) || self.kind[reading] == ReadingKind::Tentative
+    }
+
+    /// Whether the method believes the reading, and not only tentatively.
+    pub fn is_confirmed(&self, reading: usize) -> bool {
         matches!(self.kind[reading], ReadingKind::Accepted | ReadingKind::Clear)
     }
 

@@ -2,9 +2,10 @@
 
 use core::fmt;
 
-use eeruf_core::{LadderError, RingError, ScheduleError};
+use eeruf_core::{HoppingError, LadderError, RingError, ScheduleError};
 
 use crate::methods::{Method, StartError};
+use crate::results::Readings;
 use crate::tracing::PathsError;
 
 /// Why a simulation cannot be run. Robots are counted from 0 in code and printed from 1.
@@ -36,6 +37,13 @@ pub enum SimulationError {
         /// Why.
         error: LadderError,
     },
+    /// A robot's ring cannot hop in time under [`Method::EerufHopping`].
+    Hopping {
+        /// The robot.
+        robot: usize,
+        /// Why.
+        error: HoppingError,
+    },
     /// The median of none or of too many readings.
     Median {
         /// How many were asked for.
@@ -48,6 +56,27 @@ pub enum SimulationError {
         /// Why.
         error: PathsError,
     },
+    /// There is not enough memory for as many readings.
+    Memory {
+        /// How many there would be.
+        readings: u64,
+    },
+    /// A robot that is not there.
+    Robot {
+        /// The robot.
+        robot: usize,
+        /// How many there are.
+        robots: usize,
+    },
+    /// A number that makes no sense.
+    Number {
+        /// What it is.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// What is expected.
+        expected: &'static str,
+    },
     /// The caller asked to stop.
     Stopped,
 }
@@ -58,11 +87,15 @@ impl SimulationError {
         match error {
             StartError::Ring(error) => Self::Ring { robot, method, error },
             StartError::Ladder(error) => Self::Ladder { robot, error },
+            StartError::Hopping(error) => Self::Hopping { robot, error },
         }
     }
 
     /// Paths that cannot be found at a time in true nanoseconds.
     pub(super) fn paths(at: u64, error: PathsError) -> Self {
+        if error == PathsError::Stopped {
+            return Self::Stopped;
+        }
         Self::Paths { at_s: at as f64 * 1e-9, error }
     }
 }
@@ -73,8 +106,18 @@ impl fmt::Display for SimulationError {
             Self::Schedule { robot, method, error } => write!(f, "robot {}, method {method}: {error}", robot + 1),
             Self::Ring { robot, method, error } => write!(f, "robot {}, method {method}: {error}", robot + 1),
             Self::Ladder { robot, error } => write!(f, "robot {}, method adaptive: {error}", robot + 1),
+            Self::Hopping { robot, error } => write!(f, "robot {}, method eeruf_hopping: {error}", robot + 1),
             Self::Median { median_of } => write!(f, "the median of {median_of} readings; expected 1 to 15"),
             Self::Paths { at_s, error } => write!(f, "at {at_s:.3} s: {error}"),
+            Self::Memory { readings } => {
+                let needed = Readings::bytes_for(*readings).div_ceil(1_000_000);
+                write!(
+                    f,
+                    "{readings} readings take {needed} MB; expected as many as fit into memory, or blocks of them"
+                )
+            }
+            Self::Robot { robot, robots } => write!(f, "robot {}; expected 1 to {robots}", robot + 1),
+            Self::Number { what, value, expected } => write!(f, "{what} is {value}; expected {expected}"),
             Self::Stopped => write!(f, "stopped"),
         }
     }

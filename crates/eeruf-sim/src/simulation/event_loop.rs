@@ -13,23 +13,26 @@ use super::kinematics::Kinematics;
 use super::options::Options;
 use super::receiver::{NEVER, Receiver};
 use super::recorder::Recorder;
-use super::running_ring::{RunningRing, expected_change_us, plans, start_all};
+use super::running_ring::{Plan, RunningRing, expected_change_us, plans, start_all};
 use crate::{
     geometry::Moment,
     methods::Method,
     results::Readings,
+    threads::Stop,
     tracing::PathsError,
-    world::{Random, World},
+    world::{Random, Robot, World},
 };
 
 /// How many events go by between two calls of `keep_going`.
 const EVENTS_PER_CALL: u32 = 8192;
 
 /// A world under way.
-struct EventLoop<'a, K> {
+pub(crate) struct EventLoop<'a, K> {
     world: &'a World,
-    kinematics: &'a mut K,
+    kinematics: K,
     channels: Channels<'a>,
+    rings: Vec<RunningRing<'a>>,
+    bursts: Bursts,
     /// Of every sensor of the world.
     receivers: Vec<Receiver>,
     /// What each sensor reads alone, at its last firing.
@@ -38,78 +41,135 @@ struct EventLoop<'a, K> {
     fired: Vec<Option<Moment>>,
     propagation: Propagation,
     recorder: Recorder,
-    /// Firings from here on are not reported.
-    end: u64,
+    /// Nothing that happens later is reported.
+    last: u64,
+    stop: Stop,
+    until_call: u32,
 }
 
 /// Runs a world under a method until the time is over or the robots' kinematics say so.
-pub(crate) fn run<K: Kinematics>(
+pub(crate) fn run(
     world: &World,
     method: Method,
     options: &Options,
-    kinematics: &mut K,
-    mut keep_going: impl FnMut(f64) -> bool,
+    kinematics: &mut impl Kinematics,
+    stop: &Stop,
+    keep_going: impl FnMut(f64) -> bool,
 ) -> Result<Readings, SimulationError> {
-    let seed = Random::new(options.seed.unwrap_or(world.seed()));
     let plans = plans(world, method, options, kinematics)?;
-    let mut events = EventLoop::new(world, method, options, kinematics, seed)?;
-    let mut rings = start_all(world, &plans, &events.channels, seed)?;
-    let longest = rings.iter().map(|ring| ring.hearing.window).max().unwrap_or(0);
-    let last = events.end + longest + 1000;
-    let mut bursts = Bursts::new(&world.noise(), seed);
-    let mut until_call = 0;
-    loop {
-        let (mut now, mut whose) = (bursts.next, None);
-        for (index, ring) in rings.iter().enumerate() {
-            let due = ring.wakes.min(ring.hears);
-            if due < now {
-                (now, whose) = (due, Some(index));
-            }
-        }
-        if now > last || !events.kinematics.advance(now) {
-            break;
-        }
-        if until_call == 0 {
-            until_call = EVENTS_PER_CALL;
-            if !keep_going((now as f64 / last as f64).min(1.0)) {
-                return Err(SimulationError::Stopped);
-            }
-        }
-        until_call -= 1;
-        match whose {
-            Some(index) => {
-                events.step(&mut rings, index, now).map_err(|error| SimulationError::paths(now, error))?;
-            }
-            None => events.burst(&mut rings, &mut bursts),
-        }
-    }
-    Ok(events.recorder.finish(events.channels.into_paths()))
+    let end = end_of(world, options.periods);
+    let mut events =
+        EventLoop::new(world, &plans, method, options, kinematics, Some(end), expected(world, end), stop.clone())?;
+    events.run_until(u64::MAX, keep_going)?;
+    Ok(events.take(end as f64 * 1e-9))
+}
+
+/// When so many periods of a world's first robot are over, in true nanoseconds.
+pub(crate) fn end_of(world: &World, periods: u32) -> u64 {
+    // A world has at least one robot.
+    u64::from(periods) * u64::from(world.robots()[0].period.as_micros()) * 1000
 }
 
 impl<'a, K: Kinematics> EventLoop<'a, K> {
-    fn new(
+    /// Before the first event. Firings from `end` on are not reported; without it there is no end. There is room for
+    /// so many readings.
+    #[expect(clippy::too_many_arguments, reason = "each of them once, in two places")]
+    pub(crate) fn new(
         world: &'a World,
+        plans: &'a [Plan],
         method: Method,
         options: &Options,
-        kinematics: &'a mut K,
-        seed: Random,
+        kinematics: K,
+        end: Option<u64>,
+        room: u64,
+        stop: Stop,
     ) -> Result<Self, SimulationError> {
-        let channels = Channels::new(world, kinematics).map_err(|error| SimulationError::paths(0, error))?;
+        let seed = Random::new(options.seed.unwrap_or(world.seed()));
+        let channels =
+            Channels::new(world, &kinematics, stop.clone()).map_err(|error| SimulationError::paths(0, error))?;
+        let rings = start_all(world, plans, options, &channels, seed)?;
         let sensors = channels.ids().len();
-        // A world has at least one robot.
-        let end = u64::from(options.periods) * u64::from(world.robots()[0].period.as_micros()) * 1000;
-        let recorder = Recorder::new(method, options, end, channels.ids())?;
+        let longest = rings.iter().map(|ring| ring.hearing.window).max().unwrap_or(0);
+        let recorder = Recorder::new(method, options, end.unwrap_or(u64::MAX), room, channels.ids())?;
         Ok(Self {
             world,
             kinematics,
             channels,
+            rings,
+            bursts: Bursts::new(&world.noise(), seed),
             receivers: vec![Receiver::NEW; sensors],
             references: vec![NEVER; sensors],
             fired: vec![None; sensors],
             propagation: Propagation::new(&world.noise(), seed),
             recorder,
-            end,
+            last: end.map_or(u64::MAX - 1, |end| end + longest + 1000),
+            stop,
+            until_call: 0,
         })
+    }
+
+    /// Goes on until a time, in true nanoseconds; what happens then waits for the next call. `keep_going` is called now
+    /// and then with the share of all time that has passed. Returns whether there is more to come.
+    pub(crate) fn run_until(
+        &mut self,
+        until: u64,
+        mut keep_going: impl FnMut(f64) -> bool,
+    ) -> Result<bool, SimulationError> {
+        let mut rings = core::mem::take(&mut self.rings);
+        let more = self.run_rings(&mut rings, until, &mut keep_going);
+        self.rings = rings;
+        more
+    }
+
+    fn run_rings(
+        &mut self,
+        rings: &mut [RunningRing<'_>],
+        until: u64,
+        keep_going: &mut impl FnMut(f64) -> bool,
+    ) -> Result<bool, SimulationError> {
+        loop {
+            let (mut now, mut whose) = (self.bursts.next, None);
+            for (index, ring) in rings.iter().enumerate() {
+                let due = ring.wakes.min(ring.hears);
+                if due < now {
+                    (now, whose) = (due, Some(index));
+                }
+            }
+            if now >= until && now <= self.last {
+                return Ok(true);
+            }
+            if now > self.last || !self.kinematics.advance(now) {
+                return Ok(false);
+            }
+            if self.until_call == 0 {
+                self.until_call = EVENTS_PER_CALL;
+                if !keep_going((now as f64 / self.last as f64).min(1.0)) || self.stop.is_stopped() {
+                    return Err(SimulationError::Stopped);
+                }
+            }
+            self.until_call -= 1;
+            self.recorder.make_room()?;
+            match whose {
+                Some(index) => self.step(rings, index, now).map_err(|error| SimulationError::paths(now, error))?,
+                None => self.burst(rings),
+            }
+        }
+    }
+
+    /// What was read since it was last taken, of so many seconds.
+    pub(crate) fn take(&mut self, duration_s: f64) -> Readings {
+        self.recorder.take(self.channels.paths(), duration_s)
+    }
+
+    /// Where the robots are.
+    pub(crate) fn kinematics(&self) -> &K {
+        &self.kinematics
+    }
+
+    /// The same, to steer them; something may move from now on.
+    pub(crate) fn steer(&mut self) -> &mut K {
+        self.channels.set_moving();
+        &mut self.kinematics
     }
 
     /// One robot's next event: an echo, if one of its sensors hears something now, and whatever its ring then wants.
@@ -181,8 +241,12 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         emitter: usize,
         now: u64,
     ) -> Result<(), PathsError> {
+        if self.channels.moves() {
+            // Paths are looked for anew, which takes as long as many events.
+            self.until_call = self.until_call.saturating_sub(EVENTS_PER_CALL / 64);
+        }
         self.fired[emitter] = Some(self.kinematics.moment(index, now));
-        self.channels.prepare(emitter, now, self.kinematics)?;
+        self.channels.prepare(emitter, now, &self.kinematics)?;
         let hearing = rings[index].hearing;
         self.references[emitter] = self.channels.reference(emitter, &hearing);
         let receiver = &mut self.receivers[emitter];
@@ -200,7 +264,8 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
     }
 
     /// A burst from outside, heard by all at once.
-    fn burst(&mut self, rings: &mut [RunningRing<'_>], bursts: &mut Bursts) {
+    fn burst(&mut self, rings: &mut [RunningRing<'_>]) {
+        let bursts = &mut self.bursts;
         let now = bursts.next;
         bursts.advance();
         for ring in rings {
@@ -213,4 +278,18 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             }
         }
     }
+}
+
+/// About how many readings so many periods of a world's first robot give: what memory is asked for.
+pub fn expected_readings(world: &World, periods: u32) -> u64 {
+    expected(world, end_of(world, periods))
+}
+
+/// About how many readings all rings give until a time in true nanoseconds, one of each sensor in each period.
+fn expected(world: &World, end: u64) -> u64 {
+    let of = |robot: &Robot| {
+        let period = u64::from(robot.period.as_micros()) * 1000;
+        (end / period.max(1) + 1).saturating_mul(robot.sensors.len() as u64)
+    };
+    world.robots().iter().map(of).fold(0, u64::saturating_add)
 }

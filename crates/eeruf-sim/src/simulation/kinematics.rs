@@ -24,6 +24,32 @@ pub(crate) trait Kinematics {
     fn listens(&self, robot: usize) -> bool;
 }
 
+impl<K: Kinematics> Kinematics for &mut K {
+    fn moves(&self) -> bool {
+        K::moves(self)
+    }
+
+    fn moment(&self, robot: usize, now: u64) -> Moment {
+        K::moment(self, robot, now)
+    }
+
+    fn advance(&mut self, now: u64) -> bool {
+        K::advance(self, now)
+    }
+
+    fn on_reading(&mut self, readings: &Readings, fired: &Moment) {
+        K::on_reading(self, readings, fired);
+    }
+
+    fn method(&self, robot: usize, asked: Method) -> Method {
+        K::method(self, robot, asked)
+    }
+
+    fn listens(&self, robot: usize) -> bool {
+        K::listens(self, robot)
+    }
+}
+
 /// Robots move as the world says.
 pub(crate) struct Planned<'w>(pub(crate) &'w World);
 

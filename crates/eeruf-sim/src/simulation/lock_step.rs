@@ -9,6 +9,7 @@ use super::channels::Channels;
 use super::kinematics::Planned;
 use super::receiver::{Hearing, NEVER, Receiver};
 use crate::{
+    threads::Stop,
     tracing::PathsError,
     world::{Random, World},
 };
@@ -31,7 +32,7 @@ impl<'w> LockStep<'w> {
         // A world has at least one robot.
         let robot = &world.robots()[0];
         let ns = |time: eeruf_core::Micros| u64::from(time.as_micros()) * 1000;
-        let channels = Channels::new(world, &Planned(world))?;
+        let channels = Channels::new(world, &Planned(world), Stop::default())?;
         let hearing = Hearing {
             blanking: ns(robot.blanking),
             window: ns(robot.window),

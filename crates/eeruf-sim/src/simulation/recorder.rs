@@ -14,6 +14,9 @@ use crate::{
 /// The most readings that a median is taken of.
 const MAX_MEDIAN: usize = 15;
 
+/// More than all rings of a world give at one moment.
+const ROOM: usize = 1 << 13;
+
 /// Writes down the readings.
 pub(crate) struct Recorder {
     readings: Readings,
@@ -33,19 +36,37 @@ struct History {
 }
 
 impl Recorder {
-    pub(crate) fn new(method: Method, options: &Options, end: u64, ids: &[SensorId]) -> Result<Self, SimulationError> {
+    /// For readings of firings before `end`, in true nanoseconds, of which about as many are expected.
+    pub(crate) fn new(
+        method: Method,
+        options: &Options,
+        end: u64,
+        expected: u64,
+        ids: &[SensorId],
+    ) -> Result<Self, SimulationError> {
         let median_of = usize::from(options.median_of);
         if median_of == 0 || median_of > MAX_MEDIAN {
             return Err(SimulationError::Median { median_of: options.median_of });
         }
         let duration_s = end as f64 * 1e-9;
-        // Enough for one reading of each sensor in each period; a cap keeps absurd requests from taking all memory at
-        // once.
-        let capacity = (options.periods as usize).saturating_mul(ids.len()).min(1 << 20);
         let belief = method.belief();
         let history = if belief == Belief::Median { vec![History::default(); ids.len()] } else { Vec::new() };
-        let readings = Readings::new(method, duration_s, ids.len(), capacity);
+        let mut readings = Readings::new(method, duration_s, ids.len());
+        let reserved = usize::try_from(expected).map(|expected| readings.try_reserve(expected));
+        if !matches!(reserved, Ok(Ok(()))) {
+            return Err(SimulationError::Memory { readings: expected });
+        }
         Ok(Self { readings, belief, ids: ids.to_vec(), end, median_of, history })
+    }
+
+    /// Makes sure that a few thousand more fit.
+    pub(crate) fn make_room(&mut self) -> Result<(), SimulationError> {
+        if self.readings.room() >= ROOM {
+            return Ok(());
+        }
+        let readings = self.readings.len();
+        let more = readings.max(ROOM);
+        self.readings.try_reserve(more).map_err(|_| SimulationError::Memory { readings: (readings + more) as u64 })
     }
 
     /// Records what the ring makes of a firing. `reference` is the travelling time of what the sensor hears alone. The
@@ -75,7 +96,7 @@ impl Recorder {
             Some(Heard { arrival, of_this_firing, .. }) => {
                 let (cause, path) = match (arrival.path, of_this_firing) {
                     (EXTERNAL, _) => (Cause::External, NO_PATH),
-                    // Whether it is another sensor's sound is decided by `finish`, which knows the paths.
+                    // Whether it is another sensor's sound is decided by `take`, which knows the paths.
                     (path, true) => (Cause::Own, path),
                     (path, false) => (Cause::Stale, path),
                 };
@@ -114,16 +135,18 @@ impl Recorder {
         (accepted_or_silent(middle), middle)
     }
 
-    /// The record, with only the paths that some reading came along.
-    pub(crate) fn finish(self, paths: Vec<HeardPath>) -> Readings {
-        let mut readings = self.readings;
+    /// The record since it was last taken, of this duration, with only the paths that some reading came along.
+    pub(crate) fn take(&mut self, paths: &[HeardPath], duration_s: f64) -> Readings {
+        let next = Readings::new(self.readings.method, duration_s, self.ids.len());
+        let mut readings = core::mem::replace(&mut self.readings, next);
+        readings.duration_s = duration_s;
         let mut number = vec![NO_PATH; paths.len()];
         for path in readings.path.iter().filter(|&&path| path != NO_PATH) {
             number[*path as usize] = 0;
         }
-        for (path, number) in paths.into_iter().zip(&mut number).filter(|(_, number)| **number == 0) {
+        for (path, number) in paths.iter().zip(&mut number).filter(|(_, number)| **number == 0) {
             *number = readings.paths.len() as u32;
-            readings.paths.push(path);
+            readings.paths.push(path.clone());
         }
         for (path, cause) in readings.path.iter_mut().zip(&mut readings.cause).filter(|(path, _)| **path != NO_PATH) {
             *path = number[*path as usize];

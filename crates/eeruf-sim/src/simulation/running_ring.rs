@@ -30,13 +30,16 @@ pub(crate) struct RunningRing<'a> {
     pub(crate) hears: u64,
 }
 
+/// By which method a robot fires, with the schedules that it may change to.
+pub(crate) type Plan = (Method, Vec<AnySchedule>);
+
 /// By which method each robot fires, with the schedules that it may change to.
 pub(crate) fn plans(
     world: &World,
     method: Method,
     options: &Options,
     kinematics: &impl Kinematics,
-) -> Result<Vec<(Method, Vec<AnySchedule>)>, SimulationError> {
+) -> Result<Vec<Plan>, SimulationError> {
     let plan = |(index, robot): (usize, &Robot)| {
         let method = kinematics.method(index, method);
         let first = method.schedule(robot, options.best.as_ref()).map_err(|error| SimulationError::Schedule {
@@ -53,7 +56,8 @@ pub(crate) fn plans(
 /// Starts every robot's ring as planned.
 pub(crate) fn start_all<'a>(
     world: &'a World,
-    plans: &'a [(Method, Vec<AnySchedule>)],
+    plans: &'a [Plan],
+    options: &Options,
     channels: &Channels<'_>,
     seed: Random,
 ) -> Result<Vec<RunningRing<'a>>, SimulationError> {
@@ -64,7 +68,7 @@ pub(crate) fn start_all<'a>(
         let start = u64::from(robot.start.as_micros());
         let random = seed.of(DITHER).of(index as u64);
         let ring = method
-            .start(&RingStart { robot, schedules, random, now: clock.instant(start) })
+            .start(&RingStart { robot, schedules, hopping: options.hopping, random, now: clock.instant(start) })
             .map_err(|error| SimulationError::start(index, *method, error))?;
         let true_ns = |time: Micros| clock.true_ns(time.as_micros());
         let hearing = Hearing {

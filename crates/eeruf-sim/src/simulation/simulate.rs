@@ -1,12 +1,10 @@
-//! Running a world under a method, and many simulations at once.
-
-use rayon::prelude::*;
+//! Running a world under a method.
 
 use super::error::SimulationError;
 use super::event_loop;
 use super::kinematics::Planned;
 use super::options::Options;
-use crate::{methods::Method, results::Readings, world::World};
+use crate::{methods::Method, results::Readings, threads::Stop, world::World};
 
 /// Simulates a world under a method. The same world, method and options give the same readings, bit for bit.
 ///
@@ -39,15 +37,20 @@ pub fn simulate_while(
     options: &Options,
     keep_going: impl FnMut(f64) -> bool,
 ) -> Result<Readings, SimulationError> {
-    event_loop::run(world, method, options, &mut Planned(world), keep_going)
+    simulate_until(world, method, options, &Stop::default(), keep_going)
 }
 
-/// Several simulations at once on all cores, the answers in the order of the jobs. What comes out does not depend on
-/// the number of threads.
+/// As [`simulate_while`], and `stop` ends it as well, from another thread: also while paths are looked for, before the
+/// first event.
 ///
-/// ```
-/// assert_eq!(eeruf_sim::sweep(&[1, 2, 3], |seed| seed * seed), [1, 4, 9]);
-/// ```
-pub fn sweep<J: Sync, T: Send>(jobs: &[J], run: impl Fn(&J) -> T + Sync + Send) -> Vec<T> {
-    jobs.par_iter().map(run).collect()
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_until(
+    world: &World,
+    method: Method,
+    options: &Options,
+    stop: &Stop,
+    keep_going: impl FnMut(f64) -> bool,
+) -> Result<Readings, SimulationError> {
+    event_loop::run(world, method, options, &mut Planned(world), stop, keep_going)
 }

@@ -39,6 +39,8 @@ pub enum PathsError {
         /// The budget that was exceeded.
         beams: usize,
     },
+    /// The caller asked to stop.
+    Stopped,
 }
 
 impl fmt::Display for PathsError {
@@ -54,6 +56,7 @@ impl fmt::Display for PathsError {
                 write!(f, "paths up to order {max_order}; expected at most {MAX_ORDER}")
             }
             Self::Length { max_length_m } => write!(f, "paths up to {max_length_m} m; expected a positive length"),
+            Self::Stopped => f.write_str("stopped"),
             Self::Budget { beams } => write!(f, "more than {beams} beams; lower the order or the longest path"),
         }
     }

@@ -8,10 +8,14 @@ use crate::{
     acoustics::pole_spread,
     geometry::{Point, Specular, Vector, alhazen, alhazen_twice, wrap_angle},
     scene::{Bounce, Scene},
+    threads::Stop,
 };
 
 /// The most problems of Alhazen that one question may try, some ten seconds.
 const MAX_TRIED: usize = 1 << 25;
+
+/// How many problems of Alhazen lie between two looks at whether to stop.
+const TRIED_PER_LOOK: usize = 64;
 
 /// A path with one pole, or two in turn.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +44,8 @@ pub(crate) struct PoleQuery<'a> {
     pub(crate) audibility: Option<&'a Audibility>,
     /// How many beams and paths there may be.
     pub(crate) budget: usize,
+    /// Ends it early.
+    pub(crate) stop: &'a Stop,
 }
 
 /// One receiver of a query.
@@ -69,10 +75,10 @@ impl PoleSearch {
         &self.bounces[path.bounces.0 as usize..path.bounces.1 as usize]
     }
 
-    /// Finds all paths over poles to these receivers, but for those that are certainly too faint. Returns whether the
-    /// budget sufficed.
+    /// Finds all paths over poles to these receivers, but for those that are certainly too faint. Returns whether
+    /// these are all: neither the budget was spent nor the work stopped.
     pub(crate) fn search(&mut self, query: &PoleQuery<'_>, receivers: &[Point]) -> bool {
-        let PoleQuery { scene, tree, limits, budget, .. } = *query;
+        let PoleQuery { scene, tree, limits, budget, stop, .. } = *query;
         self.found.clear();
         self.bounces.clear();
         self.tried = 0;
@@ -81,7 +87,7 @@ impl PoleSearch {
         }
         if limits.max_order == 1 {
             self.one_pole(query, receivers);
-            return true;
+            return !stop.is_stopped();
         }
         let cone_key = |cone: &PoleCone| (cone.pole, cone.triangle);
         self.from_source.clear();
@@ -101,6 +107,7 @@ impl PoleSearch {
                 budget,
                 last_for_receivers: false,
                 forward: None,
+                stop,
             };
             let mut back = core::mem::take(&mut self.back);
             let complete = back.grow(&growth, at, &[]);
@@ -112,6 +119,7 @@ impl PoleSearch {
                     if cone_key(&before) != cone_key(behind)
                         || tree.beams[before.beam as usize].order + home_order >= limits.max_order
                         || self.tried > MAX_TRIED
+                        || self.is_stopped(stop)
                     {
                         break;
                     }
@@ -120,14 +128,22 @@ impl PoleSearch {
             }
             in_sight(&back.pole_cones, &mut self.lasts);
             self.back = back;
-            if !complete || self.found.len() > budget || self.tried > MAX_TRIED {
+            if !complete || self.found.len() > budget || self.tried > MAX_TRIED || stop.is_stopped() {
                 return false;
             }
             if limits.max_order >= 2 {
                 self.two_poles(query, receiver);
             }
+            if stop.is_stopped() {
+                return false;
+            }
         }
         true
+    }
+
+    /// Whether to end; looked at now and then.
+    fn is_stopped(&self, stop: &Stop) -> bool {
+        self.tried.is_multiple_of(TRIED_PER_LOOK) && stop.is_stopped()
     }
 
     /// One pole between a beam of the source and a beam of the receiver.
@@ -171,8 +187,11 @@ impl PoleSearch {
 
     /// Source, one pole, receiver, both in sight of it: no trees are needed.
     fn one_pole(&mut self, query: &PoleQuery<'_>, receivers: &[Point]) {
-        let PoleQuery { scene, source, limits, audibility, .. } = *query;
+        let PoleQuery { scene, source, limits, audibility, stop, .. } = *query;
         for (index, pole) in scene.poles().iter().enumerate() {
+            if stop.is_stopped() {
+                return;
+            }
             let ensonified = audibility.map(|audibility| audibility.ensonify(source, pole));
             if ensonified.as_ref().is_some_and(|pole| pole.is_inaudible(receivers)) {
                 continue;
@@ -198,10 +217,13 @@ impl PoleSearch {
 
     /// Source, one pole, another pole, receiver, all in sight of each other.
     fn two_poles(&mut self, query: &PoleQuery<'_>, receiver: Receiver) {
-        let PoleQuery { scene, source, limits, .. } = *query;
+        let PoleQuery { scene, source, limits, stop, .. } = *query;
         let at = receiver.at;
         let poles = scene.poles();
         for a in 0..self.firsts.len() {
+            if stop.is_stopped() {
+                return;
+            }
             for b in 0..self.lasts.len() {
                 let (a, b) = (self.firsts[a], self.lasts[b]);
                 if a == b {

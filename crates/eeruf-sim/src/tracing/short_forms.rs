@@ -8,6 +8,7 @@ use super::paths::Paths;
 use super::tracer::Tracer;
 use crate::geometry::Point;
 use crate::scene::Scene;
+use crate::threads::on_all_cores;
 
 /// The paths of many sources at once, on all cores, in the order of the sources.
 ///
@@ -19,13 +20,11 @@ pub fn paths_of_many(
     receivers: &[Point],
     limits: Limits,
 ) -> Result<Vec<Paths>, PathsError> {
-    sources
-        .par_iter()
-        .map_init(Tracer::new, |tracer, &source| {
-            let mut paths = Paths::default();
-            tracer.trace(scene, source, receivers, limits, &mut paths).map(|()| paths)
-        })
-        .collect()
+    let trace = |tracer: &mut Tracer, &source: &Point| {
+        let mut paths = Paths::default();
+        tracer.trace(scene, source, receivers, limits, &mut paths).map(|()| paths)
+    };
+    on_all_cores(|| sources.par_iter().map_init(Tracer::new, trace).collect())
 }
 
 impl Scene {

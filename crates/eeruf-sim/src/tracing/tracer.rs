@@ -11,6 +11,7 @@ use crate::{
     acoustics::{pole_wave_correction, reflected},
     geometry::{Point, opposite, wrap_angle},
     scene::{Air, Bounce, Scene},
+    threads::Stop,
 };
 
 /// Finds paths; holds the buffers, so that asking again does not allocate. Keep one per thread.
@@ -23,6 +24,8 @@ pub struct Tracer {
     pub pole_waves: bool,
     /// The most bounces of a path with a pole, at most those of all others. The default is [`MAX_ORDER`].
     pub pole_order: u32,
+    /// Ends a question under way with [`PathsError::Stopped`].
+    pub stop: Stop,
     /// What the air takes, for the air and the frequency asked for last.
     loss: Option<(Air, f64, f64)>,
     tree: BeamTree,
@@ -48,6 +51,7 @@ impl Tracer {
             frequency_hz,
             pole_waves: false,
             pole_order: MAX_ORDER,
+            stop: Stop::default(),
             loss: None,
             tree: BeamTree::default(),
             poles: PoleSearch::default(),
@@ -62,8 +66,8 @@ impl Tracer {
     /// of no length.
     ///
     /// # Errors
-    /// A position that is not a number or far outside, an order or a length out of range, or a tree that outgrows
-    /// [`MAX_BEAMS`]. `paths` is empty then.
+    /// A position that is not a number or far outside, an order or a length out of range, a tree that outgrows
+    /// [`MAX_BEAMS`], or [`stop`](Self::stop). `paths` is empty then.
     pub fn trace(
         &mut self,
         scene: &Scene,
@@ -91,9 +95,10 @@ impl Tracer {
         if let Some(audibility) = audibility {
             self.tree.drop_faint(audibility, receivers);
         }
-        let query = PoleQuery { scene, tree: &self.tree, source, limits: at_poles, audibility, budget: MAX_BEAMS };
+        let (tree, budget, stop) = (&self.tree, MAX_BEAMS, &self.stop);
+        let query = PoleQuery { scene, tree, source, limits: at_poles, audibility, budget, stop };
         if !self.poles.search(&query, receivers) {
-            return Err(PathsError::Budget { beams: MAX_BEAMS });
+            return Err(self.incomplete());
         }
         self.ranking.rank(Found { tree: &self.tree, poles: &self.poles }, receivers.len());
         self.write(scene, receivers, paths);
@@ -137,8 +142,14 @@ impl Tracer {
             budget: MAX_BEAMS,
             last_for_receivers: true,
             forward: audibility.map(Audibility::source),
+            stop: &self.stop,
         };
-        if self.tree.grow(&growth, source, receivers) { Ok(()) } else { Err(PathsError::Budget { beams: MAX_BEAMS }) }
+        if self.tree.grow(&growth, source, receivers) { Ok(()) } else { Err(self.incomplete()) }
+    }
+
+    /// Why not all was found.
+    fn incomplete(&self) -> PathsError {
+        if self.stop.is_stopped() { PathsError::Stopped } else { PathsError::Budget { beams: MAX_BEAMS } }
     }
 
     /// How many beams the last question grew.

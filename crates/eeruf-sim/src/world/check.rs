@@ -13,6 +13,20 @@ fn within(value: f64, most: f64) -> bool {
     (-most..=most).contains(&value)
 }
 
+/// Whether no robot stands inside another one that came before it.
+pub(super) fn check_apart(robots: &[Robot]) -> Result<(), WorldError> {
+    for (other, robot) in robots.iter().enumerate() {
+        for (one, before) in robots[..other].iter().enumerate() {
+            let apart_m = (robot.pose.translation.vector - before.pose.translation.vector).norm();
+            let least_m = robot.radius_m() + before.radius_m();
+            if apart_m <= least_m {
+                return Err(WorldError::Overlap { robots: (one, other), apart_m, least_m });
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Finds the first thing wrong with a robot.
 pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), WorldError> {
     if robot.sensors.is_empty() || robot.sensors.len() > MAX_SENSORS {

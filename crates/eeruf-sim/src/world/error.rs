@@ -62,6 +62,15 @@ pub enum WorldError {
         /// What it touches.
         contact: Contact,
     },
+    /// Two robots that start one inside the other.
+    Overlap {
+        /// The robots.
+        robots: (usize, usize),
+        /// How far their middles are apart, in metres.
+        apart_m: f64,
+        /// How far they must be apart at least.
+        least_m: f64,
+    },
     /// A number of the noise that makes no sense.
     Noise {
         /// The field, by its name in files.
@@ -114,6 +123,12 @@ impl fmt::Display for WorldError {
                 }
                 write!(f, "; expected it to stand free at its pose")
             }
+            Self::Overlap { robots: (one, other), apart_m, least_m } => write!(
+                f,
+                "robots {} and {} are {apart_m:.3} m apart; expected more than {least_m:.3} m, the sum of their radii",
+                one + 1,
+                other + 1
+            ),
             Self::Noise { field, value, expected } => write!(f, "noise: {field} is {value}; expected {expected}"),
             Self::Order { max_order } => write!(f, "max_order is {max_order}; expected at most {MAX_ORDER}"),
         }

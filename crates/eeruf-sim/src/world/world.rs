@@ -1,7 +1,7 @@
 //! A world: a scene with robots in it, how noisy it is, and the seed that decides all that is random. Checked once, so
 //! that a simulation has nothing left to refuse but what a method asks for.
 
-use super::check::check;
+use super::check::{check, check_apart};
 use super::error::WorldError;
 use super::noise::Noise;
 use super::robot::{MAX_ROBOTS, Robot};
@@ -42,6 +42,7 @@ impl World {
         for (index, robot) in robots.iter().enumerate() {
             check(&scene, index, robot)?;
         }
+        check_apart(&robots)?;
         noise.check()?;
         Ok(Self { scene, robots, noise, max_order: DEFAULT_ORDER, pole_order: MAX_ORDER, seed: 1 })
     }

@@ -6,6 +6,7 @@ mod corpus;
 mod corpus_reader;
 mod facts;
 mod image_source;
+mod open;
 mod properties;
 mod random;
 mod set_one;

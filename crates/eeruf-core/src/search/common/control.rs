@@ -15,7 +15,7 @@ pub struct Progress {
     pub bound: Option<u32>,
 }
 
-/// Polled every few hundred nodes, or as often as the caller asks. `()` always goes on and costs nothing.
+/// Polled every few milliseconds, or as often as the caller asks. `()` always goes on and costs nothing.
 pub trait Control {
     /// Whether to go on, given how far the search has come.
     fn poll(&mut self, progress: &Progress) -> ControlFlow<()>;

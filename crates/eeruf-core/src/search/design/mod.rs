@@ -65,7 +65,6 @@ mod symmetry;
 #[cfg(test)]
 mod tests;
 
-pub use bisect::POLL;
 pub use bounds::Bound;
 pub use decide::{Decided, decide};
 pub use explanation::{Explanation, InTime};

@@ -11,7 +11,8 @@ use crate::experiments::spread::Spread;
 use crate::{
     methods::{BestSchedule, Method},
     results::Summary,
-    simulation::{Options, simulate_while, sweep},
+    simulation::{Options, simulate_while},
+    threads::sweep,
     world::{Robot, World, WorldError},
 };
 

@@ -13,7 +13,8 @@ use crate::experiments::progress::Progress;
 use crate::{
     methods::Method,
     navigation::LabMate,
-    simulation::{self, Options, sweep},
+    simulation::{self, Options},
+    threads::{Stop, sweep},
     world::Robot,
 };
 
@@ -107,7 +108,7 @@ fn run_course(
     let period_s = f64::from(world.robots()[0].period.as_micros()) * 1e-6;
     let simulation =
         Options { best: options.best.map(|best| best.schedule), ..Options::periods((TIME_S / period_s).ceil() as u32) };
-    simulation::run(&world, method, &simulation, &mut pilot, |_| progress.go_on())?;
+    simulation::run(&world, method, &simulation, &mut pilot, &Stop::default(), |_| progress.go_on())?;
     Ok(pilot.finish())
 }
 

@@ -10,6 +10,7 @@ use crate::{
     acoustics::{GainProfile, Transducer},
     geometry::{Pose, Vector},
     results::{HeardPath, SensorId},
+    threads::Stop,
     tracing::{CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, PathsError, Tracer, reception_along},
     world::{Robot, World, offset},
 };
@@ -21,7 +22,7 @@ use path_numbers::PathNumbers;
 pub(crate) struct Channel {
     /// The receiver, counted over all robots.
     pub(crate) receiver: u32,
-    /// The path's number, see [`Channels::into_paths`].
+    /// The path's number, see [`Channels::paths`].
     pub(crate) path: u32,
     /// Travelling time in nanoseconds.
     pub(crate) delay: u64,
@@ -56,7 +57,7 @@ pub(crate) struct Channels<'w> {
 }
 
 impl<'w> Channels<'w> {
-    pub(crate) fn new(world: &'w World, kinematics: &impl Kinematics) -> Result<Self, PathsError> {
+    pub(crate) fn new(world: &'w World, kinematics: &impl Kinematics, stop: Stop) -> Result<Self, PathsError> {
         let mut ids = Vec::new();
         let mut first = Vec::new();
         for (robot, ring) in world.robots().iter().enumerate() {
@@ -64,11 +65,13 @@ impl<'w> Channels<'w> {
             // At most 64 robots and 64 sensors.
             ids.extend((0..ring.sensors.len()).map(|sensor| SensorId { robot: robot as u16, sensor: sensor as u8 }));
         }
+        let mut tracer = Tracer::new();
+        tracer.stop = stop;
         let mut channels = Self {
             world,
             ids,
             first,
-            tracer: Tracer::new(),
+            tracer,
             matrix: CrosstalkMatrix::new(),
             moves: kinematics.moves(),
             range: None,
@@ -118,8 +121,18 @@ impl<'w> Channels<'w> {
     }
 
     /// Every path met so far, by its number.
-    pub(crate) fn into_paths(self) -> Vec<HeardPath> {
-        self.paths.into_paths()
+    pub(crate) fn paths(&self) -> &[HeardPath] {
+        self.paths.paths()
+    }
+
+    /// Whether paths are looked for at each firing.
+    pub(crate) fn moves(&self) -> bool {
+        self.moves
+    }
+
+    /// From now on something moves, though nothing did before.
+    pub(crate) fn set_moving(&mut self) {
+        self.moves = true;
     }
 
     fn robot_of(&self, sensor: usize) -> &'w Robot {

@@ -52,7 +52,7 @@ impl PathNumbers {
     }
 
     /// The paths, by their numbers.
-    pub(super) fn into_paths(self) -> Vec<HeardPath> {
-        self.paths
+    pub(super) fn paths(&self) -> &[HeardPath] {
+        &self.paths
     }
 }

@@ -3,6 +3,7 @@
 use crate::{
     geometry::{Mirror, SAME_DIRECTION, Vector},
     scene::{Mesh, Pole},
+    threads::Stop,
 };
 
 /// What a tree is grown for.
@@ -18,6 +19,8 @@ pub(crate) struct Growth<'a> {
     pub(crate) last_for_receivers: bool,
     /// Where the source heads, if no sound leaves it at right angles to that or further behind.
     pub(crate) forward: Option<Vector>,
+    /// Ends it early.
+    pub(crate) stop: &'a Stop,
 }
 
 impl Growth<'_> {

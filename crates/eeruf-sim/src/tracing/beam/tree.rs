@@ -8,6 +8,8 @@ use crate::{
     scene::{Beyond, Exit, NONE},
 };
 
+/// How many beams lie between two looks at whether to stop.
+const BEAMS_PER_LOOK: usize = 256;
 /// Marks a target as a pole.
 const POLE: u32 = 1 << 31;
 /// Something to be found in a triangle; a list per triangle.
@@ -53,7 +55,8 @@ pub(crate) struct BeamTree {
 }
 
 impl BeamTree {
-    /// Grows the tree of a source. All points must be covered by the mesh. Returns whether the budget sufficed.
+    /// Grows the tree of a source. All points must be covered by the mesh. Returns whether it is whole: neither
+    /// the budget was spent nor the work stopped.
     pub(crate) fn grow(&mut self, growth: &Growth<'_>, source: Point, receivers: &[Point]) -> bool {
         self.beams.clear();
         self.visible_images.clear();
@@ -110,7 +113,8 @@ impl BeamTree {
         self.triangles = triangles;
         let mut next = 1;
         while let Some(&beam) = self.beams.get(next) {
-            if self.beams.len() + self.visible_images.len() + self.pole_cones.len() > growth.budget {
+            let size = self.beams.len() + self.visible_images.len() + self.pole_cones.len();
+            if size > growth.budget || next.is_multiple_of(BEAMS_PER_LOOK) && growth.stop.is_stopped() {
                 return false;
             }
             self.stack.push(Cone { gate: beam.gate, left: beam.left, right: beam.right });

@@ -77,7 +77,9 @@ fn blame(file: &WorldFile, error: &WorldError) -> (Option<Range<usize>>, &'stati
         WorldError::Field { robot: index, field, .. } => (robot(index), field),
         WorldError::Schedule { robot: index, .. } => (robot(index), "schedule"),
         WorldError::Window { robot: index, .. } => (robot(index), "window_us"),
-        WorldError::Contact { robot: index, .. } => (robot(index), "pose"),
+        WorldError::Contact { robot: index, .. } | WorldError::Overlap { robots: (_, index), .. } => {
+            (robot(index), "pose")
+        }
         WorldError::Noise { field, .. } => (file.noise.as_ref().map(Spanned::span), field),
         WorldError::Order { .. } => (Some(0..usize::MAX), "max_order"),
         WorldError::Scene(_) | WorldError::Robots { .. } => (None, ""),

@@ -4,9 +4,19 @@ use super::super::firing::Firing;
 use super::super::solver::Solver;
 use crate::search::common::{Control, Outcome, Progress};
 
-/// The nodes between two polls of the [`Control`]: a choice, seldom enough to cost nothing, often enough that Ctrl-C
-/// feels immediate with a dozen sensors.
-pub const POLL: u64 = 256;
+/// The nodes between two polls of the [`Control`]: few enough that the clock is looked at every few milliseconds. A node
+/// costs about the cube of the number of sensors.
+const fn nodes_between_polls(sensors: usize) -> u64 {
+    const FOR_12: u64 = 256;
+    let nodes = FOR_12 * 12 * 12 * 12 / (sensors * sensors * sensors) as u64;
+    if nodes == 0 {
+        1
+    } else if nodes > FOR_12 {
+        FOR_12
+    } else {
+        nodes
+    }
+}
 
 /// The nodes spent, and how far the search has come.
 pub(crate) struct Meter<'h, C> {
@@ -38,10 +48,11 @@ impl<C: Control> Meter<'_, C> {
 
     /// Runs the solver for `budget` nodes, polling.
     pub(super) fn run(&mut self, solver: &mut Solver<'_, '_>, budget: u64) -> Outcome<Firing> {
+        let between = nodes_between_polls(solver.sensors());
         let end = solver.nodes() + budget;
         loop {
             let before = solver.nodes();
-            let step = POLL.min(end - before).min(self.limit.saturating_sub(self.nodes));
+            let step = between.min(end - before).min(self.limit.saturating_sub(self.nodes));
             let outcome = solver.run(step);
             self.nodes += solver.nodes() - before;
             if outcome != Outcome::BudgetSpent || solver.nodes() >= end || solver.nodes() == before {

@@ -7,7 +7,6 @@ mod minimize;
 mod query;
 
 use meter::Meter;
-pub use meter::POLL;
 pub(super) use query::{Bracket, Objective, Probe, Query};
 
 use super::bounds::Classes;

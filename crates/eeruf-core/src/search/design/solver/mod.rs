@@ -83,6 +83,11 @@ impl<'p, 'm> Solver<'p, 'm> {
         self
     }
 
+    /// How many sensors the problem has.
+    pub(crate) fn sensors(&self) -> usize {
+        self.state.problem.sensors
+    }
+
     /// The nodes visited so far.
     pub(crate) fn nodes(&self) -> u64 {
         self.nodes

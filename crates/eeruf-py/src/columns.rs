@@ -1,0 +1,46 @@
+//! Arrays of results: made on first use, kept, and read-only, so that a loop over them does not copy and what is written
+//! into them is not lost in silence.
+
+use numpy::{Element, PyArray1, prelude::*};
+use pyo3::{exceptions::PyMemoryError, prelude::*, sync::PyOnceLock};
+
+/// `N` columns, by their places.
+pub(crate) struct Columns<const N: usize>([PyOnceLock<Py<PyAny>>; N]);
+
+impl<const N: usize> Default for Columns<N> {
+    fn default() -> Self {
+        Self([const { PyOnceLock::new() }; N])
+    }
+}
+
+impl<const N: usize> Columns<N> {
+    /// The column at a place, made of these values if this is its first use.
+    pub(crate) fn get<'py, T: Element>(
+        &self,
+        py: Python<'py>,
+        place: usize,
+        values: impl ExactSizeIterator<Item = T>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let made = self.0[place].get_or_try_init(py, || Ok::<_, PyErr>(read_only(py, values)?.unbind()))?;
+        Ok(made.bind(py).clone())
+    }
+}
+
+/// An array that cannot be written to.
+pub(crate) fn read_only<T: Element>(
+    py: Python<'_>,
+    values: impl ExactSizeIterator<Item = T>,
+) -> PyResult<Bound<'_, PyAny>> {
+    let mut elements = room(values.len())?;
+    elements.extend(values);
+    Ok(PyArray1::from_vec(py, elements).readwrite().make_nonwriteable().as_any().clone())
+}
+
+/// A vector with room for so many, if the memory is there.
+pub(crate) fn room<T>(elements: usize) -> PyResult<Vec<T>> {
+    let mut vector = Vec::new();
+    let reserved = vector.try_reserve_exact(elements);
+    reserved
+        .map_err(|_| PyMemoryError::new_err(format!("an array of {elements} elements of {} bytes", size_of::<T>())))?;
+    Ok(vector)
+}

@@ -1,0 +1,173 @@
+//! [`Simulation`]: a world that goes on step by step, under the caller's own controller or filter.
+
+use std::sync::Arc;
+
+use super::error::SimulationError;
+use super::event_loop::{EventLoop, end_of};
+use super::kinematics::{Kinematics, Planned};
+use super::options::Options;
+use super::running_ring::{Plan, plans};
+use super::steered::Steered;
+use crate::{geometry::Moment, methods::Method, results::Readings, threads::Stop, world::MAX_SPEED, world::World};
+
+/// The longest single step, in seconds: far longer than anybody waits for, so that longer is a mistake.
+const MAX_STEP_S: f64 = 1e9;
+
+struct Owner {
+    world: Arc<World>,
+    plans: Vec<Plan>,
+}
+
+type Events<'a> = EventLoop<'a, Steered<'a>>;
+
+self_cell::self_cell!(
+    /// The events, with the world that they happen in.
+    struct UnderWay {
+        owner: Owner,
+        #[not_covariant]
+        dependent: Events,
+    }
+);
+
+/// A simulation that stops after each step and goes on where it was. Its steps together give the readings of
+/// [`simulate`](crate::simulate()), bit for bit, and no more memory is needed than for one step's readings.
+///
+/// ```
+/// use std::sync::Arc;
+/// use eeruf_sim::*;
+/// let wall = Wall::new(5.0, 2.0, -5.0, 2.0);
+/// let ahead = Pose::rotation(std::f64::consts::FRAC_PI_2);
+/// let robot = Robot::ring(ahead, 8, 15f64.to_radians(), 0.3, Transducer::POLAROID_6500);
+/// let world = World::new(Scene::new(vec![wall], vec![], Air::default())?, vec![robot], Noise::default())?;
+/// let mut simulation = Simulation::new(Arc::new(world), Method::Eeruf, &Options::default(), Stop::default())?;
+/// simulation.set_velocity(0, 0.5, 0.0)?;
+/// simulation.step(1.0, |_| true)?;
+/// let readings = simulation.step(0.12, |_| true)?;
+/// assert_eq!(readings.len(), 16);
+/// assert!((simulation.moment(0)?.pose.translation.y - 0.56).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Simulation {
+    under_way: UnderWay,
+    robots: usize,
+    /// In true nanoseconds.
+    now: u64,
+    /// When the last firing that counts may happen.
+    end: u64,
+    /// The first robot's period.
+    period: u64,
+    over: bool,
+}
+
+impl Simulation {
+    /// A world in which nothing has fired yet; of the options, `periods` does not matter. `stop` ends a step under way
+    /// from another thread.
+    ///
+    /// # Errors
+    /// As [`simulate`](crate::simulate()).
+    pub fn new(world: Arc<World>, method: Method, options: &Options, stop: Stop) -> Result<Self, SimulationError> {
+        Self::until(world, method, options, None, stop)
+    }
+
+    /// The same, but firings after `options.periods` periods of the first robot do not count.
+    ///
+    /// # Errors
+    /// As [`simulate`](crate::simulate()).
+    pub fn ending(world: Arc<World>, method: Method, options: &Options, stop: Stop) -> Result<Self, SimulationError> {
+        let end = end_of(&world, options.periods);
+        Self::until(world, method, options, Some(end), stop)
+    }
+
+    fn until(
+        world: Arc<World>,
+        method: Method,
+        options: &Options,
+        end: Option<u64>,
+        stop: Stop,
+    ) -> Result<Self, SimulationError> {
+        let (robots, period) = (world.robots().len(), end_of(&world, 1));
+        let plans = plans(&world, method, options, &Planned(&world))?;
+        let under_way = UnderWay::try_new(Owner { world, plans }, |Owner { world, plans }| {
+            EventLoop::new(world, plans, method, options, Steered::new(world), end, 0, stop)
+        })?;
+        Ok(Self { under_way, robots, now: 0, end: end.unwrap_or(u64::MAX), period, over: false })
+    }
+
+    /// Lets time pass, and returns what was read meanwhile: the readings of all firings whose windows have closed.
+    /// `keep_going` is called now and then with the share of all time; when its answer is `false`, the step ends with
+    /// [`SimulationError::Stopped`] and may be taken again.
+    ///
+    /// # Errors
+    /// A time that is negative or above 10^9 s, a robot that has moved out of the scene's reach, or too little memory.
+    pub fn step(&mut self, seconds: f64, keep_going: impl FnMut(f64) -> bool) -> Result<Readings, SimulationError> {
+        if !(0.0..=MAX_STEP_S).contains(&seconds) {
+            return Err(SimulationError::Number { what: "seconds", value: seconds, expected: "0 to 1e9" });
+        }
+        self.go_on((seconds * 1e9).round() as u64, keep_going)
+    }
+
+    /// As [`step`](Self::step), for so many periods of the first robot.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn step_periods(
+        &mut self,
+        periods: u32,
+        keep_going: impl FnMut(f64) -> bool,
+    ) -> Result<Readings, SimulationError> {
+        self.go_on(u64::from(periods) * self.period, keep_going)
+    }
+
+    fn go_on(&mut self, ns: u64, keep_going: impl FnMut(f64) -> bool) -> Result<Readings, SimulationError> {
+        let (before, now) = (self.now.min(self.end), self.now.saturating_add(ns));
+        // What was fired before the end is still heard after it.
+        let until = if now >= self.end { u64::MAX } else { now };
+        let duration_s = (now.min(self.end) - before) as f64 * 1e-9;
+        let (more, readings) = self.under_way.with_dependent_mut(|_, events| {
+            let more = events.run_until(until, keep_going)?;
+            Ok((more, events.take(duration_s)))
+        })?;
+        (self.now, self.over) = (now, !more);
+        Ok(readings)
+    }
+
+    /// Whether no more readings will come.
+    pub fn is_over(&self) -> bool {
+        self.over
+    }
+
+    /// The time that has passed, in seconds.
+    pub fn time_s(&self) -> f64 {
+        self.now as f64 * 1e-9
+    }
+
+    /// From now on a robot goes ahead at `v_m_s` and turns at `w_rad_s`, counter-clockwise, whatever the world says.
+    ///
+    /// # Errors
+    /// No such robot, or more than 50 m/s or rad/s.
+    pub fn set_velocity(&mut self, robot: usize, v_m_s: f64, w_rad_s: f64) -> Result<(), SimulationError> {
+        self.known(robot)?;
+        for (what, value) in [("v_m_s", v_m_s), ("w_rad_s", w_rad_s)] {
+            if !(-MAX_SPEED..=MAX_SPEED).contains(&value) {
+                return Err(SimulationError::Number { what, value, expected: "-50 to 50" });
+            }
+        }
+        let now = self.now;
+        self.under_way.with_dependent_mut(|_, events| events.steer().set(robot, now, v_m_s, w_rad_s));
+        Ok(())
+    }
+
+    /// Where a robot is now, and how fast it goes.
+    ///
+    /// # Errors
+    /// No such robot.
+    pub fn moment(&self, robot: usize) -> Result<Moment, SimulationError> {
+        self.known(robot)?;
+        Ok(self.under_way.with_dependent(|_, events| events.kinematics().moment(robot, self.now)))
+    }
+
+    fn known(&self, robot: usize) -> Result<(), SimulationError> {
+        let robots = self.robots;
+        if robot < robots { Ok(()) } else { Err(SimulationError::Robot { robot, robots }) }
+    }
+}

@@ -1,0 +1,27 @@
+//! Many jobs at once.
+
+use rayon::{ThreadPoolBuilder, prelude::*};
+
+/// Does work whose parallel iterators use all cores: on the caller's pool if it is called in one, else on one of its
+/// own. Rayon's global pool does not survive a `fork`: a child that asks it for anything waits for ever.
+pub(crate) fn on_all_cores<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    if rayon::current_thread_index().is_some() {
+        return work();
+    }
+    // Where no thread can be started, on this one.
+    let alone = || ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
+    match ThreadPoolBuilder::new().build().or_else(|_| alone()) {
+        Ok(pool) => pool.install(work),
+        Err(_) => work(),
+    }
+}
+
+/// Several simulations at once on all cores, the answers in the order of the jobs. What comes out does not depend on
+/// the number of threads.
+///
+/// ```
+/// assert_eq!(eeruf_sim::sweep(&[1, 2, 3], |seed| seed * seed), [1, 4, 9]);
+/// ```
+pub fn sweep<J: Sync, T: Send>(jobs: &[J], run: impl Fn(&J) -> T + Sync + Send) -> Vec<T> {
+    on_all_cores(|| jobs.par_iter().map(run).collect())
+}

@@ -1,0 +1,183 @@
+"""Processes, threads and memory: nothing waits for ever, runs on, or ends the interpreter."""
+
+import functools
+import os
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any, Callable
+
+import eeruf
+import pytest
+from eeruf import sim
+
+ROBOT = sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)
+ROOM = sim.Scene([[5, 2, -5, 2]], robots=[ROBOT])
+
+
+def run(program: str, tmp_path: Path, *, seconds: float = 60) -> subprocess.CompletedProcess[str]:
+    """Run a program as a script: a file of its own."""
+    script = tmp_path / "script.py"
+    script.write_text(program)
+    return subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=seconds)
+
+
+def test_a_forked_child_runs_the_experiments_that_its_parent_ran(tmp_path: Path) -> None:
+    done = run(
+        """
+import os, eeruf
+def both():
+    eeruf.experiments.set_one(1, readings=8, methods=["eeruf"])
+    eeruf.experiments.set_two(1, methods=["eeruf"])
+both()
+child = os.fork()
+both()
+if child:
+    print("child", os.waitpid(child, 0)[1])
+""",
+        tmp_path,
+    )
+    assert done.stdout == "child 0\n", done.stderr
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
+def test_a_pool_of_processes_of_any_kind_finishes_after_the_experiments_have_run(method: str, tmp_path: Path) -> None:
+    done = run(
+        f"""
+import functools, multiprocessing, eeruf
+from concurrent.futures import ProcessPoolExecutor
+if __name__ == "__main__":
+    run = functools.partial(eeruf.experiments.set_one, readings=8, methods=["eeruf"])
+    here = [run(1), run(2)]
+    context = multiprocessing.get_context({method!r})
+    with ProcessPoolExecutor(2, mp_context=context) as processes:
+        print(eeruf.sweep(run, [1, 2], executor=processes) == here)
+""",
+        tmp_path,
+    )
+    assert done.stdout == "True\n", done.stderr
+
+
+def test_a_sweep_starts_processes_afresh_for_functions_of_others_and_threads_for_its_own(tmp_path: Path) -> None:
+    done = run(
+        """
+import os, eeruf
+from eeruf import sim
+def where(case):
+    return os.getpid() == case
+if __name__ == "__main__":
+    eeruf.experiments.set_one(1, readings=8, methods=["eeruf"])
+    print(eeruf.sweep(where, [os.getpid()] * 2))
+    scene = sim.Scene([[5, 2, -5, 2]], robots=[sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)])
+    print(len(eeruf.sweep(lambda seed: 1, [], executor=None)))
+""",
+        tmp_path,
+    )
+    assert done.stdout == "[False, False]\n0\n", done.stderr
+    # A scene's own method with arguments that do not pickle: only threads take it.
+    paths = functools.partial(ROOM.paths, (0, 0), max_order=1, progress=lambda share, text: None)
+    assert [len(found) for found in eeruf.sweep(paths, [[(1, 0)], [(1, 0), (2, 0)]])] == [2, 4]
+
+
+def test_errors_and_progress_come_as_they_happen_not_in_the_order_of_the_cases() -> None:
+    from concurrent.futures import ThreadPoolExecutor
+
+    gate = threading.Event()
+
+    def wait_for_the_others(case: int) -> int:
+        if case == 0:
+            assert gate.wait(30)
+        return case
+
+    shares: list[float] = []
+
+    def progress(share: float | None, text: str) -> None:
+        assert share is not None
+        shares.append(share)
+        if share == 0.75:
+            gate.set()
+
+    with ThreadPoolExecutor(2) as threads:
+        assert eeruf.sweep(wait_for_the_others, range(4), executor=threads, progress=progress) == [0, 1, 2, 3]
+    assert shares == [0.25, 0.5, 0.75, 1.0]
+    gate.clear()
+
+    def fail(case: int) -> int:
+        if case == 1:
+            raise RuntimeError("the second")
+        return wait_for_the_others(case)
+
+    with ThreadPoolExecutor(2) as threads:
+        with pytest.raises(RuntimeError, match="the second"):
+            eeruf.sweep(fail, range(2), executor=threads)
+        assert not gate.is_set()
+        gate.set()
+
+
+def test_nothing_that_was_ended_runs_on() -> None:
+    before = threads_of_the_process()
+
+    def enough(share: float | None, text: str) -> None:
+        raise KeyboardInterrupt
+
+    long: list[Callable[[], Any]] = [
+        lambda: sim.simulate(ROOM, periods=1_000_000, progress=enough),
+        lambda: eeruf.experiments.set_one(10_000, progress=enough),
+        lambda: eeruf.design(40, 999, 9_000, 36_000, budget=10**9, progress=enough),
+        lambda: eeruf.sweep(functools.partial(sim.simulate, ROOM, "eeruf", 100_000), range(50), progress=enough),
+    ]
+    for call in long:
+        with pytest.raises(KeyboardInterrupt):
+            call()
+    # Threads that have ended are taken down by the system a little later.
+    for _ in range(100):
+        if threads_of_the_process() <= before:
+            return
+        time.sleep(0.05)
+    assert threads_of_the_process() <= before
+
+
+def threads_of_the_process() -> int:
+    return len(os.listdir("/proc/self/task"))
+
+
+def test_a_simulation_that_does_not_fit_into_memory_is_a_memory_error_in_time(tmp_path: Path) -> None:
+    done = run(
+        """
+import resource, eeruf
+from eeruf import sim
+scene = sim.Scene([[5, 2, -5, 2]], robots=[sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)])
+few = sim.simulate(scene, periods=10)
+few.summary(), few.columns()
+resource.setrlimit(resource.RLIMIT_AS, (3_000_000_000, 3_000_000_000))
+for call in (
+    lambda: sim.simulate(scene, periods=10**8),
+    lambda: sim.simulate(scene, periods=2**32 - 1),
+    lambda: sim.simulate_blocks(scene, periods=2**32 - 1, block_periods=2**32 - 1),
+):
+    try:
+        call()
+    except MemoryError as error:
+        print(error)
+print(sum(len(block) for block in sim.simulate_blocks(scene, periods=1000, block_periods=100)))
+""",
+        tmp_path,
+    )
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert len(lines) == 4, lines
+    assert all("readings take" in line and "MB; expected" in line for line in lines[:3])
+    assert lines[3] == "8000"
+
+
+def test_blocks_are_the_simulation_and_the_next_one_needs_no_more_memory() -> None:
+    whole = sim.simulate(ROOM, "conventional", periods=30, seed=4).columns()
+    blocks = [
+        block.columns() for block in sim.simulate_blocks(ROOM, "conventional", periods=30, seed=4, block_periods=7)
+    ]
+    assert len(blocks) == 5
+    for name, column in whole.items():
+        if name != "path":
+            assert b"".join(block[name].tobytes() for block in blocks) == column.tobytes()

@@ -58,6 +58,11 @@ export class Comparison {
     new ResizeObserver(() => this.draw()).observe(this.row);
   }
 
+  /** @returns {{method: string, readings: import("./run.js").Reading[]}[]} What the pictures show. */
+  runs() {
+    return this.panels.map(({ method, readings }) => ({ method, readings }));
+  }
+
   /** @returns {number} Up to where readings are shown, in seconds. */
   until() {
     return SHOWN_PERIODS * 1e-6 * (this.traced?.period_us ?? 60_000);

@@ -222,7 +222,7 @@ export class Designer {
   /** Draws the diagram anew, as after a change of size or colours. */
   draw() {
     if (!this.answer || this.result.hidden) return;
-    this.canvas.style.height = `${timingHeight(this.answer.fire_us[0].length)}px`;
+    this.canvas.style.height = `${timingHeight(this.answer.fire_us[0].length) / 16}rem`;
     drawTiming(this.canvas, this.#timing(), this.cursor, readColours());
   }
 

@@ -28,23 +28,23 @@ const STEPS = [
   },
   {
     title: "Crosstalk repeats as well as the truth",
-    text: "Could one compare each reading with the one before? Every period is like the last, so the foreign sound comes at the same moment again. On the right only readings that repeat are believed, and it hardly helps.",
+    text: "Could one compare each reading with the one before? Every period is like the last, so the foreign sound comes at the same moment again. In the second picture only readings that repeat are believed, and it hardly helps.",
     state: { ...ALCOVE, sensors: 8, shown: ["conventional", "comparison"], slow: 25 },
   },
   {
-    title: "Let the waits alternate",
-    text: "Now every sensor waits a little before it fires, and the wait alternates between two values that differ from sensor to sensor. A sensor's own echo does not care. Foreign sound jumps to and fro: look at the crosses in the lower picture.",
+    title: "Let the waits alternate, and reject what moves",
+    text: "Now every sensor waits a little before it fires, and the wait alternates between two values that differ from sensor to sensor. A sensor's own echo does not care. Foreign sound jumps to and fro, does not repeat, and is rejected: look at the crosses in the second picture and below it.",
     state: { ...ALCOVE, sensors: 8, shown: ["comparison", "eeruf"], slow: 25 },
   },
   {
-    title: "Reject what moves, and know the price",
-    text: "Readings that do not repeat are rejected: hardly anything false is left, five times faster than one by one. The price: some good readings go too, and a sensor that always hears foreign sound first stays blind. It is crossed out, so that the robot knows.",
-    state: { ...ALCOVE, sensors: 8, shown: ["conventional", "eeruf"], slow: 60 },
+    title: "The price, and how hopping pays it",
+    text: "Some good readings are rejected too, and a sensor that always hears foreign sound first stays blind; it is crossed out. Time hopping carries the two waits on to many, and gives a blind sensor a period in which it alone fires: nobody stays blind.",
+    state: { ...ALCOVE, sensors: 8, sensor: 7, shown: ["eeruf", "eeruf_hopping"], slow: 40 },
   },
   {
     title: "Your turn",
-    text: "Drag walls, poles and the robot, press a sensor to see the ways that lead to it, and look for a place where EERUF is fooled. Then design your own ring below.",
-    state: { walls: ROOMS.room.walls, poles: ROOMS.room.poles, robot: ROOMS.room.robot, sensors: 8, sensor: 3, shown: ["conventional", "eeruf"], slow: 25 },
+    text: "Drag walls, poles and the robot, press a sensor to see who fools it, and look for a place where EERUF is fooled. Then design your own ring below.",
+    state: { walls: ROOMS.room.walls, poles: ROOMS.room.poles, robot: ROOMS.room.robot, sensors: 8, sensor: 3, slow: 25 },
   },
 ];
 
@@ -86,8 +86,9 @@ export class Lesson {
     this.back.disabled = this.step === 0;
     this.next.textContent = this.step + 1 < STEPS.length ? "Next" : "Done";
     const { walls, poles, robot, ...rest } = structuredClone({ ...firstState(), ...state });
-    document.getElementById("why")?.scrollIntoView({ block: "start" });
     this.#glideTo({ walls, poles, robot, ...rest });
+    // The last picture is the one that the step adds: on a phone they stand one below the other.
+    [...document.querySelectorAll(".panel")].at(-1)?.scrollIntoView({ block: "start" });
     this.title.focus({ preventScroll: true });
     if (!wantsLittleMotion()) this.page.play();
   }

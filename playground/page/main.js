@@ -57,7 +57,7 @@ async function start() {
     if (final) sync();
   };
   const comparison = new Comparison({ quick, slow, methods, state: () => state, change });
-  const takeHome = new TakeHome({ state: () => state, link: () => location.href });
+  const takeHome = new TakeHome({ state: () => state, link: () => location.href, runs: () => comparison.runs() });
   const designer = new Designer({
     desk: searches, state: () => state, designed: (answer) => takeHome.show(answer),
     change: (patch) => change({ ...state, .../** @type {Partial<State>} */ (patch) }, true),

@@ -30,7 +30,7 @@ const TABLE = [
   },
   {
     id: "eeruf_hopping", name: "Time hopping", byDefault: true,
-    does: "The waits run through many phases, so that no sensor stays masked.",
+    does: "The waits run through many phases; a blind sensor gets a period of its own.",
   },
 ];
 

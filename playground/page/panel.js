@@ -103,8 +103,8 @@ export class Panel {
   draw(moment) {
     this.last = moment;
     const { state, box, traced, at, until, colours } = moment;
-    const context = contextOf(this.canvas);
-    const view = this.view(box);
+    const { context, width, height } = contextOf(this.canvas);
+    const view = new View(box, width, height);
     drawRoom(context, view, state, colours);
     if (traced) {
       if (this.run) drawFoolers(context, view, foolersOf(this.run, state.sensor), colours);
@@ -117,8 +117,8 @@ export class Panel {
     const own = this.readings.filter((reading) => reading.sensor === state.sensor);
     const chart = contextOf(this.chart);
     const farthest = this.#farthest(own, traced);
-    const frame = { width: this.chart.clientWidth, height: this.chart.clientHeight, until, farthest };
-    drawChart(chart, frame, { readings: own, sound_m_s: traced?.sound_m_s ?? 343, at }, colours);
+    const frame = { width: chart.width, height: chart.height, until, farthest };
+    drawChart(chart.context, frame, { readings: own, sound_m_s: traced?.sound_m_s ?? 343, at }, colours);
   }
 
   /** Says in words what the pictures show, for those who hear the page. @param {number} sensor */
@@ -130,7 +130,7 @@ export class Panel {
     this.chart.setAttribute("aria-label", `Range over time as sensor ${sensor + 1} reads it under ${name}. ${this.foolers.textContent}`);
   }
 
-  /** @param {import("./view.js").Box} box */
+  /** Where things are on the page, in its pixels. @param {import("./view.js").Box} box */
   view(box) {
     return new View(box, this.canvas.clientWidth, this.canvas.clientHeight);
   }

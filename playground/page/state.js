@@ -58,7 +58,13 @@ export const ROOMS = {
     robot: { x: -0.9, y: 0.1, heading: 6 },
   },
   room: {
-    name: "Room with poles",
+    name: "Open room with a pole",
+    walls: [[[-1.8, -1.3], [1.6, -1.3], [1.6, 0.2]], [[-1.8, 1.4], [0.2, 1.4]]],
+    poles: [[1.1, 0.9, 0.03]],
+    robot: { x: -0.6, y: -0.2, heading: 15 },
+  },
+  closed: {
+    name: "Closed room, where sound lasts",
     walls: [[[-1.7, -1.2], [1.8, -1.2], [1.8, 1.3], [-1.7, 1.3], [-1.7, -1.2]]],
     poles: [[0.7, 0.5, 0.03], [0.9, -0.4, 0.03]],
     robot: { x: -0.7, y: -0.1, heading: 12 },
@@ -88,7 +94,7 @@ export function firstState() {
   const { walls, poles, robot } = structuredClone(ROOMS.alcove);
   return {
     walls, poles, robot, sensors: 8, layout: "line", spacing: 15, radius: 0.3, module: "polaroid_6500", range: 4,
-    crosstalk: 2, jitter: 60, speed: 0.5, tick: 100, own: null, shown: ["conventional", "eeruf"], sensor: 6, slow: 25,
+    crosstalk: 2, jitter: 60, speed: 0.5, tick: 100, own: null, shown: ["conventional", "eeruf", "eeruf_hopping"], sensor: 6, slow: 25,
   };
 }
 

@@ -1,6 +1,7 @@
 // @ts-check
 /** Part three: the table for one's own robot in the form that it needs, and a link that holds everything. */
 import { byId, element } from "./dom.js";
+import { mcapOf } from "./mcap.js";
 import { pythonText, ringText, sceneText } from "./texts.js";
 
 /**
@@ -28,7 +29,10 @@ const USES = new Map([
 ]);
 
 export class TakeHome {
-  /** @param {{state: () => import("./state.js").State, link: () => string}} page */
+  /**
+   * @param {{state: () => import("./state.js").State, link: () => string,
+   *   runs: () => {method: string, readings: import("./run.js").Reading[]}[]}} page
+   */
   constructor(page) {
     this.page = page;
     /** @type {any} */
@@ -46,7 +50,8 @@ export class TakeHome {
     this.tabs.append(...this.buttons);
     this.tabs.onkeydown = (event) => this.#key(event);
     byId("copy-form", HTMLButtonElement).onclick = () => this.#copy(this.text.textContent ?? "", "The text");
-    byId("save-form", HTMLButtonElement).onclick = () => this.#save();
+    byId("save-form", HTMLButtonElement).onclick = () => this.#save(this.form.file, this.text.textContent ?? "");
+    byId("save-readings", HTMLButtonElement).onclick = () => this.#save("readings.mcap", mcapOf(this.page.runs()));
     byId("copy-link", HTMLButtonElement).onclick = () => this.#copy(this.page.link(), "The link");
     this.sync();
   }
@@ -101,11 +106,12 @@ export class TakeHome {
     }
   }
 
-  #save() {
-    const url = URL.createObjectURL(new Blob([this.text.textContent ?? ""], { type: "text/plain" }));
-    const link = /** @type {HTMLAnchorElement} */ (element("a", { href: url, download: this.form.file }));
+  /** @param {string} file @param {string | Uint8Array} contents */
+  #save(file, contents) {
+    const url = URL.createObjectURL(new Blob([/** @type {BlobPart} */ (contents)]));
+    const link = /** @type {HTMLAnchorElement} */ (element("a", { href: url, download: file }));
     link.click();
     setTimeout(() => URL.revokeObjectURL(url), 10_000);
-    this.says.textContent = `${this.form.file} is saved.`;
+    this.says.textContent = `${file} is saved.`;
   }
 }

@@ -2,7 +2,7 @@
 /** The timing diagram of a schedule (Fig. 3 of the paper): two periods, one lane for each sensor; point at it to read. */
 import { gridStep } from "./chart.js";
 import { sensorColour } from "./colours.js";
-import { contextOf } from "./view.js";
+import { contextOf, unit } from "./view.js";
 
 const LEFT = 34;
 const RIGHT = 12;
@@ -16,7 +16,7 @@ export function inMs(us) {
   return `${Number((us / 1000).toFixed(3))} ms`;
 }
 
-/** @param {number} sensors @returns {number} How high the diagram of so many sensors is, in pixels. */
+/** @param {number} sensors @returns {number} How high the diagram of so many sensors is, in units of the picture. */
 export function timingHeight(sensors) {
   return TOP + BOTTOM + sensors * laneHeight(sensors);
 }
@@ -49,9 +49,9 @@ export function saidAt(timing, sensor, at) {
  *  @param {{offsetX: number, offsetY: number}} event */
 export function pointedAt(canvas, timing, event) {
   const sensors = timing.fire_us[0].length;
-  const share = (event.offsetX - LEFT) / (canvas.clientWidth - LEFT - RIGHT);
+  const share = (event.offsetX / unit() - LEFT) / (canvas.clientWidth / unit() - LEFT - RIGHT);
   const at = Math.round(Math.min(1, Math.max(0, share)) * 2 * timing.period_us);
-  const lane = Math.floor((event.offsetY - TOP) / laneHeight(sensors));
+  const lane = Math.floor((event.offsetY / unit() - TOP) / laneHeight(sensors));
   return { at, sensor: Math.min(sensors - 1, Math.max(0, lane)) };
 }
 
@@ -64,8 +64,8 @@ export function drawTiming(canvas, timing, cursor, colours) {
   const { period_us, window_us, fire_us } = timing;
   const sensors = fire_us[0].length;
   const lane = laneHeight(sensors);
-  const context = contextOf(canvas);
-  const right = canvas.clientWidth - RIGHT;
+  const { context, width } = contextOf(canvas);
+  const right = width - RIGHT;
   const bottom = TOP + sensors * lane;
   const x = (/** @type {number} */ us) => LEFT + (us / (2 * period_us)) * (right - LEFT);
   context.font = "12px system-ui, sans-serif";
@@ -74,7 +74,7 @@ export function drawTiming(canvas, timing, cursor, colours) {
   context.textAlign = "left";
   ["phase a", "phase b"].forEach((name, phase) => context.fillText(name, x(phase * period_us) + 5, 11));
   context.textAlign = "center";
-  const step = gridStep((2 * period_us) / 1000, canvas.clientWidth > 600 ? 10 : 5);
+  const step = gridStep((2 * period_us) / 1000, width > 600 ? 10 : 5);
   for (let ms = 0; ms <= (2 * period_us) / 1000; ms += step) {
     stroke(context, [x(1000 * ms), TOP, x(1000 * ms), bottom + 3], 1, colours.faint);
     context.fillText(String(Number(ms.toFixed(3))), x(1000 * ms), bottom + 12);

@@ -46,20 +46,27 @@ export class View {
   }
 }
 
+/** @returns {number} Pixels of the page for each unit of a picture, so that pictures grow with the text. */
+export function unit() {
+  return parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
+}
+
 /**
  * A canvas as large as it is on the screen, at the screen's resolution.
  * @param {HTMLCanvasElement} canvas
- * @returns {CanvasRenderingContext2D} Its units are the page's pixels.
+ * @returns {{context: CanvasRenderingContext2D, width: number, height: number}} Empty, with its size in units.
  */
 export function contextOf(canvas) {
   const density = window.devicePixelRatio || 1;
-  const [width, height] = [Math.round(canvas.clientWidth * density), Math.round(canvas.clientHeight * density)];
-  if (canvas.width !== width || canvas.height !== height) {
-    canvas.width = width;
-    canvas.height = height;
+  const [across, down] = [Math.round(canvas.clientWidth * density), Math.round(canvas.clientHeight * density)];
+  if (canvas.width !== across || canvas.height !== down) {
+    canvas.width = across;
+    canvas.height = down;
   }
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  context.setTransform(density, 0, 0, density, 0, 0);
-  context.clearRect(0, 0, canvas.clientWidth, canvas.clientHeight);
-  return context;
+  const scale = density * unit();
+  context.setTransform(scale, 0, 0, scale, 0, 0);
+  const [width, height] = [canvas.clientWidth / unit(), canvas.clientHeight / unit()];
+  context.clearRect(0, 0, width, height);
+  return { context, width, height };
 }

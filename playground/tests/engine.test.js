@@ -7,7 +7,11 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 
+import { McapStreamReader } from "@mcap/core";
+
 import { fromHash, toHash } from "../page/link.js";
+import { mcapOf } from "../page/mcap.js";
+import { readingsOf } from "../page/run.js";
 import { ROOMS, StateError, checkedState, firstState } from "../page/state.js";
 import { ringText, sceneText } from "../page/texts.js";
 import { askEngine, startEngine } from "../page/wasm.js";
@@ -85,7 +89,7 @@ const SCENES = Object.values(ROOMS).map((room) => sceneText({ ...firstState(), .
 
 test("in each room the figures of the methods are to the printed digits those of the program", () => {
   SCENES.forEach((scene, k) => {
-    const methods = ["sequential", "conventional", "comparison", "eeruf", "eeruf_best"];
+    const methods = ["sequential", "conventional", "comparison", "eeruf", "eeruf_best", "eeruf_hopping"];
     const theirs = program("study", file(`scene-${k}.toml`, scene), "--periods", "400", "--method", methods.join(",")).methods;
     for (const method of methods) {
       const ours = ask({ ask: "run", scene, method, periods: 400, shown_s: 1.44 }).ok;
@@ -133,6 +137,26 @@ test("bad input is one sentence that names the thing, the value and what is expe
   }
   const inWall = `${wall.replaceAll("1,", "0.1,")}faces = "both"\n${robot}`;
   assert.match(ask({ ask: "trace", scene: inWall }).error, /touches wall 0; expected it to stand free at its pose$/);
+});
+
+test("readings saved as MCAP are read back by MCAP's own library, in order of time", () => {
+  const runs = ["conventional", "eeruf_hopping"].map((method) =>
+    ({ method, readings: readingsOf(ask({ ask: "run", scene: SCENES[0], method, periods: 20, shown_s: 1 }).ok, 36_000) }));
+  const reader = new McapStreamReader();
+  reader.append(mcapOf(runs));
+  const topics = new Map();
+  const messages = [];
+  for (let record = reader.nextRecord(); record; record = reader.nextRecord()) {
+    if (record.type === "Channel") topics.set(record.id, record.topic);
+    if (record.type === "Message") messages.push({ ...record, body: JSON.parse(new TextDecoder().decode(record.data)) });
+  }
+  assert.ok(reader.done());
+  assert.deepEqual([...topics.values()], ["/readings/conventional", "/readings/eeruf_hopping"]);
+  assert.equal(messages.length, runs[0].readings.length + runs[1].readings.length);
+  assert.ok(messages.every(({ logTime }, k) => k === 0 || messages[k - 1].logTime <= logTime));
+  const ours = messages.filter(({ channelId }) => channelId === 0).map(({ body }) => [body.sensor, body.period, body.t_echo_us, body.wrong]);
+  const given = runs[0].readings.map(({ sensor, period, t_echo_us, wrong }) => [sensor, period, t_echo_us, wrong]);
+  assert.deepEqual(new Set(ours.map(String)), new Set(given.map(String)));
 });
 
 test("long tasks say how far they are", () => {

@@ -77,7 +77,7 @@ pub use verify::{Verification, Violation, ViolationKind, Violations};
 #[doc = include_str!("../theory.md")]
 pub mod theory {}
 
-/// The listings of the README compile and hold.
+/// The listing of the crate's README compiles and holds.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
+#[doc = include_str!("../README.md")]
 struct Readme;

@@ -83,3 +83,8 @@ pub use tracing::{
 pub use world::{
     AnySchedule, Clock, Motion, Noise, Random, Robot, ScheduleFile, World, WorldError, WorldFileError, ring_of,
 };
+
+/// The listing of the crate's README compiles and holds.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

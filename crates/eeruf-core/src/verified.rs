@@ -10,6 +10,7 @@ use crate::verify::{Verification, Violation, stale_separation};
 /// A [`Schedule`] that was verified, and what for: [`schedule!`](crate::schedule!) makes it when the program is
 /// compiled, [`Verification::verified`] at run time. It can be used wherever a schedule can.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(transparent)]
 pub struct VerifiedSchedule<const K: usize, const M: usize = 2>(Schedule<K, M>);
 
@@ -56,6 +57,14 @@ impl<const K: usize, const M: usize> Deref for VerifiedSchedule<K, M> {
 
     fn deref(&self) -> &Schedule<K, M> {
         &self.0
+    }
+}
+
+/// As the schedule. Nothing can be read back as verified: read a [`Schedule`] and verify it.
+#[cfg(feature = "serde")]
+impl<const K: usize, const M: usize> serde::Serialize for VerifiedSchedule<K, M> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.serialize(serializer)
     }
 }
 

@@ -9,6 +9,7 @@ use crate::time::Micros;
 
 /// Why a search cannot start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum SearchError {
     /// Times do not fit the grid.
@@ -87,6 +88,7 @@ impl core::error::Error for SearchError {}
 
 /// Why times do not fit a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum GridError {
     /// A tick of no length.

@@ -3,6 +3,7 @@
 mod brute_force;
 mod common;
 mod conditions_naive;
+mod contract;
 mod fired;
 mod lateness;
 mod period_corpus;
@@ -15,3 +16,4 @@ mod theory;
 mod wait_limits;
 mod wait_small;
 mod wait_tables;
+mod watch;

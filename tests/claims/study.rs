@@ -3,7 +3,7 @@
 use crate::common::{Scratch, eeruf, json};
 use serde_json::Value;
 
-const METHODS: [&str; 12] = [
+const METHODS: [&str; 13] = [
     "simultaneous",
     "sequential",
     "far_groups",
@@ -15,6 +15,7 @@ const METHODS: [&str; 12] = [
     "eeruf",
     "eeruf_best",
     "adaptive",
+    "eeruf_hopping",
     "multi_echo",
 ];
 

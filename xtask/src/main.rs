@@ -6,10 +6,12 @@
 mod blocks;
 mod certificates;
 mod changed;
+mod classic;
 mod firmware;
 mod listings;
 mod measured;
 mod mutants;
+mod page;
 mod periods;
 mod printed;
 mod python;
@@ -52,6 +54,15 @@ enum Verb {
     },
     /// Build the wheel and test it: types, examples, and against what Rust says
     Python,
+    /// Build the page in playground/, as a folder for a server and as one file for a disk
+    Page {
+        /// Run its tests, those that CI runs
+        #[arg(long)]
+        test: bool,
+        /// Run all of its tests: 2,000 random actions, screenshots into target/page/pictures, figures
+        #[arg(long)]
+        long: bool,
+    },
     /// Run the commands that printed the documents' tables again, and put what they print in place of what stands there
     Reprint {
         /// Only compare, all documents if none is named; timings are left alone
@@ -84,6 +95,13 @@ fn main() -> ExitCode {
             steps.finish(true)
         }
         Verb::Python => one_step("Python package", python::python),
+        Verb::Page { test, long } => one_step("the page", || {
+            page::page(match (test, long) {
+                (_, true) => page::Tests::Long,
+                (true, false) => page::Tests::Short,
+                (false, false) => page::Tests::No,
+            })
+        }),
         Verb::Reprint { check, document } => one_step("what the programs print", || match document {
             Some(document) if check => printed::check(&[document], printed::Which::All),
             Some(document) => printed::reprint(&document),

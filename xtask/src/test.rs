@@ -64,6 +64,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
         run_cargo(&[&["test", "--package", "eeruf-core"], &tests[..]].concat())
     });
     steps.step("Python package", crate::python::python);
+    steps.step("page in a browser", || crate::page::page(crate::page::Tests::Short));
     steps.step("firmware on emulated boards", || crate::firmware::firmware(false));
     steps.step("documentation", || {
         run(Command::new("cargo")

@@ -10,6 +10,7 @@
 //! - [`VerifiedSchedule`]: a schedule that meets them. [`schedule!`] makes one while the firmware is compiled.
 //! - [`Ring`]: what firmware runs. It combines a [`Scheduler`] ([`ScheduledFiring`] or [`ImmediateRefiring`]) with the
 //!   filter; [`EchoFilter`] is the filter alone.
+//! - [`EchoTracker`]: believes an echo that readings from several phases support, for schedules of many phases.
 //! - [`EdgeQueue`]: from the interrupt of an echo line to the main loop.
 //! - [`SensorWatch`]: what was last accepted of each sensor, how old it is, and which sensors are blind.
 //! - [`Adaptation`]: moves along a ladder of schedules as the rejection rate asks for.
@@ -32,6 +33,7 @@ mod conditions;
 mod edges;
 pub mod emit;
 mod filter;
+mod hopping;
 mod interop;
 mod layout;
 mod reading;
@@ -44,6 +46,7 @@ mod sensor_set;
 mod sound;
 pub mod tables;
 mod time;
+mod tracker;
 mod verified;
 mod verify;
 mod watch;
@@ -54,6 +57,9 @@ pub use checked::{__checked, __micros};
 pub use conditions::{Criterion, Interval, Requirements, Separation};
 pub use edges::{Edge, EdgeQueue};
 pub use filter::{EchoFilter, FilterError};
+pub use hopping::{
+    HoppingCode, HoppingError, HoppingFiring, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings,
+};
 pub use interop::DurationError;
 pub use layout::{Layout, LayoutError, neighbour_rows};
 pub use reading::{ReadingKind, Tally, Verdict};
@@ -65,6 +71,7 @@ pub use scheduler::{
 pub use sensor_error::SensorError;
 pub use sound::SpeedOfSound;
 pub use time::{Instant, Micros};
+pub use tracker::{EchoTracker, Firing, TrackerError, TrackerSettings};
 pub use verified::VerifiedSchedule;
 pub use verify::{Verification, Violation, ViolationKind, Violations};
 pub use watch::{Blind, LastAccepted, SensorWatch};

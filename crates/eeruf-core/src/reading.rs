@@ -32,11 +32,14 @@ pub enum ReadingKind {
     Late,
     /// The driver reported that the echo line was stuck when the sensor was to fire.
     Stuck,
+    /// An echo that few readings support so far and none contradicts, nearer than what is confirmed: slow down for it.
+    /// Only from an [`EchoTracker`](crate::EchoTracker).
+    Tentative,
 }
 
 impl ReadingKind {
     /// Every kind, in the order of the enumeration.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::First,
         Self::Accepted,
         Self::Rejected,
@@ -46,6 +49,7 @@ impl ReadingKind {
         Self::TooEarly,
         Self::Late,
         Self::Stuck,
+        Self::Tentative,
     ];
 
     /// A short name, as `--json` and Python spell it.
@@ -60,6 +64,7 @@ impl ReadingKind {
             Self::TooEarly => "too_early",
             Self::Late => "late",
             Self::Stuck => "stuck",
+            Self::Tentative => "tentative",
         }
     }
 }

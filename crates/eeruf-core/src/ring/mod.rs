@@ -276,6 +276,10 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         &self.scheduler
     }
 
+    pub(crate) const fn scheduler_mut(&mut self) -> &mut S {
+        &mut self.scheduler
+    }
+
     /// The clock has jumped.
     #[cold]
     fn clock_jumped(&mut self, now: Instant) {

@@ -5,6 +5,7 @@ mod common;
 mod conditions_naive;
 mod contract;
 mod fired;
+mod hopping;
 mod lateness;
 mod period_corpus;
 mod period_limits;

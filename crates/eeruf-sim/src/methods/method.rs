@@ -9,6 +9,7 @@ use eeruf_core::{Micros, ScheduleError};
 use serde::{Serialize, Serializer};
 
 use super::adaptive;
+use super::hopping;
 use super::ring_runner::{self, FiringPlan, RingRunner, RingStart, StartError, Started};
 use super::schedules::{self, Made, ScheduleQuery};
 use crate::world::{AnySchedule, Robot};
@@ -150,6 +151,14 @@ methods! {
         ring: adaptive::adaptive,
         belief: Belief::Repeated,
         plan: adaptive::plan,
+    }
+    /// Time hopping: the waits move through a cycle of many phases, and an echo is believed that readings from several
+    /// phases support ([`HoppingRing`](eeruf_core::HoppingRing)).
+    EerufHopping = "eeruf_hopping" {
+        eeruf: true,
+        schedule: schedules::conventional,
+        ring: hopping::hopping,
+        belief: Belief::Repeated,
     }
     /// As [`Eeruf`](Self::Eeruf), with sensors that report up to eight echoes of a firing: the earliest that repeats is
     /// believed.

@@ -4,6 +4,7 @@
 mod adaptive;
 mod best_schedule;
 mod dither;
+mod hopping;
 mod method;
 mod ring_runner;
 mod schedules;

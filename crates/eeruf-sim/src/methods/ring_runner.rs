@@ -2,8 +2,8 @@
 //! under simulated time.
 
 use eeruf_core::{
-    ImmediateRefiring, Instant, LadderError, MAX_SENSORS, Ring, RingConfig, RingError, RingEvent, ScheduledFiring,
-    Scheduler, VerifiedSchedule, Violation,
+    HoppingError, HoppingSettings, ImmediateRefiring, Instant, LadderError, MAX_SENSORS, Ring, RingConfig, RingError,
+    RingEvent, ScheduledFiring, Scheduler, VerifiedSchedule, Violation,
 };
 
 use super::dither::DitherFiring;
@@ -48,6 +48,8 @@ pub(crate) struct FiringPlan {
 pub(crate) struct RingStart<'s> {
     pub(crate) robot: &'s Robot,
     pub(crate) plan: &'s FiringPlan,
+    /// How a hopping ring fires and believes.
+    pub(crate) hopping: HoppingSettings,
     pub(crate) random: Random,
     pub(crate) now: Instant,
 }
@@ -61,6 +63,17 @@ pub(crate) enum StartError {
     Unverified(Violation),
     /// The schedules make no ladder.
     Ladder(LadderError),
+    /// It cannot hop as asked.
+    Hopping(HoppingError),
+}
+
+impl From<HoppingError> for StartError {
+    fn from(error: HoppingError) -> Self {
+        match error {
+            HoppingError::Ring(error) => Self::Ring(error),
+            error => Self::Hopping(error),
+        }
+    }
 }
 
 impl From<RingError> for StartError {

@@ -171,8 +171,14 @@ impl Readings {
         SensorId { robot: self.robot[reading], sensor: self.sensor[reading] }
     }
 
-    /// Whether the method believes the reading: an accepted echo, or confirmed that nothing is in range.
+    /// Whether the method believes the reading: an accepted echo, if only tentatively, or confirmed that nothing is in
+    /// range.
     pub fn is_accepted(&self, reading: usize) -> bool {
+        self.is_confirmed(reading) || self.kind[reading] == ReadingKind::Tentative
+    }
+
+    /// Whether the method believes the reading, and not only tentatively.
+    pub fn is_confirmed(&self, reading: usize) -> bool {
         matches!(self.kind[reading], ReadingKind::Accepted | ReadingKind::Clear)
     }
 

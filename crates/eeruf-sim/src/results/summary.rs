@@ -30,6 +30,8 @@ pub struct Summary {
     /// The part of `wrong_of_all` that foreign or stale sound caused. The rest are the sensor's own doing: an echo just
     /// loud enough that faded away once, so that the sensor reads what lies behind.
     pub crosstalk_of_all: f64,
+    /// The part of `wrong_of_all` that was confirmed, not only tentative.
+    pub confirmed_wrong_of_all: f64,
     /// Share of the accepted readings that were wrong; `None` if none was accepted.
     pub wrong_of_accepted: Option<f64>,
     /// Share of all readings that were not accepted: rejected, first of a pair, without echo once.
@@ -66,6 +68,7 @@ impl Readings {
     /// The figures with another tolerance, in microseconds.
     pub fn summary_within(&self, tolerance_us: f64) -> Summary {
         let (mut accepted, mut wrong, mut crosstalk, mut good, mut false_rejections) = (0, 0, 0, 0, 0);
+        let mut confirmed_wrong = 0;
         let mut ages = Vec::with_capacity(self.len());
         // Per robot and sensor: when the last accepted reading was fired.
         let mut last =
@@ -76,6 +79,7 @@ impl Readings {
             accepted += usize::from(believed);
             let fooled = believed && self.is_wrong(reading, tolerance_us);
             wrong += usize::from(fooled);
+            confirmed_wrong += usize::from(fooled && self.is_confirmed(reading));
             let foreign = matches!(self.cause[reading], Cause::Stale | Cause::Crosstalk | Cause::External);
             crosstalk += usize::from(fooled && foreign);
             good += usize::from(is_good);
@@ -94,6 +98,7 @@ impl Readings {
             accepted,
             wrong_of_all: share(wrong, self.len()),
             crosstalk_of_all: share(crosstalk, self.len()),
+            confirmed_wrong_of_all: share(confirmed_wrong, self.len()),
             wrong_of_accepted: (accepted > 0).then(|| share(wrong, accepted)),
             rejected: share(self.len() - accepted, self.len()),
             good_lost: (good > 0).then(|| share(false_rejections, good)),

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use eeruf_core::{LadderError, RingError, ScheduleError, Violation};
+use eeruf_core::{HoppingError, LadderError, RingError, ScheduleError, Violation};
 
 use crate::methods::{Method, StartError};
 use crate::results::Readings;
@@ -43,6 +43,13 @@ pub enum SimulationError {
         robot: usize,
         /// Why.
         error: LadderError,
+    },
+    /// A robot's ring cannot hop in time under [`Method::EerufHopping`].
+    Hopping {
+        /// The robot.
+        robot: usize,
+        /// Why.
+        error: HoppingError,
     },
     /// The median of none or of too many readings.
     Median {
@@ -88,6 +95,7 @@ impl SimulationError {
             StartError::Ring(error) => Self::Ring { robot, method, error },
             StartError::Unverified(violation) => Self::Unverified { robot, violation },
             StartError::Ladder(error) => Self::Ladder { robot, error },
+            StartError::Hopping(error) => Self::Hopping { robot, error },
         }
     }
 
@@ -106,6 +114,7 @@ impl fmt::Display for SimulationError {
             Self::Schedule { robot, method, error } => write!(f, "robot {}, method {method}: {error}", robot + 1),
             Self::Ring { robot, method, error } => write!(f, "robot {}, method {method}: {error}", robot + 1),
             Self::Ladder { robot, error } => write!(f, "robot {}, method adaptive: {error}", robot + 1),
+            Self::Hopping { robot, error } => write!(f, "robot {}, method eeruf_hopping: {error}", robot + 1),
             Self::Unverified { robot, violation } => write!(f, "robot {}, method adaptive: {violation}", robot + 1),
             Self::Median { median_of } => write!(f, "the median of {median_of} readings; expected 1 to 15"),
             Self::Paths { at_s, error } => write!(f, "at {at_s:.3} s: {error}"),

@@ -87,7 +87,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         let seed = Random::new(options.seed.unwrap_or(world.seed()));
         let channels =
             Channels::new(world, &kinematics, stop.clone()).map_err(|error| SimulationError::paths(0, error))?;
-        let rings = start_all(world, plans, &channels, seed)?;
+        let rings = start_all(world, plans, options, &channels, seed)?;
         let sensors = channels.ids().len();
         let longest = rings.iter().map(|ring| ring.hearing.window).max().unwrap_or(0);
         let recorder = Recorder::new(method, options, end.unwrap_or(u64::MAX), room, channels.ids())?;

@@ -1,5 +1,7 @@
 //! What can be asked for besides the world and the method.
 
+use eeruf_core::HoppingSettings;
+
 use crate::world::AnySchedule;
 
 /// How long, with which seed, and what some methods need to know.
@@ -15,11 +17,14 @@ pub struct Options {
     pub best: Option<AnySchedule>,
     /// How many readings [`Method::Median`](crate::Method::Median) takes the median of, 1 to 15. The default is 3.
     pub median_of: u8,
+    /// How [`Method::EerufHopping`](crate::Method::EerufHopping) fires and believes; how many sensors are neighbours,
+    /// the robot says. The default is [`HoppingSettings::BALANCED`].
+    pub hopping: HoppingSettings,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { periods: 1000, seed: None, best: None, median_of: 3 }
+        Self { periods: 1000, seed: None, best: None, median_of: 3, hopping: HoppingSettings::BALANCED }
     }
 }
 

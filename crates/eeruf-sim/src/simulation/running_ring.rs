@@ -57,6 +57,7 @@ pub(crate) fn plans(
 pub(crate) fn start_all<'a>(
     world: &'a World,
     plans: &'a [Plan],
+    options: &Options,
     channels: &Channels<'_>,
     seed: Random,
 ) -> Result<Vec<RunningRing<'a>>, SimulationError> {
@@ -67,7 +68,7 @@ pub(crate) fn start_all<'a>(
         let start = u64::from(robot.start.as_micros());
         let random = seed.of(DITHER).of(index as u64);
         let ring = method
-            .start(&RingStart { robot, plan, random, now: clock.instant(start) })
+            .start(&RingStart { robot, plan, hopping: options.hopping, random, now: clock.instant(start) })
             .map_err(|error| SimulationError::start(index, *method, error))?;
         let true_ns = |time: Micros| clock.true_ns(time.as_micros());
         let hearing = Hearing {

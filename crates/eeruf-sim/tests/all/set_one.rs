@@ -39,6 +39,20 @@ fn alternation_removes_the_errors_that_comparison_alone_leaves_and_several_echoe
 }
 
 #[test]
+fn time_hopping_leaves_no_sensor_blind_and_loses_few_good_readings_without_more_errors() {
+    let table = run(40, READINGS, &[Method::Eeruf, Method::EerufHopping]);
+    let (eeruf, hopping) = (of(&table, Method::Eeruf), of(&table, Method::EerufHopping));
+    assert!(eeruf.starved > 1.0, "{}", eeruf.starved);
+    assert!(hopping.starved < 0.06, "{}", hopping.starved);
+    let lost = |figures: &Figures| figures.good_lost.unwrap().median;
+    assert!(lost(&hopping) < 0.05 && lost(&hopping) < lost(&eeruf) / 3.0, "{} {}", lost(&hopping), lost(&eeruf));
+    let (wrong, wrong_eeruf) = (hopping.wrong_of_all.unwrap(), eeruf.wrong_of_all.unwrap());
+    assert!(wrong.median < 0.015 && wrong.p90 < wrong_eeruf.p90, "{wrong:?} {wrong_eeruf:?}");
+    let age = hopping.age_p99_ms.unwrap().median;
+    assert!(age < 1000.0, "{age}");
+}
+
+#[test]
 fn the_best_schedule_guarantees_what_the_table_does_in_a_period_a_fifth_shorter() {
     let robot = Alcove::random(0).robot();
     let best = best_schedule_for(&robot, 100_000, |_| true).unwrap();

@@ -1,0 +1,91 @@
+//! [`HoppingError`]: why a ring cannot hop as asked.
+
+use core::fmt;
+
+use crate::ring::RingError;
+use crate::time::Micros;
+use crate::tracker::TrackerError;
+
+/// Why a ring cannot hop as asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum HoppingError {
+    /// A code for no sensors, or for more than 64 or than the ring has room for.
+    Sensors {
+        /// How many were asked for.
+        sensors: usize,
+        /// The most that there can be.
+        most: usize,
+    },
+    /// A code with too few or too many phases.
+    Phases {
+        /// How many were asked for.
+        phases: u8,
+    },
+    /// A step of 0, or of more than 65,535 us.
+    Step {
+        /// The step asked for.
+        step: Micros,
+    },
+    /// Crosstalk that moves by one step would still support a track.
+    TDelta {
+        /// The tracker's `t_delta`.
+        t_delta: Micros,
+        /// The step of the code.
+        step: Micros,
+    },
+    /// The period is too short for code and window, or longer than [`MAX_PERIOD`](crate::MAX_PERIOD).
+    Period {
+        /// The period asked for.
+        period: Micros,
+        /// The least that it may be.
+        least: Micros,
+    },
+    /// With this lag a sensor would fire after its period has ended.
+    Lag {
+        /// The sensor, from 0.
+        sensor: u8,
+        /// Its lag.
+        lag: Micros,
+        /// The longest lag that leaves room for the code.
+        most: Micros,
+    },
+    /// A setting of the tracker.
+    Tracker(TrackerError),
+    /// How the ring listens.
+    Ring(RingError),
+}
+
+impl From<TrackerError> for HoppingError {
+    fn from(error: TrackerError) -> Self {
+        Self::Tracker(error)
+    }
+}
+
+impl From<RingError> for HoppingError {
+    fn from(error: RingError) -> Self {
+        Self::Ring(error)
+    }
+}
+
+impl fmt::Display for HoppingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Sensors { sensors, most } => write!(f, "{sensors} sensors; expected 1 to {most}"),
+            Self::Phases { phases } => write!(f, "{phases} phases; expected 2 to 67"),
+            Self::Step { step } => write!(f, "a step of {step}; expected 1 us to 65.535 ms"),
+            Self::TDelta { t_delta, step } => {
+                write!(f, "a t_delta of {t_delta}; expected less than {step}, by which the code moves crosstalk")
+            }
+            Self::Period { period, least } => write!(f, "a period of {period}; expected {least} to 268435.456 ms"),
+            Self::Lag { sensor, lag, most } => {
+                write!(f, "a lag of {lag} for sensor {}; expected at most {most}", sensor + 1)
+            }
+            Self::Tracker(error) => error.fmt(f),
+            Self::Ring(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for HoppingError {}

@@ -1,0 +1,51 @@
+//! [`Lateness`]: whether firings were punctual enough that crosstalk moved as the code says.
+
+/// The least and the most by which some firings were late, in microseconds.
+#[derive(Clone, Copy, Debug)]
+struct Spread {
+    least: u16,
+    most: u16,
+}
+
+impl Spread {
+    const NONE: Self = Self { least: u16::MAX, most: 0 };
+
+    fn and(self, other: Self) -> Self {
+        Self { least: self.least.min(other.least), most: self.most.max(other.most) }
+    }
+}
+
+/// How late the firings of this period and of the two before were: no older ones can be heard in a reading that is
+/// emitted now, if sound dies within a period.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lateness {
+    periods: [Spread; 3],
+}
+
+impl Lateness {
+    pub(super) const NEW: Self = Self { periods: [Spread::NONE; 3] };
+
+    pub(super) fn note(&mut self, late: u16) {
+        let [present, ..] = &mut self.periods;
+        *present = present.and(Spread { least: late, most: late });
+    }
+
+    /// The timetable has moved: nothing that is heard across it moves as the code says.
+    pub(super) fn break_off(&mut self) {
+        let [present, ..] = &mut self.periods;
+        *present = Spread { least: 0, most: u16::MAX };
+    }
+
+    pub(super) fn end_period(&mut self) {
+        self.periods.rotate_right(1);
+        let [present, ..] = &mut self.periods;
+        *present = Spread::NONE;
+    }
+
+    /// Whether a firing this late differs from all others by no more than is tolerated.
+    pub(super) fn is_steady(&self, late: u16, tolerated: u16) -> bool {
+        let [present, before, before_that] = self.periods;
+        let Spread { least, most } = present.and(before).and(before_that);
+        late.saturating_sub(least) <= tolerated && most.saturating_sub(late) <= tolerated
+    }
+}

@@ -1,0 +1,225 @@
+//! Time hopping: a ring whose firing times move through a cycle of many phases, so that no sensor stays blind.
+//!
+//! Two phases reject crosstalk, but a sensor that foreign sound reaches first in one of them never has a reading
+//! accepted. Here waits move through a code of many phases ([`HoppingCode`]), and an echo is believed that several of
+//! them support ([`EchoTracker`]). A sensor that hears nothing of its own for a while gets a *solo period*, in which it
+//! fires alone; one whose readings keep disagreeing draws a new lag.
+//!
+//! The room uses the ring, the tracker and the scheduler's trait. Rules and measurements: `docs/hopping.md`.
+
+mod code;
+mod error;
+mod firing;
+mod lateness;
+mod plan;
+mod random;
+mod schedule;
+mod settings;
+#[cfg(test)]
+mod tests;
+mod turn;
+
+use crate::reading::{ReadingKind, Tally, Verdict};
+use crate::ring::{PeriodStats, Reading, Ring, RingConfig, RingEvent};
+use crate::schedule::Phase;
+use crate::scheduler::Scheduler as _;
+use crate::sensor_error::SensorError;
+use crate::time::Instant;
+use crate::tracker::{EchoTracker, Firing};
+
+pub use code::HoppingCode;
+pub use error::HoppingError;
+pub use firing::HoppingFiring;
+pub use schedule::HoppingSchedule;
+pub use settings::{HoppingListening, HoppingSettings};
+
+/// A ring of up to `K` sensors that hops in time, with `H` hypotheses for each sensor. It is used like a
+/// [`Ring`]; its readings are also [`Tentative`](ReadingKind::Tentative).
+///
+/// One path of fixed length from one sensor to another is never accepted, not even tentatively, however late firings
+/// are, if its sound dies within `reach` of [`HoppingListening`] and that is less than a period: `docs/theory.md`
+/// section 10 says why, and what is not covered.
+///
+/// ```
+/// use eeruf_core::*;
+/// let code = HoppingCode::new(8, 2, Micros::new(240))?;
+/// let schedule = HoppingSchedule::<8>::spread(code, Micros::from_millis(60), 4)?;
+/// let listening = HoppingListening::new(Micros::from_millis(36));
+/// let start = Instant::from_micros(0);
+/// let mut ring = HoppingRing::<8>::new(&schedule, HoppingSettings::BALANCED, listening, 1, start)?;
+/// let mut accepted = 0;
+/// for _ in 0..1000 {
+///     let now = ring.next_deadline(); // where firmware would sleep
+///     while let Some(event) = ring.poll(now) {
+///         match event {
+///             RingEvent::Fire { sensor, .. } => ring.echo(sensor, now + Micros::from_millis(12))?, // a wall 2 m away
+///             RingEvent::Reading(reading) => accepted += u32::from(reading.kind == ReadingKind::Accepted),
+///             RingEvent::PeriodEnded(_) => {}
+///         }
+///     }
+/// }
+/// assert!(accepted > 400);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct HoppingRing<const K: usize, const H: usize = 4> {
+    ring: Ring<HoppingFiring<K>, K>,
+    tracker: EchoTracker<K, H>,
+    tally: Tally<u8>,
+    /// By how much, in microseconds, firings may differ in lateness and crosstalk still move by more than `t_delta`.
+    tolerated: u16,
+}
+
+impl<const K: usize, const H: usize> HoppingRing<K, H> {
+    /// A ring that begins at `now`. The seed is for the draws of new lags.
+    ///
+    /// # Errors
+    /// [`HoppingError`] for a tracker's setting out of its range, a `t_delta` that is not below the step of the code, a
+    /// period that is not longer than window and code, or a window that ends within the blanking time.
+    pub fn new(
+        schedule: &HoppingSchedule<K>,
+        settings: HoppingSettings,
+        listening: HoppingListening,
+        seed: u32,
+        now: Instant,
+    ) -> Result<Self, HoppingError> {
+        let (code, HoppingListening { window, blanking, .. }) = (schedule.code(), listening);
+        let tracker = EchoTracker::new(settings.tracker)?;
+        let t_delta = settings.tracker.t_delta;
+        if code.step() <= t_delta {
+            return Err(HoppingError::TDelta { t_delta, step: code.step() });
+        }
+        let least = window.saturating_add(code.width());
+        if schedule.period() < least {
+            return Err(HoppingError::Period { period: schedule.period(), least });
+        }
+        let firing = HoppingFiring::new(schedule, settings, listening, seed, now);
+        let config = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
+        let ring = Ring::with_scheduler(firing, config, now)?;
+        // A track may be off by as much as its readings, and a step is at most 65,535 us.
+        let tolerated = (code.step().abs_diff(t_delta).as_micros() - 1) / 2;
+        Ok(Self { ring, tracker, tally: Tally::default(), tolerated: tolerated as u16 })
+    }
+
+    /// The next event, if there is one at `now`: see [`Ring::poll`].
+    pub fn poll(&mut self, now: Instant) -> Option<RingEvent> {
+        self.poll_expecting(now, |_| 0)
+    }
+
+    /// As [`poll`](Self::poll), for a robot that moves: see [`Ring::poll_expecting`].
+    pub fn poll_expecting(&mut self, now: Instant, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+        Some(match self.ring.poll(now)? {
+            RingEvent::Reading(reading) => {
+                let reading = self.weigh(reading, &mut expected_change_us);
+                self.tally.count(reading.kind);
+                RingEvent::Reading(reading)
+            }
+            RingEvent::PeriodEnded(stats) => {
+                let phases = self.firing().schedule.code().phases();
+                let phase = Phase((self.firing().phase + phases - 1) % phases);
+                RingEvent::PeriodEnded(PeriodStats { phase, tally: core::mem::take(&mut self.tally), ..stats })
+            }
+            RingEvent::Fire { sensor, due, .. } => RingEvent::Fire { sensor, phase: self.firing().phase(), due },
+        })
+    }
+
+    /// What the tracker makes of a reading.
+    fn weigh(&mut self, reading: Reading, expected_change_us: &mut impl FnMut(u8) -> i32) -> Reading {
+        let Reading { sensor, kind, t_echo, .. } = reading;
+        let place = usize::from(sensor);
+        let (phase, solo, steady) = self.firing().last_firing(sensor, self.tolerated);
+        if kind == ReadingKind::Late {
+            return Reading { phase, ..reading };
+        }
+        if core::mem::take(&mut self.ring.scheduler_mut().changed) {
+            self.tracker.firing_changed();
+        }
+        let weighed = match kind {
+            ReadingKind::Stuck | ReadingKind::TooEarly => self.tracker.skip(place, kind, t_echo),
+            _ => {
+                let expected_change_us = expected_change_us(sensor);
+                self.tracker.push(place, t_echo, Firing { phase, solo, steady, expected_change_us })
+            }
+        };
+        let Ok(Verdict { kind, t_echo, previous, age }) = weighed else { return reading };
+        let confirmed = matches!(kind, ReadingKind::Accepted | ReadingKind::Clear);
+        // A sensor that is known to have nothing in range is not fooled by what does not fit.
+        let fits = confirmed || self.tracker.is_clear(place);
+        self.ring.scheduler_mut().heard(sensor, confirmed || kind == ReadingKind::Tentative, fits);
+        Reading { phase, kind, t_echo, previous, age, ..reading }
+    }
+
+    /// When to poll next. In the past if an event is pending.
+    pub fn next_deadline(&self) -> Instant {
+        self.ring.next_deadline()
+    }
+
+    /// An edge on the echo line of a sensor: see [`Ring::echo`].
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
+        self.ring.echo(sensor, at)
+    }
+
+    /// When the sensor of the last [`Fire`](RingEvent::Fire) really fired: see [`Ring::fired`].
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
+        self.ring.fired(sensor, at)
+    }
+
+    /// The echo line of a sensor was high when it was to fire: see [`Ring::stuck`].
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn stuck(&mut self, sensor: u8) -> Result<(), SensorError> {
+        self.ring.stuck(sensor)
+    }
+
+    /// Stops a sensor from firing: see [`Ring::disable`].
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn disable(&mut self, sensor: u8) -> Result<(), SensorError> {
+        self.ring.disable(sensor)
+    }
+
+    /// Lets a sensor fire again from the next period on. Its tracks are forgotten.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn enable(&mut self, sensor: u8) -> Result<(), SensorError> {
+        if !self.ring.is_enabled(sensor) {
+            self.ring.enable(sensor)?;
+            self.tracker.forget(sensor.into());
+        }
+        Ok(())
+    }
+
+    /// Whether a sensor fires.
+    pub fn is_enabled(&self, sensor: u8) -> bool {
+        self.ring.is_enabled(sensor)
+    }
+
+    /// Starts again at `now`: firings under way are dropped, and what is not confirmed has no support.
+    pub fn restart(&mut self, now: Instant) {
+        self.ring.restart(now);
+    }
+
+    /// When sensors fire: lags as they are now, the phase, whose solo period it is.
+    pub const fn firing(&self) -> &HoppingFiring<K> {
+        self.ring.scheduler()
+    }
+
+    /// How many sensors there are.
+    pub fn sensors(&self) -> usize {
+        self.firing().sensors()
+    }
+
+    /// What is known of each sensor's echo.
+    pub const fn tracker(&self) -> &EchoTracker<K, H> {
+        &self.tracker
+    }
+}

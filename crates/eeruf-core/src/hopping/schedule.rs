@@ -1,0 +1,98 @@
+//! [`HoppingSchedule`]: a code, a period and the lags to begin with.
+
+use super::code::HoppingCode;
+use super::error::HoppingError;
+use crate::schedule::MAX_PERIOD;
+use crate::time::Micros;
+
+/// When the sensors of a [`HoppingRing`](super::HoppingRing) fire: each once a period, at its lag plus the wait of the
+/// code. `K` is the most sensors that it has room for; the code says how many there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HoppingSchedule<const K: usize> {
+    code: HoppingCode,
+    period: Micros,
+    lags: [Micros; K],
+}
+
+impl<const K: usize> HoppingSchedule<K> {
+    /// With these lags. What does not depend on them is that crosstalk moves by at least the step of the code; what
+    /// does is how far apart neighbours fire.
+    ///
+    /// # Errors
+    /// [`HoppingError`] if `K` is less than the code's sensors, if the period is longer than
+    /// [`MAX_PERIOD`](crate::MAX_PERIOD) or does not exceed the width of the code, or if a sensor would fire after its
+    /// period has ended.
+    pub const fn new(code: HoppingCode, period: Micros, lags: [Micros; K]) -> Result<Self, HoppingError> {
+        if code.sensors() > K {
+            return Err(HoppingError::Sensors { sensors: code.sensors(), most: K });
+        }
+        let least = code.width().saturating_add(Micros::new(1));
+        if period.as_micros() < least.as_micros() || period.as_micros() > MAX_PERIOD.as_micros() {
+            return Err(HoppingError::Period { period, least });
+        }
+        let schedule = Self { code, period, lags };
+        let most = schedule.longest_lag();
+        let mut sensor = 0;
+        while sensor < code.sensors() {
+            if lags[sensor].as_micros() > most.as_micros() {
+                return Err(HoppingError::Lag { sensor: sensor as u8, lag: lags[sensor], most });
+            }
+            sensor += 1;
+        }
+        Ok(schedule)
+    }
+
+    /// With the lags of the conventional method, as far as the code leaves room: `neighbours` adjacent sensors fire
+    /// evenly spread over the period. No neighbours count as one.
+    ///
+    /// # Errors
+    /// As for [`HoppingSchedule::new`].
+    ///
+    /// ```
+    /// use eeruf_core::{HoppingCode, HoppingSchedule, Micros};
+    /// let code = HoppingCode::new(8, 2, Micros::new(240))?;
+    /// let ring = HoppingSchedule::<8>::spread(code, Micros::from_millis(60), 4)?;
+    /// assert_eq!(ring.t_fire(1, 1), Some(Micros::new(14_400 + 480)));
+    /// # Ok::<(), eeruf_core::HoppingError>(())
+    /// ```
+    pub const fn spread(code: HoppingCode, period: Micros, neighbours: u8) -> Result<Self, HoppingError> {
+        let mut lags = [Micros::ZERO; K];
+        let room = period.saturating_sub(code.width()).as_micros() as u64;
+        let n = if neighbours == 0 { 1 } else { neighbours as u64 };
+        let mut sensor = 0;
+        while sensor < K {
+            lags[sensor] = Micros::new((sensor as u64 % n * room / n) as u32);
+            sensor += 1;
+        }
+        Self::new(code, period, lags)
+    }
+
+    /// The code.
+    pub const fn code(&self) -> &HoppingCode {
+        &self.code
+    }
+
+    /// `T_p`.
+    pub const fn period(&self) -> Micros {
+        self.period
+    }
+
+    /// The longest lag that leaves room for the code.
+    pub const fn longest_lag(&self) -> Micros {
+        self.period.saturating_sub(self.code.width()).saturating_sub(Micros::new(1))
+    }
+
+    /// The lag of a sensor; `None` for one that is not there.
+    pub const fn t_lag(&self, sensor: usize) -> Option<Micros> {
+        if sensor < self.code.sensors() && sensor < K { Some(self.lags[sensor]) } else { None }
+    }
+
+    /// When a sensor fires in a phase, after the start of the period; phases are counted modulo the code's. `None` for
+    /// a sensor that is not there.
+    pub const fn t_fire(&self, phase: u8, sensor: usize) -> Option<Micros> {
+        match self.t_lag(sensor) {
+            Some(lag) => Some(lag.saturating_add(self.code.wait(sensor, phase))),
+            None => None,
+        }
+    }
+}

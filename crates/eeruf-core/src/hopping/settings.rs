@@ -1,0 +1,80 @@
+//! How a hopping ring fires and believes, and how it listens.
+
+use crate::time::Micros;
+use crate::tracker::TrackerSettings;
+
+/// How a [`HoppingRing`](super::HoppingRing) fires and believes. Begin with one of [`BALANCED`](Self::BALANCED),
+/// [`QUICK`](Self::QUICK) and [`MAPS`](Self::MAPS); `docs/hopping.md` says which is for whom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct HoppingSettings {
+    /// How readings are weighed.
+    pub tracker: TrackerSettings,
+    /// What of a solo period each period earns, in 1/256; 0: none is ever held.
+    pub solo_rate: u8,
+    /// A sensor with nothing accepted for this many firings asks for a solo period.
+    pub solo_after: u8,
+    /// At least this many periods from one solo period to the next; 0 counts as 1.
+    pub solo_spacing: u8,
+    /// After this many readings running that do not fit what is confirmed a sensor draws a new lag; 0: lags stay.
+    pub shift_after: u8,
+    /// At least this many periods from one change of lags to the next. All sensors that ask for a new lag get it
+    /// together, since whatever is not yet confirmed then loses its support.
+    pub shift_spacing: u8,
+    /// What neighbours keep between their firings when a lag is drawn anew; [`Micros::ZERO`]: nothing. The more, the
+    /// fewer lags are free.
+    pub shift_interval: Micros,
+    /// How many adjacent sensors of a line are neighbours.
+    pub neighbours: u8,
+}
+
+impl HoppingSettings {
+    /// For most robots.
+    pub const BALANCED: Self = Self {
+        tracker: TrackerSettings::BALANCED,
+        solo_rate: 84,
+        solo_after: 5,
+        solo_spacing: 3,
+        shift_after: 5,
+        shift_spacing: 8,
+        shift_interval: Micros::from_millis(8),
+        neighbours: 4,
+    };
+    /// For robots that must stop early: a little more is wrong.
+    pub const QUICK: Self = Self { tracker: TrackerSettings::QUICK, solo_after: 4, solo_spacing: 2, ..Self::BALANCED };
+    /// For maps: confirmed echoes alone, and few solo periods.
+    pub const MAPS: Self = Self {
+        tracker: TrackerSettings::MAPS,
+        solo_rate: 28,
+        solo_after: 8,
+        solo_spacing: 6,
+        shift_spacing: 24,
+        ..Self::BALANCED
+    };
+}
+
+impl Default for HoppingSettings {
+    fn default() -> Self {
+        Self::BALANCED
+    }
+}
+
+/// How a [`HoppingRing`](super::HoppingRing) listens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct HoppingListening {
+    /// `T_wind`: how long a sensor listens after it has fired.
+    pub window: Micros,
+    /// Edges sooner than this after firing are ringing of the transducer, not echoes.
+    pub blanking: Micros,
+    /// After how long no sound is heard any more. A sensor fires alone once all else is silent, and nobody else until
+    /// its own sound is.
+    pub reach: Micros,
+}
+
+impl HoppingListening {
+    /// This window, no blanking, and sound that is heard for as long as the window.
+    pub const fn new(window: Micros) -> Self {
+        Self { window, blanking: Micros::ZERO, reach: window }
+    }
+}

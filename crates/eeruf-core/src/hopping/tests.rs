@@ -1,0 +1,161 @@
+//! What a hopping ring fires, and what it refuses.
+
+extern crate std;
+use super::*;
+use crate::time::Micros;
+use std::string::ToString;
+use std::vec::Vec;
+
+const PERIOD: Micros = Micros::from_millis(60);
+const WINDOW: Micros = Micros::from_millis(36);
+
+fn schedule() -> HoppingSchedule<8> {
+    HoppingSchedule::spread(HoppingCode::new(8, 2, Micros::new(240)).unwrap(), PERIOD, 4).unwrap()
+}
+
+fn ring(settings: HoppingSettings) -> HoppingRing<8> {
+    let listening = HoppingListening { blanking: Micros::new(2380), ..HoppingListening::new(WINDOW) };
+    HoppingRing::new(&schedule(), settings, listening, 7, Instant::from_micros(0)).unwrap()
+}
+
+/// The firings of some periods, on time, as (instant in microseconds, sensor, whether alone); `hears` says after how
+/// long a firing has an echo.
+fn fire(ring: &mut HoppingRing<8>, periods: u32, hears: impl Fn(u8, usize) -> Option<u32>) -> Vec<(u32, u8, bool)> {
+    let (mut fired, mut ended) = (Vec::new(), 0);
+    while ended < periods {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor, .. } => {
+                    fired.push((now.as_micros(), sensor, ring.firing().solo().is_some()));
+                    if let Some(echo) = hears(sensor, fired.len()) {
+                        ring.echo(sensor, now + Micros::new(echo)).unwrap();
+                    }
+                }
+                RingEvent::Reading(_) => {}
+                RingEvent::PeriodEnded(_) => {
+                    ended += 1;
+                    // What fires at the same instant belongs to the next period.
+                    if ended == periods {
+                        break;
+                    }
+                }
+            }
+        }
+    }
+    fired
+}
+
+#[test]
+fn any_two_phases_move_any_path_by_at_least_a_step_for_every_number_of_sensors() {
+    for sensors in 1..=64 {
+        let code = HoppingCode::new(sensors, 2, Micros::new(1)).unwrap();
+        let q = i32::from(code.phases());
+        let wait = |sensor: usize, phase: i32| code.wait(sensor, phase.rem_euclid(q) as u8).as_micros() as i32;
+        // Residues: the least distance between values whose residues differ is one step.
+        for (x, y) in [(0, sensors - 1), (sensors / 2, 0), (sensors - 1, sensors / 3)] {
+            for j in -1..=2 {
+                let moved = |m: i32| wait(x, m - j) - wait(y, m);
+                let mut places: Vec<_> = (0..q).map(moved).collect();
+                places.sort_unstable();
+                assert!(x == y || places.windows(2).all(|pair| pair[1] > pair[0]), "{sensors}: {x} {y} {j}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ring_that_sees_fires_each_sensor_once_a_period_as_the_schedule_says() {
+    let fired = fire(&mut ring(HoppingSettings::BALANCED), 40, |_, _| Some(12_000));
+    let (q, period) = (11, PERIOD.as_micros());
+    for &(at, sensor, solo) in &fired {
+        let phase = (at / period % q) as u8;
+        assert_eq!((at % period, solo), (schedule().t_fire(phase, sensor.into()).unwrap().as_micros(), false));
+    }
+    assert_eq!(fired.len(), 40 * 8);
+}
+
+#[test]
+fn a_blind_sensor_gets_solo_periods_in_which_all_is_silent_before_and_after() {
+    // Sensor 2 hears something else each time.
+    let hears = |sensor, firing: usize| Some(if sensor == 2 { 5000 + (firing as u32 * 7919) % 20_000 } else { 12_000 });
+    let settings = HoppingSettings { solo_rate: 255, solo_spacing: 2, ..HoppingSettings::BALANCED };
+    let fired = fire(&mut ring(settings), 200, hears);
+    let solos: Vec<_> = fired.iter().enumerate().filter(|(_, firing)| firing.2).collect();
+    assert!(solos.len() > 10 && solos.iter().all(|(_, (_, sensor, _))| *sensor == 2), "{}", solos.len());
+    let silence = WINDOW.as_micros() - 2380;
+    for (place, (at, ..)) in solos {
+        assert!(at - fired[place - 1].0 > silence);
+        assert!(fired.get(place + 1).is_none_or(|next| next.0 - at > silence));
+    }
+}
+
+#[test]
+fn no_sensor_fires_again_while_it_listens_and_neighbours_keep_the_interval_asked_for_when_lags_change() {
+    let interval = Micros::from_millis(8);
+    let settings = HoppingSettings { shift_interval: interval, shift_spacing: 2, ..HoppingSettings::BALANCED };
+    let mut hopping = ring(settings);
+    let before: Vec<_> = (0..8).map(|sensor| hopping.firing().t_lag(sensor)).collect();
+    let fired = fire(&mut hopping, 500, |_, firing| Some(3000 + (firing as u32 * 7919) % 30_000));
+    let after: Vec<_> = (0..8).map(|sensor| hopping.firing().t_lag(sensor)).collect();
+    assert!(before.iter().zip(&after).filter(|(before, after)| before != after).count() > 4);
+    for (place, &(at, sensor, _)) in fired.iter().enumerate() {
+        for &(next, other, _) in fired[place + 1..].iter().take(8) {
+            let apart = next - at;
+            assert!(other != sensor || apart >= WINDOW.as_micros());
+            let neighbours = other != sensor && other.abs_diff(sensor) < 4;
+            assert!(!neighbours || apart >= interval.as_micros(), "{sensor} {other} at {at}: {apart}");
+        }
+    }
+}
+
+#[test]
+fn the_same_seed_and_echoes_give_the_same_firings() {
+    let run = || fire(&mut ring(HoppingSettings::QUICK), 300, |_, firing| Some(3000 + (firing as u32 * 7919) % 30_000));
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn a_disabled_sensor_is_left_out_at_once_and_comes_back() {
+    let mut ring = ring(HoppingSettings::BALANCED);
+    ring.disable(3).unwrap();
+    assert!(fire(&mut ring, 5, |_, _| Some(12_000)).iter().all(|&(_, sensor, _)| sensor != 3));
+    ring.enable(3).unwrap();
+    assert!(fire(&mut ring, 5, |_, _| Some(12_000)).iter().any(|&(_, sensor, _)| sensor == 3));
+}
+
+#[test]
+fn a_clock_that_jumps_restarts_the_ring_and_does_not_hang_it() {
+    let mut ring = ring(HoppingSettings::BALANCED);
+    fire(&mut ring, 20, |_, _| Some(12_000));
+    for jump in [1 << 31, 3_000_000_000, 90_000_000, u32::MAX - 5] {
+        let now = Instant::from_micros(jump);
+        let mut events = 0;
+        while ring.poll(now).is_some() {
+            events += 1;
+        }
+        assert!(events < 200 && ring.next_deadline().since(now) <= Micros::from_millis(300), "{jump}: {events}");
+        fire(&mut ring, 1, |_, _| Some(12_000));
+        assert_eq!(fire(&mut ring, 3, |_, _| Some(12_000)).len(), 3 * 8);
+    }
+}
+
+#[test]
+fn each_error_names_what_is_wrong_and_what_is_expected() {
+    let step = Micros::new(240);
+    let text = |error: HoppingError| error.to_string();
+    assert_eq!(text(HoppingCode::new(65, 2, step).unwrap_err()), "65 sensors; expected 1 to 64");
+    assert_eq!(text(HoppingCode::new(8, 68, step).unwrap_err()), "68 phases; expected 2 to 67");
+    assert_eq!(text(HoppingCode::new(8, 2, Micros::ZERO).unwrap_err()), "a step of 0 us; expected 1 us to 65.535 ms");
+    let code = HoppingCode::new(8, 2, step).unwrap();
+    let late = HoppingSchedule::new(code, PERIOD, [Micros::from_millis(58); 8]).unwrap_err();
+    assert_eq!(text(late), "a lag of 58 ms for sensor 1; expected at most 57.599 ms");
+    let short = HoppingSchedule::<8>::spread(code, Micros::from_millis(38), 4).unwrap();
+    let listening = HoppingListening::new(WINDOW);
+    let new = |schedule, settings| HoppingRing::<8>::new(schedule, settings, listening, 1, Instant::from_micros(0));
+    let error = new(&short, HoppingSettings::BALANCED).unwrap_err();
+    assert_eq!(text(error), "a period of 38 ms; expected 38.4 ms to 268435.456 ms");
+    let tracker = crate::TrackerSettings { t_delta: step, ..crate::TrackerSettings::BALANCED };
+    let error = new(&schedule(), HoppingSettings { tracker, ..HoppingSettings::BALANCED }).unwrap_err();
+    assert_eq!(text(error), "a t_delta of 240 us; expected less than 240 us, by which the code moves crosstalk");
+}

@@ -1,0 +1,171 @@
+//! [`EchoTracker`]: which echo of a sensor is its own, for schedules of many phases.
+//!
+//! Where the filter compares each reading with the one before, the tracker keeps a few hypotheses, *tracks*, for each
+//! sensor. A reading within `t_delta` of a track supports it, and only support from *different phases* counts: a path
+//! from another sensor repeats itself in its own phase for ever, but moves from phase to phase. A reading later than a
+//! track contradicts it, since that echo would have come first; an earlier one says nothing about it, since it masks
+//! what comes later. Silence is a track like any other, later than all echoes.
+//!
+//! The room uses readings and times; it knows nothing of schedules. Rules and measurements: `docs/hopping.md`.
+
+mod error;
+mod sensor;
+mod settings;
+#[cfg(test)]
+mod tests;
+mod track;
+
+use crate::filter::NO_ECHO;
+use crate::reading::{ReadingKind, Verdict};
+use crate::schedule::Phase;
+use crate::time::Micros;
+
+pub use error::TrackerError;
+use sensor::{Heard, SensorTracks};
+pub use settings::TrackerSettings;
+
+/// What one firing was like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Firing {
+    /// The phase of the schedule in which the sensor fired.
+    pub phase: Phase,
+    /// Whether no other sensor's sound could be heard.
+    pub solo: bool,
+    /// Whether firings were punctual enough that crosstalk moved as the schedule says. An echo of a firing that was
+    /// not supports nothing.
+    pub steady: bool,
+    /// By how many microseconds a good reading should have changed since this sensor's firing before: `-2 v dt / c`
+    /// for an object approached at `v`.
+    pub expected_change_us: i32,
+}
+
+impl Firing {
+    /// An ordinary, punctual firing in this phase, of a robot that stands.
+    pub const fn new(phase: Phase) -> Self {
+        Self { phase, solo: false, steady: true, expected_change_us: 0 }
+    }
+}
+
+/// Tracks the echoes of up to `K` sensors, with up to `H` hypotheses for each.
+///
+/// ```
+/// use eeruf_core::{EchoTracker, Firing, Micros, Phase, ReadingKind, TrackerSettings};
+/// let mut tracker = EchoTracker::<1>::new(TrackerSettings::BALANCED)?;
+/// let mut push = |phase, us| tracker.push(0, Some(Micros::new(us)), Firing::new(Phase(phase))).map(|verdict| verdict.kind);
+/// // Crosstalk in one phase is heard again and again, and never believed.
+/// for _ in 0..100 {
+///     assert!(matches!(push(3, 7_000)?, ReadingKind::First | ReadingKind::Rejected));
+/// }
+/// // An echo from three phases is tentative, from five confirmed.
+/// let kinds = [4, 5, 6, 7, 8].map(|phase| push(phase, 9_000));
+/// assert_eq!(kinds[2]?, ReadingKind::Tentative);
+/// assert_eq!(kinds[4]?, ReadingKind::Accepted);
+/// # Ok::<(), eeruf_core::TrackerError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct EchoTracker<const K: usize, const H: usize = 4> {
+    sensors: [SensorTracks<H>; K],
+    settings: TrackerSettings,
+    /// The sensor that last had a candidate, and for how many pushes that makes others readier.
+    candidate: u8,
+    readier: u8,
+}
+
+/// A sensor has this rate of unexplained readings, of 255, where a tentative echo needs one vote more.
+const RESTLESS: u8 = 102;
+
+impl<const K: usize, const H: usize> EchoTracker<K, H> {
+    /// A tracker that knows nothing yet.
+    ///
+    /// # Errors
+    /// [`TrackerError::Setting`] for a setting out of its range.
+    pub const fn new(settings: TrackerSettings) -> Result<Self, TrackerError> {
+        match settings.check() {
+            Ok(()) => Ok(Self { sensors: [SensorTracks::NEW; K], settings, candidate: u8::MAX, readier: 0 }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// How it weighs readings.
+    pub const fn settings(&self) -> &TrackerSettings {
+        &self.settings
+    }
+
+    /// Takes in one firing of a sensor (from 0): the time of its echo, or `None` without echo. The verdict is
+    /// [`Accepted`](ReadingKind::Accepted) for an echo near the earliest confirmed track, [`Clear`](ReadingKind::Clear)
+    /// for confirmed silence, [`Tentative`](ReadingKind::Tentative) for an echo that few readings support so far and
+    /// none contradicts, earlier than what is confirmed; else [`First`](ReadingKind::First),
+    /// [`Rejected`](ReadingKind::Rejected) or [`NoEcho`](ReadingKind::NoEcho).
+    ///
+    /// # Errors
+    /// [`TrackerError::Sensor`] for a sensor that is not there.
+    pub fn push(&mut self, sensor: usize, t_echo: Option<Micros>, firing: Firing) -> Result<Verdict, TrackerError> {
+        let tentative_votes = self.tentative_votes(sensor);
+        let Some(tracks) = self.sensors.get_mut(sensor) else {
+            return Err(TrackerError::Sensor { sensor, sensors: K });
+        };
+        let Firing { phase: Phase(phase), solo, steady, expected_change_us } = firing;
+        // The longest duration stands for silence.
+        let t_echo = t_echo.map_or(NO_ECHO, |t_echo| t_echo.as_micros().min(NO_ECHO - 1));
+        tracks.shift(expected_change_us);
+        let heard = Heard { t_echo, phase, solo, steady, tentative_votes };
+        let (verdict, candidate) = tracks.push(heard, &self.settings);
+        self.readier = self.readier.saturating_sub(1);
+        if candidate {
+            // For three periods; at most 64 sensors.
+            (self.candidate, self.readier) = (sensor as u8, (3 * K) as u8);
+        }
+        Ok(verdict)
+    }
+
+    /// A firing that says nothing about the echo time, such as one with an echo within the blanking time: nothing is
+    /// supported or contradicted, and the age grows.
+    ///
+    /// # Errors
+    /// [`TrackerError::Sensor`] for a sensor that is not there.
+    pub fn skip(&mut self, sensor: usize, kind: ReadingKind, t_echo: Option<Micros>) -> Result<Verdict, TrackerError> {
+        match self.sensors.get_mut(sensor) {
+            Some(tracks) => Ok(tracks.skip(kind, t_echo)),
+            None => Err(TrackerError::Sensor { sensor, sensors: K }),
+        }
+    }
+
+    /// Whether it is confirmed that nothing is in a sensor's range.
+    pub fn is_clear(&self, sensor: usize) -> bool {
+        self.sensors.get(sensor).is_some_and(SensorTracks::is_clear)
+    }
+
+    /// The echo time of a sensor that is confirmed; `None` if none is, and for confirmed silence.
+    pub fn confirmed(&self, sensor: usize) -> Option<Micros> {
+        let confirmed = self.sensors.get(sensor)?.earliest_confirmed()?;
+        (confirmed != NO_ECHO).then_some(Micros::new(confirmed))
+    }
+
+    /// Forgets the tracks of a sensor. The age goes on.
+    pub fn forget(&mut self, sensor: usize) {
+        if let Some(tracks) = self.sensors.get_mut(sensor) {
+            tracks.forget();
+        }
+    }
+
+    /// Firing times have changed against each other otherwise than by the phase, such as by a new lag: what supported a
+    /// track so far cannot be compared with what will. Tracks that are confirmed stay so; all others begin anew.
+    pub fn firing_changed(&mut self) {
+        for tracks in &mut self.sensors {
+            tracks.firing_changed();
+        }
+    }
+
+    /// How many close votes a sensor's tentative echo needs now: one more where much is unexplained, one fewer while
+    /// another sensor has a candidate as well, at least two.
+    fn tentative_votes(&self, sensor: usize) -> u8 {
+        let votes = self.settings.tentative_votes;
+        if votes == 0 {
+            return 0;
+        }
+        let restless = self.sensors.get(sensor).is_some_and(|tracks| tracks.unexplained() > RESTLESS);
+        let readier = self.readier > 0 && usize::from(self.candidate) != sensor;
+        (votes + u8::from(restless)).saturating_sub(readier.into()).max(2)
+    }
+}

@@ -1,0 +1,80 @@
+//! [`TrackerSettings`]: how much must agree before an echo is believed, in three named sets.
+
+use super::error::TrackerError;
+use crate::time::Micros;
+
+/// How an [`EchoTracker`](super::EchoTracker) weighs readings. Begin with one of [`BALANCED`](Self::BALANCED),
+/// [`QUICK`](Self::QUICK) and [`MAPS`](Self::MAPS).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct TrackerSettings {
+    /// `T_delta`: a reading supports a track that it differs from by no more. 1 us to 65,535 us.
+    pub t_delta: Micros,
+    /// A reading this near a confirmed track is accepted, though only one within `t_delta` supports it: an echo moves
+    /// a little as the robot does. At least `t_delta`, at most 65,535 us.
+    pub near: Micros,
+    /// A track is confirmed once this many votes support it: one for each phase, two for one in which the sensor fired
+    /// alone. 2 to 15.
+    pub votes: u8,
+    /// A track's score stops here; each new phase adds to it, each contradiction takes from it. `votes` to 15.
+    pub score_limit: u8,
+    /// What a contradiction takes from the score of a confirmed track. 1 to 15.
+    pub contradiction: u8,
+    /// What it takes if the sensor fired alone. 1 to 15.
+    pub solo_contradiction: u8,
+    /// How many phases must support an echo that was never contradicted before it is reported as tentative, or 0 to
+    /// report confirmed echoes alone. 0 or 2 to 15; one is enough if the sensor fired alone.
+    pub tentative_votes: u8,
+    /// How closely they must agree to count for that. At most `t_delta`.
+    pub tentative_within: Micros,
+}
+
+impl TrackerSettings {
+    /// For most robots: what comes nearer is reported as tentative after some three periods.
+    pub const BALANCED: Self = Self {
+        t_delta: Micros::new(150),
+        near: Micros::new(400),
+        votes: 5,
+        score_limit: 7,
+        contradiction: 1,
+        solo_contradiction: 6,
+        tentative_votes: 3,
+        tentative_within: Micros::new(60),
+    };
+    /// For robots that must stop early: two readings from different phases are reported as tentative.
+    pub const QUICK: Self = Self { tentative_votes: 2, ..Self::BALANCED };
+    /// For maps: confirmed echoes alone.
+    pub const MAPS: Self = Self { tentative_votes: 0, ..Self::BALANCED };
+
+    pub(super) const fn check(&self) -> Result<(), TrackerError> {
+        let (t_delta, near) = (self.t_delta.as_micros(), self.near.as_micros());
+        let within = self.tentative_within.as_micros();
+        macro_rules! expect {
+            ($name:literal, $value:expr, $least:expr, $most:expr) => {
+                if $value < $least || $value > $most {
+                    return Err(TrackerError::Setting { name: $name, value: $value, least: $least, most: $most });
+                }
+            };
+        }
+        const LONGEST: u32 = u16::MAX as u32;
+        expect!("t_delta", t_delta, 1, LONGEST);
+        expect!("near", near, t_delta, LONGEST);
+        expect!("votes", self.votes as u32, 2, 15);
+        expect!("score_limit", self.score_limit as u32, self.votes as u32, 15);
+        expect!("contradiction", self.contradiction as u32, 1, 15);
+        expect!("solo_contradiction", self.solo_contradiction as u32, 1, 15);
+        if self.tentative_votes != 0 {
+            expect!("tentative_votes", self.tentative_votes as u32, 2, 15);
+        }
+        if within > t_delta {
+            return Err(TrackerError::Setting { name: "tentative_within", value: within, least: 0, most: t_delta });
+        }
+        Ok(())
+    }
+}
+
+impl Default for TrackerSettings {
+    fn default() -> Self {
+        Self::BALANCED
+    }
+}

@@ -1,0 +1,165 @@
+//! What the tracker makes of firings in a row, and that the faults of patience are not among it.
+
+extern crate std;
+use super::*;
+use std::string::ToString;
+use std::vec::Vec;
+
+const PHASES: u8 = 11;
+
+fn us(us: u32) -> Option<Micros> {
+    Some(Micros::new(us))
+}
+
+fn balanced() -> EchoTracker<1> {
+    EchoTracker::new(TrackerSettings::BALANCED).unwrap()
+}
+
+/// Pushes one echo time after the other, in phases that follow on each other from 0.
+fn kinds(tracker: &mut EchoTracker<1>, echoes: impl IntoIterator<Item = Option<Micros>>) -> Vec<ReadingKind> {
+    let mut push = |(firing, echo)| tracker.push(0, echo, Firing::new(Phase((firing % usize::from(PHASES)) as u8)));
+    echoes.into_iter().enumerate().map(|echo| push(echo).unwrap().kind).collect()
+}
+
+#[test]
+fn an_echo_from_three_phases_is_tentative_and_from_five_confirmed() {
+    use ReadingKind::*;
+    let seen = kinds(&mut balanced(), [us(9000); 6]);
+    assert_eq!(seen, [First, Rejected, Tentative, Tentative, Accepted, Accepted]);
+    let mut maps = EchoTracker::new(TrackerSettings::MAPS).unwrap();
+    assert_eq!(kinds(&mut maps, [us(9000); 5]), [First, Rejected, Rejected, Rejected, Accepted]);
+}
+
+#[test]
+fn an_echo_in_one_phase_only_is_never_believed_however_often_it_comes() {
+    let mut tracker = balanced();
+    for _ in 0..300 {
+        let verdict = tracker.push(0, us(9000), Firing::new(Phase(4))).unwrap();
+        assert!(matches!(verdict.kind, ReadingKind::First | ReadingKind::Rejected));
+    }
+}
+
+#[test]
+fn a_reading_of_a_sensor_that_fired_alone_is_tentative_at_once_and_counts_twice() {
+    use ReadingKind::*;
+    let mut tracker = balanced();
+    let mut push = |phase, solo| {
+        let firing = Firing { solo, ..Firing::new(Phase(phase)) };
+        tracker.push(0, us(9000), firing).unwrap().kind
+    };
+    assert_eq!([push(0, true), push(1, true), push(2, false)], [Tentative, Tentative, Accepted]);
+}
+
+#[test]
+fn crosstalk_in_one_phase_does_not_keep_a_belief_alive_whose_wall_has_gone() {
+    let mut tracker = balanced();
+    kinds(&mut tracker, [us(9000); 22]);
+    assert_eq!(tracker.confirmed(0), us(9000));
+    // The wall is now further away; the path of another sensor reads in phase 3 what the wall did.
+    let echoes = (0..220).map(|firing| if firing % 11 == 3 { us(9000) } else { us(14_000) });
+    let seen = kinds(&mut tracker, echoes);
+    assert_eq!(tracker.confirmed(0), us(14_000));
+    let late = &seen[44..];
+    assert!(late.iter().enumerate().all(|(firing, &kind)| (kind == ReadingKind::Accepted) == (firing % 11 != 3)));
+}
+
+#[test]
+fn one_silent_firing_is_not_clear_and_silence_in_five_phases_is() {
+    use ReadingKind::*;
+    let mut tracker = balanced();
+    kinds(&mut tracker, [us(9000); 11]);
+    let seen = kinds(&mut tracker, [None; 12]);
+    assert_eq!(seen[..4], [NoEcho; 4]);
+    assert_eq!(seen[11], Clear);
+    assert!(tracker.is_clear(0));
+}
+
+#[test]
+fn random_echoes_are_hardly_ever_believed() {
+    let mut state = 1_u32;
+    let mut random = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        us(2400 + (state >> 8) % 33_600)
+    };
+    let seen = kinds(&mut balanced(), (0..20_000).map(|_| random()));
+    let believed = seen.iter().filter(|kind| matches!(kind, ReadingKind::Accepted | ReadingKind::Tentative)).count();
+    assert!(believed < 200, "{believed} of 20,000");
+}
+
+#[test]
+fn what_is_earlier_masks_and_what_is_later_contradicts() {
+    let mut tracker = balanced();
+    kinds(&mut tracker, [us(9000); 11]);
+    // Crosstalk comes first in every second phase, at another time each.
+    let masked = (0..110).map(|firing| if firing % 2 == 0 { us(4000 + 300 * (firing % 11)) } else { us(9000) });
+    let seen = kinds(&mut tracker, masked);
+    assert!((0..110).filter(|firing| firing % 2 == 1).all(|firing| seen[firing] == ReadingKind::Accepted));
+    // What lies behind the wall is believed only after the wall has been contradicted.
+    let seen = kinds(&mut tracker, [us(12_000); 11]);
+    assert!(seen[..5].iter().all(|&kind| kind == ReadingKind::Rejected));
+    assert_eq!((seen[10], tracker.confirmed(0)), (ReadingKind::Accepted, us(12_000)));
+}
+
+#[test]
+fn an_echo_that_moves_faster_than_its_support_is_followed() {
+    let mut tracker = balanced();
+    kinds(&mut tracker, [us(9000); 11]);
+    let seen = kinds(&mut tracker, (1..=20).map(|firing| us(9000 - 60 * firing)));
+    assert!(seen.iter().all(|&kind| kind == ReadingKind::Accepted), "{seen:?}");
+}
+
+#[test]
+fn the_change_that_odometry_expects_moves_all_tracks() {
+    let mut tracker = balanced();
+    let push = |(phase, t_echo)| {
+        let firing = Firing { expected_change_us: -1000, ..Firing::new(Phase(phase)) };
+        tracker.push(0, us(t_echo), firing).unwrap().kind
+    };
+    let seen: Vec<_> = (0..6).zip((0..6).map(|step| 20_000 - 1000 * step)).map(push).collect();
+    assert_eq!(seen[4..], [ReadingKind::Accepted; 2]);
+}
+
+#[test]
+fn a_firing_that_was_not_steady_supports_nothing() {
+    let mut tracker = balanced();
+    for phase in 0..PHASES {
+        let firing = Firing { steady: false, ..Firing::new(Phase(phase)) };
+        let kind = tracker.push(0, us(9000), firing).unwrap().kind;
+        assert_eq!(kind, ReadingKind::First);
+    }
+}
+
+#[test]
+fn a_change_of_firing_times_takes_support_from_what_is_not_confirmed_alone() {
+    let mut tracker = balanced();
+    kinds(&mut tracker, [us(9000); 3]);
+    tracker.firing_changed();
+    assert_eq!(tracker.push(0, us(9000), Firing::new(Phase(3))).unwrap().kind, ReadingKind::Rejected);
+    kinds(&mut tracker, [us(9000); 11]);
+    tracker.firing_changed();
+    assert_eq!(tracker.push(0, us(9000), Firing::new(Phase(0))).unwrap().kind, ReadingKind::Accepted);
+}
+
+#[test]
+fn the_longest_times_and_the_largest_changes_are_echoes_like_any_other() {
+    let mut tracker = balanced();
+    for (phase, change) in (0..40).zip([i32::MAX, i32::MIN, 0, 1, -1].into_iter().cycle()) {
+        let firing = Firing { expected_change_us: change, ..Firing::new(Phase(phase)) };
+        tracker.push(0, Some(Micros::MAX), firing).unwrap();
+        tracker.push(0, Some(Micros::ZERO), firing).unwrap();
+        tracker.push(0, None, firing).unwrap();
+    }
+}
+
+#[test]
+fn each_error_names_what_is_wrong_and_what_is_expected() {
+    let with = |settings| EchoTracker::<1>::new(settings).unwrap_err().to_string();
+    let zero = TrackerSettings { t_delta: Micros::ZERO, ..TrackerSettings::BALANCED };
+    assert_eq!(with(zero), "t_delta is 0; expected 1 to 65535");
+    let loose = TrackerSettings { tentative_within: Micros::new(151), ..TrackerSettings::BALANCED };
+    assert_eq!(with(loose), "tentative_within is 151; expected 0 to 150");
+    let few = TrackerSettings { votes: 1, ..TrackerSettings::BALANCED };
+    assert_eq!(with(few), "votes is 1; expected 2 to 15");
+    let error = balanced().push(1, None, Firing::new(Phase(0))).unwrap_err();
+    assert_eq!(error.to_string(), "sensor 2; expected 1 to 1");
+}

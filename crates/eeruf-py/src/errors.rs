@@ -90,7 +90,7 @@ Example:
     Traceback (most recent call last):
     eeruf.SearchError: a lag of 10 ms; expected a whole number of ticks of 3 ms
 " from eeruf_core::search::SearchError;
-    CertificateError "A certificate that proves nothing, or not that a period is the shortest; the message names the line.
+    CertificateError "A certificate that proves nothing, or not that a period is the shortest; the message says why.
 
 Example:
     >>> import eeruf

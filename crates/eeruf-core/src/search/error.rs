@@ -32,6 +32,13 @@ pub enum SearchError {
         /// What it takes, in microseconds.
         period_us: u64,
     },
+    /// Firing one by one takes longer than [`MAX_PERIOD`] because every need is rounded up to a whole tick.
+    CoarseTick {
+        /// The tick.
+        tick: Micros,
+        /// What it takes, in microseconds.
+        period_us: u64,
+    },
     /// The schedule found does not fit the capacity asked for.
     Schedule(ScheduleError),
 }
@@ -77,6 +84,12 @@ impl fmt::Display for SearchError {
                 f,
                 "firing one by one already takes {} s; expected at most {MAX_PERIOD}, so a shorter interval \
                  or window, or a smaller t_delta",
+                period_us / 1_000_000
+            ),
+            Self::CoarseTick { tick, period_us } => write!(
+                f,
+                "in ticks of {tick} firing one by one already takes {} s; expected at most {MAX_PERIOD}, so use a finer \
+                 tick",
                 period_us / 1_000_000
             ),
             Self::Schedule(error) => error.fmt(f),

@@ -8,6 +8,7 @@ mod fired;
 mod hopping;
 mod lateness;
 mod period_corpus;
+mod period_edges;
 mod period_limits;
 mod period_small;
 mod period_ticks;

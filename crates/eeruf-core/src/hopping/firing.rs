@@ -45,6 +45,7 @@ pub struct HoppingFiring<const K: usize> {
     pub(super) changed: bool,
     pub(super) random: SmallRandom,
     pub(super) disabled: SensorSet,
+    paused: bool,
     lateness: Lateness,
     pub(super) schedule: HoppingSchedule<K>,
     pub(super) settings: HoppingSettings,
@@ -79,6 +80,7 @@ impl<const K: usize> HoppingFiring<K> {
             changed: false,
             random: SmallRandom::new(seed),
             disabled: SensorSet::NONE,
+            paused: false,
             lateness: Lateness::NEW,
             schedule: *schedule,
             settings,
@@ -137,6 +139,7 @@ impl<const K: usize> HoppingFiring<K> {
     fn begin_period(&mut self) {
         self.place = 0;
         self.plan();
+        self.set_paused(self.paused);
     }
 
     /// Nothing that is heard across this moment moves as the code says.
@@ -223,6 +226,14 @@ impl<const K: usize> Scheduler for HoppingFiring<K> {
         self.disabled.set(sensor, !enabled);
         if !enabled {
             self.leave_out(sensor, self.place);
+        }
+    }
+
+    fn set_paused(&mut self, paused: bool) {
+        self.paused = paused;
+        if paused {
+            // What is left of the period.
+            self.planned = self.place;
         }
     }
 

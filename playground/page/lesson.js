@@ -38,8 +38,8 @@ const STEPS = [
   },
   {
     title: "The price, and how hopping pays it",
-    text: "Some good readings are rejected too, and a sensor that always hears foreign sound first stays blind; it is crossed out. Time hopping carries the two waits on to many, and gives a blind sensor a period in which it alone fires: nobody stays blind.",
-    state: { ...ALCOVE, sensors: 8, sensor: 7, shown: ["eeruf", "eeruf_hopping"], slow: 40 },
+    text: "Some good readings are rejected too, and a sensor that always hears foreign sound first stays blind; it is crossed out. Time hopping carries the two waits on to many, and gives a blind sensor a period in which it alone fires: look at what sensor 1 reads under both.",
+    state: { ...ALCOVE, sensors: 8, sensor: 0, shown: ["eeruf", "eeruf_hopping"], slow: 20 },
   },
   {
     title: "Your turn",

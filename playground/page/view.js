@@ -4,7 +4,7 @@
 /** @typedef {{x: number, y: number}} Spot */
 /** @typedef {{left: number, top: number, width: number, height: number}} Box In metres; `top` is the largest y. */
 
-const MARGIN_M = 0.2;
+const MARGIN_M = 0.3;
 const SMALLEST_M = 1.2;
 
 /** @param {import("./state.js").State} state @returns {Box} What holds all that there is. */

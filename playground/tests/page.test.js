@@ -112,6 +112,26 @@ test("arrow keys move what is chosen, and Delete takes it away", async () => {
   await context.close();
 });
 
+test("a finger drags the robot, and the page does not scroll away under it", async () => {
+  const { context, page, troubles } = await open(browser, server.url, { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true });
+  const robot = page.locator(".handle.robot");
+  await robot.scrollIntoViewIfNeeded();
+  const box = await robot.boundingBox();
+  assert.ok(box);
+  const touch = await context.newCDPSession(page);
+  const at = (/** @type {number} */ k) => [{ x: box.x + box.width / 2 + 3 * k, y: box.y + box.height / 2 - 2 * k }];
+  const scrolled = await page.evaluate(() => scrollY);
+  await touch.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: at(0) });
+  for (let k = 1; k <= 10; k++) await touch.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: at(k) });
+  await touch.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+  await ready(page);
+  const { robot: moved } = await stateOf(page);
+  assert.ok(moved.x > -0.25 && moved.y > 0.18, JSON.stringify(moved));
+  assert.equal(await page.evaluate(() => scrollY), scrolled);
+  assert.deepEqual(troubles, []);
+  await context.close();
+});
+
 test("walls that cross and a robot in a wall are said in a sentence, and mended by dragging back", async () => {
   const state = { ...firstState(), walls: [[[1, -1], [1, 1]], [[0.8, 0], [1.2, 0]]], robot: { x: 0, y: 0, heading: 0 } };
   const { context, page, troubles } = await openStale(`${server.url}#${toHash(/** @type {any} */ (state))}`);

@@ -5,12 +5,13 @@
 //! that differ from sensor to sensor, and accepts a reading only if it is near-identical to the one before. A true echo
 //! does not depend on the waits; crosstalk shifts with them and is rejected. What is proven, and why: [`theory`].
 //!
-//! - [`Schedule`]: when each sensor fires. [`schedule!`] checks a table while the firmware is compiled.
-//! - [`Requirements`] and [`Schedule::verify`]: Eqs. (13a), (13b), the smallest interval between neighbours, and the
-//!   listening window.
+//! - [`Schedule`]: when each sensor fires. [`Requirements`] and [`Schedule::verify`]: Eqs. (13a), (13b), the smallest
+//!   interval between neighbours, and the listening window.
+//! - [`VerifiedSchedule`]: a schedule that meets them. [`schedule!`] makes one while the firmware is compiled.
 //! - [`Ring`]: what firmware runs. It combines a [`Scheduler`] ([`ScheduledFiring`] or [`ImmediateRefiring`]) with the
 //!   filter; [`EchoFilter`] is the filter alone.
 //! - [`EchoTracker`]: believes an echo that readings from several phases support, for schedules of many phases.
+//! - [`EdgeQueue`]: from the interrupt of an echo line to the main loop.
 //! - [`Adaptation`]: moves along a ladder of schedules as the rejection rate asks for.
 //! - [`SpeedOfSound`]: distances from echo times.
 //!
@@ -28,6 +29,7 @@
 mod adaptation;
 mod checked;
 mod conditions;
+mod edges;
 pub mod emit;
 mod filter;
 mod hopping;
@@ -38,6 +40,7 @@ mod ring;
 mod schedule;
 mod scheduler;
 pub mod search;
+mod sensor_error;
 mod sensor_set;
 mod sound;
 pub mod tables;
@@ -50,6 +53,7 @@ pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
 #[doc(hidden)]
 pub use checked::{__checked, __micros};
 pub use conditions::{Criterion, Interval, Requirements, Separation};
+pub use edges::{Edge, EdgeQueue};
 pub use filter::{EchoFilter, FilterError};
 pub use hopping::{
     HoppingCode, HoppingError, HoppingFiring, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings,
@@ -57,8 +61,9 @@ pub use hopping::{
 pub use layout::{Layout, LayoutError, neighbour_rows};
 pub use reading::{ReadingKind, Tally, Verdict};
 pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
-pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError};
-pub use scheduler::{ImmediateRefiring, ScheduledFiring, Scheduler, SchedulerStep};
+pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError, VerifiedFor};
+pub use scheduler::{ImmediateRefiring, Limits, ScheduledFiring, Scheduler, SchedulerStep};
+pub use sensor_error::SensorError;
 pub use sound::SpeedOfSound;
 pub use time::{Instant, Micros};
 pub use tracker::{EchoTracker, Firing, TrackerError, TrackerSettings};

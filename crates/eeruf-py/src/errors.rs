@@ -57,7 +57,7 @@ Example:
     >>> eeruf.EchoFilter(sensors=0, t_delta_us=500)
     Traceback (most recent call last):
     eeruf.ArgumentError: sensors = 0; expected a whole number from 1 to 64
-";
+" from eeruf_core::SensorError;
     ScheduleError "Numbers that make no schedule.
 
 Example:
@@ -80,8 +80,8 @@ Example:
     >>> import eeruf
     >>> eeruf.Ring(eeruf.tables.TABLE_I_D, 500, window_us=0)
     Traceback (most recent call last):
-    eeruf.RingError: a blanking time of 0 us; expected less than the window of 0 us
-" from eeruf_core::RingError;
+    eeruf.RingError: a blanking time of 0 us; expected less than the window of 0 us, and at most 65.535 ms
+" from eeruf_core::RingError, eeruf_core::Violation;
     SearchError "Needs that make no sense or are too large to search.
 
 Example:

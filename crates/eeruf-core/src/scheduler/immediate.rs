@@ -12,7 +12,7 @@
 //!
 //! In (8) the filter takes it for a true echo. In (10a), (10b) consecutive readings differ, and it does not.
 
-use super::contract::Scheduler;
+use super::contract::{Limits, Scheduler};
 use crate::schedule::{MAX_PERIOD, Phase, Schedule};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
@@ -102,6 +102,13 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
         }
     }
 
+    fn postpone(&mut self, sensor: u8, by: Micros) {
+        if let Some(turn) = self.sensors.get_mut(usize::from(sensor)) {
+            // While it listens this is when it fired; afterwards its next firing follows from that.
+            turn.at += by;
+        }
+    }
+
     fn end_period(&mut self, now: Instant) -> (Phase, bool) {
         let phase = Phase(self.phase);
         self.phase = next_phase::<M>(self.phase);
@@ -174,9 +181,13 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
         0
     }
 
-    fn longest_window(&self) -> Micros {
+    fn limits(&self) -> Limits<'_> {
         // It fires only what has ended.
-        Micros::MAX
+        Limits { longest_window: Micros::MAX, verified_for: None }
+    }
+
+    fn min_refire(&self) -> Micros {
+        self.min_refire
     }
 
     fn horizon(&self) -> Micros {

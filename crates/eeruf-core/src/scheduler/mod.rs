@@ -6,6 +6,6 @@ mod contract;
 mod immediate;
 mod scheduled;
 
-pub use contract::{Scheduler, SchedulerStep};
+pub use contract::{Limits, Scheduler, SchedulerStep};
 pub use immediate::ImmediateRefiring;
 pub use scheduled::ScheduledFiring;

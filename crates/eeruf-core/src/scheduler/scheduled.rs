@@ -1,6 +1,6 @@
 //! [`ScheduledFiring`]: every sensor fires once per period, by the table of a schedule (Sec. 3.1, Fig. 3).
 
-use super::contract::Scheduler;
+use super::contract::{Limits, Scheduler};
 use crate::schedule::{MAX_SENSORS, Phase, Schedule};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
@@ -116,9 +116,16 @@ const fn is_sensor<const K: usize>(sensor: u8) -> bool {
 /// How long to stay silent after the last firing so that a period which was not verified against it may begin. Where
 /// nothing was verified a whole period: two neighbours fire within one, so no interval can be longer.
 const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>) -> Micros {
-    match schedule.promise() {
-        Some(promise) => longer(promise.min_interval, schedule.min_refire()),
+    match schedule.verified_for() {
+        Some(verified_for) => longer(verified_for.min_interval, schedule.min_refire()),
         None => longer(schedule.period(), schedule.min_refire()),
+    }
+}
+
+impl<const K: usize, const M: usize> Schedule<K, M> {
+    /// What it allows a ring.
+    pub(crate) const fn limits(&self) -> Limits<'_> {
+        Limits { longest_window: self.min_refire(), verified_for: self.verified_for() }
     }
 }
 
@@ -136,6 +143,11 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         self.turn(now);
     }
 
+    fn postpone(&mut self, _sensor: u8, by: Micros) {
+        self.last_fired += by;
+        self.due += by;
+    }
+
     fn end_period(&mut self, now: Instant) -> (Phase, bool) {
         let phase = Phase(self.phase);
         // Periods in which nothing fired need not be caught up with.
@@ -148,7 +160,7 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
             self.last_fired = Instant::from_micros(start.as_micros().wrapping_sub(settling.as_micros()));
         }
         if let Some(next) = self.next_schedule.take() {
-            let min_interval = next.promise().map_or(Micros::ZERO, |promise| promise.min_interval);
+            let min_interval = next.verified_for().map_or(Micros::ZERO, |verified_for| verified_for.min_interval);
             let settled = self.last_fired + longer(settling, min_interval);
             if settled.has_reached(start) {
                 start = settled;
@@ -203,15 +215,15 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         if self.phase >= phase.0 { self.phase - phase.0 } else { (self.phase + M as u8).saturating_sub(phase.0) }
     }
 
-    fn verified_t_delta(&self) -> Option<Micros> {
-        self.schedule.promise().map(|promise| promise.t_delta)
+    fn limits(&self) -> Limits<'_> {
+        self.schedule.limits()
     }
 
-    fn separation(&self) -> Option<Micros> {
-        self.schedule.promise().map(|promise| promise.separation)
+    fn next_limits(&self) -> Option<Limits<'_>> {
+        self.next_schedule.map(Schedule::limits)
     }
 
-    fn longest_window(&self) -> Micros {
+    fn min_refire(&self) -> Micros {
         self.schedule.min_refire()
     }
 

@@ -3,6 +3,7 @@
 mod brute_force;
 mod common;
 mod conditions_naive;
+mod fired;
 mod hopping;
 mod lateness;
 mod period_corpus;

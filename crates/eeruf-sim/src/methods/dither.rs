@@ -1,6 +1,6 @@
 //! Random dither: the conventional lags plus a wait drawn anew for each sensor in each period.
 
-use eeruf_core::{Instant, MAX_SENSORS, Micros, Phase, Scheduler};
+use eeruf_core::{Instant, Limits, MAX_SENSORS, Micros, Phase, Scheduler};
 
 use crate::world::Random;
 
@@ -59,6 +59,10 @@ impl Scheduler for DitherFiring {
         self.skip_disabled();
     }
 
+    fn postpone(&mut self, _sensor: u8, by: Micros) {
+        self.start += by;
+    }
+
     fn end_period(&mut self, _now: Instant) -> (Phase, bool) {
         self.begin_period(self.deadline());
         (Phase::A, false)
@@ -93,7 +97,11 @@ impl Scheduler for DitherFiring {
         0
     }
 
-    fn longest_window(&self) -> Micros {
+    fn limits(&self) -> Limits<'_> {
+        Limits { longest_window: self.min_refire(), verified_for: None }
+    }
+
+    fn min_refire(&self) -> Micros {
         self.period.saturating_sub(self.widest)
     }
 

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use eeruf_core::{HoppingError, LadderError, RingError, ScheduleError};
+use eeruf_core::{HoppingError, LadderError, RingError, ScheduleError, Violation};
 
 use crate::methods::{Method, StartError};
 use crate::results::Readings;
@@ -30,7 +30,14 @@ pub enum SimulationError {
         /// Why.
         error: RingError,
     },
-    /// No ladder of schedules keeps a robot's `t_delta` for [`Method::Adaptive`].
+    /// No schedule keeps a robot's `t_delta` and window for [`Method::Adaptive`].
+    Unverified {
+        /// The robot.
+        robot: usize,
+        /// What is wrong with its own schedule.
+        violation: Violation,
+    },
+    /// A robot's schedules make no ladder for [`Method::Adaptive`].
     Ladder {
         /// The robot.
         robot: usize,
@@ -86,6 +93,7 @@ impl SimulationError {
     pub(super) fn start(robot: usize, method: Method, error: StartError) -> Self {
         match error {
             StartError::Ring(error) => Self::Ring { robot, method, error },
+            StartError::Unverified(violation) => Self::Unverified { robot, violation },
             StartError::Ladder(error) => Self::Ladder { robot, error },
             StartError::Hopping(error) => Self::Hopping { robot, error },
         }
@@ -107,6 +115,7 @@ impl fmt::Display for SimulationError {
             Self::Ring { robot, method, error } => write!(f, "robot {}, method {method}: {error}", robot + 1),
             Self::Ladder { robot, error } => write!(f, "robot {}, method adaptive: {error}", robot + 1),
             Self::Hopping { robot, error } => write!(f, "robot {}, method eeruf_hopping: {error}", robot + 1),
+            Self::Unverified { robot, violation } => write!(f, "robot {}, method adaptive: {violation}", robot + 1),
             Self::Median { median_of } => write!(f, "the median of {median_of} readings; expected 1 to 15"),
             Self::Paths { at_s, error } => write!(f, "at {at_s:.3} s: {error}"),
             Self::Memory { readings } => {

@@ -10,8 +10,12 @@ const SMALLEST_M = 1.2;
 /** @param {import("./state.js").State} state @returns {Box} What holds all that there is. */
 export function boxOf(state) {
   const { robot, radius } = state;
-  const points = [...state.walls.flat(), ...state.poles.map(([x, y]) => [x, y]),
-    [robot.x - radius, robot.y - radius], [robot.x + radius, robot.y + radius]];
+  const points = [
+    ...state.walls.flat(),
+    ...state.poles.map(([x, y]) => [x, y]),
+    [robot.x - radius, robot.y - radius],
+    [robot.x + radius, robot.y + radius],
+  ];
   const xs = points.map(([x]) => x);
   const ys = points.map(([, y]) => y);
   const span = (/** @type {number[]} */ all) => {

@@ -36,6 +36,7 @@ mod filter;
 mod hopping;
 mod interop;
 mod layout;
+mod phases;
 mod reading;
 mod ring;
 mod schedule;
@@ -62,6 +63,7 @@ pub use hopping::{
 };
 pub use interop::DurationError;
 pub use layout::{Layout, LayoutError, neighbour_rows};
+pub use phases::{Audible, PhaseSeparation, PhaseTable};
 pub use reading::{ReadingKind, Tally, Verdict};
 pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError, VerifiedFor};

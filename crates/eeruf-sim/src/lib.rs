@@ -81,5 +81,6 @@ pub use tracing::{
     paths_of_many, reception, reception_along,
 };
 pub use world::{
-    AnySchedule, Clock, Motion, Noise, Random, Robot, ScheduleFile, World, WorldError, WorldFileError, ring_of,
+    AnySchedule, Clock, Motion, Noise, Random, Robot, ScheduleFile, World, WorldError, WorldFileError, WorldParts,
+    ring_of, world_file,
 };

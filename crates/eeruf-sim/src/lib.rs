@@ -81,7 +81,8 @@ pub use tracing::{
     paths_of_many, reception, reception_along,
 };
 pub use world::{
-    AnySchedule, Clock, Motion, Noise, Random, Robot, ScheduleFile, World, WorldError, WorldFileError, ring_of,
+    AnySchedule, Clock, Motion, Noise, Random, Robot, ScheduleFile, World, WorldError, WorldFileError, WorldParts,
+    ring_of, world_file,
 };
 
 /// The listing of the crate's README compiles and holds.

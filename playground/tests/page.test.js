@@ -458,6 +458,12 @@ test("pictures of the page for whoever looks at them", { skip: !LONG }, async ()
     const { context, page } = await open(browser, server.url, options);
     await page.evaluate(() => document.fonts.ready);
     await page.screenshot({ path: join(folder, `${name}-top.png`) });
+    if (name === "desktop") {
+      // For the README: down to the readings of the sensor that is looked at.
+      const end = await page.locator(".foolers").last().evaluate((last) => last.getBoundingClientRect().bottom);
+      const clip = { x: 0, y: 0, width: 1440, height: Math.round(end + 12) };
+      await page.screenshot({ path: join(folder, "readme.png"), fullPage: true, clip });
+    }
     await design(page);
     await page.screenshot({ path: join(folder, `${name}-whole.png`), fullPage: true });
     await page.locator("#lesson-start").click();

@@ -150,6 +150,7 @@ fn test(long: bool) -> Result<(), Trouble> {
         return Err(Trouble::Skipped("no npm; try: apt install npm".to_owned()));
     }
     run(Command::new(npm).current_dir(tests).args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]))?;
+    run(Command::new(npm).current_dir(tests).args(["run", "--silent", "types"]))?;
     // What the page is held against, with the features of the whole workspace, as built for the tests.
     run(Command::new("cargo").args(["build", "--locked", "--workspace", "--bin", "eeruf"]))?;
     let mut node = Command::new("node");

@@ -21,7 +21,7 @@ const SOURCES: &str = "playground/page";
 const FOLDER: &str = "target/page/folder";
 /// The one file for a disk.
 const SINGLE: &str = "target/page/who-fools-whom.html";
-/// What the compiler may use, which `wasm-opt` wants to be told.
+/// What the compiler may use of WebAssembly, for `wasm-opt`.
 const FEATURES: [&str; 6] = [
     "--enable-bulk-memory",
     "--enable-mutable-globals",

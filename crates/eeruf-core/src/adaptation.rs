@@ -201,13 +201,14 @@ pub enum LadderError {
 
 impl fmt::Display for LadderError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let first = usize::from(!f.alternate());
         match *self {
             Self::Empty => write!(f, "a ladder without schedules; expected at least one"),
             Self::Order { rung, period, before } => {
-                write!(f, "rung {} has a period of {period}; expected more than the {before} before it", rung + 1)
+                write!(f, "rung {} has a period of {period}; expected more than the {before} before it", rung + first)
             }
             Self::Sensors { rung, sensors, expected } => {
-                write!(f, "rung {} has {sensors} sensors; expected {expected} as in the first", rung + 1)
+                write!(f, "rung {} has {sensors} sensors; expected {expected} as in the first", rung + first)
             }
         }
     }

@@ -33,9 +33,10 @@ pub struct LayoutError {
 
 impl fmt::Display for LayoutError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let first = usize::from(!f.alternate());
         let (x, y) = self.pair;
-        let (x, y) = (x.saturating_add(1), y.saturating_add(1));
-        write!(f, "sensors {x} and {y} as neighbours; expected two different sensors from 1 to {}", self.sensors)
+        let (x, y) = (x.saturating_add(first), y.saturating_add(first));
+        write!(f, "sensors {x} and {y} as neighbours; expected two different ones of {}", self.sensors)
     }
 }
 
@@ -52,7 +53,7 @@ impl core::error::Error for LayoutError {}
 /// let rows = neighbour_rows([(0, 1), (1, 2)], 3)?;
 /// assert!(Layout::Graph(&rows).neighbours(3, 2, 1));
 /// let error = neighbour_rows([(1, 2), (2, 3)], 3).unwrap_err();
-/// assert_eq!(error.to_string(), "sensors 3 and 4 as neighbours; expected two different sensors from 1 to 3");
+/// assert_eq!(error.to_string(), "sensors 3 and 4 as neighbours; expected two different ones of 3");
 /// # Ok::<(), eeruf_core::LayoutError>(())
 /// ```
 pub fn neighbour_rows(

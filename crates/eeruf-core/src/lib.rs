@@ -36,6 +36,7 @@ mod filter;
 mod hopping;
 mod interop;
 mod layout;
+mod phases;
 mod reading;
 mod ring;
 mod schedule;
@@ -62,6 +63,7 @@ pub use hopping::{
 };
 pub use interop::DurationError;
 pub use layout::{Layout, LayoutError, neighbour_rows};
+pub use phases::{Audible, PhaseSeparation, PhaseTable};
 pub use reading::{ReadingKind, Tally, Verdict};
 pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError, VerifiedFor};
@@ -83,7 +85,7 @@ pub use watch::{Blind, LastAccepted, SensorWatch};
 #[doc = include_str!("../theory.md")]
 pub mod theory {}
 
-/// The listings of the README compile and hold.
+/// The listing of the crate's README compiles and holds.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
+#[doc = include_str!("../README.md")]
 struct Readme;

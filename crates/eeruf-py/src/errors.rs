@@ -1,6 +1,8 @@
 //! One exception for each enum of errors in Rust, with the same messages. All are `EerufError`s, and that is a
 //! `ValueError`.
 
+use std::fmt::Display;
+
 use eeruf_sim::SimulationError as SimulatorError;
 use pyo3::{
     create_exception,
@@ -29,7 +31,7 @@ macro_rules! errors {
         create_exception!(eeruf, $name, EerufError, $doc);
         $($(impl Raise for $rust {
             fn raise(self) -> PyErr {
-                $name::new_err(self.to_string())
+                $name::new_err(from_zero(&self))
             }
         })+)?
     )*};
@@ -40,11 +42,16 @@ pub(crate) trait Raise {
     fn raise(self) -> PyErr;
 }
 
+/// An error as code counts, from 0, where the program prints from 1.
+fn from_zero(error: &impl Display) -> String {
+    format!("{error:#}")
+}
+
 impl Raise for SimulatorError {
     fn raise(self) -> PyErr {
         match self {
-            Self::Memory { .. } => PyMemoryError::new_err(self.to_string()),
-            _ => SimulationError::new_err(self.to_string()),
+            Self::Memory { .. } => PyMemoryError::new_err(from_zero(&self)),
+            _ => SimulationError::new_err(from_zero(&self)),
         }
     }
 }
@@ -64,7 +71,7 @@ Example:
     >>> import eeruf
     >>> eeruf.Schedule.from_firing(40_000, [0, 50_000], [0, 2_000])
     Traceback (most recent call last):
-    eeruf.ScheduleError: sensor 2 fires 50 ms into phase a; expected less than the period of 40 ms
+    eeruf.ScheduleError: sensor 1 fires 50 ms into phase a; expected less than the period of 40 ms
 " from eeruf_core::ScheduleError;
     FilterError "A filter that cannot compare as asked.
 
@@ -122,7 +129,7 @@ Example:
     >>> scene = eeruf.sim.Scene([[5, 2, -5, 2]], robots=[robot])
     >>> eeruf.sim.simulate(scene)
     Traceback (most recent call last):
-    eeruf.SimulationError: robot 1, method eeruf: a listening window of 90 ms; a sensor of this schedule fires \
+    eeruf.SimulationError: robot 0, method eeruf: a listening window of 90 ms; a sensor of this schedule fires \
     again after 45.6 ms, expected a window no longer than that (T_wind)
 ";
     ExperimentError "An experiment that cannot be run.

@@ -50,7 +50,7 @@ pub struct HoppingFiring<const K: usize> {
     pub(super) schedule: HoppingSchedule<K>,
     pub(super) settings: HoppingSettings,
     pub(super) window: Micros,
-    /// From a firing until nothing of it is heard in a window that opens then.
+    /// From a firing until its sensor no longer listens, and nothing of it is heard in a window that opens then.
     pub(super) dies: Micros,
 }
 
@@ -85,7 +85,7 @@ impl<const K: usize> HoppingFiring<K> {
             schedule: *schedule,
             settings,
             window,
-            dies: reach.saturating_sub(blanking).saturating_add(Micros::new(1)),
+            dies: reach.saturating_sub(blanking).max(window).saturating_add(Micros::new(1)),
         };
         firing.begin_period();
         firing

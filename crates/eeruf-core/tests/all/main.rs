@@ -13,6 +13,7 @@ mod period_limits;
 mod period_small;
 mod period_ticks;
 mod period_variants;
+mod phases;
 mod promises;
 mod theory;
 mod wait_limits;

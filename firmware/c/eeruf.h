@@ -48,7 +48,7 @@ typedef enum EerufStatus {
   EERUF_FIRE = -5,
   /*
    The window is longer than the shortest time between two firings of a sensor, or not longer than the blanking
-   time or t_delta.
+   time or t_delta, or one of these two is longer than 65,535 us.
    */
   EERUF_WINDOW = -6,
   /*
@@ -63,6 +63,10 @@ typedef enum EerufStatus {
    The schedule does not meet what is asked of it.
    */
   EERUF_NOT_MET = -9,
+  /*
+   The schedule was not verified, or for a smaller t_delta or a shorter window.
+   */
+  EERUF_NOT_VERIFIED = -10,
 } EerufStatus;
 
 /*
@@ -184,6 +188,10 @@ typedef struct EerufEvent {
    */
   uint8_t sensor;
   /*
+   The phase that its wait belongs to, 0 or 1, or which has ended.
+   */
+  uint8_t phase;
+  /*
    Whether the reading has an echo time.
    */
   bool has_echo;
@@ -192,9 +200,13 @@ typedef struct EerufEvent {
    */
   uint32_t t_echo_us;
   /*
-   The period in which the sensor fired, or which has ended.
+   The period in which the sensor fired, or which has ended; for a reading and a period.
    */
   uint32_t period;
+  /*
+   When the sensor was due; for a firing.
+   */
+  uint32_t due_us;
 } EerufEvent;
 
 #ifdef __cplusplus
@@ -215,22 +227,23 @@ enum EerufStatus eeruf_schedule_init(struct EerufSchedule *schedule,
                                      const uint32_t *fire_b_us);
 
 /*
- Checks a schedule on a line of sensors: EERUF_OK if crosstalk is rejected at this `t_delta_us` (Eqs. 13a, 13b), any
- `neighbours` adjacent sensors fire at least `min_interval_us` apart, and no sensor fires again within `window_us`;
- EERUF_NOT_MET if not.
+ Verifies a schedule on a line of sensors: EERUF_OK if crosstalk is rejected at this `t_delta_us` (Eqs. 13a, 13b),
+ any `neighbours` adjacent sensors fire at least `min_interval_us` apart, and no sensor fires again within
+ `window_us`; the schedule then remembers it. EERUF_NOT_MET if not; the schedule is then as before. Not for a schedule
+ that a ring uses.
 
  # Safety
- `schedule` is null or memory for a schedule.
+ `schedule` is null or memory for a schedule, and no ring uses it.
  */
-enum EerufStatus eeruf_schedule_verify(const struct EerufSchedule *schedule,
+enum EerufStatus eeruf_schedule_verify(struct EerufSchedule *schedule,
                                        uint32_t t_delta_us,
                                        uint32_t min_interval_us,
                                        uint8_t neighbours,
                                        uint32_t window_us);
 
 /*
- Makes a ring that fires by a schedule from `now_us` on. The schedule must stay where it is as long as the ring is
- used.
+ Makes a ring that fires by a verified schedule from `now_us` on. It may ask for a smaller `t_delta_us` and a shorter
+ window than the schedule was verified for. The schedule must stay where it is as long as the ring is used.
 
  # Safety
  `ring`, `schedule` and `config` are null or memory of their types.
@@ -239,6 +252,18 @@ enum EerufStatus eeruf_ring_init(struct EerufRing *ring,
                                  const struct EerufSchedule *schedule,
                                  const struct EerufConfig *config,
                                  uint32_t now_us);
+
+/*
+ As eeruf_ring_init, by a schedule that need not be verified: the conventional method, for comparison. Crosstalk may
+ be accepted.
+
+ # Safety
+ As for eeruf_ring_init.
+ */
+enum EerufStatus eeruf_ring_init_unverified(struct EerufRing *ring,
+                                            const struct EerufSchedule *schedule,
+                                            const struct EerufConfig *config,
+                                            uint32_t now_us);
 
 /*
  EERUF_EVENT with the next thing to do or to know, or EERUF_OK if there is none at `now_us`: then sleep until the
@@ -266,6 +291,17 @@ enum EerufStatus eeruf_ring_next_deadline(struct EerufRing *ring, uint32_t *dead
  `ring` is null or memory for a ring.
  */
 enum EerufStatus eeruf_ring_echo(struct EerufRing *ring, uint8_t sensor, uint32_t at_us);
+
+/*
+ The sensor that was to be fired last has really fired at this reading of the clock, later than the poll said.
+ Optional; call it before the next poll. Echo times count from then, and all later firings move by as much.
+
+ # Safety
+ `ring` is null or memory for a ring.
+ */
+enum EerufStatus eeruf_ring_fired(struct EerufRing *ring,
+                                  uint8_t sensor,
+                                  uint32_t at_us);
 
 /*
  The echo line of a sensor was high when it was to be fired.

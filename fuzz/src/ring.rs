@@ -20,7 +20,7 @@ mod model;
 use arbitrary::Arbitrary;
 use eeruf_core::{Instant, Micros, Ring, RingConfig, RingEvent, Schedule, ScheduledRing, Tally};
 
-use self::model::{Model, instant};
+use self::model::{Listening, Model, instant};
 
 /// Sensors of the ring.
 pub const SENSORS: usize = 4;
@@ -81,13 +81,13 @@ fn table(table: &Table) -> Option<Schedule<SENSORS>> {
 
 /// Where many of the numbers that the fuzzer makes up are one that matters: close to the borders of window and
 /// blanking, or close to one another.
-fn t_echo_of(made_up: u16, config: &RingConfig) -> u64 {
+fn t_echo_of(made_up: u16, listening: &Listening) -> u64 {
     let (which, rest) = (made_up % 4, u64::from(made_up / 4));
     let near = |border: Micros| (u64::from(border.as_micros()) + rest % 4).saturating_sub(2);
     match which {
-        0 => near(config.window),
-        1 => near(config.blanking),
-        2 => u64::from(config.window.as_micros()) / 2 + rest % 8 * u64::from(config.t_delta.as_micros()) / 4,
+        0 => near(listening.window),
+        1 => near(listening.blanking),
+        2 => u64::from(listening.window.as_micros()) / 2 + rest % 8 * u64::from(listening.t_delta.as_micros()) / 4,
         _ => 4 * rest,
     }
 }
@@ -101,15 +101,16 @@ fn time_of(instant_: Instant, now: u64) -> u64 {
 /// Does all steps with the ring and the model.
 pub fn check(input: &Input) {
     let (Some(first), Some(second)) = (table(&input.tables[0]), table(&input.tables[1])) else { return };
-    let mut config = RingConfig::new(Micros::new(input.t_delta.into()), Micros::new(input.window.into()));
-    config.blanking = Micros::new(16 * u32::from(input.blanking));
-    config.consecutive = 2 + input.consecutive % 3;
+    let [t_delta, window, blanking] =
+        [input.t_delta.into(), input.window.into(), 16 * u32::from(input.blanking)].map(Micros::new);
+    let config = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
+    let config = config.with_consecutive(2 + input.consecutive % 3);
     let mut now = (1 << 32) + u64::from(input.start);
-    let Ok(mut ring) = Ring::new(&first, config, instant(now)) else { return };
+    let Ok(mut ring) = Ring::unverified(&first, config, instant(now)) else { return };
     let begin = now;
     let mut model = Model {
         now,
-        config,
+        listening: Listening { t_delta, window, blanking, consecutive: usize::from(config.consecutive) },
         enabled: [true; SENSORS],
         schedule: &first,
         next_schedule: None,
@@ -137,7 +138,7 @@ pub fn check(input: &Input) {
             Step::PassLong(_) => {}
             Step::Edge { sensor, ago } => {
                 let at = now - u64::from(*ago);
-                ring.echo(*sensor, instant(at));
+                assert_eq!(ring.echo(*sensor, instant(at)).is_ok(), known(sensor));
                 if known(sensor) {
                     model.edge((*sensor).into(), at);
                 }
@@ -147,14 +148,14 @@ pub fn check(input: &Input) {
                 // Of any sensor that there is.
                 let x = usize::from(*sensor) % SENSORS;
                 let Some(fired) = model.sensors[x].last_fired else { continue };
-                let t_echo = t_echo_of(*t_echo, &config);
+                let t_echo = t_echo_of(*t_echo, &model.listening);
                 let at = (fired.at + t_echo).min(now);
-                ring.echo(x as u8, instant(at));
+                ring.echo(x as u8, instant(at)).expect("a sensor that there is");
                 model.edge(x, at);
                 continue;
             }
             Step::Stuck(sensor) => {
-                ring.stuck(*sensor);
+                assert_eq!(ring.stuck(*sensor).is_ok(), known(sensor));
                 if known(sensor) {
                     if let Some(open) = &mut model.sensors[usize::from(*sensor)].open {
                         open.stuck = true;
@@ -163,7 +164,7 @@ pub fn check(input: &Input) {
                 continue;
             }
             Step::Disable(sensor) => {
-                ring.disable(*sensor);
+                assert_eq!(ring.disable(*sensor).is_ok(), known(sensor));
                 if known(sensor) {
                     model.enabled[usize::from(*sensor)] = false;
                     model.on_time = false;
@@ -171,7 +172,7 @@ pub fn check(input: &Input) {
                 continue;
             }
             Step::Enable(sensor) => {
-                ring.enable(*sensor);
+                assert_eq!(ring.enable(*sensor).is_ok(), known(sensor));
                 if known(sensor) {
                     let x = usize::from(*sensor);
                     if !model.enabled[x] {
@@ -195,10 +196,10 @@ pub fn check(input: &Input) {
             }
             Step::Change(which) => {
                 let schedule = if *which { &second } else { &first };
-                if ring.change_schedule(schedule).is_ok() {
+                if ring.change_to_unverified(schedule).is_ok() {
                     model.next_schedule = Some(schedule);
                 } else {
-                    assert!(config.window > schedule.min_refire(), "refused without cause");
+                    assert!(window > schedule.min_refire(), "refused without cause");
                 }
                 continue;
             }
@@ -217,7 +218,7 @@ fn drain(ring: &mut ScheduledRing<'_, SENSORS>, model: &mut Model<'_>) {
         model.on_time &= deadline >= now;
         let Some(event) = ring.poll(instant(now)) else { break };
         match event {
-            RingEvent::Fire(sensor) => model.fired(sensor, deadline),
+            RingEvent::Fire { sensor, .. } => model.fired(sensor, deadline),
             RingEvent::Reading(reading) => model.emitted(&reading),
             RingEvent::PeriodEnded(stats) => model.ended(&stats),
         }

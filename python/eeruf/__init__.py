@@ -20,7 +20,8 @@ Example:
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
+import sys
+from typing import TYPE_CHECKING
 
 from eeruf import experiments, sim, tables
 from eeruf._eeruf import (
@@ -47,6 +48,7 @@ from eeruf._eeruf import (
     Violation,
     WaitSearch,
     WaitTables,
+    __version__,
     check_certificate,
     design,
 )
@@ -79,18 +81,46 @@ __all__ = [
     "Violation",
     "WaitSearch",
     "WaitTables",
+    "__version__",
     "check_certificate",
     "design",
     "experiments",
     "plot",
+    "show_versions",
     "sim",
     "sweep",
     "tables",
 ]
 
 
-def __getattr__(name: str) -> Any:
-    # On first use: nobody who does not draw should wait for it.
-    if name == "plot":
-        return importlib.import_module("eeruf.plot")
-    raise AttributeError(f"module 'eeruf' has no attribute {name!r}")
+def show_versions() -> None:
+    """Print the versions of eeruf, Python and the packages that eeruf may use, for a report of a fault.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.show_versions()  # doctest: +ELLIPSIS
+        eeruf ...
+
+    """
+    import platform
+    from importlib import metadata
+
+    print("eeruf", __version__)
+    print("python", platform.python_version(), platform.platform())
+    for name in ("numpy", "matplotlib", "pandas", "polars", "pyarrow", "tqdm"):
+        try:
+            print(name, metadata.version(name))
+        except metadata.PackageNotFoundError:
+            print(name, "is not installed")
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> object:
+        # On first use: nobody who does not draw should wait for it.
+        if name == "plot":
+            return importlib.import_module("eeruf.plot")
+        raise AttributeError(f"module 'eeruf' has no attribute {name!r}")
+
+    def __dir__() -> list[str]:
+        return sorted({*vars(sys.modules[__name__]), *__all__})

@@ -1,20 +1,56 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from os import PathLike
-from typing import Any, TypeVar, final
+from typing import Any, Final, Literal, SupportsIndex, TypeVar, final
 
 import numpy as np
+import pandas as pd
+import polars as pl
 from numpy.typing import ArrayLike, NDArray
 
-_Layout = str | Iterable[tuple[int, int]]
-_Progress = bool | Callable[[float | None, str], Any] | None
+from eeruf._types import HeardPaths, Summary
+
+# Whole numbers: Python's and NumPy's.
+_Int = SupportsIndex
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.int64]
+_Codes = NDArray[np.int8]
+_Bools = NDArray[np.bool_]
+_Layout = Literal["line", "ring", "blocks"] | Iterable[tuple[_Int, _Int]]
+_Criterion = Literal["exact", "paper"]
+_Progress = bool | Callable[[float | None, str], object] | None
+_Kind = Literal[
+    "first", "accepted", "rejected", "repeated", "no_echo", "clear", "too_early", "late", "stuck", "tentative"
+]
+_Method = Literal[
+    "simultaneous",
+    "sequential",
+    "far_groups",
+    "dither",
+    "conventional",
+    "comparison",
+    "median",
+    "eeruf_immediate",
+    "eeruf",
+    "eeruf_best",
+    "adaptive",
+    "eeruf_hopping",
+    "multi_echo",
+]
+_Cause = Literal["nothing", "own", "stale", "crosstalk", "external"]
+_Transducer = Literal["polaroid_6500", "hc_sr04"]
+_Gain = Literal["constant", "square_root", "linear"]
+_Phase = Literal["a", "b"]
+_Condition = Literal["crosstalk_a", "crosstalk_b", "stale_echo", "interval", "window"]
+_Pose = tuple[float, float, float]
 
 _Case = TypeVar("_Case")
 _Result = TypeVar("_Result")
 
-KINDS: tuple[str, ...]
-METHODS: tuple[str, ...]
-EERUF_METHODS: tuple[str, ...]
-CAUSES: tuple[str, ...]
+KINDS: Final[tuple[_Kind, ...]]
+METHODS: Final[tuple[_Method, ...]]
+EERUF_METHODS: Final[tuple[_Method, ...]]
+CAUSES: Final[tuple[_Cause, ...]]
+__version__: Final[str]
 
 class EerufError(ValueError): ...
 class ArgumentError(EerufError): ...
@@ -32,15 +68,17 @@ class ExperimentError(EerufError): ...
 class Schedule:
     def __new__(
         cls,
-        period_us: int,
-        t_lag_us: Iterable[int],
-        t_wait_a_us: Iterable[int],
-        t_wait_b_us: Iterable[int],
+        period_us: _Int,
+        t_lag_us: Iterable[_Int],
+        t_wait_a_us: Iterable[_Int],
+        t_wait_b_us: Iterable[_Int],
     ) -> Schedule: ...
     @staticmethod
-    def from_firing(period_us: int, t_fire_a_us: Iterable[int], t_fire_b_us: Iterable[int]) -> Schedule: ...
+    def from_firing(period_us: _Int, t_fire_a_us: Iterable[_Int], t_fire_b_us: Iterable[_Int]) -> Schedule: ...
     @staticmethod
     def from_toml(text: str) -> Schedule: ...
+    @staticmethod
+    def read_toml(path: str | PathLike[str]) -> Schedule: ...
     @staticmethod
     def from_json(text: str) -> Schedule: ...
     @property
@@ -57,37 +95,37 @@ class Schedule:
     def t_fire_a_us(self) -> tuple[int, ...]: ...
     @property
     def t_fire_b_us(self) -> tuple[int, ...]: ...
-    def scaled(self, num: int, den: int) -> Schedule: ...
+    def scaled(self, num: _Int, den: _Int) -> Schedule: ...
     def verify(
         self,
-        t_delta_us: int,
-        min_interval_us: int = 0,
-        neighbours: int = 4,
+        t_delta_us: _Int,
+        min_interval_us: _Int = 0,
+        neighbours: _Int = 4,
         layout: _Layout = "line",
-        criterion: str = "exact",
-        window_us: int = 0,
+        criterion: _Criterion = "exact",
+        window_us: _Int = 0,
         stale_echo: bool = False,
     ) -> Report: ...
     def to_toml(self) -> str: ...
     def to_json(self) -> str: ...
     def to_rust(
         self,
-        t_delta_us: int | None = None,
-        min_interval_us: int = 0,
-        neighbours: int = 4,
+        t_delta_us: _Int | None = None,
+        min_interval_us: _Int = 0,
+        neighbours: _Int = 4,
         layout: _Layout = "line",
-        criterion: str = "exact",
-        window_us: int = 0,
+        criterion: _Criterion = "exact",
+        window_us: _Int = 0,
         stale_echo: bool = False,
     ) -> str: ...
     def to_c(
         self,
-        t_delta_us: int | None = None,
-        min_interval_us: int = 0,
-        neighbours: int = 4,
+        t_delta_us: _Int | None = None,
+        min_interval_us: _Int = 0,
+        neighbours: _Int = 4,
         layout: _Layout = "line",
-        criterion: str = "exact",
-        window_us: int = 0,
+        criterion: _Criterion = "exact",
+        window_us: _Int = 0,
         stale_echo: bool = False,
     ) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
@@ -98,19 +136,19 @@ class Schedule:
 class Violation:
     def __new__(
         cls,
-        kind: str,
+        kind: _Condition,
         sensors: tuple[int, int],
-        phases: tuple[str, str],
-        value_us: int,
-        required_us: int,
+        phases: tuple[_Phase, _Phase],
+        value_us: _Int,
+        required_us: _Int,
         source: str,
     ) -> Violation: ...
     @property
-    def kind(self) -> str: ...
+    def kind(self) -> _Condition: ...
     @property
     def sensors(self) -> tuple[int, int]: ...
     @property
-    def phases(self) -> tuple[str, str]: ...
+    def phases(self) -> tuple[_Phase, _Phase]: ...
     @property
     def value_us(self) -> int: ...
     @property
@@ -125,10 +163,10 @@ class Violation:
 class Report:
     def __new__(
         cls,
-        separation_us: int | None,
-        max_t_delta_us: int | None,
-        min_interval_us: int | None,
-        min_refire_us: int,
+        separation_us: _Int | None,
+        max_t_delta_us: _Int | None,
+        min_interval_us: _Int | None,
+        min_refire_us: _Int,
         violations: Sequence[Violation],
     ) -> Report: ...
     @property
@@ -153,10 +191,10 @@ class Found:
     def __new__(
         cls,
         schedule: Schedule | None,
-        value_us: int | None,
-        bound_us: int | None,
+        value_us: _Int | None,
+        bound_us: _Int | None,
         proven: bool,
-        nodes: int,
+        nodes: _Int,
         seconds: float,
         reason: str | None = None,
         certificate: str | None = None,
@@ -181,15 +219,15 @@ class Found:
     def __ne__(self, other: object, /) -> bool: ...
 
 def design(
-    sensors: int,
-    t_delta_us: int,
-    min_interval_us: int,
-    window_us: int,
-    tick_us: int = 1000,
-    neighbours: int = 4,
+    sensors: _Int,
+    t_delta_us: _Int,
+    min_interval_us: _Int,
+    window_us: _Int,
+    tick_us: _Int = 1000,
+    neighbours: _Int = 4,
     layout: _Layout = "line",
     stale_echo: bool = False,
-    budget: int | None = None,
+    budget: _Int | None = None,
     progress: _Progress = None,
     certificate: bool = False,
     time_limit_s: float | None = None,
@@ -200,22 +238,22 @@ def check_certificate(text: str) -> int: ...
 class WaitSearch:
     def __new__(
         cls,
-        sensors: int,
-        period_us: int,
-        wait_max_us: int,
-        tick_us: int,
-        t_lag_us: Iterable[int] | None = None,
+        sensors: _Int,
+        period_us: _Int,
+        wait_max_us: _Int,
+        tick_us: _Int,
+        t_lag_us: Iterable[_Int] | None = None,
         *,
-        t_delta_us: int,
-        min_interval_us: int = 0,
-        neighbours: int = 4,
+        t_delta_us: _Int,
+        min_interval_us: _Int = 0,
+        neighbours: _Int = 4,
         layout: _Layout = "line",
-        criterion: str = "paper",
+        criterion: _Criterion = "paper",
     ) -> WaitSearch: ...
     def first(self) -> Schedule | None: ...
-    def count(self, limit: int | None = None) -> int: ...
+    def count(self, limit: _Int | None = None) -> int: ...
     def all(self) -> WaitTables: ...
-    def best(self, objective: str = "interval", budget: int | None = None) -> Found: ...
+    def best(self, objective: Literal["interval", "t_delta"] = "interval", budget: _Int | None = None) -> Found: ...
 
 @final
 class WaitTables(Iterator[Schedule]):
@@ -225,7 +263,7 @@ class WaitTables(Iterator[Schedule]):
 @final
 class EchoFilter:
     def __new__(
-        cls, sensors: int, t_delta_us: int, consecutive: int = 2, *, echoes: int = 1, patience: int = 0
+        cls, sensors: _Int, t_delta_us: _Int, consecutive: _Int = 2, *, echoes: _Int = 1, patience: _Int = 0
     ) -> EchoFilter: ...
     @property
     def sensors(self) -> int: ...
@@ -237,16 +275,20 @@ class EchoFilter:
     def echoes(self) -> int: ...
     @property
     def patience(self) -> int: ...
-    def push(self, sensor: int, t_echo_us: int | None, expected_change_us: int = 0) -> Reading: ...
-    def push_echoes(self, sensor: int, t_echoes_us: Iterable[int], expected_change_us: int = 0) -> Reading: ...
+    def push(self, sensor: _Int, t_echo_us: _Int | None, expected_change_us: _Int = 0) -> Reading: ...
+    def push_echoes(self, sensor: _Int, t_echoes_us: Iterable[_Int], expected_change_us: _Int = 0) -> Reading: ...
     def push_many(self, t_echo_us: ArrayLike) -> NDArray[np.int8]: ...
-    def forget(self, sensor: int) -> None: ...
+    def forget(self, sensor: _Int) -> None: ...
 
 @final
 class Fire:
-    def __new__(cls, sensor: int) -> Fire: ...
+    def __new__(cls, sensor: _Int, phase: _Int = 0, due_us: _Int = 0) -> Fire: ...
     @property
     def sensor(self) -> int: ...
+    @property
+    def phase(self) -> int: ...
+    @property
+    def due_us(self) -> int: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
@@ -255,18 +297,18 @@ class Fire:
 class Reading:
     def __new__(
         cls,
-        sensor: int,
-        kind: str,
-        t_echo_us: int | None = None,
-        previous_us: int | None = None,
-        age: int | None = None,
-        phase: int | None = None,
-        period: int | None = None,
+        sensor: _Int,
+        kind: _Kind,
+        t_echo_us: _Int | None = None,
+        previous_us: _Int | None = None,
+        age: _Int | None = None,
+        phase: _Int | None = None,
+        period: _Int | None = None,
     ) -> Reading: ...
     @property
     def sensor(self) -> int: ...
     @property
-    def kind(self) -> str: ...
+    def kind(self) -> _Kind: ...
     @property
     def t_echo_us(self) -> int | None: ...
     @property
@@ -301,56 +343,113 @@ class Ring:
     def __new__(
         cls,
         schedule: Schedule,
-        t_delta_us: int,
-        now_us: int = 0,
+        t_delta_us: _Int,
+        now_us: _Int = 0,
         *,
-        window_us: int,
-        blanking_us: int = 0,
-        consecutive: int = 2,
+        window_us: _Int,
+        blanking_us: _Int = 0,
+        consecutive: _Int = 2,
+    ) -> Ring: ...
+    @staticmethod
+    def unverified(
+        schedule: Schedule,
+        t_delta_us: _Int,
+        now_us: _Int = 0,
+        *,
+        window_us: _Int,
+        blanking_us: _Int = 0,
+        consecutive: _Int = 2,
     ) -> Ring: ...
     @property
     def schedule(self) -> Schedule: ...
     @property
     def next_deadline_us(self) -> int: ...
     def poll(
-        self, now_us: int, expected_change_us: Iterable[int] | None = None
+        self, now_us: _Int, expected_change_us: Iterable[_Int] | None = None
     ) -> Fire | Reading | PeriodEnded | None: ...
-    def echo(self, sensor: int, at_us: int) -> None: ...
-    def stuck(self, sensor: int) -> None: ...
-    def disable(self, sensor: int) -> None: ...
-    def enable(self, sensor: int) -> None: ...
+    def echo(self, sensor: _Int, at_us: _Int) -> None: ...
+    def fired(self, sensor: _Int, at_us: _Int) -> None: ...
+    def stuck(self, sensor: _Int) -> None: ...
+    def disable(self, sensor: _Int) -> None: ...
+    def enable(self, sensor: _Int) -> None: ...
+
+@final
+class Material:
+    def __new__(cls, reflection: float, roughness_m: float = 0.0) -> Material: ...
+    @property
+    def reflection(self) -> float: ...
+    @property
+    def roughness_m(self) -> float: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+_Surface = Literal["smooth", "painted", "soft", "perfect"] | Material
+
+@final
+class Noise:
+    def __new__(
+        cls,
+        *,
+        fading_db_rms: float = 1.5,
+        jitter_us_rms: float = 15.0,
+        bursts_per_s: float = 0.0,
+        burst_db: float = 20.0,
+    ) -> Noise: ...
+    @property
+    def fading_db_rms(self) -> float: ...
+    @property
+    def jitter_us_rms(self) -> float: ...
+    @property
+    def bursts_per_s(self) -> float: ...
+    @property
+    def burst_db(self) -> float: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class Robot:
     def __new__(
         cls,
-        pose: tuple[float, float, float],
-        sensors: int,
-        spacing_rad: float,
-        radius_m: float,
-        transducer: str = "polaroid_6500",
+        pose: _Pose,
+        sensors: _Int | Iterable[_Pose],
+        spacing_rad: float | None = None,
+        radius_m: float | None = None,
+        transducer: _Transducer = "polaroid_6500",
         *,
-        period_us: int = 60000,
-        t_delta_us: int = 500,
-        window_us: int = 36000,
+        gain: _Gain = "constant",
+        period_us: _Int = 60000,
+        t_delta_us: _Int = 500,
+        window_us: _Int = 36000,
+        blanking_us: _Int | None = None,
+        min_refire_us: _Int = 36000,
+        start_us: _Int = 0,
         schedule: Schedule | None = None,
-        consecutive: int = 2,
-        patience: int = 0,
+        neighbours: _Int = 4,
+        consecutive: _Int = 2,
+        patience: _Int = 0,
+        odometry: bool = False,
+        velocity_m_s: tuple[float, float] | None = None,
+        turn_rad_s: float | None = None,
+        waypoints_m: ArrayLike | None = None,
+        speed_m_s: float | None = None,
+        clock_offset_us: _Int = 0,
+        clock_drift_ppm: float = 0.0,
     ) -> Robot: ...
+    def replace(self, **changes: object) -> Robot: ...
     @property
-    def consecutive(self) -> int: ...
-    @property
-    def patience(self) -> int: ...
-    @property
-    def pose(self) -> tuple[float, float, float]: ...
-    @property
-    def spacing_rad(self) -> float: ...
-    @property
-    def radius_m(self) -> float: ...
-    @property
-    def transducer(self) -> str: ...
+    def pose(self) -> _Pose: ...
     @property
     def sensors(self) -> int: ...
+    @property
+    def sensor_poses(self) -> list[_Pose]: ...
+    @property
+    def spacing_rad(self) -> float | None: ...
+    @property
+    def radius_m(self) -> float | None: ...
+    @property
+    def transducer(self) -> _Transducer: ...
+    @property
+    def gain(self) -> _Gain: ...
     @property
     def period_us(self) -> int: ...
     @property
@@ -358,7 +457,33 @@ class Robot:
     @property
     def window_us(self) -> int: ...
     @property
+    def blanking_us(self) -> int: ...
+    @property
+    def min_refire_us(self) -> int: ...
+    @property
+    def start_us(self) -> int: ...
+    @property
     def schedule(self) -> Schedule | None: ...
+    @property
+    def neighbours(self) -> int: ...
+    @property
+    def consecutive(self) -> int: ...
+    @property
+    def patience(self) -> int: ...
+    @property
+    def odometry(self) -> bool: ...
+    @property
+    def velocity_m_s(self) -> tuple[float, float] | None: ...
+    @property
+    def turn_rad_s(self) -> float | None: ...
+    @property
+    def waypoints_m(self) -> list[tuple[float, float]] | None: ...
+    @property
+    def speed_m_s(self) -> float | None: ...
+    @property
+    def clock_offset_us(self) -> int: ...
+    @property
+    def clock_drift_ppm(self) -> float: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -367,39 +492,62 @@ class Scene:
     def __new__(
         cls,
         walls: ArrayLike,
-        open: Iterable[int] | None = None,
-        two_sided: Iterable[int] | None = None,
+        open: Iterable[_Int] | None = None,
+        two_sided: Iterable[_Int] | None = None,
         poles: ArrayLike | None = None,
         *,
+        materials: _Surface | Iterable[_Surface] | None = None,
+        pole_materials: _Surface | Iterable[_Surface] | None = None,
         temperature_c: float = 20.0,
+        humidity_percent: float = 50.0,
+        pressure_kpa: float = 101.325,
         robots: Sequence[Robot] = (),
-        noise: bool = True,
-        seed: int = 1,
-        max_order: int = 6,
+        noise: bool | Noise = True,
+        seed: _Int = 1,
+        max_order: _Int = 6,
     ) -> Scene: ...
     @staticmethod
-    def from_toml(path: str | PathLike[str]) -> Scene: ...
+    def read_toml(path: str | PathLike[str]) -> Scene: ...
+    @staticmethod
+    def from_toml(text: str) -> Scene: ...
+    def to_toml(self) -> str: ...
+    def replace(self, **changes: object) -> Scene: ...
     @property
-    def walls(self) -> NDArray[np.float64]: ...
+    def walls(self) -> _Floats: ...
     @property
     def open(self) -> list[int]: ...
     @property
     def two_sided(self) -> list[int]: ...
     @property
-    def poles(self) -> NDArray[np.float64]: ...
+    def poles(self) -> _Floats: ...
     @property
-    def robots(self) -> int: ...
+    def materials(self) -> list[Material]: ...
+    @property
+    def pole_materials(self) -> list[Material]: ...
     @property
     def temperature_c(self) -> float: ...
+    @property
+    def humidity_percent(self) -> float: ...
+    @property
+    def pressure_kpa(self) -> float: ...
+    @property
+    def robots(self) -> tuple[Robot, ...]: ...
+    @property
+    def noise(self) -> Noise: ...
+    @property
+    def seed(self) -> int: ...
+    @property
+    def max_order(self) -> int: ...
     def paths(
         self,
         source: ArrayLike,
         receivers: ArrayLike,
-        max_order: int,
+        max_order: _Int,
         max_length_m: float | None = None,
         *,
         progress: _Progress = None,
     ) -> Paths: ...
+    def _repr_svg_(self) -> str: ...
 
 @final
 class Paths:
@@ -417,13 +565,13 @@ class Paths:
     def amplitude(self) -> NDArray[np.float64]: ...
     @property
     def walls(self) -> list[tuple[int, ...]]: ...
-    def points(self, path: int) -> NDArray[np.float64]: ...
+    def points(self, path: _Int) -> NDArray[np.float64]: ...
     def __len__(self, /) -> int: ...
 
 @final
 class Readings:
     @property
-    def method(self) -> str: ...
+    def method(self) -> _Method: ...
     @property
     def duration_s(self) -> float: ...
     @property
@@ -451,16 +599,16 @@ class Readings:
     @property
     def path(self) -> NDArray[np.int64]: ...
     @property
-    def paths(self) -> dict[str, Any]: ...
+    def paths(self) -> HeardPaths: ...
     @property
     def emitted_s(self) -> NDArray[np.float64]: ...
     @property
     def is_accepted(self) -> NDArray[np.bool_]: ...
     def is_wrong(self, tolerance_us: float = 500.0) -> NDArray[np.bool_]: ...
-    def summary(self, tolerance_us: float = 500.0) -> dict[str, Any]: ...
-    def columns(self) -> dict[str, NDArray[Any]]: ...
-    def to_pandas(self) -> Any: ...
-    def to_polars(self) -> Any: ...
+    def summary(self, tolerance_us: float = 500.0) -> Summary: ...
+    def columns(self) -> dict[str, NDArray[np.float64 | np.int64 | np.int8]]: ...
+    def to_pandas(self) -> pd.DataFrame: ...
+    def to_polars(self) -> pl.DataFrame: ...
     def __len__(self, /) -> int: ...
 
 @final
@@ -476,9 +624,9 @@ class RobotState:
 
 @final
 class Simulation:
-    def __new__(cls, scene: Scene, method: str = "eeruf", *, seed: int | None = None) -> Simulation: ...
+    def __new__(cls, scene: Scene, method: _Method = "eeruf", *, seed: _Int | None = None) -> Simulation: ...
     def step(self, seconds: float) -> Readings: ...
-    def set_velocity(self, robot: int, v_m_s: float, w_rad_s: float) -> None: ...
+    def set_velocity(self, robot: _Int, v_m_s: float, w_rad_s: float) -> None: ...
     @property
     def robots(self) -> list[RobotState]: ...
     @property
@@ -491,11 +639,11 @@ class ReadingBlocks(Iterator[Readings]):
 
 def simulate_blocks(
     scene: Scene,
-    method: str = "eeruf",
-    periods: int = 1000,
-    seed: int | None = None,
+    method: _Method = "eeruf",
+    periods: _Int = 1000,
+    seed: _Int | None = None,
     *,
-    block_periods: int = 10000,
+    block_periods: _Int = 10000,
     progress: _Progress = None,
 ) -> ReadingBlocks: ...
 
@@ -506,16 +654,20 @@ class _Stop:
 
 def _until_stopped(switch: _Stop, function: Callable[[_Case], _Result], argument: _Case) -> _Result: ...
 def simulate(
-    scene: Scene, method: str = "eeruf", periods: int = 1000, seed: int | None = None, *, progress: _Progress = None
+    scene: Scene,
+    method: _Method = "eeruf",
+    periods: _Int = 1000,
+    seed: _Int | None = None,
+    *,
+    progress: _Progress = None,
 ) -> Readings: ...
 
 _ROOM_M: list[float]
 _SIDE_M: float
 
-def _set_one(seeds: int, readings: int | None, methods: Sequence[str] | None, progress: _Progress) -> str: ...
+def _set_one(seeds: _Int, readings: _Int | None, methods: Sequence[_Method] | None, progress: _Progress) -> str: ...
 def _set_two(asked: dict[str, Any], progress: _Progress) -> tuple[str, dict[str, list[dict[str, Any]]]]: ...
 def _speed_sweep(speeds_m_s: Sequence[float], asked: dict[str, Any], progress: _Progress) -> str: ...
-def _scene_from_text(file: Any, text: str) -> Scene: ...
 def _readings_from_columns(
-    method: str, duration_s: float, sensors: int, columns: dict[str, NDArray[Any]], paths: dict[str, Any]
+    method: str, duration_s: float, sensors: _Int, columns: dict[str, NDArray[Any]], paths: dict[str, Any]
 ) -> Readings: ...

@@ -11,7 +11,7 @@ from eeruf._eeruf import ArgumentError, _Stop, _until_stopped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from concurrent.futures import Executor
+    from concurrent.futures import Executor, Future
 
 Case = TypeVar("Case")
 Result = TypeVar("Result")
@@ -140,13 +140,17 @@ def _run(
     executor: Executor,
     report: Callable[[float | None, str], Any] | None,
 ) -> list[Result]:
-    from concurrent.futures import as_completed
+    import queue
 
+    # Not `as_completed`, which waits for ever for a future that an executor cancels by itself, as Dask does when a worker dies.
+    ended: queue.SimpleQueue[Future[Result]] = queue.SimpleQueue()
     futures = [executor.submit(function, case) for case in cases]
     try:
-        for done, future in enumerate(as_completed(futures), start=1):
+        for future in futures:
+            future.add_done_callback(ended.put)
+        for done in range(1, len(futures) + 1):
             # An error is raised as it comes.
-            future.result()
+            ended.get().result()
             if report is not None:
                 report(done / len(futures), f"{done} of {len(futures)}")
     finally:

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    _Progress = bool | Callable[[float | None, str], Any] | None
+    _Progress = bool | Callable[[float | None, str], object] | None
+    from eeruf._eeruf import _Method as Method
+
     _Corner = Literal["behind", "ahead"] | tuple[float, float] | None
 
 __all__ = ["SPEEDS_M_S", "Run", "SetTwo", "set_one", "set_two", "speed_sweep"]
@@ -34,7 +36,7 @@ def set_one(
     seeds: int = 200,
     *,
     readings: int = 8000,
-    methods: Sequence[str] | None = None,
+    methods: Sequence[Method] | None = None,
     progress: _Progress = None,
 ) -> dict[str, Any]:
     """Set I: eight sensors before three walls at right angles, by every method, in many random alcoves.
@@ -151,7 +153,7 @@ class SetTwo(dict[str, Any]):
 def set_two(
     seeds: int = 100,
     *,
-    methods: Sequence[str] | None = None,
+    methods: Sequence[Method] | None = None,
     second_robot: _Corner = None,
     speed_m_s: float = 1.0,
     odometry: bool = True,
@@ -200,7 +202,7 @@ def speed_sweep(
     speeds_m_s: Sequence[float] = SPEEDS_M_S,
     *,
     seeds: int = 100,
-    methods: Sequence[str] | None = None,
+    methods: Sequence[Method] | None = None,
     second_robot: _Corner = None,
     odometry: bool = True,
     t_delta_us: int | None = None,

@@ -19,7 +19,8 @@ use crate::report::watch::Watch;
 ///
 /// The methods: simultaneous, sequential, far_groups, dither, conventional (constant lags, every echo accepted),
 /// comparison (constant lags, consecutive readings compared), median, eeruf_immediate, eeruf (the paper's table scaled
-/// to the period, or the robot's own schedule), eeruf_best (the shortest schedule with the same guarantees), adaptive,
+/// to the period, or the robot's own schedule), eeruf_best (the shortest schedule with the same guarantees),
+/// eeruf_hopping (many phases, a tracker, solo periods and moving lags, so that no sensor stays blind), adaptive,
 /// multi_echo.
 #[derive(clap::Args)]
 pub(crate) struct Args {

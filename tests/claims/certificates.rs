@@ -77,7 +77,7 @@ fn a_time_limit_ends_a_search_with_a_schedule_a_bound_and_its_certificate() {
     let certified = eeruf_check::check(&text).expect("the checker accepts it");
     assert!(1 < certified.claim.bound && certified.claim.bound < certified.claim.period, "{certified}");
     assert!(outcome.err.contains(&certified.to_string()), "{}", outcome.err);
-    // As a robot with 64 sensors moves, its t_delta follows from the period, and what was found so soon is too slow for it.
+    // As a robot with 64 sensors moves, its t_delta follows from the period; what was found so soon is too slow for it.
     let many = ring.replace("24", "64") + "speed_m_s = 1.0\n";
     fs::write(&file, many).expect("the folder can be written to");
     let outcome = eeruf(&["design", &ring_file, "--time-limit", "0.5"]);

@@ -52,7 +52,7 @@ fn readings_of_crosstalk(
     path: Micros,
     stalls: &[(u32, Micros)],
 ) -> Vec<ReadingKind> {
-    let mut ring = Ring::new(schedule, config, start).unwrap();
+    let mut ring = Ring::unverified(schedule, config, start).unwrap();
     let mut arrivals = VecDeque::new();
     let mut kinds = vec![];
     let mut now = start;
@@ -69,11 +69,11 @@ fn readings_of_crosstalk(
             }
         }
         while let Some(at) = arrivals.pop_front_if(|at| now.has_reached(*at)) {
-            ring.echo(receiver, at);
+            ring.echo(receiver, at).unwrap();
         }
         while let Some(event) = ring.poll(now) {
             match event {
-                RingEvent::Fire(sensor) if sensor == emitter => arrivals.push_back(now + path),
+                RingEvent::Fire { sensor, .. } if sensor == emitter => arrivals.push_back(now + path),
                 RingEvent::Reading(reading) if reading.sensor == receiver => kinds.push(reading.kind),
                 _ => {}
             }
@@ -102,7 +102,7 @@ proptest! {
         } else {
             Micros::new((periods * f64::from(period)) as u32)
         };
-        let config = RingConfig::new(t_delta, schedule.min_refire());
+        let config = RingConfig::new().with_t_delta(t_delta).with_window(schedule.min_refire());
         let start = Instant::from_micros(start);
         let kinds = readings_of_crosstalk(&schedule, config, start, (emitter, receiver), path, &[]);
         prop_assert!(!kinds.contains(&ReadingKind::Accepted), "{kinds:?}");
@@ -118,7 +118,7 @@ proptest! {
         let (emitter, receiver) = (pair.0.index(schedule.sensors()) as u8, pair.1.index(schedule.sensors()) as u8);
         prop_assume!(emitter != receiver);
         let path = Micros::new((periods * f64::from(schedule.min_refire().as_micros())) as u32);
-        let config = RingConfig::new(t_delta, schedule.min_refire());
+        let config = RingConfig::new().with_t_delta(t_delta).with_window(schedule.min_refire());
         let stalls: Vec<_> = stalls
             .into_iter()
             .map(|(poll, times)| (poll, Micros::new((times * f64::from(t_delta.as_micros() + 1)) as u32)))
@@ -135,19 +135,19 @@ proptest! {
         consecutive in 2..=8_u8,
     ) {
         let window = schedule.min_refire();
-        let config = RingConfig { consecutive, ..RingConfig::new(t_delta, window) };
-        let mut ring = Ring::new(&schedule, config, Instant::default()).unwrap();
+        let config = RingConfig::new().with_t_delta(t_delta).with_window(window).with_consecutive(consecutive);
+        let mut ring = Ring::unverified(&schedule, config, Instant::default()).unwrap();
         let mut t_echo = vec![f64::from(window.as_micros()) / 2.0; schedule.sensors()];
         let mut readings = vec![0; schedule.sensors()];
         for _ in 0..30 * schedule.sensors() {
             let now = ring.next_deadline();
             while let Some(event) = ring.poll(now) {
                 match event {
-                    RingEvent::Fire(sensor) => {
+                    RingEvent::Fire { sensor, .. } => {
                         let t_echo = &mut t_echo[usize::from(sensor)];
                         let step = steps[readings[usize::from(sensor)] % steps.len()] * f64::from(t_delta.as_micros());
                         *t_echo = (*t_echo + step.trunc()).clamp(0.0, f64::from(window.as_micros()));
-                        ring.echo(sensor, now + Micros::new(*t_echo as u32));
+                        ring.echo(sensor, now + Micros::new(*t_echo as u32)).unwrap();
                     }
                     RingEvent::Reading(reading) => {
                         let readings = &mut readings[usize::from(reading.sensor)];
@@ -176,7 +176,7 @@ fn with_constant_waits_the_same_crosstalk_is_believed_for_ever() {
         [&[Micros::ZERO; 2], &[Micros::ZERO; 2]],
     )
     .unwrap();
-    let config = RingConfig::new(Micros::new(500), Micros::from_millis(36));
+    let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::from_millis(36));
     let path = Micros::from_millis(25);
     let kinds = readings_of_crosstalk(&schedule, config, Instant::default(), (0, 1), path, &[]);
     assert_eq!(kinds[0], ReadingKind::First);

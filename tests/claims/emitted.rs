@@ -9,13 +9,13 @@ use eeruf_core::{Instant, Micros, Ring, RingConfig, RingEvent};
 
 #[test]
 fn an_emitted_table_drives_a_ring() {
-    let config = RingConfig::new(Micros::new(999), Micros::from_millis(30));
-    let mut ring = Ring::new(&paper_12::RING, config, Instant::default()).unwrap();
+    let mut ring = Ring::new(&paper_12::RING, RingConfig::new(), Instant::default()).unwrap();
+    assert_eq!((ring.t_delta(), ring.window()), (Micros::new(999), Micros::from_millis(30)));
     let mut fired = [0; 12];
     while ring.next_deadline() != Instant::default() + Micros::from_millis(130) {
         let now = ring.next_deadline();
         while let Some(event) = ring.poll(now) {
-            if let RingEvent::Fire(sensor) = event {
+            if let RingEvent::Fire { sensor, .. } = event {
                 fired[usize::from(sensor)] += 1;
             }
         }

@@ -28,7 +28,7 @@ fn readings_of_y(t_echo: u32, path: u32, lag_y: u32, x: Waits, y: Waits) -> Vec<
     let us = |x, y| [Micros::new(x), Micros::new(y)];
     let schedule =
         Schedule::<2>::new(Micros::from_millis(200), us(0, lag_y), [us(x[0], y[0]), us(x[1], y[1])]).unwrap();
-    let config = RingConfig::new(Micros::new(T_DELTA), Micros::new(WINDOW));
+    let config = RingConfig::new().with_t_delta(Micros::new(T_DELTA)).with_window(Micros::new(WINDOW));
     let mut ring = Ring::immediate(&schedule, config, Micros::ZERO, Instant::default()).unwrap();
     let mut heard = VecDeque::new();
     let mut readings = vec![];
@@ -37,12 +37,12 @@ fn readings_of_y(t_echo: u32, path: u32, lag_y: u32, x: Waits, y: Waits) -> Vec<
         // Sound that arrives before the ring wants to be polled again interrupts its sleep.
         if let Some(at) = heard.pop_front_if(|at: &mut Instant| now.has_reached(*at)) {
             now = at;
-            ring.echo(1, at);
+            ring.echo(1, at).unwrap();
         }
         while let Some(event) = ring.poll(now) {
             match event {
-                RingEvent::Fire(0) => {
-                    ring.echo(0, now + Micros::new(t_echo));
+                RingEvent::Fire { sensor: 0, .. } => {
+                    ring.echo(0, now + Micros::new(t_echo)).unwrap();
                     heard.push_back(now + Micros::new(path));
                 }
                 RingEvent::Reading(reading) if reading.sensor == 1 => {

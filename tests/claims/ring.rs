@@ -4,7 +4,9 @@
 //! `PROPTEST_CASES=1000000 cargo test --release --test claims ring::` is the long run.
 
 use eeruf_core::tables::{TABLE_I_D, THE_ONE_WITH_19_MS};
-use eeruf_core::{ImmediateRefiring, Instant, Layout, Micros, Ring, RingConfig, RingEvent, Schedule, Scheduler};
+use eeruf_core::{
+    ImmediateRefiring, Instant, Layout, Micros, Ring, RingConfig, RingEvent, Schedule, Scheduler, SensorError,
+};
 use proptest::prelude::*;
 
 const LAYOUT: Layout = Layout::Line(4);
@@ -72,7 +74,8 @@ impl Watch {
 }
 
 fn config() -> RingConfig {
-    RingConfig { blanking: Micros::new(500), ..RingConfig::new(Micros::new(500), Micros::from_millis(30)) }
+    let half = Micros::new(500);
+    RingConfig::new().with_t_delta(half).with_window(Micros::from_millis(30)).with_blanking(half)
 }
 
 fn instant(us: u64) -> Instant {
@@ -92,7 +95,7 @@ proptest! {
         let min_interval = ladder.iter().map(|s| s.min_interval(LAYOUT).unwrap().value).min().unwrap();
         let min_refire = ladder.iter().map(Schedule::min_refire).min().unwrap();
         let mut now = u64::from(start);
-        let mut ring = Ring::new(&ladder[0], config(), instant(now)).unwrap();
+        let mut ring = Ring::unverified(&ladder[0], config(), instant(now)).unwrap();
         let mut watch = Watch { fired: [None; 12], count: [0; 12] };
         for call in calls {
             match call {
@@ -102,7 +105,7 @@ proptest! {
                     // Polling at one instant comes to an end.
                     for left in (0..100).rev() {
                         match ring.poll(instant(now)) {
-                            Some(RingEvent::Fire(sensor)) => watch.note(sensor, now, min_interval, min_refire),
+                            Some(RingEvent::Fire { sensor, .. }) => watch.note(sensor, now, min_interval, min_refire),
                             Some(_) => {}
                             None => break,
                         }
@@ -111,19 +114,21 @@ proptest! {
                 }
                 Call::Poll(later) => {
                     now += later;
-                    if let Some(RingEvent::Fire(sensor)) = ring.poll(instant(now)) {
+                    if let Some(RingEvent::Fire { sensor, .. }) = ring.poll(instant(now)) {
                         watch.note(sensor, now, min_interval, min_refire);
                     }
                 }
                 Call::Echo { sensor, at: Edge::AfterNow(us) } => {
-                    ring.echo(sensor, instant(now.wrapping_add_signed(us.into())));
+                    known(sensor, ring.echo(sensor, instant(now.wrapping_add_signed(us.into()))));
                 }
-                Call::Echo { sensor, at: Edge::Anywhen(us) } => ring.echo(sensor, Instant::from_micros(us)),
-                Call::Stuck(sensor) => ring.stuck(sensor),
-                Call::Disable(sensor) => ring.disable(sensor),
-                Call::Enable(sensor) => ring.enable(sensor),
+                Call::Echo { sensor, at: Edge::Anywhen(us) } => {
+                    known(sensor, ring.echo(sensor, Instant::from_micros(us)));
+                }
+                Call::Stuck(sensor) => known(sensor, ring.stuck(sensor)),
+                Call::Disable(sensor) => known(sensor, ring.disable(sensor)),
+                Call::Enable(sensor) => known(sensor, ring.enable(sensor)),
                 Call::Restart => ring.restart(instant(now)),
-                Call::ChangeSchedule(rung) => ring.change_schedule(rung.get(&ladder)).unwrap(),
+                Call::ChangeSchedule(rung) => ring.change_to_unverified(rung.get(&ladder)).unwrap(),
             }
         }
         // Two periods of the slowest rung, the silence before a change of schedule, and what may be left of a period.
@@ -132,7 +137,7 @@ proptest! {
         while now < end {
             now += u64::from(ring.next_deadline().since(instant(now)).as_micros()).min(10_000);
             while let Some(event) = ring.poll(instant(now)) {
-                if let RingEvent::Fire(sensor) = event {
+                if let RingEvent::Fire { sensor, .. } = event {
                     watch.note(sensor, now, min_interval, min_refire);
                 }
             }
@@ -154,7 +159,7 @@ proptest! {
         scheduled: bool,
     ) {
         if scheduled {
-            survives_jumps(Ring::new(&TABLE_I_D, config(), Instant::default()).unwrap(), &jumps)?;
+            survives_jumps(Ring::unverified(&TABLE_I_D, config(), Instant::default()).unwrap(), &jumps)?;
         } else {
             let refiring = ImmediateRefiring::new(&TABLE_I_D, Micros::from_millis(40), Instant::default());
             survives_jumps(
@@ -163,6 +168,11 @@ proptest! {
             )?;
         }
     }
+}
+
+/// A call about a sensor is refused just where there is none.
+fn known(sensor: u8, result: Result<(), SensorError>) {
+    assert_eq!(result, if sensor < 12 { Ok(()) } else { Err(SensorError { sensor, sensors: 12 }) });
 }
 
 fn survives_jumps<S: Scheduler>(mut ring: Ring<S, 12>, jumps: &[u32]) -> Result<(), TestCaseError> {
@@ -174,7 +184,7 @@ fn survives_jumps<S: Scheduler>(mut ring: Ring<S, 12>, jumps: &[u32]) -> Result<
             now += Micros::from_millis(5);
             for _ in 0..100 {
                 match ring.poll(now) {
-                    Some(RingEvent::Fire(_)) => fired += 1,
+                    Some(RingEvent::Fire { .. }) => fired += 1,
                     Some(_) => {}
                     None => break,
                 }

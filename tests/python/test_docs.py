@@ -80,7 +80,7 @@ def test_help_shows_the_arguments_of_what_can_be_called(name: str) -> None:
     thing = DOCUMENTED[name]
     if inspect.isclass(thing) and (issubclass(thing, Exception) or thing.__new__ is object.__new__):
         return
-    if name.rsplit(".", 1)[1] in ("Paths", "Readings", "WaitTables", "PeriodEnded"):
+    if name.rsplit(".", 1)[1] in ("Paths", "ReadingBlocks", "Readings", "RobotState", "WaitTables", "PeriodEnded"):
         # Only functions return them.
         return
     parameters = [parameter for parameter in inspect.signature(thing).parameters if parameter not in ("self", "cls")]

@@ -60,7 +60,7 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: sim.Scene([[0, 0, 1, 0]]).paths((0, math.nan), [(1, 1)], 2), eeruf.PathsError, "source"),
     (lambda: sim.simulate(sim.Scene([[0, 0, 1, 0]])), eeruf.SceneError, "0 robots"),
     (lambda: eeruf.experiments.set_one(0), eeruf.ArgumentError, "seeds = 0"),
-    (lambda: eeruf.experiments.set_one(1, methods=["loud"]), eeruf.ArgumentError, "no method `loud`"),
+    (lambda: ANY.experiments.set_one(1, methods=["loud"]), eeruf.ArgumentError, "no method `loud`"),
     (lambda: eeruf.experiments.set_one(1, methods=[]), eeruf.ExperimentError, "no methods"),
     # The same for what is no number at all, and for everything that came later.
     (lambda: ANY.design("4", 1, 1, 1), eeruf.ArgumentError, "sensors = '4'; expected a whole number from 1 to 64"),
@@ -72,7 +72,7 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
         eeruf.ArgumentError,
         "stale_echo = 'yes'; expected True or False",
     ),
-    (lambda: eeruf.design(4, 1, 1, 1, layout="star"), eeruf.ArgumentError, "layout = 'star'; expected \"line\""),
+    (lambda: ANY.design(4, 1, 1, 1, layout="star"), eeruf.ArgumentError, "layout = 'star'; expected \"line\""),
     (
         lambda: eeruf.design(3, 999, 12_000, 36_000, layout=[(1, 2), (2, 3)]),
         eeruf.ArgumentError,
@@ -111,7 +111,7 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: eeruf.Schedule(10, (), (), ()), eeruf.ScheduleError, "0 sensors"),
     (lambda: eeruf.Schedule.from_firing(10, [0] * 65, [0] * 65), eeruf.ScheduleError, "65 sensors"),
     (lambda: eeruf.Schedule.from_firing(10, [0], [-1]), eeruf.ArgumentError, r"t_fire_b_us\[0\] = -1"),
-    (lambda: eeruf.WaitSearch(4, 100, 10, 1, t_delta_us=1).best("speed"), eeruf.ArgumentError, "objective = 'speed'"),
+    (lambda: ANY.WaitSearch(4, 100, 10, 1, t_delta_us=1).best("speed"), eeruf.ArgumentError, "objective = 'speed'"),
     (lambda: eeruf.WaitSearch(4, 100, 10, 1, t_delta_us=1).count(0), eeruf.ArgumentError, "limit = 0"),
     (lambda: eeruf.EchoFilter(1, 500).push(0, -5), eeruf.ArgumentError, "t_echo_us = -5"),
     (lambda: eeruf.EchoFilter(1, 500).push_many([[math.inf]]), eeruf.ArgumentError, r"t_echo_us\[0, 0\] = inf"),
@@ -120,7 +120,7 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: ANY.Ring("I-d", 500, window_us=1), eeruf.ArgumentError, "schedule = 'I-d'; expected an eeruf.Schedule"),
     (lambda: eeruf.Ring(tables.TABLE_I_D, 500, window_us=90_000), eeruf.RingError, "listening window of 90 ms"),
     (lambda: eeruf.Fire(64), eeruf.ArgumentError, "sensor = 64; expected a whole number from 0 to 63"),
-    (lambda: eeruf.Reading(0, "loud"), eeruf.ArgumentError, "kind = 'loud'; expected \"first\" or"),
+    (lambda: ANY.Reading(0, "loud"), eeruf.ArgumentError, "kind = 'loud'; expected \"first\" or"),
     (
         lambda: ANY.Report(1, 1, 1, 1, [3]),
         eeruf.ArgumentError,
@@ -130,7 +130,7 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: sim.Robot((0, math.nan, 0), 8, 0.2, 0.3), eeruf.ArgumentError, r"pose\[1\] = nan"),
     (lambda: sim.Robot((0, 0, 0), 65, 0.2, 0.3), eeruf.ArgumentError, "sensors = 65"),
     (
-        lambda: sim.Robot((0, 0, 0), 8, 0.2, 0.3, "bat"),
+        lambda: ANY.sim.Robot((0, 0, 0), 8, 0.2, 0.3, "bat"),
         eeruf.ArgumentError,
         "transducer = 'bat'; expected \"polaroid_6500\"",
     ),
@@ -138,8 +138,11 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: sim.Scene([], open=[0]), eeruf.ArgumentError, r"open = \[0\]; expected no indices"),
     (lambda: sim.Scene([], robots=[3]), eeruf.ArgumentError, "robots = 3; expected a sequence of eeruf.sim.Robot"),  # type: ignore[list-item]
     (lambda: sim.Scene([], poles=[[0, 0, -1]]), eeruf.SceneError, "pole 0"),
-    (lambda: sim.Scene.from_toml("nowhere.toml"), eeruf.SceneError, "nowhere.toml"),
-    (lambda: sim.Scene.from_toml(3), eeruf.ArgumentError, "path = 3"),  # type: ignore[arg-type]
+    (lambda: sim.Scene.from_toml("nowhere.toml"), eeruf.SceneError, "text, line 1"),
+    (lambda: ANY.sim.Scene.from_toml(3), eeruf.ArgumentError, "text = 3; expected a scene in TOML; read_toml"),
+    (lambda: eeruf.Schedule.read_toml("nowhere.toml"), eeruf.ScheduleError, "nowhere.toml: No such file"),
+    (lambda: sim.Scene.read_toml("nowhere.toml"), eeruf.SceneError, "nowhere.toml"),
+    (lambda: sim.Scene.read_toml(3), eeruf.ArgumentError, "path = 3"),  # type: ignore[arg-type]
     (lambda: WALL.paths((0, -1), [(1, -1)], 1001), eeruf.PathsError, "paths up to order 1001; expected at most 1000"),
     (lambda: WALL.paths((0, -1), [(1, -1)], 1, math.nan), eeruf.ArgumentError, "max_length_m = nan"),
     (lambda: WALL.paths((0, -1), [(1, -1)], 1, 0), eeruf.PathsError, "paths up to 0 m"),
@@ -157,14 +160,14 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: sim.Simulation(ROOM).set_velocity(0, 51, 0), eeruf.ArgumentError, "v_m_s = 51; expected"),
     (lambda: sim.simulate_blocks(ROOM, block_periods=0), eeruf.ArgumentError, "block_periods = 0"),
     (lambda: ANY.sim.simulate_blocks(ROOM, progress=3), eeruf.ArgumentError, "progress = 3"),
-    (lambda: sim.simulate(ROOM, "loud"), eeruf.ArgumentError, "no method `loud`; expected simultaneous"),
+    (lambda: ANY.sim.simulate(ROOM, "loud"), eeruf.ArgumentError, "no method `loud`; expected simultaneous"),
     (lambda: sim.simulate(ROOM, periods=0), eeruf.ArgumentError, "periods = 0"),
     (lambda: sim.simulate(ROOM, seed=-1), eeruf.ArgumentError, "seed = -1"),
     (lambda: sim.simulate(3), eeruf.ArgumentError, "scene = 3; expected an eeruf.sim.Scene"),  # type: ignore[arg-type]
     (lambda: sim.simulate(ROOM, periods=2).summary(-1), eeruf.ArgumentError, "tolerance_us = -1"),
     (lambda: eeruf.experiments.set_one(100_001), eeruf.ArgumentError, "seeds = 100001; expected .* from 1 to 100000"),
     (
-        lambda: eeruf.experiments.set_one(1, methods="eeruf"),
+        lambda: ANY.experiments.set_one(1, methods="eeruf"),
         eeruf.ArgumentError,
         "methods = 'eeruf'; expected a sequence",
     ),
@@ -266,7 +269,7 @@ def test_the_simulator_never_panics_whatever_it_is_given(array: Any, other: Any,
         ),
         lambda: ANY.sim.Scene(array, robots=[ROBOT]),
         lambda: WALL.paths(array, other, 2).points(arguments[0]),
-        lambda: ANY.sim.Scene.from_toml(arguments[0]),
+        lambda: ANY.sim.Scene.read_toml(arguments[0]),
         lambda: ANY.sim.Robot(array, 8, *arguments[:2]),
         lambda: ANY.sim.Robot((0, 0, 1.5), 8, arguments[0], arguments[1], arguments[2], period_us=arguments[3]),
         lambda: ANY.sim.Robot(

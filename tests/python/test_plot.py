@@ -22,7 +22,7 @@ def test_the_timing_marks_every_firing_of_both_phases() -> None:
 def test_figures_draw_into_the_axes_they_are_given() -> None:
     import matplotlib.pyplot as plt
 
-    scene = sim.Scene.from_toml(ALCOVE)
+    scene = sim.Scene.read_toml(ALCOVE)
     paths = scene.paths((0.0, 0.2), [(0.1, 0.2)], 2)
     ax = plt.subplots()[1]
     assert plot.scene(scene, paths, source=(0.0, 0.2), receivers=[(0.1, 0.2)], ax=ax) is ax

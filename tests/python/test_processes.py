@@ -116,6 +116,19 @@ def test_errors_and_progress_come_as_they_happen_not_in_the_order_of_the_cases()
         gate.set()
 
 
+def test_a_case_that_its_executor_cancels_ends_the_sweep() -> None:
+    from concurrent.futures import CancelledError, Executor, Future
+
+    class Dying(Executor):
+        def submit(self, *_: Any, **__: Any) -> Any:
+            future: Future[int] = Future()
+            threading.Timer(0.05, future.cancel).start()
+            return future
+
+    with pytest.raises(CancelledError):
+        eeruf.sweep(repr, [1, 2], executor=Dying())
+
+
 def test_nothing_that_was_ended_runs_on() -> None:
     before = threads_of_the_process()
 

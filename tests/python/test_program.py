@@ -31,17 +31,17 @@ def program(*words: str) -> Any:
 
 
 @pytest.mark.parametrize("method", [method for method in sim.METHODS if method != "eeruf_best"])
-def test_a_simulation_has_the_figures_that_the_program_prints(method: str) -> None:
+def test_a_simulation_has_the_figures_that_the_program_prints(method: Any) -> None:
     printed = program("study", "scenes/alcove.toml", "--periods", "200")["methods"][method]
-    readings = sim.simulate(sim.Scene.from_toml(ROOT / "scenes/alcove.toml"), method, periods=200)
-    summary = readings.summary()
+    readings = sim.simulate(sim.Scene.read_toml(ROOT / "scenes/alcove.toml"), method, periods=200)
+    summary: dict[str, Any] = {**readings.summary()}
     shared = set(printed) & set(summary)
     assert {"wrong_of_all", "rejected", "good_lost", "readings_per_s"} <= shared
     assert {name: printed[name] for name in shared} == {name: summary[name] for name in shared}
 
 
 def test_set_one_is_the_programs() -> None:
-    methods = ["conventional", "eeruf", "eeruf_best", "multi_echo"]
+    methods: Any = ["conventional", "eeruf", "eeruf_best", "multi_echo"]
     printed = program("experiment", "set-one", "--seeds", "2", "--method", ",".join(methods))
     assert eeruf.experiments.set_one(seeds=2, methods=methods) == printed
 
@@ -56,7 +56,7 @@ def test_set_one_is_the_programs() -> None:
     ids=["alone", "ahead", "no odometry"],
 )
 def test_set_two_is_the_programs(words: list[str], arguments: dict[str, Any]) -> None:
-    methods = ["conventional", "eeruf", "eeruf_best"]
+    methods: Any = ["conventional", "eeruf", "eeruf_best"]
     printed = program("experiment", "set-two", "--seeds", "2", "--method", ",".join(methods), *words)
     assert eeruf.experiments.set_two(seeds=2, methods=methods, **arguments) == printed
 

@@ -33,13 +33,13 @@ const BOARDS: [Board; 4] = [
 ];
 
 /// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions).
-const INSTRUCTIONS: [(&str, u32); 5] = [("idle_poll", 40), ("fire", 80), ("echo", 60), ("stamp", 60), ("reading", 400)];
+const INSTRUCTIONS: [(&str, u32); 5] = [("idle_poll", 44), ("fire", 95), ("echo", 67), ("stamp", 60), ("reading", 423)];
 /// The program on the host that puts the boards into a simulated world, and the boards' side of it.
 const HARNESS: &str = "eeruf-hil";
 const BOARD_PROGRAM: &str = "eeruf-hil-board";
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
-const FLASH: u64 = 4096;
+const FLASH: u64 = 4304;
 const RAM: u64 = 12 * 18 + 76;
 const STACK: u64 = 256;
 

@@ -6,10 +6,13 @@
 mod blocks;
 mod certificates;
 mod changed;
+mod classic;
 mod firmware;
 mod listings;
 mod measured;
 mod mutants;
+mod package;
+mod page;
 mod periods;
 mod printed;
 mod python;
@@ -52,6 +55,15 @@ enum Verb {
     },
     /// Build the wheel and test it: types, examples, and against what Rust says
     Python,
+    /// Build the page in playground/, as a folder for a server and as one file for a disk
+    Page {
+        /// Run its tests, those that CI runs
+        #[arg(long)]
+        test: bool,
+        /// Run all of its tests: 2,000 random actions, screenshots into target/page/pictures, figures
+        #[arg(long)]
+        long: bool,
+    },
     /// Run the commands that printed the documents' tables again, and put what they print in place of what stands there
     Reprint {
         /// Only compare, all documents if none is named; timings are left alone
@@ -63,6 +75,8 @@ enum Verb {
     },
     /// Certify the rings of the tables, and have both checkers judge them and mutated ones (minutes)
     Certificates(certificates::Plan),
+    /// Pack the crates that are published, and build and test each from its tarball, in a folder of its own (minutes)
+    Package,
     /// Break the core in one place at a time, and see whether a test notices (hours; takes up where it stopped)
     Mutants(mutants::Plan),
     /// Print the table of shortest periods that docs/search.md shows
@@ -84,6 +98,13 @@ fn main() -> ExitCode {
             steps.finish(true)
         }
         Verb::Python => one_step("Python package", python::python),
+        Verb::Page { test, long } => one_step("the page", || {
+            page::page(match (test, long) {
+                (_, true) => page::Tests::Long,
+                (true, false) => page::Tests::Short,
+                (false, false) => page::Tests::No,
+            })
+        }),
         Verb::Reprint { check, document } => one_step("what the programs print", || match document {
             Some(document) if check => printed::check(&[document], printed::Which::All),
             Some(document) => printed::reprint(&document),
@@ -102,6 +123,11 @@ fn main() -> ExitCode {
         Verb::Certificates(plan) => {
             let mut steps = Steps::default();
             certificates::run_all(&plan, &mut steps);
+            steps.finish(true)
+        }
+        Verb::Package => {
+            let mut steps = Steps::default();
+            package::package(&mut steps);
             steps.finish(true)
         }
         Verb::Mutants(plan) => mutants::run(&plan),

@@ -38,7 +38,8 @@ pub(crate) fn cargo_of_version(version: &str) -> Result<Command, Trouble> {
 
 /// A `cargo` that compiles for a target without an operating system; the caller adds `build --target` and the rest.
 ///
-/// That is rustup's if the target is installed; else Debian's, which builds `core` from its sources.
+/// That is rustup's if the target is installed; else Debian's, which builds `core` from its sources, and for WebAssembly
+/// `std` too.
 pub(crate) fn cargo_for_target(target: &str) -> Result<Command, Trouble> {
     let libdir = output(Command::new("rustc").args(["--print", "target-libdir", "--target", target]));
     let has_core = |dir: &str| {
@@ -56,7 +57,7 @@ pub(crate) fn cargo_for_target(target: &str) -> Result<Command, Trouble> {
             .env("PATH", format!("/usr/bin:{path}"))
             .env("RUSTC", "/usr/bin/rustc")
             .env("RUSTC_BOOTSTRAP", "1")
-            .env("CARGO_UNSTABLE_BUILD_STD", "core")
+            .env("CARGO_UNSTABLE_BUILD_STD", if target.starts_with("wasm32") { "std,panic_abort" } else { "core" })
             .env("CARGO_TARGET_DIR", "target/debian");
         return Ok(cargo);
     }

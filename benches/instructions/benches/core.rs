@@ -5,8 +5,8 @@ use std::hint::black_box;
 
 use eeruf_core::search::wait::{Budget, Objective, memory_words};
 use eeruf_core::search::{PeriodProblem, WaitProblem, WaitSearch, design};
-use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{Criterion, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingEvent, Schedule};
+use eeruf_core::tables::PAPER_12;
+use eeruf_core::{Criterion, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingEvent};
 use gungraun::{library_benchmark, library_benchmark_group, main};
 
 /// The shortest period of a ring with a separation of 2 ms, neighbours 15 ms apart, proven.
@@ -92,15 +92,17 @@ fn filter_1000_readings() -> u32 {
 // A hundred periods of twelve sensors: 1,200 firings and echoes.
 #[library_benchmark]
 fn ring_100_periods() -> u32 {
-    static SCHEDULE: Schedule<12> = TABLE_I_D;
-    let config = RingConfig::new(Micros::new(999), Micros::from_millis(36));
-    let Ok(mut ring) = Ring::new(&SCHEDULE, config, Instant::default()) else { return 0 };
+    let config = RingConfig::new().with_window(Micros::from_millis(36));
+    let Ok(mut ring) = Ring::new(&PAPER_12, config, Instant::default()) else { return 0 };
     let (mut periods, mut readings) = (0, 0);
     while periods < 100 {
         let now = ring.next_deadline();
         while let Some(event) = ring.poll(now) {
             match event {
-                RingEvent::Fire(sensor) => ring.echo(sensor, now + Micros::from_millis(black_box(12))),
+                RingEvent::Fire { sensor, .. } => {
+                    let heard = ring.echo(sensor, now + Micros::from_millis(black_box(12)));
+                    readings += u32::from(heard.is_err());
+                }
                 RingEvent::Reading(_) => readings += 1,
                 RingEvent::PeriodEnded(_) => periods += 1,
             }

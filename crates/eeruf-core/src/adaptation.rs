@@ -3,30 +3,29 @@
 
 use core::fmt;
 
-use crate::conditions::Requirements;
 use crate::reading::{ReadingKind, Tally};
 use crate::ring::PeriodStats;
-use crate::schedule::Schedule;
 use crate::sound::SpeedOfSound;
 use crate::time::Micros;
-use crate::verify::Violation;
+use crate::verified::VerifiedSchedule;
 
-/// Schedules for one ring, from the shortest period to the longest, each verified against the same requirements.
+/// Verified schedules for one ring, from the shortest period to the longest.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ladder<'s, const K: usize> {
-    rungs: &'s [Schedule<K>],
-    t_delta: Micros,
+    rungs: &'s [VerifiedSchedule<K>],
 }
 
 impl<'s, const K: usize> Ladder<'s, K> {
-    /// Verifies all rungs.
+    /// A ladder of these rungs. Each was verified for itself; a ring changes only to those that allow its own `t_delta`
+    /// and window.
     ///
     /// # Errors
-    /// [`LadderError`] if there is no rung, if a period is not longer than the one before, if the number of sensors
-    /// changes, or if a rung does not meet the requirements.
-    pub fn new(rungs: &'s [Schedule<K>], requirements: &Requirements<'_>) -> Result<Self, LadderError> {
+    /// [`LadderError`] if there is no rung, if a period is not longer than the one before, or if the number of sensors
+    /// changes.
+    pub fn new(rungs: &'s [VerifiedSchedule<K>]) -> Result<Self, LadderError> {
         let Some(first) = rungs.first() else { return Err(LadderError::Empty) };
-        let mut before: Option<&Schedule<K>> = None;
+        let mut before: Option<&VerifiedSchedule<K>> = None;
         for (rung, schedule) in rungs.iter().enumerate() {
             if schedule.sensors() != first.sensors() {
                 let (sensors, expected) = (schedule.sensors(), first.sensors());
@@ -37,22 +36,33 @@ impl<'s, const K: usize> Ladder<'s, K> {
                     return Err(LadderError::Order { rung, period: schedule.period(), before: before.period() });
                 }
             }
-            if let Some(violation) = schedule.verify(requirements).violations().next() {
-                return Err(LadderError::Unverified { rung, violation });
-            }
             before = Some(schedule);
         }
-        Ok(Self { rungs, t_delta: requirements.t_delta })
+        Ok(Self { rungs })
     }
 }
 
 /// Watches the rejection rate over windows of some periods, and says when to change to another schedule of a
 /// [`Ladder`].
 ///
-/// One noisy window moves one rung up, to a longer period; only several calm windows running move one rung down. Feed
-/// it the [`PeriodStats`] of a [`Ring`](crate::Ring) that began with the shortest period, and hand what it returns to
-/// [`Ring::change_schedule`](crate::Ring::change_schedule).
+/// One noisy window moves one rung up, to a longer period; only several calm windows running move one rung down. Give
+/// it the [`PeriodStats`] of a [`Ring`](crate::Ring) that began with the shortest period, and the ring's
+/// [`change_schedule`](crate::Ring::change_schedule):
+///
+/// ```
+/// use eeruf_core::{Adaptation, Instant, Ladder, Requirements, Ring, RingConfig, RingEvent, tables::TABLE_I_D};
+/// # use eeruf_core::Micros;
+/// let requirements = Requirements::new(Micros::new(599));
+/// let rungs = [TABLE_I_D.scaled(3, 5)?, TABLE_I_D].map(|table| table.verify(&requirements).verified().expect("met"));
+/// let mut adaptation = Adaptation::new(Ladder::new(&rungs)?);
+/// let mut ring = Ring::new(&rungs[0], RingConfig::new().with_window(Micros::from_millis(36)), Instant::default())?;
+/// if let Some(RingEvent::PeriodEnded(stats)) = ring.poll(ring.next_deadline()) {
+///     adaptation.adapt(&stats, |schedule| ring.change_schedule(schedule))?;
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Adaptation<'s, const K: usize> {
     ladder: Ladder<'s, K>,
     rung: usize,
@@ -73,12 +83,14 @@ pub struct Adaptation<'s, const K: usize> {
 
 /// What [`Adaptation`] makes of the present schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Advice {
     /// The rung in use, 0 for the shortest period.
     pub rung: usize,
     /// The rejection rate of the last whole window, in thousandths; `None` before, or if nothing was compared in it.
     pub rejection_permille: Option<u16>,
-    /// The fastest motion, in mm/s, at which good readings still pass (see [`Schedule::max_speed_mm_s`]).
+    /// The fastest motion, in mm/s, at which good readings still pass (see
+    /// [`Schedule::max_speed_mm_s`](crate::Schedule::max_speed_mm_s)).
     pub max_speed_mm_s: u32,
 }
 
@@ -99,8 +111,17 @@ impl<'s, const K: usize> Adaptation<'s, K> {
         }
     }
 
-    /// Takes in one period, and returns the schedule to change to when the present one should be left.
-    pub fn observe(&mut self, stats: &PeriodStats) -> Option<&'s Schedule<K>> {
+    /// Takes in one period, and asks for `change` to another schedule when the present one should be left. It stays on
+    /// its rung unless the change succeeds, and asks again after the next window that calls for one. Returns whether
+    /// there was a change.
+    ///
+    /// # Errors
+    /// Whatever `change` returns.
+    pub fn adapt<Refused>(
+        &mut self,
+        stats: &PeriodStats,
+        change: impl FnOnce(&'s VerifiedSchedule<K>) -> Result<(), Refused>,
+    ) -> Result<bool, Refused> {
         for kind in [ReadingKind::Accepted, ReadingKind::Rejected, ReadingKind::Repeated] {
             for _ in 0..stats.tally.of(kind) {
                 self.tally.count(kind);
@@ -108,17 +129,19 @@ impl<'s, const K: usize> Adaptation<'s, K> {
         }
         self.periods = self.periods.saturating_add(1);
         if self.periods < self.window {
-            return None;
+            return Ok(false);
         }
         self.periods = 0;
         self.rejection_permille = core::mem::take(&mut self.tally).rejection_permille();
         let rung = self.next_rung();
+        let Some(schedule) = self.ladder.rungs.get(rung) else { return Ok(false) };
         if rung == self.rung {
-            return None;
+            return Ok(false);
         }
-        self.rung = rung;
         self.calm_windows = 0;
-        self.ladder.rungs.get(rung)
+        change(schedule)?;
+        self.rung = rung;
+        Ok(true)
     }
 
     /// The rung for the window that has just ended. A window in which nothing was compared is neither noisy nor calm.
@@ -139,10 +162,10 @@ impl<'s, const K: usize> Adaptation<'s, K> {
         }
     }
 
-    /// What the present schedule allows, where sound travels at `c`.
-    pub fn advice(&self, c: SpeedOfSound) -> Advice {
+    /// What the present schedule allows a ring with this `t_delta`, where sound travels at `c`.
+    pub fn advice(&self, t_delta: Micros, c: SpeedOfSound) -> Advice {
         let max_speed_mm_s = match self.ladder.rungs.get(self.rung) {
-            Some(schedule) => schedule.max_speed_mm_s(self.ladder.t_delta, c.mm_per_s()),
+            Some(schedule) => schedule.max_speed_mm_s(t_delta, c.mm_per_s()),
             None => 0,
         };
         Advice { rung: self.rung, rejection_permille: self.rejection_permille, max_speed_mm_s }
@@ -152,6 +175,7 @@ impl<'s, const K: usize> Adaptation<'s, K> {
 /// Why schedules do not make a [`Ladder`]. Rungs are counted from 0 in code and printed from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum LadderError {
     /// There is no rung.
     Empty,
@@ -173,26 +197,19 @@ pub enum LadderError {
         /// How many the first has.
         expected: usize,
     },
-    /// A rung does not meet the requirements.
-    Unverified {
-        /// The rung.
-        rung: usize,
-        /// The first thing wrong with it.
-        violation: Violation,
-    },
 }
 
 impl fmt::Display for LadderError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let first = usize::from(!f.alternate());
         match *self {
             Self::Empty => write!(f, "a ladder without schedules; expected at least one"),
             Self::Order { rung, period, before } => {
-                write!(f, "rung {} has a period of {period}; expected more than the {before} before it", rung + 1)
+                write!(f, "rung {} has a period of {period}; expected more than the {before} before it", rung + first)
             }
             Self::Sensors { rung, sensors, expected } => {
-                write!(f, "rung {} has {sensors} sensors; expected {expected} as in the first", rung + 1)
+                write!(f, "rung {} has {sensors} sensors; expected {expected} as in the first", rung + first)
             }
-            Self::Unverified { rung, violation } => write!(f, "rung {}: {violation}", rung + 1),
         }
     }
 }
@@ -203,14 +220,16 @@ impl core::error::Error for LadderError {}
 mod tests {
     extern crate std;
     use super::*;
-    use crate::schedule::Phase;
+    use crate::conditions::Requirements;
+    use crate::schedule::{Phase, Schedule};
     use crate::tables::TABLE_I_D;
     use std::string::ToString;
 
     const REQUIREMENTS: Requirements<'static> = Requirements::new(Micros::new(599));
 
-    fn rungs() -> [Schedule<12>; 3] {
-        [TABLE_I_D.scaled(3, 5).unwrap(), TABLE_I_D.scaled(4, 5).unwrap(), TABLE_I_D]
+    fn rungs() -> [VerifiedSchedule<12>; 3] {
+        let verified = |schedule: Schedule<12>| schedule.verify(&REQUIREMENTS).verified().unwrap();
+        [TABLE_I_D.scaled(3, 5).unwrap(), TABLE_I_D.scaled(4, 5).unwrap(), TABLE_I_D].map(verified)
     }
 
     fn period(accepted: u8, rejected: u8) -> PeriodStats {
@@ -229,26 +248,32 @@ mod tests {
 
     /// The periods after which the schedule changes, and its new period in ms.
     fn changes(adaptation: &mut Adaptation<'_, 12>, stats: PeriodStats, periods: usize) -> std::vec::Vec<(usize, u32)> {
-        (1..=periods)
-            .filter_map(|n| adaptation.observe(&stats).map(|schedule| (n, schedule.period().as_micros() / 1000)))
-            .collect()
+        let mut changes = std::vec![];
+        for n in 1..=periods {
+            let change = |schedule: &VerifiedSchedule<12>| {
+                changes.push((n, schedule.period().as_micros() / 1000));
+                Ok::<(), ()>(())
+            };
+            adaptation.adapt(&stats, change).unwrap();
+        }
+        changes
     }
 
     #[test]
     fn a_noisy_window_slows_down_and_four_calm_ones_speed_up() {
         let rungs = rungs();
-        let mut adaptation = Adaptation::new(Ladder::new(&rungs, &REQUIREMENTS).unwrap());
+        let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
         assert_eq!(changes(&mut adaptation, period(6, 6), 64), [(16, 80), (32, 100)]);
         assert_eq!(changes(&mut adaptation, period(9, 3), 160), []);
         assert_eq!(changes(&mut adaptation, period(12, 0), 160), [(64, 80), (128, 60)]);
-        let advice = adaptation.advice(SpeedOfSound::AT_20_CELSIUS);
+        let advice = adaptation.advice(REQUIREMENTS.t_delta, SpeedOfSound::AT_20_CELSIUS);
         assert_eq!(advice, Advice { rung: 0, rejection_permille: Some(0), max_speed_mm_s: 1381 });
     }
 
     #[test]
     fn noisy_is_more_than_the_one_limit_and_calm_no_more_than_the_other() {
         let rungs = rungs();
-        let mut adaptation = Adaptation::new(Ladder::new(&rungs, &REQUIREMENTS).unwrap());
+        let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
         assert_eq!(changes(&mut adaptation, period(70, 30), 160), []);
         assert_eq!(changes(&mut adaptation, period(69, 31), 32), [(16, 80), (32, 100)]);
         assert_eq!(changes(&mut adaptation, period(89, 11), 160), []);
@@ -258,24 +283,31 @@ mod tests {
     #[test]
     fn silence_is_neither_noisy_nor_calm() {
         let rungs = rungs();
-        let mut adaptation = Adaptation::new(Ladder::new(&rungs, &REQUIREMENTS).unwrap());
+        let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
         changes(&mut adaptation, period(0, 12), 32);
         assert_eq!(changes(&mut adaptation, period(0, 0), 1000), []);
-        assert_eq!(adaptation.advice(SpeedOfSound::AT_20_CELSIUS).rung, 2);
+        assert_eq!(adaptation.advice(REQUIREMENTS.t_delta, SpeedOfSound::AT_20_CELSIUS).rung, 2);
     }
 
     #[test]
-    fn a_ladder_takes_only_verified_schedules_in_order() {
-        let error = |rungs: &[Schedule<12>], t_delta| {
-            Ladder::new(rungs, &Requirements::new(Micros::new(t_delta))).unwrap_err().to_string()
-        };
-        let [fast, middle, slow] = rungs();
-        assert_eq!(error(&[], 599), "a ladder without schedules; expected at least one");
-        assert_eq!(error(&[middle, fast], 599), "rung 2 has a period of 60 ms; expected more than the 80 ms before it");
-        assert_eq!(
-            error(&[fast, slow], 600),
-            "rung 1: crosstalk between sensors 1 and 5 moves by 1.2 ms from one reading to the next; \
-             to be rejected it needs at least 1.201 ms (Eq. (13a))"
-        );
+    fn a_change_that_the_ring_refuses_leaves_the_rung_and_is_asked_for_again() {
+        let rungs = rungs();
+        let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
+        for window in 0..3 {
+            for n in 1..=16 {
+                let refused = adaptation.adapt(&period(6, 6), |_| Err(window));
+                assert_eq!(refused, if n < 16 { Ok(false) } else { Err(window) });
+                assert_eq!(adaptation.advice(Micros::ZERO, SpeedOfSound::AT_20_CELSIUS).rung, 0);
+            }
+        }
+        assert_eq!(changes(&mut adaptation, period(6, 6), 16), [(16, 80)]);
+    }
+
+    #[test]
+    fn a_ladder_takes_schedules_only_in_order() {
+        let error = |rungs: &[VerifiedSchedule<12>]| Ladder::new(rungs).unwrap_err().to_string();
+        let [fast, middle, _] = rungs();
+        assert_eq!(error(&[]), "a ladder without schedules; expected at least one");
+        assert_eq!(error(&[middle, fast]), "rung 2 has a period of 60 ms; expected more than the 80 ms before it");
     }
 }

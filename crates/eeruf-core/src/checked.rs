@@ -1,19 +1,21 @@
-//! [`schedule!`](crate::schedule!): a schedule that the compiler checks.
+//! [`schedule!`](crate::schedule!): a schedule that the compiler verifies.
 
 use crate::conditions::Requirements;
 use crate::schedule::{Schedule, ScheduleError};
 use crate::time::Micros;
+use crate::verified::VerifiedSchedule;
 use crate::verify::ViolationKind;
 
-/// A [`Schedule`] that is checked while the program is compiled: a table that breaks a condition does not build.
+/// A [`VerifiedSchedule`] that is verified while the program is compiled: a table that breaks a condition does not
+/// build.
 ///
 /// Times are whole microseconds. The table is given by lags and waits or by firing times, and `meets` is the
 /// [`Requirements`] to hold; `eeruf design --emit rust` writes the whole call.
 ///
 /// ```
-/// use eeruf_core::{Layout, Micros, Requirements, Schedule, schedule};
+/// use eeruf_core::{Layout, Micros, Requirements, VerifiedSchedule, schedule};
 ///
-/// const FRONT: Schedule<4> = schedule! {
+/// const FRONT: VerifiedSchedule<4> = schedule! {
 ///     period_us: 60_000,
 ///     t_fire_a_us: [0, 15_000, 30_000, 45_000],
 ///     t_fire_b_us: [0, 17_000, 34_000, 51_000],
@@ -26,9 +28,9 @@ use crate::verify::ViolationKind;
 /// in phase a fire 9 ms apart:
 ///
 /// ```compile_fail
-/// use eeruf_core::{Layout, Micros, Requirements, Schedule, schedule};
+/// use eeruf_core::{Layout, Micros, Requirements, VerifiedSchedule, schedule};
 ///
-/// const FRONT: Schedule<4> = schedule! {
+/// const FRONT: VerifiedSchedule<4> = schedule! {
 ///     period_us: 60_000,
 ///     t_fire_a_us: [0, 15_000, 30_000, 45_000],
 ///     t_fire_b_us: [0, 17_000, 34_000, 51_000],
@@ -79,11 +81,11 @@ macro_rules! schedule {
 pub const fn __checked<const K: usize>(
     schedule: Result<Schedule<K>, ScheduleError>,
     requirements: &Requirements<'_>,
-) -> Schedule<K> {
+) -> VerifiedSchedule<K> {
     match schedule {
-        Ok(schedule) => match schedule.verify(requirements).violations().advance() {
-            None => schedule,
-            Some(violation) => match violation.kind {
+        Ok(schedule) => match schedule.verify(requirements).verified() {
+            Ok(verified) => verified,
+            Err(violation) => match violation.kind {
                 ViolationKind::CrosstalkA => panic!("two sensors' crosstalk would be accepted, Eq. (13a)"),
                 ViolationKind::CrosstalkB => panic!("two sensors' crosstalk would be accepted, Eq. (13b)"),
                 ViolationKind::StaleEcho => panic!("a sensor's stale echo would be accepted, Eq. (13b) with x = y"),

@@ -10,7 +10,7 @@ use crate::schedule::{Phase, Schedule};
 use crate::time::Micros;
 
 impl<const K: usize> Schedule<K> {
-    /// A `const RING: Schedule` in Rust, with the `requirements` for the compiler to check (see
+    /// A `const RING: VerifiedSchedule` in Rust, with the `requirements` for the compiler to check (see
     /// [`schedule!`](crate::schedule!)).
     pub const fn to_rust<'r>(&'r self, requirements: &'r Requirements<'r>) -> RustSource<'r, K> {
         RustSource { schedule: self, requirements }
@@ -46,9 +46,9 @@ impl<const K: usize> fmt::Display for RustSource<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { schedule, requirements } = self;
         let Requirements { t_delta, criterion, min_interval, layout, window, stale_echo } = requirements;
-        writeln!(f, "use eeruf_core::{{Criterion, Layout, Micros, Requirements, Schedule, schedule}};\n")?;
+        writeln!(f, "use eeruf_core::{{Criterion, Layout, Micros, Requirements, VerifiedSchedule, schedule}};\n")?;
         writeln!(f, "// {}; {}.", Summary(schedule), Promise(requirements))?;
-        writeln!(f, "pub const RING: Schedule<{}> = schedule! {{", schedule.sensors())?;
+        writeln!(f, "pub const RING: VerifiedSchedule<{}> = schedule! {{", schedule.sensors())?;
         writeln!(f, "    period_us: {},", Grouped(schedule.period()))?;
         if schedule.has_lags() {
             writeln!(f, "    t_lag_us: [{}],", Numbers(|| schedule.t_lag().iter().copied()))?;
@@ -209,7 +209,10 @@ mod tests {
     fn the_sources_say_what_the_schedule_was_designed_for() {
         let rust = TABLE_I_D.to_rust(&REQUIREMENTS).to_string();
         let promise = "12 sensors, T_p = 100 ms";
-        assert!(rust.contains(promise) && rust.contains("pub const RING: Schedule<12> = schedule! {"), "{rust}");
+        assert!(
+            rust.contains(promise) && rust.contains("pub const RING: VerifiedSchedule<12> = schedule! {"),
+            "{rust}"
+        );
         assert!(rust.contains("t_delta = 999 us, 4 adjacent sensors of a line at least 15 ms apart"), "{rust}");
         let c = TABLE_I_D.to_c(&REQUIREMENTS).to_string();
         assert!(c.contains(promise) && c.contains("#define EERUF_SENSORS 12\n"), "{c}");

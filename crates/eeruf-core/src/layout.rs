@@ -8,6 +8,7 @@ use crate::schedule::MAX_SENSORS;
 ///
 /// The paper asks that any *four* adjacent sensors fire at least 15 ms apart (Sec. 3.1 c). Sensors are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Layout<'a> {
     /// A row with two ends (the paper's half ring): neighbours differ by less than this number.
     Line(u8),
@@ -22,6 +23,7 @@ pub enum Layout<'a> {
 
 /// A pair of neighbours that a ring of so many sensors does not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LayoutError {
     /// The two sensors, from 0.
     pub pair: (usize, usize),
@@ -31,9 +33,10 @@ pub struct LayoutError {
 
 impl fmt::Display for LayoutError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let first = usize::from(!f.alternate());
         let (x, y) = self.pair;
-        let (x, y) = (x.saturating_add(1), y.saturating_add(1));
-        write!(f, "sensors {x} and {y} as neighbours; expected two different sensors from 1 to {}", self.sensors)
+        let (x, y) = (x.saturating_add(first), y.saturating_add(first));
+        write!(f, "sensors {x} and {y} as neighbours; expected two different ones of {}", self.sensors)
     }
 }
 
@@ -50,7 +53,7 @@ impl core::error::Error for LayoutError {}
 /// let rows = neighbour_rows([(0, 1), (1, 2)], 3)?;
 /// assert!(Layout::Graph(&rows).neighbours(3, 2, 1));
 /// let error = neighbour_rows([(1, 2), (2, 3)], 3).unwrap_err();
-/// assert_eq!(error.to_string(), "sensors 3 and 4 as neighbours; expected two different sensors from 1 to 3");
+/// assert_eq!(error.to_string(), "sensors 3 and 4 as neighbours; expected two different ones of 3");
 /// # Ok::<(), eeruf_core::LayoutError>(())
 /// ```
 pub fn neighbour_rows(

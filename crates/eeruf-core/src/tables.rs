@@ -6,8 +6,10 @@
 //! Table I-d keeps the groups 1-4, 5-8 and 9-12 at 19 ms, and any four adjacent sensors at 17 ms. Exactly one of the
 //! 12! orders has 19 ms there too; [`THE_ONE_WITH_19_MS`] is that one.
 
+use crate::conditions::Requirements;
 use crate::schedule::{Schedule, ScheduleError};
 use crate::time::Micros;
+use crate::verified::VerifiedSchedule;
 
 const PERIOD: Micros = Micros::from_millis(100);
 const T_LAG: [u32; 12] = [0, 25, 50, 75, 0, 25, 50, 75, 0, 25, 50, 75];
@@ -52,3 +54,14 @@ pub const TABLE_I_D: Schedule<12> =
 /// apart.
 pub const THE_ONE_WITH_19_MS: Schedule<12> =
     table(Schedule::new(PERIOD, ms(T_LAG), [ms([24; 12]), ms([22, 16, 10, 4, 20, 14, 8, 2, 18, 12, 6, 0])]));
+
+/// Table I-d, verified for the largest `t_delta` that it allows, 999 us, any four adjacent sensors 17 ms apart, and the
+/// longest window, 76 ms: for [`Ring::new`](crate::Ring::new).
+pub const PAPER_12: VerifiedSchedule<12> = {
+    let requirements = Requirements { min_interval: Micros::from_millis(17), ..Requirements::new(Micros::new(999)) };
+    match TABLE_I_D.verify(&requirements).verified() {
+        Ok(verified) => verified,
+        // Only ever evaluated when this crate is compiled.
+        Err(_) => panic!("Table I-d does not keep what the paper says"),
+    }
+};

@@ -3,44 +3,34 @@
 use core::ops::Deref;
 
 use crate::conditions::{Criterion, Requirements};
-use crate::schedule::{Promise, Schedule};
+use crate::schedule::{Schedule, VerifiedFor};
 use crate::time::Micros;
 use crate::verify::{Verification, Violation, stale_separation};
 
 /// A [`Schedule`] that was verified, and what for: [`schedule!`](crate::schedule!) makes it when the program is
-/// compiled, and [`Verification::verified`] at run time. It can be used wherever a schedule can.
+/// compiled, [`Verification::verified`] at run time. It can be used wherever a schedule can.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(transparent)]
-pub struct VerifiedSchedule<const K: usize>(Schedule<K>);
+pub struct VerifiedSchedule<const K: usize, const M: usize = 2>(Schedule<K, M>);
 
-impl<const K: usize> VerifiedSchedule<K> {
+impl<const K: usize, const M: usize> VerifiedSchedule<K, M> {
     /// The schedule. It remembers what it was verified for: a ring that changes to it or restarts keeps its intervals.
-    pub const fn schedule(&self) -> &Schedule<K> {
+    pub const fn schedule(&self) -> &Schedule<K, M> {
         &self.0
     }
 
-    /// The `t_delta` that (13a), (13b) were verified for.
-    #[doc(alias = "T_delta")]
-    pub const fn t_delta(&self) -> Micros {
-        self.promise().t_delta
+    /// The schedule by itself, for those who keep schedules of both kinds. It remembers what it was verified for.
+    pub const fn into_schedule(self) -> Schedule<K, M> {
+        self.0
     }
 
-    /// The least time between the firings of two neighbours that it was verified for.
-    pub const fn min_interval_verified(&self) -> Micros {
-        self.promise().min_interval
-    }
-
-    /// The listening window that it was verified for; the longest that it allows where none was asked for.
-    #[doc(alias = "T_wind")]
-    pub const fn window(&self) -> Micros {
-        self.promise().window
-    }
-
-    const fn promise(&self) -> Promise {
-        match self.0.promise() {
-            Some(promise) => promise,
+    /// What it was verified for.
+    pub const fn verified_for(&self) -> VerifiedFor {
+        match self.0.verified_for() {
+            Some(verified_for) => *verified_for,
             // Never: it is made with one.
-            None => Promise {
+            None => VerifiedFor {
                 t_delta: Micros::ZERO,
                 min_interval: Micros::ZERO,
                 window: Micros::ZERO,
@@ -48,13 +38,33 @@ impl<const K: usize> VerifiedSchedule<K> {
             },
         }
     }
+
+    /// The `t_delta` that (13a), (13b) were verified for.
+    #[doc(alias = "T_delta")]
+    pub const fn t_delta(&self) -> Micros {
+        self.verified_for().t_delta
+    }
+
+    /// The listening window that it was verified for; the longest that it allows where none was asked for.
+    #[doc(alias = "T_wind")]
+    pub const fn window(&self) -> Micros {
+        self.verified_for().window
+    }
 }
 
-impl<const K: usize> Deref for VerifiedSchedule<K> {
-    type Target = Schedule<K>;
+impl<const K: usize, const M: usize> Deref for VerifiedSchedule<K, M> {
+    type Target = Schedule<K, M>;
 
-    fn deref(&self) -> &Schedule<K> {
+    fn deref(&self) -> &Schedule<K, M> {
         &self.0
+    }
+}
+
+/// As the schedule. Nothing can be read back as verified: read a [`Schedule`] and verify it.
+#[cfg(feature = "serde")]
+impl<const K: usize, const M: usize> serde::Serialize for VerifiedSchedule<K, M> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.serialize(serializer)
     }
 }
 
@@ -80,19 +90,27 @@ impl<const K: usize> Verification<'_, K> {
         let min_refire = schedule.min_refire();
         let window = if requirements.window.as_micros() == 0 { min_refire } else { requirements.window };
         let Requirements { t_delta, min_interval, stale_echo, .. } = *requirements;
-        // What crosstalk moves by is the size of d_x - d_y and d_x + d_y under either criterion.
-        let mut separation = match schedule.separation(Criterion::Exact) {
-            Some(separation) => separation.value,
-            None => requirements.separation(),
-        };
+        // What crosstalk moves by is the size of d_x - d_y and d_x + d_y under either criterion. Pair by pair, since
+        // `Schedule::separation` sorts, and would leave paths to a panic in a firmware image.
+        let mut separation = Micros::MAX;
         let mut x = 0;
-        while stale_echo && x < schedule.sensors() {
-            let stale = stale_separation(schedule, x);
-            if stale.as_micros() < separation.as_micros() {
-                separation = stale;
+        while x < schedule.sensors() {
+            let mut y = 0;
+            while y < x {
+                let (even, odd) = schedule.left_sides(Criterion::Exact, x, y);
+                separation = shorter(separation, shorter(even, odd));
+                y += 1;
+            }
+            if stale_echo {
+                separation = shorter(separation, stale_separation(schedule, x));
             }
             x += 1;
         }
-        Ok(VerifiedSchedule(schedule.with_promise(Promise { t_delta, min_interval, window, separation })))
+        let verified_for = VerifiedFor { t_delta, min_interval, window, separation };
+        Ok(VerifiedSchedule(schedule.with_verified_for(verified_for)))
     }
+}
+
+const fn shorter(one: Micros, other: Micros) -> Micros {
+    if one.as_micros() < other.as_micros() { one } else { other }
 }

@@ -20,13 +20,12 @@
 //! # use eeruf_hc_sr04::Pins as P;
 //! # fn run<T: OutputPin, I: InputPin>(pins: [P<T, I>; 12], delay: impl DelayNs, now: fn() -> eeruf_core::Instant)
 //! # -> Result<(), eeruf_hc_sr04::SetupError> {
-//! use eeruf_core::{RingConfig, RingEvent, ReadingKind, Micros, Ring, tables::TABLE_I_D};
-//! use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
+//! use eeruf_core::{EdgeQueue, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
+//! use eeruf_hc_sr04::{HcSr04Ring, Settings};
 //!
 //! static EDGES: EdgeQueue<32> = EdgeQueue::new(); // filled by the edge interrupt
 //!
-//! let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
-//! let ring = Ring::new(&TABLE_I_D, config, now())?;
+//! let ring = Ring::new(&PAPER_12, RingConfig::new().with_window(Micros::from_millis(40)), now())?;
 //! let mut ring = HcSr04Ring::new(ring, pins, delay, Settings::default())?;
 //! loop {
 //!     while let Some(event) = ring.poll_with_edges(&EDGES, now()) {
@@ -40,14 +39,12 @@
 //! ```
 #![no_std]
 
-mod edges;
 mod error;
 mod health;
 mod line;
 mod ring;
 mod settings;
 
-pub use edges::{Edge, EdgeQueue};
 pub use error::SetupError;
 pub use health::Health;
 pub use ring::{HcSr04Ring, Pins};

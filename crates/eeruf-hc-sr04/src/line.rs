@@ -1,8 +1,7 @@
 //! [`Line`]: from the edges of one echo line to the width of a pulse, and to the health of the sensor.
 
-use eeruf_core::{Instant, Micros};
+use eeruf_core::{Edge, Instant, Micros};
 
-use crate::edges::Edge;
 use crate::health::Health;
 use crate::settings::Settings;
 

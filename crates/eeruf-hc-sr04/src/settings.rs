@@ -2,6 +2,8 @@
 
 use eeruf_core::Micros;
 
+use crate::error::SetupError;
+
 /// What the sensors need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -18,6 +20,14 @@ pub struct Settings {
     pub min_retrigger: Micros,
     /// After so many firings in a row without a pulse a sensor counts as missing.
     pub missing_after: u8,
+}
+
+impl Settings {
+    /// Whether a sensor may be triggered again after this time.
+    pub(crate) fn allow(&self, min_refire: Micros) -> Result<(), SetupError> {
+        let min_retrigger = self.min_retrigger;
+        if min_refire < min_retrigger { Err(SetupError::Retrigger { min_refire, min_retrigger }) } else { Ok(()) }
+    }
 }
 
 impl Default for Settings {

@@ -1,7 +1,9 @@
 //! Real wiring against the driver: every fault costs only the sensor that has it, and is named.
 
-use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledFiring, Tally};
-use eeruf_hc_sr04::{Edge, EdgeQueue, HcSr04Ring, Health, Pins, Settings, SetupError};
+use eeruf_core::{
+    Edge, EdgeQueue, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledFiring, Tally,
+};
+use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings, SetupError};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::digital::{Mock, State, Transaction};
 
@@ -13,7 +15,7 @@ fn schedule(period_ms: u32) -> Schedule<K> {
     Schedule::from_firing(Micros::from_millis(period_ms), [ms([24, 44, 64]), ms([20, 38, 56])]).unwrap()
 }
 
-const CONFIG: RingConfig = RingConfig::new(Micros::new(500), Micros::from_millis(40));
+const CONFIG: RingConfig = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::from_millis(40));
 
 /// What a sensor does after a trigger: edges as (time in us, high).
 type Line<'a> = &'a dyn Fn(u32) -> Vec<(u32, bool)>;
@@ -38,7 +40,7 @@ fn run(periods: u32, high: bool, lines: [Line<'_>; K]) -> ([Tally<u32>; K], [Hea
         mocks.extend([trigger.clone(), echo.clone()]);
         Pins { trigger, echo }
     });
-    let ring = Ring::new(&schedule, CONFIG, Instant::default()).unwrap();
+    let ring = Ring::unverified(&schedule, CONFIG, Instant::default()).unwrap();
     let mut driver: Driver<'_> = HcSr04Ring::new(ring, pins, NoopDelay, Settings::default()).unwrap();
     let mut edges: Vec<Edge> = Vec::new();
     let mut tallies = [Tally::default(); K];
@@ -51,11 +53,11 @@ fn run(periods: u32, high: bool, lines: [Line<'_>; K]) -> ([Tally<u32>; K], [Hea
             _ => deadline,
         };
         while edges.first().is_some_and(|edge| now.has_reached(edge.at)) {
-            driver.edge(edges.remove(0));
+            driver.edge(edges.remove(0)).unwrap();
         }
         while let Some(event) = driver.poll(now) {
             match event {
-                RingEvent::Fire(sensor) => {
+                RingEvent::Fire { sensor, .. } => {
                     let line = lines[usize::from(sensor)];
                     let us = |us| now + Micros::new(us);
                     edges.extend(line(ended).into_iter().map(|(at, high)| Edge { sensor, high, at: us(at) }));
@@ -154,6 +156,14 @@ fn the_sensors_own_time_out_is_no_echo_and_no_fault() {
     assert_eq!((tallies[1].of(ReadingKind::Clear), health[1]), (9, Health::Well));
 }
 
+/// The sensor that an event fires.
+fn fired(event: Option<RingEvent>) -> Option<u8> {
+    match event {
+        Some(RingEvent::Fire { sensor, .. }) => Some(sensor),
+        _ => None,
+    }
+}
+
 #[test]
 fn an_echo_that_came_in_time_is_heard_however_long_an_event_took() {
     let schedule = schedule(100);
@@ -165,20 +175,20 @@ fn an_echo_that_came_in_time_is_heard_however_long_an_event_took() {
         mocks.extend([pair.trigger.clone(), pair.echo.clone()]);
         pair
     });
-    let ring = Ring::new(&schedule, CONFIG, Instant::default()).unwrap();
+    let ring = Ring::unverified(&schedule, CONFIG, Instant::default()).unwrap();
     let mut driver: Driver<'_> = HcSr04Ring::new(ring, pins, NoopDelay, Settings::default()).unwrap();
     let edges = EdgeQueue::<8>::new();
     let ms = |ms: u32| Instant::from_micros(1000 * ms);
-    assert_eq!(driver.poll_with_edges(&edges, ms(24)), Some(RingEvent::Fire(0)));
+    assert_eq!(fired(driver.poll_with_edges(&edges, ms(24))), Some(0));
     // Here the caller is held up for 50 ms, and its edges wait.
     edges.push(Edge { sensor: 0, high: true, at: ms(25) });
     edges.push(Edge { sensor: 0, high: false, at: ms(31) });
     let events: Vec<_> = std::iter::from_fn(|| driver.poll_with_edges(&edges, ms(74))).take(2).collect();
-    assert_eq!(events[0], RingEvent::Fire(1));
+    assert_eq!(fired(Some(events[0])), Some(1));
     let RingEvent::Reading(reading) = events[1] else { panic!("{events:?}") };
     assert_eq!((reading.sensor, reading.t_echo), (0, Some(Micros::from_millis(6))));
     let third = std::iter::from_fn(|| driver.poll_with_edges(&edges, ms(94))).next();
-    assert_eq!(third, Some(RingEvent::Fire(2)));
+    assert_eq!(fired(third), Some(2));
     drop(driver);
     for mut mock in mocks {
         mock.done();
@@ -190,7 +200,7 @@ fn a_schedule_that_triggers_a_sensor_too_soon_is_refused() {
     let schedule = schedule(66);
     let mut unused = Mock::new(&[]);
     let pins = || std::array::from_fn(|_| Pins { trigger: unused.clone(), echo: unused.clone() });
-    let ring = || Ring::new(&schedule, CONFIG, Instant::default()).unwrap();
+    let ring = || Ring::unverified(&schedule, CONFIG, Instant::default()).unwrap();
     let error: Result<Driver<'_>, _> = HcSr04Ring::new(ring(), pins(), NoopDelay, Settings::default());
     let Err(error @ SetupError::Retrigger { .. }) = error else { panic!("not refused") };
     assert_eq!(error.to_string(), "a sensor of this schedule fires again after 58 ms; an HC-SR04 needs at least 60 ms");

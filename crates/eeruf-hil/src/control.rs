@@ -5,8 +5,7 @@
 
 use core::convert::Infallible;
 
-use eeruf_core::{Instant, Micros, RingEvent, Scheduler};
-use eeruf_hc_sr04::Edge;
+use eeruf_core::{Edge, Instant, Micros, RingEvent, Scheduler};
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
 use crate::reference::{HostRing, Read, ring};
@@ -57,19 +56,20 @@ impl Control {
         Ok(Self { ring: ring(now, |_| Idle)?, well, ahead: Vec::new(), read: Default::default() })
     }
 
-    pub(crate) fn edge(&mut self, edge: Edge) {
-        if edge.sensor != self.well {
-            self.ring.edge(edge);
+    pub(crate) fn edge(&mut self, edge: Edge) -> Result<(), String> {
+        if edge.sensor == self.well {
+            return Ok(());
         }
+        self.ring.edge(edge).map_err(|error| error.to_string())
     }
 
     /// Follows a poll of the board's ring at `now` that returned `event`: fires if that fired, and not otherwise.
     pub(crate) fn follow(&mut self, now: Instant, event: Option<&RingEvent>) -> Result<(), String> {
         while let Some(edge) = self.ahead.pop_if(|edge| now.has_reached(edge.at)) {
-            self.ring.edge(edge);
+            self.ring.edge(edge).map_err(|error| error.to_string())?;
         }
         let fires = match event {
-            Some(&RingEvent::Fire(sensor)) => Some(sensor),
+            Some(&RingEvent::Fire { sensor, .. }) => Some(sensor),
             _ => None,
         };
         loop {
@@ -80,14 +80,14 @@ impl Control {
                 return Ok(());
             }
             match self.ring.poll(now) {
-                Some(RingEvent::Fire(sensor)) if fires == Some(sensor) => {
+                Some(RingEvent::Fire { sensor, .. }) if fires == Some(sensor) => {
                     if sensor == self.well {
                         let edge = |high, after| Edge { sensor, high, at: now + after };
                         self.ahead = vec![edge(false, FALL), edge(true, RISE)];
                     }
                     return Ok(());
                 }
-                Some(RingEvent::Fire(sensor)) => {
+                Some(RingEvent::Fire { sensor, .. }) => {
                     return Err(format!("without the fault sensor {} would fire at another time", sensor + 1));
                 }
                 Some(RingEvent::Reading(reading)) => {

@@ -11,8 +11,8 @@
 //! what comes out, word by word.
 #![no_std]
 
-use eeruf_core::{Instant, Micros, Reading, Requirements, RingConfig, RingEvent, Schedule, VerifiedSchedule};
-use eeruf_hc_sr04::{Edge, Health};
+use eeruf_core::{Edge, Instant, Micros, Reading, Requirements, RingConfig, RingEvent, Schedule, VerifiedSchedule};
+use eeruf_hc_sr04::Health;
 
 /// How many sensors there are: as many as in `scenes/alcove-hc-sr04.toml`.
 pub const SENSORS: usize = 8;
@@ -33,7 +33,7 @@ pub const SCHEDULE: VerifiedSchedule<SENSORS> = {
 
 /// How the ring listens and compares: as `scenes/alcove-hc-sr04.toml` says, with a window for the longest pulse and its
 /// delay.
-pub const CONFIG: RingConfig = RingConfig::new(Micros::new(500), Micros::from_millis(40));
+pub const CONFIG: RingConfig = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::from_millis(40));
 
 /// What the host says first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -170,7 +170,9 @@ impl Record {
     pub fn event(event: Option<&RingEvent>) -> Self {
         match event {
             None => Self::new(Topic::Event, 0, 0, [0; 5]),
-            Some(&RingEvent::Fire(sensor)) => Self::new(Topic::Event, sensor, 1, [0; 5]),
+            Some(&RingEvent::Fire { sensor, phase, due }) => {
+                Self::new(Topic::Event, sensor, 1, [phase.0.into(), due.as_micros(), 0, 0, 0])
+            }
             Some(&RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age })) => {
                 let us = |time: Option<Micros>| time.map_or(NONE, Micros::as_micros);
                 let kind = kind as u32 | u32::from(phase.0) << 8;
@@ -296,3 +298,8 @@ mod tests {
         assert_eq!(bytes[..9], [Topic::Poll as u8, 0, 0, 0, 1, 2, 3, 4, 0]);
     }
 }
+
+/// The listings of the project's README compile and hold. Here, since a crate that is published cannot see the file.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-use eeruf_core::{Instant, Micros};
-use eeruf_hc_sr04::{Edge, Health};
+use eeruf_core::{Edge, Instant, Micros};
+use eeruf_hc_sr04::Health;
 use eeruf_hil::{Ahead, MOST_AHEAD, SENSORS};
 use eeruf_sim::{LockStep, World};
 
@@ -249,6 +249,6 @@ mod tests {
                 assert_eq!(eeruf_hil::SCHEDULE.t_fire(phase, sensor), simulated.t_fire(phase, sensor));
             }
         }
-        assert_eq!(eeruf_hil::CONFIG.t_delta, robot.t_delta);
+        assert_eq!(eeruf_hil::CONFIG.t_delta, Some(robot.t_delta));
     }
 }

@@ -7,8 +7,8 @@ use core::cell::RefCell;
 use core::convert::Infallible;
 use std::rc::Rc;
 
-use eeruf_core::{Instant, Reading, Ring, RingEvent, ScheduledFiring};
-use eeruf_hc_sr04::{Edge, HcSr04Ring, Health, Pins, Settings};
+use eeruf_core::{Edge, Instant, Reading, Ring, RingEvent, ScheduledFiring};
+use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings};
 use eeruf_hil::{CONFIG, Record, SCHEDULE, SENSORS, Topic};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
@@ -126,8 +126,7 @@ impl<'w> Reference<'w> {
 
     pub(crate) fn edge(&mut self, edge: Edge) -> Result<(), String> {
         self.session.borrow_mut().lines.notice(edge)?;
-        self.ring.edge(edge);
-        Ok(())
+        self.ring.edge(edge).map_err(|error| error.to_string())
     }
 
     /// Polls, and compares the event with the one that the board got.

@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-use eeruf_core::{Instant, Micros, Reading, ReadingKind, RingEvent};
-use eeruf_hc_sr04::{Edge, Health};
+use eeruf_core::{Edge, Instant, Micros, Reading, ReadingKind, RingEvent};
+use eeruf_hc_sr04::Health;
 use eeruf_hil::{Orders, SENSORS, Topic};
 use eeruf_sim::{Readings, World};
 
@@ -107,7 +107,7 @@ pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Ru
                 Some(Topic::Edge) => {
                     let edge = Edge { sensor: record.sensor(), high: record.flag() != 0, at: record.instant() };
                     reference.edge(edge)?;
-                    control.edge(edge);
+                    control.edge(edge)?;
                 }
                 Some(Topic::Poll) => {
                     let event = reference.poll(record.instant())?;

@@ -118,18 +118,20 @@ pub(crate) fn times_of(name: &str, value: &Bound<'_, PyAny>, each: &str) -> PyRe
     items.map(|(index, item)| micros(&format!("{name}[{index}]"), &item)).collect()
 }
 
+/// An array in order, aligned and of this type: as it is, if it is so, else a copy. Whoever unpickles buffers of their
+/// own may hand over arrays that begin anywhere.
+pub(crate) fn native<'py>(value: &Bound<'py, PyAny>, dtype: Option<&str>) -> PyResult<Bound<'py, PyAny>> {
+    value.py().import("numpy")?.call_method1("require", (value, dtype, ["C", "A"]))
+}
+
 /// A matrix of floats with so many columns.
 pub(crate) fn matrix<'py>(
     name: &str,
     value: &Bound<'py, PyAny>,
     columns: usize,
 ) -> PyResult<PyReadonlyArray2<'py, f64>> {
-    let py = value.py();
     let expected = || format!("an array of floats of shape (n, {columns})");
-    let numpy = py.import("numpy")?;
-    let array = numpy
-        .call_method1("ascontiguousarray", (value, "float64"))
-        .map_err(|_| wrong(name, shown(value), expected()))?;
+    let array = native(value, Some("float64")).map_err(|_| wrong(name, shown(value), expected()))?;
     let empty = array.getattr("size")?.extract::<usize>()? == 0;
     let array = if empty { array.call_method1("reshape", ((0, columns),))? } else { array };
     match array.extract::<PyReadonlyArray2<'py, f64>>() {

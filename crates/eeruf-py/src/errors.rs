@@ -1,6 +1,8 @@
 //! One exception for each enum of errors in Rust, with the same messages. All are `EerufError`s, and that is a
 //! `ValueError`.
 
+use std::fmt::Display;
+
 use eeruf_sim::SimulationError as SimulatorError;
 use pyo3::{
     create_exception,
@@ -29,7 +31,7 @@ macro_rules! errors {
         create_exception!(eeruf, $name, EerufError, $doc);
         $($(impl Raise for $rust {
             fn raise(self) -> PyErr {
-                $name::new_err(self.to_string())
+                $name::new_err(from_zero(&self))
             }
         })+)?
     )*};
@@ -40,11 +42,16 @@ pub(crate) trait Raise {
     fn raise(self) -> PyErr;
 }
 
+/// An error as code counts, from 0, where the program prints from 1.
+fn from_zero(error: &impl Display) -> String {
+    format!("{error:#}")
+}
+
 impl Raise for SimulatorError {
     fn raise(self) -> PyErr {
         match self {
-            Self::Memory { .. } => PyMemoryError::new_err(self.to_string()),
-            _ => SimulationError::new_err(self.to_string()),
+            Self::Memory { .. } => PyMemoryError::new_err(from_zero(&self)),
+            _ => SimulationError::new_err(from_zero(&self)),
         }
     }
 }
@@ -57,14 +64,14 @@ Example:
     >>> eeruf.EchoFilter(sensors=0, t_delta_us=500)
     Traceback (most recent call last):
     eeruf.ArgumentError: sensors = 0; expected a whole number from 1 to 64
-";
+" from eeruf_core::SensorError;
     ScheduleError "Numbers that make no schedule.
 
 Example:
     >>> import eeruf
     >>> eeruf.Schedule.from_firing(40_000, [0, 50_000], [0, 2_000])
     Traceback (most recent call last):
-    eeruf.ScheduleError: sensor 2 fires 50 ms into phase a; expected less than the period of 40 ms
+    eeruf.ScheduleError: sensor 1 fires 50 ms into phase a; expected less than the period of 40 ms
 " from eeruf_core::ScheduleError;
     FilterError "A filter that cannot compare as asked.
 
@@ -80,8 +87,8 @@ Example:
     >>> import eeruf
     >>> eeruf.Ring(eeruf.tables.TABLE_I_D, 500, window_us=0)
     Traceback (most recent call last):
-    eeruf.RingError: a blanking time of 0 us; expected less than the window of 0 us
-" from eeruf_core::RingError;
+    eeruf.RingError: a blanking time of 0 us; expected less than the window of 0 us, and at most 65.535 ms
+" from eeruf_core::RingError, eeruf_core::Violation;
     SearchError "Needs that make no sense or are too large to search.
 
 Example:
@@ -90,7 +97,7 @@ Example:
     Traceback (most recent call last):
     eeruf.SearchError: a lag of 10 ms; expected a whole number of ticks of 3 ms
 " from eeruf_core::search::SearchError;
-    CertificateError "A certificate that proves nothing, or not that a period is the shortest; the message names the line.
+    CertificateError "A certificate that proves nothing, or not that a period is the shortest; the message says why.
 
 Example:
     >>> import eeruf
@@ -122,7 +129,7 @@ Example:
     >>> scene = eeruf.sim.Scene([[5, 2, -5, 2]], robots=[robot])
     >>> eeruf.sim.simulate(scene)
     Traceback (most recent call last):
-    eeruf.SimulationError: robot 1, method eeruf: a listening window of 90 ms; a sensor of this schedule fires \
+    eeruf.SimulationError: robot 0, method eeruf: a listening window of 90 ms; a sensor of this schedule fires \
     again after 45.6 ms, expected a window no longer than that (T_wind)
 ";
     ExperimentError "An experiment that cannot be run.

@@ -1,6 +1,6 @@
 //! `EchoFilter`.
 
-use eeruf_core::{FilterError, MAX_SENSORS, Micros, Verdict};
+use eeruf_core::{MAX_SENSORS, Micros, SensorError, Verdict};
 use numpy::{PyArray2, prelude::*};
 use pyo3::prelude::*;
 
@@ -61,7 +61,7 @@ enum Filter {
 }
 
 impl Filter {
-    fn push(&mut self, sensor: usize, echoes: &[Micros], expected_change_us: i32) -> Result<Verdict, FilterError> {
+    fn push(&mut self, sensor: u8, echoes: &[Micros], expected_change_us: i32) -> Result<Verdict, SensorError> {
         match self {
             Self::One(filter) => filter.push_echoes(sensor, echoes, expected_change_us),
             Self::Several(filter) => filter.push_echoes(sensor, echoes, expected_change_us),
@@ -199,7 +199,7 @@ impl EchoFilter {
         let (filter, sensors) = (&mut self.filter, self.sensors);
         let pushed = py.detach(|| {
             for (row, kinds) in echoes.chunks_exact(sensors).zip(kinds.chunks_exact_mut(sensors)) {
-                for (sensor, (&us, kind)) in row.iter().zip(kinds).enumerate() {
+                for (sensor, (&us, kind)) in (0..).zip(row.iter().zip(kinds)) {
                     // Rounded to whole microseconds, which core counts in; in range, as was just checked.
                     let echo = (!us.is_nan()).then(|| Micros::new(us.round() as u32));
                     *kind = filter.push(sensor, echo.as_slice(), 0)?.kind as i8;
@@ -207,7 +207,7 @@ impl EchoFilter {
             }
             Ok(())
         });
-        pushed.map_err(|error: FilterError| error.raise())?;
+        pushed.map_err(|error: SensorError| error.raise())?;
         numpy::PyArray1::from_vec(py, kinds).reshape([echoes.len() / self.sensors, self.sensors])
     }
 
@@ -233,7 +233,7 @@ impl EchoFilter {
             Filter::One(filter) => filter.forget(sensor),
             Filter::Several(filter) => filter.forget(sensor),
         }
-        Ok(())
+        .map_err(Raise::raise)
     }
 
     fn __repr__(&self) -> String {
@@ -246,7 +246,8 @@ impl EchoFilter {
 }
 
 impl EchoFilter {
-    fn sensor(&self, sensor: &Bound<'_, PyAny>) -> PyResult<usize> {
-        whole("sensor", sensor, 0..=self.sensors as u32 - 1).map(|sensor| sensor as usize)
+    fn sensor(&self, sensor: &Bound<'_, PyAny>) -> PyResult<u8> {
+        // At most 64.
+        whole("sensor", sensor, 0..=self.sensors as u8 - 1)
     }
 }

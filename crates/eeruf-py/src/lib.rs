@@ -13,6 +13,7 @@ mod arguments;
 mod columns;
 mod contents;
 mod design;
+mod drawing;
 mod errors;
 mod experiments;
 mod filter;
@@ -31,6 +32,7 @@ mod schedule;
 mod search;
 mod simulate;
 mod simulation;
+mod surroundings;
 mod unpickle;
 mod watch;
 
@@ -54,11 +56,12 @@ mod _eeruf {
         ring::Ring,
         ring_events::{Fire, PeriodEnded, Reading},
         robot::Robot,
-        scene::{Scene, scene_from_text},
+        scene::Scene,
         schedule::Schedule,
         search::{WaitSearch, WaitTables},
         simulate::simulate,
         simulation::{ReadingBlocks, RobotState, Simulation, simulate_blocks},
+        surroundings::{Material, Noise},
         unpickle::readings_from_columns,
         watch::{Switch, until_stopped},
     };
@@ -73,6 +76,7 @@ mod _eeruf {
         module.add("METHODS", PyTuple::new(module.py(), methods.map(eeruf_sim::Method::as_str))?)?;
         let eeruf = methods.into_iter().filter(|method| method.is_eeruf()).map(eeruf_sim::Method::as_str);
         module.add("EERUF_METHODS", PyTuple::new(module.py(), eeruf.collect::<Vec<_>>())?)?;
+        module.add("__version__", env!("CARGO_PKG_VERSION"))?;
         module.add("CAUSES", PyTuple::new(module.py(), crate::readings::CAUSES)?)?;
         // What the picture of a course shows.
         module.add("_ROOM_M", eeruf_sim::experiments::set_two::ROOM_M)?;

@@ -1,6 +1,6 @@
 //! `Ring`.
 
-use eeruf_core::{Instant, MAX_SENSORS, Micros, RingConfig, ScheduledRing};
+use eeruf_core::{Instant, MAX_SENSORS, Micros, Requirements, RingConfig, ScheduledRing, SensorError};
 use eeruf_sim::AnySchedule;
 use pyo3::prelude::*;
 
@@ -37,7 +37,8 @@ self_cell::self_cell!(
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
-///     RingError: the ring cannot listen like that, such as longer than the schedule lets it.
+///     RingError: the ring cannot listen like that, such as longer than the schedule lets it; or the schedule does not
+///         reject crosstalk at this ``t_delta_us`` (see ``Ring.unverified``).
 ///
 /// Example:
 ///     >>> import eeruf
@@ -62,8 +63,8 @@ impl Ring {
         whole("sensor", sensor, 0..=self.sensors - 1).map(|sensor| sensor as u8)
     }
 
-    fn change(&mut self, change: impl FnOnce(&mut Scheduled<'_>)) {
-        self.ring.with_dependent_mut(|_, ring| change(ring));
+    fn change(&mut self, change: impl FnOnce(&mut Scheduled<'_>) -> Result<(), SensorError>) -> PyResult<()> {
+        self.ring.with_dependent_mut(|_, ring| change(ring)).map_err(Raise::raise)
     }
 
     fn changes(&self, changes: &Bound<'_, PyAny>) -> PyResult<Vec<i32>> {
@@ -96,14 +97,52 @@ impl Ring {
         blanking_us: Option<&Bound<'_, PyAny>>,
         consecutive: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let config = RingConfig {
-            blanking: blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?,
-            consecutive: whole_or("consecutive", consecutive, 2, 0..=u8::MAX)?,
-            ..RingConfig::new(micros("t_delta_us", t_delta_us)?, micros("window_us", window_us)?)
-        };
+        let ring = Self::unverified(schedule, t_delta_us, now_us, window_us, blanking_us, consecutive)?;
+        let requirements = Requirements::new(ring.ring.borrow_dependent().t_delta());
+        match ring.ring.borrow_owner().verify(&requirements).violations().next() {
+            Some(violation) => Err(violation.raise()),
+            None => Ok(ring),
+        }
+    }
+
+    /// A ring whose schedule need not reject crosstalk: the conventional method, for comparison.
+    ///
+    /// Args:
+    ///     schedule: when the sensors fire.
+    ///     t_delta_us: as for ``Ring``, as are all others.
+    ///     now_us: when the first period begins.
+    ///     window_us: how long a sensor listens after it has fired, 1 or more.
+    ///     blanking_us: edges sooner than this after firing are no echoes.
+    ///     consecutive: how many readings in a row must agree, 2 to 8.
+    ///
+    /// Raises:
+    ///     ArgumentError: something of the wrong type or out of range.
+    ///     RingError: the ring cannot listen like that.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> constant = eeruf.Schedule(60_000, [0, 15_000], [0, 0], [0, 0])
+    ///     >>> eeruf.Ring.unverified(constant, 500, window_us=36_000).poll(0)
+    ///     Fire(sensor=0, phase=0, due_us=0)
+    #[staticmethod]
+    #[pyo3(signature = (schedule, t_delta_us, now_us=None, *, window_us, blanking_us=None, consecutive=None))]
+    #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us, blanking_us=0, consecutive=2)")]
+    fn unverified(
+        schedule: &Bound<'_, PyAny>,
+        t_delta_us: &Bound<'_, PyAny>,
+        now_us: Option<&Bound<'_, PyAny>>,
+        window_us: &Bound<'_, PyAny>,
+        blanking_us: Option<&Bound<'_, PyAny>>,
+        consecutive: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let config = RingConfig::new()
+            .with_blanking(blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?)
+            .with_consecutive(whole_or("consecutive", consecutive, 2, 0..=u8::MAX)?)
+            .with_t_delta(micros("t_delta_us", t_delta_us)?)
+            .with_window(micros("window_us", window_us)?);
         let now = now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))?;
         let schedule = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
-        let ring = Owned::try_new(Box::new(schedule), |schedule| Scheduled::new(schedule, config, now));
+        let ring = Owned::try_new(Box::new(schedule), |schedule| Scheduled::unverified(schedule, config, now));
         // At most 64.
         Ok(Self { ring: ring.map_err(Raise::raise)?, sensors: schedule.sensors() as u32 })
     }
@@ -163,8 +202,22 @@ impl Ring {
     #[pyo3(signature = (sensor, at_us))]
     fn echo(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
-        self.change(|ring| ring.echo(sensor, at));
-        Ok(())
+        self.change(|ring| ring.echo(sensor, at))
+    }
+
+    /// The sensor of the last ``Fire`` has really fired at this time, later than the poll said. Optional: echo times
+    /// count from then, and all later firings move by as much.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///     at_us: when, 0 or more; a time before the poll is ignored.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor or time.
+    #[pyo3(signature = (sensor, at_us))]
+    fn fired(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
+        self.change(|ring| ring.fired(sensor, at))
     }
 
     /// The echo line of a sensor was already high when it was to fire: the firing just emitted counts as ``"stuck"``.
@@ -177,8 +230,7 @@ impl Ring {
     #[pyo3(signature = (sensor))]
     fn stuck(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
-        self.change(|ring| ring.stuck(sensor));
-        Ok(())
+        self.change(|ring| ring.stuck(sensor))
     }
 
     /// Stop a sensor from firing. The reading of a firing that is under way is still emitted.
@@ -191,8 +243,7 @@ impl Ring {
     #[pyo3(signature = (sensor))]
     fn disable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
-        self.change(|ring| ring.disable(sensor));
-        Ok(())
+        self.change(|ring| ring.disable(sensor))
     }
 
     /// Let a sensor fire again, from its next turn on. Its readings from before are forgotten.
@@ -205,7 +256,6 @@ impl Ring {
     #[pyo3(signature = (sensor))]
     fn enable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
-        self.change(|ring| ring.enable(sensor));
-        Ok(())
+        self.change(|ring| ring.enable(sensor))
     }
 }

@@ -9,7 +9,7 @@ use pyo3::{
     types::{PyDict, PyTuple},
 };
 
-use crate::arguments::{choice, whole, whole_or_none};
+use crate::arguments::{choice, whole, whole_or, whole_or_none};
 
 /// Sensors that can be.
 const SENSORS: RangeInclusive<u8> = 0..=MAX_SENSORS as u8 - 1;
@@ -19,28 +19,43 @@ const SENSORS: RangeInclusive<u8> = 0..=MAX_SENSORS as u8 - 1;
 /// Example:
 ///     >>> import eeruf
 ///     >>> eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000).poll(24_000)
-///     Fire(sensor=0)
+///     Fire(sensor=0, phase=0, due_us=24000)
 #[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Fire {
     /// Which sensor, from 0.
     sensor: u8,
+    /// The phase that its wait belongs to: 0 for a, 1 for b.
+    phase: u8,
+    /// When it was due, on the ring's clock: before the time of the poll if that was late.
+    due_us: u32,
 }
 
 #[pymethods]
 impl Fire {
     #[new]
-    #[pyo3(signature = (sensor))]
-    fn new(sensor: &Bound<'_, PyAny>) -> PyResult<Self> {
-        Ok(Self { sensor: whole("sensor", sensor, SENSORS)? })
+    #[pyo3(signature = (sensor, phase=None, due_us=None))]
+    #[pyo3(text_signature = "(sensor, phase=0, due_us=0)")]
+    fn new(
+        sensor: &Bound<'_, PyAny>,
+        phase: Option<&Bound<'_, PyAny>>,
+        due_us: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            sensor: whole("sensor", sensor, SENSORS)?,
+            phase: whole_or("phase", phase, 0, 0..=u8::MAX)?,
+            due_us: whole_or("due_us", due_us, 0, 0..=u32::MAX)?,
+        })
     }
 
     fn __repr__(&self) -> String {
-        format!("Fire(sensor={})", self.sensor)
+        let Self { sensor, phase, due_us } = self;
+        format!("Fire(sensor={sensor}, phase={phase}, due_us={due_us})")
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        Ok((slf.get_type().into_any(), (slf.get().sensor,).into_pyobject(slf.py())?))
+        let Self { sensor, phase, due_us } = slf.get();
+        Ok((slf.get_type().into_any(), (sensor, phase, due_us).into_pyobject(slf.py())?))
     }
 }
 
@@ -71,10 +86,9 @@ pub(crate) struct Reading {
 
 impl Reading {
     /// From a filter alone, which knows no phases.
-    pub(crate) fn of_filter(sensor: usize, verdict: &Verdict) -> Self {
+    pub(crate) fn of_filter(sensor: u8, verdict: &Verdict) -> Self {
         Self {
-            // Below 64.
-            sensor: sensor as u8,
+            sensor,
             kind: verdict.kind.as_str(),
             t_echo_us: verdict.t_echo.map(Micros::as_micros),
             previous_us: verdict.previous.map(Micros::as_micros),
@@ -171,7 +185,9 @@ impl PeriodEnded {
 /// An event as Python sees it.
 pub(crate) fn to_python<'py>(py: Python<'py>, event: &RingEvent) -> PyResult<Bound<'py, PyAny>> {
     match *event {
-        RingEvent::Fire(sensor) => Fire { sensor }.into_bound_py_any(py),
+        RingEvent::Fire { sensor, phase, due } => {
+            Fire { sensor, phase: phase.0, due_us: due.as_micros() }.into_bound_py_any(py)
+        }
         RingEvent::Reading(reading) => Reading {
             sensor: reading.sensor,
             kind: reading.kind.as_str(),

@@ -1,37 +1,54 @@
-//! `sim.Robot`: a robot with its ring, for scenes built in code.
+//! `sim.Robot`: a robot with its ring.
 
 use eeruf_core::Micros;
-use eeruf_sim::{Pose, Transducer, Vector};
-use pyo3::{prelude::*, types::PyTuple};
+use eeruf_sim::{Clock, GainProfile, Motion, Point, Pose, Transducer, Vector, world::heading_rad};
+use pyo3::{
+    prelude::*,
+    types::{PyDict, PyTuple},
+};
 
 use crate::{
-    arguments::{self, choice, instance, micros, number, shown, whole_or, wrong},
+    arguments::{choice, flag, instance, items, micros, number, points, shown, whole, whole_or, wrong},
     requirements,
     schedule::Schedule,
 };
 
-/// A robot that stands, with a ring of sensors on an arc whose middle is ahead.
+/// A robot with a ring of sensors, on an arc whose middle is ahead or wherever you put them.
 ///
 /// Args:
 ///     pose: (x, y, heading) in metres and radians, counter-clockwise from the x axis.
-///     sensors: how many, 1 to 64.
-///     spacing_rad: the angle from one sensor to the next, in radians.
+///     sensors: how many on an arc, 1 to 64; or where each one is on the robot, as (x, y, heading).
+///     spacing_rad: the angle from one sensor to the next on the arc, in radians.
 ///     radius_m: the radius of the arc, in metres.
 ///     transducer: ``"polaroid_6500"`` or ``"hc_sr04"``.
+///     gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"`` or ``"linear"``.
 ///     period_us: ``T_p`` of the methods that bring no schedule of their own; the schedule's if there is one.
 ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical.
 ///     window_us: ``T_wind``: how long a sensor listens.
+///     blanking_us: how long a sensor is deaf after it has fired; the transducer's own unless it is given.
+///     min_refire_us: with immediate refiring, how long a sensor rests between its echo and its next firing.
+///     start_us: when the ring begins to fire, by its own clock.
 ///     schedule: what the EERUF methods fire by; None for the paper's table, scaled to the period.
+///     neighbours: how many adjacent sensors must not fire close together, 1 to 64.
 ///     consecutive: how many readings in a row must agree, 2 to 8.
 ///     patience: for how many firings ``multi_echo`` waits for an accepted echo that is missing, 0 to 15.
+///     odometry: whether the robot hands its ring the changes that its own motion should cause.
+///     velocity_m_s: (x, y) in the scene's frame, which it keeps for ever, in m/s.
+///     turn_rad_s: the rate of turn that it keeps, in rad/s.
+///     waypoints_m: points (x, y) that it drives through in straight lines, instead of a velocity.
+///     speed_m_s: how fast it does so, in m/s.
+///     clock_offset_us: what its clock shows at the start.
+///     clock_drift_ppm: by how much its clock goes too fast, in millionths.
 ///
 /// Raises:
-///     ArgumentError: something of the wrong type or out of range.
+///     ArgumentError: something of the wrong type or out of range, or two kinds of motion at once.
 ///
 /// Example:
 ///     >>> from eeruf import sim
 ///     >>> sim.Robot((0.0, 0.0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3).period_us
 ///     60000
+///     >>> sim.Robot((0, 0, 0), sensors=[(0.1, 0.1, 0.5), (0.1, -0.1, -0.5)], transducer="hc_sr04").sensors
+///     2
 #[pyclass(frozen, eq, module = "eeruf.sim")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Robot {
@@ -39,12 +56,15 @@ pub(crate) struct Robot {
     /// (x, y, heading) in metres and radians.
     #[pyo3(get)]
     pose: (f64, f64, f64),
-    /// The angle from one sensor to the next, in radians.
+    /// Where each sensor is on the robot: (x, y, heading) in metres and radians.
     #[pyo3(get)]
-    spacing_rad: f64,
-    /// The radius of the arc, in metres.
+    sensor_poses: Vec<(f64, f64, f64)>,
+    /// The angle from one sensor to the next, in radians; None for sensors at places of their own.
     #[pyo3(get)]
-    radius_m: f64,
+    spacing_rad: Option<f64>,
+    /// The radius of the arc, in metres; None for sensors at places of their own.
+    #[pyo3(get)]
+    radius_m: Option<f64>,
     /// The name of the transducer.
     #[pyo3(get)]
     transducer: &'static str,
@@ -52,63 +72,267 @@ pub(crate) struct Robot {
 
 const TRANSDUCERS: [(&str, Transducer); 2] =
     [("polaroid_6500", Transducer::POLAROID_6500), ("hc_sr04", Transducer::HC_SR04)];
+const GAINS: [(&str, GainProfile); 3] =
+    [("constant", GainProfile::Constant), ("square_root", GainProfile::SquareRoot), ("linear", GainProfile::Linear)];
+
+/// (x, y, heading) as Python gives it.
+type PoseOf = (f64, f64, f64);
+
+fn pose_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<PoseOf> {
+    let expected = "(x, y, heading) in metres and radians";
+    let coordinates = items(name, value, expected)?;
+    let [x, y, heading] = &coordinates[..] else { return Err(wrong(name, shown(value), expected)) };
+    let coordinate = |index: usize, value| number(&format!("{name}[{index}]"), value, -1e5..=1e5);
+    Ok((coordinate(0, x)?, coordinate(1, y)?, coordinate(2, heading)?))
+}
+
+fn to_pose((x, y, heading): PoseOf) -> Pose {
+    Pose::new(Vector::new(x, y), heading)
+}
+
+fn from_pose(pose: &Pose) -> PoseOf {
+    (pose.translation.x, pose.translation.y, heading_rad(pose))
+}
+
+/// The motion out of keyword arguments.
+fn motion(
+    velocity_m_s: Option<&Bound<'_, PyAny>>,
+    turn_rad_s: Option<&Bound<'_, PyAny>>,
+    waypoints_m: Option<&Bound<'_, PyAny>>,
+    speed_m_s: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Motion> {
+    match (velocity_m_s, turn_rad_s, waypoints_m, speed_m_s) {
+        (None, None, None, None) => Ok(Motion::Still),
+        (velocity, turn, None, None) => {
+            let velocity = match velocity.map(|value| points("velocity_m_s", value)).transpose()?.as_deref() {
+                None => Vector::zeros(),
+                Some([velocity]) => velocity.coords,
+                Some(_) => {
+                    let given = velocity.map(shown).unwrap_or_default();
+                    return Err(wrong("velocity_m_s", given, "(x, y) in m/s"));
+                }
+            };
+            let turn_rad_s = turn.map_or(Ok(0.0), |turn| number("turn_rad_s", turn, -50.0..=50.0))?;
+            Ok(Motion::Constant { velocity, turn_rad_s })
+        }
+        (None, None, Some(waypoints), Some(speed)) => {
+            let points = points("waypoints_m", waypoints)?;
+            Ok(Motion::Waypoints { points, speed_m_s: number("speed_m_s", speed, 0.0..=50.0)? })
+        }
+        (.., waypoints, speed) => {
+            let name = if waypoints.is_some() { "waypoints_m" } else { "speed_m_s" };
+            let given = waypoints.or(speed).map(shown).unwrap_or_default();
+            Err(wrong(name, given, "waypoints_m and speed_m_s, or velocity_m_s, turn_rad_s or both"))
+        }
+    }
+}
+
+impl Robot {
+    /// One that a file describes.
+    pub(crate) fn of(robot: &eeruf_sim::Robot) -> Self {
+        let gain = robot.transducer.gain;
+        let named = TRANSDUCERS.iter().find(|(_, preset)| Transducer { gain, ..*preset } == robot.transducer);
+        Self {
+            pose: from_pose(&robot.pose),
+            sensor_poses: robot.sensors.iter().map(from_pose).collect(),
+            spacing_rad: None,
+            radius_m: None,
+            // Files know no others.
+            transducer: named.map_or("polaroid_6500", |(name, _)| name),
+            robot: robot.clone(),
+        }
+    }
+
+    /// The keyword arguments that make it again.
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        all.set_item("pose", self.pose)?;
+        match (self.spacing_rad, self.radius_m) {
+            (Some(spacing_rad), Some(radius_m)) => {
+                all.set_item("sensors", self.sensors())?;
+                all.set_item("spacing_rad", spacing_rad)?;
+                all.set_item("radius_m", radius_m)?;
+            }
+            _ => all.set_item("sensors", &self.sensor_poses)?,
+        }
+        all.set_item("transducer", self.transducer)?;
+        all.set_item("gain", self.gain())?;
+        all.set_item("period_us", self.period_us())?;
+        all.set_item("t_delta_us", self.t_delta_us())?;
+        all.set_item("window_us", self.window_us())?;
+        all.set_item("blanking_us", self.blanking_us())?;
+        all.set_item("min_refire_us", self.min_refire_us())?;
+        all.set_item("start_us", self.start_us())?;
+        all.set_item("schedule", self.schedule())?;
+        all.set_item("neighbours", self.neighbours())?;
+        all.set_item("consecutive", self.consecutive())?;
+        all.set_item("patience", self.patience())?;
+        all.set_item("odometry", self.odometry())?;
+        match &self.robot.motion {
+            Motion::Still => {}
+            Motion::Constant { .. } => {
+                all.set_item("velocity_m_s", self.velocity_m_s())?;
+                all.set_item("turn_rad_s", self.turn_rad_s())?;
+            }
+            Motion::Waypoints { .. } => {
+                all.set_item("waypoints_m", self.waypoints_m())?;
+                all.set_item("speed_m_s", self.speed_m_s())?;
+            }
+        }
+        all.set_item("clock_offset_us", self.clock_offset_us())?;
+        all.set_item("clock_drift_ppm", self.clock_drift_ppm())?;
+        Ok(all)
+    }
+}
 
 #[pymethods]
 impl Robot {
     #[new]
     #[pyo3(signature = (
-        pose, sensors, spacing_rad, radius_m, transducer=None, *, period_us=None, t_delta_us=None, window_us=None,
-        schedule=None, consecutive=None, patience=None
+        pose, sensors, spacing_rad=None, radius_m=None, transducer=None, *, gain=None, period_us=None, t_delta_us=None,
+        window_us=None, blanking_us=None, min_refire_us=None, start_us=None, schedule=None, neighbours=None,
+        consecutive=None, patience=None, odometry=None, velocity_m_s=None, turn_rad_s=None, waypoints_m=None,
+        speed_m_s=None, clock_offset_us=None, clock_drift_ppm=None
     ))]
-    #[pyo3(
-        text_signature = "(pose, sensors, spacing_rad, radius_m, transducer=\"polaroid_6500\", *, period_us=60000, \
-            t_delta_us=500, window_us=36000, schedule=None, consecutive=2, patience=0)"
-    )]
+    #[pyo3(text_signature = "(pose, sensors, spacing_rad=None, radius_m=None, transducer=\"polaroid_6500\", *, \
+            gain=\"constant\", period_us=60000, t_delta_us=500, window_us=36000, blanking_us=None, \
+            min_refire_us=36000, start_us=0, schedule=None, neighbours=4, consecutive=2, patience=0, odometry=False, \
+            velocity_m_s=None, turn_rad_s=None, waypoints_m=None, speed_m_s=None, clock_offset_us=0, \
+            clock_drift_ppm=0.0)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         pose: &Bound<'_, PyAny>,
         sensors: &Bound<'_, PyAny>,
-        spacing_rad: &Bound<'_, PyAny>,
-        radius_m: &Bound<'_, PyAny>,
+        spacing_rad: Option<&Bound<'_, PyAny>>,
+        radius_m: Option<&Bound<'_, PyAny>>,
         transducer: Option<&Bound<'_, PyAny>>,
+        gain: Option<&Bound<'_, PyAny>>,
         period_us: Option<&Bound<'_, PyAny>>,
         t_delta_us: Option<&Bound<'_, PyAny>>,
         window_us: Option<&Bound<'_, PyAny>>,
+        blanking_us: Option<&Bound<'_, PyAny>>,
+        min_refire_us: Option<&Bound<'_, PyAny>>,
+        start_us: Option<&Bound<'_, PyAny>>,
         schedule: Option<&Bound<'_, PyAny>>,
+        neighbours: Option<&Bound<'_, PyAny>>,
         consecutive: Option<&Bound<'_, PyAny>>,
         patience: Option<&Bound<'_, PyAny>>,
+        odometry: Option<&Bound<'_, PyAny>>,
+        velocity_m_s: Option<&Bound<'_, PyAny>>,
+        turn_rad_s: Option<&Bound<'_, PyAny>>,
+        waypoints_m: Option<&Bound<'_, PyAny>>,
+        speed_m_s: Option<&Bound<'_, PyAny>>,
+        clock_offset_us: Option<&Bound<'_, PyAny>>,
+        clock_drift_ppm: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let expected = "(x, y, heading) in metres and radians";
-        let coordinates = arguments::items("pose", pose, expected)?;
-        let [x, y, heading] = &coordinates[..] else { return Err(wrong("pose", shown(pose), expected)) };
-        let coordinate = |name: &str, value| number(name, value, -1e6..=1e6);
-        let pose = (coordinate("pose[0]", x)?, coordinate("pose[1]", y)?, coordinate("pose[2]", heading)?);
-        let spacing_rad = number("spacing_rad", spacing_rad, -10.0..=10.0)?;
-        let radius_m = number("radius_m", radius_m, 0.0..=1e3)?;
-        let at = Pose::new(Vector::new(pose.0, pose.1), pose.2);
+        let pose = pose_of("pose", pose)?;
         let (name, transducer) =
             choice("transducer", transducer, &TRANSDUCERS.map(|(name, kind)| (name, (name, kind))))?;
-        let mut robot = eeruf_sim::Robot::ring(at, requirements::sensors(sensors)?, spacing_rad, radius_m, transducer);
+        let transducer = Transducer { gain: choice("gain", gain, &GAINS)?, ..transducer };
+        let spacing_rad = spacing_rad.map(|angle| number("spacing_rad", angle, -10.0..=10.0)).transpose()?;
+        let radius_m = radius_m.map(|radius| number("radius_m", radius, 0.0..=1e3)).transpose()?;
+        let (mut robot, sensor_poses) =
+            if sensors.is_instance_of::<pyo3::types::PyString>() || sensors.try_iter().is_err() {
+                let count = requirements::sensors(sensors)?;
+                let (Some(spacing_rad), Some(radius_m)) = (spacing_rad, radius_m) else {
+                    let name = if spacing_rad.is_none() { "spacing_rad" } else { "radius_m" };
+                    return Err(wrong(name, "None", "a number, since the sensors stand on an arc"));
+                };
+                let robot = eeruf_sim::Robot::ring(to_pose(pose), count, spacing_rad, radius_m, transducer);
+                let poses = robot.sensors.iter().map(from_pose).collect();
+                (robot, poses)
+            } else {
+                if spacing_rad.is_some() || radius_m.is_some() {
+                    let name = if spacing_rad.is_some() { "spacing_rad" } else { "radius_m" };
+                    let given = spacing_rad.or(radius_m).unwrap_or_default();
+                    return Err(wrong(name, given, "None, since each sensor has a place of its own"));
+                }
+                let places = items("sensors", sensors, "a number, or (x, y, heading) of each sensor")?;
+                let each = |(index, place)| pose_of(&format!("sensors[{index}]"), place);
+                let poses = places.iter().enumerate().map(each).collect::<PyResult<Vec<_>>>()?;
+                if poses.is_empty() || poses.len() > eeruf_core::MAX_SENSORS {
+                    return Err(wrong("number of sensors", poses.len(), "1 to 64"));
+                }
+                let on_robot = poses.iter().copied().map(to_pose).collect();
+                (eeruf_sim::Robot::with_sensors(to_pose(pose), on_robot, transducer), poses)
+            };
         let set = |name, value: Option<&Bound<'_, PyAny>>, field: &mut Micros| {
             value.map_or(Ok(()), |value| micros(name, value).map(|us| *field = us))
         };
         set("period_us", period_us, &mut robot.period)?;
         set("t_delta_us", t_delta_us, &mut robot.t_delta)?;
         set("window_us", window_us, &mut robot.window)?;
+        set("blanking_us", blanking_us, &mut robot.blanking)?;
+        set("min_refire_us", min_refire_us, &mut robot.min_refire)?;
+        set("start_us", start_us, &mut robot.start)?;
+        robot.neighbours = requirements::neighbours(neighbours)?;
         robot.consecutive = whole_or("consecutive", consecutive, 2, 2..=8)?;
         robot.patience = whole_or("patience", patience, 0, 0..=15)?;
+        robot.odometry = flag("odometry", odometry, false)?;
+        robot.motion = motion(velocity_m_s, turn_rad_s, waypoints_m, speed_m_s)?;
+        robot.clock = Clock {
+            offset_us: clock_offset_us.map_or(Ok(0), |offset| whole("clock_offset_us", offset, 0..=u32::MAX))?,
+            drift_ppm: clock_drift_ppm.map_or(Ok(0.0), |drift| number("clock_drift_ppm", drift, -1e3..=1e3))?,
+        };
         let given = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
         robot.schedule = given.transpose()?.map(|schedule| schedule.get().0);
         if let (Some(schedule), None) = (robot.schedule, period_us) {
             robot.period = schedule.period();
         }
-        Ok(Self { robot, pose, spacing_rad, radius_m, transducer: name })
+        Ok(Self { robot, pose, sensor_poses, spacing_rad, radius_m, transducer: name })
+    }
+
+    /// The same robot, but for these arguments.
+    ///
+    /// Args:
+    ///     changes: arguments of ``Robot``, by name.
+    ///
+    /// Raises:
+    ///     ArgumentError: as for ``Robot``.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> sim.Robot((0, 0, 0), 8, 0.26, 0.3).replace(t_delta_us=100).t_delta_us
+    ///     100
+    #[pyo3(signature = (**changes))]
+    fn replace<'py>(slf: &Bound<'py, Self>, changes: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
+        let arguments = slf.get().arguments(slf.py())?;
+        let given = |name: &str| changes.is_some_and(|changes| changes.contains(name).unwrap_or(false));
+        // One way to place the sensors, to move or to blank takes the place of the other.
+        if given("sensors") && !given("spacing_rad") && changes_places(changes)? {
+            arguments.del_item("spacing_rad").or_else(missing)?;
+            arguments.del_item("radius_m").or_else(missing)?;
+        }
+        for [one, other] in [["velocity_m_s", "turn_rad_s"], ["waypoints_m", "speed_m_s"]] {
+            let [old, older] =
+                if one == "velocity_m_s" { ["waypoints_m", "speed_m_s"] } else { ["velocity_m_s", "turn_rad_s"] };
+            if given(one) || given(other) {
+                arguments.del_item(old).or_else(missing)?;
+                arguments.del_item(older).or_else(missing)?;
+            }
+        }
+        if given("transducer") && !given("blanking_us") {
+            arguments.del_item("blanking_us")?;
+        }
+        if given("schedule") && !given("period_us") {
+            arguments.del_item("period_us")?;
+        }
+        if let Some(changes) = changes {
+            arguments.update(changes.as_mapping())?;
+        }
+        slf.get_type().call((), Some(&arguments))
     }
 
     /// How many sensors.
     #[getter]
     fn sensors(&self) -> usize {
         self.robot.sensors.len()
+    }
+
+    /// How the receiver's gain grows while it listens.
+    #[getter]
+    fn gain(&self) -> &'static str {
+        GAINS.iter().find(|(_, gain)| *gain == self.robot.transducer.gain).map_or("constant", |(name, _)| name)
     }
 
     /// ``T_p`` of the methods that bring no schedule of their own, in microseconds.
@@ -129,10 +353,34 @@ impl Robot {
         self.robot.window.as_micros()
     }
 
+    /// How long a sensor is deaf after it has fired, in microseconds.
+    #[getter]
+    fn blanking_us(&self) -> u32 {
+        self.robot.blanking.as_micros()
+    }
+
+    /// How long a sensor rests between its echo and its next firing, in microseconds.
+    #[getter]
+    fn min_refire_us(&self) -> u32 {
+        self.robot.min_refire.as_micros()
+    }
+
+    /// When the ring begins to fire, in microseconds.
+    #[getter]
+    fn start_us(&self) -> u32 {
+        self.robot.start.as_micros()
+    }
+
     /// What the EERUF methods fire by; None for the paper's table.
     #[getter]
     fn schedule(&self) -> Option<Schedule> {
         self.robot.schedule.map(Schedule)
+    }
+
+    /// How many adjacent sensors must not fire close together.
+    #[getter]
+    fn neighbours(&self) -> u8 {
+        self.robot.neighbours
     }
 
     /// How many readings in a row must agree.
@@ -147,38 +395,80 @@ impl Robot {
         self.robot.patience
     }
 
+    /// Whether the ring knows by how much its own motion should change readings.
+    #[getter]
+    fn odometry(&self) -> bool {
+        self.robot.odometry
+    }
+
+    /// The velocity that it keeps, (x, y) in m/s; None for a robot that stands or drives through waypoints.
+    #[getter]
+    fn velocity_m_s(&self) -> Option<(f64, f64)> {
+        match &self.robot.motion {
+            Motion::Constant { velocity, .. } => Some((velocity.x, velocity.y)),
+            _ => None,
+        }
+    }
+
+    /// The rate of turn that it keeps, in rad/s; None for a robot that stands or drives through waypoints.
+    #[getter]
+    fn turn_rad_s(&self) -> Option<f64> {
+        match &self.robot.motion {
+            Motion::Constant { turn_rad_s, .. } => Some(*turn_rad_s),
+            _ => None,
+        }
+    }
+
+    /// The points that it drives through, (x, y) in metres; None without.
+    #[getter]
+    fn waypoints_m(&self) -> Option<Vec<(f64, f64)>> {
+        match &self.robot.motion {
+            Motion::Waypoints { points, .. } => Some(points.iter().map(|at: &Point| (at.x, at.y)).collect()),
+            _ => None,
+        }
+    }
+
+    /// How fast it drives through its waypoints, in m/s; None without.
+    #[getter]
+    fn speed_m_s(&self) -> Option<f64> {
+        match &self.robot.motion {
+            Motion::Waypoints { speed_m_s, .. } => Some(*speed_m_s),
+            _ => None,
+        }
+    }
+
+    /// What its clock shows at the start, in microseconds.
+    #[getter]
+    fn clock_offset_us(&self) -> u32 {
+        self.robot.clock.offset_us
+    }
+
+    /// By how much its clock goes too fast, in millionths.
+    #[getter]
+    fn clock_drift_ppm(&self) -> f64 {
+        self.robot.clock.drift_ppm
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let schedule = self.schedule().into_pyobject(py)?.repr()?.to_string();
-        let Self { pose, spacing_rad, radius_m, transducer, .. } = self;
-        Ok(format!(
-            "Robot(pose={pose:?}, sensors={}, spacing_rad={spacing_rad:?}, radius_m={radius_m:?}, \
-             transducer='{transducer}', \
-             period_us={}, t_delta_us={}, window_us={}, schedule={schedule}, consecutive={}, patience={})",
-            self.sensors(),
-            self.period_us(),
-            self.t_delta_us(),
-            self.window_us(),
-            self.consecutive(),
-            self.patience(),
-        ))
+        let shown = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| Ok(format!("{name}={}", value.repr()?));
+        let all = self.arguments(py)?.iter().map(shown).collect::<PyResult<Vec<_>>>()?;
+        Ok(format!("Robot({})", all.join(", ")))
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let (py, this) = (slf.py(), slf.get());
-        let fields = (
-            this.pose,
-            this.sensors(),
-            this.spacing_rad,
-            this.radius_m,
-            this.transducer,
-            this.period_us(),
-            this.t_delta_us(),
-            this.window_us(),
-            this.schedule(),
-            this.consecutive(),
-            this.patience(),
-        );
+        let py = slf.py();
         let rebuild = py.import("eeruf._rebuild")?.getattr("robot")?;
-        Ok((rebuild, fields.into_pyobject(py)?))
+        Ok((rebuild, (slf.get().arguments(py)?,).into_pyobject(py)?))
     }
+}
+
+/// Whether the change of `sensors` is one of places, not of their number.
+fn changes_places(changes: Option<&Bound<'_, PyDict>>) -> PyResult<bool> {
+    let sensors = changes.map(|changes| changes.get_item("sensors")).transpose()?.flatten();
+    Ok(sensors.is_some_and(|sensors| sensors.try_iter().is_ok()))
+}
+
+/// It is no error that an argument was not there.
+fn missing(error: PyErr) -> PyResult<()> {
+    Python::attach(|py| if error.is_instance_of::<pyo3::exceptions::PyKeyError>(py) { Ok(()) } else { Err(error) })
 }

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use eeruf_sim::{Air, Faces, Limits, Noise, Point, Pole, Stop, Tracer, Wall, World};
+use eeruf_sim::{
+    Air, Faces, Limits, Point, Pole, Stop, Tracer, Wall, World, WorldParts, world::DEFAULT_ORDER, world_file,
+};
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
@@ -13,9 +15,11 @@ use pyo3::{
 use crate::{
     arguments::{self, instance, matrix, number, points, shown, whole, whole_or, wrong},
     contents::Contents,
+    drawing,
     errors::{Raise, SceneError},
     paths::Paths,
     robot::Robot,
+    surroundings::{self, Material, Noise},
     watch::in_background,
 };
 
@@ -23,12 +27,6 @@ use crate::{
 /// anybody could press Ctrl-C.
 const FEW: usize = 32;
 const LOW_ORDER: u32 = 6;
-
-/// How a scene was made: what it takes to make it again.
-enum Source {
-    Toml { file: PathBuf, text: String },
-    Code(Py<PyDict>),
-}
 
 /// Walls, poles and robots from above, in metres. Immutable; scenes pickle.
 ///
@@ -40,9 +38,14 @@ enum Source {
 ///     open: indices of openings, from which nothing comes back.
 ///     two_sided: indices of walls that reflect on both sides.
 ///     poles: array of shape (m, 3): x, y and radius.
+///     materials: of the walls, one for all or one each: ``"smooth"``, ``"painted"``, ``"soft"``, ``"perfect"`` or a
+///         :class:`Material`; smooth unless given.
+///     pole_materials: of the poles, likewise.
 ///     temperature_c: of the air, in degrees Celsius, -100 to 100; the speed of sound depends on it.
+///     humidity_percent: of the air, 0 to 100.
+///     pressure_kpa: of the air.
 ///     robots: the robots that :func:`simulate` drives.
-///     noise: whether :func:`simulate` has jitter, fading and bursts from outside.
+///     noise: True for a little jitter and fading, False for none, or a :class:`Noise`.
 ///     seed: of the noise, 0 to 2^64 - 1.
 ///     max_order: how many bounces :func:`simulate` follows; 6 unless it is given.
 ///
@@ -58,7 +61,14 @@ enum Source {
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Scene {
     contents: Arc<Contents>,
-    source: Source,
+    robots: Vec<Robot>,
+    noise: eeruf_sim::Noise,
+    /// What decides all that is random.
+    #[pyo3(get)]
+    seed: u64,
+    /// How many bounces :func:`simulate` follows.
+    #[pyo3(get)]
+    max_order: u32,
 }
 
 impl Scene {
@@ -70,36 +80,47 @@ impl Scene {
         self.contents.world().ok_or_else(|| SceneError::new_err("a scene of 0 robots; expected 1 or more to simulate"))
     }
 
-    fn from_source(file: PathBuf, text: String) -> PyResult<Self> {
-        let world = World::from_text(&file, &text).map_err(Raise::raise)?;
-        // Whoever unpickles it may not have the files beside it.
-        let text = with_schedules(&file, &text).unwrap_or(text);
-        Ok(Self { contents: Arc::new(Contents::World(Arc::new(world))), source: Source::Toml { file, text } })
+    /// Checks the parts against each other.
+    fn of(parts: WorldParts, robots: Vec<Robot>) -> PyResult<Self> {
+        let WorldParts { scene, noise, max_order, seed, .. } = parts;
+        let contents = if robots.is_empty() {
+            Contents::Walls(Box::new(scene))
+        } else {
+            let inner = robots.iter().map(|robot| robot.robot.clone()).collect();
+            let world = World::new(scene, inner, noise).and_then(|world| world.with_max_order(max_order));
+            Contents::World(Arc::new(world.map_err(Raise::raise)?.with_seed(seed)))
+        };
+        Ok(Self { contents: Arc::new(contents), robots, noise, seed, max_order })
     }
-}
 
-/// The text of a scene with the schedules in it that it names; `None` if it names none.
-fn with_schedules(file: &Path, text: &str) -> Option<String> {
-    let mut scene: toml::Table = text.parse().ok()?;
-    let mut named = false;
-    for robot in scene.get_mut("robot")?.as_array_mut()? {
-        let schedule = robot.get_mut("schedule");
-        if let Some((value, name)) =
-            schedule.and_then(|value| value.as_str().map(str::to_owned).map(|name| (value, name)))
-        {
-            let beside = file.parent().unwrap_or(Path::new("")).join(name);
-            *value = toml::Value::Table(std::fs::read_to_string(beside).ok()?.parse().ok()?);
-            named = true;
+    fn from_text(name: &Path, text: &str) -> PyResult<Self> {
+        let parts = WorldParts::from_text(name, text).map_err(Raise::raise)?;
+        let robots: Vec<_> = parts.robots.iter().map(Robot::of).collect();
+        if !robots.is_empty() {
+            // For the line that is to blame, where the world is.
+            World::from_text(name, text).map_err(Raise::raise)?;
         }
+        Self::of(parts, robots)
     }
-    named.then(|| scene.to_string())
-}
 
-/// A scene from the text of a file, as a pickle holds it.
-#[pyfunction]
-#[pyo3(name = "_scene_from_text", signature = (file, text))]
-pub(crate) fn scene_from_text(file: PathBuf, text: String) -> PyResult<Scene> {
-    Scene::from_source(file, text)
+    /// The keyword arguments that make it again.
+    fn arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        all.set_item("walls", self.walls(py)?)?;
+        all.set_item("open", self.open())?;
+        all.set_item("two_sided", self.two_sided())?;
+        all.set_item("poles", self.poles(py)?)?;
+        all.set_item("materials", self.materials())?;
+        all.set_item("pole_materials", self.pole_materials())?;
+        all.set_item("temperature_c", self.temperature_c())?;
+        all.set_item("humidity_percent", self.humidity_percent())?;
+        all.set_item("pressure_kpa", self.pressure_kpa())?;
+        all.set_item("robots", self.robots(py)?)?;
+        all.set_item("noise", self.noise())?;
+        all.set_item("seed", self.seed)?;
+        all.set_item("max_order", self.max_order)?;
+        Ok(all)
+    }
 }
 
 fn indices(name: &str, value: Option<&Bound<'_, PyAny>>, walls: usize) -> PyResult<Vec<usize>> {
@@ -116,11 +137,12 @@ fn indices(name: &str, value: Option<&Bound<'_, PyAny>>, walls: usize) -> PyResu
 impl Scene {
     #[new]
     #[pyo3(signature = (
-        walls, open=None, two_sided=None, poles=None, *, temperature_c=None, robots=None, noise=None, seed=None,
-        max_order=None
+        walls, open=None, two_sided=None, poles=None, *, materials=None, pole_materials=None, temperature_c=None,
+        humidity_percent=None, pressure_kpa=None, robots=None, noise=None, seed=None, max_order=None
     ))]
-    #[pyo3(text_signature = "(walls, open=None, two_sided=None, poles=None, *, temperature_c=20.0, robots=(), \
-            noise=True, seed=1, max_order=6)")]
+    #[pyo3(text_signature = "(walls, open=None, two_sided=None, poles=None, *, materials=None, pole_materials=None, \
+            temperature_c=20.0, humidity_percent=50.0, pressure_kpa=101.325, robots=(), noise=True, seed=1, \
+            max_order=6)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         py: Python<'_>,
@@ -128,57 +150,56 @@ impl Scene {
         open: Option<&Bound<'_, PyAny>>,
         two_sided: Option<&Bound<'_, PyAny>>,
         poles: Option<&Bound<'_, PyAny>>,
+        materials: Option<&Bound<'_, PyAny>>,
+        pole_materials: Option<&Bound<'_, PyAny>>,
         temperature_c: Option<&Bound<'_, PyAny>>,
+        humidity_percent: Option<&Bound<'_, PyAny>>,
+        pressure_kpa: Option<&Bound<'_, PyAny>>,
         robots: Option<&Bound<'_, PyAny>>,
         noise: Option<&Bound<'_, PyAny>>,
         seed: Option<&Bound<'_, PyAny>>,
         max_order: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let made_of = PyDict::new(py);
         let rows = matrix("walls", walls, 4)?;
-        made_of.set_item("walls", PyArray2::from_array(py, &rows.as_array()))?;
         let mut built_walls: Vec<_> =
             rows.as_array().rows().into_iter().map(|row| Wall::new(row[0], row[1], row[2], row[3])).collect();
         for (name, which, faces) in [("open", open, Faces::Open), ("two_sided", two_sided, Faces::Both)] {
-            let indices = indices(name, which, built_walls.len())?;
-            made_of.set_item(name, &indices)?;
-            for index in indices {
+            for index in indices(name, which, built_walls.len())? {
                 built_walls[index].faces = faces;
             }
+        }
+        let surfaces = surroundings::materials("materials", materials, built_walls.len())?;
+        for (wall, material) in built_walls.iter_mut().zip(surfaces) {
+            wall.material = material;
         }
         let mut built_poles = vec![];
         if let Some(poles) = poles {
             let rows = matrix("poles", poles, 3)?;
-            made_of.set_item("poles", PyArray2::from_array(py, &rows.as_array()))?;
             built_poles.extend(rows.as_array().rows().into_iter().map(|row| Pole::new(row[0], row[1], row[2])));
         }
-        let celsius = temperature_c.map_or(Ok(20.0), |celsius| number("temperature_c", celsius, -100.0..=100.0))?;
+        let surfaces = surroundings::materials("pole_materials", pole_materials, built_poles.len())?;
+        for (pole, material) in built_poles.iter_mut().zip(surfaces) {
+            pole.material = material;
+        }
+        let default = Air::default();
+        let air = Air {
+            temperature_c: temperature_c
+                .map_or(Ok(20.0), |celsius| number("temperature_c", celsius, -100.0..=100.0))?,
+            humidity_percent: humidity_percent
+                .map_or(Ok(default.humidity_percent), |percent| number("humidity_percent", percent, 0.0..=100.0))?,
+            pressure_kpa: pressure_kpa
+                .map_or(Ok(default.pressure_kpa), |kpa| number("pressure_kpa", kpa, 0.0..=1e4))?,
+        };
         let expected = "a sequence of eeruf.sim.Robot";
         let given = robots.map_or(Ok(vec![]), |robots| arguments::items("robots", robots, expected))?;
         let one =
             |robot: &Bound<'_, PyAny>| instance::<Robot>("robots", robot, expected).map(|robot| robot.get().clone());
         let robots = given.iter().map(one).collect::<PyResult<Vec<_>>>()?;
-        let noise = arguments::flag("noise", noise, true)?;
+        let noise = surroundings::noise(noise)?;
         let seed = whole_or("seed", seed, 1, 0..=u64::MAX)?;
-        let order = max_order.map(|order| whole("max_order", order, 0..=u32::MAX)).transpose()?;
-        made_of.set_item("temperature_c", celsius)?;
-        made_of.set_item("robots", PyTuple::new(py, robots.iter().cloned())?)?;
-        made_of.set_item("noise", noise)?;
-        made_of.set_item("seed", seed)?;
-        made_of.set_item("max_order", order)?;
-        let scene =
-            py.detach(|| eeruf_sim::Scene::new(built_walls, built_poles, Air::at(celsius))).map_err(Raise::raise)?;
-        let source = Source::Code(made_of.unbind());
-        if robots.is_empty() {
-            return Ok(Self { contents: Arc::new(Contents::Walls(Box::new(scene))), source });
-        }
-        let noise = if noise { Noise::default() } else { Noise::NONE };
-        let robots = robots.into_iter().map(|robot| robot.robot).collect();
-        let mut world = World::new(scene, robots, noise).map_err(Raise::raise)?.with_seed(seed);
-        if let Some(order) = order {
-            world = world.with_max_order(order).map_err(Raise::raise)?;
-        }
-        Ok(Self { contents: Arc::new(Contents::World(Arc::new(world))), source })
+        let max_order = whole_or("max_order", max_order, DEFAULT_ORDER, 0..=u32::MAX)?;
+        let scene = py.detach(|| eeruf_sim::Scene::new(built_walls, built_poles, air)).map_err(Raise::raise)?;
+        Self::of(WorldParts { scene, robots: vec![], noise, max_order, seed }, robots)
     }
 
     /// Read a scene file, such as those in the folder ``scenes``.
@@ -191,11 +212,76 @@ impl Scene {
     ///     SceneError: no such file, or it says something that makes no scene: by name, value and what is expected.
     #[staticmethod]
     #[pyo3(signature = (path))]
-    fn from_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
+    fn read_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
         let path: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a scene in TOML"))?;
         let text = std::fs::read_to_string(&path)
             .map_err(|error| SceneError::new_err(format!("{}: {error}", path.display())))?;
-        Self::from_source(path, text)
+        Self::from_text(&path, &text)
+    }
+
+    /// A scene out of the text of a scene file, as :meth:`to_toml` writes it.
+    ///
+    /// Args:
+    ///     text: the contents of a file; a schedule that it names is looked for in the present folder.
+    ///
+    /// Raises:
+    ///     ArgumentError: not a text.
+    ///     SceneError: it says something that makes no scene: by name, value and what is expected.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> sim.Scene.from_toml("[[pole]]\nat_m = [1, 2]\nradius_m = 0.05").poles.tolist()
+    ///     [[1.0, 2.0, 0.05]]
+    #[staticmethod]
+    #[pyo3(name = "from_toml", signature = (text))]
+    fn of_toml(text: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let text = arguments::text("text", text, "a scene in TOML; read_toml takes a path")?;
+        Self::from_text(Path::new("text"), &text)
+    }
+
+    /// Write a scene file that says all this: it gives the same readings, in Python and in the program.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)])
+    ///     >>> sim.Scene.from_toml(scene.to_toml()).to_toml() == scene.to_toml()
+    ///     True
+    fn to_toml(&self) -> String {
+        let robots: Vec<_> = self.robots.iter().map(|robot| robot.robot.clone()).collect();
+        world_file(self.scene(), &robots, &self.noise, self.max_order, self.seed)
+    }
+
+    /// The same scene, but for these arguments.
+    ///
+    /// Args:
+    ///     changes: arguments of ``Scene``, by name. Other walls or poles have the default materials, unless those are
+    ///         given too, and no openings.
+    ///
+    /// Raises:
+    ///     ArgumentError: as for ``Scene``.
+    ///     SceneError: as for ``Scene``.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> scene = sim.Scene([[5, 2, -5, 2]], seed=3).replace(temperature_c=0.0)
+    ///     >>> scene.temperature_c, scene.seed
+    ///     (0.0, 3)
+    #[pyo3(signature = (**changes))]
+    fn replace<'py>(slf: &Bound<'py, Self>, changes: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
+        let arguments = slf.get().arguments(slf.py())?;
+        if let Some(changes) = changes {
+            for (part, depending) in
+                [("walls", &["open", "two_sided", "materials"][..]), ("poles", &["pole_materials"])]
+            {
+                if changes.contains(part)? {
+                    for name in depending {
+                        arguments.del_item(name)?;
+                    }
+                }
+            }
+            arguments.update(changes.as_mapping())?;
+        }
+        slf.get_type().call((), Some(&arguments))
     }
 
     /// The walls: array of shape (n, 4), as given.
@@ -226,10 +312,40 @@ impl Scene {
         PyArray1::from_vec(py, flat).reshape([poles.len(), 3])
     }
 
-    /// How many robots there are.
+    /// The robots, a tuple of ``Robot``.
     #[getter]
-    fn robots(&self) -> usize {
-        self.contents.world().map_or(0, |world| world.robots().len())
+    fn robots<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.robots.iter().cloned())
+    }
+
+    /// The material of each wall, a list of ``Material``.
+    #[getter]
+    fn materials(&self) -> Vec<Material> {
+        self.scene().walls().iter().map(|wall| Material::of(wall.material)).collect()
+    }
+
+    /// The material of each pole, a list of ``Material``.
+    #[getter]
+    fn pole_materials(&self) -> Vec<Material> {
+        self.scene().poles().iter().map(|pole| Material::of(pole.material)).collect()
+    }
+
+    /// How noisy it is, a ``Noise``.
+    #[getter]
+    fn noise(&self) -> Noise {
+        Noise::of(self.noise)
+    }
+
+    /// The humidity of the air, in percent.
+    #[getter]
+    fn humidity_percent(&self) -> f64 {
+        self.scene().air().humidity_percent
+    }
+
+    /// The pressure of the air, in kilopascals.
+    #[getter]
+    fn pressure_kpa(&self) -> f64 {
+        self.scene().air().pressure_kpa
     }
 
     /// The temperature of the air, in degrees Celsius.
@@ -298,21 +414,18 @@ impl Scene {
 
     fn __repr__(&self) -> String {
         let (walls, poles) = (self.scene().walls().len(), self.scene().poles().len());
-        let origin = match &self.source {
-            Source::Toml { file, .. } => format!(" from {}", Path::display(file)),
-            Source::Code(_) => String::new(),
-        };
-        format!("<Scene{origin}: {walls} walls, {poles} poles, {} robots>", self.robots())
+        format!("<Scene: {walls} walls, {poles} poles, {} robots>", self.robots.len())
+    }
+
+    /// The scene from above, as a notebook shows it.
+    fn _repr_svg_(&self) -> String {
+        drawing::svg(self.scene(), self.robots.iter().map(|robot| &robot.robot))
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let py = slf.py();
         let rebuild = py.import("eeruf._rebuild")?.getattr("scene")?;
-        let arguments = match &slf.get().source {
-            Source::Toml { file, text } => (file, text).into_pyobject(py)?,
-            Source::Code(made_of) => (made_of,).into_pyobject(py)?,
-        };
-        Ok((rebuild, arguments))
+        Ok((rebuild, (slf.get().arguments(py)?,).into_pyobject(py)?))
     }
 }
 

@@ -1,13 +1,15 @@
 //! `Schedule`.
 
+use std::fmt::Display;
 use std::hash::{Hash, Hasher};
+use std::path::PathBuf;
 
 use eeruf_core::{Micros, Phase};
 use eeruf_sim::{AnySchedule, ScheduleFile};
 use pyo3::{prelude::*, types::PyTuple};
 
 use crate::{
-    arguments::{self, micros, times, whole},
+    arguments::{self, micros, shown, times, whole, wrong},
     errors::{Raise, ScheduleError},
     report::Report,
     requirements::RequirementArguments,
@@ -126,6 +128,24 @@ impl Schedule {
         let file: ScheduleFile =
             toml::from_str(&text).map_err(|error| ScheduleError::new_err(error.message().to_owned()))?;
         file.schedule().map(Self).map_err(ScheduleError::new_err)
+    }
+
+    /// Read a schedule file, such as those in the folder ``rings``.
+    ///
+    /// Args:
+    ///     path: of the file.
+    ///
+    /// Raises:
+    ///     ArgumentError: not a path.
+    ///     ScheduleError: no such file, or as for :meth:`from_toml`.
+    #[staticmethod]
+    #[pyo3(signature = (path))]
+    fn read_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let path: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a schedule in TOML"))?;
+        let refused = |error: &dyn Display| ScheduleError::new_err(format!("{}: {error}", path.display()));
+        let text = std::fs::read_to_string(&path).map_err(|error| refused(&error))?;
+        let file: ScheduleFile = toml::from_str(&text).map_err(|error| refused(&error.message()))?;
+        file.schedule().map(Self).map_err(|error| refused(&error))
     }
 
     /// Read a schedule as :meth:`to_json` writes it, with the keys of :meth:`from_toml`.

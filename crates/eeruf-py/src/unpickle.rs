@@ -8,7 +8,7 @@ use numpy::PyReadonlyArray1;
 use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
-    arguments::wrong,
+    arguments::{native, wrong},
     methods::method as method_named,
     paths::bounce,
     readings::{CAUSES, Readings},
@@ -19,7 +19,8 @@ const CAUSE_OF: [Cause; 5] = [Cause::Nothing, Cause::Own, Cause::Stale, Cause::C
 
 fn column<T: numpy::Element + Copy>(columns: &Bound<'_, PyDict>, name: &str) -> PyResult<Vec<T>> {
     let column = columns.as_any().get_item(name)?;
-    let array: PyReadonlyArray1<'_, T> = column.extract().map_err(|_| wrong(name, &column, "a column of Readings"))?;
+    let aligned = native(&column, None).map_err(|_| wrong(name, &column, "a column of Readings"))?;
+    let array: PyReadonlyArray1<'_, T> = aligned.extract().map_err(|_| wrong(name, &column, "a column of Readings"))?;
     Ok(array.as_array().iter().copied().collect())
 }
 

@@ -95,7 +95,7 @@ fn million() -> f64 {
         let mut filter = EchoFilter::<MAX_SENSORS>::new(Micros::new(500), 2).expect("two readings");
         let mut kinds = Vec::with_capacity(echoes.len());
         for row in echoes.chunks_exact(8) {
-            for (sensor, &us) in row.iter().enumerate() {
+            for (sensor, &us) in (0..).zip(row) {
                 let echo = (!us.is_nan()).then(|| Micros::new(us.round() as u32));
                 kinds.push(filter.push(sensor, echo).expect("a sensor").kind as u8);
             }

@@ -81,5 +81,11 @@ pub use tracing::{
     paths_of_many, reception, reception_along,
 };
 pub use world::{
-    AnySchedule, Clock, Motion, Noise, Random, Robot, ScheduleFile, World, WorldError, WorldFileError, ring_of,
+    AnySchedule, Clock, Motion, Noise, Random, Robot, ScheduleFile, World, WorldError, WorldFileError, WorldParts,
+    ring_of, world_file,
 };
+
+/// The listing of the crate's README compiles and holds.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

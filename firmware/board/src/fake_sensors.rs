@@ -7,8 +7,8 @@ use core::cell::Cell;
 use core::convert::Infallible;
 
 use critical_section::{CriticalSection, Mutex};
-use eeruf_core::{Instant, Micros};
-use eeruf_hc_sr04::{Edge, Pins};
+use eeruf_core::{Edge, Instant, Micros};
+use eeruf_hc_sr04::Pins;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 

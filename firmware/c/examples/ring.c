@@ -25,15 +25,21 @@ static void sleep_until_us(uint32_t deadline_us) { clock_us = deadline_us; }
 /* What a caller may do wrong. */
 static int mistakes(void) {
     const EerufConfig no_window = {999, 0, 0, 2}, one_reading = {999, 36000, 0, 1}, fine = {999, 36000, 0, 2};
+    const EerufConfig too_long = {999, 40000, 0, 2};
     static EerufRing not_set_up;
     EerufEvent event;
     EXPECT(eeruf_ring_poll(NULL, 0, &event), EERUF_NULL);
     EXPECT(eeruf_ring_poll(&not_set_up, 0, &event), EERUF_NOT_SET_UP);
+    EXPECT(eeruf_ring_init(&ring, &schedule, &fine, 0), EERUF_NOT_VERIFIED);
+    EXPECT(eeruf_ring_init_unverified(&ring, &schedule, &fine, 0), EERUF_OK);
+    EXPECT(eeruf_schedule_verify(&schedule, 999, 15000, 4, 36000), EERUF_NOT_MET);
+    EXPECT(eeruf_schedule_verify(&schedule, 999, 9000, 4, 36000), EERUF_OK);
+    EXPECT(eeruf_ring_init(&ring, &schedule, &too_long, 0), EERUF_NOT_VERIFIED);
     EXPECT(eeruf_ring_init(&ring, &schedule, &no_window, 0), EERUF_WINDOW);
     EXPECT(eeruf_ring_init(&ring, &schedule, &one_reading, 0), EERUF_CONSECUTIVE);
     EXPECT(eeruf_ring_init(&ring, &schedule, &fine, 0), EERUF_OK);
     EXPECT(eeruf_ring_echo(&ring, 4, 0), EERUF_NO_SUCH_SENSOR);
-    EXPECT(eeruf_schedule_verify(&schedule, 999, 15000, 4, 36000), EERUF_NOT_MET);
+    EXPECT(eeruf_ring_fired(&ring, 4, 0), EERUF_NO_SUCH_SENSOR);
     return 0;
 }
 
@@ -43,7 +49,6 @@ int main(void) {
     EXPECT(eeruf_schedule_init(&schedule, 60000, 25, FIRE_A_US, FIRE_B_US), EERUF_SENSORS);
     EXPECT(eeruf_schedule_init(&schedule, 50000, 4, FIRE_A_US, FIRE_B_US), EERUF_FIRE);
     EXPECT(eeruf_schedule_init(&schedule, 60000, 4, FIRE_A_US, FIRE_B_US), EERUF_OK);
-    EXPECT(eeruf_schedule_verify(&schedule, 999, 9000, 4, 36000), EERUF_OK);
     if (mistakes() != 0) {
         return 1;
     }

@@ -9,7 +9,7 @@ use core::mem::MaybeUninit;
 
 use eeruf_core::{
     Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule,
-    ScheduleError, ScheduledRing,
+    ScheduleError, ScheduledRing, SensorError,
 };
 
 /// The most sensors of a ring.
@@ -34,7 +34,7 @@ pub enum EerufStatus {
     /// A sensor would fire after its period has ended.
     EERUF_FIRE = -5,
     /// The window is longer than the shortest time between two firings of a sensor, or not longer than the blanking
-    /// time or t_delta.
+    /// time or t_delta, or one of these two is longer than 65,535 us.
     EERUF_WINDOW = -6,
     /// The number of consecutive readings is not 2 to 8.
     EERUF_CONSECUTIVE = -7,
@@ -42,6 +42,8 @@ pub enum EerufStatus {
     EERUF_NO_SUCH_SENSOR = -8,
     /// The schedule does not meet what is asked of it.
     EERUF_NOT_MET = -9,
+    /// The schedule was not verified, or for a smaller t_delta or a shorter window.
+    EERUF_NOT_VERIFIED = -10,
 }
 use EerufStatus::*;
 
@@ -122,12 +124,16 @@ pub struct EerufEvent {
     pub reading: EerufReadingKind,
     /// The sensor, from 0; for a firing and a reading.
     pub sensor: u8,
+    /// The phase that its wait belongs to, 0 or 1, or which has ended.
+    pub phase: u8,
     /// Whether the reading has an echo time.
     pub has_echo: bool,
     /// The echo time.
     pub t_echo_us: u32,
-    /// The period in which the sensor fired, or which has ended.
+    /// The period in which the sensor fired, or which has ended; for a reading and a period.
     pub period: u32,
+    /// When the sensor was due; for a firing.
+    pub due_us: u32,
 }
 
 const K: usize = EERUF_MAX_SENSORS;
@@ -212,23 +218,24 @@ pub unsafe extern "C" fn eeruf_schedule_init(
     }
 }
 
-/// Checks a schedule on a line of sensors: EERUF_OK if crosstalk is rejected at this `t_delta_us` (Eqs. 13a, 13b), any
-/// `neighbours` adjacent sensors fire at least `min_interval_us` apart, and no sensor fires again within `window_us`;
-/// EERUF_NOT_MET if not.
+/// Verifies a schedule on a line of sensors: EERUF_OK if crosstalk is rejected at this `t_delta_us` (Eqs. 13a, 13b),
+/// any `neighbours` adjacent sensors fire at least `min_interval_us` apart, and no sensor fires again within
+/// `window_us`; the schedule then remembers it. EERUF_NOT_MET if not; the schedule is then as before. Not for a schedule
+/// that a ring uses.
 ///
 /// # Safety
-/// `schedule` is null or memory for a schedule.
+/// `schedule` is null or memory for a schedule, and no ring uses it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn eeruf_schedule_verify(
-    schedule: *const EerufSchedule,
+    schedule: *mut EerufSchedule,
     t_delta_us: u32,
     min_interval_us: u32,
     neighbours: u8,
     window_us: u32,
 ) -> EerufStatus {
     // SAFETY: as for the caller.
-    let schedule = match unsafe { schedule_in(schedule) } {
-        Ok(schedule) => schedule,
+    let found = match unsafe { schedule_in(schedule) } {
+        Ok(found) => found,
         Err(status) => return status,
     };
     let requirements = Requirements {
@@ -237,16 +244,41 @@ pub unsafe extern "C" fn eeruf_schedule_verify(
         window: Micros::new(window_us),
         ..Requirements::new(Micros::new(t_delta_us))
     };
-    if schedule.verify(&requirements).ok() { EERUF_OK } else { EERUF_NOT_MET }
+    let Ok(verified) = found.verify(&requirements).verified() else { return EERUF_NOT_MET };
+    // SAFETY: memory of the asserted size, for the caller says so; nothing else refers to it.
+    let memory = unsafe { &mut *schedule.cast::<MaybeUninit<ReadySchedule>>() };
+    memory.write(Ready { ready: SCHEDULE_READY, value: verified.into_schedule() });
+    EERUF_OK
 }
 
-/// Makes a ring that fires by a schedule from `now_us` on. The schedule must stay where it is as long as the ring is
-/// used.
+/// Makes a ring that fires by a verified schedule from `now_us` on. It may ask for a smaller `t_delta_us` and a shorter
+/// window than the schedule was verified for. The schedule must stay where it is as long as the ring is used.
 ///
 /// # Safety
 /// `ring`, `schedule` and `config` are null or memory of their types.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn eeruf_ring_init(
+    ring: *mut EerufRing,
+    schedule: *const EerufSchedule,
+    config: *const EerufConfig,
+    now_us: u32,
+) -> EerufStatus {
+    // SAFETY: as for the caller.
+    match unsafe { schedule_in(schedule) } {
+        Ok(found) if !found.is_verified() => EERUF_NOT_VERIFIED,
+        // SAFETY: as for the caller.
+        Ok(_) => unsafe { eeruf_ring_init_unverified(ring, schedule, config, now_us) },
+        Err(status) => status,
+    }
+}
+
+/// As eeruf_ring_init, by a schedule that need not be verified: the conventional method, for comparison. Crosstalk may
+/// be accepted.
+///
+/// # Safety
+/// As for eeruf_ring_init.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn eeruf_ring_init_unverified(
     ring: *mut EerufRing,
     schedule: *const EerufSchedule,
     config: *const EerufConfig,
@@ -262,12 +294,12 @@ pub unsafe extern "C" fn eeruf_ring_init(
     if ring.is_null() {
         return EERUF_NULL;
     }
-    let config = RingConfig {
-        blanking: Micros::new(config.blanking_us),
-        consecutive: config.consecutive,
-        ..RingConfig::new(Micros::new(config.t_delta_us), Micros::new(config.window_us))
-    };
-    match Ring::new(schedule, config, Instant::from_micros(now_us)) {
+    let config = RingConfig::new()
+        .with_t_delta(Micros::new(config.t_delta_us))
+        .with_window(Micros::new(config.window_us))
+        .with_blanking(Micros::new(config.blanking_us))
+        .with_consecutive(config.consecutive);
+    match Ring::unverified(schedule, config, Instant::from_micros(now_us)) {
         Ok(value) => {
             // SAFETY: memory of the asserted size, for the caller says so.
             let memory = unsafe { &mut *ring.cast::<MaybeUninit<ReadyRing>>() };
@@ -275,6 +307,7 @@ pub unsafe extern "C" fn eeruf_ring_init(
             EERUF_OK
         }
         Err(RingError::Filter(_)) => EERUF_CONSECUTIVE,
+        Err(RingError::TDelta { .. } | RingError::VerifiedWindow { .. }) => EERUF_NOT_VERIFIED,
         Err(_) => EERUF_WINDOW,
     }
 }
@@ -298,16 +331,20 @@ pub unsafe extern "C" fn eeruf_ring_poll(ring: *mut EerufRing, now_us: u32, even
         kind: EerufEventKind::EERUF_FIRE_SENSOR,
         reading: EERUF_FIRST,
         sensor: 0,
+        phase: 0,
         has_echo: false,
         t_echo_us: 0,
         period: 0,
+        due_us: 0,
     };
     match ring.poll(Instant::from_micros(now_us)) {
         None => return EERUF_OK,
-        Some(RingEvent::Fire(sensor)) => written.sensor = sensor,
+        Some(RingEvent::Fire { sensor, phase, due }) => {
+            (written.sensor, written.phase, written.due_us) = (sensor, phase.0, due.as_micros());
+        }
         Some(RingEvent::Reading(reading)) => {
             written.kind = EerufEventKind::EERUF_READING;
-            written.sensor = reading.sensor;
+            (written.sensor, written.phase) = (reading.sensor, reading.phase.0);
             written.period = reading.period;
             written.has_echo = reading.t_echo.is_some();
             written.t_echo_us = reading.t_echo.map_or(0, Micros::as_micros);
@@ -326,7 +363,7 @@ pub unsafe extern "C" fn eeruf_ring_poll(ring: *mut EerufRing, now_us: u32, even
         }
         Some(RingEvent::PeriodEnded(stats)) => {
             written.kind = EerufEventKind::EERUF_PERIOD_ENDED;
-            written.period = stats.period;
+            (written.phase, written.period) = (stats.phase.0, stats.period);
         }
     }
     // SAFETY: not null, and the caller's.
@@ -356,16 +393,12 @@ pub unsafe extern "C" fn eeruf_ring_next_deadline(ring: *mut EerufRing, deadline
 
 unsafe fn with_sensor(
     ring: *mut EerufRing,
-    sensor: u8,
-    call: impl FnOnce(&mut ScheduledRing<'static, K>),
+    call: impl FnOnce(&mut ScheduledRing<'static, K>) -> Result<(), SensorError>,
 ) -> EerufStatus {
     // SAFETY: as for the caller.
-    match unsafe { ring_in(ring) } {
-        Ok(ring) if usize::from(sensor) < ring.schedule().sensors() => {
-            call(ring);
-            EERUF_OK
-        }
-        Ok(_) => EERUF_NO_SUCH_SENSOR,
+    match unsafe { ring_in(ring) }.map(call) {
+        Ok(Ok(())) => EERUF_OK,
+        Ok(Err(_)) => EERUF_NO_SUCH_SENSOR,
         Err(status) => status,
     }
 }
@@ -377,7 +410,18 @@ unsafe fn with_sensor(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn eeruf_ring_echo(ring: *mut EerufRing, sensor: u8, at_us: u32) -> EerufStatus {
     // SAFETY: as for the caller.
-    unsafe { with_sensor(ring, sensor, |ring| ring.echo(sensor, Instant::from_micros(at_us))) }
+    unsafe { with_sensor(ring, |ring| ring.echo(sensor, Instant::from_micros(at_us))) }
+}
+
+/// The sensor that was to be fired last has really fired at this reading of the clock, later than the poll said.
+/// Optional; call it before the next poll. Echo times count from then, and all later firings move by as much.
+///
+/// # Safety
+/// `ring` is null or memory for a ring.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn eeruf_ring_fired(ring: *mut EerufRing, sensor: u8, at_us: u32) -> EerufStatus {
+    // SAFETY: as for the caller.
+    unsafe { with_sensor(ring, |ring| ring.fired(sensor, Instant::from_micros(at_us))) }
 }
 
 /// The echo line of a sensor was high when it was to be fired.
@@ -387,7 +431,7 @@ pub unsafe extern "C" fn eeruf_ring_echo(ring: *mut EerufRing, sensor: u8, at_us
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn eeruf_ring_stuck(ring: *mut EerufRing, sensor: u8) -> EerufStatus {
     // SAFETY: as for the caller.
-    unsafe { with_sensor(ring, sensor, |ring| ring.stuck(sensor)) }
+    unsafe { with_sensor(ring, |ring| ring.stuck(sensor)) }
 }
 
 /// Has a sensor fire, or no more.
@@ -398,7 +442,7 @@ pub unsafe extern "C" fn eeruf_ring_stuck(ring: *mut EerufRing, sensor: u8) -> E
 pub unsafe extern "C" fn eeruf_ring_enable(ring: *mut EerufRing, sensor: u8, enabled: bool) -> EerufStatus {
     let call = |ring: &mut ScheduledRing<'static, K>| if enabled { ring.enable(sensor) } else { ring.disable(sensor) };
     // SAFETY: as for the caller.
-    unsafe { with_sensor(ring, sensor, call) }
+    unsafe { with_sensor(ring, call) }
 }
 
 /// As in the firmware images: what could panic would not link.

@@ -7,9 +7,9 @@ mod time_driver;
 
 use eeruf_board::fake_sensors::{self, Delay};
 use eeruf_board::say::leave;
-use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Tally};
-use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
+use eeruf_core::tables::PAPER_12;
+use eeruf_core::{EdgeQueue, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Tally};
+use eeruf_hc_sr04::{HcSr04Ring, Settings};
 use embassy_executor::Spawner;
 use embassy_futures::select::select;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
@@ -48,14 +48,14 @@ async fn main(_spawner: Spawner) {
     for sensor in 0..12 {
         fake_sensors::put(sensor, Some(Micros::new(5_000 + 1_000 * sensor as u32)));
     }
-    let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
-    let Ok(ring) = Ring::new(&TABLE_I_D, config, now()) else { leave(2) };
+    let config = RingConfig::new().with_window(Micros::from_millis(40));
+    let Ok(ring) = Ring::new(&PAPER_12, config, now()) else { leave(2) };
     let Ok(mut ring) = HcSr04Ring::new(ring, fake_sensors::pins(), Delay, Settings::default()) else { leave(3) };
     let mut readings = Tally::<u32>::default();
     loop {
         while let Some(event) = ring.poll_with_edges(&EDGES, now()) {
             match event {
-                RingEvent::Fire(_) => {}
+                RingEvent::Fire { .. } => {}
                 RingEvent::Reading(reading) => readings.count(reading.kind),
                 RingEvent::PeriodEnded(stats) => {
                     if stats.period == 99 {

@@ -4,8 +4,7 @@ use core::cell::RefCell;
 use core::convert::Infallible;
 
 use critical_section::Mutex;
-use eeruf_core::Instant;
-use eeruf_hc_sr04::Edge;
+use eeruf_core::{Edge, Instant};
 use eeruf_hil::{Ahead, MOST_AHEAD, Record, SENSORS};
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 

@@ -9,8 +9,8 @@ mod lines;
 
 use eeruf_board::fake_sensors::Delay;
 use eeruf_board::say::leave;
-use eeruf_core::{Micros, Ring, RingEvent};
-use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Pins, Settings};
+use eeruf_core::{EdgeQueue, Micros, Ring, RingEvent};
+use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
 use eeruf_hil::{CONFIG, Record, SCHEDULE};
 
 use crate::host::Host;
@@ -47,7 +47,8 @@ fn main() -> ! {
             let now = eeruf_board::now();
             while let Some(edge) = EDGES.pop() {
                 host.say(Record::edge(edge));
-                ring.edge(edge);
+                // Of a line that the ring has, as all of this board are.
+                _ = ring.edge(edge);
             }
             host.say(Record::poll(now));
             let event = ring.poll(now);

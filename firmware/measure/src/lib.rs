@@ -5,10 +5,10 @@
 use core::hint::black_box;
 
 use eeruf_board::{COUNTS_PER_1000_INSTRUCTIONS, say};
-use eeruf_core::{Micros, RingConfig, Schedule};
+use eeruf_core::{Micros, Requirements, RingConfig, Schedule, VerifiedSchedule};
 
 /// The paper's schedule for `K` sensors: groups of four, waits of `2 K` ms in phase a and 0, 2, 4, .. ms in phase b.
-pub const fn plain<const K: usize>() -> Schedule<K> {
+pub const fn plain<const K: usize>() -> VerifiedSchedule<K> {
     let longest = 2 * K as u32;
     let mut t_lag = [Micros::ZERO; K];
     let mut t_wait = [[Micros::from_millis(longest); K], [Micros::ZERO; K]];
@@ -18,15 +18,21 @@ pub const fn plain<const K: usize>() -> Schedule<K> {
         t_wait[1][x] = Micros::from_millis(2 * x as u32);
         x += 1;
     }
-    match Schedule::new(Micros::from_millis(4 * (longest + 1)), t_lag, t_wait) {
-        Ok(schedule) => schedule,
-        // Only ever evaluated when this crate is compiled.
-        Err(_) => panic!("not a schedule"),
+    // Only ever evaluated when this crate is compiled.
+    let Ok(schedule) = Schedule::new(Micros::from_millis(4 * (longest + 1)), t_lag, t_wait) else {
+        panic!("not a schedule");
+    };
+    match schedule.verify(&Requirements::new(T_DELTA)).verified() {
+        Ok(verified) => verified,
+        Err(_) => panic!("not a schedule for 999 us"),
     }
 }
 
+/// The `t_delta` of all that is measured.
+pub const T_DELTA: Micros = Micros::new(999);
+
 /// The configuration of all measured rings.
-pub const CONFIG: RingConfig = RingConfig::new(Micros::new(999), Micros::from_millis(36));
+pub const CONFIG: RingConfig = RingConfig::new().with_window(Micros::from_millis(36));
 
 /// The fewest and the most instructions that one kind of call took.
 #[derive(Debug)]
@@ -76,9 +82,9 @@ macro_rules! ring_in_static_memory {
         use core::cell::UnsafeCell;
         use core::hint::black_box;
         use core::mem::MaybeUninit;
-        use eeruf_core::{Instant, Ring, RingError, RingEvent, Schedule, ScheduledRing};
+        use eeruf_core::{Instant, Ring, RingError, RingEvent, ScheduledRing, SensorError, VerifiedSchedule};
 
-        static SCHEDULE: Schedule<$k> = $crate::plain();
+        static SCHEDULE: VerifiedSchedule<$k> = $crate::plain();
 
         struct Memory(UnsafeCell<MaybeUninit<ScheduledRing<'static, $k>>>);
         // SAFETY: used by `main` alone.
@@ -105,26 +111,26 @@ macro_rules! ring_in_static_memory {
 
         #[unsafe(no_mangle)]
         #[inline(never)]
-        fn ring_echo(ring: &mut ScheduledRing<'static, $k>, sensor: u8, at: Instant) {
-            ring.echo(sensor, at);
+        fn ring_echo(ring: &mut ScheduledRing<'static, $k>, sensor: u8, at: Instant) -> Result<(), SensorError> {
+            ring.echo(sensor, at)
         }
 
         #[unsafe(no_mangle)]
         #[inline(never)]
-        fn ring_stuck(ring: &mut ScheduledRing<'static, $k>, sensor: u8) {
-            ring.stuck(sensor);
+        fn ring_stuck(ring: &mut ScheduledRing<'static, $k>, sensor: u8) -> Result<(), SensorError> {
+            ring.stuck(sensor)
         }
 
         #[unsafe(no_mangle)]
         #[inline(never)]
-        fn ring_disable(ring: &mut ScheduledRing<'static, $k>, sensor: u8) {
-            ring.disable(sensor);
+        fn ring_disable(ring: &mut ScheduledRing<'static, $k>, sensor: u8) -> Result<(), SensorError> {
+            ring.disable(sensor)
         }
 
         #[unsafe(no_mangle)]
         #[inline(never)]
-        fn ring_enable(ring: &mut ScheduledRing<'static, $k>, sensor: u8) {
-            ring.enable(sensor);
+        fn ring_enable(ring: &mut ScheduledRing<'static, $k>, sensor: u8) -> Result<(), SensorError> {
+            ring.enable(sensor)
         }
 
         #[unsafe(no_mangle)]
@@ -140,14 +146,15 @@ macro_rules! ring_in_static_memory {
             let ring = memory.write(ring);
             loop {
                 while let Some(event) = ring_poll(ring, eeruf_board::now()) {
-                    if let RingEvent::Fire(sensor) = black_box(event) {
-                        ring_echo(ring, sensor, eeruf_board::now());
+                    if let RingEvent::Fire { sensor, .. } = black_box(event) {
+                        _ = black_box(ring_echo(ring, sensor, eeruf_board::now()));
                     }
                 }
+                let sensor = black_box(1);
                 match black_box(0) {
-                    1 => ring_stuck(ring, black_box(1)),
-                    2 => ring_disable(ring, black_box(1)),
-                    3 => ring_enable(ring, black_box(1)),
+                    1 => _ = black_box(ring_stuck(ring, sensor)),
+                    2 => _ = black_box(ring_disable(ring, sensor)),
+                    3 => _ = black_box(ring_enable(ring, sensor)),
                     4 => ring_restart(ring, eeruf_board::now()),
                     _ => eeruf_board::set_alarm(ring_next_deadline(ring)),
                 }

@@ -2,8 +2,8 @@
 #![no_std]
 
 use eeruf_board::fake_sensors::{Delay, Echo, Trigger};
-use eeruf_core::{RingEvent, ScheduledFiring};
-use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring};
+use eeruf_core::{EdgeQueue, RingEvent, ScheduledFiring};
+use eeruf_hc_sr04::HcSr04Ring;
 
 /// A ring on the pins of this board.
 pub type BoardRing<const K: usize> = HcSr04Ring<ScheduledFiring<'static, K>, Trigger, Echo, Delay, K>;

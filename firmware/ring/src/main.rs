@@ -6,9 +6,9 @@
 use eeruf_board::fake_sensors::{self, Delay};
 use eeruf_board::say;
 use eeruf_board::say::leave;
-use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{Micros, ReadingKind, Ring, RingConfig, RingEvent, Tally};
-use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Health, Settings};
+use eeruf_core::tables::PAPER_12;
+use eeruf_core::{EdgeQueue, Micros, ReadingKind, Ring, RingConfig, RingEvent, Tally};
+use eeruf_hc_sr04::{HcSr04Ring, Health, Settings};
 use eeruf_ring::run;
 
 eeruf_board::no_panic!();
@@ -33,14 +33,14 @@ fn main() -> ! {
         // Walls 0.9 m to 2.8 m away, and no sensor in place 6.
         fake_sensors::put(sensor, (sensor != 5).then_some(Micros::new(5_000 + 1_000 * sensor as u32)));
     }
-    let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
-    let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
+    let config = RingConfig::new().with_window(Micros::from_millis(40));
+    let Ok(ring) = Ring::new(&PAPER_12, config, eeruf_board::now()) else { leave(2) };
     let Ok(ring) = HcSr04Ring::new(ring, fake_sensors::pins(), Delay, Settings::default()) else { leave(3) };
 
     let mut readings = Tally::<u32>::default();
     let mut max_late = Micros::ZERO;
     run(ring, &EDGES, |ring, event| match event {
-        RingEvent::Fire(_) => {}
+        RingEvent::Fire { .. } => {}
         RingEvent::Reading(reading) => readings.count(reading.kind),
         RingEvent::PeriodEnded(stats) => {
             max_late = max_late.max(stats.max_late);

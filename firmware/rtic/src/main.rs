@@ -10,9 +10,9 @@ mod app {
     use eeruf_board::fake_sensors::{self, Delay, Echo, Trigger};
     use eeruf_board::say::leave;
     use eeruf_board::{say, set_alarm};
-    use eeruf_core::tables::TABLE_I_D;
-    use eeruf_core::{Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledFiring, Tally};
-    use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
+    use eeruf_core::tables::PAPER_12;
+    use eeruf_core::{EdgeQueue, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledFiring, Tally};
+    use eeruf_hc_sr04::{HcSr04Ring, Settings};
 
     static EDGES: EdgeQueue<32> = EdgeQueue::new();
 
@@ -31,8 +31,8 @@ mod app {
         for sensor in 0..12 {
             fake_sensors::put(sensor, Some(Micros::new(5_000 + 1_000 * sensor as u32)));
         }
-        let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
-        let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
+        let config = RingConfig::new().with_window(Micros::from_millis(40));
+        let Ok(ring) = Ring::new(&PAPER_12, config, eeruf_board::now()) else { leave(2) };
         let Ok(ring) = HcSr04Ring::new(ring, fake_sensors::pins(), Delay, Settings::default()) else { leave(3) };
         set_alarm(ring.next_deadline());
         (Shared {}, Local { ring, readings: Tally::default() })
@@ -61,7 +61,7 @@ mod app {
         eeruf_board::clear_alarm();
         while let Some(event) = ring.poll_with_edges(&EDGES, eeruf_board::now()) {
             match event {
-                RingEvent::Fire(_) => {}
+                RingEvent::Fire { .. } => {}
                 RingEvent::Reading(reading) => readings.count(reading.kind),
                 RingEvent::PeriodEnded(stats) => {
                     if stats.period == 99 {

@@ -4,7 +4,7 @@
 
 use eeruf_core::search::Outcome;
 use eeruf_core::search::wait::{Budget, Problem, Search};
-use eeruf_core::tables::{TABLE_I_A, TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
+use eeruf_core::tables::{PAPER_12, TABLE_I_A, TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{
     Criterion, Instant, Layout, Micros, Phase, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Schedule,
     ScheduledRing, Tally,
@@ -101,16 +101,18 @@ fn exactly_one_rearrangement_of_table_i_keeps_19_ms_between_any_four_adjacent_se
 
 /// Walls 0.9 m to 2.8 m away: sensor `x` hears its echo after `5 + x` ms.
 fn a_ring_accepts_standing_walls_from_the_second_period_on_through_a_wrap_of_the_clock() {
-    let config = RingConfig::new(Micros::new(999), Micros::from_millis(36));
+    let config = RingConfig::new().with_window(Micros::from_millis(36));
     let mut ring: ScheduledRing<12> =
-        Ring::new(&TABLE_I_D, config, Instant::from_micros(u32::MAX - 1_000_000)).expect("a ring");
+        Ring::new(&PAPER_12, config, Instant::from_micros(u32::MAX - 1_000_000)).expect("a ring");
     let mut tally = Tally::<u32>::default();
     let mut periods = 0;
     while periods < 40 {
         let now = ring.next_deadline();
         while let Some(event) = ring.poll(now) {
             match event {
-                RingEvent::Fire(sensor) => ring.echo(sensor, now + Micros::from_millis(5 + u32::from(sensor))),
+                RingEvent::Fire { sensor, .. } => {
+                    ring.echo(sensor, now + Micros::from_millis(5 + u32::from(sensor))).expect("a sensor");
+                }
                 RingEvent::Reading(reading) => {
                     assert_eq!(reading.t_echo, Some(Micros::from_millis(5 + u32::from(reading.sensor))));
                     assert!(reading.phase == Phase((reading.period % 2) as u8));
@@ -129,8 +131,8 @@ fn a_ring_accepts_standing_walls_from_the_second_period_on_through_a_wrap_of_the
 }
 
 fn readings_that_alternate_as_crosstalk_does_are_all_rejected() {
-    let config = RingConfig::new(Micros::new(999), Micros::from_millis(36));
-    let mut ring: ScheduledRing<12> = Ring::new(&TABLE_I_D, config, Instant::default()).expect("a ring");
+    let config = RingConfig::new().with_window(Micros::from_millis(36));
+    let mut ring: ScheduledRing<12> = Ring::new(&PAPER_12, config, Instant::default()).expect("a ring");
     let mut tally = Tally::<u32>::default();
     let (mut periods, mut phase) = (0, Phase::A);
     while periods < 20 {
@@ -138,14 +140,14 @@ fn readings_that_alternate_as_crosstalk_does_are_all_rejected() {
         while let Some(event) = ring.poll(now) {
             match event {
                 // Sound of sensor 1, 20 ms under way, heard by all others.
-                RingEvent::Fire(sensor) if sensor > 0 => {
+                RingEvent::Fire { sensor, .. } if sensor > 0 => {
                     let at = |x| TABLE_I_D.t_fire(phase, x).map_or(0, Micros::as_micros);
                     let reading = (30_000 + at(0)).wrapping_sub(at(usize::from(sensor)));
                     if reading < 36_000 {
-                        ring.echo(sensor, now + Micros::new(reading));
+                        ring.echo(sensor, now + Micros::new(reading)).expect("a sensor");
                     }
                 }
-                RingEvent::Fire(_) => {}
+                RingEvent::Fire { .. } => {}
                 RingEvent::Reading(reading) => tally.count(reading.kind),
                 RingEvent::PeriodEnded(_) => {
                     periods += 1;

@@ -1,6 +1,6 @@
 //! What the ring may say and do, derived from what happened to it.
 
-use eeruf_core::{Instant, Micros, PeriodStats, Phase, Reading, ReadingKind, RingConfig, Schedule, Tally};
+use eeruf_core::{Instant, Micros, PeriodStats, Phase, Reading, ReadingKind, Schedule, Tally};
 
 use super::SENSORS;
 
@@ -17,6 +17,15 @@ pub(super) struct Open {
     pub(super) echo: Option<u32>,
     pub(super) early: Option<u32>,
     pub(super) stuck: bool,
+}
+
+/// How the ring listens and compares.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Listening {
+    pub(super) t_delta: Micros,
+    pub(super) window: Micros,
+    pub(super) blanking: Micros,
+    pub(super) consecutive: usize,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -47,7 +56,7 @@ pub(super) struct Last {
 
 pub(super) struct Model<'s> {
     pub(super) now: u64,
-    pub(super) config: RingConfig,
+    pub(super) listening: Listening,
     pub(super) enabled: [bool; SENSORS],
     pub(super) schedule: &'s Schedule<SENSORS>,
     pub(super) next_schedule: Option<&'s Schedule<SENSORS>>,
@@ -141,7 +150,7 @@ impl<'s> Model<'s> {
     }
 
     pub(super) fn emitted(&mut self, reading: &Reading) {
-        let config = self.config;
+        let listening = self.listening;
         let x = usize::from(reading.sensor);
         let quiet = self.quiet_periods >= 4;
         let sensor = &mut self.sensors[x];
@@ -156,7 +165,7 @@ impl<'s> Model<'s> {
         let open = sensor.open.take().expect("it has fired");
         assert_eq!((reading.phase, reading.period), (Phase(open.phase), open.period));
         assert!(
-            open.echo.is_some() || self.now >= open.at + u64::from(config.window.as_micros()),
+            open.echo.is_some() || self.now >= open.at + u64::from(listening.window.as_micros()),
             "emitted before its window closed"
         );
         let micros = |us: Option<u32>| us.map(Micros::new);
@@ -173,14 +182,14 @@ impl<'s> Model<'s> {
         };
         sensor.heard.push(heard);
         sensor.undisturbed += 1;
-        let t_delta = config.t_delta.as_micros();
+        let t_delta = listening.t_delta.as_micros();
         let agree = |pair: &[Option<Option<u32>>]| match pair {
             [Some(Some(s)), Some(Some(t))] => s.abs_diff(*t) <= t_delta,
             [Some(None), Some(None)] => true,
             _ => false,
         };
         let running = 1 + sensor.heard.windows(2).rev().take_while(|pair| agree(pair)).count();
-        let enough = running >= usize::from(config.consecutive);
+        let enough = running >= listening.consecutive;
         let before = sensor.heard.len().checked_sub(2).and_then(|place| sensor.heard[place]).flatten();
         let possible: &[ReadingKind] = match (kind, heard.flatten()) {
             (Some(ReadingKind::Stuck), _) => &[ReadingKind::Stuck],
@@ -193,7 +202,7 @@ impl<'s> Model<'s> {
             (None, Some(_)) => &[ReadingKind::First],
         };
         // Where nothing disturbed the comparison, the first of them is the one.
-        let sure = quiet && sensor.undisturbed > u32::from(config.consecutive) + 4;
+        let sure = quiet && sensor.undisturbed > listening.consecutive as u32 + 4;
         let possible = if sure { &possible[..1] } else { possible };
         assert!(possible.contains(&reading.kind), "{reading:?}, possible: {possible:?}; heard {:?}", sensor.heard);
         if matches!(reading.kind, ReadingKind::Accepted | ReadingKind::Rejected | ReadingKind::Repeated) {
@@ -210,13 +219,13 @@ impl<'s> Model<'s> {
     }
 
     pub(super) fn edge(&mut self, x: usize, at: u64) {
-        let window = u64::from(self.config.window.as_micros());
+        let window = u64::from(self.listening.window.as_micros());
         let sensor = &mut self.sensors[x];
         if let Some(open) = &mut sensor.open {
             let Some(t_echo) = at.checked_sub(open.at) else { return };
             if t_echo > window {
                 self.tally.count(ReadingKind::Late);
-            } else if t_echo < u64::from(self.config.blanking.as_micros()) {
+            } else if t_echo < u64::from(self.listening.blanking.as_micros()) {
                 // The first to come in, unless an echo was there before.
                 if open.early.is_none() && open.echo.is_none() {
                     open.early = Some(t_echo as u32);
@@ -262,7 +271,7 @@ impl<'s> Model<'s> {
             assert!(sensor.late.is_none(), "sensor {x} has a late edge to tell");
             if let Some(open) = sensor.open {
                 assert!(open.echo.is_none(), "sensor {x} has an echo to tell");
-                let closes = open.at + u64::from(self.config.window.as_micros());
+                let closes = open.at + u64::from(self.listening.window.as_micros());
                 assert!(self.now < closes, "the window of sensor {x} has closed");
             }
         }

@@ -17,13 +17,6 @@ pub enum FilterError {
         /// How much was asked for.
         patience: u8,
     },
-    /// A sensor that is not there.
-    Sensor {
-        /// The sensor, from 0.
-        sensor: usize,
-        /// How many there are.
-        sensors: usize,
-    },
 }
 
 impl fmt::Display for FilterError {
@@ -31,9 +24,6 @@ impl fmt::Display for FilterError {
         match *self {
             Self::Consecutive { consecutive } => write!(f, "{consecutive} consecutive readings; expected 2 to 8"),
             Self::Patience { patience } => write!(f, "a patience of {patience} firings; expected 0 to 15"),
-            Self::Sensor { sensor, sensors } => {
-                write!(f, "sensor {}; expected 1 to {sensors}", sensor.saturating_add(1))
-            }
         }
     }
 }

@@ -21,6 +21,7 @@ mod tests;
 mod tracker;
 
 use crate::reading::Verdict;
+use crate::sensor_error::SensorError;
 use crate::time::Micros;
 
 pub(crate) use agreement::Agreement;
@@ -39,9 +40,10 @@ pub(crate) use tracker::Tracker;
 /// assert_eq!(push(9_500)?, ReadingKind::Accepted); // just within t_delta
 /// assert_eq!(push(10_001)?, ReadingKind::Rejected); // just beyond
 /// assert_eq!(push(10_001)?, ReadingKind::Accepted); // the new value was the one to compare with
-/// # Ok::<(), eeruf_core::FilterError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct EchoFilter<const K: usize, const E: usize = 1> {
     trackers: [Tracker<E>; K],
     rule: Rule,
@@ -85,7 +87,7 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// assert_eq!(push(&[9_000, 14_000])?, ReadingKind::Accepted);
     /// assert_eq!(push(&[14_000])?, ReadingKind::Rejected); // the wall behind is not accepted at once
     /// assert_eq!(push(&[9_000, 14_000])?, ReadingKind::Accepted);
-    /// # Ok::<(), eeruf_core::FilterError>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub const fn with_patience(self, patience: u8) -> Result<Self, FilterError> {
         match Agreement::new(self.rule.agreement.consecutive(), patience) {
@@ -97,8 +99,8 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// Takes in one firing of a sensor (from 0): the time of its echo, or `None` without echo.
     ///
     /// # Errors
-    /// [`FilterError::Sensor`] for a sensor that is not there.
-    pub fn push(&mut self, sensor: usize, t_echo: Option<Micros>) -> Result<Verdict, FilterError> {
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn push(&mut self, sensor: u8, t_echo: Option<Micros>) -> Result<Verdict, SensorError> {
         self.push_echoes(sensor, t_echo.as_slice(), 0)
     }
 
@@ -108,15 +110,15 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// [`Schedule::refire_after`](crate::Schedule::refire_after)).
     ///
     /// # Errors
-    /// [`FilterError::Sensor`] for a sensor that is not there.
+    /// [`SensorError`] for a sensor that is not there.
     pub fn push_echoes(
         &mut self,
-        sensor: usize,
+        sensor: u8,
         echoes: &[Micros],
         expected_change_us: i32,
-    ) -> Result<Verdict, FilterError> {
-        let Some(tracker) = self.trackers.get_mut(sensor) else {
-            return Err(FilterError::Sensor { sensor, sensors: K });
+    ) -> Result<Verdict, SensorError> {
+        let Some(tracker) = self.trackers.get_mut(usize::from(sensor)) else {
+            return Err(SensorError::new(sensor, K));
         };
         let mut earliest = [NO_ECHO; E];
         for echo in echoes {
@@ -127,9 +129,11 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     }
 
     /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
-    pub fn forget(&mut self, sensor: usize) {
-        if let Some(tracker) = self.trackers.get_mut(sensor) {
-            tracker.forget();
-        }
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn forget(&mut self, sensor: u8) -> Result<(), SensorError> {
+        self.trackers.get_mut(usize::from(sensor)).ok_or(SensorError::new(sensor, K))?.forget();
+        Ok(())
     }
 }

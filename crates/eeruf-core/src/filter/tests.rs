@@ -135,7 +135,7 @@ fn a_forgotten_sensor_starts_again_but_does_not_grow_younger() {
     for _ in 0..2 {
         filter.push(0, Some(Micros::new(1000))).unwrap();
     }
-    filter.forget(0);
+    filter.forget(0).unwrap();
     let verdict = filter.push(0, Some(Micros::new(1000))).unwrap();
     assert_eq!((verdict.kind, verdict.age), (ReadingKind::First, Some(1)));
 }

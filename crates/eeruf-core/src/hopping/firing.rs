@@ -6,7 +6,7 @@ use super::schedule::HoppingSchedule;
 use super::settings::{HoppingListening, HoppingSettings};
 use super::turn::{SETTLED, SOLO, Turn};
 use crate::schedule::Phase;
-use crate::scheduler::Scheduler;
+use crate::scheduler::{Limits, Scheduler};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
 
@@ -45,6 +45,7 @@ pub struct HoppingFiring<const K: usize> {
     pub(super) changed: bool,
     pub(super) random: SmallRandom,
     pub(super) disabled: SensorSet,
+    paused: bool,
     lateness: Lateness,
     pub(super) schedule: HoppingSchedule<K>,
     pub(super) settings: HoppingSettings,
@@ -79,6 +80,7 @@ impl<const K: usize> HoppingFiring<K> {
             changed: false,
             random: SmallRandom::new(seed),
             disabled: SensorSet::NONE,
+            paused: false,
             lateness: Lateness::NEW,
             schedule: *schedule,
             settings,
@@ -137,6 +139,7 @@ impl<const K: usize> HoppingFiring<K> {
     fn begin_period(&mut self) {
         self.place = 0;
         self.plan();
+        self.set_paused(self.paused);
     }
 
     /// Nothing that is heard across this moment moves as the code says.
@@ -178,6 +181,26 @@ impl<const K: usize> Scheduler for HoppingFiring<K> {
         }
     }
 
+    fn postpone(&mut self, sensor: u8, by: Micros) {
+        let Some(turn) = self.turns.get_mut(usize::from(sensor)) else { return };
+        let is_solo = turn.is(SOLO);
+        let late = Micros::new(turn.late.into()).saturating_add(by);
+        turn.fired += by;
+        if !is_solo {
+            turn.late = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
+            self.lateness.note(turn.late);
+        }
+        if !self.last_fired.has_reached(turn.fired) {
+            self.last_fired = turn.fired;
+        }
+        if late > CATCHES_UP {
+            self.break_off();
+        }
+        if late > CATCHES_UP || is_solo {
+            self.start += by;
+        }
+    }
+
     fn end_period(&mut self, now: Instant) -> (Phase, bool) {
         let phase = Phase(self.count);
         let end = self.deadline();
@@ -206,6 +229,14 @@ impl<const K: usize> Scheduler for HoppingFiring<K> {
         }
     }
 
+    fn set_paused(&mut self, paused: bool) {
+        self.paused = paused;
+        if paused {
+            // What is left of the period.
+            self.planned = self.place;
+        }
+    }
+
     fn is_enabled(&self, sensor: u8) -> bool {
         usize::from(sensor) < self.sensors() && !self.disabled.contains(sensor)
     }
@@ -223,7 +254,11 @@ impl<const K: usize> Scheduler for HoppingFiring<K> {
         self.count.wrapping_sub(phase.0) & 7
     }
 
-    fn longest_window(&self) -> Micros {
+    fn limits(&self) -> Limits<'_> {
+        Limits { longest_window: self.min_refire(), verified_for: None }
+    }
+
+    fn min_refire(&self) -> Micros {
         // No sensor is planned to fire sooner.
         self.window
     }

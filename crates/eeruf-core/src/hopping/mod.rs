@@ -23,6 +23,7 @@ use crate::reading::{ReadingKind, Tally, Verdict};
 use crate::ring::{PeriodStats, Reading, Ring, RingConfig, RingEvent};
 use crate::schedule::Phase;
 use crate::scheduler::Scheduler as _;
+use crate::sensor_error::SensorError;
 use crate::time::Instant;
 use crate::tracker::{EchoTracker, Firing};
 
@@ -51,14 +52,14 @@ pub use settings::{HoppingListening, HoppingSettings};
 ///     let now = ring.next_deadline(); // where firmware would sleep
 ///     while let Some(event) = ring.poll(now) {
 ///         match event {
-///             RingEvent::Fire(sensor) => ring.echo(sensor, now + Micros::from_millis(12)), // a wall 2 m away
+///             RingEvent::Fire { sensor, .. } => ring.echo(sensor, now + Micros::from_millis(12))?, // a wall 2 m away
 ///             RingEvent::Reading(reading) => accepted += u32::from(reading.kind == ReadingKind::Accepted),
 ///             RingEvent::PeriodEnded(_) => {}
 ///         }
 ///     }
 /// }
 /// assert!(accepted > 400);
-/// # Ok::<(), HoppingError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct HoppingRing<const K: usize, const H: usize = 4> {
@@ -95,7 +96,8 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
             return Err(HoppingError::Period { period: schedule.period(), least });
         }
         let firing = HoppingFiring::new(schedule, settings, listening, seed, now);
-        let ring = Ring::with_scheduler(firing, RingConfig { blanking, ..RingConfig::new(t_delta, window) }, now)?;
+        let config = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
+        let ring = Ring::with_scheduler(firing, config, now)?;
         // A track may be off by as much as its readings, and a step is at most 65,535 us.
         let tolerated = (code.step().abs_diff(t_delta).as_micros() - 1) / 2;
         Ok(Self { ring, tracker, tally: Tally::default(), tolerated: tolerated as u16 })
@@ -119,7 +121,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
                 let phase = Phase((self.firing().phase + phases - 1) % phases);
                 RingEvent::PeriodEnded(PeriodStats { phase, tally: core::mem::take(&mut self.tally), ..stats })
             }
-            event @ RingEvent::Fire(_) => event,
+            RingEvent::Fire { sensor, due, .. } => RingEvent::Fire { sensor, phase: self.firing().phase(), due },
         })
     }
 
@@ -155,26 +157,47 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     }
 
     /// An edge on the echo line of a sensor: see [`Ring::echo`].
-    pub fn echo(&mut self, sensor: u8, at: Instant) {
-        self.ring.echo(sensor, at);
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
+        self.ring.echo(sensor, at)
+    }
+
+    /// When the sensor of the last [`Fire`](RingEvent::Fire) really fired: see [`Ring::fired`].
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
+        self.ring.fired(sensor, at)
     }
 
     /// The echo line of a sensor was high when it was to fire: see [`Ring::stuck`].
-    pub fn stuck(&mut self, sensor: u8) {
-        self.ring.stuck(sensor);
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn stuck(&mut self, sensor: u8) -> Result<(), SensorError> {
+        self.ring.stuck(sensor)
     }
 
     /// Stops a sensor from firing: see [`Ring::disable`].
-    pub fn disable(&mut self, sensor: u8) {
-        self.ring.disable(sensor);
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn disable(&mut self, sensor: u8) -> Result<(), SensorError> {
+        self.ring.disable(sensor)
     }
 
     /// Lets a sensor fire again from the next period on. Its tracks are forgotten.
-    pub fn enable(&mut self, sensor: u8) {
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn enable(&mut self, sensor: u8) -> Result<(), SensorError> {
         if !self.ring.is_enabled(sensor) {
-            self.ring.enable(sensor);
+            self.ring.enable(sensor)?;
             self.tracker.forget(sensor.into());
         }
+        Ok(())
     }
 
     /// Whether a sensor fires.

@@ -50,7 +50,9 @@ impl<const K: usize> HoppingFiring<K> {
     /// Gives the period to one sensor, which fires when all else is silent.
     fn plan_solo(&mut self, sensor: u8) {
         let silent = self.last_fired + self.dies;
-        let at = if self.start.has_reached(silent) { Micros::ZERO } else { silent.since(self.start) };
+        let silent = if self.start.has_reached(silent) { Micros::ZERO } else { silent.since(self.start) };
+        // A clock that has jumped says nothing about when the last firing was.
+        let at = if silent <= self.dies { silent } else { Micros::ZERO };
         // Its own last firing is among those that it waits for, but its window may be longer.
         let at = at.max(self.rests_for(sensor));
         self.earned -= ONE;

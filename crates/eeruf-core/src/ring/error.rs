@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::listening::LONGEST;
 use crate::filter::FilterError;
 use crate::time::Micros;
 
@@ -17,7 +18,14 @@ pub enum RingError {
         /// The shortest time between two firings of one sensor.
         min_refire: Micros,
     },
-    /// The window is over before the blanking time.
+    /// The schedule was verified for a shorter window.
+    VerifiedWindow {
+        /// The window asked for.
+        window: Micros,
+        /// The one that the schedule was verified for.
+        verified: Micros,
+    },
+    /// The window is over before the blanking time, or it is longer than any that a ring can keep.
     Blanking {
         /// The blanking time asked for.
         blanking: Micros,
@@ -38,13 +46,15 @@ pub enum RingError {
         /// The one that the schedule was verified for.
         verified: Micros,
     },
-    /// Any two readings within the window would be near-identical.
+    /// Any two readings within the window would be near-identical, or it is longer than any that a ring can keep.
     CoarseTDelta {
         /// The `t_delta` asked for.
         t_delta: Micros,
         /// The window asked for.
         window: Micros,
     },
+    /// The schedule was not verified, so that `t_delta` and the window cannot be taken from it.
+    Unverified,
     /// The filter cannot compare so many readings.
     Filter(FilterError),
 }
@@ -63,8 +73,15 @@ impl fmt::Display for RingError {
                 "a listening window of {window}; a sensor of this schedule fires again after {min_refire}, \
                  expected a window no longer than that (T_wind)"
             ),
+            Self::VerifiedWindow { window, verified } => write!(
+                f,
+                "a listening window of {window}; expected at most {verified}, which the schedule was verified for"
+            ),
             Self::Blanking { blanking, window } => {
-                write!(f, "a blanking time of {blanking}; expected less than the window of {window}")
+                write!(
+                    f,
+                    "a blanking time of {blanking}; expected less than the window of {window}, and at most {LONGEST}"
+                )
             }
             Self::Sensors { sensors, capacity } => {
                 write!(f, "a scheduler of {sensors} sensors; expected at most the {capacity} of the ring")
@@ -73,7 +90,10 @@ impl fmt::Display for RingError {
                 write!(f, "a t_delta of {t_delta}; expected at most {verified}, which the schedule was verified for")
             }
             Self::CoarseTDelta { t_delta, window } => {
-                write!(f, "a t_delta of {t_delta}; expected less than the window of {window}")
+                write!(f, "a t_delta of {t_delta}; expected less than the window of {window}, and at most {LONGEST}")
+            }
+            Self::Unverified => {
+                f.write_str("a schedule that was not verified; expected both t_delta and window in the configuration")
             }
             Self::Filter(error) => error.fmt(f),
         }

@@ -2,14 +2,21 @@
 
 use crate::reading::{ReadingKind, Tally};
 use crate::schedule::Phase;
-use crate::time::Micros;
+use crate::time::{Instant, Micros};
 
 /// What a [`Ring`](super::Ring) hands to its caller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RingEvent {
-    /// Fire this sensor (from 0), now.
-    Fire(u8),
+    /// Fire this sensor, now.
+    Fire {
+        /// The sensor, from 0.
+        sensor: u8,
+        /// The phase that its wait belongs to.
+        phase: Phase,
+        /// When it was due: in the past if the poll is late.
+        due: Instant,
+    },
     /// What came of an earlier firing.
     Reading(Reading),
     /// A period has ended.

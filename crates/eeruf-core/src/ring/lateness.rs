@@ -8,6 +8,7 @@
 
 /// The least and the largest stretch of some firings, in microseconds.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 struct Stretches {
     least: u16,
@@ -31,12 +32,14 @@ impl Stretches {
 
 /// What late firings have done to the timetable in this period and the one before. All sums stop at 65,535 us.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 pub(super) struct Lateness {
     /// At how many more period ends something late is still remembered; 0 while all is on time.
     watched: u8,
-    /// At how many more period ends the next reading of every sensor becomes uncomparable; or [`FIRST_PERIOD`].
-    uncomparable: u8,
+    /// At how many more period ends the next reading of every sensor becomes uncomparable, or [`FIRST_PERIOD`], in the
+    /// lowest two bits; above, while it is watching, the sensor that fired last.
+    uncomparable_and_last: u8,
     /// The latest step of this period.
     latest: u16,
     /// All lateness since the period before began.
@@ -45,10 +48,14 @@ pub(super) struct Lateness {
     total_before: u16,
     stretches: Stretches,
     stretches_before: Stretches,
+    /// By how much the last firing was late, and its stretch.
+    last_late: u16,
+    last_stretch: u16,
 }
 
 /// Nothing has fired before this period, so that its firings have no stretch.
-const FIRST_PERIOD: u8 = u8::MAX;
+const FIRST_PERIOD: u8 = 0b11;
+const UNCOMPARABLE: u8 = 0b11;
 /// Lateness in one period stretches firings of the next, whose sound may be heard in the one after that.
 const WATCHED: u8 = 3;
 /// No difference of two known stretches is tolerated if it is more than this, so that it has half of the range.
@@ -67,13 +74,23 @@ pub(super) struct PeriodLateness {
 impl Lateness {
     pub(super) const NEW: Self = Self {
         watched: 0,
-        uncomparable: FIRST_PERIOD,
+        uncomparable_and_last: FIRST_PERIOD,
         latest: 0,
         total: 0,
         total_before: 0,
         stretches: Stretches::NONE,
         stretches_before: Stretches::NONE,
+        last_late: 0,
+        last_stretch: 0,
     };
+
+    const fn uncomparable(&self) -> u8 {
+        self.uncomparable_and_last & UNCOMPARABLE
+    }
+
+    fn set_uncomparable(&mut self, periods: u8) {
+        self.uncomparable_and_last = (self.uncomparable_and_last & !UNCOMPARABLE) | periods;
+    }
 
     /// Whether firings on time have to be looked at too.
     #[inline]
@@ -91,7 +108,7 @@ impl Lateness {
         if self.watched == 0 {
             totals.fill(0);
             (self.total, self.total_before) = (0, 0);
-            let before = if self.uncomparable == FIRST_PERIOD { Stretches::NONE } else { Stretches::ON_TIME };
+            let before = if self.uncomparable() == FIRST_PERIOD { Stretches::NONE } else { Stretches::ON_TIME };
             (self.stretches, self.stretches_before) = (before, before);
         }
         self.watched = WATCHED;
@@ -101,7 +118,7 @@ impl Lateness {
     pub(super) fn begin_anew(&mut self, totals: &mut [u16]) {
         self.watch(totals);
         // A reading of the first period may hold sound from before, and is what the next one would be compared with.
-        self.uncomparable = 1;
+        self.set_uncomparable(1);
     }
 
     /// The sum of lateness grows. Returns whether it is still known: if not, stretches mean nothing until two periods
@@ -109,7 +126,7 @@ impl Lateness {
     pub(super) fn add(&mut self, late: u16) -> bool {
         self.total = self.total.saturating_add(late);
         if self.total == u16::MAX {
-            self.uncomparable = 2;
+            self.lose_track();
         }
         self.total != u16::MAX
     }
@@ -124,7 +141,7 @@ impl Lateness {
 
     /// Whether the reading of a firing with this stretch may be compared with the one before it.
     pub(super) fn comparable(&mut self, stretch: u16, tolerated: u16) -> bool {
-        if self.uncomparable == FIRST_PERIOD {
+        if self.uncomparable() == FIRST_PERIOD {
             return true;
         }
         let Stretches { least, most } = self.stretches.and(self.stretches_before);
@@ -132,11 +149,32 @@ impl Lateness {
         stretch.saturating_sub(least) <= tolerated && most.saturating_sub(stretch) <= tolerated
     }
 
+    /// What the last firing came to, to be corrected by [`Ring::fired`](super::Ring::fired).
+    pub(super) fn remember(&mut self, sensor: u8, late: u16, stretch: u16) {
+        self.uncomparable_and_last = self.uncomparable() | sensor << UNCOMPARABLE.count_ones();
+        (self.last_late, self.last_stretch) = (late, stretch);
+    }
+
+    /// By how much the last firing of a sensor was late, and its stretch; `None` if another one has fired since.
+    pub(super) fn last_firing(&self, sensor: u8) -> Option<(u16, u16)> {
+        if self.watched == 0 {
+            // All recent firings were on time.
+            return Some((0, 0));
+        }
+        let is_last = self.uncomparable_and_last >> UNCOMPARABLE.count_ones() == sensor;
+        is_last.then_some((self.last_late, self.last_stretch))
+    }
+
+    /// Firings have shifted by nobody knows how much: nothing can be compared until two periods have ended.
+    pub(super) fn lose_track(&mut self) {
+        self.set_uncomparable(2);
+    }
+
     /// Ends the period.
     pub(super) fn end_period(&mut self, totals: &mut [u16]) -> PeriodLateness {
         let latest = core::mem::take(&mut self.latest);
-        let uncomparable = !matches!(self.uncomparable, 0 | FIRST_PERIOD);
-        self.uncomparable = if uncomparable { self.uncomparable - 1 } else { 0 };
+        let uncomparable = !matches!(self.uncomparable(), 0 | FIRST_PERIOD);
+        self.set_uncomparable(if uncomparable { self.uncomparable() - 1 } else { 0 });
         if self.watched == 0 {
             return PeriodLateness { latest, uncomparable, ..PeriodLateness::default() };
         }

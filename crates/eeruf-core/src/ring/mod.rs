@@ -3,10 +3,13 @@
 //! The caller polls, fires the sensors it is asked to fire, hands in the instants of echo edges, and sleeps until the
 //! next deadline. Nothing here blocks, allocates, panics or reads a clock. The room uses the scheduler and the filter.
 
+mod changes;
 mod config;
 mod error;
 mod events;
+mod fired;
 mod lateness;
+mod listening;
 mod sensor;
 mod steps;
 
@@ -14,10 +17,13 @@ use crate::filter::Agreement;
 use crate::reading::{ReadingKind, Tally};
 use crate::schedule::Schedule;
 use crate::scheduler::{ImmediateRefiring, ScheduledFiring, Scheduler};
+use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
+use crate::verified::VerifiedSchedule;
 
 use lateness::Lateness;
-use sensor::{Edge, LISTENING, STUCK, Sensor};
+use listening::Listening;
+use sensor::{LISTENING, Noted, STUCK, Sensor};
 
 pub use config::RingConfig;
 pub use error::RingError;
@@ -27,25 +33,25 @@ pub use events::{PeriodStats, Reading, RingEvent};
 /// `E` is the number of echoes that a sensor reports of one firing.
 ///
 /// ```
-/// use eeruf_core::{RingConfig, RingEvent, Instant, ReadingKind, Micros, Ring, tables::TABLE_I_D};
+/// use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
 ///
-/// let config = RingConfig::new(Micros::new(999), Micros::from_millis(36));
-/// let mut ring = Ring::new(&TABLE_I_D, config, Instant::from_micros(0))?;
+/// let mut ring = Ring::new(&PAPER_12, RingConfig::new(), Instant::from_micros(0))?;
 /// let mut accepted = 0;
 /// for _ in 0..1000 {
 ///     let now = ring.next_deadline(); // where firmware would sleep
 ///     while let Some(event) = ring.poll(now) {
 ///         match event {
-///             RingEvent::Fire(sensor) => ring.echo(sensor, now + Micros::from_millis(12)), // a wall 2 m away
+///             RingEvent::Fire { sensor, .. } => ring.echo(sensor, now + Micros::from_millis(12))?, // a wall 2 m away
 ///             RingEvent::Reading(reading) => accepted += u32::from(reading.kind == ReadingKind::Accepted),
 ///             RingEvent::PeriodEnded(stats) => assert_eq!(stats.max_late, Micros::ZERO),
 ///         }
 ///     }
 /// }
 /// assert!(accepted > 400);
-/// # Ok::<(), eeruf_core::RingError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 // In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction.
 #[repr(C)]
 pub struct Ring<S, const K: usize, const E: usize = 1> {
@@ -59,9 +65,7 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     scheduler: S,
     /// When the next reading can be emitted: when an edge came, or when the window of the oldest closes.
     emit_at: Instant,
-    window: Micros,
-    t_delta: Micros,
-    blanking: Micros,
+    listening: Listening,
     period: u32,
     sensors: [Sensor<E>; K],
     /// The sum of lateness at each sensor's last firing (see [`Lateness`]); in an array of its own, since a sensor's
@@ -74,50 +78,40 @@ pub type ScheduledRing<'s, const K: usize, const E: usize = 1> = Ring<ScheduledF
 
 const NOBODY: u8 = u8::MAX;
 
-impl<'s, const K: usize, const M: usize> Ring<ScheduledFiring<'s, K, M>, K> {
-    /// A ring with scheduled firing that begins at `now`.
+impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s, K, M>, K, E> {
+    /// A ring with scheduled firing that begins at `now`. It listens and compares as the schedule was verified for,
+    /// unless `config` asks for less.
     ///
     /// # Errors
     /// As for [`Ring::with_scheduler`].
-    pub fn new(schedule: &'s Schedule<K, M>, config: RingConfig, now: Instant) -> Result<Self, RingError> {
+    pub fn new(schedule: &'s VerifiedSchedule<K, M>, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
+        Self::unverified(schedule, config, now)
+    }
+
+    /// As [`new`](Self::new), by a schedule that nobody has verified: the conventional method with its constant waits,
+    /// for comparison. Crosstalk may be accepted, whatever [`ReadingKind`] says; `config` needs `t_delta` and window.
+    ///
+    /// # Errors
+    /// As for [`Ring::with_scheduler`].
+    pub fn unverified(schedule: &'s Schedule<K, M>, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
         Self::with_scheduler(ScheduledFiring::new(schedule, now), config, now)
     }
-}
 
-impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s, K, M>, K, E> {
     /// The schedule of the present period.
     pub const fn schedule(&self) -> &'s Schedule<K, M> {
         self.scheduler.schedule()
     }
-
-    /// Changes to another schedule when the present period ends (see [`ScheduledFiring::change_schedule`]). Readings
-    /// before and after the change are not compared.
-    ///
-    /// # Errors
-    /// [`RingError::Window`] if a sensor would fire again while it still listens; [`RingError::TDelta`] if the schedule
-    /// was verified for a smaller `t_delta`.
-    pub fn change_schedule(&mut self, schedule: &'s Schedule<K, M>) -> Result<(), RingError> {
-        if let Some(promise) = schedule.promise() {
-            if self.t_delta > promise.t_delta {
-                return Err(RingError::TDelta { t_delta: self.t_delta, verified: promise.t_delta });
-            }
-        }
-        if self.window > schedule.min_refire() {
-            return Err(RingError::Window { window: self.window, min_refire: schedule.min_refire() });
-        }
-        self.scheduler.change_schedule(schedule);
-        Ok(())
-    }
 }
 
-impl<'s, const K: usize, const M: usize> Ring<ImmediateRefiring<'s, K, M>, K> {
-    /// A ring with immediate refiring that begins at `now`; no sensor fires again sooner than `min_refire`.
+impl<'s, const K: usize, const M: usize, const E: usize> Ring<ImmediateRefiring<'s, K, M>, K, E> {
+    /// A ring with immediate refiring that begins at `now`; no sensor fires again sooner than `min_refire`. `config`
+    /// needs `t_delta` and window, since nothing can be verified without a common period.
     ///
     /// # Errors
     /// As for [`Ring::with_scheduler`].
     pub fn immediate(
         schedule: &'s Schedule<K, M>,
-        config: RingConfig,
+        config: RingConfig<E>,
         min_refire: Micros,
         now: Instant,
     ) -> Result<Self, RingError> {
@@ -129,34 +123,20 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// Copied from flash: an array made at run time would first be built on the stack.
     const SENSORS: [Sensor<E>; K] = [Sensor::NEW; K];
 
-    /// A ring with the caller's own scheduler and any number of echoes a firing.
+    /// A ring with the caller's own scheduler. Where its schedule was verified, it listens and compares as it was
+    /// verified for, unless `config` asks for less.
     ///
     /// # Errors
-    /// [`RingError`] if the ring is smaller than its scheduler, if a sensor would fire again while it still listens, if
-    /// the window ends within the blanking time, if `t_delta` is no shorter than the window or longer than what the
-    /// schedule was verified for, or if the number of consecutive readings is not 2 to 8 or the patience more than 15.
-    pub fn with_scheduler(scheduler: S, config: RingConfig, now: Instant) -> Result<Self, RingError> {
-        let RingConfig { t_delta, window, blanking, consecutive, patience } = config;
+    /// [`RingError`] if `config` asks for more than the schedule was verified for, or does not say `t_delta` and window
+    /// where it was not; if the ring is smaller than its scheduler, if a sensor would fire again while it still
+    /// listens, if `t_delta` or blanking time are no shorter than the window or longer than 65,535 us, or if the number
+    /// of consecutive readings is not 2 to 8 or the patience more than 15.
+    pub fn with_scheduler(scheduler: S, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
         if scheduler.sensors() > K {
             return Err(RingError::Sensors { sensors: scheduler.sensors(), capacity: K });
         }
-        if let Some(verified) = scheduler.verified_t_delta() {
-            if t_delta > verified {
-                return Err(RingError::TDelta { t_delta, verified });
-            }
-        }
-        // No echo time within a window can then be mistaken for an instant before the firing.
-        let longest = scheduler.longest_window().min(Micros::new(u32::MAX / 2));
-        if window > longest {
-            return Err(RingError::Window { window, min_refire: longest });
-        }
-        if window <= blanking {
-            return Err(RingError::Blanking { blanking, window });
-        }
-        if t_delta >= window {
-            return Err(RingError::CoarseTDelta { t_delta, window });
-        }
-        let agreement = Agreement::new(consecutive, patience)?;
+        let listening = Listening::new(&config, &scheduler)?;
+        let agreement = Agreement::new(config.consecutive, config.patience)?;
         Ok(Self {
             oldest: NOBODY,
             ready: 0,
@@ -165,9 +145,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             lateness: Lateness::NEW,
             scheduler,
             emit_at: now,
-            window,
-            t_delta,
-            blanking,
+            listening,
             period: 0,
             sensors: Self::SENSORS,
             totals: [0; K],
@@ -216,44 +194,40 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
 
     /// An edge on the echo line of a sensor, `at` this instant. Cheap; edges may come in any order, at any time, from
     /// any sensor, wanted or not.
-    pub fn echo(&mut self, sensor: u8, at: Instant) {
-        let Some(heard) = self.sensors.get_mut(usize::from(sensor)) else { return };
-        match heard.echo(at, self.blanking, self.window) {
-            Edge::Ready => {
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    #[inline]
+    pub fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
+        let Some(heard) = self.sensors.get_mut(usize::from(sensor)) else {
+            return self.no_such(sensor);
+        };
+        match heard.echo(at, self.listening.blanking(), self.listening.window()) {
+            Noted::Ready => {
                 if !self.has_pending() || !at.has_reached(self.emit_at) {
                     self.emit_at = at;
                 }
                 self.ready = self.ready.saturating_add(1);
             }
-            Edge::Late => self.tally.count(ReadingKind::Late),
-            Edge::Stored => {}
+            Noted::Late => self.tally.count(ReadingKind::Late),
+            // As is every edge of a sensor that the ring has room for and does not have.
+            Noted::Unwanted if usize::from(sensor) >= self.sensors() => return self.no_such(sensor),
+            Noted::Stored | Noted::Unwanted => {}
         }
+        Ok(())
     }
 
     /// Reports that the echo line of a sensor was already high when it was to fire: the firing just emitted counts as
     /// [`ReadingKind::Stuck`], whatever edges follow.
-    pub fn stuck(&mut self, sensor: u8) {
-        if let Some(stuck) = self.sensors.get_mut(usize::from(sensor)) {
-            if stuck.is(LISTENING) {
-                stuck.set(STUCK);
-            }
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn stuck(&mut self, sensor: u8) -> Result<(), SensorError> {
+        let stuck = self.sensor_mut(sensor)?;
+        if stuck.is(LISTENING) {
+            stuck.set(STUCK);
         }
-    }
-
-    /// Stops a sensor from firing. The reading of a firing that is under way is still emitted.
-    pub fn disable(&mut self, sensor: u8) {
-        self.scheduler.set_enabled(sensor, false);
-    }
-
-    /// Lets a sensor fire again from its next turn on. Its readings from before are forgotten.
-    pub fn enable(&mut self, sensor: u8) {
-        if self.scheduler.is_enabled(sensor) {
-            return;
-        }
-        self.scheduler.set_enabled(sensor, true);
-        if let Some(sensor) = self.sensors.get_mut(usize::from(sensor)) {
-            sensor.tracker.forget();
-        }
+        Ok(())
     }
 
     /// Whether a sensor fires.
@@ -261,17 +235,40 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         self.scheduler.is_enabled(sensor)
     }
 
-    /// Starts again with phase a at `now`, or as soon as the last firings allow. Firings under way are dropped,
-    /// readings from before are forgotten; ages and the count of periods go on.
-    pub fn restart(&mut self, now: Instant) {
-        self.scheduler.restart(now);
-        for sensor in &mut self.sensors {
-            sensor.drop_firing();
+    /// `T_delta`: consecutive readings that differ by no more are near-identical.
+    pub const fn t_delta(&self) -> Micros {
+        self.listening.t_delta()
+    }
+
+    /// `T_wind`: how long a sensor listens after it has fired.
+    pub const fn window(&self) -> Micros {
+        self.listening.window()
+    }
+
+    /// How long a sensor is deaf after it has fired.
+    pub const fn blanking(&self) -> Micros {
+        self.listening.blanking()
+    }
+
+    /// The number of sensors.
+    pub fn sensors(&self) -> usize {
+        self.scheduler.sensors()
+    }
+
+    /// The error is made out of line, since it is rare and takes more instructions than all else.
+    #[cold]
+    #[inline(never)]
+    fn no_such(&self, sensor: u8) -> Result<(), SensorError> {
+        Err(SensorError::new(sensor, self.sensors()))
+    }
+
+    #[inline]
+    fn sensor_mut(&mut self, sensor: u8) -> Result<&mut Sensor<E>, SensorError> {
+        let sensors = self.scheduler.sensors();
+        match self.sensors.get_mut(usize::from(sensor)) {
+            Some(found) if usize::from(sensor) < sensors => Ok(found),
+            _ => Err(SensorError::new(sensor, sensors)),
         }
-        self.oldest = NOBODY;
-        self.ready = 0;
-        // Sound from before may still be heard in the first period.
-        self.lateness.begin_anew(&mut self.totals);
     }
 
     /// The scheduler.

@@ -7,6 +7,7 @@ use crate::time::{Instant, Micros};
 
 /// What is known of one sensor between its firing and its next: 16 bytes where it reports one echo.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Sensor<const E: usize> {
     pub(super) fired: Instant,
     /// The echoes of the present firing; also, in the first place, the time of an early or late edge.
@@ -28,14 +29,16 @@ pub(super) const STUCK: u8 = 1 << 6;
 /// The next reading is not to be compared with the one before it, nor with the one after it.
 pub(super) const UNCOMPARABLE: u8 = 1 << 7;
 
-/// What to do about an edge.
-pub(super) enum Edge {
+/// What came of an edge.
+pub(super) enum Noted {
     /// It makes a reading that can be emitted.
     Ready,
     /// It came after the window, which is not yet closed.
     Late,
-    /// Nothing: it is stored, or ignored.
+    /// It is stored with the others of its firing.
     Stored,
+    /// Nothing listens for it.
+    Unwanted,
 }
 
 impl<const E: usize> Sensor<E> {
@@ -63,35 +66,43 @@ impl<const E: usize> Sensor<E> {
         self.fired = now;
     }
 
+    /// It fired this much later: echoes that are in already are nearer.
+    pub(super) fn postpone(&mut self, later: Micros) {
+        self.fired += later;
+        for echo in self.echoes.iter_mut().filter(|echo| **echo != NO_ECHO) {
+            *echo = echo.saturating_sub(later.as_micros());
+        }
+    }
+
     pub(super) fn drop_firing(&mut self) {
         self.echoes = [NO_ECHO; E];
         self.tracker.forget();
         self.tracker.flags = OUTSIDE;
     }
 
-    pub(super) fn echo(&mut self, at: Instant, blanking: Micros, window: Micros) -> Edge {
+    pub(super) fn echo(&mut self, at: Instant, blanking: Micros, window: Micros) -> Noted {
         let t_echo = at.since(self.fired);
         if !at.has_reached(self.fired) {
             // From before it fired, or from a clock that has jumped.
-            return Edge::Stored;
+            return Noted::Unwanted;
         }
         if !self.is(LISTENING) {
             if t_echo <= window || self.is(OUTSIDE) {
-                return Edge::Stored;
+                return Noted::Unwanted;
             }
             self.set(OUTSIDE | READY);
             self.hold(t_echo);
-            return Edge::Ready;
+            return Noted::Ready;
         }
         if t_echo > window {
-            return Edge::Late;
+            return Noted::Late;
         }
         if t_echo < blanking {
             if self.held().is_none() {
                 self.set(OUTSIDE);
                 self.hold(t_echo);
             }
-            return Edge::Stored;
+            return Noted::Stored;
         }
         if self.is(OUTSIDE) {
             self.clear(OUTSIDE);
@@ -99,10 +110,10 @@ impl<const E: usize> Sensor<E> {
         }
         insert(&mut self.echoes, t_echo.as_micros());
         if E > 1 || self.is(READY) {
-            return Edge::Stored;
+            return Noted::Stored;
         }
         self.set(READY);
-        Edge::Ready
+        Noted::Ready
     }
 
     fn hold(&mut self, t_echo: Micros) {

@@ -5,7 +5,7 @@ use super::sensor::{LISTENING, READY, Sensor, UNCOMPARABLE};
 use super::{NOBODY, PeriodStats, Reading, Ring, RingEvent};
 use crate::filter::Rule;
 use crate::reading::Verdict;
-use crate::scheduler::Scheduler;
+use crate::scheduler::{Limits, Scheduler};
 use crate::time::{Instant, Micros};
 
 impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
@@ -22,9 +22,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
                     if let Some(fired) = fired {
                         fired.fire(phase, now);
                     }
-                    self.fired(sensor, now.since(due), now);
+                    self.has_fired(sensor, now.since(due), now);
                     self.scheduler.fire(now);
-                    return Some(RingEvent::Fire(sensor));
+                    return Some(RingEvent::Fire { sensor, phase, due });
                 }
             },
             None => self.next_pending(now),
@@ -36,14 +36,14 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     }
 
     #[inline]
-    fn fired(&mut self, sensor: u8, late: Micros, now: Instant) {
+    fn has_fired(&mut self, sensor: u8, late: Micros, now: Instant) {
         if late != Micros::ZERO || self.lateness.is_watching() {
             self.fired_late(sensor, late);
         }
         if self.oldest == NOBODY {
             self.oldest = sensor;
             if self.ready == 0 {
-                self.emit_at = now + self.window;
+                self.emit_at = now + self.listening.window();
             }
         }
     }
@@ -62,6 +62,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         let Some(total) = self.totals.get_mut(usize::from(sensor)) else { return };
         let stretch = self.lateness.stretch(total);
         let stretch = if S::DELAYS_ALL { stretch } else { late };
+        self.lateness.remember(sensor, late, stretch);
         if !self.lateness.comparable(stretch, self.tolerated()) {
             self.uncompare_pending();
         }
@@ -69,11 +70,11 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
 
     /// By how much two stretches may differ: by so little that crosstalk still moves by more than `t_delta`, and that
     /// no firing of an emitter is skipped.
-    fn tolerated(&self) -> u16 {
-        let t_delta = self.t_delta.as_micros();
-        // It is below the window, and that below half of the range.
-        let separation = self.scheduler.separation().map_or(2 * t_delta + 1, Micros::as_micros);
-        let separation = separation.min(self.scheduler.longest_window().as_micros());
+    pub(super) fn tolerated(&self) -> u16 {
+        let t_delta = self.listening.t_delta().as_micros();
+        let Limits { longest_window, verified_for } = self.scheduler.limits();
+        let separation = verified_for.map_or(2 * t_delta + 1, |verified_for| verified_for.separation.as_micros());
+        let separation = separation.min(longest_window.as_micros());
         let tolerated = separation.saturating_sub(t_delta + 1);
         u16::try_from(tolerated).unwrap_or(MOST_TOLERATED).min(MOST_TOLERATED)
     }
@@ -110,7 +111,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// be of either.
     #[cold]
     #[inline(never)]
-    fn uncompare_next(&mut self) {
+    pub(super) fn uncompare_next(&mut self) {
         for sensor in &mut self.sensors {
             sensor.set(UNCOMPARABLE);
         }
@@ -120,7 +121,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// readings that are pending, its own among them, and in no earlier one.
     #[cold]
     #[inline(never)]
-    fn uncompare_pending(&mut self) {
+    pub(super) fn uncompare_pending(&mut self) {
         for sensor in &mut self.sensors {
             if sensor.is(LISTENING) {
                 sensor.set(UNCOMPARABLE);
@@ -156,14 +157,16 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         let heard = self.sensors.get_mut(usize::from(sensor))?;
         let phase = heard.phase();
         let (listened, fired) = (heard.is(LISTENING), heard.fired);
-        let mut ended_at = fired + self.window;
+        let mut ended_at = fired + self.listening.window();
         if heard.is(READY) {
             // Counted when its edge came.
             self.ready = self.ready.wrapping_sub(1);
             ended_at = fired + heard.held().unwrap_or_default();
         }
         let verdict = if listened {
-            heard.compare(Rule { t_delta: self.t_delta, agreement: self.agreement }, || expected_change_us(sensor))
+            heard.compare(Rule { t_delta: self.listening.t_delta(), agreement: self.agreement }, || {
+                expected_change_us(sensor)
+            })
         } else {
             heard.take_late()
         };
@@ -173,19 +176,25 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
                 self.find_oldest(fired);
             }
         }
-        if self.ready == 0 {
-            if let Some(oldest) = self.sensor(self.oldest) {
-                self.emit_at = oldest.fired + self.window;
-            }
-        }
+        self.emit_when_oldest_ends();
         self.tally.count(verdict.kind);
         let Verdict { kind, t_echo, previous, age } = verdict;
         let period = self.period.wrapping_sub(self.scheduler.periods_since(phase).into());
         Some(RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age }))
     }
 
+    /// Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes.
+    #[inline]
+    pub(super) fn emit_when_oldest_ends(&mut self) {
+        if self.ready == 0 {
+            if let Some(oldest) = self.sensor(self.oldest) {
+                self.emit_at = oldest.fired + self.listening.window();
+            }
+        }
+    }
+
     /// Finds the next oldest, now that the one that fired at `before` has stopped listening. All others fired later.
-    fn find_oldest(&mut self, before: Instant) {
+    pub(super) fn find_oldest(&mut self, before: Instant) {
         let (mut oldest, mut soonest) = (NOBODY, Micros::MAX);
         for (x, sensor) in self.sensors.iter().enumerate() {
             if sensor.is(LISTENING) && sensor.fired.since(before) < soonest {

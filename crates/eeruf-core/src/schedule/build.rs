@@ -132,8 +132,8 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
             }
             phase += 1;
         }
-        let (sensors, min_refire, promise) = (sensors as u8, Micros::MAX, None);
-        let mut schedule = Self { period, sensors, t_lag, t_wait, min_refire, firings, promise };
+        let (sensors, min_refire, verified_for) = (sensors as u8, Micros::MAX, None);
+        let mut schedule = Self { period, sensors, t_lag, t_wait, min_refire, firings, verified_for };
         schedule.min_refire = schedule.shortest_refire();
         Ok(schedule)
     }

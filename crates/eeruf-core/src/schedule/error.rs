@@ -6,6 +6,7 @@ use super::limits::{MAX_PERIOD, MAX_PHASES, Phase};
 use crate::time::Micros;
 
 /// Why raw numbers do not make a [`Schedule`](crate::Schedule).
+/// `{:#}` counts from 0 where `{}` counts from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -70,6 +71,7 @@ impl ScheduleError {
 
 impl fmt::Display for ScheduleError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let first = u8::from(!f.alternate());
         match *self {
             Self::Sensors { sensors, capacity } => write!(f, "{sensors} sensors; expected 1 to {capacity}"),
             Self::Phases { phases } => write!(f, "{phases} phases; expected 1 to {MAX_PHASES}"),
@@ -80,7 +82,7 @@ impl fmt::Display for ScheduleError {
             Self::Fire { sensor, phase, t_fire, period } => write!(
                 f,
                 "sensor {} fires {t_fire} into phase {phase}; expected less than the period of {period}",
-                sensor + 1
+                sensor + first
             ),
             Self::Scale { num } => write!(f, "a scale of {num}/0; expected a denominator above zero"),
         }

@@ -5,8 +5,10 @@
 mod build;
 mod error;
 mod limits;
-mod promise;
 mod refire;
+#[cfg(feature = "serde")]
+mod serde;
+mod verified_for;
 
 use core::hash::{Hash, Hasher};
 
@@ -14,7 +16,7 @@ use crate::time::Micros;
 
 pub use error::ScheduleError;
 pub use limits::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase};
-pub(crate) use promise::Promise;
+pub use verified_for::VerifiedFor;
 
 /// When each sensor fires: once per period, at `T_fire = T_lag + T_wait`, where `T_wait` changes with the phase (Sec.
 /// 3.1).
@@ -35,6 +37,7 @@ pub(crate) use promise::Promise;
 /// # Ok::<(), eeruf_core::ScheduleError>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 // In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction.
 #[repr(C)]
 pub struct Schedule<const K: usize, const M: usize = 2> {
@@ -47,11 +50,12 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
     t_wait: [[Micros; K]; M],
     sensors: u8,
     /// Only in a [`VerifiedSchedule`](crate::VerifiedSchedule), and in copies of what it holds.
-    promise: Option<Promise>,
+    verified_for: Option<VerifiedFor>,
 }
 
 /// The firings of one phase in the order in which they come, so that the scheduler need not look for the next one.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 struct Firings<const K: usize> {
     /// The sensors by firing time; then nobody (255).
@@ -138,12 +142,17 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     }
 
     /// What it was verified for, if it was.
-    pub(crate) const fn promise(&self) -> Option<Promise> {
-        self.promise
+    pub(crate) const fn verified_for(&self) -> Option<&VerifiedFor> {
+        self.verified_for.as_ref()
     }
 
-    pub(crate) const fn with_promise(self, promise: Promise) -> Self {
-        Self { promise: Some(promise), ..self }
+    /// Whether it was verified: a copy of what a [`VerifiedSchedule`](crate::VerifiedSchedule) holds.
+    pub const fn is_verified(&self) -> bool {
+        self.verified_for.is_some()
+    }
+
+    pub(crate) const fn with_verified_for(self, verified_for: VerifiedFor) -> Self {
+        Self { verified_for: Some(verified_for), ..self }
     }
 
     /// For indices already known to be in range; the optimiser does not know that `sensors` is at most `K`, and the

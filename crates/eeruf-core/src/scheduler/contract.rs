@@ -2,11 +2,12 @@
 //!
 //! A scheduler never reads a clock. The caller passes `now` and gets the next deadline back.
 
-use crate::schedule::Phase;
+use crate::schedule::{Phase, VerifiedFor};
 use crate::time::{Instant, Micros};
 
 /// What a scheduler wants done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SchedulerStep {
     /// Fire this sensor, now.
     Fire {
@@ -25,6 +26,16 @@ pub enum SchedulerStep {
         /// which nothing fired were left out.
         changed: bool,
     },
+}
+
+/// What a scheduler allows the ring that it fires.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Limits<'s> {
+    /// How long a sensor may listen: it does not fire again within this time of firing, unless it has ended.
+    pub longest_window: Micros,
+    /// What the schedule was verified for, if it was: the ring may ask for less, and not for more.
+    pub verified_for: Option<&'s VerifiedFor>,
 }
 
 /// Decides when each sensor of a ring fires: [`ScheduledFiring`](super::ScheduledFiring) or
@@ -56,6 +67,9 @@ pub trait Scheduler {
     fn next_firing(&self) -> Option<(u8, Phase)>;
     /// Fires that sensor, `now`. To be called when it is due.
     fn fire(&mut self, now: Instant);
+    /// A sensor has fired this much later than [`fire`](Self::fire) was called for: what follows from its firing moves
+    /// by as much, and no interval that is still to come gets shorter.
+    fn postpone(&mut self, sensor: u8, by: Micros);
     /// Ends the period, `now`. Returns its phase, and whether the next one does not follow on it as the schedule says:
     /// because another schedule begins, or because periods were left out. To be called when that is due.
     fn end_period(&mut self, now: Instant) -> (Phase, bool);
@@ -65,22 +79,22 @@ pub trait Scheduler {
     fn sensors(&self) -> usize;
     /// Lets a sensor fire from its next turn on, or stops it.
     fn set_enabled(&mut self, sensor: u8, enabled: bool);
-    /// Whether a sensor fires.
+    /// Lets no sensor fire until it is unset; periods go on.
+    fn set_paused(&mut self, paused: bool);
+    /// Whether a sensor fires, but for a pause.
     fn is_enabled(&self, sensor: u8) -> bool;
     /// Starts again with phase a, no sooner than `now`.
     fn restart(&mut self, now: Instant);
     /// How many periods ago the last period with this phase was, 0 for the present one; 0 without common phases.
     fn periods_since(&self, phase: Phase) -> u8;
-    /// The `t_delta` that its schedule was verified for, if it was; a change to another schedule does not come into it.
-    fn verified_t_delta(&self) -> Option<Micros> {
+    /// What it allows in the present period.
+    fn limits(&self) -> Limits<'_>;
+    /// What it allows as of the next period, if it changes to another schedule then.
+    fn next_limits(&self) -> Option<Limits<'_>> {
         None
     }
-    /// By how much crosstalk moves at least from one reading to the next, where that is known.
-    fn separation(&self) -> Option<Micros> {
-        None
-    }
-    /// How long a sensor may listen: it never fires again within this time of firing, unless it has ended.
-    fn longest_window(&self) -> Micros;
+    /// No sensor fires again within this time of firing.
+    fn min_refire(&self) -> Micros;
     /// No deadline lies further ahead than this, unless the clock has jumped.
     fn horizon(&self) -> Micros;
 }

@@ -1,6 +1,6 @@
 //! [`ScheduledFiring`]: every sensor fires once per period, by the table of a schedule (Sec. 3.1, Fig. 3).
 
-use super::contract::Scheduler;
+use super::contract::{Limits, Scheduler};
 use crate::schedule::{MAX_SENSORS, Phase, Schedule};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
@@ -19,6 +19,7 @@ use crate::time::{Instant, Micros};
 /// assert_eq!(scheduler.poll(first), Some(SchedulerStep::Fire { sensor: 0, phase: Phase::A, late: Micros::ZERO }));
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 // In this order for the short offsets of a Cortex-M0: see `Ring`.
 #[repr(C)]
 pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
@@ -27,8 +28,8 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
     following: u8,
     /// The next sensor to fire; one that is not there when all have.
     next: u8,
-    /// Whether any sensor is disabled, since asking all 64 takes time at every firing.
-    some_disabled: bool,
+    /// Whether any sensor is disabled, since asking all 64 takes time at every firing, and whether all are, by a pause.
+    skips: Skips,
     /// When it is due, or when the period ends. Worked out once per step, since it is asked for at every poll.
     due: Instant,
     schedule: &'s Schedule<K, M>,
@@ -36,6 +37,15 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
     last_fired: Instant,
     disabled: SensorSet,
     next_schedule: Option<&'s Schedule<K, M>>,
+}
+
+/// Who does not fire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+enum Skips {
+    Nobody,
+    Disabled,
+    All,
 }
 
 impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
@@ -47,7 +57,7 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
             phase: 0,
             following: 1,
             next,
-            some_disabled: false,
+            skips: Skips::Nobody,
             due: Instant::from_micros(now.wrapping_add(gap.as_micros())),
             schedule,
             last_fired: Instant::from_micros(now.wrapping_sub(settling_time(schedule).as_micros())),
@@ -76,14 +86,14 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     fn turn(&mut self, from: Instant) {
         self.due = from;
         self.turn_once();
-        if self.some_disabled {
+        if self.skips != Skips::Nobody {
             self.skip_disabled();
         }
     }
 
     #[cold]
     fn skip_disabled(&mut self) {
-        while is_sensor::<K>(self.next) && self.disabled.contains(self.next) {
+        while is_sensor::<K>(self.next) && (self.skips == Skips::All || self.disabled.contains(self.next)) {
             self.turn_once();
         }
     }
@@ -116,9 +126,16 @@ const fn is_sensor<const K: usize>(sensor: u8) -> bool {
 /// How long to stay silent after the last firing so that a period which was not verified against it may begin. Where
 /// nothing was verified a whole period: two neighbours fire within one, so no interval can be longer.
 const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>) -> Micros {
-    match schedule.promise() {
-        Some(promise) => longer(promise.min_interval, schedule.min_refire()),
+    match schedule.verified_for() {
+        Some(verified_for) => longer(verified_for.min_interval, schedule.min_refire()),
         None => longer(schedule.period(), schedule.min_refire()),
+    }
+}
+
+impl<const K: usize, const M: usize> Schedule<K, M> {
+    /// What it allows a ring.
+    pub(crate) const fn limits(&self) -> Limits<'_> {
+        Limits { longest_window: self.min_refire(), verified_for: self.verified_for() }
     }
 }
 
@@ -136,6 +153,11 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         self.turn(now);
     }
 
+    fn postpone(&mut self, _sensor: u8, by: Micros) {
+        self.last_fired += by;
+        self.due += by;
+    }
+
     fn end_period(&mut self, now: Instant) -> (Phase, bool) {
         let phase = Phase(self.phase);
         // Periods in which nothing fired need not be caught up with.
@@ -148,7 +170,7 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
             self.last_fired = Instant::from_micros(start.as_micros().wrapping_sub(settling.as_micros()));
         }
         if let Some(next) = self.next_schedule.take() {
-            let min_interval = next.promise().map_or(Micros::ZERO, |promise| promise.min_interval);
+            let min_interval = next.verified_for().map_or(Micros::ZERO, |verified_for| verified_for.min_interval);
             let settled = self.last_fired + longer(settling, min_interval);
             if settled.has_reached(start) {
                 start = settled;
@@ -174,7 +196,18 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
 
     fn set_enabled(&mut self, sensor: u8, enabled: bool) {
         self.disabled.set(sensor, !enabled);
-        self.some_disabled = self.disabled != SensorSet::NONE;
+        self.set_paused(self.skips == Skips::All);
+    }
+
+    fn set_paused(&mut self, paused: bool) {
+        let some_disabled = self.disabled != SensorSet::NONE;
+        self.skips = if paused {
+            Skips::All
+        } else if some_disabled {
+            Skips::Disabled
+        } else {
+            Skips::Nobody
+        };
         self.skip_disabled();
     }
 
@@ -203,15 +236,15 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         if self.phase >= phase.0 { self.phase - phase.0 } else { (self.phase + M as u8).saturating_sub(phase.0) }
     }
 
-    fn verified_t_delta(&self) -> Option<Micros> {
-        self.schedule.promise().map(|promise| promise.t_delta)
+    fn limits(&self) -> Limits<'_> {
+        self.schedule.limits()
     }
 
-    fn separation(&self) -> Option<Micros> {
-        self.schedule.promise().map(|promise| promise.separation)
+    fn next_limits(&self) -> Option<Limits<'_>> {
+        self.next_schedule.map(Schedule::limits)
     }
 
-    fn longest_window(&self) -> Micros {
+    fn min_refire(&self) -> Micros {
         self.schedule.min_refire()
     }
 

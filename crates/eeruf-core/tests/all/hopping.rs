@@ -50,12 +50,12 @@ fn readings(
         let now = ring.next_deadline().as_micros() + random.up_to(late.each) + stall;
         arrivals.sort_unstable();
         while let Some(&(at, to)) = arrivals.first().filter(|arrival| arrival.0 <= now) {
-            ring.echo(to, Instant::from_micros(at));
+            ring.echo(to, Instant::from_micros(at)).unwrap();
             arrivals.remove(0);
         }
         while let Some(event) = ring.poll(Instant::from_micros(now)) {
             match event {
-                RingEvent::Fire(sensor) => {
+                RingEvent::Fire { sensor, .. } => {
                     let heard = paths.iter().filter(|path| path.from == sensor);
                     arrivals.extend(heard.map(|path| (now + path.length, path.to)));
                 }

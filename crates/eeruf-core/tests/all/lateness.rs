@@ -58,10 +58,10 @@ fn run(table: &Table, t_delta: u32, heard: &[Heard], firings: u32, mut late: imp
                 break;
             }
             arrivals.pop();
-            ring.echo(receiver, Instant::from_micros(at as u32));
+            ring.echo(receiver, Instant::from_micros(at as u32)).unwrap();
         }
         match ring.poll(Instant::from_micros(now as u32)) {
-            Some(RingEvent::Fire(sensor)) => {
+            Some(RingEvent::Fire { sensor, .. }) => {
                 fired += 1;
                 for (receiver, heard) in heard.iter().enumerate().filter(|(_, heard)| heard.emitter == sensor) {
                     arrivals.push(Reverse((now + u64::from(heard.path.as_micros()), receiver as u8)));
@@ -84,7 +84,8 @@ fn run(table: &Table, t_delta: u32, heard: &[Heard], firings: u32, mut late: imp
 
 fn ring(table: &Table, t_delta: u32) -> Ring<eeruf_core::ScheduledFiring<'_, 12>, 12> {
     let window = table.min_refire();
-    Ring::new(table, RingConfig::new(Micros::new(t_delta), window), Instant::from_micros(0)).unwrap()
+    let config = RingConfig::new().with_t_delta(Micros::new(t_delta)).with_window(window);
+    Ring::unverified(table, config, Instant::from_micros(0)).unwrap()
 }
 
 /// The paper's tables and 50 of other periods, waits and separations, each with the largest `t_delta` it is good for.
@@ -210,7 +211,9 @@ fn firings_that_are_all_late_by_50_us_lose_nothing_good() {
         while readings < 1200 {
             now = now.max(ring.next_deadline().as_micros()) + steady;
             match ring.poll(Instant::from_micros(now)) {
-                Some(RingEvent::Fire(sensor)) => ring.echo(sensor, Instant::from_micros(now + 9_000)),
+                Some(RingEvent::Fire { sensor, .. }) => {
+                    ring.echo(sensor, Instant::from_micros(now + 9_000)).unwrap();
+                }
                 Some(RingEvent::Reading(reading)) => {
                     readings += 1;
                     accepted += u32::from(reading.kind == ReadingKind::Accepted);
@@ -269,12 +272,12 @@ fn sound_from_before_a_restart_is_not_compared_with_sound_from_after() {
             }
             arrivals.retain(|&at| {
                 if at <= now {
-                    ring.echo(1, Instant::from_micros(at));
+                    ring.echo(1, Instant::from_micros(at)).unwrap();
                 }
                 at > now
             });
             match ring.poll(Instant::from_micros(now)) {
-                Some(RingEvent::Fire(8)) => arrivals.push(now + 95_000),
+                Some(RingEvent::Fire { sensor: 8, .. }) => arrivals.push(now + 95_000),
                 Some(RingEvent::Reading(reading)) if reading.sensor == 1 => {
                     assert_ne!(reading.kind, ReadingKind::Accepted, "restarted {shift} / 4 ms later");
                     read += 1;

@@ -3,9 +3,12 @@
 mod brute_force;
 mod common;
 mod conditions_naive;
+mod contract;
+mod fired;
 mod hopping;
 mod lateness;
 mod period_corpus;
+mod period_edges;
 mod period_limits;
 mod period_small;
 mod period_ticks;
@@ -16,3 +19,4 @@ mod theory;
 mod wait_limits;
 mod wait_small;
 mod wait_tables;
+mod watch;

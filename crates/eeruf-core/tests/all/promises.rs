@@ -11,6 +11,9 @@ fn ms(ms: u32) -> Micros {
     Micros::from_millis(ms)
 }
 
+/// As the schedules of milliseconds are verified for.
+const CONFIG: RingConfig = RingConfig::new().with_t_delta(Micros::from_millis(1)).with_window(Micros::from_millis(5));
+
 /// A schedule of firing times in milliseconds, verified for this interval between all its sensors.
 fn verified<const K: usize>(period: u32, a: [u32; K], b: [u32; K], min_interval: u32) -> VerifiedSchedule<K> {
     let schedule = Schedule::from_firing(ms(period), [a.map(ms), b.map(ms)]).unwrap();
@@ -31,7 +34,7 @@ fn fire_until<const K: usize>(ring: &mut ScheduledRing<'_, K>, end: u32) -> Vec<
         if now.as_micros() > end {
             return fired;
         }
-        if let Some(RingEvent::Fire(sensor)) = ring.poll(now) {
+        if let Some(RingEvent::Fire { sensor, .. }) = ring.poll(now) {
             fired.push((sensor, now.as_micros()));
         }
     }
@@ -46,9 +49,8 @@ fn least_interval(fired: &[(u8, u32)]) -> u32 {
 fn a_restart_keeps_the_smallest_interval_where_it_is_longer_than_refire_time_and_half_a_period() {
     let schedule = verified(48, [0, 40], [43, 0], 40);
     assert_eq!(schedule.min_refire(), ms(5));
-    let config = RingConfig::new(ms(1), ms(5));
     for restart in 0..200 {
-        let mut ring: ScheduledRing<2> = Ring::new(&schedule, config, Instant::from_micros(0)).unwrap();
+        let mut ring: ScheduledRing<2> = Ring::new(&schedule, CONFIG, Instant::from_micros(0)).unwrap();
         let mut fired = fire_until(&mut ring, 1000 * restart);
         ring.restart(Instant::from_micros(1000 * restart));
         fired.extend(fire_until(&mut ring, 500_000));
@@ -59,10 +61,9 @@ fn a_restart_keeps_the_smallest_interval_where_it_is_longer_than_refire_time_and
 #[test]
 fn a_change_of_schedule_keeps_an_interval_that_both_keep() {
     let schedules = [verified(108, [0, 99], [102, 0], 99), verified(112, [0, 100], [104, 1], 99)];
-    let config = RingConfig::new(ms(1), ms(5));
     for (from, to) in [(0, 1), (1, 0)] {
         for change in 0..40 {
-            let mut ring: ScheduledRing<2> = Ring::new(&schedules[from], config, Instant::from_micros(0)).unwrap();
+            let mut ring: ScheduledRing<2> = Ring::new(&schedules[from], CONFIG, Instant::from_micros(0)).unwrap();
             let mut fired = fire_until(&mut ring, 20_000 * change);
             ring.change_schedule(&schedules[to]).unwrap();
             fired.extend(fire_until(&mut ring, 2_000_000));
@@ -74,8 +75,7 @@ fn a_change_of_schedule_keeps_an_interval_that_both_keep() {
 #[test]
 fn a_schedule_that_was_not_verified_keeps_its_own_intervals_through_a_restart() {
     let schedule = Schedule::from_firing(ms(48), [[ms(0), ms(40)], [ms(43), ms(0)]]).unwrap();
-    let config = RingConfig::new(ms(1), ms(5));
-    let mut ring: ScheduledRing<2> = Ring::new(&schedule, config, Instant::from_micros(0)).unwrap();
+    let mut ring: ScheduledRing<2> = Ring::unverified(&schedule, CONFIG, Instant::from_micros(0)).unwrap();
     let mut fired = fire_until(&mut ring, 45_000);
     ring.restart(Instant::from_micros(45_000));
     fired.extend(fire_until(&mut ring, 500_000));
@@ -120,7 +120,7 @@ fn forty_minutes_without_sensors_do_not_delay_a_change_of_schedule() {
 #[test]
 fn a_ring_smaller_than_its_scheduler_is_refused() {
     let scheduler = ScheduledFiring::new(&TABLE_I_D, Instant::default());
-    let error = Ring::<_, 8, 1>::with_scheduler(scheduler, RingConfig::new(ms(1), ms(40)), Instant::default());
+    let error = Ring::<_, 8, 1>::with_scheduler(scheduler, CONFIG, Instant::default());
     assert_eq!(error.unwrap_err().to_string(), "a scheduler of 12 sensors; expected at most the 8 of the ring");
 }
 
@@ -143,19 +143,71 @@ fn a_ring_takes_no_larger_t_delta_than_its_schedule_was_verified_for_at_the_star
     let good = TABLE_I_D.verify(&Requirements::new(Micros::new(999))).verified().unwrap();
     let better = TABLE_I_D.verify(&Requirements::new(Micros::new(500))).verified().unwrap();
     let ring = |t_delta| -> Result<ScheduledRing<12>, RingError> {
-        Ring::new(&good, RingConfig::new(t_delta, ms(40)), Instant::default())
+        Ring::new(&good, RingConfig::new().with_t_delta(t_delta).with_window(ms(40)), Instant::default())
     };
-    assert_eq!(
-        ring(ms(30)).unwrap_err().to_string(),
-        "a t_delta of 30 ms; expected at most 999 us, which the schedule was verified for"
-    );
+    let refusal = "a t_delta of 30 ms; expected at most 999 us, which the schedule was verified for";
+    assert_eq!(ring(ms(30)).unwrap_err().to_string(), refusal);
     let mut running = ring(Micros::new(999)).unwrap();
+    assert_eq!(running.set_t_delta(ms(30)).unwrap_err().to_string(), refusal);
     let refused = RingError::TDelta { t_delta: Micros::new(999), verified: Micros::new(500) };
     assert_eq!(running.change_schedule(&better), Err(refused));
-    assert_eq!(ring(Micros::new(500)).unwrap().change_schedule(&better), Ok(()));
-    let coarse: Result<ScheduledRing<12>, _> =
-        Ring::new(&TABLE_I_D, RingConfig::new(ms(40), ms(40)), Instant::default());
-    assert_eq!(coarse.unwrap_err().to_string(), "a t_delta of 40 ms; expected less than the window of 40 ms");
+    running.set_t_delta(Micros::new(500)).unwrap();
+    assert_eq!(running.change_schedule(&better), Ok(()));
+    // The schedule to come counts, too.
+    assert_eq!(running.set_t_delta(Micros::new(999)), Err(refused));
+    assert_eq!(running.t_delta(), Micros::new(500));
+}
+
+#[test]
+fn a_ring_listens_no_longer_than_its_schedule_was_verified_for_at_the_start_or_later() {
+    let verified =
+        |window| TABLE_I_D.verify(&Requirements { window, ..Requirements::new(Micros::new(999)) }).verified().unwrap();
+    let (long, short) = (verified(ms(50)), verified(ms(40)));
+    let refusal = "a listening window of 60 ms; expected at most 50 ms, which the schedule was verified for";
+    let ring = Ring::new(&long, RingConfig::new().with_window(ms(60)), Instant::default());
+    assert_eq!(ring.unwrap_err().to_string(), refusal);
+    let mut running = Ring::new(&long, RingConfig::new(), Instant::default()).unwrap();
+    assert_eq!((running.t_delta(), running.window()), (Micros::new(999), ms(50)));
+    assert_eq!(running.set_window(ms(60)).unwrap_err().to_string(), refusal);
+    let refused = RingError::VerifiedWindow { window: ms(50), verified: ms(40) };
+    assert_eq!(running.change_schedule(&short), Err(refused));
+    running.set_window(ms(40)).unwrap();
+    assert_eq!(running.change_schedule(&short), Ok(()));
+    assert_eq!(running.set_window(ms(50)), Err(refused));
+    // One that nobody verified holds it to the time until a sensor fires again.
+    let mut running = Ring::unverified(&TABLE_I_D, CONFIG, Instant::default()).unwrap();
+    assert_eq!(running.set_window(ms(76)), Ok(()));
+    assert_eq!(running.set_window(ms(77)), Err(RingError::Window { window: ms(77), min_refire: ms(76) }));
+}
+
+#[test]
+fn t_delta_and_blanking_are_shorter_than_the_window_at_the_start_and_later() {
+    let start = |config| Ring::unverified(&TABLE_I_D, config, Instant::default()).unwrap_err().to_string();
+    let coarse = "a t_delta of 5 ms; expected less than the window of 5 ms, and at most 65.535 ms";
+    assert_eq!(start(CONFIG.with_t_delta(ms(5))), coarse);
+    let blank = "a blanking time of 5 ms; expected less than the window of 5 ms, and at most 65.535 ms";
+    assert_eq!(start(CONFIG.with_blanking(ms(5))), blank);
+    let mut ring = Ring::unverified(&TABLE_I_D, CONFIG.with_blanking(ms(4)), Instant::default()).unwrap();
+    assert_eq!(ring.set_t_delta(ms(5)).unwrap_err().to_string(), coarse);
+    assert_eq!(ring.set_blanking(ms(5)).unwrap_err().to_string(), blank);
+    assert_eq!(ring.set_window(ms(4)), Err(RingError::Blanking { blanking: ms(4), window: ms(4) }));
+    assert_eq!(ring.set_blanking(ms(3)), Ok(()));
+    assert_eq!((ring.t_delta(), ring.window(), ring.blanking()), (ms(1), ms(5), ms(3)));
+}
+
+#[test]
+fn a_schedule_that_was_not_verified_needs_t_delta_and_window_said() {
+    for config in [RingConfig::new(), RingConfig::new().with_window(ms(5)), RingConfig::new().with_t_delta(ms(1))] {
+        let error = Ring::unverified(&TABLE_I_D, config, Instant::default()).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "a schedule that was not verified; expected both t_delta and window in the configuration"
+        );
+    }
+    // A verified one is held to what it was verified for, by whatever way it comes.
+    let verified = TABLE_I_D.verify(&Requirements::new(Micros::new(999))).verified().unwrap();
+    assert!(Ring::unverified(&verified, CONFIG, Instant::default()).is_err());
+    assert!(Ring::unverified(&verified, RingConfig::new(), Instant::default()).is_ok());
 }
 
 #[test]
@@ -189,16 +241,22 @@ fn a_change_to_a_faster_schedule_is_no_jump_of_the_clock() {
     let us = Micros::new;
     let slow = Schedule::<1>::from_firing(us(262_912), [[us(261_885)], [us(261_885)]]).unwrap();
     let fast = Schedule::<1>::from_firing(us(101_632), [[us(97_265)], [us(101_235)]]).unwrap();
-    let mut ring = Ring::new(&slow, RingConfig::new(us(999), us(16_705)), Instant::from_micros(0)).unwrap();
+    let mut ring = Ring::unverified(
+        &slow,
+        RingConfig::new().with_t_delta(us(999)).with_window(us(16_705)),
+        Instant::from_micros(0),
+    )
+    .unwrap();
     let fired = Instant::from_micros(261_885);
-    assert_eq!(ring.poll(fired), Some(RingEvent::Fire(0)));
-    ring.change_schedule(&fast).unwrap();
+    assert!(matches!(ring.poll(fired), Some(RingEvent::Fire { sensor: 0, .. })));
+    ring.change_to_unverified(&fast).unwrap();
     let (mut now, mut events) = (fired, vec![]);
-    while !events.contains(&RingEvent::Fire(0)) {
+    let has_fired = |events: &[RingEvent]| events.iter().any(|event| matches!(event, RingEvent::Fire { .. }));
+    while !has_fired(&events) {
         while let Some(event) = ring.poll(now) {
             events.push(event);
         }
-        if !events.contains(&RingEvent::Fire(0)) {
+        if !has_fired(&events) {
             now = ring.next_deadline();
         }
     }

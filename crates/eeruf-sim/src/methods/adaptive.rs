@@ -1,8 +1,10 @@
 //! A ring that moves along a ladder of scaled schedules as the rejection rate asks for (end of Sec. 3.1).
 
-use eeruf_core::{Adaptation, Instant, Ladder, MAX_SENSORS, Requirements, RingEvent, ScheduledRing};
+use eeruf_core::{
+    Adaptation, Instant, Ladder, MAX_SENSORS, Requirements, RingEvent, ScheduledRing, VerifiedSchedule, Violation,
+};
 
-use super::ring_runner::{RingRunner, RingStart, StartError, Started};
+use super::ring_runner::{FiringPlan, RingRunner, RingStart, StartError, Started};
 use crate::world::{AnySchedule, Robot};
 
 /// A ring that moves along a ladder of schedules (end of Sec. 3.1).
@@ -14,11 +16,9 @@ struct AdaptiveRing<'s> {
 impl RingRunner for AdaptiveRing<'_> {
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         let event = self.ring.poll_expecting(now, expected_change_us)?;
-        if let RingEvent::PeriodEnded(stats) = event
-            && let Some(schedule) = self.adaptation.observe(&stats)
-        {
-            // Every rung was checked against the window, so this cannot fail.
-            _ = self.ring.change_schedule(schedule);
+        if let RingEvent::PeriodEnded(stats) = event {
+            // Every rung was verified for the ring's own t_delta and window, so this cannot fail.
+            _ = self.adaptation.adapt(&stats, |schedule| self.ring.change_schedule(schedule));
         }
         Some(event)
     }
@@ -28,7 +28,7 @@ impl RingRunner for AdaptiveRing<'_> {
     }
 
     fn echo(&mut self, sensor: u8, at: Instant) {
-        self.ring.echo(sensor, at);
+        RingRunner::echo(&mut self.ring, sensor, at);
     }
 }
 
@@ -36,28 +36,27 @@ impl RingRunner for AdaptiveRing<'_> {
 const RUNGS: [(u32, u32); 4] = [(5, 6), (1, 1), (4, 3), (5, 3)];
 
 /// The rungs of a robot's ladder, from the schedule that it starts from.
-pub(super) fn rungs(robot: &Robot, base: AnySchedule) -> Result<Vec<AnySchedule>, StartError> {
-    let requirements = requirements(robot);
-    // Copies of verified schedules remember that they are, so that changing between them takes no longer than it must.
-    let verified = |schedule: AnySchedule| Some(*schedule.verify(&requirements).verified().ok()?.schedule());
+pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<FiringPlan, StartError> {
+    let requirements = Requirements { window: robot.window, ..Requirements::new(robot.t_delta) };
+    let verified = |schedule: AnySchedule| schedule.verify(&requirements).verified();
     let scaled = RUNGS.iter().filter_map(|&(num, den)| base.scaled(num, den).ok());
-    let rungs: Vec<_> = scaled.filter_map(verified).collect();
-    if rungs.is_empty() {
-        return match Ladder::new(&[base], &requirements).err() {
-            Some(error) => Err(StartError::Ladder(error)),
-            None => Ok(vec![base]),
-        };
+    let mut ladder: Vec<VerifiedSchedule<MAX_SENSORS>> = scaled.filter_map(|rung| verified(rung).ok()).collect();
+    if ladder.is_empty() {
+        ladder.push(verified(base)?);
     }
-    Ok(rungs)
+    Ok(FiringPlan { schedule: base, ladder })
 }
 
 /// A ring on its ladder.
 pub(super) fn adaptive<'s>(start: &RingStart<'s>) -> Started<'s> {
-    let ladder = Ladder::new(start.schedules, &requirements(start.robot)).map_err(StartError::Ladder)?;
-    let ring = ScheduledRing::new(start.schedule(), start.config(), start.now)?;
+    let ladder = Ladder::new(&start.plan.ladder).map_err(StartError::Ladder)?;
+    // A ladder has a rung.
+    let ring = ScheduledRing::new(&start.plan.ladder[0], start.config(), start.now)?;
     Ok(Box::new(AdaptiveRing { ring, adaptation: Adaptation::new(ladder) }))
 }
 
-fn requirements(robot: &Robot) -> Requirements<'static> {
-    Requirements { window: robot.window, ..Requirements::new(robot.t_delta) }
+impl From<Violation> for StartError {
+    fn from(violation: Violation) -> Self {
+        Self::Unverified(violation)
+    }
 }

@@ -10,7 +10,7 @@ use serde::{Serialize, Serializer};
 
 use super::adaptive;
 use super::hopping;
-use super::ring_runner::{self, RingRunner, RingStart, StartError, Started};
+use super::ring_runner::{self, FiringPlan, RingRunner, RingStart, StartError, Started};
 use super::schedules::{self, Made, ScheduleQuery};
 use crate::world::{AnySchedule, Robot};
 
@@ -27,8 +27,8 @@ struct Row {
     /// The ring, ready to run.
     ring: for<'s> fn(&RingStart<'s>) -> Started<'s>,
     belief: Belief,
-    /// All schedules that the ring may change to.
-    ladder: fn(&Robot, AnySchedule) -> Result<Vec<AnySchedule>, StartError>,
+    /// What the ring fires by, from that schedule.
+    plan: fn(&Robot, AnySchedule) -> Result<FiringPlan, StartError>,
     /// How many echoes of a firing a sensor reports.
     echoes: usize,
     /// How soon a sensor may fire again.
@@ -42,7 +42,7 @@ const DEFAULT: Row = Row {
     schedule: schedules::own,
     ring: ring_runner::scheduled::<1>,
     belief: Belief::Repeated,
-    ladder: |_, schedule| Ok(vec![schedule]),
+    plan: |_, schedule| Ok(FiringPlan { schedule, ladder: vec![] }),
     echoes: 1,
     refire: |robot| robot.window,
 };
@@ -150,7 +150,7 @@ methods! {
         schedule: schedules::own,
         ring: adaptive::adaptive,
         belief: Belief::Repeated,
-        ladder: adaptive::rungs,
+        plan: adaptive::plan,
     }
     /// Time hopping: the waits move through a cycle of many phases, and an echo is believed that readings from several
     /// phases support ([`HoppingRing`](eeruf_core::HoppingRing)).
@@ -202,9 +202,9 @@ impl Method {
         (self.row().schedule)(&ScheduleQuery { robot, best })
     }
 
-    /// The schedules that a robot's ring may change to, the one to start with first.
-    pub(crate) fn ladder(self, robot: &Robot, schedule: AnySchedule) -> Result<Vec<AnySchedule>, StartError> {
-        (self.row().ladder)(robot, schedule)
+    /// What a robot's ring fires by, from the schedule that it starts with.
+    pub(crate) fn plan(self, robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
+        (self.row().plan)(robot, schedule)
     }
 
     /// A robot's ring, ready to run.

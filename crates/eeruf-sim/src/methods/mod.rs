@@ -12,5 +12,5 @@ mod schedules;
 pub use best_schedule::{BestSchedule, TICK, best_schedule_for, requirements_of, shortest_schedule_for};
 pub(crate) use method::{Belief, MAX_ECHOES};
 pub use method::{Method, UnknownMethod};
-pub(crate) use ring_runner::{RingRunner, RingStart, StartError};
+pub(crate) use ring_runner::{FiringPlan, RingRunner, RingStart, StartError};
 pub use schedules::table_i_d_for;

@@ -3,7 +3,7 @@
 
 use eeruf_core::{
     HoppingError, HoppingSettings, ImmediateRefiring, Instant, LadderError, MAX_SENSORS, Ring, RingConfig, RingError,
-    RingEvent, ScheduledFiring, Scheduler,
+    RingEvent, ScheduledFiring, Scheduler, VerifiedSchedule, Violation,
 };
 
 use super::dither::DitherFiring;
@@ -31,15 +31,23 @@ impl<S: Scheduler + Send, const K: usize, const E: usize> RingRunner for Ring<S,
     }
 
     fn echo(&mut self, sensor: u8, at: Instant) {
-        Ring::echo(self, sensor, at);
+        // A ring is as large as its robot's.
+        _ = Ring::echo(self, sensor, at);
     }
+}
+
+/// What a robot's ring fires by.
+pub(crate) struct FiringPlan {
+    /// The schedule that the method asked for.
+    pub(crate) schedule: AnySchedule,
+    /// Where it adapts, all that it may change to, the first one first.
+    pub(crate) ladder: Vec<VerifiedSchedule<MAX_SENSORS>>,
 }
 
 /// What a ring is started with.
 pub(crate) struct RingStart<'s> {
     pub(crate) robot: &'s Robot,
-    /// The schedules that the method asked for, the one to start with first: at least one.
-    pub(crate) schedules: &'s [AnySchedule],
+    pub(crate) plan: &'s FiringPlan,
     /// How a hopping ring fires and believes.
     pub(crate) hopping: HoppingSettings,
     pub(crate) random: Random,
@@ -51,7 +59,9 @@ pub(crate) struct RingStart<'s> {
 pub(crate) enum StartError {
     /// It cannot listen as asked.
     Ring(RingError),
-    /// No ladder of schedules keeps `t_delta`.
+    /// No schedule of its ladder keeps `t_delta` and window.
+    Unverified(Violation),
+    /// The schedules make no ladder.
     Ladder(LadderError),
     /// It cannot hop as asked.
     Hopping(HoppingError),
@@ -78,20 +88,20 @@ pub(super) type Started<'s> = Result<Box<dyn RingRunner + 's>, StartError>;
 impl<'s> RingStart<'s> {
     /// The schedule to start with.
     pub(super) fn schedule(&self) -> &'s AnySchedule {
-        // At least one, by construction.
-        &self.schedules[0]
+        &self.plan.schedule
     }
 
     /// How the robot's ring listens and compares.
     pub(super) fn config(&self) -> RingConfig {
         let &Robot { t_delta, window, blanking, consecutive, patience, .. } = self.robot;
-        RingConfig { t_delta, window, blanking, consecutive, patience }
+        let listens = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
+        listens.with_consecutive(consecutive).with_patience(patience)
     }
 
     /// A ring of `E` echoes with this scheduler, no larger than needed: some of its steps take time for each sensor
     /// that it has room for.
     fn run<S: Scheduler + Send + 's, const E: usize>(&self, scheduler: S) -> Started<'s> {
-        let (config, now) = (self.config(), self.now);
+        let (config, now) = (self.config().with_echoes::<E>(), self.now);
         Ok(match self.robot.sensors.len() {
             ..=8 => Box::new(Ring::<S, 8, E>::with_scheduler(scheduler, config, now)?),
             9..=24 => Box::new(Ring::<S, 24, E>::with_scheduler(scheduler, config, now)?),

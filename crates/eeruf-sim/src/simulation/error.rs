@@ -2,13 +2,14 @@
 
 use core::fmt;
 
-use eeruf_core::{HoppingError, LadderError, RingError, ScheduleError};
+use eeruf_core::{HoppingError, LadderError, RingError, ScheduleError, Violation};
 
 use crate::methods::{Method, StartError};
 use crate::results::Readings;
 use crate::tracing::PathsError;
 
 /// Why a simulation cannot be run. Robots are counted from 0 in code and printed from 1.
+/// `{:#}` counts from 0 where `{}` counts from 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SimulationError {
@@ -30,7 +31,14 @@ pub enum SimulationError {
         /// Why.
         error: RingError,
     },
-    /// No ladder of schedules keeps a robot's `t_delta` for [`Method::Adaptive`].
+    /// No schedule keeps a robot's `t_delta` and window for [`Method::Adaptive`].
+    Unverified {
+        /// The robot.
+        robot: usize,
+        /// What is wrong with its own schedule.
+        violation: Violation,
+    },
+    /// A robot's schedules make no ladder for [`Method::Adaptive`].
     Ladder {
         /// The robot.
         robot: usize,
@@ -86,6 +94,7 @@ impl SimulationError {
     pub(super) fn start(robot: usize, method: Method, error: StartError) -> Self {
         match error {
             StartError::Ring(error) => Self::Ring { robot, method, error },
+            StartError::Unverified(violation) => Self::Unverified { robot, violation },
             StartError::Ladder(error) => Self::Ladder { robot, error },
             StartError::Hopping(error) => Self::Hopping { robot, error },
         }
@@ -102,11 +111,18 @@ impl SimulationError {
 
 impl fmt::Display for SimulationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let first = usize::from(!f.alternate());
         match self {
-            Self::Schedule { robot, method, error } => write!(f, "robot {}, method {method}: {error}", robot + 1),
-            Self::Ring { robot, method, error } => write!(f, "robot {}, method {method}: {error}", robot + 1),
-            Self::Ladder { robot, error } => write!(f, "robot {}, method adaptive: {error}", robot + 1),
-            Self::Hopping { robot, error } => write!(f, "robot {}, method eeruf_hopping: {error}", robot + 1),
+            Self::Schedule { robot, method, error } => {
+                write!(f, "robot {}, method {method}: ", robot + first)?;
+                error.fmt(f)
+            }
+            Self::Ring { robot, method, error } => write!(f, "robot {}, method {method}: {error}", robot + first),
+            Self::Ladder { robot, error } => write!(f, "robot {}, method adaptive: {error}", robot + first),
+            Self::Hopping { robot, error } => write!(f, "robot {}, method eeruf_hopping: {error}", robot + first),
+            Self::Unverified { robot, violation } => {
+                write!(f, "robot {}, method adaptive: {violation}", robot + first)
+            }
             Self::Median { median_of } => write!(f, "the median of {median_of} readings; expected 1 to 15"),
             Self::Paths { at_s, error } => write!(f, "at {at_s:.3} s: {error}"),
             Self::Memory { readings } => {
@@ -116,7 +132,7 @@ impl fmt::Display for SimulationError {
                     "{readings} readings take {needed} MB; expected as many as fit into memory, or blocks of them"
                 )
             }
-            Self::Robot { robot, robots } => write!(f, "robot {}; expected 1 to {robots}", robot + 1),
+            Self::Robot { robot, robots } => write!(f, "robot {}; expected one of {robots}", robot + first),
             Self::Number { what, value, expected } => write!(f, "{what} is {value}; expected {expected}"),
             Self::Stopped => write!(f, "stopped"),
         }

@@ -199,7 +199,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             };
             match ring.ring.poll(instant, &change) {
                 None => break,
-                Some(RingEvent::Fire(sensor)) => {
+                Some(RingEvent::Fire { sensor, .. }) => {
                     let emitter = ring.sensors.start + usize::from(sensor);
                     self.fire(rings, index, emitter, now)?;
                 }

@@ -9,8 +9,8 @@ use super::options::Options;
 use super::receiver::{Hearing, NEVER, Receiver};
 use crate::{
     geometry::Moment,
-    methods::{Method, RingRunner, RingStart},
-    world::{AnySchedule, Random, Robot, Ticker, World, offset},
+    methods::{FiringPlan, Method, RingRunner, RingStart},
+    world::{Random, Robot, Ticker, World, offset},
 };
 
 /// What the stream of random numbers is for.
@@ -30,10 +30,10 @@ pub(crate) struct RunningRing<'a> {
     pub(crate) hears: u64,
 }
 
-/// By which method a robot fires, with the schedules that it may change to.
-pub(crate) type Plan = (Method, Vec<AnySchedule>);
+/// By which method a robot fires, and what its ring fires by.
+pub(crate) type Plan = (Method, FiringPlan);
 
-/// By which method each robot fires, with the schedules that it may change to.
+/// By which method each robot fires, and what its ring fires by.
 pub(crate) fn plans(
     world: &World,
     method: Method,
@@ -47,8 +47,8 @@ pub(crate) fn plans(
             method,
             error,
         })?;
-        let all = method.ladder(robot, first).map_err(|error| SimulationError::start(index, method, error))?;
-        Ok((method, all))
+        let plan = method.plan(robot, first).map_err(|error| SimulationError::start(index, method, error))?;
+        Ok((method, plan))
     };
     world.robots().iter().enumerate().map(plan).collect()
 }
@@ -63,12 +63,12 @@ pub(crate) fn start_all<'a>(
 ) -> Result<Vec<RunningRing<'a>>, SimulationError> {
     let speed_of_sound = world.scene().air().speed_of_sound();
     let mut rings = Vec::with_capacity(plans.len());
-    for (index, (robot, (method, schedules))) in world.robots().iter().zip(plans).enumerate() {
+    for (index, (robot, (method, plan))) in world.robots().iter().zip(plans).enumerate() {
         let clock = Ticker::new(robot.clock);
         let start = u64::from(robot.start.as_micros());
         let random = seed.of(DITHER).of(index as u64);
         let ring = method
-            .start(&RingStart { robot, schedules, hopping: options.hopping, random, now: clock.instant(start) })
+            .start(&RingStart { robot, plan, hopping: options.hopping, random, now: clock.instant(start) })
             .map_err(|error| SimulationError::start(index, *method, error))?;
         let true_ns = |time: Micros| clock.true_ns(time.as_micros());
         let hearing = Hearing {

@@ -9,6 +9,7 @@ use crate::scene::{Contact, SceneError};
 use crate::tracing::MAX_ORDER;
 
 /// Why a world cannot be. Robots are counted from 0 in code and printed from 1; walls and poles from 0, as in files.
+/// `{:#}` counts from 0 where `{}` counts from 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WorldError {
@@ -95,27 +96,28 @@ impl From<SceneError> for WorldError {
 
 impl fmt::Display for WorldError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let first = usize::from(!f.alternate());
         match *self {
             Self::Scene(error) => error.fmt(f),
             Self::Robots { robots } => write!(f, "{robots} robots; expected 1 to {MAX_ROBOTS}"),
             Self::Sensors { robot, sensors } => {
-                write!(f, "robot {} has {sensors} sensors; expected 1 to {MAX_SENSORS}", robot + 1)
+                write!(f, "robot {} has {sensors} sensors; expected 1 to {MAX_SENSORS}", robot + first)
             }
             Self::Field { robot, field, value, expected } => {
-                write!(f, "robot {}: {field} is {value}; expected {expected}", robot + 1)
+                write!(f, "robot {}: {field} is {value}; expected {expected}", robot + first)
             }
             Self::Schedule { robot, sensors, expected } => {
-                write!(f, "robot {}: a schedule for {sensors} sensors; expected one for its {expected}", robot + 1)
+                write!(f, "robot {}: a schedule for {sensors} sensors; expected one for its {expected}", robot + first)
             }
             Self::Window { robot, window, min_refire } => write!(
                 f,
                 "robot {}: window_us is {}; expected at most {}, after which a sensor of its schedule fires again",
-                robot + 1,
+                robot + first,
                 window.as_micros(),
                 min_refire.as_micros()
             ),
             Self::Contact { robot, contact } => {
-                let robot = robot + 1;
+                let robot = robot + first;
                 match contact {
                     Contact::Wall(wall) => write!(f, "robot {robot} touches wall {wall}")?,
                     Contact::Pole(pole) => write!(f, "robot {robot} touches pole {pole}")?,
@@ -126,8 +128,8 @@ impl fmt::Display for WorldError {
             Self::Overlap { robots: (one, other), apart_m, least_m } => write!(
                 f,
                 "robots {} and {} are {apart_m:.3} m apart; expected more than {least_m:.3} m, the sum of their radii",
-                one + 1,
-                other + 1
+                one + first,
+                other + first
             ),
             Self::Noise { field, value, expected } => write!(f, "noise: {field} is {value}; expected {expected}"),
             Self::Order { max_order } => write!(f, "max_order is {max_order}; expected at most {MAX_ORDER}"),

@@ -15,7 +15,7 @@ mod world;
 pub(crate) use clock::Ticker;
 pub use clock::{Clock, MAX_DRIFT_PPM};
 pub use error::WorldError;
-pub use file::{ScheduleFile, WorldFileError};
+pub use file::{ScheduleFile, WorldFileError, WorldParts, heading_rad, world_file};
 pub use motion::{MAX_SPEED, Motion};
 pub(crate) use noise::{FARTHEST, Normal};
 pub use noise::{Noise, Random};

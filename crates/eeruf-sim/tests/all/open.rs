@@ -82,7 +82,7 @@ fn what_cannot_be_simulated_is_said_and_nothing_is_lost() {
     let refused = [
         (simulation.step(-1.0, |_| true).unwrap_err(), "seconds is -1; expected 0 to 1e9"),
         (simulation.step(f64::NAN, |_| true).unwrap_err(), "seconds is NaN; expected 0 to 1e9"),
-        (simulation.set_velocity(1, 0.0, 0.0).unwrap_err(), "robot 2; expected 1 to 1"),
+        (simulation.set_velocity(1, 0.0, 0.0).unwrap_err(), "robot 2; expected one of 1"),
         (simulation.set_velocity(0, 51.0, 0.0).unwrap_err(), "v_m_s is 51; expected -50 to 50"),
     ];
     for (error, message) in refused {

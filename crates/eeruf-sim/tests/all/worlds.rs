@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use eeruf_sim::{Method, Options, World, simulate};
+use eeruf_core::Micros;
+use eeruf_sim::*;
 
 const WALL: &str = "[[wall]]\npoints_m = [[3, -2], [3, 2]]\n";
 const ROBOT: &str =
@@ -103,5 +104,45 @@ fn an_unknown_method_is_answered_with_the_list_of_all() {
     assert!(error.starts_with("no method `erruf`; expected simultaneous, sequential, far_groups"), "{error}");
     for method in Method::ALL {
         assert_eq!(method.as_str().parse(), Ok(method));
+    }
+}
+
+#[test]
+fn a_world_written_to_a_file_and_read_again_gives_the_same_bit_for_bit() {
+    let walls = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0], [-2.0, -2.0]];
+    for number in 0..38_u32 {
+        let turned = 0.37 * f64::from(number) - 5.0;
+        let rough = Material { reflection: 0.87, roughness_m: 0.3e-3 };
+        let mut room: Vec<_> = Wall::polyline(&walls).map(|wall| wall.with_material(rough)).collect();
+        room[1].faces = Faces::Open;
+        let pole = Pole { material: Material::SOFT, ..Pole::new(0.9, 1.1, 0.05) };
+        let air = Air { temperature_c: 3.5, humidity_percent: 61.0, pressure_kpa: 99.5 };
+        let transducer = Transducer { gain: GainProfile::SquareRoot, ..Transducer::HC_SR04 };
+        let standing = Robot {
+            schedule: Some(table_i_d_for(6, Micros::from_millis(60), 4).unwrap()),
+            clock: Clock { offset_us: 77, drift_ppm: -31.5 },
+            blanking: Micros::new(1234),
+            patience: 3,
+            ..Robot::ring(Pose::new(Vector::new(-0.8, 0.1), turned), 6, 0.3 + 0.001 * turned, 0.2, transducer)
+        };
+        let poses = vec![Pose::new(Vector::new(0.1, 0.02), turned), Pose::new(Vector::new(-0.1, 0.0), 3.0 - turned)];
+        let moving = Robot {
+            motion: Motion::Constant { velocity: Vector::new(0.05, -0.02), turn_rad_s: 0.1 * turned },
+            odometry: true,
+            ..Robot::with_sensors(Pose::new(Vector::new(0.6, -0.4), -turned), poses, transducer)
+        };
+        let noise = Noise { fading_db_rms: 2.0, jitter_us_rms: 20.0, bursts_per_s: 4.0, burst_db: 12.0 };
+        let scene = Scene::new(room, vec![pole], air).unwrap();
+        let world = World::new(scene, vec![standing, moving], noise)
+            .unwrap()
+            .with_seed(u64::MAX - u64::from(number))
+            .with_max_order(3)
+            .unwrap();
+        let text = world_file(world.scene(), world.robots(), &world.noise(), world.max_order(), world.seed());
+        let again = World::from_text("again.toml".as_ref(), &text).unwrap();
+        assert!(again.robots() == world.robots(), "{text}");
+        assert_eq!((again.scene().walls(), again.scene().poles()), (world.scene().walls(), world.scene().poles()));
+        assert_eq!((again.scene().air(), again.noise()), (world.scene().air(), world.noise()));
+        assert_eq!((again.max_order(), again.seed()), (3, u64::MAX - u64::from(number)));
     }
 }

@@ -7,7 +7,7 @@ use core::hint::black_box;
 use eeruf_board::say::leave;
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{EchoFilter, Instant, Micros, ScheduledFiring, Scheduler, SchedulerStep, Verdict};
-use eeruf_measure::{CONFIG, Range, counts};
+use eeruf_measure::{Range, T_DELTA, counts};
 
 eeruf_board::no_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
@@ -18,7 +18,7 @@ fn fire(scheduler: &mut ScheduledFiring<'static, 12>, now: Instant) -> Option<Sc
 }
 
 #[inline(never)]
-fn push(filter: &mut EchoFilter<12>, sensor: usize, t_echo: Option<Micros>) -> Option<Verdict> {
+fn push(filter: &mut EchoFilter<12>, sensor: u8, t_echo: Option<Micros>) -> Option<Verdict> {
     filter.push(sensor, t_echo).ok()
 }
 
@@ -28,7 +28,7 @@ fn main() -> ! {
     let mut firing = Range::new("scheduler_fire");
     let mut pushing = Range::new("filter_push");
     let mut scheduler = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
-    let Ok(mut filter) = EchoFilter::<12>::new(CONFIG.t_delta, CONFIG.consecutive) else { leave(2) };
+    let Ok(mut filter) = EchoFilter::<12>::new(T_DELTA, 2) else { leave(2) };
     for round in 0..480_u32 {
         let now = scheduler.deadline();
         let (taken, step) = counts(|| fire(&mut scheduler, now));
@@ -36,7 +36,7 @@ fn main() -> ! {
             firing.note(taken);
         }
         let t_echo = black_box((round % 7 != 0).then_some(Micros::new(5_000 + 600 * (round / 50))));
-        pushing.note(counts(|| push(&mut filter, (round % 12) as usize, t_echo)).0);
+        pushing.note(counts(|| push(&mut filter, (round % 12) as u8, t_echo)).0);
     }
     firing.say();
     pushing.say();

@@ -9,9 +9,8 @@
 use core::hint::black_box;
 
 use eeruf_board::say::leave;
-use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingEvent, ScheduledRing};
-use eeruf_hc_sr04::{Edge, EdgeQueue};
+use eeruf_core::tables::PAPER_12;
+use eeruf_core::{Edge, EdgeQueue, Instant, Micros, ReadingKind, Ring, RingEvent, ScheduledRing, SensorError};
 use eeruf_measure::{CONFIG, Range, counts};
 
 eeruf_board::no_panic!();
@@ -25,8 +24,8 @@ fn poll(ring: &mut ScheduledRing<'static, 12>, now: Instant) -> Option<RingEvent
 }
 
 #[inline(never)]
-fn echo(ring: &mut ScheduledRing<'static, 12>, sensor: u8, at: Instant) {
-    ring.echo(sensor, at);
+fn echo(ring: &mut ScheduledRing<'static, 12>, sensor: u8, at: Instant) -> Result<(), SensorError> {
+    ring.echo(sensor, at)
 }
 
 /// What an edge interrupt does: it stamps and stores.
@@ -39,7 +38,7 @@ fn stamp(sensor: u8, at: Instant) {
 fn main() -> ! {
     eeruf_board::start();
     let start = Instant::from_micros(0);
-    let Ok(mut ring) = Ring::new(&TABLE_I_D, CONFIG, start) else { leave(2) };
+    let Ok(mut ring) = Ring::new(&PAPER_12, CONFIG, start) else { leave(2) };
     // Whatever the compiler knows of where it lies would count as part of the calls.
     let ring = black_box(&mut ring);
     let mut idle = Range::new("idle_poll");
@@ -64,7 +63,7 @@ fn main() -> ! {
                     idle.note(taken);
                     break;
                 }
-                Some(RingEvent::Fire(sensor)) => {
+                Some(RingEvent::Fire { sensor, .. }) => {
                     if on_time { &mut fire } else { &mut fire_late }.note(taken);
                     // Every kind of reading: near and far, moving, and none at all.
                     let t_echo = match (sensor, periods % 4) {
@@ -74,7 +73,11 @@ fn main() -> ! {
                     };
                     if let Some(t_echo) = t_echo {
                         let at = now + Micros::new(black_box(t_echo));
-                        heard.note(counts(|| echo(ring, sensor, at)).0);
+                        let (taken, known) = counts(|| echo(ring, sensor, at));
+                        if known.is_err() {
+                            leave(4);
+                        }
+                        heard.note(taken);
                         stamped.note(counts(|| stamp(sensor, at)).0);
                         EDGES.pop();
                     }

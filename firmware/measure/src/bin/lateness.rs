@@ -7,9 +7,9 @@
 use eeruf_board::fake_sensors::{self, Delay};
 use eeruf_board::say;
 use eeruf_board::say::leave;
-use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{Micros, ReadingKind, Ring, RingConfig, RingEvent, Tally};
-use eeruf_hc_sr04::{EdgeQueue, HcSr04Ring, Settings};
+use eeruf_core::tables::PAPER_12;
+use eeruf_core::{EdgeQueue, Micros, ReadingKind, Ring, RingConfig, RingEvent, Tally};
+use eeruf_hc_sr04::{HcSr04Ring, Settings};
 use eeruf_ring::run;
 
 eeruf_board::no_panic!();
@@ -31,13 +31,13 @@ fn main() -> ! {
         // All echoes of a group come together, when the next group fires: the worst case.
         fake_sensors::put(sensor, Some(Micros::new(24_500)));
     }
-    let config = RingConfig::new(Micros::new(999), Micros::from_millis(40));
-    let Ok(ring) = Ring::new(&TABLE_I_D, config, eeruf_board::now()) else { leave(2) };
+    let config = RingConfig::new().with_window(Micros::from_millis(40));
+    let Ok(ring) = Ring::new(&PAPER_12, config, eeruf_board::now()) else { leave(2) };
     let Ok(ring) = HcSr04Ring::new(ring, fake_sensors::pins(), Delay, Settings::default()) else { leave(3) };
     let mut readings = Tally::<u32>::default();
     let (mut most, mut sum, mut shift) = (0, 0, 0);
     run(ring, &EDGES, |_, event| match event {
-        RingEvent::Fire(_) => {}
+        RingEvent::Fire { .. } => {}
         RingEvent::Reading(reading) => readings.count(reading.kind),
         RingEvent::PeriodEnded(stats) => {
             most = stats.max_late.as_micros().max(most);

@@ -6,7 +6,9 @@ use super::Members;
 use crate::schedule::MAX_SENSORS;
 
 /// Why a problem, or a question about it, makes no sense. Sensors are counted from 0 here and printed from 1.
+/// `{:#}` counts from 0 where `{}` counts from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ProblemError {
     /// The number of sensors is 0 or above [`MAX_SENSORS`].
@@ -91,22 +93,23 @@ pub enum ProblemError {
 
 impl fmt::Display for ProblemError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let first = usize::from(!f.alternate());
         match *self {
             Self::Sensors(sensors) => write!(f, "{sensors} sensors; expected 1 to {MAX_SENSORS}"),
             Self::Rows { rows, sensors } => {
                 write!(f, "{rows} rows of conflicts for {sensors} sensors; expected one row for each sensor")
             }
             Self::UnknownSensor { sensor, other } => {
-                write!(f, "sensor {} conflicts with sensor {}, which does not exist", sensor + 1, other + 1)
+                write!(f, "sensor {} conflicts with sensor {}, which does not exist", sensor + first, other + first)
             }
             Self::SelfConflict(sensor) => {
-                write!(f, "sensor {} conflicts with itself; expected conflicts with other sensors only", sensor + 1)
+                write!(f, "sensor {} conflicts with itself; expected conflicts with other sensors only", sensor + first)
             }
             Self::OneSided { sensor, other } => write!(
                 f,
                 "sensor {} conflicts with sensor {}, but not the other way round; expected both or neither",
-                sensor + 1,
-                other + 1
+                sensor + first,
+                other + first
             ),
             Self::NoSeparation => f.write_str("a separation of 0 ticks; expected at least 1 tick"),
             Self::TooLong { period, most } => {
@@ -119,10 +122,10 @@ impl fmt::Display for ProblemError {
             Self::OutsidePeriod { sensor, lag, wait_max, period } => write!(
                 f,
                 "sensor {} has lag {lag} and waits up to {wait_max} ticks; expected a sum below the period of {period}",
-                sensor + 1
+                sensor + first
             ),
             Self::Pair { pair, wait, wait_max } => {
-                write!(f, "pair {} has a wait of {wait} ticks; expected at most {wait_max}", pair + 1)
+                write!(f, "pair {} has a wait of {wait} ticks; expected at most {wait_max}", pair + first)
             }
             Self::Short { what, given, needed } => write!(f, "{what} has length {given}; expected at least {needed}"),
             Self::Memory { words, needed } => write!(f, "{words} words of memory; expected at least {needed}"),

@@ -1,6 +1,6 @@
 //! The tables and keys of a world file, as serde reads them, and what plain ones stand for.
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer, de::Error};
 use toml::Spanned;
 
 use crate::{
@@ -12,7 +12,7 @@ use crate::{
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WorldFile {
-    #[serde(default = "default_seed")]
+    #[serde(default = "default_seed", deserialize_with = "seed")]
     pub(super) seed: u64,
     #[serde(default = "default_order")]
     pub(super) max_order: u32,
@@ -24,6 +24,20 @@ pub(super) struct WorldFile {
     pub(super) poles: Vec<Spanned<PoleFile>>,
     #[serde(default, rename = "robot")]
     pub(super) robots: Vec<Spanned<RobotFile>>,
+}
+
+/// A number, or a text where it is above the 2^63 at which TOML's numbers end.
+fn seed<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "expected a whole number from 0 to 18446744073709551615")]
+    enum Seed {
+        Number(u64),
+        Text(String),
+    }
+    match Seed::deserialize(deserializer)? {
+        Seed::Number(number) => Ok(number),
+        Seed::Text(text) => text.parse().map_err(|_| D::Error::custom(format!("seed is {text:?}; expected a number"))),
+    }
 }
 
 fn default_seed() -> u64 {
@@ -123,8 +137,8 @@ pub(super) struct RobotFile {
 pub(super) struct PoseFile {
     pub(super) x_m: f64,
     pub(super) y_m: f64,
-    #[serde(default)]
-    pub(super) heading_deg: f64,
+    pub(super) heading_deg: Option<f64>,
+    pub(super) heading_rad: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -158,6 +172,7 @@ pub(super) enum GainFile {
 pub(super) struct MotionFile {
     pub(super) velocity_m_s: Option<[f64; 2]>,
     pub(super) turn_deg_s: Option<f64>,
+    pub(super) turn_rad_s: Option<f64>,
     pub(super) waypoints_m: Option<Vec<[f64; 2]>>,
     pub(super) speed_m_s: Option<f64>,
 }
@@ -196,8 +211,14 @@ impl NoiseFile {
 
 impl PoseFile {
     pub(super) fn pose(self) -> Pose {
-        Pose::new(Vector::new(self.x_m, self.y_m), self.heading_deg.to_radians())
+        let heading_rad = radians(self.heading_deg, self.heading_rad);
+        Pose::new(Vector::new(self.x_m, self.y_m), heading_rad)
     }
+}
+
+/// An angle that may be given in degrees, in radians, as programs write it, or not at all.
+pub(super) fn radians(deg: Option<f64>, rad: Option<f64>) -> f64 {
+    rad.or_else(|| deg.map(f64::to_radians)).unwrap_or(0.0)
 }
 
 /// A material by its name, with what is set apart from it.

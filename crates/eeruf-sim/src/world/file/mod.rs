@@ -6,6 +6,7 @@ mod robot;
 mod scene;
 mod schedule_file;
 mod source;
+mod write;
 
 use core::ops::Range;
 use std::path::Path;
@@ -14,7 +15,9 @@ use toml::Spanned;
 
 use super::error::WorldError;
 use super::noise::Noise;
+use super::robot::Robot;
 use super::world::World;
+use crate::scene::Scene;
 use format::WorldFile;
 use robot::robot;
 use scene::scene;
@@ -22,6 +25,7 @@ use source::Source;
 
 pub use schedule_file::ScheduleFile;
 pub use source::WorldFileError;
+pub use write::{heading_rad, world_file};
 
 impl World {
     /// Reads a world from a TOML file. Schedules that it names are looked for beside it.
@@ -55,17 +59,63 @@ impl World {
 
     fn parse(source: &Source) -> Result<Self, WorldFileError> {
         let file: WorldFile = source.toml()?;
-        let scene = scene(source, &file)?;
+        let WorldParts { scene, robots, noise, max_order, seed } = WorldParts::of(source, &file)?;
+        let world = Self::new(scene, robots, noise).and_then(|world| world.with_max_order(max_order));
+        world.map(|world| world.with_seed(seed)).map_err(|error| {
+            let (part, field) = blame(&file, &error);
+            source.error(part, field, error)
+        })
+    }
+}
+
+/// What a world file says, a scene without robots too. The robots and the noise are not yet checked against it.
+#[derive(Debug)]
+pub struct WorldParts {
+    /// Walls, poles and air.
+    pub scene: Scene,
+    /// The robots, if there are any.
+    pub robots: Vec<Robot>,
+    /// How noisy it is.
+    pub noise: Noise,
+    /// The most bounces that sound is followed for.
+    pub max_order: u32,
+    /// What decides all that is random.
+    pub seed: u64,
+}
+
+impl WorldParts {
+    /// Reads them from a text; `file` stands in errors, and schedules are looked for beside it.
+    ///
+    /// # Errors
+    /// As [`World::from_text`], for what is wrong with the text or the scene.
+    ///
+    /// ```
+    /// use eeruf_sim::WorldParts;
+    /// let parts = WorldParts::from_text("pole.toml".as_ref(), "[[pole]]\nat_m = [1, 2]\nradius_m = 0.1")?;
+    /// assert_eq!((parts.scene.poles().len(), parts.robots.len()), (1, 0));
+    /// let again = WorldParts::from_text("again.toml".as_ref(), &parts.to_toml())?;
+    /// assert_eq!(again.to_toml(), parts.to_toml());
+    /// # Ok::<(), eeruf_sim::WorldFileError>(())
+    /// ```
+    pub fn from_text(file: &Path, text: &str) -> Result<Self, WorldFileError> {
+        let source = Source { file: file.to_owned(), text: text.to_owned() };
+        Self::of(&source, &source.toml()?)
+    }
+
+    fn of(source: &Source, file: &WorldFile) -> Result<Self, WorldFileError> {
+        let scene = scene(source, file)?;
         let mut robots = Vec::new();
         for (index, entry) in file.robots.iter().enumerate() {
             robots.push(robot(source, index, entry)?);
         }
         let noise = file.noise.as_ref().map_or(Noise::default(), |noise| noise.get_ref().noise());
-        let world = Self::new(scene, robots, noise).and_then(|world| world.with_max_order(file.max_order));
-        world.map(|world| world.with_seed(file.seed)).map_err(|error| {
-            let (part, field) = blame(&file, &error);
-            source.error(part, field, error)
-        })
+        Ok(Self { scene, robots, noise, max_order: file.max_order, seed: file.seed })
+    }
+
+    /// Writes the file that says all this; see [`world_file`].
+    pub fn to_toml(&self) -> String {
+        let Self { scene, robots, noise, max_order, seed } = self;
+        world_file(scene, robots, noise, *max_order, *seed)
     }
 }
 

@@ -6,7 +6,7 @@ use eeruf_core::{MAX_SENSORS, Micros};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::format::{GainFile, MotionFile, RobotFile, TransducerFile};
+use super::format::{GainFile, MotionFile, RobotFile, TransducerFile, radians};
 use super::schedule_file::ScheduleFile;
 use super::source::{Source, WorldFileError};
 use crate::{
@@ -46,12 +46,18 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
     };
     if let Some(motion) = &file.motion {
         robot.motion = match motion {
-            MotionFile { waypoints_m: Some(points), speed_m_s: Some(speed), velocity_m_s: None, turn_deg_s: None } => {
+            MotionFile {
+                waypoints_m: Some(points),
+                speed_m_s: Some(speed),
+                velocity_m_s: None,
+                turn_deg_s: None,
+                turn_rad_s: None,
+            } => {
                 Motion::Waypoints { points: points.iter().map(|&[x, y]| Point::new(x, y)).collect(), speed_m_s: *speed }
             }
-            MotionFile { waypoints_m: None, speed_m_s: None, velocity_m_s, turn_deg_s } => {
+            MotionFile { waypoints_m: None, speed_m_s: None, velocity_m_s, turn_deg_s, turn_rad_s } => {
                 let [x, y] = velocity_m_s.unwrap_or_default();
-                Motion::Constant { velocity: Vector::new(x, y), turn_rad_s: turn_deg_s.unwrap_or(0.0).to_radians() }
+                Motion::Constant { velocity: Vector::new(x, y), turn_rad_s: radians(*turn_deg_s, *turn_rad_s) }
             }
             _ => {
                 let expected = ": motion needs either waypoints_m and speed_m_s, or velocity_m_s, turn_deg_s or both";

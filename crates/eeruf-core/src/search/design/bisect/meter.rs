@@ -4,8 +4,8 @@ use super::super::firing::Firing;
 use super::super::solver::Solver;
 use crate::search::common::{Control, Outcome, Progress};
 
-/// The nodes between two polls of the [`Control`]: few enough that the clock is looked at every few milliseconds. A node
-/// costs about the cube of the number of sensors.
+/// The nodes between two polls of the [`Control`]: few enough that the clock is looked at every few milliseconds. A
+/// node costs about the cube of the number of sensors.
 const fn nodes_between_polls(sensors: usize) -> u64 {
     const FOR_12: u64 = 256;
     let nodes = FOR_12 * 12 * 12 * 12 / (sensors * sensors * sensors) as u64;

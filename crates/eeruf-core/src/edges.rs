@@ -1,11 +1,12 @@
 //! [`EdgeQueue`]: from the edge interrupt, which only time-stamps, to the main loop, which thinks.
 
-use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
+use core::sync::atomic::{AtomicU8, AtomicU16, Ordering};
 
-use eeruf_core::Instant;
+use crate::time::Instant;
 
 /// An edge on the echo line of one sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Edge {
     /// The sensor, from 0 to 127.
     pub sensor: u8,
@@ -16,13 +17,13 @@ pub struct Edge {
 }
 
 /// A queue of up to `N` edges between one producer, the edge interrupt, and one consumer, the main loop. It needs
-/// neither locks nor an atomic exchange, so that a Cortex-M0 can use it.
+/// neither locks nor an atomic exchange, so that a Cortex-M0 can use it, nor atomic words of more than 16 bits, so that
+/// an AVR can.
 ///
 /// `N` is a power of two from 2 to 128: a mask then keeps every index in range without a check.
 ///
 /// ```
-/// use eeruf_core::Instant;
-/// use eeruf_hc_sr04::{Edge, EdgeQueue};
+/// use eeruf_core::{Edge, EdgeQueue, Instant};
 /// static EDGES: EdgeQueue<32> = EdgeQueue::new();
 /// EDGES.push(Edge { sensor: 3, high: true, at: Instant::from_micros(1_450) }); // in the interrupt
 /// assert_eq!(EDGES.pop().map(|edge| edge.sensor), Some(3)); // in the main loop
@@ -30,7 +31,8 @@ pub struct Edge {
 /// ```
 #[derive(Debug)]
 pub struct EdgeQueue<const N: usize> {
-    at: [AtomicU32; N],
+    /// When: the low and the high half.
+    at: [[AtomicU16; 2]; N],
     /// The sensor, and in the highest bit whether its line rose.
     line: [AtomicU8; N],
     /// How many edges were ever pushed, and how many popped; both wrap.
@@ -46,7 +48,7 @@ impl<const N: usize> EdgeQueue<N> {
     pub const fn new() -> Self {
         const { assert!(N.is_power_of_two() && N >= 2 && N <= 128, "the length of an EdgeQueue is 2, 4, 8, .. 128") };
         Self {
-            at: [const { AtomicU32::new(0) }; N],
+            at: [const { [AtomicU16::new(0), AtomicU16::new(0)] }; N],
             line: [const { AtomicU8::new(0) }; N],
             pushed: AtomicU8::new(0),
             popped: AtomicU8::new(0),
@@ -61,8 +63,10 @@ impl<const N: usize> EdgeQueue<N> {
         let place = usize::from(pushed) % N;
         let full = usize::from(pushed.wrapping_sub(self.popped.load(Ordering::Acquire))) >= N;
         match (self.at.get(place), self.line.get(place)) {
-            (Some(at), Some(line)) if !full => {
-                at.store(edge.at.as_micros(), Ordering::Relaxed);
+            (Some([low, high]), Some(line)) if !full => {
+                let at = edge.at.as_micros();
+                low.store(at as u16, Ordering::Relaxed);
+                high.store((at >> 16) as u16, Ordering::Relaxed);
                 line.store(if edge.high { edge.sensor | HIGH } else { edge.sensor & !HIGH }, Ordering::Relaxed);
                 self.pushed.store(pushed.wrapping_add(1), Ordering::Release);
             }
@@ -79,7 +83,8 @@ impl<const N: usize> EdgeQueue<N> {
         }
         let place = usize::from(popped) % N;
         let line = self.line.get(place)?.load(Ordering::Relaxed);
-        let at = Instant::from_micros(self.at.get(place)?.load(Ordering::Relaxed));
+        let [low, high] = self.at.get(place)?.each_ref().map(|half| u32::from(half.load(Ordering::Relaxed)));
+        let at = Instant::from_micros(high << 16 | low);
         self.popped.store(popped.wrapping_add(1), Ordering::Release);
         Some(Edge { sensor: line & !HIGH, high: line & HIGH != 0, at })
     }
@@ -106,7 +111,7 @@ mod tests {
     use super::*;
 
     fn edge(n: u32) -> Edge {
-        Edge { sensor: (n % 100) as u8, high: n % 3 == 0, at: Instant::from_micros(n) }
+        Edge { sensor: (n % 100) as u8, high: n % 3 == 0, at: Instant::from_micros(n.wrapping_mul(0x0123_4567)) }
     }
 
     #[test]

@@ -1,0 +1,122 @@
+//! What can be changed while a ring runs.
+
+use super::listening::Listening;
+use super::{NOBODY, Ring, RingError};
+use crate::schedule::Schedule;
+use crate::scheduler::{ScheduledFiring, Scheduler};
+use crate::sensor_error::SensorError;
+use crate::time::{Instant, Micros};
+use crate::verified::VerifiedSchedule;
+
+impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s, K, M>, K, E> {
+    /// Changes to another schedule when the present period ends (see [`ScheduledFiring::change_schedule`]). Readings
+    /// before and after the change are not compared. `t_delta` and window stay.
+    ///
+    /// # Errors
+    /// [`RingError::TDelta`] or [`RingError::VerifiedWindow`] if the schedule was verified for less than the ring's
+    /// `t_delta` or window. The ring then goes on as before.
+    pub fn change_schedule(&mut self, schedule: &'s VerifiedSchedule<K, M>) -> Result<(), RingError> {
+        self.change_to_unverified(schedule)
+    }
+
+    /// As [`change_schedule`](Self::change_schedule), to a schedule that nobody has verified.
+    ///
+    /// # Errors
+    /// [`RingError::Window`] if a sensor would fire again while it still listens.
+    pub fn change_to_unverified(&mut self, schedule: &'s Schedule<K, M>) -> Result<(), RingError> {
+        self.listening.is_allowed(schedule.limits())?;
+        self.scheduler.change_schedule(schedule);
+        Ok(())
+    }
+}
+
+impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
+    /// Compares with another `t_delta` from now on. Where it grows, the next reading of each sensor is compared with
+    /// nothing, since what lateness allowed until now was for the smaller one.
+    ///
+    /// # Errors
+    /// [`RingError::TDelta`] for more than the schedule was verified for, [`RingError::CoarseTDelta`] for one that is no
+    /// shorter than the window. The ring then goes on as before.
+    pub fn set_t_delta(&mut self, t_delta: Micros) -> Result<(), RingError> {
+        let grows = t_delta > self.t_delta();
+        self.listening = Listening::checked(t_delta, self.window(), self.blanking(), &self.scheduler)?;
+        if grows {
+            self.uncompare_next();
+        }
+        Ok(())
+    }
+
+    /// Listens for another time from now on, also for firings that are under way.
+    ///
+    /// # Errors
+    /// [`RingError`] for more than the schedule allows or was verified for, or for no more than the blanking time or
+    /// `t_delta`. The ring then goes on as before.
+    pub fn set_window(&mut self, window: Micros) -> Result<(), RingError> {
+        self.listening = Listening::checked(self.t_delta(), window, self.blanking(), &self.scheduler)?;
+        self.emit_when_oldest_ends();
+        Ok(())
+    }
+
+    /// Is deaf after firing for another time from now on.
+    ///
+    /// # Errors
+    /// [`RingError::Blanking`] for one that is no shorter than the window, or longer than 65,535 us. The ring then goes
+    /// on as before.
+    pub fn set_blanking(&mut self, blanking: Micros) -> Result<(), RingError> {
+        self.listening = Listening::checked(self.t_delta(), self.window(), blanking, &self.scheduler)?;
+        Ok(())
+    }
+
+    /// Stops a sensor from firing. The reading of a firing that is under way is still emitted.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn disable(&mut self, sensor: u8) -> Result<(), SensorError> {
+        self.sensor_mut(sensor)?;
+        self.scheduler.set_enabled(sensor, false);
+        Ok(())
+    }
+
+    /// Lets a sensor fire again from its next turn on. Its readings from before are forgotten.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn enable(&mut self, sensor: u8) -> Result<(), SensorError> {
+        let was_enabled = self.scheduler.is_enabled(sensor);
+        let enabled = self.sensor_mut(sensor)?;
+        if !was_enabled {
+            enabled.tracker.forget();
+            self.scheduler.set_enabled(sensor, true);
+        }
+        Ok(())
+    }
+
+    /// Lets no sensor fire until [`resume`](Self::resume). Readings of firings under way are still emitted; periods go on,
+    /// so that a deadline still comes once a period. For a longer sleep do not poll, and [`restart`](Self::restart)
+    /// after it.
+    pub fn pause(&mut self) {
+        self.scheduler.set_paused(true);
+    }
+
+    /// Lets sensors fire again: as of the next period with scheduled firing, with immediate refiring at once. Readings from
+    /// before are forgotten.
+    pub fn resume(&mut self) {
+        self.scheduler.set_paused(false);
+        for sensor in &mut self.sensors {
+            sensor.tracker.forget();
+        }
+    }
+
+    /// Starts again with phase a at `now`, or as soon as the last firings allow. Firings under way are dropped,
+    /// readings from before are forgotten; ages and the count of periods go on.
+    pub fn restart(&mut self, now: Instant) {
+        self.scheduler.restart(now);
+        for sensor in &mut self.sensors {
+            sensor.drop_firing();
+        }
+        self.oldest = NOBODY;
+        self.ready = 0;
+        // Sound from before may still be heard in the first period.
+        self.lateness.begin_anew(&mut self.totals);
+    }
+}

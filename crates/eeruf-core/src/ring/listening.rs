@@ -1,0 +1,80 @@
+//! [`Listening`]: for how long a ring listens, and what it takes for the same echo; checked, also while it runs.
+
+use super::config::RingConfig;
+use super::error::RingError;
+use crate::scheduler::{Limits, Scheduler};
+use crate::time::Micros;
+
+/// The longest `t_delta` and blanking time, which a ring keeps in two bytes each.
+pub(super) const LONGEST: Micros = Micros::new(u16::MAX as u32);
+
+/// Window, `t_delta` and blanking time, none of them more than the scheduler allows.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(C)]
+pub(super) struct Listening {
+    window: Micros,
+    t_delta: u16,
+    blanking: u16,
+}
+
+impl Listening {
+    pub(super) fn new<const E: usize>(config: &RingConfig<E>, scheduler: &impl Scheduler) -> Result<Self, RingError> {
+        let verified_for = scheduler.limits().verified_for;
+        let t_delta = config.t_delta.or(verified_for.map(|verified_for| verified_for.t_delta));
+        let window = config.window.or(verified_for.map(|verified_for| verified_for.window));
+        let (Some(t_delta), Some(window)) = (t_delta, window) else { return Err(RingError::Unverified) };
+        Self::checked(t_delta, window, config.blanking, scheduler)
+    }
+
+    /// With some of it changed.
+    pub(super) fn checked(
+        t_delta: Micros,
+        window: Micros,
+        blanking: Micros,
+        scheduler: &impl Scheduler,
+    ) -> Result<Self, RingError> {
+        allowed(t_delta, window, scheduler.limits())?;
+        if let Some(next) = scheduler.next_limits() {
+            allowed(t_delta, window, next)?;
+        }
+        let narrow = |time: Micros| u16::try_from(time.as_micros()).ok().filter(|_| time < window);
+        let blanking = narrow(blanking).ok_or(RingError::Blanking { blanking, window })?;
+        let t_delta = narrow(t_delta).ok_or(RingError::CoarseTDelta { t_delta, window })?;
+        Ok(Self { window, t_delta, blanking })
+    }
+
+    /// Whether another schedule allows it.
+    pub(super) fn is_allowed(&self, limits: Limits<'_>) -> Result<(), RingError> {
+        allowed(self.t_delta(), self.window, limits)
+    }
+
+    pub(super) const fn window(&self) -> Micros {
+        self.window
+    }
+
+    pub(super) const fn t_delta(&self) -> Micros {
+        Micros::new(self.t_delta as u32)
+    }
+
+    pub(super) const fn blanking(&self) -> Micros {
+        Micros::new(self.blanking as u32)
+    }
+}
+
+fn allowed(t_delta: Micros, window: Micros, limits: Limits<'_>) -> Result<(), RingError> {
+    if let Some(verified_for) = limits.verified_for {
+        if t_delta > verified_for.t_delta {
+            return Err(RingError::TDelta { t_delta, verified: verified_for.t_delta });
+        }
+        if window > verified_for.window {
+            return Err(RingError::VerifiedWindow { window, verified: verified_for.window });
+        }
+    }
+    // No echo time within a window can then be mistaken for an instant before the firing.
+    let longest = limits.longest_window.min(Micros::new(u32::MAX / 2));
+    if window > longest {
+        return Err(RingError::Window { window, min_refire: longest });
+    }
+    Ok(())
+}

@@ -1,0 +1,19 @@
+//! [`VerifiedFor`]: what a schedule was verified for.
+
+use crate::time::Micros;
+
+/// What a schedule was verified for, where it was. Only [`Verification::verified`](crate::Verification::verified) makes
+/// one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct VerifiedFor {
+    /// `T_delta`, for which (13a), (13b) hold.
+    pub t_delta: Micros,
+    /// The least interval between neighbours.
+    pub min_interval: Micros,
+    /// `T_wind`; the shortest refire time where no window was asked for.
+    pub window: Micros,
+    /// By how much crosstalk moves at least from one reading to the next, `2 t_delta + 1 us` or more.
+    pub separation: Micros,
+}

@@ -1,0 +1,182 @@
+//! `sim.Material` and `sim.Noise`: what surfaces return and how noisy it is.
+
+use pyo3::{
+    prelude::*,
+    types::{PyString, PyTuple},
+};
+
+use crate::arguments::{items, number, shown, wrong};
+
+/// The surface of a wall or a pole.
+///
+/// Args:
+///     reflection: the share of the pressure that a flat piece returns, 0 to 1.
+///     roughness_m: the root-mean-square height of the surface, in metres.
+///
+/// Raises:
+///     ArgumentError: a number out of range.
+///
+/// Example:
+///     >>> from eeruf import sim
+///     >>> sim.Scene([[5, 2, -5, 2]], materials=sim.Material(0.6, roughness_m=0.0002)).materials[0].reflection
+///     0.6
+#[pyclass(frozen, eq, get_all, module = "eeruf.sim")]
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct Material {
+    /// The share of the pressure that a flat piece returns.
+    reflection: f64,
+    /// The root-mean-square height of the surface, in metres.
+    roughness_m: f64,
+}
+
+const NAMED: [(&str, eeruf_sim::Material); 4] = [
+    ("smooth", eeruf_sim::Material::SMOOTH),
+    ("painted", eeruf_sim::Material::PAINTED),
+    ("soft", eeruf_sim::Material::SOFT),
+    ("perfect", eeruf_sim::Material::PERFECT),
+];
+
+impl Material {
+    pub(crate) fn of(material: eeruf_sim::Material) -> Self {
+        Self { reflection: material.reflection, roughness_m: material.roughness_m }
+    }
+
+    fn material(self) -> eeruf_sim::Material {
+        eeruf_sim::Material { reflection: self.reflection, roughness_m: self.roughness_m }
+    }
+}
+
+#[pymethods]
+impl Material {
+    #[new]
+    #[pyo3(signature = (reflection, roughness_m=None), text_signature = "(reflection, roughness_m=0.0)")]
+    fn new(reflection: &Bound<'_, PyAny>, roughness_m: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let reflection = number("reflection", reflection, 0.0..=1.0)?;
+        let roughness_m = roughness_m.map_or(Ok(0.0), |roughness| number("roughness_m", roughness, 0.0..=1.0))?;
+        Ok(Self { reflection, roughness_m })
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Material(reflection={:?}, roughness_m={:?})", self.reflection, self.roughness_m)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let Self { reflection, roughness_m } = *slf.get();
+        Ok((slf.get_type().into_any(), (reflection, roughness_m).into_pyobject(slf.py())?))
+    }
+}
+
+fn one(name: &str, value: &Bound<'_, PyAny>) -> PyResult<eeruf_sim::Material> {
+    if let Ok(material) = value.cast::<Material>() {
+        return Ok(material.get().material());
+    }
+    let said = value.extract::<String>().unwrap_or_default();
+    let named = NAMED.iter().find(|(known, _)| *known == said);
+    let expected = "\"smooth\", \"painted\", \"soft\", \"perfect\" or an eeruf.sim.Material";
+    named.map(|(_, material)| *material).ok_or_else(|| wrong(name, shown(value), expected))
+}
+
+/// One material for each of so many surfaces: the same for all, or one each.
+pub(crate) fn materials(
+    name: &str,
+    value: Option<&Bound<'_, PyAny>>,
+    surfaces: usize,
+) -> PyResult<Vec<eeruf_sim::Material>> {
+    let Some(value) = value else { return Ok(vec![eeruf_sim::Material::default(); surfaces]) };
+    if value.is_instance_of::<PyString>() || value.is_instance_of::<Material>() {
+        return Ok(vec![one(name, value)?; surfaces]);
+    }
+    let each = items(name, value, "one material, or one for each")?;
+    if each.len() != surfaces {
+        return Err(wrong(&format!("number of {name}"), each.len(), format_args!("{surfaces}, one for each")));
+    }
+    each.iter().enumerate().map(|(index, value)| one(&format!("{name}[{index}]"), value)).collect()
+}
+
+/// How noisy a scene is.
+///
+/// Args:
+///     fading_db_rms: by how much each arrival's level fades or grows, in dB, 0 to 20.
+///     jitter_us_rms: by how much each arrival is early or late, in microseconds, 0 to 10,000.
+///     bursts_per_s: how many bursts from outside are heard in a second, 0 to 10,000.
+///     burst_db: how far they are above what is just heard, in dB, -200 to 200.
+///
+/// Raises:
+///     ArgumentError: a number out of range.
+///
+/// Example:
+///     >>> from eeruf import sim
+///     >>> sim.Scene([[5, 2, -5, 2]], noise=sim.Noise(bursts_per_s=5.0)).noise.bursts_per_s
+///     5.0
+#[pyclass(frozen, eq, get_all, module = "eeruf.sim")]
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct Noise {
+    /// By how much each arrival's level fades or grows, root mean square, in dB.
+    fading_db_rms: f64,
+    /// By how much each arrival is early or late, root mean square, in microseconds.
+    jitter_us_rms: f64,
+    /// How many bursts from outside are heard in a second.
+    bursts_per_s: f64,
+    /// How far they are above what is just heard, in dB.
+    burst_db: f64,
+}
+
+impl Noise {
+    pub(crate) fn of(noise: eeruf_sim::Noise) -> Self {
+        let eeruf_sim::Noise { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db } = noise;
+        Self { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db }
+    }
+}
+
+#[pymethods]
+impl Noise {
+    #[new]
+    #[pyo3(signature = (*, fading_db_rms=None, jitter_us_rms=None, bursts_per_s=None, burst_db=None))]
+    #[pyo3(text_signature = "(*, fading_db_rms=1.5, jitter_us_rms=15.0, bursts_per_s=0.0, burst_db=20.0)")]
+    fn new(
+        fading_db_rms: Option<&Bound<'_, PyAny>>,
+        jitter_us_rms: Option<&Bound<'_, PyAny>>,
+        bursts_per_s: Option<&Bound<'_, PyAny>>,
+        burst_db: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let default = Self::of(eeruf_sim::Noise::default());
+        let or = |name, value: Option<&Bound<'_, PyAny>>, default, range| {
+            value.map_or(Ok(default), |value| number(name, value, range))
+        };
+        Ok(Self {
+            fading_db_rms: or("fading_db_rms", fading_db_rms, default.fading_db_rms, 0.0..=20.0)?,
+            jitter_us_rms: or("jitter_us_rms", jitter_us_rms, default.jitter_us_rms, 0.0..=1e4)?,
+            bursts_per_s: or("bursts_per_s", bursts_per_s, default.bursts_per_s, 0.0..=1e4)?,
+            burst_db: or("burst_db", burst_db, default.burst_db, -200.0..=200.0)?,
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        let Self { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db } = self;
+        format!(
+            "Noise(fading_db_rms={fading_db_rms:?}, jitter_us_rms={jitter_us_rms:?}, bursts_per_s={bursts_per_s:?}, \
+             burst_db={burst_db:?})"
+        )
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let py = slf.py();
+        let Self { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db } = *slf.get();
+        let rebuild = py.import("eeruf._rebuild")?.getattr("noise")?;
+        Ok((rebuild, (fading_db_rms, jitter_us_rms, bursts_per_s, burst_db).into_pyobject(py)?))
+    }
+}
+
+/// `True` for the default, `False` for none, or a `Noise`.
+pub(crate) fn noise(value: Option<&Bound<'_, PyAny>>) -> PyResult<eeruf_sim::Noise> {
+    let Some(value) = value else { return Ok(eeruf_sim::Noise::default()) };
+    if let Ok(noise) = value.cast::<Noise>() {
+        let Noise { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db } = *noise.get();
+        return Ok(eeruf_sim::Noise { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db });
+    }
+    match value.extract() {
+        Ok(true) => Ok(eeruf_sim::Noise::default()),
+        Ok(false) => Ok(eeruf_sim::Noise::NONE),
+        Err(_) => Err(wrong("noise", shown(value), "True, False or an eeruf.sim.Noise")),
+    }
+}

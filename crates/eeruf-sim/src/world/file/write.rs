@@ -1,0 +1,157 @@
+//! Writes a world file.
+
+use eeruf_core::Micros;
+use toml::{Table, Value};
+
+use super::schedule_file::ScheduleFile;
+use crate::{
+    acoustics::{GainProfile, Transducer},
+    geometry::Pose,
+    scene::{Faces, Material, Scene},
+    world::{motion::Motion, noise::Noise, robot::Robot},
+};
+
+/// Writes the world file of a scene with these robots, noise, order and seed: reading it again gives the same, bit for
+/// bit, with the schedules in it.
+pub fn world_file(scene: &Scene, robots: &[Robot], noise: &Noise, max_order: u32, seed: u64) -> String {
+    let mut file = Table::new();
+    // TOML's whole numbers end at 2^63.
+    let seed = i64::try_from(seed).map_or_else(|_| Value::from(seed.to_string()), Value::from);
+    file.insert("seed".to_owned(), seed);
+    set(&mut file, "max_order", i64::from(max_order));
+    let (mut air, sound) = (Table::new(), scene.air());
+    set(&mut air, "temperature_c", sound.temperature_c);
+    set(&mut air, "humidity_percent", sound.humidity_percent);
+    set(&mut air, "pressure_kpa", sound.pressure_kpa);
+    set(&mut file, "air", air);
+    let mut loud = Table::new();
+    set(&mut loud, "fading_db_rms", noise.fading_db_rms);
+    set(&mut loud, "jitter_us_rms", noise.jitter_us_rms);
+    set(&mut loud, "bursts_per_s", noise.bursts_per_s);
+    set(&mut loud, "burst_db", noise.burst_db);
+    set(&mut file, "noise", loud);
+    let walls = scene.walls().iter().map(|wall| {
+        let mut table = Table::new();
+        set(&mut table, "points_m", vec![vec![wall.from.x, wall.from.y], vec![wall.to.x, wall.to.y]]);
+        let faces = match wall.faces {
+            Faces::Left => None,
+            Faces::Both => Some("both"),
+            Faces::Open => Some("open"),
+        };
+        if let Some(faces) = faces {
+            set(&mut table, "faces", faces);
+        }
+        surface(&mut table, &wall.material);
+        Value::Table(table)
+    });
+    list(&mut file, "wall", walls.collect());
+    let poles = scene.poles().iter().map(|pole| {
+        let mut table = Table::new();
+        set(&mut table, "at_m", vec![pole.centre.x, pole.centre.y]);
+        set(&mut table, "radius_m", pole.radius_m);
+        surface(&mut table, &pole.material);
+        Value::Table(table)
+    });
+    list(&mut file, "pole", poles.collect());
+    list(&mut file, "robot", robots.iter().map(|robot| Value::Table(robot_table(robot))).collect());
+    file.to_string()
+}
+
+fn set(table: &mut Table, key: &str, value: impl Into<Value>) {
+    table.insert(key.to_owned(), value.into());
+}
+
+fn list(table: &mut Table, key: &str, entries: Vec<Value>) {
+    if !entries.is_empty() {
+        set(table, key, entries);
+    }
+}
+
+fn surface(table: &mut Table, material: &Material) {
+    set(table, "reflection", material.reflection);
+    set(table, "roughness_m", material.roughness_m);
+}
+
+fn pose_table(pose: &Pose) -> Table {
+    let mut table = Table::new();
+    set(&mut table, "x_m", pose.translation.x);
+    set(&mut table, "y_m", pose.translation.y);
+    set(&mut table, "heading_rad", heading_rad(pose));
+    table
+}
+
+/// An angle whose pose is this one, bit for bit where there is one near by: sine and cosine are what a pose holds.
+pub fn heading_rad(pose: &Pose) -> f64 {
+    let angle = pose.rotation.angle();
+    // What was given may have been up to a turn more or less.
+    for turned in [0.0, core::f64::consts::TAU, -core::f64::consts::TAU] {
+        let (mut above, mut below) = (angle + turned, angle + turned);
+        for _ in 0..8 {
+            for candidate in [above, below] {
+                if Pose::rotation(candidate).rotation == pose.rotation {
+                    return candidate;
+                }
+            }
+            (above, below) = (above.next_up(), below.next_down());
+        }
+    }
+    angle
+}
+
+fn robot_table(robot: &Robot) -> Table {
+    let mut table = Table::new();
+    set(&mut table, "pose", pose_table(&robot.pose));
+    let sensors: Vec<Value> = robot.sensors.iter().map(|sensor| Value::Table(pose_table(sensor))).collect();
+    set(&mut table, "sensors", sensors);
+    let gain = robot.transducer.gain;
+    let hc_sr04 = Transducer { gain, ..Transducer::HC_SR04 };
+    set(&mut table, "transducer", if robot.transducer == hc_sr04 { "hc_sr04" } else { "polaroid_6500" });
+    let gain = match gain {
+        GainProfile::Constant => "constant",
+        GainProfile::SquareRoot => "square_root",
+        GainProfile::Linear => "linear",
+    };
+    set(&mut table, "gain", gain);
+    let mut motion = Table::new();
+    match &robot.motion {
+        Motion::Still => {}
+        Motion::Constant { velocity, turn_rad_s } => {
+            set(&mut motion, "velocity_m_s", vec![velocity.x, velocity.y]);
+            set(&mut motion, "turn_rad_s", *turn_rad_s);
+        }
+        Motion::Waypoints { points, speed_m_s } => {
+            set(&mut motion, "waypoints_m", points.iter().map(|at| vec![at.x, at.y]).collect::<Vec<_>>());
+            set(&mut motion, "speed_m_s", *speed_m_s);
+        }
+    }
+    if !motion.is_empty() {
+        set(&mut table, "motion", motion);
+    }
+    let mut clock = Table::new();
+    set(&mut clock, "offset_us", i64::from(robot.clock.offset_us));
+    set(&mut clock, "drift_ppm", robot.clock.drift_ppm);
+    set(&mut table, "clock", clock);
+    if let Some(schedule) =
+        robot.schedule.as_ref().and_then(|schedule| Table::try_from(ScheduleFile::from(schedule)).ok())
+    {
+        set(&mut table, "schedule", schedule);
+    }
+    let times: [(&str, Micros); 6] = [
+        ("start_us", robot.start),
+        ("period_us", robot.period),
+        ("t_delta_us", robot.t_delta),
+        ("window_us", robot.window),
+        ("blanking_us", robot.blanking),
+        ("min_refire_us", robot.min_refire),
+    ];
+    for (key, time) in times {
+        set(&mut table, key, i64::from(time.as_micros()));
+    }
+    for (key, number) in
+        [("neighbours", robot.neighbours), ("consecutive", robot.consecutive), ("patience", robot.patience)]
+    {
+        set(&mut table, key, i64::from(number));
+    }
+    set(&mut table, "odometry", robot.odometry);
+    table
+}

@@ -1,0 +1,53 @@
+// @ts-check
+/**
+ * The firing methods that the page can show, in the order of its menus. A row is shown if the engine knows the method;
+ * to add a method, add a row.
+ */
+
+/** @typedef {{id: string, name: string, does: string, byDefault?: boolean}} Method */
+
+/** @type {Method[]} */
+const TABLE = [
+  { id: "sequential", name: "One by one", does: "Each sensor waits until the one before has listened to the end." },
+  { id: "simultaneous", name: "All at once", does: "All sensors fire together, once a period." },
+  {
+    id: "conventional",
+    name: "Constant waits",
+    byDefault: true,
+    does: "Neighbours fire a little apart, every period alike. Every echo is believed.",
+  },
+  {
+    id: "comparison",
+    name: "Constant waits, compared",
+    does: "Every period alike; a reading is believed if it repeats the one before.",
+  },
+  { id: "dither", name: "Random waits", does: "Every wait is drawn anew; a reading is believed if it repeats." },
+  {
+    id: "eeruf",
+    name: "EERUF: alternating waits",
+    byDefault: true,
+    does: "Every wait alternates between two values; a reading is believed if it repeats the one before.",
+  },
+  { id: "eeruf_best", name: "EERUF, shortest period", does: "The same guarantees at the shortest proven period." },
+  {
+    id: "multi_echo",
+    name: "EERUF, several echoes",
+    does: "Sensors that report several echoes of a firing: the earliest that repeats is believed.",
+  },
+  {
+    id: "eeruf_hopping",
+    name: "Time hopping",
+    byDefault: true,
+    does: "The waits run through many phases; a blind sensor gets a period of its own.",
+  },
+];
+
+/** @param {string[]} known The methods that the engine knows. @returns {Method[]} */
+export function methodsOf(known) {
+  return TABLE.filter((method) => known.includes(method.id));
+}
+
+/** @returns {string[]} Every method that a link may name. */
+export function methodIds() {
+  return TABLE.map((method) => method.id);
+}

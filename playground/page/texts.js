@@ -1,0 +1,94 @@
+// @ts-check
+/** The state in the texts that the engine, the program `eeruf` and Python read: a scene and a ring, in TOML. */
+import { MODULES, spacingOf } from "./state.js";
+
+/** @param {number} number @returns {string} As TOML has it, without the dust of binary fractions. */
+function toml(number) {
+  return String(Number(number.toFixed(6)));
+}
+
+/** @param {number[]} numbers */
+function tomlList(numbers) {
+  return `[${numbers.map(toml).join(", ")}]`;
+}
+
+/** The period that rings are watched at until one is designed: the paper's first experiment. */
+const WATCHED = { period_us: 60_000, t_delta_us: 500, window_us: 36_000 };
+
+/** @param {import("./state.js").State} state @returns {string} The room with the robot, as `eeruf study` reads it. */
+export function sceneText(state) {
+  const { robot, own } = state;
+  const lines = [
+    '# Made by the page "Who fools whom?". Lengths in metres, angles in degrees, times in microseconds.',
+    "seed = 1",
+    "max_order = 4",
+    "",
+  ];
+  for (const wall of state.walls) {
+    lines.push("[[wall]]", `points_m = [${wall.map(tomlList).join(", ")}]`, 'faces = "both"', "");
+  }
+  for (const [x, y, radius] of state.poles) {
+    lines.push("[[pole]]", `at_m = ${tomlList([x, y])}`, `radius_m = ${toml(radius)}`, "");
+  }
+  const { period_us, t_delta_us, window_us } = own ?? WATCHED;
+  lines.push(
+    "[[robot]]",
+    `pose = { x_m = ${toml(robot.x)}, y_m = ${toml(robot.y)}, heading_deg = ${toml(robot.heading)} }`,
+    `ring = { sensors = ${state.sensors}, spacing_deg = ${toml(spacingOf(state))}, radius_m = ${toml(state.radius)} }`,
+    `transducer = "${state.module}"`,
+    `period_us = ${period_us}`,
+    `t_delta_us = ${t_delta_us}`,
+    `window_us = ${window_us}`,
+  );
+  if (own) {
+    const times = `t_fire_a_us = ${tomlList(own.a)}, t_fire_b_us = ${tomlList(own.b)}`;
+    lines.push(`schedule = { period_us = ${own.period_us}, ${times} }`);
+  }
+  return `${lines.join("\n")}\n`;
+}
+
+/** @param {import("./state.js").State} state @returns {string} The ring, as `eeruf design` reads it. */
+export function ringText(state) {
+  const module = MODULES.find((one) => one.id === state.module);
+  const lines = [
+    `# ${state.sensors} ${module?.name} sensors.`,
+    `sensors = ${state.sensors}`,
+    `layout = "${state.layout}"`,
+    "neighbours = 4",
+    `max_range_m = ${toml(state.range)}`,
+  ];
+  if (module?.retrigger) lines.push(`retrigger_us = ${module.retrigger}`);
+  lines.push(
+    `crosstalk_range_m = ${toml(state.crosstalk)}`,
+    `jitter_us = ${state.jitter}`,
+    `speed_m_s = ${toml(state.speed)}`,
+    `tick_us = ${state.tick}`,
+  );
+  return `${lines.join("\n")}\n`;
+}
+
+/**
+ * @param {import("./state.js").State} state
+ * @param {{fire_us: number[][], t_delta_us: number, min_interval_us: number, window_us: number,
+ *   found: {value_us: number}}} designed
+ * @returns {string} The schedule in Python.
+ */
+export function pythonText(state, designed) {
+  const [a, b] = designed.fire_us.map((times) => `[${times.join(", ")}]`);
+  return [
+    "import eeruf",
+    "",
+    "schedule = eeruf.Schedule.from_firing(",
+    `    period_us=${designed.found.value_us},`,
+    `    t_fire_a_us=${a},`,
+    `    t_fire_b_us=${b},`,
+    ")",
+    "report = schedule.verify(",
+    `    t_delta_us=${designed.t_delta_us}, min_interval_us=${designed.min_interval_us}, window_us=${designed.window_us},`,
+    `    neighbours=4, layout="${state.layout}",`,
+    ")",
+    "assert report.ok, report.violations",
+    "print(schedule, report)",
+    "",
+  ].join("\n");
+}

@@ -1,0 +1,56 @@
+//! What JavaScript calls. It reserves room for a question, writes the question there, and asks; the answer lies where
+//! [`answer_at`] says. Both are JSON in UTF-8.
+
+use std::cell::RefCell;
+
+use crate::question;
+
+thread_local! {
+    static QUESTION: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+    static ANSWER: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Room for a question of so many bytes; valid until the next call.
+// SAFETY: no other function of that name exists in this module; so for the other two.
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn reserve(bytes: usize) -> *mut u8 {
+    QUESTION.with_borrow_mut(|question| {
+        question.clear();
+        question.resize(bytes, 0);
+        question.as_mut_ptr()
+    })
+}
+
+/// Answers the question; how many bytes the answer has.
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn ask() -> usize {
+    let question = QUESTION.take();
+    let answer = question::answer(&question);
+    let bytes = answer.len();
+    ANSWER.set(answer);
+    bytes
+}
+
+/// Where the answer is; valid until the next call.
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn answer_at() -> *const u8 {
+    ANSWER.with_borrow(|answer| answer.as_ptr())
+}
+
+/// Says how far a long task is: the share done from 0 to 1, or NaN where it is not known, and the nodes of a search.
+pub(crate) fn progress(share: f64, nodes: f64) {
+    #[cfg(target_arch = "wasm32")]
+    {
+        // SAFETY: a function of the page that takes two numbers.
+        #[link(wasm_import_module = "page")]
+        unsafe extern "C" {
+            #[link_name = "progress"]
+            safe fn page_progress(share: f64, nodes: f64);
+        }
+        page_progress(share, nodes);
+    }
+    #[cfg(not(target_arch = "wasm32"))]
+    {
+        _ = (share, nodes);
+    }
+}

@@ -1,0 +1,119 @@
+//! The shortest period for a ring: what `eeruf design` says, and its certificate.
+
+use eeruf_core::search::{Progress, SearchError};
+use eeruf_core::{Micros, Phase};
+use eeruf_design::{FoundJson, RingDesign, RingSpec, Search, WhatIf};
+use serde::Serialize;
+
+use crate::border::progress;
+
+/// How many nodes a search on the page may visit: a minute or so.
+const BUDGET: u64 = 2_000_000;
+/// How many nodes the certificate's proof may have, as by default in `eeruf design`.
+const CERTIFICATE_BUDGET: usize = 1_000_000;
+/// After so many nodes of a proof the page learns how far it is.
+const SAID_EVERY: usize = 256;
+
+/// A designed ring. Times in microseconds.
+#[derive(Serialize)]
+pub(crate) struct Designed {
+    /// What `eeruf design --json` prints; `seconds` is 0, as there is no clock.
+    found: FoundJson,
+    /// What `t_delta` must cover, and the largest that the schedule allows.
+    t_delta_us: u32,
+    max_t_delta_us: Option<u32>,
+    /// The smallest interval of two neighbours that must be kept, and that is kept.
+    min_interval_us: u32,
+    kept_interval_us: Option<u32>,
+    window_us: u32,
+    /// How far the window sees.
+    range_m: f64,
+    /// How soon a sensor fires again at the earliest.
+    min_refire_us: u32,
+    /// How fast the robot may move before good readings differ by more than `t_delta`.
+    speed_m_s: f64,
+    fire_us: [Vec<u32>; 2],
+    /// Whether the verifier, which shares nothing with the search, agrees.
+    verified: bool,
+    what_if: Vec<What>,
+    rust: String,
+    c: String,
+    toml: String,
+}
+
+#[derive(Serialize)]
+struct What {
+    need: String,
+    period_us: Option<u32>,
+    proven: bool,
+}
+
+/// A certificate, and what the checker says of it.
+#[derive(Serialize)]
+pub(crate) struct Checked {
+    says: String,
+    nodes: usize,
+    text: String,
+}
+
+/// The shortest period for a ring file.
+pub(crate) fn design(ring: &str) -> Result<Designed, String> {
+    let spec = RingSpec::from_text(ring).map_err(|error| error.to_string())?;
+    let design = shortest(&spec, true)?;
+    let requirements = spec.problem(design.t_delta).requirements;
+    let schedule = &design.schedule;
+    let report = schedule.verify(&requirements);
+    let max_t_delta = report.max_t_delta();
+    let speed = schedule.max_speed_mm_s(max_t_delta.unwrap_or(Micros::ZERO), spec.c.mm_per_s());
+    let fire =
+        |phase| (0..spec.sensors).filter_map(move |sensor| schedule.t_fire(phase, sensor)).map(Micros::as_micros);
+    let what = |WhatIf { need, period, proven }: &WhatIf| What {
+        need: need.clone(),
+        period_us: period.map(Micros::as_micros),
+        proven: *proven,
+    };
+    Ok(Designed {
+        found: design.json(0.0),
+        t_delta_us: design.t_delta.as_micros(),
+        max_t_delta_us: max_t_delta.map(Micros::as_micros),
+        min_interval_us: requirements.min_interval.as_micros(),
+        kept_interval_us: report.min_interval().map(|interval| interval.value.as_micros()),
+        window_us: requirements.window.as_micros(),
+        range_m: f64::from(spec.c.distance_mm(requirements.window)) / 1000.0,
+        min_refire_us: report.min_refire().as_micros(),
+        speed_m_s: f64::from(speed) / 1000.0,
+        fire_us: [Phase::A, Phase::B].map(|phase| fire(phase).collect()),
+        verified: report.ok(),
+        what_if: design.what_if.iter().map(what).collect(),
+        rust: schedule.to_rust(&requirements).to_string(),
+        c: schedule.to_c(&requirements).to_string(),
+        toml: schedule.to_toml().to_string(),
+    })
+}
+
+/// The certificate of the same answer, checked as `eeruf-check` does.
+pub(crate) fn certificate(ring: &str) -> Result<Checked, String> {
+    let spec = RingSpec::from_text(ring).map_err(|error| error.to_string())?;
+    let design = shortest(&spec, false)?;
+    let mut calls = 0;
+    let keep_going = |nodes: usize| {
+        calls += 1;
+        if calls % SAID_EVERY == 0 {
+            progress(f64::NAN, nodes as f64);
+        }
+        true
+    };
+    let proof = eeruf_design::certificate::prove(&spec, &design, CERTIFICATE_BUDGET, keep_going);
+    let text = proof.map_err(|error| error.to_string())?;
+    let certified = eeruf_check::check(&text).map_err(|error| error.to_string())?;
+    Ok(Checked { says: certified.to_string(), nodes: certified.nodes, text })
+}
+
+fn shortest(spec: &RingSpec, what_if: bool) -> Result<RingDesign, String> {
+    let mut control = |at: &Progress| {
+        progress(f64::NAN, at.nodes as f64);
+        std::ops::ControlFlow::Continue(())
+    };
+    let found = spec.shortest(&Search { budget: BUDGET, what_if }, &mut control);
+    found.map_err(|error: SearchError| error.to_string())?.map_err(|none| none.to_string())
+}

@@ -1,0 +1,16 @@
+//! EERUF's core and simulator for a page in a browser: questions and answers in JSON, rings and scenes in the same TOML
+//! that the program `eeruf` reads.
+//!
+//! | file | content |
+//! |---|---|
+//! | `border` | what JavaScript calls: a text goes in, a text comes out |
+//! | `question` | which questions there are |
+//! | `trace` | every critical path of a ring, with its corners |
+//! | `run` | a scene under a firing method: readings, figures, who fooled whom |
+//! | `design` | the shortest period for a ring, its proof, its certificate, its source texts |
+
+mod border;
+mod design;
+mod question;
+mod run;
+mod trace;

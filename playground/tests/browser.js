@@ -1,0 +1,75 @@
+// @ts-check
+/** What the tests of the page share: a browser, a server for the folder, and what the console said. */
+import { createServer } from "node:http";
+import { readFileSync } from "node:fs";
+import { extname, join, normalize } from "node:path";
+
+import { chromium } from "playwright-core";
+
+export const BUILT = new URL("../../target/page/", import.meta.url).pathname;
+export const SINGLE = `file://${join(BUILT, "who-fools-whom.html")}`;
+
+/** @type {Record<string, string>} */
+const KINDS = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm" };
+
+/** @returns {Promise<{url: string, close: () => void}>} The folder on a server of this machine. */
+export async function serve() {
+  const server = createServer((request, response) => {
+    const path = normalize(new URL(request.url ?? "/", "http://page").pathname);
+    try {
+      const body = readFileSync(join(BUILT, "folder", path === "/" ? "index.html" : path));
+      response.writeHead(200, { "content-type": KINDS[extname(path) || ".html"] ?? "text/plain" }).end(body);
+    } catch {
+      response.writeHead(404).end();
+    }
+  });
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", () => resolve(null)));
+  const address = server.address();
+  const port = typeof address === "object" ? address?.port : 0;
+  return { url: `http://127.0.0.1:${port}/`, close: () => server.close() };
+}
+
+/** @returns {Promise<import("playwright-core").Browser>} */
+export function launch() {
+  // Debian's wrapper and a container's root user both need telling.
+  return chromium.launch({ executablePath: process.env.PAGE_BROWSER, args: ["--no-sandbox", "--disable-gpu"] });
+}
+
+/**
+ * Opens the page and waits until the first simulation has run.
+ * @param {import("playwright-core").Browser} browser
+ * @param {string} url
+ * @param {import("playwright-core").BrowserContextOptions} [options]
+ */
+export async function open(browser, url, options = {}) {
+  const context = await browser.newContext({
+    viewport: { width: 1280, height: 900 },
+    reducedMotion: "reduce",
+    ...options,
+  });
+  const page = await context.newPage();
+  /** @type {string[]} */
+  const troubles = [];
+  page.on("console", (message) => {
+    if (message.type() === "error") troubles.push(message.text());
+  });
+  page.on("pageerror", (error) => troubles.push(String(error)));
+  /** @type {string[]} */
+  const requests = [];
+  page.on("request", (request) => requests.push(request.url()));
+  await page.goto(url);
+  await ready(page);
+  return { context, page, troubles, requests };
+}
+
+/** @param {import("playwright-core").Page} page Waits until every picture shows a run or says why not. */
+export async function ready(page) {
+  await page.waitForFunction(
+    () => {
+      const panels = [...document.querySelectorAll(".panel")];
+      return panels.length > 0 && panels.every((panel) => !panel.classList.contains("stale"));
+    },
+    undefined,
+    { timeout: 30_000 },
+  );
+}

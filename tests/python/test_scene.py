@@ -1,0 +1,123 @@
+"""A scene in code is a scene in a file."""
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import eeruf
+import numpy as np
+import pytest
+from eeruf import sim
+
+SCENES = Path(__file__).parents[2] / "scenes"
+WALLS = [[-2, -2, 2, -2], [2, -2, 2, 2], [2, 2, -2, 2], [-2, 2, -2, -2]]
+SCHEDULE = eeruf.Schedule.from_firing(60_000, [0, 30_000], [5_000, 40_000])
+EVERYTHING = sim.Scene(
+    WALLS,
+    open=[1],
+    two_sided=[3],
+    poles=[[1.0, 1.0, 0.004], [-1.0, 1.0, 0.1]],
+    materials=["smooth", "soft", sim.Material(0.7, 0.0002), "perfect"],
+    pole_materials="painted",
+    temperature_c=3.0,
+    humidity_percent=70.0,
+    pressure_kpa=95.0,
+    noise=sim.Noise(fading_db_rms=2.0, bursts_per_s=3.0),
+    seed=2**64 - 1,
+    max_order=4,
+    robots=[
+        sim.Robot((0, 0, 0.3), 6, 0.4, 0.1, "hc_sr04", gain="linear", blanking_us=300, odometry=True,
+                  velocity_m_s=(0.05, 0.01), turn_rad_s=0.2, clock_offset_us=5, clock_drift_ppm=-20.0),
+        sim.Robot((-1.2, -1.2, 0.9), [(0.05, 0.05, 0.7), (0.05, -0.05, -0.7)], schedule=SCHEDULE, start_us=777,
+                  waypoints_m=[(-1.3, -1.0), (-1.2, -1.2)], speed_m_s=0.1, neighbours=2, min_refire_us=20_000),
+    ],
+)  # fmt: skip
+
+
+def same(one: sim.Scene, other: sim.Scene) -> bool:
+    mine, theirs = sim.simulate(one, periods=20).columns(), sim.simulate(other, periods=20).columns()
+    return all(mine[name].tobytes() == theirs[name].tobytes() for name in mine)
+
+
+def test_a_scene_written_and_read_again_or_pickled_gives_the_same_readings(tmp_path: Path) -> None:
+    again = sim.Scene.from_toml(EVERYTHING.to_toml())
+    assert again.to_toml() == EVERYTHING.to_toml()
+    (tmp_path / "scene.toml").write_text(EVERYTHING.to_toml())
+    for scene in (again, sim.Scene.read_toml(tmp_path / "scene.toml"), pickle.loads(pickle.dumps(EVERYTHING))):
+        assert same(scene, EVERYTHING)
+
+
+@pytest.mark.parametrize("file", sorted(SCENES.glob("*.toml")), ids=lambda file: str(file.stem))
+def test_a_scene_of_a_file_is_the_scene_made_of_its_fields(file: Path) -> None:
+    scene = sim.Scene.read_toml(file)
+    fields: dict[str, Any] = {
+        name: getattr(scene, name)
+        for name in "walls open two_sided poles materials pole_materials temperature_c humidity_percent pressure_kpa robots "
+        "noise seed max_order".split()
+    }
+    made = sim.Scene(**fields)
+    assert made.to_toml() == scene.to_toml()
+    names = {"Robot": sim.Robot, "Schedule": eeruf.Schedule}
+    assert all(eval(repr(robot), names) == robot for robot in scene.robots)
+    if len(scene.walls) < 20:
+        assert same(made, scene)
+
+
+def test_all_that_a_scene_was_made_of_can_be_read() -> None:
+    assert (EVERYTHING.open, EVERYTHING.two_sided, EVERYTHING.seed, EVERYTHING.max_order) == ([1], [3], 2**64 - 1, 4)
+    assert EVERYTHING.materials[2] == sim.Material(0.7, 0.0002)
+    assert EVERYTHING.pole_materials == [sim.Material(0.9)] * 2
+    assert EVERYTHING.noise == sim.Noise(fading_db_rms=2.0, bursts_per_s=3.0)
+    moving, driving = EVERYTHING.robots
+    assert (moving.velocity_m_s, moving.turn_rad_s, moving.waypoints_m) == ((0.05, 0.01), 0.2, None)
+    assert (driving.waypoints_m, driving.speed_m_s) == ([(-1.3, -1.0), (-1.2, -1.2)], 0.1)
+    assert (driving.sensors, driving.spacing_rad, driving.sensor_poses[1]) == (2, None, (0.05, -0.05, -0.7))
+    assert (moving.gain, moving.blanking_us, moving.odometry, driving.start_us) == ("linear", 300, True, 777)
+
+
+def test_replace_changes_what_it_names_and_nothing_else() -> None:
+    colder = EVERYTHING.replace(temperature_c=-10.0)
+    assert colder.temperature_c == -10.0
+    assert colder.replace(temperature_c=3.0).to_toml() == EVERYTHING.to_toml()
+    assert EVERYTHING.replace(walls=WALLS[:1]).materials == [sim.Material(0.95)]
+    robot = EVERYTHING.robots[0]
+    assert robot.replace(patience=3).patience == 3
+    assert robot.replace(patience=3).replace(patience=0) == robot
+    assert robot.replace(waypoints_m=[(1, 1)], speed_m_s=0.2).velocity_m_s is None
+    assert robot.replace(sensors=[(0, 0, 0)]).sensors == 1
+    assert robot.replace(sensors=8).radius_m == 0.1
+
+
+def test_what_does_not_fit_together_is_refused() -> None:
+    cases: list[tuple[Any, str]] = [
+        (lambda: sim.Scene(WALLS, materials=["soft"]), "number of materials = 1; expected 4"),
+        (lambda: sim.Scene(WALLS, materials="velvet"), "materials = 'velvet'; expected \"smooth\""),  # type: ignore[arg-type]
+        (lambda: sim.Scene(WALLS, noise=3), "noise = 3; expected True, False or"),  # type: ignore[arg-type]
+        (lambda: sim.Robot((0, 0, 0), 8), "spacing_rad = None; expected a number"),
+        (lambda: sim.Robot((0, 0, 0), [(0, 0, 0)], radius_m=1), "radius_m = 1; expected None"),
+        (lambda: sim.Robot((0, 0, 0), []), "number of sensors = 0"),
+        (lambda: sim.Robot((0, 0, 0), 8, 0.2, 0.3, speed_m_s=1), "speed_m_s = 1; expected waypoints_m and speed_m_s"),
+        (lambda: sim.Robot((0, 0, 0), 8, 0.2, 0.3, waypoints_m=[(1, 1)], turn_rad_s=1), "waypoints_m = "),
+        (lambda: sim.Material(1.2), "reflection = 1.2; expected a number from 0 to 1"),
+        (lambda: sim.Noise(bursts_per_s=-1), "bursts_per_s = -1"),
+        (lambda: EVERYTHING.replace(seed=-1), "seed = -1"),
+    ]
+    for call, message in cases:
+        with pytest.raises(eeruf.ArgumentError, match=message):
+            call()
+
+
+def test_a_notebook_shows_walls_poles_robots_and_where_sensors_look() -> None:
+    svg = EVERYTHING._repr_svg_()
+    assert svg.count("<line") == 4 + 6 + 2
+    assert svg.count("<circle") == 2 + 2
+    assert "nan" not in svg.lower() and "inf" not in svg.lower()
+    assert sim.Scene(np.empty((0, 4)))._repr_svg_().endswith("</svg>")
+
+
+def test_errors_count_robots_and_sensors_from_0_as_code_does() -> None:
+    robot = sim.Robot((0, 0, 0), 8, 0.2, 0.3)
+    with pytest.raises(eeruf.SceneError, match=r"robots 0 and 1 are 0\.100 m apart"):
+        sim.Scene(WALLS, robots=[robot, robot.replace(pose=(0.1, 0, 0))])
+    with pytest.raises(eeruf.ScheduleError, match="sensor 1 fires 50 ms into phase a"):
+        eeruf.Schedule.from_firing(40_000, [0, 50_000], [0, 2_000])

@@ -203,7 +203,8 @@ impl Kinematics for Pilot<'_> {
         }
         self.run.wrong += u32::from(readings.is_wrong(last, DEFAULT_TOLERANCE_US));
         let range_m = readings.t_echo_us[last] * metres_per_us;
-        if readings.kind[last] != ReadingKind::Accepted || range_m > self.piloting.range_m {
+        // A tentative echo is one too: to take it for free space would be to drive into what has just come near.
+        if readings.kind[last] == ReadingKind::Clear || range_m > self.piloting.range_m {
             self.grid.clear(at, heading, near_m, self.piloting.range_m);
             return;
         }

@@ -1,0 +1,68 @@
+//! What each part of time hopping is worth in Set I, as the table of `docs/hopping.md`: every row leaves one part out.
+//!
+//! `cargo run --release -p eeruf-sim --example hopping_ablation -- [SEEDS [FIRST]]`
+
+use eeruf_core::{HoppingSettings, Micros, TrackerSettings};
+use eeruf_sim::Method;
+use eeruf_sim::experiments::Spread;
+use eeruf_sim::experiments::set_one::{Latency, SetOneOptions, set_one};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1).map(|argument| argument.parse::<u64>());
+    let seeds = arguments.next().transpose()?.unwrap_or(200);
+    let first = arguments.next().transpose()?.unwrap_or(20_000);
+    println!("| | wrong, % of all | confirmed | good lost % | blind | age 99 %, ms | accepted/s | nearer | farther |");
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for (name, hopping) in rows() {
+        let methods = vec![Method::EerufHopping];
+        let table = set_one(&SetOneOptions { seeds, first, methods, hopping, ..SetOneOptions::default() }, &|_| true)?;
+        for (_, figures) in &table.methods {
+            println!(
+                "| {name} | {} | {} | {} | {:.2} | {} | {} | {} | {} |",
+                percents(figures.wrong_of_all),
+                percents(figures.confirmed_wrong_of_all),
+                percents(figures.good_lost),
+                figures.starved,
+                median(figures.age_p99_ms),
+                median(figures.readings_per_s),
+                latency(figures.nearer),
+                latency(figures.farther),
+            );
+        }
+    }
+    Ok(())
+}
+
+fn rows() -> [(&'static str, HoppingSettings); 9] {
+    const ALL: HoppingSettings = HoppingSettings::BALANCED;
+    let tracker = |tracker| HoppingSettings { tracker, ..ALL };
+    [
+        ("balanced", ALL),
+        ("lags stay", HoppingSettings { shift_after: 0, ..ALL }),
+        ("no solo periods", HoppingSettings { solo_rate: 0, ..ALL }),
+        ("neither: code and tracker alone", HoppingSettings { shift_after: 0, solo_rate: 0, ..ALL }),
+        ("drawn lags keep nothing", HoppingSettings { shift_interval: Micros::ZERO, ..ALL }),
+        ("confirmed alone", tracker(TrackerSettings { tentative_votes: 0, ..TrackerSettings::BALANCED })),
+        ("3 votes confirm", tracker(TrackerSettings { votes: 3, score_limit: 4, ..TrackerSettings::BALANCED })),
+        (
+            "accepted within t_delta alone",
+            tracker(TrackerSettings { near: Micros::new(150), ..TrackerSettings::BALANCED }),
+        ),
+        ("a contradiction takes 1", tracker(TrackerSettings { contradiction: 1, ..TrackerSettings::BALANCED })),
+    ]
+}
+
+fn percents(spread: Option<Spread>) -> String {
+    spread.map_or_else(String::new, |spread| format!("{:.1} / {:.1}", 100.0 * spread.median, 100.0 * spread.p90))
+}
+
+fn median(spread: Option<Spread>) -> String {
+    spread.map_or_else(String::new, |spread| format!("{:.0}", spread.median))
+}
+
+fn latency(latency: Option<Latency>) -> String {
+    let periods = |periods: Option<u32>| periods.map_or_else(|| "never".to_owned(), |periods| periods.to_string());
+    latency.map_or_else(String::new, |Latency { median, p90, never, .. }| {
+        format!("{} / {}, {:.1} %", periods(median), periods(p90), 100.0 * never)
+    })
+}

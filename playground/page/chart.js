@@ -37,7 +37,8 @@ export function drawChart(context, { width, height, until, farthest }, { reading
   context.textAlign = "center";
   context.textBaseline = "top";
   const tick = gridStep(until, 5);
-  for (let s = 0; s <= until + 1e-9; s += tick) context.fillText(`${Number(s.toFixed(2))} s`, Math.min(x(s), width - 20), height - BOTTOM + 5);
+  for (let s = 0; s <= until + 1e-9; s += tick)
+    context.fillText(`${Number(s.toFixed(2))} s`, Math.min(x(s), width - 20), height - BOTTOM + 5);
   // Alone it reads this.
   context.strokeStyle = colours.muted;
   context.globalAlpha = 0.6;
@@ -45,7 +46,13 @@ export function drawChart(context, { width, height, until, farthest }, { reading
   readings.forEach((reading, k) => {
     if (reading.reference_us === null) return;
     const next = readings[k + 1]?.fired ?? until;
-    line(context, x(reading.fired), y(metres(reading.reference_us)), x(Math.min(until, next)), y(metres(reading.reference_us)));
+    line(
+      context,
+      x(reading.fired),
+      y(metres(reading.reference_us)),
+      x(Math.min(until, next)),
+      y(metres(reading.reference_us)),
+    );
   });
   context.globalAlpha = 1;
   for (const reading of readings) {

@@ -46,7 +46,9 @@ export class Comparison {
     this.clock = byId("clock", HTMLInputElement);
     this.play = byId("play", HTMLButtonElement);
     this.handles = new HandleLayer({
-      state: page.state, view: () => this.panels[0].view(this.box), change: page.change,
+      state: page.state,
+      view: () => this.panels[0].view(this.box),
+      change: page.change,
     });
     this.play.onclick = () => this.setPlaying(!this.playing);
     this.clock.oninput = () => {
@@ -112,12 +114,13 @@ export class Comparison {
 
   /** @param {State} state */
   #syncPanels(state) {
-    const { methods, page } = this;
+    const { page } = this;
     while (this.panels.length > state.shown.length) this.panels.pop()?.root.remove();
     state.shown.forEach((method, k) => {
       if (!this.panels[k]) {
-        const panel = new Panel(methods, method, {
-          onMethod: (id) => page.change({ ...page.state(), shown: page.state().shown.map((one, n) => (n === k ? id : one)) }, true),
+        const panel = new Panel(page.methods, method, {
+          onMethod: (id) =>
+            page.change({ ...page.state(), shown: page.state().shown.map((one, n) => (n === k ? id : one)) }, true),
           onRemove: () => page.change({ ...page.state(), shown: page.state().shown.filter((_, n) => n !== k) }, true),
           onSensor: (sensor) => page.change({ ...page.state(), sensor }, true),
         });
@@ -130,10 +133,6 @@ export class Comparison {
     });
     // Only where it is not yet: an element that is put anywhere loses the focus.
     if (this.handles.root.parentElement !== this.panels[0].stage) this.panels[0].stage.append(this.handles.root);
-  }
-
-  get methods() {
-    return this.page.methods;
   }
 
   /** @param {string} scene */
@@ -162,7 +161,8 @@ export class Comparison {
   }
 
   #sayFrames() {
-    byId("frame", HTMLElement).textContent = `Tracing and drawing a change took ${this.frameMs().toFixed(1)} ms (median of the last ${this.frames.length}).`;
+    byId("frame", HTMLElement).textContent =
+      `Tracing and drawing a change took ${this.frameMs().toFixed(1)} ms (median of the last ${this.frames.length}).`;
   }
 
   /** @param {string} text @param {boolean} [bad] */
@@ -227,7 +227,8 @@ export class Comparison {
       panel.draw({ state, box: this.box, traced: this.traced, at: this.at, until, colours });
     }
     this.handles.place();
-    if (document.activeElement !== this.clock || this.playing) this.clock.value = String(Math.round((1000 * this.at) / until));
+    if (document.activeElement !== this.clock || this.playing)
+      this.clock.value = String(Math.round((1000 * this.at) / until));
     this.clock.setAttribute("aria-valuetext", `${(1000 * this.at).toFixed(0)} ms of ${(1000 * until).toFixed(0)} ms`);
   }
 }

@@ -56,13 +56,23 @@ export class Designer {
     this.inputs = {};
     for (const { name, label, unit, step } of FIELDS) {
       const [least, most] = LIMITS[/** @type {keyof typeof LIMITS} */ (name)];
-      const input = /** @type {HTMLInputElement} */ (element("input", {
-        type: "number", id: `ring-${name}`, min: String(least), max: String(most), step, required: "", inputmode: "decimal",
-      }));
+      const input = /** @type {HTMLInputElement} */ (
+        element("input", {
+          type: "number",
+          id: `ring-${name}`,
+          min: String(least),
+          max: String(most),
+          step,
+          required: "",
+          inputmode: "decimal",
+        })
+      );
       input.onchange = () => this.#take(name, input);
       this.inputs[name] = input;
       byId("ring-fields", HTMLElement).append(
-        element("label", { for: `ring-${name}` }, label), element("span", { class: "field" }, input, unit));
+        element("label", { for: `ring-${name}` }, label),
+        element("span", { class: "field" }, input, unit),
+      );
     }
     this.module.onchange = () => {
       const { range, jitter, crosstalk } = MODULES.find((module) => module.id === this.module.value) ?? MODULES[0];
@@ -76,10 +86,17 @@ export class Designer {
     const [least, most, unit] = LIMITS[/** @type {keyof typeof LIMITS} */ (name)];
     const value = Number(input.value);
     const wholes = name === "sensors" || name === "jitter" || name === "tick";
-    if (input.value === "" || !(value >= Number(least) && value <= Number(most)) || (wholes && !Number.isInteger(value))) {
+    if (
+      input.value === "" ||
+      !(value >= Number(least) && value <= Number(most)) ||
+      (wholes && !Number.isInteger(value))
+    ) {
       const label = FIELDS.find((field) => field.name === name)?.label;
       const given = input.value === "" ? "nothing" : input.value;
-      this.#say(`${label}: ${given} is given; expected a ${wholes ? "whole " : ""}number from ${least} to ${most} ${unit}`, true);
+      this.#say(
+        `${label}: ${given} is given; expected a ${wholes ? "whole " : ""}number from ${least} to ${most} ${unit}`,
+        true,
+      );
       input.setAttribute("aria-invalid", "true");
       return false;
     }
@@ -89,7 +106,9 @@ export class Designer {
       const { sensor } = this.page.state();
       const ring = name === "sensors" || name === "tick" || name === "range" || name === "crosstalk";
       this.page.change({
-        [name]: value, ...(name === "sensors" ? { sensor: Math.min(sensor, value - 1) } : {}), ...(ring ? { own: null } : {}),
+        [name]: value,
+        ...(name === "sensors" ? { sensor: Math.min(sensor, value - 1) } : {}),
+        ...(ring ? { own: null } : {}),
       });
     }
     return true;
@@ -120,7 +139,9 @@ export class Designer {
   }
 
   async design() {
-    const valid = FIELDS.every(({ name }) => this.#take(name, /** @type {Record<string, HTMLInputElement>} */ (this.inputs)[name]));
+    const valid = FIELDS.every(({ name }) =>
+      this.#take(name, /** @type {Record<string, HTMLInputElement>} */ (this.inputs)[name]),
+    );
     if (!valid) return;
     const { desk } = this.page;
     desk.cancel();
@@ -131,7 +152,9 @@ export class Designer {
     this.answer = null;
     this.#say("Searching …");
     try {
-      const answer = await desk.ask({ ask: "design", ring }, (_, nodes) => this.#say(`Searching: ${nodes.toLocaleString("en")} cases so far …`));
+      const answer = await desk.ask({ ask: "design", ring }, (_, nodes) =>
+        this.#say(`Searching: ${nodes.toLocaleString("en")} cases so far …`),
+      );
       this.answer = { ...answer, ring };
       this.#show();
       this.page.designed(this.answer);
@@ -158,7 +181,9 @@ export class Designer {
       const checked = await this.page.desk.ask({ ask: "certificate", ring });
       line.textContent = `Checked here by a program that shares nothing with the search: ${checked.says} (${checked.nodes.toLocaleString("en")} cases). `;
       const file = new Blob([checked.text], { type: "text/plain" });
-      const link = /** @type {HTMLAnchorElement} */ (element("a", { href: URL.createObjectURL(file), download: "ring.certificate" }));
+      const link = /** @type {HTMLAnchorElement} */ (
+        element("a", { href: URL.createObjectURL(file), download: "ring.certificate" })
+      );
       link.textContent = "Download the certificate";
       line.append(link);
     } catch (error) {
@@ -174,13 +199,20 @@ export class Designer {
       ? "proven: no schedule with these guarantees is shorter"
       : `not proven: it may be as short as ${inMs(found.bound_us)}`;
     byId("reason", HTMLElement).textContent = `Not shorter because of ${found.reason}.`;
-    byId("facts", HTMLElement).replaceChildren(...this.#facts().map(([name, value]) =>
-      element("div", {}, element("dt", {}, name), element("dd", {}, value))));
-    byId("faster", HTMLElement).replaceChildren(...what_if.map((/** @type {any} */ one) => {
-      const shorter = one.period_us !== null && one.period_us < found.value_us;
-      const verdict = shorter ? `${inMs(one.period_us)}${one.proven ? "" : " or less"}` : one.proven ? "no shorter" : "not found out";
-      return element("li", {}, `${one.need}: `, element("strong", {}, verdict));
-    }));
+    byId("facts", HTMLElement).replaceChildren(
+      ...this.#facts().map(([name, value]) => element("div", {}, element("dt", {}, name), element("dd", {}, value))),
+    );
+    byId("faster", HTMLElement).replaceChildren(
+      ...what_if.map((/** @type {any} */ one) => {
+        const shorter = one.period_us !== null && one.period_us < found.value_us;
+        const verdict = shorter
+          ? `${inMs(one.period_us)}${one.proven ? "" : " or less"}`
+          : one.proven
+            ? "no shorter"
+            : "not found out";
+        return element("li", {}, `${one.need}: `, element("strong", {}, verdict));
+      }),
+    );
     this.cursor = { at: 0, sensor: 0 };
     this.time.max = String(2 * found.value_us);
     this.time.step = String(Math.max(1, Math.round(found.value_us / 500)));
@@ -190,14 +222,33 @@ export class Designer {
 
   /** @returns {[string, string][]} */
   #facts() {
-    const { found, fire_us, window_us, range_m, speed_m_s, max_t_delta_us, t_delta_us, kept_interval_us, min_interval_us } = this.answer;
+    const {
+      found,
+      fire_us,
+      window_us,
+      range_m,
+      speed_m_s,
+      max_t_delta_us,
+      t_delta_us,
+      kept_interval_us,
+      min_interval_us,
+    } = this.answer;
     const rate = 1e6 / found.value_us;
     const sensors = fire_us[0].length;
     return [
-      ["readings a second, each sensor", `${rate.toFixed(1)} (one by one: ${(1e6 / (window_us * sensors)).toFixed(1)})`],
+      [
+        "readings a second, each sensor",
+        `${rate.toFixed(1)} (one by one: ${(1e6 / (window_us * sensors)).toFixed(1)})`,
+      ],
       ["a sensor listens for", `${inMs(window_us)}, ${range_m.toFixed(2)} m`],
-      ["good readings may differ by", `${max_t_delta_us === null ? "any amount" : inMs(max_t_delta_us)} (needed: ${inMs(t_delta_us)})`],
-      ["neighbours fire apart by", kept_interval_us === null ? "any time" : `${inMs(kept_interval_us)} (needed: ${inMs(min_interval_us)})`],
+      [
+        "good readings may differ by",
+        `${max_t_delta_us === null ? "any amount" : inMs(max_t_delta_us)} (needed: ${inMs(t_delta_us)})`,
+      ],
+      [
+        "neighbours fire apart by",
+        kept_interval_us === null ? "any time" : `${inMs(kept_interval_us)} (needed: ${inMs(min_interval_us)})`,
+      ],
       ["the robot may move at", max_t_delta_us === null ? "any speed" : `${speed_m_s.toFixed(2)} m/s`],
     ];
   }

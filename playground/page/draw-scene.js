@@ -121,7 +121,8 @@ export function drawWays(context, view, traced, receiver, colours) {
  * @param {Colours} colours
  */
 export function drawRobot(context, view, traced, { sensor: looked, blind }, colours) {
-  const { sensors, middle } = { sensors: traced.sensors, middle: middleOf(traced) };
+  const { sensors } = traced;
+  const middle = middleOf(traced);
   const at = view.px(middle.x, middle.y);
   context.fillStyle = colours.robot;
   context.beginPath();
@@ -145,7 +146,7 @@ export function drawRobot(context, view, traced, { sensor: looked, blind }, colo
     drawSensor(context, spot, colour, { looked: k === looked, isBlind }, colours);
     // Numbers stand inside the ring, where no sound goes.
     const inside = { x: spot.x - 15 * Math.cos(heading), y: spot.y + 15 * Math.sin(heading) };
-    if (few && traced.body_radius_m * view.scale > 34 || k === looked) {
+    if ((few && traced.body_radius_m * view.scale > 34) || k === looked) {
       context.fillStyle = colours.ink;
       context.font = `${k === looked ? "bold " : ""}12px system-ui, sans-serif`;
       context.textAlign = "center";

@@ -100,7 +100,7 @@ export function drawBeliefs(context, view, { traced, readings, at }, colours) {
     const mark = markOf(reading);
     if (!sensor || !mark || reading.t_echo_us === null) continue;
     const [x, y, heading] = sensor;
-    const range = (0.5e-6 * reading.t_echo_us) * traced.sound_m_s;
+    const range = 0.5e-6 * reading.t_echo_us * traced.sound_m_s;
     const from = view.px(x, y);
     const to = view.px(x + range * Math.cos(heading), y + range * Math.sin(heading));
     context.strokeStyle = mark === "wrong" ? colours.wrong : mark === "right" ? colours.right : colours.rejected;

@@ -33,7 +33,10 @@ export function handlesOf(state) {
       if (seen.has(key)) return;
       seen.add(key);
       handles.push({
-        kind: "corner", name: `Wall ${w + 1}, corner ${k + 1}`, x, y,
+        kind: "corner",
+        name: `Wall ${w + 1}, corner ${k + 1}`,
+        x,
+        y,
         move: (copy, toX, toY) => moveCorners(copy, [x, y], [toX, toY]),
         remove: (copy) => removeCorner(copy, [x, y]),
       });
@@ -41,7 +44,10 @@ export function handlesOf(state) {
     const [[x0, y0], [x1, y1]] = wall;
     const middle = [(x0 + x1) / 2, (y0 + y1) / 2];
     handles.push({
-      kind: "wall", name: `Wall ${w + 1}`, x: middle[0], y: middle[1],
+      kind: "wall",
+      name: `Wall ${w + 1}`,
+      x: middle[0],
+      y: middle[1],
       move: (copy, toX, toY) => {
         copy.walls[w] = wall.map(([x, y]) => [toMillimetre(x + toX - middle[0]), toMillimetre(y + toY - middle[1])]);
       },
@@ -50,7 +56,10 @@ export function handlesOf(state) {
   });
   state.poles.forEach(([x, y, radius], p) => {
     handles.push({
-      kind: "pole", name: `Pole ${p + 1}`, x, y,
+      kind: "pole",
+      name: `Pole ${p + 1}`,
+      x,
+      y,
       move: (copy, toX, toY) => {
         copy.poles[p] = [toMillimetre(toX), toMillimetre(toY), radius];
       },
@@ -59,7 +68,10 @@ export function handlesOf(state) {
   });
   const { robot, radius } = state;
   handles.push({
-    kind: "robot", name: "Robot", x: robot.x, y: robot.y,
+    kind: "robot",
+    name: "Robot",
+    x: robot.x,
+    y: robot.y,
     move: (copy, toX, toY) => {
       copy.robot.x = toMillimetre(toX);
       copy.robot.y = toMillimetre(toY);
@@ -68,7 +80,10 @@ export function handlesOf(state) {
   const turn = (robot.heading * Math.PI) / 180;
   const arm = 0.55 * radius;
   handles.push({
-    kind: "heading", name: "Heading of the robot", x: robot.x + arm * Math.cos(turn), y: robot.y + arm * Math.sin(turn),
+    kind: "heading",
+    name: "Heading of the robot",
+    x: robot.x + arm * Math.cos(turn),
+    y: robot.y + arm * Math.sin(turn),
     move: (copy, toX, toY) => {
       const heading = (Math.atan2(toY - robot.y, toX - robot.x) * 180) / Math.PI;
       copy.robot.heading = Math.round(10 * heading) / 10;
@@ -124,7 +139,10 @@ export class HandleLayer {
       const at = view.px(handle.x, handle.y);
       button.className = `handle ${handle.kind}`;
       button.style.translate = `${at.x}px ${at.y}px`;
-      const heading = handle.kind === "heading" ? `${state.robot.heading} degrees` : `x ${handle.x.toFixed(2)} m, y ${handle.y.toFixed(2)} m`;
+      const heading =
+        handle.kind === "heading"
+          ? `${state.robot.heading} degrees`
+          : `x ${handle.x.toFixed(2)} m, y ${handle.y.toFixed(2)} m`;
       button.setAttribute("aria-label", `${handle.name}, ${heading}`);
     });
   }
@@ -157,14 +175,18 @@ export class HandleLayer {
     // On the window, since the button goes away if what it moves does.
     const listening = new AbortController();
     const on = (/** @type {"pointermove" | "pointerup" | "pointercancel"} */ name, /** @type {boolean} */ final) =>
-      addEventListener(name, (at) => {
-        if (at.pointerId !== event.pointerId) return;
-        if (final) {
-          listening.abort();
-          this.dragging = false;
-        }
-        moved(at, final);
-      }, { signal: listening.signal });
+      addEventListener(
+        name,
+        (at) => {
+          if (at.pointerId !== event.pointerId) return;
+          if (final) {
+            listening.abort();
+            this.dragging = false;
+          }
+          moved(at, final);
+        },
+        { signal: listening.signal },
+      );
     on("pointermove", false);
     on("pointerup", true);
     on("pointercancel", true);
@@ -180,8 +202,10 @@ export class HandleLayer {
     const way = ways[event.key];
     if (way) {
       event.preventDefault();
-      const change = handle.kind === "heading" ? turn(way, event.shiftKey) : (/** @type {State} */ copy) =>
-        handle.move(copy, handle.x + step * way[0], handle.y + step * way[1]);
+      const change =
+        handle.kind === "heading"
+          ? turn(way, event.shiftKey)
+          : (/** @type {State} */ copy) => handle.move(copy, handle.x + step * way[0], handle.y + step * way[1]);
       this.#change(this.page.state(), change, true);
     } else if (handle.remove && (event.key === "Delete" || event.key === "Backspace")) {
       event.preventDefault();

@@ -7,7 +7,7 @@ import { ROOMS, firstState } from "./state.js";
 /** @typedef {{title: string, text: string, state: Partial<State>}} Step */
 
 const WALL = { walls: ROOMS.wall.walls, poles: ROOMS.wall.poles };
-const ALCOVE = { walls: ROOMS.alcove.walls, poles: ROOMS.alcove.poles, robot: ROOMS.alcove.robot, sensor: 6 };
+const ALCOVE = { walls: ROOMS.alcove.walls, poles: ROOMS.alcove.poles, robot: ROOMS.alcove.robot, sensor: 0 };
 
 /** @type {Step[]} */
 const STEPS = [
@@ -23,28 +23,35 @@ const STEPS = [
   },
   {
     title: "Fired together, they fool each other",
-    text: "Now all eight fire within 60 ms, neighbours a little apart. A sensor cannot tell whose sound it hears: where a neighbour's sound arrives first, it takes it for its own echo. Red triangles are false distances that the robot believes.",
+    text: "Now all eight fire within 60 ms, neighbours a little apart. A sensor cannot tell whose sound it hears: where a neighbour's sound arrives first, it takes it for its own echo. Look at sensor 1, and at the way by which it is fooled. Red triangles are false distances that the robot believes.",
     state: { ...ALCOVE, sensors: 8, shown: ["conventional"], slow: 25 },
   },
   {
     title: "Crosstalk repeats as well as the truth",
-    text: "Could one compare each reading with the one before? Every period is like the last, so the foreign sound comes at the same moment again. In the second picture only readings that repeat are believed, and it hardly helps.",
+    text: "Could one compare each reading with the one before? Every period is like the last, so the foreign sound comes at the same moment again. In the second picture only readings that repeat are believed, and it hardly helps: sensor 1 reads the same false distance again and again.",
     state: { ...ALCOVE, sensors: 8, shown: ["conventional", "comparison"], slow: 25 },
   },
   {
     title: "Let the waits alternate, and reject what moves",
-    text: "Now every sensor waits a little before it fires, and the wait alternates between two values that differ from sensor to sensor. A sensor's own echo does not care. Foreign sound jumps to and fro, does not repeat, and is rejected: look at the crosses in the second picture and below it.",
+    text: "Now every sensor waits a little before it fires, and the wait alternates between two values that differ from sensor to sensor. A sensor's own echo does not care. Foreign sound jumps to and fro, does not repeat, and is rejected: see the crosses that sensor 1 gets below the second picture.",
     state: { ...ALCOVE, sensors: 8, shown: ["comparison", "eeruf"], slow: 25 },
   },
   {
     title: "The price, and how hopping pays it",
-    text: "Some good readings are rejected too, and a sensor that always hears foreign sound first stays blind; it is crossed out. Time hopping carries the two waits on to many, and gives a blind sensor a period in which it alone fires: nobody stays blind.",
-    state: { ...ALCOVE, sensors: 8, sensor: 7, shown: ["eeruf", "eeruf_hopping"], slow: 40 },
+    text: "Some good readings are rejected too, and a sensor that always hears foreign sound first, as sensors 1 and 8 do here, stays blind. Time hopping carries the two waits on to many, and gives a blind sensor a period in which it alone fires: now sensor 1 finds the wall.",
+    state: { ...ALCOVE, sensors: 8, sensor: 0, shown: ["eeruf", "eeruf_hopping"], slow: 20 },
   },
   {
     title: "Your turn",
     text: "Drag walls, poles and the robot, press a sensor to see who fools it, and look for a place where EERUF is fooled. Then design your own ring below.",
-    state: { walls: ROOMS.room.walls, poles: ROOMS.room.poles, robot: ROOMS.room.robot, sensors: 8, sensor: 3, slow: 25 },
+    state: {
+      walls: ROOMS.room.walls,
+      poles: ROOMS.room.poles,
+      robot: ROOMS.room.robot,
+      sensors: 8,
+      sensor: 3,
+      slow: 25,
+    },
   },
 ];
 

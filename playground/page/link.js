@@ -18,7 +18,11 @@ export function toHash(state) {
  * @returns {import("./state.js").State | null} The state, or null if there is none in it. Throws `StateError`.
  */
 export function fromHash(hash) {
-  const text = hash.replace(/^#/, "").split("&").find((part) => part.startsWith("s="))?.slice(2);
+  const text = hash
+    .replace(/^#/, "")
+    .split("&")
+    .find((part) => part.startsWith("s="))
+    ?.slice(2);
   if (!text) return null;
   if (text.length > MAX_LENGTH) {
     throw new StateError(`The link holds ${text.length} letters; expected at most ${MAX_LENGTH}`);

@@ -59,7 +59,9 @@ async function start() {
   const comparison = new Comparison({ quick, slow, methods, state: () => state, change });
   const takeHome = new TakeHome({ state: () => state, link: () => location.href, runs: () => comparison.runs() });
   const designer = new Designer({
-    desk: searches, state: () => state, designed: (answer) => takeHome.show(answer),
+    desk: searches,
+    state: () => state,
+    designed: (answer) => takeHome.show(answer),
     change: (patch) => change({ ...state, .../** @type {Partial<State>} */ (patch) }, true),
   });
   new Lesson({ state: () => state, change, play: () => comparison.setPlaying(true) });
@@ -114,13 +116,27 @@ function tools(state, change, methods) {
   rooms.append(...Object.entries(ROOMS).map(([id, room]) => element("option", { value: id }, room.name)));
   rooms.onchange = () => {
     const room = ROOMS[rooms.value];
-    if (room) change({ ...state(), ...structuredClone({ walls: room.walls, poles: room.poles, robot: room.robot }) }, true);
+    if (room)
+      change({ ...state(), ...structuredClone({ walls: room.walls, poles: room.poles, robot: room.robot }) }, true);
     rooms.value = "";
   };
   byId("add-wall", HTMLButtonElement).onclick = () => {
     const { robot, walls } = state();
     const [x, y] = freeSpot(state());
-    change({ ...state(), walls: [...walls, [[x - 0.25, y], [x + 0.25, y]]], robot }, true);
+    change(
+      {
+        ...state(),
+        walls: [
+          ...walls,
+          [
+            [x - 0.25, y],
+            [x + 0.25, y],
+          ],
+        ],
+        robot,
+      },
+      true,
+    );
   };
   byId("add-pole", HTMLButtonElement).onclick = () => {
     const [x, y] = freeSpot(state());
@@ -128,7 +144,9 @@ function tools(state, change, methods) {
   };
   byId("add-method", HTMLButtonElement).onclick = () => {
     const { shown } = state();
-    const next = methods.find((method) => method.byDefault && !shown.includes(method.id)) ?? methods.find((method) => !shown.includes(method.id));
+    const next =
+      methods.find((method) => method.byDefault && !shown.includes(method.id)) ??
+      methods.find((method) => !shown.includes(method.id));
     if (next) change({ ...state(), shown: [...shown, next.id] }, true);
   };
   byId("slow", HTMLInputElement).oninput = (event) => {

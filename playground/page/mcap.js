@@ -18,9 +18,16 @@ const READING = {
   type: "object",
   title: "eeruf.Reading",
   properties: {
-    method: { type: "string" }, sensor: { type: "integer" }, period: { type: "integer" }, phase: { type: "integer" },
-    t_echo_us: { type: ["number", "null"] }, reference_us: { type: ["number", "null"] }, verdict: { type: "string" },
-    wrong: { type: "boolean" }, cause: { type: "string" }, emitter: { type: ["integer", "null"] },
+    method: { type: "string" },
+    sensor: { type: "integer" },
+    period: { type: "integer" },
+    phase: { type: "integer" },
+    t_echo_us: { type: ["number", "null"] },
+    reference_us: { type: ["number", "null"] },
+    verdict: { type: "string" },
+    wrong: { type: "boolean" },
+    cause: { type: "string" },
+    emitter: { type: ["integer", "null"] },
   },
 };
 
@@ -63,16 +70,39 @@ export function mcapOf(runs) {
   const file = new Fields().raw(MAGIC).record(HEADER, new Fields().text("").text("eeruf"));
   file.record(SCHEMA, new Fields().whole(1, 2).text(READING.title).text("jsonschema").text(JSON.stringify(READING)));
   runs.forEach(({ method }, channel) => {
-    file.record(CHANNEL, new Fields().whole(channel, 2).whole(1, 2).text(`/readings/${method}`).text("json").whole(0, 4));
+    file.record(
+      CHANNEL,
+      new Fields().whole(channel, 2).whole(1, 2).text(`/readings/${method}`).text("json").whole(0, 4),
+    );
   });
-  const messages = runs.flatMap(({ method, readings }, channel) => readings.map((reading) => ({ method, channel, reading })));
+  const messages = runs.flatMap(({ method, readings }, channel) =>
+    readings.map((reading) => ({ method, channel, reading })),
+  );
   messages.sort((a, b) => a.reading.heard - b.reading.heard);
   messages.forEach(({ method, channel, reading }, sequence) => {
     const { sensor, period, phase, t_echo_us, reference_us, verdict, wrong, cause, way } = reading;
-    const body = { method, sensor, period, phase, t_echo_us, reference_us, verdict, wrong, cause, emitter: way?.emitter ?? null };
+    const body = {
+      method,
+      sensor,
+      period,
+      phase,
+      t_echo_us,
+      reference_us,
+      verdict,
+      wrong,
+      cause,
+      emitter: way?.emitter ?? null,
+    };
     const time = BigInt(Math.round(1e9 * reading.heard));
-    file.record(MESSAGE, new Fields().whole(channel, 2).whole(sequence, 4).whole(time, 8).whole(time, 8)
-      .raw(new TextEncoder().encode(JSON.stringify(body))));
+    file.record(
+      MESSAGE,
+      new Fields()
+        .whole(channel, 2)
+        .whole(sequence, 4)
+        .whole(time, 8)
+        .whole(time, 8)
+        .raw(new TextEncoder().encode(JSON.stringify(body))),
+    );
   });
   file.record(DATA_END, new Fields().whole(0, 4)).record(FOOTER, new Fields().whole(0, 8).whole(0, 8).whole(0, 4));
   return Uint8Array.from(file.raw(MAGIC).bytes);

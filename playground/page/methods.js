@@ -11,25 +11,33 @@ const TABLE = [
   { id: "sequential", name: "One by one", does: "Each sensor waits until the one before has listened to the end." },
   { id: "simultaneous", name: "All at once", does: "All sensors fire together, once a period." },
   {
-    id: "conventional", name: "Constant waits", byDefault: true,
+    id: "conventional",
+    name: "Constant waits",
+    byDefault: true,
     does: "Neighbours fire a little apart, every period alike. Every echo is believed.",
   },
   {
-    id: "comparison", name: "Constant waits, compared",
+    id: "comparison",
+    name: "Constant waits, compared",
     does: "Every period alike; a reading is believed if it repeats the one before.",
   },
   { id: "dither", name: "Random waits", does: "Every wait is drawn anew; a reading is believed if it repeats." },
   {
-    id: "eeruf", name: "EERUF: alternating waits", byDefault: true,
+    id: "eeruf",
+    name: "EERUF: alternating waits",
+    byDefault: true,
     does: "Every wait alternates between two values; a reading is believed if it repeats the one before.",
   },
   { id: "eeruf_best", name: "EERUF, shortest period", does: "The same guarantees at the shortest proven period." },
   {
-    id: "multi_echo", name: "EERUF, several echoes",
+    id: "multi_echo",
+    name: "EERUF, several echoes",
     does: "Sensors that report several echoes of a firing: the earliest that repeats is believed.",
   },
   {
-    id: "eeruf_hopping", name: "Time hopping", byDefault: true,
+    id: "eeruf_hopping",
+    name: "Time hopping",
+    byDefault: true,
     does: "The waits run through many phases; a blind sensor gets a period of its own.",
   },
 ];

@@ -48,8 +48,18 @@ export class Panel {
     this.title = element("h3");
     this.foolers = element("p", { class: "foolers" });
     this.chart = /** @type {HTMLCanvasElement} */ (element("canvas", { class: "chart", role: "img" }));
-    this.root = element("article", { class: "panel" }, element("header", {}, this.select, this.remove), this.does, this.stage,
-      this.verdict, this.figures, this.title, this.chart, this.foolers);
+    this.root = element(
+      "article",
+      { class: "panel" },
+      element("header", {}, this.select, this.remove),
+      this.does,
+      this.stage,
+      this.verdict,
+      this.figures,
+      this.title,
+      this.chart,
+      this.foolers,
+    );
     this.canvas.onclick = (event) => {
       const sensor = this.#sensorAt(event);
       if (sensor !== null) when.onSensor(sensor);
@@ -87,8 +97,9 @@ export class Panel {
       ["blind", `${blind.length} of ${tally.length}`],
       ["believed a second", summary.readings_per_s.toFixed(1)],
     ];
-    this.figures.replaceChildren(...figures.map(([name, value]) =>
-      element("div", {}, element("dt", {}, name), element("dd", {}, value))));
+    this.figures.replaceChildren(
+      ...figures.map(([name, value]) => element("div", {}, element("dt", {}, name), element("dd", {}, value))),
+    );
   }
 
   /** @param {string} sentence What keeps the method from running. */
@@ -127,7 +138,10 @@ export class Panel {
     this.title.textContent = `What sensor ${sensor + 1} reads`;
     const name = this.methods.find((one) => one.id === this.method)?.name;
     this.canvas.setAttribute("aria-label", `The room under the method ${name}. ${this.verdict.textContent}`);
-    this.chart.setAttribute("aria-label", `Range over time as sensor ${sensor + 1} reads it under ${name}. ${this.foolers.textContent}`);
+    this.chart.setAttribute(
+      "aria-label",
+      `Range over time as sensor ${sensor + 1} reads it under ${name}. ${this.foolers.textContent}`,
+    );
   }
 
   /** Where things are on the page, in its pixels. @param {import("./view.js").Box} box */

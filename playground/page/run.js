@@ -45,10 +45,18 @@ export function readingsOf(run, window_us) {
     const t_echo_us = readings.t_echo_us[k];
     const fired = readings.fired_s[k];
     return {
-      sensor, period: readings.period[k], phase: readings.phase[k], fired, t_echo_us,
-      reference_us: readings.reference_us[k], verdict: readings.verdict[k], wrong: readings.wrong[k],
-      cause: readings.cause[k], way: path === null || ways[path].corners.length < 2 ? null : ways[path],
-      emitted: readings.emitted_s[k], heard: fired + 1e-6 * (t_echo_us ?? window_us),
+      sensor,
+      period: readings.period[k],
+      phase: readings.phase[k],
+      fired,
+      t_echo_us,
+      reference_us: readings.reference_us[k],
+      verdict: readings.verdict[k],
+      wrong: readings.wrong[k],
+      cause: readings.cause[k],
+      way: path === null || ways[path].corners.length < 2 ? null : ways[path],
+      emitted: readings.emitted_s[k],
+      heard: fired + 1e-6 * (t_echo_us ?? window_us),
     };
   });
   return all.sort((/** @type {Reading} */ a, /** @type {Reading} */ b) => a.fired - b.fired);
@@ -64,7 +72,10 @@ export function percent(share) {
 /** @param {any} run @returns {string} One sentence: what it believes, what it costs. */
 export function sentenceOf(run) {
   const { summary, blind } = run;
-  const wrong = summary.wrong_of_accepted === null ? "nothing is believed" : `${percent(summary.wrong_of_accepted)} of what it believes is wrong`;
+  const wrong =
+    summary.wrong_of_accepted === null
+      ? "nothing is believed"
+      : `${percent(summary.wrong_of_accepted)} of what it believes is wrong`;
   return `${wrong}; ${blind.length === 0 ? "no sensor is" : isAre(blind)} blind`;
 }
 
@@ -84,9 +95,13 @@ const FOREIGN = ["crosstalk", "stale", "external"];
  * @returns {{emitter: number, order: number, wrong: number, accepted: number, corners: [number, number][]}[]}
  */
 export function foolersOf(run, sensor) {
-  return run.fooled.filter((/** @type {any} */ one) => one.receiver.sensor === sensor && FOREIGN.includes(one.cause) && one.emitter)
+  return run.fooled
+    .filter((/** @type {any} */ one) => one.receiver.sensor === sensor && FOREIGN.includes(one.cause) && one.emitter)
     .map((/** @type {any} */ one) => ({
-      emitter: one.emitter.sensor, order: one.order ?? 0, wrong: one.wrong, accepted: one.accepted,
+      emitter: one.emitter.sensor,
+      order: one.order ?? 0,
+      wrong: one.wrong,
+      accepted: one.accepted,
       corners: run.paths[one.path]?.corners ?? [],
     }));
 }
@@ -94,7 +109,10 @@ export function foolersOf(run, sensor) {
 /** @param {any} run @param {number} sensor @returns {string} A sentence or two: who fools the sensor, and how often. */
 export function foolersSentence(run, sensor) {
   const [readings, right, wrong] = run.tally[sensor];
-  const believed = right + wrong === 0 ? "nothing is ever believed" : `${right + wrong} are believed, ${wrong === 0 ? "none" : wrong} of them wrong`;
+  const believed =
+    right + wrong === 0
+      ? "nothing is ever believed"
+      : `${right + wrong} are believed, ${wrong === 0 ? "none" : wrong} of them wrong`;
   const [first] = foolersOf(run, sensor).sort((a, b) => b.wrong - a.wrong);
   const who = first
     ? ` Most in the way is sensor ${first.emitter + 1}: its sound came first ${first.wrong} times, ${bounces(first.order)}, and was believed ${first.accepted === 0 ? "not once" : `${first.accepted} times`}.`

@@ -46,27 +46,74 @@ export const MODULES = [
 export const ROOMS = {
   alcove: {
     name: "Three walls",
-    walls: [[[0.85, 0], [0.85, 1.39], [-0.85, 1.39], [-0.85, 0]]],
+    walls: [
+      [
+        [0.85, 0],
+        [0.85, 1.39],
+        [-0.85, 1.39],
+        [-0.85, 0],
+      ],
+    ],
     poles: [],
     robot: { x: -0.26, y: 0.17, heading: 94.3 },
   },
-  wall: { name: "One wall", walls: [[[3, 1.3], [-3, 1.3]]], poles: [], robot: { x: 0, y: 0, heading: 90 } },
+  wall: {
+    name: "One wall",
+    walls: [
+      [
+        [3, 1.3],
+        [-3, 1.3],
+      ],
+    ],
+    poles: [],
+    robot: { x: 0, y: 0, heading: 90 },
+  },
   corridor: {
     name: "Corridor",
-    walls: [[[-2, 0.75], [2.6, 0.75]], [[-2, -0.75], [2.6, -0.75]]],
+    walls: [
+      [
+        [-2, 0.75],
+        [2.6, 0.75],
+      ],
+      [
+        [-2, -0.75],
+        [2.6, -0.75],
+      ],
+    ],
     poles: [],
     robot: { x: -0.9, y: 0.1, heading: 6 },
   },
   room: {
     name: "Open room with a pole",
-    walls: [[[-1.8, -1.3], [1.6, -1.3], [1.6, 0.2]], [[-1.8, 1.4], [0.2, 1.4]]],
+    walls: [
+      [
+        [-1.8, -1.3],
+        [1.6, -1.3],
+        [1.6, 0.2],
+      ],
+      [
+        [-1.8, 1.4],
+        [0.2, 1.4],
+      ],
+    ],
     poles: [[1.1, 0.9, 0.03]],
     robot: { x: -0.6, y: -0.2, heading: 15 },
   },
   closed: {
     name: "Closed room, where sound lasts",
-    walls: [[[-1.7, -1.2], [1.8, -1.2], [1.8, 1.3], [-1.7, 1.3], [-1.7, -1.2]]],
-    poles: [[0.7, 0.5, 0.03], [0.9, -0.4, 0.03]],
+    walls: [
+      [
+        [-1.7, -1.2],
+        [1.8, -1.2],
+        [1.8, 1.3],
+        [-1.7, 1.3],
+        [-1.7, -1.2],
+      ],
+    ],
+    poles: [
+      [0.7, 0.5, 0.03],
+      [0.9, -0.4, 0.03],
+    ],
     robot: { x: -0.7, y: -0.1, heading: 12 },
   },
 };
@@ -93,8 +140,23 @@ const MAX_PERIOD_US = 268_435_456;
 export function firstState() {
   const { walls, poles, robot } = structuredClone(ROOMS.alcove);
   return {
-    walls, poles, robot, sensors: 8, layout: "line", spacing: 15, radius: 0.3, module: "polaroid_6500", range: 4,
-    crosstalk: 2, jitter: 60, speed: 0.5, tick: 100, own: null, shown: ["conventional", "eeruf", "eeruf_hopping"], sensor: 6, slow: 25,
+    walls,
+    poles,
+    robot,
+    sensors: 8,
+    layout: "line",
+    spacing: 15,
+    radius: 0.3,
+    module: "polaroid_6500",
+    range: 4,
+    crosstalk: 2,
+    jitter: 60,
+    speed: 0.5,
+    tick: 100,
+    own: null,
+    shown: ["conventional", "eeruf", "eeruf_hopping"],
+    sensor: 0,
+    slow: 25,
   };
 }
 
@@ -154,9 +216,12 @@ function point(name, value) {
  * @returns {State} The same, checked: nothing else is taken over. Throws `StateError`.
  */
 export function checkedState(given) {
-  if (typeof given !== "object" || given === null) throw new StateError(`The link holds ${shown(given)}; expected a state`);
+  if (typeof given !== "object" || given === null)
+    throw new StateError(`The link holds ${shown(given)}; expected a state`);
   const walls = list("walls", given.walls, MAX_WALLS).map((wall, k) => {
-    const points = list(`wall ${k + 1}`, wall, MAX_WALLS + 1).map((at, n) => point(`wall ${k + 1}, point ${n + 1}`, at));
+    const points = list(`wall ${k + 1}`, wall, MAX_WALLS + 1).map((at, n) =>
+      point(`wall ${k + 1}, point ${n + 1}`, at),
+    );
     if (points.length < 2) throw new StateError(`wall ${k + 1} has ${points.length} points; expected at least 2`);
     return points;
   });
@@ -175,14 +240,27 @@ export function checkedState(given) {
     return number(name, given[name], Number(least), Number(most), String(unit));
   };
   return {
-    walls, poles, robot: { x, y, heading: number("heading", given.robot?.heading, -3600, 3600, "degrees") },
-    sensors, layout: oneOf("layout", given.layout, ["line", "ring"]), spacing: within("spacing"),
-    radius: within("radius"), module: oneOf("module", given.module, MODULES.map((module) => module.id)),
-    range: within("range"), crosstalk: within("crosstalk"), jitter: whole("jitter", given.jitter, 0, 5000),
-    speed: within("speed"), tick: whole("tick", given.tick, 10, 10_000),
+    walls,
+    poles,
+    robot: { x, y, heading: number("heading", given.robot?.heading, -3600, 3600, "degrees") },
+    sensors,
+    layout: oneOf("layout", given.layout, ["line", "ring"]),
+    spacing: within("spacing"),
+    radius: within("radius"),
+    module: oneOf(
+      "module",
+      given.module,
+      MODULES.map((module) => module.id),
+    ),
+    range: within("range"),
+    crosstalk: within("crosstalk"),
+    jitter: whole("jitter", given.jitter, 0, 5000),
+    speed: within("speed"),
+    tick: whole("tick", given.tick, 10, 10_000),
     own: given.own ? ownSchedule(given.own, sensors) : null,
     shown: list("shown", given.shown, MAX_SHOWN).map((method) => oneOf("method", method, methodIds())),
-    sensor: whole("sensor", given.sensor, 0, sensors - 1), slow: within("slow"),
+    sensor: whole("sensor", given.sensor, 0, sensors - 1),
+    slow: within("slow"),
   };
 }
 
@@ -197,7 +275,10 @@ function ownSchedule(given, sensors) {
     return all.map((us, k) => whole(`own schedule, ${name}, sensor ${k + 1}`, us, 0, MAX_PERIOD_US));
   };
   return {
-    period_us: time("period_us"), a: times("a"), b: times("b"), t_delta_us: time("t_delta_us"),
+    period_us: time("period_us"),
+    a: times("a"),
+    b: times("b"),
+    t_delta_us: time("t_delta_us"),
     window_us: time("window_us"),
   };
 }

@@ -43,7 +43,13 @@ export class TakeHome {
     this.use = byId("form-use", HTMLElement);
     this.says = byId("copy-says", HTMLElement);
     this.buttons = FORMS.map((form) => {
-      const tab = /** @type {HTMLButtonElement} */ (element("button", { type: "button", role: "tab", id: `tab-${form.id}`, "aria-controls": "form-panel" }, form.name));
+      const tab = /** @type {HTMLButtonElement} */ (
+        element(
+          "button",
+          { type: "button", role: "tab", id: `tab-${form.id}`, "aria-controls": "form-panel" },
+          form.name,
+        )
+      );
       tab.onclick = () => this.#choose(form);
       return tab;
     });

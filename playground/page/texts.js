@@ -18,8 +18,12 @@ const WATCHED = { period_us: 60_000, t_delta_us: 500, window_us: 36_000 };
 /** @param {import("./state.js").State} state @returns {string} The room with the robot, as `eeruf study` reads it. */
 export function sceneText(state) {
   const { robot, own } = state;
-  const lines = ["# Made by the page \"Who fools whom?\". Lengths in metres, angles in degrees, times in microseconds.", "seed = 1",
-    "max_order = 4", ""];
+  const lines = [
+    '# Made by the page "Who fools whom?". Lengths in metres, angles in degrees, times in microseconds.',
+    "seed = 1",
+    "max_order = 4",
+    "",
+  ];
   for (const wall of state.walls) {
     lines.push("[[wall]]", `points_m = [${wall.map(tomlList).join(", ")}]`, 'faces = "both"', "");
   }

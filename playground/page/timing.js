@@ -40,7 +40,10 @@ function soundAge({ period_us, fire_us }, sensor, at) {
 export function saidAt(timing, sensor, at) {
   const { since, phase } = soundAge(timing, sensor, at);
   const [a, b] = timing.fire_us.map((times) => times[sensor]);
-  const does = since < timing.window_us ? `listens, having fired ${inMs(since)} ago` : `is silent, its last sound ${inMs(since)} old`;
+  const does =
+    since < timing.window_us
+      ? `listens, having fired ${inMs(since)} ago`
+      : `is silent, its last sound ${inMs(since)} old`;
   const cycle = `fires ${inMs(a)} into phase a and ${inMs(b)} into phase b, a difference of ${inMs(Math.abs(b - a))}`;
   return `At ${inMs(at)} sensor ${sensor + 1} ${does} (phase ${"ab"[phase]}). It ${cycle}.`;
 }
@@ -81,7 +84,8 @@ export function drawTiming(canvas, timing, cursor, colours) {
   }
   context.textAlign = "right";
   context.fillText("ms", right, bottom + 12);
-  for (const phase of [0, 1, 2]) stroke(context, [x(phase * period_us), 4, x(phase * period_us), bottom], 1.5, colours.muted);
+  for (const phase of [0, 1, 2])
+    stroke(context, [x(phase * period_us), 4, x(phase * period_us), bottom], 1.5, colours.muted);
   for (let sensor = 0; sensor < sensors; sensor++) {
     const top = TOP + sensor * lane;
     if (sensor === cursor.sensor) {

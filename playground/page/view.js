@@ -4,14 +4,18 @@
 /** @typedef {{x: number, y: number}} Spot */
 /** @typedef {{left: number, top: number, width: number, height: number}} Box In metres; `top` is the largest y. */
 
-const MARGIN_M = 0.2;
+const MARGIN_M = 0.3;
 const SMALLEST_M = 1.2;
 
 /** @param {import("./state.js").State} state @returns {Box} What holds all that there is. */
 export function boxOf(state) {
   const { robot, radius } = state;
-  const points = [...state.walls.flat(), ...state.poles.map(([x, y]) => [x, y]),
-    [robot.x - radius, robot.y - radius], [robot.x + radius, robot.y + radius]];
+  const points = [
+    ...state.walls.flat(),
+    ...state.poles.map(([x, y]) => [x, y]),
+    [robot.x - radius, robot.y - radius],
+    [robot.x + radius, robot.y + radius],
+  ];
   const xs = points.map(([x]) => x);
   const ys = points.map(([, y]) => y);
   const span = (/** @type {number[]} */ all) => {

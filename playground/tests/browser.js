@@ -42,7 +42,11 @@ export function launch() {
  * @param {import("playwright-core").BrowserContextOptions} [options]
  */
 export async function open(browser, url, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, reducedMotion: "reduce", ...options });
+  const context = await browser.newContext({
+    viewport: { width: 1280, height: 900 },
+    reducedMotion: "reduce",
+    ...options,
+  });
   const page = await context.newPage();
   /** @type {string[]} */
   const troubles = [];
@@ -60,8 +64,12 @@ export async function open(browser, url, options = {}) {
 
 /** @param {import("playwright-core").Page} page Waits until every picture shows a run or says why not. */
 export async function ready(page) {
-  await page.waitForFunction(() => {
-    const panels = [...document.querySelectorAll(".panel")];
-    return panels.length > 0 && panels.every((panel) => !panel.classList.contains("stale"));
-  }, undefined, { timeout: 30_000 });
+  await page.waitForFunction(
+    () => {
+      const panels = [...document.querySelectorAll(".panel")];
+      return panels.length > 0 && panels.every((panel) => !panel.classList.contains("stale"));
+    },
+    undefined,
+    { timeout: 30_000 },
+  );
 }

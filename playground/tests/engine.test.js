@@ -44,11 +44,26 @@ function file(name, text) {
 
 /** Twenty rings: the project's own, and the page's with other numbers. */
 const RINGS = [
-  ...["paper-12", "ring-24", "labmate-8", "hc-sr04-8"].map((name) => readFileSync(join(ROOT, `rings/${name}.toml`), "utf8")),
+  ...["paper-12", "ring-24", "labmate-8", "hc-sr04-8"].map((name) =>
+    readFileSync(join(ROOT, `rings/${name}.toml`), "utf8"),
+  ),
   ...[
-    {}, { sensors: 1 }, { sensors: 2 }, { sensors: 3 }, { sensors: 5 }, { sensors: 7 }, { sensors: 12 }, { sensors: 16, tick: 1000 },
-    { layout: "ring" }, { layout: "ring", sensors: 12, tick: 500 }, { module: "hc_sr04" }, { speed: 0 }, { speed: 1.5 },
-    { range: 6.2 }, { crosstalk: 0.5 }, { jitter: 400, tick: 500 },
+    {},
+    { sensors: 1 },
+    { sensors: 2 },
+    { sensors: 3 },
+    { sensors: 5 },
+    { sensors: 7 },
+    { sensors: 12 },
+    { sensors: 16, tick: 1000 },
+    { layout: "ring" },
+    { layout: "ring", sensors: 12, tick: 500 },
+    { module: "hc_sr04" },
+    { speed: 0 },
+    { speed: 1.5 },
+    { range: 6.2 },
+    { crosstalk: 0.5 },
+    { jitter: 400, tick: 500 },
   ].map((patch) => ringText({ ...firstState(), .../** @type {object} */ (patch) })),
 ];
 
@@ -64,7 +79,8 @@ test("for twenty rings the page's design is to the bit that of the program", () 
     assert.ok(ours.verified);
     if (k % 5 !== 0) return;
     const emitted = ["rust", "c", "toml"].map((form) =>
-      execFileSync(PROGRAM, ["design", join(folder, `ring-${k}.toml`), "--emit", form], { encoding: "utf8" }));
+      execFileSync(PROGRAM, ["design", join(folder, `ring-${k}.toml`), "--emit", form], { encoding: "utf8" }),
+    );
     assert.deepEqual([ours.rust, ours.c, ours.toml], emitted);
   });
 });
@@ -81,8 +97,17 @@ test("the page's certificate is to the letter that of the program", () => {
 /** What `eeruf study` prints of a summary: rounded as its tables and their digits are. @param {any} summary */
 function printed({ wrong_of_all, wrong_of_accepted, rejected, good_lost, age_ms, readings_per_s, starved, readings }) {
   const percent = (/** @type {number | null} */ share) => (share === null ? "-" : (100 * share).toFixed(2));
-  return [readings, percent(wrong_of_all), percent(wrong_of_accepted), percent(rejected), percent(good_lost),
-    age_ms.median.toFixed(0), age_ms.p99.toFixed(0), readings_per_s.toFixed(1), starved];
+  return [
+    readings,
+    percent(wrong_of_all),
+    percent(wrong_of_accepted),
+    percent(rejected),
+    percent(good_lost),
+    age_ms.median.toFixed(0),
+    age_ms.p99.toFixed(0),
+    readings_per_s.toFixed(1),
+    starved,
+  ];
 }
 
 const SCENES = Object.values(ROOMS).map((room) => sceneText({ ...firstState(), ...room }));
@@ -90,7 +115,14 @@ const SCENES = Object.values(ROOMS).map((room) => sceneText({ ...firstState(), .
 test("in each room the figures of the methods are to the printed digits those of the program", () => {
   SCENES.forEach((scene, k) => {
     const methods = ["sequential", "conventional", "comparison", "eeruf", "eeruf_best", "eeruf_hopping"];
-    const theirs = program("study", file(`scene-${k}.toml`, scene), "--periods", "400", "--method", methods.join(",")).methods;
+    const theirs = program(
+      "study",
+      file(`scene-${k}.toml`, scene),
+      "--periods",
+      "400",
+      "--method",
+      methods.join(","),
+    ).methods;
     for (const method of methods) {
       const ours = ask({ ask: "run", scene, method, periods: 400, shown_s: 1.44 }).ok;
       assert.deepEqual(printed(ours.summary), printed(theirs[method]), `room ${k}, ${method}`);
@@ -101,16 +133,26 @@ test("in each room the figures of the methods are to the printed digits those of
 test("in each room the critical paths are to the micrometre those of the program", () => {
   SCENES.forEach((scene, k) => {
     const theirs = program("paths", file(`scene-${k}.toml`, scene));
-    const ours = ask({ ask: "trace", scene }).ok.paths.filter((/** @type {any} */ path) => path.emitter !== path.receiver);
+    const ours = ask({ ask: "trace", scene }).ok.paths.filter(
+      (/** @type {any} */ path) => path.emitter !== path.receiver,
+    );
     assert.ok(ours.length > 5);
     assert.equal(ours.length, theirs.order.length);
     ours.forEach((/** @type {any} */ path, /** @type {number} */ n) => {
-      assert.deepEqual([path.emitter, path.receiver, path.order], [theirs.emitter[n], theirs.receiver[n], theirs.order[n]]);
+      assert.deepEqual(
+        [path.emitter, path.receiver, path.order],
+        [theirs.emitter[n], theirs.receiver[n], theirs.order[n]],
+      );
       assert.equal(path.length_m.toFixed(6), theirs.length_m[n].toFixed(6));
       assert.equal(path.level_db.toFixed(3), theirs.level_db[n].toFixed(3));
       // The corners are those of a path of that length.
-      const length = path.corners.slice(1).reduce((/** @type {number} */ sum, /** @type {number[]} */ [x, y], /** @type {number} */ c) =>
-        sum + Math.hypot(x - path.corners[c][0], y - path.corners[c][1]), 0);
+      const length = path.corners
+        .slice(1)
+        .reduce(
+          (/** @type {number} */ sum, /** @type {number[]} */ [x, y], /** @type {number} */ c) =>
+            sum + Math.hypot(x - path.corners[c][0], y - path.corners[c][1]),
+          0,
+        );
       assert.ok(Math.abs(length - path.length_m) < 1e-9);
     });
   });
@@ -124,10 +166,13 @@ test("bad input is one sentence that names the thing, the value and what is expe
     [{ ask: "trace", scene: crossed }, "walls 0 and 1 cross at (1.0000, 0.0000); end one of them there"],
     [{ ask: "trace", scene: robot.replace("sensors = 8", "sensors = 65") }, "robot 1 has 65 sensors; expected 1 to 64"],
     [{ ask: "trace", scene: wall }, "0 robots; expected 1 to 64"],
-    [{ ask: "run", scene: robot, method: "eruf", periods: 1, shown_s: 1 }, /^no method `eruf`; expected simultaneous, /],
+    [
+      { ask: "run", scene: robot, method: "eruf", periods: 1, shown_s: 1 },
+      /^no method `eruf`; expected simultaneous, /,
+    ],
     [{ ask: "run", scene: robot, method: "eeruf", periods: 0, shown_s: 1 }, "0 periods; expected 1 to 100000"],
     [{ ask: "design", ring: "sensors = 0" }, "0 sensors; expected 1 to 64"],
-    [{ ask: "design", ring: "sensors = \"many\"" }, /^line 1: invalid type: string "many", expected a whole number/],
+    [{ ask: "design", ring: 'sensors = "many"' }, /^line 1: invalid type: string "many", expected a whole number/],
     [{ ask: "sing" }, /^unknown variant `sing`/],
   ];
   for (const [question, sentence] of cases) {
@@ -140,21 +185,26 @@ test("bad input is one sentence that names the thing, the value and what is expe
 });
 
 test("readings saved as MCAP are read back by MCAP's own library, in order of time", () => {
-  const runs = ["conventional", "eeruf_hopping"].map((method) =>
-    ({ method, readings: readingsOf(ask({ ask: "run", scene: SCENES[0], method, periods: 20, shown_s: 1 }).ok, 36_000) }));
+  const runs = ["conventional", "eeruf_hopping"].map((method) => ({
+    method,
+    readings: readingsOf(ask({ ask: "run", scene: SCENES[0], method, periods: 20, shown_s: 1 }).ok, 36_000),
+  }));
   const reader = new McapStreamReader();
   reader.append(mcapOf(runs));
   const topics = new Map();
   const messages = [];
   for (let record = reader.nextRecord(); record; record = reader.nextRecord()) {
     if (record.type === "Channel") topics.set(record.id, record.topic);
-    if (record.type === "Message") messages.push({ ...record, body: JSON.parse(new TextDecoder().decode(record.data)) });
+    if (record.type === "Message")
+      messages.push({ ...record, body: JSON.parse(new TextDecoder().decode(record.data)) });
   }
   assert.ok(reader.done());
   assert.deepEqual([...topics.values()], ["/readings/conventional", "/readings/eeruf_hopping"]);
   assert.equal(messages.length, runs[0].readings.length + runs[1].readings.length);
   assert.ok(messages.every(({ logTime }, k) => k === 0 || messages[k - 1].logTime <= logTime));
-  const ours = messages.filter(({ channelId }) => channelId === 0).map(({ body }) => [body.sensor, body.period, body.t_echo_us, body.wrong]);
+  const ours = messages
+    .filter(({ channelId }) => channelId === 0)
+    .map(({ body }) => [body.sensor, body.period, body.t_echo_us, body.wrong]);
   const given = runs[0].readings.map(({ sensor, period, t_echo_us, wrong }) => [sensor, period, t_echo_us, wrong]);
   assert.deepEqual(new Set(ours.map(String)), new Set(given.map(String)));
 });
@@ -166,7 +216,13 @@ test("long tasks say how far they are", () => {
 });
 
 test("a link gives back the state that it was made of, and what is wrong with one is a sentence", () => {
-  const own = { period_us: 60_000, a: [0, 1, 2, 3, 4, 5, 6, 7], b: [7, 6, 5, 4, 3, 2, 1, 0], t_delta_us: 500, window_us: 36_000 };
+  const own = {
+    period_us: 60_000,
+    a: [0, 1, 2, 3, 4, 5, 6, 7],
+    b: [7, 6, 5, 4, 3, 2, 1, 0],
+    t_delta_us: 500,
+    window_us: 36_000,
+  };
   const state = { ...firstState(), poles: /** @type {[number, number, number][]} */ ([[0.1, 0.2, 0.03]]), own };
   assert.deepEqual(fromHash(`#${toHash(state)}`), state);
   assert.equal(fromHash("#why"), null);
@@ -187,5 +243,5 @@ test("a link gives back the state that it was made of, and what is wrong with on
   assert.equal(wrong({ walls: [[[0, 0]]] }), "wall 1 has 1 points; expected at least 2");
   assert.equal(wrong({ robot: { x: null, y: 0, heading: 0 } }), "robot, x is null; expected a number from -20 to 20 m");
   assert.equal(wrong({ own: { ...own, a: [1] } }), "own schedule, a has 1 times; expected 8, one for each sensor");
-  assert.equal(wrong({ shown: ["magic"] }).slice(0, 38), "method is \"magic\"; expected sequential");
+  assert.equal(wrong({ shown: ["magic"] }).slice(0, 38), 'method is "magic"; expected sequential');
 });

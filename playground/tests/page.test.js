@@ -27,7 +27,14 @@ after(async () => {
 async function expectAccessible(page, where) {
   await page.evaluate(axe.source);
   const { violations } = await page.evaluate(() => /** @type {any} */ (window).axe.run());
-  assert.deepEqual(violations.map((/** @type {any} */ one) => [one.id, one.nodes.map((/** @type {any} */ node) => node.html.slice(0, 120))]), [], where);
+  assert.deepEqual(
+    violations.map((/** @type {any} */ one) => [
+      one.id,
+      one.nodes.map((/** @type {any} */ node) => node.html.slice(0, 120)),
+    ]),
+    [],
+    where,
+  );
 }
 
 /** @param {import("playwright-core").Page} page @returns {Promise<any>} The state that the link holds. */
@@ -39,12 +46,19 @@ async function stateOf(page) {
 /** @param {import("playwright-core").Page} page Presses the button and waits for the checked certificate. */
 async function design(page) {
   await page.locator("#design-go").click();
-  await page.waitForFunction(() => document.getElementById("certificate")?.textContent?.startsWith("Checked here"), undefined, { timeout: 60_000 });
+  await page.waitForFunction(
+    () => document.getElementById("certificate")?.textContent?.startsWith("Checked here"),
+    undefined,
+    { timeout: 60_000 },
+  );
 }
 
 test("both forms of the page are within 600 kB gzipped", () => {
   const gzipped = (/** @type {string} */ path) => gzipSync(readFileSync(path), { level: 9 }).length;
-  const folder = readdirSync(join(BUILT, "folder")).reduce((sum, name) => sum + gzipped(join(BUILT, "folder", name)), 0);
+  const folder = readdirSync(join(BUILT, "folder")).reduce(
+    (sum, name) => sum + gzipped(join(BUILT, "folder", name)),
+    0,
+  );
   const single = gzipped(join(BUILT, "who-fools-whom.html"));
   console.log(`gzipped: folder ${folder} bytes, one file ${single} bytes`);
   assert.ok(folder < MOST_BYTES && single < MOST_BYTES);
@@ -63,7 +77,10 @@ test("the folder on a server asks only that server, and says what the method cos
 
 test("the one file works from a disk without a network", async () => {
   const { context, page, troubles, requests } = await open(browser, SINGLE, { offline: true });
-  assert.ok(requests.every((url) => /^(file|blob|data):/.test(url)), String(requests));
+  assert.ok(
+    requests.every((url) => /^(file|blob|data):/.test(url)),
+    String(requests),
+  );
   assert.match((await page.locator(".verdict").allTextContents())[0], /^40\.0 % of what it believes is wrong/);
   await design(page);
   assert.equal(await page.locator("#period").textContent(), "47.7 ms");
@@ -77,11 +94,21 @@ test("a ring is designed by keyboard alone, watched in the room, and taken home"
   await page.keyboard.press("Control+A");
   await page.keyboard.type("12");
   await page.keyboard.press("Enter");
-  await page.waitForFunction(() => document.getElementById("certificate")?.textContent?.startsWith("Checked here"), undefined, { timeout: 60_000 });
+  await page.waitForFunction(
+    () => document.getElementById("certificate")?.textContent?.startsWith("Checked here"),
+    undefined,
+    { timeout: 60_000 },
+  );
   const period = (await page.locator("#period").textContent()) ?? "";
   const us = Math.round(1000 * parseFloat(period));
-  assert.match((await page.locator("#certificate").textContent()) ?? "", new RegExp(`: ${us} us is the shortest period`));
-  assert.match((await page.locator("#form-text").textContent()) ?? "", /pub const RING: Schedule<12> = schedule! \{/);
+  assert.match(
+    (await page.locator("#certificate").textContent()) ?? "",
+    new RegExp(`: ${us} us is the shortest period`),
+  );
+  assert.match(
+    (await page.locator("#form-text").textContent()) ?? "",
+    /pub const RING: VerifiedSchedule<12> = schedule! \{/,
+  );
   await page.locator("#tab-rust").focus();
   await page.keyboard.press("ArrowRight");
   assert.match((await page.locator("#form-text").textContent()) ?? "", /#define EERUF_SENSORS 12/);
@@ -112,8 +139,45 @@ test("arrow keys move what is chosen, and Delete takes it away", async () => {
   await context.close();
 });
 
+test("a finger drags the robot, and the page does not scroll away under it", async () => {
+  const { context, page, troubles } = await open(browser, server.url, {
+    viewport: { width: 360, height: 740 },
+    hasTouch: true,
+    isMobile: true,
+  });
+  const robot = page.locator(".handle.robot");
+  await robot.scrollIntoViewIfNeeded();
+  const box = await robot.boundingBox();
+  assert.ok(box);
+  const touch = await context.newCDPSession(page);
+  const at = (/** @type {number} */ k) => [{ x: box.x + box.width / 2 + 3 * k, y: box.y + box.height / 2 - 2 * k }];
+  const scrolled = await page.evaluate(() => scrollY);
+  await touch.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: at(0) });
+  for (let k = 1; k <= 10; k++) await touch.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: at(k) });
+  await touch.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+  await ready(page);
+  const { robot: moved } = await stateOf(page);
+  assert.ok(moved.x > -0.25 && moved.y > 0.18, JSON.stringify(moved));
+  assert.equal(await page.evaluate(() => scrollY), scrolled);
+  assert.deepEqual(troubles, []);
+  await context.close();
+});
+
 test("walls that cross and a robot in a wall are said in a sentence, and mended by dragging back", async () => {
-  const state = { ...firstState(), walls: [[[1, -1], [1, 1]], [[0.8, 0], [1.2, 0]]], robot: { x: 0, y: 0, heading: 0 } };
+  const state = {
+    ...firstState(),
+    walls: [
+      [
+        [1, -1],
+        [1, 1],
+      ],
+      [
+        [0.8, 0],
+        [1.2, 0],
+      ],
+    ],
+    robot: { x: 0, y: 0, heading: 0 },
+  };
   const { context, page, troubles } = await openStale(`${server.url}#${toHash(/** @type {any} */ (state))}`);
   const says = page.locator("#room-says");
   await assertText(says, /^Walls 0 and 1 cross at \(1\.0000, 0\.0000\); end one of them there\.$/);
@@ -140,12 +204,19 @@ async function openStale(url) {
 
 /** @param {import("playwright-core").Locator} locator @param {RegExp} expected */
 async function assertText(locator, expected) {
-  for (let k = 0; k < 100 && !expected.test((await locator.textContent()) ?? ""); k++) await locator.page().waitForTimeout(50);
+  for (let k = 0; k < 100 && !expected.test((await locator.textContent()) ?? ""); k++)
+    await locator.page().waitForTimeout(50);
   assert.match((await locator.textContent()) ?? "", expected);
 }
 
 test("a link brings back the whole state, and a broken one says so and shows the first example", async () => {
-  const own = { period_us: 60_000, a: [0, 9000, 18_000], b: [1000, 12_000, 23_000], t_delta_us: 300, window_us: 30_000 };
+  const own = {
+    period_us: 60_000,
+    a: [0, 9000, 18_000],
+    b: [1000, 12_000, 23_000],
+    t_delta_us: 300,
+    window_us: 30_000,
+  };
   const state = { ...firstState(), sensors: 3, sensor: 2, shown: ["eeruf", "sequential", "dither"], slow: 100, own };
   const link = `${server.url}#${toHash(/** @type {any} */ (state))}`;
   const { context, page, troubles } = await open(browser, link);
@@ -153,8 +224,14 @@ test("a link brings back the whole state, and a broken one says so and shows the
   assert.equal(await page.locator(".panel").count(), 3);
   assert.equal(await page.locator("#look").inputValue(), "3");
   for (const [broken, says] of [
-    [link.slice(0, -9), "The link is cut short or changed; expected one that this page made. Shown is the first example instead."],
-    [`${server.url}#${toHash(/** @type {any} */ ({ ...state, sensors: 99 }))}`, "sensors is 99; expected a number from 1 to 64. Shown is the first example instead."],
+    [
+      link.slice(0, -9),
+      "The link is cut short or changed; expected one that this page made. Shown is the first example instead.",
+    ],
+    [
+      `${server.url}#${toHash(/** @type {any} */ ({ ...state, sensors: 99 }))}`,
+      "sensors is 99; expected a number from 1 to 64. Shown is the first example instead.",
+    ],
   ]) {
     const other = await open(browser, broken);
     assert.equal(await other.page.locator("#page-says").textContent(), says);
@@ -180,10 +257,16 @@ test("axe-core finds nothing to object to, light and dark, before and after a de
 });
 
 test("from 360 pixels to 4K nothing sticks out", async () => {
-  for (const [width, height] of [[360, 740], [768, 1024], [3840, 2160]]) {
+  for (const [width, height] of [
+    [360, 740],
+    [768, 1024],
+    [3840, 2160],
+  ]) {
     const { context, page } = await open(browser, server.url, { viewport: { width, height } });
     await design(page);
-    const sticksOut = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+    const sticksOut = await page.evaluate(
+      () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+    );
     assert.equal(sticksOut, 0, `${width} pixels`);
     await context.close();
   }
@@ -192,7 +275,15 @@ test("from 360 pixels to 4K nothing sticks out", async () => {
 test("the lesson leads through seven steps, each with its own methods", async () => {
   const { context, page, troubles } = await open(browser, server.url);
   await page.locator("#lesson-start").click();
-  const expected = [["sequential"], ["sequential"], ["conventional"], ["conventional", "comparison"], ["comparison", "eeruf"], ["eeruf", "eeruf_hopping"], ["conventional", "eeruf", "eeruf_hopping"]];
+  const expected = [
+    ["sequential"],
+    ["sequential"],
+    ["conventional"],
+    ["conventional", "comparison"],
+    ["comparison", "eeruf"],
+    ["eeruf", "eeruf_hopping"],
+    ["conventional", "eeruf", "eeruf_hopping"],
+  ];
   for (const [step, methods] of expected.entries()) {
     assert.match((await page.locator("#lesson-title").textContent()) ?? "", new RegExp(`^${step + 1} of 7: `));
     await ready(page);
@@ -241,10 +332,30 @@ async function randomActions(page, actions, seed) {
     return (x >>> 0) % below;
   };
   const nonsense = ["", "0", "-1", "1e9", "64", "3.7", "12", "nonsense", "0.000001", "1"];
-  const keys = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "Shift+ArrowLeft", "Shift+ArrowUp", "Delete", "Enter", "Space", "Tab"];
+  const keys = [
+    "ArrowLeft",
+    "ArrowRight",
+    "ArrowUp",
+    "ArrowDown",
+    "Shift+ArrowLeft",
+    "Shift+ArrowUp",
+    "Delete",
+    "Enter",
+    "Space",
+    "Tab",
+  ];
   for (let k = 0; k < actions; k++) {
     const kind = random(6);
-    const targets = page.locator(["button:visible", ".handle", "input[type=number]:visible", "select:visible", "input[type=range]:visible", ".room"][kind]);
+    const targets = page.locator(
+      [
+        "button:visible",
+        ".handle",
+        "input[type=number]:visible",
+        "select:visible",
+        "input[type=range]:visible",
+        ".room",
+      ][kind],
+    );
     const count = await targets.count();
     if (count === 0) continue;
     const target = targets.nth(random(count));
@@ -269,7 +380,9 @@ async function randomActions(page, actions, seed) {
         }, nonsense[random(nonsense.length)]);
       },
       async () => {
-        const options = await target.locator("option").evaluateAll((all) => all.map((one) => /** @type {HTMLOptionElement} */ (one).value));
+        const options = await target
+          .locator("option")
+          .evaluateAll((all) => all.map((one) => /** @type {HTMLOptionElement} */ (one).value));
         await target.selectOption(options[random(options.length)], { timeout: 500 });
       },
       () => target.press(keys[random(keys.length)], { timeout: 500 }),
@@ -277,23 +390,52 @@ async function randomActions(page, actions, seed) {
     ];
     // What is covered or gone by now cannot be pressed; that is no fault of the page.
     await does[kind]().catch(() => {});
-    if (random(40) === 0) await page.evaluate((hash) => { location.hash = hash; }, ["#s=AAAA", "#why", `#${toHash(firstState())}`][random(3)]);
+    if (random(40) === 0)
+      await page.evaluate(
+        (hash) => {
+          location.hash = hash;
+        },
+        ["#s=AAAA", "#why", `#${toHash(firstState())}`][random(3)],
+      );
   }
 }
 
 test("dragging among 40 walls traces and draws again and again", async () => {
   // A room with nine pillars, around a robot in its middle.
-  const square = (/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ a, /** @type {number} */ b) =>
-    [[x - a, y - b], [x + a, y - b], [x + a, y + b], [x - a, y + b], [x - a, y - b]];
-  const pillars = [[-1.5, -1.1], [-0.5, -1.2], [0.6, -1.1], [1.5, -1], [1.6, 0.2], [1.3, 1.1], [0.3, 1.2], [-0.7, 1.1], [-1.6, 0.9]];
+  const square = (
+    /** @type {number} */ x,
+    /** @type {number} */ y,
+    /** @type {number} */ a,
+    /** @type {number} */ b,
+  ) => [
+    [x - a, y - b],
+    [x + a, y - b],
+    [x + a, y + b],
+    [x - a, y + b],
+    [x - a, y - b],
+  ];
+  const pillars = [
+    [-1.5, -1.1],
+    [-0.5, -1.2],
+    [0.6, -1.1],
+    [1.5, -1],
+    [1.6, 0.2],
+    [1.3, 1.1],
+    [0.3, 1.2],
+    [-0.7, 1.1],
+    [-1.6, 0.9],
+  ];
   const walls = [square(0, 0, 2, 1.6), ...pillars.map(([x, y]) => square(x, y, 0.12, 0.12))];
   const state = { ...firstState(), walls, robot: { x: 0, y: 0, heading: 40 } };
-  const { context, page, troubles } = await open(browser, `${server.url}#${toHash(/** @type {any} */ (state))}`, { viewport: { width: 1280, height: 900 } });
+  const { context, page, troubles } = await open(browser, `${server.url}#${toHash(/** @type {any} */ (state))}`, {
+    viewport: { width: 1280, height: 900 },
+  });
   const box = await page.locator(".handle.robot").boundingBox();
   assert.ok(box);
   await page.mouse.move(box.x + 14, box.y + 14);
   await page.mouse.down();
-  for (let k = 0; k < (LONG ? 400 : 40); k++) await page.mouse.move(box.x + 14 + 30 * Math.sin(k / 9), box.y + 14 + 20 * Math.cos(k / 7));
+  for (let k = 0; k < (LONG ? 400 : 40); k++)
+    await page.mouse.move(box.x + 14 + 30 * Math.sin(k / 9), box.y + 14 + 20 * Math.cos(k / 7));
   await page.mouse.up();
   const said = (await page.locator("#frame").textContent()) ?? "";
   assert.match(said, /^Tracing and drawing a change took [\d.]+ ms \(median of the last \d+\)\.$/);

@@ -22,7 +22,26 @@ pub(crate) fn fine_percent(share: f64) -> String {
 pub(crate) fn percents(spread: Option<Spread>) -> String {
     spread.map_or_else(
         || "-".to_owned(),
-        |Spread { p10, median, p90 }| format!("{} / {} / {}", percent(p10), percent(median), percent(p90)),
+        |Spread { p10, median, p90, .. }| format!("{} / {} / {}", percent(p10), percent(median), percent(p90)),
+    )
+}
+
+/// Median and 90 % of shares, in per cent, each with its 95 % interval.
+pub(crate) fn percents_95(spread: Option<Spread>) -> String {
+    let with = |value, [low, high]: [f64; 2]| {
+        format!("{} ({}-{})", fine_percent(value), fine_percent(low), fine_percent(high))
+    };
+    spread.map_or_else(
+        || "-".to_owned(),
+        |spread| format!("{}, {}", with(spread.median, spread.median_95), with(spread.p90, spread.p90_95)),
+    )
+}
+
+/// The median alone with its 95 % interval.
+pub(crate) fn median_95(spread: Option<Spread>, digits: usize) -> String {
+    spread.map_or_else(
+        || "-".to_owned(),
+        |Spread { median, median_95: [low, high], .. }| format!("{median:.digits$} ({low:.digits$}-{high:.digits$})"),
     )
 }
 

@@ -11,6 +11,7 @@ mod firmware;
 mod listings;
 mod measured;
 mod mutants;
+mod package;
 mod page;
 mod periods;
 mod printed;
@@ -74,6 +75,8 @@ enum Verb {
     },
     /// Certify the rings of the tables, and have both checkers judge them and mutated ones (minutes)
     Certificates(certificates::Plan),
+    /// Pack the crates that are published, and build and test each from its tarball, in a folder of its own (minutes)
+    Package,
     /// Break the core in one place at a time, and see whether a test notices (hours; takes up where it stopped)
     Mutants(mutants::Plan),
     /// Print the table of shortest periods that docs/search.md shows
@@ -120,6 +123,11 @@ fn main() -> ExitCode {
         Verb::Certificates(plan) => {
             let mut steps = Steps::default();
             certificates::run_all(&plan, &mut steps);
+            steps.finish(true)
+        }
+        Verb::Package => {
+            let mut steps = Steps::default();
+            package::package(&mut steps);
             steps.finish(true)
         }
         Verb::Mutants(plan) => mutants::run(&plan),

@@ -57,8 +57,11 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     steps.step("small tables in the documents", || {
         crate::printed::check(&crate::printed::documents()?, crate::printed::Which::SmallOfOthers)
     });
-    steps.step("tests of the core's conversions", || {
-        run_cargo(&["test", "--package", "eeruf-core", "--lib", "--locked", "--features", "fugit,serde", "interop"])
+    steps.step("tests of the core's conversions and formats", || {
+        let features = "defmt,embassy-time,fugit,serde";
+        let tests =
+            ["--lib", "--test", "formats", "--locked", "--features", features, "--", "interop", "serde", "format"];
+        run_cargo(&[&["test", "--package", "eeruf-core"], &tests[..]].concat())
     });
     steps.step("Python package", crate::python::python);
     steps.step("page in a browser", || crate::page::page(crate::page::Tests::Short));

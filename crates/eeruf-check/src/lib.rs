@@ -103,3 +103,8 @@ fn fraction(numerator: u64, denominator: u64) -> String {
         format!("{}/{}", numerator / divisor, denominator / divisor)
     }
 }
+
+/// The listing of the crate's README compiles and holds.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -11,6 +11,7 @@ use crate::verified::VerifiedSchedule;
 
 /// Verified schedules for one ring, from the shortest period to the longest.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ladder<'s, const K: usize> {
     rungs: &'s [VerifiedSchedule<K>],
 }
@@ -61,6 +62,7 @@ impl<'s, const K: usize> Ladder<'s, K> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Adaptation<'s, const K: usize> {
     ladder: Ladder<'s, K>,
     rung: usize,

@@ -32,6 +32,7 @@ use crate::time::Micros;
 
 /// How to read Eqs. (13a), (13b).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Criterion {
     /// As printed, with an outer absolute value. Stronger than needed.
     Paper,
@@ -51,6 +52,7 @@ pub enum Criterion {
 /// assert!(TABLE_I_D.verify(&in_blocks).ok());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Requirements<'a> {
     /// `T_delta`: consecutive readings that differ by no more are near-identical (Eq. 11).
     pub t_delta: Micros,
@@ -88,6 +90,7 @@ impl Requirements<'_> {
 
 /// The two sensors that come closest to failing (13a), (13b), and by how much they hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Separation {
     /// The smaller left side of the two conditions.
     pub value: Micros,
@@ -97,6 +100,7 @@ pub struct Separation {
 
 /// Two firings of neighbours, one after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Interval {
     /// The time between them.
     pub value: Micros,

@@ -1,7 +1,12 @@
-//! Conversions to and from the time types of other crates, each behind the feature of that crate's name.
+//! Conversions to and from the time types of `core` and of other crates, each of those behind the feature of that
+//! crate's name.
+
+use core::fmt;
+use core::time::Duration;
 
 #[cfg(any(feature = "embassy-time", feature = "fugit"))]
-use crate::time::{Instant, Micros};
+use crate::time::Instant;
+use crate::time::Micros;
 
 #[cfg(feature = "fugit")]
 impl From<fugit::MicrosDurationU32> for Micros {
@@ -38,11 +43,56 @@ impl From<Micros> for embassy_time::Duration {
     }
 }
 
+#[cfg(feature = "embassy-time")]
+impl TryFrom<embassy_time::Duration> for Micros {
+    type Error = DurationError;
+
+    fn try_from(duration: embassy_time::Duration) -> Result<Self, DurationError> {
+        u32::try_from(duration.as_micros()).map(Self::new).map_err(|_| DurationError)
+    }
+}
+
 /// The low 32 bits of a clock of 64.
 #[cfg(feature = "embassy-time")]
 impl From<embassy_time::Instant> for Instant {
     fn from(instant: embassy_time::Instant) -> Self {
-        Self::from_micros(instant.as_micros() as u32)
+        Self::from_wide(instant.as_micros())
+    }
+}
+
+#[cfg(feature = "embassy-time")]
+impl Instant {
+    /// The instant of embassy's clock that is nearest to `now` on it.
+    pub fn to_embassy(self, now: embassy_time::Instant) -> embassy_time::Instant {
+        embassy_time::Instant::from_micros(self.to_wide(now.as_micros()))
+    }
+}
+
+/// A duration that is longer than [`Micros::MAX`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct DurationError;
+
+impl fmt::Display for DurationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a duration too long; expected at most {}", Micros::MAX)
+    }
+}
+
+impl core::error::Error for DurationError {}
+
+impl From<Micros> for Duration {
+    fn from(duration: Micros) -> Self {
+        Self::from_micros(duration.as_micros().into())
+    }
+}
+
+/// Whole microseconds; what is left of one is cut off.
+impl TryFrom<Duration> for Micros {
+    type Error = DurationError;
+
+    fn try_from(duration: Duration) -> Result<Self, DurationError> {
+        u32::try_from(duration.as_micros()).map(Self::new).map_err(|_| DurationError)
     }
 }
 
@@ -57,5 +107,39 @@ mod tests {
         assert_eq!(fugit::MicrosDurationU32::from(Micros::from_millis(24)), duration);
         let instant = fugit::WrappingTimerInstantU32::<1_000_000>::from_ticks(u32::MAX);
         assert_eq!(fugit::WrappingTimerInstantU32::from(Instant::from(instant)), instant);
+    }
+}
+
+#[cfg(test)]
+mod tests_of_core {
+    use super::*;
+
+    #[test]
+    fn durations_of_core_go_there_and_back_as_far_as_32_bits_of_microseconds_reach() {
+        assert_eq!(Micros::try_from(Duration::from_nanos(24_000_999)), Ok(Micros::from_millis(24)));
+        assert_eq!(Duration::from(Micros::MAX), Duration::from_micros(u32::MAX.into()));
+        assert_eq!(Micros::try_from(Duration::from(Micros::MAX)), Ok(Micros::MAX));
+        assert_eq!(Micros::try_from(Duration::from_micros(1 << 32)), Err(DurationError));
+    }
+}
+
+#[cfg(all(test, feature = "embassy-time"))]
+mod tests_of_embassy {
+    use super::*;
+
+    #[test]
+    fn embassys_times_go_there_and_back_beyond_32_bits_of_microseconds() {
+        let duration = embassy_time::Duration::from_millis(24);
+        assert_eq!(Micros::try_from(duration), Ok(Micros::from_millis(24)));
+        assert_eq!(embassy_time::Duration::from(Micros::from_millis(24)), duration);
+        assert_eq!(Micros::try_from(embassy_time::Duration::from_secs(4295)), Err(DurationError));
+        let now = embassy_time::Instant::from_micros(5 << 32);
+        for away in [0, 24_000, 1 << 30] {
+            for instant in
+                [now + embassy_time::Duration::from_micros(away), now - embassy_time::Duration::from_micros(away)]
+            {
+                assert_eq!(Instant::from(instant).to_embassy(now), instant);
+            }
+        }
     }
 }

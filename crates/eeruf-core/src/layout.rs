@@ -8,6 +8,7 @@ use crate::schedule::MAX_SENSORS;
 ///
 /// The paper asks that any *four* adjacent sensors fire at least 15 ms apart (Sec. 3.1 c). Sensors are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Layout<'a> {
     /// A row with two ends (the paper's half ring): neighbours differ by less than this number.
     Line(u8),
@@ -22,6 +23,7 @@ pub enum Layout<'a> {
 
 /// A pair of neighbours that a ring of so many sensors does not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LayoutError {
     /// The two sensors, from 0.
     pub pair: (usize, usize),

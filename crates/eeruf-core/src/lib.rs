@@ -12,6 +12,7 @@
 //!   filter; [`EchoFilter`] is the filter alone.
 //! - [`EchoTracker`]: believes an echo that readings from several phases support, for schedules of many phases.
 //! - [`EdgeQueue`]: from the interrupt of an echo line to the main loop.
+//! - [`SensorWatch`]: what was last accepted of each sensor, how old it is, and which sensors are blind.
 //! - [`Adaptation`]: moves along a ladder of schedules as the rejection rate asks for.
 //! - [`SpeedOfSound`]: distances from echo times.
 //!
@@ -19,8 +20,8 @@
 //! deadline it gets back, so the same code runs in an interrupt, in a simulator and in a test. Sensors are counted from
 //! 0 in code and printed from 1, as in the paper.
 //!
-//! Features, all off by default, for crates that firmware already uses: `defmt` (formats), `serde` (readings and
-//! times), `fugit` and `embassy-time` (conversions of times).
+//! Features, all off by default, for crates that firmware already uses: `defmt` (formats), `serde` (schedules,
+//! readings and times), `fugit` and `embassy-time` (conversions of times).
 //!
 //! Equations and sections are those of J. Borenstein and Y. Koren, *Error Eliminating Rapid Ultrasonic Firing for
 //! Mobile Robot Obstacle Avoidance*, IEEE Transactions on Robotics and Automation 11(1), February 1995, pp. 132-138.
@@ -35,6 +36,7 @@ mod filter;
 mod hopping;
 mod interop;
 mod layout;
+mod phases;
 mod reading;
 mod ring;
 mod schedule;
@@ -48,6 +50,7 @@ mod time;
 mod tracker;
 mod verified;
 mod verify;
+mod watch;
 
 pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
 #[doc(hidden)]
@@ -58,17 +61,22 @@ pub use filter::{EchoFilter, FilterError};
 pub use hopping::{
     HoppingCode, HoppingError, HoppingFiring, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings,
 };
+pub use interop::DurationError;
 pub use layout::{Layout, LayoutError, neighbour_rows};
+pub use phases::{Audible, PhaseSeparation, PhaseTable};
 pub use reading::{ReadingKind, Tally, Verdict};
 pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError, VerifiedFor};
-pub use scheduler::{ImmediateRefiring, Limits, ScheduledFiring, Scheduler, SchedulerStep};
+pub use scheduler::{
+    BrokenPromise, ImmediateRefiring, Limits, ScheduledFiring, Scheduler, SchedulerStep, check_scheduler,
+};
 pub use sensor_error::SensorError;
 pub use sound::SpeedOfSound;
 pub use time::{Instant, Micros};
 pub use tracker::{EchoTracker, Firing, TrackerError, TrackerSettings};
 pub use verified::VerifiedSchedule;
 pub use verify::{Verification, Violation, ViolationKind, Violations};
+pub use watch::{Blind, LastAccepted, SensorWatch};
 
 /// What is proven, and why: `docs/theory.md`, for reading here.
 ///
@@ -77,7 +85,7 @@ pub use verify::{Verification, Violation, ViolationKind, Violations};
 #[doc = include_str!("../theory.md")]
 pub mod theory {}
 
-/// The listings of the README compile and hold.
+/// The listing of the crate's README compiles and holds.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
+#[doc = include_str!("../README.md")]
 struct Readme;

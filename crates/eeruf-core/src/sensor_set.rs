@@ -6,6 +6,7 @@ const WORD: usize = u32::BITS as usize;
 
 /// A set of sensors, counted from 0. Sensors beyond the 64th are never in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct SensorSet([u32; MAX_SENSORS / WORD]);
 
 impl SensorSet {

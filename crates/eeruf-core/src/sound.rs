@@ -12,6 +12,7 @@ use crate::time::Micros;
 /// assert_eq!(c.echo_time(2059), Micros::new(11_999));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SpeedOfSound {
     mm_per_s: u32,
 }

@@ -3,7 +3,7 @@
 //! Both are 32 bits of microseconds, because that is what the free-running timers of small microcontrollers count. Such
 //! a counter wraps every 71.6 minutes, so two instants have no order of their own: only the *difference* of two
 //! instants less than 35.8 minutes apart means something. `Instant` therefore is not `Ord`; ask
-//! [`Instant::has_reached`] or [`Instant::since`]. A wider clock is truncated: `Instant::from_micros(clock_us as u32)`.
+//! [`Instant::has_reached`] or [`Instant::since`]. A wider clock is truncated: [`Instant::from_wide`].
 
 use core::fmt;
 use core::ops::{Add, AddAssign};
@@ -115,9 +115,29 @@ impl fmt::Display for Micros {
 pub struct Instant(u32);
 
 impl Instant {
-    /// The instant at which the caller's counter reads `us` (for a wider counter: its low 32 bits).
+    /// The instant at which the caller's counter reads `us` (for a wider counter: [`from_wide`](Self::from_wide)).
     pub const fn from_micros(us: u32) -> Self {
         Self(us)
+    }
+
+    /// The instant at which a clock of 64 bits reads `us` microseconds: its low 32 bits.
+    pub const fn from_wide(us: u64) -> Self {
+        Self(us as u32)
+    }
+
+    /// The reading of a clock of 64 bits at this instant: the one nearest to `now_us`, what it reads now. No reading is
+    /// before the clock began.
+    ///
+    /// ```
+    /// # use eeruf_core::{Instant, Micros};
+    /// let now_us = 3 << 32;
+    /// let deadline = Instant::from_wide(now_us) + Micros::from_millis(24);
+    /// assert_eq!(deadline.to_wide(now_us), now_us + 24_000);
+    /// assert_eq!(deadline.to_wide(now_us + 30_000), now_us + 24_000); // it has passed
+    /// ```
+    pub const fn to_wide(self, now_us: u64) -> u64 {
+        // As far as half a turn of the clock ahead or back.
+        now_us.saturating_add_signed(self.0.wrapping_sub(now_us as u32) as i32 as i64)
     }
 
     /// What the caller's counter read.

@@ -10,6 +10,7 @@ use crate::verify::{Verification, Violation, stale_separation};
 /// A [`Schedule`] that was verified, and what for: [`schedule!`](crate::schedule!) makes it when the program is
 /// compiled, [`Verification::verified`] at run time. It can be used wherever a schedule can.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(transparent)]
 pub struct VerifiedSchedule<const K: usize, const M: usize = 2>(Schedule<K, M>);
 
@@ -59,6 +60,14 @@ impl<const K: usize, const M: usize> Deref for VerifiedSchedule<K, M> {
     }
 }
 
+/// As the schedule. Nothing can be read back as verified: read a [`Schedule`] and verify it.
+#[cfg(feature = "serde")]
+impl<const K: usize, const M: usize> serde::Serialize for VerifiedSchedule<K, M> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.serialize(serializer)
+    }
+}
+
 impl<const K: usize> Verification<'_, K> {
     /// The schedule with the proof that it meets the requirements.
     ///
@@ -81,20 +90,27 @@ impl<const K: usize> Verification<'_, K> {
         let min_refire = schedule.min_refire();
         let window = if requirements.window.as_micros() == 0 { min_refire } else { requirements.window };
         let Requirements { t_delta, min_interval, stale_echo, .. } = *requirements;
-        // What crosstalk moves by is the size of d_x - d_y and d_x + d_y under either criterion.
-        let mut separation = match schedule.separation(Criterion::Exact) {
-            Some(separation) => separation.value,
-            None => requirements.separation(),
-        };
+        // What crosstalk moves by is the size of d_x - d_y and d_x + d_y under either criterion. Pair by pair, since
+        // `Schedule::separation` sorts, and would leave paths to a panic in a firmware image.
+        let mut separation = Micros::MAX;
         let mut x = 0;
-        while stale_echo && x < schedule.sensors() {
-            let stale = stale_separation(schedule, x);
-            if stale.as_micros() < separation.as_micros() {
-                separation = stale;
+        while x < schedule.sensors() {
+            let mut y = 0;
+            while y < x {
+                let (even, odd) = schedule.left_sides(Criterion::Exact, x, y);
+                separation = shorter(separation, shorter(even, odd));
+                y += 1;
+            }
+            if stale_echo {
+                separation = shorter(separation, stale_separation(schedule, x));
             }
             x += 1;
         }
         let verified_for = VerifiedFor { t_delta, min_interval, window, separation };
         Ok(VerifiedSchedule(schedule.with_verified_for(verified_for)))
     }
+}
+
+const fn shorter(one: Micros, other: Micros) -> Micros {
+    if one.as_micros() < other.as_micros() { one } else { other }
 }

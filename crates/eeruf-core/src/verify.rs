@@ -18,6 +18,7 @@ impl<const K: usize> Schedule<K> {
 
 /// What [`Schedule::verify`] found.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Verification<'r, const K: usize> {
     schedule: &'r Schedule<K>,
     requirements: &'r Requirements<'r>,
@@ -88,6 +89,7 @@ pub(crate) const fn stale_separation<const K: usize>(schedule: &Schedule<K>, sen
 
 /// The requirement that is violated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ViolationKind {
     /// Crosstalk an even number of periods old would pass: Eq. (13a).
@@ -127,6 +129,7 @@ impl ViolationKind {
 
 /// One requirement that does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Violation {
     /// Which requirement.
     pub kind: ViolationKind,
@@ -177,6 +180,7 @@ impl fmt::Display for Violation {
 
 /// The violations of a [`Verification`], one after the other.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Violations<'r, const K: usize> {
     verification: Verification<'r, K>,
     check: u8,

@@ -141,6 +141,16 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
         self.ring.enable(sensor)
     }
 
+    /// As [`Ring::pause`].
+    pub fn pause(&mut self) {
+        self.ring.pause();
+    }
+
+    /// As [`Ring::resume`].
+    pub fn resume(&mut self) {
+        self.ring.resume();
+    }
+
     /// As [`Ring::restart`].
     pub fn restart(&mut self, now: Instant) {
         self.ring.restart(now);

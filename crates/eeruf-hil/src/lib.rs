@@ -298,3 +298,8 @@ mod tests {
         assert_eq!(bytes[..9], [Topic::Poll as u8, 0, 0, 0, 1, 2, 3, 4, 0]);
     }
 }
+
+/// The listings of the project's README compile and hold. Here, since a crate that is published cannot see the file.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

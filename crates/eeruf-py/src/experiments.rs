@@ -5,7 +5,7 @@ use eeruf_core::Micros;
 use eeruf_sim::{
     LabMate, Method, Robot,
     experiments::{
-        set_one::{self as first_set, Alcove, READINGS},
+        set_one::{self as first_set, Alcove, READINGS, SetOneOptions},
         set_two::{
             self as second_set, Course, Ending, POLE_RADIUS_M, Run, SECOND_AHEAD, SECOND_BEHIND, SetTwoOptions,
             SpeedStep,
@@ -51,7 +51,8 @@ pub(crate) fn set_one(
     in_background(py, progress, move |background| {
         let best = best(&methods, &Alcove::random(0).robot(), background)?;
         let keep_going = |done| background.go_on(Some(done), || format!("{seeds} alcoves"));
-        let table = first_set::set_one(seeds, readings, &methods, best.as_ref(), &keep_going).map_err(Raise::raise)?;
+        let asked = SetOneOptions { seeds, readings, methods, best, ..SetOneOptions::default() };
+        let table = first_set::set_one(&asked, &keep_going).map_err(Raise::raise)?;
         json(&table)
     })
 }

@@ -84,3 +84,8 @@ pub use world::{
     AnySchedule, Clock, Motion, Noise, Random, Robot, ScheduleFile, World, WorldError, WorldFileError, WorldParts,
     ring_of, world_file,
 };
+
+/// The listing of the crate's README compiles and holds.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -20,6 +20,9 @@ pub(crate) struct Common {
     /// How many geometries or courses
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(crate) seeds: Option<u64>,
+    /// The number of the first geometry or course
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    pub(crate) first: u64,
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,

@@ -74,6 +74,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     let bad = bad("set-two");
     let mut options = SetTwoOptions {
         seeds: args.common.seeds.unwrap_or(SEEDS),
+        first: args.common.first,
         second_robot: args.second_robot.map(Corner::position),
         labmate: LabMate { speed_max_m_s: args.speed, ..LabMate::default() },
         odometry: !args.no_odometry,

@@ -50,7 +50,7 @@ pub(crate) fn set_one(found: &SetOne) -> Picture {
         }
         for (lane, (_, figures)) in found.methods.iter().enumerate() {
             let y = TOP + LANE * (lane as f64 + 0.5);
-            let Some(Spread { p10, median, p90 }) = spread_of(figures) else { continue };
+            let Some(Spread { p10, median, p90, .. }) = spread_of(figures) else { continue };
             picture.rect([(at(p10), y - 7.0), (at(p90).max(at(p10) + 1.0), y + 7.0)], colour);
             picture.line((at(median), y - 9.0), (at(median), y + 9.0), 3.0, INK);
             picture.text(percent(median), (at(p90) + 6.0, y), SMALL);

@@ -2,13 +2,14 @@
 
 use std::fmt::Write as _;
 
+use eeruf_core::Micros;
 use eeruf_sim::BestSchedule;
 use eeruf_sim::Method;
 use eeruf_sim::experiments::set_one::{
-    Figures, MULTI_ECHO_CONSECUTIVE, MULTI_ECHO_PATIENCE, MULTI_ECHO_T_DELTA, SetOne,
+    Figures, Latency, MULTI_ECHO_CONSECUTIVE, MULTI_ECHO_PATIENCE, MULTI_ECHO_T_DELTA, SetOne,
 };
 
-use crate::report::percent::{median, percents};
+use crate::report::percent::{fine_percent, median, median_95, percents, percents_95};
 use crate::report::table::markdown;
 
 /// What the paper reports of a method in Set I: how many of the readings were wrong.
@@ -25,6 +26,7 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
         "method",
         "paper: wrong %",
         "wrong, % of all",
+        "confirmed",
         "by crosstalk",
         "wrong, % of accepted",
         "rejected %",
@@ -33,14 +35,20 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
         "age 99 %",
         "accepted/s",
         "starved",
+        "under 5 %",
+        "nearer",
+        "farther",
     ];
     let rows = found.methods.iter().map(|(method, figures)| row(*method, figures));
     let mut text = format!(
-        "Set I: {} alcoves, {} periods of 60 ms each; 10 % / median / 90 % of the alcoves, or the median alone.\n\
+        "Set I: {}, {} sensors, {} periods of {} each; 10 % / median / 90 % of the alcoves, or the median alone.\n\
          multi_echo compares {} readings within {} and has a patience of {}, all others two within 500 us and none;\n\
-         eeruf_best has a period of {} ({}).\n\n",
-        found.seeds,
+         eeruf_best has a period of {} ({}). Nearer, farther: after how many periods a back wall that steps by 0.25 m\n\
+         is read right, median / 90 % of the steps, and how many never are within 64.\n\n",
+        alcoves(found),
+        found.sensors,
         found.periods,
+        Micros::new(found.period_us),
         MULTI_ECHO_CONSECUTIVE,
         MULTI_ECHO_T_DELTA,
         MULTI_ECHO_PATIENCE,
@@ -48,7 +56,45 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
         if best.proven { "proven shortest" } else { "not proven shortest" },
     );
     _ = writeln!(text, "{}", markdown(&header, rows));
+    let header = [
+        "median, 90 % (95 % intervals)",
+        "wrong, % of all",
+        "confirmed",
+        "good lost %",
+        "age 99 %",
+        "accepted/s",
+        "starved",
+    ];
+    let rows = found.methods.iter().map(|(method, figures)| intervals(*method, figures));
+    _ = writeln!(text, "\n{}", markdown(&header, rows));
     text
+}
+
+fn alcoves(found: &SetOne) -> String {
+    match found.first {
+        0 => format!("{} alcoves", found.seeds),
+        first => format!("{} alcoves from {first} on", found.seeds),
+    }
+}
+
+fn intervals(method: Method, figures: &Figures) -> Vec<String> {
+    let [low, high] = figures.starved_95;
+    vec![
+        method.to_string(),
+        percents_95(figures.wrong_of_all),
+        percents_95(figures.confirmed_wrong_of_all),
+        percents_95(figures.good_lost),
+        median_95(figures.age_p99_ms, 0),
+        median_95(figures.readings_per_s, 1),
+        format!("{:.2} ({low:.2}-{high:.2})", figures.starved),
+    ]
+}
+
+/// Median and 90 %, and how many never see it.
+fn latency(latency: Option<Latency>) -> String {
+    let Some(Latency { median, p90, never, .. }) = latency else { return "-".to_owned() };
+    let periods = |periods: Option<u32>| periods.map_or_else(|| "never".to_owned(), |periods| periods.to_string());
+    format!("{} / {}, {} %", periods(median), periods(p90), fine_percent(never))
 }
 
 fn row(method: Method, figures: &Figures) -> Vec<String> {
@@ -56,6 +102,7 @@ fn row(method: Method, figures: &Figures) -> Vec<String> {
         method.to_string(),
         paper(method).to_owned(),
         percents(figures.wrong_of_all),
+        percents(figures.confirmed_wrong_of_all),
         percents(figures.crosstalk_of_all),
         percents(figures.wrong_of_accepted),
         percents(figures.rejected),
@@ -64,5 +111,8 @@ fn row(method: Method, figures: &Figures) -> Vec<String> {
         median(figures.age_p99_ms, 0),
         median(figures.readings_per_s, 1),
         format!("{:.2}", figures.starved),
+        format!("{:.2}", figures.seldom),
+        latency(figures.nearer),
+        latency(figures.farther),
     ]
 }

@@ -107,8 +107,15 @@ fn verdict(runs: &[Readings], sensors: usize) -> String {
             ", and {} of {sensors} sensors never had one accepted: foreign sound always came first there",
             eeruf.starved
         );
-        if of(Method::MultiEcho).is_some_and(|several| several.starved < eeruf.starved) {
-            _ = write!(text, ".\nSensors that report several echoes get round that (multi_echo)");
+        let fewer = |method| of(method).is_some_and(|other| other.starved < eeruf.starved);
+        match (fewer(Method::MultiEcho), fewer(Method::EerufHopping)) {
+            (true, true) => {
+                let names = "several echoes (multi_echo) or hop in time (eeruf_hopping)";
+                _ = write!(text, ".\nSensors that report {names} get round that");
+            }
+            (true, false) => _ = write!(text, ".\nSensors that report several echoes get round that (multi_echo)"),
+            (false, true) => _ = write!(text, ".\nTime hopping gets round that (eeruf_hopping)"),
+            (false, false) => {}
         }
     }
     _ = writeln!(text, ".");

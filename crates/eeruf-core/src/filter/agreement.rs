@@ -4,6 +4,7 @@ use super::error::FilterError;
 
 /// How many readings in a row confirm a track, and for how many firings it may then coast, in one byte.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct Agreement(u8);
 
 impl Agreement {

@@ -43,6 +43,7 @@ pub(crate) use tracker::Tracker;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct EchoFilter<const K: usize, const E: usize = 1> {
     trackers: [Tracker<E>; K],
     rule: Rule,

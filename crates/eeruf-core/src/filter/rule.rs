@@ -6,6 +6,7 @@ use crate::time::Micros;
 
 /// When two readings agree, and how often they must.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct Rule {
     pub(crate) t_delta: Micros,
     pub(crate) agreement: Agreement,

@@ -8,6 +8,7 @@ use super::agreement::Agreement;
 /// A track that is not confirmed ends when its echo is missing once. So every confirmed track began with firings in a
 /// row. Crosstalk repeats in firings of one phase only, and no two of these come in a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct TrackState(u8);
 
 impl TrackState {

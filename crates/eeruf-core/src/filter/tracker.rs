@@ -11,6 +11,7 @@ const NEVER: u16 = u16::MAX;
 
 /// The tracks of one sensor's echoes: eight bytes where it reports one echo.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct Tracker<const E: usize> {
     /// The echoes to compare with, earliest first: those of the firing before, and those whose tracks coast.
     /// [`NO_ECHO`] stands for silence where it has a track.

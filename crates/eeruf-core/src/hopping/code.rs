@@ -8,7 +8,7 @@ use crate::time::Micros;
 ///
 /// What sound of sensor x, sent j periods before, moves by from phase m to phase m' of sensor y is a multiple of the
 /// step, and modulo `q` it is `(x - y)(m - m')`, which is not 0. So it moves by at least one step, for each pair of
-/// sensors, each j and each pair of phases, whatever the lags are (`docs/theory.md`, section 10).
+/// sensors, each j and each pair of phases, whatever the lags are (`docs/theory.md`, section 9).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HoppingCode {

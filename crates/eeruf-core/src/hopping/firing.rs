@@ -45,11 +45,12 @@ pub struct HoppingFiring<const K: usize> {
     pub(super) changed: bool,
     pub(super) random: SmallRandom,
     pub(super) disabled: SensorSet,
+    paused: bool,
     lateness: Lateness,
     pub(super) schedule: HoppingSchedule<K>,
     pub(super) settings: HoppingSettings,
     pub(super) window: Micros,
-    /// From a firing until nothing of it is heard in a window that opens then.
+    /// From a firing until its sensor no longer listens, and nothing of it is heard in a window that opens then.
     pub(super) dies: Micros,
 }
 
@@ -79,11 +80,12 @@ impl<const K: usize> HoppingFiring<K> {
             changed: false,
             random: SmallRandom::new(seed),
             disabled: SensorSet::NONE,
+            paused: false,
             lateness: Lateness::NEW,
             schedule: *schedule,
             settings,
             window,
-            dies: reach.saturating_sub(blanking).saturating_add(Micros::new(1)),
+            dies: reach.saturating_sub(blanking).max(window).saturating_add(Micros::new(1)),
         };
         firing.begin_period();
         firing
@@ -137,6 +139,7 @@ impl<const K: usize> HoppingFiring<K> {
     fn begin_period(&mut self) {
         self.place = 0;
         self.plan();
+        self.set_paused(self.paused);
     }
 
     /// Nothing that is heard across this moment moves as the code says.
@@ -223,6 +226,14 @@ impl<const K: usize> Scheduler for HoppingFiring<K> {
         self.disabled.set(sensor, !enabled);
         if !enabled {
             self.leave_out(sensor, self.place);
+        }
+    }
+
+    fn set_paused(&mut self, paused: bool) {
+        self.paused = paused;
+        if paused {
+            // What is left of the period.
+            self.planned = self.place;
         }
     }
 

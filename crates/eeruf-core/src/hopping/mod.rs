@@ -38,7 +38,7 @@ pub use settings::{HoppingListening, HoppingSettings};
 ///
 /// One path of fixed length from one sensor to another is never accepted, not even tentatively, however late firings
 /// are, if its sound dies within `reach` of [`HoppingListening`] and that is less than a period: `docs/theory.md`
-/// section 10 says why, and what is not covered.
+/// section 9 says why, and what is not covered.
 ///
 /// ```
 /// use eeruf_core::*;
@@ -75,7 +75,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     ///
     /// # Errors
     /// [`HoppingError`] for a tracker's setting out of its range, a `t_delta` that is not below the step of the code, a
-    /// period that is not longer than window and code, or a window that ends within the blanking time.
+    /// period that is shorter than window and code together or than twice the code and a step, or a window that ends within the blanking time.
     pub fn new(
         schedule: &HoppingSchedule<K>,
         settings: HoppingSettings,
@@ -89,7 +89,9 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         if code.step() <= t_delta {
             return Err(HoppingError::TDelta { t_delta, step: code.step() });
         }
-        let least = window.saturating_add(code.width());
+        // The sensor must have stopped listening, and a path must not read the same with two ages.
+        let two_ages = code.width().saturating_add(code.width()).saturating_add(code.step());
+        let least = window.saturating_add(code.width()).max(two_ages);
         if schedule.period() < least {
             return Err(HoppingError::Period { period: schedule.period(), least });
         }

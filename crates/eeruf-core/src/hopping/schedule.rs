@@ -67,6 +67,24 @@ impl<const K: usize> HoppingSchedule<K> {
         Self::new(code, period, lags)
     }
 
+    /// The firing times as a table of `M` phases, for [`PhaseTable`](crate::PhaseTable): of the code's first `M`, or
+    /// from the first again if there are more. Sensors that are not there fire at once.
+    pub const fn table<const M: usize>(&self) -> [[Micros; K]; M] {
+        let mut table = [[Micros::ZERO; K]; M];
+        let mut phase = 0;
+        while phase < M {
+            let mut sensor = 0;
+            while sensor < self.code.sensors() {
+                if let Some(t_fire) = self.t_fire((phase % self.code.phases() as usize) as u8, sensor) {
+                    table[phase][sensor] = t_fire;
+                }
+                sensor += 1;
+            }
+            phase += 1;
+        }
+        table
+    }
+
     /// The code.
     pub const fn code(&self) -> &HoppingCode {
         &self.code

@@ -41,7 +41,8 @@ impl HoppingSettings {
         neighbours: 4,
     };
     /// For robots that must stop early: a little more is wrong.
-    pub const QUICK: Self = Self { tracker: TrackerSettings::QUICK, solo_after: 4, solo_spacing: 2, ..Self::BALANCED };
+    pub const QUICK: Self =
+        Self { tracker: TrackerSettings::QUICK, solo_rate: 100, solo_after: 4, solo_spacing: 2, ..Self::BALANCED };
     /// For maps: confirmed echoes alone, and few solo periods.
     pub const MAPS: Self = Self {
         tracker: TrackerSettings::MAPS,

@@ -83,7 +83,7 @@ fn a_blind_sensor_gets_solo_periods_in_which_all_is_silent_before_and_after() {
     let fired = fire(&mut ring(settings), 200, hears);
     let solos: Vec<_> = fired.iter().enumerate().filter(|(_, firing)| firing.2).collect();
     assert!(solos.len() > 10 && solos.iter().all(|(_, (_, sensor, _))| *sensor == 2), "{}", solos.len());
-    let silence = WINDOW.as_micros() - 2380;
+    let silence = WINDOW.as_micros();
     for (place, (at, ..)) in solos {
         assert!(at - fired[place - 1].0 > silence);
         assert!(fired.get(place + 1).is_none_or(|next| next.0 - at > silence));
@@ -135,8 +135,9 @@ fn a_clock_that_jumps_restarts_the_ring_and_does_not_hang_it() {
             events += 1;
         }
         assert!(events < 200 && ring.next_deadline().since(now) <= Micros::from_millis(300), "{jump}: {events}");
-        fire(&mut ring, 1, |_, _| Some(12_000));
-        assert_eq!(fire(&mut ring, 3, |_, _| Some(12_000)).len(), 3 * 8);
+        let fired = fire(&mut ring, 6, |_, _| Some(12_000));
+        let times = |sensor| fired.iter().filter(|firing| firing.1 == sensor).count();
+        assert!((0..8).all(|sensor| times(sensor) >= 3), "{jump}");
     }
 }
 

@@ -91,6 +91,22 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         Ok(())
     }
 
+    /// Lets no sensor fire until [`resume`](Self::resume). Readings of firings under way are still emitted; periods go on,
+    /// so that a deadline still comes once a period. For a longer sleep do not poll, and [`restart`](Self::restart)
+    /// after it.
+    pub fn pause(&mut self) {
+        self.scheduler.set_paused(true);
+    }
+
+    /// Lets sensors fire again: as of the next period with scheduled firing, with immediate refiring at once. Readings from
+    /// before are forgotten.
+    pub fn resume(&mut self) {
+        self.scheduler.set_paused(false);
+        for sensor in &mut self.sensors {
+            sensor.tracker.forget();
+        }
+    }
+
     /// Starts again with phase a at `now`, or as soon as the last firings allow. Firings under way are dropped,
     /// readings from before are forgotten; ages and the count of periods go on.
     pub fn restart(&mut self, now: Instant) {

@@ -8,6 +8,7 @@
 
 /// The least and the largest stretch of some firings, in microseconds.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 struct Stretches {
     least: u16,
@@ -31,6 +32,7 @@ impl Stretches {
 
 /// What late firings have done to the timetable in this period and the one before. All sums stop at 65,535 us.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 pub(super) struct Lateness {
     /// At how many more period ends something late is still remembered; 0 while all is on time.

@@ -10,6 +10,7 @@ pub(super) const LONGEST: Micros = Micros::new(u16::MAX as u32);
 
 /// Window, `t_delta` and blanking time, none of them more than the scheduler allows.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 pub(super) struct Listening {
     window: Micros,

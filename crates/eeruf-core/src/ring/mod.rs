@@ -51,6 +51,7 @@ pub use events::{PeriodStats, Reading, RingEvent};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 // In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction.
 #[repr(C)]
 pub struct Ring<S, const K: usize, const E: usize = 1> {

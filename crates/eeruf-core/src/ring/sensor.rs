@@ -7,6 +7,7 @@ use crate::time::{Instant, Micros};
 
 /// What is known of one sensor between its firing and its next: 16 bytes where it reports one echo.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Sensor<const E: usize> {
     pub(super) fired: Instant,
     /// The echoes of the present firing; also, in the first place, the time of an early or late edge.

@@ -6,6 +6,8 @@ mod build;
 mod error;
 mod limits;
 mod refire;
+#[cfg(feature = "serde")]
+mod serde;
 mod verified_for;
 
 use core::hash::{Hash, Hasher};
@@ -35,6 +37,7 @@ pub use verified_for::VerifiedFor;
 /// # Ok::<(), eeruf_core::ScheduleError>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 // In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction.
 #[repr(C)]
 pub struct Schedule<const K: usize, const M: usize = 2> {
@@ -52,6 +55,7 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
 
 /// The firings of one phase in the order in which they come, so that the scheduler need not look for the next one.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 struct Firings<const K: usize> {
     /// The sensors by firing time; then nobody (255).

@@ -7,6 +7,7 @@ use crate::time::{Instant, Micros};
 
 /// What a scheduler wants done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SchedulerStep {
     /// Fire this sensor, now.
     Fire {
@@ -29,6 +30,7 @@ pub enum SchedulerStep {
 
 /// What a scheduler allows the ring that it fires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limits<'s> {
     /// How long a sensor may listen: it does not fire again within this time of firing, unless it has ended.
     pub longest_window: Micros,
@@ -77,7 +79,9 @@ pub trait Scheduler {
     fn sensors(&self) -> usize;
     /// Lets a sensor fire from its next turn on, or stops it.
     fn set_enabled(&mut self, sensor: u8, enabled: bool);
-    /// Whether a sensor fires.
+    /// Lets no sensor fire until it is unset; periods go on.
+    fn set_paused(&mut self, paused: bool);
+    /// Whether a sensor fires, but for a pause.
     fn is_enabled(&self, sensor: u8) -> bool;
     /// Starts again with phase a, no sooner than `now`.
     fn restart(&mut self, now: Instant);

@@ -20,6 +20,7 @@ use crate::time::{Instant, Micros};
 /// Immediate refiring: a sensor fires again `T_wait` after it has stopped listening; the first time after `T_lag +
 /// T_wait`.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ImmediateRefiring<'s, const K: usize, const M: usize = 2> {
     schedule: &'s Schedule<K, M>,
     min_refire: Micros,
@@ -29,9 +30,11 @@ pub struct ImmediateRefiring<'s, const K: usize, const M: usize = 2> {
     enabled: SensorSet,
     period_start: Instant,
     phase: u8,
+    paused: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Turn {
     /// When the sensor fires next; while it listens, when it fired.
     at: Instant,
@@ -54,6 +57,7 @@ impl<'s, const K: usize, const M: usize> ImmediateRefiring<'s, K, M> {
             enabled: SensorSet::ALL,
             period_start: now,
             phase: 0,
+            paused: false,
         };
         refiring.restart(now);
         refiring
@@ -66,7 +70,7 @@ impl<'s, const K: usize, const M: usize> ImmediateRefiring<'s, K, M> {
         for (x, turn) in self.sensors.iter().take(self.schedule.sensors()).enumerate() {
             // At most 64 sensors.
             let x = x as u8;
-            let waits = self.is_enabled(x) && !self.listening.contains(x);
+            let waits = !self.paused && self.is_enabled(x) && !self.listening.contains(x);
             if waits && first.is_none_or(|(_, at)| !turn.at.has_reached(at)) {
                 first = Some((x, turn.at));
             }
@@ -154,6 +158,10 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
         self.enabled.set(sensor, enabled);
     }
 
+    fn set_paused(&mut self, paused: bool) {
+        self.paused = paused;
+    }
+
     fn sensors(&self) -> usize {
         self.schedule.sensors()
     }
@@ -163,18 +171,21 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
     }
 
     fn restart(&mut self, now: Instant) {
-        self.listening = SensorSet::NONE;
         self.period_start = now;
         self.phase = 0;
+        // Nobody waits for longer, unless the clock has jumped.
+        let longest = self.min_refire.max(self.schedule.period());
         for (x, turn) in self.sensors.iter_mut().enumerate() {
-            let t_fire = self.schedule.t_fire(Phase::A, x).unwrap_or(Micros::ZERO);
-            let soonest = turn.at + self.min_refire;
-            let mut at = now + t_fire;
-            if soonest.has_reached(at) && soonest.since(at) <= self.min_refire {
+            let mut at = now + self.schedule.t_fire(Phase::A, x).unwrap_or(Micros::ZERO);
+            // One that has fired and ended waits for its refire time already.
+            let listens = self.listening.contains(x as u8);
+            let soonest = if listens { turn.at + self.min_refire } else { turn.at };
+            if soonest.has_reached(at) && soonest.since(now) <= longest {
                 at = soonest;
             }
             *turn = Turn { at, phase: 0 };
         }
+        self.listening = SensorSet::NONE;
     }
 
     fn periods_since(&self, _phase: Phase) -> u8 {

@@ -19,6 +19,7 @@ use crate::time::{Instant, Micros};
 /// assert_eq!(scheduler.poll(first), Some(SchedulerStep::Fire { sensor: 0, phase: Phase::A, late: Micros::ZERO }));
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 // In this order for the short offsets of a Cortex-M0: see `Ring`.
 #[repr(C)]
 pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
@@ -27,8 +28,8 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
     following: u8,
     /// The next sensor to fire; one that is not there when all have.
     next: u8,
-    /// Whether any sensor is disabled, since asking all 64 takes time at every firing.
-    some_disabled: bool,
+    /// Whether any sensor is disabled, since asking all 64 takes time at every firing, and whether all are, by a pause.
+    skips: Skips,
     /// When it is due, or when the period ends. Worked out once per step, since it is asked for at every poll.
     due: Instant,
     schedule: &'s Schedule<K, M>,
@@ -36,6 +37,15 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
     last_fired: Instant,
     disabled: SensorSet,
     next_schedule: Option<&'s Schedule<K, M>>,
+}
+
+/// Who does not fire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+enum Skips {
+    Nobody,
+    Disabled,
+    All,
 }
 
 impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
@@ -47,7 +57,7 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
             phase: 0,
             following: 1,
             next,
-            some_disabled: false,
+            skips: Skips::Nobody,
             due: Instant::from_micros(now.wrapping_add(gap.as_micros())),
             schedule,
             last_fired: Instant::from_micros(now.wrapping_sub(settling_time(schedule).as_micros())),
@@ -76,14 +86,14 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     fn turn(&mut self, from: Instant) {
         self.due = from;
         self.turn_once();
-        if self.some_disabled {
+        if self.skips != Skips::Nobody {
             self.skip_disabled();
         }
     }
 
     #[cold]
     fn skip_disabled(&mut self) {
-        while is_sensor::<K>(self.next) && self.disabled.contains(self.next) {
+        while is_sensor::<K>(self.next) && (self.skips == Skips::All || self.disabled.contains(self.next)) {
             self.turn_once();
         }
     }
@@ -186,7 +196,18 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
 
     fn set_enabled(&mut self, sensor: u8, enabled: bool) {
         self.disabled.set(sensor, !enabled);
-        self.some_disabled = self.disabled != SensorSet::NONE;
+        self.set_paused(self.skips == Skips::All);
+    }
+
+    fn set_paused(&mut self, paused: bool) {
+        let some_disabled = self.disabled != SensorSet::NONE;
+        self.skips = if paused {
+            Skips::All
+        } else if some_disabled {
+            Skips::Disabled
+        } else {
+            Skips::Nobody
+        };
         self.skip_disabled();
     }
 

@@ -9,6 +9,7 @@ use crate::time::Micros;
 
 /// Why a search cannot start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum SearchError {
     /// Times do not fit the grid.
@@ -28,6 +29,13 @@ pub enum SearchError {
     Problem(ProblemError),
     /// Even firing one by one takes longer than [`MAX_PERIOD`].
     TooLong {
+        /// What it takes, in microseconds.
+        period_us: u64,
+    },
+    /// Firing one by one takes longer than [`MAX_PERIOD`] because every need is rounded up to a whole tick.
+    CoarseTick {
+        /// The tick.
+        tick: Micros,
         /// What it takes, in microseconds.
         period_us: u64,
     },
@@ -78,6 +86,12 @@ impl fmt::Display for SearchError {
                  or window, or a smaller t_delta",
                 period_us / 1_000_000
             ),
+            Self::CoarseTick { tick, period_us } => write!(
+                f,
+                "in ticks of {tick} firing one by one already takes {} s; expected at most {MAX_PERIOD}, so use a finer \
+                 tick",
+                period_us / 1_000_000
+            ),
             Self::Schedule(error) => error.fmt(f),
         }
     }
@@ -87,6 +101,7 @@ impl core::error::Error for SearchError {}
 
 /// Why times do not fit a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum GridError {
     /// A tick of no length.

@@ -5,6 +5,7 @@ use crate::time::Micros;
 
 /// The best schedule that a search came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Found<const K: usize> {
     /// The schedule; `None` if there is none, or none was found within the budget.
     pub schedule: Option<Schedule<K>>,

@@ -15,6 +15,14 @@ impl Grid {
         if tick == Micros::ZERO { Err(GridError::NoTick) } else { Ok(Self { tick_us: tick.as_micros() }) }
     }
 
+    /// A grid on which every time lies.
+    pub(super) const FINEST: Self = Self { tick_us: 1 };
+
+    /// The tick in microseconds.
+    pub(super) const fn tick_us(self) -> u64 {
+        self.tick_us as u64
+    }
+
     pub(super) const fn tick(self) -> Micros {
         Micros::new(self.tick_us)
     }

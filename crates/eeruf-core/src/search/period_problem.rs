@@ -138,7 +138,7 @@ impl PeriodProblem<'_> {
         memory: &mut [i32],
         control: &mut impl Control,
     ) -> Result<Found<K>, SearchError> {
-        let (grid, rows) = self.grid()?;
+        let (grid, rows) = self.with(Requirements { t_delta: Micros::ZERO, ..self.requirements }).grid()?;
         let ticks = grid.exactly("the period", period)?;
         let largest = design::maximize_separation(&self.problem(grid, &rows), ticks, budget, memory, control)?;
         largest_found(grid, ticks, largest, |separation| grid.t_delta(separation))
@@ -155,7 +155,7 @@ impl PeriodProblem<'_> {
         memory: &mut [i32],
         control: &mut impl Control,
     ) -> Result<Found<K>, SearchError> {
-        let (grid, rows) = self.grid()?;
+        let (grid, rows) = self.with(Requirements { min_interval: Micros::ZERO, ..self.requirements }).grid()?;
         let ticks = grid.exactly("the period", period)?;
         let largest = design::maximize_interval(&self.problem(grid, &rows), ticks, budget, memory, control)?;
         largest_found(grid, ticks, largest, |interval| Some(grid.time(interval)))
@@ -167,14 +167,23 @@ impl PeriodProblem<'_> {
         }
         self.requirements.layout.check(self.sensors)?;
         let (grid, rows) = (Grid::new(self.tick)?, self.requirements.layout.rows(self.sensors));
-        let Problem { sensors, separation, interval, window, .. } = self.problem(grid, &rows);
-        let ticks = design::one_by_one(sensors.min(MAX_SENSORS), separation, interval, window);
-        let period_us = ticks.saturating_mul(u64::from(self.tick.as_micros()));
-        // What is too long in ticks is for the search to refuse.
-        if ticks <= u64::from(design::MAX_TICKS) && period_us > u64::from(MAX_PERIOD.as_micros()) {
+        let one_by_one = |grid: Grid| {
+            let period_us = design::one_by_one(&self.problem(grid, &rows)).saturating_mul(grid.tick_us());
+            (period_us > u64::from(MAX_PERIOD.as_micros())).then_some(period_us)
+        };
+        // What is too long in ticks, and not in time, is for the search to refuse.
+        if let Some(period_us) = one_by_one(Grid::FINEST) {
             return Err(SearchError::TooLong { period_us });
         }
+        if let Some(period_us) = one_by_one(grid) {
+            return Err(SearchError::CoarseTick { tick: self.tick, period_us });
+        }
         Ok((grid, rows))
+    }
+
+    /// The same for other requirements.
+    fn with<'r>(&self, requirements: Requirements<'r>) -> PeriodProblem<'r> {
+        PeriodProblem { sensors: self.sensors, requirements, tick: self.tick }
     }
 
     fn problem<'r>(&self, grid: Grid, rows: &'r [u64; MAX_SENSORS]) -> Problem<'r> {

@@ -57,9 +57,9 @@ impl Firing {
 /// for _ in 0..100 {
 ///     assert!(matches!(push(3, 7_000)?, ReadingKind::First | ReadingKind::Rejected));
 /// }
-/// // An echo from three phases is tentative, from five confirmed.
+/// // An echo from two phases is tentative, from five confirmed.
 /// let kinds = [4, 5, 6, 7, 8].map(|phase| push(phase, 9_000));
-/// assert_eq!(kinds[2]?, ReadingKind::Tentative);
+/// assert_eq!(kinds[1]?, ReadingKind::Tentative);
 /// assert_eq!(kinds[4]?, ReadingKind::Accepted);
 /// # Ok::<(), eeruf_core::TrackerError>(())
 /// ```
@@ -73,7 +73,7 @@ pub struct EchoTracker<const K: usize, const H: usize = 4> {
 }
 
 /// A sensor has this rate of unexplained readings, of 255, where a tentative echo needs one vote more.
-const RESTLESS: u8 = 102;
+const RESTLESS: u8 = 178;
 
 impl<const K: usize, const H: usize> EchoTracker<K, H> {
     /// A tracker that knows nothing yet.

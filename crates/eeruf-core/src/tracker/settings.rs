@@ -30,21 +30,21 @@ pub struct TrackerSettings {
 }
 
 impl TrackerSettings {
-    /// For most robots: what comes nearer is reported as tentative after some three periods.
+    /// For most robots: what comes nearer is reported as tentative after some four periods.
     pub const BALANCED: Self = Self {
         t_delta: Micros::new(150),
         near: Micros::new(400),
         votes: 5,
-        score_limit: 7,
-        contradiction: 1,
+        score_limit: 6,
+        contradiction: 2,
         solo_contradiction: 6,
-        tentative_votes: 3,
+        tentative_votes: 2,
         tentative_within: Micros::new(60),
     };
-    /// For robots that must stop early: two readings from different phases are reported as tentative.
-    pub const QUICK: Self = Self { tentative_votes: 2, ..Self::BALANCED };
-    /// For maps: confirmed echoes alone.
-    pub const MAPS: Self = Self { tentative_votes: 0, ..Self::BALANCED };
+    /// For robots that must stop early: four phases confirm, and tentative readings need not agree as closely.
+    pub const QUICK: Self = Self { votes: 4, tentative_within: Micros::new(100), ..Self::BALANCED };
+    /// For maps: confirmed echoes alone, and beliefs that last.
+    pub const MAPS: Self = Self { tentative_votes: 0, score_limit: 7, contradiction: 1, ..Self::BALANCED };
 
     pub(super) const fn check(&self) -> Result<(), TrackerError> {
         let (t_delta, near) = (self.t_delta.as_micros(), self.near.as_micros());

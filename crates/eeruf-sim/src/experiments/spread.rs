@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::results::quantile;
+use crate::{results::quantile, world::Random};
 
 /// Quantiles of a figure over many runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -13,7 +13,16 @@ pub struct Spread {
     pub median: f64,
     /// Nine runs in ten have no more.
     pub p90: f64,
+    /// Where the median lies with 95 % confidence, by bootstrap.
+    pub median_95: [f64; 2],
+    /// Where `p90` lies with 95 % confidence, by bootstrap.
+    pub p90_95: [f64; 2],
 }
+
+/// How many samples the bootstrap draws.
+const SAMPLES: usize = 1000;
+/// Seeds the bootstrap, so that the same values have the same intervals.
+const SEED: u64 = 1979;
 
 impl Spread {
     /// The quantiles of some values; `None` without any.
@@ -28,6 +37,44 @@ impl Spread {
         let mut values: Vec<_> = values.into_iter().collect();
         let mut at = |share| quantile(&mut values, share);
         let (p10, median, p90) = (at(0.1), at(0.5), at(0.9));
-        (!values.is_empty()).then_some(Self { p10, median, p90 })
+        let interval = |share| interval_95(&values, |sample| quantile(sample, share));
+        let (median_95, p90_95) = (interval(0.5), interval(0.9));
+        (!values.is_empty()).then_some(Self { p10, median, p90, median_95, p90_95 })
+    }
+}
+
+/// The 95 % interval of a figure of some values, by the percentile bootstrap (Efron, 1979); `[0, 0]` without values.
+pub(super) fn interval_95(values: &[f64], figure: impl Fn(&mut [f64]) -> f64) -> [f64; 2] {
+    if values.is_empty() {
+        return [0.0; 2];
+    }
+    let mut random = Random::new(SEED);
+    let mut sample = vec![0.0; values.len()];
+    let mut draw = || {
+        for drawn in &mut sample {
+            *drawn = values[(random.bits() % values.len() as u64) as usize];
+        }
+        figure(&mut sample)
+    };
+    let mut figures: Vec<_> = (0..SAMPLES).map(|_| draw()).collect();
+    [0.025, 0.975].map(|share| quantile(&mut figures, share))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_interval_of_a_median_holds_it_and_narrows_with_more_values() {
+        let of = |count: u32| Spread::of((0..count).map(|n| f64::from(n * 7919 % count) / f64::from(count))).unwrap();
+        let (few, many) = (of(50), of(5000));
+        for spread in [few, many] {
+            let [low, high] = spread.median_95;
+            assert!(low <= spread.median && spread.median <= high && (low..=high).contains(&0.5), "{spread:?}");
+        }
+        let width = |spread: &Spread| spread.median_95[1] - spread.median_95[0];
+        assert!(width(&many) < width(&few) / 5.0);
+        // Of the median of n values spread evenly, 1.96 / sqrt(4 n) to either side.
+        assert!((width(&many) - 2.0 * 1.96 / 20_000_f64.sqrt()).abs() < 0.006, "{}", width(&many));
     }
 }

@@ -17,13 +17,26 @@ pub(crate) struct DitherFiring {
     /// The next of them.
     next: usize,
     enabled: [bool; MAX_SENSORS],
+    paused: bool,
+    last_fired: Option<Instant>,
 }
 
 impl DitherFiring {
     /// `lag + widest` must stay below the period.
     pub(crate) fn new(lags: Vec<Micros>, period: Micros, widest: Micros, random: Random, now: Instant) -> Self {
         let due = Vec::with_capacity(lags.len());
-        let mut firing = Self { lags, period, widest, random, start: now, due, next: 0, enabled: [true; MAX_SENSORS] };
+        let mut firing = Self {
+            lags,
+            period,
+            widest,
+            random,
+            start: now,
+            due,
+            next: 0,
+            enabled: [true; MAX_SENSORS],
+            paused: false,
+            last_fired: None,
+        };
         firing.begin_period(now);
         firing
     }
@@ -42,7 +55,7 @@ impl DitherFiring {
     }
 
     fn skip_disabled(&mut self) {
-        while self.due.get(self.next).is_some_and(|&(_, sensor)| !self.is_enabled(sensor)) {
+        while self.due.get(self.next).is_some_and(|&(_, sensor)| self.paused || !self.is_enabled(sensor)) {
             self.next += 1;
         }
     }
@@ -55,12 +68,14 @@ impl Scheduler for DitherFiring {
 
     fn fire(&mut self, now: Instant) {
         self.start += now.since(self.deadline());
+        self.last_fired = Some(now);
         self.next += 1;
         self.skip_disabled();
     }
 
     fn postpone(&mut self, _sensor: u8, by: Micros) {
         self.start += by;
+        self.last_fired = self.last_fired.map(|fired| fired + by);
     }
 
     fn end_period(&mut self, _now: Instant) -> (Phase, bool) {
@@ -81,6 +96,11 @@ impl Scheduler for DitherFiring {
         self.skip_disabled();
     }
 
+    fn set_paused(&mut self, paused: bool) {
+        self.paused = paused;
+        self.skip_disabled();
+    }
+
     fn sensors(&self) -> usize {
         self.lags.len()
     }
@@ -90,7 +110,10 @@ impl Scheduler for DitherFiring {
     }
 
     fn restart(&mut self, now: Instant) {
-        self.begin_period(now);
+        // A clock that has jumped says nothing about when the last firing was.
+        let settled = self.last_fired.map(|fired| fired + self.min_refire());
+        let soon = settled.filter(|settled| settled.has_reached(now) && settled.since(now) <= self.min_refire());
+        self.begin_period(soon.unwrap_or(now));
     }
 
     fn periods_since(&self, _phase: Phase) -> u8 {
@@ -107,5 +130,22 @@ impl Scheduler for DitherFiring {
 
     fn horizon(&self) -> Micros {
         self.period.saturating_add(self.period)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eeruf_core::check_scheduler;
+
+    #[test]
+    fn dither_keeps_the_contract_whatever_is_done_to_it() {
+        let ms = Micros::from_millis;
+        for seed in 0..40_u32 {
+            let lags = vec![ms(0), ms(15), ms(30), ms(45)];
+            let now = Instant::from_micros(u32::MAX - 500_000);
+            let mut dither = DitherFiring::new(lags, ms(60), ms(14), Random::new(seed.into()), now);
+            check_scheduler(&mut dither, now, 2_000, seed).unwrap();
+        }
     }
 }

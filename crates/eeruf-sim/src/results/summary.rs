@@ -47,6 +47,8 @@ pub struct Summary {
     pub readings_per_s: f64,
     /// How many sensors never had a reading accepted, and so are blind.
     pub starved: usize,
+    /// How many sensors had fewer than 5 % of their readings accepted, the starved ones included.
+    pub seldom: usize,
 }
 
 /// How old a sensor's last accepted reading is, in milliseconds, whenever it fires: from the firing that the accepted
@@ -73,6 +75,8 @@ impl Readings {
         // Per robot and sensor: when the last accepted reading was fired.
         let mut last =
             vec![[None; eeruf_core::MAX_SENSORS]; self.robot.iter().max().map_or(0, |&r| usize::from(r) + 1)];
+        // And how many of its readings were accepted, of how many.
+        let mut shares = vec![[(0_usize, 0_usize); eeruf_core::MAX_SENSORS]; last.len()];
         for reading in 0..self.len() {
             let believed = self.is_accepted(reading);
             let is_good = self.is_good(reading, tolerance_us);
@@ -89,7 +93,11 @@ impl Readings {
             if believed {
                 *last_accepted = Some(self.fired_s[reading]);
             }
+            let (taken, of) = &mut shares[usize::from(self.robot[reading])][usize::from(self.sensor[reading])];
+            *taken += usize::from(believed);
+            *of += 1;
         }
+        let often = shares.iter().flatten().filter(|&&(taken, of)| taken > 0 && 20 * taken >= of).count();
         let seeing = last.iter().flatten().filter(|last| last.is_some()).count();
         let share = |count: usize, of: usize| if of == 0 { 0.0 } else { count as f64 / of as f64 };
         Summary {
@@ -106,6 +114,7 @@ impl Readings {
             age_ms: Age { median: quantile(&mut ages, 0.5), p99: quantile(&mut ages, 0.99) },
             readings_per_s: if self.duration_s > 0.0 { accepted as f64 / self.duration_s } else { 0.0 },
             starved: self.sensors.saturating_sub(seeing),
+            seldom: self.sensors.saturating_sub(often),
         }
     }
 }

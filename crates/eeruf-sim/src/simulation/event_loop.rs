@@ -161,6 +161,12 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         self.recorder.take(self.channels.paths(), duration_s)
     }
 
+    /// From now on the scene is that of another world, whose robots are the same.
+    pub(crate) fn change_scene(&mut self, world: &'a World) -> Result<(), PathsError> {
+        self.world = world;
+        self.channels.change_scene(world, &self.kinematics)
+    }
+
     /// Where the robots are.
     pub(crate) fn kinematics(&self) -> &K {
         &self.kinematics

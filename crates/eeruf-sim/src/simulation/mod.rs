@@ -2,6 +2,7 @@
 //! readings. It uses all rooms from `geometry` to `results`; a pilot who steers by the readings is a `Kinematics`.
 
 mod arrivals;
+mod changing;
 mod channels;
 mod error;
 mod event_loop;
@@ -15,6 +16,7 @@ mod running_ring;
 mod simulate;
 mod steered;
 
+pub(crate) use changing::simulate_in_turn;
 pub use error::SimulationError;
 pub use event_loop::expected_readings;
 pub(crate) use event_loop::run;

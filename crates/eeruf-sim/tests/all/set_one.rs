@@ -3,10 +3,10 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use eeruf_sim::{
-    Method, best_schedule_for,
+    BestSchedule, Method, best_schedule_for,
     experiments::{
         ExperimentError,
-        set_one::{Alcove, Figures, READINGS, SetOne, set_one},
+        set_one::{Alcove, Figures, READINGS, SetOne, SetOneOptions, set_one},
     },
     requirements_of,
 };
@@ -14,9 +14,13 @@ use eeruf_sim::{
 const METHODS: [Method; 6] =
     [Method::Conventional, Method::Comparison, Method::Eeruf, Method::EerufBest, Method::Adaptive, Method::MultiEcho];
 
+fn asked(seeds: u64, readings: u32, methods: &[Method], best: Option<BestSchedule>) -> SetOneOptions {
+    SetOneOptions { seeds, readings, methods: methods.to_vec(), best, ..SetOneOptions::default() }
+}
+
 fn run(seeds: u64, readings: u32, methods: &[Method]) -> SetOne {
     let best = best_schedule_for(&Alcove::random(0).robot(), 100_000, |_| true).unwrap();
-    set_one(seeds, readings, methods, Some(&best), &|_| true).unwrap()
+    set_one(&asked(seeds, readings, methods, Some(best)), &|_| true).unwrap()
 }
 
 fn of(table: &SetOne, method: Method) -> Figures {
@@ -50,6 +54,9 @@ fn time_hopping_leaves_no_sensor_blind_and_loses_few_good_readings_without_more_
     assert!(wrong.median < 0.015 && wrong.p90 < wrong_eeruf.p90, "{wrong:?} {wrong_eeruf:?}");
     let age = hopping.age_p99_ms.unwrap().median;
     assert!(age < 1000.0, "{age}");
+    // A nearer wall is seen within a few periods; eeruf sees as many never.
+    let (nearer, never) = (hopping.nearer.unwrap(), eeruf.nearer.unwrap().never);
+    assert!(nearer.median <= Some(4) && nearer.never < 0.02 && never > 0.1, "{nearer:?} {never}");
 }
 
 #[test]
@@ -87,9 +94,10 @@ fn json_names_methods_and_quantiles() {
 fn set_one_stops_when_it_is_told_to_and_refuses_to_do_nothing() {
     let calls = AtomicUsize::new(0);
     let stop = |_| calls.fetch_add(1, Ordering::Relaxed) < 2;
-    assert_eq!(set_one(1000, READINGS, &[Method::Eeruf], None, &stop), Err(ExperimentError::Stopped));
+    assert_eq!(set_one(&asked(1000, READINGS, &[Method::Eeruf], None), &stop), Err(ExperimentError::Stopped));
     assert!(calls.into_inner() < 20);
-    let error = |seeds, methods: &[Method]| set_one(seeds, 80, methods, None, &|_| true).unwrap_err().to_string();
+    let error =
+        |seeds, methods: &[Method]| set_one(&asked(seeds, 80, methods, None), &|_| true).unwrap_err().to_string();
     assert_eq!(error(0, &METHODS), "0 seeds; expected at least one");
     assert_eq!(error(1, &[]), "no methods; expected at least one");
 }

@@ -4,6 +4,7 @@ use core::ops::ControlFlow;
 
 /// How far a search has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Progress {
     /// Nodes visited so far.

@@ -8,6 +8,7 @@ use crate::schedule::MAX_SENSORS;
 /// Why a problem, or a question about it, makes no sense. Sensors are counted from 0 here and printed from 1.
 /// `{:#}` counts from 0 where `{}` counts from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ProblemError {
     /// The number of sensors is 0 or above [`MAX_SENSORS`].

@@ -2,6 +2,7 @@
 
 /// How a search ended. A search that hands its answer out elsewhere, as those for waits do, finds `()`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Outcome<T = ()> {
     /// Found.
     Found(T),

@@ -42,11 +42,16 @@ impl<'a> Problem<'a> {
         if self.separation == 0 {
             return Err(ProblemError::NoSeparation);
         }
-        let period = one_by_one(self.sensors, self.separation, self.interval, self.window);
+        let period = one_by_one(self);
         if period > u64::from(MAX_TICKS) {
             return Err(ProblemError::TooLong { period, most: MAX_TICKS });
         }
         Ok(())
+    }
+
+    /// The interval, where there are two sensors that it lies between.
+    fn interval_that_counts(&self) -> u32 {
+        if self.conflicts.iter().all(|&row| row == 0) { 0 } else { self.interval }
     }
 
     /// The checked problem, or what is wrong with it.
@@ -61,7 +66,7 @@ impl<'a> Problem<'a> {
             sensors: self.sensors,
             conflicts,
             separation: self.separation as i32,
-            interval: self.interval as i32,
+            interval: self.interval_that_counts() as i32,
             window: self.window as i32,
             least: if self.stale_echo { self.separation.div_ceil(2) as i32 } else { 0 },
         })
@@ -69,9 +74,10 @@ impl<'a> Problem<'a> {
 }
 
 /// A period at which firing one by one always works: see [`firing::one_by_one`](super::firing::one_by_one).
-pub(crate) fn one_by_one(sensors: usize, separation: u32, interval: u32, window: u32) -> u64 {
-    let (k, d, i) = (sensors as u64, u64::from(separation), u64::from(interval));
-    (k * (d + i) + d).max(u64::from(window) + k * d)
+pub(crate) fn one_by_one(problem: &Problem<'_>) -> u64 {
+    let k = problem.sensors.min(MAX_SENSORS) as u64;
+    let (d, i) = (u64::from(problem.separation), u64::from(problem.interval_that_counts()));
+    (k * (d + i) + d).max(u64::from(problem.window) + k * d)
 }
 
 /// A checked [`Problem`] with signed times, small enough that sums of a few cannot overflow.

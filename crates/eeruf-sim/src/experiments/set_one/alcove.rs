@@ -51,11 +51,21 @@ impl Alcove {
         Scene::new(Wall::polyline(&corners).collect(), vec![], Air::default())
     }
 
+    /// The same with the back wall nearer by [`STEP_M`](super::STEP_M).
+    pub(super) fn nearer(self) -> Self {
+        Self { depth_m: self.depth_m - super::STEP_M, ..self }
+    }
+
     /// The robot.
     pub fn robot(&self) -> Robot {
+        self.robot_of(SENSORS)
+    }
+
+    /// The robot with a ring of so many sensors.
+    pub fn robot_of(&self, sensors: usize) -> Robot {
         let [x, y] = self.robot_m;
         let pose = Pose::new(Vector::new(x, y), core::f64::consts::FRAC_PI_2 + self.heading_rad);
-        Robot::ring(pose, SENSORS, SPACING_DEG.to_radians(), RADIUS_M, Transducer::POLAROID_6500)
+        Robot::ring(pose, sensors, SPACING_DEG.to_radians(), RADIUS_M, Transducer::POLAROID_6500)
     }
 
     /// Walls and robot together, with the default noise, and sound followed up to six bounces.

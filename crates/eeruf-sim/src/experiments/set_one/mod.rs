@@ -6,7 +6,13 @@
 //! [`Robot::ring`](crate::Robot::ring) has it: a period of 60 ms, a window of 36 ms, `T_delta` = 0.5 ms.
 
 mod alcove;
+mod figures;
+mod options;
+mod step;
 mod table;
 
 pub use alcove::{Alcove, RADIUS_M, SENSORS, SPACING_DEG};
-pub use table::{Figures, MULTI_ECHO_CONSECUTIVE, MULTI_ECHO_PATIENCE, MULTI_ECHO_T_DELTA, READINGS, SetOne, set_one};
+pub use figures::Figures;
+pub use options::SetOneOptions;
+pub use step::{Latency, STEP_M};
+pub use table::{MULTI_ECHO_CONSECUTIVE, MULTI_ECHO_PATIENCE, MULTI_ECHO_T_DELTA, READINGS, SetOne, set_one};

@@ -135,6 +135,14 @@ impl<'w> Channels<'w> {
         self.moves = true;
     }
 
+    /// From now on sound travels in the scene of another world, whose sensors are the same. Paths keep their numbers.
+    pub(crate) fn change_scene(&mut self, world: &'w World, kinematics: &impl Kinematics) -> Result<(), PathsError> {
+        self.world = world;
+        self.channels.clear();
+        self.starts.clear();
+        if self.moves { Ok(()) } else { self.compute_all(kinematics) }
+    }
+
     fn robot_of(&self, sensor: usize) -> &'w Robot {
         &self.world.robots()[usize::from(self.ids[sensor].robot)]
     }

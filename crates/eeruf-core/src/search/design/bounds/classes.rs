@@ -137,10 +137,11 @@ impl Classes {
         below: i32,
         above: i32,
     ) -> i32 {
-        let spare = period - self.clique as i32 * problem.interval;
-        let middle = class * problem.interval;
-        let low = (middle - spare + below).max(problem.least);
-        let high = (middle + spare - above).min(period - problem.window);
+        // Where the largest interval is asked for, these can be longer than 32 bits hold.
+        let spare = period.saturating_sub((self.clique as i32).saturating_mul(problem.interval));
+        let middle = class.saturating_mul(problem.interval);
+        let low = middle.saturating_sub(spare).saturating_add(below).max(problem.least);
+        let high = middle.saturating_add(spare).saturating_sub(above).min(period - problem.window);
         if low <= high { (high - low) / problem.separation + 1 } else { 0 }
     }
 }

@@ -91,13 +91,17 @@ impl Bound {
     /// The period below which there is no schedule, in ticks.
     #[must_use]
     pub fn period(&self) -> u32 {
+        let times = |count: u32, time: u32| u64::from(count) * u64::from(time);
         match *self {
             Self::Capacity { sensors, separation, window, least } => {
-                (window + least + separation * sensors.saturating_sub(1)).max(1)
+                in_range(times(sensors.saturating_sub(1), separation) + times(1, window) + times(1, least)).max(1)
             }
-            Self::Clique { sensors, interval, own } => interval * sensors.saturating_sub(1) + own.max(1),
+            Self::Clique { sensors, interval, own } => {
+                in_range(times(sensors.saturating_sub(1), interval) + times(1, own.max(1)))
+            }
             Self::Density { sensors, at_once, interval, own } => {
-                (sensors * (interval + own)).div_ceil(2 * at_once.max(1))
+                let twice = times(sensors, interval) + times(sensors, own);
+                in_range(twice.div_ceil(2 * u64::from(at_once.max(1))))
             }
             Self::Classes { period, .. } => period,
             Self::OneTick => 1,
@@ -105,9 +109,16 @@ impl Bound {
     }
 }
 
+/// Where the largest of a need is asked for, a bound can be far longer than any period: the longest signed one stands
+/// for these.
+fn in_range(period: u64) -> u32 {
+    const LONGEST: u32 = i32::MAX as u32;
+    u32::try_from(period).map_or(LONGEST, |period| period.min(LONGEST))
+}
+
 /// The largest of the bounds.
 pub(crate) fn strongest(problem: &CheckedProblem) -> Bound {
-    // All times are checked to be positive and below 2^26, the products below 2^32 (`ProblemError::TooLong`).
+    // All times are checked to be positive and below 2^26 (`ProblemError::TooLong`).
     let k = problem.sensors as u32;
     let (interval, window) = (problem.interval as u32, problem.window as u32);
     let own = interval.min(window);

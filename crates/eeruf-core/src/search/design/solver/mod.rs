@@ -32,7 +32,7 @@ use state::State;
 
 /// Decisions that can be on the stack at once: every order or pair of positions, every rank, and some values.
 pub(crate) const fn max_decisions(sensors: usize) -> usize {
-    sensors * (sensors - 1) + 8 * sensors + 32
+    sensors * sensors.saturating_sub(1) + 8 * sensors + 32
 }
 
 /// The rows of the undo log: for 12 sensors what fits into 64 KiB with everything else, for more sensors enough

@@ -1,0 +1,234 @@
+//! [`check_scheduler`]: runs a scheduler and holds it against the contract of [`Scheduler`].
+
+use core::fmt;
+
+use super::contract::Scheduler;
+use crate::schedule::MAX_SENSORS;
+use crate::time::{Instant, Micros};
+
+/// A promise of [`Scheduler`] that a scheduler broke.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum BrokenPromise {
+    /// It fires a sensor that it does not have, that is disabled, or that has not stopped listening within the longest
+    /// window.
+    WrongSensor {
+        /// The sensor, from 0.
+        sensor: u8,
+    },
+    /// It fires a sensor again sooner than `min_refire`.
+    MinRefire {
+        /// The sensor, from 0.
+        sensor: u8,
+        /// After how long.
+        after: Micros,
+    },
+    /// A deadline lies further ahead than `horizon`.
+    Horizon {
+        /// How far.
+        ahead: Micros,
+    },
+    /// Polled at one instant, it never comes to rest.
+    Endless,
+    /// An enabled sensor did not fire within four horizons.
+    Silent {
+        /// The sensor, from 0.
+        sensor: u8,
+    },
+    /// `is_enabled` does not say what was set, or says that a sensor beyond the last is.
+    Enabled {
+        /// The sensor, from 0.
+        sensor: u8,
+    },
+}
+
+impl fmt::Display for BrokenPromise {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let number = |sensor: u8| u16::from(sensor) + 1;
+        match *self {
+            Self::WrongSensor { sensor } => write!(
+                f,
+                "it fires sensor {}; expected one that is there, enabled, and has stopped listening",
+                number(sensor)
+            ),
+            Self::MinRefire { sensor, after } => {
+                write!(f, "it fires sensor {} again after {after}; expected min_refire or more", number(sensor))
+            }
+            Self::Horizon { ahead } => write!(f, "a deadline {ahead} ahead; expected no more than the horizon"),
+            Self::Endless => f.write_str("polled at one instant it never comes to rest; expected a later deadline"),
+            Self::Silent { sensor } => {
+                write!(f, "sensor {} does not fire within four horizons; expected it to", number(sensor))
+            }
+            Self::Enabled { sensor } => write!(f, "is_enabled of sensor {}; expected what was set", number(sensor)),
+        }
+    }
+}
+
+impl core::error::Error for BrokenPromise {}
+
+/// Runs a scheduler for `polls` polls from `now` on, as a ring would and worse: late polls, firings that come late,
+/// sensors that are disabled and enabled, restarts. For the tests of those who write a [`Scheduler`] of their own; the
+/// same calls every time, seeded by `seed`.
+///
+/// ```
+/// use eeruf_core::{Instant, ScheduledFiring, check_scheduler, tables::TABLE_I_D};
+/// let now = Instant::from_micros(0);
+/// check_scheduler(&mut ScheduledFiring::new(&TABLE_I_D, now), now, 10_000, 1)?;
+/// # Ok::<(), eeruf_core::BrokenPromise>(())
+/// ```
+///
+/// # Errors
+/// The first [`BrokenPromise`].
+pub fn check_scheduler<S: Scheduler>(
+    scheduler: &mut S,
+    now: Instant,
+    polls: u32,
+    seed: u32,
+) -> Result<(), BrokenPromise> {
+    let mut check = Check { now, seen: [Seen::default(); MAX_SENSORS], random: seed };
+    for poll in 0..polls {
+        check.poll(scheduler)?;
+        check.disturb(scheduler, poll)?;
+    }
+    Ok(())
+}
+
+/// What is known of one sensor.
+#[derive(Clone, Copy, Default)]
+struct Seen {
+    fired: Option<Instant>,
+    /// When it stops listening, if it has not.
+    ends: Option<Instant>,
+    disabled: bool,
+    /// Since when it could have fired.
+    waits_since: Option<Instant>,
+}
+
+struct Check {
+    now: Instant,
+    seen: [Seen; MAX_SENSORS],
+    random: u32,
+}
+
+impl Check {
+    /// A number below `limit`, by a linear congruential sequence.
+    fn below(&mut self, limit: u32) -> u32 {
+        self.random = self.random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        ((u64::from(self.random) * u64::from(limit)) >> 32) as u32
+    }
+
+    /// Goes to the deadline, or later, and takes all steps that are due.
+    fn poll<S: Scheduler>(&mut self, scheduler: &mut S) -> Result<(), BrokenPromise> {
+        let deadline = scheduler.deadline();
+        if !self.now.has_reached(deadline) {
+            let ahead = deadline.since(self.now);
+            if ahead > scheduler.horizon() {
+                return Err(BrokenPromise::Horizon { ahead });
+            }
+            self.end_until(scheduler, deadline);
+            self.now = deadline;
+        }
+        if self.below(4) == 0 {
+            let late = self.below(3_000);
+            self.now += Micros::new(late);
+        }
+        let most = 4 * scheduler.sensors() + 8;
+        for _ in 0..most {
+            let until = self.now;
+            self.end_until(scheduler, until);
+            if !self.now.has_reached(scheduler.deadline()) {
+                return self.nobody_is_silent(scheduler);
+            }
+            match scheduler.next_firing() {
+                Some((sensor, _)) => self.fire(scheduler, sensor)?,
+                None => _ = scheduler.end_period(self.now),
+            }
+        }
+        Err(BrokenPromise::Endless)
+    }
+
+    fn fire<S: Scheduler>(&mut self, scheduler: &mut S, sensor: u8) -> Result<(), BrokenPromise> {
+        let window = scheduler.limits().longest_window.min(scheduler.horizon());
+        let (listens, comes_late) = (self.below(window.as_micros().saturating_add(1)), self.below(8) == 0);
+        let later = Micros::new(if comes_late { self.below(500) } else { 0 });
+        let there = usize::from(sensor) < scheduler.sensors();
+        let seen = match self.seen.get_mut(usize::from(sensor)) {
+            Some(seen) if there && !seen.disabled && seen.ends.is_none() => seen,
+            _ => return Err(BrokenPromise::WrongSensor { sensor }),
+        };
+        if let Some(fired) = seen.fired {
+            let after = self.now.since(fired);
+            if after < scheduler.min_refire() {
+                return Err(BrokenPromise::MinRefire { sensor, after });
+            }
+        }
+        scheduler.fire(self.now);
+        if comes_late {
+            scheduler.postpone(sensor, later);
+            self.now += later;
+        }
+        *seen = Seen {
+            fired: Some(self.now),
+            ends: Some(self.now + Micros::new(listens)),
+            waits_since: Some(self.now),
+            ..*seen
+        };
+        Ok(())
+    }
+
+    /// Ends the listening of those whose time is up.
+    fn end_until<S: Scheduler>(&mut self, scheduler: &mut S, until: Instant) {
+        for (x, seen) in self.seen.iter_mut().enumerate() {
+            if let Some(at) = seen.ends {
+                if until.has_reached(at) {
+                    seen.ends = None;
+                    scheduler.ended(x as u8, at);
+                }
+            }
+        }
+    }
+
+    fn nobody_is_silent<S: Scheduler>(&mut self, scheduler: &S) -> Result<(), BrokenPromise> {
+        let longest = Micros::new(scheduler.horizon().as_micros().saturating_mul(4));
+        for (x, seen) in self.seen.iter_mut().enumerate().take(scheduler.sensors()) {
+            let since = *seen.waits_since.get_or_insert(self.now);
+            if !seen.disabled && self.now.since(since) > longest {
+                return Err(BrokenPromise::Silent { sensor: x as u8 });
+            }
+        }
+        Ok(())
+    }
+
+    /// Disables, enables or restarts now and then.
+    fn disturb<S: Scheduler>(&mut self, scheduler: &mut S, poll: u32) -> Result<(), BrokenPromise> {
+        if self.below(20) > 0 {
+            return Ok(());
+        }
+        // At most 64 sensors.
+        let sensor = self.below(scheduler.sensors() as u32) as u8;
+        let now = self.now;
+        match (self.below(8), self.seen.get_mut(usize::from(sensor))) {
+            (0, _) if poll % 3 == 0 => {
+                scheduler.restart(now);
+                for seen in &mut self.seen {
+                    (seen.ends, seen.waits_since) = (None, Some(now));
+                }
+            }
+            (choice, Some(seen)) => {
+                seen.disabled = choice % 2 == 0;
+                seen.waits_since = Some(now);
+                scheduler.set_enabled(sensor, !seen.disabled);
+            }
+            (_, None) => {}
+        }
+        let beyond = scheduler.sensors() as u8;
+        if scheduler.is_enabled(beyond) {
+            return Err(BrokenPromise::Enabled { sensor: beyond });
+        }
+        match self.seen.get(usize::from(sensor)) {
+            Some(seen) if scheduler.is_enabled(sensor) == seen.disabled => Err(BrokenPromise::Enabled { sensor }),
+            _ => Ok(()),
+        }
+    }
+}

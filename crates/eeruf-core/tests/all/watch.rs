@@ -1,0 +1,176 @@
+//! What firmware asks for while a ring runs: the last accepted echo and its age, blind sensors, pauses.
+
+use eeruf_core::tables::PAPER_12;
+use eeruf_core::{
+    Blind, Instant, LastAccepted, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, SensorError,
+    SensorWatch,
+};
+
+fn at(us: u32) -> Instant {
+    Instant::from_micros(us)
+}
+
+fn ring(start: u32) -> ScheduledRing<'static, 12> {
+    Ring::new(&PAPER_12, RingConfig::new().with_window(Micros::from_millis(40)), at(start)).unwrap()
+}
+
+/// Runs for some periods; `echo(sensor, period)` is what each sensor hears. Returns when it ended, and who got blind.
+fn run(
+    ring: &mut ScheduledRing<'_, 12>,
+    watch: &mut SensorWatch<12>,
+    periods: u32,
+    echo: impl Fn(u8, u32) -> Option<u32>,
+) -> (Instant, Vec<(u32, Blind)>) {
+    let (mut period, mut blind) = (0, vec![]);
+    loop {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            if let RingEvent::Fire { sensor, .. } = event {
+                if let Some(echo) = echo(sensor, period) {
+                    ring.echo(sensor, now + Micros::new(echo)).unwrap();
+                }
+            }
+            blind.extend(watch.observe(&event, now).map(|blind| (period, blind)));
+            if let RingEvent::PeriodEnded(_) = event {
+                period += 1;
+                if period == periods {
+                    return (now, blind);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_last_accepted_echo_stays_known_and_its_age_grows_with_time_through_a_wrap_of_the_clock() {
+    let start = u32::MAX - 3_000_000;
+    let (mut ring, mut watch) = (ring(start), SensorWatch::<12>::new(0));
+    assert_eq!(watch.last_accepted(4, at(start)), Ok(None));
+    assert_eq!(watch.last_accepted(12, at(start)), Err(SensorError { sensor: 12, sensors: 12 }));
+    // An echo until period 20, and then silence: confirmed clear, which is no echo.
+    let (now, blind) = run(&mut ring, &mut watch, 60, |_, period| (period < 20).then_some(9_000 + period));
+    assert_eq!(blind, []);
+    for sensor in 0..12 {
+        let LastAccepted { t_echo, age } = watch.last_accepted(sensor, now).unwrap().unwrap();
+        assert_eq!(t_echo, Micros::new(9_019));
+        assert!((4_000_000..4_100_000).contains(&age.as_micros()), "{age}");
+    }
+    // An hour of silence counts as half a turn of the clock.
+    let (now, _) = run(&mut ring, &mut watch, 36_000, |_, _| None);
+    let last = watch.last_accepted(0, now).unwrap().unwrap();
+    assert_eq!((last.t_echo, last.age), (Micros::new(9_019), Micros::new(1 << 31)));
+    let (now, _) = run(&mut ring, &mut watch, 3, |_, _| Some(5_000));
+    let last = watch.last_accepted(0, now).unwrap().unwrap();
+    assert!(last.t_echo == Micros::new(5_000) && last.age < Micros::from_millis(100), "{last:?}");
+}
+
+#[test]
+fn a_sensor_is_blind_when_nothing_is_accepted_for_so_many_firings_with_an_echo_and_is_named_once() {
+    let (mut ring, mut watch) = (ring(0), SensorWatch::<12>::new(20));
+    // Sensor 4 hears something else each time, sensor 5 now and then nothing, all others a wall.
+    let echo = |sensor, period| match sensor {
+        3 => Some(5_000 + 2_000 * (period % 10)),
+        4 if period % 10 == 0 => None,
+        4 => Some(5_000 + 2_000 * (period % 9)),
+        _ => Some(9_000),
+    };
+    let (now, blind) = run(&mut ring, &mut watch, 100, echo);
+    let named: Vec<_> = blind.iter().map(|(_, blind)| (blind.sensor, blind.firings)).collect();
+    assert_eq!(named, [(3, 20), (4, 20)]);
+    assert!((19..=21).contains(&blind[0].0) && (21..=24).contains(&blind[1].0), "{blind:?}");
+    assert_eq!(watch.last_accepted(3, now), Ok(None));
+    // Once something was accepted it may be named again.
+    let (_, blind) = run(&mut ring, &mut watch, 5, |_, _| Some(9_000));
+    assert_eq!(blind, []);
+    let (_, blind) = run(&mut ring, &mut watch, 50, echo);
+    assert_eq!(blind.len(), 2);
+}
+
+#[test]
+fn a_ring_that_is_paused_fires_nothing_ends_its_readings_and_goes_on_after_it() {
+    let mut ring = ring(0);
+    let mut watch = SensorWatch::<12>::new(0);
+    run(&mut ring, &mut watch, 10, |_, _| Some(9_000));
+    // In the middle of a period, with readings pending.
+    let mut fired = 0;
+    while fired < 5 {
+        let now = ring.next_deadline();
+        if let Some(RingEvent::Fire { sensor, .. }) = ring.poll(now) {
+            ring.echo(sensor, now + Micros::new(9_000)).unwrap();
+            fired += 1;
+        }
+    }
+    ring.pause();
+    let (mut readings, mut ended) = (0, 0);
+    while ended < 5 {
+        match ring.poll(ring.next_deadline()) {
+            Some(RingEvent::Fire { .. }) => panic!("fires in a pause"),
+            Some(RingEvent::Reading(_)) => readings += 1,
+            Some(RingEvent::PeriodEnded(_)) => ended += 1,
+            None => {}
+        }
+    }
+    assert!((1..=5).contains(&readings));
+    // Enabling and disabling is no end of a pause.
+    ring.disable(3).unwrap();
+    ring.enable(3).unwrap();
+    assert!(ring.is_enabled(3));
+    let due = ring.next_deadline();
+    assert!(matches!(ring.poll(due), Some(RingEvent::PeriodEnded(_))));
+    ring.resume();
+    let mut kinds = [const { vec![] }; 12];
+    while kinds.iter().map(Vec::len).sum::<usize>() < 36 {
+        let now = ring.next_deadline();
+        match ring.poll(now) {
+            Some(RingEvent::Fire { sensor, .. }) => ring.echo(sensor, now + Micros::new(9_000)).unwrap(),
+            Some(RingEvent::Reading(reading)) => kinds[usize::from(reading.sensor)].push(reading.kind),
+            _ => {}
+        }
+    }
+    for kinds in kinds {
+        assert_eq!(kinds[..2], [ReadingKind::First, ReadingKind::Accepted]);
+    }
+}
+
+#[test]
+fn a_larger_t_delta_takes_hold_at_once_and_compares_with_nothing_from_before() {
+    let mut ring = Ring::new(&PAPER_12, RingConfig::new().with_t_delta(Micros::new(100)), at(0)).unwrap();
+    let mut watch = SensorWatch::<12>::new(0);
+    let moving = |_, period: u32| Some(9_000 + 400 * period);
+    run(&mut ring, &mut watch, 10, moving);
+    assert_eq!(watch.last_accepted(0, at(0)), Ok(None));
+    ring.set_t_delta(Micros::new(500)).unwrap();
+    let mut kinds = vec![];
+    let mut now = at(0);
+    let mut heard = [13_000; 12];
+    while kinds.len() < 40 {
+        now = ring.next_deadline();
+        match ring.poll(now) {
+            Some(RingEvent::Fire { sensor, .. }) => {
+                heard[usize::from(sensor)] += 400;
+                ring.echo(sensor, now + Micros::new(heard[usize::from(sensor)])).unwrap();
+            }
+            Some(RingEvent::Reading(reading)) => kinds.push(reading.kind),
+            _ => {}
+        }
+    }
+    assert!(now != at(0) && !kinds.contains(&ReadingKind::Rejected), "{kinds:?}");
+    assert!(kinds[..12].iter().all(|kind| *kind == ReadingKind::First), "{kinds:?}");
+    assert!(kinds[26..].iter().all(|kind| *kind == ReadingKind::Accepted), "{kinds:?}");
+}
+
+#[test]
+fn another_window_counts_at_once_for_firings_that_are_under_way() {
+    let mut ring = ring(0);
+    let first = ring.next_deadline();
+    assert!(matches!(ring.poll(first), Some(RingEvent::Fire { .. })));
+    while ring.poll(first).is_some() {}
+    ring.set_window(Micros::from_millis(10)).unwrap();
+    assert_eq!(ring.next_deadline(), first + Micros::from_millis(10));
+    let reading = ring.poll(first + Micros::from_millis(10));
+    assert!(matches!(reading, Some(RingEvent::Reading(reading)) if reading.kind == ReadingKind::NoEcho), "{reading:?}");
+    ring.set_blanking(Micros::from_millis(2)).unwrap();
+    let second = ring.next_deadline();
+    assert!(matches!(ring.poll(second), Some(RingEvent::Reading(_) | RingEvent::Fire { .. })));
+    assert_eq!((ring.window(), ring.blanking()), (Micros::from_millis(10), Micros::from_millis(2)));
+}

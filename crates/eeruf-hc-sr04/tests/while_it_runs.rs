@@ -1,0 +1,140 @@
+//! What can be said to a driver and changed while it runs.
+
+use core::convert::Infallible;
+
+use eeruf_core::tables::{PAPER_12, TABLE_I_D};
+use eeruf_core::{
+    Adaptation, Edge, Instant, Ladder, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Scheduler,
+    SensorError, SpeedOfSound, Tally,
+};
+use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings, SetupError};
+use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
+use embedded_hal_mock::eh1::delay::NoopDelay;
+
+/// The sensor that an event fires.
+fn fired(event: Option<RingEvent>) -> Option<u8> {
+    match event {
+        Some(RingEvent::Fire { sensor, .. }) => Some(sensor),
+        _ => None,
+    }
+}
+
+/// A driver on pins that nobody looks at.
+fn on_no_pins<S: Scheduler, const N: usize>(
+    ring: Ring<S, N>,
+) -> Result<HcSr04Ring<S, NoPin, NoPin, NoopDelay, N>, SetupError> {
+    HcSr04Ring::new(ring, std::array::from_fn(|_| Pins { trigger: NoPin, echo: NoPin }), NoopDelay, Settings::default())
+}
+
+/// A pin that is low and stays so.
+struct NoPin;
+
+impl ErrorType for NoPin {
+    type Error = Infallible;
+}
+
+impl OutputPin for NoPin {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+impl InputPin for NoPin {
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        Ok(false)
+    }
+
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        Ok(true)
+    }
+}
+
+#[test]
+fn an_adaptation_changes_the_schedule_of_the_driver_and_stays_where_that_is_refused() {
+    let requirements = Requirements::new(Micros::new(500));
+    let rung = |scale| TABLE_I_D.scaled(scale, 10).unwrap().verify(&requirements).verified().unwrap();
+    // The third fires a sensor again after 53 ms, sooner than an HC-SR04 may be triggered.
+    for (rungs, allowed) in [([rung(9), rung(10)], true), ([rung(7), rung(8)], false)] {
+        let ring = Ring::new(
+            &rungs[usize::from(!allowed)],
+            RingConfig::new().with_window(Micros::from_millis(40)),
+            Instant::default(),
+        );
+        let mut driver = on_no_pins(ring.unwrap()).unwrap();
+        let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
+        let mut stats = loop {
+            if let Some(RingEvent::PeriodEnded(stats)) = driver.poll(driver.next_deadline()) {
+                break stats;
+            }
+        };
+        (0..10).for_each(|_| stats.tally.count(ReadingKind::Rejected));
+        let mut change = || {
+            (0..16).map(|_| adaptation.adapt(&stats, |schedule| driver.change_schedule(schedule))).collect::<Vec<_>>()
+        };
+        assert_eq!(change()[15], Ok(true));
+        if !allowed {
+            // Down again, to the one that is too fast.
+            let mut calm = stats;
+            calm.tally = Tally::default();
+            calm.tally.count(ReadingKind::Accepted);
+            let refused = (0..64)
+                .map(|_| adaptation.adapt(&calm, |schedule| driver.change_schedule(schedule)))
+                .find(Result::is_err);
+            assert!(matches!(refused, Some(Err(SetupError::Retrigger { .. }))));
+            assert_eq!(adaptation.advice(Micros::new(500), SpeedOfSound::AT_20_CELSIUS).rung, 1);
+        }
+    }
+}
+
+#[test]
+fn an_edge_or_a_firing_of_a_line_that_is_not_there_is_refused() {
+    let ring = Ring::new(&PAPER_12, RingConfig::new(), Instant::default()).unwrap();
+    let mut driver = on_no_pins(ring).unwrap();
+    let refused = Err(SensorError { sensor: 12, sensors: 12 });
+    assert_eq!(driver.edge(Edge { sensor: 12, high: true, at: Instant::default() }), refused);
+    assert_eq!(driver.fired(12, Instant::default()), refused);
+    assert_eq!(driver.disable(12), refused);
+    assert_eq!(driver.edge(Edge { sensor: 11, high: true, at: Instant::default() }), Ok(()));
+}
+
+#[test]
+fn the_width_of_a_pulse_counts_wherever_the_trigger_really_came() {
+    let ring = Ring::new(&PAPER_12, RingConfig::new(), Instant::default()).unwrap();
+    let mut driver = on_no_pins(ring).unwrap();
+    let due = driver.next_deadline();
+    let Some(RingEvent::Fire { sensor, .. }) = driver.poll(due) else { panic!("fires") };
+    let us = |us| due + Micros::new(us);
+    driver.fired(sensor, us(300)).unwrap();
+    // Within the deaf time after the true trigger, and the pulse.
+    driver.edge(Edge { sensor, high: true, at: us(390) }).unwrap();
+    driver.edge(Edge { sensor, high: false, at: us(395) }).unwrap();
+    driver.edge(Edge { sensor, high: true, at: us(750) }).unwrap();
+    driver.edge(Edge { sensor, high: false, at: us(5_750) }).unwrap();
+    let reading = std::iter::from_fn(|| driver.poll(us(5_750))).find_map(|event| match event {
+        RingEvent::Reading(reading) => Some(reading),
+        _ => None,
+    });
+    assert_eq!(reading.map(|reading| (reading.sensor, reading.t_echo)), Some((sensor, Some(Micros::new(5_000)))));
+}
+
+#[test]
+fn a_driver_pauses_resumes_and_restarts_as_its_ring_does() {
+    let ring = Ring::new(&PAPER_12, RingConfig::new(), Instant::default()).unwrap();
+    let mut driver = on_no_pins(ring).unwrap();
+    driver.pause();
+    assert!(matches!(driver.poll(driver.next_deadline()), Some(RingEvent::PeriodEnded(_))));
+    driver.resume();
+    assert!(matches!(driver.poll(driver.next_deadline()), Some(RingEvent::PeriodEnded(_))));
+    assert_eq!(fired(driver.poll(driver.next_deadline())), Some(0));
+    driver.restart(driver.next_deadline());
+    assert_eq!(fired(driver.poll(driver.next_deadline())), Some(0));
+    assert_eq!(driver.set_window(Micros::from_millis(30)), Ok(()));
+    assert_eq!(driver.set_t_delta(Micros::new(300)), Ok(()));
+    assert_eq!(driver.set_blanking(Micros::new(400)), Ok(()));
+    let ring = driver.ring();
+    assert_eq!([ring.window(), ring.t_delta(), ring.blanking()], [30_000, 300, 400].map(Micros::new));
+}

@@ -1,0 +1,74 @@
+//! A method's figures over all geometries of Set I.
+
+use serde::Serialize;
+
+use super::step::{Latency, Steps};
+use crate::{
+    experiments::spread::{Spread, interval_95},
+    results::Summary,
+};
+
+/// A method's figures over all geometries; shares are fractions of 1, as in [`Summary`]. `None` where no geometry has a
+/// value.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Figures {
+    /// Share of all readings that were accepted and wrong.
+    pub wrong_of_all: Option<Spread>,
+    /// The part of it that foreign or stale sound caused.
+    pub crosstalk_of_all: Option<Spread>,
+    /// The part of it that was confirmed, not only tentative.
+    pub confirmed_wrong_of_all: Option<Spread>,
+    /// Share of the accepted readings that were wrong.
+    pub wrong_of_accepted: Option<Spread>,
+    /// Share of all readings that would have been wrong without a filter.
+    pub wrong_before_filter: Option<Spread>,
+    /// Share of all readings that were not accepted.
+    pub rejected: Option<Spread>,
+    /// Share of the good readings that were not accepted.
+    pub good_lost: Option<Spread>,
+    /// Median age of the last accepted reading, in milliseconds.
+    pub age_ms: Option<Spread>,
+    /// The age that 99 % of the last accepted readings do not exceed, in milliseconds.
+    pub age_p99_ms: Option<Spread>,
+    /// Accepted readings in a second, all sensors together.
+    pub readings_per_s: Option<Spread>,
+    /// Mean number of sensors that never had a reading accepted.
+    pub starved: f64,
+    /// Where `starved` lies with 95 % confidence, by bootstrap.
+    pub starved_95: [f64; 2],
+    /// Mean number of sensors that had fewer than 5 % of their readings accepted, those that never had one included.
+    pub seldom: f64,
+    /// How soon the back wall is read right again when it has come nearer by [`STEP_M`](super::STEP_M).
+    pub nearer: Option<Latency>,
+    /// How soon it is when it has gone away as far.
+    pub farther: Option<Latency>,
+}
+
+impl Figures {
+    pub(super) fn of(summaries: &[Summary], steps: &[Steps]) -> Self {
+        let spread = |value: fn(&Summary) -> Option<f64>| Spread::of(summaries.iter().filter_map(value));
+        let starved: Vec<_> = summaries.iter().map(|summary| summary.starved as f64).collect();
+        let seldom: Vec<_> = summaries.iter().map(|summary| summary.seldom as f64).collect();
+        Self {
+            wrong_of_all: spread(|s| Some(s.wrong_of_all)),
+            crosstalk_of_all: spread(|s| Some(s.crosstalk_of_all)),
+            confirmed_wrong_of_all: spread(|s| Some(s.confirmed_wrong_of_all)),
+            wrong_of_accepted: spread(|s| s.wrong_of_accepted),
+            wrong_before_filter: spread(|s| Some(s.wrong_before_filter)),
+            rejected: spread(|s| Some(s.rejected)),
+            good_lost: spread(|s| s.good_lost),
+            age_ms: spread(|s| Some(s.age_ms.median)),
+            age_p99_ms: spread(|s| Some(s.age_ms.p99)),
+            readings_per_s: spread(|s| Some(s.readings_per_s)),
+            starved: mean(&starved),
+            starved_95: interval_95(&starved, |sample| mean(sample)),
+            seldom: mean(&seldom),
+            nearer: Latency::of(steps.iter().flat_map(|steps| &steps.nearer)),
+            farther: Latency::of(steps.iter().flat_map(|steps| &steps.farther)),
+        }
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}

@@ -1,0 +1,49 @@
+//! What is asked of Set I.
+
+use eeruf_core::{HoppingSettings, Micros};
+
+use super::alcove::SENSORS;
+use super::table::READINGS;
+use crate::methods::{BestSchedule, Method};
+
+/// What is asked of Set I.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetOneOptions {
+    /// How many geometries. The default is 200.
+    pub seeds: u64,
+    /// The first geometry's number, so that parameters can be tuned on other geometries than those that they are tested
+    /// on. The default is 0.
+    pub first: u64,
+    /// For how long each geometry is simulated: as long as so many readings of the conventional method take. The
+    /// default is [`READINGS`], as in the paper.
+    pub readings: u32,
+    /// How often the back wall steps to and fro, for the figures of how soon that is seen; 0: never. The default is
+    /// 22: to and fro in each phase of a cycle of 11.
+    pub steps: u32,
+    /// The methods.
+    pub methods: Vec<Method>,
+    /// What [`Method::EerufBest`] fires by, see [`best_schedule_for`](crate::best_schedule_for).
+    pub best: Option<BestSchedule>,
+    /// How [`Method::EerufHopping`] fires and believes.
+    pub hopping: HoppingSettings,
+    /// How many sensors the ring has, 1 to 24. The default is 8.
+    pub sensors: usize,
+    /// Its period. The default is 60 ms.
+    pub period: Micros,
+}
+
+impl Default for SetOneOptions {
+    fn default() -> Self {
+        Self {
+            seeds: 200,
+            first: 0,
+            readings: READINGS,
+            steps: 22,
+            methods: Method::ALL.to_vec(),
+            best: None,
+            hopping: HoppingSettings::BALANCED,
+            sensors: SENSORS,
+            period: Micros::from_millis(60),
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! How soon a method sees that the back wall has come nearer or gone away.
+
+use serde::Serialize;
+
+use crate::{
+    experiments::spread::interval_95,
+    methods::Method,
+    results::{DEFAULT_TOLERANCE_US, Readings, quantile},
+    simulation::{Options, SimulationError, simulate_in_turn},
+    world::World,
+};
+
+/// By how much the back wall steps, in metres.
+pub const STEP_M: f64 = 0.25;
+/// The wall stays for so many periods: one more than a sensor may take, so that steps come in every phase of a cycle.
+const STAYS: u32 = 65;
+/// A sensor that needs longer has not seen the step.
+const NEVER: u32 = 64;
+/// Only sensors are counted whose echo moves by more, in microseconds.
+const MOVED_US: f64 = 1000.0;
+
+/// For each step and sensor that it concerns, in which period after it the first right reading was accepted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Steps {
+    pub(super) nearer: Vec<Option<u32>>,
+    pub(super) farther: Vec<Option<u32>>,
+}
+
+/// How soon steps are seen, over all steps and sensors, in periods: 1 is the period of the step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Latency {
+    /// How many steps of sensors were counted.
+    pub steps: usize,
+    /// Half of the steps are seen within as many periods; `None` if more than half never are.
+    pub median: Option<u32>,
+    /// Nine in ten are.
+    pub p90: Option<u32>,
+    /// Share of the steps that are not seen within 64 periods.
+    pub never: f64,
+    /// Where `never` lies with 95 % confidence, by bootstrap over steps.
+    pub never_95: [f64; 2],
+}
+
+impl Latency {
+    /// Of all steps; `None` without any.
+    pub(super) fn of<'a>(steps: impl Iterator<Item = &'a Option<u32>>) -> Option<Self> {
+        let mut periods: Vec<_> = steps.map(|seen| seen.map_or(f64::INFINITY, f64::from)).collect();
+        if periods.is_empty() {
+            return None;
+        }
+        let mut at = |share| Some(quantile(&mut periods, share)).filter(|at| at.is_finite()).map(|at| at as u32);
+        let (median, p90) = (at(0.5), at(0.9));
+        let never = |periods: &mut [f64]| {
+            periods.iter().filter(|seen| seen.is_infinite()).count() as f64 / periods.len() as f64
+        };
+        let never_95 = interval_95(&periods, never);
+        Some(Self { steps: periods.len(), median, p90, never: never(&mut periods), never_95 })
+    }
+}
+
+/// Lets the scene step from the first world, with the wall far away, to the second and back.
+pub(super) fn steps(
+    worlds: &[World; 2],
+    steps: u32,
+    method: Method,
+    options: &Options,
+    go_on: impl Fn() -> bool,
+) -> Result<Steps, SimulationError> {
+    let options = Options { periods: STAYS.saturating_mul(steps.saturating_add(1)), ..*options };
+    let readings = simulate_in_turn(worlds, STAYS, method, &options, |_| go_on())?;
+    // A world has at least one robot.
+    let robot = &worlds[0].robots()[0];
+    let period_s = f64::from(robot.period.as_micros()) * 1e-6;
+    let mut found = Steps::default();
+    for sensor in 0..robot.sensors.len() {
+        seen(&readings, sensor, steps, period_s, &mut found);
+    }
+    Ok(found)
+}
+
+/// What one sensor makes of all steps.
+fn seen(readings: &Readings, sensor: usize, steps: u32, period_s: f64, found: &mut Steps) {
+    let of_sensor: Vec<_> = (0..readings.len()).filter(|&n| usize::from(readings.sensor[n]) == sensor).collect();
+    for step in 1..=steps {
+        let at_s = f64::from(step * STAYS) * period_s;
+        let (before, after) = of_sensor.split_at(of_sensor.partition_point(|&n| readings.fired_s[n] < at_s));
+        let reference = |n: Option<&usize>| n.map_or(f64::NAN, |&n| readings.reference_us[n]);
+        let moved = reference(after.first()) - reference(before.last());
+        // Nor is it counted if the echo comes or goes.
+        if !(moved.abs() > MOVED_US) {
+            continue;
+        }
+        let is_right = |&&n: &&usize| readings.is_accepted(n) && !readings.is_wrong(n, DEFAULT_TOLERANCE_US);
+        let periods = after.iter().find(is_right).map(|&n| ((readings.fired_s[n] - at_s) / period_s) as u32 + 1);
+        let list = if moved < 0.0 { &mut found.nearer } else { &mut found.farther };
+        list.push(periods.filter(|&periods| periods <= NEVER));
+    }
+}

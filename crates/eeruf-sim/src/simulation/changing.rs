@@ -1,0 +1,38 @@
+//! A world that is exchanged for another while its rings go on: a wall that is somewhere else from one moment to the
+//! next.
+
+use super::error::SimulationError;
+use super::event_loop::{EventLoop, end_of, expected_readings};
+use super::kinematics::Planned;
+use super::options::Options;
+use super::running_ring::plans;
+use crate::{methods::Method, results::Readings, threads::Stop, world::World};
+
+/// Simulates worlds in turn, `each` periods of the first robot each, until [`Options::periods`] are over. Nothing but
+/// the scene may differ, and nothing may move. Sound that is on its way when the scene changes arrives as it would have
+/// in the scene before.
+///
+/// # Errors
+/// As [`simulate`](super::simulate); with no world, [`SimulationError::Stopped`].
+pub(crate) fn simulate_in_turn(
+    worlds: &[World],
+    each: u32,
+    method: Method,
+    options: &Options,
+    mut keep_going: impl FnMut(f64) -> bool,
+) -> Result<Readings, SimulationError> {
+    let Some(first) = worlds.first() else { return Err(SimulationError::Stopped) };
+    let kinematics = Planned(first);
+    let plans = plans(first, method, options, &kinematics)?;
+    let (end, room) = (end_of(first, options.periods), expected_readings(first, options.periods));
+    let mut events = EventLoop::new(first, &plans, method, options, kinematics, Some(end), room, Stop::default())?;
+    let change = end_of(first, each);
+    for (turn, world) in (1..).zip(worlds.iter().cycle().skip(1)) {
+        if !events.run_until(turn * change, &mut keep_going)? || turn * change >= end {
+            break;
+        }
+        events.change_scene(world).map_err(|error| SimulationError::paths(turn * change, error))?;
+    }
+    events.run_until(u64::MAX, keep_going)?;
+    Ok(events.take(end as f64 * 1e-9))
+}

@@ -1,0 +1,74 @@
+//! `cargo xtask package`: packs every crate that is published, and builds and tests each from its tarball alone.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use cargo_metadata::MetadataCommand;
+
+use crate::steps::{Steps, Trouble, run};
+
+/// Where the tarballs are unpacked: no folder above it has a manifest.
+fn folder() -> PathBuf {
+    std::env::temp_dir().join("eeruf-package")
+}
+
+/// The largest tarball, in bytes.
+const LARGEST: u64 = 300_000;
+
+pub(crate) fn package(steps: &mut Steps) {
+    let mut crates = Vec::new();
+    steps.step("tarballs", || {
+        crates = pack()?;
+        Ok(())
+    });
+    for name in &crates {
+        steps.step(&format!("{name} from its tarball"), || {
+            let manifest = folder().join(name).join("Cargo.toml");
+            for verb in ["build", "test"] {
+                let mut cargo = Command::new("cargo");
+                cargo.args([verb, "--all-features", "--manifest-path"]).arg(&manifest);
+                run(cargo.current_dir(folder()).env("CARGO_TARGET_DIR", folder().join("target")))?;
+            }
+            Ok(())
+        });
+    }
+}
+
+/// Packs all crates and unpacks them, each into a folder of its name; they find each other there.
+fn pack() -> Result<Vec<String>, Trouble> {
+    let failed = |what: &Path, error: std::io::Error| Trouble::Failed(format!("{}: {error}", what.display()));
+    let metadata = MetadataCommand::new().no_deps().exec().map_err(|error| Trouble::Failed(error.to_string()))?;
+    let published = metadata.workspace_packages().into_iter().filter(|package| package.publish.is_none());
+    let crates: Vec<_> = published.map(|package| (package.name.to_string(), package.version.to_string())).collect();
+    let mut cargo = Command::new("cargo");
+    cargo.args(["package", "--no-verify", "--locked", "--allow-dirty"]);
+    for (name, _) in &crates {
+        cargo.args(["--package", name]);
+    }
+    run(&mut cargo)?;
+    let folder = folder();
+    if folder.exists() {
+        fs::remove_dir_all(&folder).map_err(|error| failed(&folder, error))?;
+    }
+    fs::create_dir_all(folder.join(".cargo")).map_err(|error| failed(&folder, error))?;
+    let mut patch = "[patch.crates-io]\n".to_owned();
+    for (name, version) in &crates {
+        let tarball = metadata.target_directory.join(format!("package/{name}-{version}.crate"));
+        let size = fs::metadata(&tarball).map_err(|error| failed(tarball.as_std_path(), error))?.len();
+        println!("{name}-{version}.crate: {size} bytes");
+        if size > LARGEST {
+            return Err(Trouble::Failed(format!("{tarball}: {size} bytes; expected at most {LARGEST}")));
+        }
+        run(Command::new("tar").args(["-xzf", tarball.as_str(), "-C"]).arg(&folder))?;
+        let unpacked = folder.join(format!("{name}-{version}"));
+        fs::rename(&unpacked, folder.join(name)).map_err(|error| failed(&unpacked, error))?;
+        // It names crates that are not published yet.
+        let lock = folder.join(name).join("Cargo.lock");
+        fs::remove_file(&lock).map_err(|error| failed(&lock, error))?;
+        patch += &format!("{name} = {{ path = {:?} }}\n", folder.join(name));
+    }
+    let config = folder.join(".cargo/config.toml");
+    fs::write(&config, patch).map_err(|error| failed(&config, error))?;
+    Ok(crates.into_iter().map(|(name, _)| name).collect())
+}

@@ -38,7 +38,8 @@ pub(crate) fn cargo_of_version(version: &str) -> Result<Command, Trouble> {
 
 /// A `cargo` that compiles for a target without an operating system; the caller adds `build --target` and the rest.
 ///
-/// That is rustup's if the target is installed; else Debian's, which builds `core` from its sources, and for WebAssembly
+/// That is rustup's if the target is installed; else Debian's, which builds `core` from its sources, and for
+/// WebAssembly
 /// `std` too.
 pub(crate) fn cargo_for_target(target: &str) -> Result<Command, Trouble> {
     let libdir = output(Command::new("rustc").args(["--print", "target-libdir", "--target", target]));

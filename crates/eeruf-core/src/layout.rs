@@ -45,8 +45,8 @@ impl core::error::Error for LayoutError {}
 /// The rows of a [`Layout::Graph`] whose neighbours are these pairs of sensors, counted from 0.
 ///
 /// # Errors
-/// [`LayoutError`] for the first pair that names one sensor twice, or one that is not there: a layout that was meant for
-/// another ring would keep fewer sensors apart than it says.
+/// [`LayoutError`] for the first pair that names one sensor twice, or one that is not there: a layout that was meant
+/// for another ring would keep fewer sensors apart than it says.
 ///
 /// ```
 /// use eeruf_core::{Layout, neighbour_rows};

@@ -6,8 +6,8 @@
 //! g = f_x[m - j] - j T_p - f_y[m]
 //! ```
 //!
-//! A filter that lets readings of any two phases support each other needs `|g - g'| >= D` for any two phases and any two
-//! ages in which the path can be heard. With two phases and one age this is (13a) and (13b): `docs/theory.md`,
+//! A filter that lets readings of any two phases support each other needs `|g - g'| >= D` for any two phases and any
+//! two ages in which the path can be heard. With two phases and one age this is (13a) and (13b): `docs/theory.md`,
 //! sections 4 and 9.
 
 use crate::layout::Layout;

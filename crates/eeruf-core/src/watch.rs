@@ -43,7 +43,8 @@ pub struct SensorWatch<const K: usize> {
 pub struct LastAccepted {
     /// Its echo time.
     pub t_echo: Micros,
-    /// How long ago it was accepted, to 256 us; at most 2,147,483,648 us (36 minutes), which stands for all longer times.
+    /// How long ago it was accepted, to 256 us; at most 2,147,483,648 us (36 minutes), which stands for all longer
+    /// times.
     pub age: Micros,
 }
 
@@ -78,8 +79,8 @@ impl<const K: usize> SensorWatch<K> {
         Self { sensors: [Watched { t_echo: NO_ECHO, at_and_echoes: 0 }; K], blind_after }
     }
 
-    /// Takes in an event that a poll at `now` returned. Returns a sensor that has just become blind; it is returned once,
-    /// and again only after something was accepted or confirmed clear.
+    /// Takes in an event that a poll at `now` returned. Returns a sensor that has just become blind; it is returned
+    /// once, and again only after something was accepted or confirmed clear.
     ///
     /// Observe every event, or at least the ends of periods, since ages are kept within what the clock can tell there.
     pub fn observe(&mut self, event: &RingEvent, now: Instant) -> Option<Blind> {

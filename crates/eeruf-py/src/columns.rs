@@ -1,5 +1,5 @@
-//! Arrays of results: made on first use, kept, and read-only, so that a loop over them does not copy and what is written
-//! into them is not lost in silence.
+//! Arrays of results: made on first use, kept, and read-only, so that a loop over them does not copy and what is
+//! written into them is not lost in silence.
 
 use numpy::{Element, PyArray1, prelude::*};
 use pyo3::{exceptions::PyMemoryError, prelude::*, sync::PyOnceLock};

@@ -222,8 +222,8 @@ impl Readings {
         slf.py().import("eeruf._frames")?.call_method1("to_pandas", (Self::columns(slf)?,))
     }
 
-    /// All arrays as a ``polars.DataFrame``: ``kind`` and ``cause`` are enums with their names, and what has no value is
-    /// null.
+    /// All arrays as a ``polars.DataFrame``: ``kind`` and ``cause`` are enums with their names, and what has no value
+    /// is null.
     ///
     /// Raises:
     ///     ImportError: polars is not installed.

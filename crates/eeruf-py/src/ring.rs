@@ -187,8 +187,8 @@ impl Ring {
 
     /// How long to wait before polling next, in microseconds: 0 if an event is pending.
     ///
-    /// This is right across the wrap of the clock at 2^32, where ``next_deadline_us`` and a ``now_us`` that goes on growing
-    /// no longer compare.
+    /// This is right across the wrap of the clock at 2^32, where ``next_deadline_us`` and a ``now_us`` that goes on
+    /// growing no longer compare.
     ///
     /// Args:
     ///     now_us: the present, 0 or more.

@@ -26,10 +26,12 @@ pub(crate) struct Args {
     #[arg(long = "method", value_name = "NAME", num_args = 1.., value_delimiter = ',')]
     methods: Vec<Method>,
     /// How many sensors the ring has
-    #[arg(long, value_name = "N", default_value_t = SENSORS as u8, value_parser = clap::value_parser!(u8).range(1..=24))]
+    #[arg(long, value_name = "N", default_value_t = SENSORS as u8)]
+    #[arg(value_parser = clap::value_parser!(u8).range(1..=24))]
     sensors: u8,
     /// The period in microseconds
-    #[arg(long, value_name = "US", default_value_t = 60_000, value_parser = clap::value_parser!(u32).range(45_000..=1_000_000))]
+    #[arg(long, value_name = "US", default_value_t = 60_000)]
+    #[arg(value_parser = clap::value_parser!(u32).range(45_000..=1_000_000))]
     period_us: u32,
     /// How eeruf_hopping fires and believes
     #[arg(long, value_name = "SETTING", default_value = "balanced")]

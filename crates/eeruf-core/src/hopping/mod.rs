@@ -75,7 +75,8 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     ///
     /// # Errors
     /// [`HoppingError`] for a tracker's setting out of its range, a `t_delta` that is not below the step of the code, a
-    /// period that is shorter than window and code together or than twice the code and a step, or a window that ends within the blanking time.
+    /// period that is shorter than window and code together or than twice the code and a step, or a window that ends
+    /// within the blanking time.
     pub fn new(
         schedule: &HoppingSchedule<K>,
         settings: HoppingSettings,

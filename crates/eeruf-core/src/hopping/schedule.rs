@@ -1,4 +1,4 @@
-//! [`HoppingSchedule`]: a code, a period and the lags to begin with.
+//! [`HoppingSchedule`]: a code, a period and the lags of the start.
 
 use super::code::HoppingCode;
 use super::error::HoppingError;

@@ -35,8 +35,8 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// nothing, since what lateness allowed until now was for the smaller one.
     ///
     /// # Errors
-    /// [`RingError::TDelta`] for more than the schedule was verified for, [`RingError::CoarseTDelta`] for one that is no
-    /// shorter than the window. The ring then goes on as before.
+    /// [`RingError::TDelta`] for more than the schedule was verified for, [`RingError::CoarseTDelta`] for one that is
+    /// no shorter than the window. The ring then goes on as before.
     pub fn set_t_delta(&mut self, t_delta: Micros) -> Result<(), RingError> {
         let grows = t_delta > self.t_delta();
         self.listening = Listening::checked(t_delta, self.window(), self.blanking(), &self.scheduler)?;
@@ -91,15 +91,15 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         Ok(())
     }
 
-    /// Lets no sensor fire until [`resume`](Self::resume). Readings of firings under way are still emitted; periods go on,
-    /// so that a deadline still comes once a period. For a longer sleep do not poll, and [`restart`](Self::restart)
+    /// Lets no sensor fire until [`resume`](Self::resume). Readings of firings under way are still emitted; periods go
+    /// on, so that a deadline still comes once a period. For a longer sleep do not poll, and [`restart`](Self::restart)
     /// after it.
     pub fn pause(&mut self) {
         self.scheduler.set_paused(true);
     }
 
-    /// Lets sensors fire again: as of the next period with scheduled firing, with immediate refiring at once. Readings from
-    /// before are forgotten.
+    /// Lets sensors fire again: as of the next period with scheduled firing, with immediate refiring at once. Readings
+    /// from before are forgotten.
     pub fn resume(&mut self) {
         self.scheduler.set_paused(false);
         for sensor in &mut self.sensors {

@@ -88,8 +88,8 @@ impl fmt::Display for SearchError {
             ),
             Self::CoarseTick { tick, period_us } => write!(
                 f,
-                "in ticks of {tick} firing one by one already takes {} s; expected at most {MAX_PERIOD}, so use a finer \
-                 tick",
+                "in ticks of {tick} firing one by one already takes {} s; expected at most {MAX_PERIOD}, so use a \
+                 finer tick",
                 period_us / 1_000_000
             ),
             Self::Schedule(error) => error.fmt(f),

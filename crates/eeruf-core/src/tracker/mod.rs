@@ -52,7 +52,9 @@ impl Firing {
 /// ```
 /// use eeruf_core::{EchoTracker, Firing, Micros, Phase, ReadingKind, TrackerSettings};
 /// let mut tracker = EchoTracker::<1>::new(TrackerSettings::BALANCED)?;
-/// let mut push = |phase, us| tracker.push(0, Some(Micros::new(us)), Firing::new(Phase(phase))).map(|verdict| verdict.kind);
+/// let mut push = |phase, us| {
+///     tracker.push(0, Some(Micros::new(us)), Firing::new(Phase(phase))).map(|verdict| verdict.kind)
+/// };
 /// // Crosstalk in one phase is heard again and again, and never believed.
 /// for _ in 0..100 {
 ///     assert!(matches!(push(3, 7_000)?, ReadingKind::First | ReadingKind::Rejected));

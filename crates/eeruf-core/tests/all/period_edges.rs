@@ -76,7 +76,8 @@ fn a_search_that_is_too_long_gets_the_advice_that_helps() {
     assert!(matches!(coarse, SearchError::CoarseTick { .. }), "{coarse:?}");
     assert_eq!(
         coarse.to_string(),
-        "in ticks of 30000 ms firing one by one already takes 750 s; expected at most 268435.456 ms, so use a finer tick"
+        "in ticks of 30000 ms firing one by one already takes 750 s; expected at most 268435.456 ms, so use a finer \
+         tick"
     );
     // Too many ticks, but not too long.
     let long = Requirements { min_interval: ms(8_000), ..NEEDS };

@@ -5,7 +5,7 @@ import { byId } from "./dom.js";
 import { Cancelled } from "./engine.js";
 import { HandleLayer } from "./handles.js";
 import { Panel } from "./panel.js";
-import { sceneText } from "./texts.js";
+import { inPageWords, sceneText } from "./texts.js";
 import { boxOf } from "./view.js";
 
 /** For how many periods of the robot each method runs, and how many of them are shown. */
@@ -145,7 +145,8 @@ export class Comparison {
       this.#say("");
     } catch (error) {
       if (error instanceof Cancelled || scene !== this.scene) return;
-      this.#say(`${error instanceof Error ? error.message : error}`, true);
+      const sentence = error instanceof Error ? error.message : String(error);
+      this.#say(inPageWords(sentence, this.page.state()), true);
     }
     this.draw();
     if (!this.handles.dragging) return;
@@ -204,7 +205,8 @@ export class Comparison {
           this.#say("The simulation was stopped; change something to begin again");
           break;
         }
-        panel.refuse(error instanceof Error ? error.message : String(error));
+        const sentence = error instanceof Error ? error.message : String(error);
+        panel.refuse(inPageWords(sentence, this.page.state()));
       }
       panel.describe(this.page.state().sensor);
       this.draw();

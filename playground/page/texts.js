@@ -47,6 +47,27 @@ export function sceneText(state) {
   return `${lines.join("\n")}\n`;
 }
 
+/**
+ * What the engine says of a scene in the page's words: it counts straight walls and poles from 0, as files do; the page
+ * counts what is dragged as one wall, from 1.
+ * @param {string} sentence
+ * @param {import("./state.js").State} state
+ * @returns {string}
+ */
+export function inPageWords(sentence, state) {
+  const owners = state.walls.flatMap((wall, w) => wall.slice(1).map(() => w + 1));
+  const numbers = /\b(wall|pole)(s?) (\d+)(?: and (\d+))?/g;
+  return sentence
+    .replace(/^robot 1\b/, "the robot")
+    .replace(numbers, (_, /** @type {string} */ kind, /** @type {string} */ many, ...given) => {
+      const [first, second] = given
+        .slice(0, 2)
+        .map((index) => (kind === "wall" ? owners[Number(index)] : Number(index) + 1) ?? index);
+      if (!many) return `${kind} ${first}`;
+      return first === second ? `two parts of ${kind} ${first}` : `${kind}s ${first} and ${second}`;
+    });
+}
+
 /** @param {import("./state.js").State} state @returns {string} The ring, as `eeruf design` reads it. */
 export function ringText(state) {
   const module = MODULES.find((one) => one.id === state.module);

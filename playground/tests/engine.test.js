@@ -13,7 +13,7 @@ import { fromHash, toHash } from "../page/link.js";
 import { mcapOf } from "../page/mcap.js";
 import { readingsOf } from "../page/run.js";
 import { ROOMS, StateError, checkedState, firstState } from "../page/state.js";
-import { ringText, sceneText } from "../page/texts.js";
+import { inPageWords, ringText, sceneText } from "../page/texts.js";
 import { askEngine, startEngine } from "../page/wasm.js";
 
 const ROOT = new URL("../../", import.meta.url).pathname;
@@ -207,6 +207,23 @@ test("readings saved as MCAP are read back by MCAP's own library, in order of ti
     .map(({ body }) => [body.sensor, body.period, body.t_echo_us, body.wrong]);
   const given = runs[0].readings.map(({ sensor, period, t_echo_us, wrong }) => [sensor, period, t_echo_us, wrong]);
   assert.deepEqual(new Set(ours.map(String)), new Set(given.map(String)));
+});
+
+test("walls and poles in a sentence are numbered as the page numbers them", () => {
+  const state = firstState();
+  state.walls.push([
+    [0, 1],
+    [1, 1],
+  ]);
+  const said = (/** @type {string} */ sentence) => inPageWords(sentence, state);
+  assert.equal(
+    said("walls 1 and 3 cross at (0.5, 1); end one of them there"),
+    "walls 1 and 2 cross at (0.5, 1); end one of them there",
+  );
+  assert.equal(said("walls 0 and 2 cross at (0.5, 1)"), "two parts of wall 1 cross at (0.5, 1)");
+  assert.equal(said("robot 1 touches wall 3; expected"), "the robot touches wall 2; expected");
+  assert.equal(said("robot 1 touches pole 0"), "the robot touches pole 1");
+  assert.equal(said("poles 0 and 2 have the same axis"), "poles 1 and 3 have the same axis");
 });
 
 test("long tasks say how far they are", () => {

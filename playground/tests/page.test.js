@@ -68,9 +68,15 @@ test("the folder on a server asks only that server, and says what the method cos
   const { context, page, troubles, requests } = await open(browser, server.url);
   assert.ok(requests.length > 10 && requests.every((url) => url.startsWith(server.url)), String(requests));
   const verdicts = await page.locator(".verdict").allTextContents();
-  assert.match(verdicts[0], /^40\.0 % of what it believes is wrong; no sensor is blind\.$/);
-  assert.match(verdicts[1], /^0\.4 % of what it believes is wrong; sensors 1 and 8 are blind\.$/);
-  assert.match(verdicts[2], /^[0-3](\.\d)? % of what it believes is wrong; no sensor is blind\.$/);
+  assert.ok(
+    verdicts.every((verdict) => /^[\d.]+ % of what it believes is wrong; .* blind\.$/.test(verdict)),
+    String(verdicts),
+  );
+  // The figures themselves are held against the program's in engine.test.js.
+  const [conventional, eeruf, hopping] = verdicts.map(parseFloat);
+  assert.ok(conventional > 30 && eeruf < 2 && hopping < 2, String(verdicts));
+  assert.match(verdicts[1], /; sensors .* are blind\.$/);
+  assert.match(verdicts[2], /; no sensor is blind\.$/);
   assert.deepEqual(troubles, []);
   await context.close();
 });
@@ -81,7 +87,7 @@ test("the one file works from a disk without a network", async () => {
     requests.every((url) => /^(file|blob|data):/.test(url)),
     String(requests),
   );
-  assert.match((await page.locator(".verdict").allTextContents())[0], /^40\.0 % of what it believes is wrong/);
+  assert.match((await page.locator(".verdict").allTextContents())[0], /^\d\d\.\d % of what it believes is wrong/);
   await design(page);
   assert.equal(await page.locator("#period").textContent(), "47.7 ms");
   assert.deepEqual(troubles, []);
@@ -180,12 +186,12 @@ test("walls that cross and a robot in a wall are said in a sentence, and mended 
   };
   const { context, page, troubles } = await openStale(`${server.url}#${toHash(/** @type {any} */ (state))}`);
   const says = page.locator("#room-says");
-  await assertText(says, /^Walls 0 and 1 cross at \(1\.0000, 0\.0000\); end one of them there\.$/);
+  await assertText(says, /^Walls 1 and 2 cross at \(1\.0000, 0\.0000\); end one of them there\.$/);
   await page.locator(".handle.wall").nth(1).press("Delete");
   await ready(page);
   assert.equal(await says.textContent(), "");
   for (let k = 0; k < 9; k++) await page.locator(".handle.robot").press("Shift+ArrowRight");
-  await assertText(says, /^Robot 1 touches wall 0; expected it to stand free at its pose\.$/);
+  await assertText(says, /^The robot touches wall 1; expected it to stand free at its pose\.$/);
   assert.deepEqual(troubles, []);
   await context.close();
 });
@@ -458,6 +464,15 @@ test("pictures of the page for whoever looks at them", { skip: !LONG }, async ()
     const { context, page } = await open(browser, server.url, options);
     await page.evaluate(() => document.fonts.ready);
     await page.screenshot({ path: join(folder, `${name}-top.png`) });
+    if (name === "desktop") {
+      // For the README: down to the readings of the sensor that is looked at.
+      const end = await page
+        .locator(".foolers")
+        .last()
+        .evaluate((last) => last.getBoundingClientRect().bottom);
+      const clip = { x: 0, y: 0, width: 1440, height: Math.round(end + 12) };
+      await page.screenshot({ path: join(folder, "readme.png"), fullPage: true, clip });
+    }
     await design(page);
     await page.screenshot({ path: join(folder, `${name}-whole.png`), fullPage: true });
     await page.locator("#lesson-start").click();

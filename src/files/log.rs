@@ -1,5 +1,6 @@
 //! Logs of real readings: CSV with a header, one row for each firing of every sensor.
 
+use std::io::Read;
 use std::path::Path;
 
 use eeruf_core::Micros;
@@ -22,8 +23,13 @@ pub(crate) struct RangeScale {
 
 /// Reads a log. A column is a sensor if its first value is a number, the range in metres; other columns are ignored.
 pub(crate) fn read_log(file: &Path, scale: &RangeScale) -> Result<Vec<LogColumn>, InputError> {
+    let log = std::fs::File::open(file).map_err(|error| InputError::new(file, None, error))?;
+    read_log_from(log, file, scale)
+}
+
+/// As [`read_log`], from wherever it comes; `file` stands in errors.
+pub(crate) fn read_log_from(log: impl Read, file: &Path, scale: &RangeScale) -> Result<Vec<LogColumn>, InputError> {
     let bad = |line, message: &dyn std::fmt::Display| InputError::new(file, line, message);
-    let log = std::fs::File::open(file).map_err(|error| bad(None, &error))?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(log);
     let header = reader.headers().map_err(|error| bad(None, &error))?.clone();
     let rows = reader

@@ -2,9 +2,13 @@
 
 import doctest
 import inspect
+import os
 import re
 import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -95,11 +99,38 @@ def listings(document: str) -> list[str]:
     return re.findall(r"^```python\n(.*?)^```$", (ROOT / document).read_text(), flags=re.M | re.S)
 
 
+TASKS = re.findall(
+    r"^```python\n(.*?)^```$",
+    (ROOT / "docs/python.md").read_text().split("## Twelve tasks")[1].split("\n## ")[0],
+    flags=re.M | re.S,
+)
+
+
+def test_each_of_the_twelve_tasks_takes_fewer_than_fifteen_lines_and_runs_as_a_script(tmp_path: Path) -> None:
+    assert len(TASKS) == 12
+    shutil.copytree(ROOT / "scenes", tmp_path / "scenes")
+
+    def run(number: int) -> subprocess.CompletedProcess[str]:
+        script = tmp_path / f"task_{number}.py"
+        script.write_text(TASKS[number - 1])
+        environment = {**os.environ, "MPLBACKEND": "Agg"}
+        return subprocess.run(
+            [sys.executable, script], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300
+        )
+
+    with ThreadPoolExecutor(2) as two:
+        for number, done in zip(range(1, 13), two.map(run, range(1, 13))):
+            assert len(TASKS[number - 1].strip().splitlines()) < 15, number
+            assert done.returncode == 0, (number, done.stderr)
+            assert done.stdout or number in (6, 10), number
+    assert (tmp_path / "tables.pdf").stat().st_size > 5_000
+
+
 @pytest.mark.parametrize(("document", "least"), [("README.md", 1), ("docs/python.md", 8)])
 def test_the_listings_of_a_document_run_from_top_to_bottom(
     document: str, least: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    blocks = listings(document)
+    blocks = [block for block in listings(document) if block not in TASKS]
     assert len(blocks) >= least
     shutil.copytree(ROOT / "scenes", tmp_path / "scenes")
     monkeypatch.chdir(tmp_path)

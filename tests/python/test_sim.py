@@ -138,6 +138,40 @@ def test_arrays_that_are_not_aligned_are_taken_as_well() -> None:
     assert same(rebuild(method, duration_s, sensors, odd, paths), readings)
 
 
+def test_readings_are_saved_loaded_and_streamed(tmp_path: Path) -> None:
+    import pyarrow
+
+    readings = sim.simulate(sim.Scene.read_toml(SCENES / "alcove.toml"), "conventional", periods=40)
+    readings.save(tmp_path / "readings.npz")
+    loaded = sim.Readings.load(tmp_path / "readings.npz")
+    assert same(readings, loaded)
+    assert loaded.summary() == readings.summary()
+    assert loaded.paths["walls"] == readings.paths["walls"]
+    assert (loaded.method, loaded.duration_s, loaded.sensors) == ("conventional", readings.duration_s, 8)
+    (tmp_path / "nothing.npz").write_bytes(b"PK nothing")
+    np.savez(tmp_path / "other.npz", format=1, a=[1])
+    for name in ("nothing.npz", "other.npz"):
+        with pytest.raises(eeruf.ArgumentError, match=r"expected what Readings\.save wrote"):
+            sim.Readings.load(tmp_path / name)
+    with pytest.raises(FileNotFoundError):
+        sim.Readings.load(tmp_path / "missing.npz")
+    table = pyarrow.table(readings)
+    assert table.num_rows == len(readings)
+    assert table["path"].null_count == int((readings.path < 0).sum())
+
+
+def test_codes_have_names_in_data_frames_and_what_is_missing_is_null() -> None:
+    readings = sim.simulate(sim.Scene.read_toml(SCENES / "alcove.toml"), periods=40)
+    names = [eeruf.KINDS[code] for code in readings.kind]
+    pandas, polars = readings.to_pandas(), readings.to_polars()
+    assert pandas["kind"].tolist() == polars["kind"].to_list() == names
+    assert list(pandas["kind"].cat.categories) == list(eeruf.KINDS)
+    assert str(polars["cause"].dtype).startswith("Enum")
+    silent = np.isnan(readings.t_echo_us)
+    assert polars["t_echo_us"].is_null().to_list() == silent.tolist()
+    assert polars["path"].null_count() == pandas["path"].isna().sum() == (readings.path < 0).sum()
+
+
 def test_readings_become_a_data_frame() -> None:
     readings = sim.simulate(sim.Scene.read_toml(SCENES / "alcove.toml"), periods=20)
     frame = readings.to_pandas()
@@ -149,7 +183,7 @@ def test_readings_become_a_polars_frame() -> None:
     readings = sim.simulate(sim.Scene.read_toml(SCENES / "alcove.toml"), periods=20)
     frame = readings.to_polars()
     assert frame.columns == list(readings.columns())
-    assert frame["t_echo_us"].to_numpy().tolist() == pytest.approx(readings.t_echo_us.tolist(), nan_ok=True)
+    assert frame["t_echo_us"].fill_null(np.nan).to_list() == pytest.approx(readings.t_echo_us.tolist(), nan_ok=True)
 
 
 def test_every_reading_of_crosstalk_knows_its_path_and_keeps_it_in_a_pickle() -> None:

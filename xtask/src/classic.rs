@@ -1,8 +1,8 @@
 //! ES modules as one classic script, so that a page needs no server: browsers load no modules from a disk.
 //!
 //! No bundler is needed for how the page is written: each import stands on one line and takes names as they are from a
-//! file beside it, exports are functions, classes and constants where they are made, and no two modules need each other.
-//! Each module becomes a function that returns what it exports. Anything else is an error here.
+//! file beside it, exports are functions, classes and constants where they are made, and no two modules need each
+//! other. Each module becomes a function that returns what it exports. Anything else is an error here.
 
 /// A module and all that it imports, each before what needs it.
 pub(crate) fn classic_script<'a>(entry: &str, source: &dyn Fn(&str) -> Option<&'a str>) -> Result<String, String> {
@@ -83,7 +83,8 @@ mod tests {
         let script = script_of(&[("main.js", main), ("a.js", "export function a() {}"), ("b.js", b)]).unwrap();
         let expected = "const a_js = (() => {\nfunction a() {}\nreturn { a };\n})();\n\
                         const b_js = (() => {\nconst { a } = a_js;\nconst b = a;\nreturn { b };\n})();\n\
-                        const main_js = (() => {\nconst { a } = a_js;\nconst { b } = b_js;\na(b);\nreturn {  };\n})();\n";
+                        const main_js = (() => {\nconst { a } = a_js;\nconst { b } = b_js;\na(b);\n\
+                        return {  };\n})();\n";
         assert_eq!(script, format!("(() => {{\n\"use strict\";\n{expected}}})();\n"));
     }
 

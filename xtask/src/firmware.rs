@@ -39,8 +39,8 @@ const HARNESS: &str = "eeruf-hil";
 const BOARD_PROGRAM: &str = "eeruf-hil-board";
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
-const FLASH: u64 = 4304;
-const RAM: u64 = 12 * 18 + 76;
+const FLASH: u64 = 4332;
+const RAM: u64 = 12 * 18 + 80;
 const STACK: u64 = 256;
 
 /// Builds, runs and measures everything; prints the tables of `docs/firmware.md`, and compares them with what stands

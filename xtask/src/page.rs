@@ -21,7 +21,7 @@ const SOURCES: &str = "playground/page";
 const FOLDER: &str = "target/page/folder";
 /// The one file for a disk.
 const SINGLE: &str = "target/page/who-fools-whom.html";
-/// What the compiler may use, which `wasm-opt` wants to be told.
+/// What the compiler may use of WebAssembly, for `wasm-opt`.
 const FEATURES: [&str; 6] = [
     "--enable-bulk-memory",
     "--enable-mutable-globals",
@@ -150,6 +150,7 @@ fn test(long: bool) -> Result<(), Trouble> {
         return Err(Trouble::Skipped("no npm; try: apt install npm".to_owned()));
     }
     run(Command::new(npm).current_dir(tests).args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]))?;
+    run(Command::new(npm).current_dir(tests).args(["run", "--silent", "types"]))?;
     // What the page is held against, with the features of the whole workspace, as built for the tests.
     run(Command::new("cargo").args(["build", "--locked", "--workspace", "--bin", "eeruf"]))?;
     let mut node = Command::new("node");

@@ -213,20 +213,76 @@ impl Readings {
         Ok(columns)
     }
 
-    /// All arrays as a ``pandas.DataFrame``.
+    /// All arrays as a ``pandas.DataFrame``: ``kind`` and ``cause`` are categoricals with their names, ``path`` is null
+    /// where there is none, and times without a value are NaN.
     ///
     /// Raises:
     ///     ImportError: pandas is not installed.
     fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        slf.py().import("pandas")?.call_method1("DataFrame", (Self::columns(slf)?,))
+        slf.py().import("eeruf._frames")?.call_method1("to_pandas", (Self::columns(slf)?,))
     }
 
-    /// All arrays as a ``polars.DataFrame``.
+    /// All arrays as a ``polars.DataFrame``: ``kind`` and ``cause`` are enums with their names, and what has no value is
+    /// null.
     ///
     /// Raises:
     ///     ImportError: polars is not installed.
     fn to_polars<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        slf.py().import("polars")?.call_method1("DataFrame", (Self::columns(slf)?,))
+        slf.py().import("eeruf._frames")?.call_method1("to_polars", (Self::columns(slf)?,))
+    }
+
+    /// Readings as an Arrow stream, for whoever takes one: polars, pyarrow, DuckDB and others.
+    ///
+    /// Raises:
+    ///     ImportError: polars is not installed.
+    #[pyo3(signature = (requested_schema=None))]
+    fn __arrow_c_stream__<'py>(
+        slf: &Bound<'py, Self>,
+        requested_schema: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        Self::to_polars(slf)?.call_method1("__arrow_c_stream__", (requested_schema,))
+    }
+
+    /// Write everything into one file, from which :meth:`load` makes the same readings.
+    ///
+    /// Args:
+    ///     file: its path; NumPy's format ``.npz``, compressed.
+    ///
+    /// Raises:
+    ///     OSError: it cannot be written.
+    ///
+    /// Example:
+    ///     >>> import io
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+    ///     >>> file = io.BytesIO()
+    ///     >>> readings.save(file)
+    ///     >>> _ = file.seek(0)
+    ///     >>> sim.Readings.load(file).summary() == readings.summary()
+    ///     True
+    #[pyo3(signature = (file))]
+    fn save<'py>(slf: &Bound<'py, Self>, file: &Bound<'py, PyAny>) -> PyResult<()> {
+        let py = slf.py();
+        let this = &slf.get().readings;
+        let about = (this.method.as_str(), this.duration_s, this.sensors);
+        let columns = Self::columns(slf)?;
+        let paths = slf.get().paths(py)?;
+        py.import("eeruf._frames")?.call_method1("save", (file, about, columns, paths)).map(drop)
+    }
+
+    /// Read what :meth:`save` wrote.
+    ///
+    /// Args:
+    ///     file: its path.
+    ///
+    /// Raises:
+    ///     OSError: it cannot be read.
+    ///     ArgumentError: it holds no readings.
+    #[staticmethod]
+    #[pyo3(signature = (file))]
+    fn load<'py>(file: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        file.py().import("eeruf._frames")?.call_method1("load", (file,))
     }
 
     fn __repr__(&self) -> String {

@@ -185,6 +185,28 @@ impl Ring {
         self.ring.borrow_dependent().next_deadline().as_micros()
     }
 
+    /// How long to wait before polling next, in microseconds: 0 if an event is pending.
+    ///
+    /// This is right across the wrap of the clock at 2^32, where ``next_deadline_us`` and a ``now_us`` that goes on growing
+    /// no longer compare.
+    ///
+    /// Args:
+    ///     now_us: the present, 0 or more.
+    ///
+    /// Raises:
+    ///     ArgumentError: not such a time.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000, now_us=2**32 - 1_000)
+    ///     >>> ring.wait_us(2**32 - 1_000), ring.wait_us(2**32 + 23_000)
+    ///     (24000, 0)
+    #[pyo3(signature = (now_us))]
+    fn wait_us(&self, now_us: &Bound<'_, PyAny>) -> PyResult<u32> {
+        let (now, deadline) = (instant("now_us", now_us)?, self.ring.borrow_dependent().next_deadline());
+        Ok(if now.has_reached(deadline) { 0 } else { deadline.since(now).as_micros() })
+    }
+
     /// What it fires by.
     #[getter]
     fn schedule(&self) -> Schedule {

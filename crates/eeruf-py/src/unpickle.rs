@@ -8,7 +8,7 @@ use numpy::PyReadonlyArray1;
 use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
-    arguments::{native, wrong},
+    arguments::{instance, native, number, whole, wrong},
     methods::method as method_named,
     paths::bounce,
     readings::{CAUSES, Readings},
@@ -17,8 +17,12 @@ use crate::{
 /// The causes in the order of their codes, as [`CAUSES`].
 const CAUSE_OF: [Cause; 5] = [Cause::Nothing, Cause::Own, Cause::Stale, Cause::Crosstalk, Cause::External];
 
+fn item<'py>(columns: &Bound<'py, PyDict>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    columns.get_item(name)?.ok_or_else(|| wrong(name, "missing", "a column of Readings"))
+}
+
 fn column<T: numpy::Element + Copy>(columns: &Bound<'_, PyDict>, name: &str) -> PyResult<Vec<T>> {
-    let column = columns.as_any().get_item(name)?;
+    let column = item(columns, name)?;
     let aligned = native(&column, None).map_err(|_| wrong(name, &column, "a column of Readings"))?;
     let array: PyReadonlyArray1<'_, T> = aligned.extract().map_err(|_| wrong(name, &column, "a column of Readings"))?;
     Ok(array.as_array().iter().copied().collect())
@@ -40,7 +44,9 @@ fn heard_paths(columns: &Bound<'_, PyDict>) -> PyResult<Vec<HeardPath>> {
         equally_long(robots.len(), &[sensors.len()])?;
         Ok(robots.into_iter().zip(sensors).map(|(robot, sensor)| SensorId { robot, sensor }).collect())
     };
-    let walls: Vec<Vec<i64>> = columns.as_any().get_item("walls")?.extract()?;
+    let walls: Vec<Vec<i64>> = item(columns, "walls")?
+        .extract()
+        .map_err(|_| wrong("walls", "not a list of tuples", "the bounces of each path"))?;
     let (emitter, receiver) = (ends("emitter_robot", "emitter")?, ends("receiver_robot", "receiver")?);
     let order: Vec<u32> = index(columns, "order", i64::from(u32::MAX))?;
     let length_m: Vec<f64> = column(columns, "length_m")?;
@@ -71,11 +77,15 @@ fn equally_long(expected: usize, lengths: &[usize]) -> PyResult<()> {
 #[pyo3(name = "_readings_from_columns", signature = (method, duration_s, sensors, columns, paths))]
 pub(crate) fn readings_from_columns(
     method: &Bound<'_, PyAny>,
-    duration_s: f64,
-    sensors: usize,
-    columns: &Bound<'_, PyDict>,
-    paths: &Bound<'_, PyDict>,
+    duration_s: &Bound<'_, PyAny>,
+    sensors: &Bound<'_, PyAny>,
+    columns: &Bound<'_, PyAny>,
+    paths: &Bound<'_, PyAny>,
 ) -> PyResult<Readings> {
+    let columns = instance::<PyDict>("columns", columns, "a dict of columns")?;
+    let paths = instance::<PyDict>("paths", paths, "a dict of columns")?;
+    let duration_s = number("duration_s", duration_s, 0.0..=f64::MAX)?;
+    let sensors = whole("sensors", sensors, 0..=(MAX_ROBOTS * MAX_SENSORS) as u64)? as usize;
     let robot: Vec<u16> = index(columns, "robot", MAX_ROBOTS as i64)?;
     let code = |name, codes: usize| -> PyResult<Vec<usize>> {
         let values: Vec<i8> = column(columns, name)?;
@@ -129,9 +139,6 @@ pub(crate) fn readings_from_columns(
             sensors,
             format_args!("{} or more, as many as there are readings of", seen.len()),
         ));
-    }
-    if !(0.0..f64::INFINITY).contains(&duration_s) {
-        return Err(wrong("duration_s", duration_s, "0 or more"));
     }
     Ok(Readings::new(readings))
 }

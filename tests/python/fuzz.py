@@ -1,0 +1,218 @@
+"""Calls everything with anything: `python tests/python/fuzz.py --calls 3000000 --seed 1`.
+
+Whatever it is given, a call works or raises an `EerufError`, a `TypeError` about its arguments' names, a `MemoryError`, or an `OSError`
+about a file, within seconds; and the process does not grow.
+"""
+
+from __future__ import annotations
+
+import argparse
+import faulthandler
+import io
+import math
+import pickle
+import random
+import sys
+import time
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, Callable
+
+import eeruf
+import numpy as np
+from eeruf import sim, tables
+
+ANY: Any = eeruf
+ROBOT = sim.Robot((0.3, 0.7, 1.57), 4, 0.26, 0.1)
+ROOM = sim.Scene([[5, 2, -5, 2]], robots=[ROBOT])
+READINGS = sim.simulate(ROOM, periods=3)
+INLINE = ThreadPoolExecutor(1)
+PATHS = ROOM.paths((0, 0), [(1, 0), (2, 0)], 2)
+HANGS_S = 60
+
+
+class Chance:
+    """Arguments that make sense, nearly make sense, or make none."""
+
+    def __init__(self, seed: int) -> None:
+        """The same for the same seed."""
+        self.random = random.Random(seed)
+
+    def anything(self, depth: int = 0) -> Any:
+        r = self.random
+        kinds: list[Callable[[], Any]] = [
+            lambda: None,
+            lambda: r.random() < 0.5,
+            lambda: r.choice(
+                [0, 1, 2, 3, 7, 63, 64, 65, 999, 36_000, 2**31, 2**32 - 1, 2**32, 2**63, 2**64, 2**200, -1]
+            ),
+            lambda: r.choice([0.0, -0.0, 0.5, 1e-300, 1e300, math.inf, -math.inf, math.nan, r.uniform(-9, 9)]),
+            lambda: r.choice(["", "line", "ring", "eeruf", "soft", "a", "\0", "\ud800", "x" * 99, "period_us = 1"]),
+            lambda: r.choice([np.int8(-3), np.uint8(200), np.uint64(2**64 - 1), np.float32(0.3), np.bool_(True)]),
+            lambda: r.choice(
+                [b"", object(), ROBOT, ROOM, READINGS, PATHS, tables.TABLE_I_D, sim.Noise(), print, Chance]
+            ),
+            lambda: np.array(r.choices([0.0, 1.0, -2.0, math.nan, math.inf, 9_000.0], k=r.randrange(9))),
+            lambda: np.array(r.choices([0.0, 1.0, 5.0, -3.0], k=12)).reshape(
+                r.choice([(3, 4), (4, 3), (6, 2), (12, 1)])
+            ),
+            lambda: np.empty(r.choice([(0,), (0, 4), (3, 0), (1, 1, 1)])),
+            lambda: np.array(["a", None], dtype=object),
+        ]
+        if depth < 3:
+            kinds += [
+                lambda: [self.anything(depth + 1) for _ in range(r.randrange(4))],
+                lambda: tuple(self.anything(depth + 1) for _ in range(r.randrange(4))),
+                lambda: {self.word(): self.anything(depth + 1) for _ in range(r.randrange(3))},
+            ]
+        return r.choice(kinds)()
+
+    def word(self) -> str:
+        return self.random.choice(["seed", "robots", "sensors", "walls", "noise", "t_delta_us", "progress", "nonsense"])
+
+    def small(self, most: int = 4) -> Any:
+        """A number that keeps the work short, or anything that is no large number."""
+        if self.random.random() < 0.6:
+            return self.random.randrange(most + 1)
+        thing = self.anything()
+        return thing if not isinstance(thing, (int, np.integer, float)) or thing != thing or thing < most else -1
+
+    def mostly(self, good: Any) -> Any:
+        """What is good, most of the time."""
+        return good if self.random.random() < 0.7 else self.anything()
+
+
+def calls(c: Chance) -> list[Callable[[], Any]]:
+    """Every entry, with arguments by chance."""
+    a, m = c.anything, c.mostly
+    return [
+        lambda: ANY.design(
+            m(4), m(999), m(15_000), m(36_000), m(1_000), m(4), m("line"), m(False), c.random.randrange(1, 200)
+        ),
+        lambda: ANY.Schedule(a(), a(), a(), a()),
+        lambda: ANY.Schedule.from_firing(m(40_000), m([0, 20_000]), m([2_000, 25_000])),
+        lambda: ANY.Schedule.from_toml(a()),
+        lambda: ANY.Schedule.from_json(a()),
+        lambda: ANY.Schedule.read_toml(m("no such file")),
+        lambda: tables.TABLE_I_D.scaled(a(), a()),
+        lambda: tables.TABLE_I_D.verify(m(999), m(0), m(4), m("line"), m("exact"), m(0), m(False)),
+        lambda: tables.TABLE_I_D.to_rust(m(999), m(0), m(4), m("line"), m("exact"), m(0), m(False)),
+        lambda: tables.TABLE_I_D.to_c(m(999), m(0), m(4), m("line"), m("exact"), m(0), m(False)),
+        lambda: ANY.WaitSearch(m(3), m(40), m(4), m(1), m(None), t_delta_us=m(1), layout=m("line")).count(c.small(50)),
+        lambda: ANY.WaitSearch(3, 40, 4, 1, t_delta_us=1).best(m("interval"), c.random.randrange(1, 50)),
+        lambda: ANY.EchoFilter(m(2), m(500), m(2), echoes=m(1), patience=m(0)).push_many(a()),
+        lambda: ANY.EchoFilter(2, 500).push(m(0), m(9_000), m(0)),
+        lambda: ANY.EchoFilter(2, 500, echoes=4).push_echoes(m(0), m([9_000, 12_000]), m(0)),
+        lambda: ring(c),
+        lambda: ANY.Fire(a()),
+        lambda: ANY.Reading(a(), a(), a(), a(), a(), a(), a()),
+        lambda: repr(ANY.Violation(m("interval"), m((0, 1)), m(("a", "b")), a(), a(), m("x"))),
+        lambda: ANY.Report(a(), a(), a(), a(), a()),
+        lambda: ANY.Found(a(), a(), a(), a(), a(), a()),
+        lambda: ANY.check_certificate(a()),
+        lambda: ANY.sim.Material(m(0.9), m(0.0)),
+        lambda: ANY.sim.Noise(fading_db_rms=m(1.0), jitter_us_rms=m(1.0), bursts_per_s=m(1.0), burst_db=m(1.0)),
+        lambda: ANY.sim.Robot(m((0, 0, 0)), m(4), m(0.2), m(0.1), m("hc_sr04"), gain=m("linear"), t_delta_us=m(500)),
+        lambda: ANY.sim.Robot((0, 0, 0), m([(0, 0, 0)]), window_us=m(36_000), velocity_m_s=m((0, 1)), schedule=m(None)),
+        lambda: ANY.sim.Robot((0, 0, 0), 4, 0.2, 0.1, waypoints_m=m([(1, 1)]), speed_m_s=m(1), clock_drift_ppm=m(3.0)),
+        lambda: ROBOT.replace(**{c.word(): a(), "patience": m(3)}),
+        lambda: ANY.sim.Scene(a(), m(None), m(None), m(None), materials=m("soft")),
+        lambda: ANY.sim.Scene([[5, 2, -5, 2]], poles=a(), pole_materials=m("soft"), temperature_c=m(20.0)),
+        lambda: ANY.sim.Scene([[5, 2, -5, 2]], noise=m(True), seed=m(3), max_order=m(2), robots=m([ROBOT])),
+        lambda: ROOM.replace(**{c.word(): a()}),
+        lambda: ANY.sim.Scene.from_toml(a()),
+        lambda: ANY.sim.Scene.from_toml(mutated(c, ROOM.to_toml())),
+        lambda: ANY.sim.Scene.read_toml(m("no such file")),
+        lambda: ROOM.paths(m((0, 0)), m([(1, 0)]), c.small(3), m(None)),
+        lambda: PATHS.points(a()),
+        lambda: ANY.sim.simulate(m(ROOM), m("eeruf"), c.small(), m(3)),
+        lambda: [*ANY.sim.simulate_blocks(ROOM, m("eeruf"), c.small(), m(3), block_periods=m(2))],
+        lambda: ANY.sim.Simulation(m(ROOM), m("eeruf"), seed=m(3)).step(c.small(1)),
+        lambda: ANY.sim.Simulation(ROOM).set_velocity(m(0), m(0.5), m(0.1)),
+        lambda: READINGS.summary(a()),
+        lambda: READINGS.is_wrong(a()),
+        lambda: tampered(c),
+        lambda: ANY.sim.Readings.load(m(io.BytesIO(b"nothing"))),
+        lambda: ANY.experiments.set_one(
+            c.small(1), readings=c.small(8), methods=m(["eeruf"]), progress=c.random.choice([None, False, 3, len])
+        ),
+        lambda: ANY.sweep(
+            m(repr),
+            m([1]),
+            executor=c.random.choice([INLINE, 3, object()]),
+            progress=c.random.choice([None, False, 3, len]),
+        ),
+    ]
+
+
+def ring(c: Chance) -> None:
+    """A ring that is polled and disturbed at any time."""
+    m = c.mostly
+    live = ANY.Ring(tables.TABLE_I_D, m(500), m(0), window_us=m(36_000), blanking_us=m(0), consecutive=m(2))
+    for now in range(0, 200_000, 20_000):
+        live.poll(m(now), m(None))
+        live.wait_us(m(now))
+        c.random.choice([live.echo, live.fired])(m(3), m(now))
+        c.random.choice([live.disable, live.enable, live.stuck])(m(3))
+
+
+def mutated(c: Chance, text: str) -> str:
+    """A text with a piece of it changed."""
+    at = c.random.randrange(len(text))
+    return (
+        text[:at] + c.random.choice(["", "9", "-", "[", "\n", "nan", "1e999", "x"]) + text[at + c.random.randrange(4) :]
+    )
+
+
+def tampered(c: Chance) -> Any:
+    """Readings out of columns that somebody changed."""
+    reduced: Any = READINGS.__reduce__()
+    rebuild, (method, duration_s, sensors, columns, paths) = reduced
+    name = c.random.choice(list(columns))
+    column = columns[name].copy()
+    column[c.random.randrange(len(column))] = c.random.choice([0, 1, -1, 64, 100, -128, 127])
+    changed = {**columns, name: c.mostly(column)}
+    readings = rebuild(c.mostly(method), c.mostly(duration_s), c.mostly(sensors), changed, c.mostly(paths))
+    return readings.summary(), pickle.dumps(readings)
+
+
+def resident_mb() -> float:
+    """How much memory the process has."""
+    status = Path("/proc/self/status").read_text() if sys.platform == "linux" else "VmRSS: 0"
+    return int(status.split("VmRSS:")[1].split()[0]) / 1024
+
+
+def fuzz(number: int, seed: int, *, report: bool = False) -> tuple[Counter[str], float]:
+    """So many calls; how they ended, and by how many MB the process grew after the first tenth."""
+    chance, ended = Chance(seed), Counter[str]()
+    before, began = 0.0, time.monotonic()
+    table = calls(chance)
+    for call in range(number):
+        if call % 100 == 0:
+            faulthandler.dump_traceback_later(HANGS_S, exit=True)
+        if call == number // 10:
+            before = resident_mb()
+        if report and call % 100_000 == 0:
+            print(f"{call} calls, {time.monotonic() - began:.0f} s, {resident_mb():.0f} MB", flush=True)
+        try:
+            chance.random.choice(table)()
+            ended["fine"] += 1
+        except (eeruf.EerufError, MemoryError, OSError) as error:
+            assert str(error), "an error says what is wrong"
+            ended[type(error).__name__] += 1
+        except TypeError as error:
+            # Only about which arguments there are.
+            assert "argument" in str(error), (call, error)
+            ended["TypeError"] += 1
+    faulthandler.cancel_dump_traceback_later()
+    return ended, resident_mb() - before
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--calls", type=int, default=100_000)
+    parser.add_argument("--seed", type=int, default=1)
+    asked = parser.parse_args()
+    how, grown_mb = fuzz(asked.calls, asked.seed, report=True)
+    print(dict(how.most_common()), f"grew by {grown_mb:.1f} MB")

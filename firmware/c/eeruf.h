@@ -229,8 +229,8 @@ enum EerufStatus eeruf_schedule_init(struct EerufSchedule *schedule,
 /*
  Verifies a schedule on a line of sensors: EERUF_OK if crosstalk is rejected at this `t_delta_us` (Eqs. 13a, 13b),
  any `neighbours` adjacent sensors fire at least `min_interval_us` apart, and no sensor fires again within
- `window_us`; the schedule then remembers it. EERUF_NOT_MET if not; the schedule is then as before. Not for a schedule
- that a ring uses.
+ `window_us`; the schedule then remembers it. EERUF_NOT_MET if not; the schedule is then as before. Not for a
+ schedule that a ring uses.
 
  # Safety
  `schedule` is null or memory for a schedule, and no ring uses it.

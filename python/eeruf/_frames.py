@@ -12,8 +12,6 @@ from eeruf import _eeruf
 if TYPE_CHECKING:
     from os import PathLike
 
-    import pandas as pd
-    import polars as pl
     from numpy.typing import NDArray
 
     from eeruf._types import HeardPaths
@@ -23,7 +21,7 @@ _CODES = {"kind": _eeruf.KINDS, "cause": _eeruf.CAUSES}
 _FORMAT = 1
 
 
-def to_pandas(columns: dict[str, NDArray[Any]]) -> pd.DataFrame:
+def to_pandas(columns: dict[str, NDArray[Any]]) -> Any:
     """Make a data frame with names for codes."""
     import pandas as pd
 
@@ -37,7 +35,7 @@ def to_pandas(columns: dict[str, NDArray[Any]]) -> pd.DataFrame:
     return pd.DataFrame({name: converted(name, column) for name, column in columns.items()})
 
 
-def to_polars(columns: dict[str, NDArray[Any]]) -> pl.DataFrame:
+def to_polars(columns: dict[str, NDArray[Any]]) -> Any:
     """Make a data frame with names for codes and nulls for what has no value."""
     import polars as pl
 

@@ -60,10 +60,9 @@ def test_a_certificate_that_proves_less_is_an_error_that_says_what_it_proves() -
         eeruf.check_certificate(3)  # type: ignore[arg-type]
 
 
-def test_a_time_limit_ends_the_search_of_64_sensors_with_schedule_bound_and_certificate() -> None:
-    found = eeruf.design(
-        64, 999, 12_000, 45_000, tick_us=100, neighbours=6, layout="ring", time_limit_s=0.2, certificate=True
-    )
+def test_a_time_limit_ends_a_search_with_schedule_bound_and_certificate() -> None:
+    # Not proven within half a million nodes.
+    found = eeruf.design(11, 999, 15_000, 15_000, layout="ring", time_limit_s=0.1, certificate=True)
     assert not found.proven
     assert found.schedule is not None
     assert found.certificate is not None

@@ -22,4 +22,4 @@ def test_mypy_refuses_each_line_of_the_wrong_programs() -> None:
 
 
 def test_pyright_refuses_each_line_of_the_wrong_programs() -> None:
-    assert lines_with_errors("pyright") == EVERY
+    assert lines_with_errors("pyright", "--pythonpath", sys.executable) == EVERY

@@ -21,6 +21,7 @@ mod found;
 mod memory;
 mod methods;
 mod paths;
+mod pose;
 mod readings;
 mod report;
 mod requirements;

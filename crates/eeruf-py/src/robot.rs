@@ -1,14 +1,15 @@
 //! `sim.Robot`: a robot with its ring.
 
 use eeruf_core::Micros;
-use eeruf_sim::{Clock, GainProfile, Motion, Point, Pose, Transducer, Vector, world::heading_rad};
+use eeruf_sim::{Clock, GainProfile, Motion, Point, Transducer};
 use pyo3::{
     prelude::*,
     types::{PyDict, PyTuple},
 };
 
 use crate::{
-    arguments::{choice, flag, instance, items, micros, number, points, shown, whole, whole_or, wrong},
+    arguments::{choice, flag, instance, items, micros, number, whole, whole_or, wrong},
+    pose::{from_pose, motion, pose_of, to_pose},
     requirements,
     schedule::Schedule,
 };
@@ -74,58 +75,6 @@ const TRANSDUCERS: [(&str, Transducer); 2] =
     [("polaroid_6500", Transducer::POLAROID_6500), ("hc_sr04", Transducer::HC_SR04)];
 const GAINS: [(&str, GainProfile); 3] =
     [("constant", GainProfile::Constant), ("square_root", GainProfile::SquareRoot), ("linear", GainProfile::Linear)];
-
-/// (x, y, heading) as Python gives it.
-type PoseOf = (f64, f64, f64);
-
-fn pose_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<PoseOf> {
-    let expected = "(x, y, heading) in metres and radians";
-    let coordinates = items(name, value, expected)?;
-    let [x, y, heading] = &coordinates[..] else { return Err(wrong(name, shown(value), expected)) };
-    let coordinate = |index: usize, value| number(&format!("{name}[{index}]"), value, -1e5..=1e5);
-    Ok((coordinate(0, x)?, coordinate(1, y)?, coordinate(2, heading)?))
-}
-
-fn to_pose((x, y, heading): PoseOf) -> Pose {
-    Pose::new(Vector::new(x, y), heading)
-}
-
-fn from_pose(pose: &Pose) -> PoseOf {
-    (pose.translation.x, pose.translation.y, heading_rad(pose))
-}
-
-/// The motion out of keyword arguments.
-fn motion(
-    velocity_m_s: Option<&Bound<'_, PyAny>>,
-    turn_rad_s: Option<&Bound<'_, PyAny>>,
-    waypoints_m: Option<&Bound<'_, PyAny>>,
-    speed_m_s: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Motion> {
-    match (velocity_m_s, turn_rad_s, waypoints_m, speed_m_s) {
-        (None, None, None, None) => Ok(Motion::Still),
-        (velocity, turn, None, None) => {
-            let velocity = match velocity.map(|value| points("velocity_m_s", value)).transpose()?.as_deref() {
-                None => Vector::zeros(),
-                Some([velocity]) => velocity.coords,
-                Some(_) => {
-                    let given = velocity.map(shown).unwrap_or_default();
-                    return Err(wrong("velocity_m_s", given, "(x, y) in m/s"));
-                }
-            };
-            let turn_rad_s = turn.map_or(Ok(0.0), |turn| number("turn_rad_s", turn, -50.0..=50.0))?;
-            Ok(Motion::Constant { velocity, turn_rad_s })
-        }
-        (None, None, Some(waypoints), Some(speed)) => {
-            let points = points("waypoints_m", waypoints)?;
-            Ok(Motion::Waypoints { points, speed_m_s: number("speed_m_s", speed, 0.0..=50.0)? })
-        }
-        (.., waypoints, speed) => {
-            let name = if waypoints.is_some() { "waypoints_m" } else { "speed_m_s" };
-            let given = waypoints.or(speed).map(shown).unwrap_or_default();
-            Err(wrong(name, given, "waypoints_m and speed_m_s, or velocity_m_s, turn_rad_s or both"))
-        }
-    }
-}
 
 impl Robot {
     /// One that a file describes.

@@ -1,11 +1,11 @@
 //! A world that is exchanged for another while its rings go on: a wall that is somewhere else from one moment to the
 //! next.
 
+use super::engine::plans;
+use super::engine::{EventLoop, end_of, expected_readings};
 use super::error::SimulationError;
-use super::event_loop::{EventLoop, end_of, expected_readings};
 use super::kinematics::Planned;
 use super::options::Options;
-use super::running_ring::plans;
 use crate::{methods::Method, results::Readings, threads::Stop, world::World};
 
 /// Simulates worlds in turn, `each` periods of the first robot each, until [`Options::periods`] are over. Nothing but

@@ -4,8 +4,8 @@
 //! what every sensor will hear next, as far as is known by then. A later firing may still change that: foreign sound
 //! that arrives first is what a listening sensor hears.
 
-use super::arrivals::Propagation;
 use super::channels::Channels;
+use super::engine::Propagation;
 use super::kinematics::Planned;
 use super::receiver::{Hearing, NEVER, Receiver};
 use crate::{

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use super::engine::{EventLoop, end_of};
+use super::engine::{Plan, plans};
 use super::error::SimulationError;
-use super::event_loop::{EventLoop, end_of};
 use super::kinematics::{Kinematics, Planned};
 use super::options::Options;
-use super::running_ring::{Plan, plans};
 use super::steered::Steered;
 use crate::{geometry::Moment, methods::Method, results::Readings, threads::Stop, world::MAX_SPEED, world::World};
 

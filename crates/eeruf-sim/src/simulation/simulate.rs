@@ -1,7 +1,7 @@
 //! Running a world under a method.
 
+use super::engine;
 use super::error::SimulationError;
-use super::event_loop;
 use super::kinematics::Planned;
 use super::options::Options;
 use crate::{methods::Method, results::Readings, threads::Stop, world::World};
@@ -52,5 +52,5 @@ pub fn simulate_until(
     stop: &Stop,
     keep_going: impl FnMut(f64) -> bool,
 ) -> Result<Readings, SimulationError> {
-    event_loop::run(world, method, options, &mut Planned(world), stop, keep_going)
+    engine::run(world, method, options, &mut Planned(world), stop, keep_going)
 }

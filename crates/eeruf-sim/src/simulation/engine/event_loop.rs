@@ -7,13 +7,13 @@
 use eeruf_core::{Instant, RingEvent};
 
 use super::arrivals::{Bursts, Propagation};
-use super::channels::Channels;
-use super::error::SimulationError;
-use super::kinematics::Kinematics;
-use super::options::Options;
-use super::receiver::{NEVER, Receiver};
 use super::recorder::Recorder;
 use super::running_ring::{Plan, RunningRing, expected_change_us, plans, start_all};
+use crate::simulation::channels::Channels;
+use crate::simulation::error::SimulationError;
+use crate::simulation::kinematics::Kinematics;
+use crate::simulation::options::Options;
+use crate::simulation::receiver::{NEVER, Receiver};
 use crate::{
     geometry::Moment,
     methods::Method,

@@ -2,11 +2,11 @@
 
 use eeruf_core::Micros;
 
-use super::channels::Channels;
-use super::error::SimulationError;
-use super::kinematics::Kinematics;
-use super::options::Options;
-use super::receiver::{Hearing, NEVER, Receiver};
+use crate::simulation::channels::Channels;
+use crate::simulation::error::SimulationError;
+use crate::simulation::kinematics::Kinematics;
+use crate::simulation::options::Options;
+use crate::simulation::receiver::{Hearing, NEVER, Receiver};
 use crate::{
     geometry::Moment,
     methods::{FiringPlan, Method, RingRunner, RingStart},

@@ -3,9 +3,9 @@
 
 use eeruf_core::{Micros, Reading, ReadingKind};
 
-use super::error::SimulationError;
-use super::options::Options;
-use super::receiver::{EXTERNAL, Heard, NEVER, Receiver};
+use crate::simulation::error::SimulationError;
+use crate::simulation::options::Options;
+use crate::simulation::receiver::{EXTERNAL, Heard, NEVER, Receiver};
 use crate::{
     methods::{Belief, Method},
     results::{Cause, HeardPath, NO_PATH, Readings, SensorId},

@@ -1,8 +1,8 @@
 //! What reaches the receivers: the sound of a firing along its channels, with fading and jitter, and bursts from
 //! outside.
 
-use super::channels::Channel;
-use super::receiver::{Arrival, EXTERNAL, NEVER, Receiver};
+use crate::simulation::channels::Channel;
+use crate::simulation::receiver::{Arrival, EXTERNAL, NEVER, Receiver};
 use crate::world::{FARTHEST, Noise, Normal, Random};
 
 // What the streams of random numbers are for.

@@ -1,0 +1,58 @@
+//! Where a robot is, and how it moves, out of what Python gives.
+
+use eeruf_sim::{Motion, Pose, Vector, world::heading_rad};
+use pyo3::prelude::*;
+
+use crate::arguments::{items, number, points, shown, wrong};
+
+/// (x, y, heading) as Python gives it.
+pub(crate) type PoseOf = (f64, f64, f64);
+
+pub(crate) fn pose_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<PoseOf> {
+    let expected = "(x, y, heading) in metres and radians";
+    let coordinates = items(name, value, expected)?;
+    let [x, y, heading] = &coordinates[..] else { return Err(wrong(name, shown(value), expected)) };
+    let coordinate = |index: usize, value| number(&format!("{name}[{index}]"), value, -1e5..=1e5);
+    Ok((coordinate(0, x)?, coordinate(1, y)?, coordinate(2, heading)?))
+}
+
+pub(crate) fn to_pose((x, y, heading): PoseOf) -> Pose {
+    Pose::new(Vector::new(x, y), heading)
+}
+
+pub(crate) fn from_pose(pose: &Pose) -> PoseOf {
+    (pose.translation.x, pose.translation.y, heading_rad(pose))
+}
+
+/// The motion out of keyword arguments.
+pub(crate) fn motion(
+    velocity_m_s: Option<&Bound<'_, PyAny>>,
+    turn_rad_s: Option<&Bound<'_, PyAny>>,
+    waypoints_m: Option<&Bound<'_, PyAny>>,
+    speed_m_s: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Motion> {
+    match (velocity_m_s, turn_rad_s, waypoints_m, speed_m_s) {
+        (None, None, None, None) => Ok(Motion::Still),
+        (velocity, turn, None, None) => {
+            let velocity = match velocity.map(|value| points("velocity_m_s", value)).transpose()?.as_deref() {
+                None => Vector::zeros(),
+                Some([velocity]) => velocity.coords,
+                Some(_) => {
+                    let given = velocity.map(shown).unwrap_or_default();
+                    return Err(wrong("velocity_m_s", given, "(x, y) in m/s"));
+                }
+            };
+            let turn_rad_s = turn.map_or(Ok(0.0), |turn| number("turn_rad_s", turn, -50.0..=50.0))?;
+            Ok(Motion::Constant { velocity, turn_rad_s })
+        }
+        (None, None, Some(waypoints), Some(speed)) => {
+            let points = points("waypoints_m", waypoints)?;
+            Ok(Motion::Waypoints { points, speed_m_s: number("speed_m_s", speed, 0.0..=50.0)? })
+        }
+        (.., waypoints, speed) => {
+            let name = if waypoints.is_some() { "waypoints_m" } else { "speed_m_s" };
+            let given = waypoints.or(speed).map(shown).unwrap_or_default();
+            Err(wrong(name, given, "waypoints_m and speed_m_s, or velocity_m_s, turn_rad_s or both"))
+        }
+    }
+}

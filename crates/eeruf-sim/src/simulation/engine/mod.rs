@@ -1,0 +1,13 @@
+//! The event loop: which ring acts next, which sound arrives next, and what is written down. It uses channels,
+//! receivers and kinematics, and knows nothing of who calls it.
+
+mod arrivals;
+mod event_loop;
+mod recorder;
+mod running_ring;
+
+pub(super) use arrivals::Propagation;
+pub use event_loop::expected_readings;
+pub(crate) use event_loop::run;
+pub(super) use event_loop::{EventLoop, end_of};
+pub(super) use running_ring::{Plan, plans};

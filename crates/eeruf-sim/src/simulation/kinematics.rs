@@ -12,16 +12,22 @@ pub(crate) trait Kinematics {
     fn moment(&self, robot: usize, now: u64) -> Moment;
 
     /// Time has come to `now`, in true nanoseconds. When the answer is `false` the simulation ends.
-    fn advance(&mut self, now: u64) -> bool;
+    fn advance(&mut self, _now: u64) -> bool {
+        true
+    }
 
     /// A reading, the last of `readings`, of a firing that happened at `fired`.
-    fn on_reading(&mut self, readings: &Readings, fired: &Moment);
+    fn on_reading(&mut self, _readings: &Readings, _fired: &Moment) {}
 
     /// By which method a robot's ring fires.
-    fn method(&self, robot: usize, asked: Method) -> Method;
+    fn method(&self, _robot: usize, asked: Method) -> Method {
+        asked
+    }
 
     /// Whether it matters what a robot hears.
-    fn listens(&self, robot: usize) -> bool;
+    fn listens(&self, _robot: usize) -> bool {
+        true
+    }
 }
 
 impl<K: Kinematics> Kinematics for &mut K {
@@ -61,19 +67,5 @@ impl Kinematics for Planned<'_> {
     fn moment(&self, robot: usize, now: u64) -> Moment {
         let robot = &self.0.robots()[robot];
         robot.motion.at(&robot.pose, now as f64 * 1e-9)
-    }
-
-    fn advance(&mut self, _now: u64) -> bool {
-        true
-    }
-
-    fn on_reading(&mut self, _readings: &Readings, _fired: &Moment) {}
-
-    fn method(&self, _robot: usize, asked: Method) -> Method {
-        asked
-    }
-
-    fn listens(&self, _robot: usize) -> bool {
-        true
     }
 }

@@ -3,8 +3,6 @@
 use super::kinematics::Kinematics;
 use crate::{
     geometry::{Moment, Pose, Vector},
-    methods::Method,
-    results::Readings,
     world::World,
 };
 
@@ -65,19 +63,5 @@ impl Kinematics for Steered<'_> {
                 robot.motion.at(&robot.pose, now as f64 * 1e-9)
             }
         }
-    }
-
-    fn advance(&mut self, _now: u64) -> bool {
-        true
-    }
-
-    fn on_reading(&mut self, _readings: &Readings, _fired: &Moment) {}
-
-    fn method(&self, _robot: usize, asked: Method) -> Method {
-        asked
-    }
-
-    fn listens(&self, _robot: usize) -> bool {
-        true
     }
 }

@@ -5,6 +5,9 @@
 // Names and documents are those of the header.
 #![allow(non_camel_case_types, clippy::doc_markdown)]
 
+#[cfg(target_os = "none")]
+mod panic;
+
 use core::mem::MaybeUninit;
 
 use eeruf_core::{
@@ -443,15 +446,4 @@ pub unsafe extern "C" fn eeruf_ring_enable(ring: *mut EerufRing, sensor: u8, ena
     let call = |ring: &mut ScheduledRing<'static, K>| if enabled { ring.enable(sensor) } else { ring.disable(sensor) };
     // SAFETY: as for the caller.
     unsafe { with_sensor(ring, call) }
-}
-
-/// As in the firmware images: what could panic would not link.
-#[cfg(target_os = "none")]
-#[panic_handler]
-fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    unsafe extern "C" {
-        fn a_path_to_a_panic_is_left_in_this_image() -> !;
-    }
-    // SAFETY: never executed; the symbol does not exist.
-    unsafe { a_path_to_a_panic_is_left_in_this_image() }
 }

@@ -2,5 +2,15 @@
 //!
 //! The targets in `fuzz_targets` only call these, so that a finding can be replayed by an ordinary test.
 
+pub mod files;
 pub mod filter;
 pub mod ring;
+
+/// The log reader of the program, which is no library.
+#[path = "."]
+mod program {
+    #[path = "../../src/files/error.rs"]
+    pub(crate) mod error;
+    #[path = "../../src/files/log.rs"]
+    pub(crate) mod log;
+}

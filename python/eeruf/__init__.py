@@ -5,7 +5,7 @@ that alternate and differ from sensor to sensor. A true echo does not care; cros
 
 Times are whole microseconds (``_us``), lengths metres, angles radians. Sensors count from 0. What is wrong with an argument raises
 an :class:`EerufError`, which is a ``ValueError``, with the name, the value and what is expected. ``KINDS`` are the kinds of readings,
-of which arrays hold the indices.
+of which arrays hold the indices. ``EXAMPLES`` are the scenes and rings that come along, see :func:`example`.
 
 Example:
     >>> import eeruf
@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING
 
 from eeruf import experiments, sim, tables
 from eeruf._eeruf import (
+    EXAMPLES,
     KINDS,
     ArgumentError,
     CertificateError,
@@ -51,6 +52,7 @@ from eeruf._eeruf import (
     __version__,
     check_certificate,
     design,
+    example,
 )
 from eeruf._sweep import sweep
 
@@ -58,6 +60,7 @@ if TYPE_CHECKING:
     from eeruf import plot
 
 __all__ = [
+    "EXAMPLES",
     "KINDS",
     "ArgumentError",
     "CertificateError",
@@ -84,6 +87,7 @@ __all__ = [
     "__version__",
     "check_certificate",
     "design",
+    "example",
     "experiments",
     "plot",
     "show_versions",

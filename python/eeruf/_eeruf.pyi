@@ -50,6 +50,7 @@ KINDS: Final[tuple[_Kind, ...]]
 METHODS: Final[tuple[_Method, ...]]
 EERUF_METHODS: Final[tuple[_Method, ...]]
 CAUSES: Final[tuple[_Cause, ...]]
+EXAMPLES: Final[tuple[str, ...]]
 __version__: Final[str]
 
 class EerufError(ValueError): ...
@@ -233,6 +234,8 @@ def design(
     time_limit_s: float | None = None,
 ) -> Found: ...
 def check_certificate(text: str) -> int: ...
+def example(name: str) -> str: ...
+def _run_program(words: Sequence[str]) -> int: ...
 
 @final
 class WaitSearch:

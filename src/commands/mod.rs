@@ -4,8 +4,11 @@
 
 mod answer;
 mod certificate;
+mod completions;
 mod design;
+mod examples;
 mod experiment;
+mod man;
 mod methods;
 mod paths;
 mod replay;
@@ -14,9 +17,20 @@ mod study;
 mod verify;
 
 pub(crate) use answer::Answer;
-use clap::Subcommand;
+use clap::{Parser, Subcommand};
 
 use crate::files::error::InputError;
+
+/// Fire all ultrasonic sensors of a robot five to ten times faster than one by one, without believing each other's
+/// echoes.
+///
+/// Sensors are printed from 1, as in the paper, and counted from 0 in files and in --json.
+#[derive(Parser)]
+#[command(name = "eeruf", version = env!("EERUF_VERSION"), max_term_width = 100)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
 
 #[derive(Subcommand)]
 pub(crate) enum Verb {
@@ -27,6 +41,9 @@ pub(crate) enum Verb {
     Paths(paths::Args),
     Replay(replay::Args),
     Experiment(experiment::Args),
+    Examples(examples::Args),
+    Completions(completions::Args),
+    Man(man::Args),
 }
 
 impl Verb {
@@ -39,6 +56,9 @@ impl Verb {
             Self::Paths(args) => paths::run(args),
             Self::Replay(args) => replay::run(args),
             Self::Experiment(args) => experiment::run(args),
+            Self::Examples(args) => examples::run(args),
+            Self::Completions(args) => completions::run(args),
+            Self::Man(args) => man::run(args),
         }
     }
 }

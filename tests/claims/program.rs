@@ -256,3 +256,57 @@ fn ctrl_c_ends_a_long_design_with_the_best_schedule_so_far() {
     assert_eq!(outcome.status.code(), Some(0), "{out}");
     assert!(out.contains("not proven: it may be as short as") && out.contains("t_fire_a_us"), "{out}");
 }
+
+#[test]
+fn the_examples_are_written_where_they_are_wanted_and_never_over_what_is_there() {
+    let (folder, _) = Scratch::new("unused", "");
+    let folder = folder.path().to_str().unwrap();
+    let listed = eeruf(&["examples"]).out;
+    assert!(listed.lines().any(|line| line == "scenes/alcove.toml"), "{listed}");
+    std::fs::create_dir(format!("{folder}/rings")).unwrap();
+    std::fs::write(format!("{folder}/rings/paper-12.toml"), "mine").unwrap();
+    let written = eeruf(&["examples", folder]);
+    assert_eq!((written.code, written.out.lines().count()), (Some(0), listed.lines().count()));
+    assert!(written.out.contains("paper-12.toml is there already"), "{}", written.out);
+    let text = |name: &str| std::fs::read_to_string(format!("{folder}/{name}")).unwrap();
+    assert_eq!(text("rings/paper-12.toml"), "mine");
+    assert_eq!(text("scenes/wall.toml"), include_str!("../../scenes/wall.toml"));
+}
+
+#[test]
+fn shells_complete_every_verb_and_the_manual_has_a_page_for_each() {
+    let help = eeruf(&["--help"]).out;
+    let (_, verbs) = help.split_once("Commands:\n").unwrap();
+    let verbs: Vec<_> =
+        verbs.lines().take_while(|line| !line.is_empty()).filter_map(|line| line.split_whitespace().next()).collect();
+    let (folder, _) = Scratch::new("unused", "");
+    let pages = folder.path().join("man1");
+    assert_eq!(eeruf(&["man", pages.to_str().unwrap()]).code, Some(0));
+    let bash = eeruf(&["completions", "bash"]).out;
+    assert!(verbs.len() > 8, "{help}");
+    for verb in verbs.into_iter().filter(|verb| *verb != "help") {
+        assert!(bash.contains(&format!("eeruf__subcmd__{verb}")), "{verb}");
+        assert!(pages.join(format!("eeruf-{verb}.1")).is_file(), "{verb}");
+    }
+}
+
+#[test]
+fn the_version_names_the_commit_of_the_clone() {
+    let said = eeruf(&["--version"]).out;
+    let rest = said.trim().strip_prefix(concat!("eeruf ", env!("CARGO_PKG_VERSION"))).expect("name and version");
+    // A tarball of cargo's has a commit as well; a plain copy of the files has none.
+    let commit = rest.strip_prefix(" (").and_then(|rest| rest.strip_suffix(')'));
+    assert!(rest.is_empty() || commit.is_some_and(|commit| commit.len() >= 7), "{said}");
+}
+
+/// Rust ignores a pipe whose reader went away, and printing into it then panics.
+#[cfg(unix)]
+#[test]
+fn who_reads_only_the_beginning_of_what_is_printed_sees_no_panic() {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_eeruf"));
+    let printing = program.args(["completions", "zsh"]).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut printing = printing.spawn().unwrap();
+    drop(printing.stdout.take());
+    let outcome = printing.wait_with_output().unwrap();
+    assert_eq!(String::from_utf8(outcome.stderr).unwrap(), "");
+}

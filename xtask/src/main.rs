@@ -8,6 +8,7 @@ mod certificates;
 mod changed;
 mod classic;
 mod firmware;
+mod links;
 mod listings;
 mod measured;
 mod mutants;
@@ -17,6 +18,8 @@ mod periods;
 mod printed;
 mod python;
 mod quick;
+mod release;
+mod site;
 mod steps;
 mod test;
 mod toolchain;
@@ -77,6 +80,10 @@ enum Verb {
     Certificates(certificates::Plan),
     /// Pack the crates that are published, and build and test each from its tarball, in a folder of its own (minutes)
     Package,
+    /// Build the documents as one book, with the page and the references for Rust and Python, and follow every link
+    Site,
+    /// Do everything of a release but uploading, and print what a person must still do (many minutes)
+    Release(release::Plan),
     /// Break the core in one place at a time, and see whether a test notices (hours; takes up where it stopped)
     Mutants(mutants::Plan),
     /// Print the table of shortest periods that docs/search.md shows
@@ -130,6 +137,12 @@ fn main() -> ExitCode {
             package::package(&mut steps);
             steps.finish(true)
         }
+        Verb::Site => {
+            let mut steps = Steps::default();
+            site::site(&mut steps);
+            steps.finish(true)
+        }
+        Verb::Release(plan) => release::release(&plan),
         Verb::Mutants(plan) => mutants::run(&plan),
     }
 }

@@ -45,6 +45,35 @@ pub(crate) fn python() -> Result<(), Trouble> {
     run(&mut tests)
 }
 
+/// Writes the reference, made of docstrings and stubs, into a folder.
+pub(crate) fn reference(folder: &Path) -> Result<(), Trouble> {
+    let home = Path::new("target/python-reference");
+    if !interpreter(home).exists() {
+        run(Command::new("python3").args(["-m", "venv"]).arg(home))?;
+    }
+    let python = interpreter(home);
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "pdoc", ".[plot]"]))?;
+    run(Command::new(&python)
+        .args(["-m", "pdoc", "--docformat", "google", "--output-directory"])
+        .arg(folder)
+        .arg("eeruf"))
+}
+
+/// Builds the wheel and the source distribution into a folder, and tries each in an empty environment.
+pub(crate) fn distributions(folder: &Path) -> Result<(), Trouble> {
+    let python = environment(Path::new("target/python"))?;
+    if folder.exists() {
+        fs::remove_dir_all(folder).map_err(|error| Trouble::Failed(format!("{}: {error}", folder.display())))?;
+    }
+    for (verb, ending) in [(&["build", "--locked"][..], "whl"), (&["sdist"], "gz")] {
+        let to = folder.join(ending);
+        run(Command::new(&python).args(["-m", "maturin"]).args(verb).arg("--out").arg(&to))?;
+        fresh(&only_file(&to)?)?;
+    }
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "abi3audit"]))?;
+    run(Command::new(&python).args(["-m", "abi3audit", "--strict"]).arg(only_file(&folder.join("whl"))?))
+}
+
 /// A virtual environment with what the tests need; its Python.
 fn environment(home: &Path) -> Result<PathBuf, Trouble> {
     if output(Command::new("python3").args(["-c", "import venv, ensurepip"])).is_none() {
@@ -60,19 +89,27 @@ fn environment(home: &Path) -> Result<PathBuf, Trouble> {
     Ok(python)
 }
 
-/// What a user does first: the wheel in an empty environment, and the README's lines beside the scenes.
-fn fresh(wheel: &Path) -> Result<(), Trouble> {
+/// What a user does first: the wheel, or the source distribution, in an empty environment, the README's lines, and the program that came along.
+fn fresh(distribution: &Path) -> Result<(), Trouble> {
     let home = Path::new("target/python-fresh");
     run(Command::new("python3").args(["-m", "venv", "--clear"]).arg(home))?;
     let python = interpreter(home);
-    run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).arg(format!("{}[plot]", wheel.display())))?;
-    run(Command::new(&python).args(["-c", README_LINES]).env("MPLBACKEND", "Agg"))
+    run(Command::new(&python)
+        .args(["-m", "pip", "install", "--quiet"])
+        .arg(format!("{}[plot]", distribution.display())))?;
+    run(Command::new(&python).args(["-c", README_LINES]).env("MPLBACKEND", "Agg"))?;
+    let program = std::path::absolute(python.with_file_name(format!("eeruf{EXE_SUFFIX}")))
+        .map_err(|error| Trouble::Failed(error.to_string()))?;
+    run(Command::new(&program).arg("--version"))?;
+    run(Command::new(&program).arg("examples").arg(home))?;
+    let study = ["study", "scenes/alcove.toml", "--periods", "100"];
+    run(Command::new(&program).args(study).current_dir(home).stdout(std::process::Stdio::null()))?;
+    run(Command::new(&python).args(["-m", "eeruf", "--help"]).stdout(std::process::Stdio::null()))
 }
 
 const README_LINES: &str = r#"
-import os, pathlib, re, shutil
+import os, pathlib, re
 lines = re.search(r"^## In Python$.*?^```python\n(.*?)^```$", pathlib.Path("README.md").read_text(), re.M | re.S)[1]
-shutil.copytree("scenes", "target/python-fresh/scenes")
 os.chdir("target/python-fresh")
 exec(lines)
 assert pathlib.Path("timing.png").stat().st_size > 5_000

@@ -15,6 +15,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     let mut steps = Steps::default();
     steps.step("formatting", || run_cargo(&["fmt", "--all", "--check"]));
     steps.step("listings of the documents", crate::listings::check_all);
+    steps.step("links of the documents", crate::links::check_documents);
     steps.step("clippy", || {
         run_cargo(&["clippy", "--workspace", "--all-targets", "--locked", "--", "--deny", "warnings"])
     });

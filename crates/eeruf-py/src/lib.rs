@@ -22,6 +22,7 @@ mod memory;
 mod methods;
 mod paths;
 mod pose;
+mod program;
 mod readings;
 mod report;
 mod requirements;
@@ -52,6 +53,7 @@ mod _eeruf {
         filter::EchoFilter,
         found::Found,
         paths::Paths,
+        program::{example, run_program},
         readings::Readings,
         report::{Report, Violation},
         ring::Ring,
@@ -77,6 +79,8 @@ mod _eeruf {
         module.add("METHODS", PyTuple::new(module.py(), methods.map(eeruf_sim::Method::as_str))?)?;
         let eeruf = methods.into_iter().filter(|method| method.is_eeruf()).map(eeruf_sim::Method::as_str);
         module.add("EERUF_METHODS", PyTuple::new(module.py(), eeruf.collect::<Vec<_>>())?)?;
+        let examples = eeruf::examples::all().into_iter().map(|(name, _)| name);
+        module.add("EXAMPLES", PyTuple::new(module.py(), examples.collect::<Vec<_>>())?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
         module.add("CAUSES", PyTuple::new(module.py(), crate::readings::CAUSES)?)?;
         // What the picture of a course shows.

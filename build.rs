@@ -1,0 +1,31 @@
+//! Names the version and the commit that the program is built from, for `eeruf --version`.
+
+use std::process::Command;
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-changed=.cargo_vcs_info.json");
+    let version = std::env::var("CARGO_PKG_VERSION").expect("cargo sets it");
+    let version = commit().map_or_else(|| version.clone(), |commit| format!("{version} ({commit})"));
+    println!("cargo::rustc-env=EERUF_VERSION={version}");
+}
+
+/// The commit: of the tarball as cargo noted it there, else of the clone; none where neither is at hand.
+fn commit() -> Option<String> {
+    if let Ok(noted) = std::fs::read_to_string(".cargo_vcs_info.json") {
+        let (_, rest) = noted.split_once("\"sha1\": \"")?;
+        return rest.get(..7).map(str::to_owned);
+    }
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git").args(arguments).output().ok().filter(|output| output.status.success())?;
+        String::from_utf8(output.stdout).ok().map(|said| said.trim().to_owned())
+    };
+    // A clone of something else that this one lies in, as a vendored copy does, says nothing of us.
+    let root = git(&["rev-parse", "--show-toplevel"])?;
+    if std::path::Path::new(&root).canonicalize().ok()? != std::env::current_dir().ok()?.canonicalize().ok()? {
+        return None;
+    }
+    // Each commit and each change of branch adds a line there.
+    println!("cargo::rerun-if-changed={}", git(&["rev-parse", "--git-path", "logs/HEAD"])?);
+    git(&["rev-parse", "--short=7", "HEAD"])
+}

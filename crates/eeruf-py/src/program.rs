@@ -1,0 +1,39 @@
+//! The program `eeruf` within the wheel, and its examples.
+
+use std::ffi::OsString;
+
+use pyo3::prelude::*;
+
+use crate::arguments;
+use crate::errors::ArgumentError;
+
+/// Runs the program with the words of a command line, the first its own name, and gives its exit code.
+#[pyfunction]
+#[pyo3(name = "_run_program")]
+pub(crate) fn run_program(py: Python<'_>, words: Vec<OsString>) -> u8 {
+    py.detach(|| eeruf::run(words))
+}
+
+/// The text of an example file: a scene for :meth:`sim.Scene.from_toml`, or a ring for the command ``eeruf design``.
+///
+/// ``eeruf examples DIR`` writes them all into a folder.
+///
+/// Args:
+///     name: one of ``EXAMPLES``, as ``"scenes/alcove.toml"``.
+///
+/// Raises:
+///     ArgumentError: there is no such example.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> eeruf.sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))  # doctest: +ELLIPSIS
+///     Scene(...)
+#[pyfunction]
+#[pyo3(signature = (name))]
+pub(crate) fn example(name: &Bound<'_, PyAny>) -> PyResult<&'static str> {
+    let name = arguments::text("name", name, "the name of an example")?;
+    eeruf::examples::text(&name).ok_or_else(|| {
+        let names: Vec<_> = eeruf::examples::all().into_iter().map(|(name, _)| name).collect();
+        ArgumentError::new_err(format!("name: {name:?}; expected one of {}", names.join(", ")))
+    })
+}

@@ -1,0 +1,16 @@
+"""The command ``eeruf``, which the wheel brings along: ``python -m eeruf --help``."""
+
+from __future__ import annotations
+
+import sys
+
+from eeruf._eeruf import _run_program
+
+
+def main() -> int:
+    """Run the command with the words of this process, and return its exit code."""
+    return _run_program(["eeruf", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,28 @@
+//! `eeruf completions`: what a shell wants to know so that it completes verbs and options.
+
+use clap::CommandFactory as _;
+use clap_complete::Shell;
+
+use super::Cli;
+use super::answer::Answer;
+use crate::files::error::InputError;
+
+/// Print the script that lets a shell complete verbs and options
+///
+/// bash: eeruf completions bash > ~/.local/share/bash-completion/completions/eeruf
+///
+/// fish: eeruf completions fish > ~/.config/fish/completions/eeruf.fish
+///
+/// zsh: eeruf completions zsh > _eeruf, in a folder of $fpath
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Args {
+    /// The shell
+    #[arg(value_name = "SHELL")]
+    shell: Shell,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    clap_complete::generate(args.shell, &mut Cli::command(), "eeruf", &mut std::io::stdout());
+    Ok(Answer::Yes)
+}

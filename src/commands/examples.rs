@@ -1,0 +1,37 @@
+//! `eeruf examples`: the example files, written where they are wanted.
+
+use std::fs;
+use std::path::PathBuf;
+
+use super::answer::Answer;
+use crate::examples;
+use crate::files::error::InputError;
+use crate::files::write::write;
+
+/// List the example scenes and rings, or write them into a folder, where the commands of the documents then run.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Write scenes/ and rings/ into this folder; files that are there already stay as they are
+    #[arg(value_name = "DIR")]
+    folder: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    for (name, text) in examples::all() {
+        let Some(folder) = &args.folder else {
+            println!("{name}");
+            continue;
+        };
+        let file = folder.join(name);
+        if file.exists() {
+            println!("{} is there already", file.display());
+            continue;
+        }
+        if let Some(folder) = file.parent() {
+            fs::create_dir_all(folder).map_err(|error| InputError::new(folder, None, error))?;
+        }
+        write(&file, text)?;
+        println!("{}", file.display());
+    }
+    Ok(Answer::Yes)
+}

@@ -1,0 +1,78 @@
+//! `cargo xtask release --dry-run`: everything of a release but uploading.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, ExitCode};
+
+use cargo_metadata::MetadataCommand;
+
+use crate::steps::{Steps, Trouble, output, run};
+
+/// What a person does: nobody else may.
+const REMAINS: &str = "
+What remains for a person, in this order (docs/releasing.md says how):
+  1. read CHANGELOG.md once more as a user would, and the site (cargo xtask site)
+  2. run the long checks that changed code asks for, and put their figures into the docs
+  3. git tag v{VERSION} && git push origin v{VERSION}: the workflow publishes crates and wheels, and drafts the release
+  4. publish the draft, and try `pip install eeruf` and `cargo install eeruf` on another machine
+";
+
+#[derive(clap::Args)]
+pub(crate) struct Plan {
+    /// Upload nothing. Only a tag does, through the workflow; this must be said so that nobody expects otherwise
+    #[arg(long, required = true)]
+    dry_run: bool,
+}
+
+pub(crate) fn release(_plan: &Plan) -> ExitCode {
+    let mut steps = Steps::default();
+    let mut version = String::new();
+    steps.step("one version everywhere", || {
+        version = one_version()?;
+        Ok(())
+    });
+    steps.step("nothing uncommitted", || {
+        let changed = output(Command::new("git").args(["status", "--porcelain"])).unwrap_or_default();
+        if changed.trim().is_empty() { Ok(()) } else { Err(Trouble::Failed(changed)) }
+    });
+    steps.step("links of the documents", crate::links::check_documents);
+    steps.step("workflow files", || {
+        let actionlint = "actionlint";
+        match output(Command::new(actionlint).arg("-version")) {
+            Some(_) => run(&mut Command::new(actionlint)),
+            None => Err(Trouble::Skipped(
+                "no actionlint; try: go install github.com/rhysd/actionlint/cmd/actionlint@latest".to_owned(),
+            )),
+        }
+    });
+    steps.step("licences and sources of dependencies", || {
+        match output(Command::new("cargo").args(["deny", "--version"])) {
+            Some(_) => run(Command::new("cargo").args(["deny", "--locked", "check", "licenses", "bans", "sources"])),
+            None => Err(Trouble::Skipped("no cargo-deny; try: cargo install cargo-deny --locked".to_owned())),
+        }
+    });
+    crate::package::package(&mut steps);
+    steps.step("wheel and source distribution", || crate::python::distributions(Path::new("target/release-files")));
+    println!("{}", REMAINS.replace("{VERSION}", &version));
+    steps.finish(false)
+}
+
+/// The version, where all files that state it agree.
+fn one_version() -> Result<String, Trouble> {
+    let metadata = MetadataCommand::new().no_deps().exec().map_err(|error| Trouble::Failed(error.to_string()))?;
+    let mut wrong = Vec::new();
+    let program = metadata.workspace_packages().into_iter().find(|package| package.name == "eeruf");
+    let version = program.ok_or_else(|| Trouble::Failed("no package eeruf".to_owned()))?.version.to_string();
+    for package in metadata.workspace_packages() {
+        if package.publish.is_none() && package.version.to_string() != version {
+            wrong.push(format!("{} is {}, not {version}", package.name, package.version));
+        }
+    }
+    for (file, wanted) in [("CHANGELOG.md", format!("## {version}")), ("CITATION.cff", format!("version: {version}"))] {
+        let text = fs::read_to_string(file).map_err(|error| Trouble::Failed(format!("{file}: {error}")))?;
+        if !text.lines().any(|line| line.starts_with(&wanted)) {
+            wrong.push(format!("{file} has no line that begins with \"{wanted}\""));
+        }
+    }
+    if wrong.is_empty() { Ok(version) } else { Err(Trouble::Failed(wrong.join("\n"))) }
+}

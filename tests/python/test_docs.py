@@ -126,7 +126,7 @@ def test_each_of_the_twelve_tasks_takes_fewer_than_fifteen_lines_and_runs_as_a_s
     assert (tmp_path / "tables.pdf").stat().st_size > 5_000
 
 
-@pytest.mark.parametrize(("document", "least"), [("README.md", 1), ("docs/python.md", 8)])
+@pytest.mark.parametrize(("document", "least"), [("README.md", 1), ("python/README.md", 1), ("docs/python.md", 8)])
 def test_the_listings_of_a_document_run_from_top_to_bottom(
     document: str, least: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -26,7 +26,8 @@ def test_figures_draw_into_the_axes_they_are_given() -> None:
     paths = scene.paths((0.0, 0.2), [(0.1, 0.2)], 2)
     ax = plt.subplots()[1]
     assert plot.scene(scene, paths, source=(0.0, 0.2), receivers=[(0.1, 0.2)], ax=ax) is ax
-    assert len(ax.lines) == len(scene.walls) + len(paths) + 2
+    # Each sensor is a line, and each robot a mark.
+    assert len(ax.lines) == len(scene.walls) + len(paths) + 8 + 1 + 2
     ax = plt.subplots()[1]
     assert plot.readings(sim.simulate(scene, periods=40), sensor=4, ax=ax) is ax
     assert sum(np.size(line.get_xdata()) for line in ax.lines[1:]) == 40
@@ -82,3 +83,62 @@ def test_a_run_alone_is_drawn_as_well_and_what_is_none_is_refused() -> None:
             plot.course(found, **arguments)  # type: ignore[arg-type]
     with pytest.raises(eeruf.ArgumentError, match="expected what eeruf"):
         plot.course({"methods": {}})  # type: ignore[arg-type]
+
+
+def test_the_ways_of_foreign_sound_lead_from_the_sensor_that_sent_it_to_the_one_that_believed_it() -> None:
+    scene = sim.Scene.from_toml(eeruf.example("scenes/two-hc-sr04.toml"))
+    ax = plot.scene(scene, readings=sim.simulate(scene, "simultaneous", periods=20))
+    (way,) = [line for line in ax.lines if len(np.asarray(line.get_xdata())) == 3]
+    x, y, heading = scene.robots[0].pose
+    at = [
+        (x + dx * np.cos(heading) - dy * np.sin(heading), y + dx * np.sin(heading) + dy * np.cos(heading))
+        for dx, dy, _ in scene.robots[0].sensor_poses
+    ]
+    corners = np.column_stack([way.get_xdata(), way.get_ydata()])
+    assert corners[[0, -1]] == pytest.approx(np.array([at[1], at[0]]))
+    assert corners[1][1] == pytest.approx(0.6)
+    assert ax.get_title(loc="left").startswith("simultaneous: 20 of 40 readings")
+
+
+def test_readings_that_were_believed_and_wrong_are_marked() -> None:
+    scene = sim.Scene.from_toml(eeruf.example("scenes/two-hc-sr04.toml"))
+    readings = sim.simulate(scene, "simultaneous", periods=20)
+    drawn = {line.get_label(): np.size(line.get_xdata()) for line in plot.readings(readings, sensor=0).lines}
+    assert (drawn["accepted, and wrong"], drawn["accepted"], drawn["not accepted"]) == (20, 0, 0)
+
+
+def test_a_film_shows_sound_on_its_way_and_the_readings_that_come_of_it() -> None:
+    scene = sim.Scene.from_toml(eeruf.example("scenes/two-hc-sr04.toml"))
+    film = plot.animation(scene, sim.simulate(scene, "simultaneous", periods=4), frames=30)
+    dots, discs = [], set()
+    for frame in range(30):
+        sound, heard, _ = film._func(frame)  # type: ignore[attr-defined]
+        dots.append(len(sound.get_offsets()))
+        discs |= {tuple(colour) for colour in np.round(heard.get_edgecolor(), 2)}
+    # Nothing is on its way at first or last, two sounds are at times, and one sensor is right while the other is not.
+    assert (dots[0], max(dots), dots[-1], len(discs)) == (2, 2, 0, 2)
+    film._draw_was_started = True  # type: ignore[attr-defined]
+    with pytest.raises(eeruf.ArgumentError, match="no readings of 2 periods from there"):
+        plot.animation(scene, sim.simulate(scene, "simultaneous", periods=4), first=7)
+    elsewhere = sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))
+    with pytest.raises(eeruf.ArgumentError, match="expected their own scene"):
+        plot.animation(scene, sim.simulate(elsewhere, periods=4))
+
+
+def test_speeds_are_drawn_by_method() -> None:
+    sweep = experiments.speed_sweep([0.75, 1.0], seeds=1, methods=["eeruf", "conventional"])
+    ax = plot.speeds(sweep)
+    assert [line.get_label() for line in ax.lines] == ["eeruf", "conventional"]
+    assert list(np.asarray(ax.lines[0].get_ydata())) == [100 * step["finished"]["eeruf"] for step in sweep["steps"]]
+    with pytest.raises(eeruf.ArgumentError, match="expected what eeruf"):
+        plot.speeds({"steps": []})
+
+
+def test_every_figure_is_legible_on_a_dark_background() -> None:
+    import matplotlib.pyplot as plt
+    from matplotlib.colors import to_rgb
+
+    with plt.style.context("dark_background"):
+        ax = plot.readings(sim.simulate(sim.Scene.read_toml(ALCOVE), "conventional", periods=40))
+        for line in ax.lines:
+            assert sum(to_rgb(line.get_color())) > 1.0, line.get_label()

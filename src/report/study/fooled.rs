@@ -11,7 +11,8 @@ use crate::report::bounces::by_way_of;
 
 /// The most rows that are printed.
 const ROWS: usize = 8;
-/// The methods that are compared, where they were simulated: no filter, the filter without alternation, and with it.
+/// The methods that are compared where more were simulated than there are columns for: no filter, the filter without
+/// alternation, and with it.
 const COMPARED: [Method; 4] = [Method::Conventional, Method::Comparison, Method::Eeruf, Method::EerufBest];
 
 /// What a path is called in all runs: who heard whom, along which bounces.
@@ -35,8 +36,13 @@ pub(crate) struct Fooled {
 impl Fooled {
     /// From the readings of one robot under each method.
     pub(crate) fn of(runs: &[Readings], robot: usize, tolerance_us: f64) -> Self {
-        let compared: Vec<&Readings> = runs.iter().filter(|readings| COMPARED.contains(&readings.method)).collect();
-        let compared = if compared.is_empty() { runs.iter().take(COMPARED.len()).collect() } else { compared };
+        let mut compared: Vec<&Readings> = runs.iter().collect();
+        if compared.len() > COMPARED.len() {
+            compared.retain(|readings| COMPARED.contains(&readings.method));
+        }
+        if compared.is_empty() {
+            compared = runs.iter().take(COMPARED.len()).collect();
+        }
         let mut rows: BTreeMap<Key, Row> = BTreeMap::new();
         let mut own = vec![(0, 0); compared.len()];
         for (column, readings) in compared.iter().enumerate() {
@@ -70,7 +76,8 @@ impl Fooled {
     pub(crate) fn describe(&self) -> String {
         let mut text = String::new();
         if self.rows.is_empty() {
-            _ = writeln!(text, "\nNobody was fooled by foreign sound.");
+            let methods: Vec<_> = self.methods.iter().map(Method::to_string).collect();
+            _ = writeln!(text, "\nNobody was fooled by foreign sound under {}.", methods.join(", "));
             return text;
         }
         let mut table = Table::new();
@@ -101,11 +108,9 @@ impl Fooled {
                 column.set_cell_alignment(CellAlignment::Right);
             }
         }
-        _ = writeln!(
-            text,
-            "\nWho was fooled by whom, believed of wrong readings (the {ROWS} commonest of {} paths):",
-            self.rows.len()
-        );
+        let paths = self.rows.len();
+        let shown = if paths > ROWS { format!(" (the {ROWS} commonest of {paths} paths)") } else { String::new() };
+        _ = writeln!(text, "\nWho was fooled by whom, believed of wrong readings{shown}:");
         _ = writeln!(text, "{table}");
         let own = self.methods.iter().zip(&self.own).filter(|(_, (_, believed))| *believed > 0);
         let own: Vec<_> = own.map(|(method, (_, believed))| format!("{believed} under {method}")).collect();

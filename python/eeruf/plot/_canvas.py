@@ -1,0 +1,76 @@
+"""What all figures share: axes, colours, and checks of arguments."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eeruf._eeruf import ArgumentError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike, NDArray
+
+
+@dataclass(frozen=True)
+class Colours:
+    """Colours that differ in grey and to the colour-blind (Okabe and Ito)."""
+
+    ink: str
+    blue: str
+    vermilion: str
+    green: str
+    orange: str
+    grey: str
+    window: str
+    floor: str
+
+
+_ON_LIGHT = Colours("#1a1a1a", "#0072b2", "#d55e00", "#009e73", "#e69f00", "#8c8c8c", "#cfe3f1", "#f4f4f4")
+_ON_DARK = Colours("#e8e8e8", "#56b4e9", "#ff7f3f", "#2fd0a5", "#f0c14b", "#9a9a9a", "#24455c", "#262626")
+
+
+def colours(ax: Axes) -> Colours:
+    """Those for the background of these axes."""
+    from matplotlib.colors import to_rgb
+
+    red, green, blue = to_rgb(ax.get_facecolor())
+    return _ON_LIGHT if 0.2126 * red + 0.7152 * green + 0.0722 * blue > 0.5 else _ON_DARK
+
+
+def axes(ax: Axes | None, *, width: float = 7.0, height: float = 4.0) -> Axes:
+    """These, or new ones of so many inches."""
+    if ax is not None:
+        return ax
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError as error:
+        raise ImportError("figures need matplotlib: pip install 'eeruf[plot]'") from error
+    return plt.subplots(figsize=(width, height), layout="constrained")[1]
+
+
+def bare(ax: Axes) -> None:
+    """Without the spines that say nothing."""
+    ax.spines[["top", "right"]].set_visible(False)
+
+
+def check_kind(name: str, value: object, kind: type, expected: str) -> None:
+    """Refuse what is not of this type."""
+    if not isinstance(value, kind):
+        raise ArgumentError(f"{name} = {value!r:.60}; expected {expected}")
+
+
+def check_whole(name: str, value: object, least: int, most: int) -> None:
+    """Refuse what is no whole number, or out of range."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
+        raise ArgumentError(f"{name} = {value!r:.60}; expected a whole number from {least} to {most}")
+
+
+def points(name: str, value: ArrayLike, expected: str) -> NDArray[np.float64]:
+    """Points in the plane, a row each."""
+    try:
+        return np.asarray(value, dtype=float).reshape(-1, 2)
+    except (TypeError, ValueError):
+        raise ArgumentError(f"{name} = {value!r:.60}; expected {expected}") from None

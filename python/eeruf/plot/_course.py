@@ -1,0 +1,148 @@
+"""A course of Set II from above."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eeruf import _eeruf
+from eeruf._eeruf import ArgumentError
+from eeruf.plot._canvas import axes, colours
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from eeruf.experiments import Run, SetTwo
+
+
+def course(
+    result: SetTwo | Run,
+    *,
+    method: str | None = None,
+    course: int | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """One course of Set II from above: poles, walls, where the robot drove, and the grid that it made of its readings.
+
+    The two walls that are drawn heavier are smooth and make the reflective corner; the others return half of the sound. The
+    outline of the platform is drawn for every second.
+
+    Args:
+        result: of ``eeruf.experiments.set_two``, or one of its runs.
+        method: whose run to draw; by default ``"eeruf"``, or the first method if it is not among them.
+        course: the number of the course; by default the first.
+        ax: where to draw.
+
+    Returns:
+        The axes; metres, one as long in x as in y.
+
+    Raises:
+        ArgumentError: the result has no such method or course.
+
+    Example:
+        >>> import eeruf
+        >>> found = eeruf.experiments.set_two(seeds=1, methods=["eeruf"])
+        >>> ax = eeruf.plot.course(found)
+        >>> ax.get_title(loc="left")
+        'eeruf, course 0: finished after 8.7 s, 4 phantom echoes'
+
+    """
+    run, name, second_robot_m = _chosen(result, method, course)
+    ax = axes(ax, width=7.0, height=5.0)
+    its = colours(ax)
+    from matplotlib.collections import PatchCollection
+    from matplotlib.patches import Circle, Polygon, Rectangle
+
+    length, width = _eeruf._ROOM_M
+    ax.add_patch(Rectangle((0, 0), length, width, facecolor=its.floor, zorder=0))
+    cells = PatchCollection([Rectangle((x - 0.05, y - 0.05), 0.1, 0.1) for x, y, _ in run.grid], linewidth=0, zorder=1)
+    cells.set(array=run.grid[:, 2], cmap="Greys", clim=(-3, 15))
+    ax.add_collection(cells)
+    ax.plot([0, 0, length], [width, 0, 0], color=its.ink, linewidth=1.0, zorder=3)
+    ax.plot([length, length, 0], [0, width, width], color=its.ink, linewidth=3.5, zorder=3)
+    if second_robot_m is not None:
+        ax.add_patch(Circle(second_robot_m, 0.3, facecolor=its.orange, zorder=3, label="second robot"))
+    seconds = np.arange(0.0, run.time_s, 1.0)
+    for at in np.searchsorted(run.track[:, 0], seconds):
+        if at < len(run.track):
+            ax.add_patch(
+                Polygon(_outline(run.track[at]), fill=False, edgecolor=its.blue, linewidth=0.7, alpha=0.5, zorder=2)
+            )
+    ax.plot(
+        run.track[:, 1], run.track[:, 2], color=its.blue, linewidth=1.8, zorder=4, label="track, outline every second"
+    )
+    finished = run.ending == "finished"
+    last = Polygon(
+        _outline(run.track[-1]), fill=False, edgecolor=its.green if finished else its.vermilion, linewidth=2, zorder=4
+    )
+    ax.add_patch(last)
+    # A pole of 8 mm would not be seen at its size.
+    ax.plot(
+        run.poles[:, 0],
+        run.poles[:, 1],
+        linestyle="",
+        marker="o",
+        markersize=4.5,
+        color=its.vermilion,
+        zorder=5,
+        label="pole",
+    )
+    cell = Rectangle((0, 0), 1, 1, facecolor="#6b6b6b", label="grid, darker: more certain")
+    ax.legend(
+        handles=[*ax.get_legend_handles_labels()[0], cell],
+        frameon=False,
+        ncols=4,
+        loc="lower left",
+        bbox_to_anchor=(-0.01, 1.0),
+        borderaxespad=0.2,
+        columnspacing=1.2,
+        handlelength=1.4,
+        fontsize="small",
+    )
+    ending = {"finished": "finished after", "contact": "touched something after"}.get(run.ending, "not through in")
+    echoes = f"{run.phantom_echoes} phantom echo{'es' * (run.phantom_echoes != 1)}"
+    title = f"course {run.course}: {ending} {run.time_s:.1f} s, {echoes}"
+    # Above the legend.
+    ax.set_title(title if name is None else f"{name}, {title}", loc="left", fontsize="medium", pad=24)
+    ax.set_aspect("equal")
+    ax.set_xlim(-0.06, length + 0.06)
+    ax.set_ylim(-0.06, width + 0.06)
+    ax.set_xlabel("x (m)")
+    ax.set_ylabel("y (m)")
+    ax.spines[:].set_visible(False)
+    return ax
+
+
+def _chosen(
+    result: SetTwo | Run, method: str | None, course: int | None
+) -> tuple[Run, str | None, tuple[float, float] | None]:
+    """A run, its method and where the second robot stood, as far as the result says."""
+    from eeruf.experiments import Run, SetTwo
+
+    if isinstance(result, Run):
+        return result, None, None
+    if not isinstance(result, SetTwo):
+        raise ArgumentError(
+            f"result = {result!r:.60}; expected what eeruf.experiments.set_two returns, or one of its runs"
+        )
+    if method is None:
+        method = "eeruf" if "eeruf" in result.runs else next(iter(result.runs))
+    if not isinstance(method, str) or method not in result.runs:
+        raise ArgumentError(f"method = {method!r}; expected one of {', '.join(result.runs)}")
+    runs = {run.course: run for run in result.runs[method]}
+    if course is None:
+        course = min(runs)
+    if not isinstance(course, int) or course not in runs:
+        raise ArgumentError(f"course = {course!r}; expected {min(runs)} to {max(runs)}")
+    return runs[course], method, result["second_robot_m"]
+
+
+def _outline(place: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The corners of the platform at a place of a track."""
+    _, x, y, heading, _ = place
+    half = _eeruf._SIDE_M / 2
+    ahead, aside = np.array([np.cos(heading), np.sin(heading)]), np.array([-np.sin(heading), np.cos(heading)])
+    corners = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
+    return np.array([[x, y] + half * (along * ahead + side * aside) for along, side in corners])

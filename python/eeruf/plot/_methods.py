@@ -1,0 +1,124 @@
+"""The firing methods side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from eeruf._eeruf import EERUF_METHODS, ArgumentError
+from eeruf.plot._canvas import axes, bare, colours
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+
+_QUANTILES = ("p10", "median", "p90")
+# Figures that are neither shares nor end in their unit.
+_COUNTS = ("courses", "finished", "contacts", "timed_out", "phantom_echoes", "phantom_cells", "starved")
+_TITLES = {
+    "wrong_of_all": "wrong of all readings (%)",
+    "crosstalk_of_all": "crosstalk of all readings (%)",
+    "wrong_of_accepted": "wrong of accepted readings (%)",
+    "rejected": "readings not accepted (%)",
+    "good_lost": "good readings lost (%)",
+    "wrong_before_filter": "wrong before any filter (%)",
+    "readings_per_s": "accepted readings per second",
+    "age_ms": "age of the last accepted reading (ms)",
+    "age_p99_ms": "age of the last accepted reading, 99 % (ms)",
+    "starved": "sensors that never had a reading accepted",
+    "finished": "courses finished",
+    "contacts": "courses with a contact",
+    "timed_out": "courses out of time",
+    "mean_speed_m_s": "mean speed (m/s)",
+    "top_speed_m_s": "top speed (m/s)",
+    "nearest_m": "nearest pole (m)",
+    "poles_missed": "poles missed (%)",
+    "phantom_echoes": "phantom echoes in a course",
+    "phantom_cells": "phantom cells in a course",
+}
+
+
+def methods(
+    result: Mapping[str, Any],
+    *,
+    figure: str = "wrong_of_all",
+    names: Sequence[str] | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """The firing methods side by side: the median over all geometries, and where eight in ten of them lie.
+
+    Args:
+        result: of ``eeruf.experiments.set_one`` or ``set_two``.
+        figure: which figure to draw, such as "wrong_of_all", "rejected", "good_lost" or "readings_per_s".
+        names: which methods, first on top; by default all, largest median on top.
+        ax: where to draw.
+
+    Returns:
+        The axes; percent for shares of readings, else the figure's own unit.
+
+    Raises:
+        ArgumentError: no method has that figure, or there is no such method.
+
+    Example:
+        >>> import eeruf
+        >>> table = eeruf.experiments.set_one(seeds=2, readings=400, methods=["eeruf", "conventional"])
+        >>> ax = eeruf.plot.methods(table)
+        >>> [label.get_text() for label in ax.get_yticklabels()]
+        ['conventional', 'eeruf']
+
+    """
+    table = result.get("methods") if isinstance(result, Mapping) else None
+    if not isinstance(table, Mapping) or not table or not all(isinstance(of, Mapping) for of in table.values()):
+        raise ArgumentError(f"result = {result!r:.60}; expected what eeruf.experiments.set_one or set_two returns")
+    figures = {
+        name: method[figure]
+        for name, method in table.items()
+        if isinstance(figure, str) and figure in _TITLES and method.get(figure) is not None
+    }
+    if not figures:
+        known = ", ".join(sorted(name for name in _TITLES if any(name in of for of in table.values())))
+        raise ArgumentError(f"figure = {figure!r}; expected one of {known}")
+    # Set II has one number for all courses.
+    spreads = {name: of if isinstance(of, Mapping) else dict.fromkeys(_QUANTILES, of) for name, of in figures.items()}
+    chosen = sorted(spreads, key=lambda name: -spreads[name]["median"])
+    if names is not None:
+        chosen = list(names) if isinstance(names, Iterable) else []
+        strange = [name for name in chosen if not isinstance(name, str) or name not in spreads]
+        if strange or not chosen:
+            raise ArgumentError(f"names = {names!r:.60}; expected some of {', '.join(spreads)}")
+    ax = axes(ax, height=1.0 + 0.34 * len(chosen))
+    its = colours(ax)
+    share = not figure.endswith(("_ms", "_per_s", "_m_s", "_m")) and figure not in _COUNTS
+    scale = 100.0 if share else 1.0
+    low, median, high = (scale * np.array([spreads[name][key] for name in chosen]) for key in _QUANTILES)
+    row = np.arange(len(chosen))
+    bars = [its.blue if name in EERUF_METHODS else its.grey for name in chosen]
+    ax.barh(row, median, color=bars, height=0.6)
+    spread = bool((low < high).any())
+    if spread:
+        ax.errorbar(
+            median, row, xerr=[median - low, high - median], fmt="none", ecolor=its.ink, elinewidth=1, capsize=3
+        )
+    for at, value in zip(row, median):
+        ax.annotate(
+            f"{value:.3g}",
+            (value, at),
+            xytext=(3, 2),
+            textcoords="offset points",
+            va="bottom",
+            fontsize="small",
+            color=its.ink,
+        )
+    ax.set_yticks(row, [name.replace("_", " ") for name in chosen])
+    ax.invert_yaxis()
+    ax.set_xlim(0, 1.1 * float(high.max()) or 1.0)
+    ax.tick_params(axis="y", length=0)
+    ax.set_xlabel(_TITLES[figure])
+    if spread:
+        said = f"bar and number: median of {result['seeds']} geometries\nwhisker: 10 % to 90 % of them"
+        ax.set_title(said, loc="left", fontsize="small", color=its.grey)
+    bare(ax)
+    return ax

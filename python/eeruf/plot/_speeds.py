@@ -1,0 +1,59 @@
+"""Which speed each firing method sustains."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from eeruf._eeruf import EERUF_METHODS, ArgumentError
+from eeruf.plot._canvas import axes, bare, colours
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MARKERS = "osD^vPX*<>hd8"
+
+
+def speeds(result: Mapping[str, Any], *, ax: Axes | None = None) -> Axes:
+    """The share of courses finished over the platform's top speed, a line for each method.
+
+    Args:
+        result: of ``eeruf.experiments.speed_sweep``.
+        ax: where to draw.
+
+    Returns:
+        The axes; percent over metres a second. EERUF's methods have full lines, the others dashed ones.
+
+    Raises:
+        ArgumentError: the result is not one of ``speed_sweep``.
+
+    Example:
+        >>> import eeruf
+        >>> sweep = eeruf.experiments.speed_sweep([0.75, 1.0], seeds=2, methods=["eeruf"])
+        >>> eeruf.plot.speeds(sweep).get_xlabel()
+        'top speed (m/s)'
+
+    """
+    steps = result.get("steps") if isinstance(result, Mapping) else None
+    if not steps or not all(isinstance(step, Mapping) and "finished" in step for step in steps):
+        raise ArgumentError(f"result = {result!r:.60}; expected what eeruf.experiments.speed_sweep returns")
+    ax = axes(ax)
+    its = colours(ax)
+    hues = [its.blue, its.vermilion, its.green, its.orange, its.grey, its.ink]
+    at = [step["speed_m_s"] for step in steps]
+    for index, method in enumerate(steps[0]["finished"]):
+        ax.plot(
+            at,
+            [100.0 * step["finished"][method] for step in steps],
+            color=hues[index % len(hues)],
+            linestyle="-" if method in EERUF_METHODS else "--",
+            marker=_MARKERS[index % len(_MARKERS)],
+            markersize=5,
+            label=method.replace("_", " "),
+        )
+    ax.set_ylim(-3, 103)
+    ax.set_xlabel("top speed (m/s)")
+    ax.set_ylabel("courses finished (%)")
+    ax.legend(frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    bare(ax)
+    return ax

@@ -74,8 +74,10 @@ enum Form {
     Toml,
     /// A const that is checked when the firmware is compiled
     Rust,
-    /// A C99 header
+    /// A C99 header, alone or for c/eeruf.h
     C,
+    /// A file of an Arduino sketch, for the library in c/arduino: the constant RING
+    Arduino,
     /// One object with schedule, value, bound, proof and nodes
     Json,
 }
@@ -126,6 +128,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         Some(Form::Toml) => print!("{}", design.schedule.to_toml()),
         Some(Form::Rust) => print!("{}", design.schedule.to_rust(&requirements)),
         Some(Form::C) => print!("{}", design.schedule.to_c(&requirements)),
+        Some(Form::Arduino) => print!("{}", design.schedule.to_arduino(&requirements, "RING")),
         Some(Form::Json) => println!("{}", to_json(&design.json(seconds))),
         None => print!("{}", describe(&args.file.display().to_string(), &spec, &requirements, &design, seconds)),
     }

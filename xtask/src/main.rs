@@ -4,6 +4,7 @@
 //! skipped, and says loudly what to install; with `--nothing-skipped`, as in CI, that counts as a failure.
 
 mod blocks;
+mod c;
 mod certificates;
 mod changed;
 mod classic;
@@ -56,6 +57,8 @@ enum Verb {
         #[arg(long)]
         write: bool,
     },
+    /// Compile the C library strictly, misuse it, and compare it with the Rust crates under sanitizers
+    C,
     /// Build the wheel and test it: types, examples, and against what Rust says
     Python,
     /// Build the page in playground/, as a folder for a server and as one file for a disk
@@ -104,6 +107,7 @@ fn main() -> ExitCode {
             steps.step("firmware on emulated boards", || firmware::firmware(write));
             steps.finish(true)
         }
+        Verb::C => one_step("C library", c::c),
         Verb::Python => one_step("Python package", python::python),
         Verb::Page { test, long } => one_step("the page", || {
             page::page(match (test, long) {

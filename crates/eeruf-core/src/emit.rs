@@ -1,8 +1,13 @@
-//! A schedule as source text: Rust that is checked when it is compiled, a C header, a TOML file.
+//! A schedule as source text: Rust that is checked when it is compiled, a C header, a tab of an Arduino sketch, a TOML
+//! file.
 //!
 //! Each is a [`fmt::Display`], so nothing is allocated here.
 
+mod c;
+
 use core::fmt;
+
+pub use c::{ArduinoTab, CHeader};
 
 use crate::conditions::{Criterion, Requirements};
 use crate::layout::Layout;
@@ -16,9 +21,15 @@ impl<const K: usize> Schedule<K> {
         RustSource { schedule: self, requirements }
     }
 
-    /// A C99 header that includes nothing but `<stdint.h>`, with the firing times and what they were designed for.
+    /// A C99 header that includes nothing but `<stdint.h>`, with the firing times and what they were designed for; and,
+    /// where `eeruf.h` is included before it, the constant `eeruf_schedule` for its `eeruf_ring_init`.
     pub const fn to_c<'r>(&'r self, requirements: &'r Requirements<'r>) -> CHeader<'r, K> {
         CHeader { schedule: self, requirements }
+    }
+
+    /// A file of an Arduino sketch that uses the library in `c/arduino`, with the schedule as a constant of this name.
+    pub const fn to_arduino<'r>(&'r self, requirements: &'r Requirements<'r>, name: &'r str) -> ArduinoTab<'r, K> {
+        ArduinoTab { schedule: self, requirements, name }
     }
 
     /// A schedule file, as the program reads it: lags and waits, or firing times if all lags are zero.
@@ -82,35 +93,6 @@ impl<const K: usize> fmt::Display for RustSource<'_, K> {
         writeln!(f, "        window: Micros::new({}),", Grouped(*window))?;
         writeln!(f, "        stale_echo: {stale_echo},")?;
         writeln!(f, "    }},\n}};")
-    }
-}
-
-/// A schedule as a C header: see [`Schedule::to_c`].
-#[derive(Clone, Copy, Debug)]
-pub struct CHeader<'r, const K: usize> {
-    schedule: &'r Schedule<K>,
-    requirements: &'r Requirements<'r>,
-}
-
-impl<const K: usize> fmt::Display for CHeader<'_, K> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { schedule, requirements } = self;
-        writeln!(f, "/* {};\n   {}.", Summary(schedule), Promise(requirements))?;
-        writeln!(f, "   Times are microseconds from the start of each period; phases a and b alternate. */")?;
-        writeln!(f, "#ifndef EERUF_SCHEDULE_H\n#define EERUF_SCHEDULE_H\n\n#include <stdint.h>\n")?;
-        writeln!(f, "#define EERUF_SENSORS {}", schedule.sensors())?;
-        writeln!(f, "#define EERUF_PERIOD_US {}u", schedule.period().as_micros())?;
-        writeln!(f, "#define EERUF_T_DELTA_US {}u", requirements.t_delta.as_micros())?;
-        writeln!(f, "#define EERUF_WINDOW_US {}u\n", requirements.window.as_micros())?;
-        writeln!(f, "static const uint32_t eeruf_t_fire_us[2][EERUF_SENSORS] = {{")?;
-        for phase in [Phase::A, Phase::B] {
-            write!(f, "    {{")?;
-            for (x, t_fire) in schedule.fire_times(phase).enumerate() {
-                write!(f, "{}{}u", if x == 0 { "" } else { ", " }, t_fire.as_micros())?;
-            }
-            writeln!(f, "}}, /* phase {phase} */")?;
-        }
-        writeln!(f, "}};\n\n#endif")
     }
 }
 

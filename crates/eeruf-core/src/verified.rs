@@ -30,12 +30,7 @@ impl<const K: usize, const M: usize> VerifiedSchedule<K, M> {
         match self.0.verified_for() {
             Some(verified_for) => *verified_for,
             // Never: it is made with one.
-            None => VerifiedFor {
-                t_delta: Micros::ZERO,
-                min_interval: Micros::ZERO,
-                window: Micros::ZERO,
-                separation: Micros::ZERO,
-            },
+            None => VerifiedFor::NOTHING,
         }
     }
 

@@ -17,3 +17,9 @@ pub struct VerifiedFor {
     /// By how much crosstalk moves at least from one reading to the next, `2 t_delta + 1 us` or more.
     pub separation: Micros,
 }
+
+impl VerifiedFor {
+    /// What a schedule was verified for that was not.
+    pub(crate) const NOTHING: Self =
+        Self { t_delta: Micros::ZERO, min_interval: Micros::ZERO, window: Micros::ZERO, separation: Micros::ZERO };
+}

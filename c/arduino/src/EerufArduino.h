@@ -1,0 +1,87 @@
+// Rings of HC-SR04 modules that reject each other's sound: eeruf for Arduino.
+//
+//   #include <EerufTables.h>
+//   const uint8_t PINS[] = {2, 3, 4, 5};                  // trigger and echo of each module on one pin
+//   EerufSonar<4> sonar(EERUF_HC_SR04_4, PINS);
+//
+//   void setup() { Serial.begin(115200); if (!sonar.begin()) Serial.println(sonar.status()); }
+//   void loop() { if (sonar.read() && sonar.accepted()) Serial.println(sonar.millimetres()); }
+//
+// Nothing waits: read() samples the echo lines, fires what is due and returns at once. Call it as often as you can. An
+// echo time is as exact as the calls are frequent; while loop() is busy for longer than an echo takes, echoes are lost.
+#pragma once
+
+#include <Arduino.h>
+
+#include "eeruf.h"
+
+// What all rings have in common, whatever their number of modules.
+class EerufModules {
+public:
+    // Begins firing. False if the table cannot be used: status() says why.
+    bool begin();
+
+    // One step; true if a module has a new reading, which the functions below are about.
+    bool read();
+    uint8_t sensor() const { return sensor_; }             // which one, from 0
+    uint8_t kind() const { return reading_.kind; }         // EERUF_READING_..
+    bool accepted() const { return reading_.kind == EERUF_READING_ACCEPTED; } // an echo that counts
+    bool clear() const { return reading_.kind == EERUF_READING_CLEAR; }       // nothing is in range
+    uint32_t micros() const { return reading_.t_echo_us; } // the echo time, EERUF_NO_ECHO without echo
+    uint16_t age() const { return reading_.age; }          // firings since its last accepted reading
+    // The distance at this temperature; 0 without echo.
+    uint16_t millimetres(uint32_t soundMmPerS = EERUF_SOUND_20C) const;
+
+    // How a module is: EERUF_HEALTH_..
+    uint8_t health(uint8_t sensor) const { return eeruf_hc_sr04_health(&modules_, sensor); }
+    // Stops a module, or lets it fire again.
+    bool enable(uint8_t sensor, bool enabled = true) { return eeruf_ring_enable(&ring_, sensor, enabled) == EERUF_OK; }
+    // Fires no module, or all again.
+    void pause(bool paused = true) { (void)eeruf_ring_pause(&ring_, paused); }
+    // By another table of as many modules, from the next period on.
+    bool change(const EerufSchedule &schedule) { return eeruf_hc_sr04_change_schedule(&modules_, &schedule) == EERUF_OK; }
+    // Changes along a ladder of tables, the first of which the ring began with, as its readings ask for.
+    void adapt(EerufAdaptation &adaptation) { adaptation_ = &adaptation; }
+    // An edge that an interrupt saw, with what micros() read: for those who do not let read() sample the lines.
+    void edge(uint8_t sensor, bool high, uint32_t atMicros) { (void)eeruf_hc_sr04_edge(&modules_, sensor, high, atMicros); }
+
+    // What begin() came to: EERUF_OK or EERUF_ERR_..
+    int8_t status() const { return status_; }
+    // All that eeruf.h can do.
+    EerufRing &ring() { return ring_; }
+
+protected:
+    EerufModules(const EerufSchedule &schedule, const uint8_t *triggers, const uint8_t *echoes, EerufSensor *sensors,
+                 EerufLine *lines, uint8_t count)
+        : schedule_(&schedule), triggers_(triggers), echoes_(echoes), sensors_(sensors), lines_(lines), count_(count) {}
+
+private:
+    void sample();
+    void fire(uint8_t sensor, uint32_t now);
+
+    const EerufSchedule *schedule_;
+    const uint8_t *triggers_, *echoes_;
+    EerufSensor *sensors_;
+    EerufLine *lines_;
+    EerufAdaptation *adaptation_ = nullptr;
+    EerufRing ring_;
+    EerufHcSr04 modules_;
+    EerufReading reading_;
+    uint8_t count_, sensor_;
+    EerufStatus status_ = EERUF_ERR_NOT_READY;
+};
+
+// A ring of N modules by a table for N.
+template <uint8_t N> class EerufSonar : public EerufModules {
+public:
+    // One pin for trigger and echo of each module.
+    EerufSonar(const EerufSchedule &schedule, const uint8_t (&pins)[N])
+        : EerufModules(schedule, pins, pins, sensors_, lines_, N) {}
+    // Two pins for each.
+    EerufSonar(const EerufSchedule &schedule, const uint8_t (&triggers)[N], const uint8_t (&echoes)[N])
+        : EerufModules(schedule, triggers, echoes, sensors_, lines_, N) {}
+
+private:
+    EerufSensor sensors_[N];
+    EerufLine lines_[N];
+};

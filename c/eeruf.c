@@ -1,0 +1,2041 @@
+/* eeruf in C: see eeruf.h. In the order of the header; the hopping ring is the last part.
+ * Equations and sections are those of Borenstein and Koren, IEEE Trans. Robotics and Automation 11(1), 1995. */
+#include "eeruf.h"
+
+#include <string.h>
+
+#define READY ((uint16_t)(0x4500u + EERUF_VERSION))
+#define NOBODY 255u
+#define HALF_TURN 0x80000000u /* of the clock: beyond it two instants have no order */
+
+/* Sizes that tables and callers rely on. */
+#define SIZE_IS(type, size) typedef char type##_has_another_size[sizeof(type) == (size) ? 1 : -1]
+#ifdef __AVR__
+SIZE_IS(EerufSensor, 18);
+SIZE_IS(EerufLine, 10);
+SIZE_IS(EerufSchedule, 36);
+#else
+SIZE_IS(EerufSensor, 20);
+SIZE_IS(EerufLine, 12);
+#endif
+
+#if defined(__AVR__) && !defined(EERUF_SCHEDULE_IN_RAM)
+#define READ8(place) pgm_read_byte(&(place))
+#define READ16(place) pgm_read_word(&(place))
+#define READ32(place) pgm_read_dword(&(place))
+#define READ_POINTER(type, place) ((type)pgm_read_ptr(&(place)))
+#else
+#define READ8(place) (place)
+#define READ16(place) (place)
+#define READ32(place) (place)
+#define READ_POINTER(type, place) (place)
+#endif
+
+#if defined(__GNUC__)
+#define OUT_OF_LINE __attribute__((noinline))
+#else
+#define OUT_OF_LINE
+#endif
+
+uint16_t eeruf_version(void) {
+    return EERUF_VERSION;
+}
+
+/* Whether `now` is `deadline` or up to half a turn of the clock past it. */
+static bool has_reached(uint32_t now, uint32_t deadline) {
+    return now - deadline < HALF_TURN;
+}
+
+static uint16_t narrow(uint32_t time) {
+    return time > UINT16_MAX ? UINT16_MAX : (uint16_t)time;
+}
+
+static uint16_t add16(uint16_t one, uint16_t other) {
+    return narrow((uint32_t)one + other);
+}
+
+static uint16_t less16(uint16_t one, uint16_t other) {
+    return one > other ? (uint16_t)(one - other) : 0;
+}
+
+static uint32_t add32(uint32_t one, uint32_t other) {
+    return one > UINT32_MAX - other ? UINT32_MAX : one + other;
+}
+
+static uint32_t apart(uint32_t one, uint32_t other) {
+    return one > other ? one - other : other - one;
+}
+
+static uint32_t longer(uint32_t one, uint32_t other) {
+    return one > other ? one : other;
+}
+
+static uint32_t shorter(uint32_t one, uint32_t other) {
+    return one < other ? one : other;
+}
+
+/* ---- Schedules ---- */
+
+static bool is_verified(const EerufSchedule *schedule) {
+    return READ8(schedule->verified) != 0;
+}
+
+/* A place in the firing order of a phase: its sensor, or NOBODY for the end of the period, and the gap before it. */
+static uint8_t firing(const EerufSchedule *schedule, uint8_t sensors, uint8_t phase, uint8_t place, uint32_t *gap_us) {
+    const uint8_t *order = READ_POINTER(const uint8_t *, schedule->order);
+    const uint32_t *gaps = READ_POINTER(const uint32_t *, schedule->gap_us);
+    *gap_us = READ32(gaps[(uint16_t)phase * (sensors + 1u) + place]);
+    return place < sensors ? READ8(order[(uint16_t)phase * sensors + place]) : (uint8_t)NOBODY;
+}
+
+/* When a sensor fires in a phase, after the start of the period. */
+static uint32_t fires_at(const EerufSchedule *schedule, uint8_t phase, uint8_t sensor) {
+    const uint8_t sensors = READ8(schedule->sensors);
+    uint32_t at = 0, gap;
+    uint8_t place;
+    for (place = 0; place < sensors; place++) {
+        const uint8_t who = firing(schedule, sensors, phase, place, &gap);
+        at += gap;
+        if (who == sensor) break;
+    }
+    return at;
+}
+
+/* From a sensor's firing in a phase to its next one. */
+static uint32_t refire(const EerufSchedule *schedule, uint8_t phase, uint8_t sensor) {
+    const uint8_t next = phase + 1u < READ8(schedule->phases) ? (uint8_t)(phase + 1u) : 0;
+    return fires_at(schedule, next, sensor) + READ32(schedule->period_us) - fires_at(schedule, phase, sensor);
+}
+
+static uint32_t shortest_refire(const EerufSchedule *schedule) {
+    uint32_t least = UINT32_MAX;
+    uint8_t sensor, phase;
+    for (sensor = 0; sensor < READ8(schedule->sensors); sensor++)
+        for (phase = 0; phase < READ8(schedule->phases); phase++)
+            least = shorter(least, refire(schedule, phase, sensor));
+    return least;
+}
+
+EerufStatus eeruf_schedule_make(EerufSchedule *schedule, uint8_t *order, size_t order_size, uint32_t *gap_us,
+                                size_t gap_size, uint32_t period_us, uint8_t sensors, uint8_t phases,
+                                const uint32_t *t_fire_us) {
+#if defined(__AVR__) && !defined(EERUF_SCHEDULE_IN_RAM)
+    (void)schedule, (void)order, (void)order_size, (void)gap_us, (void)gap_size;
+    (void)period_us, (void)sensors, (void)phases, (void)t_fire_us;
+    return EERUF_ERR_MEMORY; /* it would be looked for in flash */
+#else
+    uint8_t phase, sensor, at;
+    if (schedule == NULL || order == NULL || gap_us == NULL || t_fire_us == NULL) return EERUF_ERR_NULL;
+    if (sensors == 0 || sensors > EERUF_MAX_SENSORS) return EERUF_ERR_SENSORS;
+    if (phases == 0 || phases > EERUF_MAX_PHASES) return EERUF_ERR_PHASES;
+    if (period_us == 0 || period_us > EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
+    if (order_size < (size_t)phases * sensors) return EERUF_ERR_MEMORY;
+    if (gap_size < (size_t)phases * (sensors + 1u) * sizeof *gap_us) return EERUF_ERR_MEMORY;
+    for (phase = 0; phase < phases; phase++) {
+        uint8_t *places = order + (size_t)phase * sensors;
+        uint32_t *times = gap_us + (size_t)phase * (sensors + 1u), last = 0;
+        for (sensor = 0; sensor < sensors; sensor++) {
+            /* Insertion sort by firing time; sensors that fire together keep their order. */
+            const uint32_t t_fire = t_fire_us[(size_t)phase * sensors + sensor];
+            if (t_fire >= period_us) return EERUF_ERR_FIRE;
+            for (at = sensor; at > 0 && times[at - 1] > t_fire; at--) {
+                times[at] = times[at - 1];
+                places[at] = places[at - 1];
+            }
+            times[at] = t_fire;
+            places[at] = sensor;
+        }
+        times[sensors] = period_us;
+        for (at = 0; at <= sensors; at++) {
+            const uint32_t t_fire = times[at];
+            times[at] = t_fire - last;
+            last = t_fire;
+        }
+    }
+    memset(schedule, 0, sizeof *schedule);
+    schedule->version = EERUF_VERSION;
+    schedule->sensors = sensors;
+    schedule->phases = phases;
+    schedule->order = order;
+    schedule->gap_us = gap_us;
+    schedule->period_us = period_us;
+    schedule->min_refire_us = shortest_refire(schedule);
+    return EERUF_OK;
+#endif
+}
+
+static bool are_neighbours(uint8_t layout, uint8_t n, uint8_t sensors, uint8_t x, uint8_t y) {
+    const uint8_t steps = x > y ? (uint8_t)(x - y) : (uint8_t)(y - x);
+    if (x == y) return false;
+    switch (layout) {
+    case EERUF_LAYOUT_LINE: return steps < n;
+    case EERUF_LAYOUT_RING: return steps < n || sensors - steps < n;
+    case EERUF_LAYOUT_BLOCKS: return n > 0 && x / n == y / n;
+    default: return false;
+    }
+}
+
+/* By how much earlier a sensor fires in phase b than in phase a, each time after the start of its period. */
+static int32_t shift_of(const EerufSchedule *schedule, uint8_t sensor) {
+    return (int32_t)fires_at(schedule, 0, sensor) - (int32_t)fires_at(schedule, 1, sensor);
+}
+
+/* (13a) and (13b) in what rejecting all crosstalk needs of them: |d_x - d_y| and |d_x + d_y|, the smaller. With x = y
+   the second is by how much a sensor's own echo from the period before moves. */
+static uint32_t moves_by(const EerufSchedule *schedule, uint8_t x, uint8_t y) {
+    const int32_t dx = shift_of(schedule, x), dy = shift_of(schedule, y);
+    const uint32_t even = (uint32_t)(dx > dy ? dx - dy : dy - dx);
+    const uint32_t odd = (uint32_t)(dx + dy < 0 ? -(dx + dy) : dx + dy);
+    return x == y ? odd : shorter(even, odd);
+}
+
+/* Whether the schedule meets requirements; also by how much crosstalk moves at least. */
+static EerufStatus meets(const EerufSchedule *schedule, const EerufRequirements *needs, uint32_t *separation_us) {
+    const uint8_t sensors = READ8(schedule->sensors);
+    const uint32_t needed = add32(add32(needs->t_delta_us, needs->t_delta_us), 1);
+    uint8_t x, y, phase;
+    *separation_us = UINT32_MAX;
+    if (READ8(schedule->phases) != 2) return EERUF_ERR_PHASES;
+    for (x = 0; x < sensors; x++)
+        for (y = 0; y < x; y++) *separation_us = shorter(*separation_us, moves_by(schedule, x, y));
+    if (*separation_us < needed) return EERUF_ERR_CROSSTALK;
+    for (x = 0; x < sensors && needs->stale_echo; x++) {
+        const uint32_t moves = moves_by(schedule, x, x);
+        if (moves < needed) return EERUF_ERR_STALE_ECHO;
+        *separation_us = shorter(*separation_us, moves);
+    }
+    for (phase = 0; phase < 2; phase++) {
+        for (x = 0; x < sensors; x++) {
+            const uint32_t t_x = fires_at(schedule, phase, x);
+            for (y = 0; y < sensors; y++) {
+                const uint32_t t_next = fires_at(schedule, (uint8_t)(1u - phase), y) + READ32(schedule->period_us);
+                if (!are_neighbours(needs->layout, needs->neighbours, sensors, x, y)) continue;
+                if (apart(t_x, fires_at(schedule, phase, y)) < needs->min_interval_us) return EERUF_ERR_INTERVAL;
+                if (t_next - t_x < needs->min_interval_us) return EERUF_ERR_INTERVAL;
+            }
+        }
+    }
+    return needs->window_us > READ32(schedule->min_refire_us) ? EERUF_ERR_WINDOW : EERUF_OK;
+}
+
+EerufStatus eeruf_schedule_verify(EerufSchedule *schedule, const EerufRequirements *requirements) {
+#if defined(__AVR__) && !defined(EERUF_SCHEDULE_IN_RAM)
+    (void)schedule, (void)requirements;
+    return EERUF_ERR_MEMORY;
+#else
+    EerufStatus status;
+    uint32_t separation_us;
+    if (schedule == NULL || requirements == NULL) return EERUF_ERR_NULL;
+    if (schedule->version != EERUF_VERSION) return schedule->version == 0 ? EERUF_ERR_NOT_READY : EERUF_ERR_VERSION;
+    if (requirements->layout > EERUF_LAYOUT_BLOCKS) return EERUF_ERR_RANGE;
+    status = meets(schedule, requirements, &separation_us);
+    if (status != EERUF_OK) return status;
+    schedule->t_delta_us = requirements->t_delta_us;
+    schedule->min_interval_us = requirements->min_interval_us;
+    schedule->window_us = requirements->window_us == 0 ? schedule->min_refire_us : requirements->window_us;
+    schedule->separation_us = separation_us;
+    schedule->layout = requirements->layout;
+    schedule->neighbours = requirements->neighbours;
+    schedule->stale_echo = requirements->stale_echo;
+    schedule->verified = 1;
+    return EERUF_OK;
+#endif
+}
+
+static EerufStatus schedule_is_usable(const EerufSchedule *schedule) {
+    uint16_t version;
+    if (schedule == NULL) return EERUF_ERR_NULL;
+    version = READ16(schedule->version);
+    if (version != EERUF_VERSION) return version == 0 ? EERUF_ERR_NOT_READY : EERUF_ERR_VERSION;
+    if (READ8(schedule->sensors) - 1u >= EERUF_MAX_SENSORS) return EERUF_ERR_SENSORS;
+    if (READ8(schedule->phases) - 1u >= EERUF_MAX_PHASES) return EERUF_ERR_PHASES;
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_schedule_check(const EerufSchedule *schedule) {
+    EerufStatus status = schedule_is_usable(schedule);
+    EerufRequirements promised;
+    uint32_t separation_us, gap_us;
+    uint8_t sensors, phase, place, seen;
+    if (status != EERUF_OK) return status;
+    if (READ32(schedule->period_us) - 1u >= EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
+    sensors = READ8(schedule->sensors);
+    for (phase = 0; phase < READ8(schedule->phases); phase++) {
+        uint32_t at = 0;
+        for (place = 0; place <= sensors; place++) {
+            const uint8_t sensor = firing(schedule, sensors, phase, place, &gap_us);
+            const bool is_end = place == sensors;
+            uint32_t ignored;
+            if (gap_us > READ32(schedule->period_us) - at) return EERUF_ERR_TABLE;
+            at += gap_us;
+            if (is_end != (at == READ32(schedule->period_us))) return EERUF_ERR_FIRE;
+            if (!is_end && sensor >= sensors) return EERUF_ERR_TABLE;
+            for (seen = 0; !is_end && seen < place; seen++)
+                if (firing(schedule, sensors, phase, seen, &ignored) == sensor) return EERUF_ERR_TABLE;
+        }
+    }
+    if (READ32(schedule->min_refire_us) != shortest_refire(schedule)) return EERUF_ERR_TABLE;
+    if (!is_verified(schedule)) return EERUF_ERR_UNVERIFIED;
+    promised.t_delta_us = READ32(schedule->t_delta_us);
+    promised.min_interval_us = READ32(schedule->min_interval_us);
+    promised.window_us = READ32(schedule->window_us);
+    promised.layout = READ8(schedule->layout);
+    promised.neighbours = READ8(schedule->neighbours);
+    promised.stale_echo = READ8(schedule->stale_echo);
+    status = meets(schedule, &promised, &separation_us);
+    if (status != EERUF_OK) return status;
+    return separation_us == READ32(schedule->separation_us) ? EERUF_OK : EERUF_ERR_TABLE;
+}
+
+/* ---- The filter ---- */
+
+/* How sure the filter is of an echo, in one byte: a score of up to `consecutive`, and whether that was reached. */
+#define SCORE 0x0fu
+#define CONFIRMED 0x10u
+#define DISABLED 0x80u /* of a ring's sensor, kept in the same byte */
+
+const char *eeruf_reading_name(uint8_t kind) {
+    switch (kind) {
+    case EERUF_READING_FIRST: return "first";
+    case EERUF_READING_ACCEPTED: return "accepted";
+    case EERUF_READING_REJECTED: return "rejected";
+    case EERUF_READING_REPEATED: return "repeated";
+    case EERUF_READING_NO_ECHO: return "no_echo";
+    case EERUF_READING_CLEAR: return "clear";
+    case EERUF_READING_TOO_EARLY: return "too_early";
+    case EERUF_READING_LATE: return "late";
+    case EERUF_READING_STUCK: return "stuck";
+    case EERUF_READING_TENTATIVE: return "tentative";
+    default: return "?";
+    }
+}
+
+static void forget(EerufFilter *filter) {
+    filter->known_us = EERUF_NO_ECHO;
+    filter->state &= DISABLED;
+}
+
+/* Eq. (11), after taking off the change that is expected. Echoes are below half a turn. */
+static bool near_identical(uint32_t echo_us, uint32_t previous_us, int32_t change_us, uint32_t t_delta_us) {
+    if (echo_us == EERUF_NO_ECHO || previous_us == EERUF_NO_ECHO) return echo_us == previous_us;
+    if (change_us < 0) {
+        /* The same with echoes exchanged, so that the change is taken off the later one. */
+        const uint32_t earlier = previous_us;
+        previous_us = echo_us;
+        echo_us = earlier;
+        return apart(echo_us, previous_us + (0u - (uint32_t)change_us)) <= t_delta_us;
+    }
+    return apart(echo_us, previous_us + (uint32_t)change_us) <= t_delta_us;
+}
+
+static void write_reading(EerufReading *reading, EerufFilter *filter, uint8_t kind, uint32_t t_echo_us,
+                          uint32_t previous_us) {
+    if (kind == EERUF_READING_ACCEPTED) filter->age = 0;
+    else if (filter->age < EERUF_NEVER - 1u) filter->age++;
+    reading->t_echo_us = t_echo_us;
+    reading->previous_us = previous_us;
+    reading->age = filter->age;
+    reading->kind = kind;
+}
+
+/* Compares the echo of a firing with the one before. */
+static void push(EerufFilter *filter, uint16_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us, int32_t change_us,
+                 EerufReading *reading) {
+    const uint32_t previous_us = filter->known_us;
+    const bool silent = t_echo_us == EERUF_NO_ECHO;
+    uint8_t before = filter->state & (SCORE | CONFIRMED), now = 1, kind;
+    if (before != 0 && near_identical(t_echo_us, previous_us, change_us, t_delta_us)) {
+        now = before & SCORE;
+        if (now < consecutive) now++;
+        if (now >= consecutive) now |= CONFIRMED;
+    }
+    filter->known_us = t_echo_us;
+    filter->state = (uint8_t)((filter->state & DISABLED) | now);
+    if (now & CONFIRMED) kind = silent ? EERUF_READING_CLEAR : EERUF_READING_ACCEPTED;
+    else if (silent) kind = EERUF_READING_NO_ECHO;
+    else if (previous_us == EERUF_NO_ECHO) kind = EERUF_READING_FIRST;
+    else if (now == 1) kind = EERUF_READING_REJECTED;
+    else kind = EERUF_READING_REPEATED;
+    write_reading(reading, filter, kind, t_echo_us, previous_us);
+}
+
+EerufStatus eeruf_filter_push(EerufFilter *filter, uint32_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us,
+                              int32_t expected_change_us, EerufReading *reading) {
+    if (filter == NULL || reading == NULL) return EERUF_ERR_NULL;
+    if (consecutive < 2 || consecutive > 8) return EERUF_ERR_CONSECUTIVE;
+    if (t_delta_us > UINT16_MAX) return EERUF_ERR_COARSE_T_DELTA;
+    if (t_echo_us >= HALF_TURN && t_echo_us != EERUF_NO_ECHO) return EERUF_ERR_RANGE;
+    push(filter, (uint16_t)t_delta_us, consecutive, t_echo_us, expected_change_us, reading);
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_filter_forget(EerufFilter *filter) {
+    if (filter == NULL) return EERUF_ERR_NULL;
+    forget(filter);
+    return EERUF_OK;
+}
+
+/* ---- The ring ---- */
+
+/* The flags of a sensor, beside the phase in which it fired. */
+#define PHASE 0x07u
+#define LISTENING 0x08u    /* it has fired, and its reading is pending */
+#define CAN_EMIT 0x10u     /* it has a reading that can be emitted before its window closes */
+#define OUTSIDE 0x20u      /* its only edges so far came outside the window */
+#define STUCK 0x40u        /* its line was high when it was to fire */
+#define UNCOMPARABLE 0x80u /* its next reading is not compared with the one before, nor with the one after */
+
+/* What a scheduler other than a table does. */
+enum { HOP_FIRE, HOP_POSTPONE, HOP_END_PERIOD, HOP_RESTART, HOP_LEAVE_OUT };
+#if EERUF_HOPPING
+#define HOPS(ring) ((ring)->hop != NULL)
+#define HOP(ring, what, sensor, at_us) (ring)->hop(ring, what, sensor, at_us)
+#else
+#define HOPS(ring) false
+#define HOP(ring, what, sensor, at_us) ((void)0)
+#endif
+
+static void count(EerufRing *ring, uint8_t kind) {
+    if (ring->tally[kind] < UINT8_MAX) ring->tally[kind]++;
+}
+
+/* -- Lateness. A late firing delays all that follow, so the stretch of a firing, the time since the same sensor's
+   firing before less what the schedule says, is the sum of all lateness in between. Crosstalk moves by what the
+   schedule says and by the emitter's stretch less the receiver's: where stretches differ by more than is tolerated,
+   readings are not compared (docs/theory.md, section 2.1). -- */
+
+#define FIRST_PERIOD 3u /* nothing has fired before, so that firings have no stretch */
+#define WATCHED 3u      /* at so many period ends something late is still remembered */
+
+static void watch(EerufRing *ring) {
+    EerufLateness *late = &ring->lateness;
+    if (late->watched == 0) {
+        uint8_t x;
+        for (x = 0; x < ring->count; x++) ring->sensors[x].total_late = 0;
+        late->total = late->total_before = 0;
+        late->least = late->least_before = late->uncomparable == FIRST_PERIOD ? UINT16_MAX : 0;
+        late->most = late->most_before = 0;
+    }
+    late->watched = WATCHED;
+}
+
+/* The next reading of every sensor may be of sound from before or after a shift that is not known. */
+static void uncompare(EerufRing *ring, uint8_t only) {
+    uint8_t x;
+    for (x = 0; x < ring->count; x++)
+        if (only == 0 || (ring->sensors[x].flags & only)) ring->sensors[x].flags |= UNCOMPARABLE;
+}
+
+/* The timetable has begun anew. A reading of the first period may hold sound from before. */
+static void begin_anew(EerufRing *ring) {
+    watch(ring);
+    ring->lateness.uncomparable = 1;
+}
+
+/* The sum of lateness grows; when it is no longer known, nothing is compared until two periods have ended. */
+static void add_late(EerufRing *ring, uint16_t late_us) {
+    EerufLateness *late = &ring->lateness;
+    late->total = add16(late->total, late_us);
+    if (late->total == UINT16_MAX) {
+        late->uncomparable = 2;
+        uncompare(ring, 0);
+    }
+}
+
+static void note_late(EerufRing *ring, uint16_t late_us) {
+    if (late_us > ring->lateness.latest) ring->lateness.latest = late_us;
+}
+
+/* By how much two stretches may differ: crosstalk must still move by more than t_delta, and no firing be skipped. */
+static uint16_t tolerated(const EerufRing *ring) {
+    const uint32_t t_delta = ring->t_delta_us;
+    uint32_t separation = 2 * t_delta + 1, longest = ring->window_us;
+    if (!HOPS(ring)) {
+        longest = READ32(ring->schedule->min_refire_us);
+        if (is_verified(ring->schedule)) separation = READ32(ring->schedule->separation_us);
+    }
+    separation = shorter(separation, longest);
+    separation = separation > t_delta + 1 ? separation - (t_delta + 1) : 0;
+    return separation > UINT16_MAX / 2 ? UINT16_MAX / 2 : (uint16_t)separation;
+}
+
+/* Notes the last firing's stretch; its reading and those pending are not compared if it differs too much. */
+static void stretch_by(EerufRing *ring, uint8_t sensor, uint16_t late_us, uint16_t stretch) {
+    EerufLateness *late = &ring->lateness;
+    uint16_t least, most;
+    const uint16_t most_tolerated = tolerated(ring);
+    late->last = sensor;
+    late->last_late = late_us;
+    late->last_stretch = stretch;
+    if (late->uncomparable == FIRST_PERIOD) return;
+    least = late->least < late->least_before ? late->least : late->least_before;
+    most = late->most > late->most_before ? late->most : late->most_before;
+    if (stretch < late->least) late->least = stretch;
+    if (stretch > late->most) late->most = stretch;
+    if (less16(stretch, least) > most_tolerated || less16(most, stretch) > most_tolerated) uncompare(ring, LISTENING);
+}
+
+/* A firing came late, or has a stretch because others did. */
+static OUT_OF_LINE void fired_late(EerufRing *ring, uint8_t sensor, uint16_t late_us) {
+    EerufLateness *late = &ring->lateness;
+    uint16_t *total = &ring->sensors[sensor].total_late, stretch;
+    if (late_us > 0) {
+        watch(ring);
+        note_late(ring, late_us);
+        add_late(ring, late_us);
+    }
+    stretch = late->total >= *total ? (uint16_t)(late->total - *total) : UINT16_MAX;
+    *total = late->total;
+    stretch_by(ring, sensor, late_us, HOPS(ring) ? late_us : stretch);
+}
+
+static void end_late_period(EerufRing *ring, EerufPeriod *ended) {
+    EerufLateness *late = &ring->lateness;
+    const bool uncomparable = late->uncomparable != 0 && late->uncomparable != FIRST_PERIOD;
+    ended->max_late_us = late->latest;
+    ended->sum_late_us = ended->max_shift_us = 0;
+    late->latest = 0;
+    late->uncomparable = uncomparable ? (uint8_t)(late->uncomparable - 1u) : 0;
+    if (late->watched != 0) {
+        uint16_t most = late->most > late->most_before ? late->most : late->most_before;
+        uint16_t least = late->least < late->least_before ? late->least : late->least_before, forgotten;
+        uint8_t x;
+        late->watched--;
+        ended->sum_late_us = less16(late->total, late->total_before);
+        ended->max_shift_us = less16(most, least);
+        late->least_before = late->least;
+        late->most_before = late->most;
+        late->least = UINT16_MAX;
+        late->most = 0;
+        /* All totals from the beginning of this period on, which will be the one before. */
+        forgotten = late->total == UINT16_MAX ? UINT16_MAX : late->total_before;
+        for (x = 0; x < ring->count; x++)
+            ring->sensors[x].total_late = less16(ring->sensors[x].total_late, forgotten);
+        late->total = (uint16_t)(late->total - forgotten);
+        late->total_before = late->total;
+    }
+    if (uncomparable) uncompare(ring, 0);
+}
+
+/* -- Scheduled firing (Sec. 3.1, Fig. 3): every sensor fires once per period, by the table. A firing that is polled
+   late moves all that follow by as much: the timetable may stretch but never shrinks. -- */
+
+static void turn_once(EerufRing *ring) {
+    uint32_t gap_us;
+    ring->next = firing(ring->schedule, ring->count, ring->phase, ring->following, &gap_us);
+    ring->following++;
+    ring->due_us += gap_us;
+}
+
+static void skip_silent(EerufRing *ring) {
+    while (ring->next != NOBODY && (ring->paused || (ring->sensors[ring->next].filter.state & DISABLED)))
+        turn_once(ring);
+}
+
+static void turn(EerufRing *ring, uint32_t from_us) {
+    ring->due_us = from_us;
+    turn_once(ring);
+    skip_silent(ring);
+}
+
+static void begin_period(EerufRing *ring, uint8_t phase, uint32_t start_us) {
+    ring->phase = phase;
+    ring->following = 0;
+    turn(ring, start_us);
+}
+
+/* How long to stay silent after the last firing so that a period which was not verified against it may begin. */
+static uint32_t settling_time(const EerufSchedule *schedule) {
+    const uint32_t least = is_verified(schedule) ? READ32(schedule->min_interval_us) : READ32(schedule->period_us);
+    return longer(least, READ32(schedule->min_refire_us));
+}
+
+/* No deadline lies further ahead, unless the clock has jumped. */
+static uint32_t horizon(const EerufRing *ring);
+
+/* Ends the period of a table. Returns whether the next one does not follow on it as the schedule says. */
+static bool end_period_of_table(EerufRing *ring, uint32_t now_us) {
+    const bool left_out = now_us - ring->due_us > READ32(ring->schedule->period_us);
+    const bool changed = left_out || ring->next_schedule != NULL;
+    const uint32_t settling = settling_time(ring->schedule);
+    uint32_t start = left_out ? now_us : ring->due_us;
+    /* The last firing must not fall half a turn of the clock behind while no sensor is enabled. */
+    if (start - ring->last_fired_us > settling) ring->last_fired_us = start - settling;
+    if (ring->next_schedule != NULL) {
+        const EerufSchedule *next = ring->next_schedule;
+        const uint32_t min_interval = is_verified(next) ? READ32(next->min_interval_us) : 0;
+        const uint32_t settled = ring->last_fired_us + longer(settling, min_interval);
+        if (has_reached(settled, start)) start = settled;
+        ring->schedule = next;
+        ring->next_schedule = NULL;
+    }
+    begin_period(ring, ring->phase + 1u < READ8(ring->schedule->phases) ? (uint8_t)(ring->phase + 1u) : 0, start);
+    return changed;
+}
+
+static void restart_table(EerufRing *ring, uint32_t now_us) {
+    const uint32_t settling = settling_time(ring->schedule), settled = ring->last_fired_us + settling;
+    /* A clock that has jumped says nothing about when the last firing was. */
+    const bool soon = !has_reached(now_us, settled) && settled - now_us <= horizon(ring);
+    if (!soon) ring->last_fired_us = now_us - settling;
+    begin_period(ring, 0, soon ? settled : now_us);
+}
+
+/* -- What a ring does -- */
+
+static uint32_t horizon(const EerufRing *ring) {
+#if EERUF_HOPPING
+    if (HOPS(ring)) {
+        const EerufHoppingRing *hopping = (const EerufHoppingRing *)(const void *)ring;
+        const uint32_t periods = 2 * hopping->config.period_us;
+        return add32(periods, add32(hopping->dies_us, hopping->dies_us));
+    }
+#endif
+    return longer(3 * READ32(ring->schedule->period_us), ring->due_us - ring->last_fired_us);
+}
+
+static EerufStatus is_ready(const EerufRing *ring) {
+    if (ring == NULL) return EERUF_ERR_NULL;
+    return ring->ready == READY ? EERUF_OK : EERUF_ERR_NOT_READY;
+}
+
+static EerufStatus has_sensor(const EerufRing *ring, uint8_t sensor) {
+    const EerufStatus status = is_ready(ring);
+    return status == EERUF_OK && sensor >= ring->count ? (EerufStatus)EERUF_ERR_SENSOR : status;
+}
+
+/* Whether a schedule allows to listen and compare so. */
+static EerufStatus allows(const EerufSchedule *schedule, uint32_t t_delta_us, uint32_t window_us) {
+    if (is_verified(schedule)) {
+        if (t_delta_us > READ32(schedule->t_delta_us)) return EERUF_ERR_T_DELTA;
+        if (window_us > READ32(schedule->window_us)) return EERUF_ERR_VERIFIED_WINDOW;
+    }
+    return window_us > READ32(schedule->min_refire_us) || window_us >= HALF_TURN ? EERUF_ERR_WINDOW : EERUF_OK;
+}
+
+/* Listens and compares so from now on, if it may. */
+static EerufStatus listen(EerufRing *ring, uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us) {
+    EerufStatus status = EERUF_OK;
+    if (!HOPS(ring)) {
+        status = allows(ring->schedule, t_delta_us, window_us);
+        if (status == EERUF_OK && ring->next_schedule != NULL)
+            status = allows(ring->next_schedule, t_delta_us, window_us);
+    } else if (window_us >= HALF_TURN) {
+        status = EERUF_ERR_WINDOW;
+    }
+    if (status != EERUF_OK) return status;
+    if (blanking_us >= window_us || blanking_us > UINT16_MAX) return EERUF_ERR_BLANKING;
+    if (t_delta_us >= window_us || t_delta_us > UINT16_MAX) return EERUF_ERR_COARSE_T_DELTA;
+    ring->t_delta_us = (uint16_t)t_delta_us;
+    ring->window_us = window_us;
+    ring->blanking_us = (uint16_t)blanking_us;
+    return EERUF_OK;
+}
+
+static void drop_firing(EerufSensor *sensor) {
+    sensor->echo_us = EERUF_NO_ECHO;
+    forget(&sensor->filter);
+    sensor->flags = OUTSIDE;
+}
+
+/* Everything but listening and scheduler. */
+static void set_up(EerufRing *ring, EerufSensor *sensors, uint8_t count_of_sensors, uint32_t now_us) {
+    uint8_t x;
+    memset(ring, 0, sizeof *ring);
+    memset(sensors, 0, count_of_sensors * sizeof *sensors);
+    ring->sensors = sensors;
+    ring->count = count_of_sensors;
+    ring->oldest = NOBODY;
+    ring->emit_at_us = now_us;
+    ring->consecutive = 2;
+    ring->lateness.uncomparable = FIRST_PERIOD;
+    ring->lateness.least = ring->lateness.least_before = UINT16_MAX;
+    for (x = 0; x < count_of_sensors; x++) {
+        sensors[x].filter.age = EERUF_NEVER;
+        drop_firing(&sensors[x]);
+    }
+}
+
+EerufStatus eeruf_ring_init_unverified(EerufRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
+                                       const EerufSchedule *schedule, const EerufConfig *config, uint32_t now_us) {
+    EerufStatus status;
+    uint32_t t_delta_us, window_us;
+    if (ring == NULL || sensors == NULL || schedule == NULL || config == NULL) return EERUF_ERR_NULL;
+    if (config->version != EERUF_VERSION) return EERUF_ERR_VERSION;
+    if (ring_size != sizeof *ring) return EERUF_ERR_MEMORY;
+    status = schedule_is_usable(schedule);
+    if (status != EERUF_OK) return status;
+    if (sensors_size / sizeof *sensors < READ8(schedule->sensors)) return EERUF_ERR_MEMORY;
+    t_delta_us = config->t_delta_us;
+    window_us = config->window_us;
+    if (!is_verified(schedule) && (t_delta_us == 0 || window_us == 0)) return EERUF_ERR_UNVERIFIED;
+    if (t_delta_us == 0) t_delta_us = READ32(schedule->t_delta_us);
+    if (window_us == 0) window_us = READ32(schedule->window_us);
+    set_up(ring, sensors, READ8(schedule->sensors), now_us);
+    ring->schedule = schedule;
+    status = listen(ring, t_delta_us, window_us, config->blanking_us);
+    if (status != EERUF_OK) return status;
+    if (config->consecutive < 2 || config->consecutive > 8) return EERUF_ERR_CONSECUTIVE;
+    ring->consecutive = config->consecutive;
+    ring->last_fired_us = now_us - settling_time(schedule);
+    begin_period(ring, 0, now_us);
+    ring->ready = READY;
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_ring_init(EerufRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
+                            const EerufSchedule *schedule, const EerufConfig *config, uint32_t now_us) {
+    const EerufStatus status = schedule_is_usable(schedule);
+    if (status != EERUF_OK) return status;
+    if (!is_verified(schedule)) return EERUF_ERR_UNVERIFIED;
+    return eeruf_ring_init_unverified(ring, ring_size, sensors, sensors_size, schedule, config, now_us);
+}
+
+/* Whether a reading will be emitted without a further firing. */
+static bool has_pending(const EerufRing *ring) {
+    return ring->pending > 0 || ring->oldest != NOBODY;
+}
+
+/* Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes. */
+static void emit_when_oldest_ends(EerufRing *ring) {
+    if (ring->pending == 0 && ring->oldest != NOBODY)
+        ring->emit_at_us = ring->sensors[ring->oldest].fired_us + ring->window_us;
+}
+
+/* Finds the next oldest, now that the one that fired at `before` has stopped listening. All others fired later. */
+static void find_oldest(EerufRing *ring, uint32_t before) {
+    uint32_t soonest = UINT32_MAX;
+    uint8_t x;
+    ring->oldest = NOBODY;
+    for (x = 0; x < ring->count; x++) {
+        const EerufSensor *sensor = &ring->sensors[x];
+        if ((sensor->flags & LISTENING) && sensor->fired_us - before < soonest) {
+            ring->oldest = x;
+            soonest = sensor->fired_us - before;
+        }
+    }
+}
+
+static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us) {
+    EerufSensor *fired = &ring->sensors[sensor];
+    const uint16_t late_us = narrow(now_us - ring->due_us);
+    fired->flags = (uint8_t)((fired->flags & UNCOMPARABLE) | LISTENING | ring->phase);
+    fired->fired_us = now_us;
+    if (late_us != 0 || ring->lateness.watched != 0) fired_late(ring, sensor, late_us);
+    if (ring->oldest == NOBODY) {
+        ring->oldest = sensor;
+        emit_when_oldest_ends(ring);
+    }
+    if (HOPS(ring)) {
+        HOP(ring, HOP_FIRE, sensor, now_us);
+    } else {
+        ring->last_fired_us = now_us;
+        /* From now, not from when it was due: all that follows moves by as much as this firing is late. */
+        turn(ring, now_us);
+    }
+}
+
+/* Ends a firing and compares its reading with the one before. */
+static void compare(EerufRing *ring, EerufSensor *sensor, int32_t change_us, EerufReading *reading) {
+    const uint8_t flags = sensor->flags;
+    if (flags & UNCOMPARABLE) forget(&sensor->filter);
+    if (flags & (STUCK | OUTSIDE)) {
+        const bool stuck = (flags & STUCK) != 0;
+        forget(&sensor->filter);
+        write_reading(reading, &sensor->filter, (uint8_t)(stuck ? EERUF_READING_STUCK : EERUF_READING_TOO_EARLY),
+                      stuck ? EERUF_NO_ECHO : sensor->echo_us, EERUF_NO_ECHO);
+    } else {
+        push(&sensor->filter, ring->t_delta_us, ring->consecutive, sensor->echo_us, change_us, reading);
+    }
+    if (flags & UNCOMPARABLE) forget(&sensor->filter);
+    sensor->flags = flags & PHASE;
+    sensor->echo_us = EERUF_NO_ECHO;
+}
+
+static OUT_OF_LINE void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, EerufEvent *event) {
+    EerufSensor *sensor = &ring->sensors[x];
+    const uint8_t phase = sensor->flags & PHASE;
+    EerufReading *reading = &event->u.reading;
+    uint8_t ago;
+    if (sensor->flags & CAN_EMIT) ring->pending--; /* counted when its edge came */
+    if (sensor->flags & LISTENING) {
+        compare(ring, sensor, change_us == NULL ? 0 : change_us[x], reading);
+        if (ring->oldest == x) find_oldest(ring, sensor->fired_us);
+    } else {
+        reading->t_echo_us = sensor->echo_us;
+        reading->previous_us = EERUF_NO_ECHO;
+        reading->age = sensor->filter.age;
+        reading->kind = EERUF_READING_LATE;
+        sensor->flags &= (uint8_t)~CAN_EMIT;
+        sensor->echo_us = EERUF_NO_ECHO;
+    }
+    emit_when_oldest_ends(ring);
+    count(ring, reading->kind);
+    ago = (uint8_t)(ring->phase - phase);
+    if (HOPS(ring)) ago &= 7u;
+    else if (ring->phase < phase) ago = (uint8_t)(ago + READ8(ring->schedule->phases));
+    event->kind = EERUF_EVENT_READING;
+    event->sensor = x;
+    event->phase = phase;
+    event->period = ring->period - ago;
+}
+
+static OUT_OF_LINE void end_period(EerufRing *ring, uint32_t now_us, EerufEvent *event) {
+    EerufPeriod *ended = &event->u.ended;
+    bool changed = false;
+    note_late(ring, narrow(now_us - ring->due_us));
+    event->kind = EERUF_EVENT_PERIOD;
+    event->sensor = 0;
+    event->phase = ring->phase;
+    event->period = ring->period++;
+    if (HOPS(ring)) HOP(ring, HOP_END_PERIOD, 0, now_us);
+    else changed = end_period_of_table(ring, now_us);
+    end_late_period(ring, ended);
+    if (changed) {
+        begin_anew(ring);
+        uncompare(ring, 0);
+    }
+    memcpy(ended->tally, ring->tally, sizeof ended->tally);
+    memset(ring->tally, 0, sizeof ring->tally);
+}
+
+/* A sensor with a reading to emit, or NOBODY: the oldest, or the first with an echo in. */
+static uint8_t next_pending(const EerufRing *ring, uint32_t now_us) {
+    uint8_t x;
+    if (ring->pending == 0)
+        return ring->oldest != NOBODY && has_reached(now_us, ring->emit_at_us) ? ring->oldest : (uint8_t)NOBODY;
+    if (ring->oldest != NOBODY && (ring->sensors[ring->oldest].flags & CAN_EMIT)) return ring->oldest;
+    for (x = 0; x < ring->count; x++)
+        if (ring->sensors[x].flags & CAN_EMIT) return x;
+    return NOBODY;
+}
+
+/* Something is due. Firing comes first, since it should be on time; but the reading of a sensor is emitted before the
+   sensor fires again. */
+static EerufStatus advance(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event) {
+    const bool is_due = has_reached(now_us, ring->due_us);
+    uint8_t emits;
+    if (is_due && ring->next != NOBODY) {
+        emits = ring->next;
+        if (!(ring->sensors[emits].flags & (LISTENING | CAN_EMIT))) {
+            event->kind = EERUF_EVENT_FIRE;
+            event->sensor = emits;
+            event->phase = ring->phase;
+            event->period = ring->period;
+            event->u.due_us = ring->due_us;
+            fire(ring, emits, now_us);
+            return EERUF_EVENT;
+        }
+    } else {
+        emits = next_pending(ring, now_us);
+        if (emits == NOBODY) {
+            if (!is_due) return EERUF_OK;
+            end_period(ring, now_us, event);
+            return EERUF_EVENT;
+        }
+    }
+    emit_reading(ring, emits, change_us, event);
+    return EERUF_EVENT;
+}
+
+EerufStatus eeruf_ring_poll_expecting(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event) {
+    const EerufStatus status = is_ready(ring);
+    if (status != EERUF_OK) return status;
+    if (event == NULL) return EERUF_ERR_NULL;
+    if (has_reached(now_us, ring->due_us) || (has_pending(ring) && has_reached(now_us, ring->emit_at_us)))
+        return advance(ring, now_us, change_us, event);
+    /* The clock has jumped, or nobody polled for half a turn of it. */
+    if (ring->due_us - now_us > horizon(ring)) (void)eeruf_ring_restart(ring, now_us);
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_ring_poll(EerufRing *ring, uint32_t now_us, EerufEvent *event) {
+    return eeruf_ring_poll_expecting(ring, now_us, NULL, event);
+}
+
+uint32_t eeruf_ring_deadline(const EerufRing *ring) {
+    if (is_ready(ring) != EERUF_OK) return 0;
+    return has_pending(ring) && !has_reached(ring->emit_at_us, ring->due_us) ? ring->emit_at_us : ring->due_us;
+}
+
+EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t x, uint32_t at_us) {
+    const EerufStatus status = has_sensor(ring, x);
+    EerufSensor *sensor;
+    uint32_t t_echo_us;
+    if (status != EERUF_OK) return status;
+    sensor = &ring->sensors[x];
+    t_echo_us = at_us - sensor->fired_us;
+    if (t_echo_us >= HALF_TURN) return EERUF_OK; /* from before it fired, or from a clock that has jumped */
+    if (!(sensor->flags & LISTENING)) {
+        if (t_echo_us <= ring->window_us || (sensor->flags & OUTSIDE)) return EERUF_OK;
+        sensor->flags |= OUTSIDE | CAN_EMIT;
+        sensor->echo_us = t_echo_us;
+    } else if (t_echo_us > ring->window_us) {
+        count(ring, EERUF_READING_LATE);
+        return EERUF_OK;
+    } else if (t_echo_us < ring->blanking_us) {
+        if (sensor->echo_us == EERUF_NO_ECHO) {
+            sensor->flags |= OUTSIDE;
+            sensor->echo_us = t_echo_us;
+        }
+        return EERUF_OK;
+    } else {
+        if (sensor->flags & OUTSIDE) {
+            sensor->flags &= (uint8_t)~OUTSIDE;
+            sensor->echo_us = EERUF_NO_ECHO;
+        }
+        if (t_echo_us < sensor->echo_us) sensor->echo_us = t_echo_us;
+        if (sensor->flags & CAN_EMIT) return EERUF_OK;
+        sensor->flags |= CAN_EMIT;
+    }
+    if (!has_pending(ring) || !has_reached(at_us, ring->emit_at_us)) ring->emit_at_us = at_us;
+    ring->pending++;
+    return EERUF_OK;
+}
+
+/* The timetable got longer at the firing of a sensor. */
+static void lengthen(EerufRing *ring, uint8_t x, uint16_t later_us) {
+    EerufLateness *late = &ring->lateness;
+    EerufSensor *sensor = &ring->sensors[x];
+    const bool watched = late->watched != 0, known = !watched || late->last == x;
+    const uint16_t late_us = watched ? late->last_late : 0, stretch = watched ? late->last_stretch : 0;
+    watch(ring);
+    add_late(ring, later_us);
+    sensor->total_late = add16(sensor->total_late, later_us);
+    if (!known) {
+        /* Another one has fired since. */
+        late->uncomparable = 2;
+        uncompare(ring, 0);
+        return;
+    }
+    note_late(ring, add16(late_us, later_us));
+    stretch_by(ring, x, add16(late_us, later_us), add16(stretch, later_us));
+}
+
+EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
+    const EerufStatus status = has_sensor(ring, x);
+    EerufSensor *sensor;
+    uint32_t polled_us, later_us;
+    if (status != EERUF_OK) return status;
+    sensor = &ring->sensors[x];
+    polled_us = sensor->fired_us;
+    later_us = at_us - polled_us;
+    if (!(sensor->flags & LISTENING) || later_us == 0 || later_us >= HALF_TURN) return EERUF_OK;
+    /* Echoes that are in already are nearer. */
+    sensor->fired_us = at_us;
+    if (sensor->echo_us != EERUF_NO_ECHO) sensor->echo_us = sensor->echo_us > later_us ? sensor->echo_us - later_us : 0;
+    if (HOPS(ring)) {
+        HOP(ring, HOP_POSTPONE, x, later_us);
+    } else {
+        ring->last_fired_us += later_us;
+        ring->due_us += later_us;
+    }
+    lengthen(ring, x, narrow(later_us));
+    if (ring->oldest == x) {
+        find_oldest(ring, polled_us);
+        emit_when_oldest_ends(ring);
+    }
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor) {
+    const EerufStatus status = has_sensor(ring, sensor);
+    if (status == EERUF_OK && (ring->sensors[sensor].flags & LISTENING)) ring->sensors[sensor].flags |= STUCK;
+    return status;
+}
+
+bool eeruf_ring_is_enabled(const EerufRing *ring, uint8_t sensor) {
+    return has_sensor(ring, sensor) == EERUF_OK && !(ring->sensors[sensor].filter.state & DISABLED);
+}
+
+EerufStatus eeruf_ring_enable(EerufRing *ring, uint8_t sensor, bool enabled) {
+    const EerufStatus status = has_sensor(ring, sensor);
+    EerufFilter *filter;
+    if (status != EERUF_OK) return status;
+    filter = &ring->sensors[sensor].filter;
+    if (!enabled) {
+        filter->state |= DISABLED;
+        if (HOPS(ring)) HOP(ring, HOP_LEAVE_OUT, sensor, 0);
+        else skip_silent(ring);
+    } else if (filter->state & DISABLED) {
+        filter->state = 0;
+        filter->known_us = EERUF_NO_ECHO;
+    }
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_ring_pause(EerufRing *ring, bool paused) {
+    const EerufStatus status = is_ready(ring);
+    uint8_t x;
+    if (status != EERUF_OK) return status;
+    if (HOPS(ring)) return EERUF_ERR_HOPPING;
+    ring->paused = paused;
+    skip_silent(ring);
+    for (x = 0; x < ring->count && !paused; x++) forget(&ring->sensors[x].filter);
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_ring_restart(EerufRing *ring, uint32_t now_us) {
+    const EerufStatus status = is_ready(ring);
+    uint8_t x;
+    if (status != EERUF_OK) return status;
+    if (HOPS(ring)) HOP(ring, HOP_RESTART, 0, now_us);
+    else restart_table(ring, now_us);
+    for (x = 0; x < ring->count; x++) drop_firing(&ring->sensors[x]);
+    ring->oldest = NOBODY;
+    ring->pending = 0;
+    /* Sound from before may still be heard in the first period. */
+    begin_anew(ring);
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_ring_change_to_unverified(EerufRing *ring, const EerufSchedule *schedule) {
+    EerufStatus status = is_ready(ring);
+    if (status == EERUF_OK) status = schedule_is_usable(schedule);
+    if (status != EERUF_OK) return status;
+    if (HOPS(ring)) return EERUF_ERR_HOPPING;
+    if (READ8(schedule->sensors) != ring->count) return EERUF_ERR_SENSORS;
+    if (READ8(schedule->phases) != READ8(ring->schedule->phases)) return EERUF_ERR_PHASES;
+    status = allows(schedule, ring->t_delta_us, ring->window_us);
+    if (status == EERUF_OK) ring->next_schedule = schedule;
+    return status;
+}
+
+EerufStatus eeruf_ring_change_schedule(EerufRing *ring, const EerufSchedule *schedule) {
+    EerufStatus status = is_ready(ring);
+    if (status == EERUF_OK) status = schedule_is_usable(schedule);
+    if (status != EERUF_OK) return status;
+    return is_verified(schedule) ? eeruf_ring_change_to_unverified(ring, schedule) : (EerufStatus)EERUF_ERR_UNVERIFIED;
+}
+
+/* With one of the three changed. */
+static EerufStatus relisten(EerufRing *ring, uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us) {
+    return HOPS(ring) ? (EerufStatus)EERUF_ERR_HOPPING : listen(ring, t_delta_us, window_us, blanking_us);
+}
+
+EerufStatus eeruf_ring_set_t_delta(EerufRing *ring, uint32_t t_delta_us) {
+    EerufStatus status = is_ready(ring);
+    bool grows;
+    if (status != EERUF_OK) return status;
+    grows = t_delta_us > ring->t_delta_us;
+    status = relisten(ring, t_delta_us, ring->window_us, ring->blanking_us);
+    /* What lateness allowed until now was for the smaller one. */
+    if (status == EERUF_OK && grows) uncompare(ring, 0);
+    return status;
+}
+
+EerufStatus eeruf_ring_set_window(EerufRing *ring, uint32_t window_us) {
+    EerufStatus status = is_ready(ring);
+    if (status == EERUF_OK) status = relisten(ring, ring->t_delta_us, window_us, ring->blanking_us);
+    if (status == EERUF_OK) emit_when_oldest_ends(ring);
+    return status;
+}
+
+EerufStatus eeruf_ring_set_blanking(EerufRing *ring, uint32_t blanking_us) {
+    const EerufStatus status = is_ready(ring);
+    return status == EERUF_OK ? relisten(ring, ring->t_delta_us, ring->window_us, blanking_us) : status;
+}
+
+/* ---- Distances ---- */
+
+/* (a b + add) / d, rounded down, where add < d; stops at UINT32_MAX. In 32 bits, since a division of 64 costs a small
+   target more flash than all the rest here. */
+static uint32_t multiply_divide(uint32_t a, uint32_t b, uint32_t add, uint32_t d) {
+    const uint32_t whole = b / d, part = b % d;
+    uint32_t quotient = 0, rest = 0;
+    uint8_t bit;
+    for (bit = 0; bit < 32; bit++, a <<= 1) {
+        if (quotient > UINT32_MAX / 2) return UINT32_MAX;
+        quotient += quotient;
+        if (rest >= d - rest) {
+            rest -= d - rest;
+            quotient++;
+        } else {
+            rest += rest;
+        }
+        if (a < HALF_TURN) continue;
+        if (quotient > UINT32_MAX - whole) return UINT32_MAX;
+        quotient += whole;
+        if (part >= d - rest) {
+            rest -= d - part;
+            quotient = add32(quotient, 1);
+        } else {
+            rest += part;
+        }
+    }
+    return add >= d - rest ? add32(quotient, 1) : quotient;
+}
+
+uint32_t eeruf_sound_mm_s(int16_t celsius_tenths) {
+    /* 343.2 sqrt(T / 293.15 K) m/s: the largest whole number whose square is no more. */
+    const int32_t kelvin_hundredths = 27315 + 10 * (int32_t)celsius_tenths;
+    const uint64_t squared = (uint64_t)343200u * 343200u * (uint64_t)(kelvin_hundredths < 0 ? 0 : kelvin_hundredths);
+    uint32_t speed = 0, step;
+    for (step = (uint32_t)1 << 20; step > 0; step >>= 1)
+        if ((uint64_t)(speed + step) * (speed + step) * 29315u <= squared) speed += step;
+    return speed;
+}
+
+uint32_t eeruf_distance_mm(uint32_t t_echo_us, uint32_t c_mm_s) {
+    return multiply_divide(t_echo_us, c_mm_s, 1000000u, 2000000u);
+}
+
+uint32_t eeruf_echo_time_us(uint32_t distance_mm, uint32_t c_mm_s) {
+    return c_mm_s == 0 ? UINT32_MAX : multiply_divide(distance_mm, 2000000u, c_mm_s / 2, c_mm_s);
+}
+
+/* ---- Adaptation ---- */
+
+EerufStatus eeruf_adaptation_init(EerufAdaptation *adaptation, size_t adaptation_size,
+                                  const EerufSchedule *const *ladder, uint8_t rungs) {
+    uint8_t rung;
+    if (adaptation == NULL || ladder == NULL) return EERUF_ERR_NULL;
+    if (adaptation_size != sizeof *adaptation) return EERUF_ERR_MEMORY;
+    if (rungs == 0) return EERUF_ERR_LADDER;
+    for (rung = 0; rung < rungs; rung++) {
+        const EerufStatus status = schedule_is_usable(ladder[rung]);
+        if (status != EERUF_OK) return status;
+        if (!is_verified(ladder[rung])) return EERUF_ERR_UNVERIFIED;
+        if (rung == 0) continue;
+        if (READ32(ladder[rung]->period_us) <= READ32(ladder[rung - 1]->period_us)) return EERUF_ERR_LADDER;
+        if (READ8(ladder[rung]->sensors) != READ8(ladder[0]->sensors)) return EERUF_ERR_LADDER;
+        if (READ8(ladder[rung]->phases) != READ8(ladder[0]->phases)) return EERUF_ERR_LADDER;
+    }
+    memset(adaptation, 0, sizeof *adaptation);
+    adaptation->ladder = ladder;
+    adaptation->rungs = rungs;
+    adaptation->noisy_permille = 300;
+    adaptation->calm_permille = 100;
+    adaptation->window = 16;
+    adaptation->patience = 4;
+    adaptation->rejection_permille = UINT16_MAX;
+    adaptation->ready = READY;
+    return EERUF_OK;
+}
+
+/* The rung for the window that has just ended. One in which nothing was compared is neither noisy nor calm. */
+static uint8_t next_rung(EerufAdaptation *adaptation) {
+    const uint16_t rate = adaptation->rejection_permille;
+    const uint8_t rung = adaptation->rung;
+    if (rate != UINT16_MAX && rate <= adaptation->noisy_permille && rate <= adaptation->calm_permille) {
+        if (adaptation->calm_windows < UINT8_MAX) adaptation->calm_windows++;
+        return adaptation->calm_windows >= adaptation->patience && rung > 0 ? (uint8_t)(rung - 1u) : rung;
+    }
+    adaptation->calm_windows = 0;
+    if (rate == UINT16_MAX || rate <= adaptation->noisy_permille) return rung;
+    return rung + 1u < adaptation->rungs ? (uint8_t)(rung + 1u) : rung;
+}
+
+EerufStatus eeruf_adaptation_period(EerufAdaptation *adaptation, EerufRing *ring, const EerufEvent *event) {
+    EerufStatus status;
+    uint32_t compared;
+    uint8_t rung;
+    if (adaptation == NULL || event == NULL) return EERUF_ERR_NULL;
+    if (adaptation->ready != READY) return EERUF_ERR_NOT_READY;
+    status = is_ready(ring);
+    if (status != EERUF_OK) return status;
+    if (event->kind != EERUF_EVENT_PERIOD) return EERUF_ERR_RANGE;
+    adaptation->accepted = add16(adaptation->accepted, event->u.ended.tally[EERUF_READING_ACCEPTED]);
+    adaptation->rejected = add16(adaptation->rejected, event->u.ended.tally[EERUF_READING_REJECTED]);
+    adaptation->repeated = add16(adaptation->repeated, event->u.ended.tally[EERUF_READING_REPEATED]);
+    if (adaptation->periods < UINT8_MAX) adaptation->periods++;
+    if (adaptation->periods < adaptation->window) return EERUF_OK;
+    adaptation->periods = 0;
+    compared = (uint32_t)adaptation->accepted + adaptation->rejected + adaptation->repeated;
+    adaptation->rejection_permille = UINT16_MAX;
+    if (compared > 0) adaptation->rejection_permille = (uint16_t)(1000 * (uint32_t)adaptation->rejected / compared);
+    adaptation->accepted = adaptation->rejected = adaptation->repeated = 0;
+    rung = next_rung(adaptation);
+    if (rung == adaptation->rung) return EERUF_OK;
+    adaptation->calm_windows = 0;
+    status = eeruf_ring_change_schedule(ring, adaptation->ladder[rung]);
+    if (status != EERUF_OK) return status;
+    adaptation->rung = rung;
+    return EERUF_EVENT;
+}
+
+uint32_t eeruf_schedule_max_speed_mm_s(const EerufSchedule *schedule, uint32_t t_delta_us, uint32_t c_mm_s) {
+    uint32_t most = 0;
+    uint8_t sensor, phase;
+    if (schedule_is_usable(schedule) != EERUF_OK) return 0;
+    for (sensor = 0; sensor < READ8(schedule->sensors); sensor++)
+        for (phase = 0; phase < READ8(schedule->phases); phase++) most = longer(most, refire(schedule, phase, sensor));
+    return most == 0 ? 0 : multiply_divide(t_delta_us, c_mm_s, 0, 2 * most);
+}
+
+/* ---- Edges ---- */
+
+#if defined(__GNUC__)
+#define FENCE() __atomic_thread_fence(__ATOMIC_SEQ_CST) /* on one core no more than an order for the compiler */
+#else
+#define FENCE() ((void)0)
+#endif
+
+EerufStatus eeruf_edges_init(EerufEdges *edges, size_t edges_size, EerufEdge *places, size_t places_size) {
+    const size_t length = places_size / sizeof *places;
+    if (edges == NULL || places == NULL) return EERUF_ERR_NULL;
+    if (edges_size != sizeof *edges || length < 2) return EERUF_ERR_MEMORY;
+    if (length > 128 || (length & (length - 1)) != 0) return EERUF_ERR_RANGE;
+    memset(edges, 0, sizeof *edges);
+    edges->places = places;
+    edges->mask = (uint8_t)(length - 1);
+    FENCE();
+    edges->ready = READY;
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_edges_push(EerufEdges *edges, uint8_t sensor, bool high, uint32_t at_us) {
+    uint8_t pushed;
+    EerufEdge *place;
+    if (edges == NULL) return EERUF_ERR_NULL;
+    if (edges->ready != READY) return EERUF_ERR_NOT_READY;
+    if (sensor > 127) return EERUF_ERR_SENSOR;
+    pushed = edges->pushed;
+    if ((uint8_t)(pushed - edges->popped) > edges->mask) {
+        if (edges->lost < UINT8_MAX) edges->lost = (uint8_t)(edges->lost + 1u);
+        return EERUF_ERR_MEMORY;
+    }
+    place = &edges->places[pushed & edges->mask];
+    place->at_us = at_us;
+    place->sensor = sensor;
+    place->high = high;
+    FENCE();
+    edges->pushed = (uint8_t)(pushed + 1u);
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_edges_pop(EerufEdges *edges, EerufEdge *edge) {
+    uint8_t popped;
+    if (edges == NULL || edge == NULL) return EERUF_ERR_NULL;
+    if (edges->ready != READY) return EERUF_ERR_NOT_READY;
+    popped = edges->popped;
+    if (popped == edges->pushed) return EERUF_EMPTY;
+    FENCE();
+    *edge = edges->places[popped & edges->mask];
+    FENCE();
+    edges->popped = (uint8_t)(popped + 1u);
+    return EERUF_OK;
+}
+
+/* ---- HC-SR04 ---- */
+
+/* The state of a line, in one byte: where its pulse is, what is wrong with this firing, and the module's health. */
+#define PULSE 0x03u
+#define IDLE 0x00u /* nothing is expected */
+#define AWAITED 0x01u
+#define ROSE 0x02u
+#define OVER 0x03u
+#define FLAW 0x0cu
+#define CHATTERED 0x04u
+#define LOST_EDGE 0x08u
+#define HEALTH_AT 4u
+
+const char *eeruf_health_name(uint8_t health) {
+    switch (health) {
+    case EERUF_HEALTH_WELL: return "well";
+    case EERUF_HEALTH_MISSING: return "missing";
+    case EERUF_HEALTH_STUCK_HIGH: return "stuck high";
+    case EERUF_HEALTH_CHATTERS: return "chatters";
+    case EERUF_HEALTH_LOSES_EDGES: return "loses edges";
+    case EERUF_HEALTH_PIN_ERROR: return "pin error";
+    default: return "?";
+    }
+}
+
+static void set_bits(EerufLine *line, uint8_t mask, uint8_t bits) {
+    line->state = (uint8_t)((line->state & ~mask) | bits);
+}
+
+static void set_health(EerufLine *line, uint8_t health) {
+    set_bits(line, 0xf0u, (uint8_t)(health << HEALTH_AT));
+}
+
+static EerufStatus has_line(const EerufHcSr04 *modules, uint8_t sensor) {
+    if (modules == NULL) return EERUF_ERR_NULL;
+    if (modules->ready != READY) return EERUF_ERR_NOT_READY;
+    return has_sensor(modules->ring, sensor);
+}
+
+static EerufStatus allows_retrigger(const EerufHcSr04Settings *settings, uint32_t min_refire_us) {
+    return min_refire_us < settings->min_retrigger_us ? EERUF_ERR_RETRIGGER : EERUF_OK;
+}
+
+EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufLine *lines, size_t lines_size,
+                               EerufRing *ring, const EerufHcSr04Settings *settings) {
+    EerufStatus status = is_ready(ring);
+    uint32_t min_refire_us;
+    if (status != EERUF_OK) return status;
+    if (modules == NULL || lines == NULL || settings == NULL) return EERUF_ERR_NULL;
+    if (settings->version != EERUF_VERSION) return EERUF_ERR_VERSION;
+    if (modules_size != sizeof *modules || lines_size / sizeof *lines < ring->count) return EERUF_ERR_MEMORY;
+    min_refire_us = HOPS(ring) ? ring->window_us : READ32(ring->schedule->min_refire_us);
+    status = allows_retrigger(settings, min_refire_us);
+    if (status != EERUF_OK) return status;
+    memset(lines, 0, ring->count * sizeof *lines);
+    modules->ring = ring;
+    modules->lines = lines;
+    modules->settings = *settings;
+    modules->ready = READY;
+    return EERUF_OK;
+}
+
+/* Sets the health by the last firing, before the next trigger. */
+static void end_firing(EerufLine *line, uint8_t missing_after) {
+    const uint8_t pulse = line->state & PULSE, flaw = line->state & FLAW;
+    if (pulse == AWAITED && flaw == 0) {
+        if (line->silent < UINT8_MAX) line->silent++;
+        if (line->silent >= missing_after) set_health(line, EERUF_HEALTH_MISSING);
+    } else if (pulse == ROSE) {
+        /* If the line is still high it is stuck, as will be seen. */
+        set_health(line, EERUF_HEALTH_LOSES_EDGES);
+    } else if (pulse != IDLE) {
+        /* A pulse may follow what was taken for the end of one whose beginning was too soon after the trigger. */
+        if (flaw == 0 || (pulse == OVER && flaw == LOST_EDGE)) set_health(line, EERUF_HEALTH_WELL);
+        else set_health(line, flaw == CHATTERED ? EERUF_HEALTH_CHATTERS : EERUF_HEALTH_LOSES_EDGES);
+    }
+    set_bits(line, FLAW, 0);
+}
+
+/* A firing begins; without health the line is well. */
+static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint32_t now_us, uint8_t health) {
+    const EerufStatus status = has_line(modules, sensor);
+    EerufLine *line;
+    if (status != EERUF_OK) return status;
+    line = &modules->lines[sensor];
+    end_firing(line, modules->settings.missing_after);
+    line->triggered_us = now_us;
+    if (health == EERUF_HEALTH_WELL) {
+        set_bits(line, PULSE, AWAITED);
+        return EERUF_OK;
+    }
+    set_bits(line, PULSE, IDLE);
+    set_health(line, health);
+    (void)eeruf_ring_stuck(modules->ring, sensor);
+    return EERUF_DO_NOT_TRIGGER;
+}
+
+EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, uint32_t now_us, bool line_is_high) {
+    return begin_firing(modules, sensor, now_us, line_is_high ? EERUF_HEALTH_STUCK_HIGH : EERUF_HEALTH_WELL);
+}
+
+EerufStatus eeruf_hc_sr04_cannot_read(EerufHcSr04 *modules, uint8_t sensor, uint32_t now_us) {
+    return begin_firing(modules, sensor, now_us, EERUF_HEALTH_PIN_ERROR);
+}
+
+EerufStatus eeruf_hc_sr04_cannot_write(EerufHcSr04 *modules, uint8_t sensor) {
+    const EerufStatus status = has_line(modules, sensor);
+    if (status == EERUF_OK) set_health(&modules->lines[sensor], EERUF_HEALTH_PIN_ERROR);
+    return status;
+}
+
+EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t at_us) {
+    const EerufStatus status = has_line(modules, sensor);
+    EerufLine *line;
+    uint32_t since_us, width_us;
+    uint8_t pulse;
+    if (status != EERUF_OK) return status;
+    line = &modules->lines[sensor];
+    since_us = at_us - line->triggered_us;
+    if (since_us >= HALF_TURN || since_us < modules->settings.deaf_us) return EERUF_OK;
+    pulse = line->state & PULSE;
+    if (pulse == AWAITED) {
+        line->silent = 0;
+        if (high) {
+            set_bits(line, PULSE, ROSE);
+            line->rose_us = at_us;
+        } else if ((line->state & FLAW) == 0) {
+            set_bits(line, FLAW, LOST_EDGE);
+        }
+    } else if (pulse == ROSE && !high) {
+        width_us = at_us - line->rose_us;
+        if (width_us < modules->settings.shortest_us) {
+            line->state = (uint8_t)((line->state & ~(PULSE | FLAW)) | AWAITED | CHATTERED);
+            return EERUF_OK;
+        }
+        set_bits(line, PULSE, OVER);
+        if (width_us < modules->settings.longest_us)
+            return eeruf_ring_echo(modules->ring, sensor, line->triggered_us + width_us);
+    } else if (pulse == OVER && high) {
+        set_bits(line, FLAW, CHATTERED);
+    }
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_hc_sr04_edges(EerufHcSr04 *modules, EerufEdges *edges) {
+    EerufEdge edge;
+    EerufStatus status;
+    if (modules == NULL) return EERUF_ERR_NULL;
+    if (modules->ready != READY) return EERUF_ERR_NOT_READY;
+    while ((status = eeruf_edges_pop(edges, &edge)) == EERUF_OK)
+        /* An edge of a line that the ring does not have concerns nobody here. */
+        (void)eeruf_hc_sr04_edge(modules, edge.sensor, edge.high, edge.at_us);
+    return status == EERUF_EMPTY ? (EerufStatus)EERUF_OK : status;
+}
+
+bool eeruf_hc_sr04_awaits(const EerufHcSr04 *modules, uint8_t sensor, bool *was_high) {
+    uint8_t pulse;
+    if (has_line(modules, sensor) != EERUF_OK) return false;
+    pulse = modules->lines[sensor].state & PULSE;
+    if (was_high != NULL) *was_high = pulse == ROSE;
+    return pulse == AWAITED || pulse == ROSE;
+}
+
+EerufStatus eeruf_hc_sr04_fired(EerufHcSr04 *modules, uint8_t sensor, uint32_t at_us) {
+    EerufStatus status = has_line(modules, sensor);
+    if (status != EERUF_OK) return status;
+    status = eeruf_ring_fired(modules->ring, sensor, at_us);
+    if (has_reached(at_us, modules->lines[sensor].triggered_us)) modules->lines[sensor].triggered_us = at_us;
+    return status;
+}
+
+EerufStatus eeruf_hc_sr04_change_schedule(EerufHcSr04 *modules, const EerufSchedule *schedule) {
+    EerufStatus status = has_line(modules, 0);
+    if (status == EERUF_OK) status = schedule_is_usable(schedule);
+    if (status == EERUF_OK) status = allows_retrigger(&modules->settings, READ32(schedule->min_refire_us));
+    return status == EERUF_OK ? eeruf_ring_change_schedule(modules->ring, schedule) : status;
+}
+
+uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
+    if (has_line(modules, sensor) != EERUF_OK) return EERUF_HEALTH_MISSING;
+    return (uint8_t)(modules->lines[sensor].state >> HEALTH_AT);
+}
+
+#if EERUF_HOPPING
+/* ---- Time hopping ---- */
+
+/* The flags of a sensor's turn. */
+#define HAS_FIRED 1u
+#define SOLO 2u    /* its last firing was alone */
+#define SETTLED 4u /* what it hears of its last firing moves as the code says, as far as lags are concerned */
+/* The flags of a track. */
+#define TRACK_CONFIRMED 1u
+#define CONTRADICTED 2u
+
+#define CATCHES_UP_US 1000u /* a firing that is later moves all that follow */
+#define ONE_SOLO 256u       /* what a solo period costs; as much again may be saved up */
+#define DRAWS 8u            /* lags that are drawn in search of one that keeps the neighbours' interval */
+#define RESTLESS 178u       /* of 255: with so many unexplained readings a tentative echo needs one vote more */
+
+/* -- The tracker: which echo of a sensor is its own. A reading within t_delta of a track supports it, and only support
+   from different phases counts. A later reading contradicts it; an earlier one hides it (docs/hopping.md). -- */
+
+static bool is_within(uint32_t one, uint32_t other, uint32_t most) {
+    if (one == EERUF_NO_ECHO || other == EERUF_NO_ECHO) return one == other;
+    return apart(one, other) <= most;
+}
+
+static uint16_t phase_bit(uint8_t phase) {
+    return (uint16_t)(1u << (phase & 15u));
+}
+
+static uint8_t votes_of(const EerufTrack *track) {
+    uint16_t phases = track->phases;
+    uint8_t votes = track->solo_votes;
+    for (; phases != 0; phases &= (uint16_t)(phases - 1u)) votes++;
+    return votes;
+}
+
+static void forget_tracks(EerufHopper *hopper) {
+    uint8_t place;
+    memset(hopper->tracks, 0, sizeof hopper->tracks);
+    for (place = 0; place < EERUF_HYPOTHESES; place++) {
+        hopper->tracks[place].t_echo_us = EERUF_NO_ECHO;
+        hopper->tracks[place].age = UINT8_MAX;
+    }
+}
+
+/* What is not confirmed cannot be compared with what comes. */
+static void firing_changed(EerufHoppingRing *hopping) {
+    uint8_t x, place;
+    for (x = 0; x < hopping->ring.count; x++) {
+        for (place = 0; place < EERUF_HYPOTHESES; place++) {
+            EerufTrack *track = &hopping->hoppers[x].tracks[place];
+            if (track->flags & TRACK_CONFIRMED) continue;
+            track->phases = 0;
+            track->close = 0;
+            if (track->score > 1) track->score = 1;
+        }
+    }
+}
+
+/* The earliest confirmed track; null if there is none. Silence is a track too, later than all others. */
+static const EerufTrack *believed_of(const EerufHopper *hopper) {
+    const EerufTrack *earliest = NULL;
+    uint8_t place;
+    for (place = 0; place < EERUF_HYPOTHESES; place++) {
+        const EerufTrack *track = &hopper->tracks[place];
+        if (track->score == 0 || !(track->flags & TRACK_CONFIRMED)) continue;
+        if (earliest == NULL || track->t_echo_us < earliest->t_echo_us) earliest = track;
+    }
+    return earliest;
+}
+
+static void grow_older(EerufTrack *track) {
+    if (track->age < UINT8_MAX) track->age++;
+}
+
+/* The last firing in this phase did not support it. One phase alone keeps no track confirmed. */
+static void miss(EerufTrack *track, uint8_t phase) {
+    track->phases &= (uint16_t)~phase_bit(phase);
+    if (votes_of(track) < 2) track->flags &= (uint8_t)~TRACK_CONFIRMED;
+}
+
+static void support(EerufTrack *track, uint32_t t_echo_us, uint8_t phase, bool solo, const EerufTrackerSettings *how) {
+    const bool is_new = (track->phases & phase_bit(phase)) == 0;
+    const uint32_t distance = apart(track->t_echo_us, t_echo_us);
+    if (is_new && distance <= how->tentative_within_us && track->close < UINT8_MAX) track->close++;
+    track->phases |= phase_bit(phase);
+    if (solo) track->solo_votes++;
+    if (track->solo_votes > how->votes) track->solo_votes = how->votes;
+    /* A path repeats itself in its own phase for ever, so that says nothing new of a track yet to be confirmed. */
+    if (is_new || solo || (track->flags & TRACK_CONFIRMED)) {
+        track->score = (uint8_t)(track->score + (solo ? 2u : 1u));
+        if (track->score > how->score_limit) track->score = how->score_limit;
+    }
+    track->age = 0;
+    if (track->t_echo_us != EERUF_NO_ECHO) {
+        /* A quarter of the way, so that one early or late edge does not move it far. */
+        if (t_echo_us > track->t_echo_us) track->t_echo_us += distance / 4;
+        else track->t_echo_us -= distance / 4;
+    }
+    if (votes_of(track) >= how->votes && track->score >= how->votes) track->flags |= TRACK_CONFIRMED;
+}
+
+static void contradict(EerufTrack *track, uint8_t phase, bool solo, const EerufTrackerSettings *how) {
+    const uint8_t weight = solo ? how->solo_contradiction : (track->flags & TRACK_CONFIRMED) ? how->contradiction : 1;
+    track->score = track->score > weight ? (uint8_t)(track->score - weight) : 0;
+    track->flags |= CONTRADICTED;
+    track->solo_votes = 0;
+    grow_older(track);
+    miss(track, phase);
+}
+
+/* Whether one is replaced before the other. */
+static bool ranks_below(const EerufTrack *one, const EerufTrack *other) {
+    const uint8_t confirmed = one->flags & TRACK_CONFIRMED;
+    if (confirmed != (other->flags & TRACK_CONFIRMED)) return confirmed == 0;
+    return one->score != other->score ? one->score < other->score : one->age > other->age;
+}
+
+static uint8_t nearest_track(const EerufHopper *hopper, uint32_t t_echo_us, uint32_t t_delta_us) {
+    uint8_t place, nearest = NOBODY;
+    for (place = 0; place < EERUF_HYPOTHESES; place++) {
+        const EerufTrack *track = &hopper->tracks[place];
+        if (track->score == 0 || !is_within(track->t_echo_us, t_echo_us, t_delta_us)) continue;
+        if (nearest == NOBODY ||
+            apart(track->t_echo_us, t_echo_us) < apart(hopper->tracks[nearest].t_echo_us, t_echo_us))
+            nearest = place;
+    }
+    return nearest;
+}
+
+static void begin_track(EerufHopper *hopper, uint32_t t_echo_us, uint8_t phase, bool solo) {
+    EerufTrack *weakest = &hopper->tracks[0];
+    uint8_t place;
+    for (place = 1; place < EERUF_HYPOTHESES; place++)
+        if (ranks_below(&hopper->tracks[place], weakest)) weakest = &hopper->tracks[place];
+    weakest->t_echo_us = t_echo_us;
+    weakest->phases = phase_bit(phase);
+    weakest->score = solo ? 2 : 1;
+    weakest->solo_votes = solo ? 1 : 0;
+    weakest->close = 1;
+    weakest->flags = 0;
+    weakest->age = 0;
+}
+
+static void weigh_skipped(EerufHopper *hopper, uint8_t kind, uint32_t t_echo_us, uint32_t previous_us,
+                          EerufReading *reading) {
+    if (kind == EERUF_READING_ACCEPTED || kind == EERUF_READING_TENTATIVE) hopper->age = 0;
+    else if (hopper->age < EERUF_NEVER - 1u) hopper->age++;
+    reading->kind = kind;
+    reading->t_echo_us = t_echo_us;
+    reading->previous_us = previous_us;
+    reading->age = hopper->age;
+}
+
+/* How many close votes a tentative echo needs now; 0: none is reported. */
+static uint8_t tentative_votes(const EerufHoppingRing *hopping, uint8_t sensor) {
+    uint8_t votes = hopping->config.tracker.tentative_votes;
+    if (votes == 0) return 0;
+    if (hopping->hoppers[sensor].unexplained > RESTLESS) votes++;
+    if (hopping->readier > 0 && hopping->candidate != sensor) votes--;
+    return votes < 2 ? 2 : votes;
+}
+
+/* The tracks move with the robot. */
+static void shift_tracks(EerufHopper *hopper, int32_t change_us) {
+    uint8_t place;
+    for (place = 0; place < EERUF_HYPOTHESES; place++) {
+        uint32_t *held = &hopper->tracks[place].t_echo_us;
+        if (*held == EERUF_NO_ECHO) continue;
+        if (change_us >= 0) *held = shorter(add32(*held, (uint32_t)change_us), EERUF_NO_ECHO - 1u);
+        else *held = *held > 0u - (uint32_t)change_us ? *held + (uint32_t)change_us : 0;
+    }
+}
+
+static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool steady, EerufReading *reading) {
+    const EerufTrackerSettings *how = &hopping->config.tracker;
+    EerufHopper *hopper = &hopping->hoppers[sensor];
+    const uint32_t t_echo_us = reading->t_echo_us;
+    const uint8_t phase = hopper->phase, votes = tentative_votes(hopping, sensor);
+    const uint8_t nearest = nearest_track(hopper, t_echo_us, how->t_delta_us);
+    const EerufTrack *believed = believed_of(hopper);
+    /* A copy: the tracks move below. Without one no echo is as late. */
+    const bool believes = believed != NULL;
+    const uint32_t held_us = believes ? believed->t_echo_us : EERUF_NO_ECHO;
+    const bool is_near = believes && is_within(held_us, t_echo_us, how->near_us);
+    const bool has_previous = believes || nearest != NOBODY;
+    const uint32_t previous_us = nearest != NOBODY ? hopper->tracks[nearest].t_echo_us : held_us;
+    bool candidate = false, tentative = false, confirmed;
+    uint8_t place, kind;
+    for (place = 0; place < EERUF_HYPOTHESES && steady; place++) {
+        EerufTrack *track = &hopper->tracks[place];
+        if (track->score == 0) continue;
+        if (place == nearest) {
+            bool earlier;
+            uint8_t close;
+            support(track, t_echo_us, phase, solo, how);
+            close = track->flags & CONTRADICTED ? 0 : track->close;
+            earlier = (!believes || track->t_echo_us < held_us) && track->t_echo_us != EERUF_NO_ECHO;
+            candidate = earlier && !(track->flags & TRACK_CONFIRMED) && close >= 2;
+            tentative = earlier && votes != 0 && (solo || close >= votes);
+        } else if (is_near && track->t_echo_us == held_us) {
+            /* It follows an echo that moves faster than its support: three tenths of the way. */
+            const uint32_t distance = apart(held_us, t_echo_us) * 3 / 10;
+            grow_older(track);
+            track->t_echo_us = t_echo_us > held_us ? held_us + distance : held_us - distance;
+        } else if (t_echo_us > track->t_echo_us) {
+            contradict(track, phase, solo, how);
+        } else {
+            grow_older(track);
+            if (track->flags & TRACK_CONFIRMED) miss(track, phase);
+        }
+    }
+    if (steady) {
+        const bool explained = nearest != NOBODY || is_near;
+        if (!explained) {
+            begin_track(hopper, t_echo_us, phase, solo);
+            tentative = solo && votes != 0 && t_echo_us != EERUF_NO_ECHO;
+        }
+        if (explained) hopper->unexplained = (uint8_t)(hopper->unexplained - hopper->unexplained / 16);
+        else hopper->unexplained = (uint8_t)(hopper->unexplained + (255u - hopper->unexplained) / 16);
+    }
+    believed = believed_of(hopper);
+    confirmed = believed != NULL && is_within(believed->t_echo_us, t_echo_us, how->near_us);
+    if (confirmed) kind = t_echo_us == EERUF_NO_ECHO ? EERUF_READING_CLEAR : EERUF_READING_ACCEPTED;
+    else if (t_echo_us == EERUF_NO_ECHO) kind = EERUF_READING_NO_ECHO;
+    else if (tentative) kind = EERUF_READING_TENTATIVE;
+    else kind = has_previous ? EERUF_READING_REJECTED : EERUF_READING_FIRST;
+    weigh_skipped(hopper, kind, t_echo_us, previous_us, reading);
+    if (hopping->readier > 0) hopping->readier--;
+    if (candidate) {
+        hopping->candidate = sensor;
+        hopping->readier = (uint8_t)(3u * hopping->ring.count);
+    }
+}
+
+/* -- Firing: each sensor at its lag plus the wait of the phase, and in a solo period one sensor alone -- */
+
+static EerufHoppingRing *hopping_of(EerufRing *ring) {
+    return (EerufHoppingRing *)(void *)ring;
+}
+
+static uint32_t code_width(const EerufHoppingRing *hopping) {
+    return (hopping->cycle - 1u) * hopping->config.step_us;
+}
+
+/* When a sensor fires in this period, after its start, unless it is a solo period. */
+static uint32_t offset_of(const EerufHoppingRing *hopping, uint8_t sensor) {
+    const uint16_t place = (uint16_t)((sensor + 1u) * hopping->phase % hopping->cycle);
+    return add32(hopping->hoppers[sensor].lag_us, place * hopping->config.step_us);
+}
+
+/* The next firing of the period, or its end. */
+static void look_ahead(EerufHoppingRing *hopping) {
+    uint32_t after_us = hopping->length_us;
+    hopping->ring.next = NOBODY;
+    if (hopping->place < hopping->planned) {
+        hopping->ring.next = hopping->hoppers[hopping->place].order;
+        after_us = hopping->solo_at_us;
+        if (after_us == EERUF_NO_ECHO) after_us = offset_of(hopping, hopping->ring.next);
+    }
+    hopping->ring.due_us = hopping->start_us + after_us;
+}
+
+/* Nothing that is heard across this moment moves as the code says. */
+static void break_off(EerufHoppingRing *hopping) {
+    hopping->least_late[0] = 0;
+    hopping->most_late[0] = UINT16_MAX;
+    hopping->changed = 1;
+}
+
+static void note_hop(EerufHoppingRing *hopping, uint16_t late_us) {
+    if (late_us < hopping->least_late[0]) hopping->least_late[0] = late_us;
+    if (late_us > hopping->most_late[0]) hopping->most_late[0] = late_us;
+}
+
+/* Whether a firing this late differs from all others of three periods by no more than is tolerated. */
+static bool is_steady(const EerufHoppingRing *hopping, uint16_t late_us) {
+    uint8_t i;
+    for (i = 0; i < 3; i++) {
+        if (less16(late_us, hopping->least_late[i]) > hopping->tolerated) return false;
+        if (less16(hopping->most_late[i], late_us) > hopping->tolerated) return false;
+    }
+    return true;
+}
+
+/* How long after the start of the period a sensor must not fire yet, since it still listens. */
+static uint32_t rests_for(const EerufHoppingRing *hopping, uint8_t sensor) {
+    const EerufHopper *hopper = &hopping->hoppers[sensor];
+    const uint32_t rested = hopper->fired_us + hopping->config.window_us;
+    const uint32_t rests = has_reached(hopping->start_us, rested) ? 0 : rested - hopping->start_us;
+    /* A clock that has jumped says nothing about when the last firing was. */
+    return (hopper->flags & HAS_FIRED) && rests <= hopping->config.window_us ? rests : 0;
+}
+
+static bool is_disabled(const EerufHoppingRing *hopping, uint8_t sensor) {
+    return (hopping->ring.sensors[sensor].filter.state & DISABLED) != 0;
+}
+
+/* The sensor with nothing accepted for longest, if that is long enough. */
+static uint8_t longest_unserved(const EerufHoppingRing *hopping) {
+    uint8_t longest = hopping->config.solo_after, found = NOBODY, x;
+    if (longest > 0) longest--;
+    for (x = 0; x < hopping->ring.count; x++) {
+        if (hopping->hoppers[x].unserved > longest && !is_disabled(hopping, x)) {
+            longest = hopping->hoppers[x].unserved;
+            found = x;
+        }
+    }
+    return found;
+}
+
+/* Gives the period to one sensor, which fires when all else is silent. */
+static void plan_solo(EerufHoppingRing *hopping, uint8_t sensor) {
+    const uint32_t silent = hopping->ring.last_fired_us + hopping->dies_us;
+    uint32_t at_us = has_reached(hopping->start_us, silent) ? 0 : silent - hopping->start_us;
+    if (at_us > hopping->dies_us) at_us = 0; /* the clock has jumped */
+    /* Its own last firing is among those that it waits for, but its window may be longer. */
+    at_us = longer(at_us, rests_for(hopping, sensor));
+    hopping->earned = (uint16_t)(hopping->earned - ONE_SOLO);
+    hopping->since_solo = 0;
+    hopping->solo_at_us = at_us;
+    hopping->length_us = longer(hopping->length_us, add32(at_us, hopping->dies_us));
+    hopping->hoppers[0].order = sensor;
+    hopping->planned = 1;
+}
+
+/* Evenly from 0 to `most`, at most 2^28: a xorshift generator (Marsaglia, 2003), the same on every machine. */
+static uint32_t draw(EerufHoppingRing *hopping, uint32_t most) {
+    uint32_t r = hopping->random;
+    const uint32_t n = most + 1;
+    uint32_t low, middle;
+    r ^= r << 13;
+    r ^= r >> 17;
+    r ^= r << 5;
+    hopping->random = r;
+    /* The high word of r n. */
+    low = (r & 0xffffu) * (n & 0xffffu);
+    middle = (r >> 16) * (n & 0xffffu) + (low >> 16);
+    low = (r & 0xffffu) * (n >> 16) + (middle & 0xffffu);
+    return (r >> 16) * (n >> 16) + (middle >> 16) + (low >> 16);
+}
+
+/* Whether a sensor with this lag keeps the interval from its neighbours, in every phase and across the period's end. */
+static bool keeps_interval(const EerufHoppingRing *hopping, uint8_t sensor, uint32_t lag_us) {
+    const uint32_t least = add32(hopping->config.shift_interval_us, code_width(hopping));
+    uint8_t x;
+    if (hopping->config.shift_interval_us == 0) return true;
+    for (x = 0; x < hopping->ring.count; x++) {
+        const uint32_t distance = apart(hopping->hoppers[x].lag_us, lag_us);
+        const uint32_t across = hopping->config.period_us > distance ? hopping->config.period_us - distance : 0;
+        if (!are_neighbours(EERUF_LAYOUT_LINE, hopping->config.neighbours, hopping->ring.count, sensor, x)) continue;
+        if (distance < least || across < least) return false;
+    }
+    return true;
+}
+
+static bool draw_lag(EerufHoppingRing *hopping, uint8_t sensor) {
+    const uint32_t most = hopping->config.period_us - code_width(hopping) - 1;
+    uint8_t i;
+    for (i = 0; i < DRAWS; i++) {
+        const uint32_t lag_us = draw(hopping, most);
+        if (!keeps_interval(hopping, sensor, lag_us)) continue;
+        hopping->hoppers[sensor].lag_us = lag_us;
+        hopping->hoppers[sensor].misfits = 0;
+        return true;
+    }
+    return false;
+}
+
+static void unsettle(EerufHoppingRing *hopping) {
+    uint8_t x;
+    for (x = 0; x < hopping->ring.count; x++) hopping->hoppers[x].flags &= (uint8_t)~SETTLED;
+}
+
+/* New lags for all sensors whose readings do not fit. */
+static void shift_all(EerufHoppingRing *hopping) {
+    bool shifted = false;
+    uint8_t x;
+    for (x = 0; x < hopping->ring.count; x++)
+        if (hopping->hoppers[x].misfits >= hopping->config.shift_after && draw_lag(hopping, x)) shifted = true;
+    if (!shifted) return;
+    hopping->since_shift = 0;
+    hopping->changed = 1;
+    /* What is pending was fired with the lags of before. */
+    unsettle(hopping);
+}
+
+/* Decides who fires in the period that begins. */
+static void plan(EerufHoppingRing *hopping) {
+    const EerufHoppingConfig *config = &hopping->config;
+    EerufHopper *hoppers = hopping->hoppers;
+    uint8_t x, at;
+    hopping->place = hopping->planned = 0;
+    hopping->solo_at_us = EERUF_NO_ECHO;
+    hopping->length_us = config->period_us;
+    if (hopping->since_solo < UINT8_MAX) hopping->since_solo++;
+    hopping->earned = (uint16_t)(hopping->earned + config->solo_rate);
+    if (hopping->earned > 2 * ONE_SOLO) hopping->earned = 2 * ONE_SOLO;
+    if (hopping->earned >= ONE_SOLO && hopping->since_solo >= config->solo_spacing) {
+        const uint8_t unserved = longest_unserved(hopping);
+        if (unserved != NOBODY) {
+            plan_solo(hopping, unserved);
+            look_ahead(hopping);
+            return;
+        }
+    }
+    if (hopping->since_shift < UINT8_MAX) hopping->since_shift++;
+    if (config->shift_after > 0 && hopping->since_shift >= config->shift_spacing) shift_all(hopping);
+    for (x = 0; x < hopping->ring.count; x++) {
+        const uint32_t offset = offset_of(hopping, x);
+        if (is_disabled(hopping, x) || offset < rests_for(hopping, x)) continue;
+        /* Insertion by firing time; sensors that fire together keep their order. */
+        for (at = hopping->planned; at > 0 && offset_of(hopping, hoppers[at - 1].order) > offset; at--)
+            hoppers[at].order = hoppers[at - 1].order;
+        hoppers[at].order = x;
+        hopping->planned++;
+    }
+    look_ahead(hopping);
+}
+
+static void fire_hop(EerufHoppingRing *hopping, uint8_t sensor, uint32_t now_us) {
+    EerufHopper *hopper = &hopping->hoppers[sensor];
+    const uint32_t late_us = now_us - hopping->ring.due_us;
+    const bool solo = hopping->solo_at_us != EERUF_NO_ECHO;
+    if (late_us > CATCHES_UP_US) break_off(hopping);
+    /* Nothing else fires in a solo period, so that it may move freely. */
+    if (late_us > CATCHES_UP_US || solo) hopping->start_us += late_us;
+    hopper->late_us = solo ? 0 : narrow(late_us);
+    if (!solo) note_hop(hopping, hopper->late_us);
+    hopping->place++;
+    hopping->ring.last_fired_us = now_us;
+    hopper->fired_us = now_us;
+    hopper->phase = hopping->phase;
+    hopper->flags = (uint8_t)(HAS_FIRED | (solo ? SOLO | SETTLED : hopping->since_shift > 0 ? SETTLED : 0));
+    look_ahead(hopping);
+}
+
+static void postpone_hop(EerufHoppingRing *hopping, uint8_t sensor, uint32_t by_us) {
+    EerufHopper *hopper = &hopping->hoppers[sensor];
+    const bool solo = (hopper->flags & SOLO) != 0;
+    const uint32_t late_us = add32(hopper->late_us, by_us);
+    hopper->fired_us += by_us;
+    if (!solo) {
+        hopper->late_us = narrow(late_us);
+        note_hop(hopping, hopper->late_us);
+    }
+    if (!has_reached(hopping->ring.last_fired_us, hopper->fired_us)) hopping->ring.last_fired_us = hopper->fired_us;
+    if (late_us > CATCHES_UP_US) break_off(hopping);
+    if (late_us > CATCHES_UP_US || solo) hopping->start_us += by_us;
+    look_ahead(hopping);
+}
+
+static void end_hopping_period(EerufHoppingRing *hopping, uint32_t now_us) {
+    const bool left_out = now_us - hopping->ring.due_us > hopping->config.period_us;
+    hopping->start_us = left_out ? now_us : hopping->ring.due_us;
+    hopping->least_late[2] = hopping->least_late[1];
+    hopping->most_late[2] = hopping->most_late[1];
+    hopping->least_late[1] = hopping->least_late[0];
+    hopping->most_late[1] = hopping->most_late[0];
+    hopping->least_late[0] = UINT16_MAX;
+    hopping->most_late[0] = 0;
+    if (left_out) break_off(hopping);
+    hopping->ring.phase = (hopping->ring.phase + 1u) & 7u;
+    hopping->phase = hopping->phase + 1u < hopping->cycle ? (uint8_t)(hopping->phase + 1u) : 0;
+    plan(hopping);
+}
+
+/* Takes a sensor out of those that are still to fire. */
+static void leave_out(EerufHoppingRing *hopping, uint8_t sensor) {
+    uint8_t at = hopping->place;
+    while (at < hopping->planned && hopping->hoppers[at].order != sensor) at++;
+    if (at == hopping->planned) return;
+    for (hopping->planned--; at < hopping->planned; at++) hopping->hoppers[at].order = hopping->hoppers[at + 1].order;
+    look_ahead(hopping);
+}
+
+static void hop(EerufRing *ring, uint8_t what, uint8_t sensor, uint32_t at_us) {
+    EerufHoppingRing *hopping = hopping_of(ring);
+    switch (what) {
+    case HOP_FIRE: fire_hop(hopping, sensor, at_us); break;
+    case HOP_POSTPONE: postpone_hop(hopping, sensor, at_us); break;
+    case HOP_END_PERIOD: end_hopping_period(hopping, at_us); break;
+    case HOP_LEAVE_OUT: leave_out(hopping, sensor); break;
+    default:
+        unsettle(hopping);
+        hopping->start_us = at_us;
+        break_off(hopping);
+        plan(hopping);
+    }
+}
+
+static bool is_prime(uint8_t number) {
+    uint8_t divisor;
+    for (divisor = 2; divisor * divisor <= number; divisor++)
+        if (number % divisor == 0) return false;
+    return number > 1;
+}
+
+static bool is_between(uint16_t value, uint16_t least, uint16_t most) {
+    return value >= least && value <= most;
+}
+
+static EerufStatus tracker_is_fine(const EerufTrackerSettings *how) {
+    const bool fine = how->t_delta_us > 0 && how->near_us >= how->t_delta_us && is_between(how->votes, 2, 15) &&
+                      is_between(how->score_limit, how->votes, 15) && is_between(how->contradiction, 1, 15) &&
+                      is_between(how->solo_contradiction, 1, 15) && how->tentative_within_us <= how->t_delta_us &&
+                      (how->tentative_votes == 0 || is_between(how->tentative_votes, 2, 15));
+    return fine ? EERUF_OK : EERUF_ERR_TRACKER;
+}
+
+EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
+                               EerufHopper *hoppers, size_t hoppers_size, const EerufHoppingConfig *config,
+                               uint32_t now_us) {
+    EerufStatus status;
+    uint32_t width_us, least_us;
+    uint8_t x, cycle;
+    if (hopping == NULL || sensors == NULL || hoppers == NULL || config == NULL) return EERUF_ERR_NULL;
+    if (config->version != EERUF_VERSION) return EERUF_ERR_VERSION;
+    if (ring_size != sizeof *hopping) return EERUF_ERR_MEMORY;
+    if (config->sensors - 1u >= EERUF_MAX_SENSORS) return EERUF_ERR_SENSORS;
+    if (sensors_size / sizeof *sensors < config->sensors) return EERUF_ERR_MEMORY;
+    if (hoppers_size / sizeof *hoppers < config->sensors) return EERUF_ERR_MEMORY;
+    if (!is_between(config->phases, 2, 67)) return EERUF_ERR_PHASES;
+    if (config->step_us == 0 || config->step_us > UINT16_MAX) return EERUF_ERR_STEP;
+    cycle = config->phases > config->sensors ? config->phases : (uint8_t)(config->sensors + 1u);
+    while (!is_prime(cycle)) cycle++;
+    width_us = (cycle - 1u) * config->step_us;
+    if (config->period_us <= width_us || config->period_us > EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
+    for (x = 0; x < config->sensors && config->lag_us != NULL; x++)
+        if (config->lag_us[x] >= config->period_us - width_us) return EERUF_ERR_LAG;
+    status = tracker_is_fine(&config->tracker);
+    if (status != EERUF_OK) return status;
+    if (config->step_us <= config->tracker.t_delta_us) return EERUF_ERR_T_DELTA;
+    /* The sensor must have stopped listening, and a path must not read the same with two ages. */
+    least_us = longer(add32(config->window_us, width_us), 2 * width_us + config->step_us);
+    if (config->period_us < least_us) return EERUF_ERR_PERIOD;
+
+    memset(hopping, 0, sizeof *hopping);
+    set_up(&hopping->ring, sensors, config->sensors, now_us);
+    hopping->ring.hop = hop;
+    status = listen(&hopping->ring, config->tracker.t_delta_us, config->window_us, config->blanking_us);
+    if (status != EERUF_OK) return status;
+    hopping->hoppers = hoppers;
+    hopping->config = *config;
+    hopping->cycle = cycle;
+    hopping->start_us = hopping->ring.last_fired_us = now_us;
+    hopping->dies_us = config->reach_us > config->blanking_us ? config->reach_us - config->blanking_us : 0;
+    hopping->dies_us = add32(longer(hopping->dies_us, config->window_us), 1);
+    hopping->random = config->seed == 0 ? 0x9e3779b9u : config->seed;
+    /* A track may be off by as much as its readings. */
+    hopping->tolerated = (uint16_t)((config->step_us - config->tracker.t_delta_us - 1) / 2);
+    hopping->least_late[0] = hopping->least_late[1] = hopping->least_late[2] = UINT16_MAX;
+    hopping->candidate = NOBODY;
+    memset(hoppers, 0, config->sensors * sizeof *hoppers);
+    for (x = 0; x < config->sensors; x++) {
+        const uint8_t n = config->neighbours == 0 ? 1 : config->neighbours;
+        forget_tracks(&hoppers[x]);
+        hoppers[x].age = EERUF_NEVER;
+        hoppers[x].lag_us = config->lag_us != NULL ? config->lag_us[x]
+                                                   : multiply_divide(x % n, config->period_us - width_us, 0, n);
+    }
+    plan(hopping);
+    hopping->ring.ready = READY;
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const int32_t *change_us,
+                               EerufEvent *event) {
+    EerufStatus status = hopping == NULL ? (EerufStatus)EERUF_ERR_NULL : is_ready(&hopping->ring);
+    EerufReading *reading;
+    EerufHopper *hopper;
+    bool confirmed, served;
+    const EerufTrack *believed;
+    if (status == EERUF_OK && !HOPS(&hopping->ring)) status = EERUF_ERR_NOT_READY;
+    if (status == EERUF_OK) status = eeruf_ring_poll(&hopping->ring, now_us, event);
+    if (status != EERUF_EVENT) return status;
+    if (event->kind == EERUF_EVENT_FIRE) {
+        event->phase = hopping->phase;
+        return status;
+    }
+    if (event->kind == EERUF_EVENT_PERIOD) {
+        event->phase = hopping->phase > 0 ? (uint8_t)(hopping->phase - 1u) : (uint8_t)(hopping->cycle - 1u);
+        memcpy(event->u.ended.tally, hopping->tally, sizeof hopping->tally);
+        memset(hopping->tally, 0, sizeof hopping->tally);
+        return status;
+    }
+    reading = &event->u.reading;
+    hopper = &hopping->hoppers[event->sensor];
+    event->phase = hopper->phase;
+    if (reading->kind != EERUF_READING_LATE) {
+        if (hopping->changed) firing_changed(hopping);
+        hopping->changed = 0;
+        if (reading->kind == EERUF_READING_STUCK || reading->kind == EERUF_READING_TOO_EARLY) {
+            weigh_skipped(hopper, reading->kind, reading->t_echo_us, EERUF_NO_ECHO, reading);
+        } else {
+            const bool steady = (hopper->flags & SETTLED) && is_steady(hopping, hopper->late_us);
+            if (change_us != NULL) shift_tracks(hopper, change_us[event->sensor]);
+            weigh(hopping, event->sensor, (hopper->flags & SOLO) != 0, steady, reading);
+        }
+        confirmed = reading->kind == EERUF_READING_ACCEPTED || reading->kind == EERUF_READING_CLEAR;
+        served = confirmed || reading->kind == EERUF_READING_TENTATIVE;
+        believed = believed_of(hopper);
+        /* A sensor that is known to have nothing in range is not fooled by what does not fit. */
+        if (confirmed || (believed != NULL && believed->t_echo_us == EERUF_NO_ECHO)) hopper->misfits = 0;
+        else if (hopper->misfits < UINT8_MAX) hopper->misfits++;
+        if (served) hopper->unserved = 0;
+        else if (hopper->unserved < UINT8_MAX) hopper->unserved++;
+    }
+    if (hopping->tally[reading->kind] < UINT8_MAX) hopping->tally[reading->kind]++;
+    return status;
+}
+
+/* A hopping ring's sensor. */
+static EerufStatus has_hopper(const EerufHoppingRing *hopping, uint8_t sensor) {
+    if (hopping == NULL) return EERUF_ERR_NULL;
+    return HOPS(&hopping->ring) ? has_sensor(&hopping->ring, sensor) : (EerufStatus)EERUF_ERR_NOT_READY;
+}
+
+EerufStatus eeruf_hopping_enable(EerufHoppingRing *hopping, uint8_t sensor, bool enabled) {
+    const EerufStatus status = has_hopper(hopping, sensor);
+    if (status != EERUF_OK) return status;
+    if (enabled && is_disabled(hopping, sensor)) forget_tracks(&hopping->hoppers[sensor]);
+    return eeruf_ring_enable(&hopping->ring, sensor, enabled);
+}
+
+uint32_t eeruf_hopping_confirmed_us(const EerufHoppingRing *hopping, uint8_t sensor) {
+    const EerufTrack *believed = NULL;
+    if (has_hopper(hopping, sensor) == EERUF_OK) believed = believed_of(&hopping->hoppers[sensor]);
+    return believed == NULL ? EERUF_NO_ECHO : believed->t_echo_us;
+}
+
+uint8_t eeruf_hopping_solo(const EerufHoppingRing *hopping) {
+    if (has_hopper(hopping, 0) != EERUF_OK || hopping->solo_at_us == EERUF_NO_ECHO) return NOBODY;
+    return hopping->hoppers[0].order;
+}
+
+uint32_t eeruf_hopping_lag_us(const EerufHoppingRing *hopping, uint8_t sensor) {
+    return has_hopper(hopping, sensor) == EERUF_OK ? hopping->hoppers[sensor].lag_us : 0;
+}
+#endif

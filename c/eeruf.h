@@ -1,0 +1,498 @@
+/* eeruf: Error Eliminating Rapid Ultrasonic Firing (Borenstein and Koren, 1995) for rings of ultrasonic sensors, in C.
+ *
+ *   #include "eeruf.h"
+ *   #include "ring.h"                          // RING, written by: eeruf design RING.toml --emit c > ring.h
+ *
+ *   static EerufRing ring;                     // your memory: nothing is allocated
+ *   static EerufSensor sensors[RING_SENSORS];
+ *
+ *   int main(void) {
+ *       EerufConfig config = EERUF_CONFIG;     // listen and compare as the schedule was verified for
+ *       if (eeruf_ring_init(&ring, sizeof ring, sensors, sizeof sensors, &RING, &config, now_us()) != EERUF_OK) halt();
+ *       for (;;) {
+ *           EerufEvent event;
+ *           while (eeruf_ring_poll(&ring, now_us(), &event) == EERUF_EVENT) {
+ *               if (event.kind == EERUF_EVENT_FIRE) trigger(event.sensor);
+ *               if (event.kind == EERUF_EVENT_READING && event.u.reading.kind == EERUF_READING_ACCEPTED)
+ *                   use(event.sensor, eeruf_distance_mm(event.u.reading.t_echo_us, EERUF_SOUND_20C));
+ *           }
+ *           sleep_until_us(eeruf_ring_deadline(&ring));
+ *       }                                      // and from the echo line: eeruf_ring_echo(&ring, sensor, at_us)
+ *   }
+ *
+ * C99 to C++20; no floats, no 64-bit arithmetic at run time, no clock, nothing that blocks. Times are microseconds.
+ * Instants (`now_us`, `at_us`) are readings of your free-running counter of 32 bits, which may wrap at any moment.
+ * Sensors are counted from 0. One caller at a time: an interrupt hands edges over through EerufEdges.
+ * HC-SR04 modules: EerufHcSr04. It does, event by event, what the Rust crates eeruf-core and eeruf-hc-sr04 do.
+ *
+ * Licence: MIT OR Apache-2.0. */
+#ifndef EERUF_H
+#define EERUF_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define EERUF_VERSION 1u /* goes up with each change of a structure or a table */
+
+/* Leave out time hopping with -DEERUF_HOPPING=0; the linker leaves it out too if you do not call it. */
+#ifndef EERUF_HOPPING
+#define EERUF_HOPPING 1
+#endif
+
+/* Schedules lie in flash: on an AVR that has its own address space, which PROGMEM names. -DEERUF_SCHEDULE_IN_RAM for
+   schedules that are made at run time there. */
+#if defined(__AVR__) && !defined(EERUF_SCHEDULE_IN_RAM)
+#include <avr/pgmspace.h>
+#define EERUF_FLASH PROGMEM
+#else
+#define EERUF_FLASH
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a call came to: 0 and above is fine. */
+typedef int8_t EerufStatus;
+enum {
+    EERUF_OK = 0,
+    EERUF_EVENT = 1,             /* there is an event: handle it and poll again */
+    EERUF_DO_NOT_TRIGGER = 2,    /* the echo line is high: the module would not hear the trigger */
+    EERUF_EMPTY = 3,             /* no edge waits in the queue */
+    EERUF_ERR_NULL = -1,         /* a pointer is null */
+    EERUF_ERR_MEMORY = -2,       /* the memory handed in is too small, or of another version's size */
+    EERUF_ERR_VERSION = -3,      /* header, library or table are of different versions */
+    EERUF_ERR_NOT_READY = -4,    /* not initialised */
+    EERUF_ERR_SENSOR = -5,       /* there is no such sensor */
+    EERUF_ERR_SENSORS = -6,      /* not 1 to 64 sensors, or not as many as the ring has */
+    EERUF_ERR_PHASES = -7,       /* not 1 to 8 phases, or not as many as the ring has; two to be verified */
+    EERUF_ERR_PERIOD = -8,       /* a period that is not 1 us to 268 s, or too short for window and code */
+    EERUF_ERR_FIRE = -9,         /* a sensor would fire after its period has ended */
+    EERUF_ERR_TABLE = -10,       /* a schedule that contradicts itself */
+    EERUF_ERR_CROSSTALK = -11,   /* crosstalk would pass: (13a) or (13b) does not hold for this t_delta */
+    EERUF_ERR_STALE_ECHO = -12,  /* a sensor's own echo from the period before would pass */
+    EERUF_ERR_INTERVAL = -13,    /* two neighbours fire too close together */
+    EERUF_ERR_UNVERIFIED = -14,  /* the schedule was not verified */
+    EERUF_ERR_T_DELTA = -15,     /* more t_delta than the schedule was verified for */
+    EERUF_ERR_VERIFIED_WINDOW = -16, /* a longer window than the schedule was verified for */
+    EERUF_ERR_WINDOW = -17,      /* a sensor would fire again while it still listens */
+    EERUF_ERR_BLANKING = -18,    /* blanking no shorter than the window, or longer than 65,535 us */
+    EERUF_ERR_COARSE_T_DELTA = -19, /* t_delta no shorter than the window, or longer than 65,535 us */
+    EERUF_ERR_CONSECUTIVE = -20, /* not 2 to 8 readings compared */
+    EERUF_ERR_RETRIGGER = -21,   /* the schedule triggers a module again sooner than it may be */
+    EERUF_ERR_LADDER = -22,      /* no schedules, or not from the shortest period to the longest, or unlike ones */
+    EERUF_ERR_STEP = -23,        /* a step that is not 1 to 65,535 us */
+    EERUF_ERR_LAG = -24,         /* a lag that leaves no room for the code */
+    EERUF_ERR_TRACKER = -25,     /* a setting of the tracker outside its range */
+    EERUF_ERR_RANGE = -26,       /* a number outside its range */
+    EERUF_ERR_HOPPING = -27      /* a hopping ring cannot do this */
+};
+
+/* The library's EERUF_VERSION, to be compared with the header's. */
+uint16_t eeruf_version(void);
+
+/* ---- Schedules ---- */
+
+#define EERUF_MAX_SENSORS 64u
+#define EERUF_MAX_PHASES 8u
+#define EERUF_MAX_PERIOD_US 268435456u
+
+/* Which sensors are neighbours: less than `neighbours` apart on a line or a closed ring, or in one block of so many. */
+enum { EERUF_LAYOUT_LINE = 0, EERUF_LAYOUT_RING = 1, EERUF_LAYOUT_BLOCKS = 2, EERUF_LAYOUT_OTHER = 3 };
+
+/* When each sensor fires. `eeruf design --emit c` writes it as a constant in flash; eeruf_schedule_make makes one. */
+typedef struct EerufSchedule {
+    uint16_t version;       /* EERUF_VERSION */
+    uint8_t sensors;        /* 1 to 64 */
+    uint8_t phases;         /* 1 to 8; two to be verified */
+    const uint8_t *order;   /* [phases][sensors]: the sensors as they fire */
+    const uint32_t *gap_us; /* [phases][sensors + 1]: from each firing to the one before; from the last to the end */
+    uint32_t period_us;     /* T_p */
+    uint32_t min_refire_us; /* the shortest time between two firings of one sensor */
+    /* What it was verified for: all zero if it was not. */
+    uint32_t t_delta_us;    /* (13a) and (13b) hold for it */
+    uint32_t min_interval_us;
+    uint32_t window_us;
+    uint32_t separation_us; /* by how much crosstalk moves at least from one reading to the next */
+    uint8_t verified;
+    uint8_t layout;         /* EERUF_LAYOUT_.. */
+    uint8_t neighbours;
+    uint8_t stale_echo;     /* whether a sensor's own echo from the period before is rejected too */
+} EerufSchedule;
+
+/* What a schedule is to be verified for. */
+typedef struct EerufRequirements {
+    uint32_t t_delta_us, min_interval_us, window_us; /* no window: as long as the schedule allows */
+    uint8_t layout, neighbours, stale_echo;
+} EerufRequirements;
+
+/* Makes a schedule of firing times `t_fire_us[phase * sensors + sensor]` after the start of each period. The memory
+   must last: `order` has phases * sensors places, `gap_us` phases * (sensors + 1), sizes in bytes. On an AVR only with
+   EERUF_SCHEDULE_IN_RAM. */
+EerufStatus eeruf_schedule_make(EerufSchedule *schedule, uint8_t *order, size_t order_size, uint32_t *gap_us,
+                                size_t gap_size, uint32_t period_us, uint8_t sensors, uint8_t phases,
+                                const uint32_t *t_fire_us);
+
+/* Verifies such a schedule and notes what for. If it does not meet the requirements it is left as it was. */
+EerufStatus eeruf_schedule_verify(EerufSchedule *schedule, const EerufRequirements *requirements);
+
+/* Checks every number of a schedule in flash, and that it meets what it says it was verified for: (13a), (13b), the
+   interval (not for EERUF_LAYOUT_OTHER) and the window. Tables that `eeruf` writes do. */
+EerufStatus eeruf_schedule_check(const EerufSchedule *schedule);
+
+/* ---- The filter ---- */
+
+#define EERUF_NO_ECHO UINT32_MAX
+#define EERUF_NEVER UINT16_MAX /* the age of a sensor none of whose readings was ever accepted */
+
+/* What came of one firing. */
+enum {
+    EERUF_READING_FIRST = 0,    /* an echo with nothing to compare it with */
+    EERUF_READING_ACCEPTED = 1, /* near-identical to the one before (Eq. 11): it counts */
+    EERUF_READING_REJECTED = 2, /* not near-identical: crosstalk, noise, or an object that moved too fast */
+    EERUF_READING_REPEATED = 3, /* near-identical, but not yet often enough */
+    EERUF_READING_NO_ECHO = 4,  /* no echo, once */
+    EERUF_READING_CLEAR = 5,    /* no echo several times running: nothing is in range */
+    EERUF_READING_TOO_EARLY = 6, /* nothing but an edge within the blanking time */
+    EERUF_READING_LATE = 7,     /* an edge after the window has ended */
+    EERUF_READING_STUCK = 8,    /* the echo line was high when the sensor was to fire */
+    EERUF_READING_TENTATIVE = 9, /* few readings support it so far, none contradicts: slow down (time hopping only) */
+    EERUF_READING_KINDS = 10
+};
+const char *eeruf_reading_name(uint8_t kind); /* "accepted"; not linked unless called */
+
+typedef struct EerufReading {
+    uint32_t t_echo_us;   /* EERUF_NO_ECHO without echo */
+    uint32_t previous_us; /* what it was compared with, or EERUF_NO_ECHO */
+    uint16_t age;         /* firings since the last accepted reading, or EERUF_NEVER */
+    uint8_t kind;         /* EERUF_READING_.. */
+} EerufReading;
+
+/* One sensor's filter, for those who fire by other means. */
+typedef struct EerufFilter {
+    uint32_t known_us;
+    uint16_t age;
+    uint8_t state;
+} EerufFilter;
+#define EERUF_FILTER {EERUF_NO_ECHO, EERUF_NEVER, 0}
+
+/* Takes in one firing: its echo below 2^31 us, or EERUF_NO_ECHO. `consecutive` readings, 2 to 8, must each be within
+   `t_delta_us` of the one before, after taking off the change that motion lets expect (-2 v dt / c). */
+EerufStatus eeruf_filter_push(EerufFilter *filter, uint32_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us,
+                              int32_t expected_change_us, EerufReading *reading);
+EerufStatus eeruf_filter_forget(EerufFilter *filter); /* compare the next reading with nothing; the age goes on */
+
+/* ---- The ring ---- */
+
+/* One sensor of a ring: 18 bytes on an AVR. Not for the caller. */
+typedef struct EerufSensor {
+    uint32_t fired_us;
+    uint32_t echo_us;
+    EerufFilter filter;
+    uint8_t flags;
+    uint16_t total_late;
+} EerufSensor;
+
+/* How a ring listens and compares. */
+typedef struct EerufConfig {
+    uint16_t version;     /* EERUF_VERSION */
+    uint8_t consecutive;  /* how many readings in a row must agree, 2 to 8 */
+    uint32_t t_delta_us;  /* 0: what the schedule was verified for, at most 65,535 us */
+    uint32_t window_us;   /* 0: what the schedule was verified for */
+    uint32_t blanking_us; /* edges sooner than this after firing are ringing, not echoes */
+} EerufConfig;
+#define EERUF_CONFIG {EERUF_VERSION, 2, 0, 0, 0}
+
+enum {
+    EERUF_EVENT_FIRE = 0,    /* fire this sensor, now */
+    EERUF_EVENT_READING = 1, /* what came of an earlier firing */
+    EERUF_EVENT_PERIOD = 2   /* a period has ended */
+};
+
+/* What happened since the end of the period before. Times of lateness stop at 65,535 us. */
+typedef struct EerufPeriod {
+    uint16_t max_late_us;  /* the latest poll for a firing or the end */
+    uint16_t sum_late_us;  /* by which the timetable got longer */
+    uint16_t max_shift_us; /* by how much crosstalk may have moved because of lateness, from one reading to the next */
+    uint8_t tally[EERUF_READING_KINDS]; /* readings by kind; each stops at 255 */
+} EerufPeriod;
+
+typedef struct EerufEvent {
+    uint8_t kind;    /* EERUF_EVENT_.. */
+    uint8_t sensor;  /* of a firing and a reading */
+    uint8_t phase;   /* in which the sensor fires or fired, or which has ended */
+    uint32_t period; /* in which the sensor fired, or which has ended, from 0; of a reading and a period */
+    union {
+        uint32_t due_us;      /* EERUF_EVENT_FIRE: in the past if the poll is late */
+        EerufReading reading; /* EERUF_EVENT_READING */
+        EerufPeriod ended;    /* EERUF_EVENT_PERIOD */
+    } u;
+} EerufEvent;
+
+/* How far late firings have stretched the timetable. Not for the caller. */
+typedef struct EerufLateness {
+    uint8_t watched, uncomparable, last;
+    uint16_t latest, total, total_before, least, most, least_before, most_before, last_late, last_stretch;
+} EerufLateness;
+
+/* A ring. Initialise it with eeruf_ring_init; not for the caller otherwise. */
+typedef struct EerufRing {
+    uint16_t ready;
+    const EerufSchedule *schedule, *next_schedule;
+    EerufSensor *sensors;
+#if EERUF_HOPPING
+    void (*hop)(struct EerufRing *ring, uint8_t what, uint8_t sensor, uint32_t at_us);
+#endif
+    uint32_t due_us, last_fired_us, emit_at_us, window_us, period;
+    uint16_t t_delta_us, blanking_us;
+    uint8_t count, phase, following, next, paused, oldest, pending, consecutive;
+    EerufLateness lateness;
+    uint8_t tally[EERUF_READING_KINDS];
+} EerufRing;
+
+/* Makes a ring that fires by a verified schedule from `now_us` on. `sensors` has a place for each sensor of the
+   schedule. Sizes are in bytes. The config may ask for less than the schedule was verified for, not for more. */
+EerufStatus eeruf_ring_init(EerufRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
+                            const EerufSchedule *schedule, const EerufConfig *config, uint32_t now_us);
+/* By a schedule that need not be verified: the conventional method, for comparison. Crosstalk may be accepted. */
+EerufStatus eeruf_ring_init_unverified(EerufRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
+                                       const EerufSchedule *schedule, const EerufConfig *config, uint32_t now_us);
+
+/* EERUF_EVENT with the next event, or EERUF_OK if there is none at `now_us`: then sleep until the deadline. Hand in the
+   edges you know of before. A late poll loses nothing: what is due is postponed, and all that follows with it. */
+EerufStatus eeruf_ring_poll(EerufRing *ring, uint32_t now_us, EerufEvent *event);
+/* As eeruf_ring_poll for a robot that moves: what a good reading of each sensor should have changed by since its firing
+   before, one number for each sensor, or null. */
+EerufStatus eeruf_ring_poll_expecting(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event);
+/* When to poll next; 0 for a ring that is not initialised. */
+uint32_t eeruf_ring_deadline(const EerufRing *ring);
+
+/* An echo, at this instant. Any number, in any order, at any time, wanted or not. For a module that answers with a
+   pulse as long as the echo took this is the firing's instant plus the pulse's width: see EerufHcSr04. */
+EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t sensor, uint32_t at_us);
+/* The sensor of the last EERUF_EVENT_FIRE really fired at this instant, later than the poll. Before the next poll. */
+EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t sensor, uint32_t at_us);
+/* The echo line of a sensor was high when it was to be fired: its reading is EERUF_READING_STUCK. */
+EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor);
+
+EerufStatus eeruf_ring_enable(EerufRing *ring, uint8_t sensor, bool enabled); /* from its next turn on */
+bool eeruf_ring_is_enabled(const EerufRing *ring, uint8_t sensor);
+EerufStatus eeruf_ring_pause(EerufRing *ring, bool paused); /* no sensor fires; periods go on */
+EerufStatus eeruf_ring_restart(EerufRing *ring, uint32_t now_us); /* again with the first phase, after a long sleep */
+
+/* Changes to another verified schedule, of as many sensors and phases, when the present period ends. */
+EerufStatus eeruf_ring_change_schedule(EerufRing *ring, const EerufSchedule *schedule);
+EerufStatus eeruf_ring_change_to_unverified(EerufRing *ring, const EerufSchedule *schedule);
+/* From now on; at most what the schedule was verified for. After an error the ring goes on as before. */
+EerufStatus eeruf_ring_set_t_delta(EerufRing *ring, uint32_t t_delta_us);
+EerufStatus eeruf_ring_set_window(EerufRing *ring, uint32_t window_us);
+EerufStatus eeruf_ring_set_blanking(EerufRing *ring, uint32_t blanking_us);
+
+/* ---- Adaptation: fire more slowly where too much is rejected, and faster again when it is calm ---- */
+
+typedef struct EerufAdaptation {
+    uint16_t ready;
+    const EerufSchedule *const *ladder; /* verified schedules, from the shortest period to the longest; in RAM */
+    uint8_t rungs, rung;
+    uint16_t noisy_permille;     /* above this rejection rate it fires more slowly: 300 */
+    uint16_t calm_permille;      /* up to this one a window is calm: 100 */
+    uint8_t window;              /* periods in a window: 16 */
+    uint8_t patience;            /* calm windows running before it fires faster: 4 */
+    uint8_t periods, calm_windows;
+    uint16_t accepted, rejected, repeated;
+    uint16_t rejection_permille; /* of the last whole window, UINT16_MAX if nothing was compared in it */
+} EerufAdaptation;
+
+/* Begins on the first rung, which the ring began with. The four settings may be changed then. */
+EerufStatus eeruf_adaptation_init(EerufAdaptation *adaptation, size_t adaptation_size,
+                                  const EerufSchedule *const *ladder, uint8_t rungs);
+/* Takes in an EERUF_EVENT_PERIOD and changes the ring's schedule where it should be; EERUF_EVENT if it has. */
+EerufStatus eeruf_adaptation_period(EerufAdaptation *adaptation, EerufRing *ring, const EerufEvent *event);
+/* The fastest motion, in mm/s, at which good readings still pass with this schedule, where sound travels at `c`. */
+uint32_t eeruf_schedule_max_speed_mm_s(const EerufSchedule *schedule, uint32_t t_delta_us, uint32_t c_mm_s);
+
+/* ---- Distances ---- */
+
+#define EERUF_SOUND_20C 343200u /* mm/s at 20 C (ISO 9613-1) */
+uint32_t eeruf_sound_mm_s(int16_t celsius_tenths);
+uint32_t eeruf_distance_mm(uint32_t t_echo_us, uint32_t c_mm_s); /* c t / 2, to the nearest; stops at UINT32_MAX */
+uint32_t eeruf_echo_time_us(uint32_t distance_mm, uint32_t c_mm_s);
+
+/* ---- Edges: from an interrupt, which only time-stamps, to the main loop ---- */
+
+typedef struct EerufEdge {
+    uint32_t at_us;
+    uint8_t sensor; /* 0 to 127 */
+    bool high;      /* whether the line rose */
+} EerufEdge;
+
+/* `places` is memory of yours for 2, 4, 8, .. or 128 edges. */
+typedef struct EerufEdges {
+    uint16_t ready;
+    EerufEdge *places;
+    uint8_t mask;
+    volatile uint8_t pushed, popped, lost; /* `lost`: how many found the queue full; stops at 255 */
+} EerufEdges;
+
+EerufStatus eeruf_edges_init(EerufEdges *edges, size_t edges_size, EerufEdge *places, size_t places_size);
+/* From one interrupt, or several that do not interrupt one another. */
+EerufStatus eeruf_edges_push(EerufEdges *edges, uint8_t sensor, bool high, uint32_t at_us);
+/* From the main loop. EERUF_EMPTY if none waits. */
+EerufStatus eeruf_edges_pop(EerufEdges *edges, EerufEdge *edge);
+
+/* ---- HC-SR04 and relatives: a trigger, and an echo line that is high for as long as the echo took ---- */
+
+enum {
+    EERUF_HEALTH_WELL = 0,        /* its line answers, or it has not been asked often enough */
+    EERUF_HEALTH_MISSING = 1,     /* nothing comes from its line when it is triggered */
+    EERUF_HEALTH_STUCK_HIGH = 2,  /* its line was high when it was to be triggered */
+    EERUF_HEALTH_CHATTERS = 3,    /* several pulses followed one trigger */
+    EERUF_HEALTH_LOSES_EDGES = 4, /* its line fell without having risen, or the other way round */
+    EERUF_HEALTH_PIN_ERROR = 5    /* one of its pins reported an error */
+};
+const char *eeruf_health_name(uint8_t health); /* "stuck high"; not linked unless called */
+
+/* What the modules need, in microseconds. */
+typedef struct EerufHcSr04Settings {
+    uint16_t version;          /* EERUF_VERSION */
+    uint16_t deaf_us;          /* edges sooner after the trigger are the trigger itself, seen through the cable */
+    uint16_t shortest_us;      /* shorter pulses are no echoes */
+    uint32_t longest_us;       /* pulses as long as this are the module's own time-out: no echo */
+    uint32_t min_retrigger_us; /* the data sheet advises 60 ms */
+    uint8_t missing_after;     /* firings in a row without a pulse, after which a module counts as missing */
+} EerufHcSr04Settings;
+#define EERUF_HC_SR04 {EERUF_VERSION, 100, 100, 36000, 60000, 3}
+
+/* One echo line: 10 bytes on an AVR. Not for the caller. */
+typedef struct EerufLine {
+    uint32_t triggered_us, rose_us;
+    uint8_t state, silent;
+} EerufLine;
+
+/* A ring of HC-SR04 modules. Not for the caller. */
+typedef struct EerufHcSr04 {
+    uint16_t ready;
+    EerufRing *ring;
+    EerufLine *lines;
+    EerufHcSr04Settings settings;
+} EerufHcSr04;
+
+/* Puts a ring on its lines. Its window should exceed the longest echo by a millisecond, because a line rises only about
+   half a millisecond after the trigger. Poll the ring; hand in edges of lines here, not echoes. */
+EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufLine *lines, size_t lines_size,
+                               EerufRing *ring, const EerufHcSr04Settings *settings);
+/* For each EERUF_EVENT_FIRE, with the `now_us` of the poll: whether the echo line is high. EERUF_OK: now raise the
+   trigger for 10 us. EERUF_DO_NOT_TRIGGER: leave it alone. With one pin for both, read it before it is an output. */
+EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, uint32_t now_us, bool line_is_high);
+/* A pin could not be read before the trigger (then nothing is triggered), or written at it. */
+EerufStatus eeruf_hc_sr04_cannot_read(EerufHcSr04 *modules, uint8_t sensor, uint32_t now_us);
+EerufStatus eeruf_hc_sr04_cannot_write(EerufHcSr04 *modules, uint8_t sensor);
+/* An edge of an echo line. Hand in all edges you have before you poll. */
+EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t at_us);
+/* All edges of a queue. */
+EerufStatus eeruf_hc_sr04_edges(EerufHcSr04 *modules, EerufEdges *edges);
+/* Whether the line of a sensor is worth looking at, for those who sample lines: it was triggered, and its pulse is not
+   over. `was_high`, if not null: the level it had last. */
+bool eeruf_hc_sr04_awaits(const EerufHcSr04 *modules, uint8_t sensor, bool *was_high);
+/* As eeruf_ring_fired, where the trigger was given later than the poll said. */
+EerufStatus eeruf_hc_sr04_fired(EerufHcSr04 *modules, uint8_t sensor, uint32_t at_us);
+/* As eeruf_ring_change_schedule. */
+EerufStatus eeruf_hc_sr04_change_schedule(EerufHcSr04 *modules, const EerufSchedule *schedule);
+/* How a module was at its last complete firing; EERUF_HEALTH_MISSING for one that is not there. */
+uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor);
+
+#if EERUF_HOPPING
+/* ---- Time hopping: a cycle of many phases, so that no sensor stays blind ---- */
+
+#define EERUF_HYPOTHESES 4
+
+/* How readings are weighed: begin with one of the three sets below. */
+typedef struct EerufTrackerSettings {
+    uint16_t t_delta_us; /* a reading supports a track within it; less than the step of the code */
+    uint16_t near_us;    /* one this near a confirmed track is accepted; at least t_delta */
+    uint16_t tentative_within_us; /* at most t_delta */
+    uint8_t votes;       /* 2 to 15 */
+    uint8_t score_limit; /* votes to 15 */
+    uint8_t contradiction, solo_contradiction; /* 1 to 15 */
+    uint8_t tentative_votes; /* 0 or 2 to 15 */
+} EerufTrackerSettings;
+
+/* How a hopping ring fires, listens and believes. */
+typedef struct EerufHoppingConfig {
+    uint16_t version;            /* EERUF_VERSION */
+    uint8_t sensors;             /* 1 to 64 */
+    uint8_t phases;              /* the cycle is the next prime that is at least this and above the number of sensors */
+    uint32_t step_us;            /* the code's: crosstalk moves by at least this; 1 to 65,535 */
+    uint32_t period_us;          /* at least window + (phases - 1) step */
+    const uint32_t *lag_us;      /* one for each sensor, in RAM; null: `neighbours` adjacent ones spread evenly */
+    uint32_t window_us, blanking_us;
+    uint32_t reach_us;           /* after how long no sound is heard any more */
+    uint32_t shift_interval_us;  /* what neighbours keep when a lag is drawn anew */
+    uint32_t seed;               /* of the draws */
+    EerufTrackerSettings tracker;
+    uint8_t solo_rate;           /* what of a solo period each period earns, in 1/256 */
+    uint8_t solo_after;          /* firings with nothing accepted */
+    uint8_t solo_spacing, shift_after, shift_spacing;
+    uint8_t neighbours;
+} EerufHoppingConfig;
+
+/* The settings of most robots, of those that must stop early, and of those that make maps. */
+#define EERUF_HOPPING_BALANCED(sensors, period_us, window_us)                                                          \
+    {EERUF_VERSION, sensors, 2, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
+     {150, 400, 60, 5, 6, 2, 6, 2}, 84, 5, 3, 5, 8, 4}
+#define EERUF_HOPPING_QUICK(sensors, period_us, window_us)                                                             \
+    {EERUF_VERSION, sensors, 2, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
+     {150, 400, 100, 4, 6, 2, 6, 2}, 100, 4, 2, 5, 8, 4}
+#define EERUF_HOPPING_MAPS(sensors, period_us, window_us)                                                              \
+    {EERUF_VERSION, sensors, 2, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
+     {150, 400, 60, 5, 7, 1, 6, 0}, 28, 8, 6, 5, 24, 4}
+
+/* One hypothesis about a sensor's echo. Not for the caller. */
+typedef struct EerufTrack {
+    uint32_t t_echo_us;
+    uint16_t phases;
+    uint8_t solo_votes, score, close, flags, age;
+} EerufTrack;
+
+/* One sensor of a hopping ring: 64 bytes on an AVR, beside its EerufSensor. Not for the caller. */
+typedef struct EerufHopper {
+    uint32_t lag_us, fired_us;
+    uint16_t late_us, age;
+    uint8_t phase, unserved, misfits, flags, order, unexplained;
+    EerufTrack tracks[EERUF_HYPOTHESES];
+} EerufHopper;
+
+/* A hopping ring. Not for the caller. */
+typedef struct EerufHoppingRing {
+    EerufRing ring; /* the first: pointers to one are pointers to the other */
+    EerufHopper *hoppers;
+    EerufHoppingConfig config;
+    uint32_t start_us, length_us, solo_at_us, dies_us, random;
+    uint16_t earned, tolerated, least_late[3], most_late[3];
+    uint8_t phase, cycle, planned, place, since_solo, since_shift, changed, candidate, readier;
+    uint8_t tally[EERUF_READING_KINDS];
+} EerufHoppingRing;
+
+/* Makes a hopping ring that begins at `now_us`. Both arrays have a place for each sensor of the config. Poll it with
+   eeruf_hopping_poll, and hand in echoes with the functions of its `ring`. It has no schedule to change and no pause. */
+EerufStatus eeruf_hopping_init(EerufHoppingRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
+                               EerufHopper *hoppers, size_t hoppers_size, const EerufHoppingConfig *config,
+                               uint32_t now_us);
+/* As eeruf_ring_poll_expecting; `change_us` may be null. Readings are also EERUF_READING_TENTATIVE. */
+EerufStatus eeruf_hopping_poll(EerufHoppingRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event);
+/* As eeruf_ring_enable; the tracks of a sensor that is enabled are forgotten. */
+EerufStatus eeruf_hopping_enable(EerufHoppingRing *ring, uint8_t sensor, bool enabled);
+/* The echo time that is confirmed, or EERUF_NO_ECHO if none is or nothing is in range. */
+uint32_t eeruf_hopping_confirmed_us(const EerufHoppingRing *ring, uint8_t sensor);
+/* The sensor that the present period belongs to alone, or 255. */
+uint8_t eeruf_hopping_solo(const EerufHoppingRing *ring);
+/* The lag of a sensor as it is now. */
+uint32_t eeruf_hopping_lag_us(const EerufHoppingRing *ring, uint8_t sensor);
+#endif
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

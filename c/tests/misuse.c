@@ -1,0 +1,346 @@
+/* Whatever a caller does wrong has a status: null, memory that is too small, a sensor that is not there, use before
+   initialisation, another version. Exit code 0 if each call gives the status that it should. */
+#include "eeruf.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static int wrong;
+
+#define EXPECT(call, status)                                                                                           \
+    do {                                                                                                               \
+        const long got = (long)(call);                                                                                 \
+        if (got != (long)(status)) {                                                                                   \
+            printf("line %d: %s: %ld, expected %ld\n", __LINE__, #call, got, (long)(status));                          \
+            wrong++;                                                                                                   \
+        }                                                                                                              \
+    } while (0)
+
+#define SENSORS 4u
+static const uint32_t TIMES[2 * SENSORS] = {0, 15000, 30000, 45000, 0, 17000, 34000, 51000};
+static uint8_t order[2 * SENSORS];
+static uint32_t gaps[2 * (SENSORS + 1)];
+static EerufSchedule schedule, unverified, empty;
+static EerufRing ring, not_ready;
+static EerufSensor sensors[SENSORS];
+static EerufEvent event;
+
+static EerufStatus make(size_t order_size, size_t gap_size, uint32_t period_us, uint8_t count, uint8_t phases) {
+    return eeruf_schedule_make(&schedule, order, order_size, gaps, gap_size, period_us, count, phases, TIMES);
+}
+
+static void schedules(void) {
+    EerufRequirements needs = {999, 9000, 36000, EERUF_LAYOUT_LINE, 4, 0};
+    EerufSchedule broken;
+    EXPECT(eeruf_schedule_make(NULL, order, sizeof order, gaps, sizeof gaps, 60000, 4, 2, TIMES), EERUF_ERR_NULL);
+    EXPECT(eeruf_schedule_make(&schedule, NULL, 0, gaps, sizeof gaps, 60000, 4, 2, TIMES), EERUF_ERR_NULL);
+    EXPECT(eeruf_schedule_make(&schedule, order, sizeof order, NULL, 0, 60000, 4, 2, TIMES), EERUF_ERR_NULL);
+    EXPECT(eeruf_schedule_make(&schedule, order, sizeof order, gaps, sizeof gaps, 60000, 4, 2, NULL), EERUF_ERR_NULL);
+    EXPECT(make(sizeof order, sizeof gaps, 60000, 0, 2), EERUF_ERR_SENSORS);
+    EXPECT(make(sizeof order, sizeof gaps, 60000, 65, 2), EERUF_ERR_SENSORS);
+    EXPECT(make(sizeof order, sizeof gaps, 60000, 4, 0), EERUF_ERR_PHASES);
+    EXPECT(make(sizeof order, sizeof gaps, 60000, 4, 9), EERUF_ERR_PHASES);
+    EXPECT(make(sizeof order, sizeof gaps, 0, 4, 2), EERUF_ERR_PERIOD);
+    EXPECT(make(sizeof order, sizeof gaps, EERUF_MAX_PERIOD_US + 1, 4, 2), EERUF_ERR_PERIOD);
+    EXPECT(make(sizeof order - 1, sizeof gaps, 60000, 4, 2), EERUF_ERR_MEMORY);
+    EXPECT(make(sizeof order, sizeof gaps - 1, 60000, 4, 2), EERUF_ERR_MEMORY);
+    EXPECT(make(sizeof order, sizeof gaps, 51000, 4, 2), EERUF_ERR_FIRE);
+    EXPECT(eeruf_schedule_verify(&empty, &needs), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_schedule_check(&empty), EERUF_ERR_NOT_READY);
+    EXPECT(make(sizeof order, sizeof gaps, 60000, 4, 2), EERUF_OK);
+    EXPECT(eeruf_schedule_check(NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_schedule_check(&schedule), EERUF_ERR_UNVERIFIED);
+    EXPECT(eeruf_schedule_verify(NULL, &needs), EERUF_ERR_NULL);
+    EXPECT(eeruf_schedule_verify(&schedule, NULL), EERUF_ERR_NULL);
+    unverified = schedule;
+    needs.t_delta_us = 1000;
+    EXPECT(eeruf_schedule_verify(&schedule, &needs), EERUF_ERR_CROSSTALK);
+    needs.t_delta_us = 999;
+    needs.stale_echo = 1;
+    EXPECT(eeruf_schedule_verify(&schedule, &needs), EERUF_ERR_STALE_ECHO);
+    needs.stale_echo = 0;
+    needs.min_interval_us = 9001;
+    EXPECT(eeruf_schedule_verify(&schedule, &needs), EERUF_ERR_INTERVAL);
+    needs.min_interval_us = 9000;
+    needs.window_us = 54001;
+    EXPECT(eeruf_schedule_verify(&schedule, &needs), EERUF_ERR_WINDOW);
+    needs.window_us = 36000;
+    needs.layout = EERUF_LAYOUT_OTHER;
+    EXPECT(eeruf_schedule_verify(&schedule, &needs), EERUF_ERR_RANGE);
+    needs.layout = EERUF_LAYOUT_LINE;
+    EXPECT(eeruf_schedule_verify(&schedule, &needs), EERUF_OK);
+    EXPECT(eeruf_schedule_check(&schedule), EERUF_OK);
+    /* Each number of a table is checked. */
+    broken = schedule;
+    broken.version++;
+    EXPECT(eeruf_schedule_check(&broken), EERUF_ERR_VERSION);
+    EXPECT(eeruf_schedule_verify(&broken, &needs), EERUF_ERR_VERSION);
+    broken = schedule;
+    broken.sensors = 65;
+    EXPECT(eeruf_schedule_check(&broken), EERUF_ERR_SENSORS);
+    broken = schedule;
+    broken.phases = 0;
+    EXPECT(eeruf_schedule_check(&broken), EERUF_ERR_PHASES);
+    broken = schedule;
+    broken.period_us = 0;
+    EXPECT(eeruf_schedule_check(&broken), EERUF_ERR_PERIOD);
+    broken.period_us = 61000;
+    EXPECT(eeruf_schedule_check(&broken), EERUF_ERR_FIRE);
+    broken = schedule;
+    broken.min_refire_us++;
+    EXPECT(eeruf_schedule_check(&broken), EERUF_ERR_TABLE);
+    broken = schedule;
+    broken.separation_us++;
+    EXPECT(eeruf_schedule_check(&broken), EERUF_ERR_TABLE);
+    broken = schedule;
+    broken.t_delta_us = 1000;
+    EXPECT(eeruf_schedule_check(&broken), EERUF_ERR_CROSSTALK);
+    order[1] = 0; /* twice */
+    EXPECT(eeruf_schedule_check(&schedule), EERUF_ERR_TABLE);
+    order[1] = 4;
+    EXPECT(eeruf_schedule_check(&schedule), EERUF_ERR_TABLE);
+    order[1] = 1;
+    gaps[1] += 60000;
+    EXPECT(eeruf_schedule_check(&schedule), EERUF_ERR_TABLE);
+    gaps[1] -= 60000;
+    EXPECT(eeruf_schedule_check(&schedule), EERUF_OK);
+    EXPECT(eeruf_schedule_max_speed_mm_s(NULL, 999, EERUF_SOUND_20C), 0);
+    EXPECT(eeruf_schedule_max_speed_mm_s(&empty, 999, EERUF_SOUND_20C), 0);
+}
+
+static EerufStatus init(size_t ring_size, size_t sensors_size, const EerufSchedule *by, const EerufConfig *config) {
+    return eeruf_ring_init(&ring, ring_size, sensors, sensors_size, by, config, 0);
+}
+
+static void before_init(EerufRing *none, int status) {
+    EXPECT(eeruf_ring_poll(none, 0, &event), status);
+    EXPECT(eeruf_ring_poll_expecting(none, 0, NULL, &event), status);
+    EXPECT(eeruf_ring_deadline(none), 0);
+    EXPECT(eeruf_ring_echo(none, 0, 0), status);
+    EXPECT(eeruf_ring_fired(none, 0, 0), status);
+    EXPECT(eeruf_ring_stuck(none, 0), status);
+    EXPECT(eeruf_ring_enable(none, 0, true), status);
+    EXPECT(eeruf_ring_is_enabled(none, 0), false);
+    EXPECT(eeruf_ring_pause(none, true), status);
+    EXPECT(eeruf_ring_restart(none, 0), status);
+    EXPECT(eeruf_ring_change_schedule(none, &schedule), status);
+    EXPECT(eeruf_ring_change_to_unverified(none, &schedule), status);
+    EXPECT(eeruf_ring_set_t_delta(none, 1), status);
+    EXPECT(eeruf_ring_set_window(none, 1), status);
+    EXPECT(eeruf_ring_set_blanking(none, 1), status);
+}
+
+static void rings(void) {
+    EerufConfig config = EERUF_CONFIG;
+    before_init(NULL, EERUF_ERR_NULL);
+    before_init(&not_ready, EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_ring_init(NULL, sizeof ring, sensors, sizeof sensors, &schedule, &config, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_ring_init(&ring, sizeof ring, NULL, sizeof sensors, &schedule, &config, 0), EERUF_ERR_NULL);
+    EXPECT(init(sizeof ring, sizeof sensors, NULL, &config), EERUF_ERR_NULL);
+    EXPECT(init(sizeof ring, sizeof sensors, &schedule, NULL), EERUF_ERR_NULL);
+    EXPECT(init(sizeof ring - 1, sizeof sensors, &schedule, &config), EERUF_ERR_MEMORY);
+    EXPECT(init(sizeof ring + 1, sizeof sensors, &schedule, &config), EERUF_ERR_MEMORY);
+    EXPECT(init(sizeof ring, sizeof sensors - 1, &schedule, &config), EERUF_ERR_MEMORY);
+    EXPECT(init(sizeof ring, sizeof sensors, &empty, &config), EERUF_ERR_NOT_READY);
+    EXPECT(init(sizeof ring, sizeof sensors, &unverified, &config), EERUF_ERR_UNVERIFIED);
+    EXPECT(eeruf_ring_init_unverified(&ring, sizeof ring, sensors, sizeof sensors, &unverified, &config, 0),
+           EERUF_ERR_UNVERIFIED); /* it does not say t_delta and window either */
+    config.version++;
+    EXPECT(init(sizeof ring, sizeof sensors, &schedule, &config), EERUF_ERR_VERSION);
+    config.version--;
+    config.consecutive = 9;
+    EXPECT(init(sizeof ring, sizeof sensors, &schedule, &config), EERUF_ERR_CONSECUTIVE);
+    config.consecutive = 2;
+    config.t_delta_us = 1000;
+    EXPECT(init(sizeof ring, sizeof sensors, &schedule, &config), EERUF_ERR_T_DELTA);
+    config.t_delta_us = 0;
+    config.window_us = 36001;
+    EXPECT(init(sizeof ring, sizeof sensors, &schedule, &config), EERUF_ERR_VERIFIED_WINDOW);
+    config.window_us = 0;
+    config.blanking_us = 36000;
+    EXPECT(init(sizeof ring, sizeof sensors, &schedule, &config), EERUF_ERR_BLANKING);
+    config.blanking_us = 0;
+    EXPECT(eeruf_ring_poll(&ring, 0, &event), EERUF_ERR_NOT_READY); /* none of these has made a ring */
+    EXPECT(init(sizeof ring, sizeof sensors, &schedule, &config), EERUF_OK);
+    EXPECT(eeruf_ring_poll(&ring, 0, NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_ring_echo(&ring, SENSORS, 0), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_ring_fired(&ring, SENSORS, 0), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_ring_stuck(&ring, SENSORS), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_ring_enable(&ring, SENSORS, true), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_ring_change_schedule(&ring, NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_ring_change_schedule(&ring, &empty), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_ring_change_schedule(&ring, &unverified), EERUF_ERR_UNVERIFIED);
+    EXPECT(eeruf_ring_set_t_delta(&ring, 1000), EERUF_ERR_T_DELTA);
+    EXPECT(eeruf_ring_set_window(&ring, 900), EERUF_ERR_COARSE_T_DELTA);
+    EXPECT(eeruf_ring_set_blanking(&ring, 36000), EERUF_ERR_BLANKING);
+}
+
+static void filters_and_edges(void) {
+    EerufFilter filter = EERUF_FILTER;
+    EerufReading reading;
+    EerufEdge places[8], edge;
+    EerufEdges edges;
+    uint8_t pushed;
+    memset(&edges, 0, sizeof edges);
+    EXPECT(eeruf_filter_push(NULL, 1, 2, 1, 0, &reading), EERUF_ERR_NULL);
+    EXPECT(eeruf_filter_push(&filter, 1, 2, 1, 0, NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_filter_push(&filter, 1, 1, 1, 0, &reading), EERUF_ERR_CONSECUTIVE);
+    EXPECT(eeruf_filter_push(&filter, 65536, 2, 1, 0, &reading), EERUF_ERR_COARSE_T_DELTA);
+    EXPECT(eeruf_filter_push(&filter, 1, 2, 0x80000000u, 0, &reading), EERUF_ERR_RANGE);
+    EXPECT(eeruf_filter_forget(NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_edges_init(NULL, sizeof edges, places, sizeof places), EERUF_ERR_NULL);
+    EXPECT(eeruf_edges_init(&edges, sizeof edges, NULL, sizeof places), EERUF_ERR_NULL);
+    EXPECT(eeruf_edges_init(&edges, sizeof edges - 1, places, sizeof places), EERUF_ERR_MEMORY);
+    EXPECT(eeruf_edges_init(&edges, sizeof edges, places, sizeof places[0]), EERUF_ERR_MEMORY);
+    EXPECT(eeruf_edges_init(&edges, sizeof edges, places, 6 * sizeof places[0]), EERUF_ERR_RANGE);
+    EXPECT(eeruf_edges_push(NULL, 0, true, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_edges_push(&edges, 0, true, 0), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_edges_pop(&edges, &edge), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_edges_init(&edges, sizeof edges, places, sizeof places), EERUF_OK);
+    EXPECT(eeruf_edges_pop(&edges, NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_edges_pop(&edges, &edge), EERUF_EMPTY);
+    EXPECT(eeruf_edges_push(&edges, 128, true, 0), EERUF_ERR_SENSOR);
+    for (pushed = 0; pushed < 8; pushed++) EXPECT(eeruf_edges_push(&edges, pushed, true, pushed), EERUF_OK);
+    EXPECT(eeruf_edges_push(&edges, 8, true, 8), EERUF_ERR_MEMORY);
+    EXPECT(edges.lost, 1);
+}
+
+static void modules(void) {
+    EerufHcSr04Settings settings = EERUF_HC_SR04;
+    EerufHcSr04 four, none;
+    EerufLine lines[SENSORS];
+    EerufEdges edges;
+    memset(&none, 0, sizeof none);
+    memset(&edges, 0, sizeof edges);
+    EXPECT(eeruf_hc_sr04_init(NULL, sizeof four, lines, sizeof lines, &ring, &settings), EERUF_ERR_NULL);
+    EXPECT(eeruf_hc_sr04_init(&four, sizeof four, NULL, sizeof lines, &ring, &settings), EERUF_ERR_NULL);
+    EXPECT(eeruf_hc_sr04_init(&four, sizeof four, lines, sizeof lines, NULL, &settings), EERUF_ERR_NULL);
+    EXPECT(eeruf_hc_sr04_init(&four, sizeof four, lines, sizeof lines, &ring, NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_hc_sr04_init(&four, sizeof four, lines, sizeof lines, &not_ready, &settings), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hc_sr04_init(&four, sizeof four - 1, lines, sizeof lines, &ring, &settings), EERUF_ERR_MEMORY);
+    EXPECT(eeruf_hc_sr04_init(&four, sizeof four, lines, sizeof lines - 1, &ring, &settings), EERUF_ERR_MEMORY);
+    EXPECT(eeruf_hc_sr04_init(&four, sizeof four, lines, sizeof lines, &ring, &settings), EERUF_ERR_RETRIGGER);
+    settings.min_retrigger_us = 54000;
+    settings.version++;
+    EXPECT(eeruf_hc_sr04_init(&four, sizeof four, lines, sizeof lines, &ring, &settings), EERUF_ERR_VERSION);
+    settings.version--;
+    EXPECT(eeruf_hc_sr04_init(&four, sizeof four, lines, sizeof lines, &ring, &settings), EERUF_OK);
+    EXPECT(eeruf_hc_sr04_fire(NULL, 0, 0, false), EERUF_ERR_NULL);
+    EXPECT(eeruf_hc_sr04_fire(&none, 0, 0, false), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hc_sr04_fire(&four, SENSORS, 0, false), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_hc_sr04_fire(&four, 0, 0, true), EERUF_DO_NOT_TRIGGER);
+    EXPECT(eeruf_hc_sr04_health(&four, 0), EERUF_HEALTH_STUCK_HIGH);
+    EXPECT(eeruf_hc_sr04_cannot_read(&none, 0, 0), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hc_sr04_cannot_write(&four, SENSORS), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_hc_sr04_edge(NULL, 0, true, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_hc_sr04_edge(&none, 0, true, 0), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hc_sr04_edge(&four, SENSORS, true, 0), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_hc_sr04_edges(NULL, &edges), EERUF_ERR_NULL);
+    EXPECT(eeruf_hc_sr04_edges(&none, &edges), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hc_sr04_edges(&four, NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_hc_sr04_edges(&four, &edges), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hc_sr04_awaits(NULL, 0, NULL), false);
+    EXPECT(eeruf_hc_sr04_awaits(&four, SENSORS, NULL), false);
+    EXPECT(eeruf_hc_sr04_fired(&none, 0, 0), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hc_sr04_change_schedule(&none, &schedule), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hc_sr04_change_schedule(&four, &empty), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hc_sr04_health(NULL, 0), EERUF_HEALTH_MISSING);
+    EXPECT(eeruf_hc_sr04_health(&four, SENSORS), EERUF_HEALTH_MISSING);
+}
+
+static void adaptations(void) {
+    const EerufSchedule *ladder[2];
+    EerufAdaptation adaptation;
+    memset(&adaptation, 0, sizeof adaptation);
+    ladder[0] = ladder[1] = &schedule;
+    event.kind = EERUF_EVENT_FIRE;
+    EXPECT(eeruf_adaptation_init(NULL, sizeof adaptation, ladder, 1), EERUF_ERR_NULL);
+    EXPECT(eeruf_adaptation_init(&adaptation, sizeof adaptation, NULL, 1), EERUF_ERR_NULL);
+    EXPECT(eeruf_adaptation_init(&adaptation, sizeof adaptation - 1, ladder, 1), EERUF_ERR_MEMORY);
+    EXPECT(eeruf_adaptation_init(&adaptation, sizeof adaptation, ladder, 0), EERUF_ERR_LADDER);
+    EXPECT(eeruf_adaptation_init(&adaptation, sizeof adaptation, ladder, 2), EERUF_ERR_LADDER);
+    EXPECT(eeruf_adaptation_period(&adaptation, &ring, &event), EERUF_ERR_NOT_READY);
+    ladder[1] = &unverified;
+    EXPECT(eeruf_adaptation_init(&adaptation, sizeof adaptation, ladder, 2), EERUF_ERR_UNVERIFIED);
+    ladder[1] = NULL;
+    EXPECT(eeruf_adaptation_init(&adaptation, sizeof adaptation, ladder, 2), EERUF_ERR_NULL);
+    EXPECT(eeruf_adaptation_init(&adaptation, sizeof adaptation, ladder, 1), EERUF_OK);
+    EXPECT(eeruf_adaptation_period(NULL, &ring, &event), EERUF_ERR_NULL);
+    EXPECT(eeruf_adaptation_period(&adaptation, NULL, &event), EERUF_ERR_NULL);
+    EXPECT(eeruf_adaptation_period(&adaptation, &ring, NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_adaptation_period(&adaptation, &not_ready, &event), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_adaptation_period(&adaptation, &ring, &event), EERUF_ERR_RANGE);
+}
+
+#if EERUF_HOPPING
+static EerufHoppingRing hopping;
+static EerufHopper hoppers[SENSORS];
+
+static EerufStatus hop(size_t ring_size, size_t sensors_size, size_t hoppers_size, const EerufHoppingConfig *config) {
+    return eeruf_hopping_init(&hopping, ring_size, sensors, sensors_size, hoppers, hoppers_size, config, 0);
+}
+
+static void hopping_rings(void) {
+    const EerufHoppingConfig fine = EERUF_HOPPING_BALANCED(SENSORS, 60000, 36000);
+    const uint32_t late[SENSORS] = {0, 1, 2, 59040};
+    const size_t r = sizeof hopping, s = sizeof sensors, h = sizeof hoppers;
+    EerufHoppingConfig config = fine;
+    EXPECT(eeruf_hopping_poll(NULL, 0, NULL, &event), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_poll(&hopping, 0, NULL, &event), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hopping_enable(NULL, 0, true), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_enable(&hopping, 0, true), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hopping_confirmed_us(&hopping, 0), EERUF_NO_ECHO);
+    EXPECT(eeruf_hopping_solo(&hopping), 255);
+    EXPECT(eeruf_hopping_lag_us(&hopping, 0), 0);
+    EXPECT(eeruf_hopping_init(NULL, r, sensors, s, hoppers, h, &config, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_init(&hopping, r, NULL, s, hoppers, h, &config, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_init(&hopping, r, sensors, s, NULL, h, &config, 0), EERUF_ERR_NULL);
+    EXPECT(hop(r, s, h, NULL), EERUF_ERR_NULL);
+    EXPECT(hop(r - 1, s, h, &config), EERUF_ERR_MEMORY);
+    EXPECT(hop(r, s - 1, h, &config), EERUF_ERR_MEMORY);
+    EXPECT(hop(r, s, h - 1, &config), EERUF_ERR_MEMORY);
+#define WITH(field, value, status)                                                                                     \
+    config = fine;                                                                                                     \
+    config.field = value;                                                                                              \
+    EXPECT(hop(r, s, h, &config), status)
+    WITH(version, EERUF_VERSION + 1, EERUF_ERR_VERSION);
+    WITH(sensors, 0, EERUF_ERR_SENSORS);
+    WITH(sensors, 65, EERUF_ERR_SENSORS);
+    WITH(phases, 1, EERUF_ERR_PHASES);
+    WITH(phases, 68, EERUF_ERR_PHASES);
+    WITH(step_us, 0, EERUF_ERR_STEP);
+    WITH(step_us, 150, EERUF_ERR_T_DELTA);
+    WITH(period_us, 36959, EERUF_ERR_PERIOD);
+    WITH(lag_us, late, EERUF_ERR_LAG);
+    WITH(tracker.votes, 1, EERUF_ERR_TRACKER);
+    WITH(tracker.near_us, 149, EERUF_ERR_TRACKER);
+    WITH(blanking_us, 36000, EERUF_ERR_BLANKING);
+    EXPECT(hop(r, s, h, &fine), EERUF_OK);
+    EXPECT(eeruf_hopping_poll(&hopping, 0, NULL, NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_enable(&hopping, SENSORS, true), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_hopping_confirmed_us(&hopping, SENSORS), EERUF_NO_ECHO);
+    EXPECT(eeruf_ring_pause(&hopping.ring, true), EERUF_ERR_HOPPING);
+    EXPECT(eeruf_ring_set_t_delta(&hopping.ring, 1), EERUF_ERR_HOPPING);
+    EXPECT(eeruf_ring_set_window(&hopping.ring, 1), EERUF_ERR_HOPPING);
+    EXPECT(eeruf_ring_set_blanking(&hopping.ring, 1), EERUF_ERR_HOPPING);
+    EXPECT(eeruf_ring_change_schedule(&hopping.ring, &schedule), EERUF_ERR_HOPPING);
+}
+#endif
+
+int main(void) {
+    EXPECT(eeruf_version(), EERUF_VERSION);
+    EXPECT(strcmp(eeruf_reading_name(EERUF_READING_CLEAR), "clear"), 0);
+    EXPECT(strcmp(eeruf_reading_name(200), "?"), 0);
+    EXPECT(strcmp(eeruf_health_name(EERUF_HEALTH_LOSES_EDGES), "loses edges"), 0);
+    EXPECT(strcmp(eeruf_health_name(200), "?"), 0);
+    schedules();
+    rings();
+    filters_and_edges();
+    modules();
+    adaptations();
+#if EERUF_HOPPING
+    hopping_rings();
+#endif
+    printf("%d wrong\n", wrong);
+    return wrong != 0;
+}

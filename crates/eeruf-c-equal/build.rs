@@ -1,0 +1,16 @@
+//! Compiles the C library and the flat functions through which it is called.
+
+fn main() {
+    let (c, shim) = ("../../c", "src/shim.c");
+    for file in [&format!("{c}/eeruf.c"), &format!("{c}/eeruf.h"), shim] {
+        println!("cargo::rerun-if-changed={file}");
+    }
+    cc::Build::new()
+        .std("c99")
+        .include(c)
+        .files([&format!("{c}/eeruf.c"), shim])
+        .flag("-pedantic")
+        .flag("-Wconversion")
+        .warnings_into_errors(true)
+        .compile("eeruf");
+}

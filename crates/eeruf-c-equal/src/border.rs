@@ -1,0 +1,64 @@
+//! What `shim.c` declares.
+
+use std::ffi::c_void;
+
+unsafe extern "C" {
+    pub(crate) fn shim_new() -> *mut c_void;
+    pub(crate) fn shim_free(handle: *mut c_void);
+    pub(crate) fn shim_schedule(
+        handle: *mut c_void,
+        period_us: u32,
+        sensors: u8,
+        phases: u8,
+        t_fire_us: *const u32,
+    ) -> i32;
+    pub(crate) fn shim_verify(
+        handle: *mut c_void,
+        number: u32,
+        t_delta_us: u32,
+        min_interval_us: u32,
+        window_us: u32,
+        layout: u8,
+        neighbours: u8,
+        stale_echo: u8,
+        out: *mut u32,
+    ) -> i32;
+    pub(crate) fn shim_ring(
+        handle: *mut c_void,
+        schedule: u32,
+        t_delta_us: u32,
+        window_us: u32,
+        blanking_us: u32,
+        consecutive: u8,
+        now_us: u32,
+    ) -> i32;
+    pub(crate) fn shim_poll(handle: *mut c_void, now_us: u32, change_us: *const i32, out: *mut u32) -> i32;
+    pub(crate) fn shim_deadline(handle: *const c_void) -> u32;
+    pub(crate) fn shim_do(handle: *mut c_void, what: u32, sensor: u8, value: u32) -> i32;
+    pub(crate) fn shim_modules(handle: *mut c_void, min_retrigger_us: u32, shortest_us: u16) -> i32;
+    pub(crate) fn shim_adaptation(handle: *mut c_void, window: u8, patience: u8, noisy: u16, calm: u16) -> i32;
+    pub(crate) fn shim_rung(handle: *const c_void, rung: *mut u32, permille: *mut u32);
+    pub(crate) fn shim_hopping(
+        handle: *mut c_void,
+        sensors: u8,
+        phases: u8,
+        numbers: *const u32,
+        has_lags: u8,
+        now_us: u32,
+    ) -> i32;
+    pub(crate) fn shim_hopping_of(handle: *const c_void, sensor: u8, lag: u8) -> u32;
+    pub(crate) fn shim_filter(
+        held: *mut u32,
+        t_delta_us: u32,
+        consecutive: u8,
+        t_echo_us: u32,
+        change_us: i32,
+        out: *mut u32,
+    ) -> i32;
+    pub(crate) fn shim_edges_new();
+    pub(crate) fn shim_edges_push(sensor: u8, high: u8, at_us: u32) -> i32;
+    pub(crate) fn shim_edges_pop(out: *mut u32) -> i32;
+    pub(crate) fn eeruf_sound_mm_s(celsius_tenths: i16) -> u32;
+    pub(crate) fn eeruf_distance_mm(t_echo_us: u32, c_mm_s: u32) -> u32;
+    pub(crate) fn eeruf_echo_time_us(distance_mm: u32, c_mm_s: u32) -> u32;
+}

@@ -1,0 +1,61 @@
+//! Core's events and errors as the numbers that C gives.
+
+use eeruf_core::{Micros, PeriodStats, Phase, Reading, ReadingKind, RingError, RingEvent, Tally, ViolationKind};
+
+use crate::{Flat, NO_ECHO};
+
+/// An event as numbers.
+pub fn flat(event: &RingEvent) -> Flat {
+    let mut flat = [0; 17];
+    match *event {
+        RingEvent::Fire { sensor, phase: Phase(phase), due } => {
+            flat[1..4].copy_from_slice(&[sensor.into(), phase.into(), due.as_micros()]);
+        }
+        RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age }) => {
+            let numbers = [echo(t_echo), echo(previous), age.unwrap_or(u16::MAX).into()];
+            flat[..5].copy_from_slice(&[1, sensor.into(), phase.0.into(), period, kind as u32]);
+            flat[5..8].copy_from_slice(&numbers);
+        }
+        RingEvent::PeriodEnded(PeriodStats { period, phase, tally, max_late, sum_late, max_shift }) => {
+            flat[..4].copy_from_slice(&[2, 0, phase.0.into(), period]);
+            flat[4..7].copy_from_slice(&[max_late, sum_late, max_shift].map(Micros::as_micros));
+            flat[7..].copy_from_slice(&counts(&tally));
+        }
+    }
+    flat
+}
+
+/// How many readings of each kind.
+fn counts(tally: &Tally<u8>) -> [u32; 10] {
+    ReadingKind::ALL.map(|kind| tally.of(kind))
+}
+
+/// An echo time as a number.
+pub fn echo(t_echo: Option<Micros>) -> u32 {
+    t_echo.map_or(NO_ECHO, Micros::as_micros)
+}
+
+/// The status that C has for an error.
+pub fn status_of(error: &RingError) -> i32 {
+    match error {
+        RingError::Unverified => -14,
+        RingError::TDelta { .. } => -15,
+        RingError::VerifiedWindow { .. } => -16,
+        RingError::Window { .. } => -17,
+        RingError::Blanking { .. } => -18,
+        RingError::CoarseTDelta { .. } => -19,
+        RingError::Filter(_) => -20,
+        _ => unreachable!("{error}"),
+    }
+}
+
+/// The status that C has for the first violation.
+pub const fn status_of_violation(kind: ViolationKind) -> i32 {
+    match kind {
+        ViolationKind::CrosstalkA | ViolationKind::CrosstalkB => -11,
+        ViolationKind::StaleEcho => -12,
+        ViolationKind::Interval => -13,
+        ViolationKind::Window => -17,
+        _ => 0,
+    }
+}

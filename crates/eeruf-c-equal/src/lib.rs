@@ -1,0 +1,252 @@
+//! The C library in `c/`, behind safe functions of numbers, for the tests that compare it with the Rust crates.
+//!
+//! Nothing here is for others: firmware in Rust uses `eeruf-core`, firmware in C uses `c/eeruf.h`.
+
+mod border;
+pub mod core_side;
+mod random;
+
+use std::ffi::c_void;
+
+pub use random::Random;
+
+/// An event as numbers: kind, sensor, phase, then what the kind has.
+pub type Flat = [u32; 17];
+/// The number that stands for no echo, on both sides.
+pub const NO_ECHO: u32 = u32::MAX;
+/// The status of a poll that had an event.
+pub const EVENT: i32 = 1;
+
+/// What a ring can be asked while it runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "named as the functions of eeruf.h")]
+pub enum Do {
+    Echo,
+    Fired,
+    Stuck,
+    Enable,
+    Pause,
+    Restart,
+    ChangeSchedule,
+    SetTDelta,
+    SetWindow,
+    SetBlanking,
+    Edge,
+    FireModule,
+    CannotRead,
+    CannotWrite,
+    ModuleFired,
+    ChangeModules,
+    Health,
+    IsEnabled,
+    Adapt,
+    Solo,
+}
+
+/// A schedule's numbers after it was verified, or not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "named as the fields of EerufSchedule")]
+pub struct Numbers {
+    pub min_refire_us: u32,
+    pub window_us: u32,
+    pub separation_us: u32,
+    pub max_speed_mm_s: u32,
+}
+
+/// Requirements as numbers.
+#[derive(Clone, Copy, Debug)]
+#[expect(missing_docs, reason = "named as the fields of EerufRequirements")]
+pub struct Needs {
+    pub t_delta_us: u32,
+    pub min_interval_us: u32,
+    pub window_us: u32,
+    pub layout: u8,
+    pub neighbours: u8,
+    pub stale_echo: bool,
+}
+
+/// A ring in C, of either kind, with its schedules and modules, in memory of exactly the size that it needs.
+#[derive(Debug)]
+pub struct C(*mut c_void);
+
+impl Default for C {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Drop for C {
+    fn drop(&mut self) {
+        // SAFETY: made by `shim_new`, and freed once.
+        unsafe { border::shim_free(self.0) }
+    }
+}
+
+impl C {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        // SAFETY: takes nothing.
+        Self(unsafe { border::shim_new() })
+    }
+
+    /// `eeruf_schedule_make` of times by phase and sensor: its status. Schedules are numbered as they are made.
+    pub fn schedule(&mut self, period_us: u32, sensors: u8, phases: u8, t_fire_us: &[u32]) -> i32 {
+        assert_eq!(t_fire_us.len(), usize::from(sensors) * usize::from(phases));
+        // SAFETY: as many times as there are sensors and phases.
+        unsafe { border::shim_schedule(self.0, period_us, sensors, phases, t_fire_us.as_ptr()) }
+    }
+
+    /// `eeruf_schedule_verify` of the schedule with this number, and `eeruf_schedule_check` if that is fine.
+    pub fn verify(&mut self, schedule: u32, needs: Needs) -> (i32, Numbers) {
+        let Needs { t_delta_us, min_interval_us, window_us, layout, neighbours, stale_echo } = needs;
+        let mut out = [0; 4];
+        let stale_echo = stale_echo.into();
+        // SAFETY: a schedule that was made, and room for four numbers.
+        let status = unsafe {
+            border::shim_verify(
+                self.0,
+                schedule,
+                t_delta_us,
+                min_interval_us,
+                window_us,
+                layout,
+                neighbours,
+                stale_echo,
+                out.as_mut_ptr(),
+            )
+        };
+        let [min_refire_us, window_us, separation_us, max_speed_mm_s] = out;
+        (status, Numbers { min_refire_us, window_us, separation_us, max_speed_mm_s })
+    }
+
+    /// `eeruf_ring_init_unverified` with `t_delta_us`, `window_us`, `blanking_us`.
+    pub fn ring(&mut self, schedule: u32, listening: [u32; 3], consecutive: u8, now_us: u32) -> i32 {
+        let [t_delta_us, window_us, blanking_us] = listening;
+        // SAFETY: a schedule that was made.
+        unsafe { border::shim_ring(self.0, schedule, t_delta_us, window_us, blanking_us, consecutive, now_us) }
+    }
+
+    /// The next event, or the status of a poll without one.
+    pub fn poll(&mut self, now_us: u32, change_us: Option<&[i32]>) -> Result<Flat, i32> {
+        let mut flat = [0; 17];
+        let change_us = change_us.map_or(std::ptr::null(), <[i32]>::as_ptr);
+        // SAFETY: a number for each sensor, and room for an event.
+        let status = unsafe { border::shim_poll(self.0, now_us, change_us, flat.as_mut_ptr()) };
+        if status == EVENT { Ok(flat) } else { Err(status) }
+    }
+
+    /// `eeruf_ring_deadline`.
+    pub fn deadline(&self) -> u32 {
+        // SAFETY: a ring that was made.
+        unsafe { border::shim_deadline(self.0) }
+    }
+
+    /// One of the functions that take a sensor and a number.
+    pub fn ask(&mut self, what: Do, sensor: u8, value: u32) -> i32 {
+        // SAFETY: a ring, or modules, that were made.
+        unsafe { border::shim_do(self.0, what as u32, sensor, value) }
+    }
+
+    /// `eeruf_hc_sr04_init`.
+    pub fn modules(&mut self, min_retrigger_us: u32, shortest_us: u16) -> i32 {
+        // SAFETY: a ring that was made.
+        unsafe { border::shim_modules(self.0, min_retrigger_us, shortest_us) }
+    }
+
+    /// `eeruf_adaptation_init` with all schedules made, and its settings.
+    pub fn adaptation(&mut self, window: u8, patience: u8, noisy: u16, calm: u16) -> i32 {
+        // SAFETY: schedules that were made.
+        unsafe { border::shim_adaptation(self.0, window, patience, noisy, calm) }
+    }
+
+    /// The adaptation's rung, and the rejection rate, 65,535 without one.
+    pub fn rung(&self) -> (u32, u32) {
+        let (mut rung, mut permille) = (0, 0);
+        // SAFETY: room for both.
+        unsafe { border::shim_rung(self.0, &raw mut rung, &raw mut permille) };
+        (rung, permille)
+    }
+
+    /// `eeruf_hopping_init`, with the numbers in the order that `shim.c` names.
+    pub fn hopping(&mut self, sensors: u8, phases: u8, numbers: &[u32], now_us: u32) -> i32 {
+        assert!(numbers.len() == 21 || numbers.len() == 21 + usize::from(sensors));
+        let has_lags = u8::from(numbers.len() > 21);
+        // SAFETY: as many numbers as are read.
+        unsafe { border::shim_hopping(self.0, sensors, phases, numbers.as_ptr(), has_lags, now_us) }
+    }
+
+    /// `eeruf_hopping_confirmed_us`.
+    pub fn confirmed_us(&self, sensor: u8) -> u32 {
+        // SAFETY: a hopping ring that was made.
+        unsafe { border::shim_hopping_of(self.0, sensor, 0) }
+    }
+
+    /// `eeruf_hopping_lag_us`.
+    pub fn lag_us(&self, sensor: u8) -> u32 {
+        // SAFETY: a hopping ring that was made.
+        unsafe { border::shim_hopping_of(self.0, sensor, 1) }
+    }
+}
+
+/// `eeruf_filter_push` of a filter that holds these three numbers: kind, echo, previous echo, age.
+pub fn filter(held: &mut [u32; 3], t_delta_us: u32, consecutive: u8, t_echo_us: u32, change_us: i32) -> [u32; 4] {
+    let mut out = [0; 4];
+    // SAFETY: room for what is held and for what comes out.
+    let status = unsafe {
+        border::shim_filter(held.as_mut_ptr(), t_delta_us, consecutive, t_echo_us, change_us, out.as_mut_ptr())
+    };
+    assert_eq!(status, 0);
+    out
+}
+
+/// `eeruf_sound_mm_s`.
+pub fn sound_mm_s(celsius_tenths: i16) -> u32 {
+    // SAFETY: any number will do, here and below.
+    unsafe { border::eeruf_sound_mm_s(celsius_tenths) }
+}
+
+/// `eeruf_distance_mm`.
+pub fn distance_mm(t_echo_us: u32, c_mm_s: u32) -> u32 {
+    // SAFETY: see above.
+    unsafe { border::eeruf_distance_mm(t_echo_us, c_mm_s) }
+}
+
+/// `eeruf_echo_time_us`.
+pub fn echo_time_us(distance_mm: u32, c_mm_s: u32) -> u32 {
+    // SAFETY: see above.
+    unsafe { border::eeruf_echo_time_us(distance_mm, c_mm_s) }
+}
+
+/// A queue of eight edges; there is one, so only one test uses it.
+#[derive(Debug)]
+pub struct Edges;
+
+impl Edges {
+    /// Empties it.
+    pub fn new() -> Self {
+        // SAFETY: its memory is C's own.
+        unsafe { border::shim_edges_new() };
+        Self
+    }
+
+    /// `eeruf_edges_push`.
+    pub fn push(&mut self, sensor: u8, high: bool, at_us: u32) {
+        // SAFETY: it was made.
+        unsafe { border::shim_edges_push(sensor, high.into(), at_us) };
+    }
+
+    /// `eeruf_edges_pop`: sensor, level and instant, if there is one; and how many were lost.
+    pub fn pop(&mut self) -> (Option<[u32; 3]>, u32) {
+        let mut out = [0; 4];
+        // SAFETY: room for four numbers.
+        let status = unsafe { border::shim_edges_pop(out.as_mut_ptr()) };
+        let [sensor, high, at, lost] = out;
+        ((status == 0).then_some([sensor, high, at]), lost)
+    }
+}
+
+impl Default for Edges {
+    fn default() -> Self {
+        Self::new()
+    }
+}

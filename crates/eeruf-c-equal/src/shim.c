@@ -1,0 +1,254 @@
+/* The C library as functions of numbers and one kind of handle, so that Rust need not know its structures. Memory of
+   exactly the size that a ring needs comes from malloc, where a sanitizer sees each byte beyond it. */
+#include "eeruf.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Handle {
+    EerufSchedule *schedules[8];
+    unsigned schedule_count;
+    EerufRing *ring;
+    EerufSensor *sensors;
+    EerufHoppingRing *hopping;
+    EerufHopper *hoppers;
+    EerufHcSr04 modules;
+    EerufLine *lines;
+    EerufAdaptation adaptation;
+    EerufEvent last;
+} Handle;
+
+Handle *shim_new(void) {
+    return (Handle *)calloc(1, sizeof(Handle));
+}
+
+void shim_free(Handle *handle) {
+    while (handle->schedule_count > 0) {
+        EerufSchedule *schedule = handle->schedules[--handle->schedule_count];
+        free((void *)(uintptr_t)schedule->order);
+        free((void *)(uintptr_t)schedule->gap_us);
+        free(schedule);
+    }
+    if (handle->hopping == NULL) free(handle->ring);
+    free(handle->hopping);
+    free(handle->sensors);
+    free(handle->hoppers);
+    free(handle->lines);
+    free(handle);
+}
+
+/* Schedules are numbered as they are made. */
+int shim_schedule(Handle *handle, uint32_t period_us, uint8_t sensors, uint8_t phases, const uint32_t *t_fire_us) {
+    EerufSchedule *schedule = (EerufSchedule *)calloc(1, sizeof *schedule);
+    const size_t order_size = (size_t)sensors * phases, gap_size = (sensors + 1u) * phases * sizeof(uint32_t);
+    uint8_t *order = (uint8_t *)malloc(order_size);
+    uint32_t *gap_us = (uint32_t *)malloc(gap_size);
+    const EerufStatus status = eeruf_schedule_make(schedule, order, order_size, gap_us, gap_size, period_us, sensors,
+                                                   phases, t_fire_us);
+    schedule->order = order;
+    schedule->gap_us = gap_us;
+    handle->schedules[handle->schedule_count++] = schedule;
+    return status;
+}
+
+int shim_verify(Handle *handle, unsigned number, uint32_t t_delta_us, uint32_t min_interval_us, uint32_t window_us,
+                uint8_t layout, uint8_t neighbours, uint8_t stale_echo, uint32_t *out) {
+    const EerufRequirements requirements = {t_delta_us, min_interval_us, window_us, layout, neighbours, stale_echo};
+    EerufSchedule *schedule = handle->schedules[number];
+    const EerufStatus status = eeruf_schedule_verify(schedule, &requirements);
+    out[0] = schedule->min_refire_us;
+    out[1] = schedule->window_us;
+    out[2] = schedule->separation_us;
+    out[3] = eeruf_schedule_max_speed_mm_s(schedule, t_delta_us, EERUF_SOUND_20C);
+    if (status == EERUF_OK) return eeruf_schedule_check(schedule);
+    return status;
+}
+
+int shim_ring(Handle *handle, unsigned schedule, uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us,
+              uint8_t consecutive, uint32_t now_us) {
+    EerufConfig config = EERUF_CONFIG;
+    const size_t sensors_size = handle->schedules[schedule]->sensors * sizeof(EerufSensor);
+    config.t_delta_us = t_delta_us;
+    config.window_us = window_us;
+    config.blanking_us = blanking_us;
+    config.consecutive = consecutive;
+    free(handle->sensors);
+    if (handle->ring == NULL) handle->ring = (EerufRing *)malloc(sizeof(EerufRing));
+    handle->sensors = (EerufSensor *)malloc(sensors_size);
+    return eeruf_ring_init_unverified(handle->ring, sizeof(EerufRing), handle->sensors, sensors_size,
+                                      handle->schedules[schedule], &config, now_us);
+}
+
+static void flatten(const EerufEvent *event, uint32_t *out) {
+    unsigned kind;
+    out[0] = event->kind;
+    out[1] = event->sensor;
+    out[2] = event->phase;
+    out[3] = event->kind == EERUF_EVENT_FIRE ? event->u.due_us : event->period;
+    if (event->kind == EERUF_EVENT_READING) {
+        out[4] = event->u.reading.kind;
+        out[5] = event->u.reading.t_echo_us;
+        out[6] = event->u.reading.previous_us;
+        out[7] = event->u.reading.age;
+    } else if (event->kind == EERUF_EVENT_PERIOD) {
+        out[4] = event->u.ended.max_late_us;
+        out[5] = event->u.ended.sum_late_us;
+        out[6] = event->u.ended.max_shift_us;
+        for (kind = 0; kind < EERUF_READING_KINDS; kind++) out[7 + kind] = event->u.ended.tally[kind];
+    }
+}
+
+/* `out` has 17 places, all zero. */
+int shim_poll(Handle *handle, uint32_t now_us, const int32_t *change_us, uint32_t *out) {
+    const EerufStatus status = handle->hopping != NULL
+                                   ? eeruf_hopping_poll(handle->hopping, now_us, change_us, &handle->last)
+                                   : eeruf_ring_poll_expecting(handle->ring, now_us, change_us, &handle->last);
+    if (status == EERUF_EVENT) flatten(&handle->last, out);
+    return status;
+}
+
+uint32_t shim_deadline(const Handle *handle) {
+    return eeruf_ring_deadline(handle->ring);
+}
+
+/* What a ring can be asked while it runs, by number. */
+int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
+    EerufRing *ring = handle->ring;
+    switch (what) {
+    case 0: return eeruf_ring_echo(ring, sensor, value);
+    case 1: return eeruf_ring_fired(ring, sensor, value);
+    case 2: return eeruf_ring_stuck(ring, sensor);
+    case 3:
+        if (handle->hopping != NULL) return eeruf_hopping_enable(handle->hopping, sensor, value != 0);
+        return eeruf_ring_enable(ring, sensor, value != 0);
+    case 4: return eeruf_ring_pause(ring, value != 0);
+    case 5: return eeruf_ring_restart(ring, value);
+    case 6: return eeruf_ring_change_to_unverified(ring, handle->schedules[value]);
+    case 7: return eeruf_ring_set_t_delta(ring, value);
+    case 8: return eeruf_ring_set_window(ring, value);
+    case 9: return eeruf_ring_set_blanking(ring, value);
+    case 10: return eeruf_hc_sr04_edge(&handle->modules, sensor & 0x7fu, sensor >> 7, value);
+    case 11: return eeruf_hc_sr04_fire(&handle->modules, sensor & 0x7fu, value, sensor >> 7);
+    case 12: return eeruf_hc_sr04_cannot_read(&handle->modules, sensor, value);
+    case 13: return eeruf_hc_sr04_cannot_write(&handle->modules, sensor);
+    case 14: return eeruf_hc_sr04_fired(&handle->modules, sensor, value);
+    case 15: return eeruf_hc_sr04_change_schedule(&handle->modules, handle->schedules[value]);
+    case 16: return eeruf_hc_sr04_health(&handle->modules, sensor);
+    case 17: return eeruf_ring_is_enabled(ring, sensor);
+    case 18: return eeruf_adaptation_period(&handle->adaptation, ring, &handle->last);
+    default: return eeruf_hopping_solo(handle->hopping);
+    }
+}
+
+int shim_modules(Handle *handle, uint32_t min_retrigger_us, uint16_t shortest_us) {
+    EerufHcSr04Settings settings = EERUF_HC_SR04;
+    const size_t size = handle->ring->count * sizeof(EerufLine);
+    settings.min_retrigger_us = min_retrigger_us;
+    settings.shortest_us = shortest_us;
+    free(handle->lines);
+    handle->lines = (EerufLine *)malloc(size);
+    return eeruf_hc_sr04_init(&handle->modules, sizeof handle->modules, handle->lines, size, handle->ring, &settings);
+}
+
+int shim_adaptation(Handle *handle, uint8_t window, uint8_t patience, uint16_t noisy, uint16_t calm) {
+    const EerufSchedule *const *ladder = (const EerufSchedule *const *)handle->schedules;
+    const EerufStatus status = eeruf_adaptation_init(&handle->adaptation, sizeof handle->adaptation, ladder,
+                                                     (uint8_t)handle->schedule_count);
+    handle->adaptation.window = window;
+    handle->adaptation.patience = patience;
+    handle->adaptation.noisy_permille = noisy;
+    handle->adaptation.calm_permille = calm;
+    return status;
+}
+
+void shim_rung(const Handle *handle, uint32_t *rung, uint32_t *permille) {
+    *rung = handle->adaptation.rung;
+    *permille = handle->adaptation.rejection_permille;
+}
+
+/* `numbers`: step, period, window, blanking, reach, shift interval, seed; then t_delta, near, tentative_within, votes,
+   score limit, contradiction, solo contradiction, tentative votes; then solo rate, after and spacing, shift after and
+   spacing, neighbours; then one lag for each sensor, or none. */
+int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t *numbers, uint8_t has_lags,
+                 uint32_t now_us) {
+    const uint32_t *tracker = numbers + 7, *rest = numbers + 15;
+    const size_t sensors_size = sensors * sizeof(EerufSensor), hoppers_size = sensors * sizeof(EerufHopper);
+    EerufHoppingConfig config = EERUF_HOPPING_BALANCED(0, 0, 0);
+    EerufStatus status;
+    config.sensors = sensors;
+    config.phases = phases;
+    config.step_us = numbers[0];
+    config.period_us = numbers[1];
+    config.window_us = numbers[2];
+    config.blanking_us = numbers[3];
+    config.reach_us = numbers[4];
+    config.shift_interval_us = numbers[5];
+    config.seed = numbers[6];
+    config.tracker.t_delta_us = (uint16_t)tracker[0];
+    config.tracker.near_us = (uint16_t)tracker[1];
+    config.tracker.tentative_within_us = (uint16_t)tracker[2];
+    config.tracker.votes = (uint8_t)tracker[3];
+    config.tracker.score_limit = (uint8_t)tracker[4];
+    config.tracker.contradiction = (uint8_t)tracker[5];
+    config.tracker.solo_contradiction = (uint8_t)tracker[6];
+    config.tracker.tentative_votes = (uint8_t)tracker[7];
+    config.solo_rate = (uint8_t)rest[0];
+    config.solo_after = (uint8_t)rest[1];
+    config.solo_spacing = (uint8_t)rest[2];
+    config.shift_after = (uint8_t)rest[3];
+    config.shift_spacing = (uint8_t)rest[4];
+    config.neighbours = (uint8_t)rest[5];
+    config.lag_us = has_lags ? rest + 6 : NULL;
+    handle->hopping = (EerufHoppingRing *)malloc(sizeof(EerufHoppingRing));
+    handle->sensors = (EerufSensor *)malloc(sensors_size);
+    handle->hoppers = (EerufHopper *)malloc(hoppers_size);
+    status = eeruf_hopping_init(handle->hopping, sizeof(EerufHoppingRing), handle->sensors, sensors_size,
+                                handle->hoppers, hoppers_size, &config, now_us);
+    handle->ring = &handle->hopping->ring;
+    return status;
+}
+
+uint32_t shim_hopping_of(const Handle *handle, uint8_t sensor, uint8_t lag) {
+    return lag ? eeruf_hopping_lag_us(handle->hopping, sensor) : eeruf_hopping_confirmed_us(handle->hopping, sensor);
+}
+
+/* `held`: known, age, state. `out`: kind, echo, previous, age. */
+int shim_filter(uint32_t *held, uint32_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us, int32_t change_us,
+                uint32_t *out) {
+    EerufFilter filter = EERUF_FILTER;
+    EerufReading reading = {0, 0, 0, 0};
+    EerufStatus status;
+    filter.known_us = held[0];
+    filter.age = (uint16_t)held[1];
+    filter.state = (uint8_t)held[2];
+    status = eeruf_filter_push(&filter, t_delta_us, consecutive, t_echo_us, change_us, &reading);
+    held[0] = filter.known_us;
+    held[1] = filter.age;
+    held[2] = filter.state;
+    out[0] = reading.kind;
+    out[1] = reading.t_echo_us;
+    out[2] = reading.previous_us;
+    out[3] = reading.age;
+    return status;
+}
+
+static EerufEdges edges;
+static EerufEdge places[8];
+
+void shim_edges_new(void) {
+    (void)eeruf_edges_init(&edges, sizeof edges, places, sizeof places);
+}
+
+int shim_edges_push(uint8_t sensor, uint8_t high, uint32_t at_us) {
+    return eeruf_edges_push(&edges, sensor, high, at_us);
+}
+
+int shim_edges_pop(uint32_t *out) {
+    EerufEdge edge = {0, 0, false};
+    const EerufStatus status = eeruf_edges_pop(&edges, &edge);
+    out[0] = edge.sensor;
+    out[1] = edge.high;
+    out[2] = edge.at_us;
+    out[3] = edges.lost;
+    return status;
+}

@@ -1,0 +1,172 @@
+//! Rings that hop in time.
+
+use eeruf_c_equal::core_side::{echo, flat};
+use eeruf_c_equal::{C, Do, Random};
+use eeruf_core::{
+    HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros,
+    RingError, RingEvent, TrackerSettings,
+};
+
+use crate::world::{World, same};
+
+fn status_of(error: &HoppingError) -> i32 {
+    match error {
+        HoppingError::Sensors { .. } => -6,
+        HoppingError::Phases { .. } => -7,
+        HoppingError::Step { .. } => -23,
+        HoppingError::Period { .. } => -8,
+        HoppingError::Lag { .. } => -24,
+        HoppingError::Tracker(_) => -25,
+        HoppingError::TDelta { .. } => -15,
+        HoppingError::Ring(RingError::Blanking { .. }) => -18,
+        HoppingError::Ring(RingError::CoarseTDelta { .. }) => -19,
+        HoppingError::Ring(RingError::Window { .. }) => -17,
+        _ => unreachable!("{error}"),
+    }
+}
+
+fn settings(r: &Random) -> HoppingSettings {
+    let mut settings = r.one_of(&[HoppingSettings::BALANCED, HoppingSettings::QUICK, HoppingSettings::MAPS]);
+    if r.once_in(2) {
+        let t_delta = r.within(1, 220);
+        let near = r.within(t_delta, 600);
+        let votes = r.within(2, 7) as u8;
+        settings.tracker = TrackerSettings {
+            t_delta: Micros::new(t_delta),
+            near: Micros::new(near),
+            votes,
+            score_limit: r.within(votes.into(), 15) as u8,
+            contradiction: r.within(1, 4) as u8,
+            solo_contradiction: r.within(1, 9) as u8,
+            tentative_votes: r.one_of(&[0, 2, 3, 4, 1]),
+            tentative_within: Micros::new(r.within(0, t_delta)),
+        };
+        settings.solo_rate = r.one_of(&[0, 255, r.within(0, 255) as u8]);
+        settings.solo_after = r.within(0, 9) as u8;
+        settings.solo_spacing = r.within(0, 5) as u8;
+        settings.shift_after = r.within(0, 6) as u8;
+        settings.shift_spacing = r.within(0, 9) as u8;
+        settings.shift_interval = Micros::new(r.one_of(&[0, 2_000, 8_000]));
+        settings.neighbours = r.within(0, 5) as u8;
+    }
+    settings
+}
+
+fn run<const K: usize>(seed: u64) -> u64 {
+    let (r, mut c) = (Random::new(seed), C::new());
+    let s = settings(&r);
+    let (phases, step) = (r.one_of(&[2, 2, 2, 8, 16, r.within(0, 70) as u8]), r.one_of(&[240, 240, r.duration(900)]));
+    let period = r.one_of(&[60_000, r.within(20_000, 120_000), r.duration(1 << 28)]);
+    let window = r.one_of(&[36_000, 30_000, r.within(1, 40_000)]);
+    let blanking = r.one_of(&[0, 500, r.duration(4_000)]);
+    let listening = HoppingListening {
+        window: Micros::new(window),
+        blanking: Micros::new(blanking),
+        reach: Micros::new(r.one_of(&[window, r.duration(100_000)])),
+    };
+    // Also where the clock begins, at which sensors would seem to have just fired.
+    let (random_seed, start) = (r.within(0, 3), r.one_of(&[r.any() as u32, r.duration(50_000)]));
+    let t = s.tracker;
+    let mut numbers = vec![step, period, window, blanking, listening.reach.as_micros()];
+    numbers.extend([s.shift_interval.as_micros(), random_seed]);
+    numbers.extend([t.t_delta, t.near, t.tentative_within].map(Micros::as_micros));
+    let small = [t.votes, t.score_limit, t.contradiction, t.solo_contradiction, t.tentative_votes, s.solo_rate];
+    numbers.extend(small.map(u32::from));
+    numbers.extend([s.solo_after, s.solo_spacing, s.shift_after, s.shift_spacing, s.neighbours].map(u32::from));
+    let lags: Option<[Micros; K]> = r.once_in(2).then(|| [(); K].map(|()| Micros::new(r.within(0, period / 2))));
+    numbers.extend(lags.iter().flatten().map(|lag| lag.as_micros()));
+    let status = c.hopping(K as u8, phases, &numbers, start);
+    let rust = HoppingCode::new(K, phases, Micros::new(step)).and_then(|code| {
+        let schedule = match lags {
+            Some(lags) => HoppingSchedule::<K>::new(code, Micros::new(period), lags)?,
+            None => HoppingSchedule::spread(code, Micros::new(period), s.neighbours)?,
+        };
+        HoppingRing::<K>::new(&schedule, s, listening, random_seed, Instant::from_micros(start))
+    });
+    let mut ring = match rust {
+        Ok(ring) => ring,
+        Err(error) => {
+            assert_eq!(status, status_of(&error), "seed {seed}: {error}");
+            return 0;
+        }
+    };
+    assert_eq!(status, 0, "seed {seed}");
+    let mut world = World::new(r.clone(), K as u8, window);
+    world.now = start;
+    let moves = r.once_in(3);
+    let mut count = 0;
+    for step in 0..4_000 {
+        world.turn_clock(ring.next_deadline().as_micros());
+        for (at, sensor) in world.heard() {
+            same(&mut c, Do::Echo, sensor, at, ring.echo(sensor, Instant::from_micros(at)));
+        }
+        let r = &world.random;
+        if r.once_in(100) {
+            let sensor = r.within(0, K as u32) as u8;
+            match r.within(0, 9) {
+                0..3 => same(&mut c, Do::Enable, sensor, 0, ring.disable(sensor)),
+                3..8 => same(&mut c, Do::Enable, sensor, 1, ring.enable(sensor)),
+                8 => {
+                    let at = world.now.wrapping_add(r.duration(3_000));
+                    same(&mut c, Do::Fired, sensor, at, ring.fired(sensor, Instant::from_micros(at)));
+                }
+                _ => {
+                    ring.restart(Instant::from_micros(world.now));
+                    same::<()>(&mut c, Do::Restart, 0, world.now, Ok(()));
+                }
+            }
+            assert_eq!(c.ask(Do::IsEnabled, sensor, 0) == 1, ring.is_enabled(sensor));
+        }
+        let changes: Vec<i32> = (0..K).map(|_| r.duration(200) as i32 - 100).collect();
+        for _ in 0..20 {
+            let now = Instant::from_micros(world.now);
+            let event = ring.poll_expecting(now, |x| if moves { changes[usize::from(x)] } else { 0 });
+            let in_c = c.poll(world.now, moves.then_some(&changes));
+            let at = || format!("seed {seed}, step {step}: {event:?}");
+            assert_eq!(in_c, event.as_ref().map(flat).ok_or(0), "{}", at());
+            assert_eq!(c.deadline(), ring.next_deadline().as_micros(), "{}", at());
+            let Some(event) = event else { break };
+            count += 1;
+            match event {
+                RingEvent::Fire { sensor, .. } => {
+                    world.fired(sensor);
+                    if world.random.once_in(60) {
+                        same(&mut c, Do::Stuck, sensor, 0, ring.stuck(sensor));
+                    }
+                    if world.random.once_in(15) {
+                        let at = world.now.wrapping_add(world.random.duration(2_000));
+                        same(&mut c, Do::Fired, sensor, at, ring.fired(sensor, Instant::from_micros(at)));
+                    }
+                }
+                RingEvent::Reading(reading) => {
+                    let confirmed = echo(ring.tracker().confirmed(reading.sensor.into()));
+                    assert_eq!(c.confirmed_us(reading.sensor), confirmed, "{}", at());
+                }
+                RingEvent::PeriodEnded(_) => {
+                    for sensor in 0..K as u8 {
+                        assert_eq!(Some(Micros::new(c.lag_us(sensor))), ring.firing().t_lag(sensor.into()));
+                    }
+                    let solo = ring.firing().solo().map_or(255, i32::from);
+                    assert_eq!(c.ask(Do::Solo, 0, 0) & 255, solo, "{}", at());
+                }
+            }
+        }
+    }
+    count
+}
+
+#[test]
+fn a_hopping_ring_says_the_same_event_by_event_whatever_happens_to_it() {
+    let (mut count, mut seed) = (0, 0);
+    while count < crate::events() {
+        count += match seed % 6 {
+            0 => run::<1>(seed),
+            1 => run::<2>(seed),
+            2 => run::<5>(seed),
+            3 => run::<12>(seed),
+            _ => run::<8>(seed),
+        };
+        seed += 1;
+    }
+    println!("{count} events of {seed} rings");
+}

@@ -1,0 +1,206 @@
+//! Rings of HC-SR04 modules.
+
+use std::cell::Cell;
+
+use eeruf_c_equal::core_side::{flat, status_of};
+use eeruf_c_equal::{C, Do, Needs, Random};
+use eeruf_core::{Edge, Instant, Micros, Requirements, Ring, RingConfig, RingEvent, Schedule, VerifiedSchedule};
+use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings, SetupError};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::{Error, ErrorKind, ErrorType, InputPin, OutputPin};
+
+use crate::world::{World, same};
+
+const K: usize = 6;
+
+/// What the pins of all modules do at the next firing.
+#[derive(Clone, Copy, Default)]
+struct Fault {
+    high: bool,
+    cannot_read: bool,
+    cannot_write: bool,
+}
+
+#[derive(Debug)]
+struct Broken;
+
+impl Error for Broken {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::Other
+    }
+}
+
+struct Pin<'f>(&'f Cell<Fault>);
+
+impl ErrorType for Pin<'_> {
+    type Error = Broken;
+}
+
+impl OutputPin for Pin<'_> {
+    fn set_low(&mut self) -> Result<(), Broken> {
+        if self.0.get().cannot_write { Err(Broken) } else { Ok(()) }
+    }
+
+    fn set_high(&mut self) -> Result<(), Broken> {
+        Ok(())
+    }
+}
+
+impl InputPin for Pin<'_> {
+    fn is_high(&mut self) -> Result<bool, Broken> {
+        if self.0.get().cannot_read { Err(Broken) } else { Ok(self.0.get().high) }
+    }
+
+    fn is_low(&mut self) -> Result<bool, Broken> {
+        self.is_high().map(|high| !high)
+    }
+}
+
+struct NoDelay;
+
+impl DelayNs for NoDelay {
+    fn delay_ns(&mut self, _ns: u32) {}
+}
+
+fn health(health: Health) -> i32 {
+    match health {
+        Health::Well => 0,
+        Health::Missing => 1,
+        Health::StuckHigh => 2,
+        Health::Chatters => 3,
+        Health::LosesEdges => 4,
+        Health::PinError => 5,
+        _ => unreachable!("{health}"),
+    }
+}
+
+fn schedules(c: &mut C) -> Vec<VerifiedSchedule<K>> {
+    let spread = |first: u32, by: u32| [0, 1, 2, 3, 4, 5].map(|x| first + x * by);
+    let tables = [(70_000, 0, 10_000, 11_000), (80_000, 100, 10_500, 11_500), (62_000, 0, 9_500, 10_400)];
+    let made = tables.into_iter().enumerate().map(|(number, (period, first, by_a, by_b))| {
+        let rows = [spread(first, by_a), spread(first, by_b)];
+        assert_eq!(c.schedule(period, K as u8, 2, rows.as_flattened()), 0);
+        let needs =
+            Needs { t_delta_us: 400, min_interval_us: 0, window_us: 0, layout: 0, neighbours: 4, stale_echo: false };
+        assert_eq!(c.verify(number as u32, needs).0, 0);
+        let schedule = Schedule::<K>::from_firing(Micros::new(period), rows.map(|row| row.map(Micros::new))).unwrap();
+        schedule.verify(&Requirements::new(Micros::new(400))).verified().unwrap()
+    });
+    made.collect()
+}
+
+/// The edges of a module that was triggered: mostly a pulse, and what real wiring adds.
+fn pulse(r: &Random, edges: &mut Vec<(u32, u8, bool)>, now: u32, sensor: u8, width: u32) {
+    let rise = now.wrapping_add(r.one_of(&[450, 450, r.duration(3_000)]));
+    let fall = rise.wrapping_add(r.one_of(&[width, width, width + r.duration(300), 38_000, r.duration(40_000)]));
+    if r.once_in(8) {
+        // The trigger itself.
+        edges.extend([(now.wrapping_add(1), sensor, true), (now.wrapping_add(11), sensor, false)]);
+    }
+    if r.once_in(12) {
+        let short = rise.wrapping_sub(200);
+        edges.extend([(short, sensor, true), (short.wrapping_add(r.duration(190)), sensor, false)]);
+    }
+    if !r.once_in(12) {
+        edges.push((rise, sensor, true));
+    }
+    if !r.once_in(12) {
+        edges.push((fall, sensor, false));
+    }
+    if r.once_in(12) {
+        edges.extend([(fall.wrapping_add(300), sensor, true), (fall.wrapping_add(900), sensor, false)]);
+    }
+}
+
+fn run(seed: u64) -> u64 {
+    let (r, mut c) = (Random::new(seed), C::new());
+    let schedules = schedules(&mut c);
+    let start = r.any() as u32;
+    let config = RingConfig::new().with_window(Micros::new(40_000)).with_blanking(Micros::new(r.duration(400)));
+    let blanking = config.blanking.as_micros();
+    let ring = Ring::new(&schedules[0], config, Instant::from_micros(start)).unwrap();
+    assert_eq!(c.ring(0, [0, 40_000, blanking], 2, start), 0);
+    let fault = Cell::new(Fault::default());
+    let pins = [(); K].map(|()| Pins { trigger: Pin(&fault), echo: Pin(&fault) });
+    let mut settings = Settings::default();
+    settings.min_retrigger = Micros::new(r.one_of(&[58_000, 66_000, 60_000]));
+    settings.shortest = Micros::new(r.within(0, 150));
+    let status = c.modules(settings.min_retrigger.as_micros(), settings.shortest.as_micros() as u16);
+    let mut modules = match HcSr04Ring::new(ring, pins, NoDelay, settings) {
+        Ok(modules) => modules,
+        Err(error) => {
+            assert!(matches!(error, SetupError::Retrigger { .. }) && status == -21, "seed {seed}: {status}");
+            return 0;
+        }
+    };
+    assert_eq!(status, 0, "seed {seed}");
+    let mut world = World::new(r.clone(), K as u8, 40_000);
+    world.now = start;
+    let mut edges: Vec<(u32, u8, bool)> = vec![];
+    let mut count = 0;
+    for step in 0..3_000 {
+        world.turn_clock(modules.next_deadline().as_micros());
+        let now = world.now;
+        let due: Vec<_> = edges.extract_if(.., |(at, ..)| now.wrapping_sub(*at) < 1 << 31).collect();
+        if edges.len() > 300 {
+            edges.clear();
+        }
+        for (at, sensor, high) in due {
+            let edge = Edge { sensor, high, at: Instant::from_micros(at) };
+            same(&mut c, Do::Edge, sensor | u8::from(high) << 7, at, modules.edge(edge));
+        }
+        let r = &world.random;
+        if r.once_in(200) {
+            let number = r.within(0, 2);
+            let rust = modules.change_schedule(&schedules[number as usize]);
+            let expected = match rust {
+                Ok(()) => 0,
+                Err(SetupError::Ring(error)) => status_of(&error),
+                Err(_) => -21,
+            };
+            assert_eq!(c.ask(Do::ChangeModules, 0, number), expected);
+        }
+        for _ in 0..20 {
+            let r = &world.random;
+            let next = Fault { high: r.once_in(30), cannot_read: r.once_in(60), cannot_write: r.once_in(60) };
+            fault.set(next);
+            let event = modules.poll(Instant::from_micros(world.now));
+            let in_c = c.poll(world.now, None);
+            let at = || format!("seed {seed}, step {step}: {event:?}");
+            assert_eq!(in_c, event.as_ref().map(flat).ok_or(0), "{}", at());
+            let Some(event) = event else { break };
+            count += 1;
+            if let RingEvent::Fire { sensor, .. } = event {
+                let with_level = sensor | u8::from(next.high) << 7;
+                let status = match next.cannot_read {
+                    true => c.ask(Do::CannotRead, sensor, world.now),
+                    false => c.ask(Do::FireModule, with_level, world.now),
+                };
+                assert_eq!(status, if next.high || next.cannot_read { 2 } else { 0 }, "{}", at());
+                if status == 0 && next.cannot_write {
+                    assert_eq!(c.ask(Do::CannotWrite, sensor, 0), 0);
+                }
+                pulse(r, &mut edges, world.now, sensor, 3_000 + 4_000 * u32::from(sensor));
+                if r.once_in(12) {
+                    let at = world.now.wrapping_sub(r.duration(50)).wrapping_add(r.duration(400));
+                    same(&mut c, Do::ModuleFired, sensor, at, modules.fired(sensor, Instant::from_micros(at)));
+                }
+            }
+            assert_eq!(c.deadline(), modules.next_deadline().as_micros(), "{}", at());
+            for sensor in 0..=K as u8 {
+                assert_eq!(c.ask(Do::Health, sensor, 0), health(modules.health(sensor)), "{}", at());
+            }
+        }
+    }
+    count
+}
+
+#[test]
+fn modules_say_the_same_event_by_event_and_are_as_healthy() {
+    let (mut count, mut seed) = (0, 0);
+    while count < crate::events() {
+        count += run(seed);
+        seed += 1;
+    }
+    println!("{count} events of {seed} rings");
+}

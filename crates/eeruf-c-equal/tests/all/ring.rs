@@ -1,0 +1,234 @@
+//! Rings that fire by tables.
+
+use eeruf_c_equal::core_side::{flat, status_of, status_of_violation};
+use eeruf_c_equal::{C, Do, Needs, Random};
+use eeruf_core::{
+    Instant, Layout, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule, ScheduledFiring,
+};
+
+use crate::world::{World, same};
+
+const K: usize = 16;
+
+/// Verifying, which only schedules of two phases can be.
+pub(crate) trait Verify: Sized {
+    fn verify_as(self, c: &mut C, number: u32, needs: Needs) -> Self;
+}
+
+impl Verify for Schedule<K, 2> {
+    fn verify_as(self, c: &mut C, number: u32, needs: Needs) -> Self {
+        let layout = match needs.layout {
+            0 => Layout::Line(needs.neighbours),
+            1 => Layout::Ring(needs.neighbours),
+            _ => Layout::Blocks(needs.neighbours),
+        };
+        let requirements = Requirements {
+            min_interval: Micros::new(needs.min_interval_us),
+            window: Micros::new(needs.window_us),
+            stale_echo: needs.stale_echo,
+            layout,
+            ..Requirements::new(Micros::new(needs.t_delta_us))
+        };
+        let (status, numbers) = c.verify(number, needs);
+        assert_eq!(numbers.min_refire_us, self.min_refire().as_micros());
+        let c_mm_s = 343_200;
+        assert_eq!(numbers.max_speed_mm_s, self.max_speed_mm_s(requirements.t_delta, c_mm_s));
+        match self.verify(&requirements).verified() {
+            Ok(verified) => {
+                assert_eq!(status, 0);
+                let verified_for = verified.verified_for();
+                assert_eq!(numbers.window_us, verified_for.window.as_micros());
+                assert_eq!(numbers.separation_us, verified_for.separation.as_micros());
+                verified.into_schedule()
+            }
+            Err(violation) => {
+                assert_eq!(status, status_of_violation(violation.kind), "{violation}");
+                self
+            }
+        }
+    }
+}
+
+macro_rules! cannot_be_verified {
+    ($($phases:literal)*) => {$(
+        impl Verify for Schedule<K, $phases> {
+            fn verify_as(self, c: &mut C, number: u32, needs: Needs) -> Self {
+                assert_eq!(c.verify(number, needs).0, -7);
+                self
+            }
+        }
+    )*};
+}
+cannot_be_verified!(1 3 8);
+
+/// A schedule of so many sensors, in both languages, for a window that it mostly allows.
+fn schedule<const M: usize>(r: &Random, c: &mut C, number: u32, sensors: u8, period: u32) -> Schedule<K, M>
+where
+    Schedule<K, M>: Verify,
+{
+    let t_delta = r.within(1, 700);
+    let step = 2 * t_delta + 1 + r.duration(40);
+    let mut times = [[0; K]; M];
+    let apart = r.once_in(5);
+    for x in 0..usize::from(sensors) {
+        let first = r.within(0, period - 1);
+        times[0][x] = if apart { x as u32 * period / u32::from(sensors) } else { first };
+        for phase in 1..M {
+            // In distinct steps, so that (13a) and (13b) mostly hold.
+            let wait = step * (x as u32 + u32::from(r.once_in(50)));
+            let later = times[0][x] + wait;
+            times[phase][x] = if later < period { later } else { times[0][x].saturating_sub(wait) };
+        }
+    }
+    let rows = times.map(|row| row.map(Micros::new));
+    let used = usize::from(sensors);
+    let rows: Vec<&[Micros]> = rows.iter().map(|row| &row[..used]).collect();
+    let rows: [&[Micros]; M] = rows.try_into().expect("as many rows as phases");
+    let rust = Schedule::from_slices(Micros::new(period), &vec![Micros::ZERO; used], rows);
+    let flat: Vec<u32> = times.iter().flat_map(|row| &row[..used]).copied().collect();
+    assert_eq!(c.schedule(period, sensors, M as u8, &flat), 0);
+    let needs = Needs {
+        t_delta_us: t_delta,
+        min_interval_us: r.one_of(&[0, 0, 0, r.duration(period / 4)]),
+        window_us: r.one_of(&[0, r.within(1, period)]),
+        layout: r.within(0, 2) as u8,
+        neighbours: r.within(0, 5) as u8,
+        stale_echo: r.once_in(4),
+    };
+    let rust = rust.expect("each firing lies in its period");
+    if r.once_in(5) { rust } else { rust.verify_as(c, number, needs) }
+}
+
+fn change(c: &mut C, what: Do, value: u32, rust: Result<(), RingError>) {
+    assert_eq!(c.ask(what, 0, value), rust.map_or_else(|error| status_of(&error), |()| 0), "{what:?} {value}");
+}
+
+type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M>, K>;
+
+/// What a caller may do now and then.
+fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, schedules: &'s [Schedule<K, M>], now: u32) {
+    let sensor = r.within(0, ring.sensors() as u32) as u8;
+    match r.within(0, 13) {
+        0 => {
+            ring.pause();
+            change(c, Do::Pause, 1, Ok(()));
+        }
+        1 | 2 => {
+            ring.resume();
+            change(c, Do::Pause, 0, Ok(()));
+        }
+        3 => same(c, Do::Enable, sensor, 0, ring.disable(sensor)),
+        4..7 => same(c, Do::Enable, sensor, 1, ring.enable(sensor)),
+        7 => {
+            ring.restart(Instant::from_micros(now));
+            change(c, Do::Restart, now, Ok(()));
+        }
+        8..10 => {
+            let number = r.within(0, schedules.len() as u32 - 1);
+            change(c, Do::ChangeSchedule, number, ring.change_to_unverified(&schedules[number as usize]));
+        }
+        10 => {
+            let t_delta = r.duration(1_500);
+            change(c, Do::SetTDelta, t_delta, ring.set_t_delta(Micros::new(t_delta)));
+        }
+        11 => {
+            let window = r.one_of(&[r.duration(100_000), ring.window().as_micros() + r.within(0, 2) - 1]);
+            change(c, Do::SetWindow, window, ring.set_window(Micros::new(window)));
+        }
+        12 => {
+            let blanking = r.duration(80_000);
+            change(c, Do::SetBlanking, blanking, ring.set_blanking(Micros::new(blanking)));
+        }
+        _ => {
+            let at = now.wrapping_sub(r.duration(3_000)).wrapping_add(r.duration(6_000));
+            same(c, Do::Fired, sensor, at, ring.fired(sensor, Instant::from_micros(at)));
+        }
+    }
+    assert_eq!(c.ask(Do::IsEnabled, sensor, 0) == 1, ring.is_enabled(sensor));
+}
+
+/// One ring for up to 3,000 steps; how many events it had.
+fn run<const M: usize>(seed: u64) -> u64
+where
+    Schedule<K, M>: Verify,
+{
+    let (r, mut c) = (Random::new(seed), C::new());
+    let sensors = r.within(1, K as u32) as u8;
+    let period = r.one_of(&[r.within(20_000, 120_000), r.within(30_000, 60_000), 1 + r.duration(1 << 28)]);
+    let rungs = r.within(1, 3);
+    let schedules: Vec<Schedule<K, M>> = (0..rungs)
+        .map(|number| {
+            let period = (period + number * r.duration(30_000)).min(1 << 28);
+            schedule(&r, &mut c, number, sensors, period)
+        })
+        .collect();
+    let first = schedules[0];
+    let longest = first.min_refire().as_micros();
+    let window = r.one_of(&[0, longest, r.within(0, longest), r.duration(longest), longest.saturating_add(1)]);
+    let (t_delta, blanking) = (r.one_of(&[0, r.duration(900)]), r.one_of(&[0, 0, r.duration(3_000)]));
+    let consecutive = r.one_of(&[2, 2, 2, 3, r.within(0, 9) as u8]);
+    let start = r.any() as u32;
+    let some = |us: u32| (us != 0).then_some(Micros::new(us));
+    let mut config = RingConfig::new().with_blanking(Micros::new(blanking)).with_consecutive(consecutive);
+    (config.t_delta, config.window) = (some(t_delta), some(window));
+    let status = c.ring(0, [t_delta, window, blanking], consecutive, start);
+    let mut ring = match Table::<M>::unverified(&schedules[0], config, Instant::from_micros(start)) {
+        Ok(ring) => ring,
+        Err(error) => {
+            assert_eq!(status, status_of(&error), "seed {seed}: {error}");
+            return 0;
+        }
+    };
+    assert_eq!(status, 0, "seed {seed}");
+    let mut world = World::new(r.clone(), sensors, ring.window().as_micros());
+    world.now = start;
+    let moves = r.once_in(3);
+    let acts = r.one_of(&[10, 100, 1_000]);
+    let mut count = 0;
+    for step in 0..3_000 {
+        world.turn_clock(ring.next_deadline().as_micros());
+        for (at, sensor) in world.heard() {
+            same(&mut c, Do::Echo, sensor, at, ring.echo(sensor, Instant::from_micros(at)));
+        }
+        if world.random.once_in(acts) {
+            act(&world.random, &mut c, &mut ring, &schedules, world.now);
+        }
+        let changes: Vec<i32> = (0..sensors).map(|_| world.random.duration(400) as i32 - 200).collect();
+        for _ in 0..20 {
+            let now = Instant::from_micros(world.now);
+            let event = ring.poll_expecting(now, |x| if moves { changes[usize::from(x)] } else { 0 });
+            let in_c = c.poll(world.now, moves.then_some(&changes));
+            let at = || format!("seed {seed}, {M} phases, step {step}: {event:?}");
+            assert_eq!(in_c, event.as_ref().map(flat).ok_or(0), "{}", at());
+            assert_eq!(c.deadline(), ring.next_deadline().as_micros(), "{}", at());
+            let Some(event) = event else { break };
+            count += 1;
+            if let RingEvent::Fire { sensor, .. } = event {
+                world.fired(sensor);
+                if world.random.once_in(40) {
+                    same(&mut c, Do::Stuck, sensor, 0, ring.stuck(sensor));
+                }
+                if world.random.once_in(15) {
+                    let at = world.now.wrapping_add(world.random.duration(20_000));
+                    same(&mut c, Do::Fired, sensor, at, ring.fired(sensor, Instant::from_micros(at)));
+                }
+            }
+        }
+    }
+    count
+}
+
+#[test]
+fn a_ring_by_a_table_says_the_same_event_by_event_whatever_happens_to_it() {
+    let (mut count, mut seed) = (0, 0);
+    while count < crate::events() {
+        count += match seed % 8 {
+            5 => run::<1>(seed),
+            6 => run::<3>(seed),
+            7 => run::<8>(seed),
+            _ => run::<2>(seed),
+        };
+        seed += 1;
+    }
+    println!("{count} events of {seed} rings");
+}

@@ -1,0 +1,85 @@
+//! What happens around a ring: when it is polled, what it hears.
+
+use eeruf_c_equal::{C, Do, Random};
+
+/// A clock that is late, jumps and wraps, and echoes on their way.
+pub(crate) struct World {
+    pub(crate) random: Random,
+    pub(crate) now: u32,
+    /// How late polls are, at most, in this run.
+    late: u32,
+    /// Echo time of what stands before each sensor.
+    distance_us: Vec<u32>,
+    window_us: u32,
+    echoes: Vec<(u32, u8)>,
+}
+
+impl World {
+    pub(crate) fn new(random: Random, sensors: u8, window_us: u32) -> Self {
+        // Clocks wrap in many runs.
+        let now = if random.once_in(2) { 0_u32.wrapping_sub(random.duration(5_000_000)) } else { random.any() as u32 };
+        let late = random.one_of(&[0, 0, 30, 300, 3_000, 100_000]);
+        let distance_us = (0..sensors).map(|_| random.within(1, window_us)).collect();
+        Self { random, now, late, distance_us, window_us, echoes: vec![] }
+    }
+
+    /// Turns the clock, mostly to the deadline or somewhat past it.
+    pub(crate) fn turn_clock(&mut self, deadline: u32) {
+        let ahead = deadline.wrapping_sub(self.now);
+        let ahead = if ahead < 1 << 31 { ahead } else { 0 };
+        let r = &self.random;
+        self.now = match r.within(0, 999) {
+            0 => r.any() as u32,
+            1 => self.now.wrapping_sub(r.duration(10_000_000)),
+            2..100 => self.now.wrapping_add(r.duration(5_000)),
+            100..110 => self.now.wrapping_add(ahead).wrapping_add(r.duration(1_000_000)),
+            110..500 => self.now.wrapping_add(ahead).wrapping_add(r.duration(self.late)),
+            _ => self.now.wrapping_add(ahead),
+        };
+        if r.once_in(200) {
+            let sensor = r.within(0, self.distance_us.len() as u32 - 1) as usize;
+            self.distance_us[sensor] = r.within(1, self.window_us);
+        }
+    }
+
+    /// Sound comes back to a sensor that has fired.
+    pub(crate) fn fired(&mut self, sensor: u8) {
+        let (r, distance) = (&self.random, self.distance_us[usize::from(sensor)]);
+        let own = distance.saturating_add(r.duration(300));
+        let mut hear = |after: u32| self.echoes.push((self.now.wrapping_add(after), sensor));
+        match r.within(0, 99) {
+            0..70 => hear(own),
+            70..80 => hear(r.within(0, self.window_us)),
+            80..85 => hear(r.duration(2_000)),
+            85..88 => hear(self.window_us.saturating_add(r.duration(50_000))),
+            _ => {}
+        }
+        if r.once_in(8) {
+            hear(r.within(0, self.window_us + self.window_us / 8));
+        }
+    }
+
+    /// The echoes that have come by now, and now and then one that has not, out of order, or of nobody.
+    pub(crate) fn heard(&mut self) -> Vec<(u32, u8)> {
+        let now = self.now;
+        let mut heard: Vec<_> = self.echoes.extract_if(.., |(at, _)| now.wrapping_sub(*at) < 1 << 31).collect();
+        if self.random.once_in(100) {
+            let sensor = self.random.within(0, self.distance_us.len() as u32 + 2) as u8;
+            heard.push((now.wrapping_sub(self.random.duration(50_000)), sensor));
+        }
+        if self.random.once_in(4) {
+            heard.reverse();
+        }
+        if self.echoes.len() > 200 {
+            // Of a time that the clock has left.
+            self.echoes.clear();
+        }
+        heard
+    }
+}
+
+/// Asks C and compares with whether Rust found the sensor.
+pub(crate) fn same<E>(c: &mut C, what: Do, sensor: u8, value: u32, rust: Result<(), E>) {
+    let expected = if rust.is_ok() { 0 } else { -5 };
+    assert_eq!(c.ask(what, sensor, value), expected, "{what:?} of sensor {sensor}, {value}");
+}

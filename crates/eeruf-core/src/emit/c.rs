@@ -1,0 +1,137 @@
+//! A schedule for C: a header with firing times for any program, and the constant that `eeruf.h` takes.
+
+use core::fmt;
+
+use super::{Promise, Summary};
+use crate::conditions::Requirements;
+use crate::layout::Layout;
+use crate::schedule::{Phase, Schedule, VerifiedFor};
+use crate::time::Micros;
+
+/// `EERUF_VERSION` of the `eeruf.h` that tables are written for.
+const EERUF_VERSION: u16 = 1;
+
+/// A schedule as a C header: see [`Schedule::to_c`].
+#[derive(Clone, Copy, Debug)]
+pub struct CHeader<'r, const K: usize> {
+    pub(super) schedule: &'r Schedule<K>,
+    pub(super) requirements: &'r Requirements<'r>,
+}
+
+impl<const K: usize> fmt::Display for CHeader<'_, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { schedule, requirements } = *self;
+        writeln!(f, "/* {};\n   {}.", Summary(schedule), Promise(requirements))?;
+        writeln!(f, "   Times are microseconds from the start of each period; phases a and b alternate. */")?;
+        writeln!(f, "#ifndef EERUF_SCHEDULE_H\n#define EERUF_SCHEDULE_H\n\n#include <stdint.h>\n")?;
+        writeln!(f, "#define EERUF_SENSORS {}", schedule.sensors())?;
+        writeln!(f, "#define EERUF_PERIOD_US {}u", schedule.period().as_micros())?;
+        writeln!(f, "#define EERUF_T_DELTA_US {}u", requirements.t_delta.as_micros())?;
+        writeln!(f, "#define EERUF_WINDOW_US {}u\n", requirements.window.as_micros())?;
+        writeln!(f, "static const uint32_t eeruf_t_fire_us[2][EERUF_SENSORS] = {{")?;
+        for phase in [Phase::A, Phase::B] {
+            let times = || (0..schedule.sensors()).filter_map(move |x| schedule.t_fire(phase, x));
+            writeln!(f, "    {{{}}}, /* phase {phase} */", Plain(|| times().map(|time| (time.as_micros(), "u"))))?;
+        }
+        writeln!(f, "}};\n\n#ifdef EERUF_H /* with eeruf.h before this file: the schedule for eeruf_ring_init */")?;
+        write!(f, "{}", Constant { schedule, requirements, name: "eeruf_schedule" })?;
+        writeln!(f, "#endif\n\n#endif")
+    }
+}
+
+/// A schedule as a file of an Arduino sketch: see [`Schedule::to_arduino`].
+#[derive(Clone, Copy, Debug)]
+pub struct ArduinoTab<'r, const K: usize> {
+    pub(super) schedule: &'r Schedule<K>,
+    pub(super) requirements: &'r Requirements<'r>,
+    pub(super) name: &'r str,
+}
+
+impl<const K: usize> fmt::Display for ArduinoTab<'_, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { schedule, requirements, name } = *self;
+        writeln!(f, "// {};\n// {}.", Summary(schedule), Promise(requirements))?;
+        writeln!(f, "#pragma once\n#include <EerufArduino.h>\n")?;
+        write!(f, "{}", Constant { schedule, requirements, name })
+    }
+}
+
+/// The constant of type `EerufSchedule`, and what it points to. It says what it was verified for if it meets the
+/// requirements, else that it was not.
+struct Constant<'r, const K: usize> {
+    schedule: &'r Schedule<K>,
+    requirements: &'r Requirements<'r>,
+    name: &'r str,
+}
+
+impl<const K: usize> fmt::Display for Constant<'_, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { schedule, requirements, name } = *self;
+        let sensors = schedule.sensors();
+        writeln!(f, "static const uint8_t {name}_order[] EERUF_FLASH = {{")?;
+        for phase in [Phase::A, Phase::B] {
+            let order = schedule.firing_order(phase);
+            writeln!(f, "    {}, /* phase {phase} */", Plain(|| order.iter().map(|&sensor| (sensor.into(), ""))))?;
+        }
+        writeln!(f, "}};\nstatic const uint32_t {name}_gap_us[] EERUF_FLASH = {{")?;
+        for Phase(phase) in [Phase::A, Phase::B] {
+            let order = schedule.firing_order(Phase(phase));
+            let times = || order.iter().filter_map(move |&x| schedule.t_fire(Phase(phase), x.into()));
+            let ends = || times().chain([schedule.period()]);
+            let begins = || [Micros::ZERO].into_iter().chain(times());
+            let gaps = || ends().zip(begins()).map(|(end, begin)| (end.abs_diff(begin).as_micros(), "u"));
+            writeln!(f, "    {},", Plain(gaps))?;
+        }
+        let verified = schedule.verify(requirements).verified().map(|verified| verified.verified_for());
+        let VerifiedFor { t_delta, min_interval, window, separation } = verified.unwrap_or(VerifiedFor::NOTHING);
+        let (layout, neighbours) = match requirements.layout {
+            Layout::Line(n) => ("LINE", n),
+            Layout::Ring(n) => ("RING", n),
+            Layout::Blocks(n) => ("BLOCKS", n),
+            Layout::Graph(_) => ("OTHER", 0),
+        };
+        let stale_echo = u8::from(requirements.stale_echo);
+        let times = [schedule.period(), schedule.min_refire(), t_delta, min_interval, window, separation];
+        writeln!(f, "}};\nstatic const EerufSchedule {name} EERUF_FLASH = {{")?;
+        writeln!(f, "    {EERUF_VERSION}, {sensors}, 2, {name}_order, {name}_gap_us,")?;
+        writeln!(f, "    {},", Plain(|| times.into_iter().map(|time| (time.as_micros(), "u"))))?;
+        let verified = u8::from(verified.is_ok());
+        writeln!(f, "    {verified}, EERUF_LAYOUT_{layout}, {neighbours}, {stale_echo},\n}};")
+    }
+}
+
+/// Numbers, each with what follows it, separated by commas.
+struct Plain<F>(F);
+
+impl<F: Fn() -> I, I: Iterator<Item = (u32, &'static str)>> fmt::Display for Plain<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, (number, suffix)) in (self.0)().enumerate() {
+            write!(f, "{}{number}{suffix}", if place == 0 { "" } else { ", " })?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::tables::TABLE_I_D;
+    use std::string::ToString;
+
+    const REQUIREMENTS: Requirements<'static> =
+        Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) };
+
+    #[test]
+    fn the_constant_says_what_it_was_verified_for_or_that_it_was_not() {
+        let tab = TABLE_I_D.to_arduino(&REQUIREMENTS, "PAPER").to_string();
+        assert!(tab.contains("EerufSchedule PAPER EERUF_FLASH = {\n    1, 12, 2, PAPER_order, PAPER_gap_us,"), "{tab}");
+        assert!(
+            tab.contains("100000u, 76000u, 999u, 15000u, 76000u, 2000u,\n    1, EERUF_LAYOUT_LINE, 4, 0,"),
+            "{tab}"
+        );
+        let more = Requirements { t_delta: Micros::new(1000), ..REQUIREMENTS };
+        let tab = TABLE_I_D.to_arduino(&more, "PAPER").to_string();
+        assert!(tab.contains("100000u, 76000u, 0u, 0u, 0u, 0u,\n    0, EERUF_LAYOUT_LINE, 4, 0,"), "{tab}");
+    }
+}

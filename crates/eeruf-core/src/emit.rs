@@ -8,10 +8,12 @@ use crate::conditions::{Criterion, Requirements};
 use crate::layout::Layout;
 use crate::schedule::{Phase, Schedule};
 use crate::time::Micros;
+use crate::uneven::Uneven;
 
 impl<const K: usize> Schedule<K> {
     /// A `const RING: VerifiedSchedule` in Rust, with the `requirements` for the compiler to check (see
-    /// [`schedule!`](crate::schedule!)).
+    /// [`schedule!`](crate::schedule!)); an `UnevenSchedule` where sensors differ
+    /// ([`uneven_schedule!`](crate::uneven_schedule!)).
     pub const fn to_rust<'r>(&'r self, requirements: &'r Requirements<'r>) -> RustSource<'r, K> {
         RustSource { schedule: self, requirements }
     }
@@ -45,12 +47,18 @@ pub struct RustSource<'r, const K: usize> {
 impl<const K: usize> fmt::Display for RustSource<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { schedule, requirements } = self;
-        let Requirements { t_delta, criterion, min_interval, layout, window, stale_echo } = requirements;
-        writeln!(f, "use eeruf_core::{{Criterion, Layout, Micros, Requirements, VerifiedSchedule, schedule}};\n")?;
+        let Requirements { t_delta, criterion, min_interval, layout, window, stale_echo, uneven } = requirements;
+        let (kind, check) = match uneven {
+            None => ("VerifiedSchedule", "schedule"),
+            Some(_) => ("UnevenSchedule", "uneven_schedule"),
+        };
+        let imports =
+            if uneven.is_some() { "Uneven, UnevenSchedule, uneven_schedule" } else { "VerifiedSchedule, schedule" };
+        writeln!(f, "use eeruf_core::{{Criterion, Layout, Micros, Requirements, {imports}}};\n")?;
         writeln!(f, "// {}; {}.", Summary(schedule), Promise(requirements))?;
-        writeln!(f, "pub const RING: VerifiedSchedule<{}> = schedule! {{", schedule.sensors())?;
+        writeln!(f, "pub const RING: {kind}<{}> = {check}! {{", schedule.sensors())?;
         writeln!(f, "    period_us: {},", Grouped(schedule.period()))?;
-        if schedule.has_lags() {
+        if schedule.has_lags() && uneven.is_none() {
             writeln!(f, "    t_lag_us: [{}],", Numbers(|| schedule.t_lag().iter().copied()))?;
             writeln!(f, "    t_wait_a_us: [{}],", Numbers(|| schedule.t_wait(Phase::A).iter().copied()))?;
             writeln!(f, "    t_wait_b_us: [{}],", Numbers(|| schedule.t_wait(Phase::B).iter().copied()))?;
@@ -81,6 +89,10 @@ impl<const K: usize> fmt::Display for RustSource<'_, K> {
         }
         writeln!(f, "        window: Micros::new({}),", Grouped(*window))?;
         writeln!(f, "        stale_echo: {stale_echo},")?;
+        match uneven {
+            None => writeln!(f, "        uneven: None,")?,
+            Some(uneven) => write!(f, "{}", UnevenSource(uneven))?,
+        }
         writeln!(f, "    }},\n}};")
     }
 }
@@ -92,7 +104,10 @@ pub struct CHeader<'r, const K: usize> {
     requirements: &'r Requirements<'r>,
 }
 
-impl<const K: usize> fmt::Display for CHeader<'_, K> {
+/// The need of one sensor.
+type OfSensor<'r> = fn(&Requirements<'r>, usize) -> Micros;
+
+impl<'r, const K: usize> fmt::Display for CHeader<'r, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { schedule, requirements } = self;
         writeln!(f, "/* {};\n   {}.", Summary(schedule), Promise(requirements))?;
@@ -100,8 +115,26 @@ impl<const K: usize> fmt::Display for CHeader<'_, K> {
         writeln!(f, "#ifndef EERUF_SCHEDULE_H\n#define EERUF_SCHEDULE_H\n\n#include <stdint.h>\n")?;
         writeln!(f, "#define EERUF_SENSORS {}", schedule.sensors())?;
         writeln!(f, "#define EERUF_PERIOD_US {}u", schedule.period().as_micros())?;
-        writeln!(f, "#define EERUF_T_DELTA_US {}u", requirements.t_delta.as_micros())?;
-        writeln!(f, "#define EERUF_WINDOW_US {}u\n", requirements.window.as_micros())?;
+        let least = |of: OfSensor<'r>| {
+            (0..schedule.sensors()).map(|sensor| of(requirements, sensor)).min().unwrap_or_default().as_micros()
+        };
+        if requirements.uneven.is_some() {
+            writeln!(f, "/* The smallest of all sensors; each one's own follow. */")?;
+        }
+        writeln!(f, "#define EERUF_T_DELTA_US {}u", least(Requirements::t_delta_of))?;
+        writeln!(f, "#define EERUF_WINDOW_US {}u\n", least(Requirements::window_of))?;
+        if requirements.uneven.is_some() {
+            let each: [(&str, OfSensor<'r>); 2] =
+                [("t_delta", Requirements::t_delta_of), ("window", Requirements::window_of)];
+            for (name, of) in each {
+                write!(f, "static const uint32_t eeruf_{name}_us[EERUF_SENSORS] = {{")?;
+                for sensor in 0..schedule.sensors() {
+                    write!(f, "{}{}u", if sensor == 0 { "" } else { ", " }, of(requirements, sensor).as_micros())?;
+                }
+                writeln!(f, "}};")?;
+            }
+            writeln!(f)?;
+        }
         writeln!(f, "static const uint32_t eeruf_t_fire_us[2][EERUF_SENSORS] = {{")?;
         for phase in [Phase::A, Phase::B] {
             write!(f, "    {{")?;
@@ -149,8 +182,45 @@ struct Promise<'r>(&'r Requirements<'r>);
 
 impl fmt::Display for Promise<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Requirements { t_delta, min_interval, layout, window, .. } = *self.0;
+        let Requirements { t_delta, min_interval, layout, window, uneven, .. } = *self.0;
+        if uneven.is_some() {
+            return write!(
+                f,
+                "{layout} at least {min_interval} apart but for what is said of pairs, t_delta and \
+                              listening as said of each"
+            );
+        }
         write!(f, "t_delta = {t_delta}, {layout} at least {min_interval} apart, listening for {window}")
+    }
+}
+
+/// What is not alike, as the field of the requirements.
+struct UnevenSource<'u>(&'u Uneven<'u>);
+
+impl fmt::Display for UnevenSource<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Uneven { t_delta, window, intervals, shared_lines, together } = *self.0;
+        writeln!(f, "        uneven: Some(Uneven {{")?;
+        for (name, each) in [("t_delta", t_delta), ("window", window)] {
+            write!(f, "            {name}: &[")?;
+            for (at, time) in each.iter().enumerate() {
+                write!(f, "{}Micros::new({})", if at == 0 { "" } else { ", " }, Grouped(*time))?;
+            }
+            writeln!(f, "],")?;
+        }
+        write!(f, "            intervals: &[")?;
+        for (at, (x, y, interval)) in intervals.iter().enumerate() {
+            write!(f, "{}({x}, {y}, Micros::new({}))", if at == 0 { "" } else { ", " }, Grouped(*interval))?;
+        }
+        writeln!(f, "],")?;
+        for (name, sets) in [("shared_lines", shared_lines), ("together", together)] {
+            write!(f, "            {name}: &[")?;
+            for (at, set) in sets.iter().enumerate() {
+                write!(f, "{}{set:#b}", if at == 0 { "" } else { ", " })?;
+            }
+            writeln!(f, "],")?;
+        }
+        writeln!(f, "        }}),")
     }
 }
 

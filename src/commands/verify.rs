@@ -110,6 +110,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         layout: layout.layout(),
         window: Micros::new(args.window_us),
         stale_echo: args.stale_echo,
+        uneven: None,
     };
     let report = schedule.verify(&requirements);
     if args.json {

@@ -14,6 +14,7 @@
 //! | `symmetry` | what the root may assume |
 //! | `tree` | the case distinctions |
 //! | `uniform`, `prove` | the claim of a search, and its proof |
+//! | `search`, `shortest` | the shortest period of an uneven ring, by the same rules |
 #![forbid(unsafe_code)]
 
 mod bounds;
@@ -23,6 +24,8 @@ pub mod prove;
 mod read;
 mod rules;
 mod schedule;
+pub mod search;
+pub mod shortest;
 mod state;
 mod symmetry;
 mod text;

@@ -4,8 +4,8 @@
 
 use core::fmt;
 
-use crate::problem::Merged;
 use crate::read::{self, Claim};
+use crate::search::choose;
 use crate::state::{State, event};
 use crate::symmetry;
 use crate::text::Lines;
@@ -129,30 +129,4 @@ pub fn prove_while(claim: &Claim, budget: usize, mut go_on: impl FnMut(usize) ->
         }
         reached = branching.assume(case, &mut state, &merged).map(|()| state);
     }
-}
-
-/// What to branch on.
-fn choose(state: &State, merged: &Merged) -> Option<Branching> {
-    let count = merged.count();
-    // Firing orders first, sensor by sensor: all of phase a, then all of phase b.
-    for y in 0..count {
-        for (phase, x) in (0..2).flat_map(|phase| (0..y).map(move |x| (phase, x))) {
-            let order = Branching::Order(phase, x, y);
-            if merged.gap[x][y] > 0 && !order.is_decided(state, merged) {
-                return Some(order);
-            }
-        }
-    }
-    if let Some(x) = (0..count).find(|&x| !Branching::Sign(x).is_decided(state, merged)) {
-        return Some(Branching::Sign(x));
-    }
-    let width = |x: usize| state.high(x) - state.low[x];
-    let pairs = (0..count).flat_map(|y| (0..y).map(move |x| (x, y)));
-    let open = pairs.filter(|&(x, y)| !Branching::Rank(x, y).is_decided(state, merged));
-    if let Some((x, y)) = open.min_by_key(|&(x, y)| width(x) + width(y)) {
-        return Some(Branching::Rank(x, y));
-    }
-    let widest = (0..count).max_by_key(|&x| width(x))?;
-    let middle = Branching::Split(widest, ((state.low[widest] + state.high(widest)) / 4) as u32);
-    (!middle.is_decided(state, merged)).then_some(middle)
 }

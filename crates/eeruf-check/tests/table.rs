@@ -3,7 +3,8 @@
 mod common;
 
 use eeruf_check::prove::{NoProof, prove, prove_what_can_be, prove_while};
-use eeruf_check::{Claim, Uniform, check};
+use eeruf_check::shortest::shortest;
+use eeruf_check::{Claim, Uniform, check, read_claim};
 
 #[test]
 fn the_periods_of_the_table_have_a_certificate_that_is_accepted() {
@@ -26,6 +27,48 @@ fn the_periods_of_the_table_have_a_certificate_that_is_accepted() {
     println!("{nodes} nodes together");
     assert_eq!(at_root, 14, "as many are refuted by the rules alone");
     assert!(nodes < 17_000, "{nodes} nodes, there were 15,008");
+}
+
+#[test]
+fn the_search_by_the_checkers_rules_proves_the_periods_of_the_table() {
+    for (name, claim) in common::table(1).into_iter().filter(|(_, claim)| claim.problem.sensors() <= 16) {
+        let found = shortest(&claim.problem, 100_000, &mut |_| true).expect("firing one by one at least");
+        assert_eq!((found.period, found.bound), (claim.period, claim.period), "{name}");
+        let claim = Claim { fire: found.fire, ..claim };
+        assert_eq!(read_claim(&prove(&claim, 100_000).expect("a proof")), Ok(claim), "{name}: the times serve");
+    }
+}
+
+#[test]
+fn in_fine_ticks_a_period_between_coarse_ones_is_found_and_proven() {
+    let (_, claim) = common::table(2).into_iter().find(|(name, _)| name == "line 12, window 45").expect("it is there");
+    let found = shortest(&claim.problem, 100_000, &mut |_| true).expect("firing one by one at least");
+    assert_eq!((found.period, found.bound), (139, 139));
+}
+
+#[test]
+fn a_search_that_is_ended_has_a_schedule_and_a_bound() {
+    let (name, claim) =
+        common::table(1).into_iter().find(|(name, _)| name == "line 12, window 45").expect("it is there");
+    for budget in [1, 100, 1_000, 3_000] {
+        let found = shortest(&claim.problem, budget, &mut |_| true).expect("firing one by one at least");
+        let at_most = found.bound <= claim.period && claim.period <= found.period && found.nodes <= 2 * budget + 1_000;
+        assert!(at_most, "{name}: {found:?}");
+        let claim = Claim { period: found.period, fire: found.fire, bound: found.bound, ..claim.clone() };
+        assert!(
+            prove(&claim, 100_000).is_ok(),
+            "{name}: {} ticks and {} serve as schedule and bound",
+            claim.period,
+            claim.bound
+        );
+    }
+    let mut asked = 0;
+    let stopped = shortest(&claim.problem, u64::MAX, &mut |so_far| {
+        asked += 1;
+        so_far.nodes < 500
+    });
+    let stopped = stopped.expect("firing one by one at least");
+    assert!(asked > 5 && stopped.bound < stopped.period && stopped.nodes < 700, "{asked} {stopped:?}");
 }
 
 #[test]

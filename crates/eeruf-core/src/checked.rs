@@ -91,6 +91,8 @@ pub const fn __checked<const K: usize>(
                 ViolationKind::StaleEcho => panic!("a sensor's stale echo would be accepted, Eq. (13b) with x = y"),
                 ViolationKind::Interval => panic!("two neighbours fire closer together than min_interval, Sec. 3.1 c"),
                 ViolationKind::Window => panic!("a sensor fires again while it still listens, T_wind"),
+                ViolationKind::SharedLine => panic!("a sensor fires while another one listens on the same echo line"),
+                ViolationKind::Together => panic!("two sensors that must fire together do not"),
             },
         },
         Err(error) => panic!("{}", error.as_str()),

@@ -29,6 +29,7 @@ use core::fmt;
 use crate::layout::Layout;
 use crate::schedule::{Phase, Schedule};
 use crate::time::Micros;
+use crate::uneven::Uneven;
 
 /// How to read Eqs. (13a), (13b).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -67,6 +68,8 @@ pub struct Requirements<'a> {
     pub window: Micros,
     /// Also reject a sensor's own echo from the period before: `2 |d| > 2 T_delta` for each sensor.
     pub stale_echo: bool,
+    /// What single sensors and pairs need, where they are not all alike.
+    pub uneven: Option<Uneven<'a>>,
 }
 
 impl Requirements<'_> {
@@ -79,10 +82,11 @@ impl Requirements<'_> {
             layout: Layout::Line(4),
             window: Micros::ZERO,
             stale_echo: false,
+            uneven: None,
         }
     }
 
-    /// The separation that `t_delta` needs: `2 t_delta + 1 us`.
+    /// The separation that the `t_delta` of all needs: `2 t_delta + 1 us`.
     pub const fn separation(&self) -> Micros {
         self.t_delta.saturating_add(self.t_delta).saturating_add(Micros::new(1))
     }
@@ -157,7 +161,8 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     }
 }
 
-const fn shorter(least: Option<Interval>, next: Interval) -> Option<Interval> {
+/// The shorter of two intervals, if there are two.
+pub(crate) const fn shorter(least: Option<Interval>, next: Interval) -> Option<Interval> {
     match least {
         Some(least) if least.value.as_micros() <= next.value.as_micros() => Some(least),
         _ => Some(next),

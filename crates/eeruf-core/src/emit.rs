@@ -13,10 +13,12 @@ use crate::conditions::{Criterion, Requirements};
 use crate::layout::Layout;
 use crate::schedule::{Phase, Schedule};
 use crate::time::Micros;
+use crate::uneven::Uneven;
 
 impl<const K: usize> Schedule<K> {
     /// A `const RING: VerifiedSchedule` in Rust, with the `requirements` for the compiler to check (see
-    /// [`schedule!`](crate::schedule!)).
+    /// [`schedule!`](crate::schedule!)); an `UnevenSchedule` where sensors differ
+    /// ([`uneven_schedule!`](crate::uneven_schedule!)).
     pub const fn to_rust<'r>(&'r self, requirements: &'r Requirements<'r>) -> RustSource<'r, K> {
         RustSource { schedule: self, requirements }
     }
@@ -56,12 +58,18 @@ pub struct RustSource<'r, const K: usize> {
 impl<const K: usize> fmt::Display for RustSource<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { schedule, requirements } = self;
-        let Requirements { t_delta, criterion, min_interval, layout, window, stale_echo } = requirements;
-        writeln!(f, "use eeruf_core::{{Criterion, Layout, Micros, Requirements, VerifiedSchedule, schedule}};\n")?;
+        let Requirements { t_delta, criterion, min_interval, layout, window, stale_echo, uneven } = requirements;
+        let (kind, check) = match uneven {
+            None => ("VerifiedSchedule", "schedule"),
+            Some(_) => ("UnevenSchedule", "uneven_schedule"),
+        };
+        let imports =
+            if uneven.is_some() { "Uneven, UnevenSchedule, uneven_schedule" } else { "VerifiedSchedule, schedule" };
+        writeln!(f, "use eeruf_core::{{Criterion, Layout, Micros, Requirements, {imports}}};\n")?;
         writeln!(f, "// {}; {}.", Summary(schedule), Promise(requirements))?;
-        writeln!(f, "pub const RING: VerifiedSchedule<{}> = schedule! {{", schedule.sensors())?;
+        writeln!(f, "pub const RING: {kind}<{}> = {check}! {{", schedule.sensors())?;
         writeln!(f, "    period_us: {},", Grouped(schedule.period()))?;
-        if schedule.has_lags() {
+        if schedule.has_lags() && uneven.is_none() {
             writeln!(f, "    t_lag_us: [{}],", Numbers(|| schedule.t_lag().iter().copied()))?;
             writeln!(f, "    t_wait_a_us: [{}],", Numbers(|| schedule.t_wait(Phase::A).iter().copied()))?;
             writeln!(f, "    t_wait_b_us: [{}],", Numbers(|| schedule.t_wait(Phase::B).iter().copied()))?;
@@ -92,6 +100,10 @@ impl<const K: usize> fmt::Display for RustSource<'_, K> {
         }
         writeln!(f, "        window: Micros::new({}),", Grouped(*window))?;
         writeln!(f, "        stale_echo: {stale_echo},")?;
+        match uneven {
+            None => writeln!(f, "        uneven: None,")?,
+            Some(uneven) => write!(f, "{}", UnevenSource(uneven))?,
+        }
         writeln!(f, "    }},\n}};")
     }
 }
@@ -131,8 +143,45 @@ struct Promise<'r>(&'r Requirements<'r>);
 
 impl fmt::Display for Promise<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Requirements { t_delta, min_interval, layout, window, .. } = *self.0;
+        let Requirements { t_delta, min_interval, layout, window, uneven, .. } = *self.0;
+        if uneven.is_some() {
+            return write!(
+                f,
+                "{layout} at least {min_interval} apart but for what is said of pairs, t_delta and \
+                              listening as said of each"
+            );
+        }
         write!(f, "t_delta = {t_delta}, {layout} at least {min_interval} apart, listening for {window}")
+    }
+}
+
+/// What is not alike, as the field of the requirements.
+struct UnevenSource<'u>(&'u Uneven<'u>);
+
+impl fmt::Display for UnevenSource<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Uneven { t_delta, window, intervals, shared_lines, together } = *self.0;
+        writeln!(f, "        uneven: Some(Uneven {{")?;
+        for (name, each) in [("t_delta", t_delta), ("window", window)] {
+            write!(f, "            {name}: &[")?;
+            for (at, time) in each.iter().enumerate() {
+                write!(f, "{}Micros::new({})", if at == 0 { "" } else { ", " }, Grouped(*time))?;
+            }
+            writeln!(f, "],")?;
+        }
+        write!(f, "            intervals: &[")?;
+        for (at, (x, y, interval)) in intervals.iter().enumerate() {
+            write!(f, "{}({x}, {y}, Micros::new({}))", if at == 0 { "" } else { ", " }, Grouped(*interval))?;
+        }
+        writeln!(f, "],")?;
+        for (name, sets) in [("shared_lines", shared_lines), ("together", together)] {
+            write!(f, "            {name}: &[")?;
+            for (at, set) in sets.iter().enumerate() {
+                write!(f, "{}{set:#b}", if at == 0 { "" } else { ", " })?;
+            }
+            writeln!(f, "],")?;
+        }
+        writeln!(f, "        }}),")
     }
 }
 

@@ -48,6 +48,8 @@ mod sound;
 pub mod tables;
 mod time;
 mod tracker;
+mod uneven;
+mod uneven_schedule;
 mod verified;
 mod verify;
 mod watch;
@@ -68,12 +70,16 @@ pub use reading::{ReadingKind, Tally, Verdict};
 pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError, VerifiedFor};
 pub use scheduler::{
-    BrokenPromise, ImmediateRefiring, Limits, ScheduledFiring, Scheduler, SchedulerStep, check_scheduler,
+    BrokenPromise, ImmediateRefiring, Limits, ScheduledFiring, Scheduler, SchedulerStep, UnevenFiring, check_scheduler,
 };
 pub use sensor_error::SensorError;
 pub use sound::SpeedOfSound;
 pub use time::{Instant, Micros};
 pub use tracker::{EchoTracker, Firing, TrackerError, TrackerSettings};
+pub use uneven::{Uneven, UnevenError};
+#[doc(hidden)]
+pub use uneven_schedule::__checked_uneven;
+pub use uneven_schedule::{SensorLimits, UnevenSchedule};
 pub use verified::VerifiedSchedule;
 pub use verify::{Verification, Violation, ViolationKind, Violations};
 pub use watch::{Blind, LastAccepted, SensorWatch};

@@ -79,6 +79,16 @@ impl Micros {
     }
 }
 
+/// The shorter of two times, also in a `const fn`.
+pub(crate) const fn shorter(one: Micros, other: Micros) -> Micros {
+    if one.as_micros() < other.as_micros() { one } else { other }
+}
+
+/// The longer of two times, also in a `const fn`.
+pub(crate) const fn longer(one: Micros, other: Micros) -> Micros {
+    if one.as_micros() > other.as_micros() { one } else { other }
+}
+
 impl fmt::Display for Micros {
     /// Milliseconds without trailing zeros (`24 ms`, `24.5 ms`), or microseconds below one millisecond (`999 us`).
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

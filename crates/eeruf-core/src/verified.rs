@@ -4,7 +4,7 @@ use core::ops::Deref;
 
 use crate::conditions::{Criterion, Requirements};
 use crate::schedule::{Schedule, VerifiedFor};
-use crate::time::Micros;
+use crate::time::{Micros, shorter};
 use crate::verify::{Verification, Violation, stale_separation};
 
 /// A [`Schedule`] that was verified, and what for: [`schedule!`](crate::schedule!) makes it when the program is
@@ -64,7 +64,9 @@ impl<const K: usize, const M: usize> serde::Serialize for VerifiedSchedule<K, M>
 }
 
 impl<const K: usize> Verification<'_, K> {
-    /// The schedule with the proof that it meets the requirements.
+    /// The schedule with the proof that it meets the requirements. Where sensors are not all alike, it holds for all
+    /// what every one of them allows: the smallest `t_delta` and window. [`UnevenSchedule`](crate::UnevenSchedule)
+    /// holds each one's own.
     ///
     /// # Errors
     /// The first [`Violation`] if it does not.
@@ -83,8 +85,11 @@ impl<const K: usize> Verification<'_, K> {
             return Err(violation);
         }
         let min_refire = schedule.min_refire();
-        let window = if requirements.window.as_micros() == 0 { min_refire } else { requirements.window };
-        let Requirements { t_delta, min_interval, stale_echo, .. } = *requirements;
+        let Requirements { mut t_delta, mut min_interval, mut window, stale_echo, .. } = *requirements;
+        if requirements.uneven.is_some() {
+            (t_delta, min_interval, window) = requirements.strictest(schedule.sensors());
+        }
+        let window = if window.as_micros() == 0 { min_refire } else { window };
         // What crosstalk moves by is the size of d_x - d_y and d_x + d_y under either criterion. Pair by pair, since
         // `Schedule::separation` sorts, and would leave paths to a panic in a firmware image.
         let mut separation = Micros::MAX;
@@ -93,7 +98,9 @@ impl<const K: usize> Verification<'_, K> {
             let mut y = 0;
             while y < x {
                 let (even, odd) = schedule.left_sides(Criterion::Exact, x, y);
-                separation = shorter(separation, shorter(even, odd));
+                if !requirements.fire_together(x, y) {
+                    separation = shorter(separation, shorter(even, odd));
+                }
                 y += 1;
             }
             if stale_echo {
@@ -104,8 +111,4 @@ impl<const K: usize> Verification<'_, K> {
         let verified_for = VerifiedFor { t_delta, min_interval, window, separation };
         Ok(VerifiedSchedule(schedule.with_verified_for(verified_for)))
     }
-}
-
-const fn shorter(one: Micros, other: Micros) -> Micros {
-    if one.as_micros() < other.as_micros() { one } else { other }
 }

@@ -5,7 +5,7 @@
 
 use core::fmt;
 
-use crate::conditions::{Interval, Requirements, Separation};
+use crate::conditions::{Interval, Requirements, Separation, shorter};
 use crate::schedule::{Phase, Schedule};
 use crate::time::Micros;
 
@@ -38,13 +38,35 @@ impl<'r, const K: usize> Verification<'r, K> {
         self.violations().advance().is_none()
     }
 
-    /// The pair closest to failing (13a), (13b); `None` for a single sensor.
+    /// The two sensors closest together by (13a), (13b); `None` for a single sensor. Two that must fire together need
+    /// no separation and do not count.
     pub const fn separation(&self) -> Option<Separation> {
-        self.schedule.separation(self.requirements.criterion)
+        if self.requirements.uneven.is_none() {
+            return self.schedule.separation(self.requirements.criterion);
+        }
+        let mut least: Option<Separation> = None;
+        let mut x = 0;
+        while x < self.schedule.sensors() {
+            let mut y = x + 1;
+            while y < self.schedule.sensors() {
+                let (even, odd) = self.schedule.left_sides(self.requirements.criterion, x, y);
+                let value = if even.as_micros() < odd.as_micros() { even } else { odd };
+                let is_less = match least {
+                    Some(least) => value.as_micros() < least.value.as_micros(),
+                    None => true,
+                };
+                if is_less && !self.requirements.fire_together(x, y) {
+                    least = Some(Separation { value, sensors: (x as u8, y as u8) });
+                }
+                y += 1;
+            }
+            x += 1;
+        }
+        least
     }
 
-    /// The largest `t_delta` at which (13a), (13b) - and the stale echo condition, if asked for - hold; `None` if none
-    /// does.
+    /// The largest `t_delta` at which (13a), (13b) - and the stale echo condition, if asked for - hold, if all sensors
+    /// have the same; `None` if none does.
     #[doc(alias = "T_delta")]
     pub const fn max_t_delta(&self) -> Option<Micros> {
         let mut separation = match self.separation() {
@@ -67,9 +89,33 @@ impl<'r, const K: usize> Verification<'r, K> {
         }
     }
 
-    /// The smallest interval between neighbours; `None` without neighbours.
+    /// The smallest interval between neighbours, or, where pairs have intervals of their own, between two that need
+    /// one; `None` without any.
     pub const fn min_interval(&self) -> Option<Interval> {
-        self.schedule.min_interval(self.requirements.layout)
+        let sensors = self.schedule.sensors();
+        if self.requirements.uneven.is_none() {
+            return self.schedule.min_interval(self.requirements.layout);
+        }
+        let mut least: Option<Interval> = None;
+        let mut x = 0;
+        while x < sensors {
+            let mut y = 0;
+            while y < sensors {
+                if self.requirements.interval_of(sensors, x, y).is_some() {
+                    let mut phase = 0;
+                    while phase < 2 {
+                        if x < y {
+                            least = shorter(least, self.schedule.interval_within(x, y, phase));
+                        }
+                        least = shorter(least, self.schedule.interval_across(x, y, phase));
+                        phase += 1;
+                    }
+                }
+                y += 1;
+            }
+            x += 1;
+        }
+        least
     }
 
     /// The shortest time between two firings of one sensor.
@@ -77,7 +123,8 @@ impl<'r, const K: usize> Verification<'r, K> {
         self.schedule.min_refire()
     }
 
-    /// Every violation: first (13a), then (13b), stale echoes, intervals, and windows.
+    /// Every violation: first (13a), then (13b), stale echoes, intervals, windows, shared echo lines, and sensors that
+    /// must fire together.
     pub const fn violations(&self) -> Violations<'r, K> {
         Violations { verification: *self, check: 0, x: 0, y: 0, phase: 0 }
     }
@@ -102,6 +149,10 @@ pub enum ViolationKind {
     Interval,
     /// A sensor fires again while it still listens.
     Window,
+    /// A sensor fires while another one listens on the same echo line.
+    SharedLine,
+    /// Two sensors that must fire together do not.
+    Together,
 }
 
 impl ViolationKind {
@@ -113,6 +164,8 @@ impl ViolationKind {
             Self::StaleEcho => "stale_echo",
             Self::Interval => "interval",
             Self::Window => "window",
+            Self::SharedLine => "shared_line",
+            Self::Together => "together",
         }
     }
 
@@ -122,7 +175,8 @@ impl ViolationKind {
             Self::CrosstalkA => "Eq. (13a)",
             Self::CrosstalkB | Self::StaleEcho => "Eq. (13b)",
             Self::Interval => "Sec. 3.1 c",
-            Self::Window => "T_wind",
+            Self::Window | Self::SharedLine => "T_wind",
+            Self::Together => "together",
         }
     }
 }
@@ -139,7 +193,7 @@ pub struct Violation {
     pub phases: (Phase, Phase),
     /// The time found.
     pub value: Micros,
-    /// The least time that would do.
+    /// The least time that would do; for two that must fire together the only one, 0.
     pub required: Micros,
 }
 
@@ -174,6 +228,15 @@ impl fmt::Display for Violation {
                 "sensor {x} fires again {value} after phase {}; it listens for {required} ({source})",
                 self.phases.0
             ),
+            ViolationKind::SharedLine => write!(
+                f,
+                "sensor {y} fires {value} after sensor {x} fired in phase {}; on the echo line that they share sensor \
+                 {x} listens for {required} ({source})",
+                self.phases.0
+            ),
+            ViolationKind::Together => {
+                write!(f, "sensors {x} and {y} fire {value} apart in phase {}; they must fire together", self.phases.0)
+            }
         }
     }
 }
@@ -192,7 +255,7 @@ pub struct Violations<'r, const K: usize> {
 impl<const K: usize> Violations<'_, K> {
     /// `Iterator::next` as a `const fn`, so that a table can be checked when it is compiled.
     pub(crate) const fn advance(&mut self) -> Option<Violation> {
-        while self.check < 6 {
+        while self.check < 9 {
             let found = self.examine();
             self.step();
             if found.is_some() {
@@ -224,29 +287,54 @@ impl<const K: usize> Violations<'_, K> {
         let (schedule, requirements) = (self.verification.schedule, self.verification.requirements);
         let (x, y, phase) = (self.x, self.y, self.phase);
         let pair = x < y && phase == 0;
-        let neighbours = requirements.layout.neighbours(schedule.sensors(), x, y);
         let phases = (Phase(phase as u8), Phase(phase as u8));
         let sensors = (x as u8, y as u8);
-        let separation = requirements.separation();
         let (kind, phases, value, required) = match self.check {
-            0 if pair => {
-                (ViolationKind::CrosstalkA, phases, schedule.left_sides(requirements.criterion, x, y).0, separation)
-            }
-            1 if pair => {
-                (ViolationKind::CrosstalkB, phases, schedule.left_sides(requirements.criterion, x, y).1, separation)
+            0 | 1 if pair => {
+                let Some(separation) = requirements.separation_of(x, y) else { return None };
+                let (even, odd) = schedule.left_sides(requirements.criterion, x, y);
+                if self.check == 0 {
+                    (ViolationKind::CrosstalkA, phases, even, separation)
+                } else {
+                    (ViolationKind::CrosstalkB, phases, odd, separation)
+                }
             }
             2 if requirements.stale_echo && x == y && phase == 0 => {
+                let Some(separation) = requirements.separation_of(x, x) else { return None };
                 (ViolationKind::StaleEcho, phases, stale_separation(schedule, x), separation)
             }
-            3 if neighbours && x < y => {
-                let interval = schedule.interval_within(x, y, phase);
-                (ViolationKind::Interval, interval.phases, interval.value, requirements.min_interval)
+            3 | 4 if x < y || self.check == 4 => {
+                let Some(required) = requirements.interval_of(schedule.sensors(), x, y) else { return None };
+                let within = self.check == 3;
+                let interval =
+                    if within { schedule.interval_within(x, y, phase) } else { schedule.interval_across(x, y, phase) };
+                (ViolationKind::Interval, interval.phases, interval.value, required)
             }
-            4 if neighbours => {
-                let interval = schedule.interval_across(x, y, phase);
-                (ViolationKind::Interval, interval.phases, interval.value, requirements.min_interval)
+            5 if x == y => (ViolationKind::Window, phases, schedule.refire(phase, x), requirements.window_of(x)),
+            6 | 7 if requirements.share_a_line(x, y) => {
+                let (first, second) = (schedule.fire_at(phase, x), schedule.fire_at(phase, y));
+                let interval = if self.check == 7 {
+                    schedule.interval_across(x, y, phase)
+                } else if first.as_micros() <= second.as_micros() {
+                    schedule.interval_within(x, y, phase)
+                } else {
+                    return None;
+                };
+                (ViolationKind::SharedLine, interval.phases, interval.value, requirements.window_of(x))
             }
-            5 if x == y => (ViolationKind::Window, phases, schedule.refire(phase, x), requirements.window),
+            8 if x < y && requirements.fire_together(x, y) => {
+                let apart = schedule.interval_within(x, y, phase).value;
+                if apart.as_micros() == 0 {
+                    return None;
+                }
+                return Some(Violation {
+                    kind: ViolationKind::Together,
+                    sensors,
+                    phases,
+                    value: apart,
+                    required: Micros::ZERO,
+                });
+            }
             _ => return None,
         };
         if value.as_micros() >= required.as_micros() {

@@ -66,6 +66,7 @@ mod everything_public_has_a_format {
         formats::<(Phase, Schedule<12>, ScheduleError, VerifiedFor, VerifiedSchedule<12>)>();
         formats::<(BrokenPromise, ImmediateRefiring<'_, 12>, Limits<'_>, ScheduledFiring<'_, 12>, SchedulerStep)>();
         formats::<(Verification<'_, 12>, Violation, ViolationKind, Violations<'_, 12>)>();
+        formats::<(SensorLimits, Uneven<'_>, UnevenError, UnevenFiring<'_, 12>, UnevenSchedule<12>)>();
         formats::<(Outcome<()>, ProblemError, SearchError)>();
     }
 }

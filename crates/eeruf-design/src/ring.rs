@@ -80,6 +80,7 @@ impl RingSpec {
             layout: self.layout.layout(),
             window: self.window,
             stale_echo: self.stale_echo,
+            uneven: None,
         };
         PeriodProblem { sensors: self.sensors, requirements, tick: self.tick }
     }

@@ -101,7 +101,7 @@ pub(crate) fn design(
     let began = Instant::now();
     let work = move |go_on: &mut dyn FnMut(&dyn Fn() -> String) -> bool| {
         let (criterion, layout) = (Criterion::Exact, layout.layout());
-        let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo };
+        let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo, uneven: None };
         let needs = PeriodProblem { sensors, requirements, tick };
         let mut control = |at: &Progress| {
             let (bound, best) = (at.bound.unwrap_or(0), at.best.unwrap_or(0));

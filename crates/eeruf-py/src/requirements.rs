@@ -67,6 +67,7 @@ impl OwnedRequirements {
             layout: self.layout.layout(),
             window: self.window,
             stale_echo: self.stale_echo,
+            uneven: None,
         }
     }
 }

@@ -72,6 +72,7 @@ fn every_schedule_of_the_shared_cases_meets_its_requirements() {
             layout: case.layout,
             window: us(case.window),
             stale_echo: case.stale_echo,
+            uneven: None,
         };
         assert_eq!(schedule.verify(&requirements).violations().next(), None);
     }

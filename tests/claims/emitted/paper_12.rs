@@ -12,5 +12,6 @@ pub const RING: VerifiedSchedule<12> = schedule! {
         layout: Layout::Line(4),
         window: Micros::new(30_000),
         stale_echo: false,
+        uneven: None,
     },
 };

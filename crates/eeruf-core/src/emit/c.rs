@@ -18,7 +18,10 @@ pub struct CHeader<'r, const K: usize> {
     pub(super) requirements: &'r Requirements<'r>,
 }
 
-impl<const K: usize> fmt::Display for CHeader<'_, K> {
+/// The need of one sensor.
+type OfSensor<'r> = fn(&Requirements<'r>, usize) -> Micros;
+
+impl<'r, const K: usize> fmt::Display for CHeader<'r, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { schedule, requirements } = *self;
         writeln!(f, "/* {};\n   {}.", Summary(schedule), Promise(requirements))?;
@@ -26,8 +29,19 @@ impl<const K: usize> fmt::Display for CHeader<'_, K> {
         writeln!(f, "#ifndef EERUF_SCHEDULE_H\n#define EERUF_SCHEDULE_H\n\n#include <stdint.h>\n")?;
         writeln!(f, "#define EERUF_SENSORS {}", schedule.sensors())?;
         writeln!(f, "#define EERUF_PERIOD_US {}u", schedule.period().as_micros())?;
-        writeln!(f, "#define EERUF_T_DELTA_US {}u", requirements.t_delta.as_micros())?;
-        writeln!(f, "#define EERUF_WINDOW_US {}u\n", requirements.window.as_micros())?;
+        let each = |of: OfSensor<'r>| (0..schedule.sensors()).map(move |x| of(requirements, x).as_micros());
+        let uneven = requirements.uneven.is_some();
+        if uneven {
+            writeln!(f, "/* The smallest of all sensors, with which all may run; each one's own follow. */")?;
+        }
+        writeln!(f, "#define EERUF_T_DELTA_US {}u", each(Requirements::t_delta_of).min().unwrap_or_default())?;
+        writeln!(f, "#define EERUF_WINDOW_US {}u\n", each(Requirements::window_of).min().unwrap_or_default())?;
+        let own: [(&str, OfSensor<'r>); 2] =
+            [("t_delta", Requirements::t_delta_of), ("window", Requirements::window_of)];
+        for (name, of) in own.into_iter().filter(|_| uneven) {
+            let times = Plain(|| each(of).map(|time| (time, "u")));
+            writeln!(f, "static const uint32_t eeruf_{name}_us[EERUF_SENSORS] = {{{times}}};")?;
+        }
         writeln!(f, "static const uint32_t eeruf_t_fire_us[2][EERUF_SENSORS] = {{")?;
         for phase in [Phase::A, Phase::B] {
             let times = || (0..schedule.sensors()).filter_map(move |x| schedule.t_fire(phase, x));

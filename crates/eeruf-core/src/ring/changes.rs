@@ -53,6 +53,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// `t_delta`. The ring then goes on as before.
     pub fn set_window(&mut self, window: Micros) -> Result<(), RingError> {
         self.listening = Listening::checked(self.t_delta(), window, self.blanking(), &self.scheduler)?;
+        if S::UNEVEN {
+            self.find_first_to_close();
+        }
         self.emit_when_oldest_ends();
         Ok(())
     }

@@ -28,20 +28,45 @@ impl Listening {
     }
 
     /// With some of it changed.
-    pub(super) fn checked(
+    pub(super) fn checked<S: Scheduler>(
         t_delta: Micros,
         window: Micros,
         blanking: Micros,
-        scheduler: &impl Scheduler,
+        scheduler: &S,
     ) -> Result<Self, RingError> {
         allowed(t_delta, window, scheduler.limits())?;
         if let Some(next) = scheduler.next_limits() {
             allowed(t_delta, window, next)?;
         }
-        let narrow = |time: Micros| u16::try_from(time.as_micros()).ok().filter(|_| time < window);
-        let blanking = narrow(blanking).ok_or(RingError::Blanking { blanking, window })?;
-        let t_delta = narrow(t_delta).ok_or(RingError::CoarseTDelta { t_delta, window })?;
+        let mut shortest = window;
+        if S::UNEVEN {
+            // At most 64 sensors.
+            let sensors = 0..scheduler.sensors() as u8;
+            shortest =
+                sensors.filter_map(|x| scheduler.limits_of(x)).map(|limits| limits.window).fold(window, Micros::min);
+        }
+        let narrow = |time: Micros| u16::try_from(time.as_micros()).ok().filter(|_| time < shortest);
+        let blanking = narrow(blanking).ok_or(RingError::Blanking { blanking, window: shortest })?;
+        let t_delta = narrow(t_delta).ok_or(RingError::CoarseTDelta { t_delta, window: shortest })?;
         Ok(Self { window, t_delta, blanking })
+    }
+
+    /// For how long one sensor listens: no longer than the scheduler allows it.
+    #[inline]
+    pub(super) fn window_of<S: Scheduler>(&self, scheduler: &S, sensor: u8) -> Micros {
+        match if S::UNEVEN { scheduler.limits_of(sensor) } else { None } {
+            Some(limits) => limits.window.min(self.window),
+            None => self.window,
+        }
+    }
+
+    /// What counts as the same echo for one sensor: no more than the scheduler allows it.
+    #[inline]
+    pub(super) fn t_delta_of<S: Scheduler>(&self, scheduler: &S, sensor: u8) -> Micros {
+        match if S::UNEVEN { scheduler.limits_of(sensor) } else { None } {
+            Some(limits) => limits.t_delta.min(self.t_delta()),
+            None => self.t_delta(),
+        }
     }
 
     /// Whether another schedule allows it.

@@ -16,9 +16,10 @@ mod steps;
 use crate::filter::Agreement;
 use crate::reading::{ReadingKind, Tally};
 use crate::schedule::Schedule;
-use crate::scheduler::{ImmediateRefiring, ScheduledFiring, Scheduler};
+use crate::scheduler::{ImmediateRefiring, ScheduledFiring, Scheduler, UnevenFiring};
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
+use crate::uneven_schedule::UnevenSchedule;
 use crate::verified::VerifiedSchedule;
 
 use lateness::Lateness;
@@ -99,6 +100,22 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s
 
     /// The schedule of the present period.
     pub const fn schedule(&self) -> &'s Schedule<K, M> {
+        self.scheduler.schedule()
+    }
+}
+
+impl<'s, const K: usize, const E: usize> Ring<UnevenFiring<'s, K>, K, E> {
+    /// A ring of sensors that are not all alike, with scheduled firing that begins at `now`. Each sensor listens and
+    /// compares as it was verified for, unless `config` asks for less: what it says is the most for all.
+    ///
+    /// # Errors
+    /// As for [`Ring::with_scheduler`].
+    pub fn uneven(schedule: &'s UnevenSchedule<K>, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
+        Self::with_scheduler(UnevenFiring::new(schedule, now), config, now)
+    }
+
+    /// The schedule.
+    pub const fn schedule(&self) -> &'s UnevenSchedule<K> {
         self.scheduler.schedule()
     }
 }
@@ -199,10 +216,11 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// [`SensorError`] for a sensor that is not there.
     #[inline]
     pub fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
+        let window = self.listening.window_of(&self.scheduler, sensor);
         let Some(heard) = self.sensors.get_mut(usize::from(sensor)) else {
             return self.no_such(sensor);
         };
-        match heard.echo(at, self.listening.blanking(), self.listening.window()) {
+        match heard.echo(at, self.listening.blanking(), window) {
             Noted::Ready => {
                 if !self.has_pending() || !at.has_reached(self.emit_at) {
                     self.emit_at = at;
@@ -235,14 +253,27 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         self.scheduler.is_enabled(sensor)
     }
 
-    /// `T_delta`: consecutive readings that differ by no more are near-identical.
+    /// `T_delta`: consecutive readings that differ by no more are near-identical. Where sensors have their own, the
+    /// largest: see [`t_delta_of`](Self::t_delta_of).
     pub const fn t_delta(&self) -> Micros {
         self.listening.t_delta()
     }
 
-    /// `T_wind`: how long a sensor listens after it has fired.
+    /// `T_delta` of one sensor.
+    pub fn t_delta_of(&self, sensor: u8) -> Micros {
+        self.listening.t_delta_of(&self.scheduler, sensor)
+    }
+
+    /// `T_wind`: how long a sensor listens after it has fired. Where sensors have their own, the longest: see
+    /// [`window_of`](Self::window_of).
     pub const fn window(&self) -> Micros {
         self.listening.window()
+    }
+
+    /// `T_wind` of one sensor.
+    #[inline]
+    pub fn window_of(&self, sensor: u8) -> Micros {
+        self.listening.window_of(&self.scheduler, sensor)
     }
 
     /// How long a sensor is deaf after it has fired.

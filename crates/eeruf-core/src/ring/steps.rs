@@ -40,12 +40,19 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if late != Micros::ZERO || self.lateness.is_watching() {
             self.fired_late(sensor, late);
         }
-        if self.oldest == NOBODY {
+        if self.oldest == NOBODY || (S::UNEVEN && self.closes_first(sensor, now)) {
             self.oldest = sensor;
             if self.ready == 0 {
-                self.emit_at = now + self.listening.window();
+                self.emit_at = now + self.window_of(sensor);
             }
         }
+    }
+
+    /// Whether the window of a sensor that fires `now` closes before all others: where windows differ, the sensor that
+    /// fired first need not be the first to end.
+    fn closes_first(&self, sensor: u8, now: Instant) -> bool {
+        let oldest = self.sensor(self.oldest).map(|oldest| oldest.fired + self.window_of(self.oldest));
+        oldest.is_none_or(|closes| !(now + self.window_of(sensor)).has_reached(closes))
     }
 
     /// A firing came late, or has a stretch because others did.
@@ -71,8 +78,13 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// By how much two stretches may differ: by so little that crosstalk still moves by more than `t_delta`, and that
     /// no firing of an emitter is skipped.
     pub(super) fn tolerated(&self) -> u16 {
-        let t_delta = self.listening.t_delta().as_micros();
         let Limits { longest_window, verified_for } = self.scheduler.limits();
+        let (mut t_delta, mut longest_window) = (self.listening.t_delta().as_micros(), longest_window);
+        if S::UNEVEN {
+            // The separation is as much more than this as the pair with the least to spare has, whatever is asked for.
+            t_delta = verified_for.map_or(t_delta, |verified_for| verified_for.t_delta.as_micros());
+            longest_window = self.scheduler.min_refire();
+        }
         let separation = verified_for.map_or(2 * t_delta + 1, |verified_for| verified_for.separation.as_micros());
         let separation = separation.min(longest_window.as_micros());
         let tolerated = separation.saturating_sub(t_delta + 1);
@@ -157,16 +169,15 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         let heard = self.sensors.get_mut(usize::from(sensor))?;
         let phase = heard.phase();
         let (listened, fired) = (heard.is(LISTENING), heard.fired);
-        let mut ended_at = fired + self.listening.window();
+        let mut ended_at = fired + self.listening.window_of(&self.scheduler, sensor);
         if heard.is(READY) {
             // Counted when its edge came.
             self.ready = self.ready.wrapping_sub(1);
             ended_at = fired + heard.held().unwrap_or_default();
         }
         let verdict = if listened {
-            heard.compare(Rule { t_delta: self.listening.t_delta(), agreement: self.agreement }, || {
-                expected_change_us(sensor)
-            })
+            let t_delta = self.listening.t_delta_of(&self.scheduler, sensor);
+            heard.compare(Rule { t_delta, agreement: self.agreement }, || expected_change_us(sensor))
         } else {
             heard.take_late()
         };
@@ -188,13 +199,17 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     pub(super) fn emit_when_oldest_ends(&mut self) {
         if self.ready == 0 {
             if let Some(oldest) = self.sensor(self.oldest) {
-                self.emit_at = oldest.fired + self.listening.window();
+                self.emit_at = oldest.fired + self.window_of(self.oldest);
             }
         }
     }
 
-    /// Finds the next oldest, now that the one that fired at `before` has stopped listening. All others fired later.
+    /// Finds the next oldest, now that the one that fired at `before` has stopped listening. All others fired later;
+    /// where windows differ, the oldest is the one whose window closes first.
     pub(super) fn find_oldest(&mut self, before: Instant) {
+        if S::UNEVEN {
+            return self.find_first_to_close();
+        }
         let (mut oldest, mut soonest) = (NOBODY, Micros::MAX);
         for (x, sensor) in self.sensors.iter().enumerate() {
             if sensor.is(LISTENING) && sensor.fired.since(before) < soonest {
@@ -203,6 +218,18 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             }
         }
         self.oldest = oldest;
+    }
+
+    pub(super) fn find_first_to_close(&mut self) {
+        let mut first: Option<(u8, Instant)> = None;
+        for (x, sensor) in self.sensors.iter().enumerate() {
+            // At most 64 sensors.
+            let closes = sensor.fired + self.window_of(x as u8);
+            if sensor.is(LISTENING) && first.is_none_or(|(_, sooner)| !closes.has_reached(sooner)) {
+                first = Some((x as u8, closes));
+            }
+        }
+        self.oldest = first.map_or(NOBODY, |(x, _)| x);
     }
 
     fn sensor(&self, sensor: u8) -> Option<&Sensor<E>> {

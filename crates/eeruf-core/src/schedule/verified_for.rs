@@ -8,11 +8,11 @@ use crate::time::Micros;
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct VerifiedFor {
-    /// `T_delta`, for which (13a), (13b) hold.
+    /// `T_delta`, for which (13a), (13b) hold; the smallest where sensors have their own.
     pub t_delta: Micros,
-    /// The least interval between neighbours.
+    /// The least interval between neighbours; where pairs have their own, the longest time that any of them keeps.
     pub min_interval: Micros,
-    /// `T_wind`; the shortest refire time where no window was asked for.
+    /// `T_wind`; the shortest refire time where no window was asked for, the smallest where sensors have their own.
     pub window: Micros,
     /// By how much crosstalk moves at least from one reading to the next, `2 t_delta + 1 us` or more.
     pub separation: Micros,

@@ -149,7 +149,8 @@ impl Check {
     }
 
     fn fire<S: Scheduler>(&mut self, scheduler: &mut S, sensor: u8) -> Result<(), BrokenPromise> {
-        let window = scheduler.limits().longest_window.min(scheduler.horizon());
+        let longest = scheduler.limits_of(sensor).map_or(scheduler.limits().longest_window, |limits| limits.window);
+        let window = longest.min(scheduler.horizon());
         let (listens, comes_late) = (self.below(window.as_micros().saturating_add(1)), self.below(8) == 0);
         let later = Micros::new(if comes_late { self.below(500) } else { 0 });
         let there = usize::from(sensor) < scheduler.sensors();

@@ -4,6 +4,7 @@
 
 use crate::schedule::{Phase, VerifiedFor};
 use crate::time::{Instant, Micros};
+use crate::uneven_schedule::SensorLimits;
 
 /// What a scheduler wants done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +44,8 @@ pub struct Limits<'s> {
 pub trait Scheduler {
     /// Whether a late firing delays all that follow by as much, as a common timetable does.
     const DELAYS_ALL: bool = false;
+    /// Whether [`limits_of`](Self::limits_of) says what each sensor may do by itself.
+    const UNEVEN: bool = false;
     /// The next step, if one is due. Call again until there is none.
     #[inline]
     fn poll(&mut self, now: Instant) -> Option<SchedulerStep> {
@@ -91,6 +94,10 @@ pub trait Scheduler {
     fn limits(&self) -> Limits<'_>;
     /// What it allows as of the next period, if it changes to another schedule then.
     fn next_limits(&self) -> Option<Limits<'_>> {
+        None
+    }
+    /// What it allows one sensor, where [`UNEVEN`](Self::UNEVEN): the ring asks for no more than this either.
+    fn limits_of(&self, _sensor: u8) -> Option<SensorLimits> {
         None
     }
     /// No sensor fires again within this time of firing.

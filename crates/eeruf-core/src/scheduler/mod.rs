@@ -6,8 +6,10 @@ mod check;
 mod contract;
 mod immediate;
 mod scheduled;
+mod uneven;
 
 pub use check::{BrokenPromise, check_scheduler};
 pub use contract::{Limits, Scheduler, SchedulerStep};
 pub use immediate::ImmediateRefiring;
 pub use scheduled::ScheduledFiring;
+pub use uneven::UnevenFiring;

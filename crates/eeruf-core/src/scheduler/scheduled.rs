@@ -3,7 +3,7 @@
 use super::contract::{Limits, Scheduler};
 use crate::schedule::{MAX_SENSORS, Phase, Schedule};
 use crate::sensor_set::SensorSet;
-use crate::time::{Instant, Micros};
+use crate::time::{Instant, Micros, longer};
 
 /// Scheduled firing: every sensor fires once per period, at the time the [`Schedule`] gives for the phase.
 ///
@@ -137,10 +137,6 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     pub(crate) const fn limits(&self) -> Limits<'_> {
         Limits { longest_window: self.min_refire(), verified_for: self.verified_for() }
     }
-}
-
-const fn longer(one: Micros, other: Micros) -> Micros {
-    if one.as_micros() > other.as_micros() { one } else { other }
 }
 
 impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {

@@ -165,6 +165,9 @@ impl PeriodProblem<'_> {
         if self.requirements.criterion == Criterion::Paper {
             return Err(SearchError::PaperCriterion);
         }
+        if self.requirements.uneven.is_some() {
+            return Err(SearchError::Uneven);
+        }
         self.requirements.layout.check(self.sensors)?;
         let (grid, rows) = (Grid::new(self.tick)?, self.requirements.layout.rows(self.sensors));
         let one_by_one = |grid: Grid| {

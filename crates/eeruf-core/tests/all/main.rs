@@ -16,6 +16,8 @@ mod period_variants;
 mod phases;
 mod promises;
 mod theory;
+mod uneven;
+mod uneven_ring;
 mod wait_limits;
 mod wait_small;
 mod wait_tables;

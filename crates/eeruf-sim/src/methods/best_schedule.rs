@@ -35,6 +35,7 @@ pub fn requirements_of(robot: &Robot) -> Requirements<'static> {
         layout,
         window: robot.window,
         stale_echo: true,
+        uneven: None,
     }
 }
 

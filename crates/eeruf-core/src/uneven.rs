@@ -1,0 +1,270 @@
+//! [`Uneven`]: what sensors of one ring need that are not all alike.
+
+use core::fmt;
+
+use crate::conditions::Requirements;
+use crate::schedule::MAX_SENSORS;
+use crate::time::{Micros, shorter};
+
+/// What single sensors and pairs need, where they are not all alike; what is not named here needs what [`Requirements`]
+/// say for all. Sensors are counted from 0.
+///
+/// ```
+/// use eeruf_core::{Layout, Micros, Requirements, Uneven, ViolationKind, Schedule};
+/// // Two modules that look far and two that look near; the first and the third share an echo line.
+/// const MODULES: Uneven<'static> = Uneven {
+///     window: &[Micros::from_millis(30), Micros::from_millis(30), Micros::from_millis(12), Micros::from_millis(12)],
+///     shared_lines: &[0b0101],
+///     ..Uneven::NONE
+/// };
+/// let ring = Requirements { layout: Layout::Line(1), uneven: Some(MODULES), ..Requirements::new(Micros::new(999)) };
+/// let ms = |ms: [u32; 4]| ms.map(Micros::from_millis);
+/// let schedule = Schedule::from_firing(Micros::from_millis(60), [ms([0, 0, 31, 0]), ms([0, 2, 35, 6])])?;
+/// assert!(schedule.verify(&ring).ok());
+/// // 29 ms after the first sensor the third would hear what that one still listens for.
+/// let schedule = Schedule::from_firing(Micros::from_millis(60), [ms([0, 0, 29, 0]), ms([0, 2, 33, 6])])?;
+/// let kinds: Vec<_> = schedule.verify(&ring).violations().map(|violation| violation.kind).collect();
+/// assert_eq!(kinds, [ViolationKind::SharedLine]);
+/// # Ok::<(), eeruf_core::ScheduleError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Uneven<'a> {
+    /// `T_delta` of each sensor; empty if all have that of the requirements. Two sensors need the separation of the
+    /// one with the larger: crosstalk passes both ways.
+    pub t_delta: &'a [Micros],
+    /// `T_wind` of each sensor; empty if all have that of the requirements.
+    pub window: &'a [Micros],
+    /// Pairs of sensors with the least time between their firings, whatever the layout and the interval of all say; 0
+    /// for none.
+    pub intervals: &'a [(u8, u8, Micros)],
+    /// Sets of sensors that share an echo line, bit x for sensor x: none fires while another of them listens.
+    pub shared_lines: &'a [u64],
+    /// Sets of sensors that fire together, bit x for sensor x: at the same instant in every phase. They are declared
+    /// not to hear each other, so no separation is asked between them; all else is.
+    pub together: &'a [u64],
+}
+
+impl Uneven<'_> {
+    /// All sensors alike.
+    pub const NONE: Self = Self { t_delta: &[], window: &[], intervals: &[], shared_lines: &[], together: &[] };
+
+    /// Whether it makes sense for so many sensors.
+    ///
+    /// # Errors
+    /// The first thing that does not: see [`UnevenError`].
+    pub fn check(&self, sensors: usize) -> Result<(), UnevenError> {
+        for (what, each) in [("t_delta", self.t_delta), ("window", self.window)] {
+            if !each.is_empty() && each.len() != sensors {
+                return Err(UnevenError::Length { what, given: each.len(), sensors });
+            }
+        }
+        for (at, &(x, y, _)) in self.intervals.iter().enumerate() {
+            let pair = (usize::from(x), usize::from(y));
+            if x == y || pair.0.max(pair.1) >= sensors {
+                return Err(UnevenError::Pair { pair, sensors });
+            }
+            if self.intervals.iter().take(at).any(|&(p, q, _)| (p, q) == (x, y) || (q, p) == (x, y)) {
+                return Err(UnevenError::PairTwice { pair });
+            }
+        }
+        let there = if sensors >= MAX_SENSORS { u64::MAX } else { (1 << sensors) - 1 };
+        for (what, sets) in [("shared_lines", self.shared_lines), ("together", self.together)] {
+            let mut seen = 0;
+            for &set in sets {
+                if set & !there != 0 || set.count_ones() < 2 {
+                    return Err(UnevenError::Set { what, set, sensors });
+                }
+                if what == "together" && seen & set != 0 {
+                    return Err(UnevenError::TwoGroups { sensor: (seen & set).trailing_zeros() as u8 });
+                }
+                seen |= set;
+            }
+        }
+        Ok(())
+    }
+
+    const fn in_one(sets: &[u64], x: usize, y: usize) -> bool {
+        let mut at = 0;
+        while at < sets.len() {
+            if x < MAX_SENSORS && y < MAX_SENSORS && sets[at] >> x & 1 == 1 && sets[at] >> y & 1 == 1 {
+                return true;
+            }
+            at += 1;
+        }
+        false
+    }
+}
+
+/// What of an [`Uneven`] makes no sense.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum UnevenError {
+    /// There is not one value for each sensor.
+    Length {
+        /// Of what.
+        what: &'static str,
+        /// How many values there are.
+        given: usize,
+        /// How many sensors.
+        sensors: usize,
+    },
+    /// A pair names a sensor that is not there, or one twice.
+    Pair {
+        /// The pair, from 0.
+        pair: (usize, usize),
+        /// How many sensors there are.
+        sensors: usize,
+    },
+    /// A pair has two intervals.
+    PairTwice {
+        /// The pair, from 0.
+        pair: (usize, usize),
+    },
+    /// A set holds a sensor that is not there, or fewer than two.
+    Set {
+        /// Of what.
+        what: &'static str,
+        /// The set, bit x for sensor x.
+        set: u64,
+        /// How many sensors there are.
+        sensors: usize,
+    },
+    /// A sensor fires together with two groups.
+    TwoGroups {
+        /// The sensor, from 0.
+        sensor: u8,
+    },
+}
+
+/// `{:#}` counts sensors from 0 where `{}` counts from 1.
+impl fmt::Display for UnevenError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let first = usize::from(!f.alternate());
+        match *self {
+            Self::Length { what, given, sensors } => {
+                write!(f, "{what}: {given} values; expected one for each of {sensors} sensors")
+            }
+            Self::Pair { pair: (x, y), sensors } => {
+                write!(
+                    f,
+                    "intervals: sensors {} and {}; expected two different ones of {sensors}",
+                    x + first,
+                    y + first
+                )
+            }
+            Self::PairTwice { pair: (x, y) } => {
+                write!(f, "intervals: sensors {} and {} twice; expected each pair once", x + first, y + first)
+            }
+            Self::Set { what, set, sensors } => {
+                write!(f, "{what}: sensors")?;
+                for sensor in (0..MAX_SENSORS).filter(|sensor| set >> sensor & 1 == 1) {
+                    write!(f, " {}", sensor + first)?;
+                }
+                write!(f, "; expected two or more different ones of {sensors}")
+            }
+            Self::TwoGroups { sensor } => {
+                write!(f, "together: sensor {} is in two groups; expected one", usize::from(sensor) + first)
+            }
+        }
+    }
+}
+
+impl core::error::Error for UnevenError {}
+
+/// What one sensor or pair needs, alike or not.
+impl Requirements<'_> {
+    /// `T_delta` of a sensor.
+    pub const fn t_delta_of(&self, sensor: usize) -> Micros {
+        match self.uneven {
+            Some(uneven) if sensor < uneven.t_delta.len() => uneven.t_delta[sensor],
+            _ => self.t_delta,
+        }
+    }
+
+    /// `T_wind` of a sensor.
+    pub const fn window_of(&self, sensor: usize) -> Micros {
+        match self.uneven {
+            Some(uneven) if sensor < uneven.window.len() => uneven.window[sensor],
+            _ => self.window,
+        }
+    }
+
+    /// The separation that two sensors need, `2 t_delta + 1 us` by the larger of their `t_delta`; twice the same sensor
+    /// for its stale echoes. `None` for two that fire together.
+    pub const fn separation_of(&self, x: usize, y: usize) -> Option<Micros> {
+        if x != y && self.fire_together(x, y) {
+            return None;
+        }
+        let (one, other) = (self.t_delta_of(x), self.t_delta_of(y));
+        let larger = if one.as_micros() > other.as_micros() { one } else { other };
+        Some(larger.saturating_add(larger).saturating_add(Micros::new(1)))
+    }
+
+    /// The least time between the firings of two of so many sensors; `None` if they need none.
+    pub const fn interval_of(&self, sensors: usize, x: usize, y: usize) -> Option<Micros> {
+        if let Some(uneven) = self.uneven {
+            let mut at = 0;
+            while at < uneven.intervals.len() {
+                let (p, q, interval) = uneven.intervals[at];
+                let (p, q) = (p as usize, q as usize);
+                if p == x && q == y || p == y && q == x {
+                    return if interval.as_micros() == 0 { None } else { Some(interval) };
+                }
+                at += 1;
+            }
+        }
+        if self.layout.neighbours(sensors, x, y) { Some(self.min_interval) } else { None }
+    }
+
+    /// Whether two sensors share an echo line.
+    pub const fn share_a_line(&self, x: usize, y: usize) -> bool {
+        match self.uneven {
+            Some(uneven) => x != y && Uneven::in_one(uneven.shared_lines, x, y),
+            None => false,
+        }
+    }
+
+    /// Whether two sensors must fire at the same instants.
+    pub const fn fire_together(&self, x: usize, y: usize) -> bool {
+        match self.uneven {
+            Some(uneven) => x != y && Uneven::in_one(uneven.together, x, y),
+            None => false,
+        }
+    }
+
+    /// How long after a firing of `x` sensor `y` must not fire, of so many sensors: the interval of the two, or the
+    /// window of `x` where that is longer and they share an echo line.
+    pub const fn gap_after(&self, sensors: usize, x: usize, y: usize) -> Micros {
+        let interval = match self.interval_of(sensors, x, y) {
+            Some(interval) => interval,
+            None => Micros::ZERO,
+        };
+        let window = self.window_of(x);
+        if self.share_a_line(x, y) && window.as_micros() > interval.as_micros() { window } else { interval }
+    }
+
+    /// The smallest `t_delta`, the longest gap that any two of so many sensors keep, and the smallest window.
+    pub(crate) const fn strictest(&self, sensors: usize) -> (Micros, Micros, Micros) {
+        let (mut t_delta, mut gap, mut window) = (Micros::MAX, self.min_interval, Micros::MAX);
+        let mut x = 0;
+        while x < sensors {
+            t_delta = shorter(t_delta, self.t_delta_of(x));
+            // No window of its own allows any.
+            if self.window_of(x).as_micros() > 0 {
+                window = shorter(window, self.window_of(x));
+            }
+            let mut y = 0;
+            while y < sensors {
+                let after = self.gap_after(sensors, x, y);
+                if after.as_micros() > gap.as_micros() {
+                    gap = after;
+                }
+                y += 1;
+            }
+            x += 1;
+        }
+        (t_delta, gap, if window.as_micros() == u32::MAX { Micros::ZERO } else { window })
+    }
+}

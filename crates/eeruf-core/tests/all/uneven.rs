@@ -1,0 +1,266 @@
+//! Uneven rings: what single sensors and pairs need, against a judge that lays all firings of five periods on one line
+//! of time.
+
+use eeruf_core::search::PeriodProblem;
+use eeruf_core::search::design::memory_words;
+use eeruf_core::{
+    Layout, Micros, Requirements, Schedule, Uneven, UnevenError, Verification, ViolationKind, uneven_schedule,
+};
+
+use crate::common::random::Random;
+
+/// A small ring with everything that can be uneven.
+struct Ring {
+    t_delta: Vec<Micros>,
+    window: Vec<Micros>,
+    intervals: Vec<(u8, u8, Micros)>,
+    shared_lines: Vec<u64>,
+    together: Vec<u64>,
+}
+
+impl Ring {
+    fn random(random: &mut Random, sensors: usize) -> Self {
+        let mut each = |most: u32| (0..sensors).map(|_| Micros::new(random.up_to(most))).collect();
+        let (t_delta, window) = (each(2), each(9));
+        let pair = |random: &mut Random| {
+            let x = random.up_to(sensors as u32 - 2) as u8;
+            (x, x + 1 + random.up_to(sensors as u32 - 2 - u32::from(x)) as u8)
+        };
+        let set = |(x, y): (u8, u8)| 1_u64 << x | 1 << y;
+        let (one, other) = (pair(random), pair(random));
+        let mut intervals = vec![(one.1, one.0, Micros::new(random.up_to(4)))];
+        if one != other {
+            intervals.push((other.0, other.1, Micros::new(random.up_to(4))));
+        }
+        let (shared_lines, together) = (vec![set(pair(random))], vec![set(pair(random))]);
+        Self { t_delta, window, intervals, shared_lines, together }
+    }
+
+    fn uneven(&self) -> Uneven<'_> {
+        let Self { t_delta, window, intervals, shared_lines, together } = self;
+        Uneven { t_delta, window, intervals, shared_lines, together }
+    }
+
+    fn pairs(sets: &[u64], x: usize, y: usize) -> bool {
+        sets.iter().any(|set| set >> x & 1 == 1 && set >> y & 1 == 1)
+    }
+
+    /// The kinds of violation, with the sensors concerned, lower first.
+    fn violated(&self, schedule: &Schedule<4>, min_interval: i64, neighbours: usize) -> Vec<(ViolationKind, u8, u8)> {
+        let period = i64::from(schedule.period().as_micros());
+        let fires = |phase: usize, x: usize| {
+            let phase = if phase == 0 { eeruf_core::Phase::A } else { eeruf_core::Phase::B };
+            i64::from(schedule.t_fire(phase, x).unwrap().as_micros())
+        };
+        let line = |x: usize| (0..5).map(|n| n as i64 * period + fires(n % 2, x)).collect::<Vec<_>>();
+        let d = |x: usize| fires(0, x) - fires(1, x);
+        let us = |time: Micros| i64::from(time.as_micros());
+        let mut found = Vec::new();
+        for x in 0..schedule.sensors() {
+            if line(x).windows(2).any(|two| two[1] - two[0] < us(self.window[x])) {
+                found.push((ViolationKind::Window, x as u8, x as u8));
+            }
+            for y in x + 1..schedule.sensors() {
+                let mut add = |kind, is_violated: bool| {
+                    if is_violated {
+                        found.push((kind, x as u8, y as u8));
+                    }
+                };
+                let together = Self::pairs(&self.together, x, y);
+                let apart = 2 * us(self.t_delta[x].max(self.t_delta[y]));
+                add(ViolationKind::CrosstalkA, !together && (d(x) - d(y)).abs() <= apart);
+                add(ViolationKind::CrosstalkB, !together && (d(x) + d(y)).abs() <= apart);
+                let named = self.intervals.iter().find(|&&(p, q, _)| {
+                    (usize::from(p), usize::from(q)) == (x, y) || (usize::from(q), usize::from(p)) == (x, y)
+                });
+                let near = if y - x < neighbours { min_interval } else { 0 };
+                let interval = named.map_or(near, |&(_, _, interval)| us(interval));
+                let closest = |first: usize, second: usize| {
+                    let (first, second) = (line(first), line(second));
+                    let gaps = first.iter().flat_map(|p| second.iter().map(move |q| q - p));
+                    gaps.filter(|gap| *gap >= 0).min().unwrap()
+                };
+                add(ViolationKind::Interval, closest(x, y).min(closest(y, x)) < interval);
+                let listening = closest(x, y) < us(self.window[x]) || closest(y, x) < us(self.window[y]);
+                add(ViolationKind::SharedLine, Self::pairs(&self.shared_lines, x, y) && listening);
+                add(ViolationKind::Together, together && line(x) != line(y));
+            }
+        }
+        found
+    }
+}
+
+fn kinds(report: &Verification<'_, 4>) -> Vec<(ViolationKind, u8, u8)> {
+    let lower_first = |(x, y): (u8, u8)| (x.min(y), x.max(y));
+    let mut found: Vec<_> = report
+        .violations()
+        .map(|violation| {
+            let (x, y) = lower_first(violation.sensors);
+            (violation.kind, x, y)
+        })
+        .collect();
+    found.sort_by_key(|&(kind, x, y)| (x, y, kind.as_str()));
+    found.dedup();
+    found
+}
+
+#[test]
+fn each_violation_of_an_uneven_ring_is_one_that_firings_on_a_line_of_time_show_and_none_is_missed() {
+    let mut random = Random(7);
+    let (mut sound, mut seen) = (0, std::collections::BTreeMap::new());
+    for _ in 0..20_000 {
+        let sensors = 2 + random.up_to(2) as usize;
+        let ring = Ring::random(&mut random, sensors);
+        let period = 8 + random.up_to(30);
+        // Together now and then, or hardly any would.
+        let mut times: [Vec<Micros>; 2] =
+            [0, 1].map(|_| (0..sensors).map(|_| Micros::new(random.up_to(period - 1))).collect());
+        if random.up_to(1) == 0 {
+            let (x, y) = (ring.together[0].trailing_zeros() as usize, 63 - ring.together[0].leading_zeros() as usize);
+            times.iter_mut().for_each(|times| times[y] = times[x]);
+        }
+        let lags = vec![Micros::ZERO; sensors];
+        let schedule =
+            Schedule::<4>::from_slices(Micros::new(period), &lags, [&times[0], &times[1]]).expect("it lies within");
+        let (min_interval, neighbours) = (random.up_to(3), 1 + random.up_to(3) as u8);
+        let uneven = ring.uneven();
+        assert_eq!(uneven.check(sensors), Ok(()));
+        let requirements = Requirements {
+            min_interval: Micros::new(min_interval),
+            layout: Layout::Line(neighbours),
+            uneven: Some(uneven),
+            ..Requirements::new(Micros::new(99))
+        };
+        let mut expected = ring.violated(&schedule, min_interval.into(), neighbours.into());
+        expected.sort_by_key(|&(kind, x, y)| (x, y, kind.as_str()));
+        let report = schedule.verify(&requirements);
+        assert_eq!(kinds(&report), expected, "{requirements:?} {schedule:?}");
+        assert_eq!(report.ok(), expected.is_empty());
+        sound += u32::from(expected.is_empty());
+        for (kind, ..) in expected {
+            *seen.entry(kind.as_str()).or_insert(0) += 1;
+        }
+    }
+    assert!(sound > 50 && seen.len() == 6 && seen.values().all(|&times| times > 500), "{sound} {seen:?}");
+}
+
+#[test]
+fn what_is_violated_is_named_in_words() {
+    let ms = |ms: [u32; 3]| ms.map(Micros::from_millis);
+    let schedule = Schedule::from_firing(Micros::from_millis(40), [ms([0, 10, 21]), ms([0, 12, 20])]).unwrap();
+    let uneven = Uneven { shared_lines: &[0b011], together: &[0b110], ..Uneven::NONE };
+    let requirements = Requirements {
+        window: Micros::from_millis(11),
+        layout: Layout::Line(1),
+        uneven: Some(uneven),
+        ..Requirements::new(Micros::new(499))
+    };
+    let said: Vec<String> = schedule.verify(&requirements).violations().map(|found| found.to_string()).collect();
+    assert_eq!(
+        said,
+        [
+            "sensor 2 fires 10 ms after sensor 1 fired in phase a; on the echo line that they share sensor 1 listens \
+             for 11 ms (T_wind)",
+            "sensors 2 and 3 fire 11 ms apart in phase a; they must fire together",
+            "sensors 2 and 3 fire 8 ms apart in phase b; they must fire together",
+        ]
+    );
+}
+
+#[test]
+fn what_makes_no_sense_for_a_ring_is_refused_by_what_it_is() {
+    let two = [Micros::ZERO; 2];
+    for (uneven, expected) in [
+        (Uneven { window: &two, ..Uneven::NONE }, "window: 2 values; expected one for each of 3 sensors"),
+        (Uneven { t_delta: &two, ..Uneven::NONE }, "t_delta: 2 values; expected one for each of 3 sensors"),
+        (
+            Uneven { intervals: &[(0, 3, Micros::ZERO)], ..Uneven::NONE },
+            "intervals: sensors 1 and 4; expected two different ones of 3",
+        ),
+        (
+            Uneven { intervals: &[(0, 1, Micros::ZERO), (1, 0, Micros::ZERO)], ..Uneven::NONE },
+            "intervals: sensors 2 and 1 twice; expected each pair once",
+        ),
+        (
+            Uneven { shared_lines: &[0b1001], ..Uneven::NONE },
+            "shared_lines: sensors 1 4; expected two or more different ones of 3",
+        ),
+        (Uneven { together: &[0b1], ..Uneven::NONE }, "together: sensors 1; expected two or more different ones of 3"),
+        (Uneven { together: &[0b11, 0b110], ..Uneven::NONE }, "together: sensor 2 is in two groups; expected one"),
+    ] {
+        assert_eq!(uneven.check(3).map_err(|error| error.to_string()), Err(expected.to_owned()));
+    }
+    assert_eq!(Uneven { shared_lines: &[u64::MAX], ..Uneven::NONE }.check(64), Ok(()));
+    let too_few = Uneven { shared_lines: &[u64::MAX], ..Uneven::NONE }.check(63);
+    assert!(matches!(too_few, Err(UnevenError::Set { sensors: 63, .. })));
+}
+
+#[test]
+fn a_verified_uneven_schedule_allows_each_sensor_its_own_and_all_together_the_least() {
+    const CORNERS: eeruf_core::UnevenSchedule<3> = uneven_schedule! {
+        period_us: 60_000,
+        t_fire_a_us: [0, 25_000, 25_000],
+        t_fire_b_us: [0, 29_000, 29_000],
+        meets: Requirements {
+            min_interval: Micros::from_millis(15),
+            layout: Layout::Line(2),
+            uneven: Some(Uneven {
+                t_delta: &[Micros::new(499), Micros::new(1_900), Micros::new(999)],
+                window: &[Micros::from_millis(24), Micros::from_millis(12), Micros::from_millis(40)],
+                intervals: &[(1, 2, Micros::ZERO)],
+                shared_lines: &[0b011],
+                together: &[0b110],
+            }),
+            ..Requirements::new(Micros::new(999))
+        },
+    };
+    let of = |sensor| CORNERS.limits_of(sensor).map(|limits| (limits.t_delta, limits.window));
+    assert_eq!(of(1), Some((Micros::new(1_900), Micros::from_millis(12))));
+    assert_eq!((of(2), of(3)), (Some((Micros::new(999), Micros::from_millis(40))), None));
+    let least = CORNERS.verified().verified_for();
+    assert_eq!((least.t_delta, least.window), (Micros::new(499), Micros::from_millis(12)));
+    // The longest that any pair keeps: the first listens for 24 ms on the line that it shares.
+    assert_eq!((least.min_interval, least.separation), (Micros::from_millis(24), Micros::from_millis(4)));
+    let late = Requirements {
+        layout: Layout::Line(1),
+        uneven: Some(Uneven { shared_lines: &[0b011], ..Uneven::NONE }),
+        window: Micros::from_millis(26),
+        ..Requirements::new(Micros::new(499))
+    };
+    assert_eq!(CORNERS.verify(&late).verified_uneven().unwrap_err().kind, ViolationKind::CrosstalkA);
+}
+
+#[test]
+fn the_search_for_sensors_that_are_alike_refuses_others() {
+    let requirements = Requirements { uneven: Some(Uneven::NONE), ..Requirements::new(Micros::new(99)) };
+    let problem = PeriodProblem { sensors: 2, requirements, tick: Micros::from_millis(1) };
+    let mut memory = vec![0; memory_words(2)];
+    let error = problem.shortest::<2>(10, &mut memory, &mut ()).unwrap_err();
+    assert!(error.to_string().starts_with("sensors that are not all alike; expected"), "{error}");
+}
+
+#[test]
+fn an_uneven_schedule_is_written_with_all_that_it_was_designed_for() {
+    let ms = |ms: [u32; 2]| ms.map(Micros::from_millis);
+    let schedule = Schedule::from_firing(Micros::from_millis(60), [ms([0, 20]), ms([0, 23])]).unwrap();
+    let uneven = Uneven {
+        t_delta: &[Micros::new(999), Micros::new(1_400)],
+        window: &ms([50, 12]),
+        intervals: &[(0, 1, Micros::new(15_000))],
+        shared_lines: &[],
+        together: &[],
+    };
+    let requirements = Requirements { uneven: Some(uneven), ..Requirements::new(Micros::new(999)) };
+    let rust = schedule.to_rust(&requirements).to_string();
+    for line in [
+        "use eeruf_core::{Criterion, Layout, Micros, Requirements, Uneven, UnevenSchedule, uneven_schedule};",
+        "pub const RING: UnevenSchedule<2> = uneven_schedule! {",
+        "            window: &[Micros::new(50_000), Micros::new(12_000)],",
+        "            intervals: &[(0, 1, Micros::new(15_000))],",
+    ] {
+        assert!(rust.lines().any(|found| found == line), "{line}\n{rust}");
+    }
+    let c = schedule.to_c(&requirements).to_string();
+    assert!(c.contains("#define EERUF_T_DELTA_US 999u\n#define EERUF_WINDOW_US 12000u\n"), "{c}");
+    assert!(c.contains("static const uint32_t eeruf_window_us[EERUF_SENSORS] = {50000u, 12000u};\n"), "{c}");
+}

@@ -1,0 +1,194 @@
+//! Rings of sensors that are not all alike, as they run.
+
+use eeruf_core::{
+    EchoFilter, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule,
+    Uneven, UnevenFiring, UnevenSchedule, check_scheduler, tables::TABLE_I_D,
+};
+
+use crate::common::random::Random;
+
+const fn ms<const K: usize>(times: [u32; K]) -> [Micros; K] {
+    let mut micros = [Micros::ZERO; K];
+    let mut at = 0;
+    while at < K {
+        micros[at] = Micros::from_millis(times[at]);
+        at += 1;
+    }
+    micros
+}
+
+/// Two that look far and compare coarsely, two that look near, two of which fire together.
+fn corners() -> UnevenSchedule<4> {
+    let schedule = Schedule::from_firing(Micros::from_millis(60), [ms([0, 5, 40, 40]), ms([2, 12, 24, 24])])
+        .expect("it lies within");
+    let requirements = Requirements {
+        layout: Layout::Line(1),
+        uneven: Some(Uneven {
+            window: &ms([50, 12, 30, 9]),
+            t_delta: &[Micros::new(1_500), Micros::new(2_400), Micros::new(900), Micros::new(400)],
+            shared_lines: &[0b1010],
+            together: &[0b1100],
+            ..Uneven::NONE
+        }),
+        ..Requirements::new(Micros::new(99))
+    };
+    schedule.verify(&requirements).verified_uneven().expect("it keeps all")
+}
+
+#[test]
+fn each_sensor_listens_and_compares_as_it_was_verified_for() {
+    let schedule = corners();
+    let filter = |sensor| EchoFilter::<1>::new(schedule.limits_of(sensor).unwrap().t_delta, 2).unwrap();
+    let mut filters: [EchoFilter<1>; 4] = core::array::from_fn(filter);
+    let mut ring: Ring<_, 4> = Ring::uneven(&schedule, RingConfig::new(), Instant::from_micros(0)).unwrap();
+    let mut random = Random(3);
+    // When each fired, and the echo that it is to hear.
+    let mut firings: [Option<(Instant, Option<u32>)>; 4] = [None; 4];
+    let mut edges: [Option<Instant>; 4] = [None; 4];
+    let mut seen = [0; 4];
+    let (mut accepted, mut rejected, mut late) = (0, 0, 0);
+    while seen.iter().sum::<u32>() < 20_000 {
+        let mut now = ring.next_deadline();
+        // An edge is handed in when it comes, if it comes sooner.
+        for sensor in 0..4_u8 {
+            let edge = edges[usize::from(sensor)].filter(|&edge| now.has_reached(edge));
+            now = edge.unwrap_or(now);
+        }
+        for sensor in 0..4_u8 {
+            if edges[usize::from(sensor)] == Some(now) {
+                edges[usize::from(sensor)] = None;
+                ring.echo(sensor, now).unwrap();
+            }
+        }
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor, .. } => {
+                    let window = schedule.limits_of(sensor.into()).unwrap().window.as_micros();
+                    assert_eq!(ring.window_of(sensor).as_micros(), window);
+                    // Near the wall that it has seen before, or nowhere near, or beyond the window.
+                    let echo = match random.up_to(5) {
+                        0 => None,
+                        1 => Some(random.up_to(window + 2_000)),
+                        _ => Some(window - 2_500 + random.up_to(2_501)),
+                    };
+                    firings[usize::from(sensor)] = Some((now, echo));
+                    edges[usize::from(sensor)] = echo.map(|echo| now + Micros::new(echo));
+                }
+                RingEvent::Reading(reading) => {
+                    let sensor = usize::from(reading.sensor);
+                    if reading.kind == ReadingKind::Late {
+                        assert!(reading.t_echo > Some(schedule.limits_of(sensor).unwrap().window));
+                        late += 1;
+                        continue;
+                    }
+                    let (fired, echo) = firings[sensor].take().expect("it has fired");
+                    let window = schedule.limits_of(sensor).unwrap().window;
+                    let heard = echo.filter(|&echo| echo <= window.as_micros());
+                    assert_eq!(now.since(fired), heard.map_or(window, Micros::new), "sensor {sensor}");
+                    let expected = filters[sensor].push(0, heard.map(Micros::new)).unwrap();
+                    assert_eq!((reading.kind, reading.t_echo), (expected.kind, expected.t_echo), "sensor {sensor}");
+                    accepted += u32::from(reading.kind == ReadingKind::Accepted);
+                    rejected += u32::from(reading.kind == ReadingKind::Rejected);
+                    seen[sensor] += 1;
+                }
+                RingEvent::PeriodEnded(_) => {}
+            }
+        }
+    }
+    assert!(
+        late > 100 && accepted > 2_000 && rejected > 2_000 && seen.iter().all(|&seen| seen > 4_000),
+        "{accepted} {rejected} {late}"
+    );
+}
+
+#[test]
+fn where_all_are_alike_an_uneven_ring_does_what_a_ring_does() {
+    let alike = Requirements {
+        min_interval: Micros::from_millis(15),
+        window: Micros::from_millis(30),
+        ..Requirements::new(Micros::new(499))
+    };
+    let even = TABLE_I_D.verify(&alike).verified().unwrap();
+    let windows = [Micros::from_millis(30); 12];
+    let each = Uneven { window: &windows, ..Uneven::NONE };
+    let uneven = TABLE_I_D.verify(&Requirements { uneven: Some(each), ..alike }).verified_uneven().unwrap();
+    let begin = Instant::from_micros(u32::MAX - 3_000_000);
+    let mut one: Ring<_, 12> = Ring::new(&even, RingConfig::new(), begin).unwrap();
+    let mut other: Ring<_, 12> = Ring::uneven(&uneven, RingConfig::new(), begin).unwrap();
+    let mut random = Random(11);
+    for poll in 0..20_000 {
+        assert_eq!(one.next_deadline(), other.next_deadline());
+        let late = if random.up_to(9) == 0 { random.up_to(1_500) } else { 0 };
+        let now = one.next_deadline() + Micros::new(late);
+        let (sensor, at) =
+            (random.up_to(11) as u8, Instant::from_micros(now.as_micros().wrapping_sub(random.up_to(40_000))));
+        assert_eq!(one.echo(sensor, at), other.echo(sensor, at));
+        loop {
+            let event = one.poll(now);
+            assert_eq!(event, other.poll(now), "poll {poll}");
+            match event {
+                Some(RingEvent::Fire { sensor, .. }) if random.up_to(9) == 0 => {
+                    let at = now + Micros::new(random.up_to(40));
+                    assert_eq!(one.fired(sensor, at), other.fired(sensor, at));
+                }
+                None => break,
+                _ => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ring_takes_less_than_was_verified_and_not_more() {
+    let schedule = corners();
+    let at = Instant::from_micros(0);
+    let ring = |config| {
+        Ring::<_, 4>::uneven(&schedule, config, at).map(|ring| {
+            (0..4).map(|x| (ring.window_of(x).as_micros() / 1000, ring.t_delta_of(x).as_micros())).collect::<Vec<_>>()
+        })
+    };
+    let config = RingConfig::new();
+    assert_eq!(ring(config), Ok(vec![(50, 1_500), (12, 2_400), (30, 900), (9, 400)]));
+    let less = config.with_window(Micros::from_millis(20)).with_t_delta(Micros::new(1_000));
+    assert_eq!(ring(less), Ok(vec![(20, 1_000), (12, 1_000), (20, 900), (9, 400)]));
+    let (window, verified) = (Micros::from_millis(51), Micros::from_millis(50));
+    assert_eq!(ring(config.with_window(window)), Err(RingError::VerifiedWindow { window, verified }));
+    let (t_delta, verified) = (Micros::new(2_401), Micros::new(2_400));
+    assert_eq!(ring(config.with_t_delta(t_delta)), Err(RingError::TDelta { t_delta, verified }));
+    // The one that looks nearest would never hear anything.
+    let (blanking, window) = (Micros::from_millis(9), Micros::from_millis(9));
+    assert_eq!(ring(config.with_blanking(blanking)), Err(RingError::Blanking { blanking, window }));
+}
+
+#[test]
+fn uneven_firing_keeps_what_every_scheduler_promises() {
+    let schedule = corners();
+    for seed in 0..20_u32 {
+        let now = Instant::from_micros(seed.wrapping_mul(400_000_000));
+        check_scheduler(&mut UnevenFiring::new(&schedule, now), now, 20_000, seed).unwrap();
+    }
+}
+
+#[test]
+fn lateness_that_the_closest_pair_has_to_spare_is_borne_and_one_more_microsecond_is_not() {
+    // Sensors 1 and 2 are 5 ms apart and compare by 2.4 ms: 2.6 ms to spare, less what must stay above.
+    let schedule = corners();
+    for (late, comparable) in [(2_599, true), (2_600, false)] {
+        let mut ring: Ring<_, 4> = Ring::uneven(&schedule, RingConfig::new(), Instant::from_micros(0)).unwrap();
+        let (mut kinds, mut periods) = (Vec::new(), 0);
+        while periods < 6 {
+            // The first firing of the fifth period comes late.
+            let is_late = periods == 4 && kinds.len() == 16;
+            let now = ring.next_deadline() + Micros::new(if is_late { late } else { 0 });
+            while let Some(event) = ring.poll(now) {
+                match event {
+                    RingEvent::Fire { sensor, .. } => ring.echo(sensor, now + Micros::from_millis(5)).unwrap(),
+                    RingEvent::Reading(reading) => kinds.push(reading.kind),
+                    RingEvent::PeriodEnded(_) => periods += 1,
+                }
+            }
+        }
+        let first = kinds.iter().filter(|&&kind| kind == ReadingKind::First).count();
+        assert_eq!(first == 4, comparable, "late by {late} us: {kinds:?}");
+    }
+}

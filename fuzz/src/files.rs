@@ -6,9 +6,8 @@ use std::path::Path;
 use arbitrary::Arbitrary;
 use eeruf_core::Phase;
 use eeruf_design::{RingSpec, parse};
+use eeruf_logs::{Echo, Options, read_csv};
 use eeruf_sim::{AnySchedule, ScheduleFile, World};
-
-use crate::program::log::{RangeScale, read_log_from};
 
 /// What the fuzzer makes up: which reader, and the text of the file.
 #[derive(Arbitrary, Debug)]
@@ -53,15 +52,20 @@ pub fn check(input: &Input<'_>) {
         }
         Reader::Log { speed_of_sound, no_echo_m } => {
             let speed_of_sound = f64::from(speed_of_sound) + 1.0;
-            let scale = RangeScale { speed_of_sound, no_echo_m: f64::from(no_echo_m) / 100.0 };
-            match read_log_from(input.text.as_bytes(), file, &scale) {
-                Ok(columns) => {
-                    let rows = columns.first().map_or(0, |column| column.t_echo.len());
-                    assert!(!columns.is_empty() && columns.iter().all(|column| column.t_echo.len() == rows));
+            let options =
+                Options { speed_of_sound, no_echo_m: f64::from(no_echo_m) / 100.0, ..Options::default() };
+            let mut readings = vec![];
+            match read_csv(input.text.as_bytes(), file, &options, |_, reading| readings.push(*reading)) {
+                Ok(report) => {
+                    let of = |sensor| readings.iter().filter(|reading| reading.sensor == sensor).count();
+                    let sensors = report.sensors.len();
+                    assert!(sensors > 0 && (0..sensors).all(|sensor| of(sensor) as u64 == report.messages));
                     // Nothing from the range on that stands for silence is an echo.
-                    let longest = 2e6 * scale.no_echo_m / scale.speed_of_sound + 1.0;
-                    let mut echoes = columns.iter().flat_map(|column| &column.t_echo).flatten();
-                    assert!(echoes.all(|echo| f64::from(echo.as_micros()) <= longest));
+                    let silent = |range_m: f64| range_m >= options.no_echo_m;
+                    assert!(readings.iter().all(|reading| match reading.echo() {
+                        Echo::At(range_m) => !silent(range_m),
+                        _ => true,
+                    }));
                 }
                 Err(error) => one_line(&error.to_string()),
             }

@@ -5,12 +5,3 @@
 pub mod files;
 pub mod filter;
 pub mod ring;
-
-/// The log reader of the program, which is no library.
-#[path = "."]
-mod program {
-    #[path = "../../src/files/error.rs"]
-    pub(crate) mod error;
-    #[path = "../../src/files/log.rs"]
-    pub(crate) mod log;
-}

@@ -1,25 +1,29 @@
 //! `eeruf replay`: what the filter makes of recorded readings.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use eeruf_core::{EchoFilter, Micros};
+use eeruf_core::{EchoFilter, FilterError, Micros, ReadingKind, Verdict};
+use eeruf_logs::{Echo, Options, RangeUnit, RangeWriter, Reading, Report, Sensor, Table, TimeUnit, read_log};
 
 use super::answer::Answer;
 use crate::files::error::InputError;
-use crate::files::log::{RangeScale, read_log};
 use crate::report::draw;
 use crate::report::json::to_json;
-use crate::report::replay::{Column, Counts, Replay, table};
+use crate::report::replay::{Column, Counted, Counts, Replay, table};
 
 /// Run the filter over a log of real readings: which would it have accepted?
 ///
-/// The log is a CSV file with a header. A column is a sensor if the first value in it is a number: the range in metres.
-/// Other columns are ignored. Each row is one firing of every sensor. An empty value, or one of no-echo-m or more, is
-/// no echo.
+/// The log is an MCAP file, a ROS 2 bag (its folder), a ROS 1 bag or a CSV file. Of bags, sensor_msgs/Range and
+/// LaserScan (up to 64 beams) are read from all topics; a sensor is a topic and a frame, times are those of the
+/// headers. Of a damaged log all is read that can be, what cannot is said, and the exit code is 2.
+///
+/// CSV has a header. A column is a sensor if the first value in it is a number: the range in metres. Other columns are
+/// ignored, unless --time, --range and --sensor say which are which. Each row is one firing of every sensor; with
+/// --sensor, of the sensor that it names. An empty value, or one of no-echo-m or more, is no echo.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The log
-    #[arg(value_name = "LOG.csv")]
+    #[arg(value_name = "LOG")]
     file: PathBuf,
     /// T_delta: consecutive readings that differ by no more are near-identical
     #[arg(long, value_name = "N")]
@@ -27,18 +31,54 @@ pub(crate) struct Args {
     /// In m/s, to turn ranges back into echo times
     #[arg(long, default_value_t = 343.2, value_name = "C", value_parser = positive)]
     speed_of_sound: f64,
-    /// The range in metres from which on a value means that there was no echo
+    /// CSV: the range in metres from which on a value means that there was no echo
     #[arg(long, default_value_t = 5.0, value_name = "M", value_parser = positive)]
     no_echo_m: f64,
     /// How many readings running must agree
     #[arg(long, default_value_t = 2, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=8))]
     consecutive: u8,
+    /// CSV: the column with the time
+    #[arg(long, value_name = "COLUMN")]
+    time: Option<String>,
+    /// CSV: the unit of the time
+    #[arg(long, value_name = "UNIT", default_value = "s")]
+    time_unit: TimeName,
+    /// CSV: a column with ranges; may be given several times
+    #[arg(long, value_name = "COLUMN")]
+    range: Vec<String>,
+    /// CSV: the unit of the ranges; us are microseconds from firing to echo
+    #[arg(long, value_name = "UNIT", default_value = "m")]
+    range_unit: RangeName,
+    /// CSV: the column that says whose reading a row is; needs one --range
+    #[arg(long, value_name = "COLUMN")]
+    sensor: Option<String>,
+    /// Write the log's ranges as MCAP, and beside each topic `TOPIC/accepted`: the accepted ranges, +Inf where nothing
+    /// is in range, -Inf for too close (REP 117), and no message for what was rejected
+    #[arg(long, value_name = "FILE.mcap")]
+    out: Option<PathBuf>,
     /// Draw what happened to each sensor over time, as SVG or, if the name ends in .png, as PNG
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum TimeName {
+    S,
+    Ms,
+    Us,
+    Ns,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum RangeName {
+    M,
+    Cm,
+    Mm,
+    In,
+    Us,
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -49,33 +89,187 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    let columns = filtered(args)?;
-    if let Some(file) = &args.svg {
-        draw::kinds_over_time(&columns, args.t_delta_us).save(file)?;
+    let mut replayed = Replayed::new(args)?;
+    let report = read_log(&args.file, &options(args), |sensors, reading| replayed.reading(sensors, reading))?;
+    if let Some(error) = replayed.failed.take() {
+        return Err(error);
     }
-    let counts: Vec<_> = columns.iter().map(Counts::of).collect();
-    let total = counts.iter().fold(Counts::default(), Counts::plus);
-    if args.json {
-        println!("{}", to_json(&Replay { total, sensors: counts }));
-    } else {
-        println!("{}", table(&args.file, args.t_delta_us, &counts, &total));
+    if let Some(out) = replayed.out.take() {
+        out.finish()?;
     }
-    Ok(Answer::Yes)
+    print(args, &report, replayed.sensors)?;
+    match &report.damage[..] {
+        [] => Ok(Answer::Yes),
+        [first] => Err(InputError::new(&first.file, None, at(first))),
+        [first, rest @ ..] => {
+            let message = format!("{}; and {} more places that cannot be read", at(first), rest.len());
+            Err(InputError::new(&first.file, None, message))
+        }
+    }
 }
 
-/// What the filter makes of each column.
-fn filtered(args: &Args) -> Result<Vec<Column>, InputError> {
-    let bad = |error: &dyn std::fmt::Display| InputError::new(&args.file, None, error);
-    let scale = RangeScale { speed_of_sound: args.speed_of_sound, no_echo_m: args.no_echo_m };
-    let mut columns = vec![];
-    for log in read_log(&args.file, &scale)? {
-        let mut filter =
-            EchoFilter::<1>::new(Micros::new(args.t_delta_us), args.consecutive).map_err(|error| bad(&error))?;
-        let mut kinds = vec![];
-        for t_echo in log.t_echo {
-            kinds.push(filter.push(0, t_echo).map_err(|error| bad(&error))?.kind);
-        }
-        columns.push(Column { name: log.name, kinds });
+fn at(damage: &eeruf_logs::Damage) -> String {
+    damage.at.map_or_else(|| damage.message.clone(), |at| format!("at byte {at}: {}", damage.message))
+}
+
+fn options(args: &Args) -> Options {
+    let table = Table {
+        ranges: args.range.clone(),
+        range_unit: match args.range_unit {
+            RangeName::M => RangeUnit::M,
+            RangeName::Cm => RangeUnit::Cm,
+            RangeName::Mm => RangeUnit::Mm,
+            RangeName::In => RangeUnit::In,
+            RangeName::Us => RangeUnit::Us,
+        },
+        time: args.time.clone(),
+        time_unit: match args.time_unit {
+            TimeName::S => TimeUnit::S,
+            TimeName::Ms => TimeUnit::Ms,
+            TimeName::Us => TimeUnit::Us,
+            TimeName::Ns => TimeUnit::Ns,
+        },
+        sensor: args.sensor.clone(),
+    };
+    Options { table, speed_of_sound: args.speed_of_sound, no_echo_m: args.no_echo_m }
+}
+
+fn print(args: &Args, report: &Report, sensors: Vec<Filtered>) -> Result<(), InputError> {
+    let names = report.names();
+    let counts: Vec<_> = names.iter().zip(&sensors).map(|(name, sensor)| Counts::of(name, &sensor.counted)).collect();
+    let total = counts.iter().fold(Counts::default(), Counts::plus);
+    if let Some(file) = &args.svg {
+        let column = |(name, sensor): (&String, Filtered)| Column { name: name.clone(), kinds: sensor.kinds };
+        let columns: Vec<_> = names.iter().zip(sensors).map(column).collect();
+        draw::kinds_over_time(&columns, args.t_delta_us).save(file)?;
     }
-    Ok(columns)
+    let skipped = report.skipped.iter().map(|topic| match topic.messages {
+        0 => format!("{}: {}", topic.topic, topic.why),
+        messages => format!("{}: {messages} messages with {}", topic.topic, topic.why),
+    });
+    if args.json {
+        let damage = report.damage.iter().map(ToString::to_string).collect();
+        println!("{}", to_json(&Replay { total, sensors: counts, damage, skipped: skipped.collect() }));
+    } else {
+        println!("{}", table(&args.file, args.t_delta_us, &counts, &total));
+        skipped.for_each(|skipped| println!("left out {skipped}"));
+    }
+    Ok(())
+}
+
+/// The filters of all sensors, and what they have made of the log so far.
+struct Replayed {
+    sensors: Vec<Filtered>,
+    fresh: EchoFilter<1>,
+    speed_of_sound: f64,
+    keep_kinds: bool,
+    out: Option<RangeWriter>,
+    /// The first reading that could not be taken.
+    failed: Option<InputError>,
+    log: PathBuf,
+}
+
+/// One sensor.
+struct Filtered {
+    filter: EchoFilter<1>,
+    counted: Counted,
+    /// Only if a picture is wanted.
+    kinds: Vec<ReadingKind>,
+    /// The latest time, in nanoseconds.
+    latest_ns: u64,
+}
+
+impl Replayed {
+    fn new(args: &Args) -> Result<Self, InputError> {
+        let bad = |error: FilterError| InputError::new(&args.file, None, error);
+        Ok(Self {
+            sensors: Vec::new(),
+            fresh: EchoFilter::new(Micros::new(args.t_delta_us), args.consecutive).map_err(bad)?,
+            speed_of_sound: args.speed_of_sound,
+            keep_kinds: args.svg.is_some(),
+            out: args.out.as_deref().map(RangeWriter::create).transpose()?,
+            failed: None,
+            log: args.file.clone(),
+        })
+    }
+
+    fn reading(&mut self, sensors: &[Sensor], reading: &Reading) {
+        if self.failed.is_none() {
+            self.failed = self.filter(sensors, reading).err();
+        }
+    }
+
+    fn filter(&mut self, sensors: &[Sensor], reading: &Reading) -> Result<(), InputError> {
+        while self.sensors.len() <= reading.sensor {
+            let (filter, counted) = (self.fresh.clone(), Counted::default());
+            self.sensors.push(Filtered { filter, counted, kinds: Vec::new(), latest_ns: 0 });
+        }
+        let of = &mut self.sensors[reading.sensor];
+        let kind = of.kind(reading, self.speed_of_sound, &self.log)?;
+        of.note_time(reading.at_ns);
+        if let Some(kind) = kind {
+            of.counted.tally.count(kind);
+            if self.keep_kinds {
+                of.kinds.push(kind);
+            }
+        }
+        match &mut self.out {
+            Some(out) => write(out, &sensors[reading.sensor], reading, kind, &self.log),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Filtered {
+    /// What the filter makes of a reading; `None` of one that is no number.
+    fn kind(&mut self, reading: &Reading, speed_of_sound: f64, log: &Path) -> Result<Option<ReadingKind>, InputError> {
+        // Each filter has one sensor, so that it knows it.
+        let pushed = |verdict: Result<Verdict, _>| verdict.map(|verdict| Some(verdict.kind));
+        match reading.echo() {
+            Echo::Invalid => {
+                self.counted.invalid += 1;
+                Ok(None)
+            }
+            Echo::TooClose => self.filter.forget(0).map(|()| Some(ReadingKind::TooEarly)),
+            Echo::Nothing => pushed(self.filter.push(0, None)),
+            Echo::At(range_m) => {
+                let t_echo_us = (2e6 * range_m / speed_of_sound).round();
+                if t_echo_us >= f64::from(u32::MAX) {
+                    let message = format!("a range of {range_m} m; expected one that sound covers within an hour");
+                    return Err(InputError::new(log, None, message));
+                }
+                pushed(self.filter.push(0, Some(Micros::new(t_echo_us as u32))))
+            }
+        }
+        .map_err(|error| InputError::new(log, None, error))
+    }
+
+    fn note_time(&mut self, at_ns: u64) {
+        let (from, to) = self.counted.between_ns.unwrap_or((at_ns, at_ns));
+        self.counted.between_ns = Some((from.min(at_ns), to.max(at_ns)));
+        self.counted.backwards += u64::from(at_ns < self.latest_ns);
+        self.latest_ns = at_ns;
+    }
+}
+
+/// The reading as it was, and beside it what the filter accepts.
+fn write(
+    out: &mut RangeWriter,
+    sensor: &Sensor,
+    reading: &Reading,
+    kind: Option<ReadingKind>,
+    log: &Path,
+) -> Result<(), InputError> {
+    if reading.at_ns == 0 {
+        return Err(InputError::new(log, None, "a reading without a time; --out needs --time COLUMN for CSV"));
+    }
+    let topic = sensor.beam.map_or_else(|| sensor.topic.clone(), |beam| format!("{}/beam_{beam}", sensor.topic));
+    out.write(&topic, &sensor.frame, reading)?;
+    let range_m = match kind {
+        Some(ReadingKind::Accepted) => reading.range_m,
+        Some(ReadingKind::Clear) => f64::INFINITY,
+        Some(ReadingKind::TooEarly) => f64::NEG_INFINITY,
+        _ => return Ok(()),
+    };
+    Ok(out.write(&format!("{topic}/accepted"), &sensor.frame, &Reading { range_m, ..*reading })?)
 }

@@ -17,6 +17,12 @@ impl InputError {
     }
 }
 
+impl From<eeruf_logs::LogError> for InputError {
+    fn from(error: eeruf_logs::LogError) -> Self {
+        Self::new(error.file(), error.line(), error.message())
+    }
+}
+
 impl fmt::Display for InputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.file.display())?;

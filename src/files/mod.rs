@@ -3,7 +3,6 @@
 //! Uses the libraries only; knows neither commands nor what is printed.
 
 pub(crate) mod error;
-pub(crate) mod log;
 pub(crate) mod ring;
 pub(crate) mod toml;
 pub(crate) mod waits;

@@ -7,10 +7,22 @@ use serde::Serialize;
 
 use super::table::markdown;
 
-/// What the filter made of one sensor's readings, one for each row.
+/// What the filter made of one sensor's readings, one after the other.
 pub(crate) struct Column {
     pub(crate) name: String,
     pub(crate) kinds: Vec<ReadingKind>,
+}
+
+/// What the filter made of one sensor's readings, counted, and when they were.
+#[derive(Default)]
+pub(crate) struct Counted {
+    pub(crate) tally: Tally<u32>,
+    /// Readings that are no number.
+    pub(crate) invalid: u64,
+    /// When the first and the latest reading were, in nanoseconds.
+    pub(crate) between_ns: Option<(u64, u64)>,
+    /// Readings whose time is before that of the reading before.
+    pub(crate) backwards: u64,
 }
 
 /// What `--json` prints.
@@ -18,6 +30,12 @@ pub(crate) struct Column {
 pub(crate) struct Replay {
     pub(crate) total: Counts,
     pub(crate) sensors: Vec<Counts>,
+    /// What of the log could not be read.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) damage: Vec<String>,
+    /// Topics that were left out, and why.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) skipped: Vec<String>,
 }
 
 /// How often each kind occurred.
@@ -33,6 +51,18 @@ pub(crate) struct Counts {
     first: u64,
     no_echo: u64,
     clear: u64,
+    /// Nearer than the sensor can measure.
+    #[serde(skip_serializing_if = "is_zero")]
+    too_early: u64,
+    /// No number.
+    #[serde(skip_serializing_if = "is_zero")]
+    invalid: u64,
+    /// Readings whose time is before that of the reading before.
+    #[serde(skip_serializing_if = "is_zero")]
+    backwards: u64,
+    /// From the first reading to the latest, where the log says when.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    duration_s: Option<f64>,
 }
 
 fn is_zero(count: &u64) -> bool {
@@ -40,20 +70,20 @@ fn is_zero(count: &u64) -> bool {
 }
 
 impl Counts {
-    pub(crate) fn of(column: &Column) -> Self {
-        let mut tally = Tally::<u32>::default();
-        for &kind in &column.kinds {
-            tally.count(kind);
-        }
-        let of = |kind| tally.of(kind).into();
+    pub(crate) fn of(name: &str, counted: &Counted) -> Self {
+        let of = |kind| counted.tally.of(kind).into();
         Self {
-            name: Some(column.name.clone()),
+            name: Some(name.to_owned()),
             accepted: of(ReadingKind::Accepted),
             rejected: of(ReadingKind::Rejected),
             repeated: of(ReadingKind::Repeated),
             first: of(ReadingKind::First),
             no_echo: of(ReadingKind::NoEcho),
             clear: of(ReadingKind::Clear),
+            too_early: of(ReadingKind::TooEarly),
+            invalid: counted.invalid,
+            backwards: counted.backwards,
+            duration_s: counted.between_ns.filter(|&(_, to)| to > 0).map(|(from, to)| (to - from) as f64 * 1e-9),
         }
     }
 
@@ -66,10 +96,20 @@ impl Counts {
             first: self.first + other.first,
             no_echo: self.no_echo + other.no_echo,
             clear: self.clear + other.clear,
+            too_early: self.too_early + other.too_early,
+            invalid: self.invalid + other.invalid,
+            backwards: self.backwards + other.backwards,
+            duration_s: None,
         }
     }
 
-    fn row(&self) -> Vec<String> {
+    /// How many readings there were.
+    fn readings(&self) -> u64 {
+        let compared = self.accepted + self.rejected + self.repeated;
+        compared + self.first + self.no_echo + self.clear + self.too_early + self.invalid
+    }
+
+    fn row(&self, columns: Columns) -> Vec<String> {
         let compared = self.accepted + self.rejected + self.repeated;
         let rate = if compared == 0 {
             "-".to_owned()
@@ -79,12 +119,43 @@ impl Counts {
         let mut row = vec![self.name.clone().unwrap_or_else(|| "total".to_owned())];
         row.extend([self.accepted, self.rejected, self.first, self.no_echo, self.clear].map(|n| n.to_string()));
         row.insert(3, rate);
+        if columns.close {
+            row.push(self.too_early.to_string());
+        }
+        if columns.invalid {
+            row.push(self.invalid.to_string());
+        }
+        if columns.time {
+            row.push(match self.duration_s {
+                Some(seconds) if seconds > 0.0 => format!("{:.1}", self.readings().saturating_sub(1) as f64 / seconds),
+                _ => "-".to_owned(),
+            });
+        }
         row
     }
 }
 
+/// Which columns not every log needs.
+#[derive(Clone, Copy)]
+struct Columns {
+    close: bool,
+    invalid: bool,
+    time: bool,
+}
+
 pub(crate) fn table(file: &Path, t_delta_us: u32, counts: &[Counts], total: &Counts) -> String {
-    let header = ["sensor", "accepted", "rejected", "rejection rate", "first", "no echo", "clear"];
-    let table = markdown(&header, counts.iter().chain([total]).map(Counts::row));
-    format!("{}: t_delta {t_delta_us} us, {} sensors\n{table}", file.display(), counts.len())
+    let columns = Columns {
+        close: total.too_early > 0,
+        invalid: total.invalid > 0,
+        time: counts.iter().any(|sensor| sensor.duration_s.is_some()),
+    };
+    let mut header = vec!["sensor", "accepted", "rejected", "rejection rate", "first", "no echo", "clear"];
+    let more = [(columns.close, "too close"), (columns.invalid, "no number"), (columns.time, "readings/s")];
+    header.extend(more.into_iter().filter(|(shown, _)| *shown).map(|(_, name)| name));
+    let table = markdown(&header, counts.iter().chain([total]).map(|counts| counts.row(columns)));
+    let mut text = format!("{}: t_delta {t_delta_us} us, {} sensors\n{table}", file.display(), counts.len());
+    if total.backwards > 0 {
+        text += &format!("\n{} readings have an earlier time than the one before.", total.backwards);
+    }
+    text
 }

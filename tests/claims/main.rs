@@ -10,6 +10,7 @@ mod emitted;
 mod experiments;
 mod immediate_refiring;
 mod inputs;
+mod logs;
 mod program;
 mod ring;
 mod study;

@@ -29,6 +29,8 @@ pub(crate) fn kinds_over_time(columns: &[Column], t_delta_us: u32) -> Picture {
     for (lane, column) in columns.iter().enumerate() {
         let bottom = TOP + LANE * (lane as f64 + 1.0) - 3.0;
         picture.text(column.name.clone(), (16.0, bottom - 10.0), 14.0);
+        // Topics may have more or fewer readings in the same time.
+        let rows = column.kinds.len();
         for bin in 0..bins {
             let stretch = &column.kinds[bin * rows / bins..(bin + 1) * rows / bins];
             let mut y = bottom;

@@ -1,0 +1,76 @@
+//! A place in a slice of bytes, from which numbers and texts are read. Nothing is read beyond its end.
+
+/// In which order the bytes of a number come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Order {
+    Little,
+    Big,
+}
+
+/// What is left of a slice.
+#[derive(Clone, Copy)]
+pub(crate) struct Bytes<'a> {
+    all: &'a [u8],
+    at: usize,
+    order: Order,
+}
+
+impl<'a> Bytes<'a> {
+    pub(crate) const fn new(all: &'a [u8], order: Order) -> Self {
+        Self { all, at: 0, order }
+    }
+
+    pub(crate) const fn left(&self) -> usize {
+        self.all.len() - self.at
+    }
+
+    pub(crate) fn take(&mut self, length: usize) -> Option<&'a [u8]> {
+        let taken = self.all.get(self.at..self.at.checked_add(length)?)?;
+        self.at += length;
+        Some(taken)
+    }
+
+    /// Skips to the next multiple of `size` from the slice's start.
+    pub(crate) fn align(&mut self, size: usize) -> Option<()> {
+        self.take(self.at.next_multiple_of(size) - self.at).map(drop)
+    }
+
+    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let mut bytes: [u8; N] = self.take(N)?.try_into().ok()?;
+        if self.order == Order::Big {
+            bytes.reverse();
+        }
+        Some(bytes)
+    }
+
+    pub(crate) fn u8(&mut self) -> Option<u8> {
+        self.array::<1>().map(u8::from_le_bytes)
+    }
+
+    pub(crate) fn u16(&mut self) -> Option<u16> {
+        self.array().map(u16::from_le_bytes)
+    }
+
+    pub(crate) fn u32(&mut self) -> Option<u32> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    pub(crate) fn u64(&mut self) -> Option<u64> {
+        self.array().map(u64::from_le_bytes)
+    }
+
+    pub(crate) fn f32(&mut self) -> Option<f32> {
+        self.array().map(f32::from_le_bytes)
+    }
+
+    /// Bytes after their number, as `u32`.
+    pub(crate) fn counted(&mut self) -> Option<&'a [u8]> {
+        let length = self.u32()?;
+        self.take(usize::try_from(length).ok()?)
+    }
+
+    /// A text after its length in bytes, as `u32`; bytes that are no text are replaced.
+    pub(crate) fn text(&mut self) -> Option<String> {
+        self.counted().map(|bytes| String::from_utf8_lossy(bytes).into_owned())
+    }
+}

@@ -1,0 +1,73 @@
+//! What a log holds: readings, and the sensors that they are of.
+
+/// A sensor of a log: a topic and a frame, and for a `LaserScan` one of its beams.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Sensor {
+    /// The topic, or the name of a CSV file's column.
+    pub topic: String,
+    /// `frame_id` of the messages' headers; empty where they have none.
+    pub frame: String,
+    /// The beam of a `LaserScan`, from 0.
+    pub beam: Option<u16>,
+}
+
+impl Sensor {
+    /// The topic, with frame and beam where there are several sensors on it.
+    pub fn name(&self, alone_on_its_topic: bool) -> String {
+        match (self.beam, alone_on_its_topic || self.frame.is_empty()) {
+            (Some(beam), _) => format!("{}[{beam}]", self.topic),
+            (None, true) => self.topic.clone(),
+            (None, false) => format!("{} {}", self.topic, self.frame),
+        }
+    }
+}
+
+/// One reading of one sensor, in the units of `sensor_msgs/Range`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// The sensor, as an index into [`Report::sensors`](crate::Report::sensors).
+    pub sensor: usize,
+    /// When, in nanoseconds: the header's stamp, or when the message was recorded if the stamp is zero; 0 if unknown.
+    pub at_ns: u64,
+    /// `radiation_type`: 0 is ultrasound, 1 infrared.
+    pub radiation: u8,
+    /// `field_of_view`, in radians.
+    pub field_of_view_rad: f32,
+    /// Nearer than this the sensor cannot measure, in metres.
+    pub min_range_m: f64,
+    /// From this range on, in metres, a value means that there was no echo.
+    pub max_range_m: f64,
+    /// The range in metres as it stands in the log, with what REP 117 makes of infinities.
+    pub range_m: f64,
+    /// `variance`, in square metres, where the message has one.
+    pub variance: Option<f32>,
+}
+
+/// What a range says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Echo {
+    /// An echo from this range, in metres.
+    At(f64),
+    /// Nothing in range: `+Inf`, or the maximum range and more.
+    Nothing,
+    /// Something nearer than can be measured: `-Inf`, or less than the minimum range.
+    TooClose,
+    /// Not a number: the driver reported an error.
+    Invalid,
+}
+
+impl Reading {
+    /// What the range says by REP 117.
+    pub fn echo(&self) -> Echo {
+        let Self { range_m, min_range_m, max_range_m, .. } = *self;
+        if range_m.is_nan() {
+            Echo::Invalid
+        } else if range_m == f64::INFINITY || (max_range_m > 0.0 && range_m >= max_range_m) {
+            Echo::Nothing
+        } else if range_m < min_range_m || range_m < 0.0 {
+            Echo::TooClose
+        } else {
+            Echo::At(range_m)
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! Reads ROS 1 bags, format 2.0 (wiki.ros.org/Bags/Format/2.0), record by record, without their index.
+//!
+//! The one crate that reads them takes its way through the index, which a recording that was cut off does not have.
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use crate::bytes::{Bytes, Order};
+use crate::error::LogError;
+use crate::message::Encoding;
+use crate::sink::{Sink, Topic};
+
+pub(crate) const MAGIC: &[u8; 13] = b"#ROSBAG V2.0\n";
+
+const MESSAGE: u8 = 0x02;
+const BAG: u8 = 0x03;
+const INDEX: u8 = 0x04;
+const CHUNK: u8 = 0x05;
+const CHUNK_INFO: u8 = 0x06;
+const CONNECTION: u8 = 0x07;
+/// The largest chunk that is unpacked.
+const LARGEST_CHUNK: u32 = 1 << 30;
+
+/// The fields of a record's header that matter here.
+#[derive(Clone, Copy, Default)]
+struct Header<'a> {
+    op: u8,
+    connection: Option<u32>,
+    time_ns: u64,
+    topic: &'a [u8],
+    compression: &'a [u8],
+    size: u32,
+    /// Where the index begins; 0 in a bag that was not closed.
+    index_at: u64,
+    type_name: &'a [u8],
+    definition: &'a [u8],
+}
+
+impl<'a> Header<'a> {
+    /// `NAME=VALUE`, each after its length; `None` where that does not fit.
+    fn of(bytes: &'a [u8]) -> Option<Self> {
+        let mut header = Self::default();
+        let mut rest = Bytes::new(bytes, Order::Little);
+        while rest.left() > 0 {
+            let field = rest.counted()?;
+            let equals = field.iter().position(|&byte| byte == b'=')?;
+            let (name, value) = (&field[..equals], &field[equals + 1..]);
+            let mut number = Bytes::new(value, Order::Little);
+            match name {
+                b"op" => header.op = number.u8()?,
+                b"conn" => header.connection = Some(number.u32()?),
+                b"time" => header.time_ns = u64::from(number.u32()?) * 1_000_000_000 + u64::from(number.u32()?),
+                b"topic" => header.topic = value,
+                b"compression" => header.compression = value,
+                b"size" => header.size = number.u32()?,
+                b"index_pos" => header.index_at = number.u64()?,
+                b"type" => header.type_name = value,
+                b"message_definition" => header.definition = value,
+                _ => {}
+            }
+        }
+        Some(header)
+    }
+}
+
+#[derive(Default)]
+struct State {
+    topics: HashMap<u32, Topic>,
+}
+
+/// Reads a bag to its end, or to where it cannot be read any further.
+pub(crate) fn read(file: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
+    let failed = |error| LogError::new(file, error);
+    let mut opened = File::open(file).map_err(failed)?;
+    let size = opened.metadata().map_err(failed)?.len();
+    let mut state = State::default();
+    // Connections are found in the chunks too; that there is no index is no damage.
+    if let Ok(index) = index(&mut opened, size) {
+        state.connections_of(&index, sink);
+    }
+    opened.rewind().map_err(failed)?;
+    let mut input = BufReader::with_capacity(1 << 18, opened);
+    let mut magic = [0; MAGIC.len()];
+    if input.read_exact(&mut magic).is_err() || magic != *MAGIC {
+        sink.damage(file, Some(0), "the first bytes are not those of a ROS 1 bag of format 2.0");
+    }
+    let mut at = MAGIC.len() as u64;
+    let (mut head, mut body, mut chunk) = (Vec::new(), Vec::new(), Vec::new());
+    let mut closed = true;
+    while at < size {
+        let mut part = |into: &mut Vec<u8>| -> Result<bool, LogError> {
+            let mut length = [0; 4];
+            if size - at < 4 {
+                return Ok(false);
+            }
+            input.read_exact(&mut length).map_err(failed)?;
+            let length = u64::from(u32::from_le_bytes(length));
+            at += 4;
+            if length > size - at {
+                return Ok(false);
+            }
+            into.clear();
+            (&mut input).take(length).read_to_end(into).map_err(failed)?;
+            at += length;
+            Ok(true)
+        };
+        if !part(&mut head)? || !part(&mut body)? {
+            body.clear();
+            input.read_to_end(&mut body).map_err(failed)?;
+            if let Some(header) = Header::of(&head).filter(|header| header.op == CHUNK) {
+                // What stands in it before the cut.
+                _ = unpack_chunk(&header, &body, &mut chunk);
+                state.records(&chunk, sink);
+            }
+            let message =
+                "the bag is cut, or a length in it is wrong: a record does not fit; what stands before was read";
+            sink.damage(file, Some(at.min(size)), message);
+            closed = true;
+            break;
+        }
+        let Some(header) = Header::of(&head) else {
+            sink.damage(file, Some(at), "a record is lost: its header cannot be read");
+            continue;
+        };
+        match header.op {
+            BAG => closed = header.index_at != 0,
+            CHUNK => match unpack_chunk(&header, &body, &mut chunk) {
+                Err(why) => sink.damage(file, Some(at), format!("a chunk is lost: {why}")),
+                Ok(()) => match state.records(&chunk, sink) {
+                    None => sink.damage(file, Some(at), "the rest of a chunk is lost: its records do not fit"),
+                    Some(0) => {}
+                    Some(lost) => sink.damage(file, Some(at), format!("{lost} records of a chunk cannot be read")),
+                },
+            },
+            MESSAGE | CONNECTION => {
+                if state.record(&header, &body, sink).is_none() {
+                    sink.damage(file, Some(at), "a record does not have the fields of its kind");
+                }
+            }
+            INDEX | CHUNK_INFO => {}
+            other => sink.damage(file, Some(at), format!("a record of the unknown kind {other}")),
+        }
+    }
+    if !closed {
+        sink.damage(file, None, "the bag was not closed, or its end is cut off; all whole chunks were read");
+    }
+    for (_, topic) in state.topics {
+        sink.close(&topic);
+    }
+    Ok(())
+}
+
+/// The index at the end of a bag, which repeats the connections.
+fn index(file: &mut File, size: u64) -> io::Result<Vec<u8>> {
+    // The bag's own record is padded to 4096 bytes.
+    let mut first = Vec::new();
+    (&mut *file).take(MAGIC.len() as u64 + 8192).read_to_end(&mut first)?;
+    let header = first.get(MAGIC.len()..).and_then(|first| Bytes::new(first, Order::Little).counted());
+    let at = header.and_then(Header::of).filter(|header| header.op == BAG).map_or(0, |header| header.index_at);
+    let mut index = Vec::new();
+    if at > 0 && at < size && size - at < u64::from(LARGEST_CHUNK) {
+        file.seek(SeekFrom::Start(at))?;
+        file.read_to_end(&mut index)?;
+    }
+    Ok(index)
+}
+
+/// Unpacks a chunk, as far as it goes.
+fn unpack_chunk(header: &Header<'_>, body: &[u8], chunk: &mut Vec<u8>) -> Result<(), String> {
+    if header.size > LARGEST_CHUNK {
+        return Err(format!("it says that it holds {} bytes; expected at most {LARGEST_CHUNK}", header.size));
+    }
+    chunk.clear();
+    let size = u64::from(header.size);
+    let unpacked = match header.compression {
+        b"none" => body.take(size).read_to_end(chunk),
+        b"bz2" => bzip2::read::BzDecoder::new(body).take(size).read_to_end(chunk),
+        b"lz4" => lz4_flex::frame::FrameDecoder::new(body).take(size).read_to_end(chunk),
+        other => {
+            let other = String::from_utf8_lossy(other);
+            return Err(format!("it is compressed by `{other}`; expected bz2, lz4 or none"));
+        }
+    };
+    unpacked.map_err(|error| format!("it cannot be unpacked: {error}"))?;
+    if chunk.len() as u64 != size {
+        return Err(format!("it holds {} bytes instead of {size}", chunk.len()));
+    }
+    Ok(())
+}
+
+impl State {
+    /// The connections among records.
+    fn connections_of(&mut self, records: &[u8], sink: &mut Sink<'_>) -> Option<()> {
+        let mut rest = Bytes::new(records, Order::Little);
+        while rest.left() > 0 {
+            let (header, body) = (Header::of(rest.counted()?)?, rest.counted()?);
+            if header.op == CONNECTION {
+                self.record(&header, body, sink)?;
+            }
+        }
+        Some(())
+    }
+
+    /// All records of a chunk, and how many of them cannot be read; `None` if they do not fit into it.
+    fn records(&mut self, chunk: &[u8], sink: &mut Sink<'_>) -> Option<u64> {
+        let mut lost = 0;
+        let mut rest = Bytes::new(chunk, Order::Little);
+        while rest.left() > 0 {
+            let (header, body) = (rest.counted()?, rest.counted()?);
+            let read = Header::of(header).and_then(|header| self.record(&header, body, sink));
+            lost += u64::from(read.is_none());
+        }
+        Some(lost)
+    }
+
+    /// One record that is no chunk; `None` if its fields do not fit.
+    fn record(&mut self, header: &Header<'_>, body: &[u8], sink: &mut Sink<'_>) -> Option<()> {
+        let text = |bytes| String::from_utf8_lossy(bytes);
+        match header.op {
+            MESSAGE => {
+                // A message whose connection is lost cannot be read.
+                let topic = self.topics.get_mut(&header.connection?)?;
+                sink.message(topic, header.time_ns, body);
+            }
+            CONNECTION => {
+                // A bag repeats its connections.
+                if let Entry::Vacant(entry) = self.topics.entry(header.connection?) {
+                    let about = Header::of(body)?;
+                    let definition = (!about.definition.is_empty()).then(|| text(about.definition));
+                    let (name, type_name) = (text(header.topic), text(about.type_name));
+                    entry.insert(sink.topic(&name, &type_name, definition.as_deref(), Some(Encoding::Ros1)));
+                }
+            }
+            _ => {}
+        }
+        Some(())
+    }
+}

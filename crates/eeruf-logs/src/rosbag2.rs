@@ -1,0 +1,176 @@
+//! Reads ROS 2 bags: folders with `metadata.yaml` and the files that it names, in `SQLite` or MCAP.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use rusqlite::{Connection, OpenFlags};
+use saphyr::{LoadableYamlNode, Yaml};
+
+use crate::error::LogError;
+use crate::message::Encoding;
+use crate::sink::{Sink, Topic};
+
+pub(crate) const SQLITE_MAGIC: &[u8; 16] = b"SQLite format 3\0";
+/// The largest message that is unpacked.
+const LARGEST_MESSAGE: u64 = 1 << 26;
+
+/// What `metadata.yaml` says.
+#[derive(Default)]
+struct Metadata {
+    files: Vec<PathBuf>,
+    /// Whether each message is compressed for itself.
+    packed: bool,
+}
+
+/// Reads all files of a bag.
+pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
+    let metadata = folder.join("metadata.yaml");
+    let found = match std::fs::read_to_string(&metadata) {
+        Ok(text) => match Metadata::of(&text) {
+            Ok(found) => found,
+            Err(why) => {
+                sink.damage(&metadata, None, format!("{why}; all bag files of the folder are read"));
+                Metadata::default()
+            }
+        },
+        Err(error) => {
+            sink.damage(&metadata, None, format!("{error}; all bag files of the folder are read"));
+            Metadata::default()
+        }
+    };
+    let mut files: Vec<_> = found.files.iter().map(|file| folder.join(file)).collect();
+    if files.is_empty() {
+        files = bag_files(folder)?;
+    }
+    for file in files {
+        // What cannot be opened takes nothing from the other files.
+        let read = match file.extension().and_then(|ending| ending.to_str()) {
+            Some("mcap") => crate::mcap::read(&file, found.packed, sink),
+            Some("db3") => read_sqlite(&file, found.packed, sink),
+            _ => Err(LogError::new(
+                &file,
+                "a file that rosbag2 has compressed as a whole, or of unknown kind; expected .mcap or .db3 (after `zstd -d`)",
+            )),
+        };
+        if let Err(error) = read {
+            sink.damage(error.file(), None, error.message());
+        }
+    }
+    Ok(())
+}
+
+impl Metadata {
+    fn of(text: &str) -> Result<Self, String> {
+        let documents = Yaml::load_from_str(text).map_err(|error| format!("no YAML: {error}"))?;
+        let bag = documents.first().and_then(|document| document.as_mapping_get("rosbag2_bagfile_information"));
+        let bag = bag.ok_or("no rosbag2_bagfile_information")?;
+        let files = bag.as_mapping_get("relative_file_paths").and_then(Yaml::as_sequence);
+        let files = files.ok_or("no relative_file_paths")?;
+        let files = files.iter().filter_map(Yaml::as_str).map(PathBuf::from).collect();
+        let mode = bag.as_mapping_get("compression_mode").and_then(Yaml::as_str).unwrap_or_default();
+        Ok(Self { files, packed: mode.eq_ignore_ascii_case("message") })
+    }
+}
+
+/// The bag files of a folder, in the order of the numbers at the end of their names.
+fn bag_files(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
+    let failed = |error| LogError::new(folder, error);
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let file = entry.map_err(failed)?.path();
+        if file.extension().is_some_and(|ending| ending == "mcap" || ending == "db3") {
+            files.push(file);
+        }
+    }
+    if files.is_empty() {
+        return Err(LogError::new(folder, "no .mcap and no .db3 file; expected the folder of a ROS 2 bag"));
+    }
+    files.sort_by_key(|file| {
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let digits = name.chars().rev().take_while(char::is_ascii_digit).count();
+        let (stem, number) = name.split_at(name.len() - digits);
+        (stem.to_owned(), number.parse::<u64>().unwrap_or(0))
+    });
+    Ok(files)
+}
+
+/// Reads a bag file in `SQLite`. Rows come in the order in which they were written.
+pub(crate) fn read_sqlite(file: &Path, packed: bool, sink: &mut Sink<'_>) -> Result<(), LogError> {
+    let failed = |error: rusqlite::Error| LogError::new(file, format!("as an SQLite bag: {error}"));
+    if !file.is_file() {
+        return Err(LogError::new(file, "no such file"));
+    }
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let database = Connection::open_with_flags(file, flags).map_err(failed)?;
+    let mut topics = topics(&database, file, sink).map_err(failed)?;
+    let mut query = database.prepare("SELECT topic_id, timestamp, data FROM messages").map_err(failed)?;
+    let mut rows = query.query([]).map_err(failed)?;
+    let (mut read, mut orphans, mut unpacked) = (0_u64, 0_u64, Vec::new());
+    loop {
+        let row = match rows.next() {
+            Ok(Some(row)) => row,
+            Ok(None) => break,
+            Err(error) => {
+                sink.damage(file, None, format!("{error}; {read} messages were read, those after them are lost"));
+                break;
+            }
+        };
+        read += 1;
+        let fields = (row.get_ref(0), row.get_ref(1), row.get_ref(2));
+        let (Ok(topic), Ok(recorded), Ok(data)) = fields else { continue };
+        let (Ok(topic), Ok(recorded), Ok(data)) = (topic.as_i64(), recorded.as_i64(), data.as_blob()) else {
+            orphans += 1;
+            continue;
+        };
+        let Some((_, topic)) = topics.iter_mut().find(|(id, _)| *id == topic) else {
+            orphans += 1;
+            continue;
+        };
+        let recorded_ns = u64::try_from(recorded).unwrap_or(0);
+        if packed {
+            unpacked.clear();
+            let message = zstd::stream::read::Decoder::with_buffer(data)
+                .and_then(|decoder| decoder.take(LARGEST_MESSAGE).read_to_end(&mut unpacked));
+            match message {
+                Ok(_) => sink.message(topic, recorded_ns, &unpacked),
+                Err(_) => orphans += 1,
+            }
+        } else {
+            sink.message(topic, recorded_ns, data);
+        }
+    }
+    if orphans > 0 {
+        sink.damage(file, None, format!("{orphans} messages cannot be read: their topic or their data is lost"));
+    }
+    for (_, topic) in topics {
+        sink.close(&topic);
+    }
+    Ok(())
+}
+
+/// The topics by their numbers; with their schemas, which bags have from Iron on.
+fn topics(database: &Connection, file: &Path, sink: &mut Sink<'_>) -> rusqlite::Result<Vec<(i64, Topic)>> {
+    let schema = |type_name: &str| -> Option<String> {
+        let definition = "SELECT encoded_message_definition FROM message_definitions WHERE topic_type = ?1";
+        let text = database.query_row(definition, [type_name], |row| row.get::<_, String>(0)).ok()?;
+        (!text.is_empty()).then_some(text)
+    };
+    let mut query = database.prepare("SELECT id, name, type, serialization_format FROM topics")?;
+    let mut rows = query.query([])?;
+    let mut topics = Vec::new();
+    loop {
+        let row = match rows.next() {
+            Ok(Some(row)) => row,
+            Ok(None) => break,
+            Err(error) => {
+                sink.damage(file, None, format!("{error}; some topics are lost"));
+                break;
+            }
+        };
+        let text = |column| row.get_ref(column).ok().and_then(|value| value.as_str().ok()).unwrap_or_default();
+        let (Ok(id), name, type_name, format) = (row.get(0), text(1), text(2), text(3)) else { continue };
+        let encoding = (format == "cdr").then_some(Encoding::Cdr);
+        topics.push((id, sink.topic(name, type_name, schema(type_name).as_deref(), encoding)));
+    }
+    Ok(topics)
+}

@@ -1,0 +1,61 @@
+//! Logs of every kind, whole and damaged.
+
+mod bags;
+mod csv;
+mod damage;
+mod written;
+
+use std::path::{Path, PathBuf};
+
+use eeruf_logs::{LogError, Options, Reading, Report, Sensor, read_log};
+
+/// The bags that `write_bags.py` writes.
+const BAGS: [&str; 10] = [
+    "ros1-none.bag",
+    "ros1-bz2.bag",
+    "ros1-lz4.bag",
+    "sqlite-humble",
+    "sqlite-jazzy",
+    "sqlite-jazzy-packed",
+    "mcap-humble",
+    "mcap-jazzy",
+    "mcap-jazzy-packed",
+    "mcap-jazzy-zstd",
+];
+
+/// Copies a bag into a folder; SQLite ones are made from their SQL.
+fn bag(name: &str, folder: &Path) -> PathBuf {
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bags").join(name);
+    let to = folder.join(name);
+    if from.is_file() {
+        std::fs::copy(from, &to).unwrap();
+        return to;
+    }
+    std::fs::create_dir_all(&to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let entry = entry.unwrap().path();
+        let copy = to.join(entry.file_name().unwrap());
+        if entry.extension().is_some_and(|ending| ending == "sql") {
+            let database = rusqlite::Connection::open(copy.with_extension("db3")).unwrap();
+            database.execute_batch(&std::fs::read_to_string(entry).unwrap()).unwrap();
+        } else {
+            std::fs::copy(entry, copy).unwrap();
+        }
+    }
+    to
+}
+
+/// All readings of a log.
+fn read(file: &Path, options: &Options) -> Result<(Report, Vec<Reading>), LogError> {
+    let mut readings = Vec::new();
+    let mut met = Vec::<Sensor>::new();
+    let report = read_log(file, options, |sensors, reading| {
+        assert!(reading.sensor < sensors.len() && sensors.starts_with(&met));
+        if met.len() < sensors.len() {
+            met = sensors.to_vec();
+        }
+        readings.push(*reading);
+    })?;
+    assert_eq!(report.sensors, met);
+    Ok((report, readings))
+}

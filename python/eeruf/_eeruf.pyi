@@ -38,7 +38,9 @@ _Method = Literal[
 ]
 _Cause = Literal["nothing", "own", "stale", "crosstalk", "external"]
 _Transducer = Literal["polaroid_6500", "hc_sr04"]
-_Gain = Literal["constant", "square_root", "linear"]
+_Gain = Literal["constant", "square_root", "linear", "stepped"]
+_Physics = Literal["plain", "default"] | dict[str, bool | float | str]
+_Body = float | tuple[float, float] | list[tuple[float, float]]
 _Phase = Literal["a", "b"]
 _Condition = Literal["crosstalk_a", "crosstalk_b", "stale_echo", "interval", "window"]
 _Pose = tuple[float, float, float]
@@ -438,6 +440,7 @@ class Robot:
         speed_m_s: float | None = None,
         clock_offset_us: _Int = 0,
         clock_drift_ppm: float = 0.0,
+        body: _Body | None = None,
     ) -> Robot: ...
     def replace(self, **changes: object) -> Robot: ...
     @property
@@ -454,6 +457,8 @@ class Robot:
     def transducer(self) -> _Transducer: ...
     @property
     def gain(self) -> _Gain: ...
+    @property
+    def body(self) -> _Body | None: ...
     @property
     def period_us(self) -> int: ...
     @property
@@ -509,6 +514,7 @@ class Scene:
         noise: bool | Noise = True,
         seed: _Int = 1,
         max_order: _Int = 6,
+        physics: _Physics = "plain",
     ) -> Scene: ...
     @staticmethod
     def read_toml(path: str | PathLike[str]) -> Scene: ...
@@ -542,6 +548,8 @@ class Scene:
     def seed(self) -> int: ...
     @property
     def max_order(self) -> int: ...
+    @property
+    def physics(self) -> _Physics: ...
     def paths(
         self,
         source: ArrayLike,
@@ -673,7 +681,13 @@ def simulate(
 _ROOM_M: list[float]
 _SIDE_M: float
 
-def _set_one(seeds: _Int, readings: _Int | None, methods: Sequence[_Method] | None, progress: _Progress) -> str: ...
+def _set_one(
+    seeds: _Int,
+    readings: _Int | None,
+    methods: Sequence[_Method] | None,
+    progress: _Progress,
+    physics: _Physics | None = None,
+) -> str: ...
 def _set_two(asked: dict[str, Any], progress: _Progress) -> tuple[str, dict[str, list[dict[str, Any]]]]: ...
 def _speed_sweep(speeds_m_s: Sequence[float], asked: dict[str, Any], progress: _Progress) -> str: ...
 def _readings_from_columns(

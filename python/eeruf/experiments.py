@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     _Progress = bool | Callable[[float | None, str], object] | None
     from eeruf._eeruf import _Method as Method
+    from eeruf._eeruf import _Physics
 
     _Corner = Literal["behind", "ahead"] | tuple[float, float] | None
 
@@ -37,6 +38,7 @@ def set_one(
     *,
     readings: int = 8000,
     methods: Sequence[Method] | None = None,
+    physics: _Physics = "plain",
     progress: _Progress = None,
 ) -> dict[str, Any]:
     """Set I: eight sensors before three walls at right angles, by every method, in many random alcoves.
@@ -47,6 +49,7 @@ def set_one(
         seeds: how many alcoves, 1 to 100,000.
         readings: about how many readings of each alcove and method, 1 or more.
         methods: names of ``eeruf.sim.METHODS``; all by default.
+        physics: as the argument of ``eeruf.sim.Scene``.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
@@ -65,7 +68,7 @@ def set_one(
         True
 
     """
-    table: dict[str, Any] = json.loads(_eeruf._set_one(seeds, readings, methods, progress))
+    table: dict[str, Any] = json.loads(_eeruf._set_one(seeds, readings, methods, progress, physics))
     return table
 
 
@@ -159,6 +162,7 @@ def set_two(
     odometry: bool = True,
     t_delta_us: int | None = None,
     first: int = 0,
+    physics: _Physics = "plain",
     progress: _Progress = None,
 ) -> SetTwo:
     """Set II: a LabMate drives through random courses of 8 mm poles about 1.6 m apart, steered by what its ring reads.
@@ -176,6 +180,7 @@ def set_two(
         odometry: whether the robot hands its ring the changes that its own motion should cause.
         t_delta_us: readings that differ by no more are near-identical; by default 150 with odometry and 500 without.
         first: the first course's number, so that what is tuned on some courses can be tried on others.
+        physics: as the argument of ``eeruf.sim.Scene``.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
@@ -193,7 +198,7 @@ def set_two(
         {'conventional': 0, 'eeruf': 2}
 
     """
-    asked = _asked(seeds, methods, second_robot, speed_m_s, odometry, t_delta_us, first)
+    asked = _asked(seeds, methods, second_robot, speed_m_s, odometry, t_delta_us, first, physics)
     table, runs = _eeruf._set_two(asked, progress)
     return SetTwo(json.loads(table), {method: [Run(**run) for run in of_method] for method, of_method in runs.items()})
 
@@ -207,6 +212,7 @@ def speed_sweep(
     odometry: bool = True,
     t_delta_us: int | None = None,
     first: int = 0,
+    physics: _Physics = "plain",
     progress: _Progress = None,
 ) -> dict[str, Any]:
     """Set II at several top speeds: which speed each method sustains. Ctrl-C ends it.
@@ -219,6 +225,7 @@ def speed_sweep(
         odometry: as in :func:`set_two`.
         t_delta_us: as in :func:`set_two`.
         first: as in :func:`set_two`.
+        physics: as in :func:`set_two`.
         progress: as in :func:`set_two`.
 
     Returns:
@@ -237,7 +244,7 @@ def speed_sweep(
         ([1.0, 1.0], {'eeruf': 1.0})
 
     """
-    asked = _asked(seeds, methods, second_robot, 1.0, odometry, t_delta_us, first)
+    asked = _asked(seeds, methods, second_robot, 1.0, odometry, t_delta_us, first, physics)
     sweep: dict[str, Any] = json.loads(_eeruf._speed_sweep(speeds_m_s, asked, progress))
     borne = {
         method: [step["speed_m_s"] for step in sweep["steps"] if step["finished"][method] >= _BORNE]
@@ -247,5 +254,5 @@ def speed_sweep(
 
 
 def _asked(*values: Any) -> dict[str, Any]:
-    names = ("seeds", "methods", "second_robot", "speed_m_s", "odometry", "t_delta_us", "first")
+    names = ("seeds", "methods", "second_robot", "speed_m_s", "odometry", "t_delta_us", "first", "physics")
     return dict(zip(names, values))

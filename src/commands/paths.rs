@@ -55,7 +55,9 @@ fn critical_paths(world: &World, max_order: u32) -> Result<PathsJson, eeruf_sim:
     let floor = transducer.detection_floor(scene.air());
     let mut matrix = CrosstalkMatrix::new();
     let query = CrosstalkQuery { scene, sensors: &ring, transducer, limits: Limits::order(max_order), floor };
-    matrix.compute(&mut Tracer::new(), &query)?;
+    let mut tracer = Tracer::new();
+    tracer.pole_shadows = world.physics().shadows;
+    matrix.compute(&mut tracer, &query)?;
     for path in matrix.paths().iter().filter(|path| path.emitter != path.receiver) {
         let received = transducer.received(path.amplitude, path.length_m, scene.air());
         out.emitter.push(path.emitter);

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use eeruf_sim::{Method, Options, SimulationError, World, shortest_schedule_for, simulate_while, sweep};
+use eeruf_sim::{Method, Options, Physics, SimulationError, World, shortest_schedule_for, simulate_while, sweep};
 
 use super::answer::Answer;
 use super::methods::chosen;
@@ -45,6 +45,9 @@ pub(crate) struct Args {
     /// Another seed than the scene's
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
+    /// Other effects than the scene's: plain, or default (see docs/physics.md)
+    #[arg(long, value_name = "PRESET")]
+    physics: Option<Physics>,
 }
 
 const PERIODS: u32 = 2000;
@@ -54,7 +57,10 @@ const PERIODS_IF_MOVING: u32 = 250;
 const BUDGET: u64 = 20_000;
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    let world = read_world(&args.file)?;
+    let mut world = read_world(&args.file)?;
+    if let Some(physics) = args.physics {
+        world = world.with_physics(physics).map_err(|error| InputError::new(&args.file, None, error))?;
+    }
     let study = study(args, &world)?;
     for (folder, ending) in [(&args.svg, "svg"), (&args.png, "png")] {
         if let Some(folder) = folder {

@@ -23,6 +23,7 @@ use crate::{
     arguments::{flag, items, micros, number, points, shown, whole, whole_or, wrong},
     errors::{ArgumentError, Raise},
     methods::{best, methods as methods_named},
+    surroundings,
     watch::{Background, in_background},
 };
 
@@ -37,21 +38,23 @@ fn json(table: &impl Serialize) -> PyResult<String> {
 
 /// Set I over many geometries.
 #[pyfunction]
-#[pyo3(name = "_set_one", signature = (seeds, readings, methods, progress))]
+#[pyo3(name = "_set_one", signature = (seeds, readings, methods, progress, physics=None))]
 pub(crate) fn set_one(
     py: Python<'_>,
     seeds: &Bound<'_, PyAny>,
     readings: Option<&Bound<'_, PyAny>>,
     methods: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
+    physics: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
+    let physics = surroundings::physics(physics)?;
     let seeds = whole("seeds", seeds, 1..=SEEDS_MOST)?;
     let readings = whole_or("readings", readings, READINGS, 1..=u32::MAX)?;
     let methods = methods_named(methods, &Method::ALL)?;
     in_background(py, progress, move |background| {
         let best = best(&methods, &Alcove::random(0).robot(), background)?;
         let keep_going = |done| background.go_on(Some(done), || format!("{seeds} alcoves"));
-        let asked = SetOneOptions { seeds, readings, methods, best, ..SetOneOptions::default() };
+        let asked = SetOneOptions { seeds, readings, methods, physics, best, ..SetOneOptions::default() };
         let table = first_set::set_one(&asked, &keep_going).map_err(Raise::raise)?;
         json(&table)
     })
@@ -68,6 +71,7 @@ pub(crate) struct Asked<'py> {
     speed_m_s: Bound<'py, PyAny>,
     odometry: Bound<'py, PyAny>,
     t_delta_us: Option<Bound<'py, PyAny>>,
+    physics: Option<Bound<'py, PyAny>>,
 }
 
 fn speed(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
@@ -86,6 +90,7 @@ impl Asked<'_> {
             second_robot: self.second_robot.as_ref().map(corner).transpose()?,
             labmate: LabMate { speed_max_m_s: speed("speed_m_s", &self.speed_m_s)?, ..default.labmate },
             odometry,
+            physics: surroundings::physics(self.physics.as_ref())?,
             t_delta: t_delta.unwrap_or(if odometry { default.t_delta } else { WITHOUT_ODOMETRY }),
             ..default
         })

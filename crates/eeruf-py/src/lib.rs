@@ -10,6 +10,7 @@
 )]
 
 mod arguments;
+mod body;
 mod columns;
 mod contents;
 mod design;

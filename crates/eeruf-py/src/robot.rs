@@ -9,6 +9,7 @@ use pyo3::{
 
 use crate::{
     arguments::{choice, flag, instance, items, micros, number, whole, whole_or, wrong},
+    body::{outline, shown_body},
     pose::{from_pose, motion, pose_of, to_pose},
     requirements,
     schedule::Schedule,
@@ -22,7 +23,10 @@ use crate::{
 ///     spacing_rad: the angle from one sensor to the next on the arc, in radians.
 ///     radius_m: the radius of the arc, in metres.
 ///     transducer: ``"polaroid_6500"`` or ``"hc_sr04"``.
-///     gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"`` or ``"linear"``.
+///     gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"``, ``"linear"`` or
+///         ``"stepped"``.
+///     body: its outline, which others' sound is reflected and shaded by: the radius of a disc, (length, width) of a box,
+///         or the corners (x, y) of a convex polygon, 3 to 8 of them, counter-clockwise, all in metres; None for none.
 ///     period_us: ``T_p`` of the methods that bring no schedule of their own; the schedule's if there is one.
 ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical.
 ///     window_us: ``T_wind``: how long a sensor listens.
@@ -73,8 +77,12 @@ pub(crate) struct Robot {
 
 const TRANSDUCERS: [(&str, Transducer); 2] =
     [("polaroid_6500", Transducer::POLAROID_6500), ("hc_sr04", Transducer::HC_SR04)];
-const GAINS: [(&str, GainProfile); 3] =
-    [("constant", GainProfile::Constant), ("square_root", GainProfile::SquareRoot), ("linear", GainProfile::Linear)];
+const GAINS: [(&str, GainProfile); 4] = [
+    ("constant", GainProfile::Constant),
+    ("square_root", GainProfile::SquareRoot),
+    ("linear", GainProfile::Linear),
+    ("stepped", GainProfile::Stepped),
+];
 
 impl Robot {
     /// One that a file describes.
@@ -106,6 +114,7 @@ impl Robot {
         }
         all.set_item("transducer", self.transducer)?;
         all.set_item("gain", self.gain())?;
+        all.set_item("body", self.body(py)?)?;
         all.set_item("period_us", self.period_us())?;
         all.set_item("t_delta_us", self.t_delta_us())?;
         all.set_item("window_us", self.window_us())?;
@@ -141,13 +150,13 @@ impl Robot {
         pose, sensors, spacing_rad=None, radius_m=None, transducer=None, *, gain=None, period_us=None, t_delta_us=None,
         window_us=None, blanking_us=None, min_refire_us=None, start_us=None, schedule=None, neighbours=None,
         consecutive=None, patience=None, odometry=None, velocity_m_s=None, turn_rad_s=None, waypoints_m=None,
-        speed_m_s=None, clock_offset_us=None, clock_drift_ppm=None
+        speed_m_s=None, clock_offset_us=None, clock_drift_ppm=None, body=None
     ))]
     #[pyo3(text_signature = "(pose, sensors, spacing_rad=None, radius_m=None, transducer=\"polaroid_6500\", *, \
             gain=\"constant\", period_us=60000, t_delta_us=500, window_us=36000, blanking_us=None, \
             min_refire_us=36000, start_us=0, schedule=None, neighbours=4, consecutive=2, patience=0, odometry=False, \
             velocity_m_s=None, turn_rad_s=None, waypoints_m=None, speed_m_s=None, clock_offset_us=0, \
-            clock_drift_ppm=0.0)")]
+            clock_drift_ppm=0.0, body=None)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         pose: &Bound<'_, PyAny>,
@@ -173,6 +182,7 @@ impl Robot {
         speed_m_s: Option<&Bound<'_, PyAny>>,
         clock_offset_us: Option<&Bound<'_, PyAny>>,
         clock_drift_ppm: Option<&Bound<'_, PyAny>>,
+        body: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let pose = pose_of("pose", pose)?;
         let (name, transducer) =
@@ -223,6 +233,7 @@ impl Robot {
             offset_us: clock_offset_us.map_or(Ok(0), |offset| whole("clock_offset_us", offset, 0..=u32::MAX))?,
             drift_ppm: clock_drift_ppm.map_or(Ok(0.0), |drift| number("clock_drift_ppm", drift, -1e3..=1e3))?,
         };
+        robot.body = body.map(outline).transpose()?;
         let given = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
         robot.schedule = given.transpose()?.map(|schedule| schedule.get().0);
         if let (Some(schedule), None) = (robot.schedule, period_us) {
@@ -282,6 +293,12 @@ impl Robot {
     #[getter]
     fn gain(&self) -> &'static str {
         GAINS.iter().find(|(_, gain)| *gain == self.robot.transducer.gain).map_or("constant", |(name, _)| name)
+    }
+
+    /// Its outline: the radius of a disc, (length, width) of a box, or the corners of a polygon; None without.
+    #[getter]
+    fn body<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        shown_body(py, self.robot.body.as_ref())
     }
 
     /// ``T_p`` of the methods that bring no schedule of their own, in microseconds.

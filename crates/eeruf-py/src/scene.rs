@@ -48,6 +48,7 @@ const LOW_ORDER: u32 = 6;
 ///     noise: True for a little jitter and fading, False for none, or a :class:`Noise`.
 ///     seed: of the noise, 0 to 2^64 - 1.
 ///     max_order: how many bounces :func:`simulate` follows; 6 unless it is given.
+///     physics: ``"plain"``, ``"default"``, or a dict of what differs from a ``preset``; see ``docs/physics.md``.
 ///
 /// Raises:
 ///     ArgumentError: an array of the wrong shape, an index of no wall, something of the wrong type or out of range.
@@ -63,6 +64,7 @@ pub(crate) struct Scene {
     contents: Arc<Contents>,
     robots: Vec<Robot>,
     noise: eeruf_sim::Noise,
+    physics: eeruf_sim::Physics,
     /// What decides all that is random.
     #[pyo3(get)]
     seed: u64,
@@ -82,15 +84,17 @@ impl Scene {
 
     /// Checks the parts against each other.
     fn of(parts: WorldParts, robots: Vec<Robot>) -> PyResult<Self> {
-        let WorldParts { scene, noise, max_order, seed, .. } = parts;
+        let WorldParts { scene, noise, physics, max_order, seed, .. } = parts;
         let contents = if robots.is_empty() {
             Contents::Walls(Box::new(scene))
         } else {
             let inner = robots.iter().map(|robot| robot.robot.clone()).collect();
-            let world = World::new(scene, inner, noise).and_then(|world| world.with_max_order(max_order));
+            let world = World::new(scene, inner, noise)
+                .and_then(|world| world.with_physics(physics))
+                .and_then(|world| world.with_max_order(max_order));
             Contents::World(Arc::new(world.map_err(Raise::raise)?.with_seed(seed)))
         };
-        Ok(Self { contents: Arc::new(contents), robots, noise, seed, max_order })
+        Ok(Self { contents: Arc::new(contents), robots, noise, physics, seed, max_order })
     }
 
     fn from_text(name: &Path, text: &str) -> PyResult<Self> {
@@ -119,6 +123,7 @@ impl Scene {
         all.set_item("noise", self.noise())?;
         all.set_item("seed", self.seed)?;
         all.set_item("max_order", self.max_order)?;
+        all.set_item("physics", self.physics(py)?)?;
         Ok(all)
     }
 }
@@ -138,11 +143,11 @@ impl Scene {
     #[new]
     #[pyo3(signature = (
         walls, open=None, two_sided=None, poles=None, *, materials=None, pole_materials=None, temperature_c=None,
-        humidity_percent=None, pressure_kpa=None, robots=None, noise=None, seed=None, max_order=None
+        humidity_percent=None, pressure_kpa=None, robots=None, noise=None, seed=None, max_order=None, physics=None
     ))]
     #[pyo3(text_signature = "(walls, open=None, two_sided=None, poles=None, *, materials=None, pole_materials=None, \
             temperature_c=20.0, humidity_percent=50.0, pressure_kpa=101.325, robots=(), noise=True, seed=1, \
-            max_order=6)")]
+            max_order=6, physics=\"plain\")")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         py: Python<'_>,
@@ -159,6 +164,7 @@ impl Scene {
         noise: Option<&Bound<'_, PyAny>>,
         seed: Option<&Bound<'_, PyAny>>,
         max_order: Option<&Bound<'_, PyAny>>,
+        physics: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let rows = matrix("walls", walls, 4)?;
         let mut built_walls: Vec<_> =
@@ -198,8 +204,9 @@ impl Scene {
         let noise = surroundings::noise(noise)?;
         let seed = whole_or("seed", seed, 1, 0..=u64::MAX)?;
         let max_order = whole_or("max_order", max_order, DEFAULT_ORDER, 0..=u32::MAX)?;
+        let physics = surroundings::physics(physics)?;
         let scene = py.detach(|| eeruf_sim::Scene::new(built_walls, built_poles, air)).map_err(Raise::raise)?;
-        Self::of(WorldParts { scene, robots: vec![], noise, max_order, seed }, robots)
+        Self::of(WorldParts { scene, robots: vec![], noise, physics, max_order, seed }, robots)
     }
 
     /// Read a scene file, such as those in the folder ``scenes``.
@@ -248,7 +255,7 @@ impl Scene {
     ///     True
     fn to_toml(&self) -> String {
         let robots: Vec<_> = self.robots.iter().map(|robot| robot.robot.clone()).collect();
-        world_file(self.scene(), &robots, &self.noise, self.max_order, self.seed)
+        world_file(self.scene(), &robots, &self.noise, &self.physics, self.max_order, self.seed)
     }
 
     /// The same scene, but for these arguments.
@@ -334,6 +341,12 @@ impl Scene {
     #[getter]
     fn noise(&self) -> Noise {
         Noise::of(self.noise)
+    }
+
+    /// Which effects there are: a preset's name, or a dict.
+    #[getter]
+    fn physics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        surroundings::shown_physics(py, &self.physics)
     }
 
     /// The humidity of the air, in percent.

@@ -1,11 +1,12 @@
 //! `sim.Material` and `sim.Noise`: what surfaces return and how noisy it is.
 
+use eeruf_sim::Physics;
 use pyo3::{
     prelude::*,
-    types::{PyString, PyTuple},
+    types::{PyDict, PyString, PyTuple},
 };
 
-use crate::arguments::{items, number, shown, wrong};
+use crate::arguments::{flag, items, number, shown, wrong};
 
 /// The surface of a wall or a pole.
 ///
@@ -179,4 +180,39 @@ pub(crate) fn noise(value: Option<&Bound<'_, PyAny>>) -> PyResult<eeruf_sim::Noi
         Ok(false) => Ok(eeruf_sim::Noise::NONE),
         Err(_) => Err(wrong("noise", shown(value), "True, False or an eeruf.sim.Noise")),
     }
+}
+
+const PHYSICS: &str = "\"plain\", \"default\", or a dict with preset, shadows, range_walk or fading_time_s";
+
+/// Which effects a scene has: a preset's name, or what differs from one.
+pub(crate) fn physics(value: Option<&Bound<'_, PyAny>>) -> PyResult<Physics> {
+    let refused = |value: &Bound<'_, PyAny>| wrong("physics", shown(value), PHYSICS);
+    let preset = |value: &Bound<'_, PyAny>| {
+        value.extract::<String>().ok().and_then(|name| name.parse().ok()).ok_or_else(|| refused(value))
+    };
+    let Some(value) = value else { return Ok(Physics::PLAIN) };
+    let Ok(changes) = value.cast::<PyDict>() else { return preset(value) };
+    let mut physics = changes.get_item("preset")?.map_or(Ok(Physics::PLAIN), |name| preset(&name))?;
+    for (name, change) in changes {
+        match name.extract::<String>().as_deref() {
+            Ok("preset") => {}
+            Ok("shadows") => physics.shadows = flag("shadows", Some(&change), physics.shadows)?,
+            Ok("range_walk") => physics.range_walk = flag("range_walk", Some(&change), physics.range_walk)?,
+            Ok("fading_time_s") => physics.fading_time_s = number("fading_time_s", &change, 0.0..=3600.0)?,
+            _ => return Err(refused(value)),
+        }
+    }
+    Ok(physics)
+}
+
+/// The argument that gives these effects.
+pub(crate) fn shown_physics<'py>(py: Python<'py>, physics: &Physics) -> PyResult<Bound<'py, PyAny>> {
+    if let Some(name) = physics.name() {
+        return Ok(PyString::new(py, name).into_any());
+    }
+    let all = PyDict::new(py);
+    all.set_item("shadows", physics.shadows)?;
+    all.set_item("range_walk", physics.range_walk)?;
+    all.set_item("fading_time_s", physics.fading_time_s)?;
+    Ok(all.into_any())
 }

@@ -64,7 +64,10 @@ pub mod threads;
 pub mod tracing;
 pub mod world;
 
-pub use acoustics::{GainProfile, Piston, Transducer, edge_diffraction, pole_wave_correction, rigid_cylinder_form};
+pub use acoustics::{
+    GainProfile, Physics, Piston, Transducer, UnknownPhysics, edge_diffraction, pole_wave_correction,
+    rigid_cylinder_form,
+};
 pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice};
 pub use methods::{
     BestSchedule, Method, UnknownMethod, best_schedule_for, requirements_of, shortest_schedule_for, table_i_d_for,
@@ -73,7 +76,7 @@ pub use navigation::{Driven, Himm, LabMate, Vfh};
 pub use results::{
     Age, Attribution, Cause, DEFAULT_TOLERANCE_US, HeardPath, NO_PATH, Readings, SensorId, Summary, quantile,
 };
-pub use scene::{Air, Body, Bounce, Contact, Faces, Material, Pole, Scene, SceneError, Wall};
+pub use scene::{Air, Body, Bounce, Contact, Faces, Material, Outline, OutlineError, Pole, Scene, SceneError, Wall};
 pub use simulation::{LockStep, Options, Simulation, SimulationError, simulate, simulate_until, simulate_while};
 pub use threads::{Stop, sweep};
 pub use tracing::{

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use eeruf_core::search::Progress;
+use eeruf_sim::Physics;
 
 use crate::files::error::InputError;
 use crate::report::draw::Picture;
@@ -23,6 +24,9 @@ pub(crate) struct Common {
     /// The number of the first geometry or course
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     pub(crate) first: u64,
+    /// Which effects there are: plain, or default (see docs/physics.md)
+    #[arg(long, value_name = "PRESET", default_value = "plain")]
+    pub(crate) physics: Physics,
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,

@@ -63,6 +63,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     let bad = bad("set-one");
     let mut options = SetOneOptions {
         first: args.common.first,
+        physics: args.common.physics,
         methods: chosen(&args.methods),
         hopping: args.hopping.settings(),
         sensors: args.sensors.into(),

@@ -75,6 +75,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     let mut options = SetTwoOptions {
         seeds: args.common.seeds.unwrap_or(SEEDS),
         first: args.common.first,
+        physics: args.common.physics,
         second_robot: args.second_robot.map(Corner::position),
         labmate: LabMate { speed_max_m_s: args.speed, ..LabMate::default() },
         odometry: !args.no_odometry,

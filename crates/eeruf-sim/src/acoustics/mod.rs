@@ -3,12 +3,14 @@
 
 mod diffraction;
 mod directivity;
+mod physics;
 mod reflection;
 mod spreading;
 mod transducer;
 
 pub use diffraction::{edge_diffraction, pole_wave_correction, rigid_cylinder_form};
 pub use directivity::Piston;
+pub use physics::{Physics, UnknownPhysics};
 pub(crate) use reflection::reflected;
 pub(crate) use spreading::pole_spread;
 pub use transducer::{GainProfile, Transducer};

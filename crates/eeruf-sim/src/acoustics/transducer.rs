@@ -15,7 +15,12 @@ pub enum GainProfile {
     SquareRoot,
     /// In proportion to time, which makes up for spherical spreading.
     Linear,
+    /// As [`Linear`](Self::Linear), but in twelve equal steps, as ranging modules switch it (how many is a choice).
+    Stepped,
 }
+
+/// In how many steps [`GainProfile::Stepped`] grows.
+const GAIN_STEPS: f64 = 12.0;
 
 impl GainProfile {
     /// Gain at a time after firing, relative to the gain at `full_s`, from which on it stays 1.
@@ -24,6 +29,7 @@ impl GainProfile {
     /// use eeruf_sim::GainProfile;
     /// assert_eq!(GainProfile::Linear.gain(0.01, 0.04), 0.25);
     /// assert_eq!(GainProfile::SquareRoot.gain(0.01, 0.04), 0.5);
+    /// assert_eq!([0.0, 0.0033, 0.0034].map(|t| 12.0 * GainProfile::Stepped.gain(t, 0.04)), [1.0, 1.0, 2.0]);
     /// ```
     pub fn gain(self, time_s: f64, full_s: f64) -> f64 {
         let share = (time_s / full_s).clamp(0.0, 1.0);
@@ -31,6 +37,7 @@ impl GainProfile {
             Self::Constant => 1.0,
             Self::SquareRoot => share.sqrt(),
             Self::Linear => share,
+            Self::Stepped => ((GAIN_STEPS * share).floor() + 1.0).min(GAIN_STEPS) / GAIN_STEPS,
         }
     }
 }
@@ -40,6 +47,8 @@ impl GainProfile {
 pub struct Transducer {
     /// Frequency in Hz.
     pub frequency_hz: f64,
+    /// Width of the band that it sends in and hears, around its frequency, in Hz.
+    pub bandwidth_hz: f64,
     /// Radius of the piston in metres.
     pub radius_m: f64,
     /// Least amplitude of the pattern in front, see [`Piston::floor`].
@@ -48,40 +57,35 @@ pub struct Transducer {
     pub cycles: u32,
     /// Deaf time after firing, in seconds.
     pub blanking_s: f64,
-    /// Nearest range in metres.
-    pub min_range_m: f64,
     /// Farthest range in metres.
     pub max_range_m: f64,
-    /// Shortest time between two firings that the maker advises, in seconds.
-    pub cycle_s: f64,
     /// Gain over time.
     pub gain: GainProfile,
 }
 
 impl Transducer {
-    /// Polaroid 600 series electrostatic transducer with the 6500 module.
+    /// Polaroid 600 series electrostatic transducer with the 6500 module. As wide as its burst: `f / cycles`, where the
+    /// spectrum of so many cycles has fallen by 3.9 dB (a choice).
     pub const POLAROID_6500: Self = Self {
         frequency_hz: 49_400.0,
+        bandwidth_hz: 49_400.0 / 16.0,
         radius_m: 19.2e-3,
         pattern_floor: Piston::DEFAULT_FLOOR,
         cycles: 16,
         blanking_s: 2.38e-3,
-        min_range_m: 0.15,
         max_range_m: 10.7,
-        cycle_s: 0.1,
         gain: GainProfile::Constant,
     };
 
-    /// HC-SR04 module. Its time-out without an echo is 38 ms.
+    /// HC-SR04 module. Its time-out without an echo is 38 ms. As wide as its burst, too.
     pub const HC_SR04: Self = Self {
         frequency_hz: 40_000.0,
+        bandwidth_hz: 40_000.0 / 8.0,
         radius_m: 8.0e-3,
         pattern_floor: Piston::DEFAULT_FLOOR,
         cycles: 8,
         blanking_s: 0.117e-3,
-        min_range_m: 0.02,
         max_range_m: 4.0,
-        cycle_s: 0.06,
         gain: GainProfile::Constant,
     };
 
@@ -93,6 +97,18 @@ impl Transducer {
     /// Its pattern in this air.
     pub fn piston(&self, air: Air) -> Piston {
         Piston { floor: self.pattern_floor, ..Piston::new(self.wave_number(air), self.radius_m) }
+    }
+
+    /// Whether it hears the sound of another kind: whether their bands overlap. Whoever sends is heard in turn.
+    ///
+    /// ```
+    /// use eeruf_sim::Transducer;
+    /// let quiet = Transducer { max_range_m: 3.0, ..Transducer::POLAROID_6500 };
+    /// assert!(quiet.hears(&Transducer::POLAROID_6500));
+    /// assert!(!Transducer::HC_SR04.hears(&Transducer::POLAROID_6500)); // 40 and 49.4 kHz
+    /// ```
+    pub fn hears(&self, other: &Self) -> bool {
+        (self.frequency_hz - other.frequency_hz).abs() < 0.5 * (self.bandwidth_hz + other.bandwidth_hz)
     }
 
     /// Length of the burst in seconds.

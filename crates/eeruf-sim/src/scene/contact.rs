@@ -1,21 +1,13 @@
 //! Contact: does a robot's body touch a wall or a pole, or stand inside something solid. Carried by parry's shapes.
 
+use super::body::{Body, meets, placed};
 use super::scene::Scene;
 use crate::geometry::{Point, Pose};
 use parry2d_f64::{
     math::Pose as ParryPose,
-    query::{Ray, RayCast, intersection_test},
-    shape::{Ball, Cuboid, Segment, Shape},
+    query::{Ray, RayCast},
+    shape::{Ball, Segment, Shape},
 };
-
-/// A robot's outline, centred on its pose.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Body {
-    /// A disc of this radius in metres.
-    Disc(f64),
-    /// A box of this length (along the heading) and width, in metres.
-    Box(f64, f64),
-}
 
 /// What a body touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,18 +35,11 @@ impl Scene {
     /// # Ok::<(), eeruf_sim::SceneError>(())
     /// ```
     pub fn contact(&self, body: &Body, pose: &Pose) -> Option<Contact> {
-        let (disc, cuboid);
-        let shape: &dyn Shape = match *body {
-            Body::Disc(radius) => {
-                disc = Ball::new(radius);
-                &disc
-            }
-            Body::Box(length, width) => {
-                cuboid = Cuboid::new([0.5 * length, 0.5 * width].into());
-                &cuboid
-            }
-        };
-        let at = ParryPose::new(pose.translation.vector.into(), pose.rotation.angle());
+        body.with_shape(|shape| self.contact_of(shape, pose))
+    }
+
+    fn contact_of(&self, shape: &dyn Shape, pose: &Pose) -> Option<Contact> {
+        let at = placed(pose);
         let reach = shape.compute_aabb(&at);
         let touches = |wall: usize| {
             let segment = self.segment(wall);
@@ -94,11 +79,6 @@ impl Scene {
         });
         hit.map(|(wall, distance)| (wall as usize, distance))
     }
-}
-
-/// Whether two shapes touch. Parry knows all pairs used here, so "not supported" does not occur.
-fn meets(at: &ParryPose, shape: &dyn Shape, there: &ParryPose, other: &dyn Shape) -> bool {
-    intersection_test(at, shape, there, other).is_ok_and(|found| found.intersecting)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //! It uses `geometry` only; robots, noise and seeds wrap around it in `world`.
 
 mod air;
+mod body;
 mod bounce;
 mod contact;
 mod error;
@@ -13,8 +14,9 @@ mod scene;
 mod wall;
 
 pub use air::Air;
+pub use body::{Body, MAX_CORNERS, Outline, OutlineError};
 pub use bounce::Bounce;
-pub use contact::{Body, Contact};
+pub use contact::Contact;
 pub use error::{MAX_COORDINATE_M, MAX_POLE_M, MAX_WALLS, MIN_WALL_M, SceneError};
 pub use material::Material;
 pub(crate) use mesh::{Beyond, Exit, Mesh, NONE};

@@ -1,9 +1,10 @@
-//! A pole: an upright cylinder, a circle in the plane. It reflects, but is too thin to cast a shadow that matters.
+//! A pole: an upright cylinder, a circle in the plane.
 
 use super::material::Material;
 use crate::geometry::Point;
 
-/// An upright cylinder that reflects and does not occlude.
+/// An upright cylinder that reflects. Whether it shades what lies behind it, its thickness and
+/// [`Physics::shadows`](crate::Physics::shadows) decide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pole {
     /// Its axis.

@@ -33,18 +33,10 @@ impl<'w> LockStep<'w> {
         let robot = &world.robots()[0];
         let ns = |time: eeruf_core::Micros| u64::from(time.as_micros()) * 1000;
         let channels = Channels::new(world, &Planned(world), Stop::default())?;
-        let hearing = Hearing {
-            blanking: ns(robot.blanking),
-            window: ns(robot.window),
-            refire: ns(robot.window),
-            dead_time: (robot.transducer.burst_s() * 1e9) as u64,
-            echoes: 1,
-            gain: robot.transducer.gain,
-            gain_full_s: 2.0 * robot.transducer.max_range_m / world.scene().air().speed_of_sound(),
-        };
+        let hearing = Hearing::new(world, robot, 1, ns(robot.window), ns);
         let receivers = vec![Receiver::NEW; robot.sensors.len()];
         // The same random numbers as in a simulation.
-        let propagation = Propagation::new(&world.noise(), Random::new(world.seed()));
+        let propagation = Propagation::new(world, Random::new(world.seed()));
         Ok(Self { world, channels, hearing, receivers, propagation })
     }
 

@@ -46,7 +46,7 @@ pub struct CrosstalkQuery<'a> {
     pub scene: &'a Scene,
     /// The transducers' places and headings in the scene; each heads along its pose's x axis.
     pub sensors: &'a [Pose],
-    /// What kind of transducer they are.
+    /// What kind of transducer they are: how they hear, and how they send unless others do.
     pub transducer: &'a Transducer,
     /// How far to follow the sound.
     pub limits: Limits,
@@ -81,7 +81,7 @@ impl CrosstalkMatrix {
     /// # Errors
     /// As [`Tracer::trace`]; the matrix is empty then.
     pub fn compute(&mut self, tracer: &mut Tracer, query: &CrosstalkQuery<'_>) -> Result<(), PathsError> {
-        self.fill(tracer, query.sensors, query)
+        self.fill(tracer, query.sensors, query.transducer, query)
     }
 
     /// As [`compute`](Self::compute), but traces one emitter only, which is number 0 and need not be among the sensors:
@@ -95,23 +95,46 @@ impl CrosstalkMatrix {
         tracer: &mut Tracer,
         query: &CrosstalkQuery<'_>,
     ) -> Result<(), PathsError> {
-        self.fill(tracer, core::slice::from_ref(emitter), query)
+        self.fill(tracer, core::slice::from_ref(emitter), query.transducer, query)
     }
 
-    fn fill(&mut self, tracer: &mut Tracer, emitters: &[Pose], query: &CrosstalkQuery<'_>) -> Result<(), PathsError> {
+    /// As [`compute`](Self::compute), but what the query's sensors hear of other sensors, of a kind of their own: the
+    /// emitters' frequency and pattern of departure, the sensors' pattern of arrival, gain and floor.
+    ///
+    /// # Errors
+    /// As [`compute`](Self::compute).
+    pub fn compute_between(
+        &mut self,
+        emitters: &[Pose],
+        sending: &Transducer,
+        tracer: &mut Tracer,
+        query: &CrosstalkQuery<'_>,
+    ) -> Result<(), PathsError> {
+        self.fill(tracer, emitters, sending, query)
+    }
+
+    fn fill(
+        &mut self,
+        tracer: &mut Tracer,
+        emitters: &[Pose],
+        sending: &Transducer,
+        query: &CrosstalkQuery<'_>,
+    ) -> Result<(), PathsError> {
         let CrosstalkQuery { scene, sensors, transducer, limits, floor } = *query;
         let air = scene.air();
-        let piston = transducer.piston(air);
+        let departing = sending.piston(air);
+        // What arrives is of the emitter's frequency.
+        let arriving = Transducer { frequency_hz: sending.frequency_hz, ..*transducer }.piston(air);
         (self.emitters, self.sensors) = (0, 0);
         self.paths.clear();
         self.starts.clear();
         self.bounces.clear();
         self.positions.clear();
         self.positions.extend(sensors.iter().map(|sensor| Point::from(sensor.translation.vector)));
-        tracer.frequency_hz = transducer.frequency_hz;
+        tracer.frequency_hz = sending.frequency_hz;
         let audibility = match &mut self.audibility {
-            Some(audibility) if audibility.is_for(&piston) => audibility,
-            audibility => audibility.insert(Audibility::new(piston)),
+            Some(audibility) if audibility.is_for([&departing, &arriving]) => audibility,
+            audibility => audibility.insert(Audibility::new([departing, arriving])),
         };
         audibility.set_floor(floor, tracer.loss_per_m(air));
         for (emitter, pose) in emitters.iter().enumerate() {
@@ -144,8 +167,8 @@ impl CrosstalkMatrix {
                         continue;
                     }
                     let amplitude = bare
-                        * piston.pattern(found.departure_rad[k] - heading_rad)
-                        * piston.pattern(found.arrival_rad[k] - listens_rad);
+                        * departing.pattern(found.departure_rad[k] - heading_rad)
+                        * arriving.pattern(found.arrival_rad[k] - listens_rad);
                     if transducer.received(amplitude, found.length_m[k], air) < floor {
                         continue;
                     }

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use super::limits::MAX_ORDER;
+use crate::scene::Contact;
 
 /// Why a question about paths cannot be answered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +25,14 @@ pub enum PathsError {
         /// How far from the walls the scene reaches, in metres.
         reach_m: f64,
     },
+    /// A source or a receiver is inside something solid, and [`Tracer::pole_shadows`](super::Tracer::pole_shadows) asks
+    /// for solid things.
+    Inside {
+        /// Its position in metres.
+        at: [f64; 2],
+        /// What it is inside of.
+        what: Contact,
+    },
     /// The order asked for is above [`MAX_ORDER`].
     Order {
         /// What was asked for.
@@ -39,6 +48,11 @@ pub enum PathsError {
         /// The budget that was exceeded.
         beams: usize,
     },
+    /// In a simulation: a robot's body touches something, or a sensor that is not its own.
+    Body {
+        /// The robot, counted from 0 and printed from 1.
+        robot: usize,
+    },
     /// The caller asked to stop.
     Stopped,
 }
@@ -52,10 +66,25 @@ impl fmt::Display for PathsError {
             Self::Receiver { receiver, at: [x, y], reach_m } => {
                 write!(f, "receiver {receiver} is at ({x}, {y}) m; expected a point within {reach_m} m of the walls")
             }
+            Self::Inside { at: [x, y], what } => {
+                write!(f, "a sensor at ({x}, {y}) m is inside ")?;
+                match what {
+                    Contact::Wall(wall) => write!(f, "wall {wall}")?,
+                    Contact::Pole(pole) => write!(f, "pole {pole}")?,
+                    Contact::Solid => f.write_str("a wall or outside the room")?,
+                }
+                f.write_str("; expected it in the open")
+            }
             Self::Order { max_order } => {
                 write!(f, "paths up to order {max_order}; expected at most {MAX_ORDER}")
             }
             Self::Length { max_length_m } => write!(f, "paths up to {max_length_m} m; expected a positive length"),
+            Self::Body { robot } => write!(
+                f,
+                "the body of robot {} touches a wall, a pole, another robot's body or one of its sensors; expected it clear \
+                 of them",
+                robot + 1
+            ),
             Self::Stopped => f.write_str("stopped"),
             Self::Budget { beams } => write!(f, "more than {beams} beams; lower the order or the longest path"),
         }

@@ -8,7 +8,7 @@ mod crosstalk;
 mod error;
 mod limits;
 mod paths;
-mod pole_paths;
+mod poles;
 mod ranking;
 mod reception;
 mod short_forms;

@@ -5,12 +5,12 @@ use super::beam::{BeamTree, Growth};
 use super::error::PathsError;
 use super::limits::{DEFAULT_FREQUENCY_HZ, Limits, MAX_BEAMS, MAX_ORDER};
 use super::paths::Paths;
-use super::pole_paths::{PolePath, PoleQuery, PoleSearch};
+use super::poles::{PolePath, PoleQuery, PoleSearch, is_shaded};
 use super::ranking::{Found, FoundPath, Rank, Ranking};
 use crate::{
     acoustics::{pole_wave_correction, reflected},
     geometry::{Point, opposite, wrap_angle},
-    scene::{Air, Bounce, Scene},
+    scene::{Air, Bounce, Contact, Scene},
     threads::Stop,
 };
 
@@ -22,6 +22,9 @@ pub struct Tracer {
     /// Whether poles return what a rigid cylinder does at this frequency instead of what geometric optics says; see
     /// [`pole_wave_correction`]. Off by default.
     pub pole_waves: bool,
+    /// Whether poles shade what lies behind them where they are thicker than the first Fresnel zone, and sensors within
+    /// something solid are refused; see [`Physics::shadows`](crate::Physics::shadows). Off by default.
+    pub pole_shadows: bool,
     /// The most bounces of a path with a pole, at most those of all others. The default is [`MAX_ORDER`].
     pub pole_order: u32,
     /// Ends a question under way with [`PathsError::Stopped`].
@@ -50,6 +53,7 @@ impl Tracer {
         Self {
             frequency_hz,
             pole_waves: false,
+            pole_shadows: false,
             pole_order: MAX_ORDER,
             stop: Stop::default(),
             loss: None,
@@ -101,7 +105,7 @@ impl Tracer {
             return Err(self.incomplete());
         }
         self.ranking.rank(Found { tree: &self.tree, poles: &self.poles }, receivers.len());
-        self.write(scene, receivers, paths);
+        self.write(scene, source, receivers, paths);
         Ok(())
     }
 
@@ -131,6 +135,9 @@ impl Tracer {
         at_poles: Limits,
     ) -> Result<(), PathsError> {
         check(scene, source, receivers, limits)?;
+        if self.pole_shadows {
+            core::iter::once(&source).chain(receivers).try_for_each(|&at| check_free(scene, at))?;
+        }
         let growth = Growth {
             mesh: &scene.mesh,
             mirrors: &scene.mirrors,
@@ -169,17 +176,27 @@ impl Tracer {
         }
     }
 
-    fn write(&mut self, scene: &Scene, receivers: &[Point], paths: &mut Paths) {
+    fn write(&mut self, scene: &Scene, source: Point, receivers: &[Point], paths: &mut Paths) {
         let loss_per_m = self.loss_per_m(scene.air());
         let wave_number = core::f64::consts::TAU * self.frequency_hz / scene.air().speed_of_sound();
         paths.reserve(self.ranking.ranks().len());
         let found = Found { tree: &self.tree, poles: &self.poles };
+        let wavelength_m = core::f64::consts::TAU / wave_number;
+        let shades = self.pole_shadows && !scene.poles().is_empty();
         for &Rank { length_m, index } in self.ranking.ranks() {
             let start = paths.bounces.len();
+            let receiver = found.push_bounces(index, &mut paths.bounces);
+            if shades {
+                let bounces = &paths.bounces[start..];
+                let corners = scene.bounce_points(source, receivers[receiver as usize], bounces);
+                if corners.is_some_and(|corners| is_shaded(scene, &corners, bounces, wavelength_m)) {
+                    paths.bounces.truncate(start);
+                    continue;
+                }
+            }
             let amplitude;
             match found.get(index) {
                 FoundPath::Walls(image) => {
-                    self.tree.push_bounces(image, &mut paths.bounces);
                     let ahead = receivers[image.receiver as usize] - image.image;
                     let there = ahead.y.atan2(ahead.x);
                     let departure = if image.order.is_multiple_of(2) { there - image.turn } else { image.turn - there };
@@ -196,7 +213,6 @@ impl Tracer {
                     paths.arrival_rad.push(angles[1]);
                 }
                 FoundPath::Pole(path) => {
-                    paths.bounces.extend_from_slice(self.poles.bounces(path));
                     let angles = [path.departure_rad, path.arrival_rad];
                     let reflection_gain =
                         reflected(scene, &paths.bounces[start..], angles, path.cos_incidence, wave_number);
@@ -248,4 +264,15 @@ fn check(scene: &Scene, source: Point, receivers: &[Point], limits: Limits) -> R
         }
         None => Ok(()),
     }
+}
+
+/// Whether a point is in the open: in no pole, no pillar, and not outside the room.
+fn check_free(scene: &Scene, at: Point) -> Result<(), PathsError> {
+    let pole = scene.poles().iter().position(|pole| (at - pole.centre).norm() < pole.radius_m);
+    let what = match pole {
+        Some(pole) => Contact::Pole(pole),
+        None if scene.is_solid(at) => Contact::Solid,
+        None => return Ok(()),
+    };
+    Err(PathsError::Inside { at: [at.x, at.y], what })
 }

@@ -6,6 +6,7 @@ use super::clock::MAX_DRIFT_PPM;
 use super::error::WorldError;
 use super::motion::{MAX_SPEED, Motion};
 use super::robot::Robot;
+use crate::geometry::{Point, Pose};
 use crate::scene::{Body, MAX_COORDINATE_M, Scene};
 
 /// Whether a number is one, and not farther from zero than `most`.
@@ -17,11 +18,32 @@ fn within(value: f64, most: f64) -> bool {
 pub(super) fn check_apart(robots: &[Robot]) -> Result<(), WorldError> {
     for (other, robot) in robots.iter().enumerate() {
         for (one, before) in robots[..other].iter().enumerate() {
+            if robot.body.is_some() || before.body.is_some() {
+                check_bodies_apart([one, other], [before, robot])?;
+                continue;
+            }
             let apart_m = (robot.pose.translation.vector - before.pose.translation.vector).norm();
             let least_m = robot.radius_m() + before.radius_m();
             if apart_m <= least_m {
                 return Err(WorldError::Overlap { robots: (one, other), apart_m, least_m });
             }
+        }
+    }
+    Ok(())
+}
+
+/// Whether two robots, one of them with a body at least, are clear of each other, their sensors too.
+fn check_bodies_apart(index: [usize; 2], robots: [&Robot; 2]) -> Result<(), WorldError> {
+    let [one, other] = robots;
+    if one.outline().overlaps(&one.pose, &other.outline(), &other.pose) {
+        return Err(WorldError::Bodies { robots: (index[0], index[1]) });
+    }
+    for (k, j) in [(0, 1), (1, 0)] {
+        let Some(body) = robots[j].body else { continue };
+        let inside =
+            |sensor: &Pose| body.holds(&robots[j].pose, Point::from((robots[k].pose * sensor).translation.vector));
+        if let Some(sensor) = robots[k].sensors.iter().position(inside) {
+            return Err(WorldError::SensorInside { robot: index[k], sensor, of: index[j] });
         }
     }
     Ok(())
@@ -68,6 +90,7 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
     let transducer = &robot.transducer;
     for (field, value) in [
         ("frequency_hz", transducer.frequency_hz),
+        ("bandwidth_hz", transducer.bandwidth_hz),
         ("radius_m", transducer.radius_m),
         ("max_range_m", transducer.max_range_m),
     ] {
@@ -103,10 +126,17 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
             return Err(WorldError::Window { robot: index, window: robot.window, min_refire: schedule.min_refire() });
         }
     }
-    // A body without extent still stands somewhere.
-    let body = Body::Disc(robot.radius_m().max(1e-6));
-    match scene.contact(&body, &robot.pose) {
-        Some(contact) => Err(WorldError::Contact { robot: index, contact }),
-        None => Ok(()),
+    if robot.body.is_some_and(|body| !body.is_valid()) {
+        return fail("body", f64::NAN, "measures above 0 and up to 100 m");
     }
+    if let Some(contact) = scene.contact(&robot.outline(), &robot.pose) {
+        return Err(WorldError::Contact { robot: index, contact });
+    }
+    // Sensors may stand out of a body; without one they are within the disc that was just looked at.
+    for (sensor, pose) in robot.sensors.iter().enumerate().filter(|_| robot.body.is_some()) {
+        if let Some(contact) = scene.contact(&Body::Disc(1e-6), &(robot.pose * pose)) {
+            return Err(WorldError::SensorContact { robot: index, sensor, contact });
+        }
+    }
+    Ok(())
 }

@@ -63,6 +63,38 @@ pub enum WorldError {
         /// What it touches.
         contact: Contact,
     },
+    /// A sensor that starts inside something.
+    SensorContact {
+        /// The robot.
+        robot: usize,
+        /// The sensor.
+        sensor: usize,
+        /// What it is inside of.
+        contact: Contact,
+    },
+    /// A sensor that starts inside another robot's body.
+    SensorInside {
+        /// The robot whose sensor it is.
+        robot: usize,
+        /// The sensor.
+        sensor: usize,
+        /// The other robot.
+        of: usize,
+    },
+    /// Two robots whose bodies overlap.
+    Bodies {
+        /// The robots.
+        robots: (usize, usize),
+    },
+    /// A number of the physics that makes no sense.
+    Physics {
+        /// The field, by its name in files.
+        field: &'static str,
+        /// The offending number.
+        value: f64,
+        /// What is expected.
+        expected: &'static str,
+    },
     /// Two robots that start one inside the other.
     Overlap {
         /// The robots.
@@ -131,6 +163,26 @@ impl fmt::Display for WorldError {
                 one + first,
                 other + first
             ),
+            Self::SensorContact { robot, sensor, contact } => {
+                write!(f, "robot {}: sensor {} is inside ", robot + first, sensor + first)?;
+                match contact {
+                    Contact::Wall(wall) => write!(f, "wall {wall}")?,
+                    Contact::Pole(pole) => write!(f, "pole {pole}")?,
+                    Contact::Solid => write!(f, "a wall or outside the room")?,
+                }
+                write!(f, "; expected it in the open")
+            }
+            Self::SensorInside { robot, sensor, of } => write!(
+                f,
+                "robot {}: sensor {} is inside robot {}; expected it in the open",
+                robot + first,
+                sensor + first,
+                of + first
+            ),
+            Self::Bodies { robots: (one, other) } => {
+                write!(f, "the bodies of robots {} and {} overlap; expected them apart", one + first, other + first)
+            }
+            Self::Physics { field, value, expected } => write!(f, "physics: {field} is {value}; expected {expected}"),
             Self::Noise { field, value, expected } => write!(f, "noise: {field} is {value}; expected {expected}"),
             Self::Order { max_order } => write!(f, "max_order is {max_order}; expected at most {MAX_ORDER}"),
         }

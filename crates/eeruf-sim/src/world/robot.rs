@@ -8,6 +8,7 @@ use super::ring::ring_of;
 use crate::{
     acoustics::Transducer,
     geometry::{Pose, Vector},
+    scene::Body,
 };
 
 /// The most robots in one world: a choice, beyond any use, so that more is a mistake in the input.
@@ -20,9 +21,13 @@ pub type AnySchedule = Schedule<MAX_SENSORS>;
 pub struct Robot {
     /// Place and heading of each sensor relative to the robot, 1 to 64 of them.
     pub sensors: Vec<Pose>,
-    /// What kind of transducer they are. Robots with different kinds do not hear each other: the frequencies of the
-    /// presets are kilohertz apart.
+    /// What kind of transducer they are. Robots hear each other if their [bands overlap](Transducer::hears); those of
+    /// the presets do not.
     pub transducer: Transducer,
+    /// Its outline: what others' sound is reflected and shaded by, and what overlaps no wall, pole or other body. Its
+    /// own sensors neither see it nor are shaded by it, but that nothing leaves or reaches them from behind. The default
+    /// is none: the robot is transparent, and stands free by the disc of [`radius_m`](Self::radius_m).
+    pub body: Option<Body>,
     /// Where the robot is at the start.
     pub pose: Pose,
     /// How it moves from there.
@@ -81,6 +86,7 @@ impl Robot {
         Self {
             sensors,
             transducer,
+            body: None,
             pose,
             motion: Motion::Still,
             clock: Clock::default(),
@@ -98,10 +104,15 @@ impl Robot {
         }
     }
 
-    /// The radius in metres of the smallest disc about the robot's middle that holds all its sensors: its body, as far
-    /// as the simulator knows.
+    /// The radius in metres of the smallest disc about the robot's middle that holds all its sensors.
     pub fn radius_m(&self) -> f64 {
         self.sensors.iter().map(|sensor| offset(sensor).norm()).fold(0.0, f64::max)
+    }
+
+    /// What must stand free: its body, or without one the disc that holds all its sensors.
+    pub fn outline(&self) -> Body {
+        // A body without extent still stands somewhere.
+        self.body.unwrap_or(Body::Disc(self.radius_m().max(1e-6)))
     }
 }
 

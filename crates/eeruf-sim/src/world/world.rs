@@ -5,12 +5,15 @@ use super::check::{check, check_apart};
 use super::error::WorldError;
 use super::noise::Noise;
 use super::robot::{MAX_ROBOTS, Robot};
-use crate::{geometry::Pose, scene::Scene, tracing::MAX_ORDER};
+use crate::{acoustics::Physics, geometry::Pose, scene::Scene, tracing::MAX_ORDER};
 
 /// The highest order that a world follows sound to, unless another is asked for: the order at which Set I is
 /// evaluated.
 pub const DEFAULT_ORDER: u32 = 6;
-/// A scene, robots, noise and a seed.
+/// The longest time for which a path may fade in the same way, in seconds: a choice, as good as for ever.
+const MAX_FADING_TIME_S: f64 = 3600.0;
+
+/// A scene, robots, noise, physics and a seed.
 #[derive(Debug)]
 pub struct World {
     scene: Scene,
@@ -18,11 +21,13 @@ pub struct World {
     noise: Noise,
     max_order: u32,
     pole_order: u32,
+    physics: Physics,
     seed: u64,
 }
 
 impl World {
-    /// Checks the robots and the noise against the scene. The order is [`DEFAULT_ORDER`], the seed 1.
+    /// Checks the robots and the noise against the scene. The order is [`DEFAULT_ORDER`], the seed 1, the physics
+    /// [`Physics::PLAIN`].
     ///
     /// # Errors
     /// The first thing found wrong, naming the robot by its index.
@@ -44,7 +49,15 @@ impl World {
         }
         check_apart(&robots)?;
         noise.check()?;
-        Ok(Self { scene, robots, noise, max_order: DEFAULT_ORDER, pole_order: MAX_ORDER, seed: 1 })
+        Ok(Self {
+            scene,
+            robots,
+            noise,
+            max_order: DEFAULT_ORDER,
+            pole_order: MAX_ORDER,
+            physics: Physics::PLAIN,
+            seed: 1,
+        })
     }
 
     /// The same world, with sound followed up to another order.
@@ -70,6 +83,18 @@ impl World {
         Ok(Self { pole_order, ..self })
     }
 
+    /// The same world with other effects.
+    ///
+    /// # Errors
+    /// [`WorldError::Physics`] for a number that makes no sense.
+    pub fn with_physics(self, physics: Physics) -> Result<Self, WorldError> {
+        if !(0.0..=MAX_FADING_TIME_S).contains(&physics.fading_time_s) {
+            let (value, expected) = (physics.fading_time_s, "0 to 3600");
+            return Err(WorldError::Physics { field: "fading_time_s", value, expected });
+        }
+        Ok(Self { physics, ..self })
+    }
+
     /// The same world with another seed.
     #[must_use]
     pub fn with_seed(self, seed: u64) -> Self {
@@ -84,6 +109,11 @@ impl World {
     /// The robots, at least one.
     pub fn robots(&self) -> &[Robot] {
         &self.robots
+    }
+
+    /// Which effects it has.
+    pub fn physics(&self) -> Physics {
+        self.physics
     }
 
     /// How noisy it is.

@@ -7,6 +7,8 @@ mod corpus_reader;
 mod facts;
 mod image_source;
 mod open;
+mod physics;
+mod plain;
 mod properties;
 mod random;
 mod set_one;

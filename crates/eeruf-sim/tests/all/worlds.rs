@@ -110,7 +110,10 @@ fn an_unknown_method_is_answered_with_the_list_of_all() {
 #[test]
 fn a_world_written_to_a_file_and_read_again_gives_the_same_bit_for_bit() {
     let walls = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0], [-2.0, -2.0]];
+    let outline = Outline::new(&[[-0.2, -0.1], [0.2, -0.1], [0.1, 0.2]]).unwrap();
+    let odd = Physics { fading_time_s: 0.3, ..Physics::DEFAULT };
     for number in 0..38_u32 {
+        let physics = [Physics::PLAIN, Physics::DEFAULT, odd][number as usize % 3];
         let turned = 0.37 * f64::from(number) - 5.0;
         let rough = Material { reflection: 0.87, roughness_m: 0.3e-3 };
         let mut room: Vec<_> = Wall::polyline(&walls).map(|wall| wall.with_material(rough)).collect();
@@ -123,12 +126,14 @@ fn a_world_written_to_a_file_and_read_again_gives_the_same_bit_for_bit() {
             clock: Clock { offset_us: 77, drift_ppm: -31.5 },
             blanking: Micros::new(1234),
             patience: 3,
+            body: [None, Some(Body::Disc(0.25)), Some(Body::Box(0.4, 0.3))][number as usize % 3],
             ..Robot::ring(Pose::new(Vector::new(-0.8, 0.1), turned), 6, 0.3 + 0.001 * turned, 0.2, transducer)
         };
         let poses = vec![Pose::new(Vector::new(0.1, 0.02), turned), Pose::new(Vector::new(-0.1, 0.0), 3.0 - turned)];
         let moving = Robot {
             motion: Motion::Constant { velocity: Vector::new(0.05, -0.02), turn_rad_s: 0.1 * turned },
             odometry: true,
+            body: (number % 2 == 1).then_some(Body::Polygon(outline)),
             ..Robot::with_sensors(Pose::new(Vector::new(0.6, -0.4), -turned), poses, transducer)
         };
         let noise = Noise { fading_db_rms: 2.0, jitter_us_rms: 20.0, bursts_per_s: 4.0, burst_db: 12.0 };
@@ -137,12 +142,21 @@ fn a_world_written_to_a_file_and_read_again_gives_the_same_bit_for_bit() {
             .unwrap()
             .with_seed(u64::MAX - u64::from(number))
             .with_max_order(3)
+            .and_then(|world| world.with_physics(physics))
             .unwrap();
-        let text = world_file(world.scene(), world.robots(), &world.noise(), world.max_order(), world.seed());
+        let text = world_file(
+            world.scene(),
+            world.robots(),
+            &world.noise(),
+            &world.physics(),
+            world.max_order(),
+            world.seed(),
+        );
         let again = World::from_text("again.toml".as_ref(), &text).unwrap();
         assert!(again.robots() == world.robots(), "{text}");
         assert_eq!((again.scene().walls(), again.scene().poles()), (world.scene().walls(), world.scene().poles()));
         assert_eq!((again.scene().air(), again.noise()), (world.scene().air(), world.noise()));
+        assert_eq!(again.physics(), physics);
         assert_eq!((again.max_order(), again.seed()), (3, u64::MAX - u64::from(number)));
     }
 }

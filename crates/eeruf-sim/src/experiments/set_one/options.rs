@@ -4,6 +4,7 @@ use eeruf_core::{HoppingSettings, Micros};
 
 use super::alcove::SENSORS;
 use super::table::READINGS;
+use crate::acoustics::Physics;
 use crate::methods::{BestSchedule, Method};
 
 /// What is asked of Set I.
@@ -26,6 +27,8 @@ pub struct SetOneOptions {
     pub best: Option<BestSchedule>,
     /// How [`Method::EerufHopping`] fires and believes.
     pub hopping: HoppingSettings,
+    /// Which effects the alcoves have. The default is [`Physics::PLAIN`].
+    pub physics: Physics,
     /// How many sensors the ring has, 1 to 24. The default is 8.
     pub sensors: usize,
     /// Its period. The default is 60 ms.
@@ -42,6 +45,7 @@ impl Default for SetOneOptions {
             methods: Method::ALL.to_vec(),
             best: None,
             hopping: HoppingSettings::BALANCED,
+            physics: Physics::PLAIN,
             sensors: SENSORS,
             period: Micros::from_millis(60),
         }

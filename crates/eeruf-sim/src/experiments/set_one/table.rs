@@ -122,7 +122,7 @@ fn run(
         _ => plain,
     };
     let world = |alcove: &Alcove| -> Result<World, WorldError> {
-        World::new(alcove.scene()?, vec![robot.clone()], Noise::default())
+        World::new(alcove.scene()?, vec![robot.clone()], Noise::default())?.with_physics(asked.physics)
     };
     let best = asked.best.as_ref().map(|best| best.schedule);
     let options = Options { best, hopping: asked.hopping, ..Options::periods(periods) };

@@ -4,6 +4,7 @@ use eeruf_core::Micros;
 
 use super::pilot::Piloting;
 use crate::{
+    acoustics::Physics,
     geometry::Point,
     methods::{BestSchedule, Method},
     navigation::LabMate,
@@ -30,6 +31,8 @@ pub struct SetTwoOptions {
     /// `T_delta`. With odometry it need not leave room for motion, and readings agree by accident the more rarely the
     /// smaller it is.
     pub t_delta: Micros,
+    /// Which effects the lab has. The default is [`Physics::PLAIN`].
+    pub physics: Physics,
     /// How it steers.
     pub piloting: Piloting,
 }
@@ -53,6 +56,7 @@ impl Default for SetTwoOptions {
             labmate: LabMate::default(),
             odometry: true,
             t_delta: Micros::new(150),
+            physics: Physics::PLAIN,
             piloting: Piloting::default(),
         }
     }

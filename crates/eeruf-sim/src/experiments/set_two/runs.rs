@@ -101,7 +101,7 @@ fn run_course(
     let course = Course::random(number);
     let consecutive = if method == Method::MultiEcho { MULTI_ECHO_CONSECUTIVE } else { 2 };
     let robot = Robot { odometry: options.odometry, t_delta: options.t_delta, consecutive, ..course.robot() };
-    let world = course.world(robot, options.second_robot)?;
+    let world = course.world(robot, options.second_robot)?.with_physics(options.physics)?;
     let mut piloting = options.piloting;
     piloting.vfh.speed_max_m_s = options.labmate.speed_max_m_s;
     let mut pilot = Pilot::new(&world, number, options.labmate, piloting, TIME_S);

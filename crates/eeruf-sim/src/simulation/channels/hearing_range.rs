@@ -1,4 +1,4 @@
-//! How faint sound may be and how far it may come to be heard by a kind of transducer.
+//! How faint the sound of one kind of transducer may be, and how far it may come, to be heard by another.
 
 use crate::{
     acoustics::Transducer,
@@ -6,10 +6,11 @@ use crate::{
     world::{FARTHEST, World},
 };
 
-/// What a kind of transducer hears in this world.
+/// What a kind of transducer hears of a kind in this world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HearingRange {
-    pub(super) transducer: Transducer,
+    sending: Transducer,
+    hearing: Transducer,
     /// The amplitude that is just heard.
     pub(super) floor: f64,
     /// The same if the strongest fading lifts it.
@@ -19,11 +20,16 @@ pub(super) struct HearingRange {
 }
 
 impl HearingRange {
-    pub(super) fn new(transducer: &Transducer, world: &World) -> Self {
+    pub(super) fn new(sending: &Transducer, hearing: &Transducer, world: &World) -> Self {
         let air = world.scene().air();
-        let floor = transducer.detection_floor(air);
+        let floor = hearing.detection_floor(air);
         let faintest = floor / 10f64.powf(world.noise().fading_db_rms * f64::from(FARTHEST) / 20.0);
-        Self { transducer: *transducer, floor, faintest, longest_m: longest_audible_m(transducer, air, faintest) }
+        let longest_m = longest_audible_m(sending, air, faintest);
+        Self { sending: *sending, hearing: *hearing, floor, faintest, longest_m }
+    }
+
+    pub(super) fn is_of(&self, sending: &Transducer, hearing: &Transducer) -> bool {
+        self.sending == *sending && self.hearing == *hearing
     }
 }
 

@@ -1,6 +1,7 @@
 //! The channels of a world: every path from each emitter to each receiver that can be loud enough, computed once while
 //! nothing moves, and for each firing anew otherwise.
 
+mod bodies;
 mod hearing_range;
 mod path_numbers;
 
@@ -10,10 +11,12 @@ use crate::{
     acoustics::{GainProfile, Transducer},
     geometry::{Pose, Vector},
     results::{HeardPath, SensorId},
+    scene::Bounce,
     threads::Stop,
     tracing::{CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, PathsError, Tracer, reception_along},
     world::{Robot, World, offset},
 };
+use bodies::Bodies;
 use hearing_range::HearingRange;
 use path_numbers::PathNumbers;
 
@@ -24,6 +27,8 @@ pub(crate) struct Channel {
     pub(crate) receiver: u32,
     /// The path's number, see [`Channels::paths`].
     pub(crate) path: u32,
+    /// What only its ends and its bounces decide.
+    pub(crate) key: u64,
     /// Travelling time in nanoseconds.
     pub(crate) delay: u64,
     /// Level above the detection floor, the receiver's gain left out.
@@ -40,8 +45,9 @@ pub(crate) struct Channels<'w> {
     tracer: Tracer,
     matrix: CrosstalkMatrix,
     moves: bool,
-    /// Of the kind of transducer asked for last.
-    range: Option<HearingRange>,
+    /// Of each kind of transducer that hears one.
+    ranges: Vec<HearingRange>,
+    bodies: Bodies,
     /// Whether it matters what a robot hears.
     listens: Vec<bool>,
     /// The channels from each emitter while nothing moves, with one more start at the end; else those of the last
@@ -53,7 +59,8 @@ pub(crate) struct Channels<'w> {
     // Kept between firings for their memory.
     poses: Vec<Pose>,
     velocities: Vec<Vector>,
-    group: Vec<usize>,
+    robots: Vec<Pose>,
+    bounces: Vec<Bounce>,
 }
 
 impl<'w> Channels<'w> {
@@ -74,14 +81,16 @@ impl<'w> Channels<'w> {
             tracer,
             matrix: CrosstalkMatrix::new(),
             moves: kinematics.moves(),
-            range: None,
+            ranges: Vec::new(),
+            bodies: Bodies::new(world),
             listens: (0..world.robots().len()).map(|robot| kinematics.listens(robot)).collect(),
             channels: Vec::new(),
             starts: Vec::new(),
             paths: PathNumbers::default(),
             poses: Vec::new(),
             velocities: Vec::new(),
-            group: Vec::new(),
+            robots: Vec::new(),
+            bounces: Vec::new(),
         };
         if !channels.moves {
             channels.compute_all(kinematics)?;
@@ -113,11 +122,11 @@ impl<'w> Channels<'w> {
     /// [`NEVER`].
     pub(crate) fn reference(&self, sensor: usize, hearing: &Hearing) -> u64 {
         let own = self.from(sensor).iter().filter(|channel| channel.receiver as usize == sensor);
-        let heard = own.filter(|channel| {
-            (hearing.blanking..=hearing.window).contains(&channel.delay)
-                && hearing.audible(channel.level_over_threshold_db, channel.delay)
+        let heard = own.filter_map(|channel| {
+            let late = hearing.lateness(channel.level_over_threshold_db, channel.delay)?;
+            Some(channel.delay + late).filter(|heard| (hearing.blanking..=hearing.window).contains(heard))
         });
-        heard.map(|channel| channel.delay).min().unwrap_or(NEVER)
+        heard.min().unwrap_or(NEVER)
     }
 
     /// Every path met so far, by its number.
@@ -138,6 +147,8 @@ impl<'w> Channels<'w> {
     /// From now on sound travels in the scene of another world, whose sensors are the same. Paths keep their numbers.
     pub(crate) fn change_scene(&mut self, world: &'w World, kinematics: &impl Kinematics) -> Result<(), PathsError> {
         self.world = world;
+        self.ranges.clear();
+        self.bodies = Bodies::new(world);
         self.channels.clear();
         self.starts.clear();
         if self.moves { Ok(()) } else { self.compute_all(kinematics) }
@@ -150,20 +161,9 @@ impl<'w> Channels<'w> {
     fn compute_all(&mut self, kinematics: &impl Kinematics) -> Result<(), PathsError> {
         self.set_poses(0, kinematics);
         let mut by_emitter: Vec<Vec<Channel>> = vec![Vec::new(); self.ids.len()];
-        for (robot, ring) in self.world.robots().iter().enumerate() {
-            // Once for each kind of transducer.
-            if self.world.robots()[..robot].iter().any(|before| before.transducer == ring.transducer) {
-                continue;
-            }
-            let range = self.trace(&ring.transducer, None)?;
-            let matrix = core::mem::take(&mut self.matrix);
-            for path in matrix.paths() {
-                let emitter = self.group[path.emitter as usize];
-                if let Some(channel) = self.channel(emitter, &matrix, path, &range) {
-                    by_emitter[emitter].push(channel);
-                }
-            }
-            self.matrix = matrix;
+        let everyone: Vec<usize> = (0..self.ids.len()).collect();
+        for senders in self.alike(&everyone) {
+            self.trace(&senders, &everyone, |emitter, channel| by_emitter[emitter].push(channel))?;
         }
         for channels in by_emitter {
             self.starts.push(self.channels.len());
@@ -175,25 +175,43 @@ impl<'w> Channels<'w> {
 
     fn compute_from(&mut self, emitter: usize, now: u64, kinematics: &impl Kinematics) -> Result<(), PathsError> {
         self.set_poses(now, kinematics);
-        let transducer = &self.robot_of(emitter).transducer;
-        self.channels.clear();
-        let range = self.trace(transducer, Some(emitter))?;
-        let matrix = core::mem::take(&mut self.matrix);
-        for path in matrix.paths() {
-            if let Some(channel) = self.channel(emitter, &matrix, path, &range) {
-                self.channels.push(channel);
+        let listening: Vec<usize> =
+            (0..self.ids.len()).filter(|&sensor| self.listens[usize::from(self.ids[sensor].robot)]).collect();
+        let mut channels = core::mem::take(&mut self.channels);
+        channels.clear();
+        let traced = self.trace(&[emitter], &listening, |_, channel| channels.push(channel));
+        self.channels = channels;
+        traced
+    }
+
+    /// Sensors of one kind, and of robots without a body or of one robot with one, together.
+    fn alike(&self, sensors: &[usize]) -> Vec<Vec<usize>> {
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        let same = |a: usize, b: usize| {
+            self.robot_of(a).transducer == self.robot_of(b).transducer && self.embodied(a) == self.embodied(b)
+        };
+        for &sensor in sensors {
+            match groups.iter_mut().find(|group| same(group[0], sensor)) {
+                Some(group) => group.push(sensor),
+                None => groups.push(vec![sensor]),
             }
         }
-        self.matrix = matrix;
-        Ok(())
+        groups
+    }
+
+    /// The sensor's robot, if it has a body.
+    fn embodied(&self, sensor: usize) -> Option<usize> {
+        self.robot_of(sensor).body.map(|_| usize::from(self.ids[sensor].robot))
     }
 
     /// Where all sensors are, and how fast they go.
     fn set_poses(&mut self, now: u64, kinematics: &impl Kinematics) {
         self.poses.clear();
         self.velocities.clear();
+        self.robots.clear();
         for (index, robot) in self.world.robots().iter().enumerate() {
             let moment = kinematics.moment(index, now);
+            self.robots.push(moment.pose);
             for sensor in &robot.sensors {
                 self.poses.push(moment.pose * sensor);
                 self.velocities.push(moment.velocity_at(moment.pose.rotation * offset(sensor)));
@@ -201,49 +219,82 @@ impl<'w> Channels<'w> {
         }
     }
 
-    /// Fills the matrix for all sensors of one kind that matter, or from one emitter to them. Paths that only the
-    /// strongest fading lifts over the detection floor are in it too.
-    fn trace(&mut self, transducer: &Transducer, emitter: Option<usize>) -> Result<HearingRange, PathsError> {
-        let concerned = |&sensor: &usize| {
-            let hears = emitter.is_none() || self.listens[usize::from(self.ids[sensor].robot)];
-            hears && self.robot_of(sensor).transducer == *transducer
-        };
-        self.group = (0..self.ids.len()).filter(concerned).collect();
-        let poses: Vec<_> = self.group.iter().map(|&sensor| self.poses[sensor]).collect();
-        let scene = self.world.scene();
-        let range = match self.range {
-            Some(range) if range.transducer == *transducer => range,
-            _ => *self.range.insert(HearingRange::new(transducer, self.world)),
-        };
-        let limits = Limits { max_order: self.world.max_order(), max_length_m: range.longest_m };
-        self.tracer.pole_order = self.world.pole_order();
-        // The receiver's gain depends on when the receiver fired, so it cannot be applied here.
-        let flat = Transducer { gain: GainProfile::Constant, ..*transducer };
-        let query = CrosstalkQuery { scene, sensors: &poses, transducer: &flat, limits, floor: range.faintest };
-        match emitter {
-            Some(emitter) => self.matrix.compute_from(&self.poses[emitter], &mut self.tracer, &query)?,
-            None => self.matrix.compute(&mut self.tracer, &query)?,
+    /// Looks for the channels from emitters that are alike to all of these receivers that hear them. Paths that only the
+    /// strongest fading lifts over the detection floor are among them.
+    fn trace(
+        &mut self,
+        emitters: &[usize],
+        receivers: &[usize],
+        mut found: impl FnMut(usize, Channel),
+    ) -> Result<(), PathsError> {
+        let Some(&first) = emitters.first() else { return Ok(()) };
+        let (world, sending) = (self.world, &self.robot_of(first).transducer);
+        let hearing: Vec<_> =
+            receivers.iter().copied().filter(|&sensor| self.robot_of(sensor).transducer.hears(sending)).collect();
+        let sources = self.poses_of(emitters);
+        for listeners in self.alike(&hearing) {
+            let transducer = &self.robot_of(listeners[0]).transducer;
+            let sensors = self.poses_of(&listeners);
+            let range = self.range(sending, transducer);
+            let mut furnished = None;
+            if self.bodies.any() {
+                let without = [self.embodied(first), self.embodied(listeners[0])];
+                let both = [&sources[..], &sensors].concat();
+                furnished = self.bodies.scene(world, &self.robots, &both, without)?;
+            }
+            let scene = furnished.as_ref().map_or(world.scene(), |furnished| &furnished.scene);
+            let limits = Limits { max_order: world.max_order(), max_length_m: range.longest_m };
+            self.tracer.pole_order = world.pole_order();
+            // A body shades whatever the physics.
+            self.tracer.pole_shadows = world.physics().shadows || furnished.is_some();
+            // The receiver's gain depends on when the receiver fired, so it cannot be applied here.
+            let flat = Transducer { gain: GainProfile::Constant, ..*transducer };
+            let query = CrosstalkQuery { scene, sensors: &sensors, transducer: &flat, limits, floor: range.faintest };
+            self.matrix.compute_between(&sources, sending, &mut self.tracer, &query)?;
+            let matrix = core::mem::take(&mut self.matrix);
+            for path in matrix.paths() {
+                let ends = [emitters[path.emitter as usize], listeners[path.receiver as usize]];
+                self.bounces.clear();
+                self.bounces.extend_from_slice(matrix.bounces(path));
+                if let Some(furnished) = &furnished {
+                    furnished.number(&mut self.bounces);
+                }
+                if let Some(channel) = self.channel(ends, path, &range) {
+                    found(ends[0], channel);
+                }
+            }
+            self.matrix = matrix;
         }
-        Ok(range)
+        Ok(())
     }
 
-    fn channel(
-        &mut self,
-        emitter: usize,
-        matrix: &CrosstalkMatrix,
-        path: &CriticalPath,
-        range: &HearingRange,
-    ) -> Option<Channel> {
-        let receiver = self.group[path.receiver as usize];
+    fn poses_of(&self, sensors: &[usize]) -> Vec<Pose> {
+        sensors.iter().map(|&sensor| self.poses[sensor]).collect()
+    }
+
+    fn range(&mut self, sending: &Transducer, hearing: &Transducer) -> HearingRange {
+        match self.ranges.iter().find(|range| range.is_of(sending, hearing)) {
+            Some(range) => *range,
+            None => {
+                let range = HearingRange::new(sending, hearing, self.world);
+                self.ranges.push(range);
+                range
+            }
+        }
+    }
+
+    /// The channel of a path, whose bounces are in `self.bounces`.
+    fn channel(&mut self, ends: [usize; 2], path: &CriticalPath, range: &HearingRange) -> Option<Channel> {
+        let receiver = ends[1];
         let velocity = self.velocities[receiver];
         let c = self.world.scene().air().speed_of_sound();
         let met = reception_along(path.length_m, path.arrival_rad, velocity, c)?;
         let level_over_threshold_db = 20.0 * libm::log10(path.amplitude / range.floor);
-        let ends = [self.ids[emitter], self.ids[receiver]];
-        let path = self.paths.number(ends, path, matrix.bounces(path));
+        let path = self.paths.number(ends.map(|end| self.ids[end]), path, &self.bounces);
         Some(Channel {
             receiver: receiver as u32,
             path,
+            key: self.paths.key(path),
             delay: (met.time_s * 1e9).round() as u64,
             level_over_threshold_db: level_over_threshold_db as f32,
         })

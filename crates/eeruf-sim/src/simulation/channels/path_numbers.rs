@@ -8,12 +8,15 @@ use crate::{
     results::{HeardPath, SensorId},
     scene::Bounce,
     tracing::CriticalPath,
+    world::Random,
 };
 
 /// Every path met so far.
 #[derive(Default)]
 pub(super) struct PathNumbers {
     paths: Vec<HeardPath>,
+    /// For each, what only its ends and its bounces decide, whenever it was met.
+    keys: Vec<u64>,
     numbers: HashMap<u64, u32>,
 }
 
@@ -39,6 +42,7 @@ impl PathNumbers {
         }
         let number = self.paths.len() as u32;
         self.numbers.insert(key, number);
+        self.keys.push(key_of([emitter, receiver], bounces));
         self.paths.push(HeardPath {
             emitter,
             receiver,
@@ -51,8 +55,22 @@ impl PathNumbers {
         number
     }
 
+    /// What only a path's ends and bounces decide: the same in every simulation, whatever was met before.
+    pub(super) fn key(&self, number: u32) -> u64 {
+        self.keys[number as usize]
+    }
+
     /// The paths, by their numbers.
     pub(super) fn paths(&self) -> &[HeardPath] {
         &self.paths
     }
+}
+
+fn key_of(ends: [SensorId; 2], bounces: &[Bounce]) -> u64 {
+    let ends = ends.iter().fold(Random::new(0), |key, id| key.of(id.robot.into()).of(id.sensor.into()));
+    let mut all = bounces.iter().fold(ends, |key, bounce| match *bounce {
+        Bounce::Wall(wall) => key.of(0).of(wall.into()),
+        Bounce::Pole(pole) => key.of(1).of(pole.into()),
+    });
+    all.bits()
 }

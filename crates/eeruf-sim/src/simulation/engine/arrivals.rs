@@ -1,34 +1,50 @@
 //! What reaches the receivers: the sound of a firing along its channels, with fading and jitter, and bursts from
 //! outside.
 
+use core::f32::consts::FRAC_PI_2;
+
 use crate::simulation::channels::Channel;
 use crate::simulation::receiver::{Arrival, EXTERNAL, NEVER, Receiver};
-use crate::world::{FARTHEST, Noise, Normal, Random};
+use crate::world::{FARTHEST, Noise, Normal, Random, World};
 
 // What the streams of random numbers are for.
 const ARRIVALS: u64 = 1;
 const BURSTS: u64 = 2;
+const FADING: u64 = 4;
 
 /// How sound fades and jitters on its way.
 pub(crate) struct Propagation {
+    /// For what each firing draws anew.
     random: Random,
+    /// For what is a process in time.
+    fading: Random,
     normal: &'static Normal,
     fading_db: f32,
     jitter_ns: f32,
-    /// No arrival is earlier or later by more, in nanoseconds.
+    /// No arrival is heard earlier or later by more, in nanoseconds.
     slack: u64,
+    /// From one knot of the fading to the next, in nanoseconds; 0 if each firing draws anew.
+    knot_ns: u64,
 }
 
+/// The correlation of [`Propagation::faded`] is 1/e after this share of the time from knot to knot.
+const CORRELATED: f64 = 0.939;
+
 impl Propagation {
-    /// The noise of a world, from its seed.
-    pub(crate) fn new(noise: &Noise, seed: Random) -> Self {
+    /// The noise of a world, from this seed.
+    pub(crate) fn new(world: &World, seed: Random) -> Self {
+        let (noise, physics) = (world.noise(), world.physics());
         let jitter_ns = (noise.jitter_us_rms * 1000.0) as f32;
+        let bursts = world.robots().iter().map(|robot| (robot.transducer.burst_s() * 1e9).ceil() as u64);
+        let walk = if physics.range_walk { bursts.max().unwrap_or(0) } else { 0 };
         Self {
             random: seed.of(ARRIVALS),
+            fading: seed.of(FADING),
             normal: Normal::shared(),
             fading_db: noise.fading_db_rms as f32,
             jitter_ns,
-            slack: (jitter_ns * FARTHEST).ceil() as u64,
+            slack: (jitter_ns * FARTHEST).ceil() as u64 + walk,
+            knot_ns: if physics.fades_slowly() { (physics.fading_time_s / CORRELATED * 1e9).ceil() as u64 } else { 0 },
         }
     }
 
@@ -52,13 +68,34 @@ impl Propagation {
             if !receiver.cares(nominal, self.slack) {
                 continue;
             }
-            let [fades, shifts] = self.normal.pair(random.of(channel.path.into()).bits());
+            let [fades, shifts] = if self.knot_ns == 0 {
+                self.normal.pair(random.of(channel.path.into()).bits())
+            } else {
+                self.faded(channel.key, now)
+            };
             let level_over_threshold_db = channel.level_over_threshold_db + self.fading_db * fades;
             if level_over_threshold_db >= 0.0 {
-                let at = nominal.saturating_add_signed((self.jitter_ns * shifts) as i64).max(now + 1);
-                arrive(number, receiver, Arrival { at, sent: now, path: channel.path, level_over_threshold_db });
+                let onset = nominal.saturating_add_signed((self.jitter_ns * shifts) as i64).max(now + 1);
+                let path = channel.path;
+                arrive(number, receiver, Arrival { onset, at: onset, sent: now, path, level_over_threshold_db });
             }
         }
+    }
+
+    /// How a path with this key fades and shifts at a time, both normally distributed: decided by the seed, the path and
+    /// the time alone, so that it does not matter who asks, nor what was asked before.
+    ///
+    /// Between independent normal numbers at knots, each path's at places of its own, it goes along a quarter of a
+    /// circle, which keeps the variance: at the share `u` of the way `cos(u pi / 2) a + sin(u pi / 2) b`. At a distance of
+    /// `s` knots, up to one, its correlation is `(1 - s / 2) cos(s pi / 2) + sin(s pi / 2) / pi`; beyond two it is none.
+    fn faded(&self, key: u64, now: u64) -> [f32; 2] {
+        let path = self.fading.of(key);
+        let since = now + path.of(0).bits() % self.knot_ns;
+        let (knot, within) = (since / self.knot_ns, since % self.knot_ns);
+        let at = |knot: u64| self.normal.pair(path.of(1).of(knot).bits())[0];
+        let (sin, cos) = libm::sincosf(FRAC_PI_2 * (within as f32 / self.knot_ns as f32));
+        let fades = (cos * at(knot) + sin * at(knot + 1)).clamp(-FARTHEST, FARTHEST);
+        [fades, self.normal.pair(path.of(2).of(now).bits())[1]]
     }
 }
 
@@ -95,10 +132,54 @@ impl Bursts {
         let [fades, _] = self.normal.pair(self.random.bits());
         let level_over_threshold_db = self.noise.burst_db as f32 + self.noise.fading_db_rms as f32 * fades;
         (level_over_threshold_db >= 0.0).then_some(Arrival {
+            onset: now,
             at: now,
             sent: now,
             path: EXTERNAL,
             level_over_threshold_db,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{acoustics::Physics, scene::*, world::*};
+
+    fn propagation(fading_time_s: f64) -> Propagation {
+        let scene = Scene::new(vec![], vec![], Air::default()).unwrap();
+        let robot = Robot::ring(crate::Pose::identity(), 1, 0.1, 0.1, crate::Transducer::POLAROID_6500);
+        let physics = Physics { fading_time_s, ..Physics::DEFAULT };
+        let world = World::new(scene, vec![robot], Noise::default()).and_then(|world| world.with_physics(physics));
+        Propagation::new(&world.unwrap(), Random::new(7))
+    }
+
+    #[test]
+    fn fading_has_mean_zero_deviation_one_and_its_time_constant() {
+        let propagation = propagation(0.5);
+        let n = 40_000;
+        let mut sums = [0.0; 5];
+        for key in 0..n {
+            let at = |ms: u64| f64::from(propagation.faded(key, ms * 1_000_000)[0]);
+            let now = at(3000);
+            for (sum, term) in sums.iter_mut().zip([now, now * now, now * at(3050), now * at(3500), now * at(4500)]) {
+                *sum += term / n as f64;
+            }
+        }
+        let [mean, square, after_50_ms, after_its_time, much_later] = sums;
+        assert!(mean.abs() < 0.02 && (square - 1.0).abs() < 0.03, "{sums:?}");
+        assert!((after_50_ms - 0.98).abs() < 0.02, "{after_50_ms}");
+        assert!((after_its_time - (-1f64).exp()).abs() < 0.02, "{after_its_time}");
+        assert!(much_later.abs() < 0.02, "{much_later}");
+    }
+
+    #[test]
+    fn jitter_is_drawn_anew_at_every_instant() {
+        let propagation = propagation(1.0);
+        let shift = |now: u64| f64::from(propagation.faded(1, now)[1]);
+        let n = 40_000u64;
+        let together = (0..n).map(|k| shift(1000 * k) * shift(1000 * k + 1)).sum::<f64>() / n as f64;
+        assert!(together.abs() < 0.02, "{together}");
+        assert_eq!(shift(5), shift(5));
     }
 }

@@ -100,7 +100,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             receivers: vec![Receiver::NEW; sensors],
             references: vec![NEVER; sensors],
             fired: vec![None; sensors],
-            propagation: Propagation::new(&world.noise(), seed),
+            propagation: Propagation::new(world, seed),
             recorder,
             last: end.map_or(u64::MAX - 1, |end| end + longest + 1000),
             stop,

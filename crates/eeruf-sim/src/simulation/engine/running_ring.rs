@@ -61,7 +61,6 @@ pub(crate) fn start_all<'a>(
     channels: &Channels<'_>,
     seed: Random,
 ) -> Result<Vec<RunningRing<'a>>, SimulationError> {
-    let speed_of_sound = world.scene().air().speed_of_sound();
     let mut rings = Vec::with_capacity(plans.len());
     for (index, (robot, (method, plan))) in world.robots().iter().zip(plans).enumerate() {
         let clock = Ticker::new(robot.clock);
@@ -71,16 +70,9 @@ pub(crate) fn start_all<'a>(
             .start(&RingStart { robot, plan, hopping: options.hopping, random, now: clock.instant(start) })
             .map_err(|error| SimulationError::start(index, *method, error))?;
         let true_ns = |time: Micros| clock.true_ns(time.as_micros());
-        let hearing = Hearing {
-            blanking: true_ns(robot.blanking),
-            window: true_ns(robot.window),
-            // Two ticks less, since the clock rounds.
-            refire: true_ns(method.soonest_refire(robot)).saturating_sub(2000),
-            dead_time: (robot.transducer.burst_s() * 1e9) as u64,
-            echoes: method.echoes(),
-            gain: robot.transducer.gain,
-            gain_full_s: 2.0 * robot.transducer.max_range_m / speed_of_sound,
-        };
+        // Two ticks less, since the clock rounds.
+        let refire = true_ns(method.soonest_refire(robot)).saturating_sub(2000);
+        let hearing = Hearing::new(world, robot, method.echoes(), refire, true_ns);
         let first = channels.first_of(index);
         let sensors = first..first + robot.sensors.len();
         rings.push(RunningRing { robot, ring, clock, hearing, sensors, wakes: clock.reaches(start), hears: NEVER });

@@ -7,7 +7,13 @@
 #[cfg(test)]
 mod tests;
 
-use crate::{acoustics::GainProfile, methods::MAX_ECHOES};
+use eeruf_core::Micros;
+
+use crate::{
+    acoustics::GainProfile,
+    methods::MAX_ECHOES,
+    world::{Robot, World},
+};
 
 /// No moment of any simulation.
 pub(crate) const NEVER: u64 = u64::MAX;
@@ -17,6 +23,9 @@ pub(crate) const EXTERNAL: u32 = u32::MAX - 1;
 /// Sound that reaches a sensor. Times are true nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arrival {
+    /// When it begins.
+    pub(crate) onset: u64,
+    /// When it is heard: at its onset, or as much later as its receiver takes.
     pub(crate) at: u64,
     /// When it was sent.
     pub(crate) sent: u64,
@@ -50,20 +59,49 @@ pub(crate) struct Hearing {
     pub(crate) gain: GainProfile,
     /// When the gain is full, in seconds.
     pub(crate) gain_full_s: f64,
+    /// How long an echo rises, in nanoseconds, if that is when it is heard: over a burst. 0 for a receiver that hears
+    /// every echo at its onset.
+    pub(crate) rise_ns: f64,
 }
 
 impl Hearing {
-    /// Whether sound is heard that arrives this long after the receiver has fired.
+    /// What all receivers of a robot have in common whose true times are `ns` of what its clock measures.
+    pub(crate) fn new(world: &World, robot: &Robot, echoes: usize, refire: u64, ns: impl Fn(Micros) -> u64) -> Self {
+        let burst_ns = robot.transducer.burst_s() * 1e9;
+        Self {
+            blanking: ns(robot.blanking),
+            window: ns(robot.window),
+            refire,
+            dead_time: burst_ns as u64,
+            echoes,
+            gain: robot.transducer.gain,
+            gain_full_s: 2.0 * robot.transducer.max_range_m / world.scene().air().speed_of_sound(),
+            rise_ns: if world.physics().range_walk { burst_ns } else { 0.0 },
+        }
+    }
+
+    /// How long after its onset sound is heard that begins so long after the receiver has fired; `None` if it is too
+    /// faint.
+    ///
+    /// A threshold detector hears an echo whose envelope rises evenly over its burst when it has reached the threshold:
+    /// at a level of `L` dB over that, `10^(-L / 20)` of a burst after the onset.
     #[inline]
-    pub(crate) fn audible(&self, level_over_threshold_db: f32, after: u64) -> bool {
-        match self.gain {
-            GainProfile::Constant => level_over_threshold_db >= 0.0,
+    pub(crate) fn lateness(&self, level_over_threshold_db: f32, after: u64) -> Option<u64> {
+        let level_db = match self.gain {
+            GainProfile::Constant => f64::from(level_over_threshold_db),
             gain => {
                 f64::from(level_over_threshold_db)
                     + 20.0 * libm::log10(gain.gain(after as f64 * 1e-9, self.gain_full_s))
-                    >= 0.0
             }
+        };
+        if !(level_db >= 0.0) {
+            return None;
         }
+        Some(if self.rise_ns > 0.0 { (self.rise_ns * libm::exp10(-0.05 * level_db)) as u64 } else { 0 })
+    }
+
+    fn late(&self, arrival: &Arrival, fired: u64) -> Option<u64> {
+        self.lateness(arrival.level_over_threshold_db, arrival.onset.saturating_sub(fired))
     }
 }
 
@@ -137,8 +175,10 @@ impl Receiver {
     /// Adds an arrival. Those before the present moment are not handed in.
     #[inline]
     pub(crate) fn insert(&mut self, arrival: Arrival, hearing: &Hearing) {
+        let late = hearing.late(&arrival, self.fired);
+        let arrival = Arrival { at: arrival.onset + late.unwrap_or(0), ..arrival };
         let in_window = arrival.at >= self.open && arrival.at <= self.until;
-        if !in_window || !hearing.audible(arrival.level_over_threshold_db, arrival.at - self.fired) {
+        if !in_window || late.is_none() {
             // Whether a later firing hears it is decided then.
             if arrival.at > self.own_until {
                 self.pending.push(arrival);
@@ -181,7 +221,7 @@ impl Receiver {
             // matter.
             let key = |arrival: &Arrival| (arrival.at, arrival.path, arrival.sent);
             let sooner = soonest.is_none_or(|soonest| key(&waiting) < key(&self.pending[soonest]));
-            if in_window && sooner && hearing.audible(waiting.level_over_threshold_db, waiting.at - self.fired) {
+            if in_window && sooner && hearing.late(&waiting, self.fired).is_some() {
                 soonest = Some(index);
             }
             index += 1;

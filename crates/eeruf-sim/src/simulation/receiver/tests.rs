@@ -8,10 +8,11 @@ const HEARING: Hearing = Hearing {
     echoes: 1,
     gain: GainProfile::Constant,
     gain_full_s: 1.0,
+    rise_ns: 0.0,
 };
 
 fn arrival(at: u64, level_over_threshold_db: f32) -> Arrival {
-    Arrival { at, sent: 0, path: at as u32, level_over_threshold_db }
+    Arrival { onset: at, at, sent: 0, path: at as u32, level_over_threshold_db }
 }
 
 fn hears(hearing: &Hearing, arrivals: &[(u64, f32)]) -> Vec<u64> {
@@ -61,4 +62,28 @@ fn the_gain_of_the_receiver_grows_from_its_own_firing() {
     // Half way the gain is 6 dB down.
     assert_eq!(hears(&linear, &[(1050, 6.0)]), []);
     assert_eq!(hears(&linear, &[(1050, 6.1)]), [1050]);
+}
+
+#[test]
+fn a_threshold_detector_hears_faint_echoes_later_by_up_to_a_burst() {
+    let walking = Hearing { rise_ns: 20.0, ..HEARING };
+    // At the threshold a whole burst, 20 dB over it a tenth, and never before blanking ends.
+    assert_eq!(hears(&walking, &[(1050, 0.0)]), [1070]);
+    assert_eq!(hears(&walking, &[(1050, 20.0)]), [1052]);
+    assert_eq!(hears(&walking, &[(1009, 20.0)]), [1011]);
+    assert_eq!(hears(&walking, &[(1008, 200.0)]), []);
+    assert_eq!(hears(&walking, &[(1099, 0.0)]), []);
+    // The louder of two is heard first, though it begins later.
+    assert_eq!(hears(&walking, &[(1050, 0.0), (1055, 20.0)]), [1057]);
+}
+
+#[test]
+fn an_echo_that_is_heard_after_its_receiver_has_fired_again_is_heard_then() {
+    let walking = Hearing { rise_ns: 20.0, refire: 45, ..HEARING };
+    let mut receiver = Receiver::NEW;
+    receiver.fire(1000, &walking);
+    receiver.insert(arrival(1095, 0.0), &walking);
+    receiver.stop();
+    receiver.fire(1100, &walking);
+    assert_eq!(receiver.next_at(), 1115);
 }

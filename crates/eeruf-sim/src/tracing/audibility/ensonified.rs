@@ -36,7 +36,7 @@ impl EnsonifiedPole<'_> {
         let home = self.pole.centre - at;
         let far_m = home.norm();
         far_m < FAR * self.pole.radius_m
-            || !self.is_too_faint(self.part * self.audibility.square(home.dot(axis) / far_m), far_m)
+            || !self.is_too_faint(self.part * self.audibility.heard(home.dot(axis) / far_m), far_m)
     }
 
     /// Whether `A^2 s (s' + s)` is too little this far from the pole's centre.

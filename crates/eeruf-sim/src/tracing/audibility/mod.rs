@@ -28,9 +28,11 @@ const REACH_M: f64 = 32.0;
 /// One question's emitter and receivers, and what is just heard.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Audibility {
-    piston: Piston,
-    /// The highest square of the pattern from an angle on.
-    envelope: Vec<f64>,
+    /// The emitter's and the receivers' patterns.
+    pistons: [Piston; 2],
+    /// The highest squares of the two patterns from an angle on.
+    departing: Vec<f64>,
+    arriving: Vec<f64>,
     /// The amplitude that is just heard, and the natural logarithm of what the air leaves of one per metre, negative.
     floor: f64,
     loss_per_m: f64,
@@ -44,21 +46,13 @@ pub(crate) struct Audibility {
 }
 
 impl Audibility {
-    pub(crate) fn new(piston: Piston) -> Self {
-        let mut envelope = vec![0.0; STEPS + 1];
-        let mut highest: f64 = 0.0;
-        // From behind to the front; each entry stands for all angles up to the next one's.
-        for step in (0..=STEPS).rev() {
-            let angle = 2.0 * (step as f64 / STEPS as f64).asin();
-            let shifted = piston.pattern((angle - ASIDE_RAD).max(0.0));
-            highest = highest.max(shifted * shifted).max(piston.pattern(angle).powi(2));
-            envelope[step] = highest;
-        }
-        // An angle between two steps takes the value of the lower one, where the envelope is no less.
+    /// For an emitter and receivers with these patterns.
+    pub(crate) fn new([departing, arriving]: [Piston; 2]) -> Self {
         let ahead = Vector::x();
         Self {
-            piston,
-            envelope,
+            pistons: [departing, arriving],
+            departing: envelope(&departing),
+            arriving: envelope(&arriving),
             floor: 0.0,
             loss_per_m: 0.0,
             faint: Vec::new(),
@@ -68,8 +62,8 @@ impl Audibility {
         }
     }
 
-    pub(crate) fn is_for(&self, piston: &Piston) -> bool {
-        self.piston == *piston
+    pub(crate) fn is_for(&self, [departing, arriving]: [&Piston; 2]) -> bool {
+        self.pistons == [*departing, *arriving]
     }
 
     /// Sets the amplitude that is just heard, and the natural logarithm of what the air leaves of one per metre.
@@ -104,11 +98,16 @@ impl Audibility {
         self.source_rad
     }
 
-    /// The square of the pattern at most, by the cosine of the angle off the axis.
+    /// The square of the emitter's pattern at most, by the cosine of the angle off its axis.
     #[inline]
-    fn square(&self, cos: f64) -> f64 {
-        let step = (0.5 - 0.5 * cos).max(0.0).sqrt() * STEPS as f64;
-        self.envelope.get(step as usize).copied().unwrap_or(0.0)
+    fn sent(&self, cos: f64) -> f64 {
+        at_cos(&self.departing, cos)
+    }
+
+    /// The same of a receiver's pattern.
+    #[inline]
+    fn heard(&self, cos: f64) -> f64 {
+        at_cos(&self.arriving, cos)
     }
 
     /// What the square of an amplitude is at least that is heard after this length, but for the air.
@@ -130,12 +129,10 @@ impl Audibility {
         reflection_gain: f64,
     ) -> bool {
         let Some(axis) = self.receivers.get(receiver) else { return true };
-        let (sent, least) = (
-            self.square(departure_cos) * reflection_gain * reflection_gain,
-            self.faint(length_m) * length_m * length_m,
-        );
+        let (sent, least) =
+            (self.sent(departure_cos) * reflection_gain * reflection_gain, self.faint(length_m) * length_m * length_m);
         // Most fail by what the source sends there.
-        sent >= least && sent * self.square(towards.dot(axis) / length_m) >= least
+        sent >= least && sent * self.heard(towards.dot(axis) / length_m) >= least
     }
 
     /// What sound falls on a pole.
@@ -144,7 +141,28 @@ impl Audibility {
         let far = out.norm();
         let bounded = far >= FAR * pole.radius_m;
         let before_m = far - pole.radius_m;
-        let part = self.square(out.dot(&self.source) / far) * 0.5 * pole.radius_m / before_m;
+        let part = self.sent(out.dot(&self.source) / far) * 0.5 * pole.radius_m / before_m;
         EnsonifiedPole { audibility: self, pole, before_m: bounded.then_some(before_m), part }
     }
+}
+
+/// The highest squares of a pattern from an angle on. Each entry stands for all angles up to the next one's, so that an
+/// angle between two steps takes the value of the lower one, where the envelope is no less.
+fn envelope(piston: &Piston) -> Vec<f64> {
+    let mut envelope = vec![0.0; STEPS + 1];
+    let mut highest: f64 = 0.0;
+    // From behind to the front.
+    for step in (0..=STEPS).rev() {
+        let angle = 2.0 * (step as f64 / STEPS as f64).asin();
+        let shifted = piston.pattern((angle - ASIDE_RAD).max(0.0));
+        highest = highest.max(shifted * shifted).max(piston.pattern(angle).powi(2));
+        envelope[step] = highest;
+    }
+    envelope
+}
+
+#[inline]
+fn at_cos(envelope: &[f64], cos: f64) -> f64 {
+    let step = (0.5 - 0.5 * cos).max(0.0).sqrt() * STEPS as f64;
+    envelope.get(step as usize).copied().unwrap_or(0.0)
 }

@@ -3,7 +3,7 @@
 use crate::geometry::{Point, TOUCH_M};
 use crate::scene::Bounce;
 use crate::tracing::beam::{BeamTree, VisibleImage};
-use crate::tracing::pole_paths::{PolePath, PoleSearch};
+use crate::tracing::poles::{PolePath, PoleSearch};
 
 /// Everything that was found, numbered in one sequence.
 #[derive(Clone, Copy)]
@@ -40,12 +40,17 @@ impl<'a> Found<'a> {
         }
     }
 
-    /// Reads the bounces of a path, source to receiver.
-    pub(in crate::tracing) fn read_bounces(self, index: u32, bounces: &mut Vec<Bounce>) {
-        bounces.clear();
+    /// Appends the bounces of a path, source to receiver, and returns its receiver.
+    pub(in crate::tracing) fn push_bounces(self, index: u32, bounces: &mut Vec<Bounce>) -> u32 {
         match self.get(index) {
-            FoundPath::Walls(image) => self.tree.push_bounces(image, bounces),
-            FoundPath::Pole(path) => bounces.extend_from_slice(self.poles.bounces(path)),
+            FoundPath::Walls(image) => {
+                self.tree.push_bounces(image, bounces);
+                image.receiver
+            }
+            FoundPath::Pole(path) => {
+                bounces.extend_from_slice(self.poles.bounces(path));
+                path.receiver
+            }
         }
     }
 }

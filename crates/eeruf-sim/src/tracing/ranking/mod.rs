@@ -92,8 +92,10 @@ impl Ranking {
                     None => self.ranks.insert(at_rank, Rank { length_m, index }),
                     Some(k) => {
                         // The smaller wall sequence stays, whatever the mesh looked like.
-                        found.read_bounces(self.ranks[k].index, &mut self.known);
-                        found.read_bounces(index, &mut self.other);
+                        self.known.clear();
+                        self.other.clear();
+                        found.push_bounces(self.ranks[k].index, &mut self.known);
+                        found.push_bounces(index, &mut self.other);
                         if self.other < self.known {
                             self.ranks[k].index = index;
                         }

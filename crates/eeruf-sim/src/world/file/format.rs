@@ -4,8 +4,9 @@ use serde::{Deserialize, Deserializer, de::Error};
 use toml::Spanned;
 
 use crate::{
+    acoustics::{Physics, UnknownPhysics},
     geometry::{Pose, Vector},
-    scene::{Air, Material},
+    scene::{Air, Body, Material, Outline},
     world::{noise::Noise, world::DEFAULT_ORDER},
 };
 
@@ -18,6 +19,7 @@ pub(super) struct WorldFile {
     pub(super) max_order: u32,
     pub(super) air: Option<Spanned<AirFile>>,
     pub(super) noise: Option<Spanned<NoiseFile>>,
+    pub(super) physics: Option<Spanned<PhysicsFile>>,
     #[serde(default, rename = "wall")]
     pub(super) walls: Vec<Spanned<WallFile>>,
     #[serde(default, rename = "pole")]
@@ -63,6 +65,63 @@ pub(super) struct NoiseFile {
     pub(super) jitter_us_rms: Option<f64>,
     pub(super) bursts_per_s: Option<f64>,
     pub(super) burst_db: Option<f64>,
+}
+
+/// A preset's name, or a table with what differs from one.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected \"plain\", \"default\" or a table")]
+pub(super) enum PhysicsFile {
+    Preset(String),
+    Table(PhysicsTable),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PhysicsTable {
+    preset: Option<String>,
+    shadows: Option<bool>,
+    range_walk: Option<bool>,
+    fading_time_s: Option<f64>,
+}
+
+impl PhysicsFile {
+    pub(super) fn physics(&self) -> Result<Physics, UnknownPhysics> {
+        match self {
+            Self::Preset(name) => name.parse(),
+            Self::Table(table) => {
+                let base = table.preset.as_ref().map_or(Ok(Physics::PLAIN), |name| name.parse())?;
+                Ok(Physics {
+                    shadows: table.shadows.unwrap_or(base.shadows),
+                    range_walk: table.range_walk.unwrap_or(base.range_walk),
+                    fading_time_s: table.fading_time_s.unwrap_or(base.fading_time_s),
+                })
+            }
+        }
+    }
+}
+
+/// One of three outlines.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BodyFile {
+    radius_m: Option<f64>,
+    box_m: Option<[f64; 2]>,
+    corners_m: Option<Vec<[f64; 2]>>,
+}
+
+impl BodyFile {
+    pub(super) fn body(&self) -> Result<Body, String> {
+        match self {
+            Self { radius_m: Some(radius_m), box_m: None, corners_m: None } => Ok(Body::Disc(*radius_m)),
+            Self { radius_m: None, box_m: Some([length_m, width_m]), corners_m: None } => {
+                Ok(Body::Box(*length_m, *width_m))
+            }
+            Self { radius_m: None, box_m: None, corners_m: Some(corners_m) } => {
+                Outline::new(corners_m).map(Body::Polygon).map_err(|error| error.to_string())
+            }
+            _ => Err("expected one of radius_m, box_m and corners_m".to_owned()),
+        }
+    }
 }
 
 #[derive(Deserialize)]
@@ -116,6 +175,7 @@ pub(super) struct RobotFile {
     pub(super) transducer: TransducerFile,
     #[serde(default)]
     pub(super) gain: GainFile,
+    pub(super) body: Option<BodyFile>,
     pub(super) motion: Option<MotionFile>,
     pub(super) clock: Option<ClockFile>,
     pub(super) schedule: Option<Spanned<toml::Value>>,
@@ -165,6 +225,7 @@ pub(super) enum GainFile {
     Constant,
     SquareRoot,
     Linear,
+    Stepped,
 }
 
 #[derive(Deserialize)]

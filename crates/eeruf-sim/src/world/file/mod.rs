@@ -17,7 +17,7 @@ use super::error::WorldError;
 use super::noise::Noise;
 use super::robot::Robot;
 use super::world::World;
-use crate::scene::Scene;
+use crate::{acoustics::Physics, scene::Scene};
 use format::WorldFile;
 use robot::robot;
 use scene::scene;
@@ -59,8 +59,10 @@ impl World {
 
     fn parse(source: &Source) -> Result<Self, WorldFileError> {
         let file: WorldFile = source.toml()?;
-        let WorldParts { scene, robots, noise, max_order, seed } = WorldParts::of(source, &file)?;
-        let world = Self::new(scene, robots, noise).and_then(|world| world.with_max_order(max_order));
+        let WorldParts { scene, robots, noise, physics, max_order, seed } = WorldParts::of(source, &file)?;
+        let world = Self::new(scene, robots, noise)
+            .and_then(|world| world.with_physics(physics))
+            .and_then(|world| world.with_max_order(max_order));
         world.map(|world| world.with_seed(seed)).map_err(|error| {
             let (part, field) = blame(&file, &error);
             source.error(part, field, error)
@@ -77,6 +79,8 @@ pub struct WorldParts {
     pub robots: Vec<Robot>,
     /// How noisy it is.
     pub noise: Noise,
+    /// Which effects it has.
+    pub physics: Physics,
     /// The most bounces that sound is followed for.
     pub max_order: u32,
     /// What decides all that is random.
@@ -109,13 +113,18 @@ impl WorldParts {
             robots.push(robot(source, index, entry)?);
         }
         let noise = file.noise.as_ref().map_or(Noise::default(), |noise| noise.get_ref().noise());
-        Ok(Self { scene, robots, noise, max_order: file.max_order, seed: file.seed })
+        let physics = match &file.physics {
+            None => Physics::PLAIN,
+            Some(entry) => {
+                entry.get_ref().physics().map_err(|error| source.error(Some(entry.span()), "preset", error))?
+            }
+        };
+        Ok(Self { scene, robots, noise, physics, max_order: file.max_order, seed: file.seed })
     }
 
     /// Writes the file that says all this; see [`world_file`].
     pub fn to_toml(&self) -> String {
-        let Self { scene, robots, noise, max_order, seed } = self;
-        world_file(scene, robots, noise, *max_order, *seed)
+        world_file(&self.scene, &self.robots, &self.noise, &self.physics, self.max_order, self.seed)
     }
 }
 
@@ -127,9 +136,12 @@ fn blame(file: &WorldFile, error: &WorldError) -> (Option<Range<usize>>, &'stati
         WorldError::Field { robot: index, field, .. } => (robot(index), field),
         WorldError::Schedule { robot: index, .. } => (robot(index), "schedule"),
         WorldError::Window { robot: index, .. } => (robot(index), "window_us"),
-        WorldError::Contact { robot: index, .. } | WorldError::Overlap { robots: (_, index), .. } => {
-            (robot(index), "pose")
-        }
+        WorldError::Contact { robot: index, .. }
+        | WorldError::SensorContact { robot: index, .. }
+        | WorldError::SensorInside { robot: index, .. }
+        | WorldError::Bodies { robots: (_, index) }
+        | WorldError::Overlap { robots: (_, index), .. } => (robot(index), "pose"),
+        WorldError::Physics { field, .. } => (file.physics.as_ref().map(Spanned::span), field),
         WorldError::Noise { field, .. } => (file.noise.as_ref().map(Spanned::span), field),
         WorldError::Order { .. } => (Some(0..usize::MAX), "max_order"),
         WorldError::Scene(_) | WorldError::Robots { .. } => (None, ""),

@@ -24,6 +24,7 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
         GainFile::Constant => GainProfile::Constant,
         GainFile::SquareRoot => GainProfile::SquareRoot,
         GainFile::Linear => GainProfile::Linear,
+        GainFile::Stepped => GainProfile::Stepped,
     };
     let preset = match file.transducer {
         TransducerFile::Polaroid6500 => Transducer::POLAROID_6500,
@@ -64,6 +65,9 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
                 return Err(fail("motion", expected.to_owned()));
             }
         };
+    }
+    if let Some(body) = &file.body {
+        robot.body = Some(body.body().map_err(|message| fail("body", format!(": body: {message}")))?);
     }
     if let Some(clock) = &file.clock {
         robot.clock = Clock { offset_us: clock.offset_us, drift_ppm: clock.drift_ppm };

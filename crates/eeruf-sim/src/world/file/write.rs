@@ -5,15 +5,22 @@ use toml::{Table, Value};
 
 use super::schedule_file::ScheduleFile;
 use crate::{
-    acoustics::{GainProfile, Transducer},
+    acoustics::{GainProfile, Physics, Transducer},
     geometry::Pose,
-    scene::{Faces, Material, Scene},
+    scene::{Body, Faces, Material, Scene},
     world::{motion::Motion, noise::Noise, robot::Robot},
 };
 
-/// Writes the world file of a scene with these robots, noise, order and seed: reading it again gives the same, bit for
+/// Writes the world file of a scene with these robots, noise, physics, order and seed: reading it again gives the same, bit for
 /// bit, with the schedules in it.
-pub fn world_file(scene: &Scene, robots: &[Robot], noise: &Noise, max_order: u32, seed: u64) -> String {
+pub fn world_file(
+    scene: &Scene,
+    robots: &[Robot],
+    noise: &Noise,
+    physics: &Physics,
+    max_order: u32,
+    seed: u64,
+) -> String {
     let mut file = Table::new();
     // TOML's whole numbers end at 2^63.
     let seed = i64::try_from(seed).map_or_else(|_| Value::from(seed.to_string()), Value::from);
@@ -30,6 +37,16 @@ pub fn world_file(scene: &Scene, robots: &[Robot], noise: &Noise, max_order: u32
     set(&mut loud, "bursts_per_s", noise.bursts_per_s);
     set(&mut loud, "burst_db", noise.burst_db);
     set(&mut file, "noise", loud);
+    match physics.name() {
+        Some(name) => set(&mut file, "physics", name),
+        None => {
+            let mut effects = Table::new();
+            set(&mut effects, "shadows", physics.shadows);
+            set(&mut effects, "range_walk", physics.range_walk);
+            set(&mut effects, "fading_time_s", physics.fading_time_s);
+            set(&mut file, "physics", effects);
+        }
+    }
     let walls = scene.walls().iter().map(|wall| {
         let mut table = Table::new();
         set(&mut table, "points_m", vec![vec![wall.from.x, wall.from.y], vec![wall.to.x, wall.to.y]]);
@@ -110,8 +127,21 @@ fn robot_table(robot: &Robot) -> Table {
         GainProfile::Constant => "constant",
         GainProfile::SquareRoot => "square_root",
         GainProfile::Linear => "linear",
+        GainProfile::Stepped => "stepped",
     };
     set(&mut table, "gain", gain);
+    if let Some(body) = &robot.body {
+        let mut outline = Table::new();
+        match body {
+            Body::Disc(radius_m) => set(&mut outline, "radius_m", *radius_m),
+            Body::Box(length_m, width_m) => set(&mut outline, "box_m", vec![*length_m, *width_m]),
+            Body::Polygon(polygon) => {
+                let corners: Vec<_> = polygon.corners().iter().map(|corner| vec![corner.x, corner.y]).collect();
+                set(&mut outline, "corners_m", corners);
+            }
+        }
+        set(&mut table, "body", outline);
+    }
     let mut motion = Table::new();
     match &robot.motion {
         Motion::Still => {}

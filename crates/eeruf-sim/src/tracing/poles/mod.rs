@@ -1,6 +1,8 @@
 //! Paths that bounce at a pole. Walls before the pole mirror the source forward, walls after it mirror the receiver
 //! backward; between the two images remains one problem of Alhazen, whose answer must lie in a beam of each.
 
+mod shadow;
+
 use super::audibility::Audibility;
 use super::beam::{BeamTree, Growth, PoleCone};
 use super::limits::Limits;
@@ -10,6 +12,7 @@ use crate::{
     scene::{Bounce, Scene},
     threads::Stop,
 };
+pub(super) use shadow::is_shaded;
 
 /// The most problems of Alhazen that one question may try, some ten seconds.
 const MAX_TRIED: usize = 1 << 25;

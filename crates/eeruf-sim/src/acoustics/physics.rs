@@ -1,0 +1,68 @@
+//! Which effects a world has: the presets `plain` and `default`, and what can be switched one by one.
+
+use core::fmt;
+use core::str::FromStr;
+
+/// Which effects are computed. `docs/physics.md` says what each is, and where its default comes from.
+///
+/// ```
+/// use eeruf_sim::Physics;
+/// assert_eq!("plain".parse(), Ok(Physics::PLAIN));
+/// assert_eq!(Physics { shadows: true, ..Physics::PLAIN }.name(), None);
+/// assert_eq!("full".parse::<Physics>().unwrap_err().to_string(), "physics is \"full\"; expected plain or default");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Physics {
+    /// Whether a pole shades what lies behind it where it is thicker than sound can bend around: where its radius
+    /// exceeds that of the first Fresnel zone, `sqrt(lambda d1 d2 / (d1 + d2))`. A sensor within a pole or a wall is
+    /// then refused as well. Robots' bodies shade in any case.
+    pub shadows: bool,
+    /// Whether a threshold detector hears faint echoes later. An echo just at the threshold is heard a whole burst late.
+    pub range_walk: bool,
+    /// For how long a path fades in the same way, in seconds: the time after which the correlation has fallen to 1/e.
+    /// At 0 every firing fades anew, and by its number among the firings of its sensor.
+    pub fading_time_s: f64,
+}
+
+impl Physics {
+    /// What the simulator began with: poles of any thickness are transparent, an echo is heard at its onset however
+    /// faint it is, and each arrival fades on its own.
+    pub const PLAIN: Self = Self { shadows: false, range_walk: false, fading_time_s: 0.0 };
+
+    /// Everything on, with the numbers that `docs/physics.md` gives reasons for.
+    pub const DEFAULT: Self = Self { shadows: true, range_walk: true, fading_time_s: 1.0 };
+
+    /// The presets by their names.
+    pub const PRESETS: [(&'static str, Self); 2] = [("plain", Self::PLAIN), ("default", Self::DEFAULT)];
+
+    /// The name of the preset that this is, if it is one.
+    pub fn name(&self) -> Option<&'static str> {
+        Self::PRESETS.iter().find(|(_, preset)| preset == self).map(|(name, _)| *name)
+    }
+
+    /// Whether paths fade in the same way for a time.
+    pub(crate) fn fades_slowly(&self) -> bool {
+        self.fading_time_s > 0.0
+    }
+}
+
+/// A name that no preset has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownPhysics(String);
+
+impl fmt::Display for UnknownPhysics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "physics is {:?}; expected plain or default", self.0)
+    }
+}
+
+impl core::error::Error for UnknownPhysics {}
+
+impl FromStr for Physics {
+    type Err = UnknownPhysics;
+
+    fn from_str(name: &str) -> Result<Self, UnknownPhysics> {
+        let preset = Self::PRESETS.iter().find(|(known, _)| *known == name).map(|(_, preset)| *preset);
+        preset.ok_or_else(|| UnknownPhysics(name.to_owned()))
+    }
+}

@@ -91,6 +91,8 @@ pub(crate) fn describe(
         _ = writeln!(text, "  - and {} more", violations.len() - PRINTED_VIOLATIONS);
     }
     _ = match violations.len() {
+        0 if requirements.uneven.is_some() => writeln!(text, "verified for what each sensor needs"),
+        n if requirements.uneven.is_some() => writeln!(text, "not verified for what each sensor needs: {n} violations"),
         0 => writeln!(text, "verified for t_delta = {}", us(requirements.t_delta)),
         n => writeln!(text, "not verified for t_delta = {}: {n} violations", us(requirements.t_delta)),
     };

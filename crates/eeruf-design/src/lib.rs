@@ -36,6 +36,7 @@ mod uneven;
 
 pub use each::Each;
 pub use find::{NoSchedule, RingDesign, Search, WhatIf};
+pub use find_uneven::shortest_uneven;
 pub use found::FoundJson;
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};

@@ -155,6 +155,7 @@ def main() -> None:
             found = json.loads(run.stdout)
             proven = shortest(ring, found["value_us"] // TICK_US, args.limit)
             if proven is None:
+                print(f"seed {seed}: CP-SAT ran out of time", flush=True)
                 seen["CP-SAT ran out of time"] += 1
                 continue
             if not found["proven"] or found["value_us"] != proven * TICK_US:

@@ -12,4 +12,5 @@ mod random;
 mod set_one;
 mod set_two;
 mod simulation;
+mod uneven;
 mod worlds;

@@ -60,7 +60,7 @@ pub(crate) struct Checked {
 pub(crate) fn design(ring: &str) -> Result<Designed, String> {
     let spec = RingSpec::from_text(ring).map_err(|error| error.to_string())?;
     let design = shortest(&spec, true)?;
-    let requirements = spec.problem(design.t_delta).requirements;
+    let requirements = design.spec.problem().requirements;
     let schedule = &design.schedule;
     let report = schedule.verify(&requirements);
     let max_t_delta = report.max_t_delta();
@@ -103,7 +103,7 @@ pub(crate) fn certificate(ring: &str) -> Result<Checked, String> {
         }
         true
     };
-    let proof = eeruf_design::certificate::prove(&spec, &design, CERTIFICATE_BUDGET, keep_going);
+    let proof = eeruf_design::certificate::prove(&design, CERTIFICATE_BUDGET, keep_going);
     let text = proof.map_err(|error| error.to_string())?;
     let certified = eeruf_check::check(&text).map_err(|error| error.to_string())?;
     Ok(Checked { says: certified.to_string(), nodes: certified.nodes, text })

@@ -11,6 +11,8 @@ from eeruf._types import HeardPaths, Summary
 
 # Whole numbers: Python's and NumPy's.
 _Int = SupportsIndex
+# One for all sensors, or one for each.
+_Each = _Int | Iterable[_Int]
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.int64]
 _Codes = NDArray[np.int8]
@@ -42,7 +44,9 @@ _Gain = Literal["constant", "square_root", "linear", "stepped"]
 _Physics = Literal["plain", "default"] | dict[str, bool | float | str]
 _Body = float | tuple[float, float] | list[tuple[float, float]]
 _Phase = Literal["a", "b"]
-_Condition = Literal["crosstalk_a", "crosstalk_b", "stale_echo", "interval", "window"]
+_Condition = Literal[
+    "crosstalk_a", "crosstalk_b", "stale_echo", "interval", "window", "shared_line", "refire", "together"
+]
 _Pose = tuple[float, float, float]
 
 _Case = TypeVar("_Case")
@@ -101,13 +105,17 @@ class Schedule:
     def scaled(self, num: _Int, den: _Int) -> Schedule: ...
     def verify(
         self,
-        t_delta_us: _Int,
+        t_delta_us: _Each,
         min_interval_us: _Int = 0,
         neighbours: _Int = 4,
         layout: _Layout = "line",
         criterion: _Criterion = "exact",
-        window_us: _Int = 0,
+        window_us: _Each = 0,
         stale_echo: bool = False,
+        refire_us: _Each | None = None,
+        intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
+        shared_lines: Iterable[Sequence[_Int]] | None = None,
+        together: Iterable[Sequence[_Int]] | None = None,
     ) -> Report: ...
     def to_toml(self) -> str: ...
     def to_json(self) -> str: ...
@@ -223,9 +231,9 @@ class Found:
 
 def design(
     sensors: _Int,
-    t_delta_us: _Int,
+    t_delta_us: _Each,
     min_interval_us: _Int,
-    window_us: _Int,
+    window_us: _Each,
     tick_us: _Int = 1000,
     neighbours: _Int = 4,
     layout: _Layout = "line",
@@ -234,6 +242,10 @@ def design(
     progress: _Progress = None,
     certificate: bool = False,
     time_limit_s: float | None = None,
+    refire_us: _Each | None = None,
+    intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
+    shared_lines: Iterable[Sequence[_Int]] | None = None,
+    together: Iterable[Sequence[_Int]] | None = None,
 ) -> Found: ...
 def check_certificate(text: str) -> int: ...
 def example(name: str) -> str: ...

@@ -21,7 +21,9 @@ use crate::report::watch::Watch;
 ///
 /// The ring file says how many sensors there are (sensors, layout, neighbours) and what they need: t_delta_us,
 /// min_interval_us, window_us; or jitter_us and speed_m_s, crosstalk_range_m, max_range_m and retrigger_us,
-/// temperature_c.
+/// temperature_c. t_delta_us, jitter_us, window_us, max_range_m and retrigger_us may be lists with a number for each
+/// sensor; intervals_us = [[x, y, us], ..] gives pairs an interval of their own, shared_lines = [[x, y], ..] names
+/// sensors on one echo line, together = [[x, y], ..] those that fire at the same instants. Sensors count from 0 in it.
 /// Among all schedules with that period it prefers a larger T_delta, then a larger smallest interval, then evener
 /// firing. Exit code 0 if there is a schedule, 1 if there is none, 2 for bad input.
 #[derive(clap::Args)]
@@ -104,10 +106,10 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     };
     let seconds = began.elapsed().as_secs_f64();
     watch.begin_again();
-    let prove = |_| certificate::prove(&spec, &design, args.certificate_budget, &mut watch);
+    let prove = |_| certificate::prove(&design, args.certificate_budget, &mut watch);
     let certificate = args.certificate.as_ref().map(prove);
     drop(watch);
-    let requirements = spec.problem(design.t_delta).requirements;
+    let requirements = design.spec.problem().requirements;
     if let Some(file) = &args.svg {
         draw::timing_diagram(&design.schedule, &requirements).save(file)?;
     }

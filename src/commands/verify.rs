@@ -6,9 +6,11 @@ use std::str::FromStr;
 use clap::ValueEnum;
 use eeruf_core::{Criterion, Micros, Requirements};
 use eeruf_design::{LayoutKey, LayoutName};
+use eeruf_sim::AnySchedule;
 
 use super::answer::Answer;
 use crate::files::error::InputError;
+use crate::files::ring::read_ring;
 use crate::files::toml::read_schedule;
 use crate::report::json::to_json;
 use crate::report::verify::{ReportJson, describe};
@@ -44,6 +46,12 @@ pub(crate) struct Args {
     /// Also reject a sensor's own echo from the period before
     #[arg(long)]
     stale_echo: bool,
+    /// Hold it against what this ring file asks for, instead of the options above; the only way to ask for what differs
+    /// from sensor to sensor
+    #[arg(long, value_name = "RING.toml", conflicts_with_all = [
+        "t_delta_us", "min_interval_us", "neighbours", "layout", "window_us", "stale_echo"
+    ])]
+    ring: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -98,25 +106,42 @@ impl LayoutArg {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let schedule = read_schedule(&args.file)?;
+    let criterion = match args.criterion {
+        CriterionArg::Exact => Criterion::Exact,
+        CriterionArg::Paper => Criterion::Paper,
+    };
+    if let Some(file) = &args.ring {
+        let spec = read_ring(file)?;
+        if spec.sensors != schedule.sensors() {
+            let message = format!("{} sensors; expected the {} of the schedule", spec.sensors, schedule.sensors());
+            return Err(InputError::new(file, None, message));
+        }
+        // Where t_delta must cover motion, it must do so at the longest time between two firings.
+        let spec = spec.covering(spec.t_delta_needed(&schedule));
+        let requirements = Requirements { criterion, ..spec.problem().requirements };
+        return Ok(answer(args, &schedule, &requirements));
+    }
     let layout = args.layout.key().owned(args.neighbours, schedule.sensors());
     let layout = layout.map_err(|message| InputError::new(&args.file, None, message))?;
     let requirements = Requirements {
         t_delta: Micros::new(args.t_delta_us),
-        criterion: match args.criterion {
-            CriterionArg::Exact => Criterion::Exact,
-            CriterionArg::Paper => Criterion::Paper,
-        },
+        criterion,
         min_interval: Micros::new(args.min_interval_us),
         layout: layout.layout(),
         window: Micros::new(args.window_us),
         stale_echo: args.stale_echo,
         uneven: None,
     };
-    let report = schedule.verify(&requirements);
+    Ok(answer(args, &schedule, &requirements))
+}
+
+/// Prints what was found.
+fn answer(args: &Args, schedule: &AnySchedule, requirements: &Requirements<'_>) -> Answer {
+    let report = schedule.verify(requirements);
     if args.json {
         println!("{}", to_json(&ReportJson::from(&report)));
     } else {
-        print!("{}", describe(&args.file.display().to_string(), &schedule, &requirements, &report));
+        print!("{}", describe(&args.file.display().to_string(), schedule, requirements, &report));
     }
-    Ok(if report.ok() { Answer::Yes } else { Answer::No })
+    if report.ok() { Answer::Yes } else { Answer::No }
 }

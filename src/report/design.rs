@@ -17,8 +17,7 @@ pub(crate) fn describe(
     design: &RingDesign,
     seconds: f64,
 ) -> String {
-    let RingDesign { schedule, designed, preferred, what_if, .. } = design;
-    let found = &designed.found;
+    let RingDesign { schedule, found, preferred, what_if, .. } = design;
     let report = schedule.verify(requirements);
     let period = schedule.period();
     let mut table = Table::new();
@@ -37,18 +36,29 @@ pub(crate) fn describe(
     table.add_row([
         "t_delta".to_owned(),
         report.max_t_delta().map_or_else(|| "none".to_owned(), |t_delta| t_delta.to_string()),
-        format!("needed: {}{}", requirements.t_delta, best(preferred.map(|p| p.t_delta_proven))),
+        match &spec.uneven {
+            None => format!("needed: {}{}", requirements.t_delta, best(preferred.map(|p| p.t_delta_proven))),
+            Some(_) => format!(
+                "if all sensors had the same; needed: {}, and kept",
+                span(spec.sensors, |sensor| design.spec.problem().requirements.t_delta_of(sensor))
+            ),
+        },
     ]);
     if let Some(interval) = report.min_interval() {
         table.add_row([
             "smallest interval".to_owned(),
             interval.value.to_string(),
-            format!("needed: {}{}", requirements.min_interval, best(preferred.map(|p| p.min_interval_proven))),
+            match &spec.uneven {
+                None => {
+                    format!("needed: {}{}", requirements.min_interval, best(preferred.map(|p| p.min_interval_proven)))
+                }
+                Some(_) => "between two that need one; all are kept".to_owned(),
+            },
         ]);
     }
     table.add_row([
         "listening".to_owned(),
-        requirements.window.to_string(),
+        span(spec.sensors, |sensor| requirements.window_of(sensor)),
         format!(
             "{:.2} m; no sensor fires again within {}",
             f64::from(spec.c.distance_mm(requirements.window)) / 1000.0,
@@ -62,7 +72,7 @@ pub(crate) fn describe(
         format!("before good readings differ by more than t_delta ({} at most between firings)", schedule.max_refire()),
     ]);
     let rate = |period: f64| 1e6 / period;
-    let one_by_one = f64::from(requirements.window.as_micros()) * spec.sensors as f64;
+    let one_by_one = one_by_one_us(spec.sensors, requirements);
     let us = f64::from(period.as_micros());
     table.add_row([
         "readings".to_owned(),
@@ -83,14 +93,30 @@ pub(crate) fn describe(
     ]);
 
     let mut text = format!("{name}: {} sensors, {}\n{table}\n", spec.sensors, requirements.layout);
-    _ = writeln!(text, "\nNot shorter because of {}.", design.reason());
+    _ = writeln!(text, "\nNot shorter because of {}.", design.reason);
     if !what_if.is_empty() {
         _ = writeln!(text, "\n{}", ways_to_get_faster(what_if, period));
     }
     text.push('\n');
-    text += &timing::diagram(schedule, requirements.window);
+    text += &timing::diagram(schedule, requirements);
     _ = writeln!(text, "\n{}", schedule.to_toml());
     text
+}
+
+/// A time that all sensors have, or the shortest and the longest.
+fn span(sensors: usize, of: impl Fn(usize) -> Micros) -> String {
+    let least = (0..sensors).map(&of).min().unwrap_or_default();
+    let most = (0..sensors).map(&of).max().unwrap_or_default();
+    if least == most { most.to_string() } else { format!("{least} to {most}") }
+}
+
+/// A round of all sensors one after the other, each for as long as it listens; those that fire together at once.
+fn one_by_one_us(sensors: usize, requirements: &Requirements<'_>) -> f64 {
+    let listens = |sensor: usize| requirements.window_of(sensor);
+    let with =
+        |sensor: usize| (0..sensors).filter(move |&other| other == sensor || requirements.fire_together(sensor, other));
+    let firsts = (0..sensors).filter(|&sensor| with(sensor).next() == Some(sensor));
+    firsts.filter_map(|sensor| with(sensor).map(listens).max()).map(|window| f64::from(window.as_micros())).sum()
 }
 
 /// What the designer may change to get faster.
@@ -111,7 +137,7 @@ fn ways_to_get_faster(cases: &[WhatIf], period: Micros) -> String {
 
 /// The period to which Table I-d, cut to this many sensors, has to be scaled to meet the same requirements.
 fn papers_period_us(spec: &RingSpec, requirements: &Requirements<'_>) -> Option<f64> {
-    if spec.sensors > TABLE_I_D.sensors() {
+    if spec.sensors > TABLE_I_D.sensors() || spec.uneven.is_some() {
         return None;
     }
     let cut = |phase| TABLE_I_D.t_wait(phase).get(..spec.sensors);

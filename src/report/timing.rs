@@ -2,13 +2,13 @@
 
 use std::fmt::Write as _;
 
-use eeruf_core::{Micros, Phase};
+use eeruf_core::{Phase, Requirements};
 use eeruf_sim::AnySchedule;
 
 const COLUMNS: usize = 96;
 
 /// One line for each sensor; time runs to the right through phases a and b. `#` fires, `-` listens.
-pub(crate) fn diagram(schedule: &AnySchedule, window: Micros) -> String {
+pub(crate) fn diagram(schedule: &AnySchedule, requirements: &Requirements<'_>) -> String {
     let period = f64::from(schedule.period().as_micros());
     let column_us = 2.0 * period / COLUMNS as f64;
     let column = |us: f64| ((us / column_us) as usize).min(COLUMNS);
@@ -24,7 +24,7 @@ pub(crate) fn diagram(schedule: &AnySchedule, window: Micros) -> String {
         for &fire in &fires {
             // What the second period leaves over is heard in the first.
             for start in [fire, fire - 2.0 * period] {
-                let end = column(start + f64::from(window.as_micros())).max(column(start.max(0.0)));
+                let end = column(start + f64::from(requirements.window_of(x).as_micros())).max(column(start.max(0.0)));
                 line[column(start.max(0.0))..end].fill('-');
             }
         }

@@ -63,7 +63,9 @@ pub(crate) fn describe(
     let us = |time: Micros| format!("{} us", time.as_micros());
     for criterion in [Criterion::Paper, Criterion::Exact] {
         let chosen = if criterion == requirements.criterion { "" } else { " (not asked for)" };
-        let (value, who) = match schedule.separation(criterion) {
+        let separation =
+            if criterion == requirements.criterion { report.separation() } else { schedule.separation(criterion) };
+        let (value, who) = match separation {
             Some(separation) => {
                 (us(separation.value), format!("sensors {} and {}", separation.sensors.0 + 1, separation.sensors.1 + 1))
             }
@@ -73,8 +75,14 @@ pub(crate) fn describe(
     }
     let t_delta = report.max_t_delta().map_or_else(|| "none".to_owned(), us);
     table.add_row(["largest t_delta", &t_delta, "2 t_delta + 1 us <= separation"]);
-    for (label, layout) in layouts(requirements.layout) {
-        let (value, who) = match schedule.min_interval(layout) {
+    let intervals = match requirements.uneven {
+        None => layouts(requirements.layout),
+        Some(_) => vec![("two that need one".to_owned(), requirements.layout)],
+    };
+    for (label, layout) in intervals {
+        let interval =
+            if requirements.uneven.is_some() { report.min_interval() } else { schedule.min_interval(layout) };
+        let (value, who) = match interval {
             Some(interval) => (us(interval.value), describe_interval(interval)),
             None => ("-".to_owned(), "no neighbours".to_owned()),
         };
@@ -91,6 +99,8 @@ pub(crate) fn describe(
         _ = writeln!(text, "  - and {} more", violations.len() - PRINTED_VIOLATIONS);
     }
     _ = match violations.len() {
+        0 if requirements.uneven.is_some() => writeln!(text, "verified for what each sensor needs"),
+        n if requirements.uneven.is_some() => writeln!(text, "not verified for what each sensor needs: {n} violations"),
         0 => writeln!(text, "verified for t_delta = {}", us(requirements.t_delta)),
         n => writeln!(text, "not verified for t_delta = {}: {n} violations", us(requirements.t_delta)),
     };

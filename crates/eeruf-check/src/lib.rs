@@ -13,7 +13,7 @@
 //! | `rules` | what follows from it |
 //! | `symmetry` | what the root may assume |
 //! | `tree` | the case distinctions |
-//! | `uniform`, `prove` | the claim of a search, and its proof |
+//! | `prove` | the proof of a claim |
 //! | `search`, `shortest` | the shortest period of an uneven ring, by the same rules |
 #![forbid(unsafe_code)]
 
@@ -30,14 +30,12 @@ mod state;
 mod symmetry;
 mod text;
 mod tree;
-mod uniform;
 
 use core::fmt;
 
 pub use error::CheckError;
 pub use problem::{MAX_NUMBER, MAX_SENSORS, Problem};
 pub use read::Claim;
-pub use uniform::{Answer, Uniform};
 
 /// What a certificate that passed says.
 #[derive(Clone, Debug, PartialEq, Eq)]

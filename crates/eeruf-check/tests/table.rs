@@ -4,7 +4,7 @@ mod common;
 
 use eeruf_check::prove::{NoProof, prove, prove_what_can_be, prove_while};
 use eeruf_check::shortest::shortest;
-use eeruf_check::{Claim, Uniform, check, read_claim};
+use eeruf_check::{Claim, check, read_claim};
 
 #[test]
 fn the_periods_of_the_table_have_a_certificate_that_is_accepted() {
@@ -97,27 +97,6 @@ fn a_proof_that_ends_early_leaves_the_highest_bound_that_can_be_proven_with_less
     for (bound, nodes) in [(by_rules_alone, 1), (with_some_nodes, 340 / 16)] {
         let higher = Claim { bound: bound + 1, ..claim.clone() };
         assert_eq!(prove(&higher, nodes), Err(NoProof::Budget(nodes)), "{bound}");
-    }
-}
-
-#[test]
-fn times_in_microseconds_become_the_ticks_of_the_table() {
-    for (name, claim) in common::table(1) {
-        let problem = &claim.problem;
-        let (separation, window) = (problem.separation[0], problem.window[0]);
-        let uniform = |t_delta_us: u32, window_us: u32| Uniform {
-            tick_us: 1000,
-            sensors: problem.sensors(),
-            t_delta_us,
-            window_us,
-            interval_us: 1000 * problem.gaps[0].2 - 999,
-            stale_echo: false,
-            pairs: problem.gaps.iter().map(|gap| (gap.0, gap.1)).collect(),
-        };
-        // Rounded up: the largest t_delta below half a separation, the least window above one tick less.
-        assert_eq!(uniform(500 * separation - 1, 1000 * window - 999).problem(), *problem, "{name}");
-        assert_eq!(uniform(500 * separation, 1000 * window).problem().separation[0], separation + 1, "{name}");
-        assert_eq!(uniform(0, 1000 * window + 1).problem().window[0], window + 1, "{name}");
     }
 }
 

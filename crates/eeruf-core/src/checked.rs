@@ -92,6 +92,7 @@ pub const fn __checked<const K: usize>(
                 ViolationKind::Interval => panic!("two neighbours fire closer together than min_interval, Sec. 3.1 c"),
                 ViolationKind::Window => panic!("a sensor fires again while it still listens, T_wind"),
                 ViolationKind::SharedLine => panic!("a sensor fires while another one listens on the same echo line"),
+                ViolationKind::Refire => panic!("a sensor is triggered again sooner than it may be"),
                 ViolationKind::Together => panic!("two sensors that must fire together do not"),
             },
         },

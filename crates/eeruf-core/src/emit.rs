@@ -160,9 +160,9 @@ struct UnevenSource<'u>(&'u Uneven<'u>);
 
 impl fmt::Display for UnevenSource<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Uneven { t_delta, window, intervals, shared_lines, together } = *self.0;
+        let Uneven { t_delta, window, refire, intervals, shared_lines, together } = *self.0;
         writeln!(f, "        uneven: Some(Uneven {{")?;
-        for (name, each) in [("t_delta", t_delta), ("window", window)] {
+        for (name, each) in [("t_delta", t_delta), ("window", window), ("refire", refire)] {
             write!(f, "            {name}: &[")?;
             for (at, time) in each.iter().enumerate() {
                 write!(f, "{}Micros::new({})", if at == 0 { "" } else { ", " }, Grouped(*time))?;

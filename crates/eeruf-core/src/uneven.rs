@@ -35,6 +35,9 @@ pub struct Uneven<'a> {
     pub t_delta: &'a [Micros],
     /// `T_wind` of each sensor; empty if all have that of the requirements.
     pub window: &'a [Micros],
+    /// How soon each sensor may be triggered again, where that is later than the end of its window; empty if all may be
+    /// then.
+    pub refire: &'a [Micros],
     /// Pairs of sensors with the least time between their firings, whatever the layout and the interval of all say; 0
     /// for none.
     pub intervals: &'a [(u8, u8, Micros)],
@@ -47,14 +50,15 @@ pub struct Uneven<'a> {
 
 impl Uneven<'_> {
     /// All sensors alike.
-    pub const NONE: Self = Self { t_delta: &[], window: &[], intervals: &[], shared_lines: &[], together: &[] };
+    pub const NONE: Self =
+        Self { t_delta: &[], window: &[], refire: &[], intervals: &[], shared_lines: &[], together: &[] };
 
     /// Whether it makes sense for so many sensors.
     ///
     /// # Errors
     /// The first thing that does not: see [`UnevenError`].
     pub fn check(&self, sensors: usize) -> Result<(), UnevenError> {
-        for (what, each) in [("t_delta", self.t_delta), ("window", self.window)] {
+        for (what, each) in [("t_delta", self.t_delta), ("window", self.window), ("refire", self.refire)] {
             if !each.is_empty() && each.len() != sensors {
                 return Err(UnevenError::Length { what, given: each.len(), sensors });
             }
@@ -188,6 +192,14 @@ impl Requirements<'_> {
         match self.uneven {
             Some(uneven) if sensor < uneven.window.len() => uneven.window[sensor],
             _ => self.window,
+        }
+    }
+
+    /// How soon a sensor may be triggered again; no longer than its window where nothing is said of it.
+    pub const fn refire_of(&self, sensor: usize) -> Micros {
+        match self.uneven {
+            Some(uneven) if sensor < uneven.refire.len() => uneven.refire[sensor],
+            _ => Micros::ZERO,
         }
     }
 

@@ -123,8 +123,8 @@ impl<'r, const K: usize> Verification<'r, K> {
         self.schedule.min_refire()
     }
 
-    /// Every violation: first (13a), then (13b), stale echoes, intervals, windows, shared echo lines, and sensors that
-    /// must fire together.
+    /// Every violation: first (13a), then (13b), stale echoes, intervals, windows, shared echo lines,
+    /// sensors triggered too soon, and sensors that must fire together.
     pub const fn violations(&self) -> Violations<'r, K> {
         Violations { verification: *self, check: 0, x: 0, y: 0, phase: 0 }
     }
@@ -151,6 +151,8 @@ pub enum ViolationKind {
     Window,
     /// A sensor fires while another one listens on the same echo line.
     SharedLine,
+    /// A sensor fires again sooner than it may be triggered.
+    Refire,
     /// Two sensors that must fire together do not.
     Together,
 }
@@ -165,6 +167,7 @@ impl ViolationKind {
             Self::Interval => "interval",
             Self::Window => "window",
             Self::SharedLine => "shared_line",
+            Self::Refire => "refire",
             Self::Together => "together",
         }
     }
@@ -176,6 +179,7 @@ impl ViolationKind {
             Self::CrosstalkB | Self::StaleEcho => "Eq. (13b)",
             Self::Interval => "Sec. 3.1 c",
             Self::Window | Self::SharedLine => "T_wind",
+            Self::Refire => "refire",
             Self::Together => "together",
         }
     }
@@ -234,6 +238,11 @@ impl fmt::Display for Violation {
                  {x} listens for {required} ({source})",
                 self.phases.0
             ),
+            ViolationKind::Refire => write!(
+                f,
+                "sensor {x} fires again {value} after phase {}; it must not be triggered within {required}",
+                self.phases.0
+            ),
             ViolationKind::Together => {
                 write!(f, "sensors {x} and {y} fire {value} apart in phase {}; they must fire together", self.phases.0)
             }
@@ -255,7 +264,7 @@ pub struct Violations<'r, const K: usize> {
 impl<const K: usize> Violations<'_, K> {
     /// `Iterator::next` as a `const fn`, so that a table can be checked when it is compiled.
     pub(crate) const fn advance(&mut self) -> Option<Violation> {
-        while self.check < 9 {
+        while self.check < 10 {
             let found = self.examine();
             self.step();
             if found.is_some() {
@@ -322,7 +331,8 @@ impl<const K: usize> Violations<'_, K> {
                 };
                 (ViolationKind::SharedLine, interval.phases, interval.value, requirements.window_of(x))
             }
-            8 if x < y && requirements.fire_together(x, y) => {
+            8 if x == y => (ViolationKind::Refire, phases, schedule.refire(phase, x), requirements.refire_of(x)),
+            9 if x < y && requirements.fire_together(x, y) => {
                 let apart = schedule.interval_within(x, y, phase).value;
                 if apart.as_micros() == 0 {
                     return None;

@@ -3,10 +3,11 @@
 use std::error::Error;
 use std::fmt;
 
-use eeruf_core::search::{Control, PeriodProblem, Preferred, SearchError, ShortestPeriod, design};
+use eeruf_core::search::{Control, Found, PeriodProblem, Preferred, SearchError, ShortestPeriod, design};
 use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_sim::{AnySchedule, ScheduleFile};
 
+use crate::find_uneven::shortest_uneven;
 use crate::found::FoundJson;
 use crate::ring::RingSpec;
 
@@ -38,9 +39,14 @@ pub struct RingDesign {
     pub schedule: AnySchedule,
     /// What `t_delta` has to cover, motion included.
     pub t_delta: Micros,
-    /// The shortest period, or the best found, and why it is not shorter.
-    pub designed: ShortestPeriod<MAX_SENSORS>,
-    /// What is known of the choice among the schedules of that period, if the period is proven.
+    /// The ring, with that `t_delta`.
+    pub spec: RingSpec,
+    /// The shortest period, or the best found.
+    pub found: Found<MAX_SENSORS>,
+    /// Why it is not shorter, in words.
+    pub reason: String,
+    /// What is known of the choice among the schedules of that period, if the period is proven and all sensors are
+    /// alike; otherwise it is the first that was found.
     pub preferred: Option<Preferred<MAX_SENSORS>>,
     /// What would be shorter, if it was asked for.
     pub what_if: Vec<WhatIf>,
@@ -88,14 +94,9 @@ impl RingDesign {
     pub fn json(&self, seconds: f64) -> FoundJson {
         FoundJson {
             schedule: Some(ScheduleFile::from(&self.schedule)),
-            reason: Some(self.reason()),
-            ..FoundJson::new(&self.designed.found, seconds)
+            reason: Some(self.reason.clone()),
+            ..FoundJson::new(&self.found, seconds)
         }
-    }
-
-    /// Why the period is not shorter, in words.
-    pub fn reason(&self) -> String {
-        self.designed.explanation().to_string()
     }
 }
 
@@ -116,24 +117,31 @@ impl RingSpec {
         let mut memory = vec![0; design::memory_words(self.sensors)];
         let mut t_delta = self.t_delta;
         loop {
-            let problem = self.problem(t_delta);
-            let designed: ShortestPeriod<MAX_SENSORS> = problem.shortest(search.budget, &mut memory, control)?;
-            let preferred = if designed.found.proven {
-                Some(problem.prefer(&designed, PREFERENCE_BUDGET, &mut memory, control)?)
+            let spec = self.covering(t_delta);
+            let problem = spec.problem();
+            let (found, reason, preferred) = if self.uneven.is_some() {
+                let (found, reason) = shortest_uneven(&problem, search.budget, control)?;
+                (found, reason, None)
             } else {
-                None
+                let designed: ShortestPeriod<MAX_SENSORS> = problem.shortest(search.budget, &mut memory, control)?;
+                let preferred = if designed.found.proven {
+                    Some(problem.prefer(&designed, PREFERENCE_BUDGET, &mut memory, control)?)
+                } else {
+                    None
+                };
+                (designed.found, designed.explanation().to_string(), preferred)
             };
-            let none = if designed.found.proven { NoSchedule::TooFast } else { NoSchedule::EndedEarly };
-            let Some(schedule) = preferred.map_or(designed.found.schedule, |preferred| Some(preferred.schedule)) else {
+            let none = if found.proven { NoSchedule::TooFast } else { NoSchedule::EndedEarly };
+            let Some(schedule) = preferred.map_or(found.schedule, |preferred| Some(preferred.schedule)) else {
                 return Ok(Err(none));
             };
             let needed = self.t_delta_needed(&schedule);
-            let allowed = schedule.verify(&problem.requirements).max_t_delta();
-            if allowed >= Some(needed) {
-                let relax = search.what_if && designed.found.proven;
+            if schedule.verify(&self.covering(needed).problem().requirements).ok() {
+                let relax = search.what_if && found.proven && self.uneven.is_none();
                 let what_if = if relax { what_if(&problem, &mut memory, control)? } else { Vec::new() };
                 let t_delta = needed.max(t_delta);
-                return Ok(Ok(RingDesign { schedule, t_delta, designed, preferred, what_if }));
+                let spec = self.covering(t_delta);
+                return Ok(Ok(RingDesign { schedule, t_delta, spec, found, reason, preferred, what_if }));
             }
             // Past this point a second of silence would not be enough either.
             if needed > Micros::from_millis(1000) {
@@ -143,8 +151,8 @@ impl RingSpec {
         }
     }
 
-    /// Jitter, and `2 v dt / c` for the longest `dt` of the schedule.
-    fn t_delta_needed(&self, schedule: &AnySchedule) -> Micros {
+    /// What `t_delta` must cover with this schedule: jitter, and `2 v dt / c` for the longest `dt` between two firings.
+    pub fn t_delta_needed(&self, schedule: &AnySchedule) -> Micros {
         let speed = u64::from(self.speed_mm_s.unwrap_or(0));
         let change = 2 * speed * u64::from(schedule.max_refire().as_micros());
         let change = change.div_ceil(u64::from(self.c.mm_per_s()).max(1));

@@ -5,36 +5,44 @@
 //! |---|---|
 //! | `text` | TOML, and what is wrong with it in one line |
 //! | `limits`, `layout` | what numbers a ring file may hold; how the sensors stand |
+//! | `each`, `uneven` | one number for all sensors or one for each; what sensors need that are not alike |
 //! | `ring` | the ring file, turned into what a schedule must meet |
-//! | `find` | the shortest period for it, and what would make it shorter |
+//! | `find`, `find_uneven` | the shortest period for it, and what would make it shorter |
 //! | `found` | the answer as it is printed in JSON |
-//! | `certificate` | the proof, as a text that others check |
+//! | `ticks`, `certificate` | the problem in ticks, and the proof, as a text that others check |
 //!
 //! ```
 //! use eeruf_design::{RingSpec, Search};
 //! let ring = "sensors = 8\nt_delta_us = 999\nmin_interval_us = 15_000\nwindow_us = 36_000";
 //! let spec = RingSpec::from_text(ring)?;
 //! let design = spec.shortest(&Search::default(), &mut ()).map_err(|error| error.to_string())??;
-//! let period = design.designed.found.value;
+//! let period = design.found.value;
 //! assert_eq!(period.map(|period| period.as_micros()), Some(66_000));
 //! assert_eq!(RingSpec::from_text("sensors = 65").unwrap_err().message, "65 sensors; expected 1 to 64");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 pub mod certificate;
+mod each;
 mod find;
+mod find_uneven;
 mod found;
 mod layout;
 mod limits;
 mod ring;
 mod text;
+mod ticks;
+mod uneven;
 
+pub use each::Each;
 pub use find::{NoSchedule, RingDesign, Search, WhatIf};
+pub use find_uneven::shortest_uneven;
 pub use found::FoundJson;
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};
 pub use ring::{RingFile, RingSpec};
 pub use text::{TextError, parse};
+pub use uneven::OwnedUneven;
 
 /// The listing of the crate's README compiles and holds.
 #[cfg(doctest)]

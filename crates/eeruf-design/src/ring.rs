@@ -4,9 +4,11 @@ use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Criterion, Micros, Requirements, SpeedOfSound};
 use serde::Deserialize;
 
+use crate::each::Each;
 use crate::layout::{LayoutKey, OwnedLayout};
 use crate::limits::{four, neighbours_in_range, number, sensors_in_range};
 use crate::text::{TextError, parse};
+use crate::uneven::OwnedUneven;
 
 const fn one_millisecond() -> u32 {
     1000
@@ -26,17 +28,26 @@ pub struct RingFile {
     #[serde(default)]
     stale_echo: bool,
     /// `T_delta` itself, or the sensor's repeatability with jitter, and how fast the robot moves.
-    t_delta_us: Option<u32>,
-    jitter_us: Option<u32>,
+    t_delta_us: Option<Each<u32>>,
+    jitter_us: Option<Each<u32>>,
     speed_m_s: Option<f64>,
     /// The interval itself, or how far walls may be from which neighbours hear each other.
     min_interval_us: Option<u32>,
     crosstalk_range_m: Option<f64>,
     /// The window itself, or the range to see, and how soon a sensor may be triggered again.
-    window_us: Option<u32>,
-    max_range_m: Option<f64>,
-    retrigger_us: Option<u32>,
+    window_us: Option<Each<u32>>,
+    max_range_m: Option<Each<f64>>,
+    retrigger_us: Option<Each<u32>>,
     temperature_c: Option<f64>,
+    /// Pairs of sensors with an interval of their own.
+    #[serde(default)]
+    intervals_us: Vec<(usize, usize, u32)>,
+    /// Sensors that share an echo line.
+    #[serde(default)]
+    shared_lines: Vec<Vec<usize>>,
+    /// Sensors that fire at the same instants.
+    #[serde(default)]
+    together: Vec<Vec<usize>>,
 }
 
 /// What a ring file asks for.
@@ -50,16 +61,18 @@ pub struct RingSpec {
     pub layout: OwnedLayout,
     /// The least time between the firings of two neighbours (Sec. 3.1 c).
     pub min_interval: Micros,
-    /// `T_wind`: how long a sensor listens.
+    /// `T_wind`: how long a sensor listens; the longest where sensors have their own.
     pub window: Micros,
     /// Whether a sensor's own echo from the period before must be rejected too.
     pub stale_echo: bool,
     /// How fast sound is.
     pub c: SpeedOfSound,
-    /// What `t_delta` must cover on a robot that stands.
+    /// What `t_delta` must cover on a robot that stands; the largest where sensors have their own.
     pub t_delta: Micros,
     /// How fast the robot moves, in mm/s, if `t_delta` must cover that too.
     pub speed_mm_s: Option<u32>,
+    /// What single sensors and pairs need, where they are not all alike.
+    pub uneven: Option<OwnedUneven>,
 }
 
 impl RingSpec {
@@ -71,16 +84,24 @@ impl RingSpec {
         Ok(parse::<RingFile>(text)?.spec()?)
     }
 
-    /// What a schedule must meet if `t_delta` must cover this much.
-    pub fn problem(&self, t_delta: Micros) -> PeriodProblem<'_> {
+    /// The same ring where `t_delta` must cover this much; where sensors have their own, each as much more.
+    #[must_use]
+    pub fn covering(&self, t_delta: Micros) -> Self {
+        let more = t_delta.saturating_sub(self.t_delta);
+        let uneven = self.uneven.as_ref().map(|uneven| uneven.covering(more));
+        Self { t_delta, uneven, ..self.clone() }
+    }
+
+    /// What a schedule must meet.
+    pub fn problem(&self) -> PeriodProblem<'_> {
         let requirements = Requirements {
-            t_delta,
+            t_delta: self.t_delta,
             criterion: Criterion::Exact,
             min_interval: self.min_interval,
             layout: self.layout.layout(),
             window: self.window,
             stale_echo: self.stale_echo,
-            uneven: None,
+            uneven: self.uneven.as_ref().map(OwnedUneven::uneven),
         };
         PeriodProblem { sensors: self.sensors, requirements, tick: self.tick }
     }
@@ -100,39 +121,63 @@ impl RingFile {
             let mm = (1000.0 * number(name, metres, 0.0, 1000.0)?).round();
             Ok(c.echo_time(mm as u32))
         };
-        let (t_delta, speed_mm_s) = match (self.t_delta_us, self.jitter_us, self.speed_m_s) {
-            (Some(t_delta), None, None) => (t_delta, None),
-            (None, Some(jitter), None) => (jitter, None),
-            (None, Some(jitter), Some(speed)) => {
-                (jitter, Some((1000.0 * number("speed_m_s", speed, 0.0, 100.0)?).round() as u32))
-            }
+        let speed =
+            |speed| -> Result<u32, String> { Ok((1000.0 * number("speed_m_s", speed, 0.0, 100.0)?).round() as u32) };
+        let sensors = self.sensors;
+        let (t_delta, speed_mm_s) = match (&self.t_delta_us, &self.jitter_us, self.speed_m_s) {
+            (Some(t_delta), None, None) => (t_delta.list("t_delta_us", sensors)?, None),
+            (None, Some(jitter), None) => (jitter.list("jitter_us", sensors)?, None),
+            (None, Some(jitter), Some(metres)) => (jitter.list("jitter_us", sensors)?, Some(speed(metres)?)),
             _ => return Err("expected either t_delta_us, or jitter_us with or without speed_m_s".to_owned()),
         };
+        let t_delta: Vec<Micros> = t_delta.into_iter().map(Micros::new).collect();
         let min_interval = match (self.min_interval_us, self.crosstalk_range_m) {
             (Some(us), None) => Micros::new(us),
             (None, Some(range)) => metres("crosstalk_range_m", range)?,
             _ => return Err("expected either min_interval_us or crosstalk_range_m".to_owned()),
         };
-        let window = match (self.window_us, self.max_range_m, self.retrigger_us) {
-            (Some(us), None, None) => Micros::new(us),
-            (None, Some(range), retrigger) => {
-                metres("max_range_m", range)?.max(Micros::new(retrigger.unwrap_or_default()))
-            }
-            _ => return Err("expected either window_us, or max_range_m with or without retrigger_us".to_owned()),
-        };
-        if window == Micros::ZERO {
+        let (window, refire): (Vec<Micros>, Vec<Micros>) =
+            match (&self.window_us, &self.max_range_m, &self.retrigger_us) {
+                (Some(us), None, None) => {
+                    (us.list("window_us", sensors)?.into_iter().map(Micros::new).collect(), vec![])
+                }
+                (None, Some(range), retrigger) => {
+                    let range =
+                        range.list("max_range_m", sensors)?.into_iter().map(|range| metres("max_range_m", range));
+                    let retrigger = retrigger.as_ref().map(|us| us.list("retrigger_us", sensors)).transpose()?;
+                    let retrigger = retrigger.unwrap_or_default().into_iter().map(Micros::new).collect();
+                    (range.collect::<Result<_, _>>()?, retrigger)
+                }
+                _ => return Err("expected either window_us, or max_range_m with or without retrigger_us".to_owned()),
+            };
+        let lists = [self.t_delta_us.as_ref(), self.jitter_us.as_ref(), self.window_us.as_ref()];
+        let are_lists = lists.into_iter().chain([self.retrigger_us.as_ref()]).flatten().any(Each::is_list)
+            || self.max_range_m.as_ref().is_some_and(Each::is_list);
+        let pairs = !(self.intervals_us.is_empty() && self.shared_lines.is_empty() && self.together.is_empty());
+        let is_uneven = are_lists || pairs;
+        let largest = |times: &[Micros]| times.iter().copied().max().unwrap_or_default();
+        let largest_t_delta = largest(&t_delta);
+        // Where all are alike they listen until they may be triggered again.
+        let largest_window = if is_uneven { largest(&window) } else { largest(&window).max(largest(&refire)) };
+        if largest_window == Micros::ZERO || (is_uneven && window.contains(&Micros::ZERO)) {
             return Err("a listening window of 0 us; expected window_us or max_range_m above zero".to_owned());
         }
-        Ok(RingSpec {
+        let (intervals, lines, together) = (&self.intervals_us, &self.shared_lines, &self.together);
+        let uneven = || OwnedUneven::new(sensors, [t_delta, window, refire], intervals, lines, together);
+        let uneven = is_uneven.then(uneven).transpose()?;
+        let spec = RingSpec {
             sensors: self.sensors,
             tick: Micros::new(self.tick_us),
             layout: self.layout.owned(self.neighbours, self.sensors)?,
             min_interval,
-            window,
+            window: largest_window,
             stale_echo: self.stale_echo,
             c,
-            t_delta: Micros::new(t_delta),
+            t_delta: largest_t_delta,
             speed_mm_s,
-        })
+            uneven,
+        };
+        OwnedUneven::can_fire_together(&spec.problem().requirements, sensors)?;
+        Ok(spec)
     }
 }

@@ -6,14 +6,14 @@ use eeruf_core::{
     Criterion, MAX_SENSORS, Micros, Requirements,
     search::{self, Control, PeriodProblem, Progress, SearchError, design as period},
 };
-use eeruf_design::certificate;
+use eeruf_design::{OwnedUneven, certificate, shortest_uneven};
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{flag, micros, number, whole, whole_or},
-    errors::{CertificateError, Raise},
+    arguments::{flag, micros, number, whole_or},
+    errors::{ArgumentError, CertificateError, Raise},
     found::Found,
-    requirements::{self, OwnedLayout},
+    requirements::{self, OwnedLayout, UnevenArguments, each},
     watch::{Watch, control_flow, in_background},
 };
 
@@ -31,14 +31,17 @@ const FEW_SENSORS: usize = 12;
 /// Find the schedule with the shortest period for a ring, and prove that none is shorter.
 ///
 /// Firing times are free, on a grid of ticks. Among all schedules of the shortest period it prefers a larger
-/// ``T_delta``, then a larger smallest interval, then evener firing. It runs on one core, without the interpreter lock;
+/// ``T_delta``, then a larger smallest interval, then evener firing; where sensors are not all alike it takes the first
+/// that it finds. It runs on one core, without the interpreter lock;
 /// Ctrl-C ends it.
 ///
 /// Args:
 ///     sensors: how many, 1 to 64.
-///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11).
+///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for all
+///         sensors or a sequence of one for each; two sensors need the separation of the larger.
 ///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
-///     window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier. 1 or more.
+///     window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier. 1 or more; one for all, or a
+///         sequence.
 ///     tick_us: the grid of firing times and period, 1 or more.
 ///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
 ///     layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours, as in :meth:`Schedule.verify`.
@@ -50,6 +53,12 @@ const FEW_SENSORS: usize = 12;
 ///         is shorter, or none below ``bound_us``, or below a lower bound that a million nodes suffice for.
 ///     time_limit_s: how long to search at most before giving the best schedule so far, above 0; as long again for the
 ///         certificate. No limit by default.
+///     refire_us: how soon a sensor may be triggered again, where that is later than its window. One for all, or a
+///         sequence.
+///     intervals_us: pairs of sensors with the least time between their firings, whatever the layout says:
+///         ``[(0, 4, 9000)]``; 0 for none.
+///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
+///     together: groups of sensors that fire at the same instants, declared not to hear each other.
 ///
 /// Returns:
 ///     The shortest period in ``value_us``, or the best found within budget and time; ``proven`` says which.
@@ -63,14 +72,19 @@ const FEW_SENSORS: usize = 12;
 ///     >>> found = eeruf.design(sensors=8, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
 ///     >>> found.value_us, found.proven
 ///     (66000, True)
+///     >>> found = eeruf.design(4, [999, 999, 1500, 1500], 15_000, [36_000, 36_000, 12_000, 12_000], shared_lines=[(0, 2)])
+///     >>> found.value_us, found.proven
+///     (62000, True)
 #[pyfunction]
 #[pyo3(signature = (
     sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None,
-    budget=None, progress=None, certificate=None, time_limit_s=None
+    budget=None, progress=None, certificate=None, time_limit_s=None, refire_us=None, intervals_us=None, shared_lines=None,
+    together=None
 ))]
 #[pyo3(
     text_signature = "(sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, layout=\"line\", \
-        stale_echo=False, budget=None, progress=None, certificate=False, time_limit_s=None)"
+        stale_echo=False, budget=None, progress=None, certificate=False, time_limit_s=None, refire_us=None, \
+        intervals_us=None, shared_lines=None, together=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
 pub(crate) fn design(
@@ -87,11 +101,18 @@ pub(crate) fn design(
     progress: Option<&Bound<'_, PyAny>>,
     certificate: Option<&Bound<'_, PyAny>>,
     time_limit_s: Option<&Bound<'_, PyAny>>,
+    refire_us: Option<&Bound<'_, PyAny>>,
+    intervals_us: Option<&Bound<'_, PyAny>>,
+    shared_lines: Option<&Bound<'_, PyAny>>,
+    together: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Found> {
     let sensors = requirements::sensors(sensors)?;
     let layout = OwnedLayout::new(layout, requirements::neighbours(neighbours)?, sensors)?;
-    let (t_delta, min_interval) = (micros("t_delta_us", t_delta_us)?, micros("min_interval_us", min_interval_us)?);
-    let window = whole("window_us", window_us, 1..=u32::MAX).map(Micros::new)?;
+    let (t_delta, t_deltas) = each("t_delta_us", t_delta_us, 0)?;
+    let min_interval = micros("min_interval_us", min_interval_us)?;
+    let (window, windows) = each("window_us", window_us, 1)?;
+    let uneven = UnevenArguments { refire_us, intervals_us, shared_lines, together };
+    let uneven = uneven.owned(sensors, t_deltas, windows)?;
     let tick = Micros::new(whole_or("tick_us", tick_us, 1000, 1..=u32::MAX)?);
     let stale_echo = flag("stale_echo", stale_echo, false)?;
     let budget = whole_or("budget", budget, DESIGN_BUDGET, 1..=u64::MAX)?;
@@ -101,7 +122,9 @@ pub(crate) fn design(
     let began = Instant::now();
     let work = move |go_on: &mut dyn FnMut(&dyn Fn() -> String) -> bool| {
         let (criterion, layout) = (Criterion::Exact, layout.layout());
-        let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo, uneven: None };
+        let uneven = uneven.as_ref().map(OwnedUneven::uneven);
+        let requirements = Requirements { t_delta, criterion, min_interval, layout, window, stale_echo, uneven };
+        OwnedUneven::can_fire_together(&requirements, sensors).map_err(ArgumentError::new_err)?;
         let needs = PeriodProblem { sensors, requirements, tick };
         let mut control = |at: &Progress| {
             let (bound, best) = (at.bound.unwrap_or(0), at.best.unwrap_or(0));
@@ -179,6 +202,9 @@ fn shortest(
     budget: u64,
     control: &mut impl Control,
 ) -> Result<(search::Found<MAX_SENSORS>, String), SearchError> {
+    if needs.requirements.uneven.is_some() {
+        return shortest_uneven(needs, budget, control);
+    }
     let mut memory = vec![0; period::memory_words(needs.sensors)];
     let designed = needs.shortest::<MAX_SENSORS>(budget, &mut memory, control)?;
     let mut found = designed.found;

@@ -1,10 +1,12 @@
 //! What a schedule must meet, out of keyword arguments: layout, neighbours, times.
 
 use eeruf_core::{Criterion, Layout, LayoutError, MAX_SENSORS, Micros, Requirements, neighbour_rows};
+use eeruf_design::OwnedUneven;
 use eeruf_sim::AnySchedule;
 use pyo3::{prelude::*, types::PyList};
 
-use crate::arguments::{choice, flag, micros, shown, whole, whole_or, wrong};
+use crate::arguments::{choice, flag, items, micros, shown, times, whole, whole_or, wrong};
+use crate::errors::ArgumentError;
 
 /// How the sensors stand, with the rows of the graph if it is one.
 pub(crate) enum OwnedLayout {
@@ -56,6 +58,7 @@ pub(crate) struct OwnedRequirements {
     criterion: Criterion,
     window: Micros,
     stale_echo: bool,
+    uneven: Option<OwnedUneven>,
 }
 
 impl OwnedRequirements {
@@ -67,7 +70,7 @@ impl OwnedRequirements {
             layout: self.layout.layout(),
             window: self.window,
             stale_echo: self.stale_echo,
-            uneven: None,
+            uneven: self.uneven.as_ref().map(OwnedUneven::uneven),
         }
     }
 }
@@ -91,6 +94,64 @@ pub(crate) struct RequirementArguments<'a, 'py> {
     pub(crate) criterion: Option<&'a Bound<'py, PyAny>>,
     pub(crate) window_us: Option<&'a Bound<'py, PyAny>>,
     pub(crate) stale_echo: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) uneven: UnevenArguments<'a, 'py>,
+}
+
+/// The keyword arguments that say what differs from sensor to sensor.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct UnevenArguments<'a, 'py> {
+    pub(crate) refire_us: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) intervals_us: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) shared_lines: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) together: Option<&'a Bound<'py, PyAny>>,
+}
+
+impl UnevenArguments<'_, '_> {
+    /// What differs, with lists of `t_delta` and window that are empty where all sensors have the same; `None` if
+    /// nothing does.
+    pub(crate) fn owned(
+        &self,
+        sensors: usize,
+        t_delta: Vec<Micros>,
+        window: Vec<Micros>,
+    ) -> PyResult<Option<OwnedUneven>> {
+        let all = [self.refire_us, self.intervals_us, self.shared_lines, self.together];
+        if t_delta.is_empty() && window.is_empty() && all.iter().all(Option::is_none) {
+            return Ok(None);
+        }
+        let refire = self.refire_us.map_or(Ok((Micros::ZERO, vec![])), |value| each("refire_us", value, 0))?;
+        let refire = if refire.1.is_empty() { vec![refire.0; sensors] } else { refire.1 };
+        let expected = "triples of two sensors and a time in microseconds, such as [(0, 1, 9000)]";
+        let intervals = list("intervals_us", self.intervals_us, expected)?;
+        let expected = "groups of sensors, such as [(0, 4), (1, 5)]";
+        let lines = list("shared_lines", self.shared_lines, expected)?;
+        let together = list("together", self.together, expected)?;
+        OwnedUneven::new(sensors, [t_delta, window, refire], &intervals, &lines, &together)
+            .map(Some)
+            .map_err(ArgumentError::new_err)
+    }
+}
+
+/// Items of one type; none where there is no argument.
+fn list<T>(name: &str, value: Option<&Bound<'_, PyAny>>, expected: &str) -> PyResult<Vec<T>>
+where
+    T: for<'a, 'py> FromPyObject<'a, 'py>,
+{
+    let Some(value) = value else { return Ok(vec![]) };
+    let item = |item: Bound<'_, PyAny>| item.extract().map_err(|_| wrong(name, shown(value), expected));
+    items(name, value, expected)?.into_iter().map(item).collect()
+}
+
+/// A time for all sensors, or one for each, of `least` or more; then the largest stands for all.
+pub(crate) fn each(name: &str, value: &Bound<'_, PyAny>, least: u32) -> PyResult<(Micros, Vec<Micros>)> {
+    if value.hasattr("__iter__")? && value.extract::<i128>().is_err() {
+        let list = times(name, value)?;
+        return match list.iter().max() {
+            Some(&most) if list.iter().all(|time| time.as_micros() >= least) => Ok((most, list)),
+            _ => Err(wrong(name, shown(value), format_args!("one time of {least} or more for each sensor"))),
+        };
+    }
+    whole(name, value, least..=u32::MAX).map(|us| (Micros::new(us), vec![]))
 }
 
 impl RequirementArguments<'_, '_> {
@@ -98,13 +159,19 @@ impl RequirementArguments<'_, '_> {
     pub(crate) fn owned(&self, schedule: &AnySchedule) -> PyResult<OwnedRequirements> {
         let or_zero =
             |name, value: Option<&Bound<'_, PyAny>>| value.map_or(Ok(Micros::ZERO), |value| micros(name, value));
+        let each_or_zero = |name, value: Option<&Bound<'_, PyAny>>| {
+            value.map_or(Ok((Micros::ZERO, vec![])), |value| each(name, value, 0))
+        };
+        let (t_delta, t_deltas) = each_or_zero("t_delta_us", self.t_delta_us)?;
+        let (window, windows) = each_or_zero("window_us", self.window_us)?;
         let mut requirements = OwnedRequirements {
-            t_delta: or_zero("t_delta_us", self.t_delta_us)?,
+            t_delta,
             min_interval: or_zero("min_interval_us", self.min_interval_us)?,
             layout: OwnedLayout::new(self.layout, neighbours(self.neighbours)?, schedule.sensors())?,
             criterion: criterion(self.criterion)?,
-            window: or_zero("window_us", self.window_us)?,
+            window,
             stale_echo: flag("stale_echo", self.stale_echo, false)?,
+            uneven: self.uneven.owned(schedule.sensors(), t_deltas, windows)?,
         };
         if self.t_delta_us.is_none() {
             requirements.t_delta = schedule.verify(&requirements.requirements()).max_t_delta().unwrap_or(Micros::ZERO);

@@ -12,7 +12,7 @@ use crate::{
     arguments::{self, micros, shown, times, whole, wrong},
     errors::{Raise, ScheduleError},
     report::Report,
-    requirements::RequirementArguments,
+    requirements::{RequirementArguments, UnevenArguments},
 };
 
 /// When each sensor of a ring fires, in the two phases that alternate from period to period. Immutable; equal if all
@@ -238,14 +238,20 @@ impl Schedule {
     /// Check every condition of the paper, sensor by sensor.
     ///
     /// Args:
-    ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11).
+    ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for all
+    ///         sensors or a sequence of one for each; two sensors need the separation of the larger.
     ///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
     ///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
     ///     layout: how they stand: ``"line"``, ``"ring"`` (the last beside the first), ``"blocks"`` of ``neighbours``,
     ///         or pairs of neighbours, such as ``[(0, 1), (1, 2)]``.
     ///     criterion: how to read Eqs. (13a), (13b): ``"exact"``, or as the ``"paper"`` prints them.
-    ///     window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier.
+    ///     window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier. One for all, or a sequence.
     ///     stale_echo: whether a sensor's own echo from the period before must be rejected too.
+    ///     refire_us: how soon a sensor may be triggered again, where that is later. One for all, or a sequence.
+    ///     intervals_us: pairs of sensors with the least time between their firings, whatever the layout says:
+    ///         ``[(0, 4, 9000)]``; 0 for none.
+    ///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
+    ///     together: groups of sensors that must fire at the same instants. No separation is asked between them.
     ///
     /// Returns:
     ///     The report, which is true if all conditions hold.
@@ -259,10 +265,12 @@ impl Schedule {
     ///     >>> report.ok, report.min_interval_us, report.max_t_delta_us
     ///     (True, 17000, 999)
     #[pyo3(signature = (
-        t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None, stale_echo=None
+        t_delta_us, min_interval_us=None, neighbours=None, layout=None, criterion=None, window_us=None, stale_echo=None,
+        refire_us=None, intervals_us=None, shared_lines=None, together=None
     ))]
     #[pyo3(text_signature = "($self, t_delta_us, min_interval_us=0, neighbours=4, layout=\"line\", \
-            criterion=\"exact\", window_us=0, stale_echo=False)")]
+            criterion=\"exact\", window_us=0, stale_echo=False, refire_us=None, intervals_us=None, \
+            shared_lines=None, together=None)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn verify(
         &self,
@@ -273,11 +281,24 @@ impl Schedule {
         criterion: Option<&Bound<'_, PyAny>>,
         window_us: Option<&Bound<'_, PyAny>>,
         stale_echo: Option<&Bound<'_, PyAny>>,
+        refire_us: Option<&Bound<'_, PyAny>>,
+        intervals_us: Option<&Bound<'_, PyAny>>,
+        shared_lines: Option<&Bound<'_, PyAny>>,
+        together: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Report> {
         let t_delta_us = Some(t_delta_us);
-        let owned =
-            RequirementArguments { t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo }
-                .owned(&self.0)?;
+        let uneven = UnevenArguments { refire_us, intervals_us, shared_lines, together };
+        let owned = RequirementArguments {
+            t_delta_us,
+            min_interval_us,
+            neighbours,
+            layout,
+            criterion,
+            window_us,
+            stale_echo,
+            uneven,
+        }
+        .owned(&self.0)?;
         Ok(Report::of(&self.0.verify(&owned.requirements())))
     }
 
@@ -337,9 +358,18 @@ impl Schedule {
         window_us: Option<&Bound<'_, PyAny>>,
         stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<String> {
-        let owned =
-            RequirementArguments { t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo }
-                .owned(&self.0)?;
+        let uneven = UnevenArguments::default();
+        let owned = RequirementArguments {
+            t_delta_us,
+            min_interval_us,
+            neighbours,
+            layout,
+            criterion,
+            window_us,
+            stale_echo,
+            uneven,
+        }
+        .owned(&self.0)?;
         Ok(self.0.to_rust(&owned.requirements()).to_string())
     }
 
@@ -378,9 +408,18 @@ impl Schedule {
         window_us: Option<&Bound<'_, PyAny>>,
         stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<String> {
-        let owned =
-            RequirementArguments { t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo }
-                .owned(&self.0)?;
+        let uneven = UnevenArguments::default();
+        let owned = RequirementArguments {
+            t_delta_us,
+            min_interval_us,
+            neighbours,
+            layout,
+            criterion,
+            window_us,
+            stale_echo,
+            uneven,
+        }
+        .owned(&self.0)?;
         Ok(self.0.to_c(&owned.requirements()).to_string())
     }
 

@@ -39,7 +39,7 @@ pub(crate) fn timing_diagram(schedule: &AnySchedule, requirements: &Requirements
         for (phase, start) in [(Phase::A, 0.0), (Phase::B, period)] {
             let Some(t_fire) = schedule.t_fire(phase, x) else { continue };
             let fire = start + f64::from(t_fire.as_micros());
-            let end = fire + f64::from(requirements.window.as_micros());
+            let end = fire + f64::from(requirements.window_of(x).as_micros());
             // What the second period leaves over is heard in the first.
             for (from, to) in [(fire, end.min(2.0 * period)), (0.0, end - 2.0 * period)] {
                 if to > from {

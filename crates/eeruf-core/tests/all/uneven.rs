@@ -13,6 +13,7 @@ use crate::common::random::Random;
 struct Ring {
     t_delta: Vec<Micros>,
     window: Vec<Micros>,
+    refire: Vec<Micros>,
     intervals: Vec<(u8, u8, Micros)>,
     shared_lines: Vec<u64>,
     together: Vec<u64>,
@@ -21,7 +22,7 @@ struct Ring {
 impl Ring {
     fn random(random: &mut Random, sensors: usize) -> Self {
         let mut each = |most: u32| (0..sensors).map(|_| Micros::new(random.up_to(most))).collect();
-        let (t_delta, window) = (each(2), each(9));
+        let (t_delta, window, refire) = (each(2), each(9), each(12));
         let pair = |random: &mut Random| {
             let x = random.up_to(sensors as u32 - 2) as u8;
             (x, x + 1 + random.up_to(sensors as u32 - 2 - u32::from(x)) as u8)
@@ -33,12 +34,12 @@ impl Ring {
             intervals.push((other.0, other.1, Micros::new(random.up_to(4))));
         }
         let (shared_lines, together) = (vec![set(pair(random))], vec![set(pair(random))]);
-        Self { t_delta, window, intervals, shared_lines, together }
+        Self { t_delta, window, refire, intervals, shared_lines, together }
     }
 
     fn uneven(&self) -> Uneven<'_> {
-        let Self { t_delta, window, intervals, shared_lines, together } = self;
-        Uneven { t_delta, window, intervals, shared_lines, together }
+        let Self { t_delta, window, refire, intervals, shared_lines, together } = self;
+        Uneven { t_delta, window, refire, intervals, shared_lines, together }
     }
 
     fn pairs(sets: &[u64], x: usize, y: usize) -> bool {
@@ -59,6 +60,9 @@ impl Ring {
         for x in 0..schedule.sensors() {
             if line(x).windows(2).any(|two| two[1] - two[0] < us(self.window[x])) {
                 found.push((ViolationKind::Window, x as u8, x as u8));
+            }
+            if line(x).windows(2).any(|two| two[1] - two[0] < us(self.refire[x])) {
+                found.push((ViolationKind::Refire, x as u8, x as u8));
             }
             for y in x + 1..schedule.sensors() {
                 let mut add = |kind, is_violated: bool| {
@@ -141,7 +145,7 @@ fn each_violation_of_an_uneven_ring_is_one_that_firings_on_a_line_of_time_show_a
             *seen.entry(kind.as_str()).or_insert(0) += 1;
         }
     }
-    assert!(sound > 50 && seen.len() == 6 && seen.values().all(|&times| times > 500), "{sound} {seen:?}");
+    assert!(sound > 50 && seen.len() == 7 && seen.values().all(|&times| times > 500), "{sound} {seen:?}");
 }
 
 #[test]
@@ -207,6 +211,7 @@ fn a_verified_uneven_schedule_allows_each_sensor_its_own_and_all_together_the_le
             uneven: Some(Uneven {
                 t_delta: &[Micros::new(499), Micros::new(1_900), Micros::new(999)],
                 window: &[Micros::from_millis(24), Micros::from_millis(12), Micros::from_millis(40)],
+                refire: &[],
                 intervals: &[(1, 2, Micros::ZERO)],
                 shared_lines: &[0b011],
                 together: &[0b110],
@@ -246,6 +251,7 @@ fn an_uneven_schedule_is_written_with_all_that_it_was_designed_for() {
     let uneven = Uneven {
         t_delta: &[Micros::new(999), Micros::new(1_400)],
         window: &ms([50, 12]),
+        refire: &[],
         intervals: &[(0, 1, Micros::new(15_000))],
         shared_lines: &[],
         together: &[],

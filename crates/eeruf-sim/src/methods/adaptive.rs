@@ -44,7 +44,7 @@ pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<FiringPlan, Start
     if ladder.is_empty() {
         ladder.push(verified(base)?);
     }
-    Ok(FiringPlan { schedule: base, ladder })
+    Ok(FiringPlan { schedule: base, ladder, uneven: None })
 }
 
 /// A ring on its ladder.

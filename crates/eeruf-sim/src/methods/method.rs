@@ -42,7 +42,7 @@ const DEFAULT: Row = Row {
     schedule: schedules::own,
     ring: ring_runner::scheduled::<1>,
     belief: Belief::Repeated,
-    plan: |_, schedule| Ok(FiringPlan { schedule, ladder: vec![] }),
+    plan: |_, schedule| Ok(FiringPlan { schedule, ladder: vec![], uneven: None }),
     echoes: 1,
     refire: |robot| robot.window,
 };
@@ -134,6 +134,7 @@ methods! {
         schedule: schedules::own,
         ring: ring_runner::scheduled::<1>,
         belief: Belief::Repeated,
+        plan: ring_runner::plan_own,
     }
     /// As [`Eeruf`](Self::Eeruf), by the best schedule that is known for the ring: what the caller puts in
     /// [`Options::best`](crate::Options::best).
@@ -167,6 +168,7 @@ methods! {
         schedule: schedules::own,
         ring: ring_runner::scheduled::<MAX_ECHOES>,
         belief: Belief::Repeated,
+        plan: ring_runner::plan_own,
         echoes: MAX_ECHOES,
     }
 }

@@ -3,7 +3,7 @@
 
 use eeruf_core::{
     HoppingError, HoppingSettings, ImmediateRefiring, Instant, LadderError, MAX_SENSORS, Ring, RingConfig, RingError,
-    RingEvent, ScheduledFiring, Scheduler, VerifiedSchedule, Violation,
+    RingEvent, ScheduledFiring, Scheduler, UnevenFiring, UnevenSchedule, VerifiedSchedule, Violation,
 };
 
 use super::dither::DitherFiring;
@@ -42,6 +42,8 @@ pub(crate) struct FiringPlan {
     pub(crate) schedule: AnySchedule,
     /// Where it adapts, all that it may change to, the first one first.
     pub(crate) ladder: Vec<VerifiedSchedule<MAX_SENSORS>>,
+    /// Where sensors are not all alike, the schedule with what each may do by itself.
+    pub(crate) uneven: Option<Box<UnevenSchedule<MAX_SENSORS>>>,
 }
 
 /// What a ring is started with.
@@ -112,7 +114,16 @@ impl<'s> RingStart<'s> {
 
 /// Scheduled firing, with up to `E` echoes of a firing.
 pub(super) fn scheduled<'s, const E: usize>(start: &RingStart<'s>) -> Started<'s> {
-    start.run::<_, E>(ScheduledFiring::new(start.schedule(), start.now))
+    match &start.plan.uneven {
+        Some(uneven) => start.run::<_, E>(UnevenFiring::new(uneven, start.now)),
+        None => start.run::<_, E>(ScheduledFiring::new(start.schedule(), start.now)),
+    }
+}
+
+/// The robot's own schedule, where sensors are not all alike with what each may do.
+pub(super) fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
+    let uneven = robot.uneven(&schedule).map_err(StartError::Unverified)?.map(Box::new);
+    Ok(FiringPlan { schedule, ladder: vec![], uneven })
 }
 
 /// Immediate refiring.

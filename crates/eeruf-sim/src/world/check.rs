@@ -117,12 +117,21 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
     if robot.patience > 15 {
         return fail("patience", f64::from(robot.patience), "0 to 15");
     }
+    for limits in &robot.limits {
+        let window = limits.window;
+        if robot.limits.len() != robot.sensors.len() {
+            return fail("window_us", robot.limits.len() as f64, "one for all, or one for each sensor");
+        }
+        if window <= robot.blanking || window <= limits.t_delta || window > robot.window {
+            return fail("window_us", f64::from(window.as_micros()), "more than t_delta_us and the blanking time");
+        }
+    }
     if let Some(schedule) = &robot.schedule {
         if schedule.sensors() != robot.sensors.len() {
             let (sensors, expected) = (schedule.sensors(), robot.sensors.len());
             return Err(WorldError::Schedule { robot: index, sensors, expected });
         }
-        if robot.window > schedule.min_refire() {
+        if robot.limits.is_empty() && robot.window > schedule.min_refire() {
             return Err(WorldError::Window { robot: index, window: robot.window, min_refire: schedule.min_refire() });
         }
     }

@@ -1,6 +1,8 @@
 //! A robot: its transducers, where it is and how it moves, its clock, and how it fires and listens.
 
-use eeruf_core::{MAX_SENSORS, Micros, Schedule};
+use eeruf_core::{
+    Layout, MAX_SENSORS, Micros, Requirements, Schedule, SensorLimits, Uneven, UnevenSchedule, Violation,
+};
 
 use super::clock::Clock;
 use super::motion::Motion;
@@ -59,6 +61,12 @@ pub struct Robot {
     /// For how many firings an accepted echo that is missing is waited for, 0 to 15
     /// ([`EchoFilter::with_patience`](eeruf_core::EchoFilter::with_patience)). The default is 0, as in the paper.
     pub patience: u8,
+    /// Window and `T_delta` of each sensor, where they are not all alike, for its own [`schedule`](Self::schedule);
+    /// [`window`](Self::window) and [`t_delta`](Self::t_delta) are then the largest, which other methods use for all.
+    /// Empty, as by default, where they are alike.
+    pub limits: Vec<SensorLimits>,
+    /// Sets of sensors that its own schedule fires together, bit x for sensor x.
+    pub together: Vec<u64>,
     /// Whether odometry gives the ring by how much a good reading should change from the robot's own motion.
     pub odometry: bool,
 }
@@ -100,8 +108,30 @@ impl Robot {
             neighbours: 4,
             consecutive: 2,
             patience: 0,
+            limits: vec![],
+            together: vec![],
             odometry: false,
         }
+    }
+
+    /// A schedule with what each sensor may do by itself; `None` where all are alike.
+    ///
+    /// # Errors
+    /// The first condition that it violates.
+    pub fn uneven(&self, schedule: &AnySchedule) -> Result<Option<UnevenSchedule<MAX_SENSORS>>, Violation> {
+        if self.limits.is_empty() && self.together.is_empty() {
+            return Ok(None);
+        }
+        let t_delta: Vec<_> = self.limits.iter().map(|limits| limits.t_delta).collect();
+        let window: Vec<_> = self.limits.iter().map(|limits| limits.window).collect();
+        let uneven = Uneven { t_delta: &t_delta, window: &window, together: &self.together, ..Uneven::NONE };
+        let requirements = Requirements {
+            layout: Layout::Line(1),
+            window: self.window,
+            uneven: Some(uneven),
+            ..Requirements::new(self.t_delta)
+        };
+        schedule.verify(&requirements).verified_uneven().map(Some)
     }
 
     /// The radius in metres of the smallest disc about the robot's middle that holds all its sensors.

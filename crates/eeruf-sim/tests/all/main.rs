@@ -14,4 +14,5 @@ mod random;
 mod set_one;
 mod set_two;
 mod simulation;
+mod uneven;
 mod worlds;

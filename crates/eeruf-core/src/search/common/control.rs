@@ -16,6 +16,13 @@ pub struct Progress {
     pub bound: Option<u32>,
 }
 
+impl Progress {
+    /// So many nodes, the best value so far and the bound on it, for searches outside this crate.
+    pub const fn new(nodes: u64, best: Option<u32>, bound: Option<u32>) -> Self {
+        Self { nodes, best, bound }
+    }
+}
+
 /// Polled every few milliseconds, or as often as the caller asks. `()` always goes on and costs nothing.
 pub trait Control {
     /// Whether to go on, given how far the search has come.

@@ -253,7 +253,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         }
         self.fired[emitter] = Some(self.kinematics.moment(index, now));
         self.channels.prepare(emitter, now, &self.kinematics)?;
-        let hearing = rings[index].hearing;
+        let hearing = rings[index].hearing_of(emitter);
         self.references[emitter] = self.channels.reference(emitter, &hearing);
         let receiver = &mut self.receivers[emitter];
         receiver.fire(now, &hearing);

@@ -22,12 +22,25 @@ pub(crate) struct RunningRing<'a> {
     pub(crate) ring: Box<dyn RingRunner + 'a>,
     pub(crate) clock: Ticker,
     pub(crate) hearing: Hearing,
+    /// How long each sensor listens, where they are not all alike.
+    windows: Vec<u64>,
     /// Its sensors among all of the world's.
     pub(crate) sensors: core::ops::Range<usize>,
     /// When its ring is due.
     pub(crate) wakes: u64,
     /// When one of its sensors hears something.
     pub(crate) hears: u64,
+}
+
+impl RunningRing<'_> {
+    /// How a sensor, one of all of the world's, hears.
+    pub(crate) fn hearing_of(&self, number: usize) -> Hearing {
+        match self.windows.get(number - self.sensors.start) {
+            // Two ticks less, since the clock rounds.
+            Some(&window) => Hearing { window, refire: window.saturating_sub(2000), ..self.hearing },
+            None => self.hearing,
+        }
+    }
 }
 
 /// By which method a robot fires, and what its ring fires by.
@@ -75,7 +88,18 @@ pub(crate) fn start_all<'a>(
         let hearing = Hearing::new(world, robot, method.echoes(), refire, true_ns);
         let first = channels.first_of(index);
         let sensors = first..first + robot.sensors.len();
-        rings.push(RunningRing { robot, ring, clock, hearing, sensors, wakes: clock.reaches(start), hears: NEVER });
+        let own = plan.uneven.as_ref().map_or(&[][..], |_| &robot.limits);
+        let windows = own.iter().map(|limits| true_ns(limits.window)).collect();
+        rings.push(RunningRing {
+            robot,
+            ring,
+            clock,
+            hearing,
+            windows,
+            sensors,
+            wakes: clock.reaches(start),
+            hears: NEVER,
+        });
     }
     Ok(rings)
 }

@@ -165,6 +165,14 @@ pub(super) enum MaterialFile {
     Perfect,
 }
 
+/// A time for all sensors, or one for each.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a whole number from 0 to 4294967295, or a list of one for each sensor")]
+pub(super) enum EachFile {
+    All(u32),
+    Of(Vec<u32>),
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RobotFile {
@@ -181,8 +189,10 @@ pub(super) struct RobotFile {
     pub(super) schedule: Option<Spanned<toml::Value>>,
     pub(super) start_us: Option<u32>,
     pub(super) period_us: Option<u32>,
-    pub(super) t_delta_us: Option<u32>,
-    pub(super) window_us: Option<u32>,
+    pub(super) t_delta_us: Option<EachFile>,
+    pub(super) window_us: Option<EachFile>,
+    #[serde(default)]
+    pub(super) together: Vec<Vec<usize>>,
     pub(super) blanking_us: Option<u32>,
     pub(super) min_refire_us: Option<u32>,
     pub(super) neighbours: Option<u8>,

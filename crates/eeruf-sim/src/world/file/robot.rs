@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use eeruf_core::{MAX_SENSORS, Micros};
+use eeruf_core::{MAX_SENSORS, Micros, SensorLimits};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::format::{GainFile, MotionFile, RobotFile, TransducerFile, radians};
+use super::format::{EachFile, GainFile, MotionFile, RobotFile, TransducerFile, radians};
 use super::schedule_file::ScheduleFile;
 use super::source::{Source, WorldFileError};
 use crate::{
@@ -78,8 +78,33 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
     let set = |field: &mut Micros, value: Option<u32>| *field = value.map_or(*field, Micros::new);
     set(&mut robot.start, file.start_us);
     set(&mut robot.period, file.period_us);
-    set(&mut robot.t_delta, file.t_delta_us);
-    set(&mut robot.window, file.window_us);
+    let sensors = robot.sensors.len();
+    let each = |own: Micros, value: &Option<EachFile>| match value {
+        None => vec![own; sensors],
+        Some(EachFile::All(us)) => vec![Micros::new(*us); sensors],
+        Some(EachFile::Of(list)) => list.iter().map(|&us| Micros::new(us)).collect(),
+    };
+    let (t_delta, window) = (each(robot.t_delta, &file.t_delta_us), each(robot.window, &file.window_us));
+    for (what, list) in [("t_delta_us", &t_delta), ("window_us", &window)] {
+        if list.len() != sensors {
+            let message =
+                format!(": {} values; expected one for all, or one for each of {sensors} sensors", list.len());
+            return Err(fail(what, message));
+        }
+    }
+    let largest = |times: &[Micros]| times.iter().copied().max().unwrap_or_default();
+    (robot.t_delta, robot.window) = (largest(&t_delta), largest(&window));
+    if [&file.t_delta_us, &file.window_us].iter().any(|value| matches!(value, Some(EachFile::Of(_)))) {
+        let limits = t_delta.into_iter().zip(window).map(|(t_delta, window)| SensorLimits { t_delta, window });
+        robot.limits = limits.collect();
+    }
+    for group in &file.together {
+        if group.len() < 2 || group.iter().any(|&sensor| sensor >= sensors) {
+            let message = format!(": {group:?}; expected two or more different sensors from 0 to {}", sensors - 1);
+            return Err(fail("together", message));
+        }
+        robot.together.push(group.iter().fold(0, |set, sensor| set | 1 << sensor));
+    }
     set(&mut robot.blanking, file.blanking_us);
     set(&mut robot.min_refire, file.min_refire_us);
     robot.neighbours = file.neighbours.unwrap_or(robot.neighbours);

@@ -1,6 +1,6 @@
 //! Writes a world file.
 
-use eeruf_core::Micros;
+use eeruf_core::{Micros, SensorLimits};
 use toml::{Table, Value};
 
 use super::schedule_file::ScheduleFile;
@@ -176,6 +176,17 @@ fn robot_table(robot: &Robot) -> Table {
     ];
     for (key, time) in times {
         set(&mut table, key, i64::from(time.as_micros()));
+    }
+    if !robot.limits.is_empty() {
+        let list = |of: fn(&SensorLimits) -> Micros| {
+            robot.limits.iter().map(|limits| i64::from(of(limits).as_micros())).collect::<Vec<_>>()
+        };
+        set(&mut table, "t_delta_us", list(|limits| limits.t_delta));
+        set(&mut table, "window_us", list(|limits| limits.window));
+    }
+    if !robot.together.is_empty() {
+        let members = |set: &u64| (0..64_i64).filter(|sensor| set >> sensor & 1 == 1).collect::<Vec<_>>();
+        set(&mut table, "together", robot.together.iter().map(members).collect::<Vec<_>>());
     }
     for (key, number) in
         [("neighbours", robot.neighbours), ("consecutive", robot.consecutive), ("patience", robot.patience)]

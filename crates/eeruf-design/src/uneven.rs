@@ -1,0 +1,105 @@
+//! What sensors of a ring need that are not all alike, as files and callers say it.
+
+use eeruf_core::{MAX_SENSORS, Micros, Requirements, Uneven, UnevenError};
+
+/// Windows and tolerances of each sensor, intervals of pairs, shared echo lines, sensors that fire together.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct OwnedUneven {
+    /// `T_delta` of each sensor.
+    pub t_delta: Vec<Micros>,
+    /// `T_wind` of each sensor.
+    pub window: Vec<Micros>,
+    /// How soon each sensor may be triggered again.
+    pub refire: Vec<Micros>,
+    intervals: Vec<(u8, u8, Micros)>,
+    shared_lines: Vec<u64>,
+    together: Vec<u64>,
+}
+
+impl OwnedUneven {
+    /// Of so many sensors, counted from 0. `t_delta`, `window` and `refire` may be empty: all sensors then have what the
+    /// requirements say.
+    ///
+    /// # Errors
+    /// The first thing that makes no sense.
+    pub fn new(
+        sensors: usize,
+        [t_delta, window, refire]: [Vec<Micros>; 3],
+        intervals_us: &[(usize, usize, u32)],
+        shared_lines: &[Vec<usize>],
+        together: &[Vec<usize>],
+    ) -> Result<Self, String> {
+        let mut intervals = Vec::new();
+        for &(x, y, us) in intervals_us {
+            if x == y || x.max(y) >= sensors {
+                return Err(format!(
+                    "intervals_us: sensors {x} and {y}; expected two different ones from 0 to {}",
+                    sensors - 1
+                ));
+            }
+            // Sensors are below 64.
+            intervals.push((x as u8, y as u8, Micros::new(us)));
+        }
+        let shared_lines = sets("shared_lines", shared_lines, sensors)?;
+        let together = sets("together", together, sensors)?;
+        let owned = Self { t_delta, window, refire, intervals, shared_lines, together };
+        owned.uneven().check(sensors).map_err(|error| match error {
+            UnevenError::PairTwice { pair: (x, y) } => {
+                format!("intervals_us: sensors {x} and {y} twice; expected each pair once")
+            }
+            // As the file counts them.
+            error => format!("{error:#}"),
+        })?;
+        Ok(owned)
+    }
+
+    /// As core takes it.
+    pub fn uneven(&self) -> Uneven<'_> {
+        let Self { t_delta, window, refire, intervals, shared_lines, together } = self;
+        Uneven { t_delta, window, refire, intervals, shared_lines, together }
+    }
+
+    /// The same with this much more to be covered by every `t_delta`.
+    pub(crate) fn covering(&self, more: Micros) -> Self {
+        let t_delta = self.t_delta.iter().map(|t_delta| t_delta.saturating_add(more)).collect();
+        Self { t_delta, ..self.clone() }
+    }
+
+    /// Whether no two sensors that fire together must keep a time between their firings.
+    ///
+    /// # Errors
+    /// The two that must.
+    pub fn can_fire_together(requirements: &Requirements<'_>, sensors: usize) -> Result<(), String> {
+        for (x, y) in (0..sensors).flat_map(|x| (x + 1..sensors).map(move |y| (x, y))) {
+            let gap = requirements.gap_after(sensors, x, y).max(requirements.gap_after(sensors, y, x));
+            if requirements.fire_together(x, y) && gap > Micros::ZERO {
+                return Err(format!(
+                    "together: sensors {x} and {y} must keep {gap} between their firings; expected a layout in which \
+                     they are no neighbours, or intervals_us = [[{x}, {y}, 0]], and no shared line"
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Sets of sensors as bits.
+fn sets(what: &str, groups: &[Vec<usize>], sensors: usize) -> Result<Vec<u64>, String> {
+    let set = |group: &Vec<usize>| {
+        let mut set = 0_u64;
+        for &sensor in group {
+            if sensor >= sensors.min(MAX_SENSORS) || set >> sensor & 1 == 1 {
+                return Err(format!(
+                    "{what}: {group:?}; expected two or more different sensors from 0 to {}",
+                    sensors - 1
+                ));
+            }
+            set |= 1 << sensor;
+        }
+        if group.len() < 2 {
+            return Err(format!("{what}: {group:?}; expected two or more different sensors from 0 to {}", sensors - 1));
+        }
+        Ok(set)
+    };
+    groups.iter().map(set).collect()
+}

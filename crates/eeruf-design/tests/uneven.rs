@@ -1,0 +1,120 @@
+//! Ring files of sensors that are not all alike: what they ask for, what is wrong with them, and their answers.
+
+use eeruf_check::check;
+use eeruf_core::Micros;
+use eeruf_design::{RingDesign, RingSpec, Search, certificate};
+
+fn read(text: &str) -> RingSpec {
+    RingSpec::from_text(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+fn design(spec: &RingSpec) -> RingDesign {
+    let found = spec.shortest(&Search { budget: 1_000_000, what_if: false }, &mut ());
+    found.expect("it can be searched").expect("there is a schedule")
+}
+
+/// Three of the rings that people have: `rings/`.
+fn rings() -> [(&'static str, &'static str); 3] {
+    [
+        ("car-12", include_str!("../../../rings/car-12.toml")),
+        ("hc-sr04-8-two-multiplexers", include_str!("../../../rings/hc-sr04-8-two-multiplexers.toml")),
+        ("mower-8-and-4", include_str!("../../../rings/mower-8-and-4.toml")),
+    ]
+}
+
+#[test]
+fn the_uneven_rings_have_a_shortest_period_that_is_verified_and_certified() {
+    for ((name, text), period_us) in rings().into_iter().zip([33_400, 61_500, 37_000]) {
+        let spec = read(text);
+        let found = design(&spec);
+        assert!(found.found.proven, "{name}: {:?}", found.found);
+        assert_eq!(found.schedule.period(), Micros::new(period_us), "{name}");
+        let problem = found.spec.problem();
+        assert_eq!(found.schedule.verify(&problem.requirements).violations().next(), None, "{name}");
+        let verified = found.schedule.verify(&problem.requirements).verified_uneven().expect("it is");
+        for sensor in 0..spec.sensors {
+            let limits = verified.limits_of(sensor).expect("it is there");
+            assert_eq!(limits.window, problem.requirements.window_of(sensor), "{name}");
+        }
+        let text = certificate::prove(&found, 1_000_000, |_| true).expect("a proof");
+        let certified = check(&text).expect("accepted");
+        let expected = format!("{period_us} us is the shortest period (tick {} us)", spec.tick.as_micros());
+        assert_eq!(certified.to_string(), expected, "{name}");
+    }
+}
+
+#[test]
+fn a_list_of_equal_numbers_asks_for_what_one_number_asks_for() {
+    for (neighbours, layout) in [(3, "line"), (4, "ring")] {
+        let common =
+            format!("sensors = 8\nneighbours = {neighbours}\nlayout = \"{layout}\"\nmin_interval_us = 15_000\n");
+        let even = design(&read(&format!("{common}t_delta_us = 999\nwindow_us = 36_000")));
+        let list = |number: u32| format!("{:?}", [number; 8]);
+        let uneven = design(&read(&format!("{common}t_delta_us = {}\nwindow_us = {}", list(999), list(36_000))));
+        assert!(even.found.proven && uneven.found.proven);
+        assert_eq!(even.found.value, uneven.found.value, "{layout}");
+    }
+}
+
+#[test]
+fn a_robot_that_moves_needs_as_much_more_of_every_tolerance() {
+    let spec = read(
+        "sensors = 3\nmin_interval_us = 10_000\nmax_range_m = [2.0, 3.0, 2.0]\njitter_us = [100, 200, 300]\n\
+         speed_m_s = 1.0",
+    );
+    let found = design(&spec);
+    let requirements = found.spec.problem().requirements;
+    let t_delta: Vec<u32> = (0..3).map(|sensor| requirements.t_delta_of(sensor).as_micros()).collect();
+    let motion = 2 * u64::from(found.schedule.max_refire().as_micros()) * 1000;
+    let motion = motion.div_ceil(u64::from(spec.c.mm_per_s())) as u32;
+    assert!(motion > 200 && t_delta[0] >= 100 + motion, "{t_delta:?} {motion}");
+    assert_eq!([t_delta[1] - t_delta[0], t_delta[2] - t_delta[1]], [100, 100]);
+}
+
+#[test]
+fn sensors_listen_for_their_range_and_wait_for_their_retrigger_time() {
+    let text = "sensors = 2\nmin_interval_us = 0\njitter_us = 100\nretrigger_us = 40_000\n";
+    let uneven = read(&format!("{text}max_range_m = [1.0, 2.0]"));
+    let requirements = uneven.problem().requirements;
+    assert_eq!(requirements.window_of(0), uneven.c.echo_time(1000));
+    assert_eq!(requirements.refire_of(0), Micros::from_millis(40));
+    assert!(design(&uneven).schedule.min_refire() >= Micros::from_millis(40));
+    // Where all are alike they may as well listen until then.
+    assert_eq!(read(&format!("{text}max_range_m = 2.0")).window, Micros::from_millis(40));
+}
+
+#[test]
+fn what_is_wrong_with_a_file_is_named_with_key_value_and_what_is_expected() {
+    let ring = "sensors = 4\nt_delta_us = 99\nmin_interval_us = 5000\nwindow_us = 9000\n";
+    for (more, expected) in [
+        ("intervals_us = [[0, 4, 9]]", "intervals_us: sensors 0 and 4; expected two different ones from 0 to 3"),
+        ("intervals_us = [[0, 1, 9], [1, 0, 9]]", "intervals_us: sensors 1 and 0 twice; expected each pair once"),
+        ("shared_lines = [[2]]", "shared_lines: [2]; expected two or more different sensors from 0 to 3"),
+        ("shared_lines = [[0, 64]]", "shared_lines: [0, 64]; expected two or more different sensors from 0 to 3"),
+        ("together = [[1, 1]]", "together: [1, 1]; expected two or more different sensors from 0 to 3"),
+        (
+            "together = [[0, 1], [1, 2]]\nintervals_us = [[0, 1, 0], [1, 2, 0]]",
+            "together: sensor 1 is in two groups; expected one",
+        ),
+        (
+            "together = [[0, 1]]",
+            "together: sensors 0 and 1 must keep 5 ms between their firings; expected a layout in which they are no \
+             neighbours, or intervals_us = [[0, 1, 0]], and no shared line",
+        ),
+    ] {
+        let error = RingSpec::from_text(&format!("{ring}{more}")).unwrap_err();
+        assert_eq!(error.message, expected);
+    }
+    let with = |text: &str| RingSpec::from_text(text).unwrap_err().message;
+    let list = "sensors = 4\nt_delta_us = 99\nmin_interval_us = 5000\nwindow_us = [9000, 9000]";
+    assert_eq!(with(list), "window_us: 2 values; expected one for all, or one for each of 4 sensors");
+    let zero = "sensors = 2\nt_delta_us = 99\nmin_interval_us = 5000\nwindow_us = [9000, 0]";
+    assert_eq!(with(zero), "a listening window of 0 us; expected window_us or max_range_m above zero");
+    let text = with("sensors = 2\nt_delta_us = \"99\"\nmin_interval_us = 5000\nwindow_us = 9000");
+    assert_eq!(text, "invalid type: string \"99\", expected a number, or a list of one for each sensor");
+    let negative = with("sensors = 2\nt_delta_us = [99, -1]\nmin_interval_us = 5000\nwindow_us = 9000");
+    assert_eq!(negative, "invalid value: integer `-1`, expected a whole number from 0 to 4294967295");
+    let long = read("sensors = 2\nt_delta_us = 99\nmin_interval_us = 4_000_000_000\nwindow_us = [9, 9]\ntick_us = 1");
+    let error = long.shortest(&Search::default(), &mut ()).unwrap_err().to_string();
+    assert!(error.starts_with("firing one by one already takes") && error.ends_with("use a coarser tick"), "{error}");
+}

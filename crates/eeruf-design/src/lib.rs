@@ -8,6 +8,7 @@
 //! | `ring` | the ring file, turned into what a schedule must meet |
 //! | `find` | the shortest period for it, and what would make it shorter |
 //! | `found` | the answer as it is printed in JSON |
+//! | `hopping` | schedules of many phases: the file, and the shortest period |
 //! | `certificate` | the proof, as a text that others check |
 //!
 //! ```
@@ -24,6 +25,7 @@
 pub mod certificate;
 mod find;
 mod found;
+mod hopping;
 mod layout;
 mod limits;
 mod ring;
@@ -31,6 +33,7 @@ mod text;
 
 pub use find::{NoSchedule, RingDesign, Search, WhatIf};
 pub use found::FoundJson;
+pub use hopping::{HoppingDesign, PhaseFile, PhaseSchedule};
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};
 pub use ring::{RingFile, RingSpec};

@@ -1,4 +1,5 @@
-//! [`schedule!`](crate::schedule!), [`hopping_schedule!`](crate::hopping_schedule!): schedules that the compiler verifies.
+//! [`schedule!`](crate::schedule!) and [`hopping_schedule!`](crate::hopping_schedule!): schedules that the compiler
+//! verifies.
 
 use crate::conditions::Requirements;
 use crate::hopping::{HoppingCode, HoppingSchedule};

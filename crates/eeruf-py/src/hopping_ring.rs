@@ -17,8 +17,8 @@ type Core = eeruf_core::HoppingRing<MAX_SENSORS>;
 /// A ring that hops in time, as the firmware runs it: used as a :class:`Ring`; its readings can also be
 /// ``"tentative"``.
 ///
-/// No sensor stays blind: one that hears nothing of its own gets a period in which it fires alone, and one whose readings
-/// keep disagreeing draws a new lag. ``docs/hopping.md`` has the rules, what they bring, and what is not promised.
+/// No sensor stays blind: one that hears nothing of its own gets a period in which it fires alone, and one whose
+/// readings keep disagreeing draws a new lag. ``docs/hopping.md`` has the rules, what they bring, and what is not promised.
 ///
 /// Args:
 ///     schedule: a :class:`HoppingSchedule`.

@@ -54,7 +54,9 @@ impl HoppingSchedule {
 #[pymethods]
 impl HoppingSchedule {
     #[new]
-    #[pyo3(signature = (sensors, period_us, step_us, phases=None, t_lag_us=None, *, neighbours=None, first_multiplier=None))]
+    #[pyo3(signature = (
+        sensors, period_us, step_us, phases=None, t_lag_us=None, *, neighbours=None, first_multiplier=None
+    ))]
     #[pyo3(text_signature = "(sensors, period_us, step_us, phases=5, t_lag_us=None, *, neighbours=4, \
             first_multiplier=1)")]
     pub(crate) fn new(

@@ -4,8 +4,8 @@ use super::error::HoppingError;
 use crate::schedule::MAX_SENSORS;
 use crate::time::Micros;
 
-/// The waits of a cycle of `q` phases, `q` prime: sensor `i` (from 0) waits `step ((i + a) m mod q)` in phase `m`, where
-/// `a` is 1 unless asked otherwise.
+/// The waits of a cycle of `q` phases, `q` prime: sensor `i` (from 0) waits `step ((i + a) m mod q)` in phase `m`,
+/// where `a` is 1 unless asked otherwise.
 ///
 /// What sound of sensor x, sent j periods before, moves by from phase m to phase m' of sensor y is a multiple of the
 /// step, and modulo `q` it is `(x - y)(m - m')`, which is not 0. So it moves by at least one step, for each pair of
@@ -43,8 +43,8 @@ impl HoppingCode {
         }
     }
 
-    /// The code with which the period can be shortest: one sensor always waits alike, and the waits of all others shrink
-    /// by 1 to `K - 1` steps from period to period, for `q` at least the number of sensors `K` and `phases`.
+    /// The code with which the period can be shortest: one sensor always waits alike, and the waits of all others
+    /// shrink by 1 to `K - 1` steps from period to period, for `q` at least the number of sensors `K` and `phases`.
     ///
     /// A sensor's two firings are then never closer than `T_p - (K - 1) step`. No code of any kind that moves sound of
     /// every age by a step does better (`docs/theory.md`, section 9.3).

@@ -76,9 +76,9 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     /// A ring that begins at `now`. The seed is for the draws of new lags.
     ///
     /// # Errors
-    /// [`HoppingError`] for a tracker's setting out of its range, a `t_delta` that is not below the step of the code, more
-    /// votes to confirm an echo than there are phases, a period that is shorter than window and code together or than twice the code and a step, or a window that ends
-    /// within the blanking time.
+    /// [`HoppingError`] for a tracker's setting out of its range, a `t_delta` that is not below the step of the code,
+    /// more votes to confirm an echo than there are phases, a period that is shorter than window and code together or
+    /// than twice the code and a step, or a window that ends within the blanking time.
     pub fn new(
         schedule: &HoppingSchedule<K>,
         settings: HoppingSettings,
@@ -156,7 +156,10 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         let confirmed = matches!(kind, ReadingKind::Accepted | ReadingKind::Clear);
         // A sensor that is known to have nothing in range is not fooled by what does not fit.
         let fits = confirmed || self.tracker.is_clear(place);
-        self.ring.scheduler_mut().heard(sensor, confirmed || kind == ReadingKind::Tentative, fits);
+        // Nor does silence or another lag help one whose line is stuck: it costs the others nothing.
+        if kind != ReadingKind::Stuck {
+            self.ring.scheduler_mut().heard(sensor, confirmed || kind == ReadingKind::Tentative, fits);
+        }
         Reading { phase, kind, t_echo, previous, age, ..reading }
     }
 

@@ -79,8 +79,8 @@ fn no_code_lets_a_sensor_fire_less_early_again_than_the_shortest_one() {
             }
         }
         assert_eq!(code.longest_drop(), Micros::new(most as u32), "{sensors}");
-        // What each sensor's waits change by from phase to phase sums to 0 over a cycle, and no two sensors' changes are
-        // less than a step apart: one of K sensors fires K - 1 steps early.
+        // What each sensor's waits change by from phase to phase sums to 0 over a cycle, and no two sensors' changes
+        // are less than a step apart: one of K sensors fires K - 1 steps early.
         assert_eq!(most as usize, sensors - 1);
         let ordinary = HoppingCode::new(sensors, 2, Micros::new(1)).unwrap();
         assert_eq!(ordinary.longest_drop(), ordinary.width());

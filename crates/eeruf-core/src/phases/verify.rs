@@ -240,8 +240,8 @@ impl fmt::Display for PhaseViolation {
                 let PhaseSeparation { value, sensors: (x, y), phases: (m, n), ages: (i, j) } = found;
                 write!(
                     f,
-                    "sound of sensor {} moves by {value} for sensor {} from phase {} ({i} periods old) to phase {} ({j} \
-                     periods old); expected {required}",
+                    "sound of sensor {} moves by {value} for sensor {} from phase {} ({i} periods old) to phase {} \
+                     ({j} periods old); expected {required}",
                     x + first,
                     y + first,
                     m.0,

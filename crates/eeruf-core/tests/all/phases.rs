@@ -137,9 +137,8 @@ proptest! {
         t_delta in 1..400_u32,
     ) {
         let step = Micros::new(step);
-        let code =
-            if is_shortest { HoppingCode::shortest(sensors, phases, step) } else { HoppingCode::new(sensors, phases, step) };
-        let code = code.unwrap();
+        let of = if is_shortest { HoppingCode::shortest } else { HoppingCode::new };
+        let code = of(sensors, phases, step).unwrap();
         let schedule = HoppingSchedule::<9>::new(code, Micros::new(40_000), lags.map(Micros::new)).unwrap();
         let requirements = PhaseRequirements {
             criterion: PhaseCriterion::Margin(Micros::new(90)),

@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use eeruf_core::search::{Progress, SearchError};
-use eeruf_design::Search;
+use eeruf_core::{Micros, PhaseCriterion};
+use eeruf_design::{RingSpec, Search};
 
 use super::answer::Answer;
 use super::certificate;
@@ -15,9 +16,13 @@ use crate::files::write::write;
 use crate::report::design::describe;
 use crate::report::draw;
 use crate::report::json::to_json;
+use crate::report::phases::{DesignJson, describe_design};
 use crate::report::watch::Watch;
 
 /// Find the schedule with the shortest period for a ring of sensors, and prove that none is shorter.
+///
+/// With --phases it is one of many phases, for a ring that hops in time and whose sensors do not stay blind: a linear
+/// congruence with lags, and the bound that holds for any such schedule.
 ///
 /// The ring file says how many sensors there are (sensors, layout, neighbours) and what they need: t_delta_us,
 /// min_interval_us, window_us; or jitter_us and speed_m_s, crosstalk_range_m, max_range_m and retrigger_us,
@@ -47,6 +52,14 @@ pub(crate) struct Args {
     /// How many nodes the certificate's proof may have; if they do not suffice, it certifies the bound that they prove
     #[arg(long, default_value_t = 1_000_000, value_name = "NODES", requires = "certificate")]
     certificate_budget: usize,
+    /// At least so many phases, 2 to 67: a schedule for a ring that hops in time
+    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u8).range(2..=67),
+          conflicts_with_all = ["certificate", "budget", "time_limit"])]
+    phases: Option<u8>,
+    /// Many phases: crosstalk need move by T_delta and this margin alone, which is all that jitter and lateness may
+    /// use, instead of 2 T_delta + 1
+    #[arg(long, value_name = "N", requires = "phases")]
+    margin_us: Option<u32>,
     /// How many nodes to search at most before giving the best schedule so far
     #[arg(long, default_value_t = 50_000_000, value_name = "NODES")]
     budget: u64,
@@ -86,6 +99,9 @@ enum Form {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let spec = read_ring(&args.file)?;
+    if let Some(phases) = args.phases {
+        return many_phases(args, &spec, phases);
+    }
     let bad = |error: SearchError| InputError::new(&args.file, None, error);
     let began = Instant::now();
     let mut watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
@@ -135,4 +151,28 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         None => print!("{}", describe(&args.file.display().to_string(), &spec, &requirements, &design, seconds)),
     }
     Ok(certified)
+}
+
+fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, InputError> {
+    let bad = |message: String| InputError::new(&args.file, None, message);
+    if spec.speed_mm_s.is_some() {
+        return Err(bad("speed_m_s; expected t_delta_us or jitter_us alone with --phases: the tracker follows what \
+                        moves, by odometry"
+            .to_owned()));
+    }
+    let margin = |us| PhaseCriterion::Margin(Micros::new(us));
+    let criterion = args.margin_us.map_or(PhaseCriterion::Exact, margin);
+    let design = spec.hopping(phases, criterion).map_err(bad)?;
+    let requirements = spec.phase_requirements(criterion);
+    if let Some(file) = &args.svg {
+        draw::hopping_diagram(&design.schedule, requirements.audible.window).save(file)?;
+    }
+    match args.form() {
+        Some(Form::Toml) => print!("{}", design.schedule.to_toml()),
+        Some(Form::Rust) => print!("{}", design.schedule.to_rust(&requirements)),
+        Some(Form::C) => print!("{}", design.schedule.to_c(&requirements)),
+        Some(Form::Json) => println!("{}", to_json(&DesignJson::from(&design))),
+        None => print!("{}", describe_design(&args.file.display().to_string(), spec, &requirements, &design)),
+    }
+    Ok(Answer::Yes)
 }

@@ -4,15 +4,16 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::ValueEnum;
-use eeruf_core::{Criterion, Micros, Requirements};
-use eeruf_design::{LayoutKey, LayoutName};
+use eeruf_core::{Audible, Criterion, Micros, PhaseCriterion, PhaseRequirements, Requirements};
+use eeruf_design::{LayoutKey, LayoutName, PhaseSchedule};
 use eeruf_sim::AnySchedule;
 
 use super::answer::Answer;
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;
-use crate::files::toml::read_schedule;
+use crate::files::toml::{FoundSchedule, read_any_schedule};
 use crate::report::json::to_json;
+use crate::report::phases;
 use crate::report::verify::{ReportJson, describe};
 
 /// Check a schedule: do crosstalk readings always move by more than 2 T_delta, and do neighbours keep their distance?
@@ -20,9 +21,12 @@ use crate::report::verify::{ReportJson, describe};
 /// Prints the separation under both readings of Eqs. (13a), (13b), the largest T_delta, the smallest interval between
 /// neighbours and the shortest time between two firings of one sensor, and names every violation. Exit code 0 if the
 /// schedule meets everything asked for, 1 if not, 2 for bad input.
+///
+/// A schedule of many phases, for a ring that hops in time, is checked for all pairs of phases and all ages of sound.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The schedule: period_us with t_lag_us, t_wait_a_us, t_wait_b_us, or with t_fire_a_us, t_fire_b_us
+    /// The schedule: period_us with t_lag_us, t_wait_a_us, t_wait_b_us, or with t_fire_a_us, t_fire_b_us; of many
+    /// phases: period_us with step_us, phases, t_lag_us, or with t_fire_us, a list for each phase
     #[arg(value_name = "SCHEDULE.toml")]
     file: PathBuf,
     /// T_delta: readings that differ by no more are near-identical
@@ -52,6 +56,16 @@ pub(crate) struct Args {
         "t_delta_us", "min_interval_us", "neighbours", "layout", "window_us", "stale_echo"
     ])]
     ring: Option<PathBuf>,
+    /// Many phases: crosstalk need move by T_delta and this margin alone, which is all that jitter and lateness may
+    /// use, instead of 2 T_delta + 1
+    #[arg(long, value_name = "N")]
+    margin_us: Option<u32>,
+    /// Many phases: for how long a sensor is deaf after it has fired
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    blanking_us: u32,
+    /// Many phases: after how long no sound is heard any more; by default the window
+    #[arg(long, value_name = "N")]
+    reach_us: Option<u32>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -105,7 +119,14 @@ impl LayoutArg {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    let schedule = read_schedule(&args.file)?;
+    let schedule = match read_any_schedule(&args.file)? {
+        FoundSchedule::Two(schedule) => schedule,
+        FoundSchedule::Many(schedule) => return many_phases(args, &schedule),
+    };
+    if let Some(margin) = args.margin_us {
+        let message = format!("--margin-us {margin}; expected a schedule of many phases: step_us or t_fire_us");
+        return Err(InputError::new(&args.file, None, message));
+    }
     let criterion = match args.criterion {
         CriterionArg::Exact => Criterion::Exact,
         CriterionArg::Paper => Criterion::Paper,
@@ -144,4 +165,38 @@ fn answer(args: &Args, schedule: &AnySchedule, requirements: &Requirements<'_>) 
         print!("{}", describe(&args.file.display().to_string(), schedule, requirements, &report));
     }
     if report.ok() { Answer::Yes } else { Answer::No }
+}
+
+fn many_phases(args: &Args, schedule: &PhaseSchedule) -> Result<Answer, InputError> {
+    let bad = |message: String| InputError::new(&args.file, None, message);
+    if args.ring.is_some() {
+        return Err(bad("many phases; expected a schedule of two phases with --ring".to_owned()));
+    }
+    if matches!(args.criterion, CriterionArg::Paper) {
+        return Err(bad("--criterion paper; expected exact, or --margin-us N, for many phases".to_owned()));
+    }
+    let layout = args.layout.key().owned(args.neighbours, schedule.sensors()).map_err(bad)?;
+    let window = Micros::new(args.window_us);
+    let requirements = PhaseRequirements {
+        criterion: args.margin_us.map_or(PhaseCriterion::Exact, |margin| PhaseCriterion::Margin(Micros::new(margin))),
+        audible: Audible {
+            window,
+            blanking: Micros::new(args.blanking_us),
+            reach: args.reach_us.map_or(window, Micros::new),
+        },
+        min_interval: Micros::new(args.min_interval_us),
+        layout: layout.layout(),
+        stale_echo: args.stale_echo,
+        ..PhaseRequirements::new(Micros::new(args.t_delta_us), window)
+    };
+    if window == Micros::ZERO {
+        return Err(bad("--window-us 0; expected how long a sensor listens: without it nothing is heard".to_owned()));
+    }
+    let report = schedule.verify(&requirements);
+    if args.json {
+        println!("{}", to_json(&phases::ReportJson::from(&report)));
+    } else {
+        print!("{}", phases::describe(&args.file.display().to_string(), schedule, &requirements, &report));
+    }
+    Ok(if report.ok() { Answer::Yes } else { Answer::No })
 }

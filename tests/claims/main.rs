@@ -8,6 +8,7 @@ mod crosstalk;
 mod documents;
 mod emitted;
 mod experiments;
+mod hopping;
 mod immediate_refiring;
 mod inputs;
 mod logs;

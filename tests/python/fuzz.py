@@ -27,6 +27,7 @@ ANY: Any = eeruf
 ROBOT = sim.Robot((0.3, 0.7, 1.57), 4, 0.26, 0.1)
 ROOM = sim.Scene([[5, 2, -5, 2]], robots=[ROBOT])
 READINGS = sim.simulate(ROOM, periods=3)
+HOPPING = eeruf.HoppingSchedule(8, 60_000, 240)
 INLINE = ThreadPoolExecutor(1)
 PATHS = ROOM.paths((0, 0), [(1, 0), (2, 0)], 2)
 HANGS_S = 60
@@ -105,6 +106,12 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.EchoFilter(2, 500).push(m(0), m(9_000), m(0)),
         lambda: ANY.EchoFilter(2, 500, echoes=4).push_echoes(m(0), m([9_000, 12_000]), m(0)),
         lambda: ring(c),
+        lambda: ANY.HoppingSchedule(m(8), m(60_000), m(240), m(5), m(None), neighbours=m(4)),
+        lambda: ANY.HoppingSettings(m("quick"), **{c.random.choice(["votes", "near_us", "nonsense"]): a()}),
+        lambda: ANY.EchoTracker(m(2), m(150), settings=m("maps")).push(m(0), m(3), m(9_000), m(0), solo=m(True)),
+        lambda: ANY.EchoTracker(2).push_many(m([3]), m([[9_000, 9_000]])),
+        lambda: ANY.HoppingRing(a(), a(), window_us=m(36_000)),
+        lambda: hopping_ring(c),
         lambda: ANY.Fire(a()),
         lambda: ANY.Reading(a(), a(), a(), a(), a(), a(), a()),
         lambda: repr(ANY.Violation(m("interval"), m((0, 1)), m(("a", "b")), a(), a(), m("x"))),
@@ -155,6 +162,19 @@ def ring(c: Chance) -> None:
         live.wait_us(m(now))
         c.random.choice([live.echo, live.fired])(m(3), m(now))
         c.random.choice([live.disable, live.enable, live.stuck])(m(3))
+
+
+def hopping_ring(c: Chance) -> None:
+    """A hopping ring that is polled and disturbed at any time."""
+    m = c.mostly
+    live = ANY.HoppingRing(
+        HOPPING, m("quick"), m(0), window_us=m(36_000), blanking_us=m(0), reach_us=m(None), seed=m(1)
+    )
+    for now in range(0, 200_000, 20_000):
+        live.poll(m(now), m(None))
+        live.wait_us(m(now))
+        c.random.choice([live.echo, live.fired])(m(3), m(now))
+        c.random.choice([live.disable, live.enable, live.stuck, live.confirmed_us])(m(3))
 
 
 def mutated(c: Chance, text: str) -> str:

@@ -44,7 +44,7 @@ TOP = [name for name in TOP if name in DOCUMENTED]
 
 def test_the_package_exports_what_the_design_names() -> None:
     expected = """eeruf.Schedule eeruf.Schedule.verify eeruf.WaitSearch.best eeruf.design eeruf.EchoFilter.push_many eeruf.Ring.poll
-        eeruf.Found.bound_us eeruf.sweep eeruf.sim.Scene.paths eeruf.sim.simulate eeruf.sim.Readings.summary
+        eeruf.Found.bound_us eeruf.Schedule.congruence eeruf.HoppingRing.poll eeruf.EchoTracker.push eeruf.sweep eeruf.sim.Scene.paths eeruf.sim.simulate eeruf.sim.Readings.summary
         eeruf.experiments.set_one eeruf.experiments.set_two eeruf.plot.timing eeruf.plot.scene eeruf.plot.readings
         eeruf.plot.course""".split()
     assert set(expected) <= set(DOCUMENTED)

@@ -1,6 +1,9 @@
-//! [`schedule!`](crate::schedule!): a schedule that the compiler verifies.
+//! [`schedule!`](crate::schedule!) and [`hopping_schedule!`](crate::hopping_schedule!): schedules that the compiler
+//! verifies.
 
 use crate::conditions::Requirements;
+use crate::hopping::{HoppingCode, HoppingSchedule};
+use crate::phases::{PhaseRequirements, PhaseViolation};
 use crate::schedule::{Schedule, ScheduleError};
 use crate::time::Micros;
 use crate::verified::VerifiedSchedule;
@@ -110,4 +113,88 @@ pub const fn __micros<const K: usize>(us: [u32; K]) -> [Micros; K] {
         i += 1;
     }
     times
+}
+
+/// A [`HoppingSchedule`] that is verified while the program is compiled; `eeruf design --phases M --emit rust` writes
+/// the whole call.
+///
+/// ```
+/// use eeruf_core::{HoppingSchedule, Micros, PhaseCriterion, PhaseRequirements, hopping_schedule};
+///
+/// const RING: HoppingSchedule<4> = hopping_schedule! {
+///     period_us: 60_000,
+///     step_us: 240,
+///     phases: 5,
+///     first_multiplier: 1,
+///     t_lag_us: [0, 14_000, 28_000, 42_000],
+///     meets: PhaseRequirements {
+///         criterion: PhaseCriterion::Margin(Micros::new(90)),
+///         min_interval: Micros::from_millis(12),
+///         ..PhaseRequirements::new(Micros::new(150), Micros::from_millis(36))
+///     },
+/// };
+/// assert_eq!(RING.code().phases(), 5);
+/// ```
+///
+/// The same table does not compile when 240 us are to keep a `t_delta` of 150 us apart as (13) asks, with 301 us:
+///
+/// ```compile_fail
+/// use eeruf_core::{HoppingSchedule, Micros, PhaseRequirements, hopping_schedule};
+///
+/// const RING: HoppingSchedule<4> = hopping_schedule! {
+///     period_us: 60_000,
+///     step_us: 240,
+///     phases: 5,
+///     first_multiplier: 1,
+///     t_lag_us: [0, 14_000, 28_000, 42_000],
+///     meets: PhaseRequirements::new(Micros::new(150), Micros::from_millis(36)),
+/// };
+/// # assert_eq!(RING.code().phases(), 5);
+/// ```
+#[macro_export]
+macro_rules! hopping_schedule {
+    (
+        period_us: $period:expr,
+        step_us: $step:expr,
+        phases: $phases:expr,
+        first_multiplier: $first:expr,
+        t_lag_us: $t_lag:expr,
+        meets: $requirements:expr $(,)?
+    ) => {
+        const {
+            $crate::__checked_hopping(
+                $crate::Micros::new($period),
+                $crate::Micros::new($step),
+                [$phases, $first],
+                $crate::__micros($t_lag),
+                &$requirements,
+            )
+        }
+    };
+}
+
+/// For `hopping_schedule!`, which evaluates it when the program is compiled: its panics are compile errors.
+#[doc(hidden)]
+pub const fn __checked_hopping<const K: usize>(
+    period: Micros,
+    step: Micros,
+    [phases, first]: [u8; 2],
+    t_lag: [Micros; K],
+    requirements: &PhaseRequirements<'_>,
+) -> HoppingSchedule<K> {
+    let code = match HoppingCode::of(K, phases, first, step) {
+        Ok(code) => code,
+        Err(error) => panic!("{}", error.as_str()),
+    };
+    let schedule = match HoppingSchedule::new(code, period, t_lag) {
+        Ok(schedule) => schedule,
+        Err(error) => panic!("{}", error.as_str()),
+    };
+    match schedule.verify(requirements).violations().advance() {
+        None => schedule,
+        Some(PhaseViolation::Crosstalk { .. }) => panic!("two sensors' crosstalk would be believed"),
+        Some(PhaseViolation::StaleEcho { .. }) => panic!("a sensor's stale echo would be believed"),
+        Some(PhaseViolation::Interval { .. }) => panic!("two neighbours fire closer together than min_interval"),
+        Some(PhaseViolation::Window { .. }) => panic!("a sensor fires again while it still listens"),
+    }
 }

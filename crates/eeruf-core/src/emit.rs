@@ -85,19 +85,7 @@ impl<const K: usize> fmt::Display for RustSource<'_, K> {
         };
         writeln!(f, "        criterion: Criterion::{criterion},")?;
         writeln!(f, "        min_interval: Micros::new({}),", Grouped(*min_interval))?;
-        write!(f, "        layout: Layout::")?;
-        match layout {
-            Layout::Line(n) => writeln!(f, "Line({n}),")?,
-            Layout::Ring(n) => writeln!(f, "Ring({n}),")?,
-            Layout::Blocks(n) => writeln!(f, "Blocks({n}),")?,
-            Layout::Graph(rows) => {
-                write!(f, "Graph(&[")?;
-                for (place, row) in rows.iter().enumerate() {
-                    write!(f, "{}{row:#x}", if place == 0 { "" } else { ", " })?;
-                }
-                writeln!(f, "]),")?;
-            }
-        }
+        writeln!(f, "        layout: {},", RustLayout(*layout))?;
         writeln!(f, "        window: Micros::new({}),", Grouped(*window))?;
         writeln!(f, "        stale_echo: {stale_echo},")?;
         match uneven {
@@ -105,6 +93,26 @@ impl<const K: usize> fmt::Display for RustSource<'_, K> {
             Some(uneven) => write!(f, "{}", UnevenSource(uneven))?,
         }
         writeln!(f, "    }},\n}};")
+    }
+}
+
+/// A layout as an expression in Rust.
+pub(crate) struct RustLayout<'r>(pub(crate) Layout<'r>);
+
+impl fmt::Display for RustLayout<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Layout::Line(n) => write!(f, "Layout::Line({n})"),
+            Layout::Ring(n) => write!(f, "Layout::Ring({n})"),
+            Layout::Blocks(n) => write!(f, "Layout::Blocks({n})"),
+            Layout::Graph(rows) => {
+                write!(f, "Layout::Graph(&[")?;
+                for (place, row) in rows.iter().enumerate() {
+                    write!(f, "{}{row:#x}", if place == 0 { "" } else { ", " })?;
+                }
+                write!(f, "])")
+            }
+        }
     }
 }
 
@@ -186,7 +194,7 @@ impl fmt::Display for UnevenSource<'_> {
 }
 
 /// Numbers in microseconds, separated by commas.
-struct Numbers<F>(F);
+pub(crate) struct Numbers<F>(pub(crate) F);
 
 impl<F: Fn() -> I, I: Iterator<Item = Micros>> fmt::Display for Numbers<F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -198,7 +206,7 @@ impl<F: Fn() -> I, I: Iterator<Item = Micros>> fmt::Display for Numbers<F> {
 }
 
 /// Microseconds with an underscore before each three digits: `65_000`.
-struct Grouped(Micros);
+pub(crate) struct Grouped(pub(crate) Micros);
 
 impl fmt::Display for Grouped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

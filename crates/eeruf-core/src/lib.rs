@@ -56,16 +56,20 @@ mod watch;
 
 pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
 #[doc(hidden)]
-pub use checked::{__checked, __micros};
+pub use checked::{__checked, __checked_hopping, __micros};
 pub use conditions::{Criterion, Interval, Requirements, Separation};
 pub use edges::{Edge, EdgeQueue};
 pub use filter::{EchoFilter, FilterError};
 pub use hopping::{
-    HoppingCode, HoppingError, HoppingFiring, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings,
+    HoppingCode, HoppingError, HoppingFiring, HoppingHeader, HoppingListening, HoppingRing, HoppingRust,
+    HoppingSchedule, HoppingSettings, HoppingToml,
 };
 pub use interop::DurationError;
 pub use layout::{Layout, LayoutError, neighbour_rows};
-pub use phases::{Audible, PhaseSeparation, PhaseTable};
+pub use phases::{
+    Audible, PhaseCriterion, PhaseInterval, PhaseRequirements, PhaseSeparation, PhaseTable, PhaseVerification,
+    PhaseViolation, PhaseViolations,
+};
 pub use reading::{ReadingKind, Tally, Verdict};
 pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError, VerifiedFor};

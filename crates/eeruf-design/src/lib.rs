@@ -9,6 +9,7 @@
 //! | `ring` | the ring file, turned into what a schedule must meet |
 //! | `find`, `find_uneven` | the shortest period for it, and what would make it shorter |
 //! | `found` | the answer as it is printed in JSON |
+//! | `hopping` | schedules of many phases: the file, and the shortest period |
 //! | `ticks`, `certificate` | the problem in ticks, and the proof, as a text that others check |
 //!
 //! ```
@@ -27,6 +28,7 @@ mod each;
 mod find;
 mod find_uneven;
 mod found;
+mod hopping;
 mod layout;
 mod limits;
 mod ring;
@@ -38,6 +40,7 @@ pub use each::Each;
 pub use find::{NoSchedule, RingDesign, Search, WhatIf};
 pub use find_uneven::shortest_uneven;
 pub use found::FoundJson;
+pub use hopping::{HoppingDesign, PhaseFile, PhaseSchedule};
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};
 pub use ring::{RingFile, RingSpec};

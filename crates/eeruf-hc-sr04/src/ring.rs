@@ -1,4 +1,4 @@
-//! [`HcSr04Ring`]: the driver. It triggers the sensors that a ring fires, and hands the ring the echoes.
+//! [`HcSr04Ring`]: the driver of a [`Ring`]. It triggers the sensors that the ring fires, and hands it the echoes.
 
 use eeruf_core::{
     Edge, EdgeQueue, Instant, Micros, Ring, RingError, RingEvent, ScheduledFiring, Scheduler, SensorError,
@@ -9,26 +9,14 @@ use embedded_hal::digital::{InputPin, OutputPin};
 
 use crate::error::SetupError;
 use crate::health::Health;
-use crate::line::{Line, Pulse};
+use crate::lines::{Lines, Pins};
 use crate::settings::Settings;
-
-/// The two pins of one sensor.
-#[derive(Clone, Debug)]
-pub struct Pins<T, I> {
-    /// The trigger.
-    pub trigger: T,
-    /// The echo line. It is read only just before a trigger; its edges come in through [`HcSr04Ring::edge`].
-    pub echo: I,
-}
 
 /// A [`Ring`] whose firings are triggers on pins and whose echoes are pulses on lines.
 #[derive(Debug)]
 pub struct HcSr04Ring<S, T, I, D, const K: usize> {
     ring: Ring<S, K>,
-    pins: [Pins<T, I>; K],
-    delay: D,
-    lines: [Line; K],
-    settings: Settings,
+    lines: Lines<T, I, D, K>,
 }
 
 impl<'s, T, I, D, const K: usize, const M: usize> HcSr04Ring<ScheduledFiring<'s, K, M>, T, I, D, K> {
@@ -38,7 +26,7 @@ impl<'s, T, I, D, const K: usize, const M: usize> HcSr04Ring<ScheduledFiring<'s,
     /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered, and as
     /// [`Ring::change_schedule`]. The ring then goes on as before.
     pub fn change_schedule(&mut self, schedule: &'s VerifiedSchedule<K, M>) -> Result<(), SetupError> {
-        self.settings.allow(schedule.min_refire())?;
+        self.lines.allow(schedule.min_refire())?;
         Ok(self.ring.change_schedule(schedule)?)
     }
 }
@@ -51,7 +39,7 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
     /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered.
     pub fn new(ring: Ring<S, K>, pins: [Pins<T, I>; K], delay: D, settings: Settings) -> Result<Self, SetupError> {
         settings.allow(ring.scheduler().min_refire())?;
-        Ok(Self { ring, pins, delay, lines: [Line::NEW; K], settings })
+        Ok(Self { ring, lines: Lines::new(pins, delay, settings) })
     }
 
     /// As [`Ring::poll`]. [`RingEvent::Fire`] is for information: the sensor has been triggered already.
@@ -66,7 +54,10 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         let event = self.ring.poll_expecting(now, expected_change_us)?;
         if let RingEvent::Fire { sensor, .. } = event {
-            self.trigger(sensor, now);
+            if !self.lines.trigger(sensor, now) {
+                // It is there: it has just fired.
+                _ = self.ring.stuck(sensor);
+            }
         }
         Some(event)
     }
@@ -91,12 +82,9 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
     pub fn edge(&mut self, edge: Edge) -> Result<(), SensorError> {
-        match self.lines.get_mut(usize::from(edge.sensor)) {
-            Some(line) => match line.edge(edge, &self.settings) {
-                Some(width) => self.ring.echo(edge.sensor, line.triggered + width),
-                None => Ok(()),
-            },
-            None => self.ring.echo(edge.sensor, edge.at),
+        match self.lines.edge(edge) {
+            Some(at) => self.ring.echo(edge.sensor, at),
+            None => Ok(()),
         }
     }
 
@@ -106,18 +94,14 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
     /// [`SensorError`] for a sensor that is not there.
     pub fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
         self.ring.fired(sensor, at)?;
-        if let Some(line) = self.lines.get_mut(usize::from(sensor)) {
-            if at.has_reached(line.triggered) {
-                line.triggered = at;
-            }
-        }
+        self.lines.fired(sensor, at);
         Ok(())
     }
 
     /// How a sensor was at its last complete firing, as far as its line shows it; [`Health::Missing`] for one that the
     /// ring does not have.
     pub fn health(&self, sensor: u8) -> Health {
-        self.lines.get(usize::from(sensor)).map_or(Health::Missing, |line| line.health)
+        self.lines.health(sensor)
     }
 
     /// The ring.
@@ -178,34 +162,5 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
     /// As there.
     pub fn set_blanking(&mut self, blanking: Micros) -> Result<(), RingError> {
         self.ring.set_blanking(blanking)
-    }
-
-    fn trigger(&mut self, sensor: u8, now: Instant) {
-        let x = usize::from(sensor);
-        let (Some(line), Some(pins)) = (self.lines.get_mut(x), self.pins.get_mut(x)) else { return };
-        line.end_firing(self.settings.missing_after);
-        line.triggered = now;
-        line.pulse = Pulse::Idle;
-        match pins.echo.is_high() {
-            Ok(false) => {}
-            Ok(true) => {
-                line.health = Health::StuckHigh;
-                // It is there: it has just fired.
-                _ = self.ring.stuck(sensor);
-                return;
-            }
-            Err(_) => {
-                line.health = Health::PinError;
-                _ = self.ring.stuck(sensor);
-                return;
-            }
-        }
-        line.pulse = Pulse::Awaited;
-        let rose = pins.trigger.set_high();
-        self.delay.delay_us(self.settings.trigger.as_micros());
-        // Also after an error: a trigger must not stay high.
-        if pins.trigger.set_low().is_err() || rose.is_err() {
-            line.health = Health::PinError;
-        }
     }
 }

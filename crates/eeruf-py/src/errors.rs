@@ -89,6 +89,14 @@ Example:
     Traceback (most recent call last):
     eeruf.RingError: a blanking time of 0 us; expected less than the window of 0 us, and at most 65.535 ms
 " from eeruf_core::RingError, eeruf_core::Violation;
+    HoppingError "A ring that cannot hop as asked, or settings that contradict each other.
+
+Example:
+    >>> import eeruf
+    >>> eeruf.HoppingSchedule(8, 2_000, 240)
+    Traceback (most recent call last):
+    eeruf.HoppingError: a period of 2 ms; expected 2.401 ms to 268435.456 ms
+" from eeruf_core::HoppingError, eeruf_core::TrackerError;
     SearchError "Needs that make no sense or are too large to search.
 
 Example:

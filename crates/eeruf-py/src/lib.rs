@@ -19,6 +19,9 @@ mod errors;
 mod experiments;
 mod filter;
 mod found;
+mod hopping_ring;
+mod hopping_schedule;
+mod hopping_settings;
 mod memory;
 mod methods;
 mod paths;
@@ -36,6 +39,7 @@ mod search;
 mod simulate;
 mod simulation;
 mod surroundings;
+mod tracker;
 mod unpickle;
 mod watch;
 
@@ -47,12 +51,15 @@ mod _eeruf {
     use crate::{
         design::{check_certificate, design},
         errors::{
-            ArgumentError, CertificateError, EerufError, ExperimentError, FilterError, PathsError, RingError,
-            SceneError, ScheduleError, SearchError, SimulationError,
+            ArgumentError, CertificateError, EerufError, ExperimentError, FilterError, HoppingError, PathsError,
+            RingError, SceneError, ScheduleError, SearchError, SimulationError,
         },
         experiments::{set_one, set_two, speed_sweep},
         filter::EchoFilter,
         found::Found,
+        hopping_ring::HoppingRing,
+        hopping_schedule::HoppingSchedule,
+        hopping_settings::HoppingSettings,
         paths::Paths,
         program::{example, run_program},
         readings::Readings,
@@ -66,6 +73,7 @@ mod _eeruf {
         simulate::simulate,
         simulation::{ReadingBlocks, RobotState, Simulation, simulate_blocks},
         surroundings::{Material, Noise},
+        tracker::EchoTracker,
         unpickle::readings_from_columns,
         watch::{Switch, until_stopped},
     };

@@ -66,21 +66,28 @@ impl Ring {
     fn change(&mut self, change: impl FnOnce(&mut Scheduled<'_>) -> Result<(), SensorError>) -> PyResult<()> {
         self.ring.with_dependent_mut(|_, ring| change(ring)).map_err(Raise::raise)
     }
+}
 
-    fn changes(&self, changes: &Bound<'_, PyAny>) -> PyResult<Vec<i32>> {
-        let name = "expected_change_us";
-        let expected = format!("a sequence of {} whole numbers of microseconds, one for each sensor", self.sensors);
-        let items = items(name, changes, &expected)?;
-        if items.len() != self.sensors as usize {
-            return Err(wrong(name, shown(changes), expected));
-        }
-        let each = |(index, item)| whole(&format!("{name}[{index}]"), item, i32::MIN..=i32::MAX);
-        items.iter().enumerate().map(each).collect()
+/// What is expected to change of each sensor's readings, of the argument `expected_change_us`.
+pub(crate) fn expected_changes(changes: Option<&Bound<'_, PyAny>>, sensors: usize) -> PyResult<Vec<i32>> {
+    let Some(changes) = changes else { return Ok(Vec::new()) };
+    let name = "expected_change_us";
+    let expected = format!("a sequence of {sensors} whole numbers of microseconds, one for each sensor");
+    let items = items(name, changes, &expected)?;
+    if items.len() != sensors {
+        return Err(wrong(name, shown(changes), expected));
     }
+    let each = |(index, item)| whole(&format!("{name}[{index}]"), item, i32::MIN..=i32::MAX);
+    items.iter().enumerate().map(each).collect()
+}
+
+/// How long from now until a deadline, in microseconds; 0 if it has been reached.
+pub(crate) fn until(deadline: Instant, now: Instant) -> u32 {
+    if now.has_reached(deadline) { 0 } else { deadline.since(now).as_micros() }
 }
 
 /// A moment on a clock that wraps at 2^32 us: larger numbers are what such a clock would show.
-fn instant(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Instant> {
+pub(crate) fn instant(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Instant> {
     whole(name, value, 0..=u64::MAX).map(|us| Instant::from_micros(us as u32))
 }
 
@@ -169,7 +176,7 @@ impl Ring {
         expected_change_us: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let (py, now) = (now_us.py(), instant("now_us", now_us)?);
-        let changes = expected_change_us.map(|changes| self.changes(changes)).transpose()?.unwrap_or_default();
+        let changes = expected_changes(expected_change_us, self.sensors as usize)?;
         let change = |sensor: u8| changes.get(usize::from(sensor)).copied().unwrap_or(0);
         let event = self.ring.with_dependent_mut(|_, ring| ring.poll_expecting(now, change));
         event.map(|event| to_python(py, &event)).transpose()
@@ -203,8 +210,7 @@ impl Ring {
     ///     (24000, 0)
     #[pyo3(signature = (now_us))]
     fn wait_us(&self, now_us: &Bound<'_, PyAny>) -> PyResult<u32> {
-        let (now, deadline) = (instant("now_us", now_us)?, self.ring.borrow_dependent().next_deadline());
-        Ok(if now.has_reached(deadline) { 0 } else { deadline.since(now).as_micros() })
+        Ok(until(self.ring.borrow_dependent().next_deadline(), instant("now_us", now_us)?))
     }
 
     /// What it fires by.

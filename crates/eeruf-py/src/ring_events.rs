@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use eeruf_core::{MAX_SENSORS, Micros, ReadingKind, RingEvent, Verdict};
+use eeruf_core::{MAX_SENSORS, Micros, Phase, ReadingKind, RingEvent, Verdict};
 use pyo3::{
     IntoPyObjectExt,
     prelude::*,
@@ -25,7 +25,7 @@ const SENSORS: RangeInclusive<u8> = 0..=MAX_SENSORS as u8 - 1;
 pub(crate) struct Fire {
     /// Which sensor, from 0.
     sensor: u8,
-    /// The phase that its wait belongs to: 0 for a, 1 for b.
+    /// The phase that its wait belongs to: 0 for a, 1 for b; more in a hopping ring.
     phase: u8,
     /// When it was due, on the ring's clock: before the time of the poll if that was late.
     due_us: u32,
@@ -70,7 +70,8 @@ impl Fire {
 pub(crate) struct Reading {
     /// Which sensor, from 0.
     sensor: u8,
-    /// What came of it, one of ``eeruf.KINDS``; only ``"accepted"`` and ``"clear"`` (nothing in range) count.
+    /// What came of it, one of ``eeruf.KINDS``; ``"accepted"`` and ``"clear"`` (nothing in range) count;
+    /// for ``"tentative"``, from a hopping ring, slow down.
     kind: &'static str,
     /// The time of the echo after firing, in microseconds; None without echo.
     t_echo_us: Option<u32>,
@@ -78,13 +79,18 @@ pub(crate) struct Reading {
     previous_us: Option<u32>,
     /// How many firings ago the sensor's last accepted reading was: 0 for this one, None if there never was one.
     age: Option<u16>,
-    /// The phase in which the sensor fired: 0 for a, 1 for b; None from a filter alone.
+    /// The phase in which the sensor fired: 0 for a, 1 for b, more in a hopping ring; None from a filter alone.
     phase: Option<u8>,
     /// The period in which the sensor fired, from 0; None from a filter alone.
     period: Option<u32>,
 }
 
 impl Reading {
+    /// From a tracker alone, which knows no periods.
+    pub(crate) fn of_tracker(sensor: u8, phase: Phase, verdict: &Verdict) -> Self {
+        Self { phase: Some(phase.0), ..Self::of_filter(sensor, verdict) }
+    }
+
     /// From a filter alone, which knows no phases.
     pub(crate) fn of_filter(sensor: u8, verdict: &Verdict) -> Self {
         Self {

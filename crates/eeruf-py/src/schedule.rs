@@ -11,6 +11,7 @@ use pyo3::{prelude::*, types::PyTuple};
 use crate::{
     arguments::{self, micros, shown, times, whole, wrong},
     errors::{Raise, ScheduleError},
+    hopping_schedule::HoppingSchedule,
     report::Report,
     requirements::{RequirementArguments, UnevenArguments},
 };
@@ -105,6 +106,36 @@ impl Schedule {
         let period = micros("period_us", period_us)?;
         let (a, b) = (times("t_fire_a_us", t_fire_a_us)?, times("t_fire_b_us", t_fire_b_us)?);
         AnySchedule::from_slices(period, &vec![Micros::ZERO; a.len()], [&a, &b]).map(Self).map_err(Raise::raise)
+    }
+
+    /// A schedule of many phases, as :class:`HoppingSchedule` makes it of the same arguments: a linear congruence.
+    ///
+    /// Args:
+    ///     sensors: how many, 1 to 64.
+    ///     period_us: the period, ``T_p``.
+    ///     step_us: by how much crosstalk moves at least, 1 to 65535.
+    ///     phases: at least so many, 2 to 67; by default the 5 that confirm an echo.
+    ///     t_lag_us: the lag of each sensor; by default four adjacent ones are spread evenly over the period.
+    ///
+    /// Raises:
+    ///     ArgumentError: something of the wrong type or out of range.
+    ///     HoppingError: numbers that make no such schedule.
+    ///
+    /// Example:
+    ///     >>> from eeruf import Schedule
+    ///     >>> Schedule.congruence(sensors=8, period_us=60_000, step_us=240).t_fire_us[1, :3].tolist()
+    ///     [240, 14880, 29520]
+    #[staticmethod]
+    #[pyo3(signature = (sensors, period_us, step_us, phases=None, t_lag_us=None))]
+    #[pyo3(text_signature = "(sensors, period_us, step_us, phases=5, t_lag_us=None)")]
+    fn congruence(
+        sensors: &Bound<'_, PyAny>,
+        period_us: &Bound<'_, PyAny>,
+        step_us: &Bound<'_, PyAny>,
+        phases: Option<&Bound<'_, PyAny>>,
+        t_lag_us: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<HoppingSchedule> {
+        HoppingSchedule::new(sensors, period_us, step_us, phases, t_lag_us, None, None)
     }
 
     /// Read a schedule as ``eeruf design --emit toml`` and :meth:`to_toml` write it.

@@ -2,6 +2,7 @@
 
 mod course;
 mod crosstalk;
+mod hopping;
 mod kinds;
 mod methods;
 mod picture;
@@ -13,6 +14,7 @@ mod timing;
 
 pub(crate) use course::courses;
 pub(crate) use crosstalk::two_periods;
+pub(crate) use hopping::hopping_diagram;
 pub(crate) use kinds::kinds_over_time;
 pub(crate) use methods::methods_chart;
 pub(crate) use picture::Picture;

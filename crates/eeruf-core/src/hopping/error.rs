@@ -23,6 +23,20 @@ pub enum HoppingError {
         /// How many were asked for.
         phases: u8,
     },
+    /// A number of phases that is no prime, or below that of sensors.
+    NotPrime {
+        /// How many were asked for.
+        phases: u8,
+        /// The next number that would do.
+        next: u8,
+    },
+    /// The multiplier of sensor 0 is not below the number of phases.
+    Multiplier {
+        /// The multiplier asked for.
+        first_multiplier: u8,
+        /// How many phases there are.
+        phases: u8,
+    },
     /// A step of 0, or of more than 65,535 us.
     Step {
         /// The step asked for.
@@ -34,6 +48,13 @@ pub enum HoppingError {
         t_delta: Micros,
         /// The step of the code.
         step: Micros,
+    },
+    /// An echo would never be confirmed: each phase gives one vote.
+    Votes {
+        /// The tracker's `votes`.
+        votes: u8,
+        /// How many phases the code has.
+        phases: u8,
     },
     /// The period is too short for code and window, or longer than [`MAX_PERIOD`](crate::MAX_PERIOD).
     Period {
@@ -69,18 +90,47 @@ impl From<RingError> for HoppingError {
     }
 }
 
+impl HoppingError {
+    /// The kind of error as fixed text, for compile-time checks, which cannot print numbers.
+    pub const fn as_str(&self) -> &'static str {
+        match self {
+            Self::Sensors { .. } => "a hopping schedule has 1 to 64 sensors, no more than it has room for",
+            Self::Phases { .. } => "a code has 2 to 67 phases",
+            Self::NotPrime { .. } => "the number of phases must be a prime, no less than the sensors",
+            Self::Multiplier { .. } => "the first multiplier must be less than the number of phases",
+            Self::Step { .. } => "a step is 1 us to 65.535 ms",
+            Self::TDelta { .. } => "t_delta must be less than the step",
+            Self::Votes { .. } => "the tracker's votes must be no more than the phases",
+            Self::Period { .. } => "the period must be longer than the code is wide, and no longer than 268 s",
+            Self::Lag { .. } => "each sensor must fire inside its period",
+            Self::Tracker(_) => "a setting of the tracker is out of its range",
+            Self::Ring(_) => "the ring cannot listen like that",
+        }
+    }
+}
+
 impl fmt::Display for HoppingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let first = u8::from(!f.alternate());
         match *self {
             Self::Sensors { sensors, most } => write!(f, "{sensors} sensors; expected 1 to {most}"),
             Self::Phases { phases } => write!(f, "{phases} phases; expected 2 to 67"),
+            Self::NotPrime { phases, next } => {
+                write!(f, "{phases} phases; expected a prime that is no less than the sensors, such as {next}")
+            }
+            Self::Multiplier { first_multiplier, phases } => {
+                write!(f, "a first multiplier of {first_multiplier}; expected less than {phases}, the number of phases")
+            }
             Self::Step { step } => write!(f, "a step of {step}; expected 1 us to 65.535 ms"),
             Self::TDelta { t_delta, step } => {
                 write!(f, "a t_delta of {t_delta}; expected less than {step}, by which the code moves crosstalk")
             }
+            Self::Votes { votes, phases } => {
+                write!(f, "{votes} votes to confirm an echo; expected at most {phases}, the phases of the code")
+            }
             Self::Period { period, least } => write!(f, "a period of {period}; expected {least} to 268435.456 ms"),
             Self::Lag { sensor, lag, most } => {
-                write!(f, "a lag of {lag} for sensor {}; expected at most {most}", sensor + 1)
+                write!(f, "a lag of {lag} for sensor {}; expected at most {most}", sensor + first)
             }
             Self::Tracker(error) => error.fmt(f),
             Self::Ring(error) => error.fmt(f),

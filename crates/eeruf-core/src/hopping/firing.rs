@@ -1,5 +1,6 @@
 //! [`HoppingFiring`]: the scheduler of a hopping ring. What a period is made of is decided in `plan`.
 
+use super::code::HoppingCode;
 use super::lateness::Lateness;
 use super::random::SmallRandom;
 use super::schedule::HoppingSchedule;
@@ -31,6 +32,8 @@ pub struct HoppingFiring<const K: usize> {
     /// Counts periods modulo 8, for the ring.
     count: u8,
     pub(super) start: Instant,
+    /// When the next firing or the end of the period is due: it is asked for several times a poll.
+    due: Instant,
     /// How long the period lasts.
     pub(super) length: Micros,
     /// After how long its sensor fires in a solo period.
@@ -47,7 +50,8 @@ pub struct HoppingFiring<const K: usize> {
     pub(super) disabled: SensorSet,
     paused: bool,
     lateness: Lateness,
-    pub(super) schedule: HoppingSchedule<K>,
+    pub(super) code: HoppingCode,
+    pub(super) period: Micros,
     pub(super) settings: HoppingSettings,
     pub(super) window: Micros,
     /// From a firing until its sensor no longer listens, and nothing of it is heard in a window that opens then.
@@ -71,6 +75,7 @@ impl<const K: usize> HoppingFiring<K> {
             phase: 0,
             count: 0,
             start: now,
+            due: now,
             length: schedule.period(),
             solo_at: None,
             last_fired: now,
@@ -82,7 +87,8 @@ impl<const K: usize> HoppingFiring<K> {
             disabled: SensorSet::NONE,
             paused: false,
             lateness: Lateness::NEW,
-            schedule: *schedule,
+            code: *schedule.code(),
+            period: schedule.period(),
             settings,
             window,
             dies: reach.saturating_sub(blanking).max(window).saturating_add(Micros::new(1)),
@@ -93,8 +99,7 @@ impl<const K: usize> HoppingFiring<K> {
 
     /// The lag of a sensor as it is now; `None` for one that is not there.
     pub fn t_lag(&self, sensor: usize) -> Option<Micros> {
-        self.schedule.t_lag(sensor)?;
-        self.turns.get(sensor).map(|turn| turn.lag)
+        self.turns.get(sensor).filter(|_| sensor < self.code.sensors()).map(|turn| turn.lag)
     }
 
     /// The phase of the present period, from 0.
@@ -124,22 +129,28 @@ impl<const K: usize> HoppingFiring<K> {
     /// When a sensor fires in this period, after its start, unless it is a solo period.
     pub(super) fn offset(&self, sensor: u8) -> Micros {
         let Some(turn) = self.turns.get(usize::from(sensor)) else { return Micros::MAX };
-        turn.lag.saturating_add(self.schedule.code().wait(sensor.into(), self.phase))
+        let step = self.code.step().as_micros();
+        turn.lag.saturating_add(Micros::new(u32::from(turn.place) * step))
     }
 
     /// The next firing of this period, and how long after its start it is due.
     fn next(&self) -> Option<(u8, Micros)> {
-        if self.place >= self.planned {
-            return None;
-        }
-        let &sensor = self.order.get(usize::from(self.place))?;
+        let sensor = self.next_sensor()?;
         Some((sensor, self.solo_at.unwrap_or_else(|| self.offset(sensor))))
+    }
+
+    fn next_sensor(&self) -> Option<u8> {
+        if self.place < self.planned { self.order.get(usize::from(self.place)).copied() } else { None }
     }
 
     fn begin_period(&mut self) {
         self.place = 0;
         self.plan();
         self.set_paused(self.paused);
+    }
+
+    fn find_due(&mut self) {
+        self.due = self.start + self.next().map_or(self.length, |(_, offset)| offset);
     }
 
     /// Nothing that is heard across this moment moves as the code says.
@@ -151,16 +162,16 @@ impl<const K: usize> HoppingFiring<K> {
 
 impl<const K: usize> Scheduler for HoppingFiring<K> {
     fn deadline(&self) -> Instant {
-        self.start + self.next().map_or(self.length, |(_, offset)| offset)
+        self.due
     }
 
     fn next_firing(&self) -> Option<(u8, Phase)> {
-        self.next().map(|(sensor, _)| (sensor, Phase(self.count)))
+        self.next_sensor().map(|sensor| (sensor, Phase(self.count)))
     }
 
     fn fire(&mut self, now: Instant) {
-        let Some((sensor, _)) = self.next() else { return };
-        let late = now.since(self.deadline());
+        let Some(sensor) = self.next_sensor() else { return };
+        let late = now.since(self.due);
         let is_solo = self.solo_at.is_some();
         if late > CATCHES_UP {
             self.break_off();
@@ -179,6 +190,7 @@ impl<const K: usize> Scheduler for HoppingFiring<K> {
         if let Some(turn) = self.turns.get_mut(usize::from(sensor)) {
             turn.fire(now, late, self.phase, settled);
         }
+        self.find_due();
     }
 
     fn postpone(&mut self, sensor: u8, by: Micros) {
@@ -198,20 +210,25 @@ impl<const K: usize> Scheduler for HoppingFiring<K> {
         }
         if late > CATCHES_UP || is_solo {
             self.start += by;
+            self.find_due();
         }
     }
 
     fn end_period(&mut self, now: Instant) -> (Phase, bool) {
         let phase = Phase(self.count);
-        let end = self.deadline();
-        let left_out = now.since(end) > self.schedule.period();
+        let end = self.due;
+        let left_out = now.since(end) > self.period;
         self.start = if left_out { now } else { end };
         self.lateness.end_period();
         if left_out {
             self.break_off();
         }
         self.count = (self.count + 1) & 7;
-        self.phase = if self.phase + 1 < self.schedule.code().phases() { self.phase + 1 } else { 0 };
+        let code = self.code;
+        self.phase = if self.phase + 1 < code.phases() { self.phase + 1 } else { 0 };
+        for (sensor, turn) in (0..).zip(self.turns.iter_mut().take(code.sensors())) {
+            turn.place = if self.phase == 0 { 0 } else { code.next_place(sensor, turn.place) };
+        }
         self.begin_period();
         (phase, false)
     }
@@ -219,13 +236,14 @@ impl<const K: usize> Scheduler for HoppingFiring<K> {
     fn ended(&mut self, _sensor: u8, _at: Instant) {}
 
     fn sensors(&self) -> usize {
-        self.schedule.code().sensors()
+        self.code.sensors()
     }
 
     fn set_enabled(&mut self, sensor: u8, enabled: bool) {
         self.disabled.set(sensor, !enabled);
         if !enabled {
             self.leave_out(sensor, self.place);
+            self.find_due();
         }
     }
 
@@ -235,6 +253,7 @@ impl<const K: usize> Scheduler for HoppingFiring<K> {
             // What is left of the period.
             self.planned = self.place;
         }
+        self.find_due();
     }
 
     fn is_enabled(&self, sensor: u8) -> bool {
@@ -266,6 +285,6 @@ impl<const K: usize> Scheduler for HoppingFiring<K> {
     fn horizon(&self) -> Micros {
         // Longer than the longest solo period.
         let dies = self.dies.saturating_add(self.dies);
-        self.schedule.period().saturating_add(self.schedule.period()).saturating_add(dies)
+        self.period.saturating_add(self.period).saturating_add(dies)
     }
 }

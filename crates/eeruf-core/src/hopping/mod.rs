@@ -8,6 +8,7 @@
 //! The room uses the ring, the tracker and the scheduler's trait. Rules and measurements: `docs/hopping.md`.
 
 mod code;
+mod emit;
 mod error;
 mod firing;
 mod lateness;
@@ -28,6 +29,7 @@ use crate::time::Instant;
 use crate::tracker::{EchoTracker, Firing};
 
 pub use code::HoppingCode;
+pub use emit::{HoppingHeader, HoppingRust, HoppingToml};
 pub use error::HoppingError;
 pub use firing::HoppingFiring;
 pub use schedule::HoppingSchedule;
@@ -74,9 +76,9 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     /// A ring that begins at `now`. The seed is for the draws of new lags.
     ///
     /// # Errors
-    /// [`HoppingError`] for a tracker's setting out of its range, a `t_delta` that is not below the step of the code, a
-    /// period that is shorter than window and code together or than twice the code and a step, or a window that ends
-    /// within the blanking time.
+    /// [`HoppingError`] for a tracker's setting out of its range, a `t_delta` that is not below the step of the code,
+    /// more votes to confirm an echo than there are phases, a period that is shorter than window and code together or
+    /// than twice the code and a step, or a window that ends within the blanking time.
     pub fn new(
         schedule: &HoppingSchedule<K>,
         settings: HoppingSettings,
@@ -90,9 +92,13 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         if code.step() <= t_delta {
             return Err(HoppingError::TDelta { t_delta, step: code.step() });
         }
+        let votes = settings.tracker.votes;
+        if votes > code.phases() {
+            return Err(HoppingError::Votes { votes, phases: code.phases() });
+        }
         // The sensor must have stopped listening, and a path must not read the same with two ages.
-        let two_ages = code.width().saturating_add(code.width()).saturating_add(code.step());
-        let least = window.saturating_add(code.width()).max(two_ages);
+        let two_ages = code.two_ages();
+        let least = window.saturating_add(code.longest_drop()).max(two_ages);
         if schedule.period() < least {
             return Err(HoppingError::Period { period: schedule.period(), least });
         }
@@ -111,15 +117,20 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
 
     /// As [`poll`](Self::poll), for a robot that moves: see [`Ring::poll_expecting`].
     pub fn poll_expecting(&mut self, now: Instant, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
-        Some(match self.ring.poll(now)? {
+        let event = self.ring.poll(now)?;
+        if core::mem::take(&mut self.ring.scheduler_mut().changed) {
+            self.tracker.firing_changed();
+        }
+        Some(match event {
             RingEvent::Reading(reading) => {
                 let reading = self.weigh(reading, &mut expected_change_us);
                 self.tally.count(reading.kind);
                 RingEvent::Reading(reading)
             }
             RingEvent::PeriodEnded(stats) => {
-                let phases = self.firing().schedule.code().phases();
-                let phase = Phase((self.firing().phase + phases - 1) % phases);
+                let phases = self.firing().code.phases();
+                // It has begun the next one already.
+                let phase = Phase(self.firing().phase.checked_sub(1).unwrap_or(phases - 1));
                 RingEvent::PeriodEnded(PeriodStats { phase, tally: core::mem::take(&mut self.tally), ..stats })
             }
             RingEvent::Fire { sensor, due, .. } => RingEvent::Fire { sensor, phase: self.firing().phase(), due },
@@ -134,9 +145,6 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         if kind == ReadingKind::Late {
             return Reading { phase, ..reading };
         }
-        if core::mem::take(&mut self.ring.scheduler_mut().changed) {
-            self.tracker.firing_changed();
-        }
         let weighed = match kind {
             ReadingKind::Stuck | ReadingKind::TooEarly => self.tracker.skip(place, kind, t_echo),
             _ => {
@@ -148,7 +156,10 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         let confirmed = matches!(kind, ReadingKind::Accepted | ReadingKind::Clear);
         // A sensor that is known to have nothing in range is not fooled by what does not fit.
         let fits = confirmed || self.tracker.is_clear(place);
-        self.ring.scheduler_mut().heard(sensor, confirmed || kind == ReadingKind::Tentative, fits);
+        // Nor does silence or another lag help one whose line is stuck: it costs the others nothing.
+        if kind != ReadingKind::Stuck {
+            self.ring.scheduler_mut().heard(sensor, confirmed || kind == ReadingKind::Tentative, fits);
+        }
         Reading { phase, kind, t_echo, previous, age, ..reading }
     }
 

@@ -1,6 +1,7 @@
 //! What the next period of a hopping ring is made of: who fires, whether one sensor has it alone, and new lags.
 
 use super::firing::HoppingFiring;
+use super::schedule::longest_lag;
 use super::turn::{FIRED, SETTLED};
 use crate::time::Micros;
 
@@ -15,7 +16,7 @@ impl<const K: usize> HoppingFiring<K> {
     pub(super) fn plan(&mut self) {
         self.planned = 0;
         self.solo_at = None;
-        self.length = self.schedule.period();
+        self.length = self.period;
         self.since_solo = self.since_solo.saturating_add(1);
         self.earned = (self.earned + u16::from(self.settings.solo_rate)).min(MOST);
         if self.earned >= ONE && self.since_solo >= self.settings.solo_spacing {
@@ -29,7 +30,7 @@ impl<const K: usize> HoppingFiring<K> {
             self.shift_all();
         }
         // At most 64 sensors.
-        for sensor in 0..self.schedule.code().sensors() as u8 {
+        for sensor in 0..self.code.sensors() as u8 {
             if self.may_fire(sensor) {
                 self.insert(sensor);
             }
@@ -39,7 +40,7 @@ impl<const K: usize> HoppingFiring<K> {
     /// The sensor with nothing accepted for longest, if that is long enough.
     fn longest_unserved(&self) -> Option<u8> {
         let mut longest = (self.settings.solo_after.saturating_sub(1), None);
-        for (sensor, turn) in self.turns.iter().enumerate().take(self.schedule.code().sensors()) {
+        for (sensor, turn) in self.turns.iter().enumerate().take(self.code.sensors()) {
             if turn.unserved > longest.0 && !self.disabled.contains(sensor as u8) {
                 longest = (turn.unserved, Some(sensor as u8));
             }
@@ -103,17 +104,21 @@ impl<const K: usize> HoppingFiring<K> {
         let (from, to) = (usize::from(place), usize::from(self.planned));
         let Some(to_come) = self.order.get_mut(from..to) else { return };
         if let Some(at) = to_come.iter().position(|&entry| entry == sensor) {
-            if let Some(behind) = to_come.get_mut(at..) {
-                behind.rotate_left(1);
-                self.planned -= 1;
+            for behind in at..to_come.len() {
+                if let Some(&next) = to_come.get(behind + 1) {
+                    if let Some(entry) = to_come.get_mut(behind) {
+                        *entry = next;
+                    }
+                }
             }
+            self.planned -= 1;
         }
     }
 
     /// New lags for all sensors whose readings do not fit.
     fn shift_all(&mut self) {
         let mut shifted = false;
-        for sensor in 0..self.schedule.code().sensors() {
+        for sensor in 0..self.code.sensors() {
             let misfits = self.turns.get(sensor).map_or(0, |turn| turn.misfits);
             if misfits >= self.settings.shift_after {
                 shifted |= self.shift(sensor);
@@ -132,7 +137,7 @@ impl<const K: usize> HoppingFiring<K> {
     /// Draws a new lag for a sensor.
     fn shift(&mut self, sensor: usize) -> bool {
         for _ in 0..DRAWS {
-            let lag = Micros::new(self.random.up_to(self.schedule.longest_lag().as_micros()));
+            let lag = Micros::new(self.random.up_to(longest_lag(&self.code, self.period).as_micros()));
             if self.keeps_interval(sensor, lag) {
                 if let Some(turn) = self.turns.get_mut(sensor) {
                     (turn.lag, turn.misfits) = (lag, 0);
@@ -151,13 +156,13 @@ impl<const K: usize> HoppingFiring<K> {
             return true;
         }
         // Waits differ by no more than the width of the code.
-        let least = interval.saturating_add(self.schedule.code().width());
+        let least = interval.saturating_add(self.code.width());
         let n = usize::from(self.settings.neighbours);
-        let neighbours = self.turns.iter().enumerate().take(self.schedule.code().sensors());
+        let neighbours = self.turns.iter().enumerate().take(self.code.sensors());
         let mut neighbours = neighbours.filter(|&(other, _)| other != sensor && other.abs_diff(sensor) < n);
         neighbours.all(|(_, turn)| {
             let apart = turn.lag.abs_diff(lag);
-            apart >= least && self.schedule.period().saturating_sub(apart) >= least
+            apart >= least && self.period.saturating_sub(apart) >= least
         })
     }
 }

@@ -2,12 +2,13 @@
 
 use super::code::HoppingCode;
 use super::error::HoppingError;
-use crate::schedule::MAX_PERIOD;
+use crate::phases::{PhaseRequirements, PhaseSeparation, PhaseTable, PhaseVerification};
+use crate::schedule::{MAX_PERIOD, Phase};
 use crate::time::Micros;
 
 /// When the sensors of a [`HoppingRing`](super::HoppingRing) fire: each once a period, at its lag plus the wait of the
 /// code. `K` is the most sensors that it has room for; the code says how many there are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct HoppingSchedule<const K: usize> {
     code: HoppingCode,
     period: Micros,
@@ -22,7 +23,7 @@ impl<const K: usize> HoppingSchedule<K> {
     /// [`HoppingError`] if `K` is less than the code's sensors, if the period is longer than
     /// [`MAX_PERIOD`](crate::MAX_PERIOD) or does not exceed the width of the code, or if a sensor would fire after its
     /// period has ended.
-    pub const fn new(code: HoppingCode, period: Micros, lags: [Micros; K]) -> Result<Self, HoppingError> {
+    pub const fn new(code: HoppingCode, period: Micros, mut lags: [Micros; K]) -> Result<Self, HoppingError> {
         if code.sensors() > K {
             return Err(HoppingError::Sensors { sensors: code.sensors(), most: K });
         }
@@ -30,16 +31,18 @@ impl<const K: usize> HoppingSchedule<K> {
         if period.as_micros() < least.as_micros() || period.as_micros() > MAX_PERIOD.as_micros() {
             return Err(HoppingError::Period { period, least });
         }
-        let schedule = Self { code, period, lags };
-        let most = schedule.longest_lag();
+        let most = Self { code, period, lags }.longest_lag();
         let mut sensor = 0;
-        while sensor < code.sensors() {
-            if lags[sensor].as_micros() > most.as_micros() {
+        while sensor < K {
+            if sensor >= code.sensors() {
+                // So that schedules of the same sensors are equal.
+                lags[sensor] = Micros::ZERO;
+            } else if lags[sensor].as_micros() > most.as_micros() {
                 return Err(HoppingError::Lag { sensor: sensor as u8, lag: lags[sensor], most });
             }
             sensor += 1;
         }
-        Ok(schedule)
+        Ok(Self { code, period, lags })
     }
 
     /// With the lags of the conventional method, as far as the code leaves room: `neighbours` adjacent sensors fire
@@ -85,6 +88,26 @@ impl<const K: usize> HoppingSchedule<K> {
         table
     }
 
+    /// Checks the schedule. That crosstalk moves by the step is proven (`docs/theory.md`, section 9.1) and not worked
+    /// out again where the period is longer than twice the code and a step, so that this is cheap enough for the compiler;
+    /// [`PhaseTable::verify`] works it out.
+    pub const fn verify<'r>(&self, requirements: &'r PhaseRequirements<'r>) -> PhaseVerification<'r> {
+        let rows = self.table::<{ HoppingCode::MAX_PHASES as usize }>();
+        let (cycle, _) = rows.split_at(self.code.phases() as usize);
+        let table = PhaseTable::new(self.period, cycle).with_sensors(self.code.sensors());
+        let separation = if self.code.sensors() < 2 {
+            None
+        } else if self.period.as_micros() < self.code.two_ages().as_micros() {
+            table.separation(&requirements.audible)
+        } else {
+            // All pairs and phases are alike.
+            let phases = (Phase(0), Phase(1));
+            Some(PhaseSeparation { value: self.code.step(), sensors: (0, 1), phases, ages: (0, 0) })
+        };
+        let stale = if requirements.stale_echo { table.stale_separation(&requirements.audible) } else { None };
+        PhaseVerification::new(requirements, separation, stale, &table)
+    }
+
     /// The code.
     pub const fn code(&self) -> &HoppingCode {
         &self.code
@@ -97,7 +120,7 @@ impl<const K: usize> HoppingSchedule<K> {
 
     /// The longest lag that leaves room for the code.
     pub const fn longest_lag(&self) -> Micros {
-        self.period.saturating_sub(self.code.width()).saturating_sub(Micros::new(1))
+        longest_lag(&self.code, self.period)
     }
 
     /// The lag of a sensor; `None` for one that is not there.
@@ -113,4 +136,9 @@ impl<const K: usize> HoppingSchedule<K> {
             None => None,
         }
     }
+}
+
+/// The longest lag that leaves room for a code in a period.
+pub(super) const fn longest_lag(code: &HoppingCode, period: Micros) -> Micros {
+    period.saturating_sub(code.width()).saturating_sub(Micros::new(1))
 }

@@ -49,19 +49,50 @@ fn fire(ring: &mut HoppingRing<8>, periods: u32, hears: impl Fn(u8, usize) -> Op
 #[test]
 fn any_two_phases_move_any_path_by_at_least_a_step_for_every_number_of_sensors() {
     for sensors in 1..=64 {
-        let code = HoppingCode::new(sensors, 2, Micros::new(1)).unwrap();
-        let q = i32::from(code.phases());
-        let wait = |sensor: usize, phase: i32| code.wait(sensor, phase.rem_euclid(q) as u8).as_micros() as i32;
-        // Residues: the least distance between values whose residues differ is one step.
-        for (x, y) in [(0, sensors - 1), (sensors / 2, 0), (sensors - 1, sensors / 3)] {
-            for j in -1..=2 {
-                let moved = |m: i32| wait(x, m - j) - wait(y, m);
-                let mut places: Vec<_> = (0..q).map(moved).collect();
-                places.sort_unstable();
-                assert!(x == y || places.windows(2).all(|pair| pair[1] > pair[0]), "{sensors}: {x} {y} {j}");
+        for code in [HoppingCode::new(sensors, 2, Micros::new(1)), HoppingCode::shortest(sensors, 2, Micros::new(1))] {
+            let code = code.unwrap();
+            let q = i32::from(code.phases());
+            let wait = |sensor: usize, phase: i32| code.wait(sensor, phase.rem_euclid(q) as u8).as_micros() as i32;
+            // Residues: the least distance between values whose residues differ is one step.
+            for (x, y) in [(0, sensors - 1), (sensors / 2, 0), (sensors - 1, sensors / 3)] {
+                for j in -1..=2 {
+                    let moved = |m: i32| wait(x, m - j) - wait(y, m);
+                    let mut places: Vec<_> = (0..q).map(moved).collect();
+                    places.sort_unstable();
+                    assert!(x == y || places.windows(2).all(|pair| pair[1] > pair[0]), "{sensors}: {x} {y} {j}");
+                }
             }
         }
     }
+}
+
+#[test]
+fn no_code_lets_a_sensor_fire_less_early_again_than_the_shortest_one() {
+    for sensors in 1..=64 {
+        let code = HoppingCode::shortest(sensors, 2, Micros::new(1)).unwrap();
+        assert!(usize::from(code.phases()) >= sensors);
+        let mut most = 0;
+        for sensor in 0..sensors {
+            for phase in 0..code.phases() {
+                let wait = |phase| code.wait(sensor, phase).as_micros() as i32;
+                most = most.max(wait(phase) - wait((phase + 1) % code.phases()));
+            }
+        }
+        assert_eq!(code.longest_drop(), Micros::new(most as u32), "{sensors}");
+        // What each sensor's waits change by from phase to phase sums to 0 over a cycle, and no two sensors' changes
+        // are less than a step apart: one of K sensors fires K - 1 steps early.
+        assert_eq!(most as usize, sensors - 1);
+        let ordinary = HoppingCode::new(sensors, 2, Micros::new(1)).unwrap();
+        assert_eq!(ordinary.longest_drop(), ordinary.width());
+    }
+}
+
+#[test]
+fn schedules_of_the_same_sensors_are_equal_whatever_stands_beyond_them() {
+    let code = HoppingCode::new(2, 2, Micros::new(240)).unwrap();
+    let spread = HoppingSchedule::<8>::spread(code, PERIOD, 2).unwrap();
+    let lags = core::array::from_fn(|sensor| spread.t_lag(sensor).unwrap_or(Micros::new(7)));
+    assert_eq!(HoppingSchedule::new(code, PERIOD, lags).unwrap(), spread);
 }
 
 #[test]
@@ -148,6 +179,14 @@ fn each_error_names_what_is_wrong_and_what_is_expected() {
     assert_eq!(text(HoppingCode::new(65, 2, step).unwrap_err()), "65 sensors; expected 1 to 64");
     assert_eq!(text(HoppingCode::new(8, 68, step).unwrap_err()), "68 phases; expected 2 to 67");
     assert_eq!(text(HoppingCode::new(8, 2, Micros::ZERO).unwrap_err()), "a step of 0 us; expected 1 us to 65.535 ms");
+    assert_eq!(
+        text(HoppingCode::of(8, 9, 1, step).unwrap_err()),
+        "9 phases; expected a prime that is no less than the sensors, such as 11"
+    );
+    assert_eq!(
+        text(HoppingCode::of(8, 11, 11, step).unwrap_err()),
+        "a first multiplier of 11; expected less than 11, the number of phases"
+    );
     let code = HoppingCode::new(8, 2, step).unwrap();
     let late = HoppingSchedule::new(code, PERIOD, [Micros::from_millis(58); 8]).unwrap_err();
     assert_eq!(text(late), "a lag of 58 ms for sensor 1; expected at most 57.599 ms");
@@ -156,6 +195,9 @@ fn each_error_names_what_is_wrong_and_what_is_expected() {
     let new = |schedule, settings| HoppingRing::<8>::new(schedule, settings, listening, 1, Instant::from_micros(0));
     let error = new(&short, HoppingSettings::BALANCED).unwrap_err();
     assert_eq!(text(error), "a period of 38 ms; expected 38.4 ms to 268435.456 ms");
+    let few = HoppingSchedule::<8>::spread(HoppingCode::new(2, 2, step).unwrap(), PERIOD, 2).unwrap();
+    let error = new(&few, HoppingSettings::BALANCED).unwrap_err();
+    assert_eq!(text(error), "5 votes to confirm an echo; expected at most 3, the phases of the code");
     let tracker = crate::TrackerSettings { t_delta: step, ..crate::TrackerSettings::BALANCED };
     let error = new(&schedule(), HoppingSettings { tracker, ..HoppingSettings::BALANCED }).unwrap_err();
     assert_eq!(text(error), "a t_delta of 240 us; expected less than 240 us, by which the code moves crosstalk");

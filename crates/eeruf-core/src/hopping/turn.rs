@@ -6,6 +6,8 @@ use crate::time::{Instant, Micros};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
     pub(super) lag: Micros,
+    /// What it waits after that in the present phase, in steps of the code.
+    pub(super) place: u8,
     /// When it last fired.
     pub(super) fired: Instant,
     /// By how much that was late, in microseconds.
@@ -29,7 +31,7 @@ pub(super) const SETTLED: u8 = 4;
 impl Turn {
     pub(super) const fn new(lag: Micros) -> Self {
         let fired = Instant::from_micros(0);
-        Self { lag, fired, late: 0, phase: 0, unserved: 0, misfits: 0, flags: 0 }
+        Self { lag, place: 0, fired, late: 0, phase: 0, unserved: 0, misfits: 0, flags: 0 }
     }
 
     pub(super) const fn is(&self, flag: u8) -> bool {

@@ -46,7 +46,11 @@ impl TrackerSettings {
     /// For maps: confirmed echoes alone, and beliefs that last.
     pub const MAPS: Self = Self { tentative_votes: 0, score_limit: 7, contradiction: 1, ..Self::BALANCED };
 
-    pub(super) const fn check(&self) -> Result<(), TrackerError> {
+    /// Whether each setting is in its range, as [`EchoTracker::new`](super::EchoTracker::new) checks it.
+    ///
+    /// # Errors
+    /// [`TrackerError::Setting`] for the first that is not.
+    pub const fn check(&self) -> Result<(), TrackerError> {
         let (t_delta, near) = (self.t_delta.as_micros(), self.near.as_micros());
         let within = self.tentative_within.as_micros();
         macro_rules! expect {

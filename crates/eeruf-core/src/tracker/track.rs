@@ -89,8 +89,7 @@ impl Track {
         self.age = 0;
         if !self.is_silence() {
             // A quarter of the way, so that one early or late edge does not move it far.
-            let (held, heard) = (i64::from(self.t_echo), i64::from(t_echo));
-            self.t_echo = (held + (heard - held) / 4) as u32;
+            self.t_echo = self.t_echo.wrapping_add_signed(self.to(t_echo) / 4);
         }
         if self.votes() >= settings.votes && self.score >= settings.votes {
             self.flags |= CONFIRMED;
@@ -141,8 +140,13 @@ impl Track {
 
     /// Follows an echo that moves faster than its support: three tenths of the way.
     pub(super) fn follow(&mut self, t_echo: u32) {
-        let (held, heard) = (i64::from(self.t_echo), i64::from(t_echo));
-        self.t_echo = (held + (heard - held) * 3 / 10) as u32;
+        self.t_echo = self.t_echo.wrapping_add_signed(self.to(t_echo) * 3 / 10);
+    }
+
+    /// How much later a reading is, which is at most 65,535 us: it supports the track, or is near it. In 32 bits, since
+    /// small processors take a thousand instructions to divide longer numbers.
+    const fn to(&self, t_echo: u32) -> i32 {
+        t_echo.wrapping_sub(self.t_echo) as i32
     }
 
     const fn votes(&self) -> u8 {

@@ -119,6 +119,21 @@ fn a_step_within_t_delta_of_the_lateness_is_what_the_promise_needs() {
 }
 
 #[test]
+fn two_or_three_paths_that_agree_by_accident_are_not_confirmed_and_hardly_ever_tentative() {
+    let (mut random, mut kinds) = (Random(7), Vec::new());
+    for world in 0..300 {
+        let mut path = |from| Path { from, to: 0, length: BLANKING + random.up_to(WINDOW - BLANKING) };
+        let paths = [path(1), path(2), path(5)];
+        let settings = if world % 2 == 0 { HoppingSettings::BALANCED } else { HoppingSettings::QUICK };
+        kinds.extend(readings(&paths[..2 + world % 2], 240, settings, Late { each: 40, stall: 0 }, world as u64, 110));
+    }
+    let of = |kind| kinds.iter().filter(|&&heard| heard == kind).count();
+    assert_eq!(of(ReadingKind::Accepted), 0);
+    // With votes that need not be close they would be: C(11, 2) 2 T_delta / S of the cycles.
+    assert!(of(ReadingKind::Tentative) * 500 < kinds.len(), "{}", of(ReadingKind::Tentative));
+}
+
+#[test]
 fn an_echo_of_ones_own_is_believed_nearly_always() {
     let own = Path { from: 3, to: 3, length: 12_000 };
     for late in [Late { each: 0, stall: 0 }, Late { each: 40, stall: 0 }, Late { each: 40, stall: 5000 }] {

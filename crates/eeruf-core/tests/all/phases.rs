@@ -1,6 +1,10 @@
 //! The conditions for many phases, against tables whose properties are known and against obvious loops.
 
-use eeruf_core::{Audible, HoppingCode, HoppingSchedule, Layout, Micros, PhaseTable, tables::TABLE_I_D};
+use eeruf_core::{
+    Audible, Criterion, HoppingCode, HoppingSchedule, Layout, Micros, Phase, PhaseCriterion, PhaseRequirements,
+    PhaseTable, PhaseViolation, Requirements, Schedule, tables::TABLE_I_D,
+};
+use proptest::prelude::*;
 use serde_json::Value;
 
 const AUDIBLE: Audible =
@@ -36,8 +40,8 @@ fn check<const K: usize>(kind: &str, period_us: u32, times: &[Vec<u32>], [separa
         assert_eq!(least.value.as_micros(), separation, "{kind}: {least:?}");
         assert_eq!(least.ages.0, least.ages.1);
     }
-    assert_eq!(table.min_refire(), Some(Micros::new(gap)));
-    assert_eq!(table.min_interval(Layout::Line(4)), Some(Micros::new(nearest)));
+    assert_eq!(table.min_refire().map(|refire| refire.value), Some(Micros::new(gap)));
+    assert_eq!(table.min_interval(Layout::Line(4)).map(|interval| interval.value), Some(Micros::new(nearest)));
 }
 
 #[test]
@@ -65,16 +69,15 @@ fn the_code_of_eight_sensors_is_the_known_one() {
 
 #[test]
 fn two_phases_are_as_separate_as_13a_and_13b_say() {
-    let rows =
-        [0, 1].map(|phase| std::array::from_fn::<_, 12, _>(|x| TABLE_I_D.t_fire(eeruf_core::Phase(phase), x).unwrap()));
+    let rows = [0, 1].map(|phase| std::array::from_fn::<_, 12, _>(|x| TABLE_I_D.t_fire(Phase(phase), x).unwrap()));
     let table = PhaseTable::new(TABLE_I_D.period(), &rows);
     // All that can be heard: sound lives for two periods.
     let audible = Audible { reach: Micros::from_millis(200), ..Audible::new(Micros::from_millis(76)) };
     let least = table.separation(&audible).unwrap();
-    assert_eq!(least.value, TABLE_I_D.separation(eeruf_core::Criterion::Exact).unwrap().value);
-    assert_eq!(table.min_refire(), Some(TABLE_I_D.min_refire()));
+    assert_eq!(least.value, TABLE_I_D.separation(Criterion::Exact).unwrap().value);
+    assert_eq!(table.min_refire().map(|refire| refire.value), Some(TABLE_I_D.min_refire()));
     let interval = TABLE_I_D.min_interval(Layout::Line(4)).unwrap().value;
-    assert_eq!(table.min_interval(Layout::Line(4)), Some(interval));
+    assert_eq!(table.min_interval(Layout::Line(4)).map(|interval| interval.value), Some(interval));
 }
 
 #[test]
@@ -92,4 +95,89 @@ fn every_code_up_to_64_sensors_is_as_separate_as_its_step() {
     of::<16, 17>();
     of::<24, 29>();
     of::<64, 67>();
+}
+
+proptest! {
+    #[test]
+    fn with_two_phases_the_conditions_are_the_papers(
+        lags in proptest::array::uniform5(0..30_000_u32),
+        waits in proptest::array::uniform2(proptest::array::uniform5(0..8_u32)),
+        t_delta in 0..2_000_u32,
+        interval in 0..6_000_u32,
+        stale_echo in any::<bool>(),
+    ) {
+        let period = Micros::new(100_000);
+        let lag = lags.map(Micros::new);
+        let wait = waits.map(|row| row.map(|wait| Micros::new(1_000 * wait)));
+        let schedule = Schedule::<5>::new(period, lag, wait).unwrap();
+        let rows = [0, 1].map(|phase| std::array::from_fn::<_, 5, _>(|x| schedule.t_fire(Phase(phase), x).unwrap()));
+        let (min_interval, layout) = (Micros::new(interval), Layout::Line(3));
+        let window = Micros::new(60_000);
+        let two = Requirements { min_interval, layout, window, stale_echo, ..Requirements::new(Micros::new(t_delta)) };
+        // All ages of which the paper speaks can be heard.
+        let audible = Audible { reach: Micros::new(250_000), ..Audible::new(window) };
+        let many = PhaseRequirements {
+            audible, min_interval, layout, stale_echo, ..PhaseRequirements::new(Micros::new(t_delta), window)
+        };
+        let (two, many) = (schedule.verify(&two), PhaseTable::new(period, &rows).verify(&many));
+        prop_assert_eq!(many.ok(), two.ok());
+        prop_assert_eq!(many.max_t_delta(), two.max_t_delta());
+        prop_assert_eq!(many.separation().map(|found| found.value), two.separation().map(|found| found.value));
+        prop_assert_eq!(many.min_interval().map(|found| found.value), two.min_interval().map(|found| found.value));
+        prop_assert_eq!(many.min_refire().map(|found| found.value), Some(two.min_refire()));
+    }
+
+    #[test]
+    fn what_is_proven_of_a_congruence_is_what_its_table_says(
+        sensors in 1..=9_usize,
+        phases in 2..=13_u8,
+        step in 1..700_u32,
+        is_shortest in any::<bool>(),
+        lags in proptest::array::uniform9(0..20_000_u32),
+        t_delta in 1..400_u32,
+    ) {
+        let step = Micros::new(step);
+        let of = if is_shortest { HoppingCode::shortest } else { HoppingCode::new };
+        let code = of(sensors, phases, step).unwrap();
+        let schedule = HoppingSchedule::<9>::new(code, Micros::new(40_000), lags.map(Micros::new)).unwrap();
+        let requirements = PhaseRequirements {
+            criterion: PhaseCriterion::Margin(Micros::new(90)),
+            min_interval: Micros::new(1_000),
+            ..PhaseRequirements::new(Micros::new(t_delta), Micros::new(30_000))
+        };
+        let rows = schedule.table::<67>();
+        let table = PhaseTable::new(schedule.period(), &rows[..code.phases().into()]).with_sensors(sensors);
+        let (proven, worked_out) = (schedule.verify(&requirements), table.verify(&requirements));
+        // A path may be heard in one phase alone; then there is nothing to separate.
+        if let Some(found) = worked_out.separation() {
+            prop_assert!(found.value >= step);
+        }
+        prop_assert_eq!(proven.max_t_delta().is_some(), sensors > 1 && step.as_micros() >= 90);
+        prop_assert_eq!(proven.min_interval(), worked_out.min_interval());
+        prop_assert_eq!(proven.min_refire(), worked_out.min_refire());
+    }
+}
+
+#[test]
+fn a_violation_names_sensors_phases_and_what_would_do() {
+    let rows = [[0, 2_000], [500, 2_600], [700, 3_000]].map(|row| row.map(Micros::new));
+    let table = PhaseTable::new(Micros::new(20_000), &rows);
+    let requirements = PhaseRequirements {
+        min_interval: Micros::new(2_050),
+        layout: Layout::Line(2),
+        ..PhaseRequirements::new(Micros::new(150), Micros::new(19_500))
+    };
+    let violations: Vec<_> = table.verify(&requirements).violations().map(|found| found.to_string()).collect();
+    let expected = [
+        "sound of sensor 1 moves by 100 us for sensor 2 from phase 0 (0 periods old) to phase 1 (0 periods old); \
+         expected 301 us",
+        "neighbours 1 in phase 0 and 2 in phase 0 fire 2 ms apart; expected 2.05 ms",
+        "sensor 2 fires 19 ms after itself from phase 2 to phase 0; expected its window of 19.5 ms",
+    ];
+    assert_eq!(violations, expected);
+    // A margin that the step leaves is enough by the second criterion.
+    let loose = PhaseRequirements { criterion: PhaseCriterion::Margin(Micros::new(50)), ..requirements };
+    let loose = PhaseRequirements { t_delta: Micros::new(50), ..loose };
+    assert!(!table.verify(&loose).violations().any(|found| matches!(found, PhaseViolation::Crosstalk { .. })));
+    assert_eq!(table.verify(&loose).max_t_delta(), Some(Micros::new(50)));
 }

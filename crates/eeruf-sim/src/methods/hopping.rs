@@ -38,7 +38,8 @@ pub(super) fn hopping<'s>(start: &RingStart<'s>) -> Started<'s> {
 
 fn ring<'s, const K: usize>(start: &RingStart<'s>) -> Started<'s> {
     let Robot { ref sensors, period, window, blanking, neighbours, .. } = *start.robot;
-    let code = HoppingCode::new(sensors.len(), 2, STEP)?;
+    // Each phase gives one vote.
+    let code = HoppingCode::new(sensors.len(), start.hopping.tracker.votes, STEP)?;
     let schedule = HoppingSchedule::<K>::spread(code, period, neighbours)?;
     let settings = HoppingSettings { neighbours, ..start.hopping };
     let listening = HoppingListening { blanking, ..HoppingListening::new(window) };

@@ -1,4 +1,5 @@
-//! [`PhaseTable`]: the conditions for firing times of any number of phases.
+//! [`PhaseTable`]: the conditions for firing times of any number of phases, of which the paper's two are the case
+//! `M = 2`.
 //!
 //! Sound of sensor x that is j periods old reads `L + g` in phase m of sensor y, where
 //!
@@ -10,9 +11,13 @@
 //! two ages in which the path can be heard. With two phases and one age this is (13a) and (13b): `docs/theory.md`,
 //! sections 4 and 9.
 
+mod verify;
+
 use crate::layout::Layout;
-use crate::schedule::Phase;
+use crate::schedule::{MAX_SENSORS, Phase};
 use crate::time::Micros;
+
+pub use verify::{PhaseCriterion, PhaseRequirements, PhaseVerification, PhaseViolation, PhaseViolations};
 
 /// Firing times of any number of phases, to be checked: a row for each phase, a number for each sensor.
 ///
@@ -35,6 +40,7 @@ use crate::time::Micros;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PhaseTable<'a, const K: usize> {
+    sensors: u8,
     period: Micros,
     t_fire: &'a [[Micros; K]],
 }
@@ -70,13 +76,41 @@ pub struct PhaseSeparation {
     pub ages: (i8, i8),
 }
 
+/// The shortest time between two firings, and where.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PhaseInterval {
+    /// How long.
+    pub value: Micros,
+    /// The two sensors, from 0; twice the same where a sensor fires again.
+    pub sensors: (u8, u8),
+    /// The phases in which they fire.
+    pub phases: (Phase, Phase),
+}
+
 /// The ages that can matter: a sensor listens into the next period, and a path is at most three periods old.
 const AGES: [i8; 5] = [-1, 0, 1, 2, 3];
 
 impl<'a, const K: usize> PhaseTable<'a, K> {
-    /// A table with this period. Firing times may lie anywhere, also beyond the period.
+    /// A table of `K` sensors, at most 64, with this period. Firing times may lie anywhere, also beyond the period.
     pub const fn new(period: Micros, t_fire: &'a [[Micros; K]]) -> Self {
-        Self { period, t_fire }
+        let sensors = if K < MAX_SENSORS { K } else { MAX_SENSORS };
+        Self { sensors: sensors as u8, period, t_fire }
+    }
+
+    /// The same of the first sensors alone; what is beyond them does not count. There are no more than before.
+    pub const fn with_sensors(self, sensors: usize) -> Self {
+        let sensors = if sensors < self.sensors() { sensors } else { self.sensors() };
+        Self { sensors: sensors as u8, ..self }
+    }
+
+    /// How many sensors it has.
+    pub const fn sensors(&self) -> usize {
+        self.sensors as usize
+    }
+
+    /// `T_p`.
+    pub const fn period(&self) -> Micros {
+        self.period
     }
 
     /// How many phases it has.
@@ -89,14 +123,26 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
     pub const fn separation(&self, audible: &Audible) -> Option<PhaseSeparation> {
         let mut least: Option<PhaseSeparation> = None;
         let mut x = 0;
-        while x < K {
+        while x < self.sensors() {
             let mut y = 0;
-            while y < K {
+            while y < self.sensors() {
                 if x != y {
                     least = self.closer(least, x, y, audible);
                 }
                 y += 1;
             }
+            x += 1;
+        }
+        least
+    }
+
+    /// The same of a sensor's own sound from earlier periods: by how much a stale echo moves at least. `None` if none
+    /// can be heard in two phases. Sound that is a whole cycle old does not move, and does not count.
+    pub const fn stale_separation(&self, audible: &Audible) -> Option<PhaseSeparation> {
+        let mut least: Option<PhaseSeparation> = None;
+        let mut x = 0;
+        while x < self.sensors() {
+            least = self.closer(least, x, x, audible);
             x += 1;
         }
         least
@@ -116,7 +162,7 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
             let mut other = (one / AGES.len() + 1) * AGES.len();
             while other < events {
                 let (a, b) = (self.offset(x, y, one), self.offset(x, y, other));
-                if together(a, b, audible) {
+                if (x != y || self.is_stale(one) && self.is_stale(other)) && together(a, b, audible) {
                     let value = Micros::new(a.abs_diff(b) as u32);
                     let closer = match least {
                         Some(least) => value.as_micros() < least.value.as_micros(),
@@ -135,6 +181,11 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
         least
     }
 
+    /// Whether a sensor's own sound of this age is a stale echo, which ought to move.
+    const fn is_stale(&self, event: usize) -> bool {
+        AGES[event % AGES.len()] as i64 % self.phases() as i64 != 0
+    }
+
     /// `g` of a path from x to y, for a phase and age.
     const fn offset(&self, x: usize, y: usize, event: usize) -> i64 {
         let (phase, age) = (event / AGES.len(), AGES[event % AGES.len()]);
@@ -145,10 +196,10 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
 
     /// The shortest time between two firings of one sensor, over all phases and the end of the cycle; `None` without
     /// phases or sensors.
-    pub const fn min_refire(&self) -> Option<Micros> {
-        let mut least: Option<Micros> = None;
+    pub const fn min_refire(&self) -> Option<PhaseInterval> {
+        let mut least = None;
         let mut x = 0;
-        while x < K {
+        while x < self.sensors() {
             let mut phase = 0;
             while phase < self.phases() {
                 least = shorter(least, self.between(x, phase, x, phase + 1));
@@ -161,14 +212,14 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
 
     /// The smallest interval between the firings of two neighbours, within a period and from one to the next; `None`
     /// without neighbours.
-    pub const fn min_interval(&self, layout: Layout<'_>) -> Option<Micros> {
-        let mut least: Option<Micros> = None;
+    pub const fn min_interval(&self, layout: Layout<'_>) -> Option<PhaseInterval> {
+        let mut least = None;
         let mut x = 0;
-        while x < K {
+        while x < self.sensors() {
             let mut y = 0;
-            while y < K {
+            while y < self.sensors() {
                 let mut phase = 0;
-                while layout.neighbours(K, x, y) && phase < self.phases() {
+                while layout.neighbours(self.sensors(), x, y) && phase < self.phases() {
                     least = shorter(least, self.between(x, phase, y, phase));
                     least = shorter(least, self.between(x, phase, y, phase + 1));
                     phase += 1;
@@ -181,11 +232,13 @@ impl<'a, const K: usize> PhaseTable<'a, K> {
     }
 
     /// Between a firing of x and one of y, of the same period or the next.
-    const fn between(&self, x: usize, phase: usize, y: usize, next: usize) -> Micros {
-        let (f_x, f_y) = (self.t_fire[phase][x].as_micros(), self.t_fire[next % self.phases()][y].as_micros());
+    const fn between(&self, x: usize, phase: usize, y: usize, next: usize) -> PhaseInterval {
+        let wrapped = next % self.phases();
+        let (f_x, f_y) = (self.t_fire[phase][x].as_micros(), self.t_fire[wrapped][y].as_micros());
         let periods = (next - phase) as u64 * self.period.as_micros() as u64;
         let apart = (f_y as u64 + periods).abs_diff(f_x as u64);
-        Micros::new(if apart > u32::MAX as u64 { u32::MAX } else { apart as u32 })
+        let value = Micros::new(if apart > u32::MAX as u64 { u32::MAX } else { apart as u32 });
+        PhaseInterval { value, sensors: (x as u8, y as u8), phases: (Phase(phase as u8), Phase(wrapped as u8)) }
     }
 }
 
@@ -198,9 +251,9 @@ const fn together(a: i64, b: i64, audible: &Audible) -> bool {
     shortest <= longest && shortest <= audible.reach.as_micros() as i64 && longest >= 0
 }
 
-const fn shorter(least: Option<Micros>, next: Micros) -> Option<Micros> {
+const fn shorter(least: Option<PhaseInterval>, next: PhaseInterval) -> Option<PhaseInterval> {
     match least {
-        Some(least) if least.as_micros() <= next.as_micros() => Some(least),
+        Some(least) if least.value.as_micros() <= next.value.as_micros() => Some(least),
         _ => Some(next),
     }
 }

@@ -1,0 +1,267 @@
+//! `HoppingRing`.
+
+use eeruf_core::{HoppingListening, Instant, MAX_SENSORS, Micros, SensorError};
+use pyo3::{prelude::*, types::PyTuple};
+
+use crate::{
+    arguments::{instance, micros, whole, whole_or},
+    errors::Raise,
+    hopping_schedule::HoppingSchedule,
+    hopping_settings::HoppingSettings,
+    ring::{expected_changes, instant, until},
+    ring_events::to_python,
+};
+
+type Core = eeruf_core::HoppingRing<MAX_SENSORS>;
+
+/// A ring that hops in time, as the firmware runs it: used as a :class:`Ring`; its readings can also be
+/// ``"tentative"``.
+///
+/// No sensor stays blind: one that hears nothing of its own gets a period in which it fires alone, and one whose
+/// readings keep disagreeing draws a new lag. ``docs/hopping.md`` has the rules, what they bring, and what is not promised.
+///
+/// Args:
+///     schedule: a :class:`HoppingSchedule`.
+///     settings: a :class:`HoppingSettings`, or the name of one.
+///     now_us: when the first period begins.
+///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more.
+///     blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
+///     reach_us: after how long no sound is heard any more; by default the window.
+///     seed: of the draws of new lags, below 2^32.
+///
+/// Raises:
+///     ArgumentError: something of the wrong type or out of range.
+///     HoppingError: a ``T_delta`` that is not below the schedule's step, a period too short for window and code, a
+///         window that ends within the blanking time.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+///     >>> ring, kinds = eeruf.HoppingRing(schedule, "quick", window_us=36_000), []
+///     >>> while len(kinds) < 40:
+///     ...     now_us = ring.next_deadline_us
+///     ...     while event := ring.poll(now_us):
+///     ...         if isinstance(event, eeruf.Fire):
+///     ...             ring.echo(event.sensor, now_us + 12_000)  # a wall 2 m away
+///     ...         elif isinstance(event, eeruf.Reading):
+///     ...             kinds.append(event.kind)
+///     >>> kinds == ["first"] * 8 + ["tentative"] * 16 + ["accepted"] * 16
+///     True
+#[pyclass(module = "eeruf")]
+pub(crate) struct HoppingRing {
+    ring: Box<Core>,
+    schedule: HoppingSchedule,
+    settings: HoppingSettings,
+}
+
+impl HoppingRing {
+    fn sensor(&self, sensor: &Bound<'_, PyAny>) -> PyResult<u8> {
+        // At most 64.
+        whole("sensor", sensor, 0..=self.ring.sensors() as u8 - 1)
+    }
+
+    fn change(&mut self, change: impl FnOnce(&mut Core) -> Result<(), SensorError>) -> PyResult<()> {
+        change(&mut self.ring).map_err(Raise::raise)
+    }
+}
+
+#[pymethods]
+impl HoppingRing {
+    #[new]
+    #[pyo3(signature = (
+        schedule, settings=None, now_us=None, *, window_us, blanking_us=None, reach_us=None, seed=None
+    ))]
+    #[pyo3(text_signature = "(schedule, settings=\"balanced\", now_us=0, *, window_us, blanking_us=0, \
+            reach_us=None, seed=1)")]
+    fn new(
+        schedule: &Bound<'_, PyAny>,
+        settings: Option<&Bound<'_, PyAny>>,
+        now_us: Option<&Bound<'_, PyAny>>,
+        window_us: &Bound<'_, PyAny>,
+        blanking_us: Option<&Bound<'_, PyAny>>,
+        reach_us: Option<&Bound<'_, PyAny>>,
+        seed: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let window = micros("window_us", window_us)?;
+        let listening = HoppingListening {
+            window,
+            blanking: blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?,
+            reach: reach_us.map_or(Ok(window), |value| micros("reach_us", value))?,
+        };
+        let now = now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))?;
+        let seed = whole_or("seed", seed, 1, 0..=u32::MAX)?;
+        let settings = HoppingSettings::of("settings", settings)?;
+        let schedule = instance::<HoppingSchedule>("schedule", schedule, "an eeruf.HoppingSchedule")?.get().clone();
+        let ring = Core::new(&schedule.0, settings, listening, seed, now).map_err(Raise::raise)?;
+        Ok(Self { ring: Box::new(ring), schedule, settings: HoppingSettings(settings) })
+    }
+
+    /// The next event at a time. Call again until there is none, then wait until ``next_deadline_us``.
+    ///
+    /// Hand in the echoes you know of before you poll: one that comes after the poll that closed its window is not
+    /// heard.
+    ///
+    /// Args:
+    ///     now_us: the present, 0 or more.
+    ///     expected_change_us: for each sensor, by how much a good reading should differ from the one before, from the
+    ///         robot's own motion: ``-2 v dt / c`` for an object approached at ``v``. None for a robot that stands.
+    ///
+    /// Returns:
+    ///     A ``Fire``, a ``Reading``, a ``PeriodEnded``, or None if there is nothing to do now.
+    ///
+    /// Raises:
+    ///     ArgumentError: not such a time, or not one change for each sensor.
+    #[pyo3(signature = (now_us, expected_change_us=None))]
+    fn poll<'py>(
+        &mut self,
+        now_us: &Bound<'py, PyAny>,
+        expected_change_us: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let (py, now) = (now_us.py(), instant("now_us", now_us)?);
+        let changes = expected_changes(expected_change_us, self.ring.sensors())?;
+        let change = |sensor: u8| changes.get(usize::from(sensor)).copied().unwrap_or(0);
+        self.ring.poll_expecting(now, change).map(|event| to_python(py, &event)).transpose()
+    }
+
+    /// When to poll next, in microseconds of the clock that wraps at 2^32; in the past if an event is pending.
+    #[getter]
+    fn next_deadline_us(&self) -> u32 {
+        self.ring.next_deadline().as_micros()
+    }
+
+    /// How long to wait before polling next, in microseconds, right across the clock's wrap: 0 if an event is pending.
+    ///
+    /// Args:
+    ///     now_us: the present, 0 or more.
+    ///
+    /// Raises:
+    ///     ArgumentError: not such a time.
+    #[pyo3(signature = (now_us))]
+    fn wait_us(&self, now_us: &Bound<'_, PyAny>) -> PyResult<u32> {
+        Ok(until(self.ring.next_deadline(), instant("now_us", now_us)?))
+    }
+
+    /// What it fires by, with the lags of the start.
+    #[getter]
+    fn schedule(&self) -> HoppingSchedule {
+        self.schedule.clone()
+    }
+
+    /// How it fires and believes.
+    #[getter]
+    fn settings(&self) -> HoppingSettings {
+        self.settings.clone()
+    }
+
+    /// The lag of each sensor as it is now, in microseconds.
+    #[getter]
+    fn t_lag_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let lags = (0..self.ring.sensors()).filter_map(|sensor| self.ring.firing().t_lag(sensor));
+        PyTuple::new(py, lags.map(Micros::as_micros).collect::<Vec<_>>())
+    }
+
+    /// The sensor that the present period belongs to alone, from 0; None if it belongs to all.
+    #[getter]
+    fn solo(&self) -> Option<u8> {
+        self.ring.firing().solo()
+    }
+
+    /// The confirmed echo time of a sensor.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///
+    /// Returns:
+    ///     Microseconds; None if none is confirmed, and where it is confirmed that nothing is in range (``is_clear``).
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
+    #[pyo3(signature = (sensor))]
+    fn confirmed_us(&self, sensor: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
+        Ok(self.ring.tracker().confirmed(self.sensor(sensor)?.into()).map(Micros::as_micros))
+    }
+
+    /// Whether it is confirmed that nothing is in a sensor's range.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
+    #[pyo3(signature = (sensor))]
+    fn is_clear(&self, sensor: &Bound<'_, PyAny>) -> PyResult<bool> {
+        Ok(self.ring.tracker().is_clear(self.sensor(sensor)?.into()))
+    }
+
+    /// An edge on the echo line of a sensor. Edges may come in any order, at any time, wanted or not.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///     at_us: when, 0 or more.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor or time.
+    #[pyo3(signature = (sensor, at_us))]
+    fn echo(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
+        self.change(|ring| ring.echo(sensor, at))
+    }
+
+    /// The sensor of the last ``Fire`` has really fired at this time, later than the poll said. Optional: echo times
+    /// count from then.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///     at_us: when, 0 or more; a time before the poll is ignored.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor or time.
+    #[pyo3(signature = (sensor, at_us))]
+    fn fired(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
+        self.change(|ring| ring.fired(sensor, at))
+    }
+
+    /// The echo line of a sensor was already high when it was to fire: the firing just emitted counts as ``"stuck"``.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
+    #[pyo3(signature = (sensor))]
+    fn stuck(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+        let sensor = self.sensor(sensor)?;
+        self.change(|ring| ring.stuck(sensor))
+    }
+
+    /// Stop a sensor from firing. The reading of a firing that is under way is still emitted.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
+    #[pyo3(signature = (sensor))]
+    fn disable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+        let sensor = self.sensor(sensor)?;
+        self.change(|ring| ring.disable(sensor))
+    }
+
+    /// Let a sensor fire again, from the next period on. What was known of its echo is forgotten.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
+    #[pyo3(signature = (sensor))]
+    fn enable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+        let sensor = self.sensor(sensor)?;
+        self.change(|ring| ring.enable(sensor))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<HoppingRing: {} sensors, next deadline at {} us>", self.ring.sensors(), self.next_deadline_us())
+    }
+}

@@ -1,0 +1,15 @@
+//! A hopping ring of twelve sensors in static memory, and nothing else: see `hopping_in_static_memory!`.
+#![no_std]
+#![no_main]
+
+eeruf_board::no_panic!();
+eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
+
+eeruf_measure::hopping_in_static_memory!(12);
+
+#[eeruf_board::entry]
+fn main() -> ! {
+    eeruf_board::start();
+    ring_program();
+    eeruf_board::say::leave(0)
+}

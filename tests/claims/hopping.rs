@@ -1,0 +1,180 @@
+//! Schedules of many phases as the program designs, verifies and writes them.
+
+// Public, for firmware to put where it likes.
+#[expect(unreachable_pub)]
+#[path = "emitted/hopping_8.rs"]
+mod hopping_8;
+
+use std::process::Command;
+
+use eeruf_core::{HoppingListening, HoppingRing, HoppingSettings, Instant, Micros, RingEvent};
+use serde_json::Value;
+
+use crate::common::{Scratch, eeruf, json};
+
+/// Eight sensors, `t_delta` of 150 us, a window of 36 ms.
+fn ring(min_interval_us: u32) -> (Scratch, String) {
+    let keys = "sensors = 8\nt_delta_us = 150\nwindow_us = 36_000\n";
+    let (folder, file) = Scratch::new("ring.toml", &format!("{keys}min_interval_us = {min_interval_us}\n"));
+    (folder, file.display().to_string())
+}
+
+#[test]
+fn the_shortest_period_is_window_and_code_and_proven_where_neighbours_may_fire_together() {
+    for (sensors, margin, separation) in [(1, None, 301), (7, None, 301), (8, None, 301), (12, Some("90"), 240)] {
+        let keys = format!("sensors = {sensors}\nt_delta_us = 150\nwindow_us = 36_000\nmin_interval_us = 0\n");
+        let (folder, file) = Scratch::new("ring.toml", &keys);
+        let margin = margin.map_or(vec![], |margin| vec!["--margin-us", margin]);
+        let asked = [&["design", file.to_str().unwrap(), "--phases", "5"][..], &margin].concat();
+        let found = json(&[&asked[..], &["--json"]].concat());
+        assert_eq!(found["value_us"], 36_000 + (sensors - 1) * separation);
+        assert_eq!((&found["bound_us"], &found["proven"]), (&found["value_us"], &true.into()));
+        // What was found keeps what it should, by a program that takes nothing as proven.
+        let schedule = folder.path().join("schedule.toml");
+        std::fs::write(&schedule, eeruf(&[&asked[..], &["--emit", "toml"]].concat()).out).unwrap();
+        let verify = ["verify", schedule.to_str().unwrap(), "--t-delta-us", "150", "--window-us", "36000", "--json"];
+        let report = json(&[&verify[..], &margin].concat());
+        assert_eq!(report["ok"], true, "{sensors}: {report}");
+    }
+}
+
+#[test]
+fn neighbours_keep_their_interval_in_all_phases_and_the_bound_says_how_much_may_be_left() {
+    let (folder, file) = ring(12_000);
+    let asked = ["design", &file, "--phases", "11", "--margin-us", "90"];
+    let found = json(&[&asked[..], &["--json"]].concat());
+    let (value, bound) = (found["value_us"].as_u64().unwrap(), found["bound_us"].as_u64().unwrap());
+    assert_eq!((bound, &found["proven"]), (48_000, &false.into()));
+    assert!((bound..=60_000).contains(&value), "{value}");
+    let schedule = folder.path().join("schedule.toml");
+    std::fs::write(&schedule, eeruf(&[&asked[..], &["--emit", "toml"]].concat()).out).unwrap();
+    let verify = ["verify", schedule.to_str().unwrap(), "--t-delta-us", "150", "--window-us", "36000"];
+    let keeps = |interval| {
+        eeruf(&[&verify[..], &["--margin-us", "90", "--min-interval-us", interval]].concat()).code == Some(0)
+    };
+    assert!(keeps("12000") && !keeps("12001"));
+    // The second criterion is no name for the first.
+    let exact = eeruf(&verify);
+    assert_eq!(exact.code, Some(1));
+    assert!(
+        exact.out.contains("moves by 240 us for sensor 2") && exact.out.contains("expected 301 us"),
+        "{}",
+        exact.out
+    );
+}
+
+#[test]
+fn tables_of_many_phases_in_files_are_as_separate_as_is_known() {
+    let known = std::fs::read_to_string("tests/data/hopping-schedules.json").unwrap();
+    let known: Value = serde_json::from_str(&known).unwrap();
+    for case in known["cases"].as_array().unwrap() {
+        let table = format!("period_us = {}\nt_fire_us = {}\n", case["period_us"], case["t_fire_us"]);
+        let (_folder, file) = Scratch::new("schedule.toml", &table);
+        let separation = case["separation_us"].to_string();
+        let report = json(&[
+            "verify",
+            file.to_str().unwrap(),
+            "--json",
+            "--t-delta-us",
+            "0",
+            "--margin-us",
+            &separation,
+            "--window-us",
+            "36000",
+            "--blanking-us",
+            "2380",
+            "--reach-us",
+            "40000",
+        ]);
+        assert_eq!(report["min_refire_us"], case["gap_us"]);
+        assert_eq!(report["min_interval_us"], case["nearest_neighbours_us"]);
+        if case["kind"] == "slots" {
+            // A path may read the same with two ages.
+            assert_eq!((&report["ok"], &report["violations"][0]["kind"]), (&false.into(), &"crosstalk".into()));
+            assert!(report["separation_us"].as_u64() <= Some(130));
+        } else {
+            assert_eq!((&report["ok"], &report["separation_us"]), (&true.into(), &case["separation_us"]));
+        }
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_file_of_many_phases_is_said_in_one_line() {
+    let cases = [
+        (
+            "step_us = 240\nphases = 9\nt_lag_us = [0, 0]\n",
+            ": 9 phases; expected a prime that is no less than the sensors",
+        ),
+        (
+            "step_us = 240\nphases = 11\nt_lag_us = [0, 60000]\n",
+            ": a lag of 60 ms for sensor 2; expected at most 57.599 ms",
+        ),
+        (
+            "step_us = 240\nphases = 11\n",
+            ": expected either step_us, phases and t_lag_us, one number for each sensor, or",
+        ),
+        ("t_fire_us = [[0, 1], [2]]\n", ": t_fire_us[1] has 1 numbers; expected 2, as many as t_fire_us[0]"),
+        ("t_fire_us = [[0, 60000], [2, 3]]\n", ": t_fire_us[0][1] is 60000; expected less than period_us"),
+        ("t_fire_us = [[0, 1]]\n", ": t_fire_us has 1 phases; expected 2 to 67"),
+        ("t_fire_us = [[], []]\n", ": 0 sensors; expected 1 to 64"),
+        ("t_fire_us = [[0, 1], [2, 3]]\nstep_us = 9\n", ": expected either step_us, phases and t_lag_us"),
+        ("t_fire_us = [[0, 1], [2, -3]]\n", ", line 2: "),
+    ];
+    for (keys, expected) in cases {
+        let (_folder, file) = Scratch::new("bad.toml", &format!("period_us = 60000\n{keys}"));
+        let outcome = eeruf(&["verify", file.to_str().unwrap(), "--window-us", "36000"]);
+        assert_eq!((outcome.code, outcome.out.as_str()), (Some(2), ""), "{keys}");
+        let prefix = format!("eeruf: {}{expected}", file.display());
+        assert!(outcome.err.starts_with(&prefix) && outcome.err.lines().count() == 1, "{}\n{prefix}", outcome.err);
+    }
+    let outcome = eeruf(&["design", "rings/labmate-8.toml", "--phases", "11"]);
+    assert!(outcome.code == Some(2) && outcome.err.contains(": speed_m_s; expected t_delta_us or"), "{}", outcome.err);
+    let outcome = eeruf(&["verify", "rings/table-i-d.toml", "--margin-us", "90"]);
+    assert!(outcome.code == Some(2) && outcome.err.contains("expected a schedule of many phases"), "{}", outcome.err);
+}
+
+#[test]
+fn emitted_rust_is_checked_by_the_compiler_and_emitted_c_compiles_without_a_warning() {
+    let asked = ["design", "tests/data/hopping-8.toml", "--phases", "11", "--margin-us", "90", "--emit"];
+    let rust = eeruf(&[&asked[..], &["rust"]].concat()).out;
+    assert_eq!(rust, include_str!("emitted/hopping_8.rs"));
+    let c = eeruf(&[&asked[..], &["c"]].concat()).out;
+    let (folder, header) = Scratch::new("schedule.h", &c);
+    let user = folder.path().join("user.c");
+    let main = "int main(void) { return eeruf_t_fire_us[EERUF_PHASES - 1][EERUF_SENSORS - 1] >= EERUF_PERIOD_US; }";
+    std::fs::write(&user, format!("#include \"{}\"\n{main}\n", header.display())).unwrap();
+    let program = folder.path().join("user");
+    let strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"];
+    assert!(Command::new("gcc").args(strict).arg(&user).arg("-o").arg(&program).status().unwrap().success());
+    assert!(Command::new(program).status().unwrap().success());
+}
+
+#[test]
+fn an_emitted_code_drives_a_hopping_ring() {
+    let listening = HoppingListening::new(Micros::from_millis(36));
+    let settings = HoppingSettings::BALANCED;
+    let mut ring = HoppingRing::<8>::new(&hopping_8::RING, settings, listening, 1, Instant::default()).unwrap();
+    let mut accepted = 0;
+    for _ in 0..500 {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor, .. } => ring.echo(sensor, now + Micros::from_millis(12)).unwrap(),
+                RingEvent::Reading(reading) => accepted += u32::from(reading.kind == eeruf_core::ReadingKind::Accepted),
+                RingEvent::PeriodEnded(_) => {}
+            }
+        }
+    }
+    assert!(accepted > 100, "{accepted}");
+}
+
+#[test]
+fn a_picture_of_many_phases_has_a_line_for_each_sensor_and_phase() {
+    let (folder, file) = ring(12_000);
+    let picture = folder.path().join("timing.svg");
+    let outcome = eeruf(&["design", &file, "--phases", "11", "--svg", picture.to_str().unwrap()]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    let svg = std::fs::read_to_string(picture).unwrap();
+    assert_eq!(svg.matches("#D1495B").count(), 8 * 11);
+    assert!(svg.contains("8 sensors, 11 phases, T_p = "));
+}

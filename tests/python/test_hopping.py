@@ -1,0 +1,177 @@
+"""Time hopping, as Python sees it."""
+
+import pickle
+
+import eeruf
+import numpy as np
+import pytest
+from eeruf import HoppingRing, HoppingSchedule, HoppingSettings, Schedule
+
+PERIOD_US, WINDOW_US = 60_000, 36_000
+EIGHT = HoppingSchedule(sensors=8, period_us=PERIOD_US, step_us=240)
+
+
+def run(
+    ring: HoppingRing, periods: int, *, own_us: int | None, path: tuple[int, int, int] | None = None
+) -> list[eeruf.Reading]:
+    """The readings of a ring whose sensors hear a wall, and perhaps a path (from, to, microseconds)."""
+    readings, pending = list[eeruf.Reading](), list[tuple[int, int]]()
+    ended = 0
+    while ended < periods:
+        now_us = ring.next_deadline_us
+        for at_us, to in [heard for heard in pending if heard[0] <= now_us]:
+            ring.echo(to, at_us)
+            pending.remove((at_us, to))
+        while event := ring.poll(now_us):
+            if isinstance(event, eeruf.Fire):
+                if own_us is not None:
+                    pending.append((now_us + own_us, event.sensor))
+                if path is not None and event.sensor == path[0]:
+                    pending.append((now_us + path[2], path[1]))
+                pending.sort()
+            elif isinstance(event, eeruf.Reading):
+                readings.append(event)
+            else:
+                ended += 1
+    return readings
+
+
+def test_a_congruence_is_the_formula_for_every_number_of_sensors() -> None:
+    for sensors in (1, 2, 7, 12, 24, 64):
+        schedule = Schedule.congruence(sensors, 400_000, 240)
+        q, m, x = schedule.phases, np.arange(schedule.phases)[:, None], np.arange(sensors)
+        assert q > sensors
+        assert all(q % divisor for divisor in range(2, q))
+        assert schedule.t_fire_us.tolist() == (np.array(schedule.t_lag_us) + 240 * ((x + 1) * m % q)).tolist()
+        assert schedule.width_us == 240 * (q - 1)
+        assert schedule == HoppingSchedule(sensors, 400_000, 240)
+
+
+def test_two_phases_of_a_congruence_are_a_schedule_of_the_paper() -> None:
+    two = Schedule.congruence(1, PERIOD_US, 999, phases=2)
+    assert two.phases == 2
+    times = two.t_fire_us
+    assert Schedule.from_firing(PERIOD_US, times[0].tolist(), times[1].tolist()).verify(498).ok
+
+
+def test_what_compares_equal_hashes_pickles_and_prints_so_that_it_can_be_pasted() -> None:
+    names = {"HoppingSchedule": HoppingSchedule, "HoppingSettings": HoppingSettings}
+    for value in (
+        EIGHT,
+        HoppingSchedule(2, PERIOD_US, 301, 13, [0, 9_000], first_multiplier=5),
+        HoppingSettings(),
+        HoppingSettings("maps"),
+        HoppingSettings("quick", votes=6, shift_interval_us=0),
+    ):
+        for same in (pickle.loads(pickle.dumps(value)), eval(repr(value), names)):
+            assert same == value
+            assert hash(same) == hash(value)
+    assert EIGHT != HoppingSchedule(8, PERIOD_US, 241)
+    assert HoppingSettings("maps") != HoppingSettings("quick")
+    assert repr(HoppingSettings("quick", votes=6)) == "HoppingSettings('quick', votes=6)"
+
+
+def test_every_setting_can_be_changed_and_read_back() -> None:
+    before = HoppingSettings()
+    fields = [name for name in vars(HoppingSettings) if not name.startswith("_")]
+    assert len(fields) == 15
+    for field in fields:
+        value = getattr(before, field)
+        changed = HoppingSettings(**{field: value - 1 if field == "tentative_within_us" else value + 1})
+        differ = [name for name in fields if getattr(changed, name) != getattr(before, name)]
+        assert differ == [field]
+
+
+@pytest.mark.parametrize("settings", ["balanced", "quick", "maps"])
+def test_a_sensor_that_always_hears_another_first_is_not_fooled_and_sees_its_wall(settings: str) -> None:
+    # Sensor 1 fires 14.4 ms after sensor 0: its sound arrives 3 to 6 ms into the window, before the wall's echo.
+    ring = HoppingRing(EIGHT, HoppingSettings(settings), window_us=WINDOW_US, blanking_us=1_000)  # type: ignore[arg-type]
+    readings = run(ring, 300, own_us=12_000, path=(0, 1, 19_000))
+    believed = {reading.t_echo_us for reading in readings if reading.kind in ("accepted", "tentative")}
+    assert believed == {12_000}
+    assert ring.confirmed_us(1) == 12_000
+    assert [reading.kind for reading in readings if reading.sensor == 1].count("accepted") >= 20
+    assert not ring.is_clear(1)
+
+
+def test_a_ring_that_hears_nothing_says_clear() -> None:
+    ring = HoppingRing(EIGHT, window_us=WINDOW_US)
+    silent = [reading.kind for reading in run(ring, 30, own_us=None)]
+    assert silent[-8:] == ["clear"] * 8
+    assert all(ring.is_clear(sensor) and ring.confirmed_us(sensor) is None for sensor in range(8))
+
+
+def test_the_same_seed_gives_the_same_lags_and_another_seed_others() -> None:
+    def lags(seed: int) -> tuple[int, ...]:
+        ring = HoppingRing(EIGHT, HoppingSettings(shift_interval_us=0), window_us=WINDOW_US, seed=seed)
+        state = 1
+        for _ in range(3_000):
+            now_us = ring.next_deadline_us
+            while event := ring.poll(now_us):
+                if isinstance(event, eeruf.Fire):
+                    state = state * 1_103_515_245 % 2**31
+                    ring.echo(event.sensor, now_us + 3_000 + state % 30_000)
+        return ring.t_lag_us
+
+    assert lags(1) == lags(1)
+    assert lags(1) != lags(2)
+    assert lags(1) != EIGHT.t_lag_us
+
+
+def test_the_tracker_alone_is_the_one_in_the_ring() -> None:
+    # No lag moves and no sensor gets a solo period, so that the phases follow each other.
+    settings = HoppingSettings(solo_rate=0, shift_after=0)
+    readings = run(HoppingRing(EIGHT, settings, window_us=WINDOW_US), 60, own_us=12_000, path=(0, 1, 19_000))
+    tracker = eeruf.EchoTracker(8, settings=settings)
+    for reading in readings:
+        assert reading.phase is not None
+        again = tracker.push(reading.sensor, reading.phase, reading.t_echo_us)
+        assert (again.kind, again.age, again.phase) == (reading.kind, reading.age, reading.phase)
+    assert {"first", "tentative", "accepted"} <= {reading.kind for reading in readings}
+
+
+def test_many_readings_at_once_are_judged_as_one_by_one() -> None:
+    chance = np.random.default_rng(1)
+    echoes = np.where(chance.random((300, 3)) < 0.2, np.nan, chance.integers(0, 3, (300, 3)) * 300 + 9_000.0)
+    phases = np.arange(300) % 11
+    together, alone = eeruf.EchoTracker(3).push_many(phases, echoes), eeruf.EchoTracker(3)
+    for row, phase, kinds in zip(echoes, phases, together):
+        for sensor, (us, kind) in enumerate(zip(row, kinds)):
+            reading = alone.push(sensor, phase, None if np.isnan(us) else int(us))
+            assert reading.kind == eeruf.KINDS[kind]
+    assert len(np.unique(together)) > 3
+
+
+def test_a_firing_that_was_not_steady_supports_nothing_and_one_alone_is_tentative_at_once() -> None:
+    tracker = eeruf.EchoTracker(1)
+    assert {tracker.push(0, phase, 9_000, steady=False).kind for phase in range(11)} == {"first"}
+    assert tracker.push(0, 0, 9_000, solo=True).kind == "tentative"
+    tracker.forget(0)
+    assert tracker.push(0, 0, 9_000).kind == "first"
+
+
+def test_each_error_names_what_is_wrong_from_sensor_0_and_what_is_expected() -> None:
+    for make, error, text in (
+        (lambda: HoppingSchedule(65, 60_000, 240), eeruf.ArgumentError, "sensors = 65; expected"),
+        (lambda: HoppingSchedule(2, 60_000, 240, 70), eeruf.ArgumentError, "phases = 70; expected"),
+        (lambda: HoppingSchedule(2, 60_000, 240, 2, [0]), eeruf.ArgumentError, "t_lag_us = 1 times; expected"),
+        (lambda: HoppingSchedule(2, 60_000, 240, 2, [0, 60_000]), eeruf.HoppingError, "for sensor 1; expected"),
+        (lambda: HoppingSettings(tentative_within_us=151), eeruf.HoppingError, "tentative_within is 151"),
+        (lambda: HoppingSettings(vote=3), eeruf.ArgumentError, "no setting vote; expected one of t_delta_us"),
+        (lambda: eeruf.EchoTracker(2).push(2, 0, 9_000), eeruf.ArgumentError, "sensor = 2; expected"),
+        (lambda: eeruf.EchoTracker(2).push_many([0], [[1, 2], [1, 2]]), eeruf.ArgumentError, "2 phases"),
+        (
+            lambda: HoppingRing(EIGHT, HoppingSettings(t_delta_us=240), window_us=WINDOW_US),
+            eeruf.HoppingError,
+            "240 us",
+        ),
+        (
+            lambda: HoppingRing(HoppingSchedule(2, PERIOD_US, 240, 2), window_us=WINDOW_US),
+            eeruf.HoppingError,
+            "5 votes to confirm an echo; expected at most 3",
+        ),
+        (lambda: HoppingRing(EIGHT, window_us=60_000), eeruf.HoppingError, "a period of 60 ms; expected 62.4 ms"),
+        (lambda: HoppingRing(EIGHT, window_us=100, blanking_us=100), eeruf.HoppingError, "blanking"),
+    ):
+        with pytest.raises(error, match=text):
+            make()

@@ -80,10 +80,12 @@ impl Tracer {
         limits: Limits,
         paths: &mut Paths,
     ) -> Result<(), PathsError> {
-        self.trace_audible(None, scene, source, receivers, limits, paths)
+        self.trace_audible(None, scene, source, receivers, limits, false, paths)
     }
 
-    /// As [`trace`](Self::trace), without paths that are certainly too faint.
+    /// As [`trace`](Self::trace), without paths that are certainly too faint. `again` says that all is as it was when
+    /// this was called before, but for the source.
+    #[expect(clippy::too_many_arguments, reason = "one question")]
     pub(crate) fn trace_audible(
         &mut self,
         audibility: Option<&Audibility>,
@@ -91,6 +93,7 @@ impl Tracer {
         source: Point,
         receivers: &[Point],
         limits: Limits,
+        again: bool,
         paths: &mut Paths,
     ) -> Result<(), PathsError> {
         paths.clear();
@@ -100,7 +103,7 @@ impl Tracer {
             self.tree.drop_faint(audibility, receivers);
         }
         let (tree, budget, stop) = (&self.tree, MAX_BEAMS, &self.stop);
-        let query = PoleQuery { scene, tree, source, limits: at_poles, audibility, budget, stop };
+        let query = PoleQuery { scene, tree, source, limits: at_poles, audibility, again, budget, stop };
         if !self.poles.search(&query, receivers) {
             return Err(self.incomplete());
         }
@@ -148,7 +151,7 @@ impl Tracer {
             max_length_m: limits.max_length_m,
             budget: MAX_BEAMS,
             last_for_receivers: true,
-            forward: audibility.map(Audibility::source),
+            aim: audibility.map(Audibility::of_source),
             stop: &self.stop,
         };
         if self.tree.grow(&growth, source, receivers) { Ok(()) } else { Err(self.incomplete()) }

@@ -71,6 +71,7 @@ fn key_of(ends: [SensorId; 2], bounces: &[Bounce]) -> u64 {
     let mut all = bounces.iter().fold(ends, |key, bounce| match *bounce {
         Bounce::Wall(wall) => key.of(0).of(wall.into()),
         Bounce::Pole(pole) => key.of(1).of(pole.into()),
+        Bounce::Edge(edge) => key.of(2).of(edge.into()),
     });
     all.bits()
 }

@@ -150,6 +150,15 @@ impl Audibility {
         sent >= least && sent * self.heard(towards.dot(axis) / length_m) >= least
     }
 
+    /// Whether a path around an edge may be heard that is no louder than `most` but for the patterns; `out` leads from the
+    /// source to the edge, `home` from the receiver.
+    #[inline]
+    pub(crate) fn may_hear_around(&self, most: f64, receiver: usize, out: Vector, home: Vector, length_m: f64) -> bool {
+        let Some(axis) = self.receivers.get(receiver) else { return true };
+        let sent = self.sent(out.dot(&self.source) / out.norm());
+        sent * self.heard(home.dot(axis) / home.norm()) * most * most >= self.faint(length_m)
+    }
+
     /// Whether a path over one pole may be heard that has been left this square of its amplitude by patterns and walls,
     /// and has at least so far to go before and after the pole: by
     ///

@@ -48,17 +48,25 @@ impl Paths {
     }
 }
 
-/// A wall by its index, a pole by -1 minus its index.
+/// The number of the first edge, beyond all walls.
+const EDGES: i64 = 1 << 32;
+
+/// A wall by its index, a pole by -1 minus its index, an edge by 2^32 plus its index.
 pub(crate) fn coded(bounces: &[Bounce]) -> impl ExactSizeIterator<Item = i64> {
     bounces.iter().map(|bounce| match *bounce {
         Bounce::Wall(wall) => i64::from(wall),
         Bounce::Pole(pole) => -1 - i64::from(pole),
+        Bounce::Edge(edge) => EDGES + i64::from(edge),
     })
 }
 
 /// What [`coded`] meant.
 pub(crate) fn bounce(code: i64) -> Bounce {
-    if code < 0 { Bounce::Pole((-1 - code) as u32) } else { Bounce::Wall(code as u32) }
+    match code {
+        ..0 => Bounce::Pole((-1 - code) as u32),
+        0..EDGES => Bounce::Wall(code as u32),
+        EDGES.. => Bounce::Edge((code - EDGES) as u32),
+    }
 }
 
 #[pymethods]

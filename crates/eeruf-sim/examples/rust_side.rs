@@ -40,6 +40,7 @@ fn paths() -> Value {
         let code = |bounce: &Bounce| match *bounce {
             Bounce::Wall(wall) => i64::from(wall),
             Bounce::Pole(pole) => -1 - i64::from(pole),
+            Bounce::Edge(edge) => (1 << 32) + i64::from(edge),
         };
         let walls: Vec<Vec<i64>> =
             (0..found.len()).map(|path| found.bounces(path).iter().map(code).collect()).collect();

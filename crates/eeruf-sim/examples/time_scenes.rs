@@ -1,7 +1,9 @@
 //! How long the scenes take that are expensive to follow sound in: a ring's matrix among walls and poles, a hall of
 //! pillars, a world that moves, and Set II. The same file, built against another commit, prints that commit's times.
 //!
-//!     cargo run --release -p eeruf-sim --example time_scenes
+//!     cargo run --release -p eeruf-sim --example time_scenes -- [SCENE [RUNS]]
+//!
+//! With the beginning of a scene's name only that one is timed, so many times.
 
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -11,10 +13,11 @@ use eeruf_sim::experiments::set_one::Alcove;
 use eeruf_sim::experiments::set_two::{SetTwoOptions, set_two};
 use eeruf_sim::*;
 
-/// The quickest of several runs of `work`, in milliseconds: as many as fit into a second, at least three.
+/// The quickest of several runs of `work`, in milliseconds: so many, or as many as fit into a second, at least three.
 fn quickest_ms(mut work: impl FnMut()) -> f64 {
     let (start, mut quickest, mut runs) = (Instant::now(), f64::INFINITY, 0);
-    while runs < 3 || start.elapsed().as_secs_f64() < 1.0 {
+    let asked = std::env::args().nth(2).and_then(|runs| runs.parse().ok());
+    while asked.map_or(runs < 3 || start.elapsed().as_secs_f64() < 1.0, |asked: u32| runs < asked) {
         let before = Instant::now();
         work();
         quickest = quickest.min(before.elapsed().as_secs_f64() * 1e3);
@@ -84,12 +87,17 @@ fn set_two_ms() -> (f64, usize) {
 }
 
 fn main() {
-    let print =
-        |what: &str, (ms, count): (f64, usize), counted: &str| println!("{what:44} {ms:10.3} ms  {count} {counted}");
-    print("matrix of 24, order 4, no pole", matrix_ms(0), "paths");
-    print("matrix of 24, order 4, one pole", matrix_ms(1), "paths");
-    print("matrix of 24, order 4, four poles", matrix_ms(4), "paths");
-    print("hall of 1,028 walls, order 6, a source", hall_ms(), "paths");
-    print("moving, 100 periods of 8", moving_ms(), "readings");
-    print("Set II, 2 courses", set_two_ms(), "finished");
+    let only = std::env::args().nth(1).unwrap_or_default();
+    let time = |what: &str, scene: &dyn Fn() -> (f64, usize), counted: &str| {
+        if what.starts_with(&only) {
+            let (ms, count) = scene();
+            println!("{what:44} {ms:10.3} ms  {count} {counted}");
+        }
+    };
+    time("matrix of 24, order 4, no pole", &|| matrix_ms(0), "paths");
+    time("matrix of 24, order 4, one pole", &|| matrix_ms(1), "paths");
+    time("matrix of 24, order 4, four poles", &|| matrix_ms(4), "paths");
+    time("hall of 1,028 walls, order 6, a source", &hall_ms, "paths");
+    time("moving, 100 periods of 8", &moving_ms, "readings");
+    time("Set II, 2 courses", &set_two_ms, "finished");
 }

@@ -76,7 +76,9 @@ pub use navigation::{Driven, Himm, LabMate, Vfh};
 pub use results::{
     Age, Attribution, Cause, DEFAULT_TOLERANCE_US, HeardPath, NO_PATH, Readings, SensorId, Summary, quantile,
 };
-pub use scene::{Air, Body, Bounce, Contact, Faces, Material, Outline, OutlineError, Pole, Scene, SceneError, Wall};
+pub use scene::{
+    Air, Body, Bounce, Contact, Edge, Faces, Material, Outline, OutlineError, Pole, Scene, SceneError, Wall,
+};
 pub use simulation::{LockStep, Options, Simulation, SimulationError, simulate, simulate_until, simulate_while};
 pub use threads::{Stop, sweep};
 pub use tracing::{

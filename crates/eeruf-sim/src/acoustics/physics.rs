@@ -17,6 +17,8 @@ pub struct Physics {
     /// exceeds that of the first Fresnel zone, `sqrt(lambda d1 d2 / (d1 + d2))`. A sensor within a pole or a wall is
     /// then refused as well. Robots' bodies shade in any case.
     pub shadows: bool,
+    /// Whether the free ends of walls and the corners that jut out diffract, once and in plain sight.
+    pub edges: bool,
     /// Whether a threshold detector hears faint echoes later. An echo just at the threshold is heard a whole burst late.
     pub range_walk: bool,
     /// For how long a path fades in the same way, in seconds: the time after which the correlation has fallen to 1/e.
@@ -25,12 +27,12 @@ pub struct Physics {
 }
 
 impl Physics {
-    /// What the simulator began with: poles of any thickness are transparent, an echo is heard at its onset however
+    /// What the simulator began with: poles of any thickness are transparent, edges are silent, an echo is heard at its onset however
     /// faint it is, and each arrival fades on its own.
-    pub const PLAIN: Self = Self { shadows: false, range_walk: false, fading_time_s: 0.0 };
+    pub const PLAIN: Self = Self { shadows: false, edges: false, range_walk: false, fading_time_s: 0.0 };
 
     /// Everything on, with the numbers that `docs/physics.md` gives reasons for.
-    pub const DEFAULT: Self = Self { shadows: true, range_walk: true, fading_time_s: 1.0 };
+    pub const DEFAULT: Self = Self { shadows: true, edges: true, range_walk: true, fading_time_s: 1.0 };
 
     /// The presets by their names.
     pub const PRESETS: [(&'static str, Self); 2] = [("plain", Self::PLAIN), ("default", Self::DEFAULT)];

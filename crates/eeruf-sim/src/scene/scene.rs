@@ -4,6 +4,7 @@
 use super::air::Air;
 use super::error::{MAX_COORDINATE_M, MAX_POLE_M, MAX_WALLS, MIN_WALL_M, SceneError};
 use super::mesh::Mesh;
+use super::mesh::edges::{Edge, edges_of};
 use super::mesh::joints::{join_walls, wall_box};
 use super::pole::Pole;
 use super::wall::Wall;
@@ -21,6 +22,7 @@ pub struct Scene {
     pub(crate) wall_boxes: Bvh,
     /// Which triangles each pole's disc overlaps: (triangle, pole).
     pub(crate) pole_triangles: Vec<(u32, u32)>,
+    edges: Vec<Edge>,
     /// Whether any surface is rough.
     pub(crate) rough: bool,
 }
@@ -47,6 +49,7 @@ impl Scene {
         let wall_boxes =
             Bvh::from_iter(BvhBuildStrategy::Binned, walls.iter().enumerate().map(|(i, wall)| (i, wall_box(wall))));
         let (vertices, pieces) = join_walls(&walls, &wall_boxes)?;
+        let edges = edges_of(&vertices, &pieces, &walls);
         let mesh = Mesh::build(vertices, &pieces, &walls, poles.iter().map(|pole| pole.centre))?;
         let mirrors = walls.iter().map(|wall| Mirror::through(wall.from, wall.to, wall.material.reflection)).collect();
         let materials = walls.iter().map(|wall| wall.material).chain(poles.iter().map(|pole| pole.material));
@@ -56,7 +59,7 @@ impl Scene {
             let near = mesh.near(pole.centre, pole.radius_m * (1.0 + 1e-9));
             pole_triangles.extend(near.into_iter().map(|triangle| (triangle, index as u32)));
         }
-        Ok(Self { walls, poles, air, mesh, mirrors, wall_boxes, pole_triangles, rough })
+        Ok(Self { walls, poles, air, mesh, mirrors, wall_boxes, pole_triangles, edges, rough })
     }
 
     /// The walls, in the order given.
@@ -67,6 +70,12 @@ impl Scene {
     /// The poles, in the order given.
     pub fn poles(&self) -> &[Pole] {
         &self.poles
+    }
+
+    /// The free ends of walls and the corners that jut out, which sound bends around if
+    /// [`Physics::edges`](crate::Physics::edges) says so. Those of solid regions, seen from within, are among them.
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
     }
 
     /// The air.

@@ -22,15 +22,19 @@ impl Scene {
         let mirrors = |bounces: &[Bounce]| -> Option<Vec<&Mirror>> {
             let walls = bounces.iter().map(|bounce| match *bounce {
                 Bounce::Wall(wall) => self.mirrors.get(wall as usize),
-                Bounce::Pole(_) => None,
+                Bounce::Pole(_) | Bounce::Edge(_) => None,
             });
             walls.collect()
         };
         let pole = |bounce: &Bounce| match *bounce {
             Bounce::Pole(pole) => self.poles().get(pole as usize).map(|pole| (pole.centre, pole.radius_m)),
-            Bounce::Wall(_) => None,
+            Bounce::Wall(_) | Bounce::Edge(_) => None,
         };
         let mut corners = vec![source];
+        if let [Bounce::Edge(edge)] = *bounces {
+            corners.extend([self.edges().get(edge as usize)?.at, receiver]);
+            return Some(corners);
+        }
         let Some(first) = bounces.iter().position(|bounce| matches!(bounce, Bounce::Pole(_))) else {
             unfold(source, &mirrors(bounces)?, receiver, &mut corners);
             corners.push(receiver);

@@ -144,7 +144,7 @@ impl CrosstalkMatrix {
             let audibility = if tracer.pole_waves { None } else { Some(&*audibility) };
             let source = Point::from(pose.translation.vector);
             if let Err(error) =
-                tracer.trace_audible(audibility, scene, source, &self.positions, limits, &mut self.found)
+                tracer.trace_audible(audibility, scene, source, &self.positions, limits, emitter > 0, &mut self.found)
             {
                 self.paths.clear();
                 self.starts.clear();

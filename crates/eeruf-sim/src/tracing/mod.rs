@@ -5,6 +5,7 @@ mod audibility;
 mod beam;
 mod bounce_points;
 mod crosstalk;
+mod edges;
 mod error;
 mod limits;
 mod paths;

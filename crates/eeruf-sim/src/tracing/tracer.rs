@@ -2,6 +2,7 @@
 
 use super::audibility::Audibility;
 use super::beam::{BeamTree, Growth};
+use super::edges::EdgeSearch;
 use super::error::PathsError;
 use super::limits::{DEFAULT_FREQUENCY_HZ, Limits, MAX_BEAMS, MAX_ORDER};
 use super::paths::Paths;
@@ -25,6 +26,9 @@ pub struct Tracer {
     /// Whether poles shade what lies behind them where they are thicker than the first Fresnel zone, and sensors within
     /// something solid are refused; see [`Physics::shadows`](crate::Physics::shadows). Off by default.
     pub pole_shadows: bool,
+    /// Whether free ends of walls and corners that jut out diffract; see [`Physics::edges`](crate::Physics::edges). Off by
+    /// default.
+    pub edges: bool,
     /// The most bounces of a path with a pole, at most those of all others. The default is [`MAX_ORDER`].
     pub pole_order: u32,
     /// Ends a question under way with [`PathsError::Stopped`].
@@ -33,6 +37,7 @@ pub struct Tracer {
     loss: Option<(Air, f64, f64)>,
     tree: BeamTree,
     poles: PoleSearch,
+    around: EdgeSearch,
     ranking: Ranking,
 }
 
@@ -54,11 +59,13 @@ impl Tracer {
             frequency_hz,
             pole_waves: false,
             pole_shadows: false,
+            edges: false,
             pole_order: MAX_ORDER,
             stop: Stop::default(),
             loss: None,
             tree: BeamTree::default(),
             poles: PoleSearch::default(),
+            around: EdgeSearch::default(),
             ranking: Ranking::default(),
         }
     }
@@ -80,10 +87,12 @@ impl Tracer {
         limits: Limits,
         paths: &mut Paths,
     ) -> Result<(), PathsError> {
-        self.trace_audible(None, scene, source, receivers, limits, paths)
+        self.trace_audible(None, scene, source, receivers, limits, false, paths)
     }
 
-    /// As [`trace`](Self::trace), without paths that are certainly too faint.
+    /// As [`trace`](Self::trace), without paths that are certainly too faint. `again` says that all is as it was when
+    /// this was called before, but for the source.
+    #[expect(clippy::too_many_arguments, reason = "one question")]
     pub(crate) fn trace_audible(
         &mut self,
         audibility: Option<&Audibility>,
@@ -91,6 +100,7 @@ impl Tracer {
         source: Point,
         receivers: &[Point],
         limits: Limits,
+        again: bool,
         paths: &mut Paths,
     ) -> Result<(), PathsError> {
         paths.clear();
@@ -100,11 +110,19 @@ impl Tracer {
             self.tree.drop_faint(audibility, receivers);
         }
         let (tree, budget, stop) = (&self.tree, MAX_BEAMS, &self.stop);
-        let query = PoleQuery { scene, tree, source, limits: at_poles, audibility, budget, stop };
+        let query = PoleQuery { scene, tree, source, limits: at_poles, audibility, again, budget, stop };
         if !self.poles.search(&query, receivers) {
             return Err(self.incomplete());
         }
-        self.ranking.rank(Found { tree: &self.tree, poles: &self.poles }, receivers.len());
+        self.around.clear();
+        if self.edges {
+            let wave_number = core::f64::consts::TAU * self.frequency_hz / scene.air().speed_of_sound();
+            if !self.around.search(scene, audibility, source, receivers, limits, wave_number, &self.stop) {
+                return Err(PathsError::Stopped);
+            }
+        }
+        let found = Found { tree: &self.tree, poles: &self.poles, edges: &self.around };
+        self.ranking.rank(found, receivers.len());
         self.write(scene, source, receivers, paths);
         Ok(())
     }
@@ -148,7 +166,7 @@ impl Tracer {
             max_length_m: limits.max_length_m,
             budget: MAX_BEAMS,
             last_for_receivers: true,
-            forward: audibility.map(Audibility::source),
+            aim: audibility.map(Audibility::of_source),
             stop: &self.stop,
         };
         if self.tree.grow(&growth, source, receivers) { Ok(()) } else { Err(self.incomplete()) }
@@ -180,7 +198,7 @@ impl Tracer {
         let loss_per_m = self.loss_per_m(scene.air());
         let wave_number = core::f64::consts::TAU * self.frequency_hz / scene.air().speed_of_sound();
         paths.reserve(self.ranking.ranks().len());
-        let found = Found { tree: &self.tree, poles: &self.poles };
+        let found = Found { tree: &self.tree, poles: &self.poles, edges: &self.around };
         let wavelength_m = core::f64::consts::TAU / wave_number;
         let shades = self.pole_shadows && !scene.poles().is_empty();
         for &Rank { length_m, index } in self.ranking.ranks() {
@@ -224,6 +242,13 @@ impl Tracer {
                     paths.departure_rad.push(angles[0]);
                     paths.arrival_rad.push(angles[1]);
                 }
+                FoundPath::Edge(path) => {
+                    amplitude = path.spread;
+                    paths.receiver.push(path.receiver);
+                    paths.order.push(1);
+                    paths.departure_rad.push(path.departure_rad);
+                    paths.arrival_rad.push(path.arrival_rad);
+                }
             }
             paths.length_m.push(length_m);
             paths.amplitude.push(amplitude * (loss_per_m * length_m).exp());
@@ -238,7 +263,7 @@ impl Tracer {
         }
         let poles = bounces.iter().filter_map(|bounce| match *bounce {
             Bounce::Pole(pole) => scene.poles().get(pole as usize),
-            Bounce::Wall(_) => None,
+            Bounce::Wall(_) | Bounce::Edge(_) => None,
         });
         let corrections = poles
             .zip(path.cos_incidence)

@@ -2,6 +2,7 @@
 //! Stored as *gates*: a gate is one side of one triangle, seen by a beam that enters through it.
 
 mod build;
+pub(super) mod edges;
 mod hints;
 pub(super) mod joints;
 

@@ -95,6 +95,8 @@ impl Furnished {
             let (own, numbers, index) = match bounce {
                 Bounce::Wall(wall) => (self.own[0], &self.walls, wall),
                 Bounce::Pole(pole) => (self.own[1], &self.poles, pole),
+                // Those of bodies follow the scene's own, and are numbered as in this very scene.
+                Bounce::Edge(_) => continue,
             };
             if let Some(number) = (*index as usize).checked_sub(own).and_then(|body| numbers.get(body)) {
                 *index = *number;

@@ -247,6 +247,7 @@ impl<'w> Channels<'w> {
             self.tracer.pole_order = world.pole_order();
             // A body shades whatever the physics.
             self.tracer.pole_shadows = world.physics().shadows || furnished.is_some();
+            self.tracer.edges = world.physics().edges;
             // The receiver's gain depends on when the receiver fired, so it cannot be applied here.
             let flat = Transducer { gain: GainProfile::Constant, ..*transducer };
             let query = CrosstalkQuery { scene, sensors: &sensors, transducer: &flat, limits, floor: range.faintest };

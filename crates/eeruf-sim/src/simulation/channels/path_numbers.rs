@@ -1,8 +1,7 @@
 //! Numbers for paths, the same for the same walls and poles between the same sensors.
 
-use core::hash::{Hash, Hasher};
+use core::hash::{BuildHasherDefault, Hasher};
 use std::collections::HashMap;
-use std::hash::DefaultHasher;
 
 use crate::{
     results::{HeardPath, SensorId},
@@ -17,7 +16,7 @@ pub(super) struct PathNumbers {
     paths: Vec<HeardPath>,
     /// For each, what only its ends and its bounces decide, whenever it was met.
     keys: Vec<u64>,
-    numbers: HashMap<u64, u32>,
+    numbers: HashMap<u64, u32, BuildHasherDefault<AsItIs>>,
 }
 
 impl PathNumbers {
@@ -28,9 +27,8 @@ impl PathNumbers {
         path: &CriticalPath,
         bounces: &[Bounce],
     ) -> u32 {
-        let mut hasher = DefaultHasher::new();
-        (emitter, receiver, bounces).hash(&mut hasher);
-        let mut key = hasher.finish();
+        let own = key_of([emitter, receiver], bounces);
+        let mut key = own;
         while let Some(&number) = self.numbers.get(&key) {
             let known = &self.paths[number as usize];
             if known.emitter == emitter && known.receiver == receiver && *known.bounces == *bounces {
@@ -42,7 +40,7 @@ impl PathNumbers {
         }
         let number = self.paths.len() as u32;
         self.numbers.insert(key, number);
-        self.keys.push(key_of([emitter, receiver], bounces));
+        self.keys.push(own);
         self.paths.push(HeardPath {
             emitter,
             receiver,
@@ -67,10 +65,51 @@ impl PathNumbers {
 }
 
 fn key_of(ends: [SensorId; 2], bounces: &[Bounce]) -> u64 {
-    let ends = ends.iter().fold(Random::new(0), |key, id| key.of(id.robot.into()).of(id.sensor.into()));
-    let mut all = bounces.iter().fold(ends, |key, bounce| match *bounce {
-        Bounce::Wall(wall) => key.of(0).of(wall.into()),
-        Bounce::Pole(pole) => key.of(1).of(pole.into()),
+    let [from, to] = ends.map(|id| u64::from(id.robot) << 8 | u64::from(id.sensor));
+    let start = Random::new(from << 32 | to);
+    let mut all = bounces.iter().fold(start, |key, bounce| {
+        let (kind, index) = match *bounce {
+            Bounce::Wall(wall) => (0, wall),
+            Bounce::Pole(pole) => (1, pole),
+            Bounce::Edge(edge) => (2, edge),
+        };
+        key.of(kind << 32 | u64::from(index))
     });
     all.bits()
+}
+
+/// A key is well mixed already.
+#[derive(Default)]
+struct AsItIs(u64);
+
+impl Hasher for AsItIs {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        // Keys are whole numbers, which come by the other function.
+        self.0 = bytes.iter().fold(self.0, |key, byte| key.rotate_left(8) ^ u64::from(*byte));
+    }
+
+    fn write_u64(&mut self, key: u64) {
+        self.0 = key;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_have_keys_of_their_own_whenever_they_are_met() {
+        let id = |robot, sensor| SensorId { robot, sensor };
+        let (wall, pole, edge) = (Bounce::Wall(1), Bounce::Pole(1), Bounce::Edge(1));
+        let ways: [&[Bounce]; 7] = [&[], &[wall], &[pole], &[edge], &[wall, pole], &[pole, wall], &[wall, wall]];
+        let ends = [[id(0, 0), id(0, 1)], [id(0, 1), id(0, 0)], [id(1, 0), id(0, 0)], [id(0, 0), id(1, 0)]];
+        let mut keys: Vec<u64> = ends.iter().flat_map(|ends| ways.map(|way| key_of(*ends, way))).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        assert_eq!(keys.len(), ends.len() * ways.len());
+    }
 }

@@ -4,7 +4,9 @@
 //! Every bound is an upper one, so that nothing audible is lost: the patterns by their envelope, a pole by the most
 //! that it can return, the air by what it takes on a slightly shorter way.
 
+mod aim;
 mod ensonified;
+mod reach;
 #[cfg(test)]
 mod tests;
 
@@ -13,7 +15,9 @@ use crate::{
     geometry::{Point, Vector},
     scene::Pole,
 };
+pub(super) use aim::Aim;
 pub(super) use ensonified::EnsonifiedPole;
+use reach::Reach;
 
 /// How finely the envelope is known: in equal steps of `sin(angle / 2)`.
 const STEPS: usize = 1024;
@@ -39,6 +43,8 @@ pub(crate) struct Audibility {
     /// By steps of length: a lower bound on the square of the amplitude that would just be heard if the air took
     /// nothing.
     faint: Vec<f64>,
+    /// How far sound is heard that leaves with a share of its strength.
+    reach: Reach,
     /// Where the source heads, as an angle and as a direction.
     source_rad: f64,
     source: Vector,
@@ -56,6 +62,7 @@ impl Audibility {
             floor: 0.0,
             loss_per_m: 0.0,
             faint: Vec::new(),
+            reach: Reach::default(),
             source_rad: 0.0,
             source: ahead,
             receivers: Vec::new(),
@@ -78,6 +85,7 @@ impl Audibility {
             let length_m = step as f64 / STEPS_PER_M;
             (floor * (-loss_per_m * length_m).exp() * (1.0 - 1e-9)).powi(2)
         }));
+        self.reach = Reach::new(floor, loss_per_m);
     }
 
     /// Sets where source and receivers head.
@@ -88,9 +96,16 @@ impl Audibility {
         self.receivers.extend(receivers);
     }
 
-    /// Where the source heads, as a direction. Nothing leaves it at right angles to that, or further behind.
-    pub(crate) fn source(&self) -> Vector {
-        self.source
+    /// What the source sends where.
+    pub(crate) fn of_source(&self) -> Aim<'_> {
+        Aim { envelope: &self.departing, reach: &self.reach, axis: self.source }
+    }
+
+    /// What a receiver hears from where: sound comes the same way as it would go. None where everything counts as
+    /// heard.
+    pub(crate) fn of_receiver(&self, receiver: usize) -> Option<Aim<'_>> {
+        let axis = *self.receivers.get(receiver).filter(|_| self.floor > 0.0)?;
+        Some(Aim { envelope: &self.arriving, reach: &self.reach, axis })
     }
 
     /// Where the source heads, in radians.
@@ -133,6 +148,39 @@ impl Audibility {
             (self.sent(departure_cos) * reflection_gain * reflection_gain, self.faint(length_m) * length_m * length_m);
         // Most fail by what the source sends there.
         sent >= least && sent * self.heard(towards.dot(axis) / length_m) >= least
+    }
+
+    /// Whether a path around an edge may be heard that is no louder than `most` but for the patterns; `out` leads from the
+    /// source to the edge, `home` from the receiver.
+    #[inline]
+    pub(crate) fn may_hear_around(&self, most: f64, receiver: usize, out: Vector, home: Vector, length_m: f64) -> bool {
+        let Some(axis) = self.receivers.get(receiver) else { return true };
+        let sent = self.sent(out.dot(&self.source) / out.norm());
+        sent * self.heard(home.dot(axis) / home.norm()) * most * most >= self.faint(length_m)
+    }
+
+    /// Whether a path over one pole may be heard that has been left this square of its amplitude by patterns and walls,
+    /// and has at least so far to go before and after the pole: by
+    ///
+    /// ```text
+    /// A^2 <= square (a / 2) / (s' s (s' + s))
+    /// ```
+    #[inline]
+    pub(crate) fn may_hear_pole(&self, square: f64, radius_m: f64, before_m: f64, after_m: f64) -> bool {
+        let length_m = before_m + after_m;
+        square * 0.5 * radius_m >= self.faint(length_m) * before_m * after_m * length_m
+    }
+
+    /// The same of a path over two poles, `between_m` apart.
+    pub(crate) fn may_hear_two_poles(
+        &self,
+        square: f64,
+        radii_m: [f64; 2],
+        [before_m, between_m, after_m]: [f64; 3],
+    ) -> bool {
+        let length_m = before_m + between_m + after_m;
+        let left = square * 0.25 * radii_m[0] * radii_m[1];
+        left >= self.faint(length_m) * before_m * between_m * after_m * length_m
     }
 
     /// What sound falls on a pole.

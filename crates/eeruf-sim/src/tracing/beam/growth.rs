@@ -1,5 +1,6 @@
 //! What a beam tree is grown for: the scene, how far, and for whom.
 
+use crate::tracing::audibility::Aim;
 use crate::{
     geometry::{Mirror, SAME_DIRECTION, Vector},
     scene::{Mesh, Pole},
@@ -17,16 +18,22 @@ pub(crate) struct Growth<'a> {
     pub(crate) budget: usize,
     /// Beams of the last order serve receivers only, not poles, and may be dropped where no receiver is.
     pub(crate) last_for_receivers: bool,
-    /// Where the source heads, if no sound leaves it at right angles to that or further behind.
-    pub(crate) forward: Option<Vector>,
+    /// What the source sends where, if what is certainly too faint may be left out.
+    pub(crate) aim: Option<Aim<'a>>,
     /// Ends it early.
     pub(crate) stop: &'a Stop,
 }
 
 impl Growth<'_> {
+    /// The longest path of a beam within these limits that may be heard and is asked for, in metres.
+    #[inline]
+    pub(super) fn reach_m(&self, axis: Vector, left: Vector, right: Vector, reflection_gain: f64) -> f64 {
+        self.aim.map_or(self.max_length_m, |aim| self.max_length_m.min(aim.reach_m(axis, left, right, reflection_gain)))
+    }
+
     /// The part of a cone from the source into which sound leaves.
     pub(super) fn ensonified(&self, left: Vector, right: Vector) -> Option<(Vector, Vector)> {
-        let Some(forward) = self.forward else { return Some((left, right)) };
+        let Some(forward) = self.aim.map(|aim| aim.axis()) else { return Some((left, right)) };
         let ahead = |limit: Vector| limit.dot(&forward) > -SAME_DIRECTION * (limit.x.abs() + limit.y.abs());
         match (ahead(left), ahead(right)) {
             (true, true) => Some((left, right)),

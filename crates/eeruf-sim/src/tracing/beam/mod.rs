@@ -14,6 +14,7 @@ mod tree;
 use crate::geometry::{Point, SAME_DIRECTION, Vector, cross};
 
 pub(super) use growth::Growth;
+pub(super) use readout::push_chain;
 pub(super) use tree::BeamTree;
 
 /// A node of the tree.
@@ -35,7 +36,11 @@ pub(crate) struct Beam {
     /// with `d` the direction of departure.
     pub(crate) turn: f64,
     /// The product of the walls' reflections.
-    pub(super) reflection_gain: f64,
+    pub(crate) reflection_gain: f64,
+    /// Where the source heads in the image's world, if that matters.
+    pub(crate) axis: Vector,
+    /// No path of this beam that is longer can be heard, or is asked for.
+    pub(super) reach_m: f64,
 }
 
 /// An image of the source that a receiver sees over walls.

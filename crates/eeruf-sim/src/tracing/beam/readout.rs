@@ -16,11 +16,8 @@ impl BeamTree {
     }
 
     /// Appends the walls of a beam from the last to the first.
-    pub(crate) fn push_chain(&self, mut beam: u32, bounces: &mut Vec<Bounce>) {
-        while let Some(node) = self.beams.get(beam as usize).filter(|node| node.wall != NONE) {
-            bounces.push(Bounce::Wall(node.wall));
-            beam = node.parent;
-        }
+    pub(crate) fn push_chain(&self, beam: u32, bounces: &mut Vec<Bounce>) {
+        push_chain(&self.beams, beam, bounces);
     }
 
     /// Forgets what is certainly too faint.
@@ -45,6 +42,14 @@ impl BeamTree {
                 image.reflection_gain,
             )
         });
+    }
+}
+
+/// Appends the walls of a beam from the last to the first.
+pub(crate) fn push_chain(beams: &[Beam], mut beam: u32, bounces: &mut Vec<Bounce>) {
+    while let Some(node) = beams.get(beam as usize).filter(|node| node.wall != NONE) {
+        bounces.push(Bounce::Wall(node.wall));
+        beam = node.parent;
     }
 }
 

@@ -5,7 +5,7 @@ use super::receiver_block::ReceiverBlock;
 use super::{Beam, PoleCone, VisibleImage, cone_holds};
 use crate::{
     geometry::{Point, SAME_DIRECTION, TOUCH_M, Vector, cross},
-    scene::{Beyond, Exit, NONE},
+    scene::{Beyond, Exit, Gate, NONE},
 };
 
 /// How many beams lie between two looks at whether to stop.
@@ -106,6 +106,8 @@ impl BeamTree {
             order: 0,
             turn: 0.0,
             reflection_gain: 1.0,
+            axis: growth.aim.map_or(Vector::zeros(), |aim| aim.axis()),
+            reach_m: growth.aim.map_or(f64::INFINITY, |aim| aim.longest_m()).min(growth.max_length_m),
         });
         let mut triangles = core::mem::take(&mut self.triangles);
         growth.mesh.containing(source, &mut triangles);
@@ -164,8 +166,13 @@ impl BeamTree {
     fn walk(&mut self, flight: &Flight<'_>) {
         let beam = flight.beam;
         let gates = flight.growth.mesh.gates.as_slice();
+        let reach2 = beam.reach_m * beam.reach_m;
         while let Some(Cone { mut gate, mut left, right }) = self.stack.pop() {
-            loop {
+            for step in 1_u32.. {
+                // Now and then, so that it costs nothing where walls are near.
+                if step.is_multiple_of(4) && is_beyond(gates, gate, beam.image, reach2) {
+                    break;
+                }
                 let head = self.heads[gate as usize / 3];
                 if head != NONE {
                     self.look(flight, head, gate / 3, left, right);
@@ -209,28 +216,34 @@ impl BeamTree {
         let wall = growth.mesh.walls[gate as usize];
         let mirror = &growth.mirrors[wall as usize];
         let distance = mirror.distance(beam.image);
-        if distance.abs() > growth.max_length_m {
+        if distance.abs() > beam.reach_m {
             return;
         }
-        let next = Beam {
-            image: mirror.image(beam.image, distance),
-            // Mirroring swaps the sides.
-            left: mirror.turned(right),
-            right: mirror.turned(left),
+        let image = mirror.image(beam.image, distance);
+        // Mirroring swaps the sides.
+        let (left, right) = (mirror.turned(right), mirror.turned(left));
+        let last = growth.last_for_receivers && beam.order + 1 == growth.max_order;
+        if last && !self.block.may_see(image, left, right) {
+            return;
+        }
+        let (axis, reflection_gain) = (mirror.turned(beam.axis), beam.reflection_gain * mirror.reflection);
+        let reach_m = growth.reach_m(axis, left, right, reflection_gain);
+        if distance.abs() > reach_m || last && self.block.is_beyond(image, reach_m) {
+            return;
+        }
+        self.beams.push(Beam {
+            image,
+            left,
+            right,
             gate,
             parent: index,
             wall,
             order: beam.order + 1,
             turn: mirror.turn - beam.turn,
-            reflection_gain: beam.reflection_gain * mirror.reflection,
-        };
-        if growth.last_for_receivers
-            && next.order == growth.max_order
-            && !self.block.may_see(next.image, next.left, next.right)
-        {
-            return;
-        }
-        self.beams.push(next);
+            reflection_gain,
+            axis,
+            reach_m,
+        });
     }
 
     /// Looks for receivers and poles in a triangle that the cone passes.
@@ -280,4 +293,15 @@ impl BeamTree {
             wall,
         });
     }
+}
+
+/// Whether all that lies behind a gate is farther from a point than a length, given as its square: whether the gate's
+/// line is.
+#[inline]
+fn is_beyond(gates: &[Gate], gate: u32, from: Point, length2: f64) -> bool {
+    let first = gate - gate % 3;
+    let end = |turn: u32| gates[(first + (gate + turn) % 3) as usize].apex;
+    let (near, along) = (end(1), end(2) - end(1));
+    let area = cross(along, from - near);
+    area * area > length2 * along.norm_squared()
 }

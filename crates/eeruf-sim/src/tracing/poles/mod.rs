@@ -1,10 +1,11 @@
 //! Paths that bounce at a pole. Walls before the pole mirror the source forward, walls after it mirror the receiver
 //! backward; between the two images remains one problem of Alhazen, whose answer must lie in a beam of each.
 
+mod legs;
 mod shadow;
 
 use super::audibility::Audibility;
-use super::beam::{BeamTree, Growth, PoleCone};
+use super::beam::{BeamTree, Growth, push_chain};
 use super::limits::Limits;
 use crate::{
     acoustics::pole_spread,
@@ -12,6 +13,7 @@ use crate::{
     scene::{Bounce, Scene},
     threads::Stop,
 };
+use legs::{Home, Leg, in_sight, legs_of};
 pub(super) use shadow::is_shaded;
 
 /// The most problems of Alhazen that one question may try, some ten seconds.
@@ -45,6 +47,8 @@ pub(crate) struct PoleQuery<'a> {
     pub(crate) limits: Limits,
     /// What is certainly too faint may be left out.
     pub(crate) audibility: Option<&'a Audibility>,
+    /// Whether scene, receivers, limits and audibility are those of the last query, but for the source.
+    pub(crate) again: bool,
     /// How many beams and paths there may be.
     pub(crate) budget: usize,
     /// Ends it early.
@@ -63,12 +67,13 @@ struct Receiver {
 pub(crate) struct PoleSearch {
     pub(crate) found: Vec<PolePath>,
     bounces: Vec<Bounce>,
-    from_source: Vec<PoleCone>,
+    from_source: Vec<Leg>,
     back: BeamTree,
+    /// Of each receiver of this query, and of the last one if that asked the same.
+    homes: Vec<Home>,
     triangles: [Vec<u32>; 2],
-    /// Poles in plain sight of the source, and of the receiver.
+    /// Poles in plain sight of the source.
     firsts: Vec<u32>,
-    lasts: Vec<u32>,
     /// Problems of Alhazen tried so far.
     tried: usize,
 }
@@ -81,7 +86,7 @@ impl PoleSearch {
     /// Finds all paths over poles to these receivers, but for those that are certainly too faint. Returns whether
     /// these are all: neither the budget was spent nor the work stopped.
     pub(crate) fn search(&mut self, query: &PoleQuery<'_>, receivers: &[Point]) -> bool {
-        let PoleQuery { scene, tree, limits, budget, stop, .. } = *query;
+        let PoleQuery { scene, tree, limits, audibility, budget, stop, .. } = *query;
         self.found.clear();
         self.bounces.clear();
         self.tried = 0;
@@ -92,56 +97,100 @@ impl PoleSearch {
             self.one_pole(query, receivers);
             return !stop.is_stopped();
         }
-        let cone_key = |cone: &PoleCone| (cone.pole, cone.triangle);
-        self.from_source.clear();
-        self.from_source.extend_from_slice(&tree.pole_cones);
+        if !query.again {
+            self.homes.clear();
+        }
+        legs_of(tree, scene, audibility.map(Audibility::of_source), &mut self.from_source);
         // Within one key the beams stay in the order of their tree, lowest order first.
-        self.from_source.sort_by_key(|cone| (cone_key(cone), cone.beam));
+        self.from_source.sort_by_key(|leg| (leg.key(), leg.cone.beam));
         in_sight(&self.from_source, &mut self.firsts);
+        if let Some(audibility) = audibility {
+            self.drop_faint(audibility, scene, receivers);
+        }
         for (index, &at) in receivers.iter().enumerate() {
             let receiver = Receiver { index: index as u32, at };
-            let growth = Growth {
-                mesh: &scene.mesh,
-                mirrors: &scene.mirrors,
-                poles: scene.poles(),
-                pole_triangles: &scene.pole_triangles,
-                max_order: limits.max_order - 1,
-                max_length_m: limits.max_length_m,
-                budget,
-                last_for_receivers: false,
-                forward: None,
-                stop,
-            };
-            let mut back = core::mem::take(&mut self.back);
-            let complete = back.grow(&growth, at, &[]);
-            for behind in &back.pole_cones {
-                let home_order = back.beams[behind.beam as usize].order;
-                let start = self.from_source.partition_point(|cone| cone_key(cone) < cone_key(behind));
-                for index in start..self.from_source.len() {
-                    let before = self.from_source[index];
-                    if cone_key(&before) != cone_key(behind)
-                        || tree.beams[before.beam as usize].order + home_order >= limits.max_order
-                        || self.tried > MAX_TRIED
-                        || self.is_stopped(stop)
-                    {
-                        break;
-                    }
-                    self.between(query, &before, &back, behind, receiver);
-                }
-            }
-            in_sight(&back.pole_cones, &mut self.lasts);
-            self.back = back;
-            if !complete || self.found.len() > budget || self.tried > MAX_TRIED || stop.is_stopped() {
+            if self.homes.len() <= index && !self.grow_home(query, receiver) {
                 return false;
             }
-            if limits.max_order >= 2 {
-                self.two_poles(query, receiver);
+            let homes = core::mem::take(&mut self.homes);
+            let home = &homes[index];
+            for behind in &home.legs {
+                self.join(query, home, behind, receiver);
             }
-            if stop.is_stopped() {
+            let spent = self.found.len() > budget || self.tried > MAX_TRIED || stop.is_stopped();
+            if !spent {
+                self.two_poles(query, &home.in_sight, receiver);
+            }
+            self.homes = homes;
+            if spent || stop.is_stopped() {
                 return false;
             }
         }
         true
+    }
+
+    /// Forgets the source's ways to poles over which no receiver hears it, however near it is and wherever it heads.
+    fn drop_faint(&mut self, audibility: &Audibility, scene: &Scene, receivers: &[Point]) {
+        let nearest_m = |pole: u32| {
+            let pole = &scene.poles()[pole as usize];
+            let far_m = receivers.iter().map(|at| (at - pole.centre).norm()).fold(f64::INFINITY, f64::min);
+            (far_m - pole.radius_m).max(0.0)
+        };
+        let (mut last, mut after_m) = (u32::MAX, 0.0);
+        self.from_source.retain(|leg| {
+            if leg.cone.pole != last {
+                (last, after_m) = (leg.cone.pole, nearest_m(leg.cone.pole));
+            }
+            audibility.may_hear_pole(leg.square, scene.poles()[last as usize].radius_m, leg.least_m, after_m)
+        });
+    }
+
+    /// Grows a receiver's ways to the poles, backwards. Returns whether they are all.
+    fn grow_home(&mut self, query: &PoleQuery<'_>, receiver: Receiver) -> bool {
+        let PoleQuery { scene, limits, audibility, budget, stop, .. } = *query;
+        let aim = audibility.and_then(|audibility| audibility.of_receiver(receiver.index as usize));
+        let growth = Growth {
+            mesh: &scene.mesh,
+            mirrors: &scene.mirrors,
+            poles: scene.poles(),
+            pole_triangles: &scene.pole_triangles,
+            max_order: limits.max_order - 1,
+            max_length_m: limits.max_length_m,
+            budget,
+            last_for_receivers: false,
+            aim,
+            stop,
+        };
+        let complete = self.back.grow(&growth, receiver.at, &[]);
+        let mut home = Home { beams: Vec::new(), legs: Vec::new(), in_sight: Vec::new() };
+        legs_of(&self.back, scene, aim, &mut home.legs);
+        in_sight(&home.legs, &mut home.in_sight);
+        home.beams.extend_from_slice(&self.back.beams);
+        self.homes.push(home);
+        complete
+    }
+
+    /// Joins one of a receiver's ways to a pole with all of the source's.
+    fn join(&mut self, query: &PoleQuery<'_>, home: &Home, behind: &Leg, receiver: Receiver) {
+        let PoleQuery { scene, limits, audibility, stop, .. } = *query;
+        let radius_m = scene.poles()[behind.cone.pole as usize].radius_m;
+        let start = self.from_source.partition_point(|leg| leg.key() < behind.key());
+        for index in start..self.from_source.len() {
+            let before = self.from_source[index];
+            if before.key() != behind.key()
+                || before.order + behind.order >= limits.max_order
+                || self.tried > MAX_TRIED
+                || self.is_stopped(stop)
+            {
+                break;
+            }
+            let may_be_heard = audibility.is_none_or(|audibility| {
+                audibility.may_hear_pole(before.square * behind.square, radius_m, before.least_m, behind.least_m)
+            });
+            if may_be_heard {
+                self.between(query, &before, home, behind, receiver);
+            }
+        }
     }
 
     /// Whether to end; looked at now and then.
@@ -150,41 +199,32 @@ impl PoleSearch {
     }
 
     /// One pole between a beam of the source and a beam of the receiver.
-    fn between(
-        &mut self,
-        query: &PoleQuery<'_>,
-        before: &PoleCone,
-        back: &BeamTree,
-        behind: &PoleCone,
-        receiver: Receiver,
-    ) {
+    fn between(&mut self, query: &PoleQuery<'_>, before: &Leg, home: &Home, behind: &Leg, receiver: Receiver) {
         let PoleQuery { scene, tree, limits, .. } = *query;
-        let (out, home) = (&tree.beams[before.beam as usize], &back.beams[behind.beam as usize]);
-        let order = out.order + 1 + home.order;
-        let pole = &scene.poles()[before.pole as usize];
-        let (far_out, far_home) = ((out.image - pole.centre).norm(), (home.image - pole.centre).norm());
-        if far_out + far_home > limits.max_length_m + 2.0 * pole.radius_m {
+        let order = before.order + 1 + behind.order;
+        let pole = &scene.poles()[before.cone.pole as usize];
+        if before.far_m + behind.far_m > limits.max_length_m + 2.0 * pole.radius_m {
             return;
         }
         self.tried += 1;
-        let Some(hit) = alhazen(out.image, home.image, pole.centre, pole.radius_m) else {
+        let Some(hit) = alhazen(before.image, behind.image, pole.centre, pole.radius_m) else {
             return;
         };
         let length_m = hit.before_m + hit.after_m;
         if length_m > limits.max_length_m
-            || !before.holds(hit.point - out.image)
-            || !behind.holds(hit.point - home.image)
-            || !scene.mesh.touches(before.triangle, hit.point)
+            || !before.cone.holds(hit.point - before.image)
+            || !behind.cone.holds(hit.point - behind.image)
+            || !scene.mesh.touches(before.cone.triangle, hit.point)
         {
             return;
         }
         let start = self.bounces.len();
-        tree.push_chain(before.beam, &mut self.bounces);
+        tree.push_chain(before.cone.beam, &mut self.bounces);
         self.bounces[start..].reverse();
-        self.bounces.push(Bounce::Pole(before.pole));
-        back.push_chain(behind.beam, &mut self.bounces);
-        let departure_rad = unfolded(hit.point - out.image, out.order, out.turn);
-        let arrival_rad = unfolded(hit.point - home.image, home.order, home.turn);
+        self.bounces.push(Bounce::Pole(before.cone.pole));
+        push_chain(&home.beams, behind.cone.beam, &mut self.bounces);
+        let departure_rad = unfolded(hit.point - before.image, before.order, before.turn);
+        let arrival_rad = unfolded(hit.point - behind.image, behind.order, behind.turn);
         self.push(receiver, order, [departure_rad, arrival_rad], &[(hit, pole.radius_m)], start);
     }
 
@@ -219,18 +259,34 @@ impl PoleSearch {
     }
 
     /// Source, one pole, another pole, receiver, all in sight of each other.
-    fn two_poles(&mut self, query: &PoleQuery<'_>, receiver: Receiver) {
-        let PoleQuery { scene, source, limits, stop, .. } = *query;
+    fn two_poles(&mut self, query: &PoleQuery<'_>, lasts: &[u32], receiver: Receiver) {
+        let PoleQuery { scene, source, limits, audibility, stop, .. } = *query;
         let at = receiver.at;
         let poles = scene.poles();
+        let heard_from = audibility.and_then(|audibility| audibility.of_receiver(receiver.index as usize));
         for a in 0..self.firsts.len() {
             if stop.is_stopped() {
                 return;
             }
-            for b in 0..self.lasts.len() {
-                let (a, b) = (self.firsts[a], self.lasts[b]);
+            for &b in lasts {
+                let a = self.firsts[a];
                 if a == b {
                     continue;
+                }
+                if let Some(audibility) = audibility {
+                    let (first, second) = (&poles[a as usize], &poles[b as usize]);
+                    let aim = audibility.of_source();
+                    let square = aim.towards_pole(source, aim.axis(), first, 1.0)
+                        * heard_from.map_or(1.0, |aim| aim.towards_pole(at, aim.axis(), second, 1.0));
+                    let radii_m = [first.radius_m, second.radius_m];
+                    let legs_m = [
+                        (source - first.centre).norm() - first.radius_m,
+                        (first.centre - second.centre).norm() - first.radius_m - second.radius_m,
+                        (at - second.centre).norm() - second.radius_m,
+                    ];
+                    if !audibility.may_hear_two_poles(square, radii_m, legs_m.map(|leg_m| leg_m.max(0.0))) {
+                        continue;
+                    }
                 }
                 self.tried += 1;
                 let (first, second) = (&poles[a as usize], &poles[b as usize]);
@@ -280,14 +336,6 @@ impl PoleSearch {
             bounces: (start as u32, self.bounces.len() as u32),
         });
     }
-}
-
-/// The poles that the source's own, unreflected cones pass.
-fn in_sight(cones: &[PoleCone], poles: &mut Vec<u32>) {
-    poles.clear();
-    poles.extend(cones.iter().filter(|cone| cone.beam == 0).map(|cone| cone.pole));
-    poles.sort_unstable();
-    poles.dedup();
 }
 
 /// The direction at the source of what is `ahead` in the image's world.

@@ -14,9 +14,9 @@ use crate::{
 /// ```
 ///
 /// `corners` are those of the path, ends included. Walls are mirrors, so `d1` and `d2` are counted along the path,
-/// bounces at walls and all, up to its ends or to the next pole, which makes the sound spread anew.
+/// bounces at walls and all, up to its ends or to the next pole or edge, which makes the sound spread anew.
 pub(in crate::tracing) fn is_shaded(scene: &Scene, corners: &[Point], bounces: &[Bounce], wavelength_m: f64) -> bool {
-    let is_pole = |corner: usize| matches!(bounces.get(corner - 1), Some(Bounce::Pole(_)));
+    let is_pole = |corner: usize| matches!(bounces.get(corner - 1), Some(Bounce::Pole(_) | Bounce::Edge(_)));
     let last = corners.len() - 1;
     let mut start = 0;
     while start < last {

@@ -1,8 +1,9 @@
-//! What the two searches found, side by side: images seen over walls first, paths over poles after them.
+//! What the three searches found, side by side: images seen over walls first, then paths over poles, then those around edges.
 
 use crate::geometry::{Point, TOUCH_M};
 use crate::scene::Bounce;
 use crate::tracing::beam::{BeamTree, VisibleImage};
+use crate::tracing::edges::{EdgePath, EdgeSearch};
 use crate::tracing::poles::{PolePath, PoleSearch};
 
 /// Everything that was found, numbered in one sequence.
@@ -10,20 +11,25 @@ use crate::tracing::poles::{PolePath, PoleSearch};
 pub(in crate::tracing) struct Found<'a> {
     pub(in crate::tracing) tree: &'a BeamTree,
     pub(in crate::tracing) poles: &'a PoleSearch,
+    pub(in crate::tracing) edges: &'a EdgeSearch,
 }
 
 /// One found path.
 pub(in crate::tracing) enum FoundPath<'a> {
     Walls(&'a VisibleImage),
     Pole(&'a PolePath),
+    Edge(&'a EdgePath),
 }
 
 impl<'a> Found<'a> {
     /// The path with a number.
     pub(in crate::tracing) fn get(self, index: u32) -> FoundPath<'a> {
-        match self.tree.visible_images.get(index as usize) {
-            Some(image) => FoundPath::Walls(image),
-            None => FoundPath::Pole(&self.poles.found[index as usize - self.tree.visible_images.len()]),
+        let index = index as usize;
+        let (walls, poles) = (self.tree.visible_images.len(), self.poles.found.len());
+        match (index.checked_sub(walls), index.checked_sub(walls + poles)) {
+            (None, _) => FoundPath::Walls(&self.tree.visible_images[index]),
+            (Some(pole), None) => FoundPath::Pole(&self.poles.found[pole]),
+            (_, Some(edge)) => FoundPath::Edge(&self.edges.found[edge]),
         }
     }
 
@@ -37,6 +43,7 @@ impl<'a> Found<'a> {
         match self.get(index) {
             FoundPath::Walls(image) => (image.order, image.image),
             FoundPath::Pole(path) => (path.order, path.image),
+            FoundPath::Edge(path) => (1, path.at),
         }
     }
 
@@ -49,6 +56,10 @@ impl<'a> Found<'a> {
             }
             FoundPath::Pole(path) => {
                 bounces.extend_from_slice(self.poles.bounces(path));
+                path.receiver
+            }
+            FoundPath::Edge(path) => {
+                bounces.push(Bounce::Edge(path.edge));
                 path.receiver
             }
         }

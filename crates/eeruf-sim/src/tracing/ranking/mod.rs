@@ -47,17 +47,19 @@ impl Ranking {
     fn sort(&mut self, found: Found<'_>, receivers: usize) {
         let walls = found.tree.visible_images.iter().map(|image| (image.receiver, image.length_m));
         let poles = found.poles.found.iter().map(|path| (path.receiver, path.length_m));
+        let edges = found.edges.found.iter().map(|path| (path.receiver, path.length_m));
+        let all = walls.chain(poles).chain(edges);
         self.starts.clear();
         self.starts.resize(receivers + 2, 0);
-        for (receiver, _) in walls.clone().chain(poles.clone()) {
+        for (receiver, _) in all.clone() {
             self.starts[receiver as usize + 2] += 1;
         }
         for receiver in 2..self.starts.len() {
             self.starts[receiver] += self.starts[receiver - 1];
         }
         self.keys.clear();
-        self.keys.resize(found.tree.visible_images.len() + found.poles.found.len(), 0);
-        for (index, (receiver, length_m)) in walls.chain(poles).enumerate() {
+        self.keys.resize(all.clone().count(), 0);
+        for (index, (receiver, length_m)) in all.enumerate() {
             let next = &mut self.starts[receiver as usize + 1];
             self.keys[*next as usize] = (length_m.to_bits() & !INDEX) | index as u64;
             *next += 1;
@@ -79,6 +81,7 @@ impl Ranking {
                 let length_m = match found.get(index) {
                     FoundPath::Walls(image) => image.length_m,
                     FoundPath::Pole(path) => path.length_m,
+                    FoundPath::Edge(path) => path.length_m,
                 };
                 // The keys ignore the last digits of the lengths, so a neighbour or two may have to move up.
                 let mut at_rank = self.ranks.len();

@@ -80,6 +80,7 @@ pub(super) enum PhysicsFile {
 pub(super) struct PhysicsTable {
     preset: Option<String>,
     shadows: Option<bool>,
+    edges: Option<bool>,
     range_walk: Option<bool>,
     fading_time_s: Option<f64>,
 }
@@ -92,6 +93,7 @@ impl PhysicsFile {
                 let base = table.preset.as_ref().map_or(Ok(Physics::PLAIN), |name| name.parse())?;
                 Ok(Physics {
                     shadows: table.shadows.unwrap_or(base.shadows),
+                    edges: table.edges.unwrap_or(base.edges),
                     range_walk: table.range_walk.unwrap_or(base.range_walk),
                     fading_time_s: table.fading_time_s.unwrap_or(base.fading_time_s),
                 })

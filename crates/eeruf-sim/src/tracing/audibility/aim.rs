@@ -1,0 +1,57 @@
+//! What a transducer sends into a cone, or hears from it, at most; and how far that is heard.
+
+use super::reach::Reach;
+use super::{FAR, at_cos};
+use crate::{
+    geometry::{Point, Vector, cross},
+    scene::Pole,
+};
+
+/// A transducer's pattern about its axis, and what is just heard.
+#[derive(Clone, Copy)]
+pub(crate) struct Aim<'a> {
+    pub(super) envelope: &'a [f64],
+    pub(super) reach: &'a Reach,
+    pub(super) axis: Vector,
+}
+
+impl Aim<'_> {
+    /// The axis. Nothing leaves at right angles to it, or further behind.
+    pub(crate) fn axis(&self) -> Vector {
+        self.axis
+    }
+
+    /// The longest path after which anything is heard, in metres.
+    pub(crate) fn longest_m(&self) -> f64 {
+        self.reach.at(1.0)
+    }
+
+    /// The longest path, in metres, after which sound may be heard that leaves within a cone and has kept
+    /// `reflection_gain` of its amplitude. `axis` is the transducer's as seen in the cone's world.
+    #[inline]
+    pub(crate) fn reach_m(&self, axis: Vector, left: Vector, right: Vector, reflection_gain: f64) -> f64 {
+        let strongest = if cross(axis, left) >= 0.0 && cross(right, axis) >= 0.0 {
+            1.0
+        } else {
+            let cos = |limit: Vector| axis.dot(&limit) / limit.norm();
+            // The nearer limit, where it is plain which one that is.
+            let nearest = match (cross(axis, left) < 0.0, cross(right, axis) < 0.0) {
+                (true, false) => cos(left),
+                (false, true) => cos(right),
+                _ => cos(left).max(cos(right)),
+            };
+            at_cos(self.envelope, nearest)
+        };
+        self.reach.at(strongest * reflection_gain * reflection_gain)
+    }
+
+    /// The square, at most, of what leaves towards a pole and of what reflections have left of it: of a path's
+    /// amplitude all but spreading, air, and what happens beyond the pole.
+    pub(crate) fn towards_pole(&self, image: Point, axis: Vector, pole: &Pole, reflection_gain: f64) -> f64 {
+        let out = pole.centre - image;
+        let far_m = out.norm();
+        // The side of a pole near by may lie anywhere.
+        let sent = if far_m < FAR * pole.radius_m { 1.0 } else { at_cos(self.envelope, out.dot(&axis) / far_m) };
+        sent * reflection_gain * reflection_gain
+    }
+}

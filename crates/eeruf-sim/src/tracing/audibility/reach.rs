@@ -1,0 +1,73 @@
+//! How far sound is heard, by the strength with which it leaves.
+
+/// Steps in each octave of the square of an amplitude.
+const STEPS_BITS: u32 = 2;
+/// So many octaves down sound is looked up; fainter sound reaches as far as the faintest of these.
+const OCTAVES: usize = 64;
+
+/// Upper bounds on the longest path that is heard.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Reach {
+    /// By steps of the square of the amplitude at 1 m, from the strongest on; empty if everything is heard.
+    lengths_m: Vec<f64>,
+}
+
+impl Reach {
+    /// For the amplitude that is just heard, and the natural logarithm of what the air leaves of one per metre.
+    pub(super) fn new(floor: f64, loss_per_m: f64) -> Self {
+        if !(floor > 0.0) {
+            return Self::default();
+        }
+        let steps = OCTAVES << STEPS_BITS;
+        // The step before the first stands for 1 itself.
+        Self { lengths_m: (0..=steps).map(|step| longest_m(square_at_most(step).sqrt(), floor, loss_per_m)).collect() }
+    }
+
+    /// The longest path after which sound may be heard that leaves with this square of an amplitude, up to 1.
+    #[inline]
+    pub(super) fn at(&self, square: f64) -> f64 {
+        // Exponent and the first bits of the fraction number the steps, downwards from 1.
+        let shift = 52 - STEPS_BITS;
+        let below = (1f64.to_bits() >> shift).saturating_sub(square.max(0.0).to_bits() >> shift);
+        self.lengths_m
+            .get((below as usize).min(self.lengths_m.len().saturating_sub(1)))
+            .copied()
+            .unwrap_or(f64::INFINITY)
+    }
+}
+
+/// The largest square that has this step.
+fn square_at_most(step: usize) -> f64 {
+    f64::from_bits(((1f64.to_bits() >> (52 - STEPS_BITS)) - step as u64 + 1) << (52 - STEPS_BITS))
+}
+
+/// The longest path on which an amplitude of `sent` at 1 m stays above the floor, and a little more.
+fn longest_m(sent: f64, floor: f64, loss_per_m: f64) -> f64 {
+    let (mut near, mut far) = (0.0, sent / floor);
+    while far - near > 1e-4 * far {
+        let middle = 0.5 * (near + far);
+        let heard = sent * (loss_per_m * middle).exp() >= floor * middle;
+        *(if heard { &mut near } else { &mut far }) = middle;
+    }
+    far * (1.0 + 1e-9)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_that_is_heard_is_out_of_reach_and_little_else_is_in_it() {
+        let (floor, loss_per_m) = (8.19e-4, -0.189);
+        let reach = Reach::new(floor, loss_per_m);
+        for k in 0..4000 {
+            let sent = 0.998f64.powi(k);
+            let longest = longest_m(sent, floor, loss_per_m);
+            let found = reach.at(sent * sent);
+            assert!(found >= longest / (1.0 + 2e-4), "{sent}");
+            assert!(found <= 1.13 * longest + 1e-9, "{sent}: {found} {longest}");
+        }
+        assert!(reach.at(0.0) < 1e-4);
+        assert_eq!(Reach::new(0.0, loss_per_m).at(0.5), f64::INFINITY);
+    }
+}

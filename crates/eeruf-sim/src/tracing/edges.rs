@@ -1,0 +1,158 @@
+//! Paths around one edge: source, edge, receiver, both in sight of it. Diffraction of the first order, of rigid wedges.
+
+use super::audibility::Audibility;
+use super::limits::Limits;
+use crate::{
+    acoustics::edge_diffraction,
+    geometry::{Point, TOUCH_M},
+    scene::Scene,
+    threads::Stop,
+};
+
+/// A path around an edge.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EdgePath {
+    pub(crate) receiver: u32,
+    pub(crate) edge: u32,
+    pub(crate) length_m: f64,
+    pub(crate) departure_rad: f64,
+    pub(crate) arrival_rad: f64,
+    /// What diffraction and spreading leave of the amplitude.
+    pub(crate) spread: f64,
+    /// The edge itself, by which doubles are recognised.
+    pub(crate) at: Point,
+}
+
+/// Finds them; holds the buffers.
+#[derive(Debug, Default)]
+pub(crate) struct EdgeSearch {
+    pub(crate) found: Vec<EdgePath>,
+    triangles: [Vec<u32>; 2],
+}
+
+impl EdgeSearch {
+    pub(crate) fn clear(&mut self) {
+        self.found.clear();
+    }
+
+    /// Finds all paths around an edge to these receivers, but for those that are certainly too faint. Returns whether
+    /// these are all: whether the work was not stopped.
+    #[expect(clippy::too_many_arguments, reason = "one question")]
+    pub(crate) fn search(
+        &mut self,
+        scene: &Scene,
+        audibility: Option<&Audibility>,
+        source: Point,
+        receivers: &[Point],
+        limits: Limits,
+        wave_number: f64,
+        stop: &Stop,
+    ) -> bool {
+        self.found.clear();
+        if limits.max_order == 0 {
+            return true;
+        }
+        for (index, edge) in scene.edges().iter().enumerate() {
+            if stop.is_stopped() {
+                return false;
+            }
+            let out = edge.at - source;
+            let before_m = out.norm();
+            let Some(from_rad) = edge.around(source).filter(|_| before_m > TOUCH_M) else { continue };
+            let mut in_sight = None;
+            for (receiver, &at) in receivers.iter().enumerate() {
+                let home = edge.at - at;
+                let after_m = home.norm();
+                let length_m = before_m + after_m;
+                let Some(to_rad) = edge.around(at).filter(|_| after_m > TOUCH_M) else { continue };
+                let most = MOST / length_m;
+                let heard = |audibility: &Audibility| audibility.may_hear_around(most, receiver, out, home, length_m);
+                if length_m > limits.max_length_m || !audibility.is_none_or(heard) {
+                    continue;
+                }
+                if !*in_sight.get_or_insert_with(|| scene.mesh.sees(source, edge.at, &mut self.triangles)) {
+                    break;
+                }
+                if !scene.mesh.sees(at, edge.at, &mut self.triangles) {
+                    continue;
+                }
+                let bent = edge_diffraction(wave_number, edge.outside_rad, from_rad, to_rad).abs();
+                let spread = bent / (before_m * after_m * length_m).sqrt();
+                self.found.push(EdgePath {
+                    receiver: receiver as u32,
+                    edge: index as u32,
+                    length_m,
+                    departure_rad: out.y.atan2(out.x),
+                    arrival_rad: home.y.atan2(home.x),
+                    // The series is no number where two of its poles meet.
+                    spread: if spread < most { spread } else { most },
+                    at: edge.at,
+                });
+            }
+        }
+        true
+    }
+}
+
+/// No more than this of an undisturbed wave of the same length: what the exact solution has on the limit of a shadow or
+/// of a reflection, where Keller's coefficient grows without bound.
+const MOST: f64 = 0.5;
+
+#[cfg(test)]
+mod tests {
+    use crate::*;
+
+    fn around(walls: Vec<Wall>, source: Point, receiver: Point) -> Vec<(f64, f64)> {
+        let scene = Scene::new(walls, vec![], Air::default()).unwrap();
+        let mut tracer = Tracer::new();
+        tracer.edges = true;
+        let mut paths = Paths::default();
+        tracer.trace(&scene, source, &[receiver], Limits::order(2), &mut paths).unwrap();
+        let bent = (0..paths.len()).filter(|&k| matches!(paths.bounces(k), [Bounce::Edge(_)]));
+        bent.map(|k| (paths.length_m[k], paths.amplitude[k])).collect()
+    }
+
+    fn air(length_m: f64) -> f64 {
+        10f64.powf(-Air::default().absorption_db_per_m(49_400.0) * length_m / 20.0)
+    }
+
+    #[test]
+    fn a_pillars_corner_is_heard_at_a_metre_36_8_decibel_below_a_wall() {
+        // Its corner at the origin, the open space on three sides; the sensor a metre away on the corner's bisector.
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]];
+        let pillar: Vec<_> = Wall::polyline(&corners.map(|[x, y]| [y, x])).collect();
+        let here = Point::new(-(0.5f64.sqrt()), -(0.5f64.sqrt()));
+        let heard = around(pillar, here, here);
+        // The two corners beside it are in sight as well, the one behind it is not.
+        assert_eq!(heard.len(), 3, "{heard:?}");
+        let (length_m, amplitude) = heard[0];
+        let below_db = 20.0 * (amplitude / (0.5 * air(2.0))).log10();
+        assert!((length_m - 2.0).abs() < 1e-12 && (below_db + 36.8).abs() < 0.05, "{length_m} {below_db}");
+    }
+
+    #[test]
+    fn sound_bends_around_a_panels_end_and_less_the_deeper_the_shadow() {
+        let panel = vec![Wall::new(0.0, -5.0, 0.0, 0.0).with_faces(Faces::Both)];
+        let source = Point::new(-2.0, -0.5);
+        let behind = |y: f64| around(panel.clone(), source, Point::new(2.0, y))[0];
+        for (y, deeper) in [(0.4, 0.0), (0.0, -1.0), (-1.0, -3.0)] {
+            let ((length_m, amplitude), (_, fainter)) = (behind(y), behind(deeper));
+            assert!((length_m - (2f64.hypot(0.5) + 2f64.hypot(y))).abs() < 1e-12);
+            assert!(amplitude > fainter, "{y}: {amplitude} {fainter}");
+        }
+        // Just on the shadow's limit half of the wave is there.
+        let (length_m, amplitude) = behind(0.5);
+        assert!((amplitude - 0.5 * air(length_m) / length_m).abs() < 1e-9);
+    }
+
+    #[test]
+    fn edges_are_silent_unless_asked_for_and_behind_walls() {
+        let panel = Wall::new(0.0, -1.0, 0.0, 1.0).with_faces(Faces::Both);
+        let (here, screen) = (Point::new(-2.0, 0.0), Wall::new(-1.0, -2.0, -1.0, 2.0).with_faces(Faces::Both));
+        assert_eq!(around(vec![panel], here, here).len(), 2);
+        let screened = around(vec![panel, screen], here, here);
+        assert!(screened.iter().all(|(length_m, _)| *length_m < 4.5), "the screen's own ends alone: {screened:?}");
+        let scene = Scene::new(vec![panel], vec![], Air::default()).unwrap();
+        assert_eq!(scene.paths(here, &[here], 1, 9.0).unwrap().len(), 1);
+    }
+}

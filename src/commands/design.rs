@@ -160,6 +160,9 @@ fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, Input
                         moves, by odometry"
             .to_owned()));
     }
+    if matches!(args.form(), Some(Form::Arduino)) {
+        return Err(bad("--emit arduino; expected toml, rust, c or json with --phases".to_owned()));
+    }
     let margin = |us| PhaseCriterion::Margin(Micros::new(us));
     let criterion = args.margin_us.map_or(PhaseCriterion::Exact, margin);
     let design = spec.hopping(phases, criterion).map_err(bad)?;
@@ -172,7 +175,8 @@ fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, Input
         Some(Form::Rust) => print!("{}", design.schedule.to_rust(&requirements)),
         Some(Form::C) => print!("{}", design.schedule.to_c(&requirements)),
         Some(Form::Json) => println!("{}", to_json(&DesignJson::from(&design))),
-        None => print!("{}", describe_design(&args.file.display().to_string(), spec, &requirements, &design)),
+        // Arduino was refused.
+        _ => print!("{}", describe_design(&args.file.display().to_string(), spec, &requirements, &design)),
     }
     Ok(Answer::Yes)
 }

@@ -14,7 +14,7 @@ const NAMED: [(&str, Core); 3] = [("balanced", Core::BALANCED), ("quick", Core::
 /// How a hopping ring, or its tracker alone, weighs readings and fires. Immutable; they compare, hash and pickle.
 ///
 /// Args:
-///     name: what to begin with: ``"balanced"`` for most robots, ``"quick"`` for those that must stop early (a little
+///     name: what to start from: ``"balanced"`` for most robots, ``"quick"`` for those that must stop early (a little
 ///         more is wrong), ``"maps"`` for confirmed echoes alone.
 ///     changes: whatever is to be different, by the names of the attributes; whole numbers.
 ///

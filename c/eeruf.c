@@ -31,6 +31,7 @@ SIZE_IS(EerufLine, 12);
 #define READ_POINTER(type, place) (place)
 #endif
 
+/* Where inlining costs more flash than the call, measured on an AVR. */
 #if defined(__GNUC__)
 #define OUT_OF_LINE __attribute__((noinline))
 #else
@@ -242,7 +243,7 @@ EerufStatus eeruf_schedule_verify(EerufSchedule *schedule, const EerufRequiremen
 #endif
 }
 
-static EerufStatus schedule_is_usable(const EerufSchedule *schedule) {
+static OUT_OF_LINE EerufStatus schedule_is_usable(const EerufSchedule *schedule) {
     uint16_t version;
     if (schedule == NULL) return EERUF_ERR_NULL;
     version = READ16(schedule->version);
@@ -407,7 +408,7 @@ static void count(EerufRing *ring, uint8_t kind) {
 #define FIRST_PERIOD 3u /* nothing has fired before, so that firings have no stretch */
 #define WATCHED 3u      /* at so many period ends something late is still remembered */
 
-static void watch(EerufRing *ring) {
+static OUT_OF_LINE void watch(EerufRing *ring) {
     EerufLateness *late = &ring->lateness;
     if (late->watched == 0) {
         uint8_t x;
@@ -442,7 +443,7 @@ static void add_late(EerufRing *ring, uint16_t late_us) {
     }
 }
 
-static void note_late(EerufRing *ring, uint16_t late_us) {
+static OUT_OF_LINE void note_late(EerufRing *ring, uint16_t late_us) {
     if (late_us > ring->lateness.latest) ring->lateness.latest = late_us;
 }
 
@@ -532,13 +533,13 @@ static void skip_silent(EerufRing *ring) {
         turn_once(ring);
 }
 
-static void turn(EerufRing *ring, uint32_t from_us) {
+static OUT_OF_LINE void turn(EerufRing *ring, uint32_t from_us) {
     ring->due_us = from_us;
     turn_once(ring);
     skip_silent(ring);
 }
 
-static void begin_period(EerufRing *ring, uint8_t phase, uint32_t start_us) {
+static OUT_OF_LINE void begin_period(EerufRing *ring, uint8_t phase, uint32_t start_us) {
     ring->phase = phase;
     ring->following = 0;
     turn(ring, start_us);
@@ -551,7 +552,7 @@ static uint32_t settling_time(const EerufSchedule *schedule) {
 }
 
 /* No deadline lies further ahead, unless the clock has jumped. */
-static uint32_t horizon(const EerufRing *ring);
+static OUT_OF_LINE uint32_t horizon(const EerufRing *ring);
 
 /* Ends the period of a table. Returns whether the next one does not follow on it as the schedule says. */
 static bool end_period_of_table(EerufRing *ring, uint32_t now_us) {
@@ -632,7 +633,7 @@ static EerufStatus listen(EerufRing *ring, uint32_t t_delta_us, uint32_t window_
     return EERUF_OK;
 }
 
-static void drop_firing(EerufSensor *sensor) {
+static OUT_OF_LINE void drop_firing(EerufSensor *sensor) {
     sensor->echo_us = EERUF_NO_ECHO;
     forget(&sensor->filter);
     sensor->flags = OUTSIDE;
@@ -692,12 +693,12 @@ EerufStatus eeruf_ring_init(EerufRing *ring, size_t ring_size, EerufSensor *sens
 }
 
 /* Whether a reading will be emitted without a further firing. */
-static bool has_pending(const EerufRing *ring) {
+static OUT_OF_LINE bool has_pending(const EerufRing *ring) {
     return ring->pending > 0 || ring->oldest != NOBODY;
 }
 
 /* Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes. */
-static void emit_when_oldest_ends(EerufRing *ring) {
+static OUT_OF_LINE void emit_when_oldest_ends(EerufRing *ring) {
     if (ring->pending == 0 && ring->oldest != NOBODY)
         ring->emit_at_us = ring->sensors[ring->oldest].fired_us + ring->window_us;
 }

@@ -11,7 +11,8 @@ import { pythonText, ringText, sceneText } from "./texts.js";
  */
 const FORMS = [
   { id: "rust", name: "Rust", file: "ring.rs", needs: true, text: (_, designed) => designed.rust },
-  { id: "c", name: "C, Arduino", file: "eeruf_schedule.h", needs: true, text: (_, designed) => designed.c },
+  { id: "c", name: "C", file: "eeruf_schedule.h", needs: true, text: (_, designed) => designed.c },
+  { id: "arduino", name: "Arduino", file: "ring.h", needs: true, text: (_, designed) => designed.arduino },
   { id: "python", name: "Python", file: "ring.py", needs: true, text: pythonText },
   { id: "schedule", name: "Schedule", file: "schedule.toml", needs: true, text: (_, designed) => designed.toml },
   { id: "ring", name: "Ring", file: "ring.toml", needs: false, text: (state) => ringText(state) },
@@ -21,7 +22,8 @@ const FORMS = [
 /** What to do with a form. */
 const USES = new Map([
   ["rust", "A constant that the compiler checks, for the crate eeruf-core."],
-  ["c", "A C99 header that includes nothing but <stdint.h>; in the Arduino IDE, add it as a tab."],
+  ["c", "A C99 header that includes nothing but <stdint.h>; after eeruf.h, also the schedule for its ring."],
+  ["arduino", "For the Arduino library Eeruf: add it as a tab, and give RING to an EerufSonar."],
   ["python", "For the package eeruf: it verifies the schedule again."],
   ["schedule", "For the program: eeruf verify schedule.toml --t-delta-us N, and for a robot in a scene file."],
   ["ring", "For the program: eeruf design ring.toml gives the same period."],
@@ -37,7 +39,7 @@ export class TakeHome {
     this.page = page;
     /** @type {any} */
     this.designed = null;
-    this.form = FORMS[5];
+    this.form = FORMS[FORMS.length - 1];
     this.tabs = byId("form-tabs", HTMLElement);
     this.text = byId("form-text", HTMLElement);
     this.use = byId("form-use", HTMLElement);
@@ -65,12 +67,12 @@ export class TakeHome {
   /** @param {any} designed What the designer found; null for a ring that is not designed. */
   show(designed) {
     this.designed = designed;
-    this.form = designed ? FORMS[0] : FORMS[5];
+    this.form = designed ? FORMS[0] : FORMS[FORMS.length - 1];
     this.sync();
   }
 
   sync() {
-    if (this.form.needs && !this.designed) this.form = FORMS[5];
+    if (this.form.needs && !this.designed) this.form = FORMS[FORMS.length - 1];
     this.buttons.forEach((tab, k) => {
       const chosen = FORMS[k] === this.form;
       tab.disabled = FORMS[k].needs && !this.designed;

@@ -38,6 +38,7 @@ pub(crate) struct Designed {
     what_if: Vec<What>,
     rust: String,
     c: String,
+    arduino: String,
     toml: String,
 }
 
@@ -87,6 +88,7 @@ pub(crate) fn design(ring: &str) -> Result<Designed, String> {
         what_if: design.what_if.iter().map(what).collect(),
         rust: schedule.to_rust(&requirements).to_string(),
         c: schedule.to_c(&requirements).to_string(),
+        arduino: schedule.to_arduino(&requirements, "RING").to_string(),
         toml: schedule.to_toml().to_string(),
     })
 }

@@ -3,6 +3,7 @@
 //! `cargo xtask test` runs every check there is, the cheap ones first. A check whose tools are not installed is
 //! skipped, and says loudly what to install; with `--nothing-skipped`, as in CI, that counts as a failure.
 
+mod arduino;
 mod blocks;
 mod c;
 mod certificates;
@@ -59,6 +60,8 @@ enum Verb {
     },
     /// Compile the C library strictly, misuse it, and compare it with the Rust crates under sanitizers
     C,
+    /// Pack the Arduino library, build its examples, and run them on a simulated Uno among simulated modules
+    Arduino(arduino::Plan),
     /// Build the wheel and test it: types, examples, and against what Rust says
     Python,
     /// Build the page in playground/, as a folder for a server and as one file for a disk
@@ -108,6 +111,11 @@ fn main() -> ExitCode {
             steps.finish(true)
         }
         Verb::C => one_step("C library", c::c),
+        Verb::Arduino(plan) => {
+            let mut steps = Steps::default();
+            arduino::arduino(&plan, &mut steps);
+            steps.finish(true)
+        }
         Verb::Python => one_step("Python package", python::python),
         Verb::Page { test, long } => one_step("the page", || {
             page::page(match (test, long) {

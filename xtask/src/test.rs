@@ -65,6 +65,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
         run_cargo(&[&["test", "--package", "eeruf-core"], &tests[..]].concat())
     });
     steps.step("C library", crate::c::c);
+    crate::arduino::arduino(&crate::arduino::Plan::SHORT, &mut steps);
     steps.step("Python package", crate::python::python);
     steps.step("page in a browser", || crate::page::page(crate::page::Tests::Short));
     steps.step("firmware on emulated boards", || crate::firmware::firmware(false));

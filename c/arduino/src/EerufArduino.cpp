@@ -1,6 +1,8 @@
 // See EerufArduino.h.
 #include "EerufArduino.h"
 
+static const uint32_t SOON_US = 300;
+
 bool EerufModules::begin() {
     const EerufConfig config = EERUF_CONFIG;
     const EerufHcSr04Settings settings = EERUF_HC_SR04;
@@ -10,20 +12,30 @@ bool EerufModules::begin() {
         digitalWrite(triggers_[sensor], LOW);
         pinMode(triggers_[sensor], OUTPUT);
     }
-    status_ = eeruf_ring_init(&ring_, sizeof ring_, sensors_, count_ * sizeof *sensors_, schedule_, &config, ::micros());
+    const size_t sensors = count_ * sizeof *sensors_, lines = count_ * sizeof *lines_;
+    status_ = eeruf_ring_init(&ring_, sizeof ring_, sensors_, sensors, schedule_, &config, ::micros());
     if (status_ == EERUF_OK)
-        status_ = eeruf_hc_sr04_init(&modules_, sizeof modules_, lines_, count_ * sizeof *lines_, &ring_, &settings);
+        status_ = eeruf_hc_sr04_init(&modules_, sizeof modules_, lines_, lines, &ring_, &settings);
     return status_ == EERUF_OK;
 }
 
-// Edges of the lines that a pulse is awaited on.
-void EerufModules::sample() {
+// Edges of the lines that a pulse is awaited on, until something is due: to fire on time matters more.
+void EerufModules::sample(EerufModules &self) {
+    const uint32_t due = eeruf_ring_deadline(&self.ring_);
     bool was_high;
-    for (uint8_t sensor = 0; sensor < count_; sensor++) {
-        if (!eeruf_hc_sr04_awaits(&modules_, sensor, &was_high)) continue;
-        const bool high = digitalRead(echoes_[sensor]);
-        if (high != was_high) edge(sensor, high, ::micros());
+    for (uint8_t sensor = 0; sensor < self.count_ && (int32_t)(::micros() - due) < 0; sensor++) {
+        if (!eeruf_hc_sr04_awaits(&self.modules_, sensor, &was_high)) continue;
+        const bool high = digitalRead(self.echoes_[sensor]);
+        if (high != was_high) (void)eeruf_hc_sr04_edge(&self.modules_, sensor, high, ::micros());
     }
+}
+
+void EerufModules::drain(EerufModules &self) {
+    (void)eeruf_hc_sr04_edges(&self.modules_, self.edges_);
+}
+
+void EerufModules::climb(EerufModules &self, const EerufEvent &event) {
+    (void)eeruf_adaptation_period(self.adaptation_, &self.ring_, &event);
 }
 
 // A pulse of 10 us on the trigger, unless the line is high.
@@ -40,13 +52,18 @@ void EerufModules::fire(uint8_t sensor, uint32_t now) {
 bool EerufModules::read() {
     EerufEvent event;
     if (status_ != EERUF_OK) return false;
-    sample();
-    const uint32_t now = ::micros();
+    // A firing that is due within 0.3 ms is waited for, while lines are sampled: where modules fire late, by differing
+    // times, less can be compared. The clock is read before: then no window closes on an edge that came in time.
+    uint32_t now;
+    do {
+        now = ::micros();
+        collect_(*this);
+    } while (eeruf_ring_deadline(&ring_) - now - 1 < SOON_US);
     if (eeruf_ring_poll(&ring_, now, &event) != EERUF_EVENT) return false;
     if (event.kind == EERUF_EVENT_FIRE) {
         fire(event.sensor, now);
     } else if (event.kind == EERUF_EVENT_PERIOD) {
-        if (adaptation_ != nullptr) (void)eeruf_adaptation_period(adaptation_, &ring_, &event);
+        if (onPeriod_ != nullptr) onPeriod_(*this, event);
     } else {
         sensor_ = event.sensor;
         reading_ = event.u.reading;

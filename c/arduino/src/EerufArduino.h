@@ -7,8 +7,9 @@
 //   void setup() { Serial.begin(115200); if (!sonar.begin()) Serial.println(sonar.status()); }
 //   void loop() { if (sonar.read() && sonar.accepted()) Serial.println(sonar.millimetres()); }
 //
-// Nothing waits: read() samples the echo lines, fires what is due and returns at once. Call it as often as you can. An
-// echo time is as exact as the calls are frequent; while loop() is busy for longer than an echo takes, echoes are lost.
+// read() samples the echo lines, fires what is due and returns; what is due within 0.3 ms it waits for. Call it as
+// often as you can: echo times are as exact as the calls are frequent, and where modules fire late by more than the
+// table has to spare (some 0.5 ms), readings are compared with nothing.
 #pragma once
 
 #include <Arduino.h>
@@ -39,11 +40,19 @@ public:
     // Fires no module, or all again.
     void pause(bool paused = true) { (void)eeruf_ring_pause(&ring_, paused); }
     // By another table of as many modules, from the next period on.
-    bool change(const EerufSchedule &schedule) { return eeruf_hc_sr04_change_schedule(&modules_, &schedule) == EERUF_OK; }
+    bool change(const EerufSchedule &schedule) {
+        return eeruf_hc_sr04_change_schedule(&modules_, &schedule) == EERUF_OK;
+    }
     // Changes along a ladder of tables, the first of which the ring began with, as its readings ask for.
-    void adapt(EerufAdaptation &adaptation) { adaptation_ = &adaptation; }
-    // An edge that an interrupt saw, with what micros() read: for those who do not let read() sample the lines.
-    void edge(uint8_t sensor, bool high, uint32_t atMicros) { (void)eeruf_hc_sr04_edge(&modules_, sensor, high, atMicros); }
+    void adapt(EerufAdaptation &adaptation) {
+        adaptation_ = &adaptation;
+        onPeriod_ = climb; // by pointers, so that what a sketch does not use is not linked
+    }
+    // Takes edges from this queue, which interrupts fill, instead of sampling the lines.
+    void use(EerufEdges &edges) {
+        edges_ = &edges;
+        collect_ = drain;
+    }
 
     // What begin() came to: EERUF_OK or EERUF_ERR_..
     int8_t status() const { return status_; }
@@ -56,14 +65,19 @@ protected:
         : schedule_(&schedule), triggers_(triggers), echoes_(echoes), sensors_(sensors), lines_(lines), count_(count) {}
 
 private:
-    void sample();
+    static void sample(EerufModules &self);
+    static void drain(EerufModules &self);
+    static void climb(EerufModules &self, const EerufEvent &event);
     void fire(uint8_t sensor, uint32_t now);
 
     const EerufSchedule *schedule_;
     const uint8_t *triggers_, *echoes_;
     EerufSensor *sensors_;
     EerufLine *lines_;
-    EerufAdaptation *adaptation_ = nullptr;
+    EerufAdaptation *adaptation_;
+    EerufEdges *edges_;
+    void (*collect_)(EerufModules &) = sample;
+    void (*onPeriod_)(EerufModules &, const EerufEvent &) = nullptr;
     EerufRing ring_;
     EerufHcSr04 modules_;
     EerufReading reading_;

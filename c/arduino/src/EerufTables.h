@@ -1,0 +1,199 @@
+// Ready tables for rings of 2, 3, 4, 5, 6, 8, 10, 12, 16 and 24 HC-SR04 modules: no shorter period lets each
+// module rest for 60 ms and keeps four adjacent ones 14.569 ms apart, so that sound from up to 2.5 m has
+// died. The slower ones are for EerufAdaptation. Those that a sketch does not name take no room.
+// Written by `cargo xtask arduino --write` from what `eeruf design` finds; for your own ring:
+//   eeruf design RING.toml --emit arduino > ring.h
+#pragma once
+#include <EerufArduino.h>
+
+// 2 sensors, T_p = 61 ms;
+// t_delta = 381 us, 2 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
+static const uint8_t EERUF_HC_SR04_2_order[] EERUF_FLASH = {
+    0, 1, /* phase a */
+    0, 1, /* phase b */
+};
+static const uint32_t EERUF_HC_SR04_2_gap_us[] EERUF_FLASH = {
+    1000u, 30000u, 30000u,
+    0u, 31000u, 30000u,
+};
+static const EerufSchedule EERUF_HC_SR04_2 EERUF_FLASH = {
+    1, 2, 2, EERUF_HC_SR04_2_order, EERUF_HC_SR04_2_gap_us,
+    61000u, 60000u, 381u, 14569u, 60000u, 1000u,
+    1, EERUF_LAYOUT_RING, 2, 0,
+};
+
+// 3 sensors, T_p = 62 ms;
+// t_delta = 387 us, 3 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
+static const uint8_t EERUF_HC_SR04_3_order[] EERUF_FLASH = {
+    0, 1, 2, /* phase a */
+    0, 1, 2, /* phase b */
+};
+static const uint32_t EERUF_HC_SR04_3_gap_us[] EERUF_FLASH = {
+    2000u, 20000u, 20000u, 20000u,
+    0u, 22000u, 21000u, 19000u,
+};
+static const EerufSchedule EERUF_HC_SR04_3 EERUF_FLASH = {
+    1, 3, 2, EERUF_HC_SR04_3_order, EERUF_HC_SR04_3_gap_us,
+    62000u, 60000u, 387u, 14569u, 60000u, 1000u,
+    1, EERUF_LAYOUT_RING, 3, 0,
+};
+
+// 4 sensors, T_p = 63 ms;
+// t_delta = 393 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
+static const uint8_t EERUF_HC_SR04_4_order[] EERUF_FLASH = {
+    0, 1, 2, 3, /* phase a */
+    0, 1, 2, 3, /* phase b */
+};
+static const uint32_t EERUF_HC_SR04_4_gap_us[] EERUF_FLASH = {
+    0u, 16000u, 16000u, 16000u, 15000u,
+    0u, 15000u, 15000u, 15000u, 18000u,
+};
+static const EerufSchedule EERUF_HC_SR04_4 EERUF_FLASH = {
+    1, 4, 2, EERUF_HC_SR04_4_order, EERUF_HC_SR04_4_gap_us,
+    63000u, 60000u, 393u, 14569u, 60000u, 1000u,
+    1, EERUF_LAYOUT_RING, 4, 0,
+};
+
+// 5 sensors, T_p = 76.5 ms;
+// t_delta = 471 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
+static const uint8_t EERUF_HC_SR04_5_order[] EERUF_FLASH = {
+    1, 0, 2, 3, 4, /* phase a */
+    0, 1, 2, 4, 3, /* phase b */
+};
+static const uint32_t EERUF_HC_SR04_5_gap_us[] EERUF_FLASH = {
+    1500u, 15000u, 15000u, 15000u, 15000u, 15000u,
+    0u, 15000u, 15000u, 16000u, 15000u, 15500u,
+};
+static const EerufSchedule EERUF_HC_SR04_5 EERUF_FLASH = {
+    1, 5, 2, EERUF_HC_SR04_5_order, EERUF_HC_SR04_5_gap_us,
+    76500u, 60000u, 471u, 14569u, 60000u, 1000u,
+    1, EERUF_LAYOUT_RING, 4, 0,
+};
+
+// 6 sensors, T_p = 91.5 ms;
+// t_delta = 557 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
+static const uint8_t EERUF_HC_SR04_6_order[] EERUF_FLASH = {
+    1, 2, 0, 3, 4, 5, /* phase a */
+    0, 1, 3, 2, 4, 5, /* phase b */
+};
+static const uint32_t EERUF_HC_SR04_6_gap_us[] EERUF_FLASH = {
+    15500u, 15000u, 15000u, 15500u, 15000u, 15000u, 500u,
+    14500u, 15000u, 15000u, 15000u, 15000u, 16500u, 500u,
+};
+static const EerufSchedule EERUF_HC_SR04_6 EERUF_FLASH = {
+    1, 6, 2, EERUF_HC_SR04_6_order, EERUF_HC_SR04_6_gap_us,
+    91500u, 60500u, 557u, 14569u, 60000u, 1500u,
+    1, EERUF_LAYOUT_RING, 4, 0,
+};
+
+// 8 sensors, T_p = 67 ms;
+// t_delta = 416 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
+static const uint8_t EERUF_HC_SR04_8_order[] EERUF_FLASH = {
+    4, 0, 1, 5, 2, 6, 3, 7, /* phase a */
+    0, 4, 1, 5, 2, 6, 7, 3, /* phase b */
+};
+static const uint32_t EERUF_HC_SR04_8_gap_us[] EERUF_FLASH = {
+    5000u, 2000u, 15000u, 0u, 15000u, 0u, 15000u, 0u, 15000u,
+    0u, 1000u, 15000u, 3000u, 16000u, 1000u, 16000u, 5000u, 10000u,
+};
+static const EerufSchedule EERUF_HC_SR04_8 EERUF_FLASH = {
+    1, 8, 2, EERUF_HC_SR04_8_order, EERUF_HC_SR04_8_gap_us,
+    67000u, 60000u, 416u, 14569u, 60000u, 1000u,
+    1, EERUF_LAYOUT_RING, 4, 0,
+};
+
+// 8 sensors, T_p = 100.5 ms;
+// t_delta = 524 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 90 ms.
+static const uint8_t EERUF_HC_SR04_8_SLOWER_order[] EERUF_FLASH = {
+    4, 0, 1, 5, 2, 6, 3, 7, /* phase a */
+    0, 4, 1, 5, 2, 6, 3, 7, /* phase b */
+};
+static const uint32_t EERUF_HC_SR04_8_SLOWER_gap_us[] EERUF_FLASH = {
+    0u, 10500u, 22500u, 0u, 22500u, 0u, 22500u, 0u, 22500u,
+    0u, 0u, 24000u, 1500u, 24000u, 1500u, 24000u, 1500u, 24000u,
+};
+static const EerufSchedule EERUF_HC_SR04_8_SLOWER EERUF_FLASH = {
+    1, 8, 2, EERUF_HC_SR04_8_SLOWER_order, EERUF_HC_SR04_8_SLOWER_gap_us,
+    100500u, 90000u, 524u, 14569u, 90000u, 1500u,
+    1, EERUF_LAYOUT_RING, 4, 0,
+};
+
+// 8 sensors, T_p = 130.5 ms;
+// t_delta = 611 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 120 ms.
+static const uint8_t EERUF_HC_SR04_8_SLOWEST_order[] EERUF_FLASH = {
+    4, 0, 1, 5, 2, 6, 3, 7, /* phase a */
+    0, 4, 5, 1, 6, 2, 3, 7, /* phase b */
+};
+static const uint32_t EERUF_HC_SR04_8_SLOWEST_gap_us[] EERUF_FLASH = {
+    9000u, 1500u, 30000u, 0u, 30000u, 0u, 30000u, 0u, 30000u,
+    0u, 3000u, 30000u, 3000u, 31500u, 1500u, 31500u, 9000u, 21000u,
+};
+static const EerufSchedule EERUF_HC_SR04_8_SLOWEST EERUF_FLASH = {
+    1, 8, 2, EERUF_HC_SR04_8_SLOWEST_order, EERUF_HC_SR04_8_SLOWEST_gap_us,
+    130500u, 120000u, 611u, 14569u, 120000u, 1500u,
+    1, EERUF_LAYOUT_RING, 4, 0,
+};
+
+// 10 sensors, T_p = 77.5 ms;
+// t_delta = 474 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
+static const uint8_t EERUF_HC_SR04_10_order[] EERUF_FLASH = {
+    1, 6, 2, 7, 3, 8, 4, 9, 5, 0, /* phase a */
+    6, 1, 7, 3, 2, 8, 0, 4, 9, 5, /* phase b */
+};
+static const uint32_t EERUF_HC_SR04_10_gap_us[] EERUF_FLASH = {
+    2500u, 2000u, 13000u, 3000u, 12000u, 3000u, 12000u, 3000u, 12000u, 3000u, 12000u,
+    0u, 3000u, 12000u, 3000u, 15000u, 1000u, 15000u, 1000u, 14000u, 2000u, 11500u,
+};
+static const EerufSchedule EERUF_HC_SR04_10 EERUF_FLASH = {
+    1, 10, 2, EERUF_HC_SR04_10_order, EERUF_HC_SR04_10_gap_us,
+    77500u, 61000u, 474u, 14569u, 60000u, 1000u,
+    1, EERUF_LAYOUT_RING, 4, 0,
+};
+
+// 12 sensors, T_p = 71 ms;
+// t_delta = 439 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
+static const uint8_t EERUF_HC_SR04_12_order[] EERUF_FLASH = {
+    2, 10, 6, 1, 9, 5, 11, 7, 3, 8, 4, 0, /* phase a */
+    6, 2, 10, 1, 5, 9, 3, 11, 7, 0, 4, 8, /* phase b */
+};
+static const uint32_t EERUF_HC_SR04_12_gap_us[] EERUF_FLASH = {
+    0u, 10000u, 3000u, 14000u, 1000u, 4000u, 12000u, 3000u, 2000u, 13000u, 2000u, 2000u, 5000u,
+    8000u, 2000u, 0u, 15000u, 0u, 0u, 15000u, 0u, 1000u, 14000u, 1000u, 5000u, 10000u,
+};
+static const EerufSchedule EERUF_HC_SR04_12 EERUF_FLASH = {
+    1, 12, 2, EERUF_HC_SR04_12_order, EERUF_HC_SR04_12_gap_us,
+    71000u, 60000u, 439u, 14569u, 60000u, 1000u,
+    1, EERUF_LAYOUT_RING, 4, 0,
+};
+
+// 16 sensors, T_p = 75 ms;
+// t_delta = 463 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
+static const uint8_t EERUF_HC_SR04_16_order[] EERUF_FLASH = {
+    2, 14, 10, 6, 1, 13, 9, 5, 15, 11, 7, 3, 12, 8, 4, 0, /* phase a */
+    10, 6, 2, 14, 9, 1, 5, 13, 3, 15, 7, 11, 0, 4, 8, 12, /* phase b */
+};
+static const uint32_t EERUF_HC_SR04_16_gap_us[] EERUF_FLASH = {
+    0u, 14000u, 1000u, 6000u, 10000u, 1000u, 4000u, 4000u, 8000u, 3000u, 4000u, 2000u, 9000u, 4000u, 2000u, 2000u, 1000u,
+    10000u, 2000u, 2000u, 0u, 14000u, 1000u, 0u, 0u, 15000u, 0u, 1000u, 0u, 14000u, 1000u, 3000u, 2000u, 10000u,
+};
+static const EerufSchedule EERUF_HC_SR04_16 EERUF_FLASH = {
+    1, 16, 2, EERUF_HC_SR04_16_order, EERUF_HC_SR04_16_gap_us,
+    75000u, 60000u, 463u, 14569u, 60000u, 1000u,
+    1, EERUF_LAYOUT_RING, 4, 0,
+};
+
+// 24 sensors, T_p = 94.5 ms;
+// t_delta = 576 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
+static const uint8_t EERUF_HC_SR04_24_order[] EERUF_FLASH = {
+    9, 5, 1, 21, 13, 17, 8, 4, 12, 20, 0, 16, 7, 3, 11, 19, 23, 15, 2, 6, 10, 22, 18, 14, /* phase a */
+    0, 8, 4, 20, 16, 12, 5, 1, 17, 21, 9, 13, 3, 18, 7, 11, 22, 2, 15, 6, 10, 19, 23, 14, /* phase b */
+};
+static const uint32_t EERUF_HC_SR04_24_gap_us[] EERUF_FLASH = {
+    4000u, 1000u, 6500u, 0u, 500u, 500u, 12500u, 6500u, 500u, 500u, 2000u, 0u, 17000u, 3000u, 0u, 0u, 0u, 4500u, 15500u, 0u, 0u, 0u, 5000u, 1000u, 14000u,
+    0u, 1000u, 500u, 4000u, 500u, 3500u, 12000u, 2000u, 2500u, 500u, 3000u, 500u, 14000u, 2500u, 3500u, 0u, 5000u, 10500u, 1000u, 5000u, 3000u, 1000u, 10500u, 500u, 8000u,
+};
+static const EerufSchedule EERUF_HC_SR04_24 EERUF_FLASH = {
+    1, 24, 2, EERUF_HC_SR04_24_order, EERUF_HC_SR04_24_gap_us,
+    94500u, 60000u, 576u, 14569u, 60000u, 1500u,
+    1, EERUF_LAYOUT_RING, 4, 0,
+};

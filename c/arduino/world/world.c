@@ -1,0 +1,224 @@
+/* A small world around a simulated Arduino Uno: HC-SR04 modules on its pins, in a room where they hear each other.
+ *
+ *   world SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..
+ *
+ * ECHO_TIMES has a line for each way that sound takes: emitter, receiver, microseconds; `crates/eeruf-sim`'s example
+ * echo_times writes it. Pins are the Uno's numbers; the same pin twice is a module with one pin. What the sketch says
+ * on its serial line goes to standard output; then come lines that begin with `world`: firings of each module, triggers
+ * that came while its line was high, and how many bytes of stack were ever used.
+ *
+ * A module whose trigger falls sends its sound 450 us later and raises its line, until the first sound reaches it, its
+ * own or another's, or until 38 ms are over. It is deaf for the first 150 us. Time is the Uno's own, to the cycle. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <simavr/avr_ioport.h>
+#include <simavr/avr_uart.h>
+#include <simavr/sim_avr.h>
+#include <simavr/sim_elf.h>
+#include <simavr/sim_time.h>
+
+#define MODULES 20
+#define WAYS 4096
+#define PAINT 0xa5
+
+static avr_t *avr;
+static struct {
+    int emitter, receiver;
+    unsigned after_us;
+} ways[WAYS];
+static int way_count;
+
+static struct Module {
+    int trigger, echo;
+    int triggered, line_high;
+    avr_cycle_count_t rose, fired;
+    unsigned firings, ignored;
+} modules[MODULES];
+static int module_count;
+
+/* The Uno's pins: 0 to 7 are D0 to D7, 8 to 13 are B0 to B5, 14 to 19 (A0 to A5) are C0 to C5. */
+static char port_of(int pin) {
+    return pin < 8 ? 'D' : pin < 14 ? 'B' : 'C';
+}
+static int bit_of(int pin) {
+    return pin < 8 ? pin : pin < 14 ? pin - 8 : pin - 14;
+}
+
+static uint8_t ports[3], directions[3];
+static int index_of(char port) {
+    return port - 'B';
+}
+
+/* Whether the Uno itself holds a pin high. */
+static int is_driven_high(int pin) {
+    const int port = index_of(port_of(pin));
+    return (ports[port] & directions[port]) >> bit_of(pin) & 1;
+}
+
+static void set_line(struct Module *module, int high) {
+    module->line_high = high;
+    avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(port_of(module->echo)), bit_of(module->echo)),
+                  (uint32_t)high);
+}
+
+static void on_arrival(struct Module *module) {
+    if (module->line_high && avr->cycle - module->rose >= avr_usec_to_cycles(avr, 150)) set_line(module, 0);
+}
+
+static avr_cycle_count_t on_time_out(avr_t *a, avr_cycle_count_t when, void *param) {
+    struct Module *module = (struct Module *)param;
+    (void)when;
+    if (module->line_high && a->cycle - module->rose >= avr_usec_to_cycles(a, 37990)) set_line(module, 0);
+    return 0;
+}
+
+/* simavr keeps one timer for each function and parameter, so sound on its way waits here. */
+static struct {
+    avr_cycle_count_t at;
+    struct Module *module;
+} sounds[WAYS];
+static int sound_count;
+static avr_cycle_count_t next_sound = ~(avr_cycle_count_t)0;
+
+static void hear_what_is_due(void) {
+    int i = 0;
+    next_sound = ~(avr_cycle_count_t)0;
+    while (i < sound_count) {
+        if (sounds[i].at > avr->cycle) {
+            if (sounds[i].at < next_sound) next_sound = sounds[i].at;
+            i++;
+            continue;
+        }
+        on_arrival(sounds[i].module);
+        sounds[i] = sounds[--sound_count];
+    }
+}
+
+static avr_cycle_count_t on_burst(avr_t *a, avr_cycle_count_t when, void *param) {
+    struct Module *module = (struct Module *)param;
+    int way;
+    (void)when;
+    module->triggered = 0;
+    module->rose = a->cycle;
+    module->firings++;
+    set_line(module, 1);
+    for (way = 0; way < way_count; way++) {
+        if (ways[way].emitter != (int)(module - modules) || sound_count == WAYS) continue;
+        sounds[sound_count].at = a->cycle + avr_usec_to_cycles(a, ways[way].after_us);
+        if (sounds[sound_count].at < next_sound) next_sound = sounds[sound_count].at;
+        sounds[sound_count++].module = &modules[ways[way].receiver];
+    }
+    avr_cycle_timer_register_usec(a, 38000, on_time_out, module);
+    return 0;
+}
+
+/* A port's outputs or directions have changed. */
+static void look_at_triggers(void) {
+    int i;
+    for (i = 0; i < module_count; i++) {
+        struct Module *module = &modules[i];
+        const int high = is_driven_high(module->trigger);
+        if (high && !module->triggered) {
+            module->fired = avr->cycle;
+            module->triggered = 1;
+        } else if (!high && module->triggered == 1) {
+            module->triggered = 0;
+            if (avr->cycle - module->fired < avr_usec_to_cycles(avr, 10)) continue; /* too short for a module */
+            if (module->line_high) {
+                module->ignored++;
+                continue;
+            }
+            module->triggered = 2; /* busy until its burst */
+            avr_cycle_timer_register_usec(avr, 450, on_burst, module);
+        }
+    }
+}
+
+static void on_port(struct avr_irq_t *irq, uint32_t value, void *param) {
+    (void)irq;
+    ports[(intptr_t)param] = (uint8_t)value;
+    look_at_triggers();
+}
+
+static void on_direction(struct avr_irq_t *irq, uint32_t value, void *param) {
+    (void)irq;
+    directions[(intptr_t)param] = (uint8_t)value;
+    look_at_triggers();
+}
+
+static void on_serial(struct avr_irq_t *irq, uint32_t value, void *param) {
+    (void)irq, (void)param;
+    putchar((int)value);
+}
+
+static int read_ways(const char *name) {
+    FILE *file = fopen(name, "r");
+    if (file == NULL) return 0;
+    while (way_count < WAYS && fscanf(file, "%d %d %u", &ways[way_count].emitter, &ways[way_count].receiver,
+                                      &ways[way_count].after_us) == 3)
+        if (ways[way_count].emitter < module_count && ways[way_count].receiver < module_count) way_count++;
+    fclose(file);
+    return way_count;
+}
+
+/* Bytes of stack that were ever used: everything from the top of RAM down to the first stretch of paint. */
+static unsigned deepest_stack(void) {
+    unsigned at, paint = 0;
+    for (at = avr->ramend; at > 0x100 && paint < 16; at--) paint = avr->data[at] == PAINT ? paint + 1 : 0;
+    return avr->ramend - at - paint;
+}
+
+int main(int argc, char **argv) {
+    elf_firmware_t firmware;
+    avr_cycle_count_t end;
+    uint32_t flags = 0;
+    const char *port;
+    int i;
+    memset(&firmware, 0, sizeof firmware);
+    if (argc < 5 || (module_count = atoi(argv[4])) < 1 || module_count > MODULES || argc != 5 + 2 * module_count) {
+        fprintf(stderr, "usage: world SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..\n");
+        return 2;
+    }
+    for (i = 0; i < module_count; i++) {
+        modules[i].trigger = atoi(argv[5 + i]);
+        modules[i].echo = atoi(argv[5 + module_count + i]);
+    }
+    if (!read_ways(argv[3]) || elf_read_firmware(argv[1], &firmware) != 0) {
+        fprintf(stderr, "%s or %s cannot be read\n", argv[1], argv[3]);
+        return 2;
+    }
+    avr = avr_make_mcu_by_name("atmega328p");
+    if (avr == NULL) return 2;
+    avr_init(avr);
+    avr->frequency = 16000000;
+    avr->log = LOG_ERROR;
+    avr_load_firmware(avr, &firmware);
+    avr->frequency = 16000000;
+    memset(avr->data + 0x100, PAINT, avr->ramend - 0x100 + 1u);
+    for (port = "BCD"; *port != 0; port++) {
+        void *number = (void *)(intptr_t)index_of(*port);
+        const uint32_t io = AVR_IOCTL_IOPORT_GETIRQ(*port);
+        avr_irq_register_notify(avr_io_getirq(avr, io, IOPORT_IRQ_REG_PORT), on_port, number);
+        avr_irq_register_notify(avr_io_getirq(avr, io, IOPORT_IRQ_DIRECTION_ALL), on_direction, number);
+    }
+    avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
+    avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_serial, NULL);
+    for (i = 0; i < module_count; i++) set_line(&modules[i], 0);
+    end = (avr_cycle_count_t)(atof(argv[2]) * 16e6);
+    while (avr->cycle < end) {
+        const int state = avr_run(avr);
+        if (state == cpu_Done || state == cpu_Crashed) {
+            printf("world crashed\n");
+            return 1;
+        }
+        if (avr->cycle >= next_sound) hear_what_is_due();
+    }
+    printf("\nworld firings");
+    for (i = 0; i < module_count; i++) printf(" %u", modules[i].firings);
+    printf("\nworld ignored");
+    for (i = 0; i < module_count; i++) printf(" %u", modules[i].ignored);
+    printf("\nworld stack %u\n", deepest_stack());
+    return 0;
+}

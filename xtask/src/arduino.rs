@@ -1,0 +1,108 @@
+//! The Arduino library in `c/arduino`: its tables from `design`, packed, its examples built with Debian's Arduino core
+//! and run on a simulated Uno among simulated HC-SR04 modules.
+
+mod build;
+mod tables;
+mod world;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::c::need;
+use crate::steps::{Steps, Trouble, run};
+
+/// Where it is packed, built and run.
+const TARGET: &str = "target/arduino";
+
+/// How an example is wired, and what it is measured by.
+struct Example {
+    name: &'static str,
+    modules: usize,
+    triggers: &'static [u8],
+    echoes: &'static [u8],
+    /// Whether it is run where time is short.
+    short: bool,
+}
+
+const ALL: [u8; 16] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17];
+
+const EXAMPLES: [Example; 5] = [
+    Example { name: "Two", modules: 2, triggers: &[4, 5], echoes: &[2, 3], short: false },
+    Example { name: "Ring8", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).1, short: false },
+    Example {
+        name: "Ring12OnePin",
+        modules: 12,
+        triggers: ALL.split_at(12).0,
+        echoes: ALL.split_at(12).0,
+        short: true,
+    },
+    Example { name: "FromNewPing", modules: 3, triggers: &[4, 5, 6], echoes: &[4, 5, 6], short: true },
+    Example { name: "Adaptive", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).0, short: false },
+];
+
+fn failed(what: &str) -> impl Fn(std::io::Error) -> Trouble + '_ {
+    move |error| Trouble::Failed(format!("{what}: {error}"))
+}
+
+/// What to do.
+#[derive(clap::Args)]
+pub(crate) struct Plan {
+    /// Write the tables anew instead of comparing them
+    #[arg(long)]
+    write: bool,
+    /// Run two of the examples for 3 s instead of all for 20 s
+    #[arg(long)]
+    short: bool,
+}
+
+impl Plan {
+    /// For the checks of every change.
+    pub(crate) const SHORT: Self = Self { write: false, short: true };
+}
+
+pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
+    steps.step("tables of the Arduino library", || tables::check(plan.write));
+    steps.step("Arduino library", || pack().and_then(|library| examples(&library, plan.short)));
+}
+
+/// The library as one installs it: its files and those of `c/`.
+fn pack() -> Result<PathBuf, Trouble> {
+    let library = Path::new(TARGET).join("Eeruf");
+    let source = library.join("src");
+    if library.exists() {
+        fs::remove_dir_all(&library).map_err(failed("the packed library"))?;
+    }
+    fs::create_dir_all(&source).map_err(failed("the packed library"))?;
+    for folder in ["src", "examples"] {
+        run(Command::new("cp").args(["-r"]).arg(Path::new("c/arduino").join(folder)).arg(&library))?;
+    }
+    for file in ["library.properties", "keywords.txt", "library.json", "README.md"] {
+        fs::copy(Path::new("c/arduino").join(file), library.join(file)).map_err(failed(file))?;
+    }
+    for file in ["eeruf.c", "eeruf.h"] {
+        fs::copy(Path::new("c").join(file), source.join(file)).map_err(failed(file))?;
+    }
+    run(Command::new("tar").args(["-czf", "Eeruf.tar.gz", "Eeruf"]).current_dir(TARGET))?;
+    Ok(library)
+}
+
+fn examples(library: &Path, short: bool) -> Result<(), Trouble> {
+    need("avr-g++", "gcc-avr avr-libc binutils-avr arduino-core-avr")?;
+    need("gcc", "gcc")?;
+    let core = build::core()?;
+    let world = world::build()?;
+    println!("| sketch | flash | data + bss | stack | firings/s | accepted/s | wrong of accepted |");
+    println!("|---|---:|---:|---:|---:|---:|---:|");
+    for example in &EXAMPLES {
+        let sketch = build::sketch(library, &core, example.name)?;
+        if short && !example.short {
+            continue;
+        }
+        let seconds = if short { 3 } else { 20 };
+        let heard = world::run(&world, &sketch.elf, example, seconds)?;
+        heard.is_plausible(example)?;
+        println!("| {} | {} | {} | {} |", example.name, sketch.flash, sketch.ram, heard.row());
+    }
+    Ok(())
+}

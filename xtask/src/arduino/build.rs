@@ -1,0 +1,119 @@
+//! Sketches, compiled as the Arduino IDE does for an Uno.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::{TARGET, failed};
+use crate::steps::{Trouble, output, run};
+
+/// Debian's `arduino-core-avr`.
+const CORE: &str = "/usr/share/arduino/hardware/arduino/avr/cores/arduino";
+const VARIANT: &str = "/usr/share/arduino/hardware/arduino/avr/variants/standard";
+
+/// The options of the core's platform.txt, and what its sources want of this compiler.
+const COMMON: [&str; 12] = [
+    "-c",
+    "-g",
+    "-Os",
+    "-ffunction-sections",
+    "-fdata-sections",
+    "-flto",
+    "-mmcu=atmega328p",
+    "-DF_CPU=16000000L",
+    "-DARDUINO=10819",
+    "-DARDUINO_AVR_UNO",
+    "-DARDUINO_ARCH_AVR",
+    "-DDECIMAL_DIG=10",
+];
+const C: [&str; 2] = ["-std=gnu11", "-fno-fat-lto-objects"];
+const CXX: [&str; 4] = ["-std=gnu++11", "-fpermissive", "-fno-exceptions", "-fno-threadsafe-statics"];
+
+pub(super) struct Sketch {
+    pub(super) elf: PathBuf,
+    pub(super) flash: u64,
+    pub(super) ram: u64,
+}
+
+fn compile(source: &Path, object: &Path, more: &[&str]) -> Result<(), Trouble> {
+    let is_c = source.extension().is_some_and(|extension| extension == "c");
+    let (compiler, language) = if is_c { ("avr-gcc", &C[..]) } else { ("avr-g++", &CXX[..]) };
+    run(Command::new(compiler)
+        .args(COMMON)
+        .args(language)
+        .args(more)
+        .args(["-I", CORE, "-I", VARIANT, "-o"])
+        .arg(object)
+        .arg(source))
+}
+
+/// The files of a folder that a compiler takes.
+fn sources(folder: &Path) -> Result<Vec<PathBuf>, Trouble> {
+    let mut sources = vec![];
+    for entry in fs::read_dir(folder).map_err(failed(&folder.display().to_string()))? {
+        let path = entry.map_err(failed("a folder"))?.path();
+        if path.extension().is_some_and(|extension| extension == "c" || extension == "cpp") {
+            sources.push(path);
+        }
+    }
+    sources.sort();
+    Ok(sources)
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// The core as an archive, built once.
+pub(super) fn core() -> Result<PathBuf, Trouble> {
+    if !Path::new(CORE).exists() {
+        return Err(Trouble::Skipped(format!("no {CORE}; install arduino-core-avr")));
+    }
+    let folder = Path::new(TARGET).join("core");
+    fs::create_dir_all(&folder).map_err(failed("target"))?;
+    let archive = folder.join("core.a");
+    if archive.exists() {
+        return Ok(archive);
+    }
+    let mut objects = vec![];
+    for source in sources(Path::new(CORE))? {
+        let object = folder.join(name(&source) + ".o");
+        compile(&source, &object, &["-w"])?;
+        objects.push(object);
+    }
+    run(Command::new("avr-gcc-ar").arg("rcs").arg(&archive).args(objects))?;
+    Ok(archive)
+}
+
+/// An example of the packed library.
+pub(super) fn sketch(library: &Path, core: &Path, example: &str) -> Result<Sketch, Trouble> {
+    let folder = Path::new(TARGET).join(example);
+    fs::create_dir_all(&folder).map_err(failed("target"))?;
+    let include = library.join("src");
+    let include = include.to_string_lossy();
+    // As the IDE: a sketch is C++ that includes Arduino.h.
+    let ino = library.join("examples").join(example).join(format!("{example}.ino"));
+    let text = fs::read_to_string(&ino).map_err(failed(&ino.display().to_string()))?;
+    let cpp = folder.join(format!("{example}.cpp"));
+    fs::write(&cpp, format!("#include <Arduino.h>\n{text}")).map_err(failed("target"))?;
+    let mut objects = vec![];
+    for source in sources(&library.join("src"))?.into_iter().chain([cpp]) {
+        let object = folder.join(name(&source) + ".o");
+        compile(&source, &object, &["-Wall", "-Wextra", "-Werror", "-I", &include])?;
+        objects.push(object);
+    }
+    let elf = folder.join(format!("{example}.elf"));
+    run(Command::new("avr-gcc")
+        .args(["-w", "-Os", "-g", "-flto", "-fuse-linker-plugin", "-Wl,--gc-sections", "-mmcu=atmega328p", "-o"])
+        .arg(&elf)
+        .args(objects)
+        .arg(core)
+        .arg("-lm"))?;
+    let size = output(Command::new("avr-size").arg(&elf)).ok_or_else(|| Trouble::Failed("avr-size".to_owned()))?;
+    let numbers: Vec<u64> =
+        size.lines().nth(1).into_iter().flat_map(str::split_whitespace).filter_map(|n| n.parse().ok()).collect();
+    match numbers[..] {
+        [text, data, bss, ..] => Ok(Sketch { elf, flash: text + data, ram: data + bss }),
+        _ => Err(Trouble::Failed(format!("avr-size said: {size}"))),
+    }
+}

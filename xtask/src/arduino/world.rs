@@ -1,0 +1,115 @@
+//! The simulated world around an Uno, and what a sketch said in it.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::{Example, TARGET, failed};
+use crate::steps::{Trouble, output, run as run_command};
+
+/// The room of the examples, in which modules hear each other.
+const SCENE: &str = "scenes/alcove-hc-sr04.toml";
+/// A reading is wrong if it is off by more: 0.3 ms of echo time.
+const OFF_MM: u32 = 50;
+
+/// What a run came to.
+pub(super) struct Heard {
+    seconds: u32,
+    firings: Vec<u32>,
+    ignored: u32,
+    stack: u32,
+    accepted: u32,
+    wrong: u32,
+}
+
+/// Builds `c/arduino/world/world.c`.
+pub(super) fn build() -> Result<PathBuf, Trouble> {
+    if !Path::new("/usr/include/simavr/sim_avr.h").exists() {
+        return Err(Trouble::Skipped("no simavr; install libsimavr-dev libelf-dev".to_owned()));
+    }
+    let world = Path::new(TARGET).join("world");
+    run_command(
+        Command::new("gcc")
+            .args(["-std=gnu99", "-O2", "-Wall", "-Wextra", "-Werror", "c/arduino/world/world.c", "-o"])
+            .arg(&world)
+            .args(["-lsimavr", "-lelf"]),
+    )?;
+    Ok(world)
+}
+
+/// Which ways sound takes among so many modules: a file, and the distance that each module should measure.
+fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>), Trouble> {
+    let sensors = modules.to_string();
+    let example = ["run", "--quiet", "--locked", "--package", "eeruf-sim", "--example", "echo_times", "--", SCENE];
+    let times = output(Command::new("cargo").args(example).arg(&sensors))
+        .ok_or_else(|| Trouble::Failed("the example echo_times failed".to_owned()))?;
+    let mut own_mm = BTreeMap::new();
+    for line in times.lines() {
+        let numbers: Vec<usize> = line.split(' ').filter_map(|number| number.parse().ok()).collect();
+        let [emitter, receiver, us] = numbers[..] else { continue };
+        if emitter == receiver {
+            // 343.2 m/s, there and back.
+            let mm = (us as u64 * 3432 / 20_000) as u32;
+            let least = own_mm.entry(emitter).or_insert(mm);
+            *least = mm.min(*least);
+        }
+    }
+    let file = Path::new(TARGET).join(format!("echo-times-{modules}.txt"));
+    fs::write(&file, times).map_err(failed("target"))?;
+    Ok((file, own_mm))
+}
+
+/// Runs a sketch for some seconds of its own time.
+pub(super) fn run(world: &Path, elf: &Path, example: &Example, seconds: u32) -> Result<Heard, Trouble> {
+    let (times, own_mm) = echo_times(example.modules)?;
+    let pins = example.triggers.iter().chain(example.echoes).map(ToString::to_string);
+    let said = output(
+        Command::new(world).arg(elf).arg(seconds.to_string()).arg(times).arg(example.modules.to_string()).args(pins),
+    )
+    .ok_or_else(|| Trouble::Failed(format!("{} did not run", example.name)))?;
+    let mut heard = Heard { seconds, firings: vec![], ignored: 0, stack: 0, accepted: 0, wrong: 0 };
+    for line in said.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let numbers = || words.iter().skip(2).filter_map(|word| word.parse().ok());
+        match words[..] {
+            ["world", "firings", ..] => heard.firings = numbers().collect(),
+            ["world", "ignored", ..] => heard.ignored = numbers().sum(),
+            ["world", "stack", ..] => heard.stack = numbers().sum(),
+            [module, distance] | [module, distance, "cm"] => {
+                let (Ok(module), Ok(distance)) = (module.parse::<usize>(), distance.parse::<u32>()) else { continue };
+                let mm = if words.len() == 3 { 10 * distance } else { distance };
+                heard.accepted += 1;
+                let own = own_mm.get(&(module.wrapping_sub(1)));
+                heard.wrong += u32::from(own.is_none_or(|own| own.abs_diff(mm) > OFF_MM));
+            }
+            _ => {}
+        }
+    }
+    Ok(heard)
+}
+
+impl Heard {
+    /// The columns of the table.
+    pub(super) fn row(&self) -> String {
+        let per_second = |count: u32| f64::from(count) / f64::from(self.seconds);
+        let wrong = 100.0 * f64::from(self.wrong) / f64::from(self.accepted.max(1));
+        let firings = per_second(self.firings.iter().sum());
+        format!("{} | {firings:.1} | {:.1} | {wrong:.1} %", self.stack, per_second(self.accepted))
+    }
+
+    /// Whether the sketch did what it is for.
+    pub(super) fn is_plausible(&self, example: &Example) -> Result<(), Trouble> {
+        let least = self.firings.iter().min().copied().unwrap_or(0);
+        let most = self.firings.iter().max().copied().unwrap_or(0);
+        // 8 periods of the slowest table a second, each module once in each.
+        let all_fire = self.firings.len() == example.modules && least + 2 >= most && least >= 6 * self.seconds;
+        if all_fire && self.ignored == 0 && self.accepted > 2 * self.seconds {
+            return Ok(());
+        }
+        Err(Trouble::Failed(format!(
+            "{}: firings {:?}, {} triggers ignored, {} readings accepted in {} s",
+            example.name, self.firings, self.ignored, self.accepted, self.seconds
+        )))
+    }
+}

@@ -25,11 +25,13 @@ EVERYTHING = sim.Scene(
     noise=sim.Noise(fading_db_rms=2.0, bursts_per_s=3.0),
     seed=2**64 - 1,
     max_order=4,
+    physics={"preset": "default", "fading_time_s": 0.4},
     robots=[
         sim.Robot((0, 0, 0.3), 6, 0.4, 0.1, "hc_sr04", gain="linear", blanking_us=300, odometry=True,
-                  velocity_m_s=(0.05, 0.01), turn_rad_s=0.2, clock_offset_us=5, clock_drift_ppm=-20.0),
+                  velocity_m_s=(0.05, 0.01), turn_rad_s=0.2, clock_offset_us=5, clock_drift_ppm=-20.0, body=0.15),
         sim.Robot((-1.2, -1.2, 0.9), [(0.05, 0.05, 0.7), (0.05, -0.05, -0.7)], schedule=SCHEDULE, start_us=777,
-                  waypoints_m=[(-1.3, -1.0), (-1.2, -1.2)], speed_m_s=0.1, neighbours=2, min_refire_us=20_000),
+                  waypoints_m=[(-1.3, -1.0), (-1.2, -1.2)], speed_m_s=0.1, neighbours=2, min_refire_us=20_000,
+                  body=[(-0.1, -0.1), (0.1, -0.1), (0.0, 0.1)]),
     ],
 )  # fmt: skip
 
@@ -67,6 +69,7 @@ def test_all_that_a_scene_was_made_of_can_be_read() -> None:
     assert (EVERYTHING.open, EVERYTHING.two_sided, EVERYTHING.seed, EVERYTHING.max_order) == ([1], [3], 2**64 - 1, 4)
     assert EVERYTHING.materials[2] == sim.Material(0.7, 0.0002)
     assert EVERYTHING.pole_materials == [sim.Material(0.9)] * 2
+    assert EVERYTHING.physics == {"shadows": True, "edges": True, "range_walk": True, "fading_time_s": 0.4}
     assert EVERYTHING.noise == sim.Noise(fading_db_rms=2.0, bursts_per_s=3.0)
     moving, driving = EVERYTHING.robots
     assert (moving.velocity_m_s, moving.turn_rad_s, moving.waypoints_m) == ((0.05, 0.01), 0.2, None)
@@ -121,3 +124,32 @@ def test_errors_count_robots_and_sensors_from_0_as_code_does() -> None:
         sim.Scene(WALLS, robots=[robot, robot.replace(pose=(0.1, 0, 0))])
     with pytest.raises(eeruf.ScheduleError, match="sensor 1 fires 50 ms into phase a"):
         eeruf.Schedule.from_firing(40_000, [0, 50_000], [0, 2_000])
+
+
+def test_physics_and_bodies_are_given_in_several_ways_and_refused_by_name() -> None:
+    assert sim.Scene(WALLS).physics == "plain"
+    assert sim.Scene(WALLS, physics={"preset": "default"}).physics == "default"
+    for physics in ("full", 3, {"preset": "full"}, {"fading": 1.0}):
+        with pytest.raises(eeruf.ArgumentError, match="physics = "):
+            sim.Scene(WALLS, physics=physics)  # type: ignore[arg-type]
+    place = (0.0, 0.0, 0.0)
+    assert sim.Robot(place, 2, 0.3, 0.1, body=0.2).body == 0.2
+    assert sim.Robot(place, 2, 0.3, 0.1, body=(0.4, 0.3)).body == (0.4, 0.3)
+    assert EVERYTHING.robots[1].body == [(-0.1, -0.1), (0.1, -0.1), (0.0, 0.1)]
+    for body in (-1.0, (0.4, 0.0), [(0, 0), (0, 1), (1, 0)], "round"):
+        with pytest.raises(eeruf.ArgumentError, match="body"):
+            sim.Robot(place, 2, 0.3, 0.1, body=body)  # type: ignore[arg-type]
+    robots = [sim.Robot((x, 0.0, 0.0), 2, 0.3, 0.1, body=0.3) for x in (0.0, 0.5)]
+    with pytest.raises(eeruf.SceneError, match="the bodies of robots"):
+        sim.Scene(WALLS, robots=robots)
+
+
+def test_a_body_stands_in_the_way_of_another_robots_sound() -> None:
+    watcher = sim.Robot((0.0, 0.0, 0.0), [(0.0, 0.0, 0.0)])
+    for body, expected_m in ((None, 2.0), (0.3, 0.7)):
+        scene = sim.Scene(
+            WALLS, robots=[watcher, sim.Robot((1.0, 0.0, 0.0), [(0.0, 0.0, 0.0)], body=body)], noise=False
+        )
+        readings = sim.simulate(scene, "sequential", periods=4).columns()
+        reference = readings["reference_us"][readings["robot"] == 0]
+        assert np.allclose(reference * 1e-6 * 343.2 / 2, expected_m, atol=1e-3)

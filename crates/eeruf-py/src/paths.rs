@@ -112,7 +112,7 @@ impl Paths {
     }
 
     /// For each path its bounces from source to receiver, a list of tuples: a wall by its index, a pole by -1 minus its
-    /// index.
+    /// index, an edge by 2^32 plus its index.
     #[getter]
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let sequences = (0..self.paths.len()).map(|path| PyTuple::new(py, coded(self.paths.bounces(path))));

@@ -139,7 +139,10 @@ fn the_papers_ring_can_run_at_65_ms_and_the_answer_is_the_same_in_every_form() {
 
 #[test]
 fn every_ring_file_that_we_ship_gets_a_proven_schedule_with_a_picture() {
-    for (ring, period_us) in [("labmate-8", 48_300), ("ring-24", 76_000), ("hc-sr04-8", 63_000)] {
+    let uneven = [("car-12", 33_400), ("hc-sr04-8-two-multiplexers", 61_500), ("mower-8-and-4", 37_000)];
+    for (ring, period_us) in
+        [("labmate-8", 48_300), ("ring-24", 76_000), ("hc-sr04-8", 63_000)].into_iter().chain(uneven)
+    {
         let (folder, _) = Scratch::new("unused", "");
         let picture = folder.path().join("timing.svg");
         let file = format!("rings/{ring}.toml");
@@ -147,6 +150,31 @@ fn every_ring_file_that_we_ship_gets_a_proven_schedule_with_a_picture() {
         assert_eq!((&found["value_us"], &found["proven"]), (&period_us.into(), &true.into()), "{ring}");
         assert!(std::fs::read_to_string(picture).unwrap().contains("phase b"));
     }
+}
+
+#[test]
+fn a_schedule_is_held_against_a_ring_file_with_all_that_differs_in_it() {
+    let (folder, schedule) = Scratch::new("mower.toml", "");
+    let file = schedule.to_str().unwrap();
+    let designed = eeruf(&["design", "rings/mower-8-and-4.toml", "--emit", "toml"]).out;
+    std::fs::write(&schedule, &designed).unwrap();
+    let asked = ["verify", file, "--ring", "rings/mower-8-and-4.toml"];
+    let kept = eeruf(&asked);
+    assert_eq!(kept.code, Some(0), "{}{}", kept.out, kept.err);
+    assert!(kept.out.ends_with("verified for what each sensor needs\n"), "{}", kept.out);
+    // The last two fire together; one of them a tick later.
+    let (before, last) = designed.trim_end().trim_end_matches(']').rsplit_once(", ").unwrap();
+    let later: u32 = last.replace('_', "").parse::<u32>().unwrap() + 100;
+    std::fs::write(&schedule, format!("{before}, {later}]\n")).unwrap();
+    let report = json(&[&asked[..], &["--json"]].concat());
+    assert_eq!(report["ok"], false);
+    let kinds: Vec<_> = report["violations"].as_array().unwrap().iter().map(|found| found["kind"].clone()).collect();
+    assert!(kinds.contains(&"together".into()), "{report}");
+    let other = eeruf(&["verify", file, "--ring", "rings/paper-12.toml", "--t-delta-us", "9"]);
+    assert_eq!(other.code, Some(2), "the ring file or the options");
+    let fewer = eeruf(&["verify", file, "--ring", "rings/labmate-8.toml"]);
+    assert!(fewer.err.contains("8 sensors; expected the 12 of the schedule"), "{}", fewer.err);
+    drop(folder);
 }
 
 #[test]
@@ -180,6 +208,8 @@ fn emitted_rust_is_checked_by_the_compiler_and_emitted_c_compiles_without_a_warn
     let rust = eeruf(&["design", "rings/paper-12.toml", "--emit", "rust"]).out;
     // `emitted.rs` compiles that file.
     assert_eq!(rust, include_str!("emitted/paper_12.rs"), "eeruf design rings/paper-12.toml --emit rust");
+    let rust = eeruf(&["design", "rings/car-12.toml", "--emit", "rust"]).out;
+    assert_eq!(rust, include_str!("emitted/car_12.rs"), "eeruf design rings/car-12.toml --emit rust");
     let c = eeruf(&["design", "rings/paper-12.toml", "--emit", "c"]).out;
     let (folder, header) = Scratch::new("schedule.h", &c);
     let user = folder.path().join("user.c");

@@ -3,6 +3,7 @@
 import json
 import os
 import pickle
+import re
 import subprocess
 import sys
 import threading
@@ -10,6 +11,7 @@ import tracemalloc
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import eeruf
 import numpy as np
@@ -260,3 +262,52 @@ def test_threads_run_side_by_side_without_the_interpreter_lock() -> None:
         reached.set()
         with pytest.raises(InterruptedError):
             search.result(timeout=60)
+
+
+def test_sensors_that_are_not_all_alike_are_designed_verified_and_certified() -> None:
+    needs: dict[str, Any] = {
+        "t_delta_us": [999, 999, 1500, 499],
+        "min_interval_us": 8_000,
+        "layout": "ring",
+        "neighbours": 2,
+        "shared_lines": [(0, 2)],
+        "together": [[1, 3]],
+    }
+    windows = np.array([20_000, 12_000, 30_000, 12_000])
+    found = eeruf.design(4, window_us=windows, certificate=True, **needs)
+    schedule = found.schedule
+    assert found.proven and schedule is not None and found.certificate is not None
+    assert eeruf.check_certificate(found.certificate) == found.value_us
+    assert schedule.t_fire_a_us[1] == schedule.t_fire_a_us[3] and schedule.t_fire_b_us[1] == schedule.t_fire_b_us[3]
+    assert schedule.verify(window_us=windows, **needs).ok
+    longer = schedule.verify(window_us=schedule.period_us, **needs)
+    assert {violation.kind for violation in longer.violations} == {"shared_line", "window"}
+
+
+def test_an_interval_of_a_pair_and_the_time_until_a_sensor_may_be_triggered_again_are_kept() -> None:
+    found = eeruf.design(2, 499, 0, 9_000, neighbours=1, intervals_us=[(0, 1, 4_000)], refire_us=[40_000, 9_000])
+    assert found.value_us == 40_000 and found.schedule is not None
+    kinds = {violation.kind for violation in found.schedule.verify(499, refire_us=90_000).violations}
+    assert kinds == {"refire"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"window_us": [9_000]}, "window: 1 values; expected one for each of 2 sensors"),
+        ({"window_us": [9_000, 0]}, "window_us = [9000, 0]; expected one time of 1 or more for each sensor"),
+        ({"t_delta_us": [9, -1]}, "t_delta_us[1] = -1; expected a whole number from 0 to 4294967295"),
+        ({"intervals_us": [(0, 2, 9)]}, "intervals_us: sensors 0 and 2; expected two different ones from 0 to 1"),
+        ({"shared_lines": [(0,)]}, "shared_lines: [0]; expected two or more different sensors from 0 to 1"),
+        ({"together": 3}, "together = 3; expected groups of sensors, such as [(0, 4), (1, 5)]"),
+        (
+            {"together": [(0, 1)]},
+            "together: sensors 0 and 1 must keep 5 ms between their firings; expected a layout in which they are no "
+            "neighbours, or intervals_us = [[0, 1, 0]], and no shared line",
+        ),
+    ],
+)
+def test_what_is_wrong_with_uneven_needs_is_said_by_name(arguments: dict[str, Any], message: str) -> None:
+    needs: dict[str, Any] = {"sensors": 2, "t_delta_us": 99, "min_interval_us": 5_000, "window_us": 9_000}
+    with pytest.raises(eeruf.ArgumentError, match=re.escape(message)):
+        eeruf.design(**{**needs, **arguments})

@@ -153,11 +153,7 @@ impl fmt::Display for Promise<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Requirements { t_delta, min_interval, layout, window, uneven, .. } = *self.0;
         if uneven.is_some() {
-            return write!(
-                f,
-                "{layout} at least {min_interval} apart but for what is said of pairs, t_delta and \
-                              listening as said of each"
-            );
+            return write!(f, "{layout} at least {min_interval} apart, and what each sensor and pair needs");
         }
         write!(f, "t_delta = {t_delta}, {layout} at least {min_interval} apart, listening for {window}")
     }
@@ -171,25 +167,54 @@ impl fmt::Display for UnevenSource<'_> {
         let Uneven { t_delta, window, refire, intervals, shared_lines, together } = *self.0;
         writeln!(f, "        uneven: Some(Uneven {{")?;
         for (name, each) in [("t_delta", t_delta), ("window", window), ("refire", refire)] {
-            write!(f, "            {name}: &[")?;
-            for (at, time) in each.iter().enumerate() {
-                write!(f, "{}Micros::new({})", if at == 0 { "" } else { ", " }, Grouped(*time))?;
-            }
-            writeln!(f, "],")?;
+            list(f, name, each, |to, time| write!(to, "Micros::new({})", Grouped(*time)))?;
         }
-        write!(f, "            intervals: &[")?;
-        for (at, (x, y, interval)) in intervals.iter().enumerate() {
-            write!(f, "{}({x}, {y}, Micros::new({}))", if at == 0 { "" } else { ", " }, Grouped(*interval))?;
-        }
-        writeln!(f, "],")?;
+        list(f, "intervals", intervals, |to, (x, y, interval)| {
+            write!(to, "({x}, {y}, Micros::new({}))", Grouped(*interval))
+        })?;
         for (name, sets) in [("shared_lines", shared_lines), ("together", together)] {
-            write!(f, "            {name}: &[")?;
-            for (at, set) in sets.iter().enumerate() {
-                write!(f, "{}{set:#b}", if at == 0 { "" } else { ", " })?;
-            }
-            writeln!(f, "],")?;
+            list(f, name, sets, |to, set| write!(to, "{set:#b}"))?;
         }
         writeln!(f, "        }}),")
+    }
+}
+
+/// A field that is a list, as rustfmt writes it: in a line of 120 columns, or with a line for each.
+fn list<T>(
+    f: &mut fmt::Formatter<'_>,
+    name: &str,
+    items: &[T],
+    show: impl Fn(&mut dyn fmt::Write, &T) -> fmt::Result,
+) -> fmt::Result {
+    let mut columns = Columns("            : &[],".len() + name.len());
+    for (at, item) in items.iter().enumerate() {
+        columns.0 += if at == 0 { 0 } else { 2 };
+        show(&mut columns, item)?;
+    }
+    write!(f, "            {name}: &[")?;
+    if columns.0 <= 120 {
+        for (at, item) in items.iter().enumerate() {
+            f.write_str(if at == 0 { "" } else { ", " })?;
+            show(f, item)?;
+        }
+        return writeln!(f, "],");
+    }
+    writeln!(f)?;
+    for item in items {
+        f.write_str("                ")?;
+        show(f, item)?;
+        writeln!(f, ",")?;
+    }
+    writeln!(f, "            ],")
+}
+
+/// Counts the columns of what is written to it.
+struct Columns(usize);
+
+impl fmt::Write for Columns {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0 += text.len();
+        Ok(())
     }
 }
 

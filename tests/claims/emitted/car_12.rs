@@ -1,0 +1,50 @@
+use eeruf_core::{Criterion, Layout, Micros, Requirements, Uneven, UnevenSchedule, uneven_schedule};
+
+// 12 sensors, T_p = 33.4 ms; 3 adjacent sensors of a ring at least 6.993 ms apart, and what each sensor and pair needs.
+pub const RING: UnevenSchedule<12> = uneven_schedule! {
+    period_us: 33_400,
+    t_fire_a_us: [10_900, 26_400, 18_900, 1_300, 25_900, 8_300, 15_300, 29_300, 22_300, 12_400, 1_800, 19_400],
+    t_fire_b_us: [7_000, 27_700, 18_900, 3_900, 11_900, 25_900, 4_900, 13_500, 28_000, 21_000, 14_000, 0],
+    meets: Requirements {
+        t_delta: Micros::new(862),
+        criterion: Criterion::Exact,
+        min_interval: Micros::new(6_993),
+        layout: Layout::Ring(3),
+        window: Micros::new(32_051),
+        stale_echo: false,
+        uneven: Some(Uneven {
+            t_delta: &[
+                Micros::new(612),
+                Micros::new(612),
+                Micros::new(612),
+                Micros::new(612),
+                Micros::new(862),
+                Micros::new(862),
+                Micros::new(862),
+                Micros::new(862),
+                Micros::new(862),
+                Micros::new(862),
+                Micros::new(862),
+                Micros::new(862),
+            ],
+            window: &[
+                Micros::new(26_224),
+                Micros::new(32_051),
+                Micros::new(32_051),
+                Micros::new(26_224),
+                Micros::new(11_655),
+                Micros::new(11_655),
+                Micros::new(14_569),
+                Micros::new(17_483),
+                Micros::new(17_483),
+                Micros::new(14_569),
+                Micros::new(11_655),
+                Micros::new(11_655),
+            ],
+            refire: &[],
+            intervals: &[(4, 5, Micros::new(12_000)), (10, 11, Micros::new(12_000))],
+            shared_lines: &[],
+            together: &[],
+        }),
+    },
+};

@@ -5,6 +5,7 @@
 mod answer;
 mod certificate;
 mod design;
+mod diagnose;
 mod experiment;
 mod methods;
 mod paths;
@@ -26,6 +27,7 @@ pub(crate) enum Verb {
     Study(study::Args),
     Paths(paths::Args),
     Replay(replay::Args),
+    Diagnose(diagnose::Args),
     Experiment(experiment::Args),
 }
 
@@ -38,6 +40,7 @@ impl Verb {
             Self::Study(args) => study::run(args),
             Self::Paths(args) => paths::run(args),
             Self::Replay(args) => replay::run(args),
+            Self::Diagnose(args) => diagnose::run(args),
             Self::Experiment(args) => experiment::run(args),
         }
     }

@@ -6,6 +6,7 @@ mod answer;
 mod certificate;
 mod completions;
 mod design;
+mod diagnose;
 mod examples;
 mod experiment;
 mod man;
@@ -40,6 +41,7 @@ pub(crate) enum Verb {
     Study(study::Args),
     Paths(paths::Args),
     Replay(replay::Args),
+    Diagnose(diagnose::Args),
     Experiment(experiment::Args),
     Examples(examples::Args),
     Completions(completions::Args),
@@ -55,6 +57,7 @@ impl Verb {
             Self::Study(args) => study::run(args),
             Self::Paths(args) => paths::run(args),
             Self::Replay(args) => replay::run(args),
+            Self::Diagnose(args) => diagnose::run(args),
             Self::Experiment(args) => experiment::run(args),
             Self::Examples(args) => examples::run(args),
             Self::Completions(args) => completions::run(args),

@@ -8,6 +8,7 @@ use eeruf_sim::{Method, Options, Physics, SimulationError, World, shortest_sched
 use super::answer::Answer;
 use super::methods::chosen;
 use crate::files::error::InputError;
+use crate::files::firings::write_firings;
 use crate::files::toml::read_world;
 use crate::report::json::to_json;
 use crate::report::study::found::Study;
@@ -36,6 +37,9 @@ pub(crate) struct Args {
     /// Draw the same pictures as PNG
     #[arg(long, value_name = "DIR")]
     png: Option<PathBuf>,
+    /// Write every firing of the first robot and what it heard as CSV, for `eeruf diagnose`; needs one --method
+    #[arg(long, value_name = "FILE.csv")]
+    log: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -61,7 +65,13 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     if let Some(physics) = args.physics {
         world = world.with_physics(physics).map_err(|error| InputError::new(&args.file, None, error))?;
     }
+    if args.log.is_some() && args.methods.len() != 1 {
+        return Err(InputError::new(&args.file, None, "--log needs one --method, whose firings are written"));
+    }
     let study = study(args, &world)?;
+    if let (Some(file), Some(readings)) = (&args.log, study.runs.first()) {
+        write_firings(file, readings)?;
+    }
     for (folder, ending) in [(&args.svg, "svg"), (&args.png, "png")] {
         if let Some(folder) = folder {
             pictures::pictures(folder, ending, &world, &study)?;

@@ -3,6 +3,7 @@
 //! Uses the libraries only; knows neither commands nor what is printed.
 
 pub(crate) mod error;
+pub(crate) mod firings;
 pub(crate) mod ring;
 pub(crate) mod toml;
 pub(crate) mod waits;

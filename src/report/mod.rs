@@ -4,6 +4,7 @@
 
 pub(crate) mod bounces;
 pub(crate) mod design;
+pub(crate) mod diagnose;
 pub(crate) mod draw;
 pub(crate) mod experiment;
 pub(crate) mod json;

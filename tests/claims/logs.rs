@@ -45,3 +45,47 @@ fn of_a_cut_bag_replay_prints_what_can_be_read_and_says_what_cannot() {
     assert!(outcome.err.contains("the bag is cut, or a length in it is wrong"), "{}", outcome.err);
     assert!(outcome.out.contains("| /sonar/1 |"), "{}", outcome.out);
 }
+
+#[test]
+fn diagnose_says_from_a_log_of_study_who_fools_whom_and_that_two_phases_do_not_tell() {
+    let (folder, log) = Scratch::new("log.csv", "");
+    let (log, picture) = (log.to_str().unwrap(), folder.path().join("pairs.svg"));
+    let study = |method| {
+        let outcome = eeruf(&["study", "scenes/alcove.toml", "--method", method, "--log", log]);
+        assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
+    };
+    study("eeruf_hopping");
+    let outcome = eeruf(&["diagnose", log, "--svg", picture.to_str().unwrap()]);
+    assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
+    let found = json(&["diagnose", log, "--json"]);
+    let paths = found["paths"].as_array().unwrap();
+    // Table row and object agree, the one from 1, the other from 0.
+    let fooled = paths.iter().find(|path| path["sender"] != path["receiver"]).unwrap();
+    let from_one = |key: &str| fooled[key].as_u64().unwrap() + 1;
+    let row = format!("| {:<13} | {:>7} |", from_one("receiver"), from_one("sender"));
+    assert!(outcome.out.contains(&row), "{row}\n{}", outcome.out);
+    assert!(paths.iter().all(|path| path["accidents"].as_f64().unwrap() < 0.01));
+    assert!(
+        found["rejected_foreign"].as_u64() <= found["rejected"].as_u64() && found["faults"] == serde_json::json!([])
+    );
+    assert!(std::fs::read_to_string(picture).unwrap().contains("Whose sound each sensor reads"));
+
+    study("eeruf");
+    let outcome = eeruf(&["diagnose", log]);
+    assert!(
+        outcome.out.contains("No sender can be named") && outcome.out.contains("under time hopping"),
+        "{}",
+        outcome.out
+    );
+    // The scene's ring fires by the paper's table at another period.
+    let other = eeruf(&["diagnose", log, "--schedule", "rings/table-i-d.toml"]);
+    assert_eq!((other.code, other.out.as_str()), (Some(2), ""));
+    assert!(other.err.contains("its periods last 60.0 % of the schedule's; expected 90 to 110 %"), "{}", other.err);
+}
+
+#[test]
+fn study_writes_the_log_of_one_method() {
+    let outcome = eeruf(&["study", "scenes/wall.toml", "--log", "log.csv"]);
+    assert_eq!(outcome.code, Some(2));
+    assert!(outcome.err.ends_with("--log needs one --method, whose firings are written\n"), "{}", outcome.err);
+}

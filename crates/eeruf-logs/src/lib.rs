@@ -29,7 +29,9 @@
 //! ```
 
 mod bytes;
+mod diagnose;
 mod error;
+mod firings;
 mod mcap;
 mod message;
 mod options;
@@ -44,7 +46,11 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+pub use diagnose::{
+    Diagnosis, Fault, FoundPath, Hearing, Named, Settings, Share, Timing, TimingError, diagnose, timing,
+};
 pub use error::{Damage, LogError};
+pub use firings::{Firing, FiringLog};
 pub use options::{Options, RangeUnit, Table, TimeUnit};
 pub use reading::{Echo, Reading, Sensor};
 pub use sink::{Report, Skipped};

@@ -1,7 +1,7 @@
 //! `sensor_msgs/Range` and `sensor_msgs/LaserScan` as bytes: CDR, as ROS 2 has them, and the format of ROS 1.
 //!
-//! `Range` has had a `variance` since ROS 2 Iron. The schema in the file says whether a message has one; files without a
-//! schema leave it to the message's length.
+//! `Range` has had a `variance` since ROS 2 Iron. The schema in the file says whether a message has one; files without
+//! a schema leave it to the message's length.
 
 use crate::bytes::{Bytes, Order};
 use crate::reading::Reading;

@@ -49,7 +49,7 @@ pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
             Some("db3") => read_sqlite(&file, found.packed, sink),
             _ => Err(LogError::new(
                 &file,
-                "a file that rosbag2 has compressed as a whole, or of unknown kind; expected .mcap or .db3 (after `zstd -d`)",
+                "a file of unknown kind, or compressed as a whole; expected .mcap or .db3, after `zstd -d`",
             )),
         };
         if let Err(error) = read {

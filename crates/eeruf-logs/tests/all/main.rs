@@ -3,6 +3,7 @@
 mod bags;
 mod csv;
 mod damage;
+mod diagnose;
 mod written;
 
 use std::path::{Path, PathBuf};
@@ -23,7 +24,7 @@ const BAGS: [&str; 10] = [
     "mcap-jazzy-zstd",
 ];
 
-/// Copies a bag into a folder; SQLite ones are made from their SQL.
+/// Copies a bag into a folder; `SQLite` ones are made from their SQL.
 fn bag(name: &str, folder: &Path) -> PathBuf {
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bags").join(name);
     let to = folder.join(name);

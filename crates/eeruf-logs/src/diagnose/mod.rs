@@ -1,0 +1,115 @@
+//! What is wrong with a ring, from its own log: which sensors fool each other, along paths of which length, since when,
+//! and how sure that is.
+//!
+//! A path from sensor x to sensor y takes sound the same time whenever x fires. So if y's readings came along it, the
+//! time from x's firing to the edge at y is the same for all of them, however the firings of x and y move against each
+//! other; for readings that came otherwise it moves with the firings. For each pair the times from x's firings to y's
+//! edges are laid over each other, and a time at which many of them meet is a path.
+//!
+//! Readings in which the two firings stand alike repeat each other and prove nothing. So what counts is *offsets*: how
+//! many different times between the two firings support a path. By accident an edge falls within the tolerance of a
+//! predicted one with a small probability, which the readings themselves tell; that so many offsets agree by accident
+//! has then a binomial probability. It is multiplied by the number of places at which a path was looked for
+//! (Bonferroni), and a path counts as found if fewer than [`Settings::accidents`] such paths are expected in the whole
+//! log by accident. That takes many phases, or lags that move: with two phases there are two offsets, and no pair can
+//! be named.
+
+mod faults;
+mod naming;
+mod search;
+mod sensors;
+mod statistics;
+mod timeline;
+mod timing;
+
+use crate::firings::FiringLog;
+pub use faults::Fault;
+use faults::faults;
+pub use naming::Named;
+use naming::name_senders;
+use search::paths_to;
+use sensors::hearing;
+pub use sensors::{Hearing, Share};
+use timeline::Timeline;
+pub use timing::{Timing, TimingError, timing};
+
+/// How to look for paths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// How long sound is followed, in microseconds.
+    pub max_travel_us: u32,
+    /// By how much a reading may differ from what a path predicts, in microseconds: about four times the jitter.
+    pub tolerance_us: u32,
+    /// How many paths may be found by accident, on average, in the whole log.
+    pub accidents: f64,
+    /// How sure a sender must be to be named, 0 to 1.
+    pub sure: f64,
+}
+
+impl Default for Settings {
+    /// 80 ms, 75 us, one path in a hundred logs, 99 %.
+    fn default() -> Self {
+        Self { max_travel_us: 80_000, tolerance_us: 75, accidents: 0.01, sure: 0.99 }
+    }
+}
+
+/// A path that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundPath {
+    /// The sensor that sends, from 0.
+    pub sender: u8,
+    /// The sensor that hears it, from 0.
+    pub receiver: u8,
+    /// How long the sound travels, in microseconds.
+    pub travel_us: f64,
+    /// Standard error of that.
+    pub travel_error_us: f64,
+    /// By how much single readings scatter, rms, in microseconds.
+    pub scatter_us: f64,
+    /// How many different offsets between the two firings support it, of how many in which it could be heard.
+    pub offsets: (u32, u32),
+    /// How many paths with as much support are expected by accident in the whole log.
+    pub accidents: f64,
+    /// Readings that came along it.
+    pub readings: u32,
+    /// Of the readings in which nothing earlier hid it, the share that heard it.
+    pub heard: f64,
+    /// The periods of the first and the last reading that came along it.
+    pub periods: (u32, u32),
+}
+
+/// What a log says about a ring.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnosis {
+    /// The paths, by receiver, best supported first. A sensor's own echo is a path from itself.
+    pub paths: Vec<FoundPath>,
+    /// For each firing of the log, whose sound its reading is, if that is sure enough.
+    pub named: Vec<Option<Named>>,
+    /// What each sensor hears.
+    pub hearing: Vec<Hearing>,
+    /// What is broken.
+    pub faults: Vec<Fault>,
+    /// The most offsets at which a reading could come from a firing of another sensor, over all pairs.
+    pub most_offsets: u32,
+}
+
+/// Finds the paths of a ring, names the sender of each reading where that is sure enough, and says what is broken.
+pub fn diagnose(log: &FiringLog, settings: &Settings) -> Diagnosis {
+    let timeline = Timeline::of(log, settings);
+    let mut paths = Vec::new();
+    let mut named = vec![None; log.firings.len()];
+    let mut fits_none = vec![false; log.firings.len()];
+    for receiver in 0..log.sensors() as u8 {
+        let mut found = paths_to(receiver, &timeline, settings);
+        for path in &mut found {
+            let period = |place: u32| log.firings.get(place as usize).map_or(0, |firing| firing.period);
+            path.periods = (period(path.periods.0), period(path.periods.1));
+        }
+        name_senders(receiver, &found, &timeline, settings, &mut named, &mut fits_none);
+        paths.extend(found);
+    }
+    let hearing = hearing(log, &paths, &named, &fits_none, settings.tolerance_us);
+    let faults = faults(&paths, &hearing, settings);
+    let most_offsets = timeline.most_offsets(settings.tolerance_us.into());
+    Diagnosis { paths, named, hearing, faults, most_offsets }
+}

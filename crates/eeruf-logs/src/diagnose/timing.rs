@@ -1,0 +1,121 @@
+//! Jitter, lateness and drift of firings, held against a fixed schedule.
+
+use core::fmt;
+
+use crate::firings::FiringLog;
+
+/// How firings keep a schedule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Timing {
+    /// By how much the log's clock runs slow against the schedule's (firings come late more and more), in millionths.
+    pub drift_ppm: f64,
+    /// Standard error of that.
+    pub drift_error_ppm: f64,
+    /// Scatter of firings around the schedule that drifts so, rms, in microseconds.
+    pub jitter_us: f64,
+    /// Of 100 firings one is late by more than this after the schedule that drifts so, in microseconds.
+    pub late_99_us: f64,
+    /// How many firings were compared.
+    pub firings: usize,
+}
+
+/// Why firings cannot be held against a schedule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum TimingError {
+    /// The log has a sensor or a phase that the schedule does not have.
+    NotScheduled {
+        /// The sensor, from 0.
+        sensor: u8,
+        /// The phase, from 0.
+        phase: u8,
+    },
+    /// Firings that stand elsewhere than the schedule says: lags have moved, or it is another schedule.
+    Moved {
+        /// The share of firings that are more than 1 ms from the schedule.
+        share: f64,
+    },
+    /// Periods last longer or shorter by more than a clock may be wrong.
+    Rate {
+        /// The log's period, as a share of the schedule's.
+        share: f64,
+    },
+    /// Fewer than ten periods.
+    Short,
+}
+
+impl fmt::Display for TimingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NotScheduled { sensor, phase } => {
+                write!(f, "the log has sensor {} in phase {phase}, which the schedule does not have", sensor + 1)
+            }
+            Self::Moved { share } => write!(
+                f,
+                "{:.0} % of the firings are more than 1 ms from the schedule; expected the one that the ring fired by, \
+                 with lags that did not move",
+                100.0 * share
+            ),
+            Self::Rate { share } => {
+                let percent = 100.0 * share;
+                write!(f, "its periods last {percent:.1} % of the schedule's; expected 90 to 110 %")
+            }
+            Self::Short => write!(f, "fewer than ten periods"),
+        }
+    }
+}
+
+impl core::error::Error for TimingError {}
+
+/// Clocks of microcontrollers without a crystal are wrong by a few hundredths.
+const MOST_DRIFT: f64 = 0.1;
+/// Firings further from the schedule than this, in microseconds, are of another one.
+const ELSEWHERE_US: f64 = 1000.0;
+
+/// Holds a log against a fixed schedule: the period in microseconds, and when a sensor (from 0) fires in a phase (from
+/// 0) after the start of its period.
+///
+/// # Errors
+/// [`TimingError`] for a schedule that is not the ring's, or lags that moved.
+pub fn timing(
+    log: &FiringLog,
+    period_us: u32,
+    fires_at: impl Fn(u8, u8) -> Option<u32>,
+) -> Result<Timing, TimingError> {
+    let mut points = Vec::with_capacity(log.firings.len());
+    for firing in &log.firings {
+        let (sensor, phase) = (firing.sensor, firing.phase);
+        let in_period = fires_at(sensor, phase).ok_or(TimingError::NotScheduled { sensor, phase })?;
+        let due = f64::from(firing.period) * f64::from(period_us) + f64::from(in_period);
+        points.push((due, firing.fired_us as f64 - due));
+    }
+    let periods = log.firings.iter().map(|firing| firing.period);
+    if periods.clone().max().unwrap_or(0) - periods.min().unwrap_or(0) < 10 {
+        return Err(TimingError::Short);
+    }
+    let n = points.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
+    let (x, y) = (mean(|point| point.0), mean(|point| point.1));
+    let spread = points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>();
+    let slope = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum::<f64>() / spread;
+    if slope.abs() > MOST_DRIFT {
+        return Err(TimingError::Rate { share: 1.0 + slope });
+    }
+    let mut off: Vec<_> = points.iter().map(|point| point.1 - y - slope * (point.0 - x)).collect();
+    let elsewhere = off.iter().filter(|off| off.abs() > ELSEWHERE_US).count() as f64 / n;
+    if elsewhere > 0.05 {
+        return Err(TimingError::Moved { share: elsewhere });
+    }
+    let jitter_us = (off.iter().map(|off| off * off).sum::<f64>() / (n - 2.0).max(1.0)).sqrt();
+    off.sort_by(f64::total_cmp);
+    // From the earliest, as lateness goes one way.
+    let earliest = off[off.len() / 100];
+    let late_99_us = off[off.len() - 1 - off.len() / 100] - earliest;
+    Ok(Timing {
+        drift_ppm: 1e6 * slope,
+        drift_error_ppm: 1e6 * jitter_us / spread.sqrt(),
+        jitter_us,
+        late_99_us,
+        firings: points.len(),
+    })
+}

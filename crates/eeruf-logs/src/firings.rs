@@ -1,0 +1,160 @@
+//! Logs of firings: for each, who fired when, and what was heard. `study --log` writes them, firmware can, and
+//! [`diagnose`](crate::diagnose()) reads them.
+//!
+//! ```text
+//! # clock: simulation
+//! sensor,fired_us,period,phase,t_echo_us,reading
+//! 0,15000,0,0,5872,rejected
+//! 4,15000,0,0,,no_echo
+//! ```
+//!
+//! CSV with these columns in any order; others are ignored. Times are in microseconds of one clock, which the first
+//! line may name; one of 32 bits may wrap. `t_echo_us` is the raw echo time, from firing to the first edge, empty
+//! without echo. `reading` is what the ring made of it (`rejected`, `accepted`, ..) and may be missing. Sensors,
+//! periods and phases count from 0. Rows may come in any order that is at most 2^31 us out.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::Path;
+
+use crate::error::LogError;
+
+/// One firing of one sensor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Firing {
+    /// The sensor, from 0.
+    pub sensor: u8,
+    /// When it fired, in microseconds of the log's clock.
+    pub fired_us: i64,
+    /// The period, from 0.
+    pub period: u32,
+    /// The phase, from 0.
+    pub phase: u8,
+    /// From firing to the first echo, in microseconds; `None` without echo.
+    pub t_echo_us: Option<u32>,
+    /// Whether the ring rejected the reading, if the log says what it made of it.
+    pub rejected: Option<bool>,
+}
+
+/// A log of firings, in order of time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FiringLog {
+    /// Which clock the times are of.
+    pub clock: String,
+    /// The firings, in order of time.
+    pub firings: Vec<Firing>,
+}
+
+/// The most sensors of a ring.
+const MAX_SENSORS: u8 = 64;
+
+impl FiringLog {
+    /// Puts firings in order of time.
+    pub fn new(clock: &str, mut firings: Vec<Firing>) -> Self {
+        firings.sort_by_key(|firing| firing.fired_us);
+        Self { clock: clock.to_owned(), firings }
+    }
+
+    /// Reads a log.
+    ///
+    /// # Errors
+    /// A file that cannot be read, columns that are missing, or a value that is none, with its line.
+    pub fn read(file: &Path) -> Result<Self, LogError> {
+        let opened = File::open(file).map_err(|error| LogError::new(file, error))?;
+        Self::read_from(opened, file)
+    }
+
+    /// As [`read`](Self::read), from wherever it comes; `file` stands in errors.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_from(input: impl Read, file: &Path) -> Result<Self, LogError> {
+        let mut input = BufReader::new(input);
+        let mut clock = String::new();
+        let starts_with_remark = input.fill_buf().map_err(|error| LogError::new(file, error))?.first() == Some(&b'#');
+        if starts_with_remark {
+            input.read_line(&mut clock).map_err(|error| LogError::new(file, error))?;
+        }
+        let clock = clock.trim_start_matches('#').trim().trim_start_matches("clock:").trim();
+        let clock = if clock.is_empty() { "unnamed" } else { clock };
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(input);
+        let header = reader.headers().map_err(|error| LogError::new(file, error))?.clone();
+        let column = |name: &str| header.iter().position(|column| column == name);
+        let needed = |name: &str| {
+            column(name).ok_or_else(|| {
+                LogError::new(file, format!("no column `{name}`; expected sensor, fired_us, period, phase, t_echo_us"))
+            })
+        };
+        let [sensor, fired, period] = [needed("sensor")?, needed("fired_us")?, needed("period")?];
+        let [phase, echo] = [needed("phase")?, needed("t_echo_us")?];
+        let reading = column("reading");
+        // The line that the first remark took.
+        let before = u64::from(starts_with_remark);
+        let (mut firings, mut wraps, mut last) = (Vec::new(), 0_i64, i64::MIN);
+        for row in reader.records() {
+            let row = row
+                .map_err(|error| LogError::at_line(file, error.position().map(|place| place.line() + before), error))?;
+            let bad = |column: usize, expected: &str| {
+                let line = row.position().map(|place| place.line() + before);
+                let (name, text) = (&header[column], row.get(column).unwrap_or_default());
+                LogError::at_line(file, line, format!("column {name}: `{text}`; expected {expected}"))
+            };
+            let text = |column: usize| row.get(column).unwrap_or_default();
+            let fired_us: f64 = text(fired).parse().unwrap_or(f64::NAN);
+            if !(0.0..9e15).contains(&fired_us) {
+                return Err(bad(fired, "microseconds, 0 to 9e15"));
+            }
+            let mut fired_us = fired_us.round() as i64 + wraps;
+            if last != i64::MIN && last - fired_us > 1 << 31 {
+                wraps += 1 << 32;
+                fired_us += 1 << 32;
+            }
+            last = fired_us;
+            let t_echo_us = match text(echo) {
+                "" => None,
+                text => match text.parse::<f64>() {
+                    Ok(us) if (0.0..4e9).contains(&us) => Some(us.round() as u32),
+                    Ok(us) if us.is_nan() => None,
+                    _ => return Err(bad(echo, "microseconds, or nothing")),
+                },
+            };
+            let known_sensor = text(sensor).parse().ok().filter(|&sensor| sensor < MAX_SENSORS);
+            firings.push(Firing {
+                sensor: known_sensor.ok_or_else(|| bad(sensor, "0 to 63"))?,
+                fired_us,
+                period: text(period).parse().map_err(|_| bad(period, "a number from 0"))?,
+                phase: text(phase).parse().map_err(|_| bad(phase, "0 to 255"))?,
+                t_echo_us,
+                rejected: reading.map(text).filter(|made| !made.is_empty()).map(|made| made == "rejected"),
+            });
+        }
+        if firings.is_empty() {
+            return Err(LogError::new(file, "no firings"));
+        }
+        Ok(Self::new(clock, firings))
+    }
+
+    /// Writes the log as it is read. What the ring made of a reading is written as `rejected` or `other`.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write(&self, mut output: impl Write) -> std::io::Result<()> {
+        writeln!(output, "# clock: {}", self.clock)?;
+        writeln!(output, "sensor,fired_us,period,phase,t_echo_us,reading")?;
+        for Firing { sensor, fired_us, period, phase, t_echo_us, rejected } in &self.firings {
+            let echo = t_echo_us.map(|us| us.to_string()).unwrap_or_default();
+            let reading = match rejected {
+                Some(true) => "rejected",
+                Some(false) => "other",
+                None => "",
+            };
+            writeln!(output, "{sensor},{fired_us},{period},{phase},{echo},{reading}")?;
+        }
+        Ok(())
+    }
+
+    /// How many sensors the ring has, as far as the log shows: one more than the highest number.
+    pub fn sensors(&self) -> usize {
+        self.firings.iter().map(|firing| usize::from(firing.sensor) + 1).max().unwrap_or(0)
+    }
+}

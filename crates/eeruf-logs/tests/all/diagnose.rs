@@ -1,0 +1,220 @@
+//! `diagnose` on a ring whose paths are known: the simplest world there is, in which each pair has two paths.
+
+use eeruf_logs::{Diagnosis, Fault, Firing, FiringLog, Settings, TimingError, diagnose, timing};
+
+const SENSORS: usize = 6;
+const PERIOD: i64 = 60_000;
+const WINDOW: i64 = 36_000;
+
+/// Pseudo-random numbers, the same on every machine.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, limit: i64) -> i64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) % limit as u64) as i64
+    }
+}
+
+/// How the ring is built, and what is broken about it.
+struct World {
+    /// How many phases; 2 to 7.
+    phases: i64,
+    /// Whether lags are drawn anew every 50 periods.
+    shifts: bool,
+    /// Which sensor's receiver is at the end of each echo line.
+    receivers: [usize; SENSORS],
+    deaf: Option<usize>,
+    chatters: Option<usize>,
+}
+
+impl World {
+    const HEALTHY: Self = Self { phases: 7, shifts: true, receivers: [0, 1, 2, 3, 4, 5], deaf: None, chatters: None };
+
+    /// The log of so many periods, and whose sound each reading is.
+    fn log(&self, seed: u64, periods: i64) -> (FiringLog, Vec<Option<usize>>) {
+        let random = &mut Random(seed);
+        let mut travel = [[[0; 2]; SENSORS]; SENSORS];
+        for x in 0..SENSORS {
+            for y in x..SENSORS {
+                // Sound takes the same time in both directions.
+                let two = [6_000 + random.below(12_000), 18_000 + random.below(22_000)];
+                (travel[x][y], travel[y][x]) = (two, two);
+            }
+        }
+        let mut lags = [0; SENSORS];
+        let mut fired = vec![];
+        for period in 0..periods {
+            if period == 0 || self.shifts && period % 50 == 0 {
+                lags = core::array::from_fn(|_| random.below(50_000));
+            }
+            let phase = period % self.phases;
+            for (sensor, lag) in lags.iter().enumerate() {
+                let wait = 240 * ((sensor as i64 + 1) * phase % 7);
+                fired.push((period * PERIOD + lag + wait, sensor, period, phase));
+            }
+        }
+        fired.sort_unstable();
+        let mut edges: Vec<Vec<(i64, usize)>> = vec![vec![]; SENSORS];
+        for &(at, x, ..) in &fired {
+            for (line, edges) in edges.iter_mut().enumerate() {
+                for travel in travel[x][self.receivers[line]] {
+                    // The last of three echoes fades now and then.
+                    if random.below(20) > 0 {
+                        edges.push((at + travel + random.below(61) - 30, x));
+                    }
+                }
+            }
+        }
+        edges.iter_mut().for_each(|edges| edges.sort_unstable());
+        let (mut firings, mut truth) = (vec![], vec![]);
+        for (at, sensor, period, phase) in fired {
+            let first = edges[sensor].partition_point(|edge| edge.0 < at + 2_000);
+            let mut heard = edges[sensor].get(first).filter(|edge| edge.0 <= at + WINDOW).copied();
+            if self.deaf == Some(sensor) {
+                heard = None;
+            }
+            let mut sender = heard.map(|edge| edge.1);
+            if self.chatters == Some(sensor) {
+                let noise = at + 2_000 + random.below(9_000);
+                if heard.is_none_or(|edge| noise < edge.0) {
+                    (heard, sender) = (Some((noise, sensor)), None);
+                }
+            }
+            firings.push(Firing {
+                sensor: sensor as u8,
+                fired_us: at,
+                period: period as u32,
+                phase: phase as u8,
+                t_echo_us: heard.map(|edge| (edge.0 - at) as u32),
+                rejected: None,
+            });
+            truth.push(sender);
+        }
+        (FiringLog { clock: "test".to_owned(), firings }, truth)
+    }
+}
+
+/// Of the readings with another's sound the share that is named rightly, and the share of the names that are right.
+fn named(log: &FiringLog, truth: &[Option<usize>], found: &Diagnosis) -> (f64, f64) {
+    let (mut foreign, mut right, mut named) = (0, 0, 0);
+    for ((firing, truth), name) in log.firings.iter().zip(truth).zip(&found.named) {
+        let is_foreign = truth.is_some_and(|sender| sender != usize::from(firing.sensor));
+        foreign += u32::from(is_foreign);
+        if let Some(name) = name.filter(|name| name.sender != firing.sensor) {
+            named += 1;
+            right += u32::from(*truth == Some(usize::from(name.sender)));
+        }
+    }
+    (f64::from(right) / f64::from(foreign.max(1)), f64::from(right) / f64::from(named.max(1)))
+}
+
+#[test]
+fn under_many_phases_most_senders_are_named_and_the_names_are_right() {
+    for seed in 1..=5 {
+        let (log, truth) = World::HEALTHY.log(seed, 600);
+        let found = diagnose(&log, &Settings::default());
+        let (share, right) = named(&log, &truth, &found);
+        assert!(share > 0.7 && right > 0.99, "seed {seed}: {share} named, {right} right");
+        assert_eq!(found.faults, [], "seed {seed}");
+        assert!(found.paths.iter().all(|path| path.accidents < 0.01 && path.offsets.0 <= path.offsets.1));
+    }
+}
+
+#[test]
+fn under_two_phases_no_sender_is_named_as_two_offsets_prove_nothing() {
+    let (log, _) = World { phases: 2, shifts: false, ..World::HEALTHY }.log(1, 600);
+    let found = diagnose(&log, &Settings::default());
+    assert!(found.named.iter().all(Option::is_none) && found.paths.is_empty());
+    assert!((2..=6).contains(&found.most_offsets), "{}", found.most_offsets);
+}
+
+#[test]
+fn a_deaf_sensor_is_named_and_whether_others_hear_it() {
+    let mut heard = 0;
+    for sensor in 0..SENSORS {
+        let (log, _) = World { deaf: Some(sensor), ..World::HEALTHY }.log(1, 400);
+        let faults = diagnose(&log, &Settings::default()).faults;
+        let [Fault::Deaf { sensor: found, echoes, is_heard }] = faults[..] else { panic!("{faults:?}") };
+        assert_eq!((usize::from(found), echoes.count, echoes.of), (sensor, 0, 400));
+        heard += u32::from(is_heard);
+    }
+    // What one sends may always come too late.
+    assert!(heard >= 4, "{heard}");
+}
+
+#[test]
+fn a_chattering_sensor_is_named() {
+    for sensor in 0..SENSORS {
+        let (log, _) = World { chatters: Some(sensor), ..World::HEALTHY }.log(1, 400);
+        let Diagnosis { faults, hearing, .. } = diagnose(&log, &Settings::default());
+        let [Fault::Chattering { sensor: found, .. }] = faults[..] else {
+            let wandering: Vec<_> = hearing.iter().map(|of| of.wandering).collect();
+            panic!("{faults:?}: {wandering:?}")
+        };
+        assert_eq!(usize::from(found), sensor);
+    }
+}
+
+#[test]
+fn two_sensors_with_swapped_lines_are_named() {
+    for (a, b) in [(0, 1), (2, 5), (3, 4)] {
+        let mut receivers = World::HEALTHY.receivers;
+        receivers.swap(a, b);
+        let (log, _) = World { receivers, ..World::HEALTHY }.log(1, 1000);
+        let faults = diagnose(&log, &Settings::default()).faults;
+        let [Fault::Swapped { sensors, accidents, .. }] = faults[..] else { panic!("{faults:?}") };
+        assert_eq!((usize::from(sensors.0), usize::from(sensors.1)), (a, b));
+        assert!(accidents < 0.01);
+    }
+}
+
+#[test]
+fn timing_finds_drift_and_jitter_and_refuses_lags_that_moved() {
+    let fires_at =
+        |sensor: u8, phase: u8| (sensor < 4).then_some(15_000 * u32::from(sensor) + 1_000 * u32::from(phase));
+    let random = &mut Random(7);
+    let mut firings = vec![];
+    for period in 0..500_u32 {
+        for sensor in 0..4 {
+            let phase = (period % 2) as u8;
+            let due = f64::from(period) * 60_000.0 + f64::from(fires_at(sensor, phase).unwrap());
+            // 40 millionths of drift, and up to 60 us of jitter, uniform.
+            let fired_us = (due * 1.000_04 + random.below(61) as f64).round() as i64;
+            firings.push(Firing { sensor, fired_us, period, phase, t_echo_us: None, rejected: None });
+        }
+    }
+    let mut log = FiringLog::new("test", firings);
+    let found = timing(&log, 60_000, fires_at).unwrap();
+    assert!((found.drift_ppm - 40.0).abs() < 4.0 * found.drift_error_ppm && found.drift_error_ppm < 0.1, "{found:?}");
+    assert!((found.jitter_us - 60.0 / 12_f64.sqrt()).abs() < 1.0, "{found:?}");
+    assert!((55.0..=61.0).contains(&found.late_99_us), "{found:?}");
+    assert_eq!(
+        timing(&log, 60_000, |sensor, phase| fires_at(sensor, phase).filter(|_| sensor < 3)),
+        Err(TimingError::NotScheduled { sensor: 3, phase: 0 })
+    );
+    log.firings.iter_mut().filter(|firing| firing.sensor == 2 && firing.period > 250).for_each(|firing| {
+        firing.fired_us += 5_000;
+    });
+    assert!(matches!(timing(&log, 60_000, fires_at), Err(TimingError::Moved { share }) if share > 0.1));
+}
+
+#[test]
+fn a_log_is_read_as_it_was_written_and_a_clock_of_32_bits_may_wrap() {
+    let (log, _) = World::HEALTHY.log(3, 50);
+    let mut text = Vec::new();
+    log.write(&mut text).unwrap();
+    assert_eq!(FiringLog::read_from(&text[..], "log".as_ref()).unwrap(), log);
+    let wrapped = "sensor,fired_us,period,phase,t_echo_us\n0,4294967000,0,0,\n1,5000,0,0,700\n";
+    let read = FiringLog::read_from(wrapped.as_bytes(), "log".as_ref()).unwrap();
+    assert_eq!((read.clock.as_str(), read.firings[1].fired_us), ("unnamed", 4_294_972_296));
+    let said = |text: &str| FiringLog::read_from(text.as_bytes(), "log".as_ref()).unwrap_err().to_string();
+    assert_eq!(said("a,b\n"), "log: no column `sensor`; expected sensor, fired_us, period, phase, t_echo_us");
+    let header = "# clock: board\nsensor,fired_us,period,phase,t_echo_us\n";
+    assert_eq!(said(&format!("{header}64,0,0,0,\n")), "log, line 3: column sensor: `64`; expected 0 to 63");
+    assert_eq!(
+        said(&format!("{header}1,0,0,0,-5\n")),
+        "log, line 3: column t_echo_us: `-5`; expected microseconds, or nothing"
+    );
+    assert_eq!(said(header), "log: no firings");
+}

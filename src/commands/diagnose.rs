@@ -1,0 +1,81 @@
+//! `eeruf diagnose`: what is wrong with a ring, from its own log.
+
+use std::path::PathBuf;
+
+use eeruf_core::{Micros, Phase};
+use eeruf_logs::{FiringLog, Settings, Timing, diagnose, timing};
+
+use super::answer::Answer;
+use crate::files::error::InputError;
+use crate::files::toml::read_schedule;
+use crate::report::diagnose::{Found, describe, json, who_fools_whom};
+use crate::report::json::to_json;
+
+/// Say from a ring's own log which sensors fool each other, along paths of which length, since when and how sure;
+/// which are blind in which phases; what is broken; and what to change.
+///
+/// The log is CSV with the columns sensor, fired_us, period, phase and t_echo_us, one row for each firing: when it was,
+/// in microseconds of one clock, and the raw time to the first echo, empty without one. Sensors, periods and phases
+/// count from 0. A column `reading` may say what the ring made of it (`rejected`). `eeruf study --log` writes such a
+/// log. A ring that hops in time, whose lags move, tells most; with two phases senders cannot be told apart.
+///
+/// The exit code is 1 if something is broken.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The log
+    #[arg(value_name = "LOG.csv")]
+    file: PathBuf,
+    /// The fixed schedule that the ring fires by, for jitter, lateness and drift
+    #[arg(long, value_name = "SCHEDULE.toml")]
+    schedule: Option<PathBuf>,
+    /// By how much a reading may differ from what a path predicts: about four times the jitter
+    #[arg(long, value_name = "N", default_value_t = 75, value_parser = clap::value_parser!(u32).range(1..=5000))]
+    tolerance_us: u32,
+    /// For how long sound is followed
+    #[arg(long, value_name = "N", default_value_t = 80_000)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1000..=1_000_000))]
+    max_travel_us: u32,
+    /// In m/s, for the lengths of paths
+    #[arg(long, default_value_t = 343.2, value_name = "C")]
+    speed_of_sound: f64,
+    /// Draw who fools whom, as SVG or, if the name ends in .png, as PNG
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    if !(args.speed_of_sound > 0.0 && args.speed_of_sound.is_finite()) {
+        let message = format!("--speed-of-sound {}; expected a number above zero", args.speed_of_sound);
+        return Err(InputError::new(&args.file, None, message));
+    }
+    let log = FiringLog::read(&args.file)?;
+    let settings =
+        Settings { tolerance_us: args.tolerance_us, max_travel_us: args.max_travel_us, ..Settings::default() };
+    let timing = timing_of(args, &log)?;
+    let diagnosis = diagnose(&log, &settings);
+    let found =
+        Found { file: &args.file, log: &log, diagnosis: &diagnosis, timing, speed_of_sound: args.speed_of_sound };
+    if let Some(file) = &args.svg {
+        who_fools_whom(&found).save(file)?;
+    }
+    if args.json {
+        println!("{}", to_json(&json(&found)));
+    } else {
+        print!("{}", describe(&found));
+    }
+    Ok(if diagnosis.faults.is_empty() { Answer::Yes } else { Answer::No })
+}
+
+fn timing_of(args: &Args, log: &FiringLog) -> Result<Option<Timing>, InputError> {
+    let Some(file) = &args.schedule else { return Ok(None) };
+    let schedule = read_schedule(file)?;
+    let fires_at = |sensor: u8, phase: u8| {
+        let fires = if phase < 2 { schedule.t_fire(Phase(phase), sensor.into()) } else { None };
+        fires.map(Micros::as_micros)
+    };
+    let found = timing(log, schedule.period().as_micros(), fires_at);
+    found.map(Some).map_err(|error| InputError::new(&args.file, None, format!("against {}: {error}", file.display())))
+}

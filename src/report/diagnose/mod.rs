@@ -1,0 +1,115 @@
+//! What a ring's log says about it: as text, as JSON, as a picture.
+
+mod json;
+mod picture;
+mod text;
+
+use std::path::Path;
+
+use eeruf_logs::{Diagnosis, FiringLog, FoundPath, Timing};
+
+pub(crate) use json::json;
+pub(crate) use picture::who_fools_whom;
+pub(crate) use text::describe;
+
+/// A log and what was found in it.
+pub(crate) struct Found<'a> {
+    pub(crate) file: &'a Path,
+    pub(crate) log: &'a FiringLog,
+    pub(crate) diagnosis: &'a Diagnosis,
+    pub(crate) timing: Option<Timing>,
+    pub(crate) speed_of_sound: f64,
+}
+
+impl Found<'_> {
+    fn length_m(&self, path: &FoundPath) -> f64 {
+        1e-6 * path.travel_us * self.speed_of_sound
+    }
+
+    fn phases(&self) -> usize {
+        let mut phases: Vec<_> = self.log.firings.iter().map(|firing| firing.phase).collect();
+        phases.sort_unstable();
+        phases.dedup();
+        phases.len()
+    }
+
+    fn periods(&self) -> u32 {
+        let periods = || self.log.firings.iter().map(|firing| firing.period);
+        periods().max().unwrap_or(0) - periods().min().unwrap_or(0) + 1
+    }
+
+    /// Rejected readings, if the log says which are, and how many of them are surely another sensor's sound.
+    fn rejected(&self) -> Option<(usize, usize)> {
+        let firings = || self.log.firings.iter().zip(&self.diagnosis.named);
+        firings().any(|(firing, _)| firing.rejected.is_some()).then(|| {
+            let rejected = || firings().filter(|(firing, _)| firing.rejected == Some(true));
+            let named = rejected().filter(|(firing, named)| named.is_some_and(|named| named.sender != firing.sensor));
+            (rejected().count(), named.count())
+        })
+    }
+
+    /// Sensors that are blind in at least half of the phases.
+    fn mostly_blind(&self) -> Vec<u8> {
+        let phases = self.phases();
+        let blind = self.diagnosis.hearing.iter().filter(|of| 2 * of.blind_phases.len() >= phases.max(1));
+        blind.map(|of| of.sensor).collect()
+    }
+
+    /// What to change, one thing a line.
+    fn advice(&self) -> Vec<String> {
+        use eeruf_logs::Fault;
+        let mut advice = Vec::new();
+        for fault in &self.diagnosis.faults {
+            advice.push(match *fault {
+                Fault::Deaf { sensor, is_heard: true, .. } => {
+                    format!("look at the echo line of sensor {}: its sound goes out", sensor + 1)
+                }
+                Fault::Deaf { sensor, .. } => format!("look at sensor {}, its supply and its lines", sensor + 1),
+                Fault::Chattering { sensor, .. } => {
+                    format!("disable sensor {} until its echo line is quiet", sensor + 1)
+                }
+                Fault::Swapped { sensors: (a, b), .. } => {
+                    format!("exchange the echo lines (or the triggers) of sensors {} and {}", a + 1, b + 1)
+                }
+                _ => continue,
+            });
+        }
+        if self.phases() <= 2 {
+            advice.push(
+                "record a log under time hopping (many phases, or lags that move): with two phases senders cannot be \
+                 told apart"
+                    .to_owned(),
+            );
+        } else if !self.mostly_blind().is_empty() {
+            advice.push("let lags move and give solo periods, or use sensors that report several echoes".to_owned());
+        }
+        let window_us = self.log.firings.iter().filter_map(|firing| firing.t_echo_us).max().unwrap_or(0);
+        let period_us = self.period_us();
+        let old = self.diagnosis.paths.iter().filter(|path| path.travel_us > period_us);
+        if let Some(longest) = old.max_by(|a, b| a.travel_us.total_cmp(&b.travel_us)) {
+            advice.push(format!(
+                "a longer period: sound is heard for {:.1} ms, the period is {:.1} ms and windows are {:.1} ms",
+                1e-3 * longest.travel_us,
+                1e-3 * period_us,
+                1e-3 * f64::from(window_us)
+            ));
+        }
+        advice
+    }
+
+    /// The median time from a sensor's firing to its next, in microseconds.
+    fn period_us(&self) -> f64 {
+        let mut last = vec![None; 256];
+        let mut between: Vec<_> = self
+            .log
+            .firings
+            .iter()
+            .filter_map(|firing| {
+                let before = last[usize::from(firing.sensor)].replace(firing.fired_us);
+                before.map(|before: i64| firing.fired_us - before)
+            })
+            .collect();
+        between.sort_unstable();
+        between.get(between.len() / 2).map_or(f64::INFINITY, |&us| us as f64)
+    }
+}

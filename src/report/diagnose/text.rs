@@ -1,0 +1,184 @@
+//! A diagnosis for people. Sensors are printed from 1.
+
+use std::fmt::Write as _;
+
+use eeruf_logs::{Fault, FoundPath, Share};
+
+use super::Found;
+use crate::report::table::markdown;
+
+/// The whole diagnosis.
+pub(crate) fn describe(found: &Found<'_>) -> String {
+    let mut text = head(found);
+    faults(found, &mut text);
+    sensors(found, &mut text);
+    paths(found, &mut text);
+    let advice = found.advice();
+    if !advice.is_empty() {
+        text += "\nWhat to change:\n";
+        advice.iter().for_each(|line| text += &format!("- {line}\n"));
+    }
+    text
+}
+
+fn head(found: &Found<'_>) -> String {
+    let (log, diagnosis) = (found.log, found.diagnosis);
+    let mut text = format!(
+        "{}: {} firings of {} sensors in {} periods and {} phases; clock: {}\n",
+        found.file.display(),
+        log.firings.len(),
+        diagnosis.hearing.len(),
+        found.periods(),
+        found.phases(),
+        log.clock,
+    );
+    if let Some((rejected, named)) = found.rejected() {
+        let share = Share { count: named as u32, of: rejected as u32 };
+        // Writing to a string does not fail.
+        _ = writeln!(
+            text,
+            "Of {rejected} rejected readings {named} are another sensor's sound, surely: {}.",
+            percent(share)
+        );
+    }
+    let most = diagnosis.most_offsets;
+    if diagnosis.paths.is_empty() {
+        _ = writeln!(
+            text,
+            "No sender can be named, and nothing can be said of blind sensors. Two sensors' firings stand at {most} \
+             offsets to each other at most; that a path is no accident takes about five (fewer than 0.01 accidental \
+             paths are allowed in the whole log)."
+        );
+    } else {
+        let expected: f64 = diagnosis.paths.iter().map(|path| path.accidents).sum();
+        _ = writeln!(
+            text,
+            "{} paths found, {expected:.2} of them expected to be accidents. A sender is named where it is 99 % sure.",
+            diagnosis.paths.len()
+        );
+    }
+    match found.timing {
+        Some(timing) => {
+            _ = writeln!(
+                text,
+                "Timing: drift {:+.2} +- {:.2} ppm (95 %), jitter {:.1} us rms, 1 % of firings over {:.0} us late.",
+                timing.drift_ppm,
+                1.96 * timing.drift_error_ppm,
+                timing.jitter_us,
+                timing.late_99_us
+            );
+        }
+        None => {
+            if let Some(scatter) = scatter_us(&diagnosis.paths) {
+                _ = writeln!(text, "Readings along one path scatter by {scatter:.0} us rms (median of the paths).");
+            }
+        }
+    }
+    text
+}
+
+fn scatter_us(paths: &[FoundPath]) -> Option<f64> {
+    let mut scatter: Vec<_> = paths.iter().map(|path| path.scatter_us).collect();
+    scatter.sort_by(f64::total_cmp);
+    scatter.get(scatter.len() / 2).copied()
+}
+
+fn faults(found: &Found<'_>, text: &mut String) {
+    for fault in &found.diagnosis.faults {
+        _ = match *fault {
+            Fault::Deaf { sensor, echoes, is_heard } => writeln!(
+                text,
+                "Sensor {} is deaf: an echo in {} of {} firings (95 %: under {:.1} %), while most others hear; {}.",
+                sensor + 1,
+                echoes.count,
+                echoes.of,
+                100.0 * echoes.interval_95().1,
+                if is_heard { "others hear its sound" } else { "nobody hears its sound either" }
+            ),
+            Fault::Chattering { sensor, wandering } => writeln!(
+                text,
+                "Sensor {} chatters: {} of its echoes fit no path and do not come back when the ring fires alike.",
+                sensor + 1,
+                percent(wandering),
+            ),
+            Fault::Swapped { sensors: (a, b), exchanged, as_it_is, accidents } => writeln!(
+                text,
+                "Sensors {} and {} are mis-wired, their lines swapped: {} of {} of their paths take as long back as \
+                 there if they are exchanged, {} of {} as it is ({accidents:.1e} such pairs expected by accident).",
+                a + 1,
+                b + 1,
+                exchanged.count,
+                exchanged.of,
+                as_it_is.count,
+                as_it_is.of
+            ),
+            _ => Ok(()),
+        };
+    }
+}
+
+fn sensors(found: &Found<'_>, text: &mut String) {
+    if found.diagnosis.paths.is_empty() {
+        let rows = found.diagnosis.hearing.iter().map(|of| vec![(of.sensor + 1).to_string(), percent(of.echoes)]);
+        _ = writeln!(text, "\n{}", markdown(&["sensor", "echoes"], rows));
+        return;
+    }
+    let header = ["sensor", "echoes", "its own", "others' sound", "cannot be named", "fits no path", "blind in phases"];
+    let rows = found.diagnosis.hearing.iter().map(|of| {
+        let phases = match &of.blind_phases[..] {
+            [] if !of.has_own_path => "own echo not found".to_owned(),
+            [] => "-".to_owned(),
+            phases => {
+                let most = phases.iter().map(|&(_, fired)| fired).min().unwrap_or(0);
+                let list: Vec<_> = phases.iter().map(|(phase, _)| phase.to_string()).collect();
+                // None of n: under 3 / n, with 95 %.
+                format!("{} (95 %: first in under {:.0} %)", list.join(" "), (300.0 / f64::from(most)).min(100.0))
+            }
+        };
+        let name = (of.sensor + 1).to_string();
+        vec![
+            name,
+            percent(of.echoes),
+            percent(of.own),
+            percent(of.foreign),
+            percent(of.unnamed),
+            percent(of.unexplained),
+            phases,
+        ]
+    });
+    _ = writeln!(text, "\n{}", markdown(&header, rows));
+}
+
+fn paths(found: &Found<'_>, text: &mut String) {
+    let mut foreign: Vec<_> = found.diagnosis.paths.iter().filter(|path| path.sender != path.receiver).collect();
+    if foreign.is_empty() {
+        return;
+    }
+    foreign.sort_by_key(|path| std::cmp::Reverse(path.readings));
+    let header = ["who is fooled", "by whom", "length m", "readings", "heard %", "periods", "offsets", "accidents"];
+    let rows = foreign.iter().map(|path| {
+        vec![
+            (path.receiver + 1).to_string(),
+            (path.sender + 1).to_string(),
+            format!("{:.3} +- {:.3}", found.length_m(path), 1.96e-6 * path.travel_error_us * found.speed_of_sound),
+            path.readings.to_string(),
+            format!("{:.0}", 100.0 * path.heard),
+            format!("{} to {}", path.periods.0, path.periods.1),
+            format!("{} of {}", path.offsets.0, path.offsets.1),
+            format!("{:.0e}", path.accidents),
+        ]
+    });
+    _ = writeln!(text, "\n{}", markdown(&header, rows));
+    *text += "Heard: of the readings in which nothing earlier hid it.\n\
+              Offsets: at how many offsets between the two firings it was heard.\n\
+              Accidents: how many paths with as much support are expected in the whole log by accident.\n";
+}
+
+/// A share with its 95 % interval.
+fn percent(share: Share) -> String {
+    let (low, high) = share.interval_95();
+    if share.of == 0 {
+        return "-".to_owned();
+    }
+    format!("{:.1} % ({:.1}-{:.1})", 100.0 * share.value(), 100.0 * low, 100.0 * high)
+}

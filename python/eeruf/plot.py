@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
-    from eeruf import Schedule
+    from eeruf import HoppingSchedule, Schedule
     from eeruf.experiments import Run, SetTwo
     from eeruf.sim import Paths, Readings, Scene
 
@@ -87,8 +87,8 @@ def _bare(ax: Axes) -> None:
     ax.spines[["top", "right"]].set_visible(False)
 
 
-def timing(schedule: Schedule, *, window_us: int = 0, ax: Axes | None = None) -> Axes:
-    """When each sensor fires in the two phases of a schedule (as the paper's Fig. 3).
+def timing(schedule: Schedule | HoppingSchedule, *, window_us: int = 0, ax: Axes | None = None) -> Axes:
+    """When each sensor fires in the two phases of a schedule (as the paper's Fig. 3), or in the many of a hopping one.
 
     Args:
         schedule: whose firing times to draw.
@@ -96,7 +96,8 @@ def timing(schedule: Schedule, *, window_us: int = 0, ax: Axes | None = None) ->
         ax: where to draw.
 
     Returns:
-        The axes; times in milliseconds over one period of phase a and one of phase b.
+        The axes; times in milliseconds over one period of phase a and one of phase b. Of many phases: over one period, and in each
+        sensor's lane a line for each phase, the first on top.
 
     Example:
         >>> import eeruf
@@ -105,8 +106,10 @@ def timing(schedule: Schedule, *, window_us: int = 0, ax: Axes | None = None) ->
         'time (ms)'
 
     """
-    _is("schedule", schedule, _eeruf.Schedule, "an eeruf.Schedule")
     _whole("window_us", window_us, 0, 2**32 - 1)
+    if isinstance(schedule, _eeruf.HoppingSchedule):
+        return _hopping(schedule, window_us, ax)
+    _is("schedule", schedule, _eeruf.Schedule, "an eeruf.Schedule or an eeruf.HoppingSchedule")
     sensors = schedule.sensors
     ax = _axes(ax, height=1.2 + 0.26 * sensors)
     period_ms = schedule.period_us / 1e3
@@ -125,6 +128,29 @@ def timing(schedule: Schedule, *, window_us: int = 0, ax: Axes | None = None) ->
         ax.axvline(end, color=_GREY, linewidth=0.8, linestyle=(0, (4, 3)))
     ax.set_xlim(0, 2 * period_ms)
     ax.set_ylim(sensors + 0.6, 0.2)
+    ax.set_yticks(range(1, sensors + 1))
+    ax.tick_params(axis="y", length=0)
+    ax.set_xlabel("time (ms)")
+    ax.set_ylabel("sensor")
+    _bare(ax)
+    return ax
+
+
+def _hopping(schedule: HoppingSchedule, window_us: int, ax: Axes | None) -> Axes:
+    """The phases of a hopping schedule, one below the other in each sensor's lane."""
+    sensors, phases, period_ms = schedule.sensors, schedule.phases, schedule.period_us / 1e3
+    ax = _axes(ax, height=1.2 + 0.05 * sensors * phases)
+    line = 0.76 / phases
+    fires_ms = schedule.t_fire_us / 1e3
+    tops = np.arange(1, sensors + 1) - 0.38 + line * np.arange(phases)[:, None]
+    if window_us > 0:
+        # The windows that are open at the end of a period are open at the beginning of the next, in the next phase.
+        for left, top in ((fires_ms, tops), (np.roll(fires_ms, 1, axis=0) - period_ms, tops)):
+            width = np.full(left.size, window_us / 1e3)
+            ax.barh(top.ravel() + line / 2, width, left=left.ravel(), height=line, color=_WINDOW, linewidth=0)
+    ax.vlines(fires_ms.ravel(), tops.ravel(), tops.ravel() + line, colors=_BLUE, linewidth=1.6)
+    ax.set_xlim(0, period_ms)
+    ax.set_ylim(sensors + 0.6, 0.4)
     ax.set_yticks(range(1, sensors + 1))
     ax.tick_params(axis="y", length=0)
     ax.set_xlabel("time (ms)")

@@ -7,6 +7,7 @@ import matplotlib
 import numpy as np
 import pytest
 from eeruf import experiments, plot, sim, tables
+from matplotlib.collections import LineCollection
 
 matplotlib.use("Agg")
 ALCOVE = Path(__file__).parents[2] / "scenes" / "alcove.toml"
@@ -82,3 +83,13 @@ def test_a_run_alone_is_drawn_as_well_and_what_is_none_is_refused() -> None:
             plot.course(found, **arguments)  # type: ignore[arg-type]
     with pytest.raises(eeruf.ArgumentError, match="expected what eeruf"):
         plot.course({"methods": {}})  # type: ignore[arg-type]
+
+
+def test_the_timing_of_many_phases_marks_every_firing_of_each() -> None:
+    schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ax = plot.timing(schedule, window_us=36_000)
+    fires = next(lines for lines in ax.collections if isinstance(lines, LineCollection))
+    drawn = sorted(float(segment[0][0]) for segment in fires.get_segments())
+    assert drawn == pytest.approx(sorted((schedule.t_fire_us / 1e3).ravel().tolist()))
+    assert len(ax.patches) == 2 * 8 * 11
+    assert ax.get_xlim() == (0, 60)

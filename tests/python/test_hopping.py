@@ -71,6 +71,18 @@ def test_what_compares_equal_hashes_pickles_and_prints_so_that_it_can_be_pasted(
     assert repr(HoppingSettings("quick", votes=6)) == "HoppingSettings('quick', votes=6)"
 
 
+def test_a_schedule_survives_its_file_and_bad_files_are_named() -> None:
+    for schedule in (EIGHT, HoppingSchedule(2, PERIOD_US, 301, 13, [0, 9_000], first_multiplier=5)):
+        assert HoppingSchedule.from_toml(schedule.to_toml()) == schedule
+    for text, expected in (
+        ("period_us = 60000\nstep_us = x", "^line 2: "),
+        ("period_us = 60000\nstep_us = 240", "expected either step_us, phases and t_lag_us"),
+        ("period_us = 60000\nt_fire_us = [[0, 1], [2, 3]]", "^t_fire_us; expected step_us"),
+    ):
+        with pytest.raises(eeruf.HoppingError, match=expected):
+            HoppingSchedule.from_toml(text)
+
+
 def test_every_setting_can_be_changed_and_read_back() -> None:
     before = HoppingSettings()
     fields = [name for name in vars(HoppingSettings) if not name.startswith("_")]

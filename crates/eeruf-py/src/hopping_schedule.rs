@@ -1,6 +1,7 @@
 //! `HoppingSchedule`.
 
 use eeruf_core::{HoppingCode, HoppingSchedule as Core, MAX_SENSORS, Micros};
+use eeruf_design::PhaseFile;
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
@@ -8,8 +9,8 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{micros, times, whole, whole_or, wrong},
-    errors::Raise,
+    arguments::{self, micros, times, whole, whole_or, wrong},
+    errors::{HoppingError, Raise},
     requirements,
 };
 
@@ -89,6 +90,42 @@ impl HoppingSchedule {
             }
         };
         schedule.map(Self).map_err(Raise::raise)
+    }
+
+    /// Read a schedule as ``eeruf design --phases M --emit toml`` and :meth:`to_toml` write it.
+    ///
+    /// Args:
+    ///     text: the contents of a file: ``period_us``, ``step_us``, ``phases`` and ``t_lag_us``.
+    ///
+    /// Raises:
+    ///     ArgumentError: not a text.
+    ///     HoppingError: the text is no TOML, a key is missing, the numbers make no schedule, or it is a table of firing
+    ///         times, which no ring hops by.
+    ///
+    /// Example:
+    ///     >>> from eeruf import HoppingSchedule
+    ///     >>> keys = "period_us = 60000\nstep_us = 240\nphases = 5\nt_lag_us = [0, 9000]"
+    ///     >>> HoppingSchedule.from_toml(keys).phases
+    ///     5
+    #[staticmethod]
+    #[pyo3(signature = (text))]
+    fn from_toml(text: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let text = arguments::text("text", text, "a schedule in TOML")?;
+        let file = eeruf_design::parse::<PhaseFile>(&text).map_err(|error| HoppingError::new_err(error.to_string()))?;
+        let schedule = file.schedule().map_err(HoppingError::new_err)?;
+        let hopping = schedule.hopping().copied().map(Self);
+        hopping.ok_or_else(|| HoppingError::new_err("t_fire_us; expected step_us, phases and t_lag_us, to hop by"))
+    }
+
+    /// Write a schedule file, as the program reads it.
+    ///
+    /// Example:
+    ///     >>> from eeruf import HoppingSchedule
+    ///     >>> schedule = HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> HoppingSchedule.from_toml(schedule.to_toml()) == schedule
+    ///     True
+    fn to_toml(&self) -> String {
+        self.0.to_toml().to_string()
     }
 
     /// The period ``T_p``, in microseconds.

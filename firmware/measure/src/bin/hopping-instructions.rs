@@ -31,7 +31,7 @@ fn echo(ring: &mut HoppingRing<12>, sensor: u8, at: Instant) -> Result<(), Senso
 fn t_echo(sensor: u8, period: u32, noise: u32) -> Option<u32> {
     match sensor {
         0..4 => Some(9_000 + 1_000 * u32::from(sensor)),
-        4..8 if period % 2 == 0 => Some(4_000 + 300 * (period % 13)),
+        4..8 if period & 1 == 0 => Some(4_000 + 300 * (period % 13)),
         4..8 => Some(14_000),
         8..11 => Some(3_000 + noise % 30_000),
         _ => None,

@@ -8,8 +8,8 @@
  *
  *   int main(void) {
  *       EerufConfig config = EERUF_CONFIG;     // listen and compare as the schedule was verified for
- *       if (eeruf_ring_init(&ring, sizeof ring, sensors, sizeof sensors, &eeruf_schedule, &config, now_us()) != EERUF_OK)
- *           halt();
+ *       if (eeruf_ring_init(&ring, sizeof ring, sensors, sizeof sensors, &eeruf_schedule, &config, now_us()) != 0)
+ *           halt();                            // a status says why
  *       for (;;) {
  *           EerufEvent event;
  *           while (eeruf_ring_poll(&ring, now_us(), &event) == EERUF_EVENT) {
@@ -476,7 +476,7 @@ typedef struct EerufHoppingRing {
 } EerufHoppingRing;
 
 /* Makes a hopping ring that begins at `now_us`. Both arrays have a place for each sensor of the config. Poll it with
-   eeruf_hopping_poll, and hand in echoes with the functions of its `ring`. It has no schedule to change and no pause. */
+   eeruf_hopping_poll, and hand in echoes with the functions of its `ring`. No schedule to change, and no pause. */
 EerufStatus eeruf_hopping_init(EerufHoppingRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
                                EerufHopper *hoppers, size_t hoppers_size, const EerufHoppingConfig *config,
                                uint32_t now_us);

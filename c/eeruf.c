@@ -14,6 +14,10 @@
 SIZE_IS(EerufSensor, 18);
 SIZE_IS(EerufLine, 10);
 SIZE_IS(EerufSchedule, 36);
+#if EERUF_HOPPING
+SIZE_IS(EerufRing, 73);
+SIZE_IS(EerufHopper, 62);
+#endif
 #else
 SIZE_IS(EerufSensor, 20);
 SIZE_IS(EerufLine, 12);

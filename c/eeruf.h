@@ -1,14 +1,15 @@
 /* eeruf: Error Eliminating Rapid Ultrasonic Firing (Borenstein and Koren, 1995) for rings of ultrasonic sensors, in C.
  *
  *   #include "eeruf.h"
- *   #include "ring.h"                          // RING, written by: eeruf design RING.toml --emit c > ring.h
+ *   #include "ring.h"                          // written by: eeruf design RING.toml --emit c > ring.h
  *
  *   static EerufRing ring;                     // your memory: nothing is allocated
- *   static EerufSensor sensors[RING_SENSORS];
+ *   static EerufSensor sensors[EERUF_SENSORS];
  *
  *   int main(void) {
  *       EerufConfig config = EERUF_CONFIG;     // listen and compare as the schedule was verified for
- *       if (eeruf_ring_init(&ring, sizeof ring, sensors, sizeof sensors, &RING, &config, now_us()) != EERUF_OK) halt();
+ *       if (eeruf_ring_init(&ring, sizeof ring, sensors, sizeof sensors, &eeruf_schedule, &config, now_us()) != 0)
+ *           halt();                            // a status says why
  *       for (;;) {
  *           EerufEvent event;
  *           while (eeruf_ring_poll(&ring, now_us(), &event) == EERUF_EVENT) {
@@ -20,7 +21,7 @@
  *       }                                      // and from the echo line: eeruf_ring_echo(&ring, sensor, at_us)
  *   }
  *
- * C99 to C++20; no floats, no 64-bit arithmetic at run time, no clock, nothing that blocks. Times are microseconds.
+ * C99 to C++20; no floats, 64 bits only for the speed of sound, no clock, nothing that blocks. Times are microseconds.
  * Instants (`now_us`, `at_us`) are readings of your free-running counter of 32 bits, which may wrap at any moment.
  * Sensors are counted from 0. One caller at a time: an interrupt hands edges over through EerufEdges.
  * HC-SR04 modules: EerufHcSr04. It does, event by event, what the Rust crates eeruf-core and eeruf-hc-sr04 do.
@@ -236,7 +237,7 @@ typedef struct EerufLateness {
     uint16_t latest, total, total_before, least, most, least_before, most_before, last_late, last_stretch;
 } EerufLateness;
 
-/* A ring. Initialise it with eeruf_ring_init; not for the caller otherwise. */
+/* A ring: 73 bytes on an AVR. Initialise it with eeruf_ring_init; not for the caller otherwise. */
 typedef struct EerufRing {
     uint16_t ready;
     const EerufSchedule *schedule, *next_schedule;
@@ -455,7 +456,7 @@ typedef struct EerufTrack {
     uint8_t solo_votes, score, close, flags, age;
 } EerufTrack;
 
-/* One sensor of a hopping ring: 64 bytes on an AVR, beside its EerufSensor. Not for the caller. */
+/* One sensor of a hopping ring: 62 bytes on an AVR, beside its EerufSensor. Not for the caller. */
 typedef struct EerufHopper {
     uint32_t lag_us, fired_us;
     uint16_t late_us, age;
@@ -475,7 +476,7 @@ typedef struct EerufHoppingRing {
 } EerufHoppingRing;
 
 /* Makes a hopping ring that begins at `now_us`. Both arrays have a place for each sensor of the config. Poll it with
-   eeruf_hopping_poll, and hand in echoes with the functions of its `ring`. It has no schedule to change and no pause. */
+   eeruf_hopping_poll, and hand in echoes with the functions of its `ring`. No schedule to change, and no pause. */
 EerufStatus eeruf_hopping_init(EerufHoppingRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
                                EerufHopper *hoppers, size_t hoppers_size, const EerufHoppingConfig *config,
                                uint32_t now_us);

@@ -2,8 +2,8 @@
 //!
 //!     echo_times SCENE.toml [SENSORS]
 //!
-//! One line for each way that is loud enough: emitter, receiver (from 0), time in microseconds. With `SENSORS` the first
-//! robot's ring has as many, evenly around it.
+//! One line for each way that is loud enough: emitter, receiver (from 0), time in microseconds. With `SENSORS` the
+//! first robot's ring has as many, evenly around it.
 
 use std::path::PathBuf;
 

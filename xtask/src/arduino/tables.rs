@@ -38,9 +38,9 @@ fn ring(modules: u32, retrigger_us: u32) -> String {
 /// Compares the tables with what `eeruf design` says, or writes them.
 pub(super) fn check(write: bool) -> Result<(), Trouble> {
     let mut text = String::from(
-        "// Ready tables for rings of 2, 3, 4, 5, 6, 8, 10, 12, 16 and 24 HC-SR04 modules: no shorter period lets each\n\
-         // module rest for 60 ms and keeps four adjacent ones 14.569 ms apart, so that sound from up to 2.5 m has\n\
-         // died. The slower ones are for EerufAdaptation. Those that a sketch does not name take no room.\n\
+        "// Ready tables for rings of 2, 3, 4, 5, 6, 8, 10, 12, 16 and 24 HC-SR04 modules: no shorter period lets\n\
+         // each module rest for 60 ms and keeps four adjacent ones 14.569 ms apart, so that sound from up to 2.5 m\n\
+         // has died. The slower ones are for EerufAdaptation. Those that a sketch does not name take no room.\n\
          // Written by `cargo xtask arduino --write` from what `eeruf design` finds; for your own ring:\n\
          //   eeruf design RING.toml --emit arduino > ring.h\n\
          #pragma once\n#include <EerufArduino.h>\n",
@@ -53,9 +53,9 @@ pub(super) fn check(write: bool) -> Result<(), Trouble> {
         let tab = output(Command::new("cargo").args(design).arg(&file))
             .ok_or_else(|| Trouble::Failed(format!("eeruf design {} failed", file.display())))?;
         let constant = tab.replace("#pragma once\n#include <EerufArduino.h>\n", "");
-        let constant = constant.replace("RING_", &format!("EERUF_HC_SR04_{modules}{suffix}_"));
-        let constant =
-            constant.replace("EerufSchedule RING ", &format!("EerufSchedule EERUF_HC_SR04_{modules}{suffix} "));
+        let name = format!("EERUF_HC_SR04_{modules}{suffix}");
+        let constant = constant.replace("RING_", &format!("{name}_"));
+        let constant = constant.replace("EerufSchedule RING ", &format!("EerufSchedule {name} "));
         let _ = writeln!(text, "\n{constant}");
     }
     let text = text.replace("\n\nstatic", "\nstatic").trim_end().to_owned() + "\n";

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use eeruf_core::{EchoFilter, FilterError, Micros, ReadingKind, Verdict};
-use eeruf_logs::{Echo, Options, RangeUnit, RangeWriter, Reading, Report, Sensor, Table, TimeUnit, read_log};
+use eeruf_logs::{Echo, McapWriter, Options, RangeUnit, Reading, Report, Sensor, Table, TimeUnit, read_log};
 
 use super::answer::Answer;
 use crate::files::error::InputError;
@@ -163,7 +163,7 @@ struct Replayed {
     fresh: EchoFilter<1>,
     speed_of_sound: f64,
     keep_kinds: bool,
-    out: Option<RangeWriter>,
+    out: Option<McapWriter>,
     /// The first reading that could not be taken.
     failed: Option<InputError>,
     log: PathBuf,
@@ -187,7 +187,7 @@ impl Replayed {
             fresh: EchoFilter::new(Micros::new(args.t_delta_us), args.consecutive).map_err(bad)?,
             speed_of_sound: args.speed_of_sound,
             keep_kinds: args.svg.is_some(),
-            out: args.out.as_deref().map(RangeWriter::create).transpose()?,
+            out: args.out.as_deref().map(McapWriter::create).transpose()?,
             failed: None,
             log: args.file.clone(),
         })
@@ -254,7 +254,7 @@ impl Filtered {
 
 /// The reading as it was, and beside it what the filter accepts.
 fn write(
-    out: &mut RangeWriter,
+    out: &mut McapWriter,
     sensor: &Sensor,
     reading: &Reading,
     kind: Option<ReadingKind>,
@@ -264,12 +264,12 @@ fn write(
         return Err(InputError::new(log, None, "a reading without a time; --out needs --time COLUMN for CSV"));
     }
     let topic = sensor.beam.map_or_else(|| sensor.topic.clone(), |beam| format!("{}/beam_{beam}", sensor.topic));
-    out.write(&topic, &sensor.frame, reading)?;
+    out.range(&topic, &sensor.frame, reading)?;
     let range_m = match kind {
         Some(ReadingKind::Accepted) => reading.range_m,
         Some(ReadingKind::Clear) => f64::INFINITY,
         Some(ReadingKind::TooEarly) => f64::NEG_INFINITY,
         _ => return Ok(()),
     };
-    Ok(out.write(&format!("{topic}/accepted"), &sensor.frame, &Reading { range_m, ..*reading })?)
+    Ok(out.range(&format!("{topic}/accepted"), &sensor.frame, &Reading { range_m, ..*reading })?)
 }

@@ -9,6 +9,7 @@ use super::answer::Answer;
 use super::methods::chosen;
 use crate::files::error::InputError;
 use crate::files::firings::write_firings;
+use crate::files::mcap::write_mcap;
 use crate::files::toml::read_world;
 use crate::report::json::to_json;
 use crate::report::study::found::Study;
@@ -40,6 +41,9 @@ pub(crate) struct Args {
     /// Write every firing of the first robot and what it heard as CSV, for `eeruf diagnose`; needs one --method
     #[arg(long, value_name = "FILE.csv")]
     log: Option<PathBuf>,
+    /// Write all methods' readings as MCAP, for Foxglove and Rerun: ranges, poses, the scene and every reading's path
+    #[arg(long, value_name = "FILE.mcap")]
+    mcap: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -71,6 +75,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let study = study(args, &world)?;
     if let (Some(file), Some(readings)) = (&args.log, study.runs.first()) {
         write_firings(file, readings)?;
+    }
+    if let Some(file) = &args.mcap {
+        write_mcap(file, &world, &study.runs)?;
     }
     for (folder, ending) in [(&args.svg, "svg"), (&args.png, "png")] {
         if let Some(folder) = folder {

@@ -4,6 +4,7 @@
 
 pub(crate) mod error;
 pub(crate) mod firings;
+pub(crate) mod mcap;
 pub(crate) mod ring;
 pub(crate) mod toml;
 pub(crate) mod waits;

@@ -89,3 +89,51 @@ fn study_writes_the_log_of_one_method() {
     assert_eq!(outcome.code, Some(2));
     assert!(outcome.err.ends_with("--log needs one --method, whose firings are written\n"), "{}", outcome.err);
 }
+
+#[test]
+fn study_writes_ranges_poses_scene_and_paths_that_another_reader_reads() {
+    let (folder, _) = Scratch::new("unused", "");
+    let file = folder.path().join("study.mcap");
+    let args = ["study", "scenes/alcove.toml", "--method", "conventional,eeruf", "--periods", "40", "--mcap"];
+    let outcome = eeruf(&[&args[..], &[file.to_str().unwrap()]].concat());
+    assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
+
+    // Ours: each method has 8 sensors, and accepts no more than it reads.
+    let mut counts = std::collections::BTreeMap::<String, u32>::new();
+    let report = read_log(&file, &Options::default(), |sensors, reading| {
+        *counts.entry(sensors[reading.sensor].topic.clone()).or_default() += 1;
+    });
+    assert_eq!(report.unwrap().damage, []);
+    for sensor in 1..=8 {
+        let of = |topic: &str| counts.get(topic).copied().unwrap_or(0);
+        let conventional = format!("/conventional/robot_1/sonar_{sensor}");
+        assert_eq!((of(&conventional), of(&format!("{conventional}/accepted"))), (40, 40));
+        let eeruf = format!("/eeruf/robot_1/sonar_{sensor}");
+        assert!(of(&eeruf) == 40 && of(&format!("{eeruf}/accepted")) < 40);
+    }
+
+    // The reader of the crate `mcap`: all messages in JSON are objects of a type of Foxglove's.
+    let bytes = std::fs::read(&file).unwrap();
+    let mut paths = 0;
+    for message in mcap::MessageStream::new(&bytes).unwrap() {
+        let message = message.unwrap();
+        if message.channel.message_encoding != "json" {
+            continue;
+        }
+        let object: serde_json::Value = serde_json::from_slice(&message.data).unwrap();
+        let type_name = message.channel.schema.as_ref().unwrap().name.clone();
+        match type_name.as_str() {
+            "foxglove.FrameTransforms" => assert_eq!(object["transforms"].as_array().unwrap().len(), 9),
+            "foxglove.PoseInFrame" => assert!(object["pose"]["position"]["x"].is_number()),
+            "foxglove.SceneUpdate" => {
+                let lines = object["entities"][0]["lines"].as_array().unwrap();
+                let scene = message.channel.topic == "/scene";
+                assert_eq!(lines.len(), if scene { 3 } else { 1 });
+                assert!(lines.iter().all(|line| line["points"].as_array().unwrap().len() >= 2));
+                paths += usize::from(!scene);
+            }
+            other => panic!("{other}"),
+        }
+    }
+    assert!(paths > 400, "{paths}");
+}

@@ -54,7 +54,7 @@ pub use firings::{Firing, FiringLog};
 pub use options::{Options, RangeUnit, Table, TimeUnit};
 pub use reading::{Echo, Reading, Sensor};
 pub use sink::{Report, Skipped};
-pub use write::RangeWriter;
+pub use write::McapWriter;
 
 /// Reads a log from beginning to end, and calls `each` with the sensors so far and each reading, in the order in which
 /// they were recorded. The kind of log shows in its first bytes, else in the ending of its name.

@@ -14,7 +14,7 @@ pub struct Report {
     pub sensors: Vec<Sensor>,
     /// How many messages with readings there were (rows, of a CSV file).
     pub messages: u64,
-    /// What could not be read, as far as it is known.
+    /// What could not be read, as far as that is known.
     pub damage: Vec<Damage>,
     /// Topics without readings, with their types, and how many topics had none at all.
     pub skipped: Vec<Skipped>,

@@ -1,4 +1,4 @@
-//! Writes ranges as MCAP, in the messages of ROS 2 (`sensor_msgs/msg/Range` as of Iron, in CDR).
+//! Writes MCAP: ranges in the messages of ROS 2 (`sensor_msgs/msg/Range` as of Iron, in CDR), all else in JSON.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -33,17 +33,18 @@ int32 sec
 uint32 nanosec
 ";
 
-/// An MCAP file of ranges, open for writing.
-pub struct RangeWriter {
+/// An MCAP file, open for writing.
+pub struct McapWriter {
     file: PathBuf,
     writer: Writer<BufWriter<File>>,
-    schema: u16,
+    /// By the name of the type.
+    schemas: BTreeMap<String, u16>,
     /// By topic: its channel, and how many messages it has.
     channels: BTreeMap<String, (u16, u32)>,
     message: Vec<u8>,
 }
 
-impl RangeWriter {
+impl McapWriter {
     /// Creates the file.
     ///
     /// # Errors
@@ -52,9 +53,9 @@ impl RangeWriter {
         let opened = File::create(file).map_err(|error| LogError::new(file, error))?;
         let options = WriteOptions::new().profile("ros2").library("eeruf");
         let failed = |error: ::mcap::McapError| LogError::new(file, error);
-        let mut writer = Writer::with_options(BufWriter::new(opened), options).map_err(failed)?;
-        let schema = writer.add_schema("sensor_msgs/msg/Range", "ros2msg", RANGE.as_bytes()).map_err(failed)?;
-        Ok(Self { file: file.to_owned(), writer, schema, channels: BTreeMap::new(), message: Vec::new() })
+        let writer = Writer::with_options(BufWriter::new(opened), options).map_err(failed)?;
+        let (schemas, channels) = (BTreeMap::new(), BTreeMap::new());
+        Ok(Self { file: file.to_owned(), writer, schemas, channels, message: Vec::new() })
     }
 
     fn failed(&self, error: impl fmt::Display) -> LogError {
@@ -65,18 +66,52 @@ impl RangeWriter {
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn write(&mut self, topic: &str, frame: &str, reading: &Reading) -> Result<(), LogError> {
+    pub fn range(&mut self, topic: &str, frame: &str, reading: &Reading) -> Result<(), LogError> {
+        let mut message = std::mem::take(&mut self.message);
+        encode(frame, reading, &mut message);
+        let schema = ("sensor_msgs/msg/Range", "ros2msg", RANGE);
+        let written = self.write(topic, schema, "cdr", reading.at_ns, &message);
+        self.message = message;
+        written
+    }
+
+    /// Writes a JSON object onto a topic, as a message of this type, at this time in nanoseconds. The type is known to
+    /// readers by its name, as those of Foxglove are; the schema in the file says only that it is an object.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn json(&mut self, topic: &str, type_name: &str, at_ns: u64, object: &str) -> Result<(), LogError> {
+        let schema = (type_name, "jsonschema", r#"{"type":"object"}"#);
+        self.write(topic, schema, "json", at_ns, object.as_bytes())
+    }
+
+    fn write(
+        &mut self,
+        topic: &str,
+        (type_name, schema_encoding, schema): (&str, &str, &str),
+        encoding: &str,
+        at_ns: u64,
+        message: &[u8],
+    ) -> Result<(), LogError> {
         if !self.channels.contains_key(topic) {
-            let added = self.writer.add_channel(self.schema, topic, "cdr", &BTreeMap::new());
+            let schema = match self.schemas.get(type_name) {
+                Some(&schema) => schema,
+                None => {
+                    let added = self.writer.add_schema(type_name, schema_encoding, schema.as_bytes());
+                    let schema = added.map_err(|error| self.failed(error))?;
+                    self.schemas.insert(type_name.to_owned(), schema);
+                    schema
+                }
+            };
+            let added = self.writer.add_channel(schema, topic, encoding, &BTreeMap::new());
             let channel = added.map_err(|error| self.failed(error))?;
             self.channels.insert(topic.to_owned(), (channel, 0));
         }
-        encode(frame, reading, &mut self.message);
         let Some((channel, sequence)) = self.channels.get_mut(topic) else { return Ok(()) };
         *sequence = sequence.wrapping_add(1);
         let (channel_id, sequence) = (*channel, *sequence);
-        let header = MessageHeader { channel_id, sequence, log_time: reading.at_ns, publish_time: reading.at_ns };
-        self.writer.write_to_known_channel(&header, &self.message).map_err(|error| LogError::new(&self.file, error))
+        let header = MessageHeader { channel_id, sequence, log_time: at_ns, publish_time: at_ns };
+        self.writer.write_to_known_channel(&header, message).map_err(|error| LogError::new(&self.file, error))
     }
 
     /// Writes what is left, and the index.

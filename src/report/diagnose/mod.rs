@@ -76,8 +76,8 @@ impl Found<'_> {
         }
         if self.phases() <= 2 {
             advice.push(
-                "record a log under time hopping (many phases, or lags that move): with two phases senders cannot be \
-                 told apart"
+                "record a log under time hopping (many phases, or lags that move): two phases do not say \
+                 whose sound a reading is"
                     .to_owned(),
             );
         } else if !self.mostly_blind().is_empty() {

@@ -170,6 +170,20 @@ fn two_sensors_with_swapped_lines_are_named() {
 }
 
 #[test]
+fn a_deaf_sensor_a_chattering_one_and_two_that_are_swapped_are_all_named_in_one_ring() {
+    let broken = World { receivers: [0, 1, 5, 3, 4, 2], deaf: Some(0), chatters: Some(3), ..World::HEALTHY };
+    for seed in 1..=3 {
+        let (log, _) = broken.log(seed, 1000);
+        let faults = diagnose(&log, &Settings::default()).faults;
+        let named = |of: fn(&Fault) -> Option<u8>| faults.iter().filter_map(of).collect::<Vec<_>>();
+        let deaf = named(|fault| if let Fault::Deaf { sensor, .. } = fault { Some(*sensor) } else { None });
+        let chatter = named(|fault| if let Fault::Chattering { sensor, .. } = fault { Some(*sensor) } else { None });
+        let swapped = faults.iter().any(|fault| matches!(fault, Fault::Swapped { sensors: (2, 5), .. }));
+        assert_eq!((&deaf[..], &chatter[..], swapped, faults.len()), (&[0][..], &[3][..], true, 3), "{faults:?}");
+    }
+}
+
+#[test]
 fn timing_finds_drift_and_jitter_and_refuses_lags_that_moved() {
     let fires_at =
         |sensor: u8, phase: u8| (sensor < 4).then_some(15_000 * u32::from(sensor) + 1_000 * u32::from(phase));

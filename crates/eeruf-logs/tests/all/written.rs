@@ -1,6 +1,6 @@
-//! What `RangeWriter` writes.
+//! What `McapWriter` writes.
 
-use eeruf_logs::{Options, RangeWriter, Reading, read_log};
+use eeruf_logs::{McapWriter, Options, Reading, read_log};
 
 use crate::read;
 
@@ -19,12 +19,12 @@ const READING: Reading = Reading {
 fn what_was_written_is_read_back() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("out.mcap");
-    let mut out = RangeWriter::create(&file).unwrap();
+    let mut out = McapWriter::create(&file).unwrap();
     let ranges = [1.5, f64::INFINITY, f64::NEG_INFINITY, 3.25];
     for (number, range_m) in ranges.into_iter().enumerate() {
         // Texts of every length modulo four, since fields behind them are aligned.
         let (topic, frame) = (format!("/sonar/{number}"), "f".repeat(number));
-        out.write(&topic, &frame, &Reading { range_m, ..READING }).unwrap();
+        out.range(&topic, &frame, &Reading { range_m, ..READING }).unwrap();
     }
     out.finish().unwrap();
     let (report, readings) = read(&file, &Options::default()).unwrap();
@@ -39,10 +39,10 @@ fn what_was_written_is_read_back() {
 fn of_two_chunks_a_damaged_one_takes_nothing_from_the_other() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("out.mcap");
-    let mut out = RangeWriter::create(&file).unwrap();
+    let mut out = McapWriter::create(&file).unwrap();
     let messages = 60_000;
     for number in 0..messages {
-        out.write("/sonar", "s", &Reading { range_m: f64::from(number % 977) / 256.0, ..READING }).unwrap();
+        out.range("/sonar", "s", &Reading { range_m: f64::from(number % 977) / 256.0, ..READING }).unwrap();
     }
     out.finish().unwrap();
     let mut bytes = std::fs::read(&file).unwrap();

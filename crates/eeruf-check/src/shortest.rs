@@ -15,8 +15,8 @@ pub struct Shortest {
     pub bound: u32,
     /// Nodes visited.
     pub nodes: u64,
-    /// Whether no case had to be distinguished: the rules alone refute every shorter period.
-    pub by_rules_alone: bool,
+    /// Whether no case had to be distinguished to know that every shorter period is impossible.
+    pub without_cases: bool,
 }
 
 /// How far a search has come: nodes, the shortest period so far, and the bound below which there is none.
@@ -37,7 +37,7 @@ pub struct SoFar {
 #[must_use]
 pub fn shortest(problem: &Problem, budget: u64, go_on: &mut dyn FnMut(&SoFar) -> bool) -> Option<Shortest> {
     let fire = one_by_one(problem)?;
-    let mut found = Shortest { period: period_of(problem, &fire), fire, bound: 1, nodes: 0, by_rules_alone: false };
+    let mut found = Shortest { period: period_of(problem, &fire), fire, bound: 1, nodes: 0, without_cases: false };
     if found.period > crate::MAX_NUMBER || crate::schedule::check(problem, found.period, &found.fire).is_err() {
         return None;
     }
@@ -49,7 +49,7 @@ pub fn shortest(problem: &Problem, budget: u64, go_on: &mut dyn FnMut(&SoFar) ->
         run.search(&mut |so_far| go_on(&SoFar { nodes: so_far.nodes, best: so_far.best * ticks, bound: 1 }));
         let nodes = run.found.nodes;
         let fire: FiringTimes = run.found.fire.map(|times| times.into_iter().map(|time| time * ticks).collect());
-        found = Shortest { period: period_of(problem, &fire), fire, bound: 1, nodes, by_rules_alone: false };
+        found = Shortest { period: period_of(problem, &fire), fire, bound: 1, nodes, without_cases: false };
     }
     let nodes = found.nodes;
     let mut run = Run { search: Search::new(problem), problem, found, budget: budget.saturating_sub(nodes) };
@@ -69,6 +69,7 @@ struct Run<'p> {
 impl Run<'_> {
     /// Bisects, then proves.
     fn search(&mut self, go_on: &mut dyn FnMut(&SoFar) -> bool) {
+        self.found.bound = one_after_the_other(self.problem).clamp(1, self.found.period);
         self.bound_by_rules(go_on);
         let effort = 8 * self.search.depth();
         // Periods from here on have not been looked at in vain.
@@ -123,7 +124,7 @@ impl Run<'_> {
                 _ => open = middle,
             }
         }
-        self.found.by_rules_alone = self.found.bound == self.found.period;
+        self.found.without_cases = self.found.bound == self.found.period;
     }
 
     fn decide(&mut self, period: u32, budget: u64, go_on: &mut dyn FnMut(&SoFar) -> bool) -> Decided {
@@ -146,7 +147,7 @@ impl Run<'_> {
     fn improve(&mut self, fire: FiringTimes) {
         self.found.period = period_of(self.problem, &fire).max(self.found.bound);
         self.found.fire = fire;
-        self.found.by_rules_alone = self.found.bound == self.found.period;
+        self.found.without_cases = self.found.bound == self.found.period;
     }
 }
 
@@ -164,6 +165,31 @@ fn one_by_one(problem: &Problem) -> Option<FiringTimes> {
     let a = |one: usize| b(one) + least + one as u32 * separation;
     let of = |time: &dyn Fn(usize) -> u32| merged.of_sensor.iter().map(|&one| time(one)).collect();
     Some([of(&a), of(&b)])
+}
+
+/// The least period of sensors of which each has a gap to each other, the best of a few such sets.
+///
+/// In two periods each of them fires twice. After each firing of x the next one of the set comes no sooner than the
+/// smallest gap after x, or, if it is x again, than its window. So two periods take at least twice the sum of these.
+/// A tree would have to try all orders for it, so a certificate of it may be too long to be written.
+fn one_after_the_other(problem: &Problem) -> u32 {
+    let merged = problem.merged();
+    let count = merged.count();
+    let has_gaps = |x: usize, y: usize| merged.gap[x][y] > 0 && merged.gap[y][x] > 0;
+    let from = |first: usize| {
+        let mut set = vec![first];
+        for y in (1..count).map(|step| (first + step) % count) {
+            if set.iter().all(|&x| has_gaps(x, y)) {
+                set.push(y);
+            }
+        }
+        let least = |x: usize| {
+            let gaps = set.iter().filter(|&&y| y != x).map(|&y| merged.gap[x][y]);
+            gaps.fold(merged.window[x], i32::min) as u32
+        };
+        set.iter().map(|&x| least(x)).sum()
+    };
+    (0..count).map(from).max().unwrap_or(0)
 }
 
 /// The shortest period at which these very times serve.

@@ -4,7 +4,7 @@ mod common;
 
 use eeruf_check::prove::{NoProof, prove, prove_what_can_be, prove_while};
 use eeruf_check::shortest::shortest;
-use eeruf_check::{Claim, check, read_claim};
+use eeruf_check::{Claim, Problem, check, read_claim};
 
 #[test]
 fn the_periods_of_the_table_have_a_certificate_that_is_accepted() {
@@ -44,6 +44,25 @@ fn in_fine_ticks_a_period_between_coarse_ones_is_found_and_proven() {
     let (_, claim) = common::table(2).into_iter().find(|(name, _)| name == "line 12, window 45").expect("it is there");
     let found = shortest(&claim.problem, 100_000, &mut |_| true).expect("firing one by one at least");
     assert_eq!((found.period, found.bound), (139, 139));
+}
+
+#[test]
+fn sensors_that_must_fire_one_after_the_other_have_a_bound_without_trying_all_orders() {
+    let windows: Vec<u32> = (10..20).collect();
+    let pairs = (0..10).flat_map(|x| (x + 1..10).map(move |y| (x, y)));
+    let gaps = pairs.map(|(x, y)| (x, y, windows[x], windows[y])).collect();
+    let problem = Problem {
+        tick_us: (1000, 1),
+        separation: vec![2; 10],
+        window: windows.clone(),
+        stale_echo: false,
+        over_reals: false,
+        together: vec![],
+        gaps,
+    };
+    let found = shortest(&problem, 20_000, &mut |_| true).expect("firing one by one at least");
+    let one_by_one: u32 = windows.iter().sum();
+    assert!(found.bound == one_by_one && found.period <= one_by_one + 25, "{found:?}");
 }
 
 #[test]

@@ -56,7 +56,7 @@ fn reason(found: &Shortest, time: &dyn Fn(u32) -> Micros) -> String {
              settle that",
             time(found.bound)
         )
-    } else if found.by_rules_alone {
+    } else if found.without_cases {
         format!(
             "what the sensors need: {} leave too little time for it, before any order of firing is chosen",
             time(found.period - 1)

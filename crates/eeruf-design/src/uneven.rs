@@ -17,8 +17,8 @@ pub struct OwnedUneven {
 }
 
 impl OwnedUneven {
-    /// Of so many sensors, counted from 0. `t_delta`, `window` and `refire` may be empty: all sensors then have what the
-    /// requirements say.
+    /// Of so many sensors, counted from 0. `t_delta`, `window` and `refire` may be empty: all sensors then have what
+    /// the requirements say.
     ///
     /// # Errors
     /// The first thing that makes no sense.

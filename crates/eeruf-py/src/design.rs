@@ -72,14 +72,15 @@ const FEW_SENSORS: usize = 12;
 ///     >>> found = eeruf.design(sensors=8, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
 ///     >>> found.value_us, found.proven
 ///     (66000, True)
-///     >>> found = eeruf.design(4, [999, 999, 1500, 1500], 15_000, [36_000, 36_000, 12_000, 12_000], shared_lines=[(0, 2)])
+///     >>> windows = [36_000, 36_000, 12_000, 12_000]
+///     >>> found = eeruf.design(4, [999, 999, 1500, 1500], 15_000, windows, shared_lines=[(0, 2)])
 ///     >>> found.value_us, found.proven
-///     (62000, True)
+///     (59000, True)
 #[pyfunction]
 #[pyo3(signature = (
     sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None,
-    budget=None, progress=None, certificate=None, time_limit_s=None, refire_us=None, intervals_us=None, shared_lines=None,
-    together=None
+    budget=None, progress=None, certificate=None, time_limit_s=None, refire_us=None, intervals_us=None,
+    shared_lines=None, together=None
 ))]
 #[pyo3(
     text_signature = "(sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, layout=\"line\", \

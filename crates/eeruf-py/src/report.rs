@@ -18,8 +18,8 @@ use crate::arguments::{instance, items, shown, text, whole, whole_or_none, wrong
 #[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Violation {
-    /// Which condition: ``"crosstalk_a"``, ``"crosstalk_b"``, ``"stale_echo"``, ``"interval"``, ``"window"``; where sensors
-    /// are not all alike also ``"shared_line"``, ``"refire"`` or ``"together"``.
+    /// Which condition: ``"crosstalk_a"``, ``"crosstalk_b"``, ``"stale_echo"``, ``"interval"``, ``"window"``; where
+    /// sensors are not all alike also ``"shared_line"``, ``"refire"`` or ``"together"``.
     kind: String,
     /// The two sensors, from 0; the same one twice where a condition is about one alone.
     sensors: (u8, u8),

@@ -269,14 +269,15 @@ impl Schedule {
     /// Check every condition of the paper, sensor by sensor.
     ///
     /// Args:
-    ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for all
-    ///         sensors or a sequence of one for each; two sensors need the separation of the larger.
+    ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for
+    ///         all sensors or a sequence of one for each; two sensors need the separation of the larger.
     ///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
     ///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
     ///     layout: how they stand: ``"line"``, ``"ring"`` (the last beside the first), ``"blocks"`` of ``neighbours``,
     ///         or pairs of neighbours, such as ``[(0, 1), (1, 2)]``.
     ///     criterion: how to read Eqs. (13a), (13b): ``"exact"``, or as the ``"paper"`` prints them.
-    ///     window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier. One for all, or a sequence.
+    ///     window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier. One for all, or a
+    ///         sequence.
     ///     stale_echo: whether a sensor's own echo from the period before must be rejected too.
     ///     refire_us: how soon a sensor may be triggered again, where that is later. One for all, or a sequence.
     ///     intervals_us: pairs of sensors with the least time between their firings, whatever the layout says:

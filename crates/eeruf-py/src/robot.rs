@@ -25,8 +25,8 @@ use crate::{
 ///     transducer: ``"polaroid_6500"`` or ``"hc_sr04"``.
 ///     gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"``, ``"linear"`` or
 ///         ``"stepped"``.
-///     body: its outline, which others' sound is reflected and shaded by: the radius of a disc, (length, width) of a box,
-///         or the corners (x, y) of a convex polygon, 3 to 8 of them, counter-clockwise, all in metres; None for none.
+///     body: its outline, which others' sound is reflected and shaded by: the radius of a disc, (length, width) of a
+///         box, or 3 to 8 corners (x, y) of a convex polygon, counter-clockwise, all in metres; None for none.
 ///     period_us: ``T_p`` of the methods that bring no schedule of their own; the schedule's if there is one.
 ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical.
 ///     window_us: ``T_wind``: how long a sensor listens.

@@ -19,7 +19,8 @@ pub struct Physics {
     pub shadows: bool,
     /// Whether the free ends of walls and the corners that jut out diffract, once and in plain sight.
     pub edges: bool,
-    /// Whether a threshold detector hears faint echoes later. An echo just at the threshold is heard a whole burst late.
+    /// Whether a threshold detector hears faint echoes later. An echo just at the threshold is heard a whole burst
+    /// late.
     pub range_walk: bool,
     /// For how long a path fades in the same way, in seconds: the time after which the correlation has fallen to 1/e.
     /// At 0 every firing fades anew, and by its number among the firings of its sensor.
@@ -27,8 +28,8 @@ pub struct Physics {
 }
 
 impl Physics {
-    /// What the simulator began with: poles of any thickness are transparent, edges are silent, an echo is heard at its onset however
-    /// faint it is, and each arrival fades on its own.
+    /// What the simulator began with: poles of any thickness are transparent, edges are silent, an echo is heard at its
+    /// onset however faint it is, and each arrival fades on its own.
     pub const PLAIN: Self = Self { shadows: false, edges: false, range_walk: false, fading_time_s: 0.0 };
 
     /// Everything on, with the numbers that `docs/physics.md` gives reasons for.

@@ -81,8 +81,8 @@ impl fmt::Display for PathsError {
             Self::Length { max_length_m } => write!(f, "paths up to {max_length_m} m; expected a positive length"),
             Self::Body { robot } => write!(
                 f,
-                "the body of robot {} touches a wall, a pole, another robot's body or one of its sensors; expected it clear \
-                 of them",
+                "the body of robot {} touches a wall, a pole, another robot's body or one of its sensors; expected it \
+                 clear of them",
                 robot + 1
             ),
             Self::Stopped => f.write_str("stopped"),

@@ -26,8 +26,8 @@ pub struct Tracer {
     /// Whether poles shade what lies behind them where they are thicker than the first Fresnel zone, and sensors within
     /// something solid are refused; see [`Physics::shadows`](crate::Physics::shadows). Off by default.
     pub pole_shadows: bool,
-    /// Whether free ends of walls and corners that jut out diffract; see [`Physics::edges`](crate::Physics::edges). Off by
-    /// default.
+    /// Whether free ends of walls and corners that jut out diffract; see [`Physics::edges`](crate::Physics::edges). Off
+    /// by default.
     pub edges: bool,
     /// The most bounces of a path with a pole, at most those of all others. The default is [`MAX_ORDER`].
     pub pole_order: u32,

@@ -27,8 +27,8 @@ pub struct Robot {
     /// the presets do not.
     pub transducer: Transducer,
     /// Its outline: what others' sound is reflected and shaded by, and what overlaps no wall, pole or other body. Its
-    /// own sensors neither see it nor are shaded by it, but that nothing leaves or reaches them from behind. The default
-    /// is none: the robot is transparent, and stands free by the disc of [`radius_m`](Self::radius_m).
+    /// own sensors neither see it nor are shaded by it, but that nothing leaves or reaches them from behind. The
+    /// default is none: the robot is transparent, and stands free by the disc of [`radius_m`](Self::radius_m).
     pub body: Option<Body>,
     /// Where the robot is at the start.
     pub pose: Pose,

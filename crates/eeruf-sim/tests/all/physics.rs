@@ -115,8 +115,8 @@ fn a_body_moves_with_its_robot_and_ends_the_run_where_it_touches() {
         assert!((readings.reference_us[k] * 1e-6 * C / 2.0 - distance_m).abs() < 2e-3, "{k}");
     }
     let error = simulate(&world(2.0), Method::Conventional, &Options::periods(60)).unwrap_err().to_string();
-    let expected = "s: the body of robot 2 touches a wall, a pole, another robot's body or one of its sensors; expected it \
-                    clear of them";
+    let expected = "s: the body of robot 2 touches a wall, a pole, another robot's body or one of its sensors; \
+                    expected it clear of them";
     assert!(error.ends_with(expected), "{error}");
 }
 

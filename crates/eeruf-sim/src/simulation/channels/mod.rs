@@ -219,8 +219,8 @@ impl<'w> Channels<'w> {
         }
     }
 
-    /// Looks for the channels from emitters that are alike to all of these receivers that hear them. Paths that only the
-    /// strongest fading lifts over the detection floor are among them.
+    /// Looks for the channels from emitters that are alike to all of these receivers that hear them. Paths that only
+    /// the strongest fading lifts over the detection floor are among them.
     fn trace(
         &mut self,
         emitters: &[usize],

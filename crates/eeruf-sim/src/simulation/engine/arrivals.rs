@@ -82,12 +82,13 @@ impl Propagation {
         }
     }
 
-    /// How a path with this key fades and shifts at a time, both normally distributed: decided by the seed, the path and
-    /// the time alone, so that it does not matter who asks, nor what was asked before.
+    /// How a path with this key fades and shifts at a time, both normally distributed: decided by the seed, the path
+    /// and the time alone, so that it does not matter who asks, nor what was asked before.
     ///
     /// Between independent normal numbers at knots, each path's at places of its own, it goes along a quarter of a
-    /// circle, which keeps the variance: at the share `u` of the way `cos(u pi / 2) a + sin(u pi / 2) b`. At a distance of
-    /// `s` knots, up to one, its correlation is `(1 - s / 2) cos(s pi / 2) + sin(s pi / 2) / pi`; beyond two it is none.
+    /// circle, which keeps the variance: at the share `u` of the way `cos(u pi / 2) a + sin(u pi / 2) b`. At a distance
+    /// of `s` knots, up to one, its correlation is `(1 - s / 2) cos(s pi / 2) + sin(s pi / 2) / pi`; beyond two it is
+    /// none.
     fn faded(&self, key: u64, now: u64) -> [f32; 2] {
         let path = self.fading.of(key);
         let since = now + path.of(0).bits() % self.knot_ns;

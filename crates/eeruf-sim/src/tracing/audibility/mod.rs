@@ -150,8 +150,8 @@ impl Audibility {
         sent >= least && sent * self.heard(towards.dot(axis) / length_m) >= least
     }
 
-    /// Whether a path around an edge may be heard that is no louder than `most` but for the patterns; `out` leads from the
-    /// source to the edge, `home` from the receiver.
+    /// Whether a path around an edge may be heard that is no louder than `most` but for the patterns; `out` leads from
+    /// the source to the edge, `home` from the receiver.
     #[inline]
     pub(crate) fn may_hear_around(&self, most: f64, receiver: usize, out: Vector, home: Vector, length_m: f64) -> bool {
         let Some(axis) = self.receivers.get(receiver) else { return true };

@@ -1,5 +1,5 @@
-//! What poles shade. Sound bends around what is thinner than its first Fresnel zone, and does not reach what lies behind
-//! anything thicker.
+//! What poles shade. Sound bends around what is thinner than its first Fresnel zone, and does not reach what lies
+//! behind anything thicker.
 
 use crate::{
     geometry::Point,

@@ -1,4 +1,5 @@
-//! What the three searches found, side by side: images seen over walls first, then paths over poles, then those around edges.
+//! What the three searches found, side by side: images seen over walls first, then paths over poles, then those around
+//! edges.
 
 use crate::geometry::{Point, TOUCH_M};
 use crate::scene::Bounce;

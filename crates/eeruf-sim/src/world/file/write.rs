@@ -11,8 +11,8 @@ use crate::{
     world::{motion::Motion, noise::Noise, robot::Robot},
 };
 
-/// Writes the world file of a scene with these robots, noise, physics, order and seed: reading it again gives the same, bit for
-/// bit, with the schedules in it.
+/// Writes the world file of a scene with these robots, noise, physics, order and seed: reading it again gives the same,
+/// bit for bit, with the schedules in it.
 pub fn world_file(
     scene: &Scene,
     robots: &[Robot],

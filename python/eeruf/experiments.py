@@ -22,8 +22,12 @@ if TYPE_CHECKING:
     from eeruf._eeruf import _Method as Method
 
     _Corner = Literal["behind", "ahead"] | tuple[float, float] | None
+    _Pilot = Literal["own", "shared", "published", "published-gro"]
 
-__all__ = ["SPEEDS_M_S", "Run", "SetTwo", "set_one", "set_two", "speed_sweep"]
+__all__ = ["FIRST", "SPEEDS_M_S", "Run", "SetTwo", "set_one", "set_two", "speed_sweep"]
+
+FIRST: int = 20_000
+"""The number of the first alcove or course unless ``first`` says otherwise; parameters were tuned on numbers below 2,000."""
 
 SPEEDS_M_S: tuple[float, ...] = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0)
 """The top speeds of :func:`speed_sweep` unless others are given, in m/s."""
@@ -37,6 +41,7 @@ def set_one(
     *,
     readings: int = 8000,
     methods: Sequence[Method] | None = None,
+    first: int = FIRST,
     progress: _Progress = None,
 ) -> dict[str, Any]:
     """Set I: eight sensors before three walls at right angles, by every method, in many random alcoves.
@@ -47,6 +52,7 @@ def set_one(
         seeds: how many alcoves, 1 to 100,000.
         readings: about how many readings of each alcove and method, 1 or more.
         methods: names of ``eeruf.sim.METHODS``; all by default.
+        first: the first alcove's number.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
@@ -65,7 +71,7 @@ def set_one(
         True
 
     """
-    table: dict[str, Any] = json.loads(_eeruf._set_one(seeds, readings, methods, progress))
+    table: dict[str, Any] = json.loads(_eeruf._set_one(seeds, first, readings, methods, progress))
     return table
 
 
@@ -126,8 +132,9 @@ class Run:
 class SetTwo(dict[str, Any]):
     """What ``eeruf experiment set-two --json`` prints, and beside it every run.
 
-    The keys are ``seeds``, ``second_robot_m``, ``speed_m_s`` and ``methods``: ``{NAME: {"courses", "finished", "contacts",
-    "mean_speed_m_s", ...}}``. Shares are fractions of 1.
+    The keys are ``first``, ``pilot``, ``seeds``, ``second_robot_m``, ``speed_m_s`` and ``methods``: ``{NAME: {"courses",
+    "finished", "finished_95", "contacts", "mean_speed_m_s", ...}}``. Shares are fractions of 1; ``finished_95`` is where the
+    share of finished courses lies with 95 % confidence, by Wilson's interval.
 
     Example:
         >>> import eeruf
@@ -158,7 +165,9 @@ def set_two(
     speed_m_s: float = 1.0,
     odometry: bool = True,
     t_delta_us: int | None = None,
-    first: int = 0,
+    first: int = FIRST,
+    pilot: _Pilot = "own",
+    odometry_noise: bool = True,
     progress: _Progress = None,
 ) -> SetTwo:
     """Set II: a LabMate drives through random courses of 8 mm poles about 1.6 m apart, steered by what its ring reads.
@@ -168,14 +177,19 @@ def set_two(
 
     Args:
         seeds: how many courses, 1 to 100,000.
-        methods: names of ``eeruf.sim.METHODS``; by default sequential, conventional, comparison, eeruf, eeruf_best, adaptive
-            and multi_echo.
+        methods: names of ``eeruf.sim.METHODS``; by default sequential, far_groups, conventional, comparison, eeruf,
+            eeruf_best, adaptive, eeruf_hopping and multi_echo.
         second_robot: where another robot stands that fires 24 times in 80 ms: ``"behind"`` the start, ``"ahead"`` in the
             reflective corner that all sensors face, or a point (x, y) in metres of the lab, which is 10 m by 6 m.
         speed_m_s: the platform's highest speed, 0.1 to 5 m/s.
         odometry: whether the robot hands its ring the changes that its own motion should cause.
         t_delta_us: readings that differ by no more are near-identical; by default 150 with odometry and 500 without.
-        first: the first course's number, so that what is tuned on some courses can be tried on others.
+        first: the first course's number.
+        pilot: who steers: ``"own"``, each method's own pilot, found by the same search for each; ``"shared"``, one for all that
+            an earlier search found by the score of eeruf; ``"published"`` and ``"published-gro"``, the published settings
+            without and with the growth rate operator.
+        odometry_noise: whether wheels slip and are not measured quite right, so that the robot is off by some decimetre in the
+            end; otherwise it knows exactly where it is.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
@@ -193,7 +207,7 @@ def set_two(
         {'conventional': 0, 'eeruf': 2}
 
     """
-    asked = _asked(seeds, methods, second_robot, speed_m_s, odometry, t_delta_us, first)
+    asked = _asked(seeds, methods, second_robot, speed_m_s, odometry, t_delta_us, first, pilot, odometry_noise)
     table, runs = _eeruf._set_two(asked, progress)
     return SetTwo(json.loads(table), {method: [Run(**run) for run in of_method] for method, of_method in runs.items()})
 
@@ -206,7 +220,9 @@ def speed_sweep(
     second_robot: _Corner = None,
     odometry: bool = True,
     t_delta_us: int | None = None,
-    first: int = 0,
+    first: int = FIRST,
+    pilot: _Pilot = "own",
+    odometry_noise: bool = True,
     progress: _Progress = None,
 ) -> dict[str, Any]:
     """Set II at several top speeds: which speed each method sustains. Ctrl-C ends it.
@@ -219,6 +235,8 @@ def speed_sweep(
         odometry: as in :func:`set_two`.
         t_delta_us: as in :func:`set_two`.
         first: as in :func:`set_two`.
+        pilot: as in :func:`set_two`.
+        odometry_noise: as in :func:`set_two`.
         progress: as in :func:`set_two`.
 
     Returns:
@@ -237,7 +255,7 @@ def speed_sweep(
         ([1.0, 1.0], {'eeruf': 1.0})
 
     """
-    asked = _asked(seeds, methods, second_robot, 1.0, odometry, t_delta_us, first)
+    asked = _asked(seeds, methods, second_robot, 1.0, odometry, t_delta_us, first, pilot, odometry_noise)
     sweep: dict[str, Any] = json.loads(_eeruf._speed_sweep(speeds_m_s, asked, progress))
     borne = {
         method: [step["speed_m_s"] for step in sweep["steps"] if step["finished"][method] >= _BORNE]
@@ -247,5 +265,15 @@ def speed_sweep(
 
 
 def _asked(*values: Any) -> dict[str, Any]:
-    names = ("seeds", "methods", "second_robot", "speed_m_s", "odometry", "t_delta_us", "first")
+    names = (
+        "seeds",
+        "methods",
+        "second_robot",
+        "speed_m_s",
+        "odometry",
+        "t_delta_us",
+        "first",
+        "pilot",
+        "odometry_noise",
+    )
     return dict(zip(names, values))

@@ -9,6 +9,7 @@ mod experiment;
 mod methods;
 mod paths;
 mod replay;
+mod scene;
 mod search;
 mod study;
 mod verify;
@@ -25,6 +26,7 @@ pub(crate) enum Verb {
     Search(search::Args),
     Study(study::Args),
     Paths(paths::Args),
+    Scene(scene::Args),
     Replay(replay::Args),
     Experiment(experiment::Args),
 }
@@ -37,6 +39,7 @@ impl Verb {
             Self::Search(args) => search::run(args),
             Self::Study(args) => study::run(args),
             Self::Paths(args) => paths::run(args),
+            Self::Scene(args) => scene::run(args),
             Self::Replay(args) => replay::run(args),
             Self::Experiment(args) => experiment::run(args),
         }

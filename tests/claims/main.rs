@@ -12,4 +12,5 @@ mod immediate_refiring;
 mod inputs;
 mod program;
 mod ring;
+mod scene;
 mod study;

@@ -18,6 +18,7 @@ mod errors;
 mod experiments;
 mod filter;
 mod found;
+mod maps;
 mod memory;
 mod methods;
 mod paths;
@@ -51,6 +52,7 @@ mod _eeruf {
         experiments::{set_one, set_two, speed_sweep},
         filter::EchoFilter,
         found::Found,
+        maps::read_map,
         paths::Paths,
         readings::Readings,
         report::{Report, Violation},

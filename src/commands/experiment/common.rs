@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use eeruf_core::search::Progress;
+use eeruf_sim::experiments::FIRST;
 
 use crate::files::error::InputError;
 use crate::report::draw::Picture;
@@ -20,8 +21,8 @@ pub(crate) struct Common {
     /// How many geometries or courses
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(crate) seeds: Option<u64>,
-    /// The number of the first geometry or course
-    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    /// The number of the first geometry or course; parameters were tuned on numbers below 2000
+    #[arg(long, value_name = "SEED", default_value_t = FIRST)]
     pub(crate) first: u64,
     /// Print one JSON object
     #[arg(long)]

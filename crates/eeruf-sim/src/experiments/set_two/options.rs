@@ -2,8 +2,10 @@
 
 use eeruf_core::Micros;
 
-use super::pilot::Piloting;
+use super::odometry::OdometryNoise;
+use super::pilots::Pilots;
 use crate::{
+    experiments::FIRST,
     geometry::Point,
     methods::{BestSchedule, Method},
     navigation::LabMate,
@@ -14,8 +16,8 @@ use crate::{
 pub struct SetTwoOptions {
     /// How many courses. The default is 100.
     pub seeds: u64,
-    /// The first course's number, so that parameters can be tuned on other courses than those that they are tested on.
-    /// The default is 0.
+    /// The first course's number. The default is [`FIRST`]: pilots were tuned on courses below 2,000, the shared one on
+    /// 10,000 to 10,999 as well.
     pub first: u64,
     /// The methods.
     pub methods: Vec<Method>,
@@ -30,22 +32,26 @@ pub struct SetTwoOptions {
     /// `T_delta`. With odometry it need not leave room for motion, and readings agree by accident the more rarely the
     /// smaller it is.
     pub t_delta: Micros,
-    /// How it steers.
-    pub piloting: Piloting,
+    /// How wrong the platform is about where it is.
+    pub odometry_noise: OdometryNoise,
+    /// Who steers.
+    pub pilots: Pilots,
 }
 
 impl Default for SetTwoOptions {
     fn default() -> Self {
         Self {
             seeds: 100,
-            first: 0,
+            first: FIRST,
             methods: vec![
                 Method::Sequential,
+                Method::FarGroups,
                 Method::Conventional,
                 Method::Comparison,
                 Method::Eeruf,
                 Method::EerufBest,
                 Method::Adaptive,
+                Method::EerufHopping,
                 Method::MultiEcho,
             ],
             best: None,
@@ -53,7 +59,8 @@ impl Default for SetTwoOptions {
             labmate: LabMate::default(),
             odometry: true,
             t_delta: Micros::new(150),
-            piloting: Piloting::default(),
+            odometry_noise: OdometryNoise::default(),
+            pilots: Pilots::Own,
         }
     }
 }

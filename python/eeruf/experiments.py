@@ -204,7 +204,7 @@ def set_two(
         >>> import eeruf
         >>> found = eeruf.experiments.set_two(seeds=2, methods=["conventional", "eeruf"])
         >>> {name: method["finished"] for name, method in found["methods"].items()}
-        {'conventional': 0, 'eeruf': 2}
+        {'conventional': 2, 'eeruf': 2}
 
     """
     asked = _asked(seeds, methods, second_robot, speed_m_s, odometry, t_delta_us, first, pilot, odometry_noise)

@@ -1,8 +1,8 @@
 //! The program `eeruf`: design, verify and study firing schedules, and see what the filter makes of recorded readings.
 //!
-//! `commands` has one file for each verb; `files` is what they read, `report` what they print and draw. What the program
-//! can do, other programs do with the libraries that it stands on: [`eeruf_core`], [`eeruf_design`] and [`eeruf_sim`].
-//! Here is only what starts it, so that the Python package can hold it too, and its example files.
+//! `commands` has one file for each verb; `files` is what they read, `report` what they print and draw. What the
+//! program can do, other programs do with the libraries that it stands on: [`eeruf_core`], [`eeruf_design`] and
+//! [`eeruf_sim`]. Here is only what starts it, so that the Python package can hold it too, and its example files.
 
 // Doc comments of arguments are what --help prints in a terminal, where backticks only disturb.
 #![allow(clippy::doc_markdown)]

@@ -808,6 +808,7 @@ class ReadingBlocks(Iterator[Readings]):
     def __iter__(self, /) -> ReadingBlocks: ...
     def __next__(self, /) -> Readings: ...
 
+def read_map(path: str | PathLike[str], *, tolerance_m: float | None = None) -> Scene: ...
 def simulate_blocks(
     scene: Scene,
     method: _Method = "eeruf",
@@ -838,6 +839,7 @@ _SIDE_M: float
 
 def _set_one(
     seeds: _Int,
+    first: _Int | None,
     readings: _Int | None,
     methods: Sequence[_Method] | None,
     progress: _Progress,

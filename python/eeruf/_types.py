@@ -45,3 +45,5 @@ class Summary(TypedDict):
     age_ms: Age
     readings_per_s: float
     starved: int
+    blind: int
+    starved_in_part: int

@@ -23,8 +23,12 @@ if TYPE_CHECKING:
     from eeruf._eeruf import _Physics
 
     _Corner = Literal["behind", "ahead"] | tuple[float, float] | None
+    _Pilot = Literal["own", "shared", "published", "published-gro"]
 
-__all__ = ["SPEEDS_M_S", "Run", "SetTwo", "set_one", "set_two", "speed_sweep"]
+__all__ = ["FIRST", "SPEEDS_M_S", "Run", "SetTwo", "set_one", "set_two", "speed_sweep"]
+
+FIRST: int = 20_000
+"""The number of the first alcove or course unless ``first`` says otherwise; parameters were tuned on numbers below 2,000."""
 
 SPEEDS_M_S: tuple[float, ...] = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0)
 """The top speeds of :func:`speed_sweep` unless others are given, in m/s."""
@@ -38,6 +42,7 @@ def set_one(
     *,
     readings: int = 8000,
     methods: Sequence[Method] | None = None,
+    first: int = FIRST,
     physics: _Physics = "plain",
     progress: _Progress = None,
 ) -> dict[str, Any]:
@@ -49,6 +54,7 @@ def set_one(
         seeds: how many alcoves, 1 to 100,000.
         readings: about how many readings of each alcove and method, 1 or more.
         methods: names of ``eeruf.sim.METHODS``; all by default.
+        first: the first alcove's number.
         physics: as the argument of ``eeruf.sim.Scene``.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
@@ -68,7 +74,7 @@ def set_one(
         True
 
     """
-    table: dict[str, Any] = json.loads(_eeruf._set_one(seeds, readings, methods, progress, physics))
+    table: dict[str, Any] = json.loads(_eeruf._set_one(seeds, first, readings, methods, progress, physics))
     return table
 
 
@@ -129,8 +135,9 @@ class Run:
 class SetTwo(dict[str, Any]):
     """What ``eeruf experiment set-two --json`` prints, and beside it every run.
 
-    The keys are ``seeds``, ``second_robot_m``, ``speed_m_s`` and ``methods``: ``{NAME: {"courses", "finished", "contacts",
-    "mean_speed_m_s", ...}}``. Shares are fractions of 1.
+    The keys are ``first``, ``pilot``, ``seeds``, ``second_robot_m``, ``speed_m_s`` and ``methods``: ``{NAME: {"courses",
+    "finished", "finished_95", "contacts", "mean_speed_m_s", ...}}``. Shares are fractions of 1; ``finished_95`` is where the
+    share of finished courses lies with 95 % confidence, by Wilson's interval.
 
     Example:
         >>> import eeruf
@@ -161,7 +168,9 @@ def set_two(
     speed_m_s: float = 1.0,
     odometry: bool = True,
     t_delta_us: int | None = None,
-    first: int = 0,
+    first: int = FIRST,
+    pilot: _Pilot = "own",
+    odometry_noise: bool = True,
     physics: _Physics = "plain",
     progress: _Progress = None,
 ) -> SetTwo:
@@ -172,14 +181,19 @@ def set_two(
 
     Args:
         seeds: how many courses, 1 to 100,000.
-        methods: names of ``eeruf.sim.METHODS``; by default sequential, conventional, comparison, eeruf, eeruf_best, adaptive
-            and multi_echo.
+        methods: names of ``eeruf.sim.METHODS``; by default sequential, far_groups, conventional, comparison, eeruf,
+            eeruf_best, adaptive, eeruf_hopping and multi_echo.
         second_robot: where another robot stands that fires 24 times in 80 ms: ``"behind"`` the start, ``"ahead"`` in the
             reflective corner that all sensors face, or a point (x, y) in metres of the lab, which is 10 m by 6 m.
         speed_m_s: the platform's highest speed, 0.1 to 5 m/s.
         odometry: whether the robot hands its ring the changes that its own motion should cause.
         t_delta_us: readings that differ by no more are near-identical; by default 150 with odometry and 500 without.
-        first: the first course's number, so that what is tuned on some courses can be tried on others.
+        first: the first course's number.
+        pilot: who steers: ``"own"``, each method's own pilot, found by the same search for each; ``"shared"``, one for all that
+            an earlier search found by the score of eeruf; ``"published"`` and ``"published-gro"``, the published settings
+            without and with the growth rate operator.
+        odometry_noise: whether wheels slip and are not measured quite right, so that the robot is off by some decimetre in the
+            end; otherwise it knows exactly where it is.
         physics: as the argument of ``eeruf.sim.Scene``.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
@@ -195,10 +209,12 @@ def set_two(
         >>> import eeruf
         >>> found = eeruf.experiments.set_two(seeds=2, methods=["conventional", "eeruf"])
         >>> {name: method["finished"] for name, method in found["methods"].items()}
-        {'conventional': 0, 'eeruf': 2}
+        {'conventional': 2, 'eeruf': 2}
 
     """
-    asked = _asked(seeds, methods, second_robot, speed_m_s, odometry, t_delta_us, first, physics)
+    asked = _asked(
+        seeds, methods, second_robot, speed_m_s, odometry, t_delta_us, first, pilot, odometry_noise, physics
+    )
     table, runs = _eeruf._set_two(asked, progress)
     return SetTwo(json.loads(table), {method: [Run(**run) for run in of_method] for method, of_method in runs.items()})
 
@@ -211,7 +227,9 @@ def speed_sweep(
     second_robot: _Corner = None,
     odometry: bool = True,
     t_delta_us: int | None = None,
-    first: int = 0,
+    first: int = FIRST,
+    pilot: _Pilot = "own",
+    odometry_noise: bool = True,
     physics: _Physics = "plain",
     progress: _Progress = None,
 ) -> dict[str, Any]:
@@ -225,6 +243,8 @@ def speed_sweep(
         odometry: as in :func:`set_two`.
         t_delta_us: as in :func:`set_two`.
         first: as in :func:`set_two`.
+        pilot: as in :func:`set_two`.
+        odometry_noise: as in :func:`set_two`.
         physics: as in :func:`set_two`.
         progress: as in :func:`set_two`.
 
@@ -244,7 +264,7 @@ def speed_sweep(
         ([1.0, 1.0], {'eeruf': 1.0})
 
     """
-    asked = _asked(seeds, methods, second_robot, 1.0, odometry, t_delta_us, first, physics)
+    asked = _asked(seeds, methods, second_robot, 1.0, odometry, t_delta_us, first, pilot, odometry_noise, physics)
     sweep: dict[str, Any] = json.loads(_eeruf._speed_sweep(speeds_m_s, asked, progress))
     borne = {
         method: [step["speed_m_s"] for step in sweep["steps"] if step["finished"][method] >= _BORNE]
@@ -254,5 +274,16 @@ def speed_sweep(
 
 
 def _asked(*values: Any) -> dict[str, Any]:
-    names = ("seeds", "methods", "second_robot", "speed_m_s", "odometry", "t_delta_us", "first", "physics")
+    names = (
+        "seeds",
+        "methods",
+        "second_robot",
+        "speed_m_s",
+        "odometry",
+        "t_delta_us",
+        "first",
+        "pilot",
+        "odometry_noise",
+        "physics",
+    )
     return dict(zip(names, values))

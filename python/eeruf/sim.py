@@ -17,6 +17,7 @@ from eeruf._eeruf import (
     RobotState,
     Scene,
     Simulation,
+    read_map,
     simulate,
     simulate_blocks,
 )
@@ -34,6 +35,7 @@ __all__ = [
     "RobotState",
     "Scene",
     "Simulation",
+    "read_map",
     "simulate",
     "simulate_blocks",
 ]

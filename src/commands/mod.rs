@@ -13,6 +13,7 @@ mod man;
 mod methods;
 mod paths;
 mod replay;
+mod scene;
 mod search;
 mod study;
 mod verify;
@@ -40,6 +41,7 @@ pub(crate) enum Verb {
     Search(search::Args),
     Study(study::Args),
     Paths(paths::Args),
+    Scene(scene::Args),
     Replay(replay::Args),
     Diagnose(diagnose::Args),
     Experiment(experiment::Args),
@@ -56,6 +58,7 @@ impl Verb {
             Self::Search(args) => search::run(args),
             Self::Study(args) => study::run(args),
             Self::Paths(args) => paths::run(args),
+            Self::Scene(args) => scene::run(args),
             Self::Replay(args) => replay::run(args),
             Self::Diagnose(args) => diagnose::run(args),
             Self::Experiment(args) => experiment::run(args),

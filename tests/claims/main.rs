@@ -14,4 +14,5 @@ mod inputs;
 mod logs;
 mod program;
 mod ring;
+mod scene;
 mod study;

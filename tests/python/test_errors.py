@@ -182,6 +182,13 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: eeruf.experiments.set_two(1, second_robot=(math.nan, 1)), eeruf.EerufError, "."),
     (lambda: eeruf.experiments.set_two(1, t_delta_us=-1), eeruf.ArgumentError, "t_delta_us = -1"),
     (lambda: eeruf.experiments.set_two(1, odometry="no"), eeruf.ArgumentError, "odometry = 'no'"),  # type: ignore[arg-type]
+    (
+        lambda: ANY.experiments.set_two(1, pilot="mine"),
+        eeruf.ArgumentError,
+        "pilot = 'mine'; expected .*own.*shared.*published.*published-gro",
+    ),
+    (lambda: ANY.experiments.set_two(1, odometry_noise="no"), eeruf.ArgumentError, "odometry_noise = 'no'"),
+    (lambda: eeruf.experiments.set_one(1, first=-1), eeruf.ArgumentError, "first = -1"),
     (lambda: eeruf.experiments.speed_sweep([]), eeruf.ArgumentError, r"speeds_m_s = \[\]; expected one speed or more"),
     (lambda: eeruf.experiments.speed_sweep([1.0, -1]), eeruf.ArgumentError, r"speeds_m_s\[1\] = -1"),
     (lambda: ANY.sweep(3, [1]), eeruf.ArgumentError, "function = 3"),

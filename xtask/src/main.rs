@@ -25,6 +25,7 @@ mod site;
 mod steps;
 mod test;
 mod toolchain;
+mod tune;
 
 use std::process::ExitCode;
 
@@ -92,6 +93,13 @@ enum Verb {
     Release(release::Plan),
     /// Break the core in one place at a time, and see whether a test notices (hours; takes up where it stopped)
     Mutants(mutants::Plan),
+    /// Find the pilots of Set II, and what several echoes are compared by in Set I, and put them into the source (an
+    /// hour; takes up where it stopped)
+    Tune {
+        /// Only compare
+        #[arg(long)]
+        check: bool,
+    },
     /// Print the table of shortest periods that docs/search.md shows
     Periods {
         /// What to pass to the example `shortest_periods` of eeruf-core
@@ -129,6 +137,7 @@ fn main() -> ExitCode {
             Some(document) => printed::reprint(&document),
             None => printed::check(&printed::documents()?, printed::Which::All),
         }),
+        Verb::Tune { check } => one_step("what the experiments are run with", || tune::tune(check)),
         Verb::Periods { arguments } => match periods::table(&arguments) {
             Ok(table) => {
                 print!("{table}");

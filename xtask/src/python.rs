@@ -89,7 +89,8 @@ fn environment(home: &Path) -> Result<PathBuf, Trouble> {
     Ok(python)
 }
 
-/// What a user does first: the wheel, or the source distribution, in an empty environment, the README's lines, and the program that came along.
+/// What a user does first: the wheel, or the source distribution, in an empty environment, the README's lines, and the
+/// program that came along.
 fn fresh(distribution: &Path) -> Result<(), Trouble> {
     let home = Path::new("target/python-fresh");
     run(Command::new("python3").args(["-m", "venv", "--clear"]).arg(home))?;

@@ -1,4 +1,5 @@
-//! `cargo xtask site`: the documents as one book, with the page and the references for Rust and Python, every link followed.
+//! `cargo xtask site`: the documents as one book, with the page and the references for Rust and Python, every link
+//! followed.
 
 use std::fs;
 use std::path::{Path, PathBuf};

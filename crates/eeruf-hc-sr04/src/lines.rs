@@ -14,7 +14,8 @@ use crate::settings::Settings;
 pub struct Pins<T, I> {
     /// The trigger.
     pub trigger: T,
-    /// The echo line. It is read only just before a trigger; its edges come in through [`HcSr04Ring::edge`](crate::HcSr04Ring::edge).
+    /// The echo line. It is read only just before a trigger; its edges come in through
+    /// [`HcSr04Ring::edge`](crate::HcSr04Ring::edge).
     pub echo: I,
 }
 

@@ -5,10 +5,11 @@ use eeruf_core::Micros;
 use eeruf_sim::{
     LabMate, Method, Robot,
     experiments::{
+        FIRST,
         set_one::{self as first_set, Alcove, READINGS, SetOneOptions},
         set_two::{
-            self as second_set, Course, Ending, POLE_RADIUS_M, Run, SECOND_AHEAD, SECOND_BEHIND, SetTwoOptions,
-            SpeedStep,
+            self as second_set, Course, Ending, OdometryNoise, POLE_RADIUS_M, Pilots, Run, SECOND_AHEAD, SECOND_BEHIND,
+            SetTwoOptions, SpeedStep,
         },
     },
 };
@@ -20,7 +21,7 @@ use pyo3::{
 use serde::Serialize;
 
 use crate::{
-    arguments::{flag, items, micros, number, points, shown, whole, whole_or, wrong},
+    arguments::{choice, flag, items, micros, number, points, shown, whole, whole_or, wrong},
     errors::{ArgumentError, Raise},
     methods::{best, methods as methods_named},
     surroundings,
@@ -38,10 +39,11 @@ fn json(table: &impl Serialize) -> PyResult<String> {
 
 /// Set I over many geometries.
 #[pyfunction]
-#[pyo3(name = "_set_one", signature = (seeds, readings, methods, progress, physics=None))]
+#[pyo3(name = "_set_one", signature = (seeds, first, readings, methods, progress, physics=None))]
 pub(crate) fn set_one(
     py: Python<'_>,
     seeds: &Bound<'_, PyAny>,
+    first: Option<&Bound<'_, PyAny>>,
     readings: Option<&Bound<'_, PyAny>>,
     methods: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -49,12 +51,13 @@ pub(crate) fn set_one(
 ) -> PyResult<String> {
     let physics = surroundings::physics(physics)?;
     let seeds = whole("seeds", seeds, 1..=SEEDS_MOST)?;
+    let first = whole_or("first", first, FIRST, 0..=u64::from(u32::MAX))?;
     let readings = whole_or("readings", readings, READINGS, 1..=u32::MAX)?;
     let methods = methods_named(methods, &Method::ALL)?;
     in_background(py, progress, move |background| {
         let best = best(&methods, &Alcove::random(0).robot(), background)?;
         let keep_going = |done| background.go_on(Some(done), || format!("{seeds} alcoves"));
-        let asked = SetOneOptions { seeds, readings, methods, physics, best, ..SetOneOptions::default() };
+        let asked = SetOneOptions { seeds, first, readings, methods, physics, best, ..SetOneOptions::default() };
         let table = first_set::set_one(&asked, &keep_going).map_err(Raise::raise)?;
         json(&table)
     })
@@ -65,13 +68,15 @@ pub(crate) fn set_one(
 #[pyo3(from_item_all)]
 pub(crate) struct Asked<'py> {
     seeds: Bound<'py, PyAny>,
-    first: Bound<'py, PyAny>,
+    first: Option<Bound<'py, PyAny>>,
     methods: Option<Bound<'py, PyAny>>,
     second_robot: Option<Bound<'py, PyAny>>,
     speed_m_s: Bound<'py, PyAny>,
     odometry: Bound<'py, PyAny>,
     t_delta_us: Option<Bound<'py, PyAny>>,
     physics: Option<Bound<'py, PyAny>>,
+    pilot: Bound<'py, PyAny>,
+    odometry_noise: Bound<'py, PyAny>,
 }
 
 fn speed(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
@@ -83,9 +88,13 @@ impl Asked<'_> {
         let default = SetTwoOptions::default();
         let odometry = flag("odometry", Some(&self.odometry), true)?;
         let t_delta = self.t_delta_us.map(|value| micros("t_delta_us", &value)).transpose()?;
+        let noisy = flag("odometry_noise", Some(&self.odometry_noise), true)?;
+        let named = Pilots::NAMED.map(|pilots| (pilots.as_str(), pilots));
         Ok(SetTwoOptions {
+            pilots: choice("pilot", Some(&self.pilot), &named)?,
+            odometry_noise: if noisy { OdometryNoise::default() } else { OdometryNoise::NONE },
             seeds: whole("seeds", &self.seeds, 1..=SEEDS_MOST)?,
-            first: whole("first", &self.first, 0..=u64::from(u32::MAX))?,
+            first: whole_or("first", self.first.as_ref(), FIRST, 0..=u64::from(u32::MAX))?,
             methods: methods_named(self.methods.as_ref(), &default.methods)?,
             second_robot: self.second_robot.as_ref().map(corner).transpose()?,
             labmate: LabMate { speed_max_m_s: speed("speed_m_s", &self.speed_m_s)?, ..default.labmate },
@@ -140,6 +149,8 @@ pub(crate) fn set_two<'py>(
 /// What a sweep returns, under the program's names.
 #[derive(Serialize)]
 struct Sweep {
+    first: u64,
+    pilot: &'static str,
     seeds: u64,
     second_robot_m: Option<[f64; 2]>,
     steps: Vec<SpeedStep>,
@@ -168,7 +179,8 @@ pub(crate) fn speed_sweep(
             |done| background.go_on(Some(done), || format!("{} courses at {} speeds", options.seeds, speeds.len()));
         let steps = second_set::speed_sweep(&options, &speeds, &keep_going).map_err(Raise::raise)?;
         let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);
-        json(&Sweep { seeds: options.seeds, second_robot_m, steps })
+        let SetTwoOptions { first, seeds, pilots, .. } = options;
+        json(&Sweep { first, pilot: pilots.as_str(), seeds, second_robot_m, steps })
     })
 }
 

@@ -99,7 +99,8 @@ impl HoppingSchedule {
     ///
     /// Raises:
     ///     ArgumentError: not a text.
-    ///     HoppingError: the text is no TOML, a key is missing, the numbers make no schedule, or it is a table of firing
+    ///     HoppingError: the text is no TOML, a key is missing, the numbers make no schedule, or it is a table of
+    ///     firing
     ///         times, which no ring hops by.
     ///
     /// Example:

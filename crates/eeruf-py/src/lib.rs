@@ -22,6 +22,7 @@ mod found;
 mod hopping_ring;
 mod hopping_schedule;
 mod hopping_settings;
+mod maps;
 mod memory;
 mod methods;
 mod paths;
@@ -60,6 +61,7 @@ mod _eeruf {
         hopping_ring::HoppingRing,
         hopping_schedule::HoppingSchedule,
         hopping_settings::HoppingSettings,
+        maps::read_map,
         paths::Paths,
         program::{example, run_program},
         readings::Readings,

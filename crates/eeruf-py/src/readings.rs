@@ -192,7 +192,9 @@ impl Readings {
     /// Returns:
     ///     A dict: ``readings``, ``accepted``; as fractions of 1 ``wrong_of_all``, ``crosstalk_of_all``,
     ///     ``wrong_of_accepted``, ``rejected``, ``good_lost``, ``wrong_before_filter``; ``age_ms`` with ``median`` and
-    ///     ``p99``; ``readings_per_s``; ``starved``: how many sensors never had a reading accepted.
+    ///     ``p99``; ``readings_per_s``; ``starved``: how many sensors had fewer than 5 % of their readings
+    ///     accepted; ``blind``: how many never had one; ``starved_in_part``: how many of the starved read right in one
+    ///     phase and not in another.
     ///
     /// Raises:
     ///     ArgumentError: the tolerance is negative or not a number.

@@ -83,7 +83,7 @@ impl Scene {
     }
 
     /// Checks the parts against each other.
-    fn of(parts: WorldParts, robots: Vec<Robot>) -> PyResult<Self> {
+    pub(crate) fn of(parts: WorldParts, robots: Vec<Robot>) -> PyResult<Self> {
         let WorldParts { scene, noise, physics, max_order, seed, .. } = parts;
         let contents = if robots.is_empty() {
             Contents::Walls(Box::new(scene))

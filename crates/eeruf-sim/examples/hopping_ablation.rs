@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 percents(figures.wrong_of_all),
                 percents(figures.confirmed_wrong_of_all),
                 percents(figures.good_lost),
-                figures.starved,
+                figures.blind,
                 median(figures.age_p99_ms),
                 median(figures.readings_per_s),
                 latency(figures.nearer),

@@ -21,6 +21,7 @@
 //! | [`threads`] | work on all cores, and how it ends early |
 //! | [`geometry`] | points, mirrors, Alhazen's problem |
 //! | [`scene`] | walls, poles and air, with the mesh over them |
+//! | [`maps`] | occupancy grids as walls |
 //! | [`acoustics`] | how loud: directivity, reflection, spreading, diffraction |
 //! | [`tracing`] | which paths: beam tree, paths over poles, what is too faint, who hears whom |
 //! | [`world`] | who is there: robots, motions, clocks, noise, the TOML file |
@@ -58,6 +59,7 @@
 pub mod acoustics;
 pub mod experiments;
 pub mod geometry;
+pub mod maps;
 pub mod methods;
 pub mod navigation;
 pub mod results;
@@ -72,6 +74,7 @@ pub use acoustics::{
     rigid_cylinder_form,
 };
 pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice};
+pub use maps::{MapError, OccupancyGrid};
 pub use methods::{
     BestSchedule, Method, UnknownMethod, best_schedule_for, requirements_of, shortest_schedule_for, table_i_d_for,
 };

@@ -46,7 +46,7 @@ def course(
         >>> found = eeruf.experiments.set_two(seeds=1, methods=["eeruf"])
         >>> ax = eeruf.plot.course(found)
         >>> ax.get_title(loc="left")
-        'eeruf, course 0: finished after 8.7 s, 4 phantom echoes'
+        'eeruf, course 20000: finished after 8.3 s, 0 phantom echoes'
 
     """
     run, name, second_robot_m = _chosen(result, method, course)

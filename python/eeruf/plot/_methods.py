@@ -28,7 +28,7 @@ _TITLES = {
     "readings_per_s": "accepted readings per second",
     "age_ms": "age of the last accepted reading (ms)",
     "age_p99_ms": "age of the last accepted reading, 99 % (ms)",
-    "starved": "sensors that never had a reading accepted",
+    "starved": "sensors with under 5 % of their readings accepted",
     "finished": "courses finished",
     "contacts": "courses with a contact",
     "timed_out": "courses out of time",

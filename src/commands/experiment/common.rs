@@ -7,6 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 use eeruf_core::search::Progress;
 use eeruf_sim::Physics;
+use eeruf_sim::experiments::FIRST;
 
 use crate::files::error::InputError;
 use crate::report::draw::Picture;
@@ -21,8 +22,8 @@ pub(crate) struct Common {
     /// How many geometries or courses
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(crate) seeds: Option<u64>,
-    /// The number of the first geometry or course
-    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    /// The number of the first geometry or course; parameters were tuned on numbers below 2000
+    #[arg(long, value_name = "SEED", default_value_t = FIRST)]
     pub(crate) first: u64,
     /// Which effects there are: plain, or default (see docs/physics.md)
     #[arg(long, value_name = "PRESET", default_value = "plain")]

@@ -1,16 +1,15 @@
 //! `eeruf experiment set-one`: eight sensors before three walls at right angles, over many alcoves.
 
 use eeruf_core::{HoppingSettings, Micros};
-use eeruf_sim::Method;
-use eeruf_sim::Robot;
 use eeruf_sim::best_schedule_for;
 use eeruf_sim::experiments::set_one::{Alcove, SENSORS, SetOneOptions, set_one};
+use eeruf_sim::{GainProfile, Method, Robot};
 
 use super::common::{BUDGET, Common, bad, designing, watched};
 use crate::commands::methods::chosen;
 use crate::files::error::InputError;
 use crate::report::draw;
-use crate::report::experiment::set_one::describe;
+use crate::report::experiment::set_one::{describe, describe_variations};
 use crate::report::json::to_json;
 use crate::report::watch::Watch;
 
@@ -36,6 +35,10 @@ pub(crate) struct Args {
     /// How eeruf_hopping fires and believes
     #[arg(long, value_name = "SETTING", default_value = "balanced")]
     hopping: Hopping,
+    /// Print instead how results move with the receiver's gain, the floor of its pattern, and fading; by default for
+    /// sequential, conventional, comparison, eeruf, eeruf_hopping and multi_echo
+    #[arg(long, conflicts_with_all = ["svg", "png"])]
+    vary: bool,
 }
 
 /// The named settings of time hopping.
@@ -77,6 +80,9 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         .map_err(|error| bad(&error))?;
     options.best = Some(best);
     drop(watch);
+    if args.vary {
+        return vary(args, &options);
+    }
     let watched = watched(format!("{} alcoves by {} methods", options.seeds, options.methods.len()));
     let found = set_one(&options, &watched).map_err(|error| bad(&error))?;
     drop(watched);
@@ -85,6 +91,65 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         println!("{}", to_json(&found));
     } else {
         print!("{}", describe(&found, &best));
+    }
+    Ok(())
+}
+
+/// What is varied, one at a time: a name, and the options with it.
+type Variation = (&'static str, fn(SetOneOptions) -> SetOneOptions);
+
+const VARIATIONS: [Variation; 8] = [
+    ("as it is", |options| options),
+    ("gain with the root of time", |options| gain(options, GainProfile::SquareRoot)),
+    ("gain with time", |options| gain(options, GainProfile::Linear)),
+    ("pattern's floor -22 dB", |options| floor(options, -22.0)),
+    ("pattern's floor -34 dB", |options| floor(options, -34.0)),
+    ("pattern's floor -40 dB", |options| floor(options, -40.0)),
+    ("no fading", |options| fading(options, 0.0)),
+    ("fading 3 dB", |options| fading(options, 3.0)),
+];
+
+fn gain(mut options: SetOneOptions, gain: GainProfile) -> SetOneOptions {
+    options.transducer.gain = gain;
+    options
+}
+
+fn floor(mut options: SetOneOptions, floor_db: f64) -> SetOneOptions {
+    options.transducer.pattern_floor = 10f64.powf(floor_db / 20.0);
+    options
+}
+
+fn fading(mut options: SetOneOptions, fading_db_rms: f64) -> SetOneOptions {
+    options.noise.fading_db_rms = fading_db_rms;
+    options
+}
+
+/// The methods that `--vary` shows unless others are asked for.
+const VARIED: [Method; 6] = [
+    Method::Sequential,
+    Method::Conventional,
+    Method::Comparison,
+    Method::Eeruf,
+    Method::EerufHopping,
+    Method::MultiEcho,
+];
+
+/// Set I with one setting after the other changed.
+fn vary(args: &Args, options: &SetOneOptions) -> Result<(), InputError> {
+    let methods = if args.methods.is_empty() { VARIED.to_vec() } else { options.methods.clone() };
+    let options = SetOneOptions { methods, steps: 0, ..options.clone() };
+    let mut found = Vec::new();
+    for (name, with) in VARIATIONS {
+        let watched = watched(format!("{} alcoves, {name}", options.seeds));
+        let table = set_one(&with(options.clone()), &watched).map_err(|error| bad("set-one")(&error))?;
+        found.push((name, table));
+    }
+    if args.common.json {
+        let tables: serde_json::Map<_, _> =
+            found.iter().map(|(name, table)| ((*name).to_owned(), serde_json::json!(table))).collect();
+        println!("{}", to_json(&tables));
+    } else {
+        print!("{}", describe_variations(&found));
     }
     Ok(())
 }

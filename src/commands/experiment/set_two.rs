@@ -3,14 +3,16 @@
 use eeruf_core::Micros;
 use eeruf_sim::LabMate;
 use eeruf_sim::best_schedule_for;
-use eeruf_sim::experiments::set_two::{Course, SECOND_AHEAD, SECOND_BEHIND, SetTwoOptions, set_two, speed_sweep};
+use eeruf_sim::experiments::set_two::{
+    Course, OdometryNoise, Pilots, SECOND_AHEAD, SECOND_BEHIND, SetTwoOptions, set_two, speed_sweep,
+};
 use eeruf_sim::{Method, Point, Robot};
 
 use super::common::{BUDGET, Common, bad, designing, watched};
 use crate::commands::methods::chosen;
 use crate::files::error::InputError;
 use crate::report::draw;
-use crate::report::experiment::set_two::{Sweep, describe};
+use crate::report::experiment::set_two::{SideBySide, Sweep, describe};
 use crate::report::json::to_json;
 use crate::report::watch::Watch;
 
@@ -23,10 +25,15 @@ use crate::report::watch::Watch;
 pub(crate) struct Args {
     #[command(flatten)]
     common: Common,
-    /// Drive by these methods only; by default sequential, conventional, comparison, eeruf, eeruf_best, adaptive and
-    /// multi_echo
+    /// Drive by these methods only; by default sequential, far_groups, conventional, comparison, eeruf, eeruf_best,
+    /// adaptive, eeruf_hopping and multi_echo
     #[arg(long = "method", value_name = "NAME", num_args = 1.., value_delimiter = ',')]
     methods: Vec<Method>,
+    /// Who steers: each method's own pilot, found by the same search for each; one shared by all that an earlier search
+    /// found by the score of eeruf; or the published settings, with and without the growth rate operator. Several are
+    /// printed side by side
+    #[arg(long = "pilot", value_name = "PILOT", num_args = 1.., value_delimiter = ',', default_value = "own")]
+    pilots: Vec<Pilots>,
     /// Let another robot with 24 sensors fire 24 times in 80 ms in a corner of the lab: behind the start, or ahead,
     /// where all sensors face it
     #[arg(long, value_name = "WHERE", num_args = 0..=1, default_missing_value = "behind")]
@@ -37,6 +44,10 @@ pub(crate) struct Args {
     /// Do not pass the ring the change that the robot's own motion makes in readings, and compare within 500 us instead
     #[arg(long)]
     no_odometry: bool,
+    /// Let the robot know exactly where it is; by default wheels slip and are not measured quite right, and it is off
+    /// by some decimetre in the end
+    #[arg(long)]
+    exact_odometry: bool,
     /// Drive all courses at several top speeds instead, and give the highest that each method sustains
     #[arg(long, conflicts_with = "speed")]
     sweep: bool,
@@ -79,6 +90,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         second_robot: args.second_robot.map(Corner::position),
         labmate: LabMate { speed_max_m_s: args.speed, ..LabMate::default() },
         odometry: !args.no_odometry,
+        odometry_noise: if args.exact_odometry { OdometryNoise::NONE } else { OdometryNoise::default() },
         t_delta: if args.no_odometry { PAPERS_T_DELTA } else { SetTwoOptions::default().t_delta },
         ..SetTwoOptions::default()
     };
@@ -91,26 +103,40 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         let best = best_schedule_for(&robot, BUDGET, |progress| watch.go_on(|| designing(progress)));
         options.best = Some(best.map_err(|error| bad(&error))?);
     }
+    let pilots = &args.pilots[..];
     let watched = watched(format!("{} courses by {} methods", options.seeds, options.methods.len()));
     if args.sweep {
+        let &[pilots] = pilots else { return Err(bad(&format!("{} pilots; --sweep takes one", pilots.len()))) };
+        let options = SetTwoOptions { pilots, ..options };
         let steps = speed_sweep(&options, &SPEEDS, &watched).map_err(|error| bad(&error))?;
         drop(watched);
         let sweep = Sweep::of(&options, steps);
         print!("{}", if args.common.json { to_json(&sweep) + "\n" } else { sweep.describe() });
         return Ok(());
     }
-    let found = set_two(&options, &watched).map_err(|error| bad(&error))?;
-    drop(watched);
-    let name = match args.second_robot {
-        None => "set-two",
-        Some(Corner::Behind) => "set-two-second-behind",
-        Some(Corner::Ahead) => "set-two-second-ahead",
-    };
-    args.common.draw(name, || draw::courses(&found))?;
-    if args.common.json {
-        println!("{}", to_json(&found));
-    } else {
-        print!("{}", describe(&found));
+    let mut each = Vec::new();
+    for &pilots in pilots {
+        let found = set_two(&SetTwoOptions { pilots, ..options.clone() }, &watched).map_err(|error| bad(&error))?;
+        args.common.draw(&picture_name(args.second_robot, pilots), || draw::courses(&found))?;
+        each.push(found);
     }
+    drop(watched);
+    let text = match &each[..] {
+        [found] if args.common.json => to_json(found) + "\n",
+        [found] => describe(found),
+        _ if args.common.json => to_json(&SideBySide::of(&each)) + "\n",
+        _ => SideBySide::of(&each).describe(),
+    };
+    print!("{text}");
     Ok(())
+}
+
+fn picture_name(second_robot: Option<Corner>, pilots: Pilots) -> String {
+    let corner = match second_robot {
+        None => "",
+        Some(Corner::Behind) => "-second-behind",
+        Some(Corner::Ahead) => "-second-ahead",
+    };
+    let pilot = if pilots == Pilots::Own { String::new() } else { format!("-{pilots}") };
+    format!("set-two{corner}{pilot}")
 }

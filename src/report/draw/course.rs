@@ -18,42 +18,27 @@ const OUTLINE_S: f64 = 1.0;
 const SIDE_M: f64 = 0.75;
 const CELL_M: f64 = 0.1;
 
-/// The course on which the methods differ most, one panel for each.
+/// The first course, one panel for each method: chosen by its number, not by how it ended.
 pub(crate) fn courses(found: &SetTwo) -> Picture {
-    let number = telling(found);
-    let number_of = found.runs.first().and_then(|runs| runs.get(number)).map_or(0, |run| run.course);
-    let course = Course::random(number_of);
+    let course = Course::random(found.first);
     let panel_width = 0.5 * (WIDTH - 2.0 * MARGIN - GAP);
     let scale = panel_width / ROOM_M[0];
     let panel_height = ROOM_M[1] * scale;
     let rows = found.methods.len().div_ceil(2) as f64;
     let mut picture = Picture::new(WIDTH, TOP + rows * (panel_height + CAPTIONS + GAP) + 16.0);
-    let title = format!("Course {number_of}, top speed {} m/s", found.speed_m_s);
+    let title = format!("Course {}, top speed {} m/s", found.first, found.speed_m_s);
     let beside = if found.second_robot_m.is_some() { ", a second robot firing in a corner" } else { "" };
     picture.text(title + beside, (MARGIN, 24.0), TITLE);
     for (panel_index, ((method, _), runs)) in found.methods.iter().zip(&found.runs).enumerate() {
         let left = MARGIN + (panel_index % 2) as f64 * (panel_width + GAP);
         let top = TOP + (panel_index / 2) as f64 * (panel_height + CAPTIONS + GAP);
-        let Some(run) = runs.get(number) else { continue };
+        let Some(run) = runs.first() else { continue };
         picture.text(method.to_string(), (left, top + 10.0), CAPTION);
         picture.text_in(outcome(run), (left, top + 30.0), SMALL, HPos::Left, INK);
         let view = View { scale, height: panel_height };
         picture.insert(view.panel(&course, run, found.second_robot_m), (left, top + CAPTIONS));
     }
     picture
-}
-
-/// The first course that most methods fail but the paper's finishes; or else the first.
-fn telling(found: &SetTwo) -> usize {
-    let ours = |method: &eeruf_sim::Method| method.as_str().starts_with("eeruf") || method.as_str() == "adaptive";
-    let score = |course: usize| {
-        let each =
-            found.methods.iter().zip(&found.runs).filter_map(|((method, _), runs)| Some((method, runs.get(course)?)));
-        each.map(|(method, run)| usize::from((run.ending == Ending::Finished) == ours(method))).sum::<usize>()
-    };
-    let courses = 0..found.seeds as usize;
-    // The first of equals.
-    courses.rev().max_by_key(|&course| score(course)).unwrap_or(0)
 }
 
 fn outcome(run: &Run) -> String {

@@ -13,9 +13,23 @@ use crate::report::table::markdown;
 /// A method sustains a speed at which this share of the courses is finished.
 const SUSTAINED: f64 = 0.95;
 
+const FILTERS: &str = "multi_echo compares 3 readings, the other filters 2";
+const _: () = assert!(MULTI_ECHO_CONSECUTIVE == 3);
+
 fn beside(second_robot_m: Option<[f64; 2]>) -> String {
     second_robot_m
         .map_or_else(String::new, |[x, y]| format!(", a second robot at ({x} m, {y} m) firing 24 times in 80 ms"))
+}
+
+/// How many courses, and which.
+fn courses(first: u64, seeds: u64) -> String {
+    format!("{seeds} courses from {first} on")
+}
+
+/// How many were finished, and between which per cents that lies.
+fn finished(figures: &Figures) -> String {
+    let [low, high] = figures.finished_95.map(|share| 100.0 * share);
+    format!("{} of {} ({low:.0}-{high:.0} %)", figures.finished, figures.courses)
 }
 
 pub(crate) fn describe(found: &SetTwo) -> String {
@@ -35,11 +49,12 @@ pub(crate) fn describe(found: &SetTwo) -> String {
         "accepted/s",
     ];
     let mut text = format!(
-        "Set II: {} courses at up to {} m/s{}. Phantoms and the nearest pole are means over the courses;\n\
-         multi_echo compares {MULTI_ECHO_CONSECUTIVE} readings, the other filters 2.\n\n",
-        found.seeds,
+        "Set II: {} at up to {} m/s{}, pilot: {}. Finished with 95 % intervals (Wilson's);\n\
+         phantoms and the nearest pole are means over the courses; {FILTERS}.\n\n",
+        courses(found.first, found.seeds),
         found.speed_m_s,
-        beside(found.second_robot_m)
+        beside(found.second_robot_m),
+        found.pilot,
     );
     let rows = found.methods.iter().map(|(method, figures)| row(*method, figures));
     _ = writeln!(text, "{}", markdown(&header, rows));
@@ -49,7 +64,7 @@ pub(crate) fn describe(found: &SetTwo) -> String {
 fn row(method: Method, figures: &Figures) -> Vec<String> {
     vec![
         method.to_string(),
-        format!("{} of {}", figures.finished, figures.courses),
+        finished(figures),
         figures.contacts.to_string(),
         figures.timed_out.to_string(),
         format!("{:.2}", figures.mean_speed_m_s),
@@ -67,6 +82,8 @@ fn row(method: Method, figures: &Figures) -> Vec<String> {
 /// What a sweep of top speeds found.
 #[derive(Serialize)]
 pub(crate) struct Sweep {
+    first: u64,
+    pilot: &'static str,
     seeds: u64,
     second_robot_m: Option<[f64; 2]>,
     steps: Vec<SpeedStep>,
@@ -83,7 +100,8 @@ impl Sweep {
         };
         let borne_m_s = options.methods.iter().enumerate().map(|(index, method)| (*method, sustained(index))).collect();
         let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);
-        Self { seeds: options.seeds, second_robot_m, steps, borne_m_s }
+        let SetTwoOptions { first, seeds, pilots, .. } = *options;
+        Self { first, pilot: pilots.as_str(), seeds, second_robot_m, steps, borne_m_s }
     }
 
     pub(crate) fn describe(&self) -> String {
@@ -100,12 +118,48 @@ impl Sweep {
                 row
             });
         let mut text = format!(
-            "Set II: {} courses at several top speeds{}: finished %, and (mean speed in m/s). Sustained is\n\
-             the highest speed at which {:.0} % of the courses are finished; \
-             multi_echo compares {MULTI_ECHO_CONSECUTIVE} readings, the other filters 2.\n\n",
-            self.seeds,
+            "Set II: {} at several top speeds{}, pilot: {}: finished %, and (mean speed in m/s).\n\
+             Sustained is the highest speed at which {:.0} % of the courses are finished; {FILTERS}.\n\n",
+            courses(self.first, self.seeds),
             beside(self.second_robot_m),
+            self.pilot,
             100.0 * SUSTAINED
+        );
+        _ = writeln!(text, "{}", markdown(&header, rows));
+        text
+    }
+}
+
+/// Set II with several pilots.
+#[derive(Serialize)]
+#[serde(transparent)]
+pub(crate) struct SideBySide<'a> {
+    pilots: &'a [SetTwo],
+}
+
+impl<'a> SideBySide<'a> {
+    pub(crate) fn of(pilots: &'a [SetTwo]) -> Self {
+        Self { pilots }
+    }
+
+    pub(crate) fn describe(&self) -> String {
+        let Some(one) = self.pilots.first() else { return String::new() };
+        let mut header = vec!["method".to_owned()];
+        header.extend(self.pilots.iter().map(|found| format!("{}: finished, m/s", found.pilot)));
+        let rows = one.methods.iter().enumerate().map(|(place, (method, _))| {
+            let mut row = vec![method.to_string()];
+            row.extend(self.pilots.iter().map(|found| {
+                let figures = &found.methods[place].1;
+                format!("{}, {:.2}", finished(figures), figures.mean_speed_m_s)
+            }));
+            row
+        });
+        let mut text = format!(
+            "Set II with several pilots: {} at up to {} m/s{}. Finished with 95 % intervals (Wilson's), and the\n\
+             mean speed; {FILTERS}.\n\n",
+            courses(one.first, one.seeds),
+            one.speed_m_s,
+            beside(one.second_robot_m),
         );
         _ = writeln!(text, "{}", markdown(&header, rows));
         text

@@ -102,11 +102,17 @@ fn verdict(runs: &[Readings], sensors: usize) -> String {
     );
     _ = write!(text, "It costs {} % of the good readings", fine_percent(eeruf.good_lost.unwrap_or(0.0)));
     if eeruf.starved > 0 {
-        _ = write!(
-            text,
-            ", and {} of {sensors} sensors never had one accepted: foreign sound always came first there",
-            eeruf.starved
-        );
+        _ = write!(text, ", and {} of {sensors} sensors had under 5 % of their readings accepted: ", eeruf.starved);
+        let why = match (eeruf.starved - eeruf.starved_in_part, eeruf.starved_in_part) {
+            (_, 0) => "foreign sound comes\nfirst there in both phases".to_owned(),
+            (0, _) => "in one\nof the phases foreign sound comes first there, so that consecutive readings disagree"
+                .to_owned(),
+            (always, in_part) => format!(
+                "foreign sound comes\nfirst in both phases at {always}, and in one of them at {in_part}, \
+                 so that consecutive readings disagree"
+            ),
+        };
+        text += &why;
         let fewer = |method| of(method).is_some_and(|other| other.starved < eeruf.starved);
         match (fewer(Method::MultiEcho), fewer(Method::EerufHopping)) {
             (true, true) => {

@@ -60,9 +60,36 @@ pub(super) fn interval_95(values: &[f64], figure: impl Fn(&mut [f64]) -> f64) ->
     [0.025, 0.975].map(|share| quantile(&mut figures, share))
 }
 
+/// Where a share lies with 95 % confidence, of which `count` in `of` trials were seen: Wilson's interval (E. B. Wilson,
+/// "Probable inference, the law of succession, and statistical inference", J. Am. Stat. Assoc. 22, 1927). Unlike the
+/// bootstrap's it does not shrink to nothing at none and at all.
+pub(super) fn share_95(count: usize, of: usize) -> [f64; 2] {
+    if of == 0 {
+        return [0.0, 1.0];
+    }
+    const Z: f64 = 1.959_964;
+    let (n, share) = (of as f64, count as f64 / of as f64);
+    let middle = share + Z * Z / (2.0 * n);
+    let half = Z * (share * (1.0 - share) / n + Z * Z / (4.0 * n * n)).sqrt();
+    [-1.0, 1.0].map(|side| ((middle + side * half) / (1.0 + Z * Z / n)).clamp(0.0, 1.0))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_interval_of_a_share_is_wilsons() {
+        // The quadratic that defines it: (share - p)^2 = z^2 p (1 - p) / n at both ends.
+        for (count, of) in [(0, 100), (1, 100), (50, 100), (97, 100), (100, 100), (3, 7)] {
+            let share = count as f64 / of as f64;
+            for p in share_95(count, of) {
+                let off = (share - p).powi(2) - 1.959_964_f64.powi(2) * p * (1.0 - p) / of as f64;
+                assert!(off.abs() < 1e-12, "{count} of {of}: {p}");
+            }
+        }
+        assert!(share_95(100, 100)[0] < 0.97 && share_95(0, 100)[1] > 0.03);
+    }
 
     #[test]
     fn the_interval_of_a_median_holds_it_and_narrows_with_more_values() {

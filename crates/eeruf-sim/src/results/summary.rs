@@ -45,10 +45,14 @@ pub struct Summary {
     pub age_ms: Age,
     /// Accepted readings in a second of simulated time, all sensors together.
     pub readings_per_s: f64,
-    /// How many sensors never had a reading accepted, and so are blind.
+    /// How many sensors had fewer than 5 % of their readings accepted, the blind ones included.
     pub starved: usize,
-    /// How many sensors had fewer than 5 % of their readings accepted, the starved ones included.
-    pub seldom: usize,
+    /// How many sensors never had a reading accepted.
+    pub blind: usize,
+    /// How many of the starved sensors read right in one phase and not in another (more than half of the phase's
+    /// readings are good, or fewer): foreign sound comes first in part of the periods only, but no two consecutive
+    /// readings agree.
+    pub starved_in_part: usize,
 }
 
 /// How old a sensor's last accepted reading is, in milliseconds, whenever it fires: from the firing that the accepted
@@ -75,8 +79,9 @@ impl Readings {
         // Per robot and sensor: when the last accepted reading was fired.
         let mut last =
             vec![[None; eeruf_core::MAX_SENSORS]; self.robot.iter().max().map_or(0, |&r| usize::from(r) + 1)];
-        // And how many of its readings were accepted, of how many.
+        // And how many of its readings were accepted, of how many; how many were good in each phase, of how many.
         let mut shares = vec![[(0_usize, 0_usize); eeruf_core::MAX_SENSORS]; last.len()];
+        let mut phases: Vec<Vec<Phases>> = vec![vec![Phases::new(); eeruf_core::MAX_SENSORS]; last.len()];
         for reading in 0..self.len() {
             let believed = self.is_accepted(reading);
             let is_good = self.is_good(reading, tolerance_us);
@@ -88,16 +93,21 @@ impl Readings {
             crosstalk += usize::from(fooled && foreign);
             good += usize::from(is_good);
             false_rejections += usize::from(is_good && !believed);
-            let last_accepted = &mut last[usize::from(self.robot[reading])][usize::from(self.sensor[reading])];
+            let sensor = usize::from(self.sensor[reading]);
+            let last_accepted = &mut last[usize::from(self.robot[reading])][sensor];
             ages.push(1e3 * (self.fired_s[reading] - last_accepted.unwrap_or(0.0)));
             if believed {
                 *last_accepted = Some(self.fired_s[reading]);
             }
-            let (taken, of) = &mut shares[usize::from(self.robot[reading])][usize::from(self.sensor[reading])];
+            let (taken, of) = &mut shares[usize::from(self.robot[reading])][sensor];
             *taken += usize::from(believed);
             *of += 1;
+            count(&mut phases[usize::from(self.robot[reading])][sensor], self.phase[reading], is_good);
         }
-        let often = shares.iter().flatten().filter(|&&(taken, of)| taken > 0 && 20 * taken >= of).count();
+        let fed = |&(taken, of): &(usize, usize)| taken > 0 && 20 * taken >= of;
+        let often = shares.iter().flatten().filter(|&share| fed(share)).count();
+        let each = shares.iter().flatten().zip(phases.iter().flatten());
+        let in_part = each.filter(|&(share, phases)| !fed(share) && differ(phases)).count();
         let seeing = last.iter().flatten().filter(|last| last.is_some()).count();
         let share = |count: usize, of: usize| if of == 0 { 0.0 } else { count as f64 / of as f64 };
         Summary {
@@ -113,8 +123,27 @@ impl Readings {
             wrong_before_filter: share(self.len() - good, self.len()),
             age_ms: Age { median: quantile(&mut ages, 0.5), p99: quantile(&mut ages, 0.99) },
             readings_per_s: if self.duration_s > 0.0 { accepted as f64 / self.duration_s } else { 0.0 },
-            starved: self.sensors.saturating_sub(seeing),
-            seldom: self.sensors.saturating_sub(often),
+            starved: self.sensors.saturating_sub(often),
+            blind: self.sensors.saturating_sub(seeing),
+            starved_in_part: in_part,
         }
     }
+}
+
+/// For each phase how many of a sensor's readings were good, of how many.
+type Phases = Vec<(usize, usize)>;
+
+fn count(phases: &mut Phases, phase: u8, is_good: bool) {
+    let phase = usize::from(phase);
+    if phases.len() <= phase {
+        phases.resize(phase + 1, (0, 0));
+    }
+    phases[phase].0 += usize::from(is_good);
+    phases[phase].1 += 1;
+}
+
+/// Whether more than half of the readings are good in one phase and not in another.
+fn differ(phases: &Phases) -> bool {
+    let mut mostly_good = phases.iter().filter(|(_, of)| *of > 0).map(|(good, of)| 2 * good > *of);
+    mostly_good.next().is_some_and(|first| mostly_good.any(|other| other != first))
 }

@@ -35,7 +35,7 @@ fn alternation_removes_the_errors_that_comparison_alone_leaves_and_several_echoe
     assert!(wrong(Method::Comparison) > 0.15, "{}", wrong(Method::Comparison));
     assert!(wrong(Method::Eeruf) < 0.03, "{}", wrong(Method::Eeruf));
     // What else several echoes get wrong is a first echo just loud enough that faded away.
-    assert!(wrong(Method::MultiEcho) < 0.03, "{}", wrong(Method::MultiEcho));
+    assert!(wrong(Method::MultiEcho) < 0.06, "{}", wrong(Method::MultiEcho));
     let crosstalk = of(&table, Method::MultiEcho).crosstalk_of_all.unwrap().median;
     assert!(crosstalk < 0.01, "{crosstalk}");
     let lost = |method| of(&table, method).good_lost.unwrap().median;

@@ -32,12 +32,14 @@ pub struct Figures {
     pub age_p99_ms: Option<Spread>,
     /// Accepted readings in a second, all sensors together.
     pub readings_per_s: Option<Spread>,
-    /// Mean number of sensors that never had a reading accepted.
+    /// Mean number of sensors that had fewer than 5 % of their readings accepted, the blind ones included.
     pub starved: f64,
     /// Where `starved` lies with 95 % confidence, by bootstrap.
     pub starved_95: [f64; 2],
-    /// Mean number of sensors that had fewer than 5 % of their readings accepted, those that never had one included.
-    pub seldom: f64,
+    /// Mean number of sensors that never had a reading accepted.
+    pub blind: f64,
+    /// Mean number of starved sensors that read right in one phase and not in another.
+    pub starved_in_part: f64,
     /// How soon the back wall is read right again when it has come nearer by [`STEP_M`](super::STEP_M).
     pub nearer: Option<Latency>,
     /// How soon it is when it has gone away as far.
@@ -48,7 +50,9 @@ impl Figures {
     pub(super) fn of(summaries: &[Summary], steps: &[Steps]) -> Self {
         let spread = |value: fn(&Summary) -> Option<f64>| Spread::of(summaries.iter().filter_map(value));
         let starved: Vec<_> = summaries.iter().map(|summary| summary.starved as f64).collect();
-        let seldom: Vec<_> = summaries.iter().map(|summary| summary.seldom as f64).collect();
+        let mean_of = |value: fn(&Summary) -> usize| {
+            mean(&summaries.iter().map(|summary| value(summary) as f64).collect::<Vec<_>>())
+        };
         Self {
             wrong_of_all: spread(|s| Some(s.wrong_of_all)),
             crosstalk_of_all: spread(|s| Some(s.crosstalk_of_all)),
@@ -62,7 +66,8 @@ impl Figures {
             readings_per_s: spread(|s| Some(s.readings_per_s)),
             starved: mean(&starved),
             starved_95: interval_95(&starved, |sample| mean(sample)),
-            seldom: mean(&seldom),
+            blind: mean_of(|summary| summary.blind),
+            starved_in_part: mean_of(|summary| summary.starved_in_part),
             nearer: Latency::of(steps.iter().flat_map(|steps| &steps.nearer)),
             farther: Latency::of(steps.iter().flat_map(|steps| &steps.farther)),
         }

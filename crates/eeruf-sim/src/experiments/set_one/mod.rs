@@ -7,12 +7,14 @@
 
 mod alcove;
 mod figures;
+mod multi_echo;
 mod options;
 mod step;
 mod table;
 
 pub use alcove::{Alcove, RADIUS_M, SENSORS, SPACING_DEG};
 pub use figures::Figures;
+pub use multi_echo::MultiEcho;
 pub use options::SetOneOptions;
 pub use step::{Latency, STEP_M};
-pub use table::{MULTI_ECHO_CONSECUTIVE, MULTI_ECHO_PATIENCE, MULTI_ECHO_T_DELTA, READINGS, SetOne, set_one};
+pub use table::{READINGS, SetOne, set_one};

@@ -3,17 +3,21 @@
 use eeruf_core::{HoppingSettings, Micros};
 
 use super::alcove::SENSORS;
+use super::multi_echo::MultiEcho;
 use super::table::READINGS;
-use crate::acoustics::Physics;
-use crate::methods::{BestSchedule, Method};
+use crate::{
+    acoustics::{Physics, Transducer},
+    experiments::FIRST,
+    methods::{BestSchedule, Method},
+    world::Noise,
+};
 
 /// What is asked of Set I.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetOneOptions {
     /// How many geometries. The default is 200.
     pub seeds: u64,
-    /// The first geometry's number, so that parameters can be tuned on other geometries than those that they are tested
-    /// on. The default is 0.
+    /// The first geometry's number. The default is [`FIRST`]: parameters were tuned on geometries below 2,000.
     pub first: u64,
     /// For how long each geometry is simulated: as long as so many readings of the conventional method take. The
     /// default is [`READINGS`], as in the paper.
@@ -33,13 +37,19 @@ pub struct SetOneOptions {
     pub sensors: usize,
     /// Its period. The default is 60 ms.
     pub period: Micros,
+    /// Its transducers. The default is [`Transducer::POLAROID_6500`].
+    pub transducer: Transducer,
+    /// How noisy the alcoves are; each has its own number as seed.
+    pub noise: Noise,
+    /// What [`Method::MultiEcho`] fires and believes by.
+    pub multi_echo: MultiEcho,
 }
 
 impl Default for SetOneOptions {
     fn default() -> Self {
         Self {
             seeds: 200,
-            first: 0,
+            first: FIRST,
             readings: READINGS,
             steps: 22,
             methods: Method::ALL.to_vec(),
@@ -48,6 +58,9 @@ impl Default for SetOneOptions {
             physics: Physics::PLAIN,
             sensors: SENSORS,
             period: Micros::from_millis(60),
+            transducer: Transducer::POLAROID_6500,
+            noise: Noise::default(),
+            multi_echo: MultiEcho::TUNED,
         }
     }
 }

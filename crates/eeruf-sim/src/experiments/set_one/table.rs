@@ -1,6 +1,5 @@
 //! Set I over many geometries: every method's figures, and how they spread.
 
-use eeruf_core::Micros;
 use serde::Serialize;
 
 use super::alcove::Alcove;
@@ -15,25 +14,11 @@ use crate::{
     results::Summary,
     simulation::{Options, simulate_while},
     threads::sweep,
-    world::{Noise, Robot, World, WorldError},
+    world::{Robot, World, WorldError},
 };
 
 /// How many readings the paper has of one set-up (Sec. 4): of the conventional method, and of all others in that time.
 pub const READINGS: u32 = 8000;
-
-/// `T_delta` of [`Method::MultiEcho`]. With up to eight echoes a firing, pairs of them agree by accident in proportion
-/// to `T_delta`: at the 0.5 ms of the other methods every tenth reading is such a pair. Those 0.5 ms are for motion; a
-/// robot that stands, or that knows how it moves, needs no more than jitter asks for: 15 us rms at either end, times
-/// five.
-pub const MULTI_ECHO_T_DELTA: Micros = Micros::new(100);
-
-/// How many readings [`Method::MultiEcho`] compares, and for how long it waits for an echo that is missing. Where
-/// several echoes are known, one that fades must not be taken for gone, or what lies behind it is believed: with two
-/// readings and no patience 10 % of the readings are wrong for that reason. The price is that a new echo is believed
-/// after five periods.
-pub const MULTI_ECHO_CONSECUTIVE: u8 = 5;
-/// See [`MULTI_ECHO_CONSECUTIVE`].
-pub const MULTI_ECHO_PATIENCE: u8 = 12;
 
 /// Set I over many geometries.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -83,7 +68,7 @@ pub fn set_one(asked: &SetOneOptions, keep_going: &(dyn Fn(f64) -> bool + Sync))
     let runs = sweep(&geometries, |&number| {
         let mut runs = Vec::with_capacity(methods.len());
         for &method in methods {
-            runs.push(run(asked, &Alcove::random(number), method, periods, &progress)?);
+            runs.push(run(asked, number, method, periods, &progress)?);
             progress.one_done();
         }
         Ok(runs)
@@ -103,7 +88,7 @@ pub fn set_one(asked: &SetOneOptions, keep_going: &(dyn Fn(f64) -> bool + Sync))
 /// One alcove under one method: as it is, and with its back wall going to and fro.
 fn run(
     asked: &SetOneOptions,
-    alcove: &Alcove,
+    number: u64,
     method: Method,
     periods: u32,
     progress: &Progress<'_>,
@@ -111,22 +96,20 @@ fn run(
     if !progress.go_on() {
         return Err(ExperimentError::Stopped);
     }
-    let plain = Robot { period: asked.period, ..alcove.robot_of(asked.sensors) };
+    let alcove = Alcove::random(number);
+    let SetOneOptions { period, transducer, .. } = *asked;
+    let plain = Robot { period, transducer, ..alcove.robot_of(asked.sensors) };
     let robot = match method {
-        Method::MultiEcho => Robot {
-            t_delta: MULTI_ECHO_T_DELTA,
-            consecutive: MULTI_ECHO_CONSECUTIVE,
-            patience: MULTI_ECHO_PATIENCE,
-            ..plain
-        },
+        Method::MultiEcho => asked.multi_echo.of(plain),
         _ => plain,
     };
     let world = |alcove: &Alcove| -> Result<World, WorldError> {
-        World::new(alcove.scene()?, vec![robot.clone()], Noise::default())?.with_physics(asked.physics)
+        let world = World::new(alcove.scene()?, vec![robot.clone()], asked.noise)?.with_seed(number);
+        world.with_physics(asked.physics)
     };
     let best = asked.best.as_ref().map(|best| best.schedule);
     let options = Options { best, hopping: asked.hopping, ..Options::periods(periods) };
-    let far = world(alcove)?;
+    let far = world(&alcove)?;
     let summary = simulate_while(&far, method, &options, |_| progress.go_on())?.summary();
     let steps = match asked.steps {
         0 => Steps::default(),

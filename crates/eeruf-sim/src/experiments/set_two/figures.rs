@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::run::{Ending, Run};
+use crate::experiments::spread::share_95;
 
 /// A method's figures over all courses; shares are fractions of 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -11,6 +12,8 @@ pub struct Figures {
     pub courses: usize,
     /// How many were finished without contact.
     pub finished: usize,
+    /// Where the share of finished courses lies with 95 % confidence, by Wilson's interval.
+    pub finished_95: [f64; 2],
     /// In how many the robot touched something.
     pub contacts: usize,
     /// In how many it was stuck, or too slow.
@@ -45,6 +48,7 @@ impl Figures {
         Self {
             courses: runs.len(),
             finished: ended(Ending::Finished),
+            finished_95: share_95(ended(Ending::Finished), runs.len()),
             contacts: ended(Ending::Contact),
             timed_out: ended(Ending::TimeOut),
             mean_speed_m_s: share(sum(|run| run.way_m), sum(|run| run.time_s)),

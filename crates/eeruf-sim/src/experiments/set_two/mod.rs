@@ -5,14 +5,19 @@
 
 mod course;
 mod figures;
+mod odometry;
 mod options;
+mod own_pilots;
 mod pilot;
+mod pilots;
 mod run;
 mod runs;
 
 pub use course::{Course, POLE_RADIUS_M, ROOM_M, SECOND_AHEAD, SECOND_BEHIND};
 pub use figures::Figures;
+pub use odometry::OdometryNoise;
 pub use options::SetTwoOptions;
 pub use pilot::Piloting;
+pub use pilots::{Pilots, UnknownPilot};
 pub use run::{Cell, Ending, Place, Run};
 pub use runs::{MULTI_ECHO_CONSECUTIVE, SetTwo, SpeedStep, set_two, speed_sweep};

@@ -2,9 +2,11 @@
 
 use eeruf_core::Micros;
 
-use super::pilot::Piloting;
+use super::odometry::OdometryNoise;
+use super::pilots::Pilots;
 use crate::{
     acoustics::Physics,
+    experiments::FIRST,
     geometry::Point,
     methods::{BestSchedule, Method},
     navigation::LabMate,
@@ -15,8 +17,8 @@ use crate::{
 pub struct SetTwoOptions {
     /// How many courses. The default is 100.
     pub seeds: u64,
-    /// The first course's number, so that parameters can be tuned on other courses than those that they are tested on.
-    /// The default is 0.
+    /// The first course's number. The default is [`FIRST`]: pilots were tuned on courses below 2,000, the shared one on
+    /// 10,000 to 10,999 as well.
     pub first: u64,
     /// The methods.
     pub methods: Vec<Method>,
@@ -33,22 +35,26 @@ pub struct SetTwoOptions {
     pub t_delta: Micros,
     /// Which effects the lab has. The default is [`Physics::PLAIN`].
     pub physics: Physics,
-    /// How it steers.
-    pub piloting: Piloting,
+    /// How wrong the platform is about where it is.
+    pub odometry_noise: OdometryNoise,
+    /// Who steers.
+    pub pilots: Pilots,
 }
 
 impl Default for SetTwoOptions {
     fn default() -> Self {
         Self {
             seeds: 100,
-            first: 0,
+            first: FIRST,
             methods: vec![
                 Method::Sequential,
+                Method::FarGroups,
                 Method::Conventional,
                 Method::Comparison,
                 Method::Eeruf,
                 Method::EerufBest,
                 Method::Adaptive,
+                Method::EerufHopping,
                 Method::MultiEcho,
             ],
             best: None,
@@ -57,7 +63,8 @@ impl Default for SetTwoOptions {
             odometry: true,
             t_delta: Micros::new(150),
             physics: Physics::PLAIN,
-            piloting: Piloting::default(),
+            odometry_noise: OdometryNoise::default(),
+            pilots: Pilots::Own,
         }
     }
 }

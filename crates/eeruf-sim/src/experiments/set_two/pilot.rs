@@ -4,9 +4,11 @@
 use eeruf_core::ReadingKind;
 
 use super::course::{FINISH_X_M, POLE_RADIUS_M, ROOM_M, TARGET};
+use super::odometry::Odometry;
+use super::options::SetTwoOptions;
 use super::run::{Cell, Ending, Place, Run};
 use crate::{
-    geometry::{Moment, Point, Vector, wrap_angle},
+    geometry::{Moment, Point, Pose, Vector, wrap_angle},
     methods::Method,
     navigation::{Driven, Himm, LabMate, SECTORS, Vfh},
     results::{DEFAULT_TOLERANCE_US, Readings},
@@ -40,19 +42,34 @@ pub struct Piloting {
     pub growth: bool,
 }
 
-impl Default for Piloting {
-    /// Tuned for finished courses and speed, on other courses than those that methods are compared on.
-    fn default() -> Self {
-        let vfh = Vfh {
-            smoothing: 3,
-            threshold: 0.03,
-            wide: 13,
-            density_max: 0.7,
-            turn_max_rad_s: 360f64.to_radians(),
-            ..Vfh::default()
-        };
-        Self { vfh, turn_gain: 3.0, range_m: 2.75, growth: true }
-    }
+impl Piloting {
+    /// What an earlier search found by the score of `eeruf` above all, see [`Pilots::Shared`](super::Pilots::Shared).
+    pub const SHARED: Self = tuned(3, 0.03, 13, 0.7, 360.0, 3.0, 2.75, true);
+}
+
+/// The published method with what a search may change. The arguments stand in the columns of a table.
+#[expect(clippy::too_many_arguments, reason = "a row of a table")]
+pub(super) const fn tuned(
+    smoothing: usize,
+    threshold: f64,
+    wide: usize,
+    density_max: f64,
+    turn_max_deg_s: f64,
+    turn_gain: f64,
+    range_m: f64,
+    growth: bool,
+) -> Piloting {
+    let vfh = Vfh {
+        smoothing,
+        threshold,
+        wide,
+        density_max,
+        turn_max_rad_s: turn_max_deg_s.to_radians(),
+        window: 33,
+        speed_max_m_s: 1.0,
+        speed_min_m_s: 0.04,
+    };
+    Piloting { vfh, turn_gain, range_m, growth }
 }
 
 /// Steers the first robot of a world.
@@ -63,7 +80,11 @@ pub(super) struct Pilot<'w> {
     state: Driven,
     steps: u64,
     steps_most: u64,
+    /// Where it takes itself to be: what the grid is filled by and what it steers by.
+    odometry: Odometry,
     grid: Himm,
+    /// The same readings entered from where the robot really was, to find phantoms in.
+    real_grid: Himm,
     wanted: (f64, f64),
     /// For each pole: whether an echo of it was entered, and how near the robot's middle came to it.
     poles: Vec<(bool, f64)>,
@@ -71,19 +92,22 @@ pub(super) struct Pilot<'w> {
 }
 
 impl<'w> Pilot<'w> {
-    pub(super) fn new(world: &'w World, course: u64, labmate: LabMate, piloting: Piloting, time_s: f64) -> Self {
+    pub(super) fn new(world: &'w World, course: u64, options: &SetTwoOptions, piloting: Piloting, time_s: f64) -> Self {
         // One grid for all of the lab; the active window moves over it.
         let side = (1.3 * ROOM_M[0] / CELL_M) as usize;
         let mut grid = Himm::new(side, CELL_M);
         grid.move_to(Point::new(0.5 * ROOM_M[0], 0.5 * ROOM_M[1]));
         grid.growth = piloting.growth;
+        let state = Driven::at_rest(world.robots()[0].pose);
         Self {
             world,
-            labmate,
+            labmate: options.labmate,
             piloting,
-            state: Driven::at_rest(world.robots()[0].pose),
+            state,
             steps: 0,
             steps_most: (time_s * 1e9) as u64 / STEP_NS,
+            odometry: Odometry::new(options.odometry_noise, &state, course),
+            real_grid: grid.clone(),
             grid,
             wanted: (0.0, 0.0),
             poles: vec![(false, f64::INFINITY); world.scene().poles().len()],
@@ -93,10 +117,11 @@ impl<'w> Pilot<'w> {
 
     pub(super) fn finish(mut self) -> Run {
         self.run.time_s = (self.steps * STEP_NS) as f64 * 1e-9;
-        for (point, value) in self.grid.occupied(Point::new(0.5 * ROOM_M[0], 0.5 * ROOM_M[1]), self.grid.side()) {
-            self.run.grid.push(Cell { x_m: point.x, y_m: point.y, value });
-            self.run.phantom_cells += u32::from(value >= CERTAIN && self.is_phantom(point));
-        }
+        let middle = Point::new(0.5 * ROOM_M[0], 0.5 * ROOM_M[1]);
+        let cells = self.grid.occupied(middle, self.grid.side());
+        self.run.grid = cells.map(|(point, value)| Cell { x_m: point.x, y_m: point.y, value }).collect();
+        let certain = self.real_grid.occupied(middle, self.real_grid.side()).filter(|(_, value)| *value >= CERTAIN);
+        self.run.phantom_cells = certain.filter(|(point, _)| self.is_phantom(*point)).count() as u32;
         let passed = self.poles.iter().filter(|(_, nearest)| *nearest < PASSED_M);
         self.run.poles_passed = passed.clone().count() as u32;
         self.run.poles_missed = passed.filter(|(seen, _)| !seen).count() as u32;
@@ -114,7 +139,8 @@ impl<'w> Pilot<'w> {
 
     /// Where to, and how fast.
     fn look(&mut self) {
-        let (place, heading) = (self.place(), self.state.pose.rotation.angle());
+        let believed = self.odometry.pose();
+        let (place, heading) = (Point::from(believed.translation.vector), believed.rotation.angle());
         let smoothed: [f64; SECTORS] = self.piloting.vfh.smoothed(&self.piloting.vfh.histogram(&self.grid, place));
         let towards = TARGET - place;
         let target = towards.y.atan2(towards.x);
@@ -129,9 +155,10 @@ impl<'w> Pilot<'w> {
                 (speed * error.cos().max(0.0), turn)
             }
         };
-        let Driven { speed_m_s, .. } = self.state;
+        let Driven { pose, speed_m_s, .. } = self.state;
         let time_s = (self.steps * STEP_NS) as f64 * 1e-9;
-        self.run.track.push(Place { time_s, x_m: place.x, y_m: place.y, heading_rad: heading, speed_m_s });
+        let (x_m, y_m) = (pose.translation.x, pose.translation.y);
+        self.run.track.push(Place { time_s, x_m, y_m, heading_rad: pose.rotation.angle(), speed_m_s });
     }
 
     /// Drives a step on; `false` when the course is over.
@@ -140,6 +167,7 @@ impl<'w> Pilot<'w> {
             self.look();
         }
         self.labmate.drive(&mut self.state, self.wanted.0, self.wanted.1, STEP_NS as f64 * 1e-9);
+        self.odometry.drove(&self.state, STEP_NS as f64 * 1e-9);
         self.steps += 1;
         self.run.way_m += self.state.speed_m_s * STEP_NS as f64 * 1e-9;
         self.run.top_speed_m_s = self.run.top_speed_m_s.max(self.state.speed_m_s);
@@ -193,7 +221,9 @@ impl Kinematics for Pilot<'_> {
         let Some(last) = readings.len().checked_sub(1).filter(|&last| readings.robot[last] == 0) else { return };
         let robot = &self.world.robots()[0];
         let sensor = fired.pose * robot.sensors[usize::from(readings.sensor[last])];
-        let (at, heading) = (Point::from(sensor.translation.vector), sensor.rotation.angle());
+        let believed = self.odometry.believed(&self.state.pose, &sensor);
+        let place = |sensor: &Pose| (Point::from(sensor.translation.vector), sensor.rotation.angle());
+        let ((at, heading), (believed_at, believed_heading)) = (place(&sensor), place(&believed));
         let metres_per_us = 0.5e-6 * self.world.scene().air().speed_of_sound();
         let near_m = f64::from(robot.blanking.as_micros()) * metres_per_us;
         self.run.readings += 1;
@@ -205,10 +235,12 @@ impl Kinematics for Pilot<'_> {
         let range_m = readings.t_echo_us[last] * metres_per_us;
         // A tentative echo is one too: to take it for free space would be to drive into what has just come near.
         if readings.kind[last] == ReadingKind::Clear || range_m > self.piloting.range_m {
-            self.grid.clear(at, heading, near_m, self.piloting.range_m);
+            self.grid.clear(believed_at, believed_heading, near_m, self.piloting.range_m);
+            self.real_grid.clear(at, heading, near_m, self.piloting.range_m);
             return;
         }
-        self.grid.echo(at, heading, near_m, range_m);
+        self.grid.echo(believed_at, believed_heading, near_m, range_m);
+        self.real_grid.echo(at, heading, near_m, range_m);
         let hit = Point::from(at.coords + (sensor.rotation * Vector::x()) * range_m);
         self.run.phantom_echoes += u32::from(self.is_phantom(hit));
         for (pole, (seen, _)) in self.world.scene().poles().iter().zip(&mut self.poles) {

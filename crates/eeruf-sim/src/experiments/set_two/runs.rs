@@ -28,6 +28,10 @@ pub const MULTI_ECHO_CONSECUTIVE: u8 = 3;
 /// Set II over many courses.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SetTwo {
+    /// The first course's number.
+    pub first: u64,
+    /// Who steered, see [`Pilots::as_str`](super::Pilots::as_str).
+    pub pilot: &'static str,
     /// How many courses.
     pub seeds: u64,
     /// Where another robot stood and fired, in metres.
@@ -83,9 +87,10 @@ pub fn set_two(options: &SetTwoOptions, keep_going: &(dyn Fn(f64) -> bool + Sync
         by_method.push(runs.by_ref().take(options.seeds as usize).collect::<Result<Vec<_>, ExperimentError>>()?);
     }
     let methods = options.methods.iter().zip(&by_method).map(|(&method, runs)| (method, Figures::of(runs))).collect();
-    let SetTwoOptions { seeds, second_robot, .. } = *options;
+    let SetTwoOptions { first, seeds, second_robot, pilots, .. } = *options;
     let second_robot_m = second_robot.map(|at| [at.x, at.y]);
-    Ok(SetTwo { seeds, second_robot_m, speed_m_s: options.labmate.speed_max_m_s, methods, runs: by_method })
+    let (pilot, speed_m_s) = (pilots.as_str(), options.labmate.speed_max_m_s);
+    Ok(SetTwo { first, pilot, seeds, second_robot_m, speed_m_s, methods, runs: by_method })
 }
 
 /// One course by one method.
@@ -102,9 +107,9 @@ fn run_course(
     let consecutive = if method == Method::MultiEcho { MULTI_ECHO_CONSECUTIVE } else { 2 };
     let robot = Robot { odometry: options.odometry, t_delta: options.t_delta, consecutive, ..course.robot() };
     let world = course.world(robot, options.second_robot)?.with_physics(options.physics)?;
-    let mut piloting = options.piloting;
+    let mut piloting = options.pilots.of(method);
     piloting.vfh.speed_max_m_s = options.labmate.speed_max_m_s;
-    let mut pilot = Pilot::new(&world, number, options.labmate, piloting, TIME_S);
+    let mut pilot = Pilot::new(&world, number, options, piloting, TIME_S);
     let period_s = f64::from(world.robots()[0].period.as_micros()) * 1e-6;
     let simulation =
         Options { best: options.best.map(|best| best.schedule), ..Options::periods((TIME_S / period_s).ceil() as u32) };

@@ -1,0 +1,70 @@
+//! What several echoes are compared by in Set I: the best of a grid, on alcoves below 2,000.
+
+use eeruf_core::Micros;
+use eeruf_sim::Method;
+use eeruf_sim::experiments::ExperimentError;
+use eeruf_sim::experiments::set_one::{MultiEcho, SetOneOptions, set_one};
+
+/// On how many alcoves, from 0 on.
+const ALCOVES: u64 = 100;
+const CONSECUTIVE: [u8; 4] = [3, 4, 5, 6];
+const T_DELTA_US: [u32; 3] = [50, 100, 200];
+const PATIENCE: [u8; 4] = [4, 8, 12, 15];
+
+/// The line of the source.
+pub(crate) fn line() -> Result<String, ExperimentError> {
+    let mut best = None;
+    for consecutive in CONSECUTIVE {
+        for t_delta in T_DELTA_US.map(Micros::new) {
+            for patience in PATIENCE {
+                let setting = MultiEcho { consecutive, t_delta, patience };
+                let cost = cost(setting, ALCOVES)?;
+                eprintln!("{consecutive} within {t_delta}, patience {patience}: {:.2}", 100.0 * cost);
+                if best.is_none_or(|(least, _)| cost < least) {
+                    best = Some((cost, setting));
+                }
+            }
+        }
+    }
+    Ok(best.map_or_else(String::new, |(_, setting)| printed(setting)))
+}
+
+/// What is wrong and what is lost together, as shares: of the median alcove and of the one that one in ten exceeds.
+fn cost(multi_echo: MultiEcho, seeds: u64) -> Result<f64, ExperimentError> {
+    let methods = vec![Method::MultiEcho];
+    let asked = SetOneOptions { seeds, first: 0, steps: 0, methods, multi_echo, ..SetOneOptions::default() };
+    let table = set_one(&asked, &|_| true)?;
+    let both = |figures: &eeruf_sim::experiments::set_one::Figures| {
+        [figures.wrong_of_all, figures.good_lost].into_iter().flatten().map(|spread| spread.median + spread.p90).sum()
+    };
+    Ok(table.methods.iter().map(|(_, figures)| -> f64 { both(figures) }).sum())
+}
+
+fn printed(MultiEcho { consecutive, t_delta, patience }: MultiEcho) -> String {
+    let t_delta = t_delta.as_micros();
+    format!(
+        "    pub const TUNED: Self = \
+         Self {{ consecutive: {consecutive}, t_delta: Micros::new({t_delta}), patience: {patience} }};"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_constant_in_the_source_is_as_this_prints_it_and_in_the_grid() {
+        let source = include_str!("../../src/experiments/set_one/multi_echo.rs");
+        let MultiEcho { consecutive, t_delta, patience } = MultiEcho::TUNED;
+        assert!(source.lines().any(|line| line == printed(MultiEcho::TUNED)), "{}", printed(MultiEcho::TUNED));
+        assert!(CONSECUTIVE.contains(&consecutive) && PATIENCE.contains(&patience));
+        assert!(T_DELTA_US.contains(&t_delta.as_micros()));
+    }
+
+    #[test]
+    fn no_patience_and_pairs_within_200_us_cost_more_than_what_was_tuned() {
+        let loose = MultiEcho { consecutive: 2, t_delta: Micros::new(200), patience: 0 };
+        let [loose, tuned] = [loose, MultiEcho::TUNED].map(|setting| cost(setting, 20).unwrap());
+        assert!(tuned < loose, "{tuned} {loose}");
+    }
+}

@@ -1,0 +1,101 @@
+//! Who steers: one set of parameters for every method, or one for each.
+
+use core::fmt;
+use core::str::FromStr;
+
+use super::own_pilots::OWN;
+use super::pilot::Piloting;
+use crate::{methods::Method, navigation::Vfh};
+
+/// Who steers.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[non_exhaustive]
+pub enum Pilots {
+    /// Each method has a pilot of its own, all found by the same search at the same cost: `cargo xtask tune`, on
+    /// courses below 2,000, scored equally alone, behind a second robot and ahead of one. The default.
+    #[default]
+    Own,
+    /// One for all, which an earlier search found by the score of `eeruf` above all. Its figures say how well each
+    /// method does with a pilot that was made for EERUF, not which method is best.
+    Shared,
+    /// The published vector field histogram, [`Vfh::default`], with echoes entered from up to 2.0 m, for all.
+    Published,
+    /// The same with the grid's growth rate operator ([`Himm::growth`](crate::Himm::growth)).
+    PublishedGro,
+    /// This one, for all.
+    Given(Piloting),
+}
+
+impl Pilots {
+    /// Those that have names.
+    pub const NAMED: [Self; 4] = [Self::Own, Self::Shared, Self::Published, Self::PublishedGro];
+
+    /// Its name in the program and in Python; `given` for one that has none.
+    pub const fn as_str(&self) -> &'static str {
+        match self {
+            Self::Own => "own",
+            Self::Shared => "shared",
+            Self::Published => "published",
+            Self::PublishedGro => "published-gro",
+            Self::Given(_) => "given",
+        }
+    }
+
+    /// What a method is steered by.
+    pub fn of(&self, method: Method) -> Piloting {
+        let published = Piloting { vfh: Vfh::default(), turn_gain: 3.0, range_m: 2.0, growth: false };
+        match *self {
+            // A method that has no pilot of its own yet is steered as published; a test finds it.
+            Self::Own => OWN.iter().find(|(of, _)| *of == method).map_or(published, |(_, own)| *own),
+            Self::Shared => Piloting::SHARED,
+            Self::Published => published,
+            Self::PublishedGro => Piloting { growth: true, ..published },
+            Self::Given(piloting) => piloting,
+        }
+    }
+}
+
+impl fmt::Display for Pilots {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+impl FromStr for Pilots {
+    type Err = UnknownPilot;
+
+    /// ```
+    /// use eeruf_sim::experiments::set_two::Pilots;
+    /// assert_eq!("published-gro".parse(), Ok(Pilots::PublishedGro));
+    /// let error = "mine".parse::<Pilots>().unwrap_err();
+    /// assert_eq!(error.to_string(), "no pilot `mine`; expected own, shared, published, published-gro");
+    /// ```
+    fn from_str(name: &str) -> Result<Self, UnknownPilot> {
+        let named = Self::NAMED.into_iter().find(|pilots| pilots.as_str() == name);
+        named.ok_or_else(|| UnknownPilot(name.to_owned()))
+    }
+}
+
+/// A name that no pilot has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownPilot(pub String);
+
+impl fmt::Display for UnknownPilot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names = Pilots::NAMED.map(|pilots| pilots.as_str()).join(", ");
+        write!(f, "no pilot `{}`; expected {names}", self.0)
+    }
+}
+
+impl core::error::Error for UnknownPilot {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_method_has_exactly_one_pilot_of_its_own() {
+        let methods: Vec<_> = OWN.iter().map(|(method, _)| *method).collect();
+        assert_eq!(methods, Method::ALL);
+    }
+}

@@ -1,0 +1,147 @@
+//! An occupancy grid, and the walls that it stands for.
+
+use std::fs;
+use std::path::Path;
+
+use super::contours::contours;
+use super::error::MapError;
+use super::{pgm, simplify, yaml};
+use crate::scene::Wall;
+
+/// Which cells of a square grid are occupied, and where the grid lies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OccupancyGrid {
+    width: usize,
+    height: usize,
+    /// Row by row, the lowest first.
+    occupied: Vec<bool>,
+    cell_m: f64,
+    /// Where the lower left corner is, in metres, and the grid's heading, in radians.
+    origin: [f64; 3],
+}
+
+impl OccupancyGrid {
+    /// Reads a map as the ROS `map_server` saves it: a YAML file that names a picture beside it. A cell is occupied if
+    /// it is with a probability above `occupied_thresh`; one of which nothing is known is not.
+    ///
+    /// The keys are `image` (a PGM), `resolution` (metres per pixel), `origin` (x, y in metres and yaw in radians of
+    /// the lower left corner), and if need be `negate`, `occupied_thresh` and `mode` (`trinary` or `scale`).
+    ///
+    /// # Errors
+    /// The first thing found wrong, with the file that it is in.
+    pub fn read(file: &Path) -> Result<Self, MapError> {
+        let text = fs::read_to_string(file).map_err(|error| MapError::new(file, error))?;
+        let head = yaml::read(&text).map_err(|message| MapError::new(file, message))?;
+        let image = file.parent().unwrap_or(Path::new("")).join(&head.image);
+        let bytes = fs::read(&image).map_err(|error| MapError::new(&image, error))?;
+        let picture = pgm::read(&bytes).map_err(|message| MapError::new(&image, message))?;
+        let is_occupied = |&bright: &f32| {
+            let bright = f64::from(bright);
+            (if head.negate { bright } else { 1.0 - bright }) > head.occupied_thresh
+        };
+        // A picture's first row is the highest.
+        let rows = picture.pixels.chunks_exact(picture.width).rev();
+        let occupied = rows.flat_map(|row| row.iter().map(is_occupied)).collect();
+        let (width, height) = (picture.width, picture.height);
+        Ok(Self { width, height, occupied, cell_m: head.resolution_m, origin: head.origin })
+    }
+
+    /// Columns and rows.
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
+    /// The width of a cell in metres.
+    pub fn cell_m(&self) -> f64 {
+        self.cell_m
+    }
+
+    /// Whether a cell is occupied, counted from the lower left; none is outside the grid.
+    pub fn is_occupied(&self, column: usize, row: usize) -> bool {
+        column < self.width && row < self.height && self.occupied[row * self.width + column]
+    }
+
+    /// The tolerance to take unless there is a reason for another, in metres: one and a half cells. The corners of the
+    /// stair that a straight wall becomes in cells lie in a strip `sqrt(2)` cells wide at most, so that this makes it
+    /// straight again.
+    pub fn default_tolerance_m(&self) -> f64 {
+        1.5 * self.cell_m
+    }
+
+    /// The outlines of what is occupied as walls, seen from outside. No wall is farther than the tolerance, in metres,
+    /// from the edges of the occupied cells, no edge farther from the walls, and no two walls cross. With no tolerance
+    /// (none, or less) a slanted wall is a stair of cells; see [`default_tolerance_m`](Self::default_tolerance_m).
+    ///
+    /// Cells that touch at a corner belong together, so that nothing slips between them.
+    pub fn walls(&self, tolerance_m: f64) -> Vec<Wall> {
+        let tolerance = if tolerance_m > 0.0 { tolerance_m / self.cell_m } else { 0.0 };
+        let outlines = contours(self.width, self.height, |column, row| self.is_occupied(column, row));
+        let [x, y, yaw] = self.origin;
+        let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
+        let place = |corner: [i64; 2]| {
+            let [along, aside] = corner.map(|cells| cells as f64 * self.cell_m);
+            [x + cos * along - sin * aside, y + sin * along + cos * aside]
+        };
+        let closed = simplify::simplified(&outlines, tolerance).into_iter().map(|corners| {
+            let mut places: Vec<_> = corners.into_iter().map(place).collect();
+            places.extend(places.first().copied());
+            places
+        });
+        closed.flat_map(|places| Wall::polyline(&places).collect::<Vec<_>>()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+    use crate::scene::{Air, Scene};
+
+    /// A map in a folder of its own.
+    fn map(name: &str, yaml: &str, pgm: &[u8]) -> Result<OccupancyGrid, MapError> {
+        let folder = std::env::temp_dir().join(format!("eeruf-map-{}-{name}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join("map.pgm"), pgm).unwrap();
+        fs::write(folder.join("map.yaml"), yaml).unwrap();
+        let grid = OccupancyGrid::read(&folder.join("map.yaml"));
+        fs::remove_dir_all(&folder).unwrap();
+        grid
+    }
+
+    const YAML: &str = "image: map.pgm\nresolution: 0.5\norigin: [10, 20, 0]\n";
+
+    #[test]
+    fn a_room_in_a_picture_is_a_room_of_four_walls_inside_and_four_outside() {
+        // Black all around, white within, a grey pixel of which nothing is known.
+        let grid = map("room", YAML, b"P2 4 4 255 0 0 0 0 0 255 255 0 0 255 205 0 0 0 0 0").unwrap();
+        assert_eq!((grid.size(), grid.cell_m()), ([4, 4], 0.5));
+        assert!(grid.is_occupied(0, 0) && !grid.is_occupied(1, 1) && !grid.is_occupied(9, 9));
+        let walls = grid.walls(0.0);
+        assert_eq!(walls.len(), 8);
+        let scene = Scene::new(walls, vec![], Air::default()).unwrap();
+        assert!(!scene.is_solid(Point::new(11.0, 21.0)) && scene.is_solid(Point::new(10.25, 21.0)));
+        assert!(!scene.is_solid(Point::new(9.0, 21.0)));
+    }
+
+    #[test]
+    fn rows_count_from_below_and_the_origin_turns_the_map() {
+        let grid = map("turned", &YAML.replace("20, 0]", "20, 1.5707963267948966]"), b"P2 1 2 1 1 0").unwrap();
+        assert!(grid.is_occupied(0, 0) && !grid.is_occupied(0, 1));
+        let walls = grid.walls(0.0);
+        let x: Vec<f64> = walls.iter().map(|wall| wall.from.x).collect();
+        let y: Vec<f64> = walls.iter().map(|wall| wall.from.y).collect();
+        let near = |values: &[f64], low: f64, high: f64| {
+            (values.iter().copied().fold(f64::INFINITY, f64::min) - low).abs() < 1e-12
+                && (values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - high).abs() < 1e-12
+        };
+        assert!(near(&x, 9.5, 10.0) && near(&y, 20.0, 20.5), "{walls:?}");
+    }
+
+    #[test]
+    fn errors_name_the_file_that_is_wrong() {
+        let error = |name, yaml: &str, pgm: &[u8]| map(name, yaml, pgm).unwrap_err().to_string();
+        assert!(error("a", "image: no.pgm\nresolution: 1\norigin: [0, 0, 0]", b"").contains("no.pgm: "));
+        assert!(error("b", &YAML.replace("0.5", "0"), b"").contains("map.yaml: resolution = 0; expected above 0"));
+        assert!(error("c", YAML, b"P5 2 2 255\n").contains("map.pgm: 0 bytes of pixels; 2 x 2 need 4"));
+    }
+}

@@ -1,0 +1,47 @@
+//! `eeruf scene`: a scene file out of a map that people have.
+
+use std::path::PathBuf;
+
+use eeruf_sim::{Air, Noise, OccupancyGrid, Physics, Scene, world_file};
+
+use super::answer::Answer;
+use crate::files::error::InputError;
+
+/// Print a scene file whose walls are the outlines in an occupancy grid, as the ROS map_server saves it: a YAML file
+/// that names a PGM picture beside it.
+///
+/// Add robots to it, and study it. A cell is occupied if it is with a probability above the file's occupied_thresh; one
+/// of which nothing is known is not.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The map
+    #[arg(value_name = "MAP.yaml")]
+    file: PathBuf,
+    /// How far walls may be from the edges of the occupied cells, in metres; one and a half cells if not given, which
+    /// makes the stair straight that a slanted wall becomes in cells
+    #[arg(long, value_name = "M", value_parser = tolerance)]
+    tolerance_m: Option<f64>,
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(tolerance) if (0.0..=1000.0).contains(&tolerance) => Ok(tolerance),
+        _ => Err("expected 0 to 1000".to_owned()),
+    }
+}
+
+pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    let grid = OccupancyGrid::read(&args.file).map_err(|error| InputError::new(error.file(), None, error.message()))?;
+    let tolerance_m = args.tolerance_m.unwrap_or(grid.default_tolerance_m());
+    let walls = grid.walls(tolerance_m);
+    let bad = |error: eeruf_sim::SceneError| InputError::new(&args.file, None, error);
+    let (count, [columns, rows]) = (walls.len(), grid.size());
+    let scene = Scene::new(walls, vec![], Air::default()).map_err(bad)?;
+    println!(
+        "# {}: {columns} x {rows} cells of {} m; {count} walls within {tolerance_m} m of their edges.",
+        args.file.display(),
+        grid.cell_m(),
+    );
+    print!("{}", world_file(&scene, &[], &Noise::default(), &Physics::PLAIN, eeruf_sim::world::DEFAULT_ORDER, 0));
+    Ok(Answer::Yes)
+}

@@ -32,7 +32,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if let Some(file) = std::env::args().nth(1) {
         let world = world(numbers[place]);
-        let text = world_file(world.scene(), world.robots(), &world.noise(), world.max_order(), world.seed());
+        let text = world_file(
+            world.scene(),
+            world.robots(),
+            &world.noise(),
+            &world.physics(),
+            world.max_order(),
+            world.seed(),
+        );
         std::fs::write(file, format!("# The typical alcove of Set I, number {}.\n{text}", numbers[place]))?;
     }
     Ok(())

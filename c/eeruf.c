@@ -1937,6 +1937,7 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     status = tracker_is_fine(&config->tracker);
     if (status != EERUF_OK) return status;
     if (config->step_us <= config->tracker.t_delta_us) return EERUF_ERR_T_DELTA;
+    if (config->tracker.votes > cycle) return EERUF_ERR_VOTES;
     /* The sensor must have stopped listening, and a path must not read the same with two ages. */
     least_us = longer(add32(config->window_us, width_us), 2 * width_us + config->step_us);
     if (config->period_us < least_us) return EERUF_ERR_PERIOD;
@@ -1980,6 +1981,8 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     if (status == EERUF_OK && !HOPS(&hopping->ring)) status = EERUF_ERR_NOT_READY;
     if (status == EERUF_OK) status = eeruf_ring_poll(&hopping->ring, now_us, event);
     if (status != EERUF_EVENT) return status;
+    if (hopping->changed) firing_changed(hopping);
+    hopping->changed = 0;
     if (event->kind == EERUF_EVENT_FIRE) {
         event->phase = hopping->phase;
         return status;
@@ -1994,8 +1997,6 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     hopper = &hopping->hoppers[event->sensor];
     event->phase = hopper->phase;
     if (reading->kind != EERUF_READING_LATE) {
-        if (hopping->changed) firing_changed(hopping);
-        hopping->changed = 0;
         if (reading->kind == EERUF_READING_STUCK || reading->kind == EERUF_READING_TOO_EARLY) {
             weigh_skipped(hopper, reading->kind, reading->t_echo_us, EERUF_NO_ECHO, reading);
         } else {
@@ -2003,6 +2004,9 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
             if (change_us != NULL) shift_tracks(hopper, change_us[event->sensor]);
             weigh(hopping, event->sensor, (hopper->flags & SOLO) != 0, steady, reading);
         }
+    }
+    /* Nor does silence or another lag help a sensor whose line is stuck: it costs the others nothing. */
+    if (reading->kind != EERUF_READING_LATE && reading->kind != EERUF_READING_STUCK) {
         confirmed = reading->kind == EERUF_READING_ACCEPTED || reading->kind == EERUF_READING_CLEAR;
         served = confirmed || reading->kind == EERUF_READING_TENTATIVE;
         believed = believed_of(hopper);

@@ -87,7 +87,8 @@ enum {
     EERUF_ERR_LAG = -24,         /* a lag that leaves no room for the code */
     EERUF_ERR_TRACKER = -25,     /* a setting of the tracker outside its range */
     EERUF_ERR_RANGE = -26,       /* a number outside its range */
-    EERUF_ERR_HOPPING = -27      /* a hopping ring cannot do this */
+    EERUF_ERR_HOPPING = -27,     /* a hopping ring cannot do this */
+    EERUF_ERR_VOTES = -28        /* more votes to confirm an echo than there are phases: none would be */
 };
 
 /* The library's EERUF_VERSION, to be compared with the header's. */

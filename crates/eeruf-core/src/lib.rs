@@ -36,6 +36,7 @@ mod filter;
 mod hopping;
 mod interop;
 mod layout;
+mod needs;
 mod phases;
 mod reading;
 mod ring;
@@ -56,7 +57,7 @@ mod watch;
 
 pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
 #[doc(hidden)]
-pub use checked::{__checked, __checked_hopping, __micros};
+pub use checked::{__checked, __checked_hopping, __checked_uneven, __micros};
 pub use conditions::{Criterion, Interval, Requirements, Separation};
 pub use edges::{Edge, EdgeQueue};
 pub use filter::{EchoFilter, FilterError};
@@ -81,8 +82,6 @@ pub use sound::SpeedOfSound;
 pub use time::{Instant, Micros};
 pub use tracker::{EchoTracker, Firing, TrackerError, TrackerSettings};
 pub use uneven::{Uneven, UnevenError};
-#[doc(hidden)]
-pub use uneven_schedule::__checked_uneven;
 pub use uneven_schedule::{SensorLimits, UnevenSchedule};
 pub use verified::VerifiedSchedule;
 pub use verify::{Verification, Violation, ViolationKind, Violations};

@@ -2,11 +2,10 @@
 
 use core::fmt;
 
-use crate::conditions::Requirements;
 use crate::schedule::MAX_SENSORS;
-use crate::time::{Micros, shorter};
+use crate::time::Micros;
 
-/// What single sensors and pairs need, where they are not all alike; what is not named here needs what [`Requirements`]
+/// What single sensors and pairs need, where they are not all alike; what is not named here needs what [`Requirements`](crate::Requirements)
 /// say for all. Sensors are counted from 0.
 ///
 /// ```
@@ -88,7 +87,8 @@ impl Uneven<'_> {
         Ok(())
     }
 
-    const fn in_one(sets: &[u64], x: usize, y: usize) -> bool {
+    /// Whether two sensors are in one of these sets.
+    pub(crate) const fn in_one(sets: &[u64], x: usize, y: usize) -> bool {
         let mut at = 0;
         while at < sets.len() {
             if x < MAX_SENSORS && y < MAX_SENSORS && sets[at] >> x & 1 == 1 && sets[at] >> y & 1 == 1 {
@@ -176,107 +176,3 @@ impl fmt::Display for UnevenError {
 }
 
 impl core::error::Error for UnevenError {}
-
-/// What one sensor or pair needs, alike or not.
-impl Requirements<'_> {
-    /// `T_delta` of a sensor.
-    pub const fn t_delta_of(&self, sensor: usize) -> Micros {
-        match self.uneven {
-            Some(uneven) if sensor < uneven.t_delta.len() => uneven.t_delta[sensor],
-            _ => self.t_delta,
-        }
-    }
-
-    /// `T_wind` of a sensor.
-    pub const fn window_of(&self, sensor: usize) -> Micros {
-        match self.uneven {
-            Some(uneven) if sensor < uneven.window.len() => uneven.window[sensor],
-            _ => self.window,
-        }
-    }
-
-    /// How soon a sensor may be triggered again; no longer than its window where nothing is said of it.
-    pub const fn refire_of(&self, sensor: usize) -> Micros {
-        match self.uneven {
-            Some(uneven) if sensor < uneven.refire.len() => uneven.refire[sensor],
-            _ => Micros::ZERO,
-        }
-    }
-
-    /// The separation that two sensors need, `2 t_delta + 1 us` by the larger of their `t_delta`; twice the same sensor
-    /// for its stale echoes. `None` for two that fire together.
-    pub const fn separation_of(&self, x: usize, y: usize) -> Option<Micros> {
-        if x != y && self.fire_together(x, y) {
-            return None;
-        }
-        let (one, other) = (self.t_delta_of(x), self.t_delta_of(y));
-        let larger = if one.as_micros() > other.as_micros() { one } else { other };
-        Some(larger.saturating_add(larger).saturating_add(Micros::new(1)))
-    }
-
-    /// The least time between the firings of two of so many sensors; `None` if they need none.
-    pub const fn interval_of(&self, sensors: usize, x: usize, y: usize) -> Option<Micros> {
-        if let Some(uneven) = self.uneven {
-            let mut at = 0;
-            while at < uneven.intervals.len() {
-                let (p, q, interval) = uneven.intervals[at];
-                let (p, q) = (p as usize, q as usize);
-                if p == x && q == y || p == y && q == x {
-                    return if interval.as_micros() == 0 { None } else { Some(interval) };
-                }
-                at += 1;
-            }
-        }
-        if self.layout.neighbours(sensors, x, y) { Some(self.min_interval) } else { None }
-    }
-
-    /// Whether two sensors share an echo line.
-    pub const fn share_a_line(&self, x: usize, y: usize) -> bool {
-        match self.uneven {
-            Some(uneven) => x != y && Uneven::in_one(uneven.shared_lines, x, y),
-            None => false,
-        }
-    }
-
-    /// Whether two sensors must fire at the same instants.
-    pub const fn fire_together(&self, x: usize, y: usize) -> bool {
-        match self.uneven {
-            Some(uneven) => x != y && Uneven::in_one(uneven.together, x, y),
-            None => false,
-        }
-    }
-
-    /// How long after a firing of `x` sensor `y` must not fire, of so many sensors: the interval of the two, or the
-    /// window of `x` where that is longer and they share an echo line.
-    pub const fn gap_after(&self, sensors: usize, x: usize, y: usize) -> Micros {
-        let interval = match self.interval_of(sensors, x, y) {
-            Some(interval) => interval,
-            None => Micros::ZERO,
-        };
-        let window = self.window_of(x);
-        if self.share_a_line(x, y) && window.as_micros() > interval.as_micros() { window } else { interval }
-    }
-
-    /// The smallest `t_delta`, the longest gap that any two of so many sensors keep, and the smallest window.
-    pub(crate) const fn strictest(&self, sensors: usize) -> (Micros, Micros, Micros) {
-        let (mut t_delta, mut gap, mut window) = (Micros::MAX, self.min_interval, Micros::MAX);
-        let mut x = 0;
-        while x < sensors {
-            t_delta = shorter(t_delta, self.t_delta_of(x));
-            // No window of its own allows any.
-            if self.window_of(x).as_micros() > 0 {
-                window = shorter(window, self.window_of(x));
-            }
-            let mut y = 0;
-            while y < sensors {
-                let after = self.gap_after(sensors, x, y);
-                if after.as_micros() > gap.as_micros() {
-                    gap = after;
-                }
-                y += 1;
-            }
-            x += 1;
-        }
-        (t_delta, gap, if window.as_micros() == u32::MAX { Micros::ZERO } else { window })
-    }
-}

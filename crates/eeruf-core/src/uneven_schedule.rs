@@ -2,8 +2,8 @@
 
 use core::ops::Deref;
 
-use crate::conditions::{Criterion, Requirements};
-use crate::schedule::{Schedule, ScheduleError, VerifiedFor};
+use crate::conditions::Criterion;
+use crate::schedule::VerifiedFor;
 use crate::time::{Micros, longer, shorter};
 use crate::verified::VerifiedSchedule;
 use crate::verify::{Verification, Violation};
@@ -98,62 +98,5 @@ impl<const K: usize> Verification<'_, K> {
         let separation = t_delta.saturating_add(spare);
         let most = VerifiedFor { t_delta, min_interval, window, separation };
         Ok(UnevenSchedule { schedule: verified, most, each })
-    }
-}
-
-/// An [`UnevenSchedule`] that is verified while the program is compiled, as [`schedule!`](crate::schedule!) does for
-/// sensors that are all alike; `eeruf design --emit rust` writes the whole call.
-///
-/// ```
-/// use eeruf_core::{Layout, Micros, Requirements, Uneven, UnevenSchedule, uneven_schedule};
-///
-/// const CORNER: UnevenSchedule<2> = uneven_schedule! {
-///     period_us: 60_000,
-///     t_fire_a_us: [0, 20_000],
-///     t_fire_b_us: [0, 23_000],
-///     meets: Requirements {
-///         layout: Layout::Line(2),
-///         min_interval: Micros::from_millis(15),
-///         uneven: Some(Uneven {
-///             window: &[Micros::from_millis(50), Micros::from_millis(12)],
-///             t_delta: &[Micros::new(999), Micros::new(1_400)],
-///             ..Uneven::NONE
-///         }),
-///         ..Requirements::new(Micros::new(999))
-///     },
-/// };
-/// assert_eq!(CORNER.limits_of(1).unwrap().window, Micros::from_millis(12));
-/// ```
-#[macro_export]
-macro_rules! uneven_schedule {
-    (
-        period_us: $period:expr,
-        t_fire_a_us: $t_fire_a:expr,
-        t_fire_b_us: $t_fire_b:expr,
-        meets: $requirements:expr $(,)?
-    ) => {
-        const {
-            $crate::__checked_uneven(
-                $crate::Schedule::from_firing(
-                    $crate::Micros::new($period),
-                    [$crate::__micros($t_fire_a), $crate::__micros($t_fire_b)],
-                ),
-                &$requirements,
-            )
-        }
-    };
-}
-
-/// For `uneven_schedule!`, which evaluates it when the program is compiled: its panics are compile errors.
-#[doc(hidden)]
-pub const fn __checked_uneven<const K: usize>(
-    schedule: Result<Schedule<K>, ScheduleError>,
-    requirements: &Requirements<'_>,
-) -> UnevenSchedule<K> {
-    let schedule = *crate::__checked(schedule, requirements).schedule();
-    match schedule.verify(requirements).verified_uneven() {
-        Ok(uneven) => uneven,
-        // Never: it has just been verified.
-        Err(_) => panic!("a schedule that does not meet its requirements"),
     }
 }

@@ -36,6 +36,7 @@ mod ring_events;
 mod robot;
 mod scene;
 mod schedule;
+mod schedule_times;
 mod search;
 mod simulate;
 mod simulation;

@@ -1,7 +1,6 @@
 //! `Schedule`.
 
 use std::fmt::Display;
-use std::hash::{Hash, Hasher};
 use std::path::PathBuf;
 
 use eeruf_core::{Micros, Phase};
@@ -41,28 +40,11 @@ use crate::{
 ///     >>> two.t_fire_b_us
 ///     (2000, 25000)
 #[pyclass(frozen, eq, hash, module = "eeruf")]
-#[derive(Clone, PartialEq)]
+#[derive(Clone, PartialEq, Hash)]
 pub(crate) struct Schedule(pub(crate) AnySchedule);
-
-impl Hash for Schedule {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        self.0.hash(state);
-    }
-}
 
 fn tuple<'py>(py: Python<'py>, times: &[Micros]) -> PyResult<Bound<'py, PyTuple>> {
     PyTuple::new(py, times.iter().map(|time| time.as_micros()))
-}
-
-impl Schedule {
-    fn t_fire<'py>(&self, py: Python<'py>, phase: Phase) -> PyResult<Bound<'py, PyTuple>> {
-        let fire = |sensor| self.0.t_fire(phase, sensor).unwrap_or_default().as_micros();
-        PyTuple::new(py, (0..self.0.sensors()).map(fire))
-    }
-
-    fn has_lags(&self) -> bool {
-        self.0.t_lag().iter().any(|&lag| lag != Micros::ZERO)
-    }
 }
 
 #[pymethods]
@@ -203,7 +185,7 @@ impl Schedule {
 
     /// The period ``T_p``, in microseconds.
     #[getter]
-    fn period_us(&self) -> u32 {
+    pub(crate) fn period_us(&self) -> u32 {
         self.0.period().as_micros()
     }
 
@@ -215,31 +197,31 @@ impl Schedule {
 
     /// ``T_lag`` of each sensor, in microseconds; zeros if the schedule was made of firing times.
     #[getter]
-    fn t_lag_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+    pub(crate) fn t_lag_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         tuple(py, self.0.t_lag())
     }
 
     /// ``T_wait`` of each sensor in phase a, in microseconds.
     #[getter]
-    fn t_wait_a_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+    pub(crate) fn t_wait_a_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         tuple(py, self.0.t_wait(Phase::A))
     }
 
     /// ``T_wait`` of each sensor in phase b, in microseconds.
     #[getter]
-    fn t_wait_b_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+    pub(crate) fn t_wait_b_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         tuple(py, self.0.t_wait(Phase::B))
     }
 
     /// When each sensor fires in phase a, in microseconds from the beginning of the period.
     #[getter]
-    fn t_fire_a_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+    pub(crate) fn t_fire_a_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         self.t_fire(py, Phase::A)
     }
 
     /// When each sensor fires in phase b, in microseconds from the beginning of the period.
     #[getter]
-    fn t_fire_b_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+    pub(crate) fn t_fire_b_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         self.t_fire(py, Phase::B)
     }
 
@@ -456,14 +438,7 @@ impl Schedule {
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let period = self.period_us();
-        Ok(if self.has_lags() {
-            let (lag, a, b) = (self.t_lag_us(py)?, self.t_wait_a_us(py)?, self.t_wait_b_us(py)?);
-            format!("Schedule(period_us={period}, t_lag_us={lag}, t_wait_a_us={a}, t_wait_b_us={b})")
-        } else {
-            let (a, b) = (self.t_fire_a_us(py)?, self.t_fire_b_us(py)?);
-            format!("Schedule.from_firing(period_us={period}, t_fire_a_us={a}, t_fire_b_us={b})")
-        })
+        self.shown(py)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {

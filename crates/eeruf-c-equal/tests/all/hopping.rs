@@ -18,6 +18,7 @@ fn status_of(error: &HoppingError) -> i32 {
         HoppingError::Lag { .. } => -24,
         HoppingError::Tracker(_) => -25,
         HoppingError::TDelta { .. } => -15,
+        HoppingError::Votes { .. } => -28,
         HoppingError::Ring(RingError::Blanking { .. }) => -18,
         HoppingError::Ring(RingError::CoarseTDelta { .. }) => -19,
         HoppingError::Ring(RingError::Window { .. }) => -17,

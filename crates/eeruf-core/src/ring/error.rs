@@ -2,9 +2,11 @@
 
 use core::fmt;
 
-use super::listening::LONGEST;
 use crate::filter::FilterError;
 use crate::time::Micros;
+
+/// The longest `t_delta` and blanking time, which a ring keeps in two bytes each.
+pub(super) const LONGEST: Micros = Micros::new(u16::MAX as u32);
 
 /// Why a [`Ring`](super::Ring) cannot be set up as asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,9 +5,6 @@ use super::error::RingError;
 use crate::scheduler::{Limits, Scheduler};
 use crate::time::Micros;
 
-/// The longest `t_delta` and blanking time, which a ring keeps in two bytes each.
-pub(super) const LONGEST: Micros = Micros::new(u16::MAX as u32);
-
 /// Window, `t_delta` and blanking time, none of them more than the scheduler allows.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -212,9 +212,7 @@ def set_two(
         {'conventional': 2, 'eeruf': 2}
 
     """
-    asked = _asked(
-        seeds, methods, second_robot, speed_m_s, odometry, t_delta_us, first, pilot, odometry_noise, physics
-    )
+    asked = _asked(seeds, methods, second_robot, speed_m_s, odometry, t_delta_us, first, pilot, odometry_noise, physics)
     table, runs = _eeruf._set_two(asked, progress)
     return SetTwo(json.loads(table), {method: [Run(**run) for run in of_method] for method, of_method in runs.items()})
 

@@ -18,6 +18,7 @@ mod package;
 mod page;
 mod periods;
 mod printed;
+mod program;
 mod python;
 mod quick;
 mod release;

@@ -151,8 +151,8 @@ fn test(long: bool) -> Result<(), Trouble> {
     }
     run(Command::new(npm).current_dir(tests).args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]))?;
     run(Command::new(npm).current_dir(tests).args(["run", "--silent", "types"]))?;
-    // What the page is held against, with the features of the whole workspace, as built for the tests.
-    run(Command::new("cargo").args(["build", "--locked", "--workspace", "--bin", "eeruf"]))?;
+    // What the page is held against.
+    crate::program::program()?;
     let mut node = Command::new("node");
     node.current_dir(tests).args(["--test", "--test-reporter=spec"]);
     node.env("PAGE_LONG", if long { "1" } else { "" });

@@ -31,15 +31,7 @@ pub(crate) fn python() -> Result<(), Trouble> {
     run(tool("mypy.stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
     fresh(&wheel)?;
     // What Python is held against: the program, and the paths of the corpus.
-    let mut cargo = Command::new("cargo");
-    // With the features of the whole workspace, as built for the tests.
-    cargo.args(["build", "--locked", "--workspace"]);
-    run(cargo.args(["--bin", "eeruf", "--example", "rust_side"]))?;
-    let built = |name: &str| std::path::absolute(format!("target/debug/{name}{EXE_SUFFIX}"));
-    let (program, rust_side) = match (built("eeruf"), built("examples/rust_side")) {
-        (Ok(program), Ok(rust_side)) => (program, rust_side),
-        (Err(error), _) | (_, Err(error)) => return Err(Trouble::Failed(error.to_string())),
-    };
+    let (program, rust_side) = (crate::program::program()?, crate::program::example("rust_side")?);
     let mut tests = tool("pytest");
     tests.env("EERUF_WHEEL", &wheel).env("EERUF_PROGRAM", program).env("EERUF_RUST_SIDE", rust_side);
     run(&mut tests)

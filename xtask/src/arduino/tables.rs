@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use super::{TARGET, failed};
-use crate::steps::{Trouble, output, run};
+use crate::steps::{Trouble, output};
 
 const FILE: &str = "c/arduino/src/EerufTables.h";
 
@@ -46,13 +46,12 @@ pub(super) fn check(write: bool) -> Result<(), Trouble> {
          #pragma once\n#include <EerufArduino.h>\n",
     );
     fs::create_dir_all(TARGET).map_err(failed("target"))?;
-    // With the features of the whole workspace, as built for the tests.
-    run(Command::new("cargo").args(["build", "--locked", "--workspace", "--bin", "eeruf"]))?;
+    let program = crate::program::program()?;
     for (modules, retrigger_us, suffix) in TABLES {
         let file = Path::new(TARGET).join(format!("ring-{modules}{suffix}.toml"));
         fs::write(&file, ring(modules, retrigger_us)).map_err(failed("target"))?;
         let design = ["design", "--emit", "arduino"];
-        let tab = output(Command::new("target/debug/eeruf").args(design).arg(&file))
+        let tab = output(Command::new(&program).args(design).arg(&file))
             .ok_or_else(|| Trouble::Failed(format!("eeruf design {} failed", file.display())))?;
         let constant = tab.replace("#pragma once\n#include <EerufArduino.h>\n", "");
         let name = format!("EERUF_HC_SR04_{modules}{suffix}");

@@ -44,8 +44,8 @@ pub(super) fn build() -> Result<PathBuf, Trouble> {
 /// that each module should measure.
 fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>), Trouble> {
     let sensors = (modules > 8).then(|| modules.to_string());
-    let example = ["run", "--quiet", "--locked", "--package", "eeruf-sim", "--example", "echo_times", "--", SCENE];
-    let times = output(Command::new("cargo").args(example).args(&sensors))
+    let example = crate::program::example("echo_times")?;
+    let times = output(Command::new(example).arg(SCENE).args(&sensors))
         .ok_or_else(|| Trouble::Failed("the example echo_times failed".to_owned()))?
         + "\n";
     if sensors.is_none() && fs::read_to_string(KEPT).map_err(failed(KEPT))? != times {

@@ -1,0 +1,23 @@
+//! The program and the examples of the workspace as they were built for the tests: with the features of all packages,
+//! since another choice of packages would build what they stand on once more.
+
+use std::env::consts::EXE_SUFFIX;
+use std::path::PathBuf;
+use std::process::Command;
+
+use crate::steps::{Trouble, run};
+
+/// `eeruf`, built.
+pub(crate) fn program() -> Result<PathBuf, Trouble> {
+    built(&["--bin", "eeruf"], "eeruf")
+}
+
+/// An example of some package, built.
+pub(crate) fn example(name: &str) -> Result<PathBuf, Trouble> {
+    built(&["--example", name], &format!("examples/{name}"))
+}
+
+fn built(what: &[&str], file: &str) -> Result<PathBuf, Trouble> {
+    run(Command::new("cargo").args(["build", "--quiet", "--locked", "--workspace"]).args(what))?;
+    std::path::absolute(format!("target/debug/{file}{EXE_SUFFIX}")).map_err(|error| Trouble::Failed(error.to_string()))
+}

@@ -47,7 +47,7 @@ def test_methods_are_drawn_worst_first_in_percent() -> None:
 
 
 def test_set_two_is_drawn_by_counts_and_shares() -> None:
-    found = experiments.set_two(seeds=2, methods=["eeruf", "conventional"])
+    found = experiments.set_two(seeds=2, methods=["eeruf", "conventional"], pilot="shared")
     ax = plot.methods(found, figure="finished")
     assert [patch.get_width() for patch in ax.patches] == [2, 0]  # type: ignore[attr-defined]
     assert ax.get_xlabel() == "courses finished"
@@ -60,9 +60,9 @@ def test_a_course_shows_poles_grid_track_and_the_last_place() -> None:
     import matplotlib.pyplot as plt
 
     found = experiments.set_two(seeds=2, methods=["conventional", "eeruf"], second_robot="ahead")
-    run = found.runs["conventional"][1]
+    run = found.runs["conventional"][0]
     ax = plt.subplots()[1]
-    assert plot.course(found, method="conventional", course=1, ax=ax) is ax
+    assert plot.course(found, method="conventional", course=20_000, ax=ax) is ax
     drawn = {line.get_label(): line for line in ax.lines}
     assert drawn["pole"].get_xdata() == pytest.approx(run.poles[:, 0])
     track = drawn["track, outline every second"]
@@ -70,15 +70,15 @@ def test_a_course_shows_poles_grid_track_and_the_last_place() -> None:
     assert np.array_equal(np.asarray(ax.collections[0].get_array()), run.grid[:, 2])
     circles = [patch for patch in ax.patches if isinstance(patch, matplotlib.patches.Circle)]
     assert [circle.get_center() for circle in circles] == [pytest.approx((9.4, 5.3))]
-    assert ax.get_title(loc="left").startswith("conventional, course 1: touched something after")
+    assert ax.get_title(loc="left").startswith("conventional, course 20000: touched something after")
 
 
 def test_a_run_alone_is_drawn_as_well_and_what_is_none_is_refused() -> None:
     found = experiments.set_two(seeds=1, methods=["eeruf"])
-    assert plot.course(found.runs["eeruf"][0]).get_title(loc="left").startswith("course 0: finished after")
+    assert plot.course(found.runs["eeruf"][0]).get_title(loc="left").startswith("course 20000: finished after")
     for arguments, message in [
         ({"method": "loud"}, "method = 'loud'; expected one of eeruf"),
-        ({"course": 7}, "course = 7; expected 0 to 0"),
+        ({"course": 7}, "course = 7; expected 20000 to 20000"),
     ]:
         with pytest.raises(eeruf.ArgumentError, match=message):
             plot.course(found, **arguments)  # type: ignore[arg-type]

@@ -29,7 +29,7 @@ def test_numpy_is_all_it_needs() -> None:
 
 def test_the_wheel_has_stubs_and_says_that_it_is_typed() -> None:
     names = zipfile.ZipFile(wheel()).namelist()
-    assert {"eeruf/py.typed", "eeruf/_eeruf.pyi", "eeruf/plot.py", "eeruf/experiments.py"} <= set(names)
+    assert {"eeruf/py.typed", "eeruf/_eeruf.pyi", "eeruf/plot/__init__.py", "eeruf/experiments.py"} <= set(names)
     assert not any("test" in name for name in names)
 
 

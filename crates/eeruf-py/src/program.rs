@@ -26,8 +26,8 @@ pub(crate) fn run_program(py: Python<'_>, words: Vec<OsString>) -> u8 {
 ///
 /// Example:
 ///     >>> import eeruf
-///     >>> eeruf.sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))  # doctest: +ELLIPSIS
-///     Scene(...)
+///     >>> eeruf.sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))
+///     <Scene: 3 walls, 0 poles, 1 robots>
 #[pyfunction]
 #[pyo3(signature = (name))]
 pub(crate) fn example(name: &Bound<'_, PyAny>) -> PyResult<&'static str> {

@@ -5,8 +5,8 @@ use core::fmt;
 use crate::schedule::MAX_SENSORS;
 use crate::time::Micros;
 
-/// What single sensors and pairs need, where they are not all alike; what is not named here needs what [`Requirements`](crate::Requirements)
-/// say for all. Sensors are counted from 0.
+/// What single sensors and pairs need, where they are not all alike; what is not named here needs what
+/// [`Requirements`](crate::Requirements) say for all. Sensors are counted from 0.
 ///
 /// ```
 /// use eeruf_core::{Layout, Micros, Requirements, Uneven, ViolationKind, Schedule};

@@ -441,13 +441,13 @@ typedef struct EerufHoppingConfig {
 
 /* The settings of most robots, of those that must stop early, and of those that make maps. */
 #define EERUF_HOPPING_BALANCED(sensors, period_us, window_us)                                                          \
-    {EERUF_VERSION, sensors, 2, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
+    {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
      {150, 400, 60, 5, 6, 2, 6, 2}, 84, 5, 3, 5, 8, 4}
 #define EERUF_HOPPING_QUICK(sensors, period_us, window_us)                                                             \
-    {EERUF_VERSION, sensors, 2, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
+    {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
      {150, 400, 100, 4, 6, 2, 6, 2}, 100, 4, 2, 5, 8, 4}
 #define EERUF_HOPPING_MAPS(sensors, period_us, window_us)                                                              \
-    {EERUF_VERSION, sensors, 2, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
+    {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
      {150, 400, 60, 5, 7, 1, 6, 0}, 28, 8, 6, 5, 24, 4}
 
 /* One hypothesis about a sensor's echo. Not for the caller. */

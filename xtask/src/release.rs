@@ -68,7 +68,14 @@ fn one_version() -> Result<String, Trouble> {
             wrong.push(format!("{} is {}, not {version}", package.name, package.version));
         }
     }
-    for (file, wanted) in [("CHANGELOG.md", format!("## {version}")), ("CITATION.cff", format!("version: {version}"))] {
+    for (file, wanted) in [
+        ("CHANGELOG.md", format!("## {version}")),
+        ("CITATION.cff", format!("version: {version}")),
+        ("c/arduino/library.properties", format!("version={version}")),
+        ("c/arduino/library.json", format!("  \"version\": \"{version}\"")),
+        ("c/idf_component.yml", format!("version: \"{version}\"")),
+        ("c/CMakeLists.txt", format!("  project(eeruf VERSION {version} ")),
+    ] {
         let text = fs::read_to_string(file).map_err(|error| Trouble::Failed(format!("{file}: {error}")))?;
         if !text.lines().any(|line| line.starts_with(&wanted)) {
             wrong.push(format!("{file} has no line that begins with \"{wanted}\""));

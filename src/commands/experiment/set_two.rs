@@ -48,8 +48,8 @@ pub(crate) struct Args {
     /// by some decimetre in the end
     #[arg(long)]
     exact_odometry: bool,
-    /// Give the robots bodies: the platform its square, with the ring on its edge, and the second robot a disc, which is
-    /// then an obstacle to sound and to the platform. The pilots were tuned without
+    /// Give the robots bodies: the platform its square, with the ring on its edge, and the second robot a disc, which
+    /// is then an obstacle to sound and to the platform. The pilots were tuned without
     #[arg(long)]
     bodies: bool,
     /// Drive all courses at several top speeds instead, and give the highest that each method sustains

@@ -43,7 +43,8 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
     let rows = found.methods.iter().map(|(method, figures)| row(*method, figures));
     let MultiEcho { consecutive, t_delta, patience } = MultiEcho::TUNED;
     let mut text = format!(
-        "Set I: {}, {} sensors, {} periods of {} each, physics: {}; 10 % / median / 90 % of the alcoves, or the median alone.\n\
+        "Set I: {}, {} sensors, {} periods of {} each, physics: {}; 10 % / median / 90 % of the alcoves, or the \
+         median alone.\n\
          Starved: sensors with under 5 % of their readings accepted, on average; in part: those of them that read\n\
          right in one phase and not in another; blind: those that never had a reading accepted.\n\
          multi_echo compares {} readings within {} and has a patience of {}, all others two within 500 us and none;\n\

@@ -165,8 +165,8 @@ impl<'a> SideBySide<'a> {
             row
         });
         let mut text = format!(
-            "Set II with several pilots: {} at up to {} m/s{}{}, physics: {}. Finished with 95 % intervals (Wilson's), and the\n\
-             mean speed; {FILTERS}.\n\n",
+            "Set II with several pilots: {} at up to {} m/s{}{}, physics: {}. Finished with 95 % intervals (Wilson's), \
+             and the\nmean speed; {FILTERS}.\n\n",
             courses(one.first, one.seeds),
             one.speed_m_s,
             beside(one.second_robot_m),

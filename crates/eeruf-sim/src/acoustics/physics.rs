@@ -30,11 +30,13 @@ pub struct Physics {
 }
 
 impl Physics {
-    /// The simplest physics, which the simulator began with and methods were tuned under: poles of any thickness are transparent, edges are silent, an echo is heard at its
-    /// onset however faint it is, and each arrival fades on its own.
+    /// The simplest physics, which the simulator began with and methods were tuned under: poles of any thickness are
+    /// transparent, edges are silent, an echo is heard at its onset however faint it is, and each arrival fades on its
+    /// own.
     pub const PLAIN: Self = Self { shadows: false, edges: false, range_walk: false, fading_time_s: 0.0 };
 
-    /// What worlds have unless asked otherwise: everything on, with the numbers that `docs/physics.md` gives reasons for.
+    /// What worlds have unless asked otherwise: everything on, with the numbers that `docs/physics.md` gives reasons
+    /// for.
     pub const DEFAULT: Self = Self { shadows: true, edges: true, range_walk: true, fading_time_s: 1.0 };
 
     /// The presets by their names.

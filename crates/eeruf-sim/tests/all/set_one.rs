@@ -39,9 +39,9 @@ fn alternation_removes_the_errors_that_comparison_alone_leaves_and_several_echoe
     assert!(wrong(Method::Conventional) > 0.3, "{}", wrong(Method::Conventional));
     assert!(wrong(Method::Comparison) > 0.15, "{}", wrong(Method::Comparison));
     assert!(wrong(Method::Eeruf) < 0.03, "{}", wrong(Method::Eeruf));
-    // What else several echoes get wrong is a first echo just loud enough that faded away. An alcove has such an echo or
-    // has none, so that the median lies where there are hardly any alcoves: 3.2 % of these 80, with 95 % between 1.3 and
-    // 9.4. With sequential firing, where such echoes are all that is wrong, it is 6.1.
+    // What else several echoes get wrong is a first echo just loud enough that faded away. An alcove has such an echo
+    // or has none, so that the median lies where there are hardly any alcoves: 3.2 % of these 80, with 95 % between 1.3
+    // and 9.4. With sequential firing, where such echoes are all that is wrong, it is 6.1.
     assert!(wrong(Method::MultiEcho) < 0.04, "{}", wrong(Method::MultiEcho));
     assert!(wrong(Method::MultiEcho) < wrong(Method::Sequential), "{}", wrong(Method::Sequential));
     let crosstalk = of(&table, Method::MultiEcho).crosstalk_of_all.unwrap().median;

@@ -47,7 +47,7 @@ fn with_bodies_the_second_robot_is_an_obstacle_and_courses_are_finished_all_the_
         assert!(with.runs.iter().flatten().zip(without.runs.iter().flatten()).all(|(a, b)| a.track != b.track));
     }
     // One that stands in the way is run into, or driven round: nobody drives through it.
-    let in_the_way = Point::new(4.0, 3.0);
+    let in_the_way = Point::new(2.0, 3.5);
     for run in run(true, Some(in_the_way)).runs.iter().flatten() {
         for place in &run.track {
             let from_middle = (Point::new(place.x_m, place.y_m) - in_the_way).norm();

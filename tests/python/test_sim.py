@@ -81,6 +81,10 @@ def test_an_open_simulation_is_steered_step_by_step() -> None:
     first, whole = world.step(0.6), sim.simulate(scene, "eeruf", periods=10, seed=3)
     assert 70 < len(first) < len(whole) == 80
     assert np.array_equal(first.t_echo_us, whole.t_echo_us[: len(first)], equal_nan=True)
+    each = sim.Simulation(scene, "eeruf", seed=3)
+    for k in range(20):
+        reading = each.step_to_reading(1.0)
+        assert (len(reading), reading.sensor[0]) == (1, whole.sensor[k])
     world.set_velocity(0, v_m_s=0.5, w_rad_s=0.0)
     world.step(1.0)
     assert world.robots[0].pose == pytest.approx((0.5, 0.0, 0.0))

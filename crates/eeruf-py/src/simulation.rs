@@ -141,6 +141,24 @@ impl Simulation {
         self.go_on(py, None, |simulation, keep_going| simulation.step(seconds, keep_going))
     }
 
+    /// Let time pass until the next reading comes, without the interpreter lock. Ctrl-C ends it.
+    ///
+    /// Args:
+    ///     seconds: how long at most, 0 to 10^9.
+    ///
+    /// Returns:
+    ///     What was read then: one reading, several of the same moment, or none if that time passed before.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such time.
+    ///     SimulationError: a robot has moved out of the scene's reach.
+    #[pyo3(signature = (seconds))]
+    fn step_to_reading(&self, seconds: &Bound<'_, PyAny>) -> PyResult<Readings> {
+        let py = seconds.py();
+        let seconds = number("seconds", seconds, 0.0..=1e9)?;
+        self.go_on(py, None, |simulation, keep_going| simulation.step_to_reading(seconds, keep_going))
+    }
+
     /// From now on a robot goes ahead and turns at these speeds, whatever its motion was.
     ///
     /// Args:

@@ -100,10 +100,53 @@ impl Simulation {
     /// # Errors
     /// A time that is negative or above 10^9 s, a robot that has moved out of the scene's reach, or too little memory.
     pub fn step(&mut self, seconds: f64, keep_going: impl FnMut(f64) -> bool) -> Result<Readings, SimulationError> {
+        self.go_on(Self::ns(seconds)?, keep_going)
+    }
+
+    fn ns(seconds: f64) -> Result<u64, SimulationError> {
         if !(0.0..=MAX_STEP_S).contains(&seconds) {
             return Err(SimulationError::Number { what: "seconds", value: seconds, expected: "0 to 1e9" });
         }
-        self.go_on((seconds * 1e9).round() as u64, keep_going)
+        Ok((seconds * 1e9).round() as u64)
+    }
+
+    /// As [`step`](Self::step), but no farther than to the next reading: what was read then, or nothing after that many
+    /// seconds. Readings of one moment come together.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use eeruf_sim::*;
+    /// let robot = Robot::ring(Pose::identity(), 8, 15f64.to_radians(), 0.3, Transducer::POLAROID_6500);
+    /// let wall = Wall::new(2.0, -5.0, 2.0, 5.0).with_faces(Faces::Both);
+    /// let world = World::new(Scene::new(vec![wall], vec![], Air::default())?, vec![robot], Noise::default())?;
+    /// let mut simulation = Simulation::new(Arc::new(world), Method::Eeruf, &Options::default(), Stop::default())?;
+    /// let first = simulation.step_to_reading(1.0, |_| true)?;
+    /// assert_eq!(first.len(), 1);
+    /// // It fires, listens for 36 ms at most, and has been read.
+    /// let listened_s = simulation.time_s() - first.fired_s[0];
+    /// assert!(listened_s > 0.0 && listened_s < 0.0361);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn step_to_reading(
+        &mut self,
+        seconds: f64,
+        keep_going: impl FnMut(f64) -> bool,
+    ) -> Result<Readings, SimulationError> {
+        let ns = Self::ns(seconds)?;
+        let (before, farthest) = (self.now, self.now.saturating_add(ns));
+        let until = if farthest >= self.end { u64::MAX } else { farthest };
+        let end = self.end;
+        let (more, now, readings) = self.under_way.with_dependent_mut(|_, events| {
+            let (more, at) = events.run_to_reading(until, keep_going)?;
+            let now = at.map_or(farthest, |at| at.clamp(before, farthest));
+            let duration_s = (now.min(end) - before.min(end)) as f64 * 1e-9;
+            Ok::<_, SimulationError>((more, now, events.take(duration_s)))
+        })?;
+        (self.now, self.over) = (now, !more);
+        Ok(readings)
     }
 
     /// As [`step`](Self::step), for so many periods of the first robot.

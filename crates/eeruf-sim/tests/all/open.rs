@@ -52,6 +52,40 @@ fn the_blocks_of_a_simulation_together_are_the_simulation_bit_for_bit() {
 }
 
 #[test]
+fn steps_to_the_next_reading_together_are_the_simulation_bit_for_bit() {
+    for motion in [Motion::Still, Motion::Constant { velocity: Vector::new(0.05, -0.03), turn_rad_s: 0.1 }] {
+        let world = Arc::new(room_with(vec![], vec![robot_at(-0.8), Robot { motion, ..robot_at(0.7) }]));
+        let options = Options { seed: Some(5), ..Options::periods(20) };
+        let whole = simulate(&world, Method::Conventional, &options).unwrap();
+        let mut simulation =
+            Simulation::ending(Arc::clone(&world), Method::Conventional, &options, Stop::default()).unwrap();
+        let (mut steps, mut time_s) = (Vec::new(), 0.0);
+        while !simulation.is_over() {
+            let step = simulation.step_to_reading(1.0, |_| true).unwrap();
+            // Two sensors may be read in one moment, each when it has heard something or its window ends.
+            assert!(step.len() <= 2 && simulation.time_s() >= time_s);
+            let listened = |fired_s: &f64| (0.002..0.0361).contains(&(simulation.time_s() - fired_s));
+            assert!(step.fired_s.iter().all(listened), "{} {:?}", simulation.time_s(), step.fired_s);
+            time_s = simulation.time_s();
+            steps.push(step);
+        }
+        assert_eq!(rows(&steps), rows(std::slice::from_ref(&whole)));
+        assert!(steps.len() > 100, "{}", steps.len());
+    }
+    // Nothing comes while nobody has listened for long enough.
+    let mut simulation = Simulation::new(
+        Arc::new(room_with(vec![], vec![robot_at(0.0)])),
+        Method::Eeruf,
+        &Options::default(),
+        Stop::default(),
+    )
+    .unwrap();
+    assert_eq!(simulation.step_to_reading(0.03, |_| true).unwrap().len(), 0);
+    assert_eq!(simulation.time_s(), 0.03);
+    assert_eq!(simulation.step_to_reading(-1.0, |_| true).unwrap_err().to_string(), "seconds is -1; expected 0 to 1e9");
+}
+
+#[test]
 fn a_steered_robot_drives_on_the_arc_it_was_given_and_its_sensors_hear_that() {
     let world = Arc::new(room_with(vec![], vec![robot_at(0.0)]));
     let mut simulation = Simulation::new(world, Method::Eeruf, &Options::default(), Stop::default()).unwrap();

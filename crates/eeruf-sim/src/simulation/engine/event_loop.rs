@@ -116,7 +116,20 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         mut keep_going: impl FnMut(f64) -> bool,
     ) -> Result<bool, SimulationError> {
         let mut rings = core::mem::take(&mut self.rings);
-        let more = self.run_rings(&mut rings, until, &mut keep_going);
+        let more = self.run_rings(&mut rings, until, false, &mut keep_going);
+        self.rings = rings;
+        Ok(more?.0)
+    }
+
+    /// The same, but no farther than to the first event that gives readings: whether there is more to come, and when
+    /// that event was, if there was one.
+    pub(crate) fn run_to_reading(
+        &mut self,
+        until: u64,
+        mut keep_going: impl FnMut(f64) -> bool,
+    ) -> Result<(bool, Option<u64>), SimulationError> {
+        let mut rings = core::mem::take(&mut self.rings);
+        let more = self.run_rings(&mut rings, until, true, &mut keep_going);
         self.rings = rings;
         more
     }
@@ -125,8 +138,9 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         &mut self,
         rings: &mut [RunningRing<'_>],
         until: u64,
+        to_reading: bool,
         keep_going: &mut impl FnMut(f64) -> bool,
-    ) -> Result<bool, SimulationError> {
+    ) -> Result<(bool, Option<u64>), SimulationError> {
         loop {
             let (mut now, mut whose) = (self.bursts.next, None);
             for (index, ring) in rings.iter().enumerate() {
@@ -136,10 +150,10 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
                 }
             }
             if now >= until && now <= self.last {
-                return Ok(true);
+                return Ok((true, None));
             }
             if now > self.last || !self.kinematics.advance(now) {
-                return Ok(false);
+                return Ok((false, None));
             }
             if self.until_call == 0 {
                 self.until_call = EVENTS_PER_CALL;
@@ -152,6 +166,9 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             match whose {
                 Some(index) => self.step(rings, index, now).map_err(|error| SimulationError::paths(now, error))?,
                 None => self.burst(rings),
+            }
+            if to_reading && !self.recorder.is_empty() {
+                return Ok((true, Some(now)));
             }
         }
     }

@@ -59,6 +59,11 @@ impl Recorder {
         Ok(Self { readings, belief, ids: ids.to_vec(), end, median_of, history })
     }
 
+    /// Whether nothing was read since the record was last taken.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.readings.is_empty()
+    }
+
     /// Makes sure that a few thousand more fit.
     pub(crate) fn make_room(&mut self) -> Result<(), SimulationError> {
         if self.readings.room() >= ROOM {

@@ -143,6 +143,11 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
         self.sensors.get(sensor)?.confirmed()
     }
 
+    /// Firings of a sensor since its last accepted or tentative reading; `None` if none ever was.
+    pub fn age(&self, sensor: usize) -> Option<u16> {
+        self.sensors.get(sensor)?.age()
+    }
+
     /// Forgets the tracks of a sensor. The age goes on.
     pub fn forget(&mut self, sensor: usize) {
         if let Some(tracks) = self.sensors.get_mut(sensor) {

@@ -163,7 +163,11 @@ impl<const H: usize> SensorTracks<H> {
             _ if self.age >= NEVER - 1 => self.age,
             _ => self.age + 1,
         };
-        Verdict { kind, t_echo, previous, age: (self.age != NEVER).then_some(self.age) }
+        Verdict { kind, t_echo, previous, age: self.age() }
+    }
+
+    pub(super) fn age(&self) -> Option<u16> {
+        (self.age != NEVER).then_some(self.age)
     }
 }
 

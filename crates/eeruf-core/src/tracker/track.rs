@@ -182,7 +182,7 @@ impl Track {
     }
 
     fn set_t_echo(&mut self, t_echo: u32) {
-        self.echo_and_age = t_echo << 8 | self.echo_and_age & AGE;
+        self.echo_and_age = t_echo << 8 | (self.echo_and_age & AGE);
     }
 
     /// How much later a reading is, which is at most 65,535 us: it supports the track, or is near it.

@@ -42,7 +42,7 @@ const fn bit(phase: u8) -> u16 {
 
 impl Track {
     pub(super) const NONE: Self =
-        Self { echo_and_age: SILENCE << 8 | AGE, phases: 0, score_and_solo: 0, close_and_flags: 0 };
+        Self { echo_and_age: (SILENCE << 8) | AGE, phases: 0, score_and_solo: 0, close_and_flags: 0 };
 
     /// After the first reading at this time.
     pub(super) const fn new(t_echo: u32, phase: u8, solo: bool) -> Self {
@@ -80,7 +80,8 @@ impl Track {
     /// What is replaced first: the less, the sooner. First what is not confirmed, then by score, then by age.
     pub(super) const fn rank(&self) -> u32 {
         let confirmed = (self.close_and_flags & CONFIRMED) as u32;
-        (confirmed << 16 | (self.score_and_solo & SCORE) as u32) << 8 | (AGE - (self.echo_and_age & AGE))
+        let score = (self.score_and_solo & SCORE) as u32;
+        (confirmed << 24) | (score << 8) | (AGE - (self.echo_and_age & AGE))
     }
 
     /// How far a reading is from it.
@@ -112,7 +113,7 @@ impl Track {
         if new || solo || self.is_confirmed() {
             score = (score + 1 + u8::from(solo)).min(settings.score_limit);
         }
-        self.score_and_solo = score | solo_votes * SOLO_VOTE;
+        self.score_and_solo = score | (solo_votes * SOLO_VOTE);
         if self.t_echo() == SILENCE {
             self.echo_and_age &= !AGE;
         } else {

@@ -4,15 +4,20 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use eeruf_sim::experiments::set_one::Alcove;
 use eeruf_sim::experiments::set_two::{self as driven, SECOND_BEHIND, SetTwoOptions};
-use eeruf_sim::{Method, Motion, Options, Robot, Vector, World, simulate};
+use eeruf_sim::{Method, Motion, Options, Physics, Robot, Vector, World, simulate};
 
 /// Long enough that finding the paths once does not count.
 const LONG: u32 = 20_000;
 
+/// Speeds are measured under `plain`, so that they can be compared with those of earlier versions.
+fn plain(world: Result<World, eeruf_sim::WorldError>) -> World {
+    world.and_then(|world| world.with_physics(Physics::PLAIN)).expect("the robot stands in free space")
+}
+
 fn still(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("still");
     group.sample_size(10);
-    let world = Alcove::random(1).world().expect("every random alcove has room");
+    let world = plain(Alcove::random(1).world());
     for method in [Method::Conventional, Method::Eeruf, Method::Adaptive, Method::MultiEcho] {
         let options = Options::periods(LONG);
         let readings = simulate(&world, method, &options).expect("Set I fits every method").len();
@@ -27,7 +32,7 @@ fn set_one(criterion: &mut Criterion) {
     group.throughput(Throughput::Elements(8000));
     group.bench_function("eeruf", |bencher| {
         bencher.iter(|| {
-            let world = Alcove::random(1).world().expect("every random alcove has room");
+            let world = plain(Alcove::random(1).world());
             simulate(&world, Method::Eeruf, &Options::periods(1000))
         });
     });
@@ -41,7 +46,7 @@ fn moving(criterion: &mut Criterion) {
     let motion = Motion::Constant { velocity: Vector::new(0.0, 0.01), turn_rad_s: 0.0 };
     let robot = Robot { motion, ..alcove.robot() };
     let scene = alcove.scene().expect("every random alcove has walls");
-    let world = World::new(scene, vec![robot], eeruf_sim::Noise::default()).expect("it starts in free space");
+    let world = plain(World::new(scene, vec![robot], eeruf_sim::Noise::default()));
     group.throughput(Throughput::Elements(800));
     group.bench_function("eeruf", |bencher| {
         bencher.iter(|| simulate(&world, Method::Eeruf, &Options::periods(100)));
@@ -56,7 +61,13 @@ fn set_two(criterion: &mut Criterion) {
         let mut group = criterion.benchmark_group(format!("set two {title}, simulated ms"));
         group.sample_size(10);
         for method in [Method::Sequential, Method::Conventional, Method::Eeruf, Method::MultiEcho] {
-            let options = SetTwoOptions { seeds: 5, methods: vec![method], second_robot, ..SetTwoOptions::default() };
+            let options = SetTwoOptions {
+                seeds: 5,
+                methods: vec![method],
+                second_robot,
+                physics: Physics::PLAIN,
+                ..SetTwoOptions::default()
+            };
             let drive = || one_core.install(|| driven::set_two(&options, &|_| true).expect("the courses have room"));
             let simulated_s: f64 = drive().runs.iter().flatten().map(|run| run.time_s).sum();
             group.throughput(Throughput::Elements((simulated_s * 1e3) as u64));

@@ -22,6 +22,7 @@ export function sceneText(state) {
     '# Made by the page "Who fools whom?". Lengths in metres, angles in degrees, times in microseconds.',
     "seed = 1",
     "max_order = 4",
+    'physics = "plain"',
     "",
   ];
   for (const wall of state.walls) {

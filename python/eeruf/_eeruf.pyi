@@ -669,7 +669,7 @@ class Scene:
         noise: bool | Noise = True,
         seed: _Int = 1,
         max_order: _Int = 6,
-        physics: _Physics = "plain",
+        physics: _Physics = "default",
     ) -> Scene: ...
     @staticmethod
     def read_toml(path: str | PathLike[str]) -> Scene: ...

@@ -127,8 +127,8 @@ def test_errors_count_robots_and_sensors_from_0_as_code_does() -> None:
 
 
 def test_physics_and_bodies_are_given_in_several_ways_and_refused_by_name() -> None:
-    assert sim.Scene(WALLS).physics == "plain"
-    assert sim.Scene(WALLS, physics={"preset": "default"}).physics == "default"
+    assert sim.Scene(WALLS).physics == "default"
+    assert sim.Scene(WALLS, physics={"preset": "plain"}).physics == "plain"
     for physics in ("full", 3, {"preset": "full"}, {"fading": 1.0}):
         with pytest.raises(eeruf.ArgumentError, match="physics = "):
             sim.Scene(WALLS, physics=physics)  # type: ignore[arg-type]

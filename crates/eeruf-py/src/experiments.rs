@@ -3,7 +3,7 @@
 
 use eeruf_core::Micros;
 use eeruf_sim::{
-    LabMate, Method, Robot,
+    LabMate, Method, Physics, Robot,
     experiments::{
         FIRST,
         set_one::{self as first_set, Alcove, READINGS, SetOneOptions},
@@ -77,6 +77,7 @@ pub(crate) struct Asked<'py> {
     physics: Option<Bound<'py, PyAny>>,
     pilot: Bound<'py, PyAny>,
     odometry_noise: Bound<'py, PyAny>,
+    bodies: Bound<'py, PyAny>,
 }
 
 fn speed(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
@@ -99,6 +100,7 @@ impl Asked<'_> {
             second_robot: self.second_robot.as_ref().map(corner).transpose()?,
             labmate: LabMate { speed_max_m_s: speed("speed_m_s", &self.speed_m_s)?, ..default.labmate },
             odometry,
+            bodies: flag("bodies", Some(&self.bodies), false)?,
             physics: surroundings::physics(self.physics.as_ref())?,
             t_delta: t_delta.unwrap_or(if odometry { default.t_delta } else { WITHOUT_ODOMETRY }),
             ..default
@@ -151,6 +153,8 @@ pub(crate) fn set_two<'py>(
 struct Sweep {
     first: u64,
     pilot: &'static str,
+    physics: Physics,
+    bodies: bool,
     seeds: u64,
     second_robot_m: Option<[f64; 2]>,
     steps: Vec<SpeedStep>,
@@ -179,8 +183,8 @@ pub(crate) fn speed_sweep(
             |done| background.go_on(Some(done), || format!("{} courses at {} speeds", options.seeds, speeds.len()));
         let steps = second_set::speed_sweep(&options, &speeds, &keep_going).map_err(Raise::raise)?;
         let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);
-        let SetTwoOptions { first, seeds, pilots, .. } = options;
-        json(&Sweep { first, pilot: pilots.as_str(), seeds, second_robot_m, steps })
+        let SetTwoOptions { first, seeds, pilots, physics, bodies, .. } = options;
+        json(&Sweep { first, pilot: pilots.as_str(), physics, bodies, seeds, second_robot_m, steps })
     })
 }
 

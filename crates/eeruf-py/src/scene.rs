@@ -147,7 +147,7 @@ impl Scene {
     ))]
     #[pyo3(text_signature = "(walls, open=None, two_sided=None, poles=None, *, materials=None, pole_materials=None, \
             temperature_c=20.0, humidity_percent=50.0, pressure_kpa=101.325, robots=(), noise=True, seed=1, \
-            max_order=6, physics=\"plain\")")]
+            max_order=6, physics=\"default\")")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         py: Python<'_>,

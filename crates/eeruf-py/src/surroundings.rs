@@ -190,9 +190,9 @@ pub(crate) fn physics(value: Option<&Bound<'_, PyAny>>) -> PyResult<Physics> {
     let preset = |value: &Bound<'_, PyAny>| {
         value.extract::<String>().ok().and_then(|name| name.parse().ok()).ok_or_else(|| refused(value))
     };
-    let Some(value) = value else { return Ok(Physics::PLAIN) };
+    let Some(value) = value else { return Ok(Physics::DEFAULT) };
     let Ok(changes) = value.cast::<PyDict>() else { return preset(value) };
-    let mut physics = changes.get_item("preset")?.map_or(Ok(Physics::PLAIN), |name| preset(&name))?;
+    let mut physics = changes.get_item("preset")?.map_or(Ok(Physics::DEFAULT), |name| preset(&name))?;
     for (name, change) in changes {
         match name.extract::<String>().as_deref() {
             Ok("preset") => {}

@@ -1,21 +1,23 @@
 //! What each part of time hopping is worth in Set I, as the table of `docs/hopping.md`: every row leaves one part out.
 //!
-//! `cargo run --release -p eeruf-sim --example hopping_ablation -- [SEEDS [FIRST]]`
+//! `cargo run --release -p eeruf-sim --example hopping_ablation -- [SEEDS [FIRST [PHYSICS]]]`
 
 use eeruf_core::{HoppingSettings, Micros, TrackerSettings};
-use eeruf_sim::Method;
 use eeruf_sim::experiments::Spread;
 use eeruf_sim::experiments::set_one::{Latency, SetOneOptions, set_one};
+use eeruf_sim::{Method, Physics};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mut arguments = std::env::args().skip(1).map(|argument| argument.parse::<u64>());
-    let seeds = arguments.next().transpose()?.unwrap_or(200);
-    let first = arguments.next().transpose()?.unwrap_or(20_000);
+    let mut arguments = std::env::args().skip(1);
+    let mut number = |default| arguments.next().map_or(Ok(default), |argument| argument.parse::<u64>());
+    let (seeds, first) = (number(200)?, number(20_000)?);
+    let physics = arguments.next().map_or(Ok(Physics::DEFAULT), |name| name.parse())?;
     println!("| | wrong, % of all | confirmed | good lost % | blind | age 99 %, ms | accepted/s | nearer | farther |");
     println!("|---|---|---|---|---|---|---|---|---|");
     for (name, hopping) in rows() {
         let methods = vec![Method::EerufHopping];
-        let table = set_one(&SetOneOptions { seeds, first, methods, hopping, ..SetOneOptions::default() }, &|_| true)?;
+        let asked = SetOneOptions { seeds, first, methods, hopping, physics, ..SetOneOptions::default() };
+        let table = set_one(&asked, &|_| true)?;
         for (_, figures) in &table.methods {
             println!(
                 "| {name} | {} | {} | {} | {:.2} | {} | {} | {} | {} |",

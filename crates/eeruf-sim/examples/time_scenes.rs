@@ -69,7 +69,9 @@ fn moving_ms() -> (f64, usize) {
     let alcove = Alcove::random(1);
     let motion = Motion::Constant { velocity: Vector::new(0.0, 0.01), turn_rad_s: 0.0 };
     let robot = Robot { motion, ..alcove.robot() };
-    let world = World::new(alcove.scene().expect("walls"), vec![robot], Noise::default()).expect("free space");
+    let world = World::new(alcove.scene().expect("walls"), vec![robot], Noise::default())
+        .and_then(|world| world.with_physics(Physics::PLAIN))
+        .expect("free space");
     let mut readings = 0;
     let run = || simulate(&world, Method::Eeruf, &Options::periods(100)).expect("the scene is large enough").len();
     let ms = quickest_ms(|| readings = run());
@@ -78,7 +80,8 @@ fn moving_ms() -> (f64, usize) {
 
 /// Two courses of Set II on one core.
 fn set_two_ms() -> (f64, usize) {
-    let options = SetTwoOptions { seeds: 2, methods: vec![Method::Eeruf], ..SetTwoOptions::default() };
+    let options =
+        SetTwoOptions { seeds: 2, methods: vec![Method::Eeruf], physics: Physics::PLAIN, ..SetTwoOptions::default() };
     let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
     let mut finished = 0;
     let drive = || set_two(&options, &|_| true).expect("the courses have room").methods[0].1.finished;

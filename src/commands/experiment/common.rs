@@ -25,8 +25,8 @@ pub(crate) struct Common {
     /// The number of the first geometry or course; parameters were tuned on numbers below 2000
     #[arg(long, value_name = "SEED", default_value_t = FIRST)]
     pub(crate) first: u64,
-    /// Which effects there are: plain, or default (see docs/physics.md)
-    #[arg(long, value_name = "PRESET", default_value = "plain")]
+    /// Which effects there are: default or plain (see docs/physics.md)
+    #[arg(long, value_name = "PRESET", default_value = "default")]
     pub(crate) physics: Physics,
     /// Print one JSON object
     #[arg(long)]

@@ -48,6 +48,10 @@ pub(crate) struct Args {
     /// by some decimetre in the end
     #[arg(long)]
     exact_odometry: bool,
+    /// Give the robots bodies: the platform its square, with the ring on its edge, and the second robot a disc, which
+    /// is then an obstacle to sound and to the platform. The pilots were tuned without
+    #[arg(long)]
+    bodies: bool,
     /// Drive all courses at several top speeds instead, and give the highest that each method sustains
     #[arg(long, conflicts_with = "speed")]
     sweep: bool,
@@ -87,6 +91,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         seeds: args.common.seeds.unwrap_or(SEEDS),
         first: args.common.first,
         physics: args.common.physics,
+        bodies: args.bodies,
         second_robot: args.second_robot.map(Corner::position),
         labmate: LabMate { speed_max_m_s: args.speed, ..LabMate::default() },
         odometry: !args.no_odometry,

@@ -43,7 +43,8 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
     let rows = found.methods.iter().map(|(method, figures)| row(*method, figures));
     let MultiEcho { consecutive, t_delta, patience } = MultiEcho::TUNED;
     let mut text = format!(
-        "Set I: {}, {} sensors, {} periods of {} each; 10 % / median / 90 % of the alcoves, or the median alone.\n\
+        "Set I: {}, {} sensors, {} periods of {} each, physics: {}; 10 % / median / 90 % of the alcoves, or the \
+         median alone.\n\
          Starved: sensors with under 5 % of their readings accepted, on average; in part: those of them that read\n\
          right in one phase and not in another; blind: those that never had a reading accepted.\n\
          multi_echo compares {} readings within {} and has a patience of {}, all others two within 500 us and none;\n\
@@ -53,6 +54,7 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
         found.sensors,
         found.periods,
         Micros::new(found.period_us),
+        found.physics,
         consecutive,
         t_delta,
         patience,
@@ -123,11 +125,12 @@ fn row(method: Method, figures: &Figures) -> Vec<String> {
 pub(crate) fn describe_variations(found: &[(&str, SetOne)]) -> String {
     let Some((_, one)) = found.first() else { return String::new() };
     let mut text = format!(
-        "Set I, {}, {} periods of {} each, one setting changed at a time: wrong, % of all / good lost %, medians with\n\
-         95 % intervals, and starved sensors on average.\n\n",
+        "Set I, {}, {} periods of {} each, physics: {}, one setting changed at a time: wrong, % of all / good lost %,\n\
+         medians with 95 % intervals, and starved sensors on average.\n\n",
         alcoves(one),
         one.periods,
         Micros::new(one.period_us),
+        one.physics,
     );
     let mut header = vec!["setting".to_owned()];
     header.extend(one.methods.iter().map(|(method, _)| method.to_string()));

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use eeruf_sim::Method;
 use eeruf_sim::experiments::set_two::{Figures, MULTI_ECHO_CONSECUTIVE, SetTwo, SetTwoOptions, SpeedStep};
+use eeruf_sim::{Method, Physics};
 use serde::Serialize;
 
 use crate::report::json::in_order;
@@ -19,6 +19,10 @@ const _: () = assert!(MULTI_ECHO_CONSECUTIVE == 3);
 fn beside(second_robot_m: Option<[f64; 2]>) -> String {
     second_robot_m
         .map_or_else(String::new, |[x, y]| format!(", a second robot at ({x} m, {y} m) firing 24 times in 80 ms"))
+}
+
+fn bodies(bodies: bool) -> &'static str {
+    if bodies { ", robots with bodies" } else { "" }
 }
 
 /// How many courses, and which.
@@ -49,12 +53,14 @@ pub(crate) fn describe(found: &SetTwo) -> String {
         "accepted/s",
     ];
     let mut text = format!(
-        "Set II: {} at up to {} m/s{}, pilot: {}. Finished with 95 % intervals (Wilson's);\n\
+        "Set II: {} at up to {} m/s{}{}, pilot: {}, physics: {}. Finished with 95 % intervals (Wilson's);\n\
          phantoms and the nearest pole are means over the courses; {FILTERS}.\n\n",
         courses(found.first, found.seeds),
         found.speed_m_s,
         beside(found.second_robot_m),
+        bodies(found.bodies),
         found.pilot,
+        found.physics,
     );
     let rows = found.methods.iter().map(|(method, figures)| row(*method, figures));
     _ = writeln!(text, "{}", markdown(&header, rows));
@@ -84,6 +90,8 @@ fn row(method: Method, figures: &Figures) -> Vec<String> {
 pub(crate) struct Sweep {
     first: u64,
     pilot: &'static str,
+    physics: Physics,
+    bodies: bool,
     seeds: u64,
     second_robot_m: Option<[f64; 2]>,
     steps: Vec<SpeedStep>,
@@ -100,8 +108,8 @@ impl Sweep {
         };
         let borne_m_s = options.methods.iter().enumerate().map(|(index, method)| (*method, sustained(index))).collect();
         let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);
-        let SetTwoOptions { first, seeds, pilots, .. } = *options;
-        Self { first, pilot: pilots.as_str(), seeds, second_robot_m, steps, borne_m_s }
+        let SetTwoOptions { first, seeds, pilots, physics, bodies, .. } = *options;
+        Self { first, pilot: pilots.as_str(), physics, bodies, seeds, second_robot_m, steps, borne_m_s }
     }
 
     pub(crate) fn describe(&self) -> String {
@@ -118,11 +126,13 @@ impl Sweep {
                 row
             });
         let mut text = format!(
-            "Set II: {} at several top speeds{}, pilot: {}: finished %, and (mean speed in m/s).\n\
+            "Set II: {} at several top speeds{}{}, pilot: {}, physics: {}: finished %, and (mean speed in m/s).\n\
              Sustained is the highest speed at which {:.0} % of the courses are finished; {FILTERS}.\n\n",
             courses(self.first, self.seeds),
             beside(self.second_robot_m),
+            bodies(self.bodies),
             self.pilot,
+            self.physics,
             100.0 * SUSTAINED
         );
         _ = writeln!(text, "{}", markdown(&header, rows));
@@ -155,11 +165,13 @@ impl<'a> SideBySide<'a> {
             row
         });
         let mut text = format!(
-            "Set II with several pilots: {} at up to {} m/s{}. Finished with 95 % intervals (Wilson's), and the\n\
-             mean speed; {FILTERS}.\n\n",
+            "Set II with several pilots: {} at up to {} m/s{}{}, physics: {}. Finished with 95 % intervals (Wilson's), \
+             and the\nmean speed; {FILTERS}.\n\n",
             courses(one.first, one.seeds),
             one.speed_m_s,
             beside(one.second_robot_m),
+            bodies(one.bodies),
+            one.physics,
         );
         _ = writeln!(text, "{}", markdown(&header, rows));
         text

@@ -16,7 +16,7 @@ use std::error::Error;
 use std::path::Path;
 
 use eeruf_sim::experiments::set_two::{Course, SetTwoOptions};
-use eeruf_sim::{Method, Robot, best_schedule_for};
+use eeruf_sim::{Method, Physics, Robot, best_schedule_for};
 
 use log::Log;
 use search::{Search, Tuned};
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn pilots(folder: &Path) -> Result<String, Box<dyn Error>> {
-    let options = SetTwoOptions::default();
+    let options = SetTwoOptions { physics: Physics::PLAIN, ..SetTwoOptions::default() };
     let robot = Robot { t_delta: options.t_delta, ..Course::random(0).robot() };
     let options = SetTwoOptions { best: Some(best_schedule_for(&robot, BUDGET, |_| true)?), ..options };
     let mut log = Log::open(folder, &search::ROUNDS)?;

@@ -1,9 +1,9 @@
 //! What several echoes are compared by in Set I: the best of a grid, on alcoves below 2,000.
 
 use eeruf_core::Micros;
-use eeruf_sim::Method;
 use eeruf_sim::experiments::ExperimentError;
 use eeruf_sim::experiments::set_one::{MultiEcho, SetOneOptions, set_one};
+use eeruf_sim::{Method, Physics};
 
 /// On how many alcoves, from 0 on.
 const ALCOVES: u64 = 100;
@@ -32,7 +32,15 @@ pub(crate) fn line() -> Result<String, ExperimentError> {
 /// What is wrong and what is lost together, as shares: of the median alcove and of the one that one in ten exceeds.
 fn cost(multi_echo: MultiEcho, seeds: u64) -> Result<f64, ExperimentError> {
     let methods = vec![Method::MultiEcho];
-    let asked = SetOneOptions { seeds, first: 0, steps: 0, methods, multi_echo, ..SetOneOptions::default() };
+    let asked = SetOneOptions {
+        seeds,
+        first: 0,
+        steps: 0,
+        methods,
+        multi_echo,
+        physics: Physics::PLAIN,
+        ..SetOneOptions::default()
+    };
     let table = set_one(&asked, &|_| true)?;
     let both = |figures: &eeruf_sim::experiments::set_one::Figures| {
         [figures.wrong_of_all, figures.good_lost].into_iter().flatten().map(|spread| spread.median + spread.p90).sum()

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use eeruf_sim::Method;
 use eeruf_sim::experiments::set_two::{Pilots, SetTwoOptions, set_two};
+use eeruf_sim::{Method, Physics};
 
 use crate::draw::candidate;
 use crate::log::Log;
@@ -22,7 +22,13 @@ fn folder(name: &str) -> PathBuf {
 
 fn search(rounds: &[Round], folder: &Path) -> Tuned {
     let mut log = Log::open(folder, rounds).unwrap();
-    Search { rounds, options: &SetTwoOptions::default(), method: Method::Eeruf }.run(&mut log).unwrap()
+    Search {
+        rounds,
+        options: &SetTwoOptions { physics: Physics::PLAIN, ..SetTwoOptions::default() },
+        method: Method::Eeruf,
+    }
+    .run(&mut log)
+    .unwrap()
 }
 
 #[test]
@@ -36,7 +42,9 @@ fn a_small_search_takes_the_pilot_that_finishes_most_and_prints_it() {
         let each = places.into_iter().chain([ahead]).map(|second_robot| {
             let pilots = Pilots::Given(candidate(pilot).piloting());
             let methods = vec![Method::Eeruf];
-            let asked = SetTwoOptions { first, seeds, methods, second_robot, pilots, ..SetTwoOptions::default() };
+            let physics = Physics::PLAIN;
+            let asked =
+                SetTwoOptions { first, seeds, methods, second_robot, pilots, physics, ..SetTwoOptions::default() };
             let found = set_two(&asked, &|_| true).unwrap();
             let finished =
                 found.runs[0].iter().filter(|run| run.ending == eeruf_sim::experiments::set_two::Ending::Finished);

@@ -3,6 +3,8 @@
 use core::fmt;
 use core::str::FromStr;
 
+use serde::ser::{Serialize, SerializeStruct as _, Serializer};
+
 /// Which effects are computed. `docs/physics.md` says what each is, and where its default comes from.
 ///
 /// ```
@@ -28,11 +30,13 @@ pub struct Physics {
 }
 
 impl Physics {
-    /// What the simulator began with: poles of any thickness are transparent, edges are silent, an echo is heard at its
-    /// onset however faint it is, and each arrival fades on its own.
+    /// The simplest physics, which the simulator began with and methods were tuned under: poles of any thickness are
+    /// transparent, edges are silent, an echo is heard at its onset however faint it is, and each arrival fades on its
+    /// own.
     pub const PLAIN: Self = Self { shadows: false, edges: false, range_walk: false, fading_time_s: 0.0 };
 
-    /// Everything on, with the numbers that `docs/physics.md` gives reasons for.
+    /// What worlds have unless asked otherwise: everything on, with the numbers that `docs/physics.md` gives reasons
+    /// for.
     pub const DEFAULT: Self = Self { shadows: true, edges: true, range_walk: true, fading_time_s: 1.0 };
 
     /// The presets by their names.
@@ -46,6 +50,33 @@ impl Physics {
     /// Whether paths fade in the same way for a time.
     pub(crate) fn fades_slowly(&self) -> bool {
         self.fading_time_s > 0.0
+    }
+}
+
+/// The preset's name, or what each effect is.
+impl fmt::Display for Physics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.name(), self) {
+            (Some(name), _) => f.write_str(name),
+            (None, Self { shadows, edges, range_walk, fading_time_s }) => {
+                write!(f, "shadows {shadows}, edges {edges}, range_walk {range_walk}, fading_time_s {fading_time_s}")
+            }
+        }
+    }
+}
+
+/// The preset's name, or all effects by their names.
+impl Serialize for Physics {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if let Some(name) = self.name() {
+            return serializer.serialize_str(name);
+        }
+        let mut effects = serializer.serialize_struct("Physics", 4)?;
+        effects.serialize_field("shadows", &self.shadows)?;
+        effects.serialize_field("edges", &self.edges)?;
+        effects.serialize_field("range_walk", &self.range_walk)?;
+        effects.serialize_field("fading_time_s", &self.fading_time_s)?;
+        effects.end()
     }
 }
 

@@ -27,7 +27,7 @@ pub struct World {
 
 impl World {
     /// Checks the robots and the noise against the scene. The order is [`DEFAULT_ORDER`], the seed 1, the physics
-    /// [`Physics::PLAIN`].
+    /// [`Physics::DEFAULT`].
     ///
     /// # Errors
     /// The first thing found wrong, naming the robot by its index.
@@ -55,7 +55,7 @@ impl World {
             noise,
             max_order: DEFAULT_ORDER,
             pole_order: MAX_ORDER,
-            physics: Physics::PLAIN,
+            physics: Physics::DEFAULT,
             seed: 1,
         })
     }

@@ -69,9 +69,10 @@ fn sees(world: &World) -> f64 {
     readings.reference_us[first] * 1e-6 * C / 2.0
 }
 
+/// Under `plain`, in which the distance to a wall can be read off the echo's time.
 fn before_a_wall(robots: Vec<Robot>) -> Result<World, WorldError> {
     let wall = Wall::new(4.0, -5.0, 4.0, 5.0).with_faces(Faces::Both);
-    World::new(Scene::new(vec![wall], vec![], Air::default())?, robots, Noise::NONE)
+    World::new(Scene::new(vec![wall], vec![], Air::default())?, robots, Noise::NONE)?.with_physics(Physics::PLAIN)
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use eeruf_sim::{
-    BestSchedule, Method, best_schedule_for,
+    BestSchedule, Method, Physics, best_schedule_for,
     experiments::{
         ExperimentError,
         set_one::{Alcove, Figures, READINGS, SetOne, SetOneOptions, set_one},
@@ -19,8 +19,12 @@ fn asked(seeds: u64, readings: u32, methods: &[Method], best: Option<BestSchedul
 }
 
 fn run(seeds: u64, readings: u32, methods: &[Method]) -> SetOne {
+    run_under(Physics::DEFAULT, seeds, readings, methods)
+}
+
+fn run_under(physics: Physics, seeds: u64, readings: u32, methods: &[Method]) -> SetOne {
     let best = best_schedule_for(&Alcove::random(0).robot(), 100_000, |_| true).unwrap();
-    set_one(&asked(seeds, readings, methods, Some(best)), &|_| true).unwrap()
+    set_one(&SetOneOptions { physics, ..asked(seeds, readings, methods, Some(best)) }, &|_| true).unwrap()
 }
 
 fn of(table: &SetOne, method: Method) -> Figures {
@@ -29,13 +33,17 @@ fn of(table: &SetOne, method: Method) -> Figures {
 
 #[test]
 fn alternation_removes_the_errors_that_comparison_alone_leaves_and_several_echoes_lose_hardly_a_good_reading() {
-    let table = run(80, READINGS, &[Method::Conventional, Method::Comparison, Method::Eeruf, Method::MultiEcho]);
+    let methods = [Method::Sequential, Method::Conventional, Method::Comparison, Method::Eeruf, Method::MultiEcho];
+    let table = run_under(Physics::PLAIN, 80, READINGS, &methods);
     let wrong = |method| of(&table, method).wrong_of_all.unwrap().median;
     assert!(wrong(Method::Conventional) > 0.3, "{}", wrong(Method::Conventional));
     assert!(wrong(Method::Comparison) > 0.15, "{}", wrong(Method::Comparison));
     assert!(wrong(Method::Eeruf) < 0.03, "{}", wrong(Method::Eeruf));
-    // What else several echoes get wrong is a first echo just loud enough that faded away.
-    assert!(wrong(Method::MultiEcho) < 0.06, "{}", wrong(Method::MultiEcho));
+    // What else several echoes get wrong is a first echo just loud enough that faded away. An alcove has such an echo
+    // or has none, so that the median lies where there are hardly any alcoves: 3.2 % of these 80, with 95 % between 1.3
+    // and 9.4. With sequential firing, where such echoes are all that is wrong, it is 6.1.
+    assert!(wrong(Method::MultiEcho) < 0.04, "{}", wrong(Method::MultiEcho));
+    assert!(wrong(Method::MultiEcho) < wrong(Method::Sequential), "{}", wrong(Method::Sequential));
     let crosstalk = of(&table, Method::MultiEcho).crosstalk_of_all.unwrap().median;
     assert!(crosstalk < 0.01, "{crosstalk}");
     let lost = |method| of(&table, method).good_lost.unwrap().median;
@@ -44,19 +52,23 @@ fn alternation_removes_the_errors_that_comparison_alone_leaves_and_several_echoe
 
 #[test]
 fn time_hopping_leaves_no_sensor_blind_and_loses_few_good_readings_without_more_errors() {
-    let table = run(40, READINGS, &[Method::Eeruf, Method::EerufHopping]);
-    let (eeruf, hopping) = (of(&table, Method::Eeruf), of(&table, Method::EerufHopping));
-    assert!(eeruf.starved > 1.0, "{}", eeruf.starved);
-    assert!(hopping.starved < 0.06, "{}", hopping.starved);
-    let lost = |figures: &Figures| figures.good_lost.unwrap().median;
-    assert!(lost(&hopping) < 0.05 && lost(&hopping) < lost(&eeruf) / 3.0, "{} {}", lost(&hopping), lost(&eeruf));
-    let (wrong, wrong_eeruf) = (hopping.wrong_of_all.unwrap(), eeruf.wrong_of_all.unwrap());
-    assert!(wrong.median < 0.015 && wrong.p90 < wrong_eeruf.p90, "{wrong:?} {wrong_eeruf:?}");
-    let age = hopping.age_p99_ms.unwrap().median;
-    assert!(age < 1000.0, "{age}");
-    // A nearer wall is seen within a few periods; eeruf sees as many never.
-    let (nearer, never) = (hopping.nearer.unwrap(), eeruf.nearer.unwrap().never);
-    assert!(nearer.median <= Some(4) && nearer.never < 0.02 && never > 0.1, "{nearer:?} {never}");
+    // What a sensor hears of itself is wrong more often where echoes fade slowly, by any method.
+    for (physics, most_wrong) in [(Physics::PLAIN, 0.015), (Physics::DEFAULT, 0.06)] {
+        let table = run_under(physics, 40, READINGS, &[Method::Eeruf, Method::EerufHopping]);
+        let (eeruf, hopping) = (of(&table, Method::Eeruf), of(&table, Method::EerufHopping));
+        assert!(eeruf.starved > 1.0, "{physics} {}", eeruf.starved);
+        assert!(hopping.starved < 0.06, "{physics} {}", hopping.starved);
+        let lost = |figures: &Figures| figures.good_lost.unwrap().median;
+        let both = (lost(&hopping), lost(&eeruf));
+        assert!(both.0 < 0.05 && both.0 < both.1 / 3.0, "{physics} {both:?}");
+        let (wrong, wrong_eeruf) = (hopping.wrong_of_all.unwrap(), eeruf.wrong_of_all.unwrap());
+        assert!(wrong.median < most_wrong && wrong.p90 < wrong_eeruf.p90, "{physics} {wrong:?} {wrong_eeruf:?}");
+        let age = hopping.age_p99_ms.unwrap().median;
+        assert!(age < 1000.0, "{physics} {age}");
+        // A nearer wall is seen within a few periods; eeruf sees as many never.
+        let (nearer, never) = (hopping.nearer.unwrap(), eeruf.nearer.unwrap().never);
+        assert!(nearer.median <= Some(4) && nearer.never < 0.02 && never > 0.1, "{physics} {nearer:?} {never}");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use eeruf_sim::{
-    LabMate, Method,
+    LabMate, Method, Physics, Point,
     experiments::{
         ExperimentError,
         set_two::{
@@ -23,10 +23,36 @@ fn of(found: &SetTwo, method: Method) -> Figures {
 
 #[test]
 fn eeruf_finishes_95_of_100_courses_at_0_8_m_s_or_more_alone_and_90_beside_a_second_robot() {
-    for (second_robot, least) in [(None, 95), (Some(SECOND_BEHIND), 90)] {
-        let asked = SetTwoOptions { second_robot, ..options(100, &[Method::Eeruf]) };
-        let eeruf = of(&set_two(&asked, &|_| true).unwrap(), Method::Eeruf);
-        assert!(eeruf.finished >= least && eeruf.mean_speed_m_s >= 0.8, "{eeruf:?}");
+    for physics in [Physics::PLAIN, Physics::DEFAULT] {
+        for (second_robot, least) in [(None, 95), (Some(SECOND_BEHIND), 90)] {
+            let asked = SetTwoOptions { second_robot, physics, ..options(100, &[Method::Eeruf]) };
+            let eeruf = of(&set_two(&asked, &|_| true).unwrap(), Method::Eeruf);
+            assert!(eeruf.finished >= least && eeruf.mean_speed_m_s >= 0.8, "{physics} {eeruf:?}");
+        }
+    }
+}
+
+#[test]
+fn with_bodies_the_second_robot_is_an_obstacle_and_courses_are_finished_all_the_same() {
+    let run = |bodies, second_robot| {
+        let asked = SetTwoOptions { bodies, second_robot, ..options(20, &[Method::Eeruf, Method::Conventional]) };
+        set_two(&asked, &|_| true).unwrap()
+    };
+    for second_robot in [None, Some(SECOND_AHEAD)] {
+        let (without, with) = (run(false, second_robot), run(true, second_robot));
+        assert!(with.bodies && !without.bodies);
+        let eeruf = of(&with, Method::Eeruf);
+        assert!(eeruf.finished > 10, "{eeruf:?}");
+        // The ring on the platform's edge hears other echoes than the one on its middle.
+        assert!(with.runs.iter().flatten().zip(without.runs.iter().flatten()).all(|(a, b)| a.track != b.track));
+    }
+    // One that stands in the way is run into, or driven round: nobody drives through it.
+    let in_the_way = Point::new(2.0, 3.5);
+    for run in run(true, Some(in_the_way)).runs.iter().flatten() {
+        for place in &run.track {
+            let from_middle = (Point::new(place.x_m, place.y_m) - in_the_way).norm();
+            assert!(from_middle > 0.3 + 0.375 - 0.03, "{} {from_middle}", run.course);
+        }
     }
 }
 

@@ -31,7 +31,7 @@ pub struct SetOneOptions {
     pub best: Option<BestSchedule>,
     /// How [`Method::EerufHopping`] fires and believes.
     pub hopping: HoppingSettings,
-    /// Which effects the alcoves have. The default is [`Physics::PLAIN`].
+    /// Which effects the alcoves have. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
     /// How many sensors the ring has, 1 to 24. The default is 8.
     pub sensors: usize,
@@ -55,7 +55,7 @@ impl Default for SetOneOptions {
             methods: Method::ALL.to_vec(),
             best: None,
             hopping: HoppingSettings::BALANCED,
-            physics: Physics::PLAIN,
+            physics: Physics::DEFAULT,
             sensors: SENSORS,
             period: Micros::from_millis(60),
             transducer: Transducer::POLAROID_6500,

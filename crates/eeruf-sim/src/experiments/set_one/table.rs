@@ -10,6 +10,7 @@ use crate::experiments::by_name::by_name;
 use crate::experiments::error::ExperimentError;
 use crate::experiments::progress::Progress;
 use crate::{
+    acoustics::Physics,
     methods::Method,
     results::Summary,
     simulation::{Options, simulate_while},
@@ -27,6 +28,8 @@ pub struct SetOne {
     pub first: u64,
     /// How many geometries.
     pub seeds: u64,
+    /// Which effects the alcoves had.
+    pub physics: Physics,
     /// How many sensors the ring had.
     pub sensors: usize,
     /// The period, in microseconds.
@@ -55,7 +58,7 @@ pub struct SetOne {
 /// # Ok::<(), eeruf_sim::experiments::ExperimentError>(())
 /// ```
 pub fn set_one(asked: &SetOneOptions, keep_going: &(dyn Fn(f64) -> bool + Sync)) -> Result<SetOne, ExperimentError> {
-    let &SetOneOptions { first, seeds, readings, ref methods, sensors, period, .. } = asked;
+    let &SetOneOptions { first, seeds, readings, ref methods, physics, sensors, period, .. } = asked;
     if seeds == 0 {
         return Err(ExperimentError::NoSeeds);
     }
@@ -82,7 +85,7 @@ pub fn set_one(asked: &SetOneOptions, keep_going: &(dyn Fn(f64) -> bool + Sync))
         Figures::of(&summaries, &steps)
     };
     let methods = methods.iter().enumerate().map(|(column, &method)| (method, of(column))).collect();
-    Ok(SetOne { first, seeds, sensors, period_us: period.as_micros(), periods, methods })
+    Ok(SetOne { first, seeds, physics, sensors, period_us: period.as_micros(), periods, methods })
 }
 
 /// One alcove under one method: as it is, and with its back wall going to and fro.

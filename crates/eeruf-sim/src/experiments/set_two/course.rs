@@ -6,7 +6,8 @@ use crate::experiments::set_one::{RADIUS_M, SENSORS, SPACING_DEG};
 use crate::{
     acoustics::Transducer,
     geometry::{Point, Pose, Vector},
-    scene::{Air, Material, Pole, Scene, Wall},
+    navigation::LabMate,
+    scene::{Air, Body, Material, Pole, Scene, Wall},
     world::{Clock, Noise, Random, Robot, World, WorldError},
 };
 
@@ -113,6 +114,18 @@ impl Course {
         Robot::ring(pose, SENSORS, SPACING_DEG.to_radians(), RADIUS_M, Transducer::POLAROID_6500)
     }
 
+    /// The platform with its square body, and the sensors of its ring where their axes leave that: on its edge.
+    pub fn robot_with_body(&self, labmate: &LabMate) -> Robot {
+        let mut robot = Robot { body: Some(labmate.body()), ..self.robot() };
+        for sensor in &mut robot.sensors {
+            let heading = sensor.rotation.angle();
+            let out = Vector::new(heading.cos(), heading.sin());
+            let to_edge_m = 0.5 * labmate.side_m / out.x.abs().max(out.y.abs());
+            *sensor = Pose::new(out * to_edge_m, heading);
+        }
+        robot
+    }
+
     /// The other robot: 24 sensors all around that fire 24 times in 80 ms, standing at a place, its clock 40 ppm fast
     /// and started at any time.
     pub fn second_robot(&self, at: Point) -> Robot {
@@ -127,14 +140,16 @@ impl Course {
         }
     }
 
-    /// The lab with its robots. Sound is followed for two bounces at walls, or one at a pole: a choice, for speed.
+    /// The lab with its robots. If the first one has a body, the other one has one too: the disc that its ring is on.
+    /// Sound is followed for two bounces at walls, or one at a pole: a choice, for speed.
     /// Fainter sound over more bounces is left out.
     ///
     /// # Errors
     /// [`WorldError`] if something does not fit.
     pub fn world(&self, robot: Robot, second: Option<Point>) -> Result<World, WorldError> {
         let mut robots = vec![robot];
-        robots.extend(second.map(|at| self.second_robot(at)));
+        let body = robots[0].body.map(|_| Body::Disc(RADIUS_M));
+        robots.extend(second.map(|at| Robot { body, ..self.second_robot(at) }));
         let world = World::new(self.scene()?, robots, Noise::default())?;
         world.with_max_order(ORDER)?.with_pole_order(POLE_ORDER).map(|world| world.with_seed(self.number))
     }
@@ -179,6 +194,22 @@ mod tests {
             let mean = course.poles.iter().map(nearest).sum::<f64>() / course.poles.len() as f64;
             assert!(course.gap_m() >= LEAST_GAP_M && (1.4..1.75).contains(&mean), "{number}: {mean}");
         }
+    }
+
+    #[test]
+    fn a_platform_with_a_body_has_its_sensors_on_its_edge_as_they_looked_before() {
+        let (course, labmate) = (Course::random(0), LabMate::default());
+        let (round, square) = (course.robot(), course.robot_with_body(&labmate));
+        assert_eq!(square.body, Some(Body::Box(0.75, 0.75)));
+        for (before, sensor) in round.sensors.iter().zip(&square.sensors) {
+            assert!((sensor.rotation.angle() - before.rotation.angle()).abs() < 1e-12);
+            let [x, y] = [sensor.translation.x, sensor.translation.y];
+            assert!((x.abs().max(y.abs()) - 0.375).abs() < 1e-12, "{x} {y}");
+            assert!((y.atan2(x) - sensor.rotation.angle()).abs() < 1e-12);
+        }
+        let world = course.world(square, Some(SECOND_AHEAD)).unwrap();
+        assert_eq!(world.robots()[1].body, Some(Body::Disc(RADIUS_M)));
+        assert_eq!(course.world(round, Some(SECOND_AHEAD)).unwrap().robots()[1].body, None);
     }
 
     #[test]

@@ -33,8 +33,12 @@ pub struct SetTwoOptions {
     /// `T_delta`. With odometry it need not leave room for motion, and readings agree by accident the more rarely the
     /// smaller it is.
     pub t_delta: Micros,
-    /// Which effects the lab has. The default is [`Physics::PLAIN`].
+    /// Which effects the lab has. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
+    /// Whether robots have bodies: the platform its square, with the ring on its edge, the other robot the disc that
+    /// its ring is on, which is then an obstacle to sound and to the platform. The default is without, as pilots were
+    /// tuned.
+    pub bodies: bool,
     /// How wrong the platform is about where it is.
     pub odometry_noise: OdometryNoise,
     /// Who steers.
@@ -62,7 +66,8 @@ impl Default for SetTwoOptions {
             labmate: LabMate::default(),
             odometry: true,
             t_delta: Micros::new(150),
-            physics: Physics::PLAIN,
+            physics: Physics::DEFAULT,
+            bodies: false,
             odometry_noise: OdometryNoise::default(),
             pilots: Pilots::Own,
         }

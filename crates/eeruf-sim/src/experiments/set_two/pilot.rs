@@ -12,6 +12,7 @@ use crate::{
     methods::Method,
     navigation::{Driven, Himm, LabMate, SECTORS, Vfh},
     results::{DEFAULT_TOLERANCE_US, Readings},
+    scene::Body,
     simulation::Kinematics,
     world::World,
 };
@@ -130,7 +131,17 @@ impl<'w> Pilot<'w> {
 
     fn is_phantom(&self, point: Point) -> bool {
         let wall = point.x.min(ROOM_M[0] - point.x).min(point.y).min(ROOM_M[1] - point.y);
-        wall > PHANTOM_M && self.world.scene().poles().iter().all(|pole| (pole.centre - point).norm() > PHANTOM_M)
+        wall > PHANTOM_M
+            && self.world.scene().poles().iter().all(|pole| (pole.centre - point).norm() > PHANTOM_M)
+            && self.discs().all(|(centre, radius_m)| (centre - point).norm() - radius_m > PHANTOM_M)
+    }
+
+    /// Centres and radii of the other robots' bodies, which stand.
+    fn discs(&self) -> impl Iterator<Item = (Point, f64)> {
+        self.world.robots()[1..].iter().filter_map(|robot| match robot.body {
+            Some(Body::Disc(radius_m)) => Some((Point::from(robot.pose.translation.vector), radius_m)),
+            _ => None,
+        })
     }
 
     fn place(&self) -> Point {
@@ -161,6 +172,12 @@ impl<'w> Pilot<'w> {
         self.run.track.push(Place { time_s, x_m, y_m, heading_rad: pose.rotation.angle(), speed_m_s });
     }
 
+    /// Ends the course by a contact.
+    pub(super) fn touched(&mut self) {
+        self.run.ending = Ending::Contact;
+        self.run.nearest_m = self.run.nearest_m.max(0.0);
+    }
+
     /// Drives a step on; `false` when the course is over.
     fn step(&mut self) -> bool {
         if self.steps.is_multiple_of(STEPS_PER_LOOK) {
@@ -180,11 +197,12 @@ impl<'w> Pilot<'w> {
                 self.run.nearest_m = self.run.nearest_m.min(clearance);
             }
         }
-        let contact =
-            self.run.nearest_m <= 0.0 || self.world.scene().contact(&self.labmate.body(), &self.state.pose).is_some();
+        let touches = |(centre, radius_m)| self.labmate.clearance_m(&self.state.pose, centre) - radius_m <= 0.0;
+        let contact = self.run.nearest_m <= 0.0
+            || self.discs().any(touches)
+            || self.world.scene().contact(&self.labmate.body(), &self.state.pose).is_some();
         if contact {
-            self.run.ending = Ending::Contact;
-            self.run.nearest_m = self.run.nearest_m.max(0.0);
+            self.touched();
         } else if place.x >= FINISH_X_M {
             self.run.ending = Ending::Finished;
         } else {

@@ -11,10 +11,12 @@ use crate::experiments::by_name::by_name;
 use crate::experiments::error::ExperimentError;
 use crate::experiments::progress::Progress;
 use crate::{
+    acoustics::Physics,
     methods::Method,
     navigation::LabMate,
-    simulation::{self, Options},
+    simulation::{self, Options, SimulationError},
     threads::{Stop, sweep},
+    tracing::PathsError,
     world::Robot,
 };
 
@@ -32,6 +34,10 @@ pub struct SetTwo {
     pub first: u64,
     /// Who steered, see [`Pilots::as_str`](super::Pilots::as_str).
     pub pilot: &'static str,
+    /// Which effects the lab had.
+    pub physics: Physics,
+    /// Whether robots had bodies.
+    pub bodies: bool,
     /// How many courses.
     pub seeds: u64,
     /// Where another robot stood and fired, in metres.
@@ -87,10 +93,10 @@ pub fn set_two(options: &SetTwoOptions, keep_going: &(dyn Fn(f64) -> bool + Sync
         by_method.push(runs.by_ref().take(options.seeds as usize).collect::<Result<Vec<_>, ExperimentError>>()?);
     }
     let methods = options.methods.iter().zip(&by_method).map(|(&method, runs)| (method, Figures::of(runs))).collect();
-    let SetTwoOptions { first, seeds, second_robot, pilots, .. } = *options;
+    let SetTwoOptions { first, seeds, second_robot, pilots, physics, bodies, .. } = *options;
     let second_robot_m = second_robot.map(|at| [at.x, at.y]);
     let (pilot, speed_m_s) = (pilots.as_str(), options.labmate.speed_max_m_s);
-    Ok(SetTwo { first, pilot, seeds, second_robot_m, speed_m_s, methods, runs: by_method })
+    Ok(SetTwo { first, pilot, physics, bodies, seeds, second_robot_m, speed_m_s, methods, runs: by_method })
 }
 
 /// One course by one method.
@@ -105,7 +111,8 @@ fn run_course(
     }
     let course = Course::random(number);
     let consecutive = if method == Method::MultiEcho { MULTI_ECHO_CONSECUTIVE } else { 2 };
-    let robot = Robot { odometry: options.odometry, t_delta: options.t_delta, consecutive, ..course.robot() };
+    let robot = if options.bodies { course.robot_with_body(&options.labmate) } else { course.robot() };
+    let robot = Robot { odometry: options.odometry, t_delta: options.t_delta, consecutive, ..robot };
     let world = course.world(robot, options.second_robot)?.with_physics(options.physics)?;
     let mut piloting = options.pilots.of(method);
     piloting.vfh.speed_max_m_s = options.labmate.speed_max_m_s;
@@ -113,7 +120,16 @@ fn run_course(
     let period_s = f64::from(world.robots()[0].period.as_micros()) * 1e-6;
     let simulation =
         Options { best: options.best.map(|best| best.schedule), ..Options::periods((TIME_S / period_s).ceil() as u32) };
-    simulation::run(&world, method, &simulation, &mut pilot, &Stop::default(), |_| progress.go_on())?;
+    let ran = simulation::run(&world, method, &simulation, &mut pilot, &Stop::default(), |_| progress.go_on());
+    match ran {
+        // A sensor on the platform's edge, or another robot's body, touched something between two of the pilot's steps.
+        Err(SimulationError::Paths { error: PathsError::Inside { .. } | PathsError::Body { .. }, .. })
+            if options.bodies =>
+        {
+            pilot.touched();
+        }
+        ran => _ = ran?,
+    }
     Ok(pilot.finish())
 }
 

@@ -90,7 +90,7 @@ impl PhysicsFile {
         match self {
             Self::Preset(name) => name.parse(),
             Self::Table(table) => {
-                let base = table.preset.as_ref().map_or(Ok(Physics::PLAIN), |name| name.parse())?;
+                let base = table.preset.as_ref().map_or(Ok(Physics::DEFAULT), |name| name.parse())?;
                 Ok(Physics {
                     shadows: table.shadows.unwrap_or(base.shadows),
                     edges: table.edges.unwrap_or(base.edges),

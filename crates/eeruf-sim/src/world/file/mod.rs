@@ -114,7 +114,7 @@ impl WorldParts {
         }
         let noise = file.noise.as_ref().map_or(Noise::default(), |noise| noise.get_ref().noise());
         let physics = match &file.physics {
-            None => Physics::PLAIN,
+            None => Physics::DEFAULT,
             Some(entry) => {
                 entry.get_ref().physics().map_err(|error| source.error(Some(entry.span()), "preset", error))?
             }

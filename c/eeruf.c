@@ -1996,7 +1996,9 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     reading = &event->u.reading;
     hopper = &hopping->hoppers[event->sensor];
     event->phase = hopper->phase;
-    if (reading->kind != EERUF_READING_LATE) {
+    if (reading->kind == EERUF_READING_LATE) {
+        reading->age = hopper->age;
+    } else {
         if (reading->kind == EERUF_READING_STUCK || reading->kind == EERUF_READING_TOO_EARLY) {
             weigh_skipped(hopper, reading->kind, reading->t_echo_us, EERUF_NO_ECHO, reading);
         } else {

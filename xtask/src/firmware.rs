@@ -39,9 +39,9 @@ const HARNESS: &str = "eeruf-hil";
 const BOARD_PROGRAM: &str = "eeruf-hil-board";
 /// What a hopping ring of twelve costs there, as `docs/hopping.md` has it: it may not grow unnoticed.
 const HOPPING: [(&str, u32); 6] =
-    [("idle_poll", 59), ("fire", 253), ("echo", 77), ("reading", 1837), ("period_ended", 3052), ("new_lags", 19_277)];
-const HOPPING_FLASH: u64 = 9224;
-const HOPPING_RAM: u64 = 1244;
+    [("idle_poll", 59), ("fire", 255), ("echo", 77), ("reading", 1449), ("period_ended", 3116), ("new_lags", 18_541)];
+const HOPPING_FLASH: u64 = 8108;
+const HOPPING_RAM: u64 = 1032;
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
 const FLASH: u64 = 4332;

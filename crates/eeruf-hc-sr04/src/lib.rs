@@ -11,7 +11,7 @@
 //! - a sensor that is not there, or edges that get lost on the way: [`HcSr04Ring::health`] says so;
 //! - a schedule that would trigger a sensor again too soon: it is refused when the ring is set up.
 //!
-//! [`HcSr04HoppingRing`] does the same for a [`HoppingRing`](eeruf_core::HoppingRing), of which no sensor stays blind.
+//! The ring can also be a [`HoppingRing`](eeruf_core::HoppingRing), of which no sensor stays blind.
 //!
 //! It is a crate beside `eeruf-core` and not a feature of it, because core has no dependencies at all and a major
 //! version of `embedded-hal` must not become a major version of core.
@@ -41,17 +41,17 @@
 //! ```
 #![no_std]
 
+mod echo_ring;
 mod error;
 mod health;
-mod hopping;
 mod line;
 mod lines;
 mod ring;
 mod settings;
 
+pub use echo_ring::EchoRing;
 pub use error::SetupError;
 pub use health::Health;
-pub use hopping::HcSr04HoppingRing;
 pub use lines::Pins;
 pub use ring::HcSr04Ring;
 pub use settings::Settings;

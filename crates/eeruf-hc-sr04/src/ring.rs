@@ -1,4 +1,4 @@
-//! [`HcSr04Ring`]: the driver of a [`Ring`]. It triggers the sensors that the ring fires, and hands it the echoes.
+//! [`HcSr04Ring`]: the driver of a ring. It triggers the sensors that the ring fires, and hands it the echoes.
 
 use eeruf_core::{
     Edge, EdgeQueue, Instant, Micros, Ring, RingError, RingEvent, ScheduledFiring, Scheduler, SensorError,
@@ -7,38 +7,30 @@ use eeruf_core::{
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
 
+use crate::echo_ring::EchoRing;
 use crate::error::SetupError;
 use crate::health::Health;
 use crate::lines::{Lines, Pins};
 use crate::settings::Settings;
 
-/// A [`Ring`] whose firings are triggers on pins and whose echoes are pulses on lines.
+/// A ring whose firings are triggers on pins and whose echoes are pulses on lines: a [`Ring`], or a
+/// [`HoppingRing`](eeruf_core::HoppingRing) where no sensor may stay blind.
 #[derive(Debug)]
-pub struct HcSr04Ring<S, T, I, D, const K: usize> {
-    ring: Ring<S, K>,
+pub struct HcSr04Ring<R, T, I, D, const K: usize> {
+    ring: R,
     lines: Lines<T, I, D, K>,
 }
 
-impl<'s, T, I, D, const K: usize, const M: usize> HcSr04Ring<ScheduledFiring<'s, K, M>, T, I, D, K> {
-    /// As [`Ring::change_schedule`].
-    ///
-    /// # Errors
-    /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered, and as
-    /// [`Ring::change_schedule`]. The ring then goes on as before.
-    pub fn change_schedule(&mut self, schedule: &'s VerifiedSchedule<K, M>) -> Result<(), SetupError> {
-        self.lines.allow(schedule.min_refire())?;
-        Ok(self.ring.change_schedule(schedule)?)
-    }
-}
-
-impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04Ring<S, T, I, D, K> {
+impl<R: EchoRing, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04Ring<R, T, I, D, K> {
     /// Puts a ring on its pins. Its window should exceed the longest echo by a millisecond, because the line rises only
-    /// about half a millisecond after the trigger.
+    /// about half a millisecond after the trigger. The window of a hopping ring must also be as long as the sensors
+    /// rest, [`Settings::min_retrigger`](crate::Settings::min_retrigger): it may fire a sensor again once its window
+    /// has ended, such as alone.
     ///
     /// # Errors
-    /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered.
-    pub fn new(ring: Ring<S, K>, pins: [Pins<T, I>; K], delay: D, settings: Settings) -> Result<Self, SetupError> {
-        settings.allow(ring.scheduler().min_refire())?;
+    /// [`SetupError::Retrigger`] if the ring fires a sensor again sooner than it may be triggered.
+    pub fn new(ring: R, pins: [Pins<T, I>; K], delay: D, settings: Settings) -> Result<Self, SetupError> {
+        settings.allow(ring.min_refire())?;
         Ok(Self { ring, lines: Lines::new(pins, delay, settings) })
     }
 
@@ -105,7 +97,7 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
     }
 
     /// The ring.
-    pub const fn ring(&self) -> &Ring<S, K> {
+    pub const fn ring(&self) -> &R {
         &self.ring
     }
 
@@ -125,6 +117,13 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
         self.ring.enable(sensor)
     }
 
+    /// As [`Ring::restart`].
+    pub fn restart(&mut self, now: Instant) {
+        self.ring.restart(now);
+    }
+}
+
+impl<S: Scheduler, T, I, D, const K: usize> HcSr04Ring<Ring<S, K>, T, I, D, K> {
     /// As [`Ring::pause`].
     pub fn pause(&mut self) {
         self.ring.pause();
@@ -133,11 +132,6 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
     /// As [`Ring::resume`].
     pub fn resume(&mut self) {
         self.ring.resume();
-    }
-
-    /// As [`Ring::restart`].
-    pub fn restart(&mut self, now: Instant) {
-        self.ring.restart(now);
     }
 
     /// As [`Ring::set_t_delta`].
@@ -162,5 +156,17 @@ impl<S: Scheduler, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04
     /// As there.
     pub fn set_blanking(&mut self, blanking: Micros) -> Result<(), RingError> {
         self.ring.set_blanking(blanking)
+    }
+}
+
+impl<'s, T, I, D, const K: usize, const M: usize> HcSr04Ring<Ring<ScheduledFiring<'s, K, M>, K>, T, I, D, K> {
+    /// As [`Ring::change_schedule`].
+    ///
+    /// # Errors
+    /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered, and as
+    /// [`Ring::change_schedule`]. The ring then goes on as before.
+    pub fn change_schedule(&mut self, schedule: &'s VerifiedSchedule<K, M>) -> Result<(), SetupError> {
+        self.lines.allow(schedule.min_refire())?;
+        Ok(self.ring.change_schedule(schedule)?)
     }
 }

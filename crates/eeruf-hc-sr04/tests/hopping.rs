@@ -5,7 +5,7 @@ use eeruf_core::{
     Edge, HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros, ReadingKind,
     RingEvent, Tally,
 };
-use eeruf_hc_sr04::{HcSr04HoppingRing, Health, Pins, Settings, SetupError};
+use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings, SetupError};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::digital::{Mock, State, Transaction};
 
@@ -37,7 +37,7 @@ fn run(
 ) -> ([Tally<u32>; K], [Health; K], [usize; K]) {
     let mut settings = Settings::default();
     settings.min_retrigger = WINDOW;
-    let mut driver = HcSr04HoppingRing::new(ring(), pins.clone(), NoopDelay, settings).unwrap();
+    let mut driver = HcSr04Ring::new(ring(), pins.clone(), NoopDelay, settings).unwrap();
     let (mut edges, mut tallies, mut fired, mut ended) = (Vec::<Edge>::new(), [Tally::default(); K], [0; K], 0);
     while ended < periods {
         let deadline = driver.next_deadline();
@@ -95,7 +95,7 @@ fn a_line_stuck_high_is_never_triggered_and_costs_the_others_nothing() {
 #[test]
 fn a_window_shorter_than_the_sensors_rest_is_refused() {
     let idle = pins([0; K], None);
-    let driver = HcSr04HoppingRing::new(ring(), idle.clone(), NoopDelay, Settings::default());
+    let driver = HcSr04Ring::new(ring(), idle.clone(), NoopDelay, Settings::default());
     let expected = SetupError::Retrigger { min_refire: WINDOW, min_retrigger: Micros::from_millis(60) };
     assert_eq!(driver.err(), Some(expected));
     for Pins { mut trigger, mut echo } in idle {

@@ -1,14 +1,14 @@
 //! Real wiring against the driver: every fault costs only the sensor that has it, and is named.
 
 use eeruf_core::{
-    Edge, EdgeQueue, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledFiring, Tally,
+    Edge, EdgeQueue, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledRing, Tally,
 };
 use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings, SetupError};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::digital::{Mock, State, Transaction};
 
 const K: usize = 3;
-type Driver<'s> = HcSr04Ring<ScheduledFiring<'s, K>, Mock, Mock, NoopDelay, K>;
+type Driver<'s> = HcSr04Ring<ScheduledRing<'s, K>, Mock, Mock, NoopDelay, K>;
 
 fn schedule(period_ms: u32) -> Schedule<K> {
     let ms = |ms: [u32; K]| ms.map(Micros::from_millis);

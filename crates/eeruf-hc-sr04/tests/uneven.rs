@@ -54,7 +54,7 @@ impl embedded_hal::digital::InputPin for Pin {
     }
 }
 
-type Driver = HcSr04Ring<UnevenFiring<'static, 2>, Pin, Pin, NoopDelay, 2>;
+type Driver = HcSr04Ring<Ring<UnevenFiring<'static, 2>, 2>, Pin, Pin, NoopDelay, 2>;
 
 fn driver(min_retrigger_ms: u32) -> Result<Driver, SetupError> {
     let mut settings = Settings::default();

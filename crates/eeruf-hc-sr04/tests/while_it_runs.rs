@@ -22,7 +22,7 @@ fn fired(event: Option<RingEvent>) -> Option<u8> {
 /// A driver on pins that nobody looks at.
 fn on_no_pins<S: Scheduler, const N: usize>(
     ring: Ring<S, N>,
-) -> Result<HcSr04Ring<S, NoPin, NoPin, NoopDelay, N>, SetupError> {
+) -> Result<HcSr04Ring<Ring<S, N>, NoPin, NoPin, NoopDelay, N>, SetupError> {
     HcSr04Ring::new(ring, std::array::from_fn(|_| Pins { trigger: NoPin, echo: NoPin }), NoopDelay, Settings::default())
 }
 

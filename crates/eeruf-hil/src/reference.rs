@@ -7,7 +7,7 @@ use core::cell::RefCell;
 use core::convert::Infallible;
 use std::rc::Rc;
 
-use eeruf_core::{Edge, Instant, Reading, Ring, RingEvent, ScheduledFiring};
+use eeruf_core::{Edge, Instant, Reading, Ring, RingEvent, ScheduledRing};
 use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings};
 use eeruf_hil::{CONFIG, Record, SCHEDULE, SENSORS, Topic};
 use embedded_hal::delay::DelayNs;
@@ -103,7 +103,7 @@ impl DelayNs for NoDelay {
 }
 
 /// A ring as the board's, on pins of this kind.
-pub(crate) type HostRing<P> = HcSr04Ring<ScheduledFiring<'static, SENSORS>, P, P, NoDelay, SENSORS>;
+pub(crate) type HostRing<P> = HcSr04Ring<ScheduledRing<'static, SENSORS>, P, P, NoDelay, SENSORS>;
 
 /// Sets up a ring as the board does, at the same instant.
 pub(crate) fn ring<P: OutputPin + InputPin>(now: Instant, pin: impl Fn(u8) -> P) -> Result<HostRing<P>, String> {

@@ -2,11 +2,11 @@
 #![no_std]
 
 use eeruf_board::fake_sensors::{Delay, Echo, Trigger};
-use eeruf_core::{EdgeQueue, RingEvent, ScheduledFiring};
+use eeruf_core::{EdgeQueue, RingEvent, ScheduledRing};
 use eeruf_hc_sr04::HcSr04Ring;
 
 /// A ring on the pins of this board.
-pub type BoardRing<const K: usize> = HcSr04Ring<ScheduledFiring<'static, K>, Trigger, Echo, Delay, K>;
+pub type BoardRing<const K: usize> = HcSr04Ring<ScheduledRing<'static, K>, Trigger, Echo, Delay, K>;
 
 /// Runs a ring forever and passes each event to `on_event`.
 pub fn run<const K: usize, const N: usize>(

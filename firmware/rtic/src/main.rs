@@ -11,7 +11,7 @@ mod app {
     use eeruf_board::say::leave;
     use eeruf_board::{say, set_alarm};
     use eeruf_core::tables::PAPER_12;
-    use eeruf_core::{EdgeQueue, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledFiring, Tally};
+    use eeruf_core::{EdgeQueue, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, Tally};
     use eeruf_hc_sr04::{HcSr04Ring, Settings};
 
     static EDGES: EdgeQueue<32> = EdgeQueue::new();
@@ -21,7 +21,7 @@ mod app {
 
     #[local]
     struct Local {
-        ring: HcSr04Ring<ScheduledFiring<'static, 12>, Trigger, Echo, Delay, 12>,
+        ring: HcSr04Ring<ScheduledRing<'static, 12>, Trigger, Echo, Delay, 12>,
         readings: Tally<u32>,
     }
 

@@ -4,7 +4,7 @@ use super::code::HoppingCode;
 use super::lateness::Lateness;
 use super::random::SmallRandom;
 use super::schedule::HoppingSchedule;
-use super::settings::{HoppingListening, HoppingSettings};
+use super::settings::{HoppingListening, HoppingSettings, Pace};
 use super::turn::{SETTLED, SOLO, Turn};
 use crate::schedule::Phase;
 use crate::scheduler::{Limits, Scheduler};
@@ -52,7 +52,7 @@ pub struct HoppingFiring<const K: usize> {
     lateness: Lateness,
     pub(super) code: HoppingCode,
     pub(super) period: Micros,
-    pub(super) settings: HoppingSettings,
+    pub(super) pace: Pace,
     pub(super) window: Micros,
     /// From a firing until its sensor no longer listens, and nothing of it is heard in a window that opens then.
     pub(super) dies: Micros,
@@ -89,7 +89,7 @@ impl<const K: usize> HoppingFiring<K> {
             lateness: Lateness::NEW,
             code: *schedule.code(),
             period: schedule.period(),
-            settings,
+            pace: Pace::of(&settings),
             window,
             dies: reach.saturating_sub(blanking).max(window).saturating_add(Micros::new(1)),
         };
@@ -161,6 +161,8 @@ impl<const K: usize> HoppingFiring<K> {
 }
 
 impl<const K: usize> Scheduler for HoppingFiring<K> {
+    const COMPARES: bool = false;
+
     fn deadline(&self) -> Instant {
         self.due
     }

@@ -143,7 +143,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         let place = usize::from(sensor);
         let (phase, solo, steady) = self.firing().last_firing(sensor, self.tolerated);
         if kind == ReadingKind::Late {
-            return Reading { phase, ..reading };
+            return Reading { phase, age: self.tracker.age(place), ..reading };
         }
         let weighed = match kind {
             ReadingKind::Stuck | ReadingKind::TooEarly => self.tracker.skip(place, kind, t_echo),

@@ -18,15 +18,15 @@ impl<const K: usize> HoppingFiring<K> {
         self.solo_at = None;
         self.length = self.period;
         self.since_solo = self.since_solo.saturating_add(1);
-        self.earned = (self.earned + u16::from(self.settings.solo_rate)).min(MOST);
-        if self.earned >= ONE && self.since_solo >= self.settings.solo_spacing {
+        self.earned = (self.earned + u16::from(self.pace.solo_rate)).min(MOST);
+        if self.earned >= ONE && self.since_solo >= self.pace.solo_spacing {
             if let Some(sensor) = self.longest_unserved() {
                 self.plan_solo(sensor);
                 return;
             }
         }
         self.since_shift = self.since_shift.saturating_add(1);
-        if self.settings.shift_after > 0 && self.since_shift >= self.settings.shift_spacing {
+        if self.pace.shift_after > 0 && self.since_shift >= self.pace.shift_spacing {
             self.shift_all();
         }
         // At most 64 sensors.
@@ -39,7 +39,7 @@ impl<const K: usize> HoppingFiring<K> {
 
     /// The sensor with nothing accepted for longest, if that is long enough.
     fn longest_unserved(&self) -> Option<u8> {
-        let mut longest = (self.settings.solo_after.saturating_sub(1), None);
+        let mut longest = (self.pace.solo_after.saturating_sub(1), None);
         for (sensor, turn) in self.turns.iter().enumerate().take(self.code.sensors()) {
             if turn.unserved > longest.0 && !self.disabled.contains(sensor as u8) {
                 longest = (turn.unserved, Some(sensor as u8));
@@ -120,7 +120,7 @@ impl<const K: usize> HoppingFiring<K> {
         let mut shifted = false;
         for sensor in 0..self.code.sensors() {
             let misfits = self.turns.get(sensor).map_or(0, |turn| turn.misfits);
-            if misfits >= self.settings.shift_after {
+            if misfits >= self.pace.shift_after {
                 shifted |= self.shift(sensor);
             }
         }
@@ -151,13 +151,13 @@ impl<const K: usize> HoppingFiring<K> {
     /// Whether a sensor with this lag keeps the interval from its neighbours, in every phase and across the period's
     /// end.
     fn keeps_interval(&self, sensor: usize, lag: Micros) -> bool {
-        let interval = self.settings.shift_interval;
+        let interval = self.pace.shift_interval;
         if interval == Micros::ZERO {
             return true;
         }
         // Waits differ by no more than the width of the code.
         let least = interval.saturating_add(self.code.width());
-        let n = usize::from(self.settings.neighbours);
+        let n = usize::from(self.pace.neighbours);
         let neighbours = self.turns.iter().enumerate().take(self.code.sensors());
         let mut neighbours = neighbours.filter(|&(other, _)| other != sensor && other.abs_diff(sensor) < n);
         neighbours.all(|(_, turn)| {

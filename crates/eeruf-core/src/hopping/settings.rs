@@ -60,6 +60,26 @@ impl Default for HoppingSettings {
     }
 }
 
+/// The settings of a ring that are about firing: the tracker has the others.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pace {
+    pub(super) solo_rate: u8,
+    pub(super) solo_after: u8,
+    pub(super) solo_spacing: u8,
+    pub(super) shift_after: u8,
+    pub(super) shift_spacing: u8,
+    pub(super) neighbours: u8,
+    pub(super) shift_interval: Micros,
+}
+
+impl Pace {
+    pub(super) const fn of(settings: &HoppingSettings) -> Self {
+        let &HoppingSettings { solo_rate, solo_after, solo_spacing, shift_after, shift_spacing, .. } = settings;
+        let &HoppingSettings { neighbours, shift_interval, .. } = settings;
+        Self { solo_rate, solo_after, solo_spacing, shift_after, shift_spacing, neighbours, shift_interval }
+    }
+}
+
 /// How a [`HoppingRing`](super::HoppingRing) listens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

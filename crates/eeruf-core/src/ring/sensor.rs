@@ -135,6 +135,20 @@ impl<const E: usize> Sensor<E> {
         Verdict { kind: ReadingKind::Late, t_echo, previous: None, age: self.tracker.age() }
     }
 
+    /// Ends the firing; what it heard is compared with nothing.
+    pub(super) fn end(&mut self) -> Verdict {
+        let t_echo = self.held();
+        let kind = match t_echo {
+            _ if self.is(STUCK) => ReadingKind::Stuck,
+            _ if self.is(OUTSIDE) => ReadingKind::TooEarly,
+            Some(_) => ReadingKind::First,
+            None => ReadingKind::NoEcho,
+        };
+        self.tracker.flags &= PHASE;
+        self.echoes = [NO_ECHO; E];
+        Verdict { kind, t_echo: t_echo.filter(|_| kind != ReadingKind::Stuck), previous: None, age: None }
+    }
+
     /// Ends the firing, and compares its reading with the one before.
     pub(super) fn compare(&mut self, rule: Rule, expected_change_us: impl FnOnce() -> i32) -> Verdict {
         let uncomparable = self.is(UNCOMPARABLE);

@@ -62,7 +62,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if late > 0 {
             self.lateness.watch(&mut self.totals);
             self.lateness.note(late);
-            if !self.lateness.add(late) {
+            if !self.lateness.add(late) && S::COMPARES {
                 self.uncompare_next();
             }
         }
@@ -70,7 +70,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         let stretch = self.lateness.stretch(total);
         let stretch = if S::DELAYS_ALL { stretch } else { late };
         self.lateness.remember(sensor, late, stretch);
-        if !self.lateness.comparable(stretch, self.tolerated()) {
+        if !self.lateness.comparable(stretch, self.tolerated()) && S::COMPARES {
             self.uncompare_pending();
         }
     }
@@ -103,7 +103,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if changed {
             self.lateness.begin_anew(&mut self.totals);
         }
-        if changed || uncomparable {
+        if S::COMPARES && (changed || uncomparable) {
             self.uncompare_next();
         }
         let stats = PeriodStats {
@@ -175,7 +175,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             self.ready = self.ready.wrapping_sub(1);
             ended_at = fired + heard.held().unwrap_or_default();
         }
-        let verdict = if listened {
+        let verdict = if listened && !S::COMPARES {
+            heard.end()
+        } else if listened {
             let t_delta = self.listening.t_delta_of(&self.scheduler, sensor);
             heard.compare(Rule { t_delta, agreement: self.agreement }, || expected_change_us(sensor))
         } else {

@@ -46,6 +46,9 @@ pub trait Scheduler {
     const DELAYS_ALL: bool = false;
     /// Whether [`limits_of`](Self::limits_of) says what each sensor may do by itself.
     const UNEVEN: bool = false;
+    /// Whether the ring compares each reading with the one before it. Where something else weighs readings, as in a
+    /// [`HoppingRing`](crate::HoppingRing), every echo is [`First`](crate::ReadingKind::First).
+    const COMPARES: bool = true;
     /// The next step, if one is due. Call again until there is none.
     #[inline]
     fn poll(&mut self, now: Instant) -> Option<SchedulerStep> {

@@ -15,7 +15,6 @@ mod settings;
 mod tests;
 mod track;
 
-use crate::filter::NO_ECHO;
 use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::Phase;
 use crate::time::Micros;
@@ -23,6 +22,7 @@ use crate::time::Micros;
 pub use error::TrackerError;
 use sensor::{Heard, SensorTracks};
 pub use settings::TrackerSettings;
+use track::{LATEST, SILENCE};
 
 /// What one firing was like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,7 +94,8 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
         &self.settings
     }
 
-    /// Takes in one firing of a sensor (from 0): the time of its echo, or `None` without echo. The verdict is
+    /// Takes in one firing of a sensor (from 0): the time of its echo, at most 16.7 s, or `None` without echo. The
+    /// verdict is
     /// [`Accepted`](ReadingKind::Accepted) for an echo near the earliest confirmed track, [`Clear`](ReadingKind::Clear)
     /// for confirmed silence, [`Tentative`](ReadingKind::Tentative) for an echo that few readings support so far and
     /// none contradicts, earlier than what is confirmed; else [`First`](ReadingKind::First),
@@ -108,8 +109,7 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
             return Err(TrackerError::Sensor { sensor, sensors: K });
         };
         let Firing { phase: Phase(phase), solo, steady, expected_change_us } = firing;
-        // The longest duration stands for silence.
-        let t_echo = t_echo.map_or(NO_ECHO, |t_echo| t_echo.as_micros().min(NO_ECHO - 1));
+        let t_echo = t_echo.map_or(SILENCE, |t_echo| t_echo.as_micros().min(LATEST));
         tracks.shift(expected_change_us);
         let heard = Heard { t_echo, phase, solo, steady, tentative_votes };
         let (verdict, candidate) = tracks.push(heard, &self.settings);
@@ -140,8 +140,12 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
 
     /// The echo time of a sensor that is confirmed; `None` if none is, and for confirmed silence.
     pub fn confirmed(&self, sensor: usize) -> Option<Micros> {
-        let confirmed = self.sensors.get(sensor)?.earliest_confirmed()?;
-        (confirmed != NO_ECHO).then_some(Micros::new(confirmed))
+        self.sensors.get(sensor)?.confirmed()
+    }
+
+    /// Firings of a sensor since its last accepted or tentative reading; `None` if none ever was.
+    pub fn age(&self, sensor: usize) -> Option<u16> {
+        self.sensors.get(sensor)?.age()
     }
 
     /// Forgets the tracks of a sensor. The age goes on.

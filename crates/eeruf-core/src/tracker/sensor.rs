@@ -1,10 +1,12 @@
 //! [`SensorTracks`]: the tracks of one sensor, and what a reading does to them.
 
 use super::settings::TrackerSettings;
-use super::track::Track;
-use crate::filter::NO_ECHO;
+use super::track::{SILENCE, Track};
 use crate::reading::{ReadingKind, Verdict};
 use crate::time::Micros;
+
+/// No track is confirmed: later than [`SILENCE`], and no reading is near it.
+const NOTHING: u32 = u32::MAX;
 
 /// The age of a sensor none of whose readings was ever accepted.
 const NEVER: u16 = u16::MAX;
@@ -49,82 +51,97 @@ impl<const H: usize> SensorTracks<H> {
 
     /// All values move with the robot.
     pub(super) fn shift(&mut self, change_us: i32) {
-        for track in &mut self.tracks {
-            track.shift(change_us);
+        if change_us != 0 {
+            for track in &mut self.tracks {
+                track.shift(change_us);
+            }
         }
     }
 
     /// Takes in a reading; also whether it may become a tentative one.
     pub(super) fn push(&mut self, heard: Heard, settings: &TrackerSettings) -> (Verdict, bool) {
         let Heard { t_echo, phase, solo, steady, tentative_votes } = heard;
-        let believed = self.earliest_confirmed();
-        let nearest = self.nearest(t_echo, settings.t_delta.as_micros());
+        let (mut believed, nearest) = self.believed_and_nearest(t_echo, settings.t_delta.as_micros());
         let near = settings.near.as_micros();
-        let is_near = believed.is_some_and(|believed| is_within(believed, t_echo, near));
-        let mut previous = believed;
-        if let Some(Some(track)) = nearest.map(|place| self.tracks.get(place)) {
-            previous = Some(track.t_echo);
-        }
+        let is_near = believed.abs_diff(t_echo) <= near;
+        let previous = self.tracks.get(nearest).map_or(believed, Track::t_echo);
         let mut candidate = false;
         let mut tentative = false;
         if steady {
-            for (place, track) in self.tracks.iter_mut().enumerate().filter(|(_, track)| track.exists()) {
-                if nearest == Some(place) {
+            let before = core::mem::replace(&mut believed, NOTHING);
+            for (place, track) in self.tracks.iter_mut().enumerate() {
+                if !track.exists() {
+                    continue;
+                }
+                let at = track.t_echo();
+                if place == nearest {
                     track.support(t_echo, phase, solo, settings);
                     let votes = track.close_votes();
-                    let earlier = believed.is_none_or(|believed| track.t_echo < believed) && !track.is_silence();
+                    let earlier = track.t_echo() < before.min(SILENCE);
                     candidate = earlier && !track.is_confirmed() && votes >= 2;
                     tentative = earlier && tentative_votes != 0 && (solo || votes >= tentative_votes);
-                } else if is_near && believed == Some(track.t_echo) {
+                } else if is_near && at == before {
                     track.grow_older();
                     track.follow(t_echo);
-                } else if t_echo > track.t_echo {
+                } else if t_echo > at {
                     track.contradict(phase, solo, settings);
                 } else {
                     track.mask(phase);
                 }
+                believed = believed.min(track.believed());
             }
-            if nearest.is_none() && !is_near {
+            if nearest == H && !is_near {
                 self.begin(t_echo, phase, solo);
-                tentative = solo && tentative_votes != 0 && t_echo != NO_ECHO;
+                believed = self.believed();
+                tentative = solo && tentative_votes != 0 && t_echo != SILENCE;
             }
-            self.explain(nearest.is_some() || is_near);
+            self.explain(nearest != H || is_near);
         }
-        let believed = self.earliest_confirmed();
-        let confirmed = believed.is_some_and(|believed| is_within(believed, t_echo, near));
-        let kind = match (confirmed, t_echo == NO_ECHO) {
+        let confirmed = believed.abs_diff(t_echo) <= near;
+        let kind = match (confirmed, t_echo == SILENCE) {
             (true, true) => ReadingKind::Clear,
             (true, false) => ReadingKind::Accepted,
             (false, true) => ReadingKind::NoEcho,
             (false, false) if tentative => ReadingKind::Tentative,
-            (false, false) if previous.is_none() => ReadingKind::First,
+            (false, false) if previous == NOTHING => ReadingKind::First,
             (false, false) => ReadingKind::Rejected,
         };
-        let previous = previous.filter(|&previous| previous != NO_ECHO).map(Micros::new);
-        (self.verdict(kind, t_echo, previous), candidate)
+        (self.verdict(kind, duration(t_echo), duration(previous)), candidate)
     }
 
     /// A firing that says nothing about the echo time.
     pub(super) fn skip(&mut self, kind: ReadingKind, t_echo: Option<Micros>) -> Verdict {
-        self.verdict(kind, t_echo.map_or(NO_ECHO, Micros::as_micros), None)
+        self.verdict(kind, t_echo, None)
     }
 
     /// Whether nothing in range is confirmed.
     pub(super) fn is_clear(&self) -> bool {
-        self.earliest_confirmed() == Some(NO_ECHO)
+        self.believed() == SILENCE
     }
 
-    /// The echo time that counts now; [`NO_ECHO`] if nothing in range is confirmed.
-    pub(super) fn earliest_confirmed(&self) -> Option<u32> {
-        self.tracks.iter().filter(|track| track.exists() && track.is_confirmed()).map(|track| track.t_echo).min()
+    /// The echo time that counts now; `None` if none is confirmed, and if it is confirmed that nothing is in range.
+    pub(super) fn confirmed(&self) -> Option<Micros> {
+        duration(self.believed())
     }
 
-    fn nearest(&self, t_echo: u32, t_delta: u32) -> Option<usize> {
-        let near = |(place, track): (usize, &Track)| {
-            let within = track.exists() && is_within(track.t_echo, t_echo, t_delta);
-            within.then(|| (place, track.distance(t_echo)))
-        };
-        self.tracks.iter().enumerate().filter_map(near).min_by_key(|&(_, distance)| distance).map(|(place, _)| place)
+    /// The earliest confirmed track, [`SILENCE`] among them, or [`NOTHING`].
+    fn believed(&self) -> u32 {
+        self.tracks.iter().map(Track::believed).min().unwrap_or(NOTHING)
+    }
+
+    /// What is [believed](Self::believed), and the place of the track nearest to a reading and within `t_delta` of it,
+    /// or `H`.
+    #[inline(always)]
+    fn believed_and_nearest(&self, t_echo: u32, t_delta: u32) -> (u32, usize) {
+        let (mut believed, mut nearest, mut within) = (NOTHING, H, t_delta + 1);
+        for (place, track) in self.tracks.iter().enumerate() {
+            believed = believed.min(track.believed());
+            let distance = track.distance(t_echo);
+            if distance < within && track.exists() {
+                (nearest, within) = (place, distance);
+            }
+        }
+        (believed, nearest)
     }
 
     fn begin(&mut self, t_echo: u32, phase: u8, solo: bool) {
@@ -140,18 +157,21 @@ impl<const H: usize> SensorTracks<H> {
         self.unexplained = (held + (target - held) / 16) as u8;
     }
 
-    fn verdict(&mut self, kind: ReadingKind, t_echo: u32, previous: Option<Micros>) -> Verdict {
+    fn verdict(&mut self, kind: ReadingKind, t_echo: Option<Micros>, previous: Option<Micros>) -> Verdict {
         self.age = match kind {
             ReadingKind::Accepted | ReadingKind::Tentative => 0,
             _ if self.age >= NEVER - 1 => self.age,
             _ => self.age + 1,
         };
-        let t_echo = (t_echo != NO_ECHO).then_some(Micros::new(t_echo));
-        Verdict { kind, t_echo, previous, age: (self.age != NEVER).then_some(self.age) }
+        Verdict { kind, t_echo, previous, age: self.age() }
+    }
+
+    pub(super) fn age(&self) -> Option<u16> {
+        (self.age != NEVER).then_some(self.age)
     }
 }
 
-/// Whether two readings are this close, where silence is close to silence alone.
-const fn is_within(one: u32, other: u32, most: u32) -> bool {
-    if one == NO_ECHO || other == NO_ECHO { one == other } else { one.abs_diff(other) <= most }
+/// A track's time, unless there is none or it is silence.
+fn duration(t_echo: u32) -> Option<Micros> {
+    (t_echo < SILENCE).then_some(Micros::new(t_echo))
 }

@@ -1,31 +1,40 @@
 //! [`Track`]: one echo time that a sensor may have, and how sure the tracker is of it.
 
 use super::settings::TrackerSettings;
-use crate::filter::NO_ECHO;
+
+/// The hypothesis that nothing is in range: later than all echoes, and further from each of them than any setting
+/// allows two readings to be apart.
+pub(super) const SILENCE: u32 = (1 << ECHO_BITS) - 1;
+/// The latest echo: 16.7 s. All later ones count as this.
+pub(super) const LATEST: u32 = SILENCE - (1 << 16);
 
 /// One hypothesis about a sensor: that its own echo comes at this time.
 ///
 /// It is *tentative* until enough phases support it, then *confirmed*; while nothing supports it, it *coasts*.
+///
+/// Eight bytes, since a ring keeps four of them for each sensor.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Track {
-    /// In microseconds; [`NO_ECHO`] is the hypothesis that nothing is in range.
-    pub(super) t_echo: u32,
+    /// The echo time in microseconds, or [`SILENCE`]; in the lowest byte the age: firings since it was last supported.
+    echo_and_age: u32,
     /// The phases, modulo 16, in which it was supported when the sensor last heard something that could tell. Phases
     /// that share a bit count once, so a cycle longer than 16 phases only makes the rule stricter.
     phases: u16,
-    /// Votes that came from solo periods beyond their phases' own.
-    solo_votes: u8,
-    /// 0: there is no track.
-    score: u8,
-    /// Phases that supported it closely.
-    close: u8,
-    flags: u8,
-    /// Firings since it was last supported.
-    pub(super) age: u8,
+    /// The score, 0 for no track; above it the votes that came from solo periods beyond their phases' own.
+    score_and_solo: u8,
+    /// How many phases supported it closely, and the flags.
+    close_and_flags: u8,
 }
 
+const ECHO_BITS: u32 = 24;
+const AGE: u32 = 0xff;
+/// Scores and votes are at most 15.
+const SCORE: u8 = 0x0f;
+const SOLO_VOTE: u8 = 0x10;
 const CONFIRMED: u8 = 1;
 const CONTRADICTED: u8 = 2;
+const CLOSE_VOTE: u8 = 4;
+const MOST_CLOSE: u8 = !(CONFIRMED | CONTRADICTED);
 
 const fn bit(phase: u8) -> u16 {
     1 << (phase & 15)
@@ -33,45 +42,58 @@ const fn bit(phase: u8) -> u16 {
 
 impl Track {
     pub(super) const NONE: Self =
-        Self { t_echo: NO_ECHO, phases: 0, solo_votes: 0, score: 0, close: 0, flags: 0, age: u8::MAX };
+        Self { echo_and_age: (SILENCE << 8) | AGE, phases: 0, score_and_solo: 0, close_and_flags: 0 };
 
     /// After the first reading at this time.
     pub(super) const fn new(t_echo: u32, phase: u8, solo: bool) -> Self {
-        let score = if solo { 2 } else { 1 };
-        Self { t_echo, phases: bit(phase), solo_votes: score - 1, score, close: 1, flags: 0, age: 0 }
+        let score_and_solo = if solo { 2 + SOLO_VOTE } else { 1 };
+        Self { echo_and_age: t_echo << 8, phases: bit(phase), score_and_solo, close_and_flags: CLOSE_VOTE }
     }
 
+    #[inline(always)]
     pub(super) const fn exists(&self) -> bool {
-        self.score != 0
+        self.score_and_solo & SCORE != 0
     }
 
-    pub(super) const fn is_silence(&self) -> bool {
-        self.t_echo == NO_ECHO
+    /// In microseconds; [`SILENCE`] is the hypothesis that nothing is in range.
+    #[inline(always)]
+    pub(super) const fn t_echo(&self) -> u32 {
+        self.echo_and_age >> 8
     }
 
+    /// Its time if it is confirmed; else later than all.
+    #[inline(always)]
+    pub(super) const fn believed(&self) -> u32 {
+        if self.exists() && self.is_confirmed() { self.t_echo() } else { u32::MAX }
+    }
+
+    #[inline(always)]
     pub(super) const fn is_confirmed(&self) -> bool {
-        self.flags & CONFIRMED != 0
+        self.close_and_flags & CONFIRMED != 0
     }
 
     /// How many phases supported it closely, unless it was ever contradicted.
     pub(super) const fn close_votes(&self) -> u8 {
-        if self.flags & CONTRADICTED == 0 { self.close } else { 0 }
+        if self.close_and_flags & CONTRADICTED == 0 { self.close_and_flags / CLOSE_VOTE } else { 0 }
     }
 
-    /// What is replaced first: the less, the sooner.
-    pub(super) fn rank(&self) -> (bool, u8, u8) {
-        (self.is_confirmed(), self.score, u8::MAX - self.age)
+    /// What is replaced first: the less, the sooner. First what is not confirmed, then by score, then by age.
+    pub(super) const fn rank(&self) -> u32 {
+        let confirmed = (self.close_and_flags & CONFIRMED) as u32;
+        let score = (self.score_and_solo & SCORE) as u32;
+        (confirmed << 24) | (score << 8) | (AGE - (self.echo_and_age & AGE))
     }
 
     /// How far a reading is from it.
+    #[inline(always)]
     pub(super) const fn distance(&self, t_echo: u32) -> u32 {
-        self.t_echo.abs_diff(t_echo)
+        self.t_echo().abs_diff(t_echo)
     }
 
     /// Moves with the robot, by this many microseconds.
     pub(super) fn shift(&mut self, change_us: i32) {
-        if !self.is_silence() {
-            self.t_echo = self.t_echo.saturating_add_signed(change_us).min(NO_ECHO - 1);
+        if self.t_echo() != SILENCE {
+            self.set_t_echo(self.t_echo().saturating_add_signed(change_us).min(LATEST));
         }
     }
 
@@ -79,27 +101,37 @@ impl Track {
     pub(super) fn support(&mut self, t_echo: u32, phase: u8, solo: bool, settings: &TrackerSettings) {
         let new = self.phases & bit(phase) == 0;
         let is_close = self.distance(t_echo) <= settings.tentative_within.as_micros();
-        self.close = self.close.saturating_add(u8::from(new && is_close));
+        if new && is_close && self.close_and_flags < MOST_CLOSE {
+            self.close_and_flags += CLOSE_VOTE;
+        }
         self.phases |= bit(phase);
-        self.solo_votes = (self.solo_votes + u8::from(solo)).min(settings.votes);
+        let (mut score, mut solo_votes) = (self.score_and_solo & SCORE, self.score_and_solo / SOLO_VOTE);
+        if solo {
+            solo_votes = (solo_votes + 1).min(settings.votes);
+        }
         // A path repeats itself in its own phase for ever, so that says nothing new of a track yet to be confirmed.
         if new || solo || self.is_confirmed() {
-            self.score = (self.score + 1 + u8::from(solo)).min(settings.score_limit);
+            score = (score + 1 + u8::from(solo)).min(settings.score_limit);
         }
-        self.age = 0;
-        if !self.is_silence() {
+        self.score_and_solo = score | (solo_votes * SOLO_VOTE);
+        if self.t_echo() == SILENCE {
+            self.echo_and_age &= !AGE;
+        } else {
             // A quarter of the way, so that one early or late edge does not move it far.
-            self.t_echo = self.t_echo.wrapping_add_signed(self.to(t_echo) / 4);
+            self.echo_and_age = self.t_echo().wrapping_add_signed(self.to(t_echo) / 4) << 8;
         }
-        if self.votes() >= settings.votes && self.score >= settings.votes {
-            self.flags |= CONFIRMED;
+        if score >= settings.votes && self.phases.count_ones() as u8 + solo_votes >= settings.votes {
+            self.close_and_flags |= CONFIRMED;
         }
     }
 
     /// It cannot be compared with what comes unless it is confirmed.
     pub(super) fn firing_changed(&mut self) {
         if !self.is_confirmed() {
-            (self.phases, self.close, self.score) = (0, 0, self.score.min(1));
+            let score = (self.score_and_solo & SCORE).min(1);
+            self.phases = 0;
+            self.score_and_solo = (self.score_and_solo & !SCORE) | score;
+            self.close_and_flags &= CONTRADICTED;
         }
     }
 
@@ -110,9 +142,9 @@ impl Track {
             (false, true) => settings.contradiction,
             (false, false) => 1,
         };
-        self.score = self.score.saturating_sub(weight);
-        self.flags |= CONTRADICTED;
-        self.solo_votes = 0;
+        // Without its votes of solo periods.
+        self.score_and_solo = (self.score_and_solo & SCORE).saturating_sub(weight);
+        self.close_and_flags |= CONTRADICTED;
         self.grow_older();
         self.miss(phase);
     }
@@ -129,27 +161,63 @@ impl Track {
     /// track confirmed.
     fn miss(&mut self, phase: u8) {
         self.phases &= !bit(phase);
-        if self.votes() < 2 {
-            self.flags &= !CONFIRMED;
+        let solo_votes = self.score_and_solo / SOLO_VOTE;
+        let several_phases = self.phases & self.phases.wrapping_sub(1) != 0;
+        let two_votes = several_phases || solo_votes + u8::from(self.phases != 0) >= 2;
+        if !two_votes {
+            self.close_and_flags &= !CONFIRMED;
         }
     }
 
     pub(super) fn grow_older(&mut self) {
-        self.age = self.age.saturating_add(1);
+        if self.echo_and_age & AGE != AGE {
+            self.echo_and_age += 1;
+        }
     }
 
     /// Follows an echo that moves faster than its support: three tenths of the way.
     pub(super) fn follow(&mut self, t_echo: u32) {
-        self.t_echo = self.t_echo.wrapping_add_signed(self.to(t_echo) * 3 / 10);
+        let way = self.to(t_echo);
+        let step = tenth(3 * way.unsigned_abs()) as i32;
+        self.set_t_echo(self.t_echo().wrapping_add_signed(if way < 0 { -step } else { step }));
     }
 
-    /// How much later a reading is, which is at most 65,535 us: it supports the track, or is near it. In 32 bits, since
-    /// small processors take a thousand instructions to divide longer numbers.
+    fn set_t_echo(&mut self, t_echo: u32) {
+        self.echo_and_age = t_echo << 8 | (self.echo_and_age & AGE);
+    }
+
+    /// How much later a reading is, which is at most 65,535 us: it supports the track, or is near it.
     const fn to(&self, t_echo: u32) -> i32 {
-        t_echo.wrapping_sub(self.t_echo) as i32
+        t_echo.wrapping_sub(self.t_echo()) as i32
+    }
+}
+
+/// A tenth, rounded down, by shifts: small processors take a hundred instructions to divide.
+const fn tenth(number: u32) -> u32 {
+    // Four fifths of a bit less than the number, to 32 binary places; then an eighth of that, at most one too small.
+    let mut sum = (number >> 1) + (number >> 2);
+    sum += sum >> 4;
+    sum += sum >> 8;
+    sum += sum >> 16;
+    let tenth = sum >> 3;
+    let rest = number - tenth * 10;
+    if rest > 9 { tenth + 1 } else { tenth }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_track_takes_eight_bytes() {
+        assert_eq!(size_of::<Track>(), 8);
     }
 
-    const fn votes(&self) -> u8 {
-        self.phases.count_ones() as u8 + self.solo_votes
+    #[test]
+    fn a_tenth_by_shifts_is_a_tenth() {
+        let near_powers = (0..32).flat_map(|bit| (0..200).map(move |more| (1_u32 << bit).wrapping_add(more)));
+        for number in (0..400_000).chain(near_powers).chain(u32::MAX - 100_000..=u32::MAX) {
+            assert_eq!(tenth(number), number / 10, "{number}");
+        }
     }
 }

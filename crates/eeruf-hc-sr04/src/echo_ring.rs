@@ -1,0 +1,80 @@
+//! [`EchoRing`]: what the driver asks of a ring.
+
+use eeruf_core::{HoppingRing, Instant, Micros, Ring, RingEvent, Scheduler, SensorError};
+
+/// A ring that an [`HcSr04Ring`](crate::HcSr04Ring) can drive: [`Ring`], and [`HoppingRing`], of which no sensor stays
+/// blind. Each function does what the ring's own of the same name does.
+pub trait EchoRing {
+    /// The next event, if there is one at `now`; see [`Ring::poll_expecting`].
+    fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent>;
+    /// When to poll next.
+    fn next_deadline(&self) -> Instant;
+    /// No sensor fires again within this time of firing.
+    fn min_refire(&self) -> Micros;
+    /// An edge on the echo line of a sensor.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError>;
+    /// When the sensor of the last [`Fire`](RingEvent::Fire) really fired.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError>;
+    /// The echo line of a sensor was high when it was to fire.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    fn stuck(&mut self, sensor: u8) -> Result<(), SensorError>;
+    /// Stops a sensor from firing.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    fn disable(&mut self, sensor: u8) -> Result<(), SensorError>;
+    /// Lets a sensor fire again.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    fn enable(&mut self, sensor: u8) -> Result<(), SensorError>;
+    /// Starts again at `now`.
+    fn restart(&mut self, now: Instant);
+}
+
+/// Hands everything on to the ring's own functions; rings differ in how they say how soon a sensor fires again.
+macro_rules! echo_ring {
+    ([$($generics:tt)*] $ring:ty, $min_refire:expr) => {
+        impl<$($generics)*> EchoRing for $ring {
+            fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+                self.poll_expecting(now, expected_change_us)
+            }
+            fn next_deadline(&self) -> Instant {
+                self.next_deadline()
+            }
+            fn min_refire(&self) -> Micros {
+                let min_refire: fn(&Self) -> Micros = $min_refire;
+                min_refire(self)
+            }
+            fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
+                self.echo(sensor, at)
+            }
+            fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
+                self.fired(sensor, at)
+            }
+            fn stuck(&mut self, sensor: u8) -> Result<(), SensorError> {
+                self.stuck(sensor)
+            }
+            fn disable(&mut self, sensor: u8) -> Result<(), SensorError> {
+                self.disable(sensor)
+            }
+            fn enable(&mut self, sensor: u8) -> Result<(), SensorError> {
+                self.enable(sensor)
+            }
+            fn restart(&mut self, now: Instant) {
+                self.restart(now);
+            }
+        }
+    };
+}
+
+echo_ring!([S: Scheduler, const K: usize] Ring<S, K>, |ring| ring.scheduler().min_refire());
+echo_ring!([const K: usize, const H: usize] HoppingRing<K, H>, |ring| ring.firing().min_refire());

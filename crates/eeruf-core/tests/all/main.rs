@@ -4,6 +4,7 @@ mod brute_force;
 mod common;
 mod conditions_naive;
 mod contract;
+mod edges;
 mod fired;
 mod hopping;
 mod lateness;

@@ -30,7 +30,11 @@ pub fn check(bytes: &[u8]) {
     // Times that are no whole ticks are not tried.
     if small && claim.period <= 40 {
         for period in 1..claim.bound {
-            assert_eq!(judge::feasible(&claim.problem, period), None, "a period of {period} ticks, shorter than proven");
+            assert_eq!(
+                judge::feasible(&claim.problem, period),
+                None,
+                "a period of {period} ticks, shorter than proven"
+            );
         }
     }
     if small {

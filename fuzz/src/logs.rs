@@ -77,9 +77,12 @@ pub fn tables(bytes: &[u8]) {
     let wide = Table { range_unit, time_unit, ..Table::default() };
     let timed = Table { time: names.first().cloned(), ..wide.clone() };
     let long = match &names[..] {
-        [time, sensor, range, ..] => {
-            Table { time: Some(time.clone()), sensor: Some(sensor.clone()), ranges: vec![range.clone()], ..wide.clone() }
-        }
+        [time, sensor, range, ..] => Table {
+            time: Some(time.clone()),
+            sensor: Some(sensor.clone()),
+            ranges: vec![range.clone()],
+            ..wide.clone()
+        },
         _ => timed.clone(),
     };
     for table in [wide, timed, long] {

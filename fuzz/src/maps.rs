@@ -15,7 +15,8 @@ const MOST: usize = 10_000;
 
 /// Reads the map, and turns it into walls.
 pub fn check(bytes: &[u8]) {
-    let picture = bytes.windows(3).position(|three| matches!(three, b"\nP2" | b"\nP5")).map_or(bytes.len(), |at| at + 1);
+    let picture =
+        bytes.windows(3).position(|three| matches!(three, b"\nP2" | b"\nP5")).map_or(bytes.len(), |at| at + 1);
     let (yaml, pgm) = (FOLDER.join("map.yaml"), FOLDER.join("map.pgm"));
     fs::write(&yaml, &bytes[..picture]).expect("a file can be written");
     fs::write(&pgm, &bytes[picture..]).expect("a file can be written");
@@ -36,6 +37,7 @@ pub fn check(bytes: &[u8]) {
     assert!(exact.is_empty() || exact.len() >= 4);
     let straight = grid.walls(grid.default_tolerance_m());
     assert!(straight.len() <= exact.len());
-    let finite = |wall: &eeruf_sim::Wall| [wall.from.x, wall.from.y, wall.to.x, wall.to.y].iter().all(|m| m.is_finite());
+    let finite =
+        |wall: &eeruf_sim::Wall| [wall.from.x, wall.from.y, wall.to.x, wall.to.y].iter().all(|m| m.is_finite());
     assert!(exact.iter().chain(&straight).all(finite));
 }

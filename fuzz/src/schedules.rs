@@ -68,4 +68,3 @@ fn ring(text: &str) {
         Err(error) => one_line(&error.to_string()),
     }
 }
-

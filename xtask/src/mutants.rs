@@ -61,8 +61,8 @@ impl Plan {
         Path::new("target/mutants").join(format!("{}{part}", if self.search { "search" } else { "core" }))
     }
 
-    /// Which mutants are meant.
-    fn selection(&self) -> Vec<String> {
+    /// The files whose mutants are meant.
+    fn source(&self) -> Vec<String> {
         let mut args = vec!["--package".to_owned(), "eeruf-core".to_owned()];
         let search = "crates/eeruf-core/src/search/**";
         let (which, files): (_, &[String]) = match (&*self.files, self.search) {
@@ -73,42 +73,30 @@ impl Plan {
         for file in files {
             args.extend([which.to_owned(), file.clone()]);
         }
-        if let Some(shard) = self.part() {
-            // Every N-th mutant, so that each part has some of each file.
-            args.extend(["--shard", shard, "--sharding", "round-robin"].map(str::to_owned));
-        }
         args
     }
 
-    /// How to try these mutants. They are given by name: cargo-mutants would take those known to be caught away before
-    /// it deals out parts, and each part would be another one when it is taken up again.
-    fn args<'m>(&self, round: Round, mutants: impl Iterator<Item = &'m String>) -> Vec<String> {
-        let mut args = vec!["mutants", "--package", "eeruf-core", "--no-shuffle", "--colors", "never"];
-        args.push("--output");
-        let mut args: Vec<String> = args.into_iter().map(str::to_owned).collect();
+    /// Which of their mutants.
+    fn shard(&self) -> Vec<String> {
+        // Every N-th mutant, so that each part has some of each file.
+        let shard = self.part().map(|part| ["--shard", part, "--sharding", "round-robin"].map(str::to_owned));
+        shard.into_iter().flatten().collect()
+    }
+
+    /// How to try those that are not listed as caught before.
+    fn args(&self, round: Round) -> Vec<String> {
+        let mut args: Vec<String> =
+            ["mutants", "--iterate", "--no-shuffle", "--colors", "never", "--output"].map(str::to_owned).to_vec();
         args.push(self.folder().display().to_string());
-        for mutant in mutants {
-            args.extend(["--re".to_owned(), format!("^{}$", escaped(mutant))]);
-        }
+        args.extend(self.source());
         if let Round::Quick = round {
-            args.extend(["--", "--lib", "--test", "all", "--"].map(str::to_owned));
+            // Nothing else is built.
+            args.extend(["--cargo-arg=--lib", "--cargo-arg=--test=all", "--", "--"].map(str::to_owned));
             let slow: &[&str] = if self.search { &SLOW_OF_SEARCH } else { &SLOW_OF_REST };
             args.extend(slow.iter().flat_map(|name| ["--skip".to_owned(), (*name).to_owned()]));
         }
         args
     }
-}
-
-/// A regular expression for this text alone.
-fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for letter in text.chars() {
-        if r".+*?()|[]{}^$\".contains(letter) {
-            escaped.push('\\');
-        }
-        escaped.push(letter);
-    }
-    escaped
 }
 
 /// Reads a part, "K/N".
@@ -204,6 +192,15 @@ fn lines(file: &Path) -> BTreeSet<String> {
     std::fs::read_to_string(file).unwrap_or_default().lines().map(str::to_owned).collect()
 }
 
+/// Lists mutants as caught before, which cargo-mutants then leaves out. It is not told to deal out parts: it would do so
+/// after it has left out these, so that a part which is taken up again would be another one.
+fn leave_out<'m>(folder: &Path, mutants: impl Iterator<Item = &'m String>) -> io::Result<()> {
+    let out = folder.join("mutants.out");
+    std::fs::create_dir_all(&out)?;
+    let text: String = mutants.map(|mutant| format!("{mutant}\n")).collect();
+    std::fs::write(out.join("previously_caught.txt"), text)
+}
+
 /// Breaks what the plan names, and says what no test noticed.
 pub(crate) fn run(plan: &Plan) -> ExitCode {
     let installed = Command::new("cargo").args(["mutants", "--version"]).output().is_ok_and(|out| out.status.success());
@@ -227,12 +224,15 @@ fn try_all(plan: &Plan) -> Result<usize, String> {
     let failed = |error: io::Error| format!("{}: {error}", folder.display());
     let cargo_failed = |error: io::Error| format!("cargo mutants: {error}");
     std::fs::create_dir_all(&folder).map_err(failed)?;
-    let listed = Command::new("cargo").args(["mutants", "--list"]).args(plan.selection()).output();
-    let listed = listed.map_err(cargo_failed)?;
-    if !listed.status.success() {
-        return Err(String::from_utf8_lossy(&listed.stderr).into_owned());
-    }
-    let wanted: BTreeSet<String> = String::from_utf8_lossy(&listed.stdout).lines().map(str::to_owned).collect();
+    let list = |more: Vec<String>| -> Result<BTreeSet<String>, String> {
+        let listed = Command::new("cargo").args(["mutants", "--list"]).args(plan.source()).args(more).output();
+        let listed = listed.map_err(cargo_failed)?;
+        if !listed.status.success() {
+            return Err(String::from_utf8_lossy(&listed.stderr).into_owned());
+        }
+        Ok(String::from_utf8_lossy(&listed.stdout).lines().map(str::to_owned).collect())
+    };
+    let (all, wanted) = (list(vec![])?, list(plan.shard())?);
     let build = std::env::current_dir().map_err(failed)?.join("target/mutants/build");
     let mut outcomes = Outcomes::read(&folder);
     for round in [Round::Quick, Round::All] {
@@ -248,9 +248,9 @@ fn try_all(plan: &Plan) -> Result<usize, String> {
         println!("{} mutants to try in round {round:?}", open.len());
         outcomes.missed.retain(|mutant| !open.contains(&mutant));
         std::fs::write(&began_in, format!("{round:?}")).map_err(failed)?;
-        let args = plan.args(round, open.iter().copied());
+        leave_out(&folder, all.iter().filter(|mutant| !open.contains(mutant))).map_err(failed)?;
         let mut cargo = Command::new("cargo");
-        cargo.args(args).env("CARGO_TARGET_DIR", &build).env("CARGO_INCREMENTAL", "1");
+        cargo.args(plan.args(round)).env("CARGO_TARGET_DIR", &build).env("CARGO_INCREMENTAL", "1");
         let status = cargo.status().map_err(cargo_failed)?;
         outcomes.add(&folder, round).map_err(failed)?;
         // 0 is all caught, 2 some missed and 3 some without end; anything else is trouble, such as tests that fail
@@ -282,13 +282,12 @@ mod tests {
     fn the_search_is_tried_in_tenths_unless_another_part_is_named() {
         let tenth = plan(true, None);
         assert_eq!((tenth.part(), tenth.folder()), (Some("0/10"), "target/mutants/search-0-of-10".into()));
-        let other = plan(true, Some("3/20")).selection().join(" ");
-        assert!(
-            other.ends_with("--file crates/eeruf-core/src/search/** --shard 3/20 --sharding round-robin"),
-            "{other}"
-        );
-        let rest = plan(false, None).selection().join(" ");
-        assert!(rest.ends_with("--exclude crates/eeruf-core/src/search/**"), "{rest}");
+        let other = plan(true, Some("3/20"));
+        assert_eq!(other.source().join(" "), "--package eeruf-core --file crates/eeruf-core/src/search/**");
+        assert_eq!(other.shard().join(" "), "--shard 3/20 --sharding round-robin");
+        let rest = plan(false, None);
+        assert!(rest.source().join(" ").ends_with("--exclude crates/eeruf-core/src/search/**"), "{rest:?}");
+        assert!(rest.shard().is_empty());
     }
 
     #[test]
@@ -300,14 +299,13 @@ mod tests {
 
     #[test]
     fn the_quick_tests_come_first_and_differ_for_the_search() {
-        let mutant = "src/a.rs:1:2: replace A<'_, K>::b -> u8 with (c + 1)".to_owned();
-        let quick = plan(false, Some("0/17")).args(Round::Quick, [&mutant].into_iter()).join(" ");
-        assert!(quick.contains(r"--re ^src/a\.rs:1:2: replace A<'_, K>::b -> u8 with \(c \+ 1\)$ -- --lib"), "{quick}");
-        assert!(quick.contains("--skip brute_force::"), "{quick}");
-        let search = plan(true, None).args(Round::Quick, [].into_iter()).join(" ");
+        let quick = plan(false, Some("0/17")).args(Round::Quick).join(" ");
+        assert!(quick.contains("--cargo-arg=--lib --cargo-arg=--test=all -- -- --skip every_code"), "{quick}");
+        assert!(quick.contains("--skip brute_force::") && !quick.contains("--shard"), "{quick}");
+        let search = plan(true, None).args(Round::Quick).join(" ");
         assert!(!search.contains("brute_force"), "what judges the search is needed there: {search}");
-        let all = plan(false, None).args(Round::All, [].into_iter()).join(" ");
-        assert!(all.ends_with("--output target/mutants/core"), "{all}");
+        let all = plan(false, None).args(Round::All).join(" ");
+        assert!(all.ends_with("--exclude crates/eeruf-core/src/search/**"), "{all}");
     }
 
     #[test]

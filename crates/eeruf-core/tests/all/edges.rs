@@ -1,7 +1,7 @@
 //! The queue of edges between two threads: the one thing in the core that two run at once.
 //!
 //! Miri replays it under many interleavings, with stores that other threads see late, as on ARM:
-//! `MIRIFLAGS=-Zmiri-many-seeds=0..200 cargo +nightly miri test -p eeruf-core --test all edges::`.
+//! `MIRIFLAGS=-Zmiri-many-seeds=0..200 cargo +nightly miri test -p eeruf-core --test all edges_pass`.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;

@@ -3,27 +3,27 @@
 //! The targets in `fuzz_targets` only call these, so that a finding can be replayed by an ordinary test. Readers of
 //! files take the file itself, so that any file of the repository is a seed.
 
-#[cfg(feature = "files")]
+#[cfg(feature = "certificates")]
 pub mod certificates;
 pub mod filter;
-#[cfg(feature = "files")]
+#[cfg(feature = "logs")]
 pub mod logs;
-#[cfg(feature = "files")]
+#[cfg(feature = "scenes")]
 pub mod maps;
 pub mod ring;
-#[cfg(feature = "files")]
+#[cfg(feature = "scenes")]
 pub mod scenes;
-#[cfg(feature = "files")]
+#[cfg(feature = "schedules")]
 pub mod schedules;
 
 /// What is wrong with a file is said in one line.
-#[cfg(feature = "files")]
+#[allow(dead_code)]
 fn one_line(error: &str) {
     assert!(!error.is_empty() && !error.contains('\n'), "{error:?}");
 }
 
 /// A folder of this process for what is read by its path; in memory where the machine has such a place.
-#[cfg(feature = "files")]
+#[allow(dead_code)]
 fn folder() -> std::path::PathBuf {
     let memory = std::path::Path::new("/dev/shm");
     let parent = if memory.is_dir() { memory.to_owned() } else { std::env::temp_dir() };

@@ -10,6 +10,7 @@ mod edges;
 mod fired;
 mod hopping;
 mod lateness;
+mod listening;
 mod period_corpus;
 mod period_edges;
 mod period_limits;

@@ -17,13 +17,13 @@ use crate::report::json::to_json;
 /// The log is CSV with the columns sensor, fired_us, period, phase and t_echo_us, one row for each firing: when it was,
 /// in microseconds of one clock, and the raw time to the first echo, empty without one. Sensors, periods and phases
 /// count from 0. A column `reading` may say what the ring made of it (`rejected`). `eeruf study --log` writes such a
-/// log. A ring that hops in time, whose lags move, says most; with two phases senders cannot be distinguished.
+/// log. Messages `eeruf.Firing` in an MCAP file are read as well. A ring that hops in time, whose lags move, says most; with two phases senders cannot be distinguished.
 ///
 /// The exit code is 1 if something is broken.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The log
-    #[arg(value_name = "LOG.csv")]
+    #[arg(value_name = "LOG")]
     file: PathBuf,
     /// The fixed schedule that the ring fires by, for jitter, lateness and drift
     #[arg(long, value_name = "SCHEDULE.toml")]
@@ -65,6 +65,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         println!("{}", to_json(&json(&found)));
     } else {
         print!("{}", describe(&found));
+    }
+    if let Some(damage) = &log.damage {
+        return Err(InputError::new(&args.file, None, damage));
     }
     Ok(if diagnosis.faults.is_empty() { Answer::Yes } else { Answer::No })
 }

@@ -30,6 +30,7 @@ use naming::name_senders;
 use search::paths_to;
 use sensors::hearing;
 pub use sensors::{Hearing, Share};
+pub(crate) use statistics::{groups, ln_at_least, median};
 use timeline::Timeline;
 pub use timing::{Timing, TimingError, timing};
 

@@ -91,7 +91,7 @@ impl World {
             });
             truth.push(sender);
         }
-        (FiringLog { clock: "test".to_owned(), firings }, truth)
+        (FiringLog::new("test", firings), truth)
     }
 }
 

@@ -13,9 +13,10 @@ use crate::experiments::progress::Progress;
 use crate::{
     methods::Method,
     navigation::LabMate,
+    results::Readings,
     simulation::{self, Options},
     threads::{Stop, sweep},
-    world::Robot,
+    world::{Robot, World},
 };
 
 /// For how long a robot may try.
@@ -103,6 +104,31 @@ fn run_course(
     if !progress.go_on() {
         return Err(ExperimentError::Stopped);
     }
+    Ok(drive(options, method, number, &|_| progress.go_on())?.run)
+}
+
+/// One course by one method, with all that was read.
+#[derive(Debug)]
+pub struct Drive {
+    /// Walls, poles and robots; where the first robot is, `run.track` says.
+    pub world: World,
+    /// What the robots' sensors read.
+    pub readings: Readings,
+    /// What came of it.
+    pub run: Run,
+}
+
+/// Drives one course by one method. `keep_going` is called now and then with the share of the longest time, 0 to 1;
+/// when its answer is `false` the drive stops.
+///
+/// # Errors
+/// [`ExperimentError`] for a ring that cannot be, and if it was stopped.
+pub fn drive(
+    options: &SetTwoOptions,
+    method: Method,
+    number: u64,
+    keep_going: &dyn Fn(f64) -> bool,
+) -> Result<Drive, ExperimentError> {
     let course = Course::random(number);
     let consecutive = if method == Method::MultiEcho { MULTI_ECHO_CONSECUTIVE } else { 2 };
     let robot = Robot { odometry: options.odometry, t_delta: options.t_delta, consecutive, ..course.robot() };
@@ -113,8 +139,9 @@ fn run_course(
     let period_s = f64::from(world.robots()[0].period.as_micros()) * 1e-6;
     let simulation =
         Options { best: options.best.map(|best| best.schedule), ..Options::periods((TIME_S / period_s).ceil() as u32) };
-    simulation::run(&world, method, &simulation, &mut pilot, &Stop::default(), |_| progress.go_on())?;
-    Ok(pilot.finish())
+    let readings = simulation::run(&world, method, &simulation, &mut pilot, &Stop::default(), keep_going)?;
+    let run = pilot.finish();
+    Ok(Drive { world, readings, run })
 }
 
 /// One speed of a sweep.

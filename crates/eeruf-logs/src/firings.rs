@@ -11,7 +11,8 @@
 //! CSV with these columns in any order; others are ignored. Times are in microseconds of one clock, which the first
 //! line may name; one of 32 bits may wrap. `t_echo_us` is the raw echo time, from firing to the first edge, empty
 //! without echo. `reading` is what the ring made of it (`rejected`, `accepted`, ..) and may be missing. Sensors,
-//! periods and phases count from 0. Rows may come in any order that is at most 2^31 us out. Where a column `sends` is 0
+//! periods and phases count from 0. A log without `fired_us` can be put onto a fixed schedule
+//! ([`align`](crate::align())). Rows may come in any order that is at most 2^31 us out. Where a column `sends` is 0
 //! the sensor only listened from then on, as some can.
 //!
 //! The same in MCAP is a JSON message `eeruf.Firing` for each row, with the columns as its fields and the clock's name
@@ -49,6 +50,8 @@ pub struct FiringLog {
     pub firings: Vec<Firing>,
     /// What sensors heard that listened without firing: `fired_us` is when they began to.
     pub listened: Vec<Firing>,
+    /// Whether the log does not say when sensors fired: `fired_us` is 0 then, see [`align`](crate::align()).
+    pub lacks_instants: bool,
     /// What of the file could not be read, if that is so.
     pub damage: Option<String>,
 }
@@ -99,9 +102,10 @@ impl FiringLog {
                 LogError::new(file, format!("no column `{name}`; expected sensor, fired_us, period, phase, t_echo_us"))
             })
         };
-        let [sensor, fired, period] = [needed("sensor")?, needed("fired_us")?, needed("period")?];
+        let [sensor, period] = [needed("sensor")?, needed("period")?];
         let [phase, echo] = [needed("phase")?, needed("t_echo_us")?];
-        let (reading, sends) = (column("reading"), column("sends"));
+        let (fired, reading, sends) = (column("fired_us"), column("reading"), column("sends"));
+        let mut lacks_instants = fired.is_none();
         // The line that the first remark took.
         let before = u64::from(starts_with_remark);
         let (mut firings, mut listened, mut wraps, mut last) = (Vec::new(), Vec::new(), 0_i64, i64::MIN);
@@ -114,10 +118,16 @@ impl FiringLog {
                 LogError::at_line(file, line, format!("column {name}: `{text}`; expected {expected}"))
             };
             let text = |column: usize| row.get(column).unwrap_or_default();
-            let fired_us: f64 = text(fired).parse().unwrap_or(f64::NAN);
-            if !(0.0..9e15).contains(&fired_us) {
-                return Err(bad(fired, "microseconds, 0 to 9e15"));
-            }
+            let fired_us: f64 = match fired.map(|fired| (fired, text(fired))) {
+                None | Some((_, "")) => {
+                    lacks_instants = true;
+                    0.0
+                }
+                Some((fired, text)) => {
+                    let us = text.parse().ok().filter(|us| (0.0..9e15).contains(us));
+                    us.ok_or_else(|| bad(fired, "microseconds, 0 to 9e15"))?
+                }
+            };
             let mut fired_us = fired_us.round() as i64 + wraps;
             if last != i64::MIN && last - fired_us > 1 << 31 {
                 wraps += 1 << 32;
@@ -150,7 +160,11 @@ impl FiringLog {
         if firings.is_empty() {
             return Err(LogError::new(file, "no firings"));
         }
-        Ok(Self { listened, ..Self::new(clock, firings) })
+        if lacks_instants {
+            firings.iter_mut().chain(&mut listened).for_each(|firing| firing.fired_us = 0);
+            firings.sort_by_key(|firing| firing.period);
+        }
+        Ok(Self { listened, lacks_instants, ..Self::new(clock, firings) })
     }
 
     /// Writes the log as it is read. What the ring made of a reading is written as `rejected` or `other`.

@@ -49,7 +49,8 @@ use std::io::Read;
 use std::path::Path;
 
 pub use diagnose::{
-    Diagnosis, Fault, FoundPath, Hearing, Named, Settings, Share, Timing, TimingError, diagnose, timing,
+    AlignError, Alignment, Diagnosis, Fault, FoundPath, Hearing, Named, Settings, Share, Timing, TimingError, align,
+    diagnose, timing,
 };
 pub use error::{Damage, LogError};
 pub use firings::{Firing, FiringLog};

@@ -170,7 +170,10 @@ struct Search {
 impl Search {
     fn new(receiver: u8, heard: Vec<Heard>, sensors: usize, window_us: i64, settings: &PathSettings) -> Self {
         let dead_us = heard.iter().filter_map(|heard| heard.echo_us).min().unwrap_or(0);
-        Self { receiver, heard, sensors, dead_us, window_us, tolerance: settings.tolerance_us.max(1).into() }
+        let tolerance = settings.tolerance_us.max(1).into();
+        // The latest edge of all may belong to a path like any other.
+        let window_us = window_us + 2 * tolerance;
+        Self { receiver, heard, sensors, dead_us, window_us, tolerance }
     }
 
     fn paths(&mut self, settings: &PathSettings) -> Vec<FoundPath> {

@@ -57,6 +57,18 @@ fn head(found: &Found<'_>) -> String {
             diagnosis.paths.len()
         );
     }
+    if let Some(alignment) = found.alignment {
+        let (explained, of) = alignment.moves;
+        _ = writeln!(
+            text,
+            "Instants are the schedule's, its phase {} being the log's phase 0: it explains {explained} of {of} moves of \
+             readings from phase to phase ({:.0e} such schedules expected by accident), and {:.1} % sure is that it is \
+             this phase. Of jitter and drift nothing is known.",
+            alignment.rotation,
+            alignment.accidents,
+            100.0 * alignment.sure,
+        );
+    }
     match found.timing {
         Some(timing) => {
             _ = writeln!(

@@ -59,10 +59,11 @@ fn head(found: &Found<'_>) -> String {
     }
     if let Some(alignment) = found.alignment {
         let (explained, of) = alignment.moves;
+        let known = if alignment.accidents <= 0.01 { "" } else { ": the readings do not say whether it is the ring's" };
         _ = writeln!(
             text,
             "Instants are the schedule's, its phase {} being the log's phase 0: it explains {explained} of {of} moves of \
-             readings from phase to phase ({:.0e} such schedules expected by accident), and {:.1} % sure is that it is \
+             readings from phase to phase ({:.0e} such schedules expected by accident){known}, and {:.1} % sure is that it is \
              this phase. Of jitter and drift nothing is known.",
             alignment.rotation,
             alignment.accidents,

@@ -19,7 +19,8 @@ pub struct Alignment {
     pub rotation: u8,
     /// Of how many observed moves the schedule explains how many.
     pub moves: (u32, u32),
-    /// How many schedules would explain as many by accident, of as many as there are rotations.
+    /// How many schedules would explain as many by accident, of as many as there are rotations. Above 0.01 the readings do
+    /// not say whether the ring fired by it.
     pub accidents: f64,
     /// How sure the rotation is among all, 0 to 1.
     pub sure: f64,
@@ -48,7 +49,7 @@ pub enum AlignError {
         /// How many series of readings (of a sensor in a phase) jump, of how many that stay before and after.
         jumps: (u32, u32),
     },
-    /// Readings do not move as by this schedule, or hardly any moves.
+    /// Readings do not move as by this schedule.
     Unlike {
         /// Of how many observed moves the schedule explains how many.
         moves: (u32, u32),
@@ -88,6 +89,9 @@ const JUMPS: f64 = 0.25;
 const AGREE: usize = 3;
 /// More accidents than this, and nothing is known.
 const ACCIDENTS: f64 = 0.01;
+/// So many moves would say whether it is the schedule. Two phases give fewer: a sensor mostly reads its own echo in one and
+/// another's sound in the other, and that move depends on lengths of paths, which nobody knows.
+const ENOUGH: u32 = 20;
 
 /// Puts the firings of a log where a fixed schedule of so many phases has them: the period in microseconds, and when a
 /// sensor fires in a phase after the start of its period. What the log says of instants is not used.
@@ -146,13 +150,16 @@ pub fn align(
     let widest = observed.iter().map(|observed| observed.2.abs()).max().unwrap_or(0).max(10 * tolerance);
     let chance = (f64::from(sensors) * (2 * tolerance + 1) as f64 / (2 * widest) as f64).min(0.9);
     let accidents = f64::from(phases) * ln_at_least(hits, of, chance).exp();
-    if accidents > ACCIDENTS {
+    let is_known = accidents <= ACCIDENTS;
+    if !is_known && of >= ENOUGH {
         return Err(AlignError::Unlike { moves: (hits, of) });
     }
+    // Where readings say nothing, the log's own number of the phase is taken.
+    let (rotation, hits) = if is_known { (rotation, hits) } else { (0, all[0]) };
     // Each move that only the best explains is as much likelier under it.
-    let odds = chance / (f64::from(hits) / f64::from(of.max(1))).max(chance);
+    let odds = if is_known { chance / (f64::from(hits) / f64::from(of.max(1))).max(chance) } else { 1.0 };
     let others = all.iter().enumerate().filter(|&(other, _)| other != usize::from(rotation));
-    let against: f64 = others.map(|(_, &other)| odds.powi((hits - other) as i32)).sum();
+    let against: f64 = others.map(|(_, &other)| odds.powi(hits.abs_diff(other) as i32)).sum();
     let mut firings = log.firings.clone();
     for firing in &mut firings {
         let in_period = fires_at(firing.sensor, (firing.phase + rotation) % phases).unwrap_or_default();

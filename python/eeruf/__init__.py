@@ -23,11 +23,13 @@ import importlib
 import sys
 from typing import TYPE_CHECKING
 
-from eeruf import experiments, sim, tables
+from eeruf import nav, sim, tables
 from eeruf._eeruf import (
     EXAMPLES,
     KINDS,
+    Adaptation,
     ArgumentError,
+    Blind,
     CertificateError,
     EchoFilter,
     EchoTracker,
@@ -40,6 +42,7 @@ from eeruf._eeruf import (
     HoppingRing,
     HoppingSchedule,
     HoppingSettings,
+    LastAccepted,
     PathsError,
     PeriodEnded,
     Reading,
@@ -50,6 +53,7 @@ from eeruf._eeruf import (
     Schedule,
     ScheduleError,
     SearchError,
+    SensorWatch,
     SimulationError,
     Violation,
     WaitSearch,
@@ -62,12 +66,14 @@ from eeruf._eeruf import (
 from eeruf._sweep import sweep
 
 if TYPE_CHECKING:
-    from eeruf import plot
+    from eeruf import experiments, plot
 
 __all__ = [
     "EXAMPLES",
     "KINDS",
+    "Adaptation",
     "ArgumentError",
+    "Blind",
     "CertificateError",
     "EchoFilter",
     "EchoTracker",
@@ -80,6 +86,7 @@ __all__ = [
     "HoppingRing",
     "HoppingSchedule",
     "HoppingSettings",
+    "LastAccepted",
     "PathsError",
     "PeriodEnded",
     "Reading",
@@ -90,6 +97,7 @@ __all__ = [
     "Schedule",
     "ScheduleError",
     "SearchError",
+    "SensorWatch",
     "SimulationError",
     "Violation",
     "WaitSearch",
@@ -99,6 +107,7 @@ __all__ = [
     "design",
     "example",
     "experiments",
+    "nav",
     "plot",
     "show_versions",
     "sim",
@@ -131,9 +140,9 @@ def show_versions() -> None:
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> object:
-        # On first use: nobody who does not draw should wait for it.
-        if name == "plot":
-            return importlib.import_module("eeruf.plot")
+        # On first use: nobody who does not need them should wait for them.
+        if name in ("experiments", "plot"):
+            return importlib.import_module(f"eeruf.{name}")
         raise AttributeError(f"module 'eeruf' has no attribute {name!r}")
 
     def __dir__() -> list[str]:

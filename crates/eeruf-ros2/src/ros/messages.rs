@@ -45,11 +45,11 @@ pub(crate) struct Range {
 #[derive(Clone, Debug, Deserialize)]
 pub(crate) struct RangeHeard {
     #[expect(dead_code, reason = "it stands before what is needed")]
-    header: Header,
+    pub(super) header: Header,
     #[expect(dead_code, reason = "it stands before what is needed")]
-    radiation_type: u8,
+    pub(super) radiation_type: u8,
     #[expect(dead_code, reason = "it stands before what is needed")]
-    field_of_view: f32,
+    pub(super) field_of_view: f32,
     pub(crate) min_range: f32,
     pub(crate) max_range: f32,
     pub(crate) range: f32,

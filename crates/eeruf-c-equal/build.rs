@@ -2,7 +2,7 @@
 
 fn main() {
     let (c, shim) = ("../../c", "src/shim.c");
-    for file in [&format!("{c}/eeruf.c"), &format!("{c}/eeruf.h"), shim] {
+    for file in [&format!("{c}/eeruf.c"), &format!("{c}/eeruf.h"), &format!("{c}/eeruf_serial.h"), shim] {
         println!("cargo::rerun-if-changed={file}");
     }
     cc::Build::new()

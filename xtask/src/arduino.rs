@@ -28,7 +28,7 @@ struct Example {
 
 const ALL: [u8; 16] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17];
 
-const EXAMPLES: [Example; 6] = [
+const EXAMPLES: [Example; 7] = [
     Example { name: "Two", modules: 2, triggers: &[4, 5], echoes: &[2, 3], short: false },
     Example { name: "Ring8", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).1, short: false },
     Example {
@@ -40,6 +40,7 @@ const EXAMPLES: [Example; 6] = [
     },
     Example { name: "FromNewPing", modules: 3, triggers: &[4, 5, 6], echoes: &[4, 5, 6], short: true },
     Example { name: "Hopping8", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).0, short: false },
+    Example { name: "SerialRing8", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).1, short: true },
     Example { name: "Adaptive", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).0, short: false },
 ];
 
@@ -82,7 +83,7 @@ fn pack() -> Result<PathBuf, Trouble> {
     for file in ["library.properties", "keywords.txt", "library.json", "README.md"] {
         fs::copy(Path::new("c/arduino").join(file), library.join(file)).map_err(failed(file))?;
     }
-    for file in ["eeruf.c", "eeruf.h"] {
+    for file in ["eeruf.c", "eeruf.h", "eeruf_serial.h"] {
         fs::copy(Path::new("c").join(file), source.join(file)).map_err(failed(file))?;
     }
     run(Command::new("tar").args(["-czf", "Eeruf.tar.gz", "Eeruf"]).current_dir(TARGET))?;

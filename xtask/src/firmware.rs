@@ -246,6 +246,23 @@ fn in_the_loop() -> Result<String, Trouble> {
     if said.status.success() { Ok(tables) } else { Err(what(&said.status)) }
 }
 
+/// The command that runs the ring that speaks over the board's serial line, as a JSON list; `SERIAL` in it stands for
+/// the line.
+pub(crate) fn serial_board() -> Result<String, Trouble> {
+    let [_, lm3s6965, ..] = &BOARDS;
+    if output(Command::new(lm3s6965.qemu).arg("--version")).is_none() {
+        return Err(Trouble::Skipped(format!("no {}; install qemu-system-arm", lm3s6965.qemu)));
+    }
+    build(lm3s6965, &["--package", "eeruf-hil-board", "--features", "serial", "--bin", "eeruf-serial-board"])?;
+    let image = std::path::absolute(image(lm3s6965, "eeruf-serial-board")?);
+    let image = image.map_err(|error| Trouble::Failed(error.to_string()))?;
+    let image = image.to_str().ok_or_else(|| Trouble::Failed("the path of the clone is no text".to_owned()))?;
+    let line = ["-nographic", "-monitor", "none", "-serial", "SERIAL", "-icount", "shift=6,sleep=off"];
+    let rest = ["-semihosting-config", "enable=on,target=native", "-kernel", image];
+    let command = [&[lm3s6965.qemu][..], lm3s6965.machine, &line, &rest].concat();
+    Ok(format!("[{}]", command.iter().map(|part| format!("{part:?}")).collect::<Vec<_>>().join(",")))
+}
+
 fn qemu(board: &Board, image: &Path, shift: u32) -> Result<String, Trouble> {
     let what = format!("{} on {}", image.display(), board.name);
     let mut command = emulator(board, image, shift);

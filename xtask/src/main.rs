@@ -22,6 +22,7 @@ mod program;
 mod python;
 mod quick;
 mod release;
+mod ros2;
 mod site;
 mod steps;
 mod test;
@@ -66,6 +67,8 @@ enum Verb {
     Arduino(arduino::Plan),
     /// Build the wheel and test it: types, examples, and against what Rust says
     Python,
+    /// Run a ring on an emulated board, its serial line and the ROS 2 node, and listen with Cyclone DDS and pymavlink
+    Ros2,
     /// Build the page in playground/, as a folder for a server and as one file for a disk
     Page {
         /// Run its tests, those that CI runs
@@ -126,6 +129,7 @@ fn main() -> ExitCode {
             steps.finish(true)
         }
         Verb::Python => one_step("Python package", python::python),
+        Verb::Ros2 => one_step("ROS 2 node", ros2::ros2),
         Verb::Page { test, long } => one_step("the page", || {
             page::page(match (test, long) {
                 (_, true) => page::Tests::Long,

@@ -67,9 +67,10 @@ bool EerufModules::read() {
     } else {
         sensor_ = event.sensor;
         reading_ = event.u.reading;
-        return true;
     }
-    return false;
+    // A sensor that is to fire has fired by now.
+    if (onEvent_ != nullptr) onEvent_(*this, event, now);
+    return event.kind == EERUF_EVENT_READING;
 }
 
 uint16_t EerufModules::millimetres(uint32_t soundMmPerS) const {

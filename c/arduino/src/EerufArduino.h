@@ -53,11 +53,14 @@ public:
         edges_ = &edges;
         collect_ = drain;
     }
+    // Calls this with each event and the clock that it was polled at, also with those that read() does not return for.
+    void tell(void (*listener)(EerufModules &modules, const EerufEvent &event, uint32_t now)) { onEvent_ = listener; }
 
     // What begin() came to: EERUF_OK or EERUF_ERR_..
     int8_t status() const { return status_; }
     // All that eeruf.h can do.
     EerufRing &ring() { return ring_; }
+    EerufHcSr04 &modules() { return modules_; }
 
 protected:
     EerufModules(const EerufSchedule &schedule, const uint8_t *triggers, const uint8_t *echoes, EerufSensor *sensors,
@@ -78,6 +81,7 @@ private:
     EerufEdges *edges_;
     void (*collect_)(EerufModules &) = sample;
     void (*onPeriod_)(EerufModules &, const EerufEvent &) = nullptr;
+    void (*onEvent_)(EerufModules &, const EerufEvent &, uint32_t) = nullptr;
     EerufRing ring_;
     EerufHcSr04 modules_;
     EerufReading reading_;

@@ -147,6 +147,16 @@ impl C {
         unsafe { border::shim_do(self.0, what as u32, sensor, value) }
     }
 
+    /// The frame that `eeruf_serial_event` makes of the last poll's event; empty if it makes none.
+    pub fn serial_event(&mut self, sensors: u8, now_us: u32) -> Vec<u8> {
+        // As long as EERUF_FRAME.
+        let mut frame = vec![0; 78];
+        // SAFETY: a ring that was polled, and room for the longest frame.
+        let size = unsafe { border::shim_serial_event(self.0, sensors, now_us, frame.as_mut_ptr()) };
+        frame.truncate(size);
+        frame
+    }
+
     /// `eeruf_hc_sr04_init`.
     pub fn modules(&mut self, min_retrigger_us: u32, shortest_us: u16) -> i32 {
         // SAFETY: a ring that was made.

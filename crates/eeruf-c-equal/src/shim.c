@@ -1,6 +1,7 @@
 /* The C library as functions of numbers and one kind of handle, so that Rust need not know its structures. Memory of
    exactly the size that a ring needs comes from malloc, where a sanitizer sees each byte beyond it. */
 #include "eeruf.h"
+#include "eeruf_serial.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,8 @@ typedef struct Handle {
     EerufLine *lines;
     EerufAdaptation adaptation;
     EerufEvent last;
+    EerufSerial line;
+    uint16_t late_us[64];
 } Handle;
 
 Handle *shim_new(void) {
@@ -251,4 +254,13 @@ int shim_edges_pop(uint32_t *out) {
     out[2] = edge.at_us;
     out[3] = edges.lost;
     return status;
+}
+
+/* Says over a line what the last poll's event was; the size of the frame. */
+size_t shim_serial_event(Handle *handle, uint8_t sensors, uint32_t now_us, uint8_t *frame) {
+    if (handle->line.clock == NULL) {
+        const EerufSerial line = EERUF_SERIAL(handle->late_us, sensors, "board of sixteen letters");
+        handle->line = line;
+    }
+    return eeruf_serial_event(&handle->line, handle->ring, NULL, &handle->last, now_us, frame);
 }

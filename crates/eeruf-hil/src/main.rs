@@ -2,6 +2,9 @@
 //!
 //! Prints two tables in Markdown: how the boards' rings agree with the host's, and what each fault did. Leaves with 1
 //! if anything is not as it must be.
+//!
+//! `eeruf-hil SCENE --one FAULT PERIODS --board NAME EMULATOR ..`: one run at the pace of the clock on the wall, as it is
+//! needed to test what listens to the board's serial line. Prints what the ring read, as CSV.
 
 mod control;
 mod emulator;
@@ -15,7 +18,7 @@ use std::process::ExitCode;
 use eeruf_core::ReadingKind;
 use eeruf_sim::{Method, Options, Readings, World, simulate, sweep};
 
-use crate::run::{Fault, PERIODS, Run, run};
+use crate::run::{Fault, PERIODS, Pace, Run, run};
 
 /// A board's name, and the command that emulates it.
 type Board<'a> = (&'a str, &'a [String]);
@@ -27,10 +30,14 @@ fn main() -> ExitCode {
     let boards: Vec<Board<'_>> =
         parts.filter_map(<[String]>::split_first).map(|(name, emulator)| (&**name, emulator)).collect();
     let Some(scene) = scene.filter(|_| !boards.is_empty()) else {
-        eprintln!("usage: eeruf-hil SCENE --board NAME EMULATOR [ARGUMENT ..] [--board ..]");
+        eprintln!("usage: eeruf-hil SCENE [--one FAULT PERIODS] --board NAME EMULATOR [ARGUMENT ..] [--board ..]");
         return ExitCode::from(2);
     };
-    match tables(scene, &boards) {
+    let outcome = match (arguments.get(1..4), &boards[..]) {
+        (Some([one, fault, periods]), &[(_, emulator)]) if one == "--one" => one_run(scene, fault, periods, emulator),
+        _ => tables(scene, &boards),
+    };
+    match outcome {
         Ok(tables) => {
             print!("{tables}");
             ExitCode::SUCCESS
@@ -40,6 +47,20 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+fn one_run(scene: &str, fault: &str, periods: &str, emulator: &[String]) -> Result<String, String> {
+    let known = Fault::named(fault).ok_or_else(|| {
+        format!("fault {fault}; expected none, missing, stuck, chatters, interrupts-lost, stall or wrap")
+    })?;
+    let periods = periods.parse().map_err(|_| format!("{periods} periods; expected a number"))?;
+    let world = World::from_toml(Path::new(scene)).map_err(|error| error.to_string())?;
+    let run = run(&world, known, periods, Pace::Wall, emulator)?;
+    let rows = run.read.iter().flatten().map(|reading| {
+        let t_echo = reading.t_echo.map(|t_echo| t_echo.as_micros().to_string()).unwrap_or_default();
+        format!("{},{},{},{t_echo}\n", reading.sensor, reading.period, reading.kind)
+    });
+    Ok(format!("sensor,period,reading,t_echo_us\n{}", rows.collect::<String>()))
 }
 
 /// One row without a fault, and the rows of all faults.
@@ -65,7 +86,7 @@ fn tables(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
 
 fn rows(world: &World, simulated: &Readings, board: &str, emulator: &[String]) -> Result<Rows, String> {
     let in_run = |fault: Fault| move |error: String| format!("{fault}: {error}");
-    let fault_free = run(world, Fault::None, emulator).map_err(in_run(Fault::None))?;
+    let fault_free = run(world, Fault::None, PERIODS, Pace::Free, emulator).map_err(in_run(Fault::None))?;
     let count = |kind: ReadingKind| fault_free.read.iter().flatten().filter(|reading| reading.kind == kind).count();
     let (same, within) = fault_free.as_simulated(simulated)?;
     let row = format!(
@@ -78,7 +99,7 @@ fn rows(world: &World, simulated: &Readings, board: &str, emulator: &[String]) -
     );
     let mut rows = String::new();
     for fault in Fault::ALL {
-        let faulty = run(world, fault, emulator).map_err(in_run(fault))?;
+        let faulty = run(world, fault, PERIODS, Pace::Free, emulator).map_err(in_run(fault))?;
         rows += &fault_row(board, fault, &faulty, &fault_free).map_err(in_run(fault))?;
     }
     Ok((row, rows))

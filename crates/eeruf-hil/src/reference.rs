@@ -6,6 +6,8 @@
 use core::cell::RefCell;
 use core::convert::Infallible;
 use std::rc::Rc;
+use std::thread;
+use std::time::Duration;
 
 use eeruf_core::{Edge, Instant, Reading, Ring, RingEvent, ScheduledRing};
 use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings};
@@ -20,14 +22,17 @@ use crate::lines::Lines;
 pub(crate) struct Session<'w> {
     pub(crate) board: Emulator,
     pub(crate) lines: Lines<'w>,
+    /// When the board was started and what its clock read, where it is held to the pace of the clock on the wall.
+    pace: Option<(std::time::Instant, Instant)>,
     wrong: Option<String>,
 }
 
 pub(crate) type Shared<'w> = Rc<RefCell<Session<'w>>>;
 
 impl<'w> Session<'w> {
-    pub(crate) fn new(board: Emulator, lines: Lines<'w>) -> Shared<'w> {
-        Rc::new(RefCell::new(Self { board, lines, wrong: None }))
+    pub(crate) fn new(board: Emulator, lines: Lines<'w>, pace: Option<Instant>) -> Shared<'w> {
+        let pace = pace.map(|start| (std::time::Instant::now(), start));
+        Rc::new(RefCell::new(Self { board, lines, pace, wrong: None }))
     }
 
     /// The board's next record, which must be about this.
@@ -46,6 +51,11 @@ impl<'w> Session<'w> {
 
     fn trigger(&mut self, sensor: u8) -> Result<(), String> {
         let at = self.expect(Topic::Trigger, sensor)?.instant();
+        if let Some((began, start)) = self.pace {
+            // The board's time stands still until it is answered.
+            let due = began + Duration::from_micros(at.since(start).as_micros().into());
+            thread::sleep(due.saturating_duration_since(std::time::Instant::now()));
+        }
         self.lines.trigger(sensor, at)?;
         let ahead = self.lines.ahead(at)?;
         self.board.answer(&ahead)

@@ -12,7 +12,7 @@ use crate::emulator::Emulator;
 use crate::lines::{FAULTY, LineFault, Lines};
 use crate::reference::{Read, Reference, Session};
 
-/// For how many periods each run lasts.
+/// For how many periods each run of the tables lasts.
 pub(crate) const PERIODS: u32 = 1000;
 
 /// What goes wrong in a run.
@@ -26,7 +26,7 @@ pub(crate) enum Fault {
     Wrap,
 }
 
-const STALL_AFTER: u32 = 500;
+const STALL_AFTER: u32 = PERIODS / 2;
 const STALL: Micros = Micros::from_millis(50);
 
 /// Echo times of the same sound move by no more than this from run to run.
@@ -43,11 +43,25 @@ impl Fault {
         Self::Wrap,
     ];
 
-    fn orders(self) -> Orders {
-        // Half of 1,000 periods of 100 ms before the wrap.
-        let start = if self == Self::Wrap { 0_u32.wrapping_sub(50_000_000) } else { 0 };
+    /// By its name on the command line.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        Some(match name {
+            "none" => Self::None,
+            "missing" => Self::Line(LineFault::Missing),
+            "stuck" => Self::Line(LineFault::StuckHigh),
+            "chatters" => Self::Line(LineFault::Chatters),
+            "interrupts-lost" => Self::Line(LineFault::InterruptsLost),
+            "stall" => Self::Stall,
+            "wrap" => Self::Wrap,
+            _ => return None,
+        })
+    }
+
+    /// The clock wraps, or the main loop stalls, in the middle of so many periods of 100 ms.
+    fn orders(self, periods: u32) -> Orders {
+        let start = if self == Self::Wrap { 0_u32.wrapping_sub(periods / 2 * 100_000) } else { 0 };
         let stall = if self == Self::Stall { STALL } else { Micros::ZERO };
-        Orders { start: Instant::from_micros(start), periods: PERIODS, stall_after: STALL_AFTER, stall }
+        Orders { start: Instant::from_micros(start), periods, stall_after: periods / 2, stall }
     }
 }
 
@@ -83,10 +97,20 @@ pub(crate) struct Change {
     pub(crate) moved: Micros,
 }
 
-pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Run, String> {
-    let orders = fault.orders();
+/// How fast a board may run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pace {
+    /// As fast as it is emulated.
+    Free,
+    /// By the clock on the wall, for those who listen to its serial line.
+    Wall,
+}
+
+pub(crate) fn run(world: &World, fault: Fault, periods: u32, pace: Pace, emulator: &[String]) -> Result<Run, String> {
+    let orders = fault.orders(periods);
     let line_fault = if let Fault::Line(fault) = fault { fault } else { LineFault::None };
-    let session = Session::new(Emulator::start(emulator, orders)?, Lines::new(world, line_fault, orders.start)?);
+    let pace = (pace == Pace::Wall).then_some(orders.start);
+    let session = Session::new(Emulator::start(emulator, orders)?, Lines::new(world, line_fault, orders.start)?, pace);
     let outcome = (|| {
         // The first thing that a board says is when it set up its ring.
         let now = session.borrow_mut().expect(Topic::Deadline, 0)?.instant();
@@ -99,7 +123,7 @@ pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Ru
             named: [Health::Well; SENSORS],
             named_after: None,
         };
-        let mut periods = 0;
+        let mut ended = 0;
         loop {
             let record = session.borrow_mut().board.next()?;
             let Some(record) = record else { break };
@@ -116,7 +140,7 @@ pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Ru
                         Some(RingEvent::Reading(reading)) => run.take(reading),
                         Some(RingEvent::PeriodEnded(stats)) => {
                             run.max_late = run.max_late.max(stats.max_late);
-                            periods += 1;
+                            ended += 1;
                         }
                         _ => {}
                     }
@@ -126,14 +150,14 @@ pub(crate) fn run(world: &World, fault: Fault, emulator: &[String]) -> Result<Ru
                     if record.flag() > 0 {
                         return Err(format!("{} edges found the queue full", record.flag()));
                     }
-                    run.name(reference.health(), periods);
+                    run.name(reference.health(), ended);
                 }
                 Some(Topic::Deadline) => reference.compare(record)?,
                 _ => return Err(format!("the board said {record:?} out of turn")),
             }
         }
-        if periods != PERIODS {
-            return Err(format!("the board ended after {periods} periods of {PERIODS}"));
+        if ended != periods {
+            return Err(format!("the board ended after {ended} periods of {periods}"));
         }
         if matches!(fault, Fault::Line(_)) {
             run.others_are(&control.read)?;

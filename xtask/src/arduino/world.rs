@@ -5,6 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use eeruf_core::{ReadingKind, SpeedOfSound};
+use eeruf_serial::{Decoder, Firing, Message, Received};
+
 use super::{Example, TARGET, failed};
 use crate::steps::{Trouble, output, run as run_command};
 
@@ -72,10 +75,17 @@ fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>), Trouble
 pub(super) fn run(world: &Path, elf: &Path, example: &Example, seconds: u32) -> Result<Heard, Trouble> {
     let (times, own_mm) = echo_times(example.modules)?;
     let pins = example.triggers.iter().chain(example.echoes).map(ToString::to_string);
-    let said = output(
-        Command::new(world).arg(elf).arg(seconds.to_string()).arg(times).arg(example.modules.to_string()).args(pins),
-    )
-    .ok_or_else(|| Trouble::Failed(format!("{} did not run", example.name)))?;
+    let ran = Command::new(world)
+        .arg(elf)
+        .arg(seconds.to_string())
+        .arg(times)
+        .arg(example.modules.to_string())
+        .args(pins)
+        .output()
+        .ok()
+        .filter(|ran| ran.status.success())
+        .ok_or_else(|| Trouble::Failed(format!("{} did not run", example.name)))?;
+    let said = String::from_utf8_lossy(&ran.stdout);
     let mut heard = Heard { seconds, firings: vec![], ignored: 0, stack: 0, accepted: 0, wrong: 0 };
     for line in said.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
@@ -87,17 +97,36 @@ pub(super) fn run(world: &Path, elf: &Path, example: &Example, seconds: u32) -> 
             [module, distance] | [module, distance, "cm"] => {
                 let (Ok(module), Ok(distance)) = (module.parse::<usize>(), distance.parse::<u32>()) else { continue };
                 let mm = if words.len() == 3 { 10 * distance } else { distance };
-                heard.accepted += 1;
-                let own = own_mm.get(&(module.wrapping_sub(1)));
-                heard.wrong += u32::from(own.is_none_or(|own| own.abs_diff(mm) > OFF_MM));
+                heard.accept(&own_mm, module.wrapping_sub(1), mm);
             }
             _ => {}
         }
     }
+    heard.frames(&ran.stdout, &own_mm).map_err(|why| Trouble::Failed(format!("{}: {why}", example.name)))?;
     Ok(heard)
 }
 
 impl Heard {
+    fn accept(&mut self, own_mm: &BTreeMap<usize, u32>, module: usize, mm: u32) {
+        self.accepted += 1;
+        self.wrong += u32::from(own_mm.get(&module).is_none_or(|own| own.abs_diff(mm) > OFF_MM));
+    }
+
+    /// What a sketch says in frames, none of which may be damaged or missing; other sketches say none.
+    fn frames(&mut self, line: &[u8], own_mm: &BTreeMap<usize, u32>) -> Result<(), String> {
+        let mut decoder = Decoder::default();
+        for (frame, awaited) in line.iter().filter_map(|&byte| decoder.push(byte)).zip(0_u16..) {
+            let Received { sequence, message } = frame.map_err(|error| error.to_string())?;
+            if sequence != awaited {
+                return Err(format!("frame {awaited} is missing"));
+            }
+            if let Message::Firing(Firing { sensor, kind: ReadingKind::Accepted, t_echo: Some(t_echo), .. }) = message {
+                self.accept(own_mm, sensor.into(), SpeedOfSound::at_celsius_tenths(200).distance_mm(t_echo));
+            }
+        }
+        Ok(())
+    }
+
     /// The columns of the table.
     pub(super) fn row(&self) -> String {
         let per_second = |count: u32| f64::from(count) / f64::from(self.seconds);

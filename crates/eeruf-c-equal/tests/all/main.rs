@@ -6,6 +6,7 @@ mod hopping;
 mod modules;
 mod parts;
 mod ring;
+mod serial;
 mod world;
 
 /// How many events to compare.

@@ -152,7 +152,8 @@ pub fn drive(
             if options.bodies =>
         {
             pilot.touched();
-            Readings::default()
+            let sensors = world.robots().iter().map(|robot| robot.sensors.len()).sum();
+            Readings::new(method, 0.0, sensors)
         }
         ran => ran?,
     };

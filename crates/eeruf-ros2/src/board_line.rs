@@ -1,0 +1,91 @@
+//! The serial line to a board, in a thread of its own: opened, read, and opened again when the board was unplugged.
+
+use std::io::ErrorKind;
+use std::sync::mpsc::Sender;
+use std::thread;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use eeruf_serial::{Decoder, FrameError, Received};
+use serial2::SerialPort;
+
+/// What comes over the line, or happens to it.
+pub(crate) enum FromLine {
+    /// The port is open.
+    Opened,
+    /// It cannot be opened, or is no more: tried again each second.
+    Lost(String),
+    /// A frame, or what was none, and when its last byte was read, in nanoseconds since 1970.
+    Frame(Result<Received, FrameError>, i64),
+}
+
+/// How often a port that cannot be opened is tried.
+const AGAIN: Duration = Duration::from_secs(1);
+/// How long a read waits.
+const PATIENCE: Duration = Duration::from_millis(200);
+
+/// Listens until nobody takes what comes any more.
+pub(crate) fn listen(port: String, baud: u32, to: Sender<FromLine>) {
+    thread::spawn(move || {
+        loop {
+            let error = match open(&port, baud) {
+                Ok(line) => {
+                    if to.send(FromLine::Opened).is_err() {
+                        return;
+                    }
+                    match read(&line, &to) {
+                        Ok(()) => return,
+                        Err(error) => error,
+                    }
+                }
+                Err(error) => error,
+            };
+            if to.send(FromLine::Lost(format!("{port}: {error}"))).is_err() {
+                return;
+            }
+            thread::sleep(AGAIN);
+        }
+    });
+}
+
+fn open(port: &str, baud: u32) -> std::io::Result<SerialPort> {
+    let mut line = SerialPort::open(port, baud)?;
+    line.set_read_timeout(PATIENCE)?;
+    Ok(line)
+}
+
+/// Reads until the line fails, or nobody listens any more.
+fn read(line: &SerialPort, to: &Sender<FromLine>) -> std::io::Result<()> {
+    let mut decoder = Decoder::default();
+    let mut bytes = [0; 1024];
+    // What comes first is most often the rest of a frame.
+    let mut begun = false;
+    loop {
+        let count = match line.read(&mut bytes) {
+            Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
+            Ok(count) => count,
+            Err(error) if error.kind() == ErrorKind::TimedOut || error.kind() == ErrorKind::Interrupted => continue,
+            Err(error) => return Err(error),
+        };
+        let now = nanoseconds();
+        for &byte in bytes.iter().take(count) {
+            let frame = decoder.push(byte);
+            let rest_of_a_frame = !begun;
+            begun |= byte == 0;
+            match frame {
+                Some(Err(FrameError::Damaged)) if rest_of_a_frame => {}
+                Some(frame) => {
+                    if to.send(FromLine::Frame(frame, now)).is_err() {
+                        return Ok(());
+                    }
+                }
+                None => {}
+            }
+        }
+    }
+}
+
+/// The host's clock, since 1970.
+pub(crate) fn nanoseconds() -> i64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    i64::try_from(since.as_nanos()).unwrap_or(i64::MAX)
+}

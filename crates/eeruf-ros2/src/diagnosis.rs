@@ -1,0 +1,330 @@
+//! What is wrong, as `diagnostic_msgs/DiagnosticArray` says it once a second: of each sensor, of the line, of the
+//! timing. Times are seconds of any one clock.
+
+use eeruf_core::{Micros, ReadingKind, Tally};
+
+use crate::parameters::{Parameters, Source};
+
+/// How bad it is, as `DiagnosticStatus` counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub(crate) enum Level {
+    Ok = 0,
+    Warn = 1,
+    Error = 2,
+}
+
+/// How one thing is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Status {
+    pub(crate) level: Level,
+    /// What it is: `sensor 3`, `serial line`, `timing`.
+    pub(crate) about: String,
+    pub(crate) message: String,
+    pub(crate) values: Vec<(&'static str, String)>,
+}
+
+/// How a board calls what is wrong with a sensor's line, as `eeruf_hc_sr04::Health` counts.
+const HEALTH: [&str; 6] = [
+    "well",
+    "missing: nothing comes from its line",
+    "stuck line: high when it was to be triggered",
+    "chatters: several pulses follow one trigger",
+    "loses edges on the way",
+    "pin error",
+];
+
+struct Sensor {
+    heard_at_s: f64,
+    health: u8,
+    /// The last reading's line was stuck.
+    stuck: bool,
+    echoes_since_accepted: u32,
+    tally: Tally,
+    last: Option<(ReadingKind, Option<Micros>)>,
+}
+
+/// Since the last report.
+#[derive(Default)]
+struct Interval {
+    firings: u32,
+    damaged: u32,
+    lost: u32,
+    max_late: Micros,
+    unsent: u32,
+}
+
+pub(crate) struct Diagnosis {
+    sensors: Vec<Sensor>,
+    serial: bool,
+    late_us: u32,
+    blind_after: u32,
+    silent_after_s: f64,
+    interval: Interval,
+    /// Why the line is not open, until it is.
+    line_lost: Option<String>,
+    /// What whole frames cannot be used for.
+    foreign: Option<String>,
+    board_sensors: Option<u8>,
+    edges_lost: u8,
+    edges_lost_before: u8,
+    total_damaged: u64,
+    total_lost: u64,
+}
+
+impl Diagnosis {
+    pub(crate) fn new(parameters: &Parameters, now_s: f64) -> Self {
+        let sensor = |_| Sensor {
+            heard_at_s: now_s,
+            health: 0,
+            stuck: false,
+            echoes_since_accepted: 0,
+            tally: Tally::default(),
+            last: None,
+        };
+        Self {
+            sensors: (0..parameters.sensors).map(sensor).collect(),
+            serial: parameters.source == Source::Serial,
+            late_us: parameters.late_us,
+            blind_after: parameters.blind_after,
+            silent_after_s: parameters.silent_after_s,
+            interval: Interval::default(),
+            line_lost: Some("not yet open".to_owned()),
+            foreign: None,
+            board_sensors: None,
+            edges_lost: 0,
+            edges_lost_before: 0,
+            total_damaged: 0,
+            total_lost: 0,
+        }
+    }
+
+    /// A reading of a sensor, whose firing came so late.
+    pub(crate) fn reading(&mut self, now_s: f64, sensor: u8, kind: ReadingKind, t_echo: Option<Micros>, late: Micros) {
+        self.interval.firings += 1;
+        self.interval.max_late = self.interval.max_late.max(late);
+        let Some(sensor) = self.sensors.get_mut(usize::from(sensor)) else { return };
+        sensor.heard_at_s = now_s;
+        sensor.tally.count(kind);
+        sensor.stuck = kind == ReadingKind::Stuck;
+        sensor.last = Some((kind, t_echo));
+        match kind {
+            ReadingKind::Accepted | ReadingKind::Clear => sensor.echoes_since_accepted = 0,
+            ReadingKind::First | ReadingKind::Rejected | ReadingKind::Repeated => {
+                sensor.echoes_since_accepted = sensor.echoes_since_accepted.saturating_add(1);
+            }
+            _ => {}
+        }
+    }
+
+    /// What the board says at a period's end.
+    pub(crate) fn period(&mut self, max_late: Micros, edges_lost: u8, health: &[u8]) {
+        self.interval.max_late = self.interval.max_late.max(max_late);
+        self.edges_lost = edges_lost;
+        for (sensor, &health) in self.sensors.iter_mut().zip(health) {
+            sensor.health = health;
+        }
+    }
+
+    /// The board says how many sensors it has.
+    pub(crate) fn hello(&mut self, sensors: u8) {
+        self.board_sensors = Some(sensors);
+    }
+
+    pub(crate) fn line_opened(&mut self) {
+        self.line_lost = None;
+    }
+
+    pub(crate) fn line_lost(&mut self, why: String) {
+        self.line_lost = Some(why);
+    }
+
+    /// A frame arrived damaged.
+    pub(crate) fn damaged(&mut self) {
+        self.interval.damaged += 1;
+        self.total_damaged += 1;
+    }
+
+    /// So many frames are missing between two that arrived.
+    pub(crate) fn lost(&mut self, frames: u16) {
+        self.interval.lost = self.interval.lost.saturating_add(frames.into());
+        self.total_lost += u64::from(frames);
+    }
+
+    /// A whole frame that cannot be used.
+    pub(crate) fn foreign(&mut self, why: String) {
+        self.foreign = Some(why);
+    }
+
+    /// A message could not be sent.
+    pub(crate) fn unsent(&mut self) {
+        self.interval.unsent += 1;
+    }
+
+    /// How everything is, and begins the next interval.
+    pub(crate) fn report(&mut self, now_s: f64) -> Vec<Status> {
+        let interval = std::mem::take(&mut self.interval);
+        let mut report = Vec::new();
+        if self.serial {
+            report.push(self.line(&interval));
+        }
+        report.push(self.timing(&interval));
+        let sensors = (1..).zip(&self.sensors).map(|(number, sensor)| self.sensor(now_s, number, sensor));
+        report.extend(sensors);
+        self.foreign = None;
+        self.edges_lost_before = self.edges_lost;
+        report
+    }
+
+    fn line(&self, interval: &Interval) -> Status {
+        let Interval { damaged, lost, .. } = *interval;
+        let wrong_number = self.board_sensors.filter(|&sensors| usize::from(sensors) != self.sensors.len());
+        let (level, message) = if let Some(why) = &self.line_lost {
+            (Level::Error, format!("closed: {why}"))
+        } else if let Some(why) = &self.foreign {
+            (Level::Error, why.clone())
+        } else if let Some(sensors) = wrong_number {
+            let expected = self.sensors.len();
+            (Level::Error, format!("the board has {sensors} sensors; the parameter sensors says {expected}"))
+        } else if damaged + lost > 0 {
+            (Level::Warn, format!("dropped frames: {lost} missing, {damaged} damaged"))
+        } else if interval.firings == 0 {
+            (Level::Error, "silent: no firing arrives".to_owned())
+        } else {
+            (Level::Ok, "well".to_owned())
+        };
+        let values = vec![
+            ("firings since the last report", interval.firings.to_string()),
+            ("frames missing, in all", self.total_lost.to_string()),
+            ("frames damaged, in all", self.total_damaged.to_string()),
+            ("messages not sent since the last report", interval.unsent.to_string()),
+        ];
+        Status { level, about: "serial line".to_owned(), message, values }
+    }
+
+    fn timing(&self, interval: &Interval) -> Status {
+        let late = interval.max_late.as_micros();
+        let (level, message) = if late > self.late_us {
+            (Level::Warn, format!("late: a firing came {late} us after it was due; more than {} us", self.late_us))
+        } else if self.edges_lost != self.edges_lost_before {
+            (Level::Warn, "the board loses edges: its queue was full".to_owned())
+        } else {
+            (Level::Ok, "well".to_owned())
+        };
+        let values = vec![
+            ("latest firing since the last report, us", late.to_string()),
+            ("edges that the board lost, 255 for all more", self.edges_lost.to_string()),
+        ];
+        Status { level, about: "timing".to_owned(), message, values }
+    }
+
+    fn sensor(&self, now_s: f64, number: u32, sensor: &Sensor) -> Status {
+        let silent_s = now_s - sensor.heard_at_s;
+        let (level, message) = if silent_s > self.silent_after_s {
+            (Level::Error, format!("silent: no firing of it for {silent_s:.1} s"))
+        } else if sensor.health != 0 {
+            (Level::Error, HEALTH.get(usize::from(sensor.health)).copied().unwrap_or("unwell").to_owned())
+        } else if sensor.stuck {
+            (Level::Error, HEALTH[2].to_owned())
+        } else if sensor.echoes_since_accepted >= self.blind_after {
+            (Level::Warn, format!("blind: none of its last {} echoes was accepted", sensor.echoes_since_accepted))
+        } else {
+            (Level::Ok, "well".to_owned())
+        };
+        let of = |kind| sensor.tally.of(kind).to_string();
+        let (last, t_echo) = sensor.last.map_or((String::new(), None), |(kind, t_echo)| (kind.to_string(), t_echo));
+        let values = vec![
+            ("accepted", of(ReadingKind::Accepted)),
+            ("rejected", of(ReadingKind::Rejected)),
+            ("clear", of(ReadingKind::Clear)),
+            ("too early", of(ReadingKind::TooEarly)),
+            ("stuck", of(ReadingKind::Stuck)),
+            ("last reading", last),
+            ("last echo time, us", t_echo.map(|t_echo| t_echo.as_micros().to_string()).unwrap_or_default()),
+        ];
+        Status { level, about: format!("sensor {number}"), message, values }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn diagnosis() -> Diagnosis {
+        let parameters = Parameters { sensors: 2, blind_after: 3, late_us: 1_000, ..Parameters::default() };
+        let mut diagnosis = Diagnosis::new(&parameters, 0.0);
+        diagnosis.line_opened();
+        diagnosis.hello(2);
+        diagnosis
+    }
+
+    fn both(diagnosis: &mut Diagnosis, now_s: f64, kind: ReadingKind) {
+        for sensor in 0..2 {
+            diagnosis.reading(now_s, sensor, kind, Some(Micros::new(9_000)), Micros::ZERO);
+        }
+    }
+
+    /// Level and first word of each status: line, timing, two sensors.
+    fn said(diagnosis: &mut Diagnosis, now_s: f64) -> Vec<(Level, String)> {
+        let report = diagnosis.report(now_s);
+        assert_eq!(report.len(), 4);
+        let word = |status: &Status| status.message.split([' ', ':']).next().unwrap_or_default().to_owned();
+        report.iter().map(|status| (status.level, word(status))).collect()
+    }
+
+    fn well() -> (Level, String) {
+        (Level::Ok, "well".to_owned())
+    }
+
+    #[test]
+    fn a_ring_that_is_well_is_said_to_be_well() {
+        let mut diagnosis = diagnosis();
+        both(&mut diagnosis, 0.5, ReadingKind::Accepted);
+        assert_eq!(said(&mut diagnosis, 1.0), [well(), well(), well(), well()]);
+    }
+
+    #[test]
+    fn each_fault_is_named_once_it_is_there_and_no_longer_when_it_is_gone() {
+        type Fault = fn(&mut Diagnosis);
+        let faults: [(usize, Level, &str, Fault); 9] = [
+            (0, Level::Error, "closed", |diagnosis| diagnosis.line_lost("unplugged".to_owned())),
+            (0, Level::Error, "version", |diagnosis| diagnosis.foreign("version 2".to_owned())),
+            (0, Level::Error, "the", |diagnosis| diagnosis.hello(9)),
+            (0, Level::Warn, "dropped", |diagnosis| diagnosis.lost(3)),
+            (0, Level::Warn, "dropped", Diagnosis::damaged),
+            (1, Level::Warn, "late", |diagnosis| diagnosis.period(Micros::new(1_001), 0, &[0, 0])),
+            (1, Level::Warn, "the", |diagnosis| diagnosis.period(Micros::ZERO, 1, &[0, 0])),
+            (2, Level::Error, "stuck", |diagnosis| diagnosis.period(Micros::ZERO, 0, &[2, 0])),
+            (3, Level::Error, "missing", |diagnosis| diagnosis.period(Micros::ZERO, 0, &[0, 1])),
+        ];
+        for (place, level, word, fault) in faults {
+            let mut diagnosis = diagnosis();
+            both(&mut diagnosis, 0.5, ReadingKind::Accepted);
+            fault(&mut diagnosis);
+            let mut expected = vec![well(); 4];
+            expected[place] = (level, word.to_owned());
+            assert_eq!(said(&mut diagnosis, 1.0), expected);
+            both(&mut diagnosis, 1.5, ReadingKind::Accepted);
+            diagnosis.line_opened();
+            diagnosis.hello(2);
+            diagnosis.period(Micros::ZERO, diagnosis.edges_lost, &[0, 0]);
+            assert_eq!(said(&mut diagnosis, 2.0), vec![well(); 4], "after {word}");
+        }
+    }
+
+    #[test]
+    fn a_sensor_is_blind_when_echoes_are_not_accepted_and_silent_when_it_does_not_fire() {
+        let mut diagnosis = diagnosis();
+        for _ in 0..3 {
+            diagnosis.reading(0.5, 0, ReadingKind::Rejected, Some(Micros::new(9_000)), Micros::ZERO);
+            diagnosis.reading(0.5, 1, ReadingKind::NoEcho, None, Micros::ZERO);
+        }
+        assert_eq!(said(&mut diagnosis, 1.0)[2..], [(Level::Warn, "blind".to_owned()), well()]);
+        both(&mut diagnosis, 1.0, ReadingKind::Accepted);
+        assert_eq!(said(&mut diagnosis, 1.5)[2..], [well(), well()]);
+        diagnosis.reading(2.4, 1, ReadingKind::Stuck, None, Micros::ZERO);
+        let (silent, stuck) = ((Level::Error, "silent".to_owned()), (Level::Error, "stuck".to_owned()));
+        assert_eq!(said(&mut diagnosis, 2.5), [well(), well(), silent.clone(), stuck]);
+        assert_eq!(said(&mut diagnosis, 9.0), [silent.clone(), well(), silent.clone(), silent]);
+    }
+}

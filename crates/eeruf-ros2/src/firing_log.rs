@@ -1,0 +1,72 @@
+//! The log that `eeruf diagnose` reads: a row for each firing.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use eeruf_serial::Firing;
+
+pub(crate) struct FiringLog {
+    file: BufWriter<File>,
+    begun: bool,
+}
+
+impl FiringLog {
+    pub(crate) fn create(path: &Path) -> Result<Self, String> {
+        let file = File::create(path).map_err(|error| format!("log: {}: {error}", path.display()))?;
+        Ok(Self { file: BufWriter::new(file), begun: false })
+    }
+
+    /// Writes a firing, by a clock of this name.
+    pub(crate) fn write(&mut self, clock: &str, firing: &Firing) -> io::Result<()> {
+        if !self.begun {
+            self.begun = true;
+            writeln!(self.file, "# clock: {clock}, 32 bits")?;
+            writeln!(self.file, "sensor,fired_us,period,phase,t_echo_us,reading,late_us")?;
+        }
+        let Firing { sensor, period, phase, kind, .. } = firing;
+        let echo = firing.t_echo.map(|t_echo| t_echo.as_micros().to_string()).unwrap_or_default();
+        let (fired, late) = (firing.fired.as_micros(), firing.late.as_micros());
+        writeln!(self.file, "{sensor},{fired},{period},{phase},{echo},{kind},{late}")
+    }
+
+    /// Brings to the disk what was written.
+    pub(crate) fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eeruf_core::{Instant, Micros, ReadingKind};
+
+    #[test]
+    fn diagnose_reads_what_is_written_through_a_wrap_of_the_clock() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("log.csv");
+        let mut log = FiringLog::create(&file).unwrap();
+        for (n, kind) in [ReadingKind::Accepted, ReadingKind::Rejected, ReadingKind::NoEcho].into_iter().enumerate() {
+            let firing = Firing {
+                sensor: n as u8,
+                phase: 1,
+                kind,
+                fired: Instant::from_micros(u32::MAX - 10) + Micros::new(10 * n as u32),
+                period: 7,
+                t_echo: (kind != ReadingKind::NoEcho).then_some(Micros::new(5_872)),
+                late: Micros::ZERO,
+                age: Micros::ZERO,
+            };
+            log.write("board", &firing).unwrap();
+        }
+        log.flush().unwrap();
+        let read = eeruf_logs::FiringLog::read(&file).unwrap();
+        assert_eq!(read.clock, "board, 32 bits");
+        let rows: Vec<_> =
+            read.firings.iter().map(|firing| (firing.fired_us, firing.t_echo_us, firing.rejected)).collect();
+        let first = i64::from(u32::MAX) - 10;
+        let expected =
+            [(first, Some(5_872), Some(false)), (first + 10, Some(5_872), Some(true)), (first + 20, None, Some(false))];
+        assert_eq!(rows, expected);
+    }
+}

@@ -1,0 +1,118 @@
+//! From echo times to what a `sensor_msgs/Range` says, by REP 117.
+
+use eeruf_core::{Micros, ReadingKind, SpeedOfSound};
+
+use crate::parameters::{ClearAs, Parameters};
+
+/// What a reading says of the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Distance {
+    /// Something is there, in metres.
+    At(f32),
+    /// Nothing is in range.
+    Clear,
+    /// Something is too close to measure.
+    TooClose,
+}
+
+/// Limits and speed of sound.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scale {
+    sound_m_s: f64,
+    pub(crate) min_m: f32,
+    pub(crate) max_m: f32,
+    clear_as: ClearAs,
+}
+
+impl Scale {
+    pub(crate) fn new(parameters: &Parameters) -> Self {
+        // Within -60 to 80 degrees.
+        let sound = SpeedOfSound::at_celsius_tenths((10.0 * parameters.temperature_c).round() as i16);
+        Self {
+            sound_m_s: f64::from(sound.mm_per_s()) / 1000.0,
+            min_m: parameters.min_range_m,
+            max_m: parameters.max_range_m,
+            clear_as: parameters.clear_as,
+        }
+    }
+
+    /// The distance at which an echo takes so long, in metres.
+    pub(crate) fn metres(&self, t_echo: Micros) -> f64 {
+        f64::from(t_echo.as_micros()) * 1e-6 * self.sound_m_s / 2.0
+    }
+
+    /// The echo time at this distance.
+    pub(crate) fn echo_time(&self, metres: f32) -> Micros {
+        Micros::new((f64::from(metres) * 2e6 / self.sound_m_s).round() as u32)
+    }
+
+    /// What a reading says; `None` for one that says nothing: rejected, or not yet confirmed.
+    pub(crate) fn distance(&self, kind: ReadingKind, t_echo: Option<Micros>) -> Option<Distance> {
+        match (kind, t_echo) {
+            (ReadingKind::Accepted, Some(t_echo)) => {
+                let metres = self.metres(t_echo) as f32;
+                Some(if metres > self.max_m {
+                    Distance::Clear
+                } else if metres < self.min_m {
+                    Distance::TooClose
+                } else {
+                    Distance::At(metres)
+                })
+            }
+            (ReadingKind::Clear, _) => Some(Distance::Clear),
+            (ReadingKind::TooEarly, _) => Some(Distance::TooClose),
+            _ => None,
+        }
+    }
+
+    /// The number that stands for it in a `Range`.
+    pub(crate) fn number(&self, distance: Distance) -> f32 {
+        match (distance, self.clear_as) {
+            (Distance::At(metres), _) => metres,
+            (Distance::Clear, ClearAs::Inf) => f32::INFINITY,
+            (Distance::Clear, ClearAs::MaxRange) => self.max_m,
+            (Distance::TooClose, _) => f32::NEG_INFINITY,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scale(clear_as: ClearAs) -> Scale {
+        Scale::new(&Parameters { clear_as, ..Parameters::default() })
+    }
+
+    #[test]
+    fn ranges_are_as_rep_117_wants_them_or_clear_at_the_maximum() {
+        let us = |us| Some(Micros::new(us));
+        for (kind, t_echo, inf, max_range) in [
+            (ReadingKind::Accepted, us(10_000), Some(1.716), Some(1.716)),
+            // 4.12 m, and 1.7 cm.
+            (ReadingKind::Accepted, us(24_000), Some(f32::INFINITY), Some(4.0)),
+            (ReadingKind::Accepted, us(100), Some(f32::NEG_INFINITY), Some(f32::NEG_INFINITY)),
+            (ReadingKind::Clear, None, Some(f32::INFINITY), Some(4.0)),
+            (ReadingKind::TooEarly, us(90), Some(f32::NEG_INFINITY), Some(f32::NEG_INFINITY)),
+            (ReadingKind::Rejected, us(10_000), None, None),
+            (ReadingKind::First, us(10_000), None, None),
+            (ReadingKind::Late, us(41_000), None, None),
+            (ReadingKind::NoEcho, None, None, None),
+            (ReadingKind::Stuck, None, None, None),
+        ] {
+            for (clear_as, expected) in [(ClearAs::Inf, inf), (ClearAs::MaxRange, max_range)] {
+                let scale = scale(clear_as);
+                let number = scale.distance(kind, t_echo).map(|distance| scale.number(distance));
+                assert_eq!(number, expected, "{kind} {clear_as:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn metres_become_the_echo_time_that_they_came_from() {
+        let scale = scale(ClearAs::Inf);
+        for us in [0, 1, 999, 23_310] {
+            assert_eq!(scale.echo_time(scale.metres(Micros::new(us)) as f32), Micros::new(us));
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! The few messages that the node speaks, field by field as ROS 2 defines them.
+
+use serde::{Deserialize, Serialize};
+
+/// `builtin_interfaces/Time`.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
+pub(crate) struct Time {
+    sec: i32,
+    nanosec: u32,
+}
+
+impl Time {
+    /// Nanoseconds since 1970.
+    pub(crate) fn from_nanoseconds(ns: i64) -> Self {
+        let second = 1_000_000_000;
+        // The field holds seconds until 2038.
+        Self { sec: ns.div_euclid(second) as i32, nanosec: ns.rem_euclid(second) as u32 }
+    }
+}
+
+/// `std_msgs/Header`.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub(crate) struct Header {
+    pub(crate) stamp: Time,
+    pub(crate) frame_id: String,
+}
+
+/// `sensor_msgs/Range::ULTRASOUND`.
+pub(crate) const ULTRASOUND: u8 = 0;
+
+/// `sensor_msgs/Range`, as it is from ROS 2 Iron on; Humble's ends before the variance.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Range {
+    pub(crate) header: Header,
+    pub(crate) radiation_type: u8,
+    pub(crate) field_of_view: f32,
+    pub(crate) min_range: f32,
+    pub(crate) max_range: f32,
+    pub(crate) range: f32,
+    /// 0 for unknown.
+    pub(crate) variance: f32,
+}
+
+/// The part of `sensor_msgs/Range` that all ROS 2 have.
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct RangeHeard {
+    #[expect(dead_code, reason = "it stands before what is needed")]
+    pub(super) header: Header,
+    #[expect(dead_code, reason = "it stands before what is needed")]
+    pub(super) radiation_type: u8,
+    #[expect(dead_code, reason = "it stands before what is needed")]
+    pub(super) field_of_view: f32,
+    pub(crate) min_range: f32,
+    pub(crate) max_range: f32,
+    pub(crate) range: f32,
+}
+
+/// `std_msgs/UInt32MultiArray`.
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct UInt32MultiArray {
+    #[expect(dead_code, reason = "it stands before what is needed")]
+    layout: MultiArrayLayout,
+    pub(crate) data: Vec<u32>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[expect(dead_code, reason = "it stands before what is needed")]
+struct MultiArrayLayout {
+    dim: Vec<MultiArrayDimension>,
+    data_offset: u32,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[expect(dead_code, reason = "it stands before what is needed")]
+struct MultiArrayDimension {
+    label: String,
+    size: u32,
+    stride: u32,
+}
+
+/// `diagnostic_msgs/DiagnosticArray`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct DiagnosticArray {
+    pub(crate) header: Header,
+    pub(crate) status: Vec<DiagnosticStatus>,
+}
+
+/// `diagnostic_msgs/DiagnosticStatus`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct DiagnosticStatus {
+    pub(crate) level: u8,
+    pub(crate) name: String,
+    pub(crate) message: String,
+    pub(crate) hardware_id: String,
+    pub(crate) values: Vec<KeyValue>,
+}
+
+/// `diagnostic_msgs/KeyValue`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct KeyValue {
+    pub(crate) key: String,
+    pub(crate) value: String,
+}

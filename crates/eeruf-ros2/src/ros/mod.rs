@@ -1,0 +1,264 @@
+//! The node's part in ROS 2: what it publishes and subscribes to, over DDS.
+
+mod messages;
+
+use std::env;
+use std::fmt::Display;
+use std::net::{IpAddr, Ipv4Addr};
+use std::time::Duration;
+
+use ros2_client::dds::rustdds::DomainParticipantBuilder;
+use ros2_client::qos::{History, WhenFull};
+use ros2_client::{Context, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, QosProfile, Subscription};
+
+use crate::diagnosis::Status;
+use crate::parameters::{Parameters, Source};
+use crate::range::Distance;
+use messages::{
+    DiagnosticArray, DiagnosticStatus, Header, KeyValue, Range, RangeHeard, Time, UInt32MultiArray, ULTRASOUND,
+};
+
+/// What was heard on a topic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Heard {
+    /// A row of raw echo times.
+    Firing { sensor: u8, fired_us: u32, period: u32, phase: u8, t_echo_us: u32 },
+    /// A range of a sensor: what it says of the world, or `None` if it is no number.
+    Range { sensor: u8, distance: Option<Distance> },
+}
+
+/// How many numbers a row of raw echo times has.
+const ROW: usize = 5;
+
+enum Input {
+    None,
+    EchoTimes(Subscription<UInt32MultiArray>),
+    Ranges(Vec<Subscription<RangeHeard>>),
+}
+
+pub(crate) struct Ros {
+    /// Leaves when it is dropped.
+    _node: Node,
+    ranges: Vec<Publisher<Range>>,
+    frame_ids: Vec<String>,
+    diagnostics: Publisher<DiagnosticArray>,
+    input: Input,
+    field_of_view: f32,
+    min_range: f32,
+    max_range: f32,
+    name: String,
+    hardware: String,
+}
+
+/// Reliable for those who ask for it and no hindrance for those who do not; a reader that does not acknowledge holds
+/// the node up for no longer than this.
+const PUBLISHING: QosProfile = QosProfile::publisher_default()
+    .reliability_reliable(WhenFull::Wait(Duration::from_millis(10)))
+    .history(History::KeepLast { depth: 10 });
+/// As ROS 2 calls it, sensor data: what gets lost is not asked for again.
+const LISTENING: QosProfile = QosProfile::subscription_default().history(History::KeepLast { depth: 64 });
+
+impl Ros {
+    /// Joins the domain `ROS_DOMAIN_ID`; on this machine alone where `ROS_LOCALHOST_ONLY` is 1 or
+    /// `ROS_AUTOMATIC_DISCOVERY_RANGE` is `LOCALHOST`.
+    pub(crate) fn open(parameters: &Parameters) -> Result<Self, String> {
+        let mut participant = DomainParticipantBuilder::new(domain()?);
+        let is = |variable: &str, value: &str| env::var(variable).is_ok_and(|set| set == value);
+        if is("ROS_LOCALHOST_ONLY", "1") || is("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST") {
+            participant = participant.with_only_networks([IpAddr::V4(Ipv4Addr::LOCALHOST)]);
+        }
+        let participant = participant.build().map_err(wrong("DDS"))?;
+        let context = Context::from_domain_participant(participant).map_err(wrong("DDS"))?;
+        let node_name = NodeName::new("/", &parameters.name).map_err(wrong(&parameters.name))?;
+        let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
+        let mut node = context.new_node(node_name, options).map_err(wrong("node"))?;
+        let mut ranges = Vec::new();
+        let range_type = || MessageTypeName::new("sensor_msgs", "Range");
+        for sensor in 0..parameters.sensors {
+            let name = Parameters::name_of(&parameters.topics, &format!("{}/sonar_", parameters.name), sensor);
+            let topic = node.create_topic(&topic_name(&name)?, range_type(), &PUBLISHING).map_err(wrong(&name))?;
+            ranges.push(node.create_publisher(&topic, None).map_err(wrong(&name))?);
+        }
+        let topic = node
+            .create_topic(
+                &topic_name("/diagnostics")?,
+                MessageTypeName::new("diagnostic_msgs", "DiagnosticArray"),
+                &PUBLISHING,
+            )
+            .map_err(wrong("/diagnostics"))?;
+        let diagnostics = node.create_publisher(&topic, None).map_err(wrong("/diagnostics"))?;
+        let input = match parameters.source {
+            Source::Serial => Input::None,
+            Source::EchoTimes => {
+                let name = &parameters.echo_times_topic;
+                let array = MessageTypeName::new("std_msgs", "UInt32MultiArray");
+                let topic = node.create_topic(&topic_name(name)?, array, &LISTENING).map_err(wrong(name))?;
+                Input::EchoTimes(node.create_subscription(&topic, None).map_err(wrong(name))?)
+            }
+            Source::Ranges => {
+                let mut subscriptions = Vec::new();
+                for name in &parameters.range_topics {
+                    let topic = node.create_topic(&topic_name(name)?, range_type(), &LISTENING).map_err(wrong(name))?;
+                    subscriptions.push(node.create_subscription(&topic, None).map_err(wrong(name))?);
+                }
+                Input::Ranges(subscriptions)
+            }
+        };
+        let frame_id = |sensor| Parameters::name_of(&parameters.frame_ids, "sonar_", sensor);
+        Ok(Self {
+            _node: node,
+            ranges,
+            frame_ids: (0..parameters.sensors).map(frame_id).collect(),
+            diagnostics,
+            input,
+            field_of_view: parameters.field_of_view_rad,
+            min_range: parameters.min_range_m,
+            max_range: parameters.max_range_m,
+            name: parameters.name.clone(),
+            hardware: if parameters.source == Source::Serial { parameters.port.clone() } else { String::new() },
+        })
+    }
+
+    /// Publishes a sensor's range, of a firing at this time; false if that cannot be sent.
+    pub(crate) fn publish_range(&self, sensor: u8, fired_ns: i64, range: f32) -> bool {
+        let at = usize::from(sensor);
+        let (Some(publisher), Some(frame_id)) = (self.ranges.get(at), self.frame_ids.get(at)) else { return false };
+        let header = Header { stamp: Time::from_nanoseconds(fired_ns), frame_id: frame_id.clone() };
+        let message = Range {
+            header,
+            radiation_type: ULTRASOUND,
+            field_of_view: self.field_of_view,
+            min_range: self.min_range,
+            max_range: self.max_range,
+            range,
+            variance: 0.0,
+        };
+        publisher.publish(message).is_ok()
+    }
+
+    /// Publishes how everything is; false if that cannot be sent.
+    pub(crate) fn publish_diagnostics(&self, now_ns: i64, report: &[Status]) -> bool {
+        let status = report.iter().map(|status| DiagnosticStatus {
+            level: status.level as u8,
+            name: format!("{}: {}", self.name, status.about),
+            message: status.message.clone(),
+            hardware_id: self.hardware.clone(),
+            values: status
+                .values
+                .iter()
+                .map(|(key, value)| KeyValue { key: (*key).to_owned(), value: value.clone() })
+                .collect(),
+        });
+        let header = Header { stamp: Time::from_nanoseconds(now_ns), frame_id: String::new() };
+        self.diagnostics.publish(DiagnosticArray { header, status: status.collect() }).is_ok()
+    }
+
+    /// Hands on all that has been heard since; an error for a message that is not as it must be.
+    pub(crate) fn take(&self, mut each: impl FnMut(Result<Heard, String>)) {
+        match &self.input {
+            Input::None => {}
+            Input::EchoTimes(subscription) => {
+                while let Some(message) = subscription.take().transpose() {
+                    match message {
+                        Ok((message, _)) => rows(&message.data, self.ranges.len(), &mut each),
+                        Err(error) => each(Err(error.to_string())),
+                    }
+                }
+            }
+            Input::Ranges(subscriptions) => {
+                for (sensor, subscription) in (0..).zip(subscriptions) {
+                    while let Some(message) = subscription.take().transpose() {
+                        let heard = message.map(|(message, _)| Heard::Range { sensor, distance: distance(&message) });
+                        each(heard.map_err(|error| error.to_string()));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What a range says, by REP 117.
+fn distance(message: &RangeHeard) -> Option<Distance> {
+    let RangeHeard { min_range, max_range, range, .. } = *message;
+    if range.is_nan() {
+        None
+    } else if range >= max_range {
+        Some(Distance::Clear)
+    } else if range < min_range {
+        Some(Distance::TooClose)
+    } else {
+        Some(Distance::At(range))
+    }
+}
+
+fn rows(data: &[u32], sensors: usize, each: &mut impl FnMut(Result<Heard, String>)) {
+    let (rows, rest) = data.as_chunks::<ROW>();
+    if !rest.is_empty() {
+        let length = data.len();
+        each(Err(format!("echo times: {length} numbers; expected rows of sensor, fired_us, period, phase, t_echo_us")));
+        return;
+    }
+    for &[sensor, fired_us, period, phase, t_echo_us] in rows {
+        let known = u8::try_from(sensor).ok().filter(|&sensor| usize::from(sensor) < sensors);
+        each(match (known, u8::try_from(phase)) {
+            (Some(sensor), Ok(phase)) => Ok(Heard::Firing { sensor, fired_us, period, phase, t_echo_us }),
+            (None, _) => Err(format!("echo times: sensor {sensor}; expected less than {sensors}")),
+            (_, Err(_)) => Err(format!("echo times: phase {phase}; expected 0 to 255")),
+        });
+    }
+}
+
+/// `ROS_DOMAIN_ID`, 0 if it is not set.
+fn domain() -> Result<u16, String> {
+    let Ok(set) = env::var("ROS_DOMAIN_ID") else { return Ok(0) };
+    let id = set.parse().ok().filter(|id| *id <= 232);
+    id.ok_or_else(|| format!("ROS_DOMAIN_ID: {set}; expected 0 to 232"))
+}
+
+fn topic_name(name: &str) -> Result<Name, String> {
+    let whole = if name.starts_with('/') { name.to_owned() } else { format!("/{name}") };
+    Name::parse(&whole).map_err(|error| format!("topic {name}: {error:?}"))
+}
+
+fn wrong<E: Display>(what: &str) -> impl Fn(E) -> String + '_ {
+    move |error| format!("{what}: {error}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_echo_times_are_read_and_wrong_ones_named() {
+        let read = |data: &[u32]| {
+            let mut heard = Vec::new();
+            rows(data, 8, &mut |row| heard.push(row));
+            heard
+        };
+        let row = |sensor, t_echo_us| Heard::Firing { sensor, fired_us: 15_000, period: 3, phase: 1, t_echo_us };
+        let data = [7, 15_000, 3, 1, 5_872, 0, 15_000, 3, 1, u32::MAX];
+        assert_eq!(read(&data), [Ok(row(7, 5_872)), Ok(row(0, u32::MAX))]);
+        assert_eq!(read(&data[..9]).len(), 1);
+        assert!(read(&data[..9])[0].as_ref().is_err_and(|error| error.starts_with("echo times: 9 numbers")));
+        let error = read(&[8, 0, 0, 0, 0]).pop().unwrap().unwrap_err();
+        assert_eq!(error, "echo times: sensor 8; expected less than 8");
+    }
+
+    #[test]
+    fn ranges_are_understood_by_rep_117() {
+        let heard = |range| {
+            distance(&RangeHeard {
+                header: Header::default(),
+                radiation_type: ULTRASOUND,
+                field_of_view: 0.5,
+                min_range: 0.02,
+                max_range: 4.0,
+                range,
+            })
+        };
+        assert_eq!(heard(1.5), Some(Distance::At(1.5)));
+        assert_eq!((heard(f32::INFINITY), heard(4.0)), (Some(Distance::Clear), Some(Distance::Clear)));
+        assert_eq!((heard(f32::NEG_INFINITY), heard(0.01)), (Some(Distance::TooClose), Some(Distance::TooClose)));
+        assert_eq!(heard(f32::NAN), None);
+    }
+}

@@ -1,0 +1,245 @@
+//! The main loop: what comes in from the board or from topics goes out as ranges, diagnostics, MAVLink and a log.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+
+use eeruf_core::{Micros, ReadingKind};
+use eeruf_serial::{Firing, Message, Received};
+
+use crate::board_clock::BoardClock;
+use crate::board_line::{FromLine, listen, nanoseconds};
+use crate::diagnosis::{Diagnosis, Level};
+use crate::firing_log::FiringLog;
+use crate::judge::{Judge, Raw};
+use crate::mavlink::Mavlink;
+use crate::parameters::{Parameters, Source};
+use crate::range::{Distance, Scale};
+use crate::ros::{Heard, Ros};
+
+/// How often topics are looked at; a ring of 64 has a reading every millisecond or two.
+const LOOK: Duration = Duration::from_millis(5);
+/// How often what is wrong is said.
+const REPORT: Duration = Duration::from_secs(1);
+
+/// Runs until Ctrl-C.
+pub(crate) fn run(parameters: &Parameters) -> Result<(), String> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let stopped = Arc::clone(&stop);
+    ctrlc::set_handler(move || stopped.store(true, Ordering::Relaxed)).map_err(|error| format!("Ctrl-C: {error}"))?;
+    let mut node = EerufNode::open(parameters)?;
+    let line = (parameters.source == Source::Serial).then(|| {
+        let (to, from) = channel();
+        listen(parameters.port.clone(), parameters.baud, to);
+        from
+    });
+    eprintln!("eeruf-ros2: {} sensors, from {}", parameters.sensors, source(parameters));
+    let mut reported = Instant::now();
+    while !stop.load(Ordering::Relaxed) {
+        node.look(line.as_ref())?;
+        if reported.elapsed() >= REPORT {
+            reported += REPORT;
+            node.report()?;
+        }
+    }
+    node.end()
+}
+
+fn source(parameters: &Parameters) -> String {
+    match parameters.source {
+        Source::Serial => format!("{} at {} baud", parameters.port, parameters.baud),
+        Source::EchoTimes => format!("topic {}", parameters.echo_times_topic),
+        Source::Ranges => format!("topics {}", parameters.range_topics.join(", ")),
+    }
+}
+
+struct EerufNode {
+    ros: Option<Ros>,
+    mavlink: Option<Mavlink>,
+    log: Option<FiringLog>,
+    judge: Judge,
+    diagnosis: Diagnosis,
+    scale: Scale,
+    clock: BoardClock,
+    clock_name: String,
+    /// The number of the last frame.
+    sequence: Option<u16>,
+    began: Instant,
+    /// What was last said of the line, so that it is said once.
+    said: String,
+}
+
+impl EerufNode {
+    fn open(parameters: &Parameters) -> Result<Self, String> {
+        let is_set = |text: &str| !text.is_empty();
+        let log = parameters.log.as_os_str();
+        Ok(Self {
+            ros: parameters.ros.then(|| Ros::open(parameters)).transpose()?,
+            mavlink: is_set(&parameters.mavlink).then(|| Mavlink::open(parameters)).transpose()?,
+            log: (!log.is_empty()).then(|| FiringLog::create(&parameters.log)).transpose()?,
+            judge: Judge::new(Micros::new(parameters.t_delta_us))?,
+            diagnosis: Diagnosis::new(parameters, 0.0),
+            scale: Scale::new(parameters),
+            clock: BoardClock::default(),
+            clock_name: "board".to_owned(),
+            sequence: None,
+            began: Instant::now(),
+            said: String::new(),
+        })
+    }
+
+    fn now_s(&self) -> f64 {
+        self.began.elapsed().as_secs_f64()
+    }
+
+    /// Takes what has come in, and waits a little if nothing has.
+    fn look(&mut self, line: Option<&Receiver<FromLine>>) -> Result<(), String> {
+        let Some(line) = line else {
+            std::thread::sleep(LOOK);
+            return self.look_at_topics();
+        };
+        match line.recv_timeout(10 * LOOK) {
+            Ok(FromLine::Opened) => {
+                self.diagnosis.line_opened();
+                self.say_once("the line is open");
+                self.sequence = None;
+                Ok(())
+            }
+            Ok(FromLine::Lost(why)) => {
+                self.say_once(&format!("{why}; trying again"));
+                self.diagnosis.line_lost(why);
+                Ok(())
+            }
+            Ok(FromLine::Frame(Ok(received), at_ns)) => self.frame(received, at_ns),
+            Ok(FromLine::Frame(Err(eeruf_serial::FrameError::Damaged), _)) => {
+                self.diagnosis.damaged();
+                Ok(())
+            }
+            Ok(FromLine::Frame(Err(error), _)) => {
+                self.say_once(&error.to_string());
+                self.diagnosis.foreign(error.to_string());
+                Ok(())
+            }
+            Err(RecvTimeoutError::Timeout) => Ok(()),
+            Err(RecvTimeoutError::Disconnected) => Err("the thread that reads the line has ended".to_owned()),
+        }
+    }
+
+    fn frame(&mut self, Received { sequence, message }: Received, at_ns: i64) -> Result<(), String> {
+        if let Some(last) = self.sequence.replace(sequence) {
+            // A board that started anew begins with 0.
+            let missing = sequence.wrapping_sub(last).wrapping_sub(1);
+            self.diagnosis.lost(if sequence == 0 { 0 } else { missing });
+        }
+        match message {
+            Message::Hello { sensors, clock } => {
+                self.clock_name = clock;
+                self.diagnosis.hello(sensors);
+                Ok(())
+            }
+            Message::Period { max_late, edges_lost, health, .. } => {
+                self.diagnosis.period(max_late, edges_lost, &health);
+                Ok(())
+            }
+            Message::Firing(firing) => {
+                let fired_ns = self.clock.fired_ns(firing.fired, firing.age, at_ns);
+                self.firing(&firing, fired_ns)
+            }
+        }
+    }
+
+    fn look_at_topics(&mut self) -> Result<(), String> {
+        let mut heard = Vec::new();
+        if let Some(ros) = &self.ros {
+            ros.take(|message| heard.push(message));
+        }
+        for message in heard {
+            match message {
+                Ok(Heard::Firing { sensor, fired_us, period, phase, t_echo_us }) => {
+                    let t_echo = (t_echo_us != u32::MAX).then_some(Micros::new(t_echo_us));
+                    let kind = self.judge.judge(sensor, t_echo.map_or(Raw::Nothing, |t_echo| self.raw(t_echo)))?;
+                    let fired = eeruf_core::Instant::from_micros(fired_us);
+                    let (late, age) = (Micros::ZERO, Micros::ZERO);
+                    let firing = Firing { sensor, phase, kind, fired, period, t_echo, late, age };
+                    // Whose clock it is nobody knows; the message has just come.
+                    self.firing(&firing, nanoseconds())?;
+                }
+                Ok(Heard::Range { sensor, distance: Some(distance) }) => {
+                    let (raw, t_echo) = match distance {
+                        Distance::At(metres) => {
+                            let t_echo = self.scale.echo_time(metres);
+                            (Raw::Echo(t_echo), Some(t_echo))
+                        }
+                        Distance::Clear => (Raw::Nothing, None),
+                        Distance::TooClose => (Raw::TooEarly, None),
+                    };
+                    let kind = self.judge.judge(sensor, raw)?;
+                    self.reading(sensor, kind, t_echo, Micros::ZERO, nanoseconds());
+                }
+                Ok(Heard::Range { distance: None, .. }) => {}
+                Err(why) => self.say_once(&why),
+            }
+        }
+        Ok(())
+    }
+
+    /// An echo from closer than the minimum range is compared with nothing.
+    fn raw(&self, t_echo: Micros) -> Raw {
+        if self.scale.metres(t_echo) < f64::from(self.scale.min_m) { Raw::TooEarly } else { Raw::Echo(t_echo) }
+    }
+
+    fn firing(&mut self, firing: &Firing, fired_ns: i64) -> Result<(), String> {
+        if let Some(log) = &mut self.log {
+            log.write(&self.clock_name, firing).map_err(|error| format!("log: {error}"))?;
+        }
+        self.reading(firing.sensor, firing.kind, firing.t_echo, firing.late, fired_ns);
+        Ok(())
+    }
+
+    fn reading(&mut self, sensor: u8, kind: ReadingKind, t_echo: Option<Micros>, late: Micros, fired_ns: i64) {
+        self.diagnosis.reading(self.now_s(), sensor, kind, t_echo, late);
+        let Some(distance) = self.scale.distance(kind, t_echo) else { return };
+        let range = self.scale.number(distance);
+        let published = self.ros.as_ref().is_none_or(|ros| ros.publish_range(sensor, fired_ns, range));
+        let sent = self.mavlink.as_mut().is_none_or(|mavlink| mavlink.distance(sensor, distance).is_ok());
+        if !(published && sent) {
+            self.diagnosis.unsent();
+        }
+    }
+
+    fn report(&mut self) -> Result<(), String> {
+        let report = self.diagnosis.report(self.now_s());
+        if let Some(ros) = &self.ros {
+            if !ros.publish_diagnostics(nanoseconds(), &report) {
+                self.diagnosis.unsent();
+            }
+        } else {
+            // Without ROS nobody else says it.
+            let wrong = report.iter().filter(|status| status.level != Level::Ok);
+            let wrong: Vec<_> = wrong.map(|status| format!("{}: {}", status.about, status.message)).collect();
+            self.say_once(&if wrong.is_empty() { "all is well".to_owned() } else { wrong.join("; ") });
+        }
+        if self.mavlink.as_mut().is_some_and(|mavlink| mavlink.heartbeat().is_err()) {
+            self.diagnosis.unsent();
+        }
+        self.flush()
+    }
+
+    fn say_once(&mut self, what: &str) {
+        if self.said != what {
+            eprintln!("eeruf-ros2: {what}");
+            what.clone_into(&mut self.said);
+        }
+    }
+
+    fn flush(&mut self) -> Result<(), String> {
+        self.log.as_mut().map_or(Ok(()), FiringLog::flush).map_err(|error| format!("log: {error}"))
+    }
+
+    fn end(mut self) -> Result<(), String> {
+        self.flush()?;
+        eprintln!("eeruf-ros2: ended");
+        Ok(())
+    }
+}

@@ -1,0 +1,187 @@
+//! [`Decoder`]: from bytes to what was sent, whatever happened to them on the way.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt;
+
+use crc::{CRC_16_IBM_3740, Crc, Table};
+use eeruf_core::{Instant, MAX_SENSORS, Micros, ReadingKind};
+
+use crate::encode::{LONGEST_CLOCK, LONGEST_FRAME};
+use crate::firing::Firing;
+use crate::{FIRING, HELLO, NO_ECHO, PERIOD, VERSION};
+
+const CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_3740);
+
+/// What a frame says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Message {
+    /// The board introduces itself, now and then.
+    Hello {
+        /// How many sensors it has, 1 to 64.
+        sensors: u8,
+        /// What its clock is called.
+        clock: String,
+    },
+    /// A firing, and what came of it.
+    Firing(Firing),
+    /// A period has ended.
+    Period {
+        /// Its number, from 0.
+        period: u32,
+        /// The latest firing in it.
+        max_late: Micros,
+        /// How many edges got lost on the board since it started; stops at 255.
+        edges_lost: u8,
+        /// How each sensor is, as `eeruf_hc_sr04::Health` counts.
+        health: Vec<u8>,
+    },
+}
+
+/// A message and its frame's number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Received {
+    /// The number, which wraps: frames that are missing in between were lost.
+    pub sequence: u16,
+    /// What the frame says.
+    pub message: Message,
+}
+
+/// Why bytes between two zeros are no frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FrameError {
+    /// Damaged or cut: it is no COBS, longer or shorter than any frame, or the check sum does not fit.
+    Damaged,
+    /// It is whole and of another version of the protocol.
+    Version(u8),
+    /// It is whole, and this version has no such frame: another kind, or a value that cannot be.
+    Content(&'static str),
+}
+
+impl fmt::Display for FrameError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Damaged => f.write_str("a damaged frame"),
+            Self::Version(version) => {
+                write!(f, "the board speaks version {version} of the serial protocol; expected {VERSION}")
+            }
+            Self::Content(what) => write!(f, "a frame whose {what} is not one of version {VERSION}"),
+        }
+    }
+}
+
+impl core::error::Error for FrameError {}
+
+/// Puts bytes together to frames. It may be started in the middle of one.
+#[derive(Clone, Debug)]
+pub struct Decoder {
+    bytes: [u8; LONGEST_FRAME],
+    /// Beyond the longest frame it only counts.
+    length: usize,
+}
+
+impl Default for Decoder {
+    fn default() -> Self {
+        Self { bytes: [0; LONGEST_FRAME], length: 0 }
+    }
+}
+
+impl Decoder {
+    /// Takes in a byte; what the frame says that it ends, if it ends one.
+    ///
+    /// # Errors
+    /// [`FrameError`] for what stands between two zeros and is no frame; the next frame is read all the same.
+    pub fn push(&mut self, byte: u8) -> Option<Result<Received, FrameError>> {
+        if byte != 0 {
+            if let Some(place) = self.bytes.get_mut(self.length) {
+                *place = byte;
+            }
+            self.length = self.length.saturating_add(1);
+            return None;
+        }
+        let length = core::mem::take(&mut self.length);
+        if length == 0 {
+            return None;
+        }
+        let Some(encoded) = self.bytes.get_mut(..length) else { return Some(Err(FrameError::Damaged)) };
+        Some(decode(encoded))
+    }
+}
+
+fn decode(encoded: &mut [u8]) -> Result<Received, FrameError> {
+    let length = cobs::decode_in_place(encoded).map_err(|_| FrameError::Damaged)?;
+    let whole = encoded.get(..length).ok_or(FrameError::Damaged)?;
+    let (content, &check_sum) = whole.split_last_chunk().ok_or(FrameError::Damaged)?;
+    if CRC.checksum(content) != u16::from_le_bytes(check_sum) {
+        return Err(FrameError::Damaged);
+    }
+    let mut fields = Fields(content);
+    let [first] = fields.take()?;
+    if first >> 4 != VERSION {
+        return Err(FrameError::Version(first >> 4));
+    }
+    let sequence = u16::from_le_bytes(fields.take()?);
+    let message = match first & 0xF {
+        HELLO => hello(fields)?,
+        FIRING => firing(fields)?,
+        PERIOD => period(fields)?,
+        _ => return Err(FrameError::Content("kind")),
+    };
+    Ok(Received { sequence, message })
+}
+
+fn hello(mut fields: Fields<'_>) -> Result<Message, FrameError> {
+    let [sensors] = fields.take()?;
+    if !(1..=MAX_SENSORS).contains(&usize::from(sensors)) {
+        return Err(FrameError::Content("number of sensors"));
+    }
+    let clock = core::str::from_utf8(fields.0).ok().filter(|name| name.len() <= LONGEST_CLOCK);
+    // It stands in the first line of logs.
+    let clock = clock.filter(|name| name.bytes().all(|byte| (b' '..=b'~').contains(&byte)));
+    Ok(Message::Hello { sensors, clock: clock.ok_or(FrameError::Content("clock"))?.into() })
+}
+
+fn firing(mut fields: Fields<'_>) -> Result<Message, FrameError> {
+    let [sensor, phase, kind] = fields.take()?;
+    if usize::from(sensor) >= MAX_SENSORS {
+        return Err(FrameError::Content("sensor"));
+    }
+    let firing = Firing {
+        sensor,
+        phase,
+        kind: *ReadingKind::ALL.get(usize::from(kind)).ok_or(FrameError::Content("kind of reading"))?,
+        fired: Instant::from_micros(u32::from_le_bytes(fields.take()?)),
+        period: u32::from_le_bytes(fields.take()?),
+        t_echo: Some(u32::from_le_bytes(fields.take()?)).filter(|&us| us != NO_ECHO).map(Micros::new),
+        late: Micros::new(u16::from_le_bytes(fields.take()?).into()),
+        age: Micros::new(u32::from_le_bytes(fields.take()?)),
+    };
+    fields.end()?;
+    Ok(Message::Firing(firing))
+}
+
+fn period(mut fields: Fields<'_>) -> Result<Message, FrameError> {
+    let period = u32::from_le_bytes(fields.take()?);
+    let max_late = Micros::new(u16::from_le_bytes(fields.take()?).into());
+    let [edges_lost] = fields.take()?;
+    if !(1..=MAX_SENSORS).contains(&fields.0.len()) {
+        return Err(FrameError::Content("number of sensors"));
+    }
+    Ok(Message::Period { period, max_late, edges_lost, health: fields.0.into() })
+}
+
+/// The content that is not read yet.
+struct Fields<'a>(&'a [u8]);
+
+impl Fields<'_> {
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], FrameError> {
+        let (&field, rest) = self.0.split_first_chunk().ok_or(FrameError::Content("length"))?;
+        self.0 = rest;
+        Ok(field)
+    }
+
+    fn end(self) -> Result<(), FrameError> {
+        if self.0.is_empty() { Ok(()) } else { Err(FrameError::Content("length")) }
+    }
+}

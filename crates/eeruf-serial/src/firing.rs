@@ -1,0 +1,22 @@
+use eeruf_core::{Instant, Micros, ReadingKind};
+
+/// One firing of one sensor, and what came of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Firing {
+    /// The sensor, from 0.
+    pub sensor: u8,
+    /// The phase it fired in, from 0.
+    pub phase: u8,
+    /// What came of it: accepted, or why not.
+    pub kind: ReadingKind,
+    /// When it fired, by the board's clock, which wraps after 2^32 us.
+    pub fired: Instant,
+    /// The period it fired in, from 0.
+    pub period: u32,
+    /// The raw time from firing to the first echo; `None` without echo.
+    pub t_echo: Option<Micros>,
+    /// By how much the firing came after it was due; at most 65,535 us, which stands for all more.
+    pub late: Micros,
+    /// How long after the firing the frame was made.
+    pub age: Micros,
+}

@@ -1,0 +1,70 @@
+//! [`Recorder`]: from the events of a ring to frames.
+
+use eeruf_core::{Instant, Micros, RingEvent};
+
+use crate::encode::{Encoder, Frame};
+use crate::firing::Firing;
+
+/// How many firings there are from one greeting to the next.
+const GREET_EVERY: u8 = 128;
+
+/// Follows the events of a ring of up to `K` sensors and makes a frame of each reading and of each period's end. Eight
+/// bytes for each sensor.
+#[derive(Clone, Debug)]
+pub struct Recorder<const K: usize> {
+    encoder: Encoder,
+    clock: &'static str,
+    fired: [(Instant, Micros); K],
+    firings: u8,
+}
+
+impl<const K: usize> Recorder<K> {
+    /// For a board whose clock is called so: ASCII, of which 16 bytes are sent.
+    pub const fn new(clock: &'static str) -> Self {
+        Self { encoder: Encoder::new(), clock, fired: [(Instant::from_micros(0), Micros::ZERO); K], firings: 0 }
+    }
+
+    /// The frame that an event makes, if it makes one; hand in every event, with the `now` of its poll. `health` says
+    /// how a sensor is, as `eeruf_hc_sr04::Health as u8` (0 for well; all 0 where nobody knows), and `edges_lost` how
+    /// many edges found their queue full; both are asked for at a period's end only.
+    pub fn event(
+        &mut self,
+        event: &RingEvent,
+        now: Instant,
+        health: impl Fn(u8) -> u8,
+        edges_lost: u8,
+    ) -> Option<Frame> {
+        match *event {
+            RingEvent::Fire { sensor, due, .. } => {
+                self.fired(sensor, now, now.since(due));
+                let greet = self.firings == 0;
+                self.firings = (self.firings + 1) % GREET_EVERY;
+                greet.then(|| self.encoder.hello(K as u8, self.clock))
+            }
+            RingEvent::Reading(reading) => {
+                let &(fired, late) = self.fired.get(usize::from(reading.sensor))?;
+                Some(self.encoder.firing(&Firing {
+                    sensor: reading.sensor,
+                    phase: reading.phase.0,
+                    kind: reading.kind,
+                    fired,
+                    period: reading.period,
+                    t_echo: reading.t_echo,
+                    late,
+                    age: now.since(fired),
+                }))
+            }
+            RingEvent::PeriodEnded(ref stats) => {
+                Some(self.encoder.period(stats.period, stats.max_late, edges_lost, (0..K as u8).map(health)))
+            }
+        }
+    }
+
+    /// A sensor fired `at` this instant, so much after it was due: where a timer knows better than the poll, as for
+    /// [`Ring::fired`](eeruf_core::Ring::fired).
+    pub fn fired(&mut self, sensor: u8, at: Instant, late: Micros) {
+        if let Some(place) = self.fired.get_mut(usize::from(sensor)) {
+            *place = (at, late);
+        }
+    }
+}

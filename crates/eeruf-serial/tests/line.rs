@@ -1,0 +1,269 @@
+//! The line between board and host: what is said arrives, and what is damaged on the way is never taken for something
+//! else.
+
+use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
+use eeruf_serial::{Decoder, Encoder, Firing, Frame, FrameError, LONGEST_FRAME, Message, Received, Recorder};
+use proptest::prelude::*;
+
+fn received(bytes: &[u8]) -> Vec<Result<Received, FrameError>> {
+    let mut decoder = Decoder::default();
+    bytes.iter().filter_map(|&byte| decoder.push(byte)).collect()
+}
+
+fn firings() -> impl Strategy<Value = Firing> {
+    let numbers = (any::<u32>(), any::<u32>(), any::<u16>(), any::<u32>());
+    (0..64_u8, 0..8_u8, 0..ReadingKind::ALL.len(), prop::option::of(0..u32::MAX), numbers).prop_map(
+        |(sensor, phase, kind, t_echo, (fired, period, late, age))| Firing {
+            sensor,
+            phase,
+            kind: ReadingKind::ALL[kind],
+            fired: Instant::from_micros(fired),
+            period,
+            t_echo: t_echo.map(Micros::new),
+            late: Micros::new(late.into()),
+            age: Micros::new(age),
+        },
+    )
+}
+
+fn messages() -> impl Strategy<Value = Message> {
+    prop_oneof![
+        firings().prop_map(Message::Firing),
+        (1..=64_u8, "[ -~]{0,16}").prop_map(|(sensors, clock)| Message::Hello { sensors, clock }),
+        (any::<u32>(), any::<u16>(), any::<u8>(), prop::collection::vec(any::<u8>(), 1..=64)).prop_map(
+            |(period, late, edges_lost, health)| Message::Period {
+                period,
+                max_late: Micros::new(late.into()),
+                edges_lost,
+                health
+            }
+        ),
+    ]
+}
+
+fn said(encoder: &mut Encoder, message: &Message) -> Frame {
+    match message {
+        Message::Hello { sensors, clock } => encoder.hello(*sensors, clock),
+        Message::Firing(firing) => encoder.firing(firing),
+        Message::Period { period, max_late, edges_lost, health } => {
+            encoder.period(*period, *max_late, *edges_lost, health.iter().copied())
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn what_the_board_says_arrives_as_it_was_said(messages in prop::collection::vec(messages(), 1..20)) {
+        let mut encoder = Encoder::new();
+        let mut line = Vec::new();
+        for message in &messages {
+            let frame = said(&mut encoder, message);
+            prop_assert!(frame.as_bytes().len() <= LONGEST_FRAME);
+            line.extend_from_slice(frame.as_bytes());
+        }
+        let sequence = 0..;
+        let expected: Vec<_> =
+            messages.into_iter().zip(sequence).map(|(message, sequence)| Ok(Received { sequence, message })).collect();
+        prop_assert_eq!(received(&line), expected);
+    }
+
+    #[test]
+    fn any_bytes_at_all_are_read_without_harm(bytes in prop::collection::vec(any::<u8>(), 0..2000)) {
+        received(&bytes);
+    }
+}
+
+/// A repeatable source of numbers: xorshift64*.
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        ((self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) as usize) % bound
+    }
+}
+
+fn a_minute(numbers: &mut Numbers, frames: usize) -> Vec<Frame> {
+    let mut encoder = Encoder::new();
+    let firing = |n: usize, numbers: &mut Numbers| Firing {
+        sensor: (n % 8) as u8,
+        phase: (n / 8 % 2) as u8,
+        kind: ReadingKind::ALL[numbers.below(10)],
+        fired: Instant::from_micros(12_500 * n as u32),
+        period: (n / 8) as u32,
+        t_echo: (numbers.below(4) > 0).then(|| Micros::new(numbers.below(30_000) as u32)),
+        late: Micros::new(numbers.below(300) as u32),
+        age: Micros::new(30_000),
+    };
+    (0..frames).map(|n| encoder.firing(&firing(n, numbers))).collect()
+}
+
+/// Bits flipped, bytes dropped, made up or repeated, the end lost, or everything made up.
+fn damage(frame: &Frame, numbers: &mut Numbers) -> Vec<u8> {
+    let mut bytes = frame.as_bytes().to_vec();
+    match numbers.below(6) {
+        0 => {
+            for _ in 0..=numbers.below(8) {
+                let at = numbers.below(bytes.len());
+                bytes[at] ^= 1 << numbers.below(8);
+            }
+        }
+        1 => {
+            let from = numbers.below(bytes.len());
+            bytes.drain(from..(from + 1 + numbers.below(6)).min(frame.as_bytes().len()));
+        }
+        2 => {
+            let at = numbers.below(bytes.len());
+            bytes.insert(at, numbers.below(256) as u8);
+        }
+        3 => bytes.truncate(numbers.below(bytes.len())),
+        4 => {
+            let at = numbers.below(bytes.len());
+            bytes.extend_from_within(at..);
+        }
+        _ => bytes.iter_mut().for_each(|byte| *byte = numbers.below(256) as u8),
+    }
+    bytes
+}
+
+/// The check sum of 16 bits lets one in 65,536 damaged frames pass, and what a frame must hold beside it catches some
+/// of those. The numbers here are always the same.
+#[test]
+fn cuts_and_flips_cost_only_the_frames_that_they_hit() {
+    let mut numbers = Numbers(20_000);
+    let (mut hit, mut never_sent) = (0, 0);
+    for _ in 0..4 {
+        let frames = a_minute(&mut numbers, 60_000);
+        let sent: Vec<_> = frames.iter().flat_map(|frame| received(frame.as_bytes())).collect();
+        let (mut line, mut spared) = (Vec::new(), Vec::new());
+        for (frame, sent) in frames.iter().zip(&sent) {
+            let hurt = numbers.below(4) == 0;
+            hit += usize::from(hurt);
+            // A frame that lost its end takes the next one along.
+            if !hurt && line.last().is_none_or(|&byte| byte == 0) {
+                spared.push(sent.clone());
+            }
+            if hurt {
+                line.extend(damage(frame, &mut numbers));
+            } else {
+                line.extend_from_slice(frame.as_bytes());
+            }
+        }
+        let mut awaited = spared.iter();
+        let mut next = awaited.next();
+        for arrived in received(&line) {
+            if next == Some(&arrived) {
+                next = awaited.next();
+            } else if let Ok(frame) = &arrived {
+                never_sent += usize::from(sent[usize::from(frame.sequence) % sent.len()] != arrived);
+            }
+        }
+        assert_eq!(next, None, "a frame that nothing hit did not arrive");
+        assert!(spared.len() > 35_000, "{}", spared.len());
+    }
+    assert!(hit > 55_000, "{hit}");
+    assert!(never_sent <= 2, "{never_sent} of {hit}");
+    println!("damaged {hit} frames of 240000; {never_sent} came through as frames that nobody sent");
+}
+
+#[test]
+fn one_wrong_bit_before_packing_is_always_noticed() {
+    let frame = Encoder::new().hello(8, "board");
+    let mut content = frame.as_bytes().to_vec();
+    let length = cobs::decode_in_place(&mut content[..frame.as_bytes().len() - 1]).unwrap();
+    for bit in 0..8 * length {
+        let mut wrong = content[..length].to_vec();
+        wrong[bit / 8] ^= 1 << (bit % 8);
+        let mut packed = [0; 64];
+        let packed_length = cobs::encode(&wrong, &mut packed);
+        assert_eq!(received(&packed[..=packed_length]), [Err(FrameError::Damaged)], "bit {bit}");
+    }
+}
+
+/// The example of docs/serial.md.
+#[test]
+fn a_firing_is_these_bytes() {
+    let firing = Firing {
+        sensor: 3,
+        phase: 1,
+        kind: ReadingKind::Accepted,
+        fired: Instant::from_micros(1_234_567),
+        period: 12,
+        t_echo: Some(Micros::new(5_872)),
+        late: Micros::new(40),
+        age: Micros::new(40_100),
+    };
+    let mut encoder = Encoder::new();
+    encoder.hello(8, "board");
+    let hex: Vec<_> = encoder.firing(&firing).as_bytes().iter().map(|byte| format!("{byte:02x}")).collect();
+    assert_eq!(hex.join(" "), "03 11 01 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 03 36 c9 00");
+}
+
+#[test]
+fn what_is_whole_and_of_another_version_or_kind_is_named() {
+    let packed = |content: &[u8]| {
+        let sum = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740).checksum(content);
+        let mut bytes = [0; 64];
+        let length = cobs::encode(&[content, &sum.to_le_bytes()].concat(), &mut bytes);
+        received(&bytes[..=length]).pop().unwrap().unwrap_err()
+    };
+    let firing = |change: fn(&mut [u8])| {
+        let mut content = [0; 24];
+        content[0] = 0x11;
+        change(&mut content);
+        packed(&content)
+    };
+    assert_eq!(packed(&[0x20, 0, 0, 8]), FrameError::Version(2));
+    assert_eq!(packed(&[0x20, 0, 0, 8]).to_string(), "the board speaks version 2 of the serial protocol; expected 1");
+    assert_eq!(packed(&[0x15, 0, 0, 8]), FrameError::Content("kind"));
+    assert_eq!(packed(&[0x10, 0, 0, 0]), FrameError::Content("number of sensors"));
+    assert_eq!(packed(&[0x10, 0, 0, 8, b'\n']), FrameError::Content("clock"));
+    assert_eq!(packed(&[0x12, 0, 0, 8, 0, 0, 0, 0, 0, 0]), FrameError::Content("number of sensors"));
+    assert_eq!(firing(|content| content[3] = 64), FrameError::Content("sensor"));
+    assert_eq!(firing(|content| content[5] = 10), FrameError::Content("kind of reading"));
+    assert_eq!(packed(&[0x11, 0, 0, 8]), FrameError::Content("length"));
+    assert_eq!(packed(&[0x11; 26]), FrameError::Content("kind of reading"));
+}
+
+#[test]
+fn a_recorder_says_everything_that_a_ring_reads() {
+    let mut ring = Ring::new(&PAPER_12, RingConfig::new(), Instant::from_micros(u32::MAX - 3_000_000)).unwrap();
+    let mut recorder = Recorder::<12>::new("board");
+    let (mut line, mut expected, mut fired) = (Vec::new(), Vec::new(), [Instant::from_micros(0); 12]);
+    for step in 0..3_000_u32 {
+        let now = ring.next_deadline() + Micros::new(step % 7);
+        while let Some(event) = ring.poll(now) {
+            if let RingEvent::Fire { sensor, .. } = event {
+                fired[usize::from(sensor)] = now;
+                ring.echo(sensor, now + Micros::new(9_000 + u32::from(sensor))).unwrap();
+            }
+            let frame = recorder.event(&event, now, |sensor| sensor % 3, 5);
+            line.extend_from_slice(frame.as_ref().map_or(&[][..], Frame::as_bytes));
+            match event {
+                RingEvent::Reading(reading) => expected.push((reading.sensor, reading.period, reading.t_echo)),
+                RingEvent::PeriodEnded(stats) => expected.push((99, stats.period, None)),
+                RingEvent::Fire { .. } => {}
+            }
+        }
+    }
+    let mut heard = Vec::new();
+    for (message, sequence) in received(&line).into_iter().zip(0..) {
+        let message = message.unwrap();
+        assert_eq!(message.sequence, sequence);
+        match message.message {
+            Message::Hello { sensors, clock } => assert_eq!((sensors, &*clock), (12, "board")),
+            Message::Firing(firing) => {
+                assert!(firing.late <= Micros::new(6));
+                heard.push((firing.sensor, firing.period, firing.t_echo));
+            }
+            Message::Period { period, edges_lost, health, .. } => {
+                assert_eq!((edges_lost, &health[..4]), (5, &[0, 1, 2, 0][..]));
+                heard.push((99, period, None));
+            }
+        }
+    }
+    assert!(heard.len() > 1_000);
+    assert_eq!(heard, expected);
+}

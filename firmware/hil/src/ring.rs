@@ -1,0 +1,77 @@
+//! The ring and its main loop.
+
+use eeruf_board::fake_sensors::Delay;
+use eeruf_board::say::leave;
+use eeruf_core::{EdgeQueue, Instant, Micros, Ring, RingEvent};
+use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings};
+use eeruf_hil::{CONFIG, Record, SCHEDULE};
+
+use crate::host::Host;
+use crate::lines::{self, Pin};
+
+/// From the echo interrupt to the main loop.
+static EDGES: EdgeQueue<32> = EdgeQueue::new();
+
+pub(crate) fn echo_interrupt() {
+    eeruf_board::clear_echo();
+    while let Some(edge) = lines::edge() {
+        EDGES.push(edge);
+    }
+}
+
+/// Runs the ring for as many periods as the host orders. `on_event` is called with each event, the instant of its poll,
+/// how the sensors are, and how many edges got lost.
+pub(crate) fn run(mut on_event: impl FnMut(&RingEvent, Instant, &dyn Fn(u8) -> Health, u8)) -> ! {
+    let (host, orders) = Host::open();
+    eeruf_board::begin_clock_at(orders.start);
+    eeruf_board::start();
+    let now = eeruf_board::now();
+    lines::begin(now);
+    host.say(Record::deadline(now));
+    let Ok(ring) = Ring::new(&SCHEDULE, CONFIG, now) else { leave(2) };
+    let pin = |x| Pin { host: &host, sensor: x as u8 };
+    let pins = core::array::from_fn(|x| Pins { trigger: pin(x), echo: pin(x) });
+    let Ok(mut ring) = HcSr04Ring::new(ring, pins, Delay, Settings::default()) else { leave(3) };
+    loop {
+        loop {
+            // As `HcSr04Ring::poll_with_edges` does.
+            let now = eeruf_board::now();
+            while let Some(edge) = EDGES.pop() {
+                host.say(Record::edge(edge));
+                // Of a line that the ring has, as all of this board are.
+                _ = ring.edge(edge);
+            }
+            host.say(Record::poll(now));
+            let event = ring.poll(now);
+            host.say(Record::event(event.as_ref()));
+            if let Some(event) = &event {
+                on_event(event, now, &|sensor| ring.health(sensor), EDGES.lost());
+            }
+            match event {
+                None => break,
+                Some(RingEvent::PeriodEnded(stats)) => {
+                    host.say(Record::state(core::array::from_fn(|x| ring.health(x as u8)), EDGES.lost()));
+                    if stats.period + 1 == orders.periods {
+                        host.flush();
+                        leave(0);
+                    }
+                    if stats.period == orders.stall_after {
+                        stall(orders.stall);
+                    }
+                }
+                Some(_) => {}
+            }
+        }
+        let deadline = ring.next_deadline();
+        host.say(Record::deadline(deadline));
+        eeruf_board::set_alarm(deadline);
+        // The alarm may have gone off before we sleep, and then wakes nobody.
+        eeruf_board::sleep_unless(|| !EDGES.is_empty() || eeruf_board::now().has_reached(deadline));
+    }
+}
+
+/// Delays the main loop, as other work in it might.
+fn stall(time: Micros) {
+    let end = eeruf_board::now() + time;
+    while !eeruf_board::now().has_reached(end) {}
+}

@@ -1,0 +1,475 @@
+"""A ring in the emulator, its serial line, the node, and ROS 2 and MAVLink as others implement them.
+
+The board runs the firmware of `firmware/hil` in QEMU, among walls that the simulator plays; what it says over its
+serial line goes through a cable that this test holds into a pseudo-terminal, from there the node reads it, and Cyclone
+DDS receives what the node publishes. All on the loopback interface, in a domain of its own. `cargo xtask ros2` sets the
+variables.
+"""
+
+import csv
+import io
+import json
+import math
+import os
+import signal
+import socket
+import struct
+import subprocess
+import threading
+import time
+import tty
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+# Read when the domain is made.
+os.environ["CYCLONEDDS_URI"] = """<CycloneDDS><Domain>
+<General><AllowMulticast>false</AllowMulticast>
+<Interfaces><NetworkInterface address="127.0.0.1" multicast="false"/></Interfaces></General>
+<Discovery><ParticipantIndex>auto</ParticipantIndex><Peers><Peer Address="127.0.0.1"/></Peers></Discovery>
+</Domain></CycloneDDS>"""
+os.environ["MAVLINK20"] = "1"
+
+from cyclonedds.core import Policy, Qos
+from cyclonedds.domain import DomainParticipant
+from cyclonedds.idl import IdlStruct
+from cyclonedds.idl.types import float32, int32, sequence, uint8, uint32
+from cyclonedds.pub import DataWriter
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic
+from cyclonedds.util import duration
+from pymavlink import mavutil
+
+NODE = os.environ["EERUF_ROS2"]
+PROGRAM = os.environ["EERUF_PROGRAM"]
+HARNESS = os.environ["EERUF_HIL"]
+# The command that emulates the board; its serial line goes to the socket that SERIAL stands for.
+EMULATOR = json.loads(os.environ["EERUF_EMULATOR"])
+SCENE = "scenes/alcove-hc-sr04.toml"
+SENSORS = 8
+FAULTY = 2
+# Ports of higher domains are among those that the system gives away.
+DOMAIN = 1 + os.getpid() % 90
+OK, WARN, ERROR = 0, 1, 2
+PATIENCE_S = 60
+
+
+@dataclass
+class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
+    sec: int32
+    nanosec: uint32
+
+
+@dataclass
+class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
+    stamp: Time
+    frame_id: str
+
+
+@dataclass
+class Range(IdlStruct, typename="sensor_msgs::msg::dds_::Range_"):
+    header: Header
+    radiation_type: uint8
+    field_of_view: float32
+    min_range: float32
+    max_range: float32
+    range: float32
+    variance: float32
+
+
+@dataclass
+class KeyValue(IdlStruct, typename="diagnostic_msgs::msg::dds_::KeyValue_"):
+    key: str
+    value: str
+
+
+@dataclass
+class DiagnosticStatus(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticStatus_"):
+    level: uint8
+    name: str
+    message: str
+    hardware_id: str
+    values: sequence[KeyValue]
+
+
+@dataclass
+class DiagnosticArray(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticArray_"):
+    header: Header
+    status: sequence[DiagnosticStatus]
+
+
+@dataclass
+class MultiArrayDimension(IdlStruct, typename="std_msgs::msg::dds_::MultiArrayDimension_"):
+    label: str
+    size: uint32
+    stride: uint32
+
+
+@dataclass
+class MultiArrayLayout(IdlStruct, typename="std_msgs::msg::dds_::MultiArrayLayout_"):
+    dim: sequence[MultiArrayDimension]
+    data_offset: uint32
+
+
+@dataclass
+class UInt32MultiArray(IdlStruct, typename="std_msgs::msg::dds_::UInt32MultiArray_"):
+    layout: MultiArrayLayout
+    data: sequence[uint32]
+
+
+RELIABLE = Qos(
+    Policy.Reliability.Reliable(duration(seconds=1)),
+    Policy.History.KeepAll,
+    Policy.DataRepresentation(use_cdrv0_representation=True),
+)
+
+
+@pytest.fixture(scope="module")
+def participant():
+    return DomainParticipant(DOMAIN)
+
+
+@pytest.fixture
+def processes():
+    """Processes that a test starts; those that still run at its end are ended."""
+    started = []
+    yield started
+    for process in started:
+        if process.poll() is None:
+            process.kill()
+            process.wait()
+
+
+def until(what, process, holds):
+    end = time.monotonic() + PATIENCE_S
+    while not holds():
+        assert process.poll() is None, process.communicate()[1]
+        assert time.monotonic() < end, f"{what} did not happen within {PATIENCE_S} s"
+        time.sleep(0.02)
+
+
+def parameters(folder, **given):
+    file = folder / "eeruf.yaml"
+    file.write_text("eeruf:\n  ros__parameters:\n" + "".join(f"    {key}: {value}\n" for key, value in given.items()))
+    return str(file)
+
+
+class Node:
+    """The node as a process, and what Cyclone DDS hears of it."""
+
+    def __init__(self, participant, processes, *arguments, sensors=SENSORS):
+        environment = {**os.environ, "ROS_DOMAIN_ID": str(DOMAIN), "ROS_LOCALHOST_ONLY": "1"}
+        environment.pop("ROS_AUTOMATIC_DISCOVERY_RANGE", None)
+        self.process = subprocess.Popen([NODE, *arguments], env=environment, stderr=subprocess.PIPE, text=True)
+        processes.append(self.process)
+        topic = lambda name, kind: Topic(participant, f"rt/{name}", kind, qos=RELIABLE)
+        reader = lambda name, kind: DataReader(participant, topic(name, kind), qos=RELIABLE)
+        self.readers = [reader(f"eeruf/sonar_{sensor + 1}", Range) for sensor in range(sensors)]
+        self.diagnostics = reader("diagnostics", DiagnosticArray)
+        self.ranges = [[] for _ in range(sensors)]
+        self.reports = []
+        everything = [*self.readers, self.diagnostics]
+        self.until("discovery of the node", lambda: all(reader.get_matched_publications() for reader in everything))
+
+    def until(self, what, holds):
+        until(what, self.process, holds)
+
+    def take(self):
+        # When the node leaves, Cyclone DDS says so in samples that are none.
+        for heard, reader in zip(self.ranges, self.readers):
+            heard += [sample for sample in reader.take(N=1000) if isinstance(sample, Range)]
+        for report in self.diagnostics.take(N=100):
+            if not isinstance(report, DiagnosticArray):
+                continue
+            self.reports.append({status.name.removeprefix("eeruf: "): status for status in report.status})
+
+    def end(self):
+        self.process.send_signal(signal.SIGINT)
+        said = self.process.communicate(timeout=PATIENCE_S)[1]
+        assert self.process.returncode == 0, said
+        assert said.endswith("eeruf-ros2: ended\n"), said
+        self.take()
+
+
+def unpacked(frame):
+    """A frame's content, as COBS has it: each zero is the distance to the next."""
+    content = bytearray()
+    while frame:
+        length = frame[0]
+        content += frame[1:length]
+        frame = frame[length:]
+        if frame:
+            content.append(0)
+    return bytes(content[:-2])
+
+
+@dataclass
+class Cable:
+    """Carries frames from the board's socket to a pseudo-terminal; some it swallows, in some it flips a bit."""
+
+    swallow: frozenset = frozenset()
+    flip: frozenset = frozenset()
+    carried: list = field(default_factory=list)
+    hit: list = field(default_factory=list)
+
+    def carry(self, board, line):
+        count, rest = 0, b""
+        while more := board.recv(4096):
+            *frames, rest = (rest + more).split(b"\0")
+            for frame in frames:
+                if count in self.swallow | self.flip:
+                    self.hit.append(unpacked(frame))
+                    # A flipped bit that makes no zero.
+                    frame = b"" if count in self.swallow else frame[:9] + bytes([frame[9] ^ 0xC0 or 0x40]) + frame[10:]
+                else:
+                    self.carried.append(unpacked(frame))
+                if frame:
+                    os.write(line, frame + b"\0")
+                count += 1
+
+
+def firings(contents):
+    """Sensor and period of the frames that are firings."""
+    fields = [struct.unpack("<BHBBBIIIHI", content) for content in contents if content[0] == 0x11]
+    return [(sensor, period) for _, _, sensor, _, _, _, period, *_ in fields]
+
+
+class Board:
+    """The ring in the emulator, at the pace of the clock on the wall, and the reference's readings."""
+
+    def __init__(self, processes, folder, line, fault, periods, cable):
+        address = str(folder / "board")
+        with socket.socket(socket.AF_UNIX) as listener:
+            listener.bind(address)
+            listener.listen()
+            listener.settimeout(PATIENCE_S)
+            emulator = [part.replace("SERIAL", f"unix:{address}") for part in EMULATOR]
+            command = [HARNESS, SCENE, "--one", fault, str(periods), "--board", "lm3s6965", *emulator]
+            self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            processes.append(self.process)
+            board, _ = listener.accept()
+        self.thread = threading.Thread(target=cable.carry, args=(board, line))
+        self.thread.start()
+
+    def readings(self):
+        """What the ring on the host read, which the harness has compared with the board's."""
+        said, errors = self.process.communicate(timeout=PATIENCE_S)
+        assert self.process.returncode == 0, errors
+        self.thread.join()
+        return list(csv.DictReader(io.StringIO(said)))
+
+
+class Mavlink:
+    def __init__(self):
+        self.connection = mavutil.mavlink_connection("udpin:127.0.0.1:0", dialect="common")
+        self.to = f"udp:127.0.0.1:{self.connection.port.getsockname()[1]}"
+        self.messages = []
+
+    def take(self):
+        while (message := self.connection.recv_msg()) is not None:
+            self.messages.append(message)
+
+
+def run(tmp_path, participant, processes, fault, periods, cable=None, **given):
+    """A ring with a fault for so many periods; the node, what the reference read, the cable, the log, and MAVLink."""
+    cable, mavlink = cable or Cable(), Mavlink()
+    line, terminal = os.openpty()
+    tty.setraw(terminal)
+    log = tmp_path / "log.csv"
+    file = parameters(tmp_path, **given)
+    outputs = ["--log", str(log), "--mavlink", mavlink.to]
+    node = Node(participant, processes, "--params-file", file, "--port", os.ttyname(terminal), *outputs)
+    board = Board(processes, tmp_path, line, fault, periods, cable)
+    while board.process.poll() is None:
+        node.take()
+        mavlink.take()
+        time.sleep(0.02)
+    readings = board.readings()
+
+    def silent():
+        node.take()
+        mavlink.take()
+        last = node.reports[-1] if node.reports else {}
+        return last and all("silent" in last[f"sensor {n + 1}"].message for n in range(SENSORS))
+
+    node.until("silence of all sensors in the diagnostics", silent)
+    node.end()
+    mavlink.take()
+    os.close(line)
+    os.close(terminal)
+    return node, readings, cable, log, mavlink
+
+
+def expected_ranges(readings, hit, clear):
+    """What each sensor's topic must say, without the frames that the cable hit."""
+    expected = [[] for _ in range(SENSORS)]
+    for row in readings:
+        sensor, kind = int(row["sensor"]), row["reading"]
+        if (sensor, int(row["period"])) in hit:
+            continue
+        if kind == "accepted":
+            metres = int(row["t_echo_us"]) * 343.2e-6 / 2
+            expected[sensor].append(metres if metres <= 4.0 else clear)
+        elif kind == "clear":
+            expected[sensor].append(clear)
+        elif kind == "too_early":
+            expected[sensor].append(-math.inf)
+    return expected
+
+
+def assert_ranges(node, expected):
+    for sensor, (heard, awaited) in enumerate(zip(node.ranges, expected)):
+        assert [message.range for message in heard] == pytest.approx(awaited, abs=0.002), f"sensor {sensor + 1}"
+        assert {message.header.frame_id for message in heard} <= {f"sonar_{sensor + 1}"}
+        assert len({(message.header.stamp.sec, message.header.stamp.nanosec) for message in heard}) == len(heard)
+
+
+def test_a_ring_in_the_emulator_arrives_as_ros_2_and_its_stuck_line_and_a_bad_cable_as_diagnostics(
+    tmp_path, participant, processes
+):
+    cable = Cable(swallow=frozenset(range(400, 460, 10)), flip=frozenset(range(405, 450, 10)))
+    node, readings, cable, log, mavlink = run(tmp_path, participant, processes, "stuck", 120, cable)
+
+    hit = set(firings(cable.hit))
+    assert len(cable.hit) == 11 and len(hit) >= 8
+    expected = expected_ranges(readings, hit, math.inf)
+    # Enough to tell a ring from noise. One of the eight hears another sensor first in each phase.
+    assert sum(map(len, expected)) > 400 and sum(map(bool, expected)) >= SENSORS - 1
+    assert_ranges(node, expected)
+    messages = sum(node.ranges, [])
+    assert {(round(message.min_range, 6), message.max_range) for message in messages} == {(0.02, 4.0)}
+
+    of = lambda name: [report[name] for report in node.reports]
+    # Before the fault, and with the frames of the first second.
+    assert any(all(status.level == OK for status in report.values()) for report in node.reports)
+    stuck = f"sensor {FAULTY + 1}"
+    assert any(status.level == ERROR and "stuck line" in status.message for status in of(stuck))
+    for sensor in {f"sensor {n + 1}" for n in range(SENSORS)} - {stuck}:
+        assert not any("stuck" in status.message for status in of(sensor)), sensor
+    line = of("serial line")
+    assert any(status.level == WARN and status.message.startswith("dropped frames") for status in line)
+    values = {value.key: value.value for value in line[-1].values}
+    assert values["frames missing, in all"] == str(len(cable.hit))
+    assert values["frames damaged, in all"] == str(len(cable.flip))
+    assert line[-1].level == ERROR and line[-1].message.startswith("silent")
+
+    rows = list(csv.DictReader(log.read_text().splitlines()[1:]))
+    assert [(int(row["sensor"]), int(row["period"])) for row in rows] == firings(cable.carried)
+    assert log.read_text().startswith("# clock: lm3s6965, 32 bits\n")
+    diagnosed = subprocess.run([PROGRAM, "diagnose", str(log), "--json"], capture_output=True, text=True)
+    assert diagnosed.returncode in (0, 1), diagnosed.stderr
+    assert json.loads(diagnosed.stdout)
+
+    assert_mavlink(mavlink, expected)
+
+
+def assert_mavlink(mavlink, expected):
+    assert not any(message.get_type() == "BAD_DATA" for message in mavlink.messages)
+    beats = [message for message in mavlink.messages if message.get_type() == "HEARTBEAT"]
+    assert len(beats) >= 5
+    assert (beats[0].type, beats[0].autopilot, beats[0].mavlink_version) == (18, 8, 3)
+    assert (beats[0].get_srcSystem(), beats[0].get_srcComponent()) == (1, 196)
+    numbers = [message.get_seq() for message in mavlink.messages]
+    assert all((after - before) % 256 == 1 for before, after in zip(numbers, numbers[1:]))
+    for sensor, awaited in enumerate(expected):
+        heard = [m for m in mavlink.messages if m.get_type() == "DISTANCE_SENSOR" and m.id == sensor]
+        centimetres = {math.inf: 401, -math.inf: 2}
+        want = [centimetres.get(metres, 100 * metres) for metres in awaited]
+        assert [message.current_distance for message in heard] == pytest.approx(want, abs=0.8)
+        if not awaited:
+            continue
+        # Sensors sit every 45 degrees counter-clockwise; MAVLink counts clockwise.
+        assert {message.orientation for message in heard} == {-sensor % 8}
+        assert {(m.min_distance, m.max_distance, m.type, m.signal_quality) for m in heard} == {(2, 400, 1, 100)}
+        assert heard[0].horizontal_fov == pytest.approx(0.52)
+
+
+@pytest.mark.parametrize(
+    ("fault", "about", "level", "message"),
+    [
+        ("stall", "timing", WARN, "late: a firing came"),
+        ("missing", f"sensor {FAULTY + 1}", ERROR, "missing: nothing comes from its line"),
+    ],
+)
+def test_a_late_board_and_a_missing_sensor_are_named_and_clear_is_the_maximum_if_asked_for(
+    tmp_path, participant, processes, fault, about, level, message
+):
+    node, readings, _, _, _ = run(tmp_path, participant, processes, fault, 50, clear_as="max_range")
+    assert_ranges(node, expected_ranges(readings, set(), 4.0))
+    assert any(r[about].level == level and r[about].message.startswith(message) for r in node.reports)
+
+
+def too_close_until_heard(node, write):
+    """Writes that the last sensor sees something too close until the node says so: then it has discovered the writer."""
+
+    def heard():
+        write()
+        node.take()
+        return node.ranges[-1]
+
+    node.until("discovery of the topic", heard)
+
+
+def after_too_close(node, awaited):
+    """What the node says after that, when it has said so many ranges of each sensor."""
+
+    def ranges():
+        node.take()
+        rest = [[message.range for message in heard] for heard in node.ranges]
+        while rest[-1][:1] == [-math.inf]:
+            rest[-1].pop(0)
+        return rest
+
+    node.until(f"{awaited} ranges", lambda: [len(said) for said in ranges()] == awaited)
+    node.end()
+    return ranges()
+
+
+def test_raw_echo_times_on_a_topic_are_filtered(tmp_path, participant, processes):
+    file = parameters(tmp_path, source="echo_times", sensors=2)
+    node = Node(participant, processes, "--params-file", file, sensors=2)
+    writer = DataWriter(participant, Topic(participant, "rt/echo_times", UInt32MultiArray, qos=RELIABLE), qos=RELIABLE)
+    write = lambda *rows: writer.write(UInt32MultiArray(MultiArrayLayout([], 0), sum(rows, [])))
+    too_close_until_heard(node, lambda: write([1, 0, 0, 0, 90]))
+    none = 2**32 - 1
+    echoes = [(10_000, 9_000), (10_200, none), (14_000, none), (14_400, none), (none, 12_000), (none, 12_100)]
+    for period, pair in enumerate(echoes):
+        write(*([sensor, 100_000 * period, period, period % 2, echo] for sensor, echo in enumerate(pair)))
+    left, right = after_too_close(node, [3, 3])
+    assert left == pytest.approx([1.7503, 2.471, math.inf], abs=0.002)
+    assert right == pytest.approx([math.inf, math.inf, 2.0764], abs=0.002)
+
+
+def test_ranges_on_topics_are_filtered(tmp_path, participant, processes):
+    given = {"source": "ranges", "sensors": 2, "range_topics": "[raw/left, raw/right]"}
+    node = Node(participant, processes, "--params-file", parameters(tmp_path, **given), sensors=2)
+    topics = [Topic(participant, f"rt/raw/{side}", Range, qos=RELIABLE) for side in ("left", "right")]
+    writers = [DataWriter(participant, topic, qos=RELIABLE) for topic in topics]
+    message = lambda metres: Range(Header(Time(0, 0), "sonar"), 0, 0.5, 0.02, 4.0, metres, 0.0)
+    too_close_until_heard(node, lambda: writers[1].write(message(-math.inf)))
+    node.until("discovery of the other topic", lambda: writers[0].write(message(5.0)) or node.take() or node.ranges[0])
+    for pair in [(1.0, math.inf), (1.01, math.inf), (2.0, math.inf), (3.0, 2.0), (3.05, 2.0)]:
+        for writer, metres in zip(writers, pair):
+            writer.write(message(metres))
+    last = lambda: node.take() or (node.ranges[0][-1].range > 3 and node.ranges[0][-1].range < 4)
+    node.until("the last range", last)
+    left, right = after_too_close(node, [len(node.ranges[0]), 3])
+    # What was clear until the topic was discovered.
+    left = [metres for metres in left if metres < math.inf]
+    assert left == pytest.approx([1.01, 3.05], abs=0.001)
+    assert right == pytest.approx([math.inf, math.inf, 2.0], abs=0.001)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        (["--params-file", "missing.yaml"], "missing.yaml: No such file"),
+        (["--mavlink", "tcp:localhost:1"], "mavlink: tcp:localhost:1: not by UDP; expected udp:HOST:PORT"),
+        (["--log", "no/such/folder.csv"], "log: no/such/folder.csv: No such file"),
+    ],
+)
+def test_a_bad_argument_is_named_and_ends_the_node(tmp_path: Path, arguments, error):
+    ended = subprocess.run([NODE, "--no-ros", *arguments], cwd=tmp_path, capture_output=True, text=True)
+    assert ended.returncode == 1
+    assert ended.stderr.startswith("eeruf-ros2: ") and error in ended.stderr, ended.stderr

@@ -309,5 +309,10 @@ mod tests {
         let [fast, middle, _] = rungs();
         assert_eq!(error(&[]), "a ladder without schedules; expected at least one");
         assert_eq!(error(&[middle, fast]), "rung 2 has a period of 60 ms; expected more than the 80 ms before it");
+        assert_eq!(error(&[fast, fast]), "rung 2 has a period of 60 ms; expected more than the 60 ms before it");
+        let (lags, waits) = ([0, 20, 40].map(Micros::from_millis), [1, 3, 6].map(Micros::from_millis));
+        let few = Schedule::from_slices(Micros::from_millis(100), &lags, [&[Micros::ZERO; 3], &waits]).unwrap();
+        let few = few.verify(&REQUIREMENTS).verified().unwrap();
+        assert_eq!(error(&[fast, few]), "rung 2 has 3 sensors; expected 12 as in the first");
     }
 }

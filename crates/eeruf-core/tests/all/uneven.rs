@@ -270,3 +270,31 @@ fn an_uneven_schedule_is_written_with_all_that_it_was_designed_for() {
     assert!(c.contains("#define EERUF_T_DELTA_US 999u\n#define EERUF_WINDOW_US 12000u\n"), "{c}");
     assert!(c.contains("static const uint32_t eeruf_window_us[EERUF_SENSORS] = {50000u, 12000u};\n"), "{c}");
 }
+
+#[test]
+fn needs_that_make_no_sense_are_named_with_what_is_expected() {
+    let one = Micros::new(1);
+    let error = |uneven: Uneven<'_>| uneven.check(4).unwrap_err().to_string();
+    let none = Uneven::NONE;
+    let few = "2 values; expected one for each of 4 sensors";
+    assert_eq!(error(Uneven { t_delta: &[one; 2], ..none }), format!("t_delta: {few}"));
+    assert_eq!(error(Uneven { window: &[one; 2], ..none }), format!("window: {few}"));
+    assert_eq!(error(Uneven { refire: &[one; 2], ..none }), format!("refire: {few}"));
+    let intervals = |intervals: &[(u8, u8, Micros)]| error(Uneven { intervals, ..none });
+    assert_eq!(intervals(&[(1, 1, one)]), "intervals: sensors 2 and 2; expected two different ones of 4");
+    assert_eq!(intervals(&[(0, 4, one)]), "intervals: sensors 1 and 5; expected two different ones of 4");
+    assert_eq!(intervals(&[(4, 0, one)]), "intervals: sensors 5 and 1; expected two different ones of 4");
+    assert_eq!(intervals(&[(0, 1, one), (0, 1, one)]), "intervals: sensors 1 and 2 twice; expected each pair once");
+    assert_eq!(intervals(&[(0, 1, one), (1, 0, one)]), "intervals: sensors 2 and 1 twice; expected each pair once");
+    let lines = |shared_lines: &[u64]| error(Uneven { shared_lines, ..none });
+    assert_eq!(lines(&[0b1_0001]), "shared_lines: sensors 1 5; expected two or more different ones of 4");
+    assert_eq!(lines(&[0b0011, 0b0100]), "shared_lines: sensors 3; expected two or more different ones of 4");
+    let together = |together: &[u64]| error(Uneven { together, ..none });
+    assert_eq!(together(&[0b1000]), "together: sensors 4; expected two or more different ones of 4");
+    assert_eq!(together(&[0b0011, 0b1100, 0b0110]), "together: sensor 2 is in two groups; expected one");
+    // A sensor may share lines with several, and its neighbour's number.
+    let (intervals, each) = ([(0, 3, one), (1, 3, one), (0, 1, one)], [one; 4]);
+    let lines = Uneven { shared_lines: &[0b0110, 0b1100], together: &[0b0011, 0b1100], ..none };
+    assert_eq!(Uneven { intervals: &intervals, t_delta: &each, ..lines }.check(4), Ok(()));
+    assert_eq!(Uneven { together: &[1 << 63 | 1], ..none }.check(64), Ok(()));
+}

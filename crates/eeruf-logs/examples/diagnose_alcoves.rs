@@ -6,7 +6,7 @@ use std::error::Error;
 use eeruf_core::ReadingKind;
 use eeruf_logs::{Firing, FiringLog, Settings, diagnose};
 use eeruf_sim::experiments::set_one::Alcove;
-use eeruf_sim::{Cause, Method, Options, Readings, quantile, simulate, sweep};
+use eeruf_sim::{Cause, Method, Options, Physics, Readings, quantile, simulate, sweep};
 
 /// Counts over the readings of one alcove, or of all.
 #[derive(Clone, Copy, Default)]
@@ -40,7 +40,8 @@ fn log_of(readings: &Readings) -> FiringLog {
 
 fn count(number: u64, method: Method, periods: u32) -> Result<Counts, String> {
     let failed = |error: &dyn Error| format!("alcove {number}: {error}");
-    let world = Alcove::random(number).world().map_err(|error| failed(&error))?;
+    let world = Alcove::random(number).world().and_then(|world| world.with_physics(Physics::PLAIN));
+    let world = world.map_err(|error| failed(&error))?;
     let readings = simulate(&world, method, &Options::periods(periods)).map_err(|error| failed(&error))?;
     // Readings come in the order in which windows end; a log is in the order of firings.
     let mut order: Vec<_> = (0..readings.len()).collect();

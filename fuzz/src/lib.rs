@@ -1,7 +1,33 @@
 //! What the fuzz targets check: each module takes whatever the fuzzer makes up and panics where a promise is broken.
 //!
-//! The targets in `fuzz_targets` only call these, so that a finding can be replayed by an ordinary test.
+//! The targets in `fuzz_targets` only call these, so that a finding can be replayed by an ordinary test. Readers of
+//! files take the file itself, so that any file of the repository is a seed.
 
-pub mod files;
+#[cfg(feature = "certificates")]
+pub mod certificates;
 pub mod filter;
+#[cfg(feature = "logs")]
+pub mod logs;
+#[cfg(feature = "scenes")]
+pub mod maps;
 pub mod ring;
+#[cfg(feature = "scenes")]
+pub mod scenes;
+#[cfg(feature = "schedules")]
+pub mod schedules;
+
+/// What is wrong with a file is said in one line.
+#[allow(dead_code)]
+fn one_line(error: &str) {
+    assert!(!error.is_empty() && !error.contains('\n'), "{error:?}");
+}
+
+/// A folder of this process for what is read by its path; in memory where the machine has such a place.
+#[allow(dead_code)]
+fn folder() -> std::path::PathBuf {
+    let memory = std::path::Path::new("/dev/shm");
+    let parent = if memory.is_dir() { memory.to_owned() } else { std::env::temp_dir() };
+    let folder = parent.join(format!("eeruf-fuzz-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder can be made");
+    folder
+}

@@ -13,6 +13,8 @@
 //! - a late edge gives at most one reading more;
 //! - what is accepted was heard in as many firings running as must agree; when nothing disturbed the comparison,
 //!   nothing else is said;
+//! - a firing that came later than its poll moves all that follow, and its echo times count from then;
+//! - nobody fires while the ring is paused, and what cannot be listened for is refused, nothing else;
 //! - counts, ages and periods go on one by one, and the ring never falls silent.
 
 mod model;
@@ -71,6 +73,13 @@ pub enum Step {
     Enable(u8),
     Restart,
     Change(bool),
+    /// The last firing came so many microseconds after its poll, and the clock has moved on.
+    Fired(u8),
+    Pause,
+    Resume,
+    TDelta(u16),
+    Window(u16),
+    Blanking(u8),
 }
 
 fn table(table: &Table) -> Option<Schedule<SENSORS>> {
@@ -118,6 +127,8 @@ pub fn check(input: &Input) {
         since: 0,
         phase: 0,
         last: None,
+        last_sensor: None,
+        paused: false,
         epoch: 0,
         before: None,
         on_time: true,
@@ -199,8 +210,49 @@ pub fn check(input: &Input) {
                 if ring.change_to_unverified(schedule).is_ok() {
                     model.next_schedule = Some(schedule);
                 } else {
-                    assert!(window > schedule.min_refire(), "refused without cause");
+                    assert!(model.listening.window > schedule.min_refire(), "refused without cause");
                 }
+                continue;
+            }
+            Step::Fired(later) => {
+                // Where the last firing came with this poll, and nothing was heard or said of it yet.
+                let Some(x) = model.last_sensor else { continue };
+                if model.last.is_none_or(|last| last.at != now) || !model.sensors[x].is_silent() {
+                    continue;
+                }
+                now += u64::from(*later);
+                ring.fired(x as u8, instant(now)).expect("a sensor that there is");
+                model.fired_at(x, now);
+            }
+            Step::Pause | Step::Resume => {
+                let pauses = matches!(step, Step::Pause);
+                if pauses {
+                    ring.pause()
+                } else {
+                    ring.resume()
+                }
+                model.pause(pauses);
+                continue;
+            }
+            Step::TDelta(us) => {
+                let t_delta = Micros::new((*us).into());
+                let changed = Listening { t_delta, ..model.listening };
+                let done = ring.set_t_delta(t_delta).is_ok();
+                model.listen(done, changed);
+                continue;
+            }
+            Step::Window(us) => {
+                let window = Micros::new((*us).into());
+                let changed = Listening { window, ..model.listening };
+                let done = ring.set_window(window).is_ok();
+                model.listen(done, changed);
+                // What was open may be closed by now.
+            }
+            Step::Blanking(units) => {
+                let blanking = Micros::new(16 * u32::from(*units));
+                let changed = Listening { blanking, ..model.listening };
+                let done = ring.set_blanking(blanking).is_ok();
+                model.listen(done, changed);
                 continue;
             }
         }
@@ -216,6 +268,7 @@ fn drain(ring: &mut ScheduledRing<'_, SENSORS>, model: &mut Model<'_>) {
         assert!(turn < 1000, "the ring never comes to rest");
         let deadline = time_of(ring.next_deadline(), now);
         model.on_time &= deadline >= now;
+        assert_eq!((ring.t_delta(), ring.window()), (model.listening.t_delta, model.listening.window));
         let Some(event) = ring.poll(instant(now)) else { break };
         match event {
             RingEvent::Fire { sensor, .. } => model.fired(sensor, deadline),

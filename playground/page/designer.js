@@ -17,6 +17,11 @@ const FIELDS = [
   { name: "tick", label: "Firing times are multiples of", unit: "µs", step: "10" },
 ];
 
+/** With more sensors than this a search takes a while, and says so. */
+const FEW = 24;
+const MANY =
+  "So many sensors take a minute or two. “Stop” ends it; a robot that stands (0 m/s) and coarser firing times are quicker.";
+
 export class Designer {
   /**
    * @param {{desk: import("./engine.js").Desk, state: () => import("./state.js").State,
@@ -151,9 +156,10 @@ export class Designer {
     this.result.hidden = true;
     this.answer = null;
     this.#say("Searching …");
+    const many = this.page.state().sensors > FEW ? ` ${MANY}` : "";
     try {
       const answer = await desk.ask({ ask: "design", ring }, (_, nodes) =>
-        this.#say(`Searching: ${nodes.toLocaleString("en")} cases so far …`),
+        this.#say(`Searching: ${nodes.toLocaleString("en")} cases so far …${many}`),
       );
       this.answer = { ...answer, ring };
       this.#show();
@@ -197,7 +203,7 @@ export class Designer {
     byId("period", HTMLElement).textContent = inMs(found.value_us);
     byId("proof", HTMLElement).textContent = found.proven
       ? "proven: no schedule with these guarantees is shorter"
-      : `not proven: it may be as short as ${inMs(found.bound_us)}`;
+      : `not proven: it may be as short as ${inMs(found.bound_us)}; eeruf design searches for longer`;
     byId("reason", HTMLElement).textContent = `Not shorter because of ${found.reason}.`;
     byId("facts", HTMLElement).replaceChildren(
       ...this.#facts().map(([name, value]) => element("div", {}, element("dt", {}, name), element("dd", {}, value))),

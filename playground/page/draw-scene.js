@@ -10,6 +10,8 @@ import { sensorColour } from "./colours.js";
 
 const HALF_BEAM_RAD = (12 * Math.PI) / 180;
 const BEAM_M = 0.22;
+/** How far behind its sensor a number stands, in pixels. */
+const NUMBER_IN = 11;
 
 /** @param {CanvasRenderingContext2D} context @param {View} view @param {[number, number][]} corners */
 export function polyline(context, view, corners) {
@@ -129,6 +131,8 @@ export function drawRobot(context, view, traced, { sensor: looked, blind }, colo
   context.arc(at.x, at.y, traced.body_radius_m * view.scale, 0, 2 * Math.PI);
   context.fill();
   const few = sensors.length <= 24;
+  const radius = traced.body_radius_m * view.scale;
+  const room = numberRoom(traced, radius - NUMBER_IN);
   sensors.forEach(([x, y, heading], k) => {
     const spot = view.px(x, y);
     const colour = sensorColour(colours, k);
@@ -145,15 +149,24 @@ export function drawRobot(context, view, traced, { sensor: looked, blind }, colo
     }
     drawSensor(context, spot, colour, { looked: k === looked, isBlind }, colours);
     // Numbers stand inside the ring, where no sound goes.
-    const inside = { x: spot.x - 15 * Math.cos(heading), y: spot.y + 15 * Math.sin(heading) };
-    if ((few && traced.body_radius_m * view.scale > 34) || k === looked) {
+    const far = NUMBER_IN + (k === looked ? 5 : 0) + (isBlind ? 4 : 0);
+    const inside = { x: spot.x - far * Math.cos(heading), y: spot.y + far * Math.sin(heading) };
+    if (room > 6 || k === looked) {
       context.fillStyle = colours.ink;
-      context.font = `${k === looked ? "bold " : ""}12px system-ui, sans-serif`;
+      context.font = `${k === looked ? "bold " : ""}${room > 14 || k === looked ? 12 : 10}px system-ui, sans-serif`;
       context.textAlign = "center";
       context.textBaseline = "middle";
       context.fillText(String(k + 1), inside.x, inside.y);
     }
   });
+}
+
+/** @param {Traced} traced @param {number} radius In pixels. @returns {number} How wide a number may be there. */
+function numberRoom({ sensors }, radius) {
+  if (sensors.length < 2) return radius;
+  const [[, , one], [, , other]] = sensors;
+  const turn = Math.abs(Math.atan2(Math.sin(other - one), Math.cos(other - one)));
+  return radius * turn;
 }
 
 /** @param {CanvasRenderingContext2D} context @param {import("./view.js").Spot} spot @param {string} colour

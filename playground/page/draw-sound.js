@@ -12,6 +12,8 @@ const HALF_BEAM_RAD = (18 * Math.PI) / 180;
 const STROKE_M = 0.16;
 /** For how long a rejected reading is seen, in seconds. */
 const REJECTED_FOR_S = 0.04;
+/** How near to the edge of the picture a mark is drawn at most. */
+const EDGE_PX = 10;
 
 /**
  * @param {CanvasRenderingContext2D} context
@@ -78,6 +80,17 @@ function pointAt({ corners, lengths }, length) {
 }
 
 /**
+ * @param {import("./view.js").View} view @param {import("./view.js").Spot} from @param {import("./view.js").Spot} to
+ * @returns {import("./view.js").Spot} The end, or where the way there leaves the picture: no mark is lost to sight.
+ */
+function within({ width, height }, from, to) {
+  const share = (/** @type {number} */ a, /** @type {number} */ b, /** @type {number} */ most) =>
+    b < EDGE_PX ? (a - EDGE_PX) / (a - b) : b > most - EDGE_PX ? (most - EDGE_PX - a) / (b - a) : 1;
+  const part = Math.max(0, Math.min(1, share(from.x, to.x, width), share(from.y, to.y, height)));
+  return { x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y) };
+}
+
+/**
  * What each sensor believes: the last accepted reading along its axis; rejected ones for a moment.
  * @param {CanvasRenderingContext2D} context
  * @param {import("./view.js").View} view
@@ -102,7 +115,7 @@ export function drawBeliefs(context, view, { traced, readings, at }, colours) {
     const [x, y, heading] = sensor;
     const range = 0.5e-6 * reading.t_echo_us * traced.sound_m_s;
     const from = view.px(x, y);
-    const to = view.px(x + range * Math.cos(heading), y + range * Math.sin(heading));
+    const to = within(view, from, view.px(x + range * Math.cos(heading), y + range * Math.sin(heading)));
     context.strokeStyle = mark === "wrong" ? colours.wrong : mark === "right" ? colours.right : colours.rejected;
     context.globalAlpha = mark === "wrong" ? 0.8 : 0.35;
     context.lineWidth = mark === "wrong" ? 2 : 1.25;

@@ -78,7 +78,7 @@ export function handlesOf(state) {
     },
   });
   const turn = (robot.heading * Math.PI) / 180;
-  const arm = 0.55 * radius;
+  const arm = 0.45 * radius;
   handles.push({
     kind: "heading",
     name: "Heading of the robot",

@@ -79,6 +79,7 @@ async function start() {
     if (document.activeElement !== sensor) sensor.value = String(state.sensor + 1);
     byId("add-method", HTMLButtonElement).disabled = state.shown.length >= Math.min(MAX_SHOWN, methods.length);
     byId("own-says", HTMLElement).hidden = state.own === null;
+    byId("rooms", HTMLSelectElement).value = roomOf(state);
   }
 
   tools(() => state, change, methods);
@@ -118,7 +119,7 @@ function tools(state, change, methods) {
     const room = ROOMS[rooms.value];
     if (room)
       change({ ...state(), ...structuredClone({ walls: room.walls, poles: room.poles, robot: room.robot }) }, true);
-    rooms.value = "";
+    else rooms.value = roomOf(state());
   };
   byId("add-wall", HTMLButtonElement).onclick = () => {
     const { robot, walls } = state();
@@ -159,6 +160,12 @@ function tools(state, change, methods) {
   };
   byId("forget-own", HTMLButtonElement).onclick = () => change({ ...state(), own: null }, true);
   byId("reset", HTMLButtonElement).onclick = () => change(firstState(), true);
+}
+
+/** @param {State} state @returns {string} The room of the menu with these walls and poles; empty for one's own. */
+function roomOf({ walls, poles }) {
+  const seen = JSON.stringify([walls, poles]);
+  return Object.keys(ROOMS).find((id) => JSON.stringify([ROOMS[id].walls, ROOMS[id].poles]) === seen) ?? "";
 }
 
 /** @param {State} state @returns {[number, number]} Beside or before the robot, where nothing else is near. */

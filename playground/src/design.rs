@@ -7,8 +7,11 @@ use serde::Serialize;
 
 use crate::border::progress;
 
-/// How many nodes a search on the page may visit: a minute or so.
+/// How many nodes a search on the page may visit, and where there are more sensors than [`FEW`], each of whose nodes
+/// costs many times as much: a minute or so.
 const BUDGET: u64 = 2_000_000;
+const BUDGET_OF_MANY: u64 = 50_000;
+const FEW: usize = 24;
 /// How many nodes the certificate's proof may have, as by default in `eeruf design`.
 const CERTIFICATE_BUDGET: usize = 1_000_000;
 /// After so many nodes of a proof the page learns how far it is.
@@ -116,6 +119,7 @@ fn shortest(spec: &RingSpec, what_if: bool) -> Result<RingDesign, String> {
         progress(f64::NAN, at.nodes as f64);
         std::ops::ControlFlow::Continue(())
     };
-    let found = spec.shortest(&Search { budget: BUDGET, what_if }, &mut control);
+    let budget = if spec.sensors > FEW { BUDGET_OF_MANY } else { BUDGET };
+    let found = spec.shortest(&Search { budget, what_if }, &mut control);
     found.map_err(|error: SearchError| error.to_string())?.map_err(|none| none.to_string())
 }

@@ -12,10 +12,20 @@ export const SINGLE = `file://${join(BUILT, "who-fools-whom.html")}`;
 /** @type {Record<string, string>} */
 const KINDS = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm" };
 
+/** A lecturer's page, which embeds the page in the state that stands after `?`. */
+export const LECTURE = "/lecture.html";
+
 /** @returns {Promise<{url: string, close: () => void}>} The folder on a server of this machine. */
 export async function serve() {
   const server = createServer((request, response) => {
-    const path = normalize(new URL(request.url ?? "/", "http://page").pathname);
+    const { pathname, search } = new URL(request.url ?? "/", "http://page");
+    const path = normalize(pathname);
+    if (path === LECTURE) {
+      const frame = `<iframe src="/#${search.slice(1)}" title="Who fools whom?" width="100%" height="900"></iframe>`;
+      const head = '<!doctype html><title>A lecture</title><link rel="icon" href="data:,">';
+      response.writeHead(200, { "content-type": "text/html" }).end(head + frame);
+      return;
+    }
     try {
       const body = readFileSync(join(BUILT, "folder", path === "/" ? "index.html" : path));
       response.writeHead(200, { "content-type": KINDS[extname(path) || ".html"] ?? "text/plain" }).end(body);

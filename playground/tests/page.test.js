@@ -10,7 +10,7 @@ import axe from "axe-core";
 
 import { toHash } from "../page/link.js";
 import { firstState } from "../page/state.js";
-import { BUILT, SINGLE, launch, open, ready, serve } from "./browser.js";
+import { BUILT, LECTURE, SINGLE, launch, open, ready, serve } from "./browser.js";
 
 const LONG = Boolean(process.env.PAGE_LONG);
 /** A page and all that it loads, gzipped. */
@@ -77,6 +77,13 @@ test("the folder on a server asks only that server, and says what the method cos
   assert.ok(conventional > 30 && eeruf < 2 && hopping < 2, String(verdicts));
   assert.match(verdicts[1], /; sensors .* are blind\.$/);
   assert.match(verdicts[2], /; no sensor is blind\.$/);
+  // Whoever hears the page hears what the pictures show.
+  const labels = await page
+    .locator(".panel canvas")
+    .evaluateAll((all) => all.map((canvas) => canvas.getAttribute("aria-label")));
+  assert.equal(labels[0], `The room under the method Constant waits. ${verdicts[0]}`);
+  assert.match(labels[1] ?? "", /^Range over time as sensor 1 reads it under Constant waits\. Of \d+ readings /);
+  assert.equal(labels.length, 6);
   assert.deepEqual(troubles, []);
   await context.close();
 });
@@ -229,56 +236,110 @@ test("a link brings back the whole state, and a broken one says so and shows the
   assert.deepEqual(await stateOf(page), state);
   assert.equal(await page.locator(".panel").count(), 3);
   assert.equal(await page.locator("#look").inputValue(), "3");
-  for (const [broken, says] of [
-    [
-      link.slice(0, -9),
-      "The link is cut short or changed; expected one that this page made. Shown is the first example instead.",
-    ],
-    [
-      `${server.url}#${toHash(/** @type {any} */ ({ ...state, sensors: 99 }))}`,
-      "sensors is 99; expected a number from 1 to 64. Shown is the first example instead.",
-    ],
-  ]) {
-    const other = await open(browser, broken);
-    assert.equal(await other.page.locator("#page-says").textContent(), says);
-    assert.deepEqual(other.troubles, []);
-    await other.context.close();
-  }
+  // A broken one, put into the address of the open page.
+  await page.goto(link.slice(0, -9));
+  await assertText(page.locator("#page-says"), /^The link is cut short or changed; expected one that this page made\. /);
+  assert.deepEqual(await stateOf(page), firstState());
+  assert.deepEqual(troubles, []);
+  await context.close();
+  // And one that the page is opened with.
+  const other = await open(browser, `${server.url}#${toHash(/** @type {any} */ ({ ...state, sensors: 99 }))}`);
+  assert.equal(
+    await other.page.locator("#page-says").textContent(),
+    "sensors is 99; expected a number from 1 to 64. Shown is the first example instead.",
+  );
+  await other.page.goto(`${new URL(LECTURE, server.url)}?${toHash(/** @type {any} */ (state))}`);
+  // In a lecturer's own page, as docs/page.md embeds it, a link shows its state too.
+  const frame = other.page.frameLocator("iframe");
+  await frame.locator(".panel:not(.stale)").nth(2).waitFor();
+  assert.equal(await frame.locator("#look").inputValue(), "3");
+  assert.deepEqual(other.troubles, []);
+  await other.context.close();
+});
+
+test("axe-core finds nothing to object to, light and dark, before and after a design, in the lesson", async () => {
+  const { context, page, troubles } = await open(browser, server.url);
+  /** @param {string} where */
+  const expectBoth = async (where) => {
+    for (const colorScheme of /** @type {const} */ (["dark", "light"])) {
+      await page.emulateMedia({ colorScheme });
+      assert.equal(await isDark(page), colorScheme === "dark", where);
+      await expectAccessible(page, `${colorScheme}, ${where}`);
+    }
+  };
+  await expectBoth("at first");
+  await design(page);
+  await expectBoth("designed");
+  await page.locator("#lesson-start").click();
+  await ready(page);
+  await expectBoth("in the lesson");
+  await page.locator("#lesson-end").click();
+  // The button has the last word over the system.
+  await page.locator("#theme").click();
+  assert.ok(await isDark(page));
   assert.deepEqual(troubles, []);
   await context.close();
 });
 
-test("axe-core finds nothing to object to, light and dark, before and after a design, in the lesson", async () => {
-  for (const colorScheme of /** @type {const} */ (["light", "dark"])) {
-    const { context, page, troubles } = await open(browser, server.url, { colorScheme });
-    await expectAccessible(page, `${colorScheme}, at first`);
-    await design(page);
-    await expectAccessible(page, `${colorScheme}, designed`);
-    await page.locator("#lesson-start").click();
-    await ready(page);
-    await expectAccessible(page, `${colorScheme}, lesson`);
-    assert.deepEqual(troubles, []);
-    await context.close();
-  }
-});
+/** @param {import("playwright-core").Page} page @returns {Promise<boolean>} Whether the paper is dark. */
+async function isDark(page) {
+  const paper = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  return Number(paper.match(/\d+/)?.[0]) < 128;
+}
 
 test("from 360 pixels to 4K nothing sticks out", async () => {
+  const { context, page } = await open(browser, server.url);
+  await design(page);
   for (const [width, height] of [
     [360, 740],
     [768, 1024],
     [3840, 2160],
   ]) {
-    const { context, page } = await open(browser, server.url, { viewport: { width, height } });
-    await design(page);
+    await page.setViewportSize({ width, height });
     const sticksOut = await page.evaluate(
       () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
     );
     assert.equal(sticksOut, 0, `${width} pixels`);
-    await context.close();
+    // Nor does a picture shrink to nothing.
+    const rooms = await page.locator(".room").evaluateAll((all) => all.map((room) => room.clientHeight));
+    assert.ok(
+      rooms.every((high) => high >= 250),
+      `${width} pixels: rooms of ${rooms} pixels`,
+    );
   }
+  await context.close();
 });
 
-test("the lesson leads through seven steps, each with its own methods", async () => {
+/** @param {import("playwright-core").Page} page @returns {Promise<string>} All pictures, the clock, how far it is scrolled. */
+function seen(page) {
+  return page.evaluate(() => {
+    const pictures = [...document.querySelectorAll("canvas")].map((canvas) => canvas.toDataURL());
+    const clock = /** @type {HTMLInputElement} */ (document.getElementById("clock")).value;
+    return JSON.stringify([scrollX, scrollY, clock, document.getAnimations().length, ...pictures]);
+  });
+}
+
+/** @param {import("playwright-core").Page} page @param {string} where Fails if anything moves within a fifth of a second. */
+async function expectStill(page, where) {
+  const before = await seen(page);
+  await page.waitForTimeout(200);
+  assert.ok(before === (await seen(page)), `${where}: something moves by itself`);
+}
+
+test("sound runs by itself, until it is paused or where little motion is wanted", async () => {
+  const { context, page } = await open(browser, server.url, { reducedMotion: "no-preference" });
+  const before = await seen(page);
+  await page.waitForFunction(
+    (was) => /** @type {HTMLInputElement} */ (document.getElementById("clock")).value !== was,
+    JSON.parse(before)[2],
+  );
+  assert.ok(before !== (await seen(page)));
+  await page.locator("#play").click();
+  await expectStill(page, "paused");
+  await context.close();
+});
+
+test("the lesson leads through seven steps, each with its own methods; with reduced motion each stands still", async () => {
   const { context, page, troubles } = await open(browser, server.url);
   await page.locator("#lesson-start").click();
   const expected = [
@@ -292,8 +353,10 @@ test("the lesson leads through seven steps, each with its own methods", async ()
   ];
   for (const [step, methods] of expected.entries()) {
     assert.match((await page.locator("#lesson-title").textContent()) ?? "", new RegExp(`^${step + 1} of 7: `));
-    await ready(page);
+    // At once and not by gliding there.
     assert.deepEqual((await stateOf(page)).shown, methods);
+    await ready(page);
+    await expectStill(page, `step ${step + 1}`);
     await page.locator("#lesson-next").click();
   }
   assert.ok(await page.locator("#lesson").isHidden());
@@ -305,6 +368,7 @@ test("a long search is stopped by its button, and the page goes on", async () =>
   const hard = { ...firstState(), sensors: 40, layout: "ring", tick: 10, crosstalk: 2.37, range: 4.13 };
   const { context, page, troubles } = await open(browser, `${server.url}#${toHash(/** @type {any} */ (hard))}`);
   await page.locator("#design-go").click();
+  await assertText(page.locator("#design-says"), /^Searching: [\d,]+ cases so far ….* “Stop” ends it/);
   await page.locator("#design-cancel").click();
   await assertText(page.locator("#design-says"), /^Stopped\.$/);
   await page.locator("#ring-sensors").fill("4");
@@ -314,10 +378,10 @@ test("a long search is stopped by its button, and the page goes on", async () =>
   await context.close();
 });
 
-test(`${LONG ? 2000 : 150} random actions leave no error in the console`, { timeout: 1_200_000 }, async () => {
+test(`${LONG ? 2000 : 60} random actions leave no error in the console`, { timeout: 1_200_000 }, async () => {
   const { context, page, troubles } = await open(browser, server.url, { viewport: { width: 900, height: 800 } });
   page.on("dialog", (dialog) => dialog.dismiss());
-  await randomActions(page, LONG ? 2000 : 150, 20_001);
+  await randomActions(page, LONG ? 2000 : 60, 20_001);
   await page.locator("#reset").click();
   await ready(page);
   assert.deepEqual(troubles, []);

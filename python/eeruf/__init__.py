@@ -23,7 +23,7 @@ import importlib
 import sys
 from typing import TYPE_CHECKING
 
-from eeruf import experiments, sim, tables
+from eeruf import experiments, logs, sim, tables
 from eeruf._eeruf import (
     EXAMPLES,
     KINDS,
@@ -40,6 +40,7 @@ from eeruf._eeruf import (
     HoppingRing,
     HoppingSchedule,
     HoppingSettings,
+    LogError,
     PathsError,
     PeriodEnded,
     Reading,
@@ -60,6 +61,7 @@ from eeruf._eeruf import (
     example,
 )
 from eeruf._sweep import sweep
+from eeruf.logs import diagnose, read_firings, read_log, survey
 
 if TYPE_CHECKING:
     from eeruf import plot
@@ -80,6 +82,7 @@ __all__ = [
     "HoppingRing",
     "HoppingSchedule",
     "HoppingSettings",
+    "LogError",
     "PathsError",
     "PeriodEnded",
     "Reading",
@@ -97,11 +100,16 @@ __all__ = [
     "__version__",
     "check_certificate",
     "design",
+    "diagnose",
     "example",
     "experiments",
+    "logs",
     "plot",
+    "read_firings",
+    "read_log",
     "show_versions",
     "sim",
+    "survey",
     "sweep",
     "tables",
 ]

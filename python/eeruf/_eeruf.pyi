@@ -67,6 +67,7 @@ class ScheduleError(EerufError): ...
 class FilterError(EerufError): ...
 class RingError(EerufError): ...
 class HoppingError(EerufError): ...
+class LogError(EerufError): ...
 class SearchError(EerufError): ...
 class SceneError(EerufError): ...
 class PathsError(EerufError): ...
@@ -851,3 +852,36 @@ def _speed_sweep(speeds_m_s: Sequence[float], asked: dict[str, Any], progress: _
 def _readings_from_columns(
     method: str, duration_s: float, sensors: _Int, columns: dict[str, NDArray[Any]], paths: dict[str, Any]
 ) -> Readings: ...
+def _read_log(
+    path: str,
+    time: str | None,
+    time_unit: str,
+    ranges: list[str],
+    range_unit: str,
+    sensor: str | None,
+    speed_of_sound: float,
+    no_echo_m: float,
+) -> dict[str, Any]: ...
+def _read_firings(path: str) -> dict[str, Any]: ...
+def _diagnose(
+    sensor: _Ints,
+    fired_us: _Ints,
+    period: _Ints,
+    phase: _Ints,
+    rejected: _Ints,
+    t_echo_us: _Floats,
+    sends: _Bools,
+    tolerance_us: _Int,
+    max_travel_us: _Int,
+) -> dict[str, Any]: ...
+def _survey(
+    sensor: _Ints,
+    fired_us: _Ints,
+    period: _Ints,
+    phase: _Ints,
+    rejected: _Ints,
+    t_echo_us: _Floats,
+    sends: _Bools,
+    tolerance_us: _Int,
+    until_us: _Int,
+) -> dict[str, Any]: ...

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use eeruf_core::{Micros, Phase};
-use eeruf_logs::{FiringLog, Settings, Timing, diagnose, timing};
+use eeruf_logs::{Alignment, FiringLog, Settings, Timing, align, diagnose, timing};
 
 use super::answer::Answer;
 use crate::files::error::InputError;
-use crate::files::toml::read_schedule;
+use crate::files::toml::{FoundSchedule, read_any_schedule, read_schedule};
 use crate::report::diagnose::{Found, describe, json, who_fools_whom};
 use crate::report::json::to_json;
 
@@ -17,15 +17,16 @@ use crate::report::json::to_json;
 /// The log is CSV with the columns sensor, fired_us, period, phase and t_echo_us, one row for each firing: when it was,
 /// in microseconds of one clock, and the raw time to the first echo, empty without one. Sensors, periods and phases
 /// count from 0. A column `reading` may say what the ring made of it (`rejected`). `eeruf study --log` writes such a
-/// log. A ring that hops in time, whose lags move, says most; with two phases senders cannot be distinguished.
+/// log. Messages `eeruf.Firing` in an MCAP file are read as well. A ring that hops in time, whose lags move, says most; with two phases senders cannot be distinguished.
 ///
 /// The exit code is 1 if something is broken.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The log
-    #[arg(value_name = "LOG.csv")]
+    #[arg(value_name = "LOG")]
     file: PathBuf,
-    /// The fixed schedule that the ring fires by, for jitter, lateness and drift
+    /// The fixed schedule that the ring fires by: for jitter, lateness and drift, or for the instants of firing where
+    /// the log has none
     #[arg(long, value_name = "SCHEDULE.toml")]
     schedule: Option<PathBuf>,
     /// By how much a reading may differ from what a path predicts: about four times the jitter
@@ -51,13 +52,25 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         let message = format!("--speed-of-sound {}; expected a number above zero", args.speed_of_sound);
         return Err(InputError::new(&args.file, None, message));
     }
-    let log = FiringLog::read(&args.file)?;
+    let mut log = FiringLog::read(&args.file)?;
     let settings =
         Settings { tolerance_us: args.tolerance_us, max_travel_us: args.max_travel_us, ..Settings::default() };
-    let timing = timing_of(args, &log)?;
+    let (mut timing, mut alignment) = (None, None);
+    if log.lacks_instants {
+        let (aligned, found) = aligned(args, &log)?;
+        (log, alignment) = (aligned, Some(found));
+    } else {
+        timing = timing_of(args, &log)?;
+    }
     let diagnosis = diagnose(&log, &settings);
-    let found =
-        Found { file: &args.file, log: &log, diagnosis: &diagnosis, timing, speed_of_sound: args.speed_of_sound };
+    let found = Found {
+        file: &args.file,
+        log: &log,
+        diagnosis: &diagnosis,
+        timing,
+        alignment,
+        speed_of_sound: args.speed_of_sound,
+    };
     if let Some(file) = &args.svg {
         who_fools_whom(&found).save(file)?;
     }
@@ -66,7 +79,32 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     } else {
         print!("{}", describe(&found));
     }
+    if let Some(damage) = &log.damage {
+        return Err(InputError::new(&args.file, None, damage));
+    }
     Ok(if diagnosis.faults.is_empty() { Answer::Yes } else { Answer::No })
+}
+
+/// A log without instants, put onto the schedule.
+fn aligned(args: &Args, log: &FiringLog) -> Result<(FiringLog, Alignment), InputError> {
+    let Some(file) = &args.schedule else {
+        let message = "no instants of firing; expected a column `fired_us`, or --schedule, the fixed one of the ring";
+        return Err(InputError::new(&args.file, None, message));
+    };
+    let found = match read_any_schedule(file)? {
+        FoundSchedule::Two(schedule) => {
+            let fires_at = |sensor: u8, phase: u8| {
+                if phase < 2 { schedule.t_fire(Phase(phase), sensor.into()).map(Micros::as_micros) } else { None }
+            };
+            align(log, args.tolerance_us, (schedule.period().as_micros(), 2), fires_at)
+        }
+        FoundSchedule::Many(schedule) => {
+            let fires_at = |sensor: u8, phase: u8| schedule.t_fire(Phase(phase), sensor.into()).map(Micros::as_micros);
+            let phases = schedule.phases() as u8;
+            align(log, args.tolerance_us, (schedule.period().as_micros(), phases), fires_at)
+        }
+    };
+    found.map_err(|error| InputError::new(&args.file, None, format!("against {}: {error}", file.display())))
 }
 
 fn timing_of(args: &Args, log: &FiringLog) -> Result<Option<Timing>, InputError> {

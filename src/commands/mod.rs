@@ -5,6 +5,7 @@
 mod answer;
 mod certificate;
 mod completions;
+mod dataset;
 mod design;
 mod diagnose;
 mod examples;
@@ -16,6 +17,7 @@ mod replay;
 mod scene;
 mod search;
 mod study;
+mod survey;
 mod verify;
 
 pub(crate) use answer::Answer;
@@ -44,7 +46,9 @@ pub(crate) enum Verb {
     Scene(scene::Args),
     Replay(replay::Args),
     Diagnose(diagnose::Args),
+    Survey(survey::Args),
     Experiment(experiment::Args),
+    Dataset(dataset::Args),
     Examples(examples::Args),
     Completions(completions::Args),
     Man(man::Args),
@@ -61,7 +65,9 @@ impl Verb {
             Self::Scene(args) => scene::run(args),
             Self::Replay(args) => replay::run(args),
             Self::Diagnose(args) => diagnose::run(args),
+            Self::Survey(args) => survey::run(args),
             Self::Experiment(args) => experiment::run(args),
+            Self::Dataset(args) => dataset::run(args),
             Self::Examples(args) => examples::run(args),
             Self::Completions(args) => completions::run(args),
             Self::Man(args) => man::run(args),

@@ -9,7 +9,7 @@ use super::answer::Answer;
 use super::methods::chosen;
 use crate::files::error::InputError;
 use crate::files::firings::write_firings;
-use crate::files::mcap::write_mcap;
+use crate::files::mcap::{Stage, write_mcap};
 use crate::files::toml::read_world;
 use crate::report::json::to_json;
 use crate::report::study::found::Study;
@@ -38,8 +38,9 @@ pub(crate) struct Args {
     /// Draw the same pictures as PNG
     #[arg(long, value_name = "DIR")]
     png: Option<PathBuf>,
-    /// Write every firing of the first robot and what it heard as CSV, for `eeruf diagnose`; needs one --method
-    #[arg(long, value_name = "FILE.csv")]
+    /// Write every firing of the first robot and what it heard as CSV, or MCAP if the name ends in .mcap, for `eeruf
+    /// diagnose`; needs one --method
+    #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
     /// Write all methods' readings as MCAP, for Foxglove and Rerun: ranges, poses, the scene and every reading's path
     #[arg(long, value_name = "FILE.mcap")]
@@ -77,7 +78,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         write_firings(file, readings)?;
     }
     if let Some(file) = &args.mcap {
-        write_mcap(file, &world, &study.runs)?;
+        write_mcap(file, &Stage::of(&world), &study.runs)?;
     }
     for (folder, ending) in [(&args.svg, "svg"), (&args.png, "png")] {
         if let Some(folder) = folder {

@@ -1,4 +1,4 @@
-//! A simulated study as an MCAP file, for Foxglove, Rerun and whatever reads ROS 2: ranges, poses, the scene, and along
+//! Simulated readings as an MCAP file, for Foxglove, Rerun and whatever reads ROS 2: ranges, poses, the scene, and along
 //! which path each reading came.
 //!
 //! Ranges are `sensor_msgs/msg/Range` in CDR; poses, scene and paths are Foxglove's own messages in JSON. Sensors and
@@ -8,10 +8,12 @@ use std::path::Path;
 
 use eeruf_core::ReadingKind;
 use eeruf_logs::{McapWriter, Reading};
-use eeruf_sim::{HeardPath, Moment, Point, Pose, Readings, SensorId, World};
+use eeruf_sim::experiments::set_two::Place;
+use eeruf_sim::{HeardPath, Point, Pose, Readings, SensorId, Vector, World};
 use serde_json::{Value, json};
 
 use super::error::InputError;
+use super::firings::{CLOCK, firing};
 
 /// The simulation begins at 2000-01-01: a stamp of zero means that there is none.
 const START_NS: u64 = 946_684_800_000_000_000;
@@ -20,17 +22,63 @@ const POSES_S: f64 = 0.05;
 /// A path is shown for so long.
 const SHOWN_NS: u64 = 120_000_000;
 
+/// A world and where its robots are.
+pub(crate) struct Stage<'a> {
+    world: &'a World,
+    /// Where the first robot was, if it did not move as the world says.
+    track: &'a [Place],
+}
+
+impl<'a> Stage<'a> {
+    /// Robots move as the world says.
+    pub(crate) fn of(world: &'a World) -> Self {
+        Self { world, track: &[] }
+    }
+
+    /// The first robot was driven; its places are in order of time.
+    pub(crate) fn driven(world: &'a World, track: &'a [Place]) -> Self {
+        Self { world, track }
+    }
+
+    fn pose(&self, robot: usize, time_s: f64) -> Pose {
+        let after = self.track.partition_point(|place| place.time_s <= time_s);
+        let (before, after) = (self.track.get(after.saturating_sub(1)), self.track.get(after));
+        match (robot, before, after) {
+            (0, Some(before), Some(after)) if after.time_s > before.time_s => {
+                let share = ((time_s - before.time_s) / (after.time_s - before.time_s)).clamp(0.0, 1.0);
+                let between = |from: f64, to: f64| from + share * (to - from);
+                // The shorter way round.
+                let turn = (after.heading_rad - before.heading_rad)
+                    .sin()
+                    .atan2((after.heading_rad - before.heading_rad).cos());
+                let place = Vector::new(between(before.x_m, after.x_m), between(before.y_m, after.y_m));
+                Pose::new(place, before.heading_rad + share * turn)
+            }
+            (0, Some(last), _) => Pose::new(Vector::new(last.x_m, last.y_m), last.heading_rad),
+            _ => self.world.robots().get(robot).map_or_else(Pose::identity, |of| of.motion.at(&of.pose, time_s).pose),
+        }
+    }
+
+    fn position(&self, id: SensorId, time_s: f64) -> Option<Point> {
+        let robot = usize::from(id.robot);
+        let mounted = self.world.robots().get(robot)?.sensors.get(usize::from(id.sensor))?;
+        Some(Point::from((self.pose(robot, time_s) * mounted).translation.vector))
+    }
+}
+
 /// Writes all runs into one file, each under the name of its method.
-pub(crate) fn write_mcap(file: &Path, world: &World, runs: &[Readings]) -> Result<(), InputError> {
+pub(crate) fn write_mcap(file: &Path, stage: &Stage<'_>, runs: &[Readings]) -> Result<(), InputError> {
     let mut out = McapWriter::create(file)?;
-    let end_s = runs.iter().map(|run| run.duration_s).fold(0.0, f64::max);
-    out.json("/scene", "foxglove.SceneUpdate", START_NS, &scene(world).to_string())?;
+    // A robot that was driven may have arrived before the time was over.
+    let fired_s = |run: &Readings| run.fired_s.iter().copied().fold(0.0, f64::max);
+    let end_s = runs.iter().map(fired_s).fold(0.0, f64::max);
+    out.json("/scene", "foxglove.SceneUpdate", START_NS, &scene(stage.world).to_string())?;
     let steps = (end_s / POSES_S).ceil() as u64;
     for step in 0..=steps {
-        poses(&mut out, world, step as f64 * POSES_S)?;
+        poses(&mut out, stage, step as f64 * POSES_S)?;
     }
     for run in runs {
-        readings(&mut out, world, run)?;
+        readings(&mut out, stage, run)?;
     }
     Ok(out.finish()?)
 }
@@ -92,7 +140,7 @@ fn scene(world: &World) -> Value {
 }
 
 /// Where robots and sensors are at a moment: transforms, and each robot's pose, which is its odometry without error.
-fn poses(out: &mut McapWriter, world: &World, time_s: f64) -> Result<(), InputError> {
+fn poses(out: &mut McapWriter, stage: &Stage<'_>, time_s: f64) -> Result<(), InputError> {
     let now = at_ns(time_s);
     let transform = |parent: &str, child: &str, pose: &Pose| {
         json!({
@@ -101,9 +149,9 @@ fn poses(out: &mut McapWriter, world: &World, time_s: f64) -> Result<(), InputEr
         })
     };
     let mut transforms = Vec::new();
-    for (number, robot) in world.robots().iter().enumerate() {
+    for (number, robot) in stage.world.robots().iter().enumerate() {
         let name = format!("robot_{}", number + 1);
-        let Moment { pose, .. } = robot.motion.at(&robot.pose, time_s);
+        let pose = stage.pose(number, time_s);
         transforms.push(transform("world", &name, &pose));
         for (sensor, mounted) in robot.sensors.iter().enumerate() {
             let id = SensorId { robot: number as u16, sensor: sensor as u8 };
@@ -119,8 +167,10 @@ fn poses(out: &mut McapWriter, world: &World, time_s: f64) -> Result<(), InputEr
     Ok(out.json("/tf", "foxglove.FrameTransforms", now, &message)?)
 }
 
-/// Each reading as a range, what the method accepts beside it, and its path.
-fn readings(out: &mut McapWriter, world: &World, run: &Readings) -> Result<(), InputError> {
+/// Each reading as a range, what the method accepts beside it, its path, and the firings of the first robot as
+/// `diagnose` reads them.
+fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(), InputError> {
+    let world = stage.world;
     let c = world.scene().air().speed_of_sound();
     let mut order: Vec<_> = (0..run.len()).collect();
     order.sort_by(|&a, &b| run.fired_s[a].total_cmp(&run.fired_s[b]));
@@ -140,11 +190,14 @@ fn readings(out: &mut McapWriter, world: &World, run: &Readings) -> Result<(), I
         };
         let (frame, topic) = (sensor_frame(id), format!("/{}/{}", run.method, sensor_frame(id)));
         out.range(&topic, &frame, &reading)?;
+        if id.robot == 0 {
+            out.firing(&format!("/{}/firings", run.method), CLOCK, reading.at_ns, &firing(run, k))?;
+        }
         if run.is_accepted(k) {
             let range_m = if run.kind[k] == ReadingKind::Clear { f64::INFINITY } else { metres(run.t_echo_us[k]) };
             out.range(&format!("{topic}/accepted"), &frame, &Reading { range_m, ..reading })?;
         }
-        if let Some(points) = run.path_of(k).and_then(|path| corners(world, path, run.emitted_s[k], c)) {
+        if let Some(points) = run.path_of(k).and_then(|path| corners(stage, path, run.emitted_s[k], c)) {
             let is_own = run.path_of(k).is_some_and(|path| path.emitter == path.receiver);
             // Its own echo in green, another's sound in red where it is believed, else in yellow.
             let colour = match (is_own, run.is_accepted(k)) {
@@ -162,11 +215,8 @@ fn readings(out: &mut McapWriter, world: &World, run: &Readings) -> Result<(), I
 }
 
 /// Where the path of a reading ran.
-fn corners(world: &World, path: &HeardPath, sent_s: f64, c: f64) -> Option<Vec<Point>> {
-    let position = |id: SensorId, time_s: f64| {
-        let sensor = world.sensors(usize::from(id.robot), time_s).nth(usize::from(id.sensor))?;
-        Some(Point::from(sensor.translation.vector))
-    };
-    let heard_s = sent_s + path.length_m / c;
-    world.scene().bounce_points(position(path.emitter, sent_s)?, position(path.receiver, heard_s)?, &path.bounces)
+fn corners(stage: &Stage<'_>, path: &HeardPath, sent_s: f64, c: f64) -> Option<Vec<Point>> {
+    let (from, to) =
+        (stage.position(path.emitter, sent_s)?, stage.position(path.receiver, sent_s + path.length_m / c)?);
+    stage.world.scene().bounce_points(from, to, &path.bounces)
 }

@@ -6,6 +6,8 @@ pub(crate) mod error;
 pub(crate) mod firings;
 pub(crate) mod mcap;
 pub(crate) mod ring;
+pub(crate) mod survey;
 pub(crate) mod toml;
+pub(crate) mod truth;
 pub(crate) mod waits;
 pub(crate) mod write;

@@ -14,6 +14,7 @@ pub(crate) mod phases;
 pub(crate) mod replay;
 pub(crate) mod search;
 pub(crate) mod study;
+pub(crate) mod survey;
 pub(crate) mod table;
 pub(crate) mod timing;
 pub(crate) mod verify;

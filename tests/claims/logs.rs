@@ -137,3 +137,142 @@ fn study_writes_ranges_poses_scene_and_paths_that_another_reader_reads() {
     }
     assert!(paths > 400, "{paths}");
 }
+
+#[test]
+fn a_simulated_survey_finds_who_hears_whom_and_its_ring_file_is_one_for_design() {
+    let (folder, log) = Scratch::new("survey.csv", "");
+    let (log, ring, picture) =
+        (log.to_str().unwrap(), folder.path().join("ring.toml"), folder.path().join("survey.svg"));
+    let simulated = ["survey", "--simulate", "scenes/alcove.toml", "--physics", "default", "--out", log];
+    let found = json(&[&simulated[..], &["--json"]].concat());
+    let of = |name: &str| found["truth"][name].as_u64().unwrap();
+    assert_eq!(found["physics"], "default");
+    assert!(of("loud_pairs_found") * 10 >= of("loud_pairs") * 6 && of("loud_pairs") > 40, "{}", found["truth"]);
+    assert_eq!((of("pairs_wrong"), of("paths_wrong")), (0, 0), "{}", found["truth"]);
+    // The log alone says the same.
+    let read = json(&["survey", log, "--json"]);
+    assert_eq!((&read["paths"], &read["conflicts"]), (&found["paths"], &found["conflicts"]));
+    let (ring, picture) = (ring.to_str().unwrap(), picture.to_str().unwrap());
+    let outcome = eeruf(&["survey", log, "--ring", ring, "--svg", picture, "--until-us", "8000"]);
+    assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
+    assert!(outcome.out.contains("pairs hear each other within 8.0 ms"), "{}", outcome.out);
+    let design = eeruf(&["design", ring, "--budget", "20000", "--json"]);
+    assert_eq!((design.code, design.err.as_str()), (Some(0), ""), "{}", std::fs::read_to_string(ring).unwrap());
+    assert!(std::fs::read_to_string(picture).unwrap().contains("hears the others first"));
+}
+
+#[test]
+fn diagnose_says_the_same_of_a_log_in_mcap_and_in_csv() {
+    let (folder, csv) = Scratch::new("log.csv", "");
+    let mcap = folder.path().join("log.mcap");
+    for log in [&csv, &mcap] {
+        let log = log.to_str().unwrap();
+        let study = ["study", "scenes/alcove.toml", "--method", "eeruf_hopping", "--periods", "300", "--log", log];
+        assert_eq!(eeruf(&study).code, Some(0));
+    }
+    let found = |log: &std::path::Path| json(&["diagnose", log.to_str().unwrap(), "--json"]);
+    assert_eq!(found(&csv), found(&mcap));
+}
+
+#[test]
+fn experiments_write_their_first_alcove_and_course_as_mcap() {
+    let (folder, _) = Scratch::new("unused", "");
+    for (name, arguments, most) in [
+        ("one.mcap", &["experiment", "set-one", "--first", "7", "--method", "eeruf"][..], 8_000),
+        ("two.mcap", &["experiment", "set-two", "--first", "7", "--method", "eeruf"], 6_000),
+    ] {
+        let file = folder.path().join(name);
+        let path = file.to_str().unwrap();
+        let outcome = eeruf(&[arguments, &["--mcap", path, "--physics", "plain"]].concat());
+        assert_eq!((outcome.code, outcome.out.as_str(), outcome.err.as_str()), (Some(0), "", ""));
+        let mut readings = 0;
+        let report = read_log(&file, &Options::default(), |sensors, reading| {
+            readings += u32::from(!sensors[reading.sensor].topic.ends_with("/accepted"));
+        });
+        assert_eq!(report.unwrap().damage, []);
+        assert!((1_000..=most).contains(&readings), "{name}: {readings}");
+        let diagnosed = json(&["diagnose", path, "--json"]);
+        assert!(diagnosed["firings"].as_u64().is_none_or(|firings| firings == u64::from(readings)), "{name}");
+    }
+    let without = eeruf(&["experiment", "set-two", "--mcap", "x.mcap", "--seeds", "1"]);
+    assert_eq!((without.code, without.err.contains("--mcap needs one --method")), (Some(2), true), "{}", without.err);
+}
+
+#[test]
+fn the_data_set_is_the_same_bit_for_bit_and_knows_whose_sound_each_reading_is() {
+    let (folder, _) = Scratch::new("unused", "");
+    let out = folder.path().join("data");
+    let small = ["--alcoves", "1", "--courses", "1", "--periods", "40", "--physics", "default"];
+    let outcome = eeruf(&[&["dataset", out.to_str().unwrap()], &small[..]].concat());
+    assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
+    let mut files = vec![];
+    for kind in ["alcoves", "courses"] {
+        for entry in std::fs::read_dir(out.join(kind).join("60000")).unwrap() {
+            files.push(entry.unwrap().path());
+        }
+    }
+    files.sort();
+    assert_eq!(files.len(), 4 + 7);
+    // FNV-1a, 64 bits.
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    for file in &files {
+        let text = std::fs::read(file).unwrap();
+        text.iter().for_each(|&byte| hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    }
+    assert_eq!(format!("{hash:016x}"), "ebd6820a3990964e");
+    let readings = std::fs::read_to_string(out.join("alcoves/60000/conventional.csv")).unwrap();
+    let fooled = readings.lines().filter(|line| line.contains(",crosstalk,")).count();
+    assert!(fooled > 20 && readings.lines().count() == 2 + 8 * 40, "{fooled} of {}", readings.lines().count());
+}
+
+#[test]
+fn a_log_without_instants_is_put_onto_its_schedule_and_refused_if_lags_moved() {
+    let (folder, log) = Scratch::new("log.csv", "");
+    let path = log.to_str().unwrap();
+    let study = ["study", "scenes/alcove-hc-sr04.toml", "--method", "eeruf", "--physics", "plain", "--periods", "400"];
+    assert_eq!(eeruf(&[&study[..], &["--log", path]].concat()).code, Some(0));
+    // The first eight sensors of Table I-d, by which that ring fires.
+    let fired_by = {
+        let file = folder.path().join("schedule.toml");
+        let waits = [18_000, 12_000, 6_000, 0, 20_000, 14_000, 8_000, 2_000];
+        let lags = "[0, 25_000, 50_000, 75_000, 0, 25_000, 50_000, 75_000]";
+        let text = format!(
+            "period_us = 100_000\nt_lag_us = {lags}\nt_wait_a_us = {:?}\nt_wait_b_us = {waits:?}\n",
+            [24_000; 8]
+        );
+        std::fs::write(&file, text).unwrap();
+        file
+    };
+    let text = std::fs::read_to_string(&log).unwrap();
+    // Without the second column, and after its middle with readings that stand elsewhere.
+    let without = |jump: bool| -> String {
+        let mut out = String::new();
+        for line in text.lines() {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if cells.len() > 4 {
+                let late = cells[2].parse::<u32>().is_ok_and(|period| period >= 200);
+                if let (true, true, Ok(echo)) = (jump, late, cells[4].parse::<u32>()) {
+                    cells[4] = (echo + 700).to_string();
+                }
+                cells.remove(1);
+            }
+            out += &(cells.join(",") + "\n");
+        }
+        out
+    };
+    std::fs::write(&log, without(false)).unwrap();
+    let alone = eeruf(&["diagnose", path]);
+    assert_eq!(alone.code, Some(2));
+    assert!(alone.err.contains("no instants of firing; expected a column `fired_us`, or --schedule"), "{}", alone.err);
+    let fired_by = fired_by.to_str().unwrap();
+    let found = json(&["diagnose", path, "--schedule", fired_by, "--json"]);
+    // Two phases do not say more.
+    let alignment = &found["alignment"];
+    assert_eq!((alignment["rotation"].as_u64(), alignment["sure"].as_f64()), (Some(0), Some(0.5)), "{alignment}");
+    assert!(alignment["accidents"].as_f64().unwrap() > 0.01 && found["timing"].is_null(), "{alignment}");
+    let outcome = eeruf(&["diagnose", path, "--schedule", fired_by]);
+    assert!(outcome.out.contains("the readings do not say whether it is the ring's"), "{}", outcome.out);
+    std::fs::write(&log, without(true)).unwrap();
+    let moved = eeruf(&["diagnose", path, "--schedule", fired_by]);
+    assert!(moved.code == Some(2) && moved.err.contains("jump at once"), "{}{}", moved.out, moved.err);
+}

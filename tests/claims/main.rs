@@ -3,16 +3,12 @@
 mod common;
 
 mod certificates;
-mod conditions;
-mod crosstalk;
 mod documents;
 mod emitted;
 mod experiments;
 mod hopping;
-mod immediate_refiring;
 mod inputs;
 mod logs;
 mod program;
-mod ring;
 mod scene;
 mod study;

@@ -19,7 +19,7 @@ import pytest
 
 matplotlib.use("Agg")
 ROOT = Path(__file__).parents[2]
-MODULES = [eeruf, eeruf.experiments, eeruf.plot, eeruf.sim, eeruf.tables]
+MODULES = [eeruf, eeruf.experiments, eeruf.logs, eeruf.plot, eeruf.sim, eeruf.tables]
 
 
 def names(module: ModuleType) -> Iterator[tuple[str, Any]]:

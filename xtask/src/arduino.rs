@@ -2,6 +2,7 @@
 //! and run on a simulated Uno among simulated HC-SR04 modules.
 
 mod build;
+mod survey;
 mod tables;
 mod world;
 
@@ -105,5 +106,10 @@ fn examples(library: &Path, short: bool) -> Result<(), Trouble> {
         heard.is_plausible(example)?;
         println!("| {} | {} | {} | {} |", example.name, sketch.flash, sketch.ram, heard.row());
     }
+    let sketch = build::sketch(library, &core, "Survey")?;
+    if short {
+        return Ok(());
+    }
+    println!("| Survey | {} | {} | {} |", sketch.flash, sketch.ram, survey::run(&world, &sketch.elf)?);
     Ok(())
 }

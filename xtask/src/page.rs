@@ -30,6 +30,8 @@ const FEATURES: [&str; 6] = [
     "--enable-reference-types",
     "--enable-multivalue",
 ];
+/// What npm last installed for the tests.
+const INSTALLED: &str = "node_modules/.installed.json";
 /// The module that differs between the folder and the one file, and what stands for it there.
 const PLATFORM: [&str; 2] = ["platform.js", "platform-single.js"];
 
@@ -69,8 +71,12 @@ fn build() -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Makes the engine smaller where `wasm-opt` is installed.
+/// Makes the engine smaller where `wasm-opt` is installed, if it was built anew.
 fn shrink(from: &Path, to: &Path) -> Result<(), Trouble> {
+    let changed = |path: &Path| path.metadata().and_then(|about| about.modified()).ok();
+    if changed(to).is_some_and(|to| changed(from).is_some_and(|from| from < to)) {
+        return Ok(());
+    }
     if output(Command::new("wasm-opt").arg("--version")).is_some() {
         return run(Command::new("wasm-opt").arg("-O3").args(FEATURES).arg(from).arg("-o").arg(to));
     }
@@ -149,7 +155,13 @@ fn test(long: bool) -> Result<(), Trouble> {
     if output(Command::new(npm).arg("--version")).is_none() {
         return Err(Trouble::Skipped("no npm; try: apt install npm".to_owned()));
     }
-    run(Command::new(npm).current_dir(tests).args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]))?;
+    // A copy of the lock file says what is installed.
+    let read = |name: &str| fs::read_to_string(tests.join(name)).ok();
+    let lock = read("package-lock.json");
+    if lock.is_none() || read(INSTALLED) != lock {
+        run(Command::new(npm).current_dir(tests).args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]))?;
+        write(&tests.join(INSTALLED).display().to_string(), &lock.unwrap_or_default())?;
+    }
     run(Command::new(npm).current_dir(tests).args(["run", "--silent", "types"]))?;
     // What the page is held against.
     crate::program::program()?;

@@ -122,6 +122,7 @@ mod tests {
                 queue.push(edge(100 * round + n));
             }
             for n in 0..100 {
+                assert!(!queue.is_empty(), "an edge waits");
                 assert_eq!(queue.pop(), Some(edge(100 * round + n)));
             }
             assert!(queue.is_empty());

@@ -14,6 +14,7 @@
 //! - [`EdgeQueue`]: from the interrupt of an echo line to the main loop.
 //! - [`SensorWatch`]: what was last accepted of each sensor, how old it is, and which sensors are blind.
 //! - [`Adaptation`]: moves along a ladder of schedules as the rejection rate asks for.
+//! - [`Survey`]: a measuring run, after which it is known which sensors hear each other.
 //! - [`SpeedOfSound`]: distances from echo times.
 //!
 //! The crate is `no_std` and uses no allocator, no floats and no clock: the caller passes `now` in and sleeps until the
@@ -46,6 +47,7 @@ pub mod search;
 mod sensor_error;
 mod sensor_set;
 mod sound;
+mod survey;
 pub mod tables;
 mod time;
 mod tracker;
@@ -79,6 +81,7 @@ pub use scheduler::{
 };
 pub use sensor_error::SensorError;
 pub use sound::SpeedOfSound;
+pub use survey::{Survey, SurveyEvent, SurveyPlan, SurveyRow, SurveySlot};
 pub use time::{Instant, Micros};
 pub use tracker::{EchoTracker, Firing, TrackerError, TrackerSettings};
 pub use uneven::{Uneven, UnevenError};

@@ -116,10 +116,13 @@ impl RingSpec {
     ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
         let mut memory = vec![0; design::memory_words(self.sensors)];
         let mut t_delta = self.t_delta;
+        // The bound and the reason of the first step without a proof. From there on t_delta is that of a schedule that
+        // may be longer than necessary, so what is proven with it is not proven of the ring.
+        let mut unproven: Option<(Option<Micros>, String)> = None;
         loop {
             let spec = self.covering(t_delta);
             let problem = spec.problem();
-            let (found, reason, preferred) = if self.uneven.is_some() {
+            let (mut found, mut reason, mut preferred) = if self.uneven.is_some() {
                 let (found, reason) = shortest_uneven(&problem, search.budget, control)?;
                 (found, reason, None)
             } else {
@@ -131,8 +134,14 @@ impl RingSpec {
                 };
                 (designed.found, designed.explanation().to_string(), preferred)
             };
+            let chosen = preferred.map_or(found.schedule, |preferred| Some(preferred.schedule));
+            if !found.proven && unproven.is_none() {
+                unproven = Some((found.bound, reason.clone()));
+            } else if let Some((bound, why)) = &unproven {
+                (found.proven, found.bound, reason, preferred) = (false, *bound, why.clone(), None);
+            }
             let none = if found.proven { NoSchedule::TooFast } else { NoSchedule::EndedEarly };
-            let Some(schedule) = preferred.map_or(found.schedule, |preferred| Some(preferred.schedule)) else {
+            let Some(schedule) = chosen else {
                 return Ok(Err(none));
             };
             let needed = self.t_delta_needed(&schedule);

@@ -1,5 +1,5 @@
 //! How well `diagnose` names the senders of rejected readings, in alcoves of Set I, where the simulator knows them:
-//! `cargo run --release -p eeruf-logs --example diagnose_alcoves -- [FIRST [ALCOVES [METHOD [PERIODS]]]]`.
+//! `cargo run --release -p eeruf-logs --example diagnose_alcoves -- [FIRST [ALCOVES [METHOD [PERIODS [PHYSICS]]]]]`.
 
 use std::error::Error;
 
@@ -35,13 +35,13 @@ fn log_of(readings: &Readings) -> FiringLog {
         t_echo_us: (!readings.earliest_us[k].is_nan()).then(|| readings.earliest_us[k] as u32),
         rejected: Some(readings.kind[k] == ReadingKind::Rejected),
     };
-    FiringLog { clock: "simulation".to_owned(), firings: (0..readings.len()).map(firing).collect() }
+    FiringLog { firings: (0..readings.len()).map(firing).collect(), ..FiringLog::default() }
 }
 
-fn count(number: u64, method: Method, periods: u32) -> Result<Counts, String> {
+fn count(number: u64, method: Method, periods: u32, physics: Physics) -> Result<Counts, String> {
     let failed = |error: &dyn Error| format!("alcove {number}: {error}");
-    let world = Alcove::random(number).world().and_then(|world| world.with_physics(Physics::PLAIN));
-    let world = world.map_err(|error| failed(&error))?;
+    let world = Alcove::random(number).world().map_err(|error| failed(&error))?;
+    let world = world.with_physics(physics).map_err(|error| failed(&error))?;
     let readings = simulate(&world, method, &Options::periods(periods)).map_err(|error| failed(&error))?;
     // Readings come in the order in which windows end; a log is in the order of firings.
     let mut order: Vec<_> = (0..readings.len()).collect();
@@ -81,12 +81,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut next = |default: &str| arguments.next().unwrap_or_else(|| default.to_owned());
     let (first, alcoves): (u64, u64) = (next("20000").parse()?, next("200").parse()?);
     let (method, periods): (Method, u32) = (next("eeruf_hopping").parse()?, next("1000").parse()?);
+    let physics = next("plain");
+    let effects: Physics = physics.parse()?;
     let numbers: Vec<_> = (first..first + alcoves).collect();
-    let all = sweep(&numbers, |&number| count(number, method, periods)).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let all = sweep(&numbers, |&number| count(number, method, periods, effects))
+        .into_iter()
+        .collect::<Result<Vec<_>, _>>()?;
     let sum = |of: fn(&Counts) -> usize| all.iter().map(of).sum::<usize>();
     let (foreign, right, named) = (sum(|c| c.foreign), sum(|c| c.right), sum(|c| c.named));
     let percent = |part: usize, of: usize| 100.0 * part as f64 / of.max(1) as f64;
-    println!("{alcoves} alcoves from {first} on, {method}, {periods} periods each");
+    println!("{alcoves} alcoves from {first} on, {method}, {periods} periods each, physics {physics}");
     println!("rejected readings: {}, of which foreign sound caused {foreign}", sum(|c| c.rejected));
     println!("named rightly: {right}, {:.1} % of those", percent(right, foreign));
     println!("named: {named}, of which rightly {:.2} %", percent(right, named));

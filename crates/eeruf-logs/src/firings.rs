@@ -1,5 +1,5 @@
 //! Logs of firings: for each, who fired when, and what was heard. `study --log` writes them, firmware can, and
-//! [`diagnose`](crate::diagnose()) reads them.
+//! [`diagnose`](crate::diagnose()) reads them; so do surveys.
 //!
 //! ```text
 //! # clock: simulation
@@ -11,7 +11,12 @@
 //! CSV with these columns in any order; others are ignored. Times are in microseconds of one clock, which the first
 //! line may name; one of 32 bits may wrap. `t_echo_us` is the raw echo time, from firing to the first edge, empty
 //! without echo. `reading` is what the ring made of it (`rejected`, `accepted`, ..) and may be missing. Sensors,
-//! periods and phases count from 0. Rows may come in any order that is at most 2^31 us out.
+//! periods and phases count from 0. A log without `fired_us` can be put onto a fixed schedule
+//! ([`align`](crate::align())). Rows may come in any order that is at most 2^31 us out. Where a column `sends` is 0
+//! the sensor only listened from then on, as some can.
+//!
+//! The same in MCAP is a JSON message `eeruf.Firing` for each row, with the columns as its fields and the clock's name
+//! as a field `clock`; see [`McapWriter::firing`](crate::McapWriter::firing).
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -43,24 +48,36 @@ pub struct FiringLog {
     pub clock: String,
     /// The firings, in order of time.
     pub firings: Vec<Firing>,
+    /// What sensors heard that listened without firing: `fired_us` is when they began to.
+    pub listened: Vec<Firing>,
+    /// Whether the log does not say when sensors fired: `fired_us` is 0 then, see [`align`](crate::align()).
+    pub lacks_instants: bool,
+    /// What of the file could not be read, if that is so.
+    pub damage: Option<String>,
 }
 
 /// The most sensors of a ring.
-const MAX_SENSORS: u8 = 64;
+pub(crate) const MAX_SENSORS: u8 = 64;
 
 impl FiringLog {
     /// Puts firings in order of time.
     pub fn new(clock: &str, mut firings: Vec<Firing>) -> Self {
         firings.sort_by_key(|firing| firing.fired_us);
-        Self { clock: clock.to_owned(), firings }
+        Self { clock: clock.to_owned(), firings, ..Self::default() }
     }
 
-    /// Reads a log.
+    /// Reads a log, CSV or MCAP, as its first bytes say.
     ///
     /// # Errors
-    /// A file that cannot be read, columns that are missing, or a value that is none, with its line.
+    /// A file that cannot be read, columns that are missing, or a value that is none, with its line; MCAP in which
+    /// there is no firing, or there are those of several rings.
     pub fn read(file: &Path) -> Result<Self, LogError> {
-        let opened = File::open(file).map_err(|error| LogError::new(file, error))?;
+        let mut opened = BufReader::new(File::open(file).map_err(|error| LogError::new(file, error))?);
+        let first = opened.fill_buf().map_err(|error| LogError::new(file, error))?;
+        if first.starts_with(&crate::mcap::MAGIC) {
+            drop(opened);
+            return crate::firing_messages::read(file);
+        }
         Self::read_from(opened, file)
     }
 
@@ -85,12 +102,13 @@ impl FiringLog {
                 LogError::new(file, format!("no column `{name}`; expected sensor, fired_us, period, phase, t_echo_us"))
             })
         };
-        let [sensor, fired, period] = [needed("sensor")?, needed("fired_us")?, needed("period")?];
+        let [sensor, period] = [needed("sensor")?, needed("period")?];
         let [phase, echo] = [needed("phase")?, needed("t_echo_us")?];
-        let reading = column("reading");
+        let (fired, reading, sends) = (column("fired_us"), column("reading"), column("sends"));
+        let mut lacks_instants = fired.is_none();
         // The line that the first remark took.
         let before = u64::from(starts_with_remark);
-        let (mut firings, mut wraps, mut last) = (Vec::new(), 0_i64, i64::MIN);
+        let (mut firings, mut listened, mut wraps, mut last) = (Vec::new(), Vec::new(), 0_i64, i64::MIN);
         for row in reader.records() {
             let row = row
                 .map_err(|error| LogError::at_line(file, error.position().map(|place| place.line() + before), error))?;
@@ -100,10 +118,16 @@ impl FiringLog {
                 LogError::at_line(file, line, format!("column {name}: `{text}`; expected {expected}"))
             };
             let text = |column: usize| row.get(column).unwrap_or_default();
-            let fired_us: f64 = text(fired).parse().unwrap_or(f64::NAN);
-            if !(0.0..9e15).contains(&fired_us) {
-                return Err(bad(fired, "microseconds, 0 to 9e15"));
-            }
+            let fired_us: f64 = match fired.map(|fired| (fired, text(fired))) {
+                None | Some((_, "")) => {
+                    lacks_instants = true;
+                    0.0
+                }
+                Some((fired, text)) => {
+                    let us = text.parse().ok().filter(|us| (0.0..9e15).contains(us));
+                    us.ok_or_else(|| bad(fired, "microseconds, 0 to 9e15"))?
+                }
+            };
             let mut fired_us = fired_us.round() as i64 + wraps;
             if last != i64::MIN && last - fired_us > 1 << 31 {
                 wraps += 1 << 32;
@@ -119,7 +143,12 @@ impl FiringLog {
                 },
             };
             let known_sensor = text(sensor).parse().ok().filter(|&sensor| sensor < MAX_SENSORS);
-            firings.push(Firing {
+            let rows = match sends.map(text) {
+                Some("0") => &mut listened,
+                None | Some("" | "1") => &mut firings,
+                Some(_) => return Err(bad(sends.unwrap_or_default(), "0 or 1")),
+            };
+            rows.push(Firing {
                 sensor: known_sensor.ok_or_else(|| bad(sensor, "0 to 63"))?,
                 fired_us,
                 period: text(period).parse().map_err(|_| bad(period, "a number from 0"))?,
@@ -131,7 +160,11 @@ impl FiringLog {
         if firings.is_empty() {
             return Err(LogError::new(file, "no firings"));
         }
-        Ok(Self::new(clock, firings))
+        if lacks_instants {
+            firings.iter_mut().chain(&mut listened).for_each(|firing| firing.fired_us = 0);
+            firings.sort_by_key(|firing| firing.period);
+        }
+        Ok(Self { listened, lacks_instants, ..Self::new(clock, firings) })
     }
 
     /// Writes the log as it is read. What the ring made of a reading is written as `rejected` or `other`.
@@ -139,22 +172,27 @@ impl FiringLog {
     /// # Errors
     /// If it cannot be written.
     pub fn write(&self, mut output: impl Write) -> std::io::Result<()> {
+        let sends = if self.listened.is_empty() { "" } else { ",sends" };
         writeln!(output, "# clock: {}", self.clock)?;
-        writeln!(output, "sensor,fired_us,period,phase,t_echo_us,reading")?;
-        for Firing { sensor, fired_us, period, phase, t_echo_us, rejected } in &self.firings {
-            let echo = t_echo_us.map(|us| us.to_string()).unwrap_or_default();
-            let reading = match rejected {
-                Some(true) => "rejected",
-                Some(false) => "other",
-                None => "",
-            };
-            writeln!(output, "{sensor},{fired_us},{period},{phase},{echo},{reading}")?;
+        writeln!(output, "sensor,fired_us,period,phase,t_echo_us,reading{sends}")?;
+        for (rows, sends) in [(&self.firings, ",1"), (&self.listened, ",0")] {
+            let sends = if self.listened.is_empty() { "" } else { sends };
+            for Firing { sensor, fired_us, period, phase, t_echo_us, rejected } in rows {
+                let echo = t_echo_us.map(|us| us.to_string()).unwrap_or_default();
+                let reading = match rejected {
+                    Some(true) => "rejected",
+                    Some(false) => "other",
+                    None => "",
+                };
+                writeln!(output, "{sensor},{fired_us},{period},{phase},{echo},{reading}{sends}")?;
+            }
         }
         Ok(())
     }
 
     /// How many sensors the ring has, as far as the log shows: one more than the highest number.
     pub fn sensors(&self) -> usize {
-        self.firings.iter().map(|firing| usize::from(firing.sensor) + 1).max().unwrap_or(0)
+        let rows = self.firings.iter().chain(&self.listened);
+        rows.map(|firing| usize::from(firing.sensor) + 1).max().unwrap_or(0)
     }
 }

@@ -31,6 +31,7 @@
 mod bytes;
 mod diagnose;
 mod error;
+mod firing_messages;
 mod firings;
 mod mcap;
 mod message;
@@ -39,6 +40,7 @@ mod reading;
 mod ros1;
 mod rosbag2;
 mod sink;
+mod survey;
 mod table;
 mod write;
 
@@ -47,13 +49,15 @@ use std::io::Read;
 use std::path::Path;
 
 pub use diagnose::{
-    Diagnosis, Fault, FoundPath, Hearing, Named, Settings, Share, Timing, TimingError, diagnose, timing,
+    AlignError, Alignment, Diagnosis, Fault, FoundPath, Hearing, Named, Settings, Share, Timing, TimingError, align,
+    diagnose, timing,
 };
 pub use error::{Damage, LogError};
 pub use firings::{Firing, FiringLog};
 pub use options::{Options, RangeUnit, Table, TimeUnit};
 pub use reading::{Echo, Reading, Sensor};
 pub use sink::{Report, Skipped};
+pub use survey::{PathSettings, Surveyed, survey};
 pub use write::McapWriter;
 
 /// Reads a log from beginning to end, and calls `each` with the sensors so far and each reading, in the order in which

@@ -10,6 +10,8 @@ use ::mcap::records::MessageHeader;
 use ::mcap::{WriteOptions, Writer};
 
 use crate::error::LogError;
+use crate::firing_messages::{FIRING, message};
+use crate::firings::Firing;
 use crate::reading::Reading;
 
 /// The fields of `sensor_msgs/msg/Range` and of what is in it.
@@ -83,6 +85,15 @@ impl McapWriter {
     pub fn json(&mut self, topic: &str, type_name: &str, at_ns: u64, object: &str) -> Result<(), LogError> {
         let schema = (type_name, "jsonschema", r#"{"type":"object"}"#);
         self.write(topic, schema, "json", at_ns, object.as_bytes())
+    }
+
+    /// Writes one firing of a ring onto a topic, for [`FiringLog::read`](crate::FiringLog::read); the clock of its
+    /// times is named, and the message's own time is in nanoseconds.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn firing(&mut self, topic: &str, clock: &str, at_ns: u64, firing: &Firing) -> Result<(), LogError> {
+        self.json(topic, FIRING, at_ns, &message(clock, firing).to_string())
     }
 
     fn write(

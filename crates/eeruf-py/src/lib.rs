@@ -22,6 +22,7 @@ mod found;
 mod hopping_ring;
 mod hopping_schedule;
 mod hopping_settings;
+mod logs;
 mod maps;
 mod memory;
 mod methods;
@@ -62,6 +63,7 @@ mod _eeruf {
         hopping_ring::HoppingRing,
         hopping_schedule::HoppingSchedule,
         hopping_settings::HoppingSettings,
+        logs::{LogError, diagnose, read_firings, read_log, survey},
         maps::read_map,
         paths::Paths,
         program::{example, run_program},

@@ -37,8 +37,8 @@ pub(super) struct Sensor {
     pub(super) had_late: bool,
     pub(super) last_fired: Option<Last>,
     /// The echoes of the firings before, newest last, as far as they count; `Some(None)` stands for silence, `None` for
-    /// nothing known.
-    pub(super) heard: Vec<Option<Option<u32>>>,
+    /// nothing known. Each with the `t_delta` it was compared with.
+    pub(super) heard: Vec<(Option<Option<u32>>, u32)>,
     /// Readings since the comparison was last disturbed.
     pub(super) undisturbed: u32,
     pub(super) age: Option<u16>,
@@ -65,6 +65,8 @@ pub(super) struct Model<'s> {
     pub(super) since: u64,
     pub(super) phase: u8,
     pub(super) last: Option<Last>,
+    pub(super) last_sensor: Option<usize>,
+    pub(super) paused: bool,
     pub(super) epoch: u32,
     /// The schedule of the epoch before.
     pub(super) before: Option<&'s Schedule<SENSORS>>,
@@ -97,6 +99,13 @@ pub(super) fn always_kept(schedule: &Schedule<SENSORS>, x: usize, y: usize) -> u
     least
 }
 
+impl Sensor {
+    /// It has fired, and nothing was heard or said since.
+    pub(super) fn is_silent(&self) -> bool {
+        self.open.is_some_and(|open| open.echo.is_none() && open.early.is_none())
+    }
+}
+
 impl<'s> Model<'s> {
     pub(super) fn invalidate(&mut self) {
         self.quiet_periods = 0;
@@ -107,7 +116,7 @@ impl<'s> Model<'s> {
 
     pub(super) fn fired(&mut self, sensor: u8, deadline: u64) {
         let x = usize::from(sensor);
-        assert!(x < SENSORS && self.enabled[x], "sensor {sensor} is not to fire");
+        assert!(x < SENSORS && self.enabled[x] && !self.paused, "sensor {sensor} is not to fire");
         assert!(self.now >= deadline, "fired before the deadline");
         let at = planned(self.schedule, self.since, self.phase, x);
         match self.last {
@@ -139,7 +148,7 @@ impl<'s> Model<'s> {
             }
         }
         let fired = Last { at: self.now, planned: at, epoch: self.epoch };
-        self.last = Some(fired);
+        (self.last, self.last_sensor) = (Some(fired), Some(x));
         self.on_time = true;
         let sensor = &mut self.sensors[x];
         assert!(sensor.open.is_none() && sensor.late.is_none(), "fired before its reading was out");
@@ -180,17 +189,16 @@ impl<'s> Model<'s> {
                 (Some(echo), None)
             }
         };
-        sensor.heard.push(heard);
+        sensor.heard.push((heard, listening.t_delta.as_micros()));
         sensor.undisturbed += 1;
-        let t_delta = listening.t_delta.as_micros();
-        let agree = |pair: &[Option<Option<u32>>]| match pair {
-            [Some(Some(s)), Some(Some(t))] => s.abs_diff(*t) <= t_delta,
-            [Some(None), Some(None)] => true,
+        let agree = |pair: &[(Option<Option<u32>>, u32)]| match pair {
+            [(Some(Some(s)), _), (Some(Some(t)), t_delta)] => s.abs_diff(*t) <= *t_delta,
+            [(Some(None), _), (Some(None), _)] => true,
             _ => false,
         };
         let running = 1 + sensor.heard.windows(2).rev().take_while(|pair| agree(pair)).count();
         let enough = running >= listening.consecutive;
-        let before = sensor.heard.len().checked_sub(2).and_then(|place| sensor.heard[place]).flatten();
+        let before = sensor.heard.len().checked_sub(2).and_then(|place| sensor.heard[place].0).flatten();
         let possible: &[ReadingKind] = match (kind, heard.flatten()) {
             (Some(ReadingKind::Stuck), _) => &[ReadingKind::Stuck],
             (Some(_), _) => &[ReadingKind::TooEarly],
@@ -253,6 +261,43 @@ impl<'s> Model<'s> {
             self.new_epoch(next);
             // It begins with the phase that would have come.
             self.since = u64::from(self.phase);
+        }
+    }
+
+    /// The last firing, of sensor `x`, came at this time, later than its poll or not.
+    pub(super) fn fired_at(&mut self, x: usize, at: u64) {
+        let (Some(open), Some(last)) = (&mut self.sensors[x].open, &mut self.last) else { return };
+        let later = at > last.at;
+        (open.at, last.at) = (at, at);
+        self.sensors[x].last_fired = self.last;
+        if later {
+            // As where a firing is polled late: by how much is for the ring to judge.
+            self.invalidate();
+        }
+    }
+
+    pub(super) fn pause(&mut self, pauses: bool) {
+        self.paused = pauses;
+        self.on_time = false;
+        if !pauses {
+            for sensor in &mut self.sensors {
+                sensor.heard.clear();
+                sensor.undisturbed = 0;
+            }
+        }
+    }
+
+    /// Whether the ring listens otherwise from now on: exactly where it can.
+    pub(super) fn listen(&mut self, done: bool, changed: Listening) {
+        let Listening { t_delta, window, blanking, .. } = changed;
+        let longest =
+            self.next_schedule.map_or(self.schedule, |next| next).min_refire().min(self.schedule.min_refire());
+        assert_eq!(done, window <= longest && t_delta < window && blanking < window, "{changed:?}, at most {longest}");
+        if done {
+            if t_delta > self.listening.t_delta {
+                self.invalidate();
+            }
+            self.listening = changed;
         }
     }
 

@@ -1,13 +1,16 @@
 //! `eeruf experiment set-one`: eight sensors before three walls at right angles, over many alcoves.
 
+use std::path::{Path, PathBuf};
+
 use eeruf_core::{HoppingSettings, Micros};
 use eeruf_sim::best_schedule_for;
-use eeruf_sim::experiments::set_one::{Alcove, SENSORS, SetOneOptions, set_one};
-use eeruf_sim::{GainProfile, Method, Robot};
+use eeruf_sim::experiments::set_one::{Alcove, SENSORS, SetOneOptions, set_one, world_of};
+use eeruf_sim::{GainProfile, Method, Options, Robot, simulate};
 
 use super::common::{BUDGET, Common, bad, designing, watched};
 use crate::commands::methods::chosen;
 use crate::files::error::InputError;
+use crate::files::mcap::{Stage, write_mcap};
 use crate::report::draw;
 use crate::report::experiment::set_one::{describe, describe_variations};
 use crate::report::json::to_json;
@@ -39,6 +42,9 @@ pub(crate) struct Args {
     /// sequential, conventional, comparison, eeruf, eeruf_hopping and multi_echo
     #[arg(long, conflicts_with_all = ["svg", "png"])]
     vary: bool,
+    /// Write the readings of the first alcove by all methods as MCAP, for Foxglove and Rerun, instead
+    #[arg(long, value_name = "FILE.mcap", conflicts_with_all = ["vary", "svg", "png", "json"])]
+    mcap: Option<PathBuf>,
 }
 
 /// The named settings of time hopping.
@@ -83,6 +89,9 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     if args.vary {
         return vary(args, &options);
     }
+    if let Some(file) = &args.mcap {
+        return first_alcove(file, &options);
+    }
     let watched = watched(format!("{} alcoves by {} methods", options.seeds, options.methods.len()));
     let found = set_one(&options, &watched).map_err(|error| bad(&error))?;
     drop(watched);
@@ -93,6 +102,25 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         print!("{}", describe(&found, &best));
     }
     Ok(())
+}
+
+/// The first alcove by each method: its readings, with the scene.
+fn first_alcove(file: &Path, options: &SetOneOptions) -> Result<(), InputError> {
+    let bad = bad("set-one");
+    let alcove = Alcove::random(options.first);
+    let mut runs = Vec::new();
+    for &method in &options.methods {
+        let world = world_of(options, &alcove, method).map_err(|error| bad(&error))?;
+        let best = options.best.as_ref().map(|best| best.schedule);
+        let periods = options.readings.div_ceil(options.sensors as u32);
+        let simulation =
+            Options { best, hopping: options.hopping, seed: Some(options.first), ..Options::periods(periods) };
+        runs.push(simulate(&world, method, &simulation).map_err(|error| bad(&error))?);
+    }
+    let Some(&method) = options.methods.first() else { return Ok(()) };
+    // Where walls and robot stand does not depend on the method.
+    let world = world_of(options, &alcove, method).map_err(|error| bad(&error))?;
+    write_mcap(file, &Stage::of(&world), &runs)
 }
 
 /// What is varied, one at a time: a name, and the options with it.

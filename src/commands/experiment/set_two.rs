@@ -1,16 +1,19 @@
 //! `eeruf experiment set-two`: a LabMate drives through a course of thin poles, over many courses.
 
+use std::path::PathBuf;
+
 use eeruf_core::Micros;
 use eeruf_sim::LabMate;
 use eeruf_sim::best_schedule_for;
 use eeruf_sim::experiments::set_two::{
-    Course, OdometryNoise, Pilots, SECOND_AHEAD, SECOND_BEHIND, SetTwoOptions, set_two, speed_sweep,
+    Course, OdometryNoise, Pilots, SECOND_AHEAD, SECOND_BEHIND, SetTwoOptions, drive, set_two, speed_sweep,
 };
 use eeruf_sim::{Method, Point, Robot};
 
 use super::common::{BUDGET, Common, bad, designing, watched};
 use crate::commands::methods::chosen;
 use crate::files::error::InputError;
+use crate::files::mcap::{Stage, write_mcap};
 use crate::report::draw;
 use crate::report::experiment::set_two::{SideBySide, Sweep, describe};
 use crate::report::json::to_json;
@@ -55,6 +58,9 @@ pub(crate) struct Args {
     /// Drive all courses at several top speeds instead, and give the highest that each method sustains
     #[arg(long, conflicts_with = "speed")]
     sweep: bool,
+    /// Drive the first course alone, by one --method, and write its readings as MCAP, for Foxglove and Rerun
+    #[arg(long, value_name = "FILE.mcap", conflicts_with_all = ["sweep", "svg", "png", "json"])]
+    mcap: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -109,6 +115,15 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         options.best = Some(best.map_err(|error| bad(&error))?);
     }
     let pilots = &args.pilots[..];
+    if let Some(file) = &args.mcap {
+        let ([method], [pilots]) = (&options.methods[..], pilots) else {
+            return Err(bad(&"--mcap needs one --method and one --pilot, whose first course is written"));
+        };
+        let options = SetTwoOptions { pilots: *pilots, ..options.clone() };
+        let watched = watched(format!("course {}", options.first));
+        let driven = drive(&options, *method, options.first, &watched).map_err(|error| bad(&error))?;
+        return write_mcap(file, &Stage::driven(&driven.world, &driven.run.track), &[driven.readings]);
+    }
     let watched = watched(format!("{} courses by {} methods", options.seeds, options.methods.len()));
     if args.sweep {
         let &[pilots] = pilots else { return Err(bad(&format!("{} pilots; --sweep takes one", pilots.len()))) };

@@ -51,6 +51,12 @@ pub(crate) fn json(found: &Found<'_>) -> Value {
             _ => Value::Null,
         })
         .collect();
+    let alignment = found.alignment.map(|alignment| {
+        serde_json::json!({
+            "rotation": alignment.rotation, "moves": alignment.moves, "accidents": alignment.accidents,
+            "sure": alignment.sure,
+        })
+    });
     let timing = found.timing.map(|timing| {
         object!({
             "drift_ppm": timing.drift_ppm, "drift_error_ppm": timing.drift_error_ppm,
@@ -62,7 +68,7 @@ pub(crate) fn json(found: &Found<'_>) -> Value {
         "rejected": found.rejected().map(|(rejected, _)| rejected),
         "rejected_foreign": found.rejected().map(|(_, named)| named),
         "most_offsets": diagnosis.most_offsets,
-        "paths": paths, "sensors": hearing, "faults": faults, "timing": timing, "advice": found.advice(),
+        "paths": paths, "sensors": hearing, "faults": faults, "timing": timing, "alignment": alignment, "advice": found.advice(),
     })
 }
 

@@ -6,7 +6,7 @@ mod text;
 
 use std::path::Path;
 
-use eeruf_logs::{Diagnosis, FiringLog, FoundPath, Timing};
+use eeruf_logs::{Alignment, Diagnosis, FiringLog, FoundPath, Timing};
 
 pub(crate) use json::json;
 pub(crate) use picture::who_fools_whom;
@@ -18,6 +18,8 @@ pub(crate) struct Found<'a> {
     pub(crate) log: &'a FiringLog,
     pub(crate) diagnosis: &'a Diagnosis,
     pub(crate) timing: Option<Timing>,
+    /// Of a log without instants, how well it fits the schedule.
+    pub(crate) alignment: Option<Alignment>,
     pub(crate) speed_of_sound: f64,
 }
 

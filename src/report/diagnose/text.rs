@@ -57,6 +57,19 @@ fn head(found: &Found<'_>) -> String {
             diagnosis.paths.len()
         );
     }
+    if let Some(alignment) = found.alignment {
+        let (explained, of) = alignment.moves;
+        let known = if alignment.accidents <= 0.01 { "" } else { ": the readings do not say whether it is the ring's" };
+        _ = writeln!(
+            text,
+            "Instants are the schedule's, its phase {} being the log's phase 0: it explains {explained} of {of} moves of \
+             readings from phase to phase ({:.0e} such schedules expected by accident){known}, and {:.1} % sure is that it is \
+             this phase. Of jitter and drift nothing is known.",
+            alignment.rotation,
+            alignment.accidents,
+            100.0 * alignment.sure,
+        );
+    }
     match found.timing {
         Some(timing) => {
             _ = writeln!(

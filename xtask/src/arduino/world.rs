@@ -11,7 +11,7 @@ use crate::steps::{Trouble, output, run as run_command};
 /// The room of the examples, in which modules hear each other.
 const SCENE: &str = "scenes/alcove-hc-sr04.toml";
 /// Its ways, for those who have no Rust.
-const KEPT: &str = "c/arduino/world/alcove.txt";
+pub(super) const KEPT: &str = "c/arduino/world/alcove.txt";
 /// A reading is wrong if it is off by more: 0.3 ms of echo time.
 const OFF_MM: u32 = 50;
 

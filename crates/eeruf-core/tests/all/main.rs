@@ -1,12 +1,16 @@
-//! The searches against shared tables, slow and obvious judges, and their own limits, in one binary.
+//! What the paper claims, and the searches against shared tables, slow and obvious judges, and their own limits, in one
+//! binary.
 
 mod brute_force;
+mod claims;
 mod common;
 mod conditions_naive;
 mod contract;
+mod edges;
 mod fired;
 mod hopping;
 mod lateness;
+mod listening;
 mod period_corpus;
 mod period_edges;
 mod period_limits;

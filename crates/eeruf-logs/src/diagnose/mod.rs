@@ -14,6 +14,7 @@
 //! log by accident. That takes many phases, or lags that move: with two phases there are two offsets, and no pair can
 //! be named.
 
+mod align;
 mod faults;
 mod naming;
 mod search;
@@ -23,6 +24,7 @@ mod timeline;
 mod timing;
 
 use crate::firings::FiringLog;
+pub use align::{AlignError, Alignment, align};
 pub use faults::Fault;
 use faults::faults;
 pub use naming::Named;
@@ -30,6 +32,7 @@ use naming::name_senders;
 use search::paths_to;
 use sensors::hearing;
 pub use sensors::{Hearing, Share};
+pub(crate) use statistics::{groups, ln_at_least, median};
 use timeline::Timeline;
 pub use timing::{Timing, TimingError, timing};
 

@@ -11,7 +11,7 @@ fn ln_factorial(n: f64) -> f64 {
 }
 
 /// The natural logarithm of the probability that at least `k` of `n` happen, each with the probability `p`.
-pub(super) fn ln_at_least(k: u32, n: u32, p: f64) -> f64 {
+pub(crate) fn ln_at_least(k: u32, n: u32, p: f64) -> f64 {
     if k == 0 || p >= 1.0 {
         return 0.0;
     }
@@ -28,7 +28,7 @@ pub(super) fn ln_at_least(k: u32, n: u32, p: f64) -> f64 {
 }
 
 /// The median; 0 of nothing.
-pub(super) fn median(values: &mut [f64]) -> f64 {
+pub(crate) fn median(values: &mut [f64]) -> f64 {
     if values.is_empty() {
         return 0.0;
     }
@@ -38,7 +38,7 @@ pub(super) fn median(values: &mut [f64]) -> f64 {
 
 /// In how many groups sorted values fall, if each group spans no more than `span` from its first: the groups, as
 /// ranges of places.
-pub(super) fn groups(sorted: &[i64], span: i64) -> Vec<core::ops::Range<usize>> {
+pub(crate) fn groups(sorted: &[i64], span: i64) -> Vec<core::ops::Range<usize>> {
     let mut groups: Vec<core::ops::Range<usize>> = Vec::new();
     for (place, &value) in sorted.iter().enumerate() {
         match groups.last_mut() {

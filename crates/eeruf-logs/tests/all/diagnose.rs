@@ -1,6 +1,6 @@
 //! `diagnose` on a ring whose paths are known: the simplest world there is, in which each pair has two paths.
 
-use eeruf_logs::{Diagnosis, Fault, Firing, FiringLog, Settings, TimingError, diagnose, timing};
+use eeruf_logs::{AlignError, Diagnosis, Fault, Firing, FiringLog, Settings, TimingError, align, diagnose, timing};
 
 const SENSORS: usize = 6;
 const PERIOD: i64 = 60_000;
@@ -91,7 +91,7 @@ impl World {
             });
             truth.push(sender);
         }
-        (FiringLog { clock: "test".to_owned(), firings }, truth)
+        (FiringLog::new("test", firings), truth)
     }
 }
 
@@ -211,6 +211,57 @@ fn timing_finds_drift_and_jitter_and_refuses_lags_that_moved() {
         firing.fired_us += 5_000;
     });
     assert!(matches!(timing(&log, 60_000, fires_at), Err(TimingError::Moved { share }) if share > 0.1));
+}
+
+/// The log without its instants, as its file would be read.
+fn without_instants(log: &FiringLog) -> FiringLog {
+    let row = |of: &Firing| {
+        let echo = of.t_echo_us.map(|us| us.to_string()).unwrap_or_default();
+        format!("{},{},{},{echo}\n", of.sensor, of.period, of.phase)
+    };
+    let text: String = log.firings.iter().map(row).collect();
+    FiringLog::read_from(format!("sensor,period,phase,t_echo_us\n{text}").as_bytes(), "log".as_ref()).unwrap()
+}
+
+#[test]
+fn a_log_without_instants_is_put_onto_its_schedule_in_the_right_phase_and_not_onto_another_nor_if_lags_moved() {
+    let period = PERIOD as u32;
+    for seed in 1..=3 {
+        let (log, _) = World { shifts: false, ..World::HEALTHY }.log(seed, 300);
+        let fires_at =
+            |sensor: u8, phase: u8| (phase < 7).then(|| 240 * ((u32::from(sensor) + 1) * u32::from(phase) % 7));
+        let bare = without_instants(&log);
+        assert!(bare.lacks_instants && bare.firings.iter().all(|firing| firing.fired_us == 0));
+        let (aligned, found) = align(&bare, 75, (period, 7), fires_at).unwrap();
+        assert_eq!(found.rotation, 0, "{found:?}");
+        assert!(found.accidents < 0.01 && found.sure > 0.9, "{found:?}");
+        for (firing, true_one) in aligned.firings.iter().zip(&without_lags(&log).firings) {
+            assert_eq!((firing.sensor, firing.fired_us), (true_one.sensor, true_one.fired_us));
+        }
+        // The same ring, whose phases are counted from another one.
+        let turned = |sensor, phase: u8| fires_at(sensor, (phase + 7 - 2) % 7);
+        let (_, found) = align(&bare, 75, (period, 7), turned).unwrap();
+        assert_eq!(found.rotation, 2, "{found:?}");
+        let other = |sensor: u8, phase: u8| fires_at(sensor, phase).map(|us| us * 5 / 3);
+        assert!(matches!(align(&bare, 75, (period, 7), other), Err(AlignError::Unlike { .. })), "seed {seed}");
+        let few = |sensor: u8, phase: u8| fires_at(sensor, phase).filter(|_| sensor < 5);
+        let error = align(&bare, 75, (period, 7), few).unwrap_err();
+        assert_eq!(error, AlignError::NotScheduled { sensor: 5, phase: 0 });
+        let (moved, _) = World::HEALTHY.log(seed, 300);
+        let error = align(&without_instants(&moved), 75, (period, 7), fires_at).unwrap_err();
+        assert!(matches!(error, AlignError::Moved { .. }), "seed {seed}: {error:?}");
+    }
+}
+
+/// The firings where they would be without lags.
+fn without_lags(log: &FiringLog) -> FiringLog {
+    let mut firings = log.firings.clone();
+    for firing in &mut firings {
+        let wait = 240 * ((i64::from(firing.sensor) + 1) * i64::from(firing.phase) % 7);
+        firing.fired_us = i64::from(firing.period) * PERIOD + wait;
+    }
+    firings.sort_by_key(|firing| firing.period);
+    FiringLog::new("test", firings)
 }
 
 #[test]

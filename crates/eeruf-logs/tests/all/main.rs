@@ -4,6 +4,7 @@ mod bags;
 mod csv;
 mod damage;
 mod diagnose;
+mod survey;
 mod written;
 
 use std::path::{Path, PathBuf};

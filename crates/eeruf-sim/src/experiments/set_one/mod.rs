@@ -17,4 +17,4 @@ pub use figures::Figures;
 pub use multi_echo::MultiEcho;
 pub use options::SetOneOptions;
 pub use step::{Latency, STEP_M};
-pub use table::{READINGS, SetOne, set_one};
+pub use table::{READINGS, SetOne, set_one, world_of};

@@ -88,6 +88,20 @@ pub fn set_one(asked: &SetOneOptions, keep_going: &(dyn Fn(f64) -> bool + Sync))
     Ok(SetOne { first, seeds, physics, sensors, period_us: period.as_micros(), periods, methods })
 }
 
+/// An alcove and the robot before it, as a method has it in Set I; its seed there is the alcove's number.
+///
+/// # Errors
+/// [`WorldError`] for a ring that cannot be.
+pub fn world_of(asked: &SetOneOptions, alcove: &Alcove, method: Method) -> Result<World, WorldError> {
+    let SetOneOptions { period, transducer, .. } = *asked;
+    let plain = Robot { period, transducer, ..alcove.robot_of(asked.sensors) };
+    let robot = match method {
+        Method::MultiEcho => asked.multi_echo.of(plain),
+        _ => plain,
+    };
+    World::new(alcove.scene()?, vec![robot], asked.noise)?.with_physics(asked.physics)
+}
+
 /// One alcove under one method: as it is, and with its back wall going to and fro.
 fn run(
     asked: &SetOneOptions,
@@ -100,16 +114,7 @@ fn run(
         return Err(ExperimentError::Stopped);
     }
     let alcove = Alcove::random(number);
-    let SetOneOptions { period, transducer, .. } = *asked;
-    let plain = Robot { period, transducer, ..alcove.robot_of(asked.sensors) };
-    let robot = match method {
-        Method::MultiEcho => asked.multi_echo.of(plain),
-        _ => plain,
-    };
-    let world = |alcove: &Alcove| -> Result<World, WorldError> {
-        let world = World::new(alcove.scene()?, vec![robot.clone()], asked.noise)?.with_seed(number);
-        world.with_physics(asked.physics)
-    };
+    let world = |alcove: &Alcove| world_of(asked, alcove, method).map(|world| world.with_seed(number));
     let best = asked.best.as_ref().map(|best| best.schedule);
     let options = Options { best, hopping: asked.hopping, ..Options::periods(periods) };
     let far = world(&alcove)?;

@@ -20,4 +20,4 @@ pub use options::SetTwoOptions;
 pub use pilot::Piloting;
 pub use pilots::{Pilots, UnknownPilot};
 pub use run::{Cell, Ending, Place, Run};
-pub use runs::{MULTI_ECHO_CONSECUTIVE, SetTwo, SpeedStep, set_two, speed_sweep};
+pub use runs::{Drive, MULTI_ECHO_CONSECUTIVE, SetTwo, SpeedStep, drive, set_two, speed_sweep};

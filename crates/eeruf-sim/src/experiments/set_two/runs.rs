@@ -14,10 +14,11 @@ use crate::{
     acoustics::Physics,
     methods::Method,
     navigation::LabMate,
+    results::Readings,
     simulation::{self, Options, SimulationError},
     threads::{Stop, sweep},
     tracing::PathsError,
-    world::Robot,
+    world::{Robot, World},
 };
 
 /// For how long a robot may try.
@@ -109,6 +110,31 @@ fn run_course(
     if !progress.go_on() {
         return Err(ExperimentError::Stopped);
     }
+    Ok(drive(options, method, number, &|_| progress.go_on())?.run)
+}
+
+/// One course by one method, with all that was read.
+#[derive(Debug)]
+pub struct Drive {
+    /// Walls, poles and robots; where the first robot is, `run.track` says.
+    pub world: World,
+    /// What the robots' sensors read; nothing where bodies are on and one touched something.
+    pub readings: Readings,
+    /// What came of it.
+    pub run: Run,
+}
+
+/// Drives one course by one method. `keep_going` is called now and then with the share of the longest time, 0 to 1;
+/// when its answer is `false` the drive stops.
+///
+/// # Errors
+/// [`ExperimentError`] for a ring that cannot be, and if it was stopped.
+pub fn drive(
+    options: &SetTwoOptions,
+    method: Method,
+    number: u64,
+    keep_going: &dyn Fn(f64) -> bool,
+) -> Result<Drive, ExperimentError> {
     let course = Course::random(number);
     let consecutive = if method == Method::MultiEcho { MULTI_ECHO_CONSECUTIVE } else { 2 };
     let robot = if options.bodies { course.robot_with_body(&options.labmate) } else { course.robot() };
@@ -120,17 +146,18 @@ fn run_course(
     let period_s = f64::from(world.robots()[0].period.as_micros()) * 1e-6;
     let simulation =
         Options { best: options.best.map(|best| best.schedule), ..Options::periods((TIME_S / period_s).ceil() as u32) };
-    let ran = simulation::run(&world, method, &simulation, &mut pilot, &Stop::default(), |_| progress.go_on());
-    match ran {
+    let readings = match simulation::run(&world, method, &simulation, &mut pilot, &Stop::default(), keep_going) {
         // A sensor on the platform's edge, or another robot's body, touched something between two of the pilot's steps.
         Err(SimulationError::Paths { error: PathsError::Inside { .. } | PathsError::Body { .. }, .. })
             if options.bodies =>
         {
             pilot.touched();
+            Readings::default()
         }
-        ran => _ = ran?,
-    }
-    Ok(pilot.finish())
+        ran => ran?,
+    };
+    let run = pilot.finish();
+    Ok(Drive { world, readings, run })
 }
 
 /// One speed of a sweep.

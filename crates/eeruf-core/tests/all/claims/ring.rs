@@ -1,7 +1,7 @@
 //! `Ring` under arbitrary calls: it never fires neighbours together or a sensor too soon, never panics, and goes on
 //! firing.
 //!
-//! `PROPTEST_CASES=1000000 cargo test --release --test claims ring::` is the long run.
+//! `PROPTEST_CASES=1000000 cargo test --release --package eeruf-core --test all claims::ring` is the long run.
 
 use eeruf_core::tables::{TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{

@@ -1,0 +1,84 @@
+// A measuring run of up to sixteen HC-SR04 modules with one pin each: which of them hear each other, and after which
+// time. Each fires alone, then each ordered pair with twenty leads of one before the other. Prints a log for
+// `eeruf survey`, as eeruf_core::Survey has it; with four modules that takes half a minute, with eight two.
+#include <Arduino.h>
+
+const uint8_t PINS[] = {2, 3, 4, 5};
+const uint8_t MODULES = sizeof PINS;
+const uint8_t SOLOS = 3, LEADS = 20;
+const uint16_t LEAD_US = 750;      // from one lead to the next
+const uint16_t WINDOW_US = 40000;  // a module without echo holds its line for 38 ms
+const uint16_t NO_ECHO_US = 30000;
+const uint16_t QUIET_US = 57000;   // for so long sound is on its way
+
+enum State : uint8_t { WAITS, TRIGGERED, LISTENS, OVER };
+struct Line {
+  uint8_t module;
+  State state;
+  uint32_t after, rose, fell;
+};
+
+uint16_t slot = 0;
+
+void trigger(uint8_t pin) {
+  digitalWrite(pin, HIGH);
+  pinMode(pin, OUTPUT);
+  delayMicroseconds(10);
+  digitalWrite(pin, LOW);
+  pinMode(pin, INPUT);
+}
+
+// The sound goes out when the line rises, and the line falls with the first sound that comes.
+void look(Line &line, uint32_t begun) {
+  const uint8_t pin = PINS[line.module];
+  if (line.state == WAITS && micros() - begun >= line.after) {
+    trigger(pin);
+    line.state = TRIGGERED;
+  } else if (line.state == TRIGGERED && digitalRead(pin)) {
+    line.rose = micros();
+    line.state = LISTENS;
+  } else if (line.state == LISTENS && !digitalRead(pin)) {
+    line.fell = micros();
+    line.state = OVER;
+  }
+}
+
+// The module from 0, the time at which it fired, the slot, and the echo time, if there was an echo.
+void print(const Line &line) {
+  if (line.state < LISTENS) return;
+  Serial.print(line.module);
+  Serial.print(',');
+  Serial.print(line.rose);
+  Serial.print(',');
+  Serial.print(slot);
+  Serial.print(F(",0,"));
+  const uint32_t echo = line.fell - line.rose;
+  if (line.state == OVER && echo < NO_ECHO_US) Serial.print(echo);
+  Serial.println();
+}
+
+void fire(uint8_t first, uint8_t second, uint32_t lead) {
+  Line lines[2] = {{first, WAITS, 0, 0, 0}, {second, WAITS, lead, 0, 0}};
+  const uint8_t count = first == second ? 1 : 2;
+  const uint32_t begun = micros();
+  while (micros() - begun < lead + WINDOW_US)
+    for (uint8_t i = 0; i < count; i++) look(lines[i], begun);
+  for (uint8_t i = 0; i < count; i++) print(lines[i]);
+  while (micros() - begun < (uint32_t)LEAD_US * (LEADS - 1) + WINDOW_US + QUIET_US) {}
+  slot++;
+}
+
+void setup() {
+  Serial.begin(115200);
+  Serial.println(F("# clock: micros() of the board, 32 bits"));
+  Serial.println(F("sensor,fired_us,period,phase,t_echo_us"));
+  for (uint8_t solo = 0; solo < SOLOS; solo++)
+    for (uint8_t x = 0; x < MODULES; x++) fire(x, x, 0);
+  for (uint8_t lead = 0; lead < LEADS; lead++)
+    for (uint8_t x = 0; x < MODULES; x++)
+      for (uint8_t y = 0; y < MODULES; y++)
+        if (x != y) fire(x, y, (uint32_t)lead * LEAD_US);
+  Serial.println(F("# over"));
+}
+
+void loop() {}

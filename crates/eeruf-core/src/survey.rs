@@ -1,0 +1,361 @@
+//! [`Survey`]: a measuring run after which it is known which sensors of a ring hear each other, and along paths of which
+//! length.
+//!
+//! Time is divided into slots, in each of which all earlier sound has died away. In a slot a sensor fires alone, or one
+//! fires and another some time, the *lead*, after it. What the second hears earlier by as much as the lead is longer is
+//! the first one's sound; its own echo does not move. A sensor that cannot listen without sending, as an HC-SR04, can be
+//! surveyed so. Each ordered pair has all leads, so both directions are measured.
+
+use crate::schedule::MAX_SENSORS;
+use crate::time::{Instant, Micros};
+
+/// What fires in one slot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct SurveySlot {
+    /// The sensor that fires at the slot's start, from 0.
+    pub first: u8,
+    /// The one that fires after it, and how long after.
+    pub second: Option<(u8, Micros)>,
+}
+
+/// What fires when in a survey.
+///
+/// ```
+/// use eeruf_core::{Micros, SurveyPlan, SurveySlot};
+/// let plan = SurveyPlan::new(8);
+/// assert_eq!(plan.slot(0), Some(SurveySlot { first: 0, second: None }));
+/// let last = SurveySlot { first: 7, second: Some((6, Micros::new(19 * 750))) };
+/// assert_eq!((plan.slot(plan.slots() - 1), plan.slot(plan.slots())), (Some(last), None));
+/// assert_eq!(plan.duration_us(), 122_694_000); // two minutes
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct SurveyPlan {
+    sensors: u8,
+    solos: u8,
+    leads: u8,
+    lead_step: Micros,
+    window: Micros,
+    quiet: Micros,
+}
+
+/// Longer times than this, in microseconds, are no survey of ultrasonic sensors: ten seconds.
+const LONGEST: u32 = 10_000_000;
+
+impl SurveyPlan {
+    /// For so many sensors, at most 64: each alone three times, then each ordered pair with 20 leads, 0.75 ms from one
+    /// to the next; windows of 36 ms, and 57 ms of silence, so that slots last 107.25 ms.
+    pub const fn new(sensors: u8) -> Self {
+        let sensors = if sensors as usize > MAX_SENSORS { MAX_SENSORS as u8 } else { sensors };
+        let [lead_step, window, quiet] = [Micros::new(750), Micros::new(36_000), Micros::new(57_000)];
+        Self { sensors, solos: 3, leads: 20, lead_step, window, quiet }
+    }
+
+    /// How often each sensor fires alone.
+    #[must_use]
+    pub const fn with_solos(self, solos: u8) -> Self {
+        Self { solos, ..self }
+    }
+
+    /// How many leads each ordered pair has, the first of them 0, and from one to the next; at most ten seconds. A path
+    /// is seen with leads between its length and that less the receiver's own echo: two of them must fit.
+    #[must_use]
+    pub const fn with_leads(self, leads: u8, lead_step: Micros) -> Self {
+        Self { leads, lead_step: at_most_ten_seconds(lead_step), ..self }
+    }
+
+    /// How long a sensor listens, and how long nothing fires after that; at most ten seconds each.
+    #[must_use]
+    pub const fn with_window(self, window: Micros, quiet: Micros) -> Self {
+        Self { window: at_most_ten_seconds(window), quiet: at_most_ten_seconds(quiet), ..self }
+    }
+
+    /// How many sensors the ring has.
+    pub const fn sensors(&self) -> u8 {
+        self.sensors
+    }
+
+    /// How long a sensor listens.
+    pub const fn window(&self) -> Micros {
+        self.window
+    }
+
+    /// How many slots there are.
+    pub const fn slots(&self) -> u32 {
+        let sensors = self.sensors as u32;
+        self.alone() + sensors * sensors.saturating_sub(1) * self.leads as u32
+    }
+
+    const fn alone(&self) -> u32 {
+        self.sensors as u32 * self.solos as u32
+    }
+
+    /// How long each slot lasts.
+    pub const fn slot_length(&self) -> Micros {
+        let longest = self.lead(self.leads.saturating_sub(1));
+        longest.saturating_add(self.window).saturating_add(self.quiet)
+    }
+
+    /// How long all of it lasts, in microseconds.
+    pub const fn duration_us(&self) -> u64 {
+        self.slots() as u64 * self.slot_length().as_micros() as u64
+    }
+
+    const fn lead(&self, number: u8) -> Micros {
+        // Ten seconds times 255 fit.
+        Micros::new(self.lead_step.as_micros().saturating_mul(number as u32))
+    }
+
+    /// What fires in a slot, counted from 0.
+    pub const fn slot(&self, number: u32) -> Option<SurveySlot> {
+        if number >= self.slots() {
+            return None;
+        }
+        let alone = self.alone();
+        if number < alone {
+            return Some(SurveySlot { first: (number % self.sensors as u32) as u8, second: None });
+        }
+        // Leads change slowest: what is repeated from one to the next is not what just happened.
+        let others = self.sensors as u32 - 1;
+        let pairs = self.sensors as u32 * others;
+        let (lead, pair) = ((number - alone) / pairs, (number - alone) % pairs);
+        let (first, other) = ((pair / others) as u8, (pair % others) as u8);
+        let second = if other >= first { other + 1 } else { other };
+        Some(SurveySlot { first, second: Some((second, self.lead(lead as u8))) })
+    }
+}
+
+const fn at_most_ten_seconds(time: Micros) -> Micros {
+    if time.as_micros() > LONGEST { Micros::new(LONGEST) } else { time }
+}
+
+/// One line of a survey's log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct SurveyRow {
+    /// The sensor, from 0.
+    pub sensor: u8,
+    /// When it fired.
+    pub fired: Instant,
+    /// The slot: the log's `period`.
+    pub slot: u32,
+    /// From firing to the first edge, if there was one within the window.
+    pub t_echo: Option<Micros>,
+}
+
+/// What a survey wants done, or has measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum SurveyEvent {
+    /// Fire this sensor, now.
+    Fire {
+        /// The sensor, from 0.
+        sensor: u8,
+    },
+    /// A line for the log.
+    Row(SurveyRow),
+}
+
+/// A sensor in a slot.
+#[derive(Clone, Copy, Debug)]
+struct Listener {
+    sensor: u8,
+    due: Instant,
+    fired: Option<Instant>,
+    t_echo: Option<Micros>,
+    is_logged: bool,
+}
+
+/// A survey under way: the caller passes the time in, fires what it asks for, hands it the edges and logs its rows.
+///
+/// ```
+/// use eeruf_core::{Instant, Micros, Survey, SurveyEvent, SurveyPlan};
+/// let mut survey = Survey::new(SurveyPlan::new(2), Instant::from_micros(0));
+/// let at = Instant::from_micros;
+/// assert_eq!(survey.poll(at(0)), Some(SurveyEvent::Fire { sensor: 0 }));
+/// survey.echo(0, at(5_800));
+/// assert_eq!(survey.poll(at(5_900)), None);
+/// let Some(SurveyEvent::Row(row)) = survey.poll(survey.next_deadline().unwrap()) else { panic!() };
+/// assert_eq!((row.sensor, row.t_echo), (0, Some(Micros::new(5_800))));
+/// ```
+#[derive(Clone, Debug)]
+pub struct Survey {
+    plan: SurveyPlan,
+    slot: u32,
+    begins: Instant,
+    listeners: [Option<Listener>; 2],
+}
+
+impl Survey {
+    /// A survey whose first slot begins at a moment.
+    pub fn new(plan: SurveyPlan, begins: Instant) -> Self {
+        let mut survey = Self { plan, slot: 0, begins, listeners: [None; 2] };
+        survey.enter_slot();
+        survey
+    }
+
+    fn enter_slot(&mut self) {
+        let begins = self.begins;
+        let listener = |sensor, due| Listener { sensor, due, fired: None, t_echo: None, is_logged: false };
+        self.listeners = self.plan.slot(self.slot).map_or([None; 2], |slot| {
+            let second = slot.second.map(|(sensor, lead)| listener(sensor, begins + lead));
+            [Some(listener(slot.first, begins)), second]
+        });
+    }
+
+    /// What is to be done now, or was measured; call again until there is nothing.
+    pub fn poll(&mut self, now: Instant) -> Option<SurveyEvent> {
+        let next = self.begins + self.plan.slot_length();
+        let is_done = self.listeners.iter().flatten().all(|listener| listener.is_logged);
+        if is_done && !self.is_over() && now.has_reached(next) {
+            self.slot += 1;
+            self.begins = next;
+            self.enter_slot();
+        }
+        let due = self.listeners.iter().flatten().find(|it| it.fired.is_none() && now.has_reached(it.due));
+        if let Some(&Listener { sensor, due, .. }) = due {
+            self.fire(sensor, now, now.since(due));
+            return Some(SurveyEvent::Fire { sensor });
+        }
+        let (window, slot) = (self.plan.window, self.slot);
+        self.listeners.iter_mut().flatten().find_map(|listener| {
+            let fired = listener.fired.filter(|&fired| !listener.is_logged && now.has_reached(fired + window))?;
+            listener.is_logged = true;
+            let row = SurveyRow { sensor: listener.sensor, fired, slot, t_echo: listener.t_echo };
+            Some(SurveyEvent::Row(row))
+        })
+    }
+
+    /// A sensor fires; if it is late, all that follows is.
+    fn fire(&mut self, sensor: u8, now: Instant, late: Micros) {
+        self.begins += late;
+        for listener in self.listeners.iter_mut().flatten().filter(|listener| listener.fired.is_none()) {
+            if listener.sensor == sensor {
+                listener.fired = Some(now);
+            } else {
+                listener.due += late;
+            }
+        }
+    }
+
+    /// A sensor's line showed an edge; only the first within its window counts.
+    pub fn echo(&mut self, sensor: u8, at: Instant) {
+        for listener in self.listeners.iter_mut().flatten().filter(|listener| listener.sensor == sensor) {
+            let Some(fired) = listener.fired.filter(|_| listener.t_echo.is_none() && !listener.is_logged) else {
+                continue;
+            };
+            let t_echo = at.since(fired);
+            listener.t_echo = (t_echo < self.plan.window).then_some(t_echo);
+        }
+    }
+
+    /// When to poll again; `None` once it is over.
+    pub fn next_deadline(&self) -> Option<Instant> {
+        if self.is_over() {
+            return None;
+        }
+        let window = self.plan.window;
+        let due = |listener: &Listener| match listener.fired {
+            None => Some(listener.due),
+            Some(fired) => (!listener.is_logged).then(|| fired + window),
+        };
+        let next = self.begins + self.plan.slot_length();
+        // All of a slot lies within 2^31 us after its start.
+        let all = self.listeners.iter().flatten().filter_map(due).chain([next]);
+        all.min_by_key(|at| at.since(self.begins))
+    }
+
+    /// Whether all slots are over.
+    pub fn is_over(&self) -> bool {
+        self.slot >= self.plan.slots()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use std::collections::BTreeMap;
+    use std::vec::Vec;
+
+    #[test]
+    fn every_sensor_fires_alone_and_every_ordered_pair_with_every_lead() {
+        let plan = SurveyPlan::new(5).with_solos(2).with_leads(3, Micros::new(400));
+        let mut seen = BTreeMap::new();
+        for slot in (0..plan.slots()).map(|number| plan.slot(number).unwrap()) {
+            *seen.entry((slot.first, slot.second)).or_insert(0) += 1;
+        }
+        for x in 0..5 {
+            assert_eq!(seen.remove(&(x, None)), Some(2));
+            for y in (0..5).filter(|&y| y != x) {
+                for lead in [0, 400, 800] {
+                    assert_eq!(seen.remove(&(x, Some((y, Micros::new(lead))))), Some(1), "{x} {y} {lead}");
+                }
+            }
+        }
+        assert_eq!((seen.len(), plan.slots(), plan.slot(plan.slots())), (0, 5 * 2 + 20 * 3, None));
+        assert_eq!(SurveyPlan::new(0).slot(0), None);
+        assert_eq!(SurveyPlan::new(1).slots(), 3);
+    }
+
+    /// Runs a survey over the wrap of the clock, polled at its deadlines and so much later; each sensor hears an edge
+    /// `1000 + sensor` after it fires and another later.
+    fn run(plan: SurveyPlan, late: impl Fn(usize) -> u32) -> (Vec<(u32, u8)>, Vec<SurveyRow>) {
+        let mut survey = Survey::new(plan, Instant::from_micros(u32::MAX - 50_000));
+        let (mut fired, mut rows) = (Vec::new(), Vec::new());
+        while let Some(due) = survey.next_deadline() {
+            let now = due + Micros::new(late(fired.len()));
+            while let Some(event) = survey.poll(now) {
+                match event {
+                    SurveyEvent::Fire { sensor } => {
+                        fired.push((now.as_micros(), sensor));
+                        survey.echo(sensor, now + Micros::new(1000 + u32::from(sensor)));
+                        survey.echo(sensor, now + Micros::new(5000));
+                        survey.echo(sensor + 1, now);
+                    }
+                    SurveyEvent::Row(row) => rows.push(row),
+                }
+            }
+        }
+        assert!(survey.is_over());
+        assert_eq!(survey.poll(Instant::from_micros(0)), None);
+        (fired, rows)
+    }
+
+    #[test]
+    fn a_survey_fires_as_planned_and_logs_each_firing_once_with_its_first_edge() {
+        let plan = SurveyPlan::new(3).with_leads(2, Micros::new(500)).with_solos(1);
+        let (fired, rows) = run(plan, |_| 0);
+        assert_eq!((fired.len(), rows.len()), (3 + 12 * 2, 3 + 12 * 2));
+        for row in &rows {
+            assert!(fired.contains(&(row.fired.as_micros(), row.sensor)));
+            let (slot, begins) = (plan.slot(row.slot).unwrap(), plan.slot_length().as_micros() * row.slot);
+            let lead = slot.second.filter(|second| second.0 == row.sensor).map_or(0, |second| second.1.as_micros());
+            assert_eq!(row.fired.as_micros(), (u32::MAX - 50_000).wrapping_add(begins + lead), "{row:?}");
+            assert_eq!(row.t_echo, Some(Micros::new(1000 + u32::from(row.sensor))));
+        }
+    }
+
+    #[test]
+    fn who_fires_late_delays_all_that_follow_and_no_slot_gets_shorter() {
+        let plan = SurveyPlan::new(2).with_leads(2, Micros::new(500)).with_solos(1);
+        let (on_time, _) = run(plan, |_| 0);
+        let (late, rows) = run(plan, |fired| if fired == 3 { 7000 } else { 0 });
+        assert_eq!(rows.len(), on_time.len());
+        let between = |fired: &[(u32, u8)]| -> Vec<_> {
+            fired.windows(2).map(|pair| pair[1].0.wrapping_sub(pair[0].0)).collect()
+        };
+        for (late, on_time) in between(&late).into_iter().zip(between(&on_time)) {
+            assert!(late >= on_time, "{late} {on_time}");
+        }
+    }
+
+    #[test]
+    fn an_edge_after_the_window_is_no_echo() {
+        let plan = SurveyPlan::new(1).with_window(Micros::new(1000), Micros::new(1000));
+        let (_, rows) = run(plan, |_| 0);
+        assert_eq!(rows.len(), 3);
+        assert!(rows.iter().all(|row| row.t_echo.is_none()), "{rows:?}");
+    }
+}

@@ -1,0 +1,129 @@
+//! What a ring hears: which edges are the echo of a firing, to the microsecond, and which are none.
+
+use eeruf_core::{
+    Instant, Micros, Reading, ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledRing, SensorError,
+};
+
+const BLANKING: u32 = 1_000;
+const WINDOW: u32 = 30_000;
+
+fn schedule() -> Schedule<2> {
+    let ms = |times: [u32; 2]| times.map(Micros::from_millis);
+    Schedule::from_firing(Micros::from_millis(100), [ms([10, 55]), ms([20, 60])]).unwrap()
+}
+
+fn ring(schedule: &Schedule<2>) -> ScheduledRing<'_, 2> {
+    let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW));
+    Ring::unverified(schedule, config.with_blanking(Micros::new(BLANKING)), Instant::from_micros(u32::MAX)).unwrap()
+}
+
+/// Polls until sensor 0 fires: when.
+fn fire(ring: &mut ScheduledRing<'_, 2>) -> Instant {
+    for _ in 0..100 {
+        let now = ring.next_deadline();
+        if let Some(RingEvent::Fire { sensor: 0, .. }) = ring.poll(now) {
+            return now;
+        }
+    }
+    panic!("sensor 0 never fires");
+}
+
+/// Polls until a reading of sensor 0 is out: when, and which.
+fn reading(ring: &mut ScheduledRing<'_, 2>) -> (Instant, Reading) {
+    for _ in 0..100 {
+        let now = ring.next_deadline();
+        match ring.poll(now) {
+            Some(RingEvent::Reading(reading)) if reading.sensor == 0 => return (now, reading),
+            _ => {}
+        }
+    }
+    panic!("sensor 0 has no reading");
+}
+
+/// What a new ring makes of edges so many microseconds after the firing: the kind, the echo time, and when it says so.
+fn heard(edges: &[u32]) -> (ReadingKind, Option<u32>, u32) {
+    let schedule = schedule();
+    let mut ring = ring(&schedule);
+    let fired = fire(&mut ring);
+    for &edge in edges {
+        ring.echo(0, fired + Micros::new(edge)).unwrap();
+    }
+    let (now, reading) = reading(&mut ring);
+    (reading.kind, reading.t_echo.map(Micros::as_micros), now.since(fired).as_micros())
+}
+
+#[test]
+fn an_echo_lies_between_the_end_of_the_blanking_time_and_the_end_of_the_window_both_included() {
+    assert_eq!(heard(&[]), (ReadingKind::NoEcho, None, WINDOW));
+    assert_eq!(heard(&[0]), (ReadingKind::TooEarly, Some(0), WINDOW));
+    assert_eq!(heard(&[BLANKING - 1]), (ReadingKind::TooEarly, Some(BLANKING - 1), WINDOW));
+    assert_eq!(heard(&[BLANKING]), (ReadingKind::First, Some(BLANKING), BLANKING));
+    assert_eq!(heard(&[WINDOW]), (ReadingKind::First, Some(WINDOW), WINDOW));
+    assert_eq!(heard(&[WINDOW + 1]), (ReadingKind::NoEcho, None, WINDOW));
+}
+
+#[test]
+fn the_earliest_edge_within_the_window_is_the_echo_whatever_else_comes() {
+    assert_eq!(heard(&[9_000, 5_000, 7_000]), (ReadingKind::First, Some(5_000), 9_000));
+    assert_eq!(heard(&[300, 5_000]), (ReadingKind::First, Some(5_000), 5_000));
+    assert_eq!(heard(&[5_000, 300]), (ReadingKind::First, Some(5_000), 5_000));
+    assert_eq!(heard(&[300, 200]), (ReadingKind::TooEarly, Some(300), WINDOW), "the first to come in");
+}
+
+#[test]
+fn an_edge_from_before_the_firing_belongs_to_nothing() {
+    let schedule = schedule();
+    let mut ring = ring(&schedule);
+    let fired = fire(&mut ring);
+    ring.echo(0, Instant::from_micros(fired.as_micros().wrapping_sub(1))).unwrap();
+    assert_eq!(reading(&mut ring).1.kind, ReadingKind::NoEcho);
+}
+
+#[test]
+fn the_first_edge_after_the_window_is_told_once_and_one_within_it_comes_too_late_for_its_poll() {
+    let schedule = schedule();
+    let mut ring = ring(&schedule);
+    let fired = fire(&mut ring);
+    assert_eq!(reading(&mut ring).1.kind, ReadingKind::NoEcho);
+    // Its window is closed, and it is no late echo either.
+    ring.echo(0, fired + Micros::new(WINDOW)).unwrap();
+    for late in [WINDOW + 1, WINDOW + 2] {
+        ring.echo(0, fired + Micros::new(late)).unwrap();
+    }
+    let (now, told) = reading(&mut ring);
+    assert_eq!((told.kind, told.t_echo), (ReadingKind::Late, Some(Micros::new(WINDOW + 1))));
+    assert_eq!((told.period, now.since(fired)), (0, Micros::new(WINDOW + 1)));
+    // The next reading is of the next firing.
+    let next = reading(&mut ring).1;
+    assert_eq!((next.kind, next.period), (ReadingKind::NoEcho, 1));
+}
+
+#[test]
+fn a_line_that_was_high_makes_its_firing_stuck_whatever_follows_and_the_next_one_is_heard() {
+    let schedule = schedule();
+    let mut ring = ring(&schedule);
+    // Before it has fired there is nothing to be stuck.
+    ring.stuck(0).unwrap();
+    let fired = fire(&mut ring);
+    ring.stuck(0).unwrap();
+    ring.echo(0, fired + Micros::new(9_000)).unwrap();
+    let stuck = reading(&mut ring).1;
+    assert_eq!((stuck.kind, stuck.t_echo), (ReadingKind::Stuck, None));
+    let fired = fire(&mut ring);
+    ring.echo(0, fired + Micros::new(9_000)).unwrap();
+    assert_eq!(reading(&mut ring).1.kind, ReadingKind::First, "compared with nothing");
+}
+
+#[test]
+fn a_sensor_that_is_not_there_is_named_in_the_error() {
+    let schedule = schedule();
+    let mut ring = ring(&schedule);
+    let now = ring.next_deadline();
+    let expected: Result<(), SensorError> = Err(SensorError { sensor: 2, sensors: 2 });
+    assert_eq!(ring.echo(2, now), expected);
+    assert_eq!(ring.stuck(2), expected);
+    assert_eq!(ring.disable(2), expected);
+    assert_eq!(ring.enable(2), expected);
+    assert_eq!(ring.fired(2, now), expected);
+    assert!(ring.is_enabled(1) && !ring.is_enabled(2));
+}

@@ -1,0 +1,31 @@
+//! What a search that ends before its proof may claim of a ring whose robot moves.
+
+use eeruf_design::{NoSchedule, RingSpec, Search};
+
+#[test]
+fn whatever_the_budget_bounds_hold_and_what_is_proven_is_the_shortest() {
+    for layout in ["line", "ring"] {
+        let ring = format!(
+            "sensors = 12\nlayout = \"{layout}\"\nneighbours = 4\nmax_range_m = 4\ncrosstalk_range_m = 2\njitter_us = \
+             60\nspeed_m_s = 0.5\ntick_us = 100\n"
+        );
+        let spec = RingSpec::from_text(&ring).unwrap();
+        let within = |budget| spec.shortest(&Search { budget, what_if: false }, &mut ()).unwrap();
+        let shortest = within(1_000_000).unwrap().found;
+        assert!(shortest.proven);
+        let mut unproven = 0;
+        for budget in [1, 3, 10, 30, 100, 300, 1000] {
+            match within(budget) {
+                Ok(design) if design.found.proven => assert_eq!(design.found.value, shortest.value, "{budget} nodes"),
+                Ok(design) => {
+                    unproven += 1;
+                    assert!(design.found.value >= shortest.value, "{budget} nodes");
+                    assert!(design.found.bound <= shortest.value, "{budget} nodes: {:?}", design.found.bound);
+                    assert!(design.schedule.verify(&design.spec.problem().requirements).ok());
+                }
+                Err(none) => assert_eq!(none, NoSchedule::EndedEarly, "{budget} nodes"),
+            }
+        }
+        assert!(unproven > 0, "{layout}: no budget was too small");
+    }
+}

@@ -1,0 +1,327 @@
+//! What a measuring run says: which sensor hears which, along paths of which length, and how sure that is.
+//!
+//! In each slot of a survey at most two sensors fire, and all earlier sound has died away: see
+//! [`SurveyPlan`](https://docs.rs/eeruf-core/latest/eeruf_core/struct.SurveyPlan.html). So an edge is the sensor's own
+//! echo, which does not move, or the other's sound, which comes earlier by as much as the other fired earlier, or a
+//! stray. For each receiver the times from a firing to its edges are laid over each other; a time at which edges of
+//! different slots meet is a path if so many are improbable as strays (a binomial test, times the number of places at
+//! which a path was looked for). The best supported is taken first, and what it explains is taken away.
+//!
+//! A log in which more than two sensors fire close to each other can be read as well, but is better left to
+//! [`diagnose`](crate::diagnose()).
+
+use std::collections::HashMap;
+
+use crate::diagnose::{FoundPath, groups, ln_at_least, median};
+use crate::firings::{Firing, FiringLog};
+
+/// How to look for paths in a survey.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathSettings {
+    /// By how much edges of one path may differ, in microseconds: about four times the jitter.
+    pub tolerance_us: u32,
+    /// How many paths may be found by accident, on average, in the whole survey.
+    pub accidents: f64,
+}
+
+impl Default for PathSettings {
+    /// 100 us, and one path in a hundred surveys.
+    fn default() -> Self {
+        Self { tolerance_us: 100, accidents: 0.01 }
+    }
+}
+
+/// What a survey found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surveyed {
+    /// How many sensors the ring has.
+    pub sensors: usize,
+    /// The paths, by receiver and sender, shortest first. A sensor's own echo is a path from itself.
+    pub paths: Vec<FoundPath>,
+    /// How many edges there were, and how many of them no path explains.
+    pub edges: (u32, u32),
+    /// The longest echo time of the log, in microseconds: sensors listen at least so long.
+    pub window_us: u32,
+    /// For each pair, sender first and by sender, in how many slots both fired; for listeners, in how many they did.
+    slots: Vec<u32>,
+    /// For each pair likewise, where a path would have been seen with two offsets: each millisecond of its travel time,
+    /// bit 0 for less than 1 ms.
+    visible: Vec<u128>,
+}
+
+impl Surveyed {
+    /// The paths of a pair, shortest first.
+    pub fn between(&self, sender: u8, receiver: u8) -> impl Iterator<Item = &FoundPath> {
+        self.paths.iter().filter(move |path| (path.sender, path.receiver) == (sender, receiver))
+    }
+
+    /// In how many slots a receiver could have heard a sender.
+    pub fn slots(&self, sender: u8, receiver: u8) -> u32 {
+        self.of_pair(&self.slots, sender, receiver)
+    }
+
+    /// Of the travel times below `until_us` (at most 128 ms), the share at which a path of the pair would have been
+    /// seen with two offsets or more: at others it comes within the receiver's dead time, or its own echo hides it, or
+    /// the survey has no such lead.
+    pub fn visible(&self, sender: u8, receiver: u8, until_us: u32) -> f64 {
+        let all = (until_us / 1000).clamp(1, 128);
+        let mask = if all == 128 { u128::MAX } else { (1 << all) - 1 };
+        f64::from((self.of_pair(&self.visible, sender, receiver) & mask).count_ones()) / f64::from(all)
+    }
+
+    fn of_pair<T: Copy + Default>(&self, of: &[T], sender: u8, receiver: u8) -> T {
+        let is_there = usize::from(sender.max(receiver)) < self.sensors;
+        let place = usize::from(sender) * self.sensors + usize::from(receiver);
+        of.get(place).filter(|_| is_there).copied().unwrap_or_default()
+    }
+
+    /// The pairs that hear each other within `until_us`, in either direction, with the longest such travel time in
+    /// microseconds: what has to be between their firings so that neither listens to the other's sound.
+    pub fn conflicts(&self, until_us: u32) -> Vec<(u8, u8, f64)> {
+        let mut conflicts = Vec::<(u8, u8, f64)>::new();
+        let foreign = self.paths.iter().filter(|path| path.sender != path.receiver);
+        for path in foreign.filter(|path| path.travel_us <= f64::from(until_us)) {
+            let pair = (path.sender.min(path.receiver), path.sender.max(path.receiver));
+            match conflicts.iter_mut().find(|known| (known.0, known.1) == pair) {
+                Some(known) => known.2 = known.2.max(path.travel_us),
+                None => conflicts.push((pair.0, pair.1, path.travel_us)),
+            }
+        }
+        conflicts.sort_by_key(|conflict| (conflict.0, conflict.1));
+        conflicts
+    }
+}
+
+/// What one sensor heard in one slot.
+struct Heard {
+    slot: u32,
+    echo_us: Option<i64>,
+    /// Who fired, itself too if it did, and when, after it began to listen.
+    fired: Vec<(u8, i64)>,
+    is_explained: bool,
+}
+
+/// A place at which a path may be.
+struct Place {
+    sender: u8,
+    offsets: (u32, u32),
+    ln_accident: f64,
+    hits: Vec<usize>,
+    trials: u32,
+}
+
+/// The most paths to one receiver.
+const MOST_PATHS: usize = 200;
+/// How many places of each sender are looked at more closely before the best is taken.
+const LOOKED_AT: usize = 4;
+/// A path supports an offset if it is heard in this share of the slots with that offset in which nothing hid it.
+const SUPPORTS: f64 = 0.5;
+
+/// Finds the paths between all sensors of a survey.
+pub fn survey(log: &FiringLog, settings: &PathSettings) -> Surveyed {
+    let sensors = log.sensors();
+    let rows = || log.firings.iter().chain(&log.listened);
+    let window_us = rows().filter_map(|row| row.t_echo_us).max().unwrap_or(0);
+    let mut slots = HashMap::<u32, Vec<&Firing>>::new();
+    log.firings.iter().for_each(|firing| slots.entry(firing.period).or_default().push(firing));
+    let mut of_receiver: Vec<Vec<Heard>> = (0..sensors).map(|_| Vec::new()).collect();
+    for row in rows() {
+        let fired = slots.get(&row.period).map_or(&[][..], |fired| fired);
+        let fired = fired.iter().map(|other| (other.sensor, other.fired_us - row.fired_us)).collect();
+        let heard = Heard { slot: row.period, echo_us: row.t_echo_us.map(i64::from), fired, is_explained: false };
+        of_receiver[usize::from(row.sensor)].push(heard);
+    }
+    let mut surveyed = Surveyed {
+        sensors,
+        paths: Vec::new(),
+        edges: (0, 0),
+        window_us,
+        slots: vec![0; sensors * sensors],
+        visible: vec![0; sensors * sensors],
+    };
+    for (receiver, heard) in of_receiver.into_iter().enumerate() {
+        let mut search = Search::new(receiver as u8, heard, sensors, window_us.into(), settings);
+        let mut paths = search.paths(settings);
+        paths.sort_by(|a, b| {
+            (a.sender, a.travel_us).partial_cmp(&(b.sender, b.travel_us)).unwrap_or(a.sender.cmp(&b.sender))
+        });
+        surveyed.paths.append(&mut paths);
+        for sender in 0..sensors {
+            let pair = sender * sensors + receiver;
+            (surveyed.slots[pair], surveyed.visible[pair]) = search.coverage(sender as u8);
+        }
+        let edges = search.heard.iter().filter(|heard| heard.echo_us.is_some());
+        surveyed.edges.0 += edges.clone().count() as u32;
+        surveyed.edges.1 += edges.filter(|heard| !heard.is_explained).count() as u32;
+    }
+    surveyed
+}
+
+struct Search {
+    receiver: u8,
+    heard: Vec<Heard>,
+    sensors: usize,
+    /// The sensor hears nothing earlier.
+    dead_us: i64,
+    window_us: i64,
+    tolerance: i64,
+}
+
+impl Search {
+    fn new(receiver: u8, heard: Vec<Heard>, sensors: usize, window_us: i64, settings: &PathSettings) -> Self {
+        let dead_us = heard.iter().filter_map(|heard| heard.echo_us).min().unwrap_or(0);
+        let tolerance = settings.tolerance_us.max(1).into();
+        // The latest edge of all may belong to a path like any other.
+        let window_us = window_us + 2 * tolerance;
+        Self { receiver, heard, sensors, dead_us, window_us, tolerance }
+    }
+
+    fn paths(&mut self, settings: &PathSettings) -> Vec<FoundPath> {
+        let places = (self.window_us / (2 * self.tolerance) + 1) as f64;
+        let ln_places = (places * (self.sensors * self.sensors) as f64).ln();
+        let mut found = Vec::new();
+        while found.len() < MOST_PATHS {
+            let places = (0..self.sensors as u8).filter_map(|sender| self.best_of(sender));
+            let Some(best) = places.min_by(|a, b| a.ln_accident.total_cmp(&b.ln_accident)) else { break };
+            let accidents = (best.ln_accident + ln_places).exp();
+            if accidents > settings.accidents {
+                break;
+            }
+            found.push(self.take(&best, accidents));
+        }
+        found
+    }
+
+    /// The offset of a sender in a slot: when it fired, after the receiver did.
+    fn offset(heard: &Heard, sender: u8) -> Option<i64> {
+        heard.fired.iter().find(|fired| fired.0 == sender).map(|fired| fired.1)
+    }
+
+    fn best_of(&self, sender: u8) -> Option<Place> {
+        let mut travels: Vec<(i64, usize)> = Vec::new();
+        for (place, heard) in self.heard.iter().enumerate().filter(|(_, heard)| !heard.is_explained) {
+            if let (Some(echo_us), Some(offset)) = (heard.echo_us, Self::offset(heard, sender)) {
+                travels.extend((echo_us > offset).then_some((echo_us - offset, place)));
+            }
+        }
+        travels.sort_unstable();
+        // Where most edges meet.
+        let mut crowds = Vec::with_capacity(travels.len());
+        let mut from = 0;
+        for to in 0..travels.len() {
+            while travels[to].0 - travels[from].0 > 2 * self.tolerance {
+                from += 1;
+            }
+            crowds.push((to + 1 - from, travels[from + (to - from) / 2].0));
+        }
+        crowds.sort_unstable_by_key(|&(edges, travel)| (core::cmp::Reverse(edges), travel));
+        let mut looked_at = Vec::<i64>::new();
+        for (_, travel) in crowds {
+            if looked_at.iter().all(|other| (other - travel).abs() > 2 * self.tolerance) {
+                looked_at.push(travel);
+            }
+            if looked_at.len() >= LOOKED_AT {
+                break;
+            }
+        }
+        let places = looked_at.into_iter().map(|travel_us| self.support(sender, travel_us));
+        places.min_by(|a, b| a.ln_accident.total_cmp(&b.ln_accident))
+    }
+
+    /// What speaks for a path and what against it.
+    fn support(&self, sender: u8, travel_us: i64) -> Place {
+        let is_own = sender == self.receiver;
+        // By offset, own echoes by slot: whether it was heard there.
+        let mut trials = Vec::<(i64, bool)>::new();
+        let mut hits = Vec::new();
+        for (place, heard) in self.heard.iter().enumerate() {
+            let Some(offset) = Self::offset(heard, sender) else { continue };
+            let predicted = offset + travel_us;
+            if predicted < self.dead_us - self.tolerance || predicted + self.tolerance > self.window_us {
+                continue;
+            }
+            let off = heard.echo_us.map(|echo_us| echo_us - predicted);
+            // Something earlier hid it, or what came together with it is explained.
+            if off.is_some_and(|off| off < -self.tolerance || off <= self.tolerance && heard.is_explained) {
+                continue;
+            }
+            let is_heard = off.is_some_and(|off| off <= self.tolerance);
+            hits.extend(is_heard.then_some(place));
+            // An own echo does not move: what counts is in how many slots it was heard.
+            trials.push((if is_own { i64::from(heard.slot) * (4 * self.tolerance) } else { offset }, is_heard));
+        }
+        trials.sort_unstable();
+        let offsets: Vec<_> = trials.iter().map(|trial| trial.0).collect();
+        let groups = groups(&offsets, 2 * self.tolerance);
+        let supports = |group: &core::ops::Range<usize>| {
+            let heard = trials[group.clone()].iter().filter(|trial| trial.1).count();
+            heard as f64 >= SUPPORTS * group.len() as f64
+        };
+        let supporting = groups.iter().filter(|group| supports(group)).count() as u32;
+        let counted = (supporting, groups.len() as u32);
+        // One slot, or one offset, proves nothing.
+        let ln_accident =
+            if supporting < 2 { 0.0 } else { ln_at_least(supporting, counted.1, self.accident(sender, hits.len())) };
+        Place { sender, offsets: counted, ln_accident, hits, trials: trials.len() as u32 }
+    }
+
+    /// The probability that a stray edge supports a path at one offset: strays may be all edges of the slots in which
+    /// the sender fired that are still to be explained, but for the path's own.
+    fn accident(&self, sender: u8, hits: usize) -> f64 {
+        let slots = || self.heard.iter().filter(|heard| Self::offset(heard, sender).is_some());
+        let open = slots().filter(|heard| heard.echo_us.is_some() && !heard.is_explained).count();
+        let strays = (open.saturating_sub(hits) + 1) as f64 / (slots().count() + 1) as f64;
+        let span = (self.window_us - self.dead_us).max(2 * self.tolerance) as f64;
+        // Strays crowd, as echoes do: four times the even density.
+        (4.0 * strays * 2.0 * self.tolerance as f64 / span).min(0.5)
+    }
+
+    fn take(&mut self, place: &Place, accidents: f64) -> FoundPath {
+        let travel = |heard: &Heard| {
+            let offset = Self::offset(heard, place.sender).unwrap_or_default();
+            (heard.echo_us.unwrap_or_default() - offset) as f64
+        };
+        let mut travels: Vec<_> = place.hits.iter().map(|&hit| travel(&self.heard[hit])).collect();
+        let middle = median(&mut travels);
+        let mut off: Vec<_> = travels.iter().map(|travel| (travel - middle).abs()).collect();
+        let scatter_us = (median(&mut off) / 0.6745).max(1.0);
+        let mut slots = (u32::MAX, 0);
+        for &hit in &place.hits {
+            let heard = &mut self.heard[hit];
+            heard.is_explained = true;
+            slots = (slots.0.min(heard.slot), slots.1.max(heard.slot));
+        }
+        FoundPath {
+            sender: place.sender,
+            receiver: self.receiver,
+            travel_us: middle,
+            travel_error_us: scatter_us / (travels.len().max(1) as f64).sqrt(),
+            scatter_us,
+            offsets: place.offsets,
+            accidents,
+            readings: place.hits.len() as u32,
+            heard: place.hits.len() as f64 / f64::from(place.trials.max(1)),
+            periods: slots,
+        }
+    }
+
+    /// In how many slots a sender could be heard, and at which travel times, in milliseconds, with two offsets.
+    fn coverage(&self, sender: u8) -> (u32, u128) {
+        // At each offset, the latest edge: until then nothing hid another's sound.
+        let offsets = self.heard.iter().filter_map(|heard| {
+            let offset = Self::offset(heard, sender)?;
+            Some((offset, heard.echo_us.unwrap_or(self.window_us)))
+        });
+        let offsets: Vec<_> = offsets.collect();
+        let mut visible = 0_u128;
+        for ms in 0..128 {
+            let travel_us = 1000 * i64::from(ms) + 500;
+            let is_seen = |&&(offset, edge): &&(i64, i64)| (self.dead_us..=edge).contains(&(offset + travel_us));
+            let mut seen: Vec<_> = offsets.iter().filter(is_seen).map(|seen| seen.0).collect();
+            seen.sort_unstable();
+            let apart = if sender == self.receiver { seen.len() } else { groups(&seen, 2 * self.tolerance).len() };
+            visible |= u128::from(apart >= 2) << ms;
+        }
+        (offsets.len() as u32, visible)
+    }
+}

@@ -1,0 +1,258 @@
+//! Logs of robots: ranges, firings, and what firings say. `python/eeruf/logs.py` is what users see of it.
+
+use std::path::PathBuf;
+
+use eeruf_logs::{
+    Diagnosis, Fault, Firing, FiringLog, FoundPath, Options, PathSettings, RangeUnit, Settings, Table, TimeUnit,
+};
+use numpy::PyReadonlyArray1;
+use pyo3::{create_exception, prelude::*, types::PyDict};
+
+use crate::{
+    columns::read_only,
+    errors::{ArgumentError, EerufError},
+    watch::in_background,
+};
+
+create_exception!(
+    eeruf,
+    LogError,
+    EerufError,
+    "A log that cannot be read, with its file, its line, and what is expected.
+
+Example:
+    >>> import eeruf
+    >>> eeruf.logs.read_log(\"no.bag\")
+    Traceback (most recent call last):
+    eeruf.LogError: no.bag: No such file or directory (os error 2)
+"
+);
+
+// Of the macro, which takes errors by value.
+#[expect(clippy::needless_pass_by_value, reason = "as `map_err` gives it")]
+fn raise(error: eeruf_logs::LogError) -> PyErr {
+    LogError::new_err(error.to_string())
+}
+
+fn one_of<T: Copy>(name: &str, value: &str, known: &[(&str, T)]) -> PyResult<T> {
+    let found = known.iter().find(|known| known.0 == value).map(|known| known.1);
+    found.ok_or_else(|| {
+        let names: Vec<_> = known.iter().map(|known| known.0).collect();
+        ArgumentError::new_err(format!("{name}: {value:?}; expected one of {}", names.join(", ")))
+    })
+}
+
+fn above_zero(name: &str, value: f64) -> PyResult<f64> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(value);
+    }
+    Err(ArgumentError::new_err(format!("{name} = {value}; expected a number above 0")))
+}
+
+/// The ranges of a log, as columns, with sensors, damage and what was left out.
+#[pyfunction]
+#[pyo3(name = "_read_log")]
+#[expect(clippy::too_many_arguments, reason = "each of them once, from one place")]
+pub(crate) fn read_log<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    time: Option<String>,
+    time_unit: &str,
+    ranges: Vec<String>,
+    range_unit: &str,
+    sensor: Option<String>,
+    speed_of_sound: f64,
+    no_echo_m: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let times = [("s", TimeUnit::S), ("ms", TimeUnit::Ms), ("us", TimeUnit::Us), ("ns", TimeUnit::Ns)];
+    let units = [
+        ("m", RangeUnit::M),
+        ("cm", RangeUnit::Cm),
+        ("mm", RangeUnit::Mm),
+        ("in", RangeUnit::In),
+        ("us", RangeUnit::Us),
+    ];
+    let (time_unit, range_unit) = (one_of("time_unit", time_unit, &times)?, one_of("range_unit", range_unit, &units)?);
+    let options = Options {
+        table: Table { ranges, range_unit, time, time_unit, sensor },
+        speed_of_sound: above_zero("speed_of_sound", speed_of_sound)?,
+        no_echo_m: above_zero("no_echo_m", no_echo_m)?,
+    };
+    let (readings, report) = in_background(py, None, move |_| {
+        let mut readings = Vec::new();
+        let report = eeruf_logs::read_log(&path, &options, |_, reading| readings.push(*reading)).map_err(raise)?;
+        Ok((readings, report))
+    })?;
+    let out = PyDict::new(py);
+    let column = |of: fn(&eeruf_logs::Reading) -> f64| read_only(py, readings.iter().map(of));
+    out.set_item("sensor", read_only(py, readings.iter().map(|reading| reading.sensor as i64))?)?;
+    out.set_item("at_ns", read_only(py, readings.iter().map(|reading| reading.at_ns as i64))?)?;
+    out.set_item("range_m", column(|reading| reading.range_m)?)?;
+    out.set_item("min_range_m", column(|reading| reading.min_range_m)?)?;
+    out.set_item("max_range_m", column(|reading| reading.max_range_m)?)?;
+    out.set_item("variance", column(|reading| reading.variance.map_or(f64::NAN, f64::from))?)?;
+    out.set_item("names", report.names())?;
+    out.set_item("topics", report.sensors.iter().map(|sensor| sensor.topic.clone()).collect::<Vec<_>>())?;
+    out.set_item("frames", report.sensors.iter().map(|sensor| sensor.frame.clone()).collect::<Vec<_>>())?;
+    out.set_item("damage", report.damage.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+    let skipped = report.skipped.iter().map(|topic| (topic.topic.clone(), topic.why.clone()));
+    out.set_item("skipped", skipped.collect::<Vec<_>>())?;
+    Ok(out)
+}
+
+/// The firings of a log, as columns, with the clock and the damage.
+#[pyfunction]
+#[pyo3(name = "_read_firings")]
+pub(crate) fn read_firings(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>> {
+    let log = in_background(py, None, move |_| FiringLog::read(&path).map_err(raise))?;
+    let rows = log.firings.iter().map(|row| (row, true)).chain(log.listened.iter().map(|row| (row, false)));
+    let rows: Vec<_> = rows.collect();
+    let out = PyDict::new(py);
+    let column = |of: fn(&Firing) -> i64| read_only(py, rows.iter().map(|row| of(row.0)));
+    out.set_item("sensor", column(|row| row.sensor.into())?)?;
+    out.set_item("fired_us", column(|row| row.fired_us)?)?;
+    out.set_item("period", column(|row| row.period.into())?)?;
+    out.set_item("phase", column(|row| row.phase.into())?)?;
+    let echo = |row: &(&Firing, bool)| row.0.t_echo_us.map_or(f64::NAN, f64::from);
+    out.set_item("t_echo_us", read_only(py, rows.iter().map(echo))?)?;
+    out.set_item("rejected", column(|row| row.rejected.map_or(-1, i64::from))?)?;
+    out.set_item("sends", read_only(py, rows.iter().map(|row| row.1))?)?;
+    out.set_item("clock", log.clock)?;
+    out.set_item("damage", log.damage)?;
+    Ok(out)
+}
+
+/// A log from columns of equal length; the places of its firings, in their order, among the columns.
+fn log_of(
+    [sensor, fired_us, period, phase, rejected]: [PyReadonlyArray1<'_, i64>; 5],
+    t_echo_us: &PyReadonlyArray1<'_, f64>,
+    sends: &PyReadonlyArray1<'_, bool>,
+) -> PyResult<(FiringLog, Vec<usize>)> {
+    let (sensor, fired_us, period) = (sensor.as_array(), fired_us.as_array(), period.as_array());
+    let (phase, rejected, t_echo_us, sends) =
+        (phase.as_array(), rejected.as_array(), t_echo_us.as_array(), sends.as_array());
+    let length = sensor.len();
+    let lengths = [fired_us.len(), period.len(), phase.len(), rejected.len(), t_echo_us.len(), sends.len()];
+    if lengths.iter().any(|&other| other != length) {
+        return Err(ArgumentError::new_err(format!(
+            "columns of {length} and {lengths:?} rows; expected equal lengths"
+        )));
+    }
+    let (mut firings, mut listened) = (Vec::new(), Vec::new());
+    for row in 0..length {
+        let bad = |name: &str, value: &dyn std::fmt::Display, expected: &str| {
+            ArgumentError::new_err(format!("{name}[{row}] = {value}; expected {expected}"))
+        };
+        let echo = t_echo_us[row];
+        if !(echo.is_nan() || (0.0..4e9).contains(&echo)) {
+            return Err(bad("t_echo_us", &echo, "0 to 4e9, or NaN"));
+        }
+        let known = u8::try_from(sensor[row]).ok().filter(|&sensor| sensor < 64);
+        let firing = Firing {
+            sensor: known.ok_or_else(|| bad("sensor", &sensor[row], "0 to 63"))?,
+            fired_us: fired_us[row],
+            period: u32::try_from(period[row]).map_err(|_| bad("period", &period[row], "0 to 4294967295"))?,
+            phase: u8::try_from(phase[row]).map_err(|_| bad("phase", &phase[row], "0 to 255"))?,
+            t_echo_us: (!echo.is_nan()).then(|| echo.round() as u32),
+            rejected: (rejected[row] >= 0).then_some(rejected[row] == 1),
+        };
+        if sends[row] {
+            firings.push((row, firing));
+        } else {
+            listened.push(firing);
+        }
+    }
+    firings.sort_by_key(|firing| firing.1.fired_us);
+    let (places, firings) = firings.into_iter().unzip();
+    Ok((FiringLog { listened, ..FiringLog::new("columns", firings) }, places))
+}
+
+fn paths<'py>(py: Python<'py>, paths: &[FoundPath]) -> PyResult<Bound<'py, PyDict>> {
+    let out = PyDict::new(py);
+    let whole = |of: fn(&FoundPath) -> i64| read_only(py, paths.iter().map(of));
+    let number = |of: fn(&FoundPath) -> f64| read_only(py, paths.iter().map(of));
+    out.set_item("sender", whole(|path| path.sender.into())?)?;
+    out.set_item("receiver", whole(|path| path.receiver.into())?)?;
+    out.set_item("travel_us", number(|path| path.travel_us)?)?;
+    out.set_item("travel_error_us", number(|path| path.travel_error_us)?)?;
+    out.set_item("scatter_us", number(|path| path.scatter_us)?)?;
+    out.set_item("supported", whole(|path| path.offsets.0.into())?)?;
+    out.set_item("offsets", whole(|path| path.offsets.1.into())?)?;
+    out.set_item("accidents", number(|path| path.accidents)?)?;
+    out.set_item("readings", whole(|path| path.readings.into())?)?;
+    out.set_item("heard", number(|path| path.heard)?)?;
+    out.set_item("first_period", whole(|path| path.periods.0.into())?)?;
+    out.set_item("last_period", whole(|path| path.periods.1.into())?)?;
+    Ok(out)
+}
+
+/// Which sensors fool each other, from columns.
+#[pyfunction]
+#[pyo3(name = "_diagnose")]
+#[expect(clippy::too_many_arguments, reason = "each of them once, from one place")]
+pub(crate) fn diagnose<'py>(
+    py: Python<'py>,
+    sensor: PyReadonlyArray1<'py, i64>,
+    fired_us: PyReadonlyArray1<'py, i64>,
+    period: PyReadonlyArray1<'py, i64>,
+    phase: PyReadonlyArray1<'py, i64>,
+    rejected: PyReadonlyArray1<'py, i64>,
+    t_echo_us: PyReadonlyArray1<'py, f64>,
+    sends: PyReadonlyArray1<'py, bool>,
+    tolerance_us: u32,
+    max_travel_us: u32,
+) -> PyResult<Bound<'py, PyDict>> {
+    let rows = sensor.as_array().len();
+    let (log, places) = log_of([sensor, fired_us, period, phase, rejected], &t_echo_us, &sends)?;
+    let settings = Settings { tolerance_us, max_travel_us, ..Settings::default() };
+    let found: Diagnosis = in_background(py, None, move |_| Ok(eeruf_logs::diagnose(&log, &settings)))?;
+    let (mut sender, mut travel_us, mut sure) = (vec![-1_i64; rows], vec![f64::NAN; rows], vec![f64::NAN; rows]);
+    for (&place, named) in places.iter().zip(&found.named) {
+        if let Some(named) = named {
+            (sender[place], travel_us[place], sure[place]) = (named.sender.into(), named.travel_us, named.sure);
+        }
+    }
+    let out = PyDict::new(py);
+    out.set_item("paths", paths(py, &found.paths)?)?;
+    out.set_item("sender", read_only(py, sender.into_iter())?)?;
+    out.set_item("travel_us", read_only(py, travel_us.into_iter())?)?;
+    out.set_item("sure", read_only(py, sure.into_iter())?)?;
+    out.set_item("faults", found.faults.iter().filter_map(fault).collect::<Vec<_>>())?;
+    out.set_item("most_offsets", found.most_offsets)?;
+    Ok(out)
+}
+
+/// The name of a fault, and its sensors.
+fn fault(fault: &Fault) -> Option<(&'static str, Vec<u8>)> {
+    match *fault {
+        Fault::Deaf { sensor, .. } => Some(("deaf", vec![sensor])),
+        Fault::Chattering { sensor, .. } => Some(("chattering", vec![sensor])),
+        Fault::Swapped { sensors: (a, b), .. } => Some(("swapped", vec![a, b])),
+        _ => None,
+    }
+}
+
+/// Who hears whom, from the columns of a measuring run.
+#[pyfunction]
+#[pyo3(name = "_survey")]
+#[expect(clippy::too_many_arguments, reason = "each of them once, from one place")]
+pub(crate) fn survey<'py>(
+    py: Python<'py>,
+    sensor: PyReadonlyArray1<'py, i64>,
+    fired_us: PyReadonlyArray1<'py, i64>,
+    period: PyReadonlyArray1<'py, i64>,
+    phase: PyReadonlyArray1<'py, i64>,
+    rejected: PyReadonlyArray1<'py, i64>,
+    t_echo_us: PyReadonlyArray1<'py, f64>,
+    sends: PyReadonlyArray1<'py, bool>,
+    tolerance_us: u32,
+    until_us: u32,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (log, _) = log_of([sensor, fired_us, period, phase, rejected], &t_echo_us, &sends)?;
+    let settings = PathSettings { tolerance_us, ..PathSettings::default() };
+    let found = in_background(py, None, move |_| Ok(eeruf_logs::survey(&log, &settings)))?;
+    let out = PyDict::new(py);
+    out.set_item("paths", paths(py, &found.paths)?)?;
+    out.set_item("conflicts", found.conflicts(until_us))?;
+    Ok(out)
+}

@@ -1,0 +1,238 @@
+"""Logs of robots: the ranges of bags, MCAP and CSV files, and what a ring's log of firings says about it.
+
+Everything is read by the same code as ``eeruf replay``, ``eeruf diagnose`` and ``eeruf survey``; docs/logs.md says what is read.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from eeruf import _eeruf
+from eeruf._eeruf import LogError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Diagnosis", "Firings", "LogError", "Ranges", "Surveyed", "diagnose", "read_firings", "read_log", "survey"]
+
+
+class _Columns:
+    _columns: tuple[str, ...] = ()
+
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """Return the columns by their names."""
+        return {name: getattr(self, name) for name in self._columns}
+
+    def to_pandas(self) -> Any:
+        """Make a pandas data frame, a row for each reading."""
+        import pandas as pd
+
+        return pd.DataFrame(self.columns())
+
+    def to_polars(self) -> Any:
+        """Make a polars data frame, a row for each reading."""
+        import polars as pl
+
+        return pl.DataFrame(self.columns())
+
+    def __len__(self) -> int:
+        return len(getattr(self, self._columns[0]))
+
+
+@dataclass(frozen=True, eq=False)
+class Ranges(_Columns):
+    """The ranges of a log: arrays of equal length, in the order in which they were recorded.
+
+    ``sensor`` counts through ``names`` (also ``topics`` and ``frames``), ``at_ns`` is the header's time in nanoseconds, and 0 where
+    there is none. ``range_m`` is ``inf`` without an echo and ``-inf`` for too close, as in REP 117. ``variance`` is NaN where the
+    message has none. ``damage`` says what could not be read, ``skipped`` which topics were left out, and why.
+    """
+
+    sensor: NDArray[np.int64]
+    at_ns: NDArray[np.int64]
+    range_m: NDArray[np.float64]
+    min_range_m: NDArray[np.float64]
+    max_range_m: NDArray[np.float64]
+    variance: NDArray[np.float64]
+    names: list[str]
+    topics: list[str]
+    frames: list[str]
+    damage: list[str]
+    skipped: list[tuple[str, str]]
+
+    _columns = ("sensor", "at_ns", "range_m", "min_range_m", "max_range_m", "variance")
+
+    def echo_us(self, *, speed_of_sound: float = 343.2) -> NDArray[np.float64]:
+        """Return the times from firing to echo in microseconds; NaN without an echo, and for too close."""
+        seen = np.isfinite(self.range_m) & (self.range_m < self.max_range_m) & (self.range_m >= self.min_range_m)
+        return np.where(seen, 2e6 * np.where(seen, self.range_m, 0.0) / speed_of_sound, np.nan)
+
+
+@dataclass(frozen=True, eq=False)
+class Firings(_Columns):
+    """A ring's log of firings: arrays of equal length.
+
+    ``t_echo_us`` is the raw time from firing to the first edge, NaN without one; ``rejected`` is 1 if the ring rejected the reading,
+    0 if not, -1 if the log does not say; ``sends`` is false where a sensor only listened.
+    """
+
+    sensor: NDArray[np.int64]
+    fired_us: NDArray[np.int64]
+    period: NDArray[np.int64]
+    phase: NDArray[np.int64]
+    t_echo_us: NDArray[np.float64]
+    rejected: NDArray[np.int64]
+    sends: NDArray[np.bool_]
+    clock: str = "unnamed"
+    damage: str | None = None
+
+    _columns = ("sensor", "fired_us", "period", "phase", "t_echo_us", "rejected", "sends")
+
+    @classmethod
+    def of(
+        cls,
+        *,
+        sensor: ArrayLike,
+        fired_us: ArrayLike,
+        period: ArrayLike,
+        phase: ArrayLike,
+        t_echo_us: ArrayLike,
+        rejected: ArrayLike | None = None,
+        sends: ArrayLike | None = None,
+    ) -> Firings:
+        """Make a log of arrays, as of ``sim.Readings`` or of a data frame's columns."""
+        whole = [np.ascontiguousarray(column, dtype=np.int64) for column in (sensor, fired_us, period, phase)]
+        rows = len(whole[0])
+        made = np.full(rows, -1, dtype=np.int64) if rejected is None else np.ascontiguousarray(rejected, dtype=np.int64)
+        sent = np.ones(rows, dtype=np.bool_) if sends is None else np.ascontiguousarray(sends, dtype=np.bool_)
+        return cls(*whole, np.ascontiguousarray(t_echo_us, dtype=np.float64), made, sent)
+
+    def _arguments(self) -> tuple[Any, ...]:
+        whole = (self.sensor, self.fired_us, self.period, self.phase, self.rejected)
+        return (*whole, self.t_echo_us, self.sends)
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """What a log says about a ring.
+
+    ``paths`` are columns of equal length, by receiver, best supported first; a sensor's own echo is a path from itself. For each
+    firing ``sender`` is whose sound its reading is, -1 where that is not sure, ``travel_us`` how long it travelled, ``sure`` how sure
+    that is. ``faults`` are ``("deaf", [sensor])``, ``("chattering", [sensor])`` and ``("swapped", [one, other])``.
+    ``most_offsets`` is at how many offsets two firings stand to each other at most; below about five nothing can be named.
+    """
+
+    paths: dict[str, NDArray[Any]]
+    sender: NDArray[np.int64]
+    travel_us: NDArray[np.float64]
+    sure: NDArray[np.float64]
+    faults: list[tuple[str, list[int]]]
+    most_offsets: int
+
+
+@dataclass(frozen=True, eq=False)
+class Surveyed:
+    """What a measuring run found.
+
+    ``paths`` as in :class:`Diagnosis`; ``conflicts`` are ``(x, y, us)``: pairs that hear each other in time, and the longest such
+    travel time. ``[(x, y) for x, y, _ in conflicts]`` is a ``layout`` for :func:`eeruf.design`.
+    """
+
+    paths: dict[str, NDArray[Any]]
+    conflicts: list[tuple[int, int, float]]
+
+
+def read_log(
+    path: str | os.PathLike[str],
+    *,
+    time: str | None = None,
+    time_unit: Literal["s", "ms", "us", "ns"] = "s",
+    ranges: Iterable[str] = (),
+    range_unit: Literal["m", "cm", "mm", "in", "us"] = "m",
+    sensor: str | None = None,
+    speed_of_sound: float = 343.2,
+    no_echo_m: float = 5.0,
+) -> Ranges:
+    """Read the ranges of an MCAP file, a ROS 2 bag (its folder), a ROS 1 bag or a CSV file.
+
+    Of a damaged file what can be read is, and ``damage`` says what cannot. All but ``path`` is for CSV.
+
+    Args:
+        path: the log.
+        time: the column with the time.
+        time_unit: its unit.
+        ranges: the columns with ranges; if none is given, each column whose first value is a number.
+        range_unit: their unit; ``us`` are microseconds from firing to echo.
+        sensor: the column that says whose reading a row is.
+        speed_of_sound: in m/s, for ranges in ``us``.
+        no_echo_m: from this range on there was no echo.
+
+    Raises:
+        LogError: the log cannot be read.
+        ArgumentError: an argument is wrong.
+
+    Example:
+        >>> import eeruf, pathlib, tempfile
+        >>> file = pathlib.Path(tempfile.mkdtemp()) / "log.csv"
+        >>> _ = file.write_text("t,left,right\\n0.00,1.20,\\n0.06,1.21,2.50\\n")
+        >>> log = eeruf.read_log(file, time="t")
+        >>> log.names, log.range_m.tolist()
+        (['left', 'right'], [1.2, inf, 1.21, 2.5])
+
+    """
+    found = _eeruf._read_log(
+        os.fspath(path), time, time_unit, list(ranges), range_unit, sensor, speed_of_sound, no_echo_m
+    )
+    return Ranges(**found)
+
+
+def read_firings(path: str | os.PathLike[str]) -> Firings:
+    """Read a ring's log of firings, CSV or MCAP; docs/diagnose.md has the format.
+
+    Raises:
+        LogError: the log cannot be read.
+
+    """
+    return Firings(**_eeruf._read_firings(os.fspath(path)))
+
+
+def _firings(log: Firings | str | os.PathLike[str]) -> Firings:
+    return log if isinstance(log, Firings) else read_firings(log)
+
+
+def diagnose(
+    log: Firings | str | os.PathLike[str], *, tolerance_us: int = 75, max_travel_us: int = 80_000
+) -> Diagnosis:
+    """Say from a log of firings which sensors fool each other, whose sound each reading is, and what is broken.
+
+    Args:
+        log: a file, or firings.
+        tolerance_us: by how much a reading may differ from what a path predicts, about four times the jitter.
+        max_travel_us: for how long sound is followed.
+
+    Raises:
+        LogError: the log cannot be read.
+
+    """
+    return Diagnosis(**_eeruf._diagnose(*_firings(log)._arguments(), tolerance_us, max_travel_us))
+
+
+def survey(log: Firings | str | os.PathLike[str], *, tolerance_us: int = 100, until_us: int = 15_000) -> Surveyed:
+    """Say from a measuring run who hears whom; docs/survey.md says how to make one.
+
+    Args:
+        log: a file, or firings.
+        tolerance_us: by how much edges of one path may differ, about four times the jitter.
+        until_us: pairs that hear each other within this time are conflicts.
+
+    Raises:
+        LogError: the log cannot be read.
+
+    """
+    return Surveyed(**_eeruf._survey(*_firings(log)._arguments(), tolerance_us, until_us))

@@ -1,0 +1,127 @@
+//! `eeruf dataset`: simulated readings with what caused each of them.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use eeruf_sim::experiments::set_one::{Alcove, SetOneOptions, world_of};
+use eeruf_sim::experiments::set_two::{SetTwoOptions, drive};
+use eeruf_sim::{Method, Options, Physics, World, simulate_while, sweep, world_file};
+use serde_json::json;
+
+use super::answer::Answer;
+use crate::files::error::InputError;
+use crate::files::truth::{readings_csv, track_csv};
+use crate::files::write::write;
+use crate::report::json::to_json;
+use crate::report::watch::Watch;
+
+/// Write simulated readings with ground truth, in alcoves and on courses of poles: what each sensor read, what it would
+/// have read alone, and whose sound it was.
+///
+/// docs/dataset.md is its data card. The same arguments write the same files.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The folder, which is made
+    #[arg(value_name = "OUT")]
+    out: PathBuf,
+    /// How many alcoves of Set I
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(..=1000))]
+    alcoves: u64,
+    /// How many courses of Set II
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(..=1000))]
+    courses: u64,
+    /// The number of the first alcove and of the first course
+    #[arg(long, value_name = "N", default_value_t = 60_000)]
+    first: u64,
+    /// How many periods of 60 ms in each alcove
+    #[arg(long, value_name = "N", default_value_t = 500, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    periods: u32,
+    /// Which effects there are: plain, or default (see docs/physics.md)
+    #[arg(long, value_name = "PRESET", default_value = "default")]
+    physics: Physics,
+}
+
+/// One that believes everything, the paper's, and time hopping.
+const METHODS: [Method; 3] = [Method::Conventional, Method::Eeruf, Method::EerufHopping];
+
+/// One file of readings.
+#[derive(Clone, Copy)]
+enum Job {
+    Alcove(u64, Method),
+    Course(u64, Method),
+}
+
+pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    let bad = |error: &dyn std::fmt::Display| InputError::new(&args.out, None, error);
+    let end = |count: u64| args.first.checked_add(count).ok_or_else(|| bad(&"--first is too large"));
+    let (alcoves, courses) = (args.first..end(args.alcoves)?, args.first..end(args.courses)?);
+    let each = |number: u64| METHODS.map(|method| (number, method));
+    let mut jobs: Vec<_> = alcoves.flat_map(each).map(|(number, method)| Job::Alcove(number, method)).collect();
+    jobs.extend(courses.flat_map(each).map(|(number, method)| Job::Course(number, method)));
+    let watch = std::sync::Mutex::new((Watch::new(), 0));
+    let go_on = |is_done: bool| {
+        let mut shared = watch.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let (watch, done) = &mut *shared;
+        *done += usize::from(is_done);
+        watch.go_on(|| format!("{done} of {} files", jobs.len()))
+    };
+    let written = sweep(&jobs, |&job| {
+        match job {
+            Job::Alcove(number, method) => alcove(args, number, method, &|_| go_on(false))?,
+            Job::Course(number, method) => course(args, number, method, &|_| go_on(false))?,
+        }
+        go_on(true);
+        Ok::<_, InputError>(())
+    });
+    written.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let about = json!({
+        "about": "simulated ultrasonic rings with ground truth; docs/dataset.md of eeruf says what is in it",
+        "eeruf": env!("CARGO_PKG_VERSION"),
+        "physics": args.physics.name(),
+        "first": args.first, "alcoves": args.alcoves, "courses": args.courses, "periods": args.periods,
+        "methods": METHODS.map(Method::as_str),
+        "licence": "CC0-1.0",
+    });
+    write(&args.out.join("dataset.json"), to_json(&about) + "\n")?;
+    Ok(Answer::Yes)
+}
+
+fn folder(args: &Args, kind: &str, number: u64) -> Result<PathBuf, InputError> {
+    let folder = args.out.join(kind).join(number.to_string());
+    fs::create_dir_all(&folder).map_err(|error| InputError::new(&folder, None, error))?;
+    Ok(folder)
+}
+
+fn alcove(args: &Args, number: u64, method: Method, go_on: &dyn Fn(f64) -> bool) -> Result<(), InputError> {
+    let folder = folder(args, "alcoves", number)?;
+    let bad = |error: &dyn std::fmt::Display| InputError::new(&folder, None, error);
+    let options = SetOneOptions { physics: args.physics, ..SetOneOptions::default() };
+    let world = world_of(&options, &Alcove::random(number), method).map_err(|error| bad(&error))?.with_seed(number);
+    if method == METHODS[0] {
+        write(&folder.join("scene.toml"), scene_file(&world))?;
+    }
+    let readings =
+        simulate_while(&world, method, &Options::periods(args.periods), go_on).map_err(|error| bad(&error))?;
+    write(&file(&folder, method), readings_csv(&readings))
+}
+
+fn course(args: &Args, number: u64, method: Method, go_on: &dyn Fn(f64) -> bool) -> Result<(), InputError> {
+    let folder = folder(args, "courses", number)?;
+    let bad = |error: &dyn std::fmt::Display| InputError::new(&folder, None, error);
+    let options = SetTwoOptions { physics: args.physics, ..SetTwoOptions::default() };
+    let driven = drive(&options, method, number, go_on).map_err(|error| bad(&error))?;
+    if method == METHODS[0] {
+        write(&folder.join("scene.toml"), scene_file(&driven.world))?;
+    }
+    write(&folder.join(format!("{method}-track.csv")), track_csv(&driven.run.track))?;
+    write(&file(&folder, method), readings_csv(&driven.readings))
+}
+
+fn scene_file(world: &World) -> String {
+    let (noise, physics) = (world.noise(), world.physics());
+    world_file(world.scene(), world.robots(), &noise, &physics, world.max_order(), world.seed())
+}
+
+fn file(folder: &Path, method: Method) -> PathBuf {
+    folder.join(format!("{method}.csv"))
+}

@@ -1,0 +1,162 @@
+//! `eeruf survey`: who hears whom, from a measuring run.
+
+use std::path::{Path, PathBuf};
+
+use eeruf_core::{Micros, SurveyPlan};
+use eeruf_logs::{FiringLog, PathSettings, Surveyed, survey};
+use eeruf_sim::{Physics, World};
+
+use super::answer::Answer;
+use crate::files::error::InputError;
+use crate::files::firings::csv;
+use crate::files::survey::{TruePath, simulate, true_paths};
+use crate::files::toml::read_world;
+use crate::files::write::write;
+use crate::report::json::to_json;
+use crate::report::survey::{Found, RingNeeds, Scenes, describe, json, ring_file, who_hears_whom};
+
+/// Say from a measuring run which sensors hear each other, along paths of which length and how sure, and write a ring
+/// file for `design`.
+///
+/// In the run each sensor fires alone, then each ordered pair with several times between the two, after silence:
+/// eeruf_core::Survey does so, and the Arduino example Survey. What moves in a sensor with the time between is the
+/// other's sound; its own echo does not move. The log is CSV with the columns sensor, fired_us, period (the slot),
+/// phase and t_echo_us, or MCAP; a column `sends` that is 0 says that a sensor only listened.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The log
+    #[arg(value_name = "LOG", required_unless_present = "simulate")]
+    file: Option<PathBuf>,
+    /// Survey the first robot of a scene, and compare what is found with the paths that there are; of several scenes,
+    /// a line for each
+    #[arg(long, value_name = "SCENE.toml", conflicts_with = "file", num_args = 1..)]
+    simulate: Vec<PathBuf>,
+    /// Write the simulated log
+    #[arg(long, value_name = "LOG.csv", requires = "simulate")]
+    out: Option<PathBuf>,
+    /// Simulated: other effects than the scene's: plain, or default (see docs/physics.md)
+    #[arg(long, value_name = "PRESET", requires = "simulate")]
+    physics: Option<Physics>,
+    /// Simulated: how many times there are between the two of a pair, from 0 on
+    #[arg(long, value_name = "N", default_value_t = 20, requires = "simulate")]
+    #[arg(value_parser = clap::value_parser!(u8).range(2..))]
+    leads: u8,
+    /// Simulated: from each of these times to the next
+    #[arg(long, value_name = "N", default_value_t = 750, requires = "simulate")]
+    #[arg(value_parser = clap::value_parser!(u32).range(10..=100_000))]
+    lead_step_us: u32,
+    /// By how much edges of one path may differ: about four times the jitter
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=5000))]
+    tolerance_us: u32,
+    /// Write a ring file for `design`, in which the pairs that hear each other are neighbours, each with an interval of
+    /// its own
+    #[arg(long, value_name = "RING.toml")]
+    ring: Option<PathBuf>,
+    /// Sensors that hear each other within this time are neighbours; what comes later is left to alternating waits
+    #[arg(long, value_name = "N", default_value_t = 15_000, value_parser = clap::value_parser!(u32).range(1000..=120_000))]
+    until_us: u32,
+    /// The ring file's t_delta_us
+    #[arg(long, value_name = "N", default_value_t = 999, requires = "ring")]
+    t_delta_us: u32,
+    /// The ring file's window_us, if not the longest echo time of the log
+    #[arg(long, value_name = "N", requires = "ring")]
+    window_us: Option<u32>,
+    /// In m/s, for the lengths of paths
+    #[arg(long, default_value_t = 343.2, value_name = "C")]
+    speed_of_sound: f64,
+    /// Draw who hears whom, as SVG or, if the name ends in .png, as PNG
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    let file = args.file.as_ref().or(args.simulate.first()).map_or(Path::new(""), PathBuf::as_path);
+    if !(args.speed_of_sound > 0.0 && args.speed_of_sound.is_finite()) {
+        let message = format!("--speed-of-sound {}; expected a number above zero", args.speed_of_sound);
+        return Err(InputError::new(file, None, message));
+    }
+    if args.simulate.len() > 1 {
+        return several(args);
+    }
+    let simulated = args.simulate.first().map(|scene| simulated(args, scene)).transpose()?;
+    let (log, truth) = match simulated {
+        Some((log, truth, physics)) => (log, Some((truth, physics))),
+        None => (FiringLog::read(file)?, None),
+    };
+    let surveyed = survey(&log, &settings(args));
+    let found = found(args, file, &log, &surveyed, truth.as_ref());
+    if let Some(ring) = &args.ring {
+        let needs = RingNeeds {
+            t_delta_us: args.t_delta_us,
+            window_us: args.window_us.unwrap_or(surveyed.window_us.next_multiple_of(1000)),
+            tolerance_us: args.tolerance_us,
+        };
+        write(ring, ring_file(&found, &needs))?;
+    }
+    if let Some(file) = &args.svg {
+        who_hears_whom(&found).save(file)?;
+    }
+    if args.json {
+        println!("{}", to_json(&json(&found)));
+    } else {
+        print!("{}", describe(&found));
+    }
+    match &log.damage {
+        Some(damage) => Err(InputError::new(file, None, damage)),
+        None => Ok(Answer::Yes),
+    }
+}
+
+fn settings(args: &Args) -> PathSettings {
+    PathSettings { tolerance_us: args.tolerance_us, ..PathSettings::default() }
+}
+
+fn found<'a>(
+    args: &Args,
+    file: &'a Path,
+    log: &'a FiringLog,
+    surveyed: &'a Surveyed,
+    truth: Option<&'a (Vec<TruePath>, String)>,
+) -> Found<'a> {
+    let truth = truth.map(|(paths, physics)| (&paths[..], physics.as_str()));
+    Found { file, log, surveyed, until_us: args.until_us, speed_of_sound: args.speed_of_sound, truth }
+}
+
+/// A line for each scene, and their sum.
+fn several(args: &Args) -> Result<Answer, InputError> {
+    let alone = [("--out", args.out.is_some()), ("--ring", args.ring.is_some()), ("--svg", args.svg.is_some())];
+    if let Some((name, _)) = alone.into_iter().chain([("--json", args.json)]).find(|(_, given)| *given) {
+        return Err(InputError::new(&args.simulate[0], None, format!("{name} with several scenes; expected one")));
+    }
+    let mut lines = Scenes::default();
+    for scene in &args.simulate {
+        let (log, truth, physics) = simulated(args, scene)?;
+        let surveyed = survey(&log, &settings(args));
+        lines.push(&found(args, scene, &log, &surveyed, Some(&(truth, physics))));
+    }
+    print!("{}", lines.describe());
+    Ok(Answer::Yes)
+}
+
+/// The log of a simulated survey, the paths that there are, and the name of the physics.
+fn simulated(args: &Args, scene: &Path) -> Result<(FiringLog, Vec<TruePath>, String), InputError> {
+    let bad = |error: &dyn std::fmt::Display| InputError::new(scene, None, error);
+    let mut world: World = read_world(scene)?;
+    if let Some(physics) = args.physics {
+        world = world.with_physics(physics).map_err(|error| bad(&error))?;
+    }
+    let Some(robot) = world.robots().first() else { return Err(bad(&"no robot")) };
+    let plan = SurveyPlan::new(robot.sensors.len() as u8)
+        .with_leads(args.leads, Micros::new(args.lead_step_us))
+        .with_window(robot.window, Micros::from_millis(57));
+    let log = simulate(&world, plan).map_err(|error| bad(&error))?;
+    if let Some(out) = &args.out {
+        write(out, csv(&log, out)?)?;
+    }
+    let truth = true_paths(&world).map_err(|error| bad(&error))?;
+    let physics = world.physics().name().unwrap_or("the scene's own").to_owned();
+    Ok((log, truth, physics))
+}

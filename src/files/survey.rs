@@ -1,0 +1,73 @@
+//! A simulated survey: its log, as firmware would write it, and the paths that there are.
+
+use eeruf_core::{Instant, Micros, Survey, SurveyEvent, SurveyPlan};
+use eeruf_logs::{Firing, FiringLog};
+use eeruf_sim::{CrosstalkMatrix, CrosstalkQuery, Limits, LockStep, PathsError, Tracer, World};
+
+use super::firings::CLOCK;
+
+/// A path that is loud enough to be heard, or would be if it faded up by 6 dB.
+pub(crate) struct TruePath {
+    pub(crate) sender: u8,
+    pub(crate) receiver: u8,
+    pub(crate) travel_us: f64,
+    /// By how much it is above what is just heard; below it is negative.
+    pub(crate) level_db: f64,
+}
+
+/// Surveys the first robot of a world.
+pub(crate) fn simulate(world: &World, plan: SurveyPlan) -> Result<FiringLog, PathsError> {
+    const BLOCK: u64 = 1 << 30;
+    let mut outside = LockStep::new(world)?;
+    let mut survey = Survey::new(plan, Instant::from_micros(0));
+    let (mut now_us, mut firings, mut fired_us) = (0_u64, Vec::new(), [0_u64; 256]);
+    while let Some(due) = survey.next_deadline() {
+        // Deadlines are less than 2^30 us ahead.
+        let ahead = due.since(Instant::from_wide(now_us)).as_micros();
+        now_us += if u64::from(ahead) < BLOCK { ahead.into() } else { 0 };
+        while let Some(event) = survey.poll(Instant::from_wide(now_us)) {
+            match event {
+                SurveyEvent::Fire { sensor } => {
+                    outside.fire(sensor.into(), now_us * 1000)?;
+                    fired_us[usize::from(sensor)] = now_us;
+                }
+                // What it heard cannot change any more: its window is over.
+                SurveyEvent::Row(row) => {
+                    let fired = fired_us[usize::from(row.sensor)];
+                    let heard =
+                        outside.hears_at_ns(row.sensor.into()).map(|at| Micros::new((at / 1000 - fired) as u32));
+                    firings.push(Firing {
+                        sensor: row.sensor,
+                        fired_us: fired as i64,
+                        period: row.slot,
+                        phase: 0,
+                        t_echo_us: heard.filter(|&heard| heard < plan.window()).map(Micros::as_micros),
+                        rejected: None,
+                    });
+                }
+            }
+        }
+    }
+    Ok(FiringLog::new(CLOCK, firings))
+}
+
+/// The paths between the sensors of the first robot, its own echoes among them.
+pub(crate) fn true_paths(world: &World) -> Result<Vec<TruePath>, PathsError> {
+    let Some(robot) = world.robots().first() else { return Ok(vec![]) };
+    let (scene, transducer) = (world.scene(), &robot.transducer);
+    let ring: Vec<_> = world.sensors(0, 0.0).collect();
+    let floor = transducer.detection_floor(scene.air());
+    let mut matrix = CrosstalkMatrix::new();
+    let limits = Limits::order(world.max_order());
+    let mut tracer = Tracer::new();
+    (tracer.pole_shadows, tracer.edges) = (world.physics().shadows, world.physics().edges);
+    matrix.compute(&mut tracer, &CrosstalkQuery { scene, sensors: &ring, transducer, limits, floor: 0.5 * floor })?;
+    let c = scene.air().speed_of_sound();
+    let path = |path: &eeruf_sim::CriticalPath| TruePath {
+        sender: path.emitter as u8,
+        receiver: path.receiver as u8,
+        travel_us: 1e6 * path.length_m / c,
+        level_db: 20.0 * (transducer.received(path.amplitude, path.length_m, scene.air()) / floor).log10(),
+    };
+    Ok(matrix.paths().iter().map(path).collect())
+}

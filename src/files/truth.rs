@@ -1,0 +1,62 @@
+//! Readings with what caused them, as CSV: a log of firings that `diagnose` reads, with the ground truth beside it.
+
+use std::fmt::Write as _;
+
+use eeruf_sim::experiments::set_two::Place;
+use eeruf_sim::{Cause, Readings};
+
+use super::firings::{CLOCK, firing};
+
+/// The readings of the first robot. Sensors and robots from 0; times in whole microseconds, so that machines whose
+/// sines differ in the last bit agree.
+pub(crate) fn readings_csv(readings: &Readings) -> String {
+    let mut text = format!(
+        "# clock: {CLOCK}\nsensor,fired_us,period,phase,t_echo_us,reading,alone_us,cause,sender,sender_robot,length_mm,\
+         bounces\n"
+    );
+    let mut order: Vec<_> = (0..readings.len()).filter(|&k| readings.robot[k] == 0).collect();
+    order.sort_by(|&a, &b| readings.fired_s[a].total_cmp(&readings.fired_s[b]));
+    let number = |value: f64| if value.is_nan() { String::new() } else { format!("{value:.0}") };
+    for k in order {
+        let of = firing(readings, k);
+        let path = readings.path_of(k).map_or_else(
+            || ",,,".to_owned(),
+            |path| {
+                let (sender, length_mm) = (path.emitter, number(1000.0 * path.length_m));
+                format!("{},{},{length_mm},{}", sender.sensor, sender.robot, path.order)
+            },
+        );
+        let (echo, alone) = (number(readings.earliest_us[k].trunc()), number(readings.reference_us[k]));
+        // Writing to a string does not fail.
+        _ = writeln!(
+            text,
+            "{},{},{},{},{echo},{},{alone},{},{path}",
+            of.sensor,
+            of.fired_us,
+            of.period,
+            of.phase,
+            readings.kind[k].as_str(),
+            cause(readings.cause[k]),
+        );
+    }
+    text
+}
+
+fn cause(cause: Cause) -> &'static str {
+    match cause {
+        Cause::Nothing => "nothing",
+        Cause::Own => "own",
+        Cause::Stale => "stale",
+        Cause::Crosstalk => "crosstalk",
+        Cause::External => "external",
+    }
+}
+
+/// Where a robot was.
+pub(crate) fn track_csv(track: &[Place]) -> String {
+    let mut text = "time_s,x_m,y_m,heading_rad,speed_m_s\n".to_owned();
+    for Place { time_s, x_m, y_m, heading_rad, speed_m_s } in track {
+        _ = writeln!(text, "{time_s:.3},{x_m:.4},{y_m:.4},{heading_rad:.4},{speed_m_s:.3}");
+    }
+    text
+}

@@ -1,0 +1,87 @@
+"""Logs of robots: the same bags as Rust reads, and what a ring's log of firings says."""
+
+from pathlib import Path
+from typing import Any
+
+import eeruf
+import numpy as np
+import pytest
+from eeruf import sim
+
+BAGS = Path(__file__).parents[2] / "crates/eeruf-logs/tests/bags"
+
+
+def simulated(method: Any, periods: int) -> tuple[eeruf.logs.Firings, sim.Readings]:
+    """Firings as firmware would log them, and the readings with what caused them."""
+    scene = sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))
+    readings = sim.simulate(scene, method, periods=periods)
+    fired_us = np.rint(1e6 * readings.fired_s)
+    firings = eeruf.logs.Firings.of(
+        sensor=readings.sensor,
+        fired_us=fired_us,
+        period=readings.period,
+        phase=readings.phase,
+        t_echo_us=readings.earliest_us,
+    )
+    return firings, readings
+
+
+@pytest.mark.parametrize("name", ["ros1-none.bag", "ros1-bz2.bag", "ros1-lz4.bag", "mcap-jazzy", "mcap-jazzy-zstd"])
+def test_bags_of_all_kinds_are_read_alike(name: str) -> None:
+    log, other = eeruf.read_log(BAGS / name), eeruf.read_log(BAGS / "mcap-humble")
+    assert log.damage == [] and len(log) == len(other) > 100
+    assert sorted(log.names) == sorted(other.names)
+    for sensor, topic in enumerate(other.names):
+        ranges = log.range_m[log.sensor == log.names.index(topic)]
+        np.testing.assert_array_equal(ranges, other.range_m[other.sensor == sensor])
+    assert (log.at_ns > 0).all() and not log.range_m.flags.writeable
+
+
+def test_columns_of_csv_have_any_names_and_units(tmp_path: Path) -> None:
+    file = tmp_path / "log.csv"
+    file.write_text("id,ms,cm\n7,100,120\n9,160,\n7,220,600\n")
+    log = eeruf.read_log(file, time="ms", time_unit="ms", ranges=["cm"], range_unit="cm", sensor="id", no_echo_m=4)
+    assert log.names == ["7", "9"] and log.sensor.tolist() == [0, 1, 0]
+    assert log.at_ns.tolist() == [100_000_000, 160_000_000, 220_000_000]
+    np.testing.assert_allclose(log.echo_us(speed_of_sound=343.2), [2.4e6 / 343.2, np.nan, np.nan])
+    assert list(log.to_pandas()["range_m"]) == list(log.range_m) and log.to_polars().height == 3
+    for wrong, said in [({"time_unit": "h"}, "time_unit"), ({"speed_of_sound": 0.0}, "speed_of_sound"), ({"time": "t"}, "t")]:
+        with pytest.raises(eeruf.EerufError, match=said):
+            eeruf.read_log(file, **wrong)  # type: ignore[arg-type]
+
+
+def test_a_cut_bag_gives_what_can_be_read_and_says_what_cannot(tmp_path: Path) -> None:
+    whole = (BAGS / "ros1-none.bag").read_bytes()
+    (tmp_path / "cut.bag").write_bytes(whole[: len(whole) // 2 + 2200])
+    log = eeruf.read_log(tmp_path / "cut.bag")
+    assert 0 < len(log) < len(eeruf.read_log(BAGS / "ros1-none.bag")) and "cut" in log.damage[0]
+    with pytest.raises(eeruf.LogError, match="not-there.bag"):
+        eeruf.read_log(tmp_path / "not-there.bag")
+
+
+def test_diagnose_names_senders_as_the_simulator_knows_them() -> None:
+    firings, readings = simulated("eeruf_hopping", 600)
+    found = eeruf.diagnose(firings)
+    named = (found.sender >= 0) & (found.sender != firings.sensor)
+    assert named.sum() > 300 and found.faults == [] and found.most_offsets > 5
+    sent_by = np.array([readings.paths["emitter"][path] if path >= 0 else -1 for path in readings.path])
+    assert (sent_by[named] == found.sender[named]).mean() > 0.98
+    assert set(found.paths["receiver"]) <= set(range(8)) and (found.sure[named] >= 0.99).all()
+    with pytest.raises(eeruf.EerufError, match="sensor"):
+        eeruf.diagnose(eeruf.logs.Firings.of(sensor=[64], fired_us=[0], period=[0], phase=[0], t_echo_us=[1.0]))
+
+
+def test_a_survey_says_who_hears_whom(tmp_path: Path) -> None:
+    rows = ["sensor,fired_us,period,phase,t_echo_us"]
+    # Sensor 1 hears sensor 0 after 5 ms and itself after 9 ms; sensor 0 hears itself after 7 ms.
+    slot = 0
+    for lead in range(0, 9_000, 500):
+        begins = 100_000 * slot
+        rows.append(f"0,{begins},{slot},0,7000")
+        rows.append(f"1,{begins + lead},{slot},0,{9000 if lead > 4000 else 5000 - lead}")
+        slot += 1
+    (tmp_path / "survey.csv").write_text("\n".join(rows) + "\n")
+    found = eeruf.survey(tmp_path / "survey.csv")
+    ((x, y, travel_us),) = found.conflicts
+    assert (x, y) == (0, 1) and abs(travel_us - 5000) < 1
+    assert len(eeruf.read_firings(tmp_path / "survey.csv")) == 2 * slot

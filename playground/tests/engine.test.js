@@ -95,7 +95,7 @@ test("the page's certificate is to the letter that of the program", () => {
 });
 
 /** What `eeruf study` prints of a summary: rounded as its tables and their digits are. @param {any} summary */
-function printed({ wrong_of_all, wrong_of_accepted, rejected, good_lost, age_ms, readings_per_s, starved, readings }) {
+function printed({ wrong_of_all, wrong_of_accepted, rejected, good_lost, age_ms, age_p99_ms, readings_per_s, starved, readings }) {
   const percent = (/** @type {number | null} */ share) => (share === null ? "-" : (100 * share).toFixed(2));
   return [
     readings,
@@ -103,8 +103,8 @@ function printed({ wrong_of_all, wrong_of_accepted, rejected, good_lost, age_ms,
     percent(wrong_of_accepted),
     percent(rejected),
     percent(good_lost),
-    age_ms.median.toFixed(0),
-    age_ms.p99.toFixed(0),
+    age_ms.toFixed(0),
+    age_p99_ms.toFixed(0),
     readings_per_s.toFixed(1),
     starved,
   ];

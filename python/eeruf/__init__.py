@@ -23,11 +23,13 @@ import importlib
 import sys
 from typing import TYPE_CHECKING
 
-from eeruf import experiments, logs, sim, tables
+from eeruf import logs, nav, sim, tables
 from eeruf._eeruf import (
     EXAMPLES,
     KINDS,
+    Adaptation,
     ArgumentError,
+    Blind,
     CertificateError,
     EchoFilter,
     EchoTracker,
@@ -41,6 +43,7 @@ from eeruf._eeruf import (
     HoppingSchedule,
     HoppingSettings,
     LogError,
+    LastAccepted,
     PathsError,
     PeriodEnded,
     Reading,
@@ -51,6 +54,7 @@ from eeruf._eeruf import (
     Schedule,
     ScheduleError,
     SearchError,
+    SensorWatch,
     SimulationError,
     Violation,
     WaitSearch,
@@ -64,12 +68,14 @@ from eeruf._sweep import sweep
 from eeruf.logs import diagnose, read_firings, read_log, survey
 
 if TYPE_CHECKING:
-    from eeruf import plot
+    from eeruf import experiments, plot
 
 __all__ = [
     "EXAMPLES",
     "KINDS",
+    "Adaptation",
     "ArgumentError",
+    "Blind",
     "CertificateError",
     "EchoFilter",
     "EchoTracker",
@@ -83,6 +89,7 @@ __all__ = [
     "HoppingSchedule",
     "HoppingSettings",
     "LogError",
+    "LastAccepted",
     "PathsError",
     "PeriodEnded",
     "Reading",
@@ -93,6 +100,7 @@ __all__ = [
     "Schedule",
     "ScheduleError",
     "SearchError",
+    "SensorWatch",
     "SimulationError",
     "Violation",
     "WaitSearch",
@@ -104,6 +112,7 @@ __all__ = [
     "example",
     "experiments",
     "logs",
+    "nav",
     "plot",
     "read_firings",
     "read_log",
@@ -139,9 +148,9 @@ def show_versions() -> None:
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> object:
-        # On first use: nobody who does not draw should wait for it.
-        if name == "plot":
-            return importlib.import_module("eeruf.plot")
+        # On first use: nobody who does not need them should wait for them.
+        if name in ("experiments", "plot"):
+            return importlib.import_module(f"eeruf.{name}")
         raise AttributeError(f"module 'eeruf' has no attribute {name!r}")
 
     def __dir__() -> list[str]:

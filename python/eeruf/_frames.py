@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _CODES = {"kind": _eeruf.KINDS, "cause": _eeruf.CAUSES}
 # What a file begins with, so that another version can say that it does not know it.
-_FORMAT = 1
+_FORMAT = 2
 
 
 def to_pandas(columns: dict[str, NDArray[Any]]) -> Any:

@@ -21,29 +21,3 @@ class HeardPaths(TypedDict):
     departure_rad: NDArray[np.float64]
     arrival_rad: NDArray[np.float64]
     walls: list[tuple[int, ...]]
-
-
-class Age(TypedDict):
-    """How old a sensor's last accepted reading is, in milliseconds."""
-
-    median: float
-    p99: float
-
-
-class Summary(TypedDict):
-    """The figures of :meth:`Readings.summary`; shares are fractions of 1."""
-
-    method: str
-    readings: int
-    accepted: int
-    wrong_of_all: float
-    crosstalk_of_all: float
-    wrong_of_accepted: float | None
-    rejected: float
-    good_lost: float | None
-    wrong_before_filter: float
-    age_ms: Age
-    readings_per_s: float
-    starved: int
-    blind: int
-    starved_in_part: int

@@ -4,6 +4,10 @@
 follows from it; ``CAUSES`` is what ``Readings.cause`` counts through.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from eeruf._eeruf import (
     CAUSES,
     EERUF_METHODS,
@@ -22,6 +26,19 @@ from eeruf._eeruf import (
     simulate_blocks,
 )
 
+if TYPE_CHECKING:
+    from eeruf._results import Summary
+else:
+
+    def __getattr__(name: str) -> object:
+        # On first use: what makes its like is most of what importing eeruf would cost.
+        if name == "Summary":
+            from eeruf._results import Summary
+
+            return Summary
+        raise AttributeError(f"module 'eeruf.sim' has no attribute {name!r}")
+
+
 __all__ = [
     "CAUSES",
     "EERUF_METHODS",
@@ -35,6 +52,7 @@ __all__ = [
     "RobotState",
     "Scene",
     "Simulation",
+    "Summary",
     "read_map",
     "simulate",
     "simulate_blocks",

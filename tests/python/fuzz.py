@@ -21,12 +21,13 @@ from typing import Any, Callable
 
 import eeruf
 import numpy as np
-from eeruf import sim, tables
+from eeruf import nav, sim, tables
 
 ANY: Any = eeruf
 ROBOT = sim.Robot((0.3, 0.7, 1.57), 4, 0.26, 0.1)
 ROOM = sim.Scene([[5, 2, -5, 2]], robots=[ROBOT])
 READINGS = sim.simulate(ROOM, periods=3)
+SLOW = tables.TABLE_I_D.scaled(5, 4)
 HOPPING = eeruf.HoppingSchedule(8, 60_000, 240)
 INLINE = ThreadPoolExecutor(1)
 PATHS = ROOM.paths((0, 0), [(1, 0), (2, 0)], 2)
@@ -52,7 +53,7 @@ class Chance:
             lambda: r.choice(["", "line", "ring", "eeruf", "soft", "a", "\0", "\ud800", "x" * 99, "period_us = 1"]),
             lambda: r.choice([np.int8(-3), np.uint8(200), np.uint64(2**64 - 1), np.float32(0.3), np.bool_(True)]),
             lambda: r.choice(
-                [b"", object(), ROBOT, ROOM, READINGS, PATHS, tables.TABLE_I_D, sim.Noise(), print, Chance]
+                [b"", object(), ROBOT, ROOM, READINGS, PATHS, tables.TABLE_I_D, sim.Noise(), nav.Himm(3), print, Chance]
             ),
             lambda: np.array(r.choices([0.0, 1.0, -2.0, math.nan, math.inf, 9_000.0], k=r.randrange(9))),
             lambda: np.array(r.choices([0.0, 1.0, 5.0, -3.0], k=12)).reshape(
@@ -138,6 +139,15 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: [*ANY.sim.simulate_blocks(ROOM, m("eeruf"), c.small(), m(3), block_periods=m(2))],
         lambda: ANY.sim.Simulation(m(ROOM), m("eeruf"), seed=m(3)).step(c.small(1)),
         lambda: ANY.sim.Simulation(ROOM).set_velocity(m(0), m(0.5), m(0.1)),
+        lambda: grid(c),
+        lambda: ANY.nav.Himm(m(9), m(0.1), growth=m(False)).cells(),
+        lambda: ANY.nav.Vfh(**{c.random.choice(["window", "smoothing", "threshold", "wide", "density_max"]): a()}),
+        lambda: ANY.Adaptation(m([tables.TABLE_I_D]), m(500), noisy=m(0.3), calm=m(0.1), window_periods=m(1)),
+        lambda: ANY.SensorWatch(m(4), m(3)).observe(m(ANY.Reading(m(3), m("first"), m(9_000))), m(0)),
+        lambda: ANY.SensorWatch(4).last_accepted(m(3), m(0)),
+        lambda: c.random.choice([ANY.Blind, ANY.LastAccepted, ANY.Fire])(a(), a()).to_dict(),
+        lambda: ANY.sim.Simulation(ROOM).robots[0].to_dict(),
+        lambda: READINGS.summary(m(500.0)).to_dict(),
         lambda: READINGS.summary(a()),
         lambda: READINGS.is_wrong(a()),
         lambda: tampered(c),
@@ -158,11 +168,38 @@ def ring(c: Chance) -> None:
     """A ring that is polled and disturbed at any time."""
     m = c.mostly
     live = ANY.Ring(tables.TABLE_I_D, m(500), m(0), window_us=m(36_000), blanking_us=m(0), consecutive=m(2))
+    watch, adaptation = ANY.SensorWatch(12, 2), ANY.Adaptation([tables.TABLE_I_D, SLOW], 500, window_periods=1)
     for now in range(0, 200_000, 20_000):
-        live.poll(m(now), m(None))
+        event = live.poll(m(now), m(None))
+        if event is not None:
+            watch.observe(event, m(now))
+            adaptation.adapt(live, event)
+            event.to_dict()
         live.wait_us(m(now))
         c.random.choice([live.echo, live.fired])(m(3), m(now))
-        c.random.choice([live.disable, live.enable, live.stuck])(m(3))
+        c.random.choice([live.disable, live.enable, live.stuck, live.is_enabled])(m(3))
+        c.random.choice([live.pause, live.resume, lambda: live.restart(m(3)), lambda: live.change_schedule(m(SLOW))])()
+        setattr(
+            live,
+            c.random.choice(["t_delta_us", "window_us", "blanking_us"]),
+            c.random.choice([0, 9, 900, c.anything()]),
+        )
+
+
+def grid(c: Chance) -> None:
+    """A grid that is filled and steered by."""
+    m = c.mostly
+    live, vfh = ANY.nav.Himm(9), ANY.nav.Vfh()
+    for _ in range(6):
+        live.echo(m((0.0, 0.0, 1.0)), m(0.4), m(0.0))
+        live.clear(m((0.0, 0.0, 1.0)), m(0.4), m(0.0))
+        live.move_to(m((0.1, 0.3)))
+        live.enter(m(READINGS), m(3.0), m(0.0), robot=m(0), sound_m_s=m(343.2))
+    live.value(c.anything())
+    live.to_numpy()
+    vfh.histogram(m(live), m((0.0, 0.0)))
+    vfh.steer(m(live), m((0.0, 0.0)), m((1.0, 0.0)))
+    vfh.drive(m(live), m((0.0, 0.0, 0.0)), m((1.0, 0.0)), m(0.0), turn_gain=m(3.0))
 
 
 def hopping_ring(c: Chance) -> None:
@@ -175,7 +212,9 @@ def hopping_ring(c: Chance) -> None:
         live.poll(m(now), m(None))
         live.wait_us(m(now))
         c.random.choice([live.echo, live.fired])(m(3), m(now))
-        c.random.choice([live.disable, live.enable, live.stuck, live.confirmed_us])(m(3))
+        c.random.choice([live.disable, live.enable, live.stuck, live.confirmed_us, live.is_enabled])(m(3))
+        if c.random.random() < 0.3:
+            live.restart(m(now))
 
 
 def mutated(c: Chance, text: str) -> str:

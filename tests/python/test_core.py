@@ -227,7 +227,7 @@ import eeruf, json, hashlib
 one = eeruf.experiments.set_one(seeds=3, readings=800)
 two = eeruf.experiments.set_two(seeds=4, methods=["eeruf", "conventional"])
 tracks = [hashlib.sha256(run.track.tobytes() + run.grid.tobytes()).hexdigest() for runs in two.runs.values() for run in runs]
-print(json.dumps([one, two, tracks]))
+print(json.dumps([one.to_dict(), two.to_dict(), tracks]))
 """
     printed = [
         subprocess.run(

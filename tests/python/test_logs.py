@@ -45,7 +45,11 @@ def test_columns_of_csv_have_any_names_and_units(tmp_path: Path) -> None:
     assert log.at_ns.tolist() == [100_000_000, 160_000_000, 220_000_000]
     np.testing.assert_allclose(log.echo_us(speed_of_sound=343.2), [2.4e6 / 343.2, np.nan, np.nan])
     assert list(log.to_pandas()["range_m"]) == list(log.range_m) and log.to_polars().height == 3
-    for wrong, said in [({"time_unit": "h"}, "time_unit"), ({"speed_of_sound": 0.0}, "speed_of_sound"), ({"time": "t"}, "t")]:
+    for wrong, said in [
+        ({"time_unit": "h"}, "time_unit"),
+        ({"speed_of_sound": 0.0}, "speed_of_sound"),
+        ({"time": "t"}, "t"),
+    ]:
         with pytest.raises(eeruf.EerufError, match=said):
             eeruf.read_log(file, **wrong)  # type: ignore[arg-type]
 

@@ -38,8 +38,9 @@ def test_methods_are_drawn_worst_first_in_percent() -> None:
     result = eeruf.experiments.set_one(seeds=2, readings=400, methods=["eeruf", "conventional"])
     ax = plot.methods(result)
     assert [label.get_text() for label in ax.get_yticklabels()] == ["conventional", "eeruf"]
-    median = result["methods"]["conventional"]["wrong_of_all"]["median"]
-    assert ax.patches[0].get_width() == pytest.approx(100 * median)  # type: ignore[attr-defined]
+    spread = result.methods["conventional"].wrong_of_all
+    assert spread is not None
+    assert ax.patches[0].get_width() == pytest.approx(100 * spread.median)  # type: ignore[attr-defined]
     with pytest.raises(eeruf.ArgumentError, match="figure = 'beauty'; expected one of age_ms"):
         plot.methods(result, figure="beauty")
     with pytest.raises(eeruf.ArgumentError, match=r"names = \['loud'\]; expected some of eeruf, conventional"):
@@ -53,7 +54,7 @@ def test_set_two_is_drawn_by_counts_and_shares() -> None:
     assert ax.get_xlabel() == "courses finished"
     ax = plot.methods(found, figure="rejected")
     assert ax.get_xlabel() == "readings not accepted (%)"
-    assert ax.patches[0].get_width() == pytest.approx(100 * found["methods"]["eeruf"]["rejected"])  # type: ignore[attr-defined]
+    assert ax.patches[0].get_width() == pytest.approx(100 * found.methods["eeruf"].rejected)  # type: ignore[attr-defined]
 
 
 def test_a_course_shows_poles_grid_track_and_the_last_place() -> None:
@@ -130,9 +131,9 @@ def test_speeds_are_drawn_by_method() -> None:
     sweep = experiments.speed_sweep([0.75, 1.0], seeds=1, methods=["eeruf", "conventional"])
     ax = plot.speeds(sweep)
     assert [line.get_label() for line in ax.lines] == ["eeruf", "conventional"]
-    assert list(np.asarray(ax.lines[0].get_ydata())) == [100 * step["finished"]["eeruf"] for step in sweep["steps"]]
+    assert list(np.asarray(ax.lines[0].get_ydata())) == [100 * step.finished_of_all["eeruf"] for step in sweep.steps]
     with pytest.raises(eeruf.ArgumentError, match="expected what eeruf"):
-        plot.speeds({"steps": []})
+        plot.speeds({"steps": []})  # type: ignore[arg-type]
 
 
 def test_every_figure_is_legible_on_a_dark_background() -> None:

@@ -37,7 +37,7 @@ def test_every_method_runs_in_a_scene_made_in_code(method: Any) -> None:
     readings = sim.simulate(scene, method, periods=30)
     assert readings.method == method
     assert len(readings) == len(readings.fired_s) > 0
-    assert 0 <= readings.summary()["wrong_of_all"] <= 1
+    assert 0 <= readings.summary().wrong_of_all <= 1
 
 
 def test_scenes_robots_and_readings_pickle() -> None:

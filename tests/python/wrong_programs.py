@@ -21,7 +21,10 @@ sim.Scene([[5, 2, -5, 2]], temperature=20.0)
 sim.simulate(scene, "eruf")
 sim.simulate(scene, periods="100")
 sim.simulate(scene).is_accepted()
-sim.simulate(scene).summary()["wrong_of_al"]
+sim.simulate(scene).summary().wrong_of_al
+sim.simulate(scene).summary().accepted = 0
+eeruf.experiments.set_one(2).methods["eruf"]
+eeruf.experiments.set_one(2).method
 sim.simulate(scene).paths["emiter"]
 sim.simulate(scene).period.foo
 eeruf.experiments.set_one(2, methods=["eruf"])

@@ -106,6 +106,16 @@ pub(crate) fn number(name: &str, value: &Bound<'_, PyAny>, range: RangeInclusive
     }
 }
 
+/// A number within a range, or the default where there is none.
+pub(crate) fn number_or(
+    name: &str,
+    value: Option<&Bound<'_, PyAny>>,
+    default: f64,
+    range: RangeInclusive<f64>,
+) -> PyResult<f64> {
+    value.map_or(Ok(default), |value| number(name, value, range))
+}
+
 /// One time for each sensor, in whole microseconds.
 pub(crate) fn times(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<Micros>> {
     times_of(name, value, "sensor")

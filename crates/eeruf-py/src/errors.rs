@@ -72,7 +72,7 @@ Example:
     >>> eeruf.Schedule.from_firing(40_000, [0, 50_000], [0, 2_000])
     Traceback (most recent call last):
     eeruf.ScheduleError: sensor 1 fires 50 ms into phase a; expected less than the period of 40 ms
-" from eeruf_core::ScheduleError;
+" from eeruf_core::ScheduleError, eeruf_core::LadderError;
     FilterError "A filter that cannot compare as asked.
 
 Example:

@@ -203,12 +203,12 @@ fn fields<'py>(py: Python<'py>, run: &Run) -> PyResult<Bound<'py, PyDict>> {
     fields.set_item("top_speed_m_s", run.top_speed_m_s)?;
     fields.set_item("nearest_m", run.nearest_m)?;
     fields.set_item("readings", run.readings)?;
-    fields.set_item("rejected", run.rejected)?;
-    fields.set_item("wrong", run.wrong)?;
+    fields.set_item("rejected_readings", run.rejected)?;
+    fields.set_item("wrong_readings", run.wrong)?;
     fields.set_item("phantom_echoes", run.phantom_echoes)?;
     fields.set_item("phantom_cells", run.phantom_cells)?;
     fields.set_item("poles_passed", run.poles_passed)?;
-    fields.set_item("poles_missed", run.poles_missed)?;
+    fields.set_item("poles_unseen", run.poles_missed)?;
     let track = run.track.iter().map(|at| [at.time_s, at.x_m, at.y_m, at.heading_rad, at.speed_m_s]);
     fields.set_item("track", rows(py, track)?)?;
     fields.set_item("grid", rows(py, run.grid.iter().map(|cell| [cell.x_m, cell.y_m, f64::from(cell.value)]))?)?;

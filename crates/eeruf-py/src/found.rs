@@ -3,10 +3,14 @@
 use std::time::Instant;
 
 use eeruf_core::{MAX_SENSORS, Micros, search};
-use pyo3::{prelude::*, types::PyTuple};
+use pyo3::{
+    prelude::*,
+    types::{PyDict, PyTuple},
+};
 
 use crate::{
     arguments::{flag, instance, number, text, whole, whole_or_none},
+    fields::to_dict,
     schedule::Schedule,
 };
 
@@ -96,6 +100,18 @@ impl Found {
     #[getter]
     fn schedule(&self) -> Option<Schedule> {
         self.schedule.clone()
+    }
+
+    /// Its fields by their names, the schedule as its times: a dict of plain values.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> found = eeruf.design(sensors=4, t_delta_us=999, min_interval_us=15_000, window_us=36_000).to_dict()
+    ///     >>> found["value_us"], found["schedule"]["period_us"]
+    ///     (62000, 62000)
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        let fields = ["schedule", "value_us", "bound_us", "proven", "nodes", "seconds", "reason", "certificate"];
+        to_dict(slf, &fields)
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {

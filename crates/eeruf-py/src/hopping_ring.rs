@@ -8,7 +8,7 @@ use crate::{
     errors::Raise,
     hopping_schedule::HoppingSchedule,
     hopping_settings::HoppingSettings,
-    ring::{expected_changes, instant, until},
+    moments::{expected_changes, instant, until},
     ring_events::to_python,
 };
 
@@ -112,6 +112,13 @@ impl HoppingRing {
     ///
     /// Raises:
     ///     ArgumentError: not such a time, or not one change for each sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+    ///     >>> ring.poll(0)
+    ///     Fire(sensor=0, phase=0, due_us=0)
     #[pyo3(signature = (now_us, expected_change_us=None))]
     fn poll<'py>(
         &mut self,
@@ -137,6 +144,15 @@ impl HoppingRing {
     ///
     /// Raises:
     ///     ArgumentError: not such a time.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+    ///     >>> [ring.poll(0).sensor for _ in range(2)]
+    ///     [0, 4]
+    ///     >>> ring.wait_us(0)
+    ///     14400
     #[pyo3(signature = (now_us))]
     fn wait_us(&self, now_us: &Bound<'_, PyAny>) -> PyResult<u32> {
         Ok(until(self.ring.next_deadline(), instant("now_us", now_us)?))
@@ -177,6 +193,13 @@ impl HoppingRing {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+    ///     >>> ring.confirmed_us(3) is None
+    ///     True
     #[pyo3(signature = (sensor))]
     fn confirmed_us(&self, sensor: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
         Ok(self.ring.tracker().confirmed(self.sensor(sensor)?.into()).map(Micros::as_micros))
@@ -189,6 +212,13 @@ impl HoppingRing {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+    ///     >>> ring.is_clear(3)
+    ///     False
     #[pyo3(signature = (sensor))]
     fn is_clear(&self, sensor: &Bound<'_, PyAny>) -> PyResult<bool> {
         Ok(self.ring.tracker().is_clear(self.sensor(sensor)?.into()))
@@ -202,6 +232,16 @@ impl HoppingRing {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor or time.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+    ///     >>> [ring.poll(0).sensor for _ in range(2)]
+    ///     [0, 4]
+    ///     >>> ring.echo(0, 9_000)
+    ///     >>> ring.poll(9_000).t_echo_us
+    ///     9000
     #[pyo3(signature = (sensor, at_us))]
     fn echo(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
@@ -217,6 +257,17 @@ impl HoppingRing {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor or time.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+    ///     >>> [ring.poll(0).sensor for _ in range(2)]
+    ///     [0, 4]
+    ///     >>> ring.fired(0, 100)
+    ///     >>> ring.echo(0, 9_000)
+    ///     >>> ring.poll(9_000).t_echo_us
+    ///     8900
     #[pyo3(signature = (sensor, at_us))]
     fn fired(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
@@ -230,6 +281,18 @@ impl HoppingRing {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+    ///     >>> [ring.poll(0).sensor for _ in range(2)]
+    ///     [0, 4]
+    ///     >>> ring.stuck(0)
+    ///     >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
+    ///     ...     pass
+    ///     >>> event.sensor, event.kind
+    ///     (0, 'stuck')
     #[pyo3(signature = (sensor))]
     fn stuck(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
@@ -243,6 +306,14 @@ impl HoppingRing {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+    ///     >>> ring.disable(0)
+    ///     >>> ring.is_enabled(0)
+    ///     False
     #[pyo3(signature = (sensor))]
     fn disable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
@@ -256,10 +327,66 @@ impl HoppingRing {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+    ///     >>> ring.disable(0)
+    ///     >>> ring.enable(0)
+    ///     >>> ring.is_enabled(0)
+    ///     True
     #[pyo3(signature = (sensor))]
     fn enable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
         self.change(|ring| ring.enable(sensor))
+    }
+
+    /// Whether a sensor fires.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+    ///     >>> ring.is_enabled(7)
+    ///     True
+    #[pyo3(signature = (sensor))]
+    fn is_enabled(&self, sensor: &Bound<'_, PyAny>) -> PyResult<bool> {
+        Ok(self.ring.is_enabled(self.sensor(sensor)?))
+    }
+
+    /// How many sensors it has.
+    #[getter]
+    fn sensors(&self) -> usize {
+        self.ring.sensors()
+    }
+
+    /// Start again at a time, or as soon as the last firings allow: after a long sleep. Firings under way are dropped.
+    ///
+    /// Args:
+    ///     now_us: the present, 0 or more.
+    ///
+    /// Raises:
+    ///     ArgumentError: not such a time.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+    ///     >>> ring.restart(3_600_000_000)
+    ///     >>> ring.wait_us(3_600_000_000)
+    ///     0
+    #[pyo3(signature = (now_us))]
+    fn restart(&mut self, now_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let now = instant("now_us", now_us)?;
+        self.ring.restart(now);
+        Ok(())
     }
 
     fn __repr__(&self) -> String {

@@ -9,6 +9,7 @@
     reason = "the docs of what Python sees are docstrings, in their own markup"
 )]
 
+mod adaptation;
 mod arguments;
 mod body;
 mod columns;
@@ -17,8 +18,10 @@ mod design;
 mod drawing;
 mod errors;
 mod experiments;
+mod fields;
 mod filter;
 mod found;
+mod himm;
 mod hopping_ring;
 mod hopping_schedule;
 mod hopping_settings;
@@ -26,6 +29,8 @@ mod logs;
 mod maps;
 mod memory;
 mod methods;
+mod moments;
+mod owned_ring;
 mod paths;
 mod pose;
 mod program;
@@ -39,11 +44,13 @@ mod scene;
 mod schedule;
 mod schedule_times;
 mod search;
+mod sensor_watch;
 mod simulate;
 mod simulation;
 mod surroundings;
 mod tracker;
 mod unpickle;
+mod vfh;
 mod watch;
 
 use pyo3::prelude::*;
@@ -52,6 +59,7 @@ use pyo3::prelude::*;
 mod _eeruf {
     #[pymodule_export]
     use crate::{
+        adaptation::Adaptation,
         design::{check_certificate, design},
         errors::{
             ArgumentError, CertificateError, EerufError, ExperimentError, FilterError, HoppingError, PathsError,
@@ -60,6 +68,7 @@ mod _eeruf {
         experiments::{set_one, set_two, speed_sweep},
         filter::EchoFilter,
         found::Found,
+        himm::Himm,
         hopping_ring::HoppingRing,
         hopping_schedule::HoppingSchedule,
         hopping_settings::HoppingSettings,
@@ -75,11 +84,13 @@ mod _eeruf {
         scene::Scene,
         schedule::Schedule,
         search::{WaitSearch, WaitTables},
+        sensor_watch::{Blind, LastAccepted, SensorWatch},
         simulate::simulate,
         simulation::{ReadingBlocks, RobotState, Simulation, simulate_blocks},
         surroundings::{Material, Noise},
         tracker::EchoTracker,
         unpickle::readings_from_columns,
+        vfh::{Steering, Vfh},
         watch::{Switch, until_stopped},
     };
     use pyo3::prelude::*;

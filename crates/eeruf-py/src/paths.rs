@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use eeruf_sim::{Bounce, Limits, Point};
+use eeruf_sim::{Bounce, Limits, Point, Stop, Tracer};
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
@@ -13,6 +13,8 @@ use crate::{
     arguments::{shown, whole, wrong},
     columns::Columns,
     contents::Contents,
+    errors::Raise,
+    watch::in_background,
 };
 
 /// Every path from a source to some receivers: arrays of equal length, sorted by receiver and then by length. The
@@ -35,16 +37,37 @@ pub(crate) struct Paths {
     columns: Columns<6>,
 }
 
+/// Up to so many walls and receivers, and so many bounces, paths are found sooner than a thread would start, and before
+/// anybody could press Ctrl-C.
+const FEW: usize = 32;
+const LOW_ORDER: u32 = 6;
+
 impl Paths {
-    pub(crate) fn new(
-        paths: eeruf_sim::Paths,
+    /// Finds all paths within limits, in the background where that may take long.
+    pub(crate) fn find(
+        scene: &Bound<'_, PyAny>,
+        contents: Arc<Contents>,
         source: Point,
         receivers: Vec<Point>,
-        contents: Arc<Contents>,
-        scene: Py<PyAny>,
         limits: Limits,
-    ) -> Self {
-        Self { paths, source, receivers, contents, scene, limits, columns: Columns::default() }
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let (py, scene, max_order) = (scene.py(), scene.clone().unbind(), limits.max_order);
+        let standing = contents.scene();
+        let few = standing.walls().len() + standing.poles().len() <= FEW && receivers.len() <= FEW;
+        let find = move |stop: Stop| {
+            let (mut paths, mut tracer) = (eeruf_sim::Paths::default(), Tracer::new());
+            tracer.stop = stop;
+            tracer.trace(contents.scene(), source, &receivers, limits, &mut paths).map_err(Raise::raise)?;
+            Ok(Self { paths, source, receivers, contents, scene, limits, columns: Columns::default() })
+        };
+        if few && max_order <= LOW_ORDER && progress.is_none() {
+            return py.detach(|| find(Stop::default()));
+        }
+        in_background(py, progress, move |background| {
+            background.go_on(None, || format!("paths up to order {max_order}"));
+            find(background.stop().clone())
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Where a robot is, and how it moves, out of what Python gives.
 
-use eeruf_sim::{Motion, Pose, Vector, world::heading_rad};
+use eeruf_sim::{Motion, Point, Pose, Vector, world::heading_rad};
 use pyo3::prelude::*;
 
 use crate::arguments::{items, number, points, shown, wrong};
@@ -14,6 +14,15 @@ pub(crate) fn pose_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<PoseOf> 
     let [x, y, heading] = &coordinates[..] else { return Err(wrong(name, shown(value), expected)) };
     let coordinate = |index: usize, value| number(&format!("{name}[{index}]"), value, -1e5..=1e5);
     Ok((coordinate(0, x)?, coordinate(1, y)?, coordinate(2, heading)?))
+}
+
+/// A point (x, y) in metres.
+pub(crate) fn point_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Point> {
+    let expected = "a point (x, y) in metres";
+    let coordinates = items(name, value, expected)?;
+    let [x, y] = &coordinates[..] else { return Err(wrong(name, shown(value), expected)) };
+    let coordinate = |index: usize, value| number(&format!("{name}[{index}]"), value, -1e5..=1e5);
+    Ok(Point::new(coordinate(0, x)?, coordinate(1, y)?))
 }
 
 pub(crate) fn to_pose((x, y, heading): PoseOf) -> Pose {

@@ -26,12 +26,12 @@ pub(crate) const CAUSES: [&str; 5] = ["nothing", "own", "stale", "crosstalk", "e
 ///     >>> from eeruf import sim
 ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
 ///     >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
-///     >>> len(readings), readings.summary()["wrong_of_all"] < 0.01
+///     >>> len(readings), readings.summary().wrong_of_all < 0.01
 ///     (800, True)
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Readings {
     pub(crate) readings: eeruf_sim::Readings,
-    columns: Columns<13>,
+    columns: Columns<16>,
 }
 
 fn tolerance(value: Option<&Bound<'_, PyAny>>) -> PyResult<f64> {
@@ -96,6 +96,24 @@ impl Readings {
     #[getter]
     fn fired_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 4, self.readings.fired_s.iter().copied())
+    }
+
+    /// Where the sensor stood when it fired, in metres of the scene: float64.
+    #[getter]
+    fn x_m<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 13, self.readings.x_m.iter().copied())
+    }
+
+    /// Where the sensor stood when it fired, in metres of the scene: float64.
+    #[getter]
+    fn y_m<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 14, self.readings.y_m.iter().copied())
+    }
+
+    /// Whither the sensor looked when it fired, in radians of the scene, counter-clockwise from the x axis: float64.
+    #[getter]
+    fn heading_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 15, self.readings.heading_rad.iter().copied())
     }
 
     /// What the method made of it, an index into ``eeruf.KINDS``: int8.
@@ -178,6 +196,13 @@ impl Readings {
     ///
     /// Raises:
     ///     ArgumentError: the tolerance is negative or not a number.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+    ///     >>> int(readings.is_wrong(tolerance_us=1e6).sum()) <= int(readings.is_wrong().sum())
+    ///     True
     #[pyo3(signature = (tolerance_us=None), text_signature = "($self, tolerance_us=500.0)")]
     fn is_wrong<'py>(&self, py: Python<'py>, tolerance_us: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         let tolerance_us = tolerance(tolerance_us)?;
@@ -190,23 +215,33 @@ impl Readings {
     ///     tolerance_us: by how much a reading may miss the reference, in microseconds.
     ///
     /// Returns:
-    ///     A dict: ``readings``, ``accepted``; as fractions of 1 ``wrong_of_all``, ``crosstalk_of_all``,
-    ///     ``wrong_of_accepted``, ``rejected``, ``good_lost``, ``wrong_before_filter``; ``age_ms`` with ``median`` and
-    ///     ``p99``; ``readings_per_s``; ``starved``: how many sensors had fewer than 5 % of their readings
-    ///     accepted; ``blind``: how many never had one; ``starved_in_part``: how many of the starved read right in one
-    ///     phase and not in another.
+    ///     A ``Summary``.
     ///
     /// Raises:
     ///     ArgumentError: the tolerance is negative or not a number.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+    ///     >>> readings.summary().readings, readings.summary().wrong_of_all < 0.01
+    ///     (800, True)
     #[pyo3(signature = (tolerance_us=None), text_signature = "($self, tolerance_us=500.0)")]
     fn summary<'py>(&self, py: Python<'py>, tolerance_us: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         let tolerance_us = tolerance(tolerance_us)?;
         let summary = py.detach(|| self.readings.summary_within(tolerance_us));
         let json = serde_json::to_string(&summary).map_err(|error| ArgumentError::new_err(error.to_string()))?;
-        py.import("json")?.call_method1("loads", (json,))
+        py.import("eeruf._results")?.call_method1("summary", (json,))
     }
 
     /// All arrays, one entry for each reading, by their names: a dict.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+    ///     >>> readings.columns()["t_echo_us"] is readings.t_echo_us
+    ///     True
     fn columns<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(slf.py());
         for name in COLUMNS {
@@ -220,6 +255,13 @@ impl Readings {
     ///
     /// Raises:
     ///     ImportError: pandas is not installed.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+    ///     >>> readings.to_pandas()["kind"].dtype.name
+    ///     'category'
     fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("eeruf._frames")?.call_method1("to_pandas", (Self::columns(slf)?,))
     }
@@ -229,6 +271,13 @@ impl Readings {
     ///
     /// Raises:
     ///     ImportError: polars is not installed.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> readings = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100)
+    ///     >>> readings.to_polars().columns[:3]
+    ///     ['robot', 'sensor', 'period']
     fn to_polars<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("eeruf._frames")?.call_method1("to_polars", (Self::columns(slf)?,))
     }
@@ -281,6 +330,15 @@ impl Readings {
     /// Raises:
     ///     OSError: it cannot be read.
     ///     ArgumentError: it holds no readings.
+    ///
+    /// Example:
+    ///     >>> import pathlib, tempfile
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> file = pathlib.Path(tempfile.mkdtemp(), "readings.npz")
+    ///     >>> sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100).save(file)
+    ///     >>> len(sim.Readings.load(file))
+    ///     800
     #[staticmethod]
     #[pyo3(signature = (file))]
     fn load<'py>(file: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
@@ -306,12 +364,15 @@ impl Readings {
 }
 
 /// The arrays of equal length, one entry for each reading.
-const COLUMNS: [&str; 12] = [
+const COLUMNS: [&str; 15] = [
     "robot",
     "sensor",
     "period",
     "phase",
     "fired_s",
+    "x_m",
+    "y_m",
+    "heading_rad",
     "kind",
     "t_echo_us",
     "earliest_us",

@@ -3,10 +3,13 @@
 use eeruf_core::{MAX_SENSORS, Micros};
 use pyo3::{
     prelude::*,
-    types::{PyString, PyTuple},
+    types::{PyDict, PyString, PyTuple},
 };
 
-use crate::arguments::{instance, items, shown, text, whole, whole_or_none, wrong};
+use crate::{
+    arguments::{instance, items, shown, text, whole, whole_or_none, wrong},
+    fields::to_dict,
+};
 
 /// One condition that a schedule does not meet.
 ///
@@ -58,6 +61,16 @@ impl Violation {
             required_us: whole("required_us", required_us, 0..=u32::MAX)?,
             source: text("source", source, "a place in the paper")?,
         })
+    }
+
+    /// Its fields by their names: a dict of plain values.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> eeruf.Violation("window", (0, 0), ("a", "b"), 20_000, 36_000, "Sec. 3.1").to_dict()["sensors"]
+    ///     [0, 0]
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &["kind", "sensors", "phases", "value_us", "required_us", "source"])
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -155,6 +168,18 @@ impl Report {
     #[getter]
     fn violations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.violations.iter().cloned())
+    }
+
+    /// Its fields by their names, violations as dicts too: a dict of plain values.
+    ///
+    /// Example:
+    ///     >>> from eeruf.tables import TABLE_I_D
+    ///     >>> report = TABLE_I_D.verify(t_delta_us=999, min_interval_us=15_000).to_dict()
+    ///     >>> report["ok"], report["min_interval_us"]
+    ///     (True, 17000)
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        let most = ["ok", "separation_us", "max_t_delta_us", "min_interval_us", "min_refire_us", "violations"];
+        to_dict(slf, &most)
     }
 
     fn __bool__(&self) -> bool {

@@ -97,6 +97,21 @@ pub(crate) struct RequirementArguments<'a, 'py> {
     pub(crate) uneven: UnevenArguments<'a, 'py>,
 }
 
+impl<'a, 'py> RequirementArguments<'a, 'py> {
+    /// Where all sensors are alike; window and stale echoes last.
+    pub(crate) fn alike(
+        t_delta_us: Option<&'a Bound<'py, PyAny>>,
+        min_interval_us: Option<&'a Bound<'py, PyAny>>,
+        neighbours: Option<&'a Bound<'py, PyAny>>,
+        layout: Option<&'a Bound<'py, PyAny>>,
+        criterion: Option<&'a Bound<'py, PyAny>>,
+        (window_us, stale_echo): (Option<&'a Bound<'py, PyAny>>, Option<&'a Bound<'py, PyAny>>),
+    ) -> Self {
+        let uneven = UnevenArguments::default();
+        Self { t_delta_us, min_interval_us, neighbours, layout, criterion, window_us, stale_echo, uneven }
+    }
+}
+
 /// The keyword arguments that say what differs from sensor to sensor.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct UnevenArguments<'a, 'py> {

@@ -1,26 +1,15 @@
 //! `Ring`.
 
-use eeruf_core::{Instant, MAX_SENSORS, Micros, Requirements, RingConfig, ScheduledRing, SensorError};
-use eeruf_sim::AnySchedule;
+use eeruf_core::{Instant, Micros, RingConfig};
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{instance, items, micros, shown, whole, whole_or, wrong},
-    errors::Raise,
+    arguments::{instance, micros, whole, whole_or},
+    moments::{expected_changes, instant, until},
+    owned_ring::OwnedRing,
     ring_events::to_python,
     schedule::Schedule,
 };
-
-type Scheduled<'s> = ScheduledRing<'s, MAX_SENSORS>;
-
-self_cell::self_cell!(
-    /// A ring with the schedule that it borrows.
-    struct Owned {
-        owner: Box<AnySchedule>,
-        #[covariant]
-        dependent: Scheduled,
-    }
-);
 
 /// Scheduler and filter together, as the firmware runs them: the caller passes the time and gets back what to do.
 ///
@@ -53,42 +42,13 @@ self_cell::self_cell!(
 ///     >>> kinds == ["first"] * 12 + ["accepted"] * 12
 ///     True
 #[pyclass(module = "eeruf")]
-pub(crate) struct Ring {
-    ring: Owned,
-    sensors: u32,
-}
+pub(crate) struct Ring(pub(crate) OwnedRing);
 
 impl Ring {
     fn sensor(&self, sensor: &Bound<'_, PyAny>) -> PyResult<u8> {
-        whole("sensor", sensor, 0..=self.sensors - 1).map(|sensor| sensor as u8)
+        // At most 64.
+        whole("sensor", sensor, 0..=self.0.ring().sensors() as u8 - 1)
     }
-
-    fn change(&mut self, change: impl FnOnce(&mut Scheduled<'_>) -> Result<(), SensorError>) -> PyResult<()> {
-        self.ring.with_dependent_mut(|_, ring| change(ring)).map_err(Raise::raise)
-    }
-}
-
-/// What is expected to change of each sensor's readings, of the argument `expected_change_us`.
-pub(crate) fn expected_changes(changes: Option<&Bound<'_, PyAny>>, sensors: usize) -> PyResult<Vec<i32>> {
-    let Some(changes) = changes else { return Ok(Vec::new()) };
-    let name = "expected_change_us";
-    let expected = format!("a sequence of {sensors} whole numbers of microseconds, one for each sensor");
-    let items = items(name, changes, &expected)?;
-    if items.len() != sensors {
-        return Err(wrong(name, shown(changes), expected));
-    }
-    let each = |(index, item)| whole(&format!("{name}[{index}]"), item, i32::MIN..=i32::MAX);
-    items.iter().enumerate().map(each).collect()
-}
-
-/// How long from now until a deadline, in microseconds; 0 if it has been reached.
-pub(crate) fn until(deadline: Instant, now: Instant) -> u32 {
-    if now.has_reached(deadline) { 0 } else { deadline.since(now).as_micros() }
-}
-
-/// A moment on a clock that wraps at 2^32 us: larger numbers are what such a clock would show.
-pub(crate) fn instant(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Instant> {
-    whole(name, value, 0..=u64::MAX).map(|us| Instant::from_micros(us as u32))
 }
 
 #[pymethods]
@@ -105,11 +65,7 @@ impl Ring {
         consecutive: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let ring = Self::unverified(schedule, t_delta_us, now_us, window_us, blanking_us, consecutive)?;
-        let requirements = Requirements::new(ring.ring.borrow_dependent().t_delta());
-        match ring.ring.borrow_owner().verify(&requirements).violations().next() {
-            Some(violation) => Err(violation.raise()),
-            None => Ok(ring),
-        }
+        ring.0.verified().map(Self)
     }
 
     /// A ring whose schedule need not reject crosstalk: the conventional method, for comparison.
@@ -149,9 +105,7 @@ impl Ring {
             .with_window(micros("window_us", window_us)?);
         let now = now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))?;
         let schedule = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
-        let ring = Owned::try_new(Box::new(schedule), |schedule| Scheduled::unverified(schedule, config, now));
-        // At most 64.
-        Ok(Self { ring: ring.map_err(Raise::raise)?, sensors: schedule.sensors() as u32 })
+        OwnedRing::new(schedule, config, now).map(Self)
     }
 
     /// The next event at a time. Call again until there is none, then wait until ``next_deadline_us``.
@@ -169,6 +123,13 @@ impl Ring {
     ///
     /// Raises:
     ///     ArgumentError: not such a time, or not one change for each sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> ring.poll(23_000)
+    ///     >>> ring.poll(24_000)
+    ///     Fire(sensor=0, phase=0, due_us=24000)
     #[pyo3(signature = (now_us, expected_change_us=None))]
     fn poll<'py>(
         &mut self,
@@ -176,20 +137,20 @@ impl Ring {
         expected_change_us: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let (py, now) = (now_us.py(), instant("now_us", now_us)?);
-        let changes = expected_changes(expected_change_us, self.sensors as usize)?;
+        let changes = expected_changes(expected_change_us, self.0.ring().sensors())?;
         let change = |sensor: u8| changes.get(usize::from(sensor)).copied().unwrap_or(0);
-        let event = self.ring.with_dependent_mut(|_, ring| ring.poll_expecting(now, change));
+        let event = self.0.with(|ring| ring.poll_expecting(now, change));
         event.map(|event| to_python(py, &event)).transpose()
     }
 
     fn __repr__(&self) -> String {
-        format!("<Ring: {} sensors, next deadline at {} us>", self.sensors, self.next_deadline_us())
+        format!("<Ring: {} sensors, next deadline at {} us>", self.sensors(), self.next_deadline_us())
     }
 
     /// When to poll next, in microseconds of the clock that wraps at 2^32; in the past if an event is pending.
     #[getter]
     fn next_deadline_us(&self) -> u32 {
-        self.ring.borrow_dependent().next_deadline().as_micros()
+        self.0.ring().next_deadline().as_micros()
     }
 
     /// How long to wait before polling next, in microseconds: 0 if an event is pending.
@@ -210,13 +171,80 @@ impl Ring {
     ///     (24000, 0)
     #[pyo3(signature = (now_us))]
     fn wait_us(&self, now_us: &Bound<'_, PyAny>) -> PyResult<u32> {
-        Ok(until(self.ring.borrow_dependent().next_deadline(), instant("now_us", now_us)?))
+        Ok(until(self.0.ring().next_deadline(), instant("now_us", now_us)?))
     }
 
-    /// What it fires by.
+    /// What it fires by in the present period.
     #[getter]
     fn schedule(&self) -> Schedule {
-        Schedule(**self.ring.borrow_owner())
+        Schedule(*self.0.ring().schedule())
+    }
+
+    /// Fire by another schedule when the present period ends. Readings before and after it are not compared;
+    /// ``t_delta_us`` and ``window_us`` stay.
+    ///
+    /// Args:
+    ///     schedule: of as many sensors.
+    ///
+    /// Raises:
+    ///     ArgumentError: no schedule, or not of as many sensors.
+    ///     RingError: a sensor would fire again while it still listens, or the schedule does not reject crosstalk at
+    ///         this ``t_delta_us``. The ring goes on as before.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> ring.change_schedule(eeruf.tables.TABLE_I_D.scaled(4, 5))
+    ///     >>> while not isinstance(ring.poll(ring.next_deadline_us), eeruf.PeriodEnded):
+    ///     ...     pass
+    ///     >>> ring.schedule.period_us
+    ///     80000
+    #[pyo3(signature = (schedule))]
+    fn change_schedule(&mut self, schedule: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.0.change_to(&instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0)
+    }
+
+    /// ``T_delta``, in microseconds. It can be changed while the ring runs: where it grows, the next reading of each
+    /// sensor is compared with nothing.
+    #[getter]
+    fn t_delta_us(&self) -> u32 {
+        self.0.ring().t_delta().as_micros()
+    }
+
+    #[setter]
+    fn set_t_delta_us(&mut self, t_delta_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let t_delta = micros("t_delta_us", t_delta_us)?;
+        self.0.set_t_delta(t_delta)
+    }
+
+    /// ``T_wind``, in microseconds. It can be changed while the ring runs, also for firings that are under way.
+    #[getter]
+    fn window_us(&self) -> u32 {
+        self.0.ring().window().as_micros()
+    }
+
+    #[setter]
+    fn set_window_us(&mut self, window_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let window = micros("window_us", window_us)?;
+        self.0.change(|ring| ring.set_window(window))
+    }
+
+    /// For how long after firing edges are no echoes, in microseconds. It can be changed while the ring runs.
+    #[getter]
+    fn blanking_us(&self) -> u32 {
+        self.0.ring().blanking().as_micros()
+    }
+
+    #[setter]
+    fn set_blanking_us(&mut self, blanking_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let blanking = micros("blanking_us", blanking_us)?;
+        self.0.change(|ring| ring.set_blanking(blanking))
+    }
+
+    /// How many sensors it has.
+    #[getter]
+    fn sensors(&self) -> usize {
+        self.0.ring().sensors()
     }
 
     /// An edge on the echo line of a sensor. Edges may come in any order, at any time, wanted or not.
@@ -227,10 +255,19 @@ impl Ring {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor or time.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
+    ///     [0, 4, 8]
+    ///     >>> ring.echo(0, 33_000)
+    ///     >>> ring.poll(33_000).t_echo_us
+    ///     9000
     #[pyo3(signature = (sensor, at_us))]
     fn echo(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
-        self.change(|ring| ring.echo(sensor, at))
+        self.0.change(|ring| ring.echo(sensor, at))
     }
 
     /// The sensor of the last ``Fire`` has really fired at this time, later than the poll said. Optional: echo times
@@ -242,10 +279,20 @@ impl Ring {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor or time.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
+    ///     [0, 4, 8]
+    ///     >>> ring.fired(0, 24_100)
+    ///     >>> ring.echo(0, 33_000)
+    ///     >>> ring.poll(33_000).t_echo_us
+    ///     8900
     #[pyo3(signature = (sensor, at_us))]
     fn fired(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
-        self.change(|ring| ring.fired(sensor, at))
+        self.0.change(|ring| ring.fired(sensor, at))
     }
 
     /// The echo line of a sensor was already high when it was to fire: the firing just emitted counts as ``"stuck"``.
@@ -255,10 +302,21 @@ impl Ring {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
+    ///     [0, 4, 8]
+    ///     >>> ring.stuck(0)
+    ///     >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
+    ///     ...     pass
+    ///     >>> event.sensor, event.kind
+    ///     (0, 'stuck')
     #[pyo3(signature = (sensor))]
     fn stuck(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
-        self.change(|ring| ring.stuck(sensor))
+        self.0.change(|ring| ring.stuck(sensor))
     }
 
     /// Stop a sensor from firing. The reading of a firing that is under way is still emitted.
@@ -268,10 +326,17 @@ impl Ring {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> ring.disable(0)
+    ///     >>> ring.is_enabled(0)
+    ///     False
     #[pyo3(signature = (sensor))]
     fn disable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
-        self.change(|ring| ring.disable(sensor))
+        self.0.change(|ring| ring.disable(sensor))
     }
 
     /// Let a sensor fire again, from its next turn on. Its readings from before are forgotten.
@@ -281,9 +346,83 @@ impl Ring {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> ring.disable(0)
+    ///     >>> ring.enable(0)
+    ///     >>> ring.is_enabled(0)
+    ///     True
     #[pyo3(signature = (sensor))]
     fn enable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
-        self.change(|ring| ring.enable(sensor))
+        self.0.change(|ring| ring.enable(sensor))
+    }
+
+    /// Whether a sensor fires.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> ring.is_enabled(11)
+    ///     True
+    #[pyo3(signature = (sensor))]
+    fn is_enabled(&self, sensor: &Bound<'_, PyAny>) -> PyResult<bool> {
+        Ok(self.0.ring().is_enabled(self.sensor(sensor)?))
+    }
+
+    /// Let no sensor fire until :meth:`resume`. Readings of firings under way are still emitted, and periods go on.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> ring.pause()
+    ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
+    ///     'PeriodEnded'
+    fn pause(&mut self) {
+        self.0.with(|ring| ring.pause());
+    }
+
+    /// Let sensors fire again, as of the next period. Readings from before are forgotten.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> ring.pause()
+    ///     >>> ring.resume()
+    ///     >>> _ = ring.poll(ring.next_deadline_us)  # the period ends
+    ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
+    ///     'Fire'
+    fn resume(&mut self) {
+        self.0.with(|ring| ring.resume());
+    }
+
+    /// Start again with phase a at a time, or as soon as the last firings allow: after a long sleep. Firings under way
+    /// are dropped, and readings from before are forgotten.
+    ///
+    /// Args:
+    ///     now_us: the present, 0 or more.
+    ///
+    /// Raises:
+    ///     ArgumentError: not such a time.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> ring.restart(3_600_000_000)
+    ///     >>> ring.wait_us(3_600_000_000)
+    ///     24000
+    #[pyo3(signature = (now_us))]
+    fn restart(&mut self, now_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let now = instant("now_us", now_us)?;
+        self.0.with(|ring| ring.restart(now));
+        Ok(())
     }
 }

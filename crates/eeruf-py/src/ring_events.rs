@@ -2,14 +2,17 @@
 
 use std::ops::RangeInclusive;
 
-use eeruf_core::{MAX_SENSORS, Micros, Phase, ReadingKind, RingEvent, Verdict};
+use eeruf_core::{Instant, MAX_SENSORS, Micros, PeriodStats, Phase, ReadingKind, RingEvent, Verdict};
 use pyo3::{
     IntoPyObjectExt,
     prelude::*,
     types::{PyDict, PyTuple},
 };
 
-use crate::arguments::{choice, whole, whole_or, whole_or_none};
+use crate::{
+    arguments::{choice, instance, shown, whole, whole_or, whole_or_none, wrong},
+    fields::to_dict,
+};
 
 /// Sensors that can be.
 const SENSORS: RangeInclusive<u8> = 0..=MAX_SENSORS as u8 - 1;
@@ -46,6 +49,16 @@ impl Fire {
             phase: whole_or("phase", phase, 0, 0..=u8::MAX)?,
             due_us: whole_or("due_us", due_us, 0, 0..=u32::MAX)?,
         })
+    }
+
+    /// Its fields by their names: a dict of plain values.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> eeruf.Fire(3, phase=1).to_dict()
+    ///     {'sensor': 3, 'phase': 1, 'due_us': 0}
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &["sensor", "phase", "due_us"])
     }
 
     fn __repr__(&self) -> String {
@@ -129,6 +142,16 @@ impl Reading {
         })
     }
 
+    /// Its fields by their names: a dict of plain values.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> eeruf.EchoFilter(1, 500).push(0, 9_000).to_dict()["t_echo_us"]
+    ///     9000
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &["sensor", "kind", "t_echo_us", "previous_us", "age", "phase", "period"])
+    }
+
     fn __repr__(&self) -> String {
         let shown = |value: Option<u32>| value.map_or_else(|| "None".to_owned(), |value| value.to_string());
         format!(
@@ -159,31 +182,71 @@ impl Reading {
 ///     ...     pass
 ///     >>> event.period, event.phase, event.tally["no_echo"] <= 12
 ///     (0, 0, True)
-#[pyclass(frozen, get_all, module = "eeruf")]
-pub(crate) struct PeriodEnded {
-    /// Which period, from 0.
-    period: u32,
-    /// Its phase: 0 for a, 1 for b.
-    phase: u8,
-    /// How long after it was due the latest of its firings and its end was polled for, in microseconds, at most
-    /// 65,535.
-    max_late_us: u32,
-    /// The lateness of all its firings together, in microseconds, at most 65,535.
-    sum_late_us: u32,
-    /// By how much, at most, crosstalk may have moved because of lateness from one reading to the next, in
-    /// microseconds, at most 65,535; where that is too much, readings are not compared.
-    max_shift_us: u32,
-    /// How many readings of each kind were emitted since the period before ended: a dict by the names in
-    /// ``eeruf.KINDS``.
-    tally: Py<PyDict>,
-}
+#[pyclass(frozen, eq, module = "eeruf")]
+#[derive(Clone, PartialEq, Eq)]
+pub(crate) struct PeriodEnded(PeriodStats);
 
 #[pymethods]
 impl PeriodEnded {
+    /// Which period, from 0.
+    #[getter]
+    fn period(&self) -> u32 {
+        self.0.period
+    }
+
+    /// Its phase: 0 for a, 1 for b; more in a hopping ring.
+    #[getter]
+    fn phase(&self) -> u8 {
+        self.0.phase.0
+    }
+
+    /// How long after it was due the latest of its firings and its end was polled for, in microseconds, at most
+    /// 65,535.
+    #[getter]
+    fn max_late_us(&self) -> u32 {
+        self.0.max_late.as_micros()
+    }
+
+    /// The lateness of all its firings together, in microseconds, at most 65,535.
+    #[getter]
+    fn sum_late_us(&self) -> u32 {
+        self.0.sum_late.as_micros()
+    }
+
+    /// By how much, at most, crosstalk may have moved because of lateness from one reading to the next, in
+    /// microseconds, at most 65,535; where that is too much, readings are not compared.
+    #[getter]
+    fn max_shift_us(&self) -> u32 {
+        self.0.max_shift.as_micros()
+    }
+
+    /// How many readings of each kind were emitted since the period before ended: a dict by the names in
+    /// ``eeruf.KINDS``.
+    #[getter]
+    fn tally<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let tally = PyDict::new(py);
+        for kind in ReadingKind::ALL {
+            tally.set_item(kind.as_str(), self.0.tally.of(kind))?;
+        }
+        Ok(tally)
+    }
+
+    /// Its fields by their names: a dict of plain values.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> ring.pause()
+    ///     >>> ring.poll(ring.next_deadline_us).to_dict()["max_late_us"]
+    ///     0
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &["period", "phase", "max_late_us", "sum_late_us", "max_shift_us", "tally"])
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let Self { period, phase, max_late_us, sum_late_us, max_shift_us, tally } = self;
-        let tally = tally.bind(py).repr()?;
-        let late = format!("max_late_us={max_late_us} sum_late_us={sum_late_us} max_shift_us={max_shift_us}");
+        let (period, phase, tally) = (self.period(), self.phase(), self.tally(py)?.repr()?);
+        let (late, sum, shift) = (self.max_late_us(), self.sum_late_us(), self.max_shift_us());
+        let late = format!("max_late_us={late} sum_late_us={sum} max_shift_us={shift}");
         Ok(format!("<PeriodEnded period={period} phase={phase} {late} tally={tally}>"))
     }
 }
@@ -204,20 +267,29 @@ pub(crate) fn to_python<'py>(py: Python<'py>, event: &RingEvent) -> PyResult<Bou
             period: Some(reading.period),
         }
         .into_bound_py_any(py),
-        RingEvent::PeriodEnded(stats) => {
-            let tally = PyDict::new(py);
-            for kind in ReadingKind::ALL {
-                tally.set_item(kind.as_str(), stats.tally.of(kind))?;
-            }
-            PeriodEnded {
-                period: stats.period,
-                phase: stats.phase.0,
-                max_late_us: stats.max_late.as_micros(),
-                sum_late_us: stats.sum_late.as_micros(),
-                max_shift_us: stats.max_shift.as_micros(),
-                tally: tally.unbind(),
-            }
-            .into_bound_py_any(py)
-        }
+        RingEvent::PeriodEnded(stats) => PeriodEnded(stats).into_bound_py_any(py),
     }
+}
+
+/// An event as core sees it, of one that Python was given.
+pub(crate) fn to_core(name: &str, event: &Bound<'_, PyAny>) -> PyResult<RingEvent> {
+    if let Ok(ended) = event.cast::<PeriodEnded>() {
+        return Ok(RingEvent::PeriodEnded(ended.get().0));
+    }
+    if let Ok(fire) = event.cast::<Fire>() {
+        let Fire { sensor, phase, due_us } = *fire.get();
+        return Ok(RingEvent::Fire { sensor, phase: Phase(phase), due: Instant::from_micros(due_us) });
+    }
+    let expected = "an eeruf.Fire, Reading or PeriodEnded";
+    let reading = instance::<Reading>(name, event, expected)?.get();
+    let kind = ReadingKind::ALL.into_iter().find(|kind| kind.as_str() == reading.kind);
+    Ok(RingEvent::Reading(eeruf_core::Reading {
+        sensor: reading.sensor,
+        phase: Phase(reading.phase.unwrap_or(0)),
+        period: reading.period.unwrap_or(0),
+        kind: kind.ok_or_else(|| wrong(name, shown(event), expected))?,
+        t_echo: reading.t_echo_us.map(Micros::new),
+        previous: reading.previous_us.map(Micros::new),
+        age: reading.age,
+    }))
 }

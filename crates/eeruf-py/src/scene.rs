@@ -3,9 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use eeruf_sim::{
-    Air, Faces, Limits, Point, Pole, Stop, Tracer, Wall, World, WorldParts, world::DEFAULT_ORDER, world_file,
-};
+use eeruf_sim::{Air, Faces, Limits, Pole, Wall, World, WorldParts, world::DEFAULT_ORDER, world_file};
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
@@ -20,13 +18,7 @@ use crate::{
     paths::Paths,
     robot::Robot,
     surroundings::{self, Material, Noise},
-    watch::in_background,
 };
-
-/// Up to so many walls and receivers, and so many bounces, paths are found sooner than a thread would start, and before
-/// anybody could press Ctrl-C.
-const FEW: usize = 32;
-const LOW_ORDER: u32 = 6;
 
 /// Walls, poles and robots from above, in metres. Immutable; scenes pickle.
 ///
@@ -217,6 +209,13 @@ impl Scene {
     /// Raises:
     ///     ArgumentError: not a path.
     ///     SceneError: no such file, or it says something that makes no scene: by name, value and what is expected.
+    ///
+    /// Example:
+    ///     >>> import eeruf, pathlib, tempfile
+    ///     >>> file = pathlib.Path(tempfile.mkdtemp(), "alcove.toml")
+    ///     >>> _ = file.write_text(eeruf.example("scenes/alcove.toml"))
+    ///     >>> len(eeruf.sim.Scene.read_toml(file).walls)
+    ///     3
     #[staticmethod]
     #[pyo3(signature = (path))]
     fn read_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
@@ -405,24 +404,8 @@ impl Scene {
         let max_order = whole("max_order", max_order, 0..=u32::MAX)?;
         let max_length_m =
             max_length_m.map_or(Ok(f64::INFINITY), |most| number("max_length_m", most, 0.0..=f64::INFINITY))?;
-        let (py, scene) = (slf.py(), slf.clone().unbind());
-        let standing = slf.get().scene();
-        let few = standing.walls().len() + standing.poles().len() <= FEW && receivers.len() <= FEW;
-        let find = move |receivers: Vec<Point>, stop: Stop| {
-            let contents = Arc::clone(&scene.get().contents);
-            let (limits, mut paths) = (Limits { max_order, max_length_m }, eeruf_sim::Paths::default());
-            let mut tracer = Tracer::new();
-            tracer.stop = stop;
-            tracer.trace(contents.scene(), from, &receivers, limits, &mut paths).map_err(Raise::raise)?;
-            Ok(Paths::new(paths, from, receivers, contents, scene.into_any(), limits))
-        };
-        if few && max_order <= LOW_ORDER && progress.is_none() {
-            return py.detach(|| find(receivers, Stop::default()));
-        }
-        in_background(py, progress, move |background| {
-            background.go_on(None, || format!("paths up to order {max_order}"));
-            find(receivers, background.stop().clone())
-        })
+        let (contents, limits) = (Arc::clone(&slf.get().contents), Limits { max_order, max_length_m });
+        Paths::find(slf.as_any(), contents, from, receivers, limits, progress)
     }
 
     fn __repr__(&self) -> String {

@@ -5,11 +5,13 @@ use std::path::PathBuf;
 
 use eeruf_core::{Micros, Phase};
 use eeruf_sim::{AnySchedule, ScheduleFile};
-use pyo3::{prelude::*, types::PyTuple};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::{
     arguments::{self, micros, shown, times, whole, wrong},
     errors::{Raise, ScheduleError},
+    fields::to_dict,
     hopping_schedule::HoppingSchedule,
     report::Report,
     requirements::{RequirementArguments, UnevenArguments},
@@ -151,6 +153,13 @@ impl Schedule {
     /// Raises:
     ///     ArgumentError: not a path.
     ///     ScheduleError: no such file, or as for :meth:`from_toml`.
+    ///
+    /// Example:
+    ///     >>> import eeruf, pathlib, tempfile
+    ///     >>> file = pathlib.Path(tempfile.mkdtemp(), "ring.toml")
+    ///     >>> _ = file.write_text(eeruf.tables.TABLE_I_D.to_toml())
+    ///     >>> eeruf.Schedule.read_toml(file) == eeruf.tables.TABLE_I_D
+    ///     True
     #[staticmethod]
     #[pyo3(signature = (path))]
     fn read_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
@@ -372,18 +381,9 @@ impl Schedule {
         window_us: Option<&Bound<'_, PyAny>>,
         stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<String> {
-        let uneven = UnevenArguments::default();
-        let owned = RequirementArguments {
-            t_delta_us,
-            min_interval_us,
-            neighbours,
-            layout,
-            criterion,
-            window_us,
-            stale_echo,
-            uneven,
-        }
-        .owned(&self.0)?;
+        let listening = (window_us, stale_echo);
+        let asked = RequirementArguments::alike(t_delta_us, min_interval_us, neighbours, layout, criterion, listening);
+        let owned = asked.owned(&self.0)?;
         Ok(self.0.to_rust(&owned.requirements()).to_string())
     }
 
@@ -422,19 +422,20 @@ impl Schedule {
         window_us: Option<&Bound<'_, PyAny>>,
         stale_echo: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<String> {
-        let uneven = UnevenArguments::default();
-        let owned = RequirementArguments {
-            t_delta_us,
-            min_interval_us,
-            neighbours,
-            layout,
-            criterion,
-            window_us,
-            stale_echo,
-            uneven,
-        }
-        .owned(&self.0)?;
+        let listening = (window_us, stale_echo);
+        let asked = RequirementArguments::alike(t_delta_us, min_interval_us, neighbours, layout, criterion, listening);
+        let owned = asked.owned(&self.0)?;
         Ok(self.0.to_c(&owned.requirements()).to_string())
+    }
+
+    /// Its times by their names, as the arguments of ``Schedule``: a dict of plain values.
+    ///
+    /// Example:
+    ///     >>> from eeruf import Schedule, tables
+    ///     >>> Schedule(**tables.TABLE_I_D.to_dict()) == tables.TABLE_I_D
+    ///     True
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &["period_us", "t_lag_us", "t_wait_a_us", "t_wait_b_us"])
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

@@ -3,11 +3,12 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use eeruf_sim::{Body, SimulationError, simulation::expected_readings};
-use pyo3::prelude::*;
+use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
     arguments::{number, whole, whole_or},
     errors::Raise,
+    fields::to_dict,
     memory,
     readings::Readings,
     simulate::Asked,
@@ -24,7 +25,8 @@ const BLOCK_PERIODS: u32 = 10_000;
 ///     >>> robot = sim.Robot((1, 0, 0), sensors=8, spacing_rad=0.26, radius_m=0.3)
 ///     >>> sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot])).robots[0].pose
 ///     (1.0, 0.0, 0.0)
-#[pyclass(frozen, get_all, module = "eeruf.sim")]
+#[pyclass(frozen, eq, get_all, module = "eeruf.sim")]
+#[derive(Clone, PartialEq)]
 pub(crate) struct RobotState {
     /// (x, y, heading) in metres and radians.
     pose: (f64, f64, f64),
@@ -38,6 +40,17 @@ pub(crate) struct RobotState {
 
 #[pymethods]
 impl RobotState {
+    /// Its fields by their names: a dict of plain values.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((1, 0, 0), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot])).robots[0].to_dict()["pose"]
+    ///     [1.0, 0.0, 0.0]
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &["pose", "velocity_m_s", "turn_rad_s", "touches"])
+    }
+
     fn __repr__(&self) -> String {
         let Self { pose, velocity_m_s, turn_rad_s, touches } = self;
         let touches = if *touches { "True" } else { "False" };
@@ -134,6 +147,13 @@ impl Simulation {
     /// Raises:
     ///     ArgumentError: no such time.
     ///     SimulationError: a robot has moved out of the scene's reach.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+    ///     >>> len(world.step(0.6)) > 70, round(world.time_s, 6)
+    ///     (True, 0.6)
     #[pyo3(signature = (seconds))]
     fn step(&self, seconds: &Bound<'_, PyAny>) -> PyResult<Readings> {
         let py = seconds.py();
@@ -168,6 +188,15 @@ impl Simulation {
     ///
     /// Raises:
     ///     ArgumentError: no such robot or speed.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+    ///     >>> world.set_velocity(0, v_m_s=0.5, w_rad_s=0.0)
+    ///     >>> _ = world.step(1.0)
+    ///     >>> round(world.robots[0].pose[1], 3)
+    ///     0.5
     #[pyo3(signature = (robot, v_m_s, w_rad_s))]
     fn set_velocity(
         &self,

@@ -174,6 +174,13 @@ impl EchoTracker {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> tracker = eeruf.EchoTracker(1)
+    ///     >>> kinds = [tracker.push(0, phase, 9_000).kind for phase in range(5)]
+    ///     >>> tracker.confirmed_us(0)
+    ///     9000
     #[pyo3(signature = (sensor))]
     fn confirmed_us(&self, sensor: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
         Ok(self.tracker.confirmed(self.sensor(sensor)?.into()).map(Micros::as_micros))
@@ -186,6 +193,13 @@ impl EchoTracker {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> tracker = eeruf.EchoTracker(1)
+    ///     >>> kinds = [tracker.push(0, phase, 9_000).kind for phase in range(5)]
+    ///     >>> tracker.is_clear(0)
+    ///     False
     #[pyo3(signature = (sensor))]
     fn is_clear(&self, sensor: &Bound<'_, PyAny>) -> PyResult<bool> {
         Ok(self.tracker.is_clear(self.sensor(sensor)?.into()))
@@ -198,6 +212,14 @@ impl EchoTracker {
     ///
     /// Raises:
     ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> tracker = eeruf.EchoTracker(1)
+    ///     >>> kinds = [tracker.push(0, phase, 9_000).kind for phase in range(5)]
+    ///     >>> tracker.forget(0)
+    ///     >>> tracker.confirmed_us(0) is None
+    ///     True
     #[pyo3(signature = (sensor))]
     fn forget(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.sensor(sensor)?;
@@ -207,6 +229,14 @@ impl EchoTracker {
 
     /// Say that firing times have changed against each other otherwise than by the phase, such as by a new lag: what is
     /// not confirmed begins anew.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> tracker = eeruf.EchoTracker(1)
+    ///     >>> kinds = [tracker.push(0, phase, 9_000).kind for phase in range(5)]
+    ///     >>> tracker.firing_changed()
+    ///     >>> tracker.confirmed_us(0)
+    ///     9000
     fn firing_changed(&mut self) {
         self.tracker.firing_changed();
     }

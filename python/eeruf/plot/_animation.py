@@ -72,7 +72,8 @@ def animation(
     draw_scene(scene, ax=ax)
     sound = ax.scatter([], [], s=22, color=its.green, zorder=6)
     heard = ax.scatter([], [], s=90, linewidths=1.6, zorder=5)
-    title = ax.set_title("", loc="left", fontsize="medium")
+    # Room for what it will say.
+    title = ax.set_title(" ", loc="left", fontsize="medium")
     # An own echo is heard for a third of a period after it came in, so that the eye can follow.
     stays = period_s / 3
     end = max(end, max(flight.arrives for flight in flights) + stays)

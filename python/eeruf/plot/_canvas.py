@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import textwrap
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,10 +27,11 @@ class Colours:
     grey: str
     window: str
     floor: str
+    dark: bool
 
 
-_ON_LIGHT = Colours("#1a1a1a", "#0072b2", "#d55e00", "#009e73", "#e69f00", "#8c8c8c", "#cfe3f1", "#f4f4f4")
-_ON_DARK = Colours("#e8e8e8", "#56b4e9", "#ff7f3f", "#2fd0a5", "#f0c14b", "#9a9a9a", "#24455c", "#262626")
+_ON_LIGHT = Colours("#1a1a1a", "#0072b2", "#d55e00", "#009e73", "#e69f00", "#8c8c8c", "#cfe3f1", "#f4f4f4", False)
+_ON_DARK = Colours("#e8e8e8", "#56b4e9", "#ff7f3f", "#2fd0a5", "#f0c14b", "#9a9a9a", "#24455c", "#262626", True)
 
 
 def colours(ax: Axes) -> Colours:
@@ -49,6 +51,42 @@ def axes(ax: Axes | None, *, width: float = 7.0, height: float = 4.0) -> Axes:
     except ImportError as error:
         raise ImportError("figures need matplotlib: pip install 'eeruf[plot]'") from error
     return plt.subplots(figsize=(width, height), layout="constrained")[1]
+
+
+def _width_pt(ax: Axes) -> float:
+    """About how wide these axes are, in points, before the layout is made."""
+    return 72.0 * ax.figure.bbox.width / ax.figure.dpi * float(ax.get_position().width)
+
+
+def title(ax: Axes, text: str, *, legend_rows: int = 0) -> None:
+    """Say what is shown, in as many lines as the width asks for, above a legend of so many rows."""
+    ax.set_title(
+        textwrap.fill(text, max(20, int(_width_pt(ax) / 5.8))),
+        loc="left",
+        fontsize="medium",
+        pad=6.0 + 14.5 * legend_rows,
+    )
+
+
+def legend_above(ax: Axes, handles: list[Any] | None = None) -> int:
+    """Put a legend above the axes, in as many columns as there is room for; the number of its rows."""
+    shown = ax.get_legend_handles_labels()[0] if handles is None else handles
+    if not shown:
+        return 0
+    longest = max(len(str(handle.get_label())) for handle in shown)
+    columns = min(len(shown), max(1, int(_width_pt(ax) * 1.15 / (28.0 + 4.2 * longest))))
+    ax.legend(
+        handles=shown,
+        frameon=False,
+        ncols=columns,
+        loc="lower left",
+        bbox_to_anchor=(-0.01, 1.0),
+        borderaxespad=0.2,
+        columnspacing=1.2,
+        handlelength=1.6,
+        fontsize="small",
+    )
+    return -(-len(shown) // columns)
 
 
 def bare(ax: Axes) -> None:

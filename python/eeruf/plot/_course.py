@@ -8,7 +8,7 @@ import numpy as np
 
 from eeruf import _eeruf
 from eeruf._eeruf import ArgumentError
-from eeruf.plot._canvas import axes, colours
+from eeruf.plot._canvas import axes, colours, legend_above, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,7 +58,7 @@ def course(
     length, width = _eeruf._ROOM_M
     ax.add_patch(Rectangle((0, 0), length, width, facecolor=its.floor, zorder=0))
     cells = PatchCollection([Rectangle((x - 0.05, y - 0.05), 0.1, 0.1) for x, y, _ in run.grid], linewidth=0, zorder=1)
-    cells.set(array=run.grid[:, 2], cmap="Greys", clim=(-3, 15))
+    cells.set(array=run.grid[:, 2], cmap="Greys_r" if its.dark else "Greys", clim=(-3, 15))
     ax.add_collection(cells)
     ax.plot([0, 0, length], [width, 0, 0], color=its.ink, linewidth=1.0, zorder=3)
     ax.plot([length, length, 0], [0, width, width], color=its.ink, linewidth=3.5, zorder=3)
@@ -89,23 +89,12 @@ def course(
         zorder=5,
         label="pole",
     )
-    cell = Rectangle((0, 0), 1, 1, facecolor="#6b6b6b", label="grid, darker: more certain")
-    ax.legend(
-        handles=[*ax.get_legend_handles_labels()[0], cell],
-        frameon=False,
-        ncols=4,
-        loc="lower left",
-        bbox_to_anchor=(-0.01, 1.0),
-        borderaxespad=0.2,
-        columnspacing=1.2,
-        handlelength=1.4,
-        fontsize="small",
-    )
+    cell = Rectangle((0, 0), 1, 1, facecolor="#6b6b6b", label="grid, stronger: more certain")
+    rows = legend_above(ax, [*ax.get_legend_handles_labels()[0], cell])
     ending = {"finished": "finished after", "contact": "touched something after"}.get(run.ending, "not through in")
     echoes = f"{run.phantom_echoes} phantom echo{'es' * (run.phantom_echoes != 1)}"
-    title = f"course {run.course}: {ending} {run.time_s:.1f} s, {echoes}"
-    # Above the legend.
-    ax.set_title(title if name is None else f"{name}, {title}", loc="left", fontsize="medium", pad=24)
+    said = f"course {run.course}: {ending} {run.time_s:.1f} s, {echoes}"
+    title(ax, said if name is None else f"{name}, {said}", legend_rows=rows)
     ax.set_aspect("equal")
     ax.set_xlim(-0.06, length + 0.06)
     ax.set_ylim(-0.06, width + 0.06)
@@ -136,7 +125,7 @@ def _chosen(
         course = min(runs)
     if not isinstance(course, int) or course not in runs:
         raise ArgumentError(f"course = {course!r}; expected {min(runs)} to {max(runs)}")
-    return runs[course], method, result["second_robot_m"]
+    return runs[course], method, result.second_robot_m
 
 
 def _outline(place: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eeruf._eeruf import EERUF_METHODS, ArgumentError
+from eeruf._results import SetOne, SetTwo, Spread
 from eeruf.plot._canvas import axes, bare, colours
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ _COUNTS = ("courses", "finished", "contacts", "timed_out", "phantom_echoes", "ph
 _TITLES = {
     "wrong_of_all": "wrong of all readings (%)",
     "crosstalk_of_all": "crosstalk of all readings (%)",
+    "confirmed_wrong_of_all": "confirmed wrong of all readings (%)",
     "wrong_of_accepted": "wrong of accepted readings (%)",
     "rejected": "readings not accepted (%)",
     "good_lost": "good readings lost (%)",
@@ -41,8 +43,14 @@ _TITLES = {
 }
 
 
+def _quantiles(figure: Spread | float) -> dict[str, float]:
+    if isinstance(figure, Spread):
+        return {name: getattr(figure, name) for name in _QUANTILES}
+    return dict.fromkeys(_QUANTILES, figure)
+
+
 def methods(
-    result: Mapping[str, Any],
+    result: SetOne | SetTwo,
     *,
     figure: str = "wrong_of_all",
     names: Sequence[str] | None = None,
@@ -70,19 +78,16 @@ def methods(
         ['conventional', 'eeruf']
 
     """
-    table = result.get("methods") if isinstance(result, Mapping) else None
-    if not isinstance(table, Mapping) or not table or not all(isinstance(of, Mapping) for of in table.values()):
+    if not isinstance(result, (SetOne, SetTwo)):
         raise ArgumentError(f"result = {result!r:.60}; expected what eeruf.experiments.set_one or set_two returns")
-    figures = {
-        name: method[figure]
-        for name, method in table.items()
-        if isinstance(figure, str) and figure in _TITLES and method.get(figure) is not None
-    }
+    known = isinstance(figure, str) and figure in _TITLES
+    found = {name: getattr(of, figure, None) for name, of in result.methods.items()} if known else {}
+    figures = {name: of for name, of in found.items() if of is not None}
     if not figures:
-        known = ", ".join(sorted(name for name in _TITLES if any(name in of for of in table.values())))
-        raise ArgumentError(f"figure = {figure!r}; expected one of {known}")
+        has = (title for title in sorted(_TITLES) if any(hasattr(of, title) for of in result.methods.values()))
+        raise ArgumentError(f"figure = {figure!r}; expected one of {', '.join(has)}")
     # Set II has one number for all courses.
-    spreads = {name: of if isinstance(of, Mapping) else dict.fromkeys(_QUANTILES, of) for name, of in figures.items()}
+    spreads = {name: _quantiles(of) for name, of in figures.items()}
     chosen = sorted(spreads, key=lambda name: -spreads[name]["median"])
     if names is not None:
         chosen = list(names) if isinstance(names, Iterable) else []
@@ -118,7 +123,7 @@ def methods(
     ax.tick_params(axis="y", length=0)
     ax.set_xlabel(_TITLES[figure])
     if spread:
-        said = f"bar and number: median of {result['seeds']} geometries\nwhisker: 10 % to 90 % of them"
+        said = f"bar and number: median of {result.seeds} geometries\nwhisker: 10 % to 90 % of them"
         ax.set_title(said, loc="left", fontsize="small", color=its.grey)
     bare(ax)
     return ax

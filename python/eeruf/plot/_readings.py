@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eeruf import _eeruf
-from eeruf.plot._canvas import axes, bare, check_kind, check_whole, colours
+from eeruf.plot._canvas import axes, bare, check_kind, check_whole, colours, legend_above
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -82,9 +82,10 @@ def readings(
         color=its.grey,
         label="not accepted",
     )
-    ax.set_ylim(bottom=0)
+    # Whole marks at the top.
+    ax.set_ylim(0, 1.06 * ax.get_ylim()[1])
     ax.set_xlabel("time (s)")
     ax.set_ylabel(f"echo time of sensor {sensor + 1} (ms)")
-    ax.legend(frameon=False, ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0))
+    legend_above(ax)
     bare(ax)
     return ax

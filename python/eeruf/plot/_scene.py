@@ -8,7 +8,7 @@ import numpy as np
 
 from eeruf import _eeruf
 from eeruf._eeruf import ArgumentError
-from eeruf.plot._canvas import Colours, axes, bare, check_kind, check_whole, colours, points
+from eeruf.plot._canvas import Colours, axes, bare, check_kind, check_whole, colours, legend_above, points, title
 from eeruf.plot._ways import sensor_places, way
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def scene(
 
     Args:
         scene: the walls, poles and robots.
-        paths: of ``Scene.paths``; the shortest are drawn, darker the fewer bounces they take.
+        paths: of ``Scene.paths``; the shortest are drawn, stronger the fewer bounces they take.
         readings: of a simulation of this scene, to draw who fooled whom: along the ways of foreign sound that was believed, from the
             sensor that sent it to the one that took it for its own, thicker the more often. Robots stand where the scene has them,
             so ways of moving robots are left out.
@@ -116,14 +116,26 @@ def _robots(ax: Axes, its: Colours, scene: Scene) -> None:
         x, y, heading = robot.pose
         ax.plot(x, y, marker=(3, 0, np.degrees(heading) - 90), markersize=8, color=its.orange, zorder=4)
         if len(scene.robots) > 1:
-            ax.annotate(f"{number + 1}", (x, y), xytext=(6, 6), textcoords="offset points", color=its.ink)
+            # Behind it, where no sensor is drawn over it.
+            behind = (-13 * np.cos(heading), -13 * np.sin(heading))
+            ax.annotate(
+                f"{number + 1}",
+                (x, y),
+                xytext=behind,
+                textcoords="offset points",
+                ha="center",
+                va="center",
+                color=its.ink,
+            )
 
 
 def _paths(ax: Axes, paths: Paths, most: int) -> None:
     from matplotlib import colormaps
 
     orders = np.asarray(paths.order)
-    shades = colormaps["viridis"](np.linspace(0.05, 0.85, int(orders.max(initial=0)) + 1))
+    # From the strongest against the background to the faintest.
+    ends = (1.0, 0.35) if colours(ax).dark else (0.05, 0.85)
+    shades = colormaps["viridis"](np.linspace(*ends, int(orders.max(initial=0)) + 1))
     labelled: set[int] = set()
     for path in np.argsort(paths.length_m, kind="stable")[:most]:
         way, order = np.asarray(paths.points(int(path))), int(orders[path])
@@ -133,13 +145,7 @@ def _paths(ax: Axes, paths: Paths, most: int) -> None:
     handles, labels = ax.get_legend_handles_labels()
     if handles:
         by_order = sorted(zip(labels, handles), key=lambda entry: int(entry[0].split()[0]))
-        ax.legend(
-            [handle for _, handle in by_order],
-            [label for label, _ in by_order],
-            frameon=False,
-            loc="upper left",
-            bbox_to_anchor=(1.0, 1.0),
-        )
+        legend_above(ax, [handle for _, handle in by_order])
 
 
 def _who_fooled_whom(ax: Axes, its: Colours, scene: Scene, readings: Readings, most: int) -> None:
@@ -164,4 +170,4 @@ def _who_fooled_whom(ax: Axes, its: Colours, scene: Scene, readings: Readings, m
         drawn += 1
     wrong = int(times.sum())
     said = f"{readings.method}: {wrong:,} of {len(readings):,} readings are foreign sound that was believed"
-    ax.set_title(said if drawn or not wrong else f"{said}; its ways are not drawn", loc="left", fontsize="medium")
+    title(ax, said if drawn or not wrong else f"{said}; its ways are not drawn")

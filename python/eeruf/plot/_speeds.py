@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from eeruf._eeruf import EERUF_METHODS, ArgumentError
-from eeruf.plot._canvas import axes, bare, colours
+from eeruf._eeruf import EERUF_METHODS
+from eeruf._results import SpeedSweep
+from eeruf.plot._canvas import axes, bare, check_kind, colours, legend_above
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 _MARKERS = "osD^vPX*<>hd8"
 
 
-def speeds(result: Mapping[str, Any], *, ax: Axes | None = None) -> Axes:
+def speeds(result: SpeedSweep, *, ax: Axes | None = None) -> Axes:
     """The share of courses finished over the platform's top speed, a line for each method.
 
     Args:
@@ -34,17 +34,16 @@ def speeds(result: Mapping[str, Any], *, ax: Axes | None = None) -> Axes:
         'top speed (m/s)'
 
     """
-    steps = result.get("steps") if isinstance(result, Mapping) else None
-    if not steps or not all(isinstance(step, Mapping) and "finished" in step for step in steps):
-        raise ArgumentError(f"result = {result!r:.60}; expected what eeruf.experiments.speed_sweep returns")
+    check_kind("result", result, SpeedSweep, "what eeruf.experiments.speed_sweep returns")
+    steps = result.steps
     ax = axes(ax)
     its = colours(ax)
     hues = [its.blue, its.vermilion, its.green, its.orange, its.grey, its.ink]
-    at = [step["speed_m_s"] for step in steps]
-    for index, method in enumerate(steps[0]["finished"]):
+    at = [step.speed_m_s for step in steps]
+    for index, method in enumerate(steps[0].finished_of_all):
         ax.plot(
             at,
-            [100.0 * step["finished"][method] for step in steps],
+            [100.0 * step.finished_of_all[method] for step in steps],
             color=hues[index % len(hues)],
             linestyle="-" if method in EERUF_METHODS else "--",
             marker=_MARKERS[index % len(_MARKERS)],
@@ -54,6 +53,6 @@ def speeds(result: Mapping[str, Any], *, ax: Axes | None = None) -> Axes:
     ax.set_ylim(-3, 103)
     ax.set_xlabel("top speed (m/s)")
     ax.set_ylabel("courses finished (%)")
-    ax.legend(frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    legend_above(ax)
     bare(ax)
     return ax

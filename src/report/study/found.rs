@@ -36,6 +36,9 @@ pub(crate) fn of_robot(readings: &Readings, robot: usize, sensors: usize) -> Rea
     alone.period = pick(&own, &readings.period);
     alone.phase = pick(&own, &readings.phase);
     alone.fired_s = pick(&own, &readings.fired_s);
+    alone.x_m = pick(&own, &readings.x_m);
+    alone.y_m = pick(&own, &readings.y_m);
+    alone.heading_rad = pick(&own, &readings.heading_rad);
     alone.kind = pick(&own, &readings.kind);
     alone.t_echo_us = pick(&own, &readings.t_echo_us);
     alone.earliest_us = pick(&own, &readings.earliest_us);

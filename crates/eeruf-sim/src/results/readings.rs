@@ -81,6 +81,12 @@ pub struct Readings {
     pub phase: Vec<u8>,
     /// When it fired, in seconds of true time.
     pub fired_s: Vec<f64>,
+    /// Where the sensor stood when it fired, in metres of the scene.
+    pub x_m: Vec<f64>,
+    /// Where the sensor stood when it fired, in metres of the scene.
+    pub y_m: Vec<f64>,
+    /// Whither it looked then, in radians of the scene, counter-clockwise from the x axis, in (-pi, pi].
+    pub heading_rad: Vec<f64>,
     /// What the method made of the reading. Methods that believe everything know [`ReadingKind::Accepted`] and
     /// [`ReadingKind::Clear`].
     pub kind: Vec<ReadingKind>,
@@ -106,7 +112,7 @@ pub struct Readings {
 impl Readings {
     /// How much memory so many readings take, in bytes.
     pub const fn bytes_for(readings: u64) -> u64 {
-        let whole = size_of::<(f64, f64, f64, f64, f64)>() + size_of::<(u32, u32)>() + size_of::<u16>();
+        let whole = size_of::<[f64; 8]>() + size_of::<(u32, u32)>() + size_of::<u16>();
         readings.saturating_mul((whole + size_of::<(u8, u8, ReadingKind, Cause)>()) as u64)
     }
 
@@ -121,6 +127,9 @@ impl Readings {
             period: Vec::new(),
             phase: Vec::new(),
             fired_s: Vec::new(),
+            x_m: Vec::new(),
+            y_m: Vec::new(),
+            heading_rad: Vec::new(),
             kind: Vec::new(),
             t_echo_us: Vec::new(),
             earliest_us: Vec::new(),
@@ -141,6 +150,10 @@ impl Readings {
         phase.try_reserve(more)?;
         fired_s.try_reserve(more)?;
         kind.try_reserve(more)?;
+        let Self { x_m, y_m, heading_rad, .. } = self;
+        x_m.try_reserve(more)?;
+        y_m.try_reserve(more)?;
+        heading_rad.try_reserve(more)?;
         let Self { t_echo_us, earliest_us, reference_us, cause, path, emitted_s, .. } = self;
         t_echo_us.try_reserve(more)?;
         earliest_us.try_reserve(more)?;

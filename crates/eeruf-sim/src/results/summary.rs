@@ -42,6 +42,7 @@ pub struct Summary {
     /// Share of all readings that were not good: what would have been wrong without any filter.
     pub wrong_before_filter: f64,
     /// Age of the last accepted reading.
+    #[serde(flatten)]
     pub age_ms: Age,
     /// Accepted readings in a second of simulated time, all sensors together.
     pub readings_per_s: f64,
@@ -60,8 +61,10 @@ pub struct Summary {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Age {
     /// Half of the time no older than this.
+    #[serde(rename = "age_ms")]
     pub median: f64,
     /// 99 % of the time no older than this.
+    #[serde(rename = "age_p99_ms")]
     pub p99: f64,
 }
 

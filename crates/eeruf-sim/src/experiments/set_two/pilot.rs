@@ -8,9 +8,9 @@ use super::odometry::Odometry;
 use super::options::SetTwoOptions;
 use super::run::{Cell, Ending, Place, Run};
 use crate::{
-    geometry::{Moment, Point, Pose, Vector, wrap_angle},
+    geometry::{Moment, Point, Pose, Vector},
     methods::Method,
-    navigation::{Driven, Himm, LabMate, SECTORS, Vfh},
+    navigation::{Driven, Himm, LabMate, Vfh},
     results::{DEFAULT_TOLERANCE_US, Readings},
     scene::Body,
     simulation::Kinematics,
@@ -150,22 +150,9 @@ impl<'w> Pilot<'w> {
 
     /// Where to, and how fast.
     fn look(&mut self) {
-        let believed = self.odometry.pose();
-        let (place, heading) = (Point::from(believed.translation.vector), believed.rotation.angle());
-        let smoothed: [f64; SECTORS] = self.piloting.vfh.smoothed(&self.piloting.vfh.histogram(&self.grid, place));
-        let towards = TARGET - place;
-        let target = towards.y.atan2(towards.x);
-        self.wanted = match self.piloting.vfh.choose(&smoothed, target) {
-            // Every way is blocked: stand, and look around.
-            None => (0.0, 0.5 * self.labmate.turn_max_rad_s),
-            Some(steering) => {
-                let error = wrap_angle(steering.direction_rad - heading);
-                let turn =
-                    (self.piloting.turn_gain * error).clamp(-self.labmate.turn_max_rad_s, self.labmate.turn_max_rad_s);
-                let speed = self.piloting.vfh.speed(&smoothed, heading, self.state.turn_rad_s);
-                (speed * error.cos().max(0.0), turn)
-            }
-        };
+        let Piloting { vfh, turn_gain, .. } = self.piloting;
+        let (believed, turn_most_rad_s) = (self.odometry.pose(), self.labmate.turn_max_rad_s);
+        self.wanted = vfh.drive(&self.grid, believed, TARGET, self.state.turn_rad_s, turn_gain, turn_most_rad_s);
         let Driven { pose, speed_m_s, .. } = self.state;
         let time_s = (self.steps * STEP_NS) as f64 * 1e-9;
         let (x_m, y_m) = (pose.translation.x, pose.translation.y);

@@ -166,7 +166,7 @@ pub struct SpeedStep {
     /// The platform's highest speed, in m/s.
     pub speed_m_s: f64,
     /// For each method, the share of courses finished without contact.
-    #[serde(serialize_with = "by_name")]
+    #[serde(serialize_with = "by_name", rename = "finished_of_all")]
     pub finished: Vec<(Method, f64)>,
     /// For each method, the mean speed in m/s.
     #[serde(serialize_with = "by_name")]

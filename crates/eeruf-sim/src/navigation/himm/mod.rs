@@ -70,6 +70,11 @@ impl Himm {
         self.side as usize
     }
 
+    /// Where the window begins: the corner of its first cell, with the least x and y.
+    pub fn corner(&self) -> Point {
+        Point::new(self.first[0] as f64 * self.cell_m, self.first[1] as f64 * self.cell_m)
+    }
+
     /// Moves the window so that `place` is in its middle cell. Cells that leave it are forgotten, those that enter are
     /// empty.
     pub fn move_to(&mut self, place: Point) {

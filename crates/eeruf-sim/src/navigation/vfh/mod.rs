@@ -13,7 +13,7 @@ use core::f64::consts::{PI, TAU};
 mod tests;
 
 use super::himm::{Himm, MAX_VALUE};
-use crate::geometry::{Point, Vector, wrap_angle};
+use crate::geometry::{Point, Pose, Vector, wrap_angle};
 
 /// How many sectors the histogram has, as in the paper on VFH.
 pub const SECTORS: usize = 72;
@@ -183,6 +183,35 @@ impl Vfh {
         let calm = 1.0 - (density / self.density_max).clamp(0.0, 1.0);
         let straight = 1.0 - (turn_rad_s.abs() / self.turn_max_rad_s).clamp(0.0, 1.0);
         (self.speed_max_m_s * calm * straight + self.speed_min_m_s).min(self.speed_max_m_s)
+    }
+
+    /// How to drive from a pose to a target: the speed ahead in m/s, and the rate of turn in rad/s. A steering error of
+    /// a radian asks for `turn_gain` rad/s, at most `turn_most_rad_s`; the farther the heading is off, the slower it
+    /// goes. Where every way is blocked it stands and looks around. `turn_rad_s` is how fast it turns now.
+    ///
+    /// ```
+    /// use eeruf_sim::{Himm, Point, Pose, Vfh};
+    /// let free = Himm::new(33, 0.1);
+    /// let (speed, turn) = Vfh::default().drive(&free, &Pose::identity(), Point::new(5.0, 0.0), 0.0, 3.0, 2.0);
+    /// assert_eq!((speed, turn), (1.0, 0.0));
+    /// ```
+    pub fn drive(
+        &self,
+        grid: &Himm,
+        pose: &Pose,
+        target: Point,
+        turn_rad_s: f64,
+        turn_gain: f64,
+        turn_most_rad_s: f64,
+    ) -> (f64, f64) {
+        let (place, heading) = (Point::from(pose.translation.vector), pose.rotation.angle());
+        let smoothed = self.smoothed(&self.histogram(grid, place));
+        let Some(steering) = self.choose(&smoothed, direction(target - place)) else {
+            return (0.0, 0.5 * turn_most_rad_s);
+        };
+        let error = wrap_angle(steering.direction_rad - heading);
+        let turn = (turn_gain * error).clamp(-turn_most_rad_s, turn_most_rad_s);
+        (self.speed(&smoothed, heading, turn_rad_s) * error.cos().max(0.0), turn)
     }
 
     /// The direction that a valley is taken in.

@@ -222,10 +222,12 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
                 }
                 Some(RingEvent::Reading(reading)) => {
                     let number = ring.sensors.start + usize::from(reading.sensor);
-                    if let Some(receiver) = self.receivers.get_mut(number) {
-                        let recorded = self.recorder.record(number, &reading, receiver, self.references[number]);
+                    if let (Some(receiver), Some(fired)) = (self.receivers.get_mut(number), &self.fired[number]) {
+                        let fired_from = fired.pose * ring.robot.sensors[usize::from(reading.sensor)];
+                        let reference = self.references[number];
+                        let recorded = self.recorder.record(number, &reading, receiver, reference, &fired_from);
                         receiver.stop();
-                        if let (Some(readings), Some(fired)) = (recorded, &self.fired[number]) {
+                        if let Some(readings) = recorded {
                             self.kinematics.on_reading(readings, fired);
                         }
                     }

@@ -7,6 +7,7 @@ use crate::simulation::error::SimulationError;
 use crate::simulation::options::Options;
 use crate::simulation::receiver::{EXTERNAL, Heard, NEVER, Receiver};
 use crate::{
+    geometry::Pose,
     methods::{Belief, Method},
     results::{Cause, HeardPath, NO_PATH, Readings, SensorId},
 };
@@ -74,14 +75,15 @@ impl Recorder {
         self.readings.try_reserve(more).map_err(|_| SimulationError::Memory { readings: (readings + more) as u64 })
     }
 
-    /// Records what the ring makes of a firing. `reference` is the travelling time of what the sensor hears alone. The
-    /// answer is all readings with this one as the last; none if it does not count.
+    /// Records what the ring makes of a firing. `reference` is the travelling time of what the sensor hears alone,
+    /// `fired_from` its place and heading when it fired. The answer is all readings with this one as the last; none if it does not count.
     pub(crate) fn record(
         &mut self,
         sensor: usize,
         reading: &Reading,
         receiver: &Receiver,
         reference: u64,
+        fired_from: &Pose,
     ) -> Option<&Readings> {
         if reading.kind == ReadingKind::Late || receiver.fired >= self.end {
             return None;
@@ -115,6 +117,9 @@ impl Recorder {
         out.period.push(reading.period);
         out.phase.push(reading.phase.0);
         out.fired_s.push(receiver.fired as f64 * 1e-9);
+        out.x_m.push(fired_from.translation.x);
+        out.y_m.push(fired_from.translation.y);
+        out.heading_rad.push(fired_from.rotation.angle());
         out.kind.push(kind);
         out.t_echo_us.push(time_us(chosen));
         out.earliest_us.push(time_us(earliest));

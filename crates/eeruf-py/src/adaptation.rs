@@ -1,0 +1,189 @@
+//! `Adaptation`: adaptive scheduling (end of Sec. 3.1).
+
+use eeruf_core::{
+    Adaptation as Core, Ladder, MAX_SENSORS, Micros, Requirements, RingEvent, SpeedOfSound, VerifiedSchedule,
+};
+use pyo3::prelude::*;
+
+use crate::{
+    arguments::{instance, items, micros, number, whole_or, wrong},
+    errors::Raise,
+    ring::Ring,
+    ring_events::to_core,
+    schedule::Schedule,
+};
+
+type OnLadder<'s> = Core<'s, MAX_SENSORS>;
+
+self_cell::self_cell!(
+    /// What adapts, with the rungs that it borrows.
+    struct Owned {
+        owner: Vec<VerifiedSchedule<MAX_SENSORS>>,
+        #[covariant]
+        dependent: OnLadder,
+    }
+);
+
+/// Adaptive scheduling (end of Sec. 3.1): fire more slowly where too much is rejected, and faster again when it is
+/// calm.
+///
+/// It watches the rejection rate over windows of some periods. One noisy window moves one rung up, to a longer period;
+/// only several calm windows running move one rung down.
+///
+/// Args:
+///     schedules: the rungs, of equally many sensors, from the shortest period to the longest. The ring begins with
+///         the first.
+///     t_delta_us: ``T_delta`` of the ring, at which each must reject crosstalk.
+///     noisy: above this rejection rate, a fraction of 1, it fires more slowly.
+///     calm: up to this rejection rate a window is calm.
+///     window_periods: how many periods a window has, 1 to 255.
+///     patience: how many calm windows running it takes to fire faster, 1 to 255.
+///
+/// Raises:
+///     ArgumentError: something of the wrong type or out of range.
+///     RingError: a schedule does not reject crosstalk at this ``t_delta_us``.
+///     ScheduleError: the schedules are no ladder.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> fast, slow = eeruf.tables.TABLE_I_D.scaled(3, 5), eeruf.tables.TABLE_I_D
+///     >>> ring = eeruf.Ring(fast, t_delta_us=500, window_us=36_000)
+///     >>> adaptation = eeruf.Adaptation([fast, slow], t_delta_us=500)
+///     >>> noise_us = 0
+///     >>> while adaptation.rung == 0:  # everything that is heard is noise
+///     ...     now_us = ring.next_deadline_us
+///     ...     while event := ring.poll(now_us):
+///     ...         if isinstance(event, eeruf.Fire):
+///     ...             noise_us = (noise_us + 7_000) % 30_000
+///     ...             ring.echo(event.sensor, now_us + 1_000 + noise_us)
+///     ...         _ = adaptation.adapt(ring, event)
+///     >>> adaptation.rejection_rate > 0.9, adaptation.schedule == slow
+///     (True, True)
+#[pyclass(module = "eeruf")]
+pub(crate) struct Adaptation {
+    adaptation: Owned,
+}
+
+/// Of a fraction of 1, in thousandths.
+fn permille(name: &str, value: Option<&Bound<'_, PyAny>>, default: u16) -> PyResult<u16> {
+    // At most 1000.
+    value.map_or(Ok(default), |share| number(name, share, 0.0..=1.0).map(|share| (1e3 * share).round() as u16))
+}
+
+#[pymethods]
+impl Adaptation {
+    #[new]
+    #[pyo3(signature = (schedules, t_delta_us, *, noisy=None, calm=None, window_periods=None, patience=None))]
+    #[pyo3(text_signature = "(schedules, t_delta_us, *, noisy=0.3, calm=0.1, window_periods=16, patience=4)")]
+    fn new(
+        schedules: &Bound<'_, PyAny>,
+        t_delta_us: &Bound<'_, PyAny>,
+        noisy: Option<&Bound<'_, PyAny>>,
+        calm: Option<&Bound<'_, PyAny>>,
+        window_periods: Option<&Bound<'_, PyAny>>,
+        patience: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let expected = "schedules, from the shortest period to the longest";
+        let requirements = Requirements::new(micros("t_delta_us", t_delta_us)?);
+        let rung = |(index, schedule): (usize, Bound<'_, PyAny>)| {
+            let name = format!("schedules[{index}]");
+            let schedule = instance::<Schedule>(&name, &schedule, "an eeruf.Schedule")?.get().0;
+            schedule.verify(&requirements).verified().map_err(Raise::raise)
+        };
+        let rungs = items("schedules", schedules, expected)?.into_iter().enumerate().map(rung);
+        let rungs = rungs.collect::<PyResult<Vec<_>>>()?;
+        let (noisy, calm) = (permille("noisy", noisy, 300)?, permille("calm", calm, 100)?);
+        if calm > noisy {
+            return Err(wrong(
+                "calm",
+                f64::from(calm) / 1e3,
+                format_args!("at most noisy = {}", f64::from(noisy) / 1e3),
+            ));
+        }
+        let window = whole_or("window_periods", window_periods, 16, 1..=u8::MAX)?;
+        let patience = whole_or("patience", patience, 4, 1..=u8::MAX)?;
+        let adaptation = Owned::try_new(rungs, |rungs| {
+            let mut adaptation = Core::new(Ladder::new(rungs)?);
+            (adaptation.noisy_permille, adaptation.calm_permille) = (noisy, calm);
+            (adaptation.window, adaptation.patience) = (window, patience);
+            Ok(adaptation)
+        });
+        Ok(Self { adaptation: adaptation.map_err(|error: eeruf_core::LadderError| error.raise())? })
+    }
+
+    /// Take in an event of a ring, and change the ring to another schedule when the present one should be left. Only
+    /// the ends of periods count.
+    ///
+    /// Args:
+    ///     ring: an ``eeruf.Ring`` that began with the first schedule.
+    ///     event: what its ``poll`` returned.
+    ///
+    /// Returns:
+    ///     Whether there was a change; the ring makes it when the present period ends.
+    ///
+    /// Raises:
+    ///     ArgumentError: no ring, no event, or a ring of other sensors.
+    ///     RingError: the ring refuses the schedule. Both then go on as before.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> adaptation = eeruf.Adaptation([eeruf.tables.TABLE_I_D], t_delta_us=500)
+    ///     >>> adaptation.adapt(ring, ring.poll(ring.next_deadline_us))
+    ///     False
+    #[pyo3(signature = (ring, event))]
+    fn adapt(&mut self, ring: &Bound<'_, PyAny>, event: &Bound<'_, PyAny>) -> PyResult<bool> {
+        let ring = instance::<Ring>("ring", ring, "an eeruf.Ring")?;
+        let RingEvent::PeriodEnded(stats) = to_core("event", event)? else { return Ok(false) };
+        let mut ring = ring.try_borrow_mut()?;
+        self.adaptation.with_dependent_mut(|_, on| on.adapt(&stats, |schedule| ring.0.change_to(schedule.schedule())))
+    }
+
+    /// The rung in use, 0 for the shortest period.
+    #[getter]
+    fn rung(&self) -> usize {
+        self.adaptation.borrow_dependent().advice(Micros::ZERO, SpeedOfSound::AT_20_CELSIUS).rung
+    }
+
+    /// The schedule in use.
+    #[getter]
+    fn schedule(&self) -> Schedule {
+        // It is always on one of its rungs.
+        Schedule(*self.adaptation.borrow_owner()[self.rung()].schedule())
+    }
+
+    /// The share of the readings that were compared and rejected in the last whole window; None before, or if nothing
+    /// was compared in it.
+    #[getter]
+    fn rejection_rate(&self) -> Option<f64> {
+        let advice = self.adaptation.borrow_dependent().advice(Micros::ZERO, SpeedOfSound::AT_20_CELSIUS);
+        advice.rejection_permille.map(|permille| f64::from(permille) / 1e3)
+    }
+
+    /// The fastest motion, in m/s, at which good readings still pass on the rung in use: a reading changes by
+    /// ``2 v dt / c`` (Sec. 3.1).
+    ///
+    /// Args:
+    ///     t_delta_us: ``T_delta`` of the ring.
+    ///     sound_m_s: the speed of sound, in m/s, 100 to 1000.
+    ///
+    /// Raises:
+    ///     ArgumentError: out of range.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> eeruf.Adaptation([eeruf.tables.TABLE_I_D], t_delta_us=999).max_speed_m_s(t_delta_us=999)
+    ///     1.382
+    #[pyo3(signature = (t_delta_us, sound_m_s=None), text_signature = "($self, t_delta_us, sound_m_s=343.2)")]
+    fn max_speed_m_s(&self, t_delta_us: &Bound<'_, PyAny>, sound_m_s: Option<&Bound<'_, PyAny>>) -> PyResult<f64> {
+        let t_delta = micros("t_delta_us", t_delta_us)?;
+        let c = sound_m_s.map_or(Ok(343.2), |c| number("sound_m_s", c, 100.0..=1e3))?;
+        let c = SpeedOfSound::from_mm_per_s((1e3 * c).round() as u32);
+        Ok(f64::from(self.adaptation.borrow_dependent().advice(t_delta, c).max_speed_mm_s) / 1e3)
+    }
+
+    fn __repr__(&self) -> String {
+        let rungs = self.adaptation.borrow_owner().len();
+        format!("<Adaptation: rung {} of {rungs}, {:?}>", self.rung(), self.schedule().0.period().as_micros())
+    }
+}

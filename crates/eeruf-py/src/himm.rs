@@ -1,0 +1,295 @@
+//! `nav.Himm`: histogramic in-motion mapping.
+
+use eeruf_core::ReadingKind;
+use eeruf_sim::{Air, Point, Pose};
+use numpy::{PyArray1, prelude::*};
+use pyo3::prelude::*;
+
+use crate::{
+    arguments::{flag, instance, number, number_or, whole_or},
+    columns::read_only,
+    pose::{point_of, pose_of, to_pose},
+    readings::Readings,
+};
+
+/// The most metres that a reading is entered over.
+const FARTHEST_M: f64 = 1e3;
+
+/// A certainty grid that range readings fill and clear while the robot drives: histogramic in-motion mapping
+/// (J. Borenstein and Y. Koren, IEEE T-RA 7(4), 1991).
+///
+/// A reading counts only on the sensor's acoustic axis: the cell at the measured range gains 3, each cell on the way
+/// there loses 1, and values stay between 0 and 15. A real obstacle is met again and again and grows quickly; a phantom
+/// is met once and is cleared by the next readings that look past it.
+///
+/// Args:
+///     side: how many cells the grid's window has on a side, 1 to 4096.
+///     cell_m: how wide a cell is, in metres, above 0.
+///     growth: whether cells beside certain ones grow faster (the paper's growth rate operator, for fast robots).
+///
+/// Raises:
+///     ArgumentError: something of the wrong type or out of range.
+///
+/// Example:
+///     >>> from eeruf import nav
+///     >>> grid = nav.Himm()
+///     >>> grid.echo((0.05, 0.05, 0.0), range_m=1.0)
+///     >>> grid.value((1.05, 0.05)), grid.value((9.0, 0.0))
+///     (3, None)
+#[pyclass(module = "eeruf.nav")]
+pub(crate) struct Himm {
+    pub(crate) grid: eeruf_sim::Himm,
+}
+
+fn metres(name: &str, value: Option<&Bound<'_, PyAny>>, default: f64) -> PyResult<f64> {
+    number_or(name, value, default, 0.0..=FARTHEST_M)
+}
+
+/// Place and heading of a sensor.
+fn axis(sensor: &Bound<'_, PyAny>) -> PyResult<(Point, f64)> {
+    let of: Pose = to_pose(pose_of("sensor", sensor)?);
+    Ok((Point::from(of.translation.vector), of.rotation.angle()))
+}
+
+#[pymethods]
+impl Himm {
+    #[new]
+    #[pyo3(signature = (side=None, cell_m=None, *, growth=None))]
+    #[pyo3(text_signature = "(side=33, cell_m=0.1, *, growth=False)")]
+    fn new(
+        side: Option<&Bound<'_, PyAny>>,
+        cell_m: Option<&Bound<'_, PyAny>>,
+        growth: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let side = whole_or("side", side, 33, 1..=4096)?;
+        let cell_m = number_or("cell_m", cell_m, 0.1, 1e-3..=1e3)?;
+        let mut grid = eeruf_sim::Himm::new(side, cell_m);
+        grid.growth = flag("growth", growth, false)?;
+        Ok(Self { grid })
+    }
+
+    /// How many cells the window has on a side.
+    #[getter]
+    fn side(&self) -> usize {
+        self.grid.side()
+    }
+
+    /// How wide a cell is, in metres.
+    #[getter]
+    fn cell_m(&self) -> f64 {
+        self.grid.cell_m()
+    }
+
+    /// Whether cells beside certain ones grow faster.
+    #[getter]
+    fn growth(&self) -> bool {
+        self.grid.growth
+    }
+
+    /// What the window covers: (least x, greatest x, least y, greatest y) in metres, as ``imshow`` takes it.
+    #[getter]
+    fn extent_m(&self) -> (f64, f64, f64, f64) {
+        let (corner, width) = (self.grid.corner(), self.grid.side() as f64 * self.grid.cell_m());
+        (corner.x, corner.x + width, corner.y, corner.y + width)
+    }
+
+    /// Move the window so that a place is in its middle cell. Cells that leave it are forgotten, those that enter are
+    /// empty.
+    ///
+    /// Args:
+    ///     place: (x, y) in metres.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such place.
+    ///
+    /// Example:
+    ///     >>> from eeruf import nav
+    ///     >>> grid = nav.Himm()
+    ///     >>> grid.move_to((9.05, 0.05))
+    ///     >>> grid.value((9.0, 0.0)), grid.value((0.0, 0.0))
+    ///     (0, None)
+    #[pyo3(signature = (place))]
+    fn move_to(&mut self, place: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.grid.move_to(point_of("place", place)?);
+        Ok(())
+    }
+
+    /// Enter an echo: an obstacle on a sensor's axis, and nothing before it.
+    ///
+    /// Args:
+    ///     sensor: its place and heading (x, y, heading) in metres and radians.
+    ///     range_m: how far the obstacle is, in metres, 0 to 1,000.
+    ///     near_m: cells nearer than this, where the sensor is deaf, are left as they are.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such place or range.
+    ///
+    /// Example:
+    ///     >>> from eeruf import nav
+    ///     >>> grid = nav.Himm()
+    ///     >>> for _ in range(9):
+    ///     ...     grid.echo((0.0, 0.0, 1.57), range_m=1.0)
+    ///     >>> grid.cells().round(2).tolist()
+    ///     [[0.05, 0.95, 15.0]]
+    #[pyo3(signature = (sensor, range_m, near_m=None), text_signature = "($self, sensor, range_m, near_m=0.0)")]
+    fn echo(
+        &mut self,
+        sensor: &Bound<'_, PyAny>,
+        range_m: &Bound<'_, PyAny>,
+        near_m: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let (at, heading) = axis(sensor)?;
+        let range_m = number("range_m", range_m, 0.0..=FARTHEST_M)?;
+        self.grid.echo(at, heading, metres("near_m", near_m, 0.0)?, range_m);
+        Ok(())
+    }
+
+    /// Enter that nothing is on a sensor's axis.
+    ///
+    /// Args:
+    ///     sensor: its place and heading (x, y, heading) in metres and radians.
+    ///     range_m: as far as that, in metres, 0 to 1,000.
+    ///     near_m: cells nearer than this, where the sensor is deaf, are left as they are.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such place or range.
+    ///
+    /// Example:
+    ///     >>> from eeruf import nav
+    ///     >>> grid = nav.Himm()
+    ///     >>> grid.echo((0.05, 0.05, 0.0), range_m=1.0)
+    ///     >>> grid.clear((0.05, 0.05, 0.0), range_m=1.5)
+    ///     >>> grid.value((1.05, 0.05))
+    ///     2
+    #[pyo3(signature = (sensor, range_m, near_m=None), text_signature = "($self, sensor, range_m, near_m=0.0)")]
+    fn clear(
+        &mut self,
+        sensor: &Bound<'_, PyAny>,
+        range_m: &Bound<'_, PyAny>,
+        near_m: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let (at, heading) = axis(sensor)?;
+        let range_m = number("range_m", range_m, 0.0..=FARTHEST_M)?;
+        self.grid.clear(at, heading, metres("near_m", near_m, 0.0)?, range_m);
+        Ok(())
+    }
+
+    /// Enter what a simulation's ring reads, from where each sensor really stood: accepted echoes up to a range as
+    /// obstacles; farther ones, and that nothing is there, clear the way.
+    ///
+    /// Args:
+    ///     readings: of ``Simulation.step``.
+    ///     range_m: how far the grid is filled, in metres, 0 to 1,000.
+    ///     near_m: cells nearer than this, where the sensors are deaf, are left as they are.
+    ///     robot: whose readings, from 0.
+    ///     sound_m_s: the speed of sound, in m/s, 100 to 1000.
+    ///
+    /// Raises:
+    ///     ArgumentError: no readings, or out of range.
+    ///
+    /// Example:
+    ///     >>> from eeruf import nav, sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> world = sim.Simulation(sim.Scene([[5, 1.5, -5, 1.5]], robots=[robot]))
+    ///     >>> grid = nav.Himm()
+    ///     >>> grid.enter(world.step(1.0), range_m=2.0)
+    ///     >>> x, y, value = grid.cells().T
+    ///     >>> bool(1.4 < y[value == 15].min() <= y.max() < 1.7)
+    ///     True
+    #[pyo3(signature = (readings, range_m=None, near_m=None, *, robot=None, sound_m_s=None))]
+    #[pyo3(text_signature = "($self, readings, range_m=3.0, near_m=0.0, *, robot=0, sound_m_s=343.2)")]
+    fn enter(
+        &mut self,
+        readings: &Bound<'_, PyAny>,
+        range_m: Option<&Bound<'_, PyAny>>,
+        near_m: Option<&Bound<'_, PyAny>>,
+        robot: Option<&Bound<'_, PyAny>>,
+        sound_m_s: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let taken = &instance::<Readings>("readings", readings, "eeruf.sim.Readings")?.get().readings;
+        let (range_m, near_m) = (metres("range_m", range_m, 3.0)?, metres("near_m", near_m, 0.0)?);
+        let robot = whole_or("robot", robot, 0, 0..=u16::MAX)?;
+        let c = number_or("sound_m_s", sound_m_s, Air::default().speed_of_sound(), 100.0..=1e3)?;
+        for reading in (0..taken.len()).filter(|&reading| taken.robot[reading] == robot && taken.is_accepted(reading)) {
+            let (at, heading) = (Point::new(taken.x_m[reading], taken.y_m[reading]), taken.heading_rad[reading]);
+            let echo_m = 0.5e-6 * c * taken.t_echo_us[reading];
+            if taken.kind[reading] == ReadingKind::Clear || echo_m > range_m {
+                self.grid.clear(at, heading, near_m, range_m);
+            } else {
+                self.grid.echo(at, heading, near_m, echo_m);
+            }
+        }
+        Ok(())
+    }
+
+    /// The certainty of the cell that holds a point.
+    ///
+    /// Args:
+    ///     point: (x, y) in metres.
+    ///
+    /// Returns:
+    ///     0 to 15, or None outside the window.
+    ///
+    /// Raises:
+    ///     ArgumentError: no point.
+    ///
+    /// Example:
+    ///     >>> from eeruf import nav
+    ///     >>> nav.Himm().value((0.0, 0.0))
+    ///     0
+    #[pyo3(signature = (point))]
+    fn value(&self, point: &Bound<'_, PyAny>) -> PyResult<Option<u8>> {
+        Ok(self.grid.value(point_of("point", point)?))
+    }
+
+    /// The cells that are not empty.
+    ///
+    /// Returns:
+    ///     Array of shape (n, 3), float64: x, y (m) of the cell's middle, and its certainty, 1 to 15.
+    ///
+    /// Example:
+    ///     >>> from eeruf import nav
+    ///     >>> nav.Himm().cells().shape
+    ///     (0, 3)
+    fn cells<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let cells: Vec<f64> = self.occupied().flat_map(|(at, value)| [at.x, at.y, f64::from(value)]).collect();
+        let rows = cells.len() / 3;
+        Ok(PyArray1::from_vec(py, cells).reshape([rows, 3])?.readwrite().make_nonwriteable().as_any().clone())
+    }
+
+    /// The whole window as a picture, for ``imshow(grid.to_numpy(), extent=grid.extent_m, origin="lower")``.
+    ///
+    /// Returns:
+    ///     Array of shape (side, side), int8: a row for each y, from the least; certainties 0 to 15.
+    ///
+    /// Example:
+    ///     >>> from eeruf import nav
+    ///     >>> grid = nav.Himm(side=3)
+    ///     >>> grid.echo((0.05, 0.05, 0.0), range_m=0.1)
+    ///     >>> grid.to_numpy().tolist()
+    ///     [[0, 0, 0], [0, 0, 3], [0, 0, 0]]
+    fn to_numpy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let (side, corner, cell_m) = (self.grid.side(), self.grid.corner(), self.grid.cell_m());
+        let mut values = vec![0_i8; side * side];
+        for (at, value) in self.occupied() {
+            let index = |along: f64| ((along / cell_m).floor() as usize).min(side - 1);
+            // At most 15.
+            values[index(at.y - corner.y) * side + index(at.x - corner.x)] = value as i8;
+        }
+        read_only(py, values.into_iter())?.call_method1("reshape", (side, side))
+    }
+
+    fn __repr__(&self) -> String {
+        let (x, to_x, y, to_y) = self.extent_m();
+        format!("<Himm: {0} x {0} cells, x {x:.2} to {to_x:.2} m, y {y:.2} to {to_y:.2} m>", self.grid.side())
+    }
+}
+
+impl Himm {
+    fn occupied(&self) -> impl Iterator<Item = (Point, u8)> + '_ {
+        let half = 0.5 * self.grid.side() as f64 * self.grid.cell_m();
+        let corner = self.grid.corner();
+        // Twice as many as are there, whichever cell the middle is taken to lie in.
+        self.grid.occupied(Point::new(corner.x + half, corner.y + half), 2 * self.grid.side())
+    }
+}

@@ -1,0 +1,273 @@
+//! `nav.Vfh`: the vector field histogram, and the `Steering` that comes of it.
+
+use eeruf_sim::Point;
+use pyo3::{prelude::*, types::PyDict};
+
+use crate::{
+    arguments::{instance, number_or, whole_or},
+    columns::read_only,
+    fields::to_dict,
+    himm::Himm,
+    pose::{point_of, pose_of, to_pose},
+};
+
+/// What a steering error of a radian asks for, in rad/s, unless another gain is asked for.
+const TURN_GAIN: f64 = 3.0;
+
+/// The vector field histogram (J. Borenstein and Y. Koren, IEEE T-RA 7(3), 1991): from a certainty grid to where to
+/// steer and how fast to go.
+///
+/// The cells around the robot become a histogram of obstacle density over 72 sectors of 5 degrees; among its valleys the
+/// one nearest the target is steered for. Directions are in the scene's frame, counter-clockwise.
+///
+/// Args:
+///     window: how many cells the active window has on a side, 1 to 4096.
+///     smoothing: over how many sectors to either side the histogram is smoothed (the paper's l), 0 to 35.
+///     threshold: a sector with a lower density is free; densities are in units of a fully certain cell beside the
+///         robot. The default suits robots about 0.8 m wide; smaller ones want more.
+///     wide: a valley of more sectors is wide (s_max), 1 to 72.
+///     density_max: the density ahead at which the robot goes no faster than ``speed_min_m_s`` (h_m).
+///     speed_max_m_s: V_max, in m/s.
+///     speed_min_m_s: V_min, in m/s.
+///     turn_max_rad_s: the rate of turn at which it goes no faster than ``speed_min_m_s`` (Omega_max), in rad/s.
+///
+/// Raises:
+///     ArgumentError: something of the wrong type or out of range.
+///
+/// Example:
+///     >>> from eeruf import nav
+///     >>> grid = nav.Himm()
+///     >>> for _ in range(5):
+///     ...     grid.echo((0.05, 0.05, 0.0), range_m=0.6)  # something stands ahead
+///     >>> steering = nav.Vfh().steer(grid, place=(0.05, 0.05), target=(5.0, 0.0))
+///     >>> 0.3 < abs(steering.direction_rad) < 1.2, steering.trapped
+///     (True, False)
+#[pyclass(frozen, module = "eeruf.nav")]
+pub(crate) struct Vfh(eeruf_sim::Vfh);
+
+fn grid_of<'a>(grid: &'a Bound<'_, PyAny>) -> PyResult<PyRef<'a, Himm>> {
+    Ok(instance::<Himm>("grid", grid, "an eeruf.nav.Himm")?.try_borrow()?)
+}
+
+#[pymethods]
+impl Vfh {
+    #[new]
+    #[pyo3(signature = (
+        *, window=None, smoothing=None, threshold=None, wide=None, density_max=None, speed_max_m_s=None,
+        speed_min_m_s=None, turn_max_rad_s=None
+    ))]
+    #[pyo3(text_signature = "(*, window=33, smoothing=5, threshold=0.35, wide=18, density_max=3.0, \
+            speed_max_m_s=1.0, speed_min_m_s=0.04, turn_max_rad_s=2.0943951023931953)")]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+    fn new(
+        window: Option<&Bound<'_, PyAny>>,
+        smoothing: Option<&Bound<'_, PyAny>>,
+        threshold: Option<&Bound<'_, PyAny>>,
+        wide: Option<&Bound<'_, PyAny>>,
+        density_max: Option<&Bound<'_, PyAny>>,
+        speed_max_m_s: Option<&Bound<'_, PyAny>>,
+        speed_min_m_s: Option<&Bound<'_, PyAny>>,
+        turn_max_rad_s: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let default = eeruf_sim::Vfh::default();
+        Ok(Self(eeruf_sim::Vfh {
+            window: whole_or("window", window, default.window, 1..=4096)?,
+            smoothing: whole_or("smoothing", smoothing, default.smoothing, 0..=35)?,
+            threshold: number_or("threshold", threshold, default.threshold, 0.0..=1e6)?,
+            wide: whole_or("wide", wide, default.wide, 1..=72)?,
+            density_max: number_or("density_max", density_max, default.density_max, 1e-6..=1e6)?,
+            speed_max_m_s: number_or("speed_max_m_s", speed_max_m_s, default.speed_max_m_s, 0.0..=50.0)?,
+            speed_min_m_s: number_or("speed_min_m_s", speed_min_m_s, default.speed_min_m_s, 0.0..=50.0)?,
+            turn_max_rad_s: number_or("turn_max_rad_s", turn_max_rad_s, default.turn_max_rad_s, 1e-6..=50.0)?,
+        }))
+    }
+
+    /// How many cells the active window has on a side.
+    #[getter]
+    fn window(&self) -> usize {
+        self.0.window
+    }
+
+    /// Over how many sectors to either side the histogram is smoothed.
+    #[getter]
+    fn smoothing(&self) -> usize {
+        self.0.smoothing
+    }
+
+    /// A sector with a lower density is free.
+    #[getter]
+    fn threshold(&self) -> f64 {
+        self.0.threshold
+    }
+
+    /// A valley of more sectors is wide.
+    #[getter]
+    fn wide(&self) -> usize {
+        self.0.wide
+    }
+
+    /// The density ahead at which the robot goes no faster than its lowest speed.
+    #[getter]
+    fn density_max(&self) -> f64 {
+        self.0.density_max
+    }
+
+    /// The highest speed, in m/s.
+    #[getter]
+    fn speed_max_m_s(&self) -> f64 {
+        self.0.speed_max_m_s
+    }
+
+    /// The lowest speed, in m/s.
+    #[getter]
+    fn speed_min_m_s(&self) -> f64 {
+        self.0.speed_min_m_s
+    }
+
+    /// The rate of turn at which it goes no faster than its lowest speed, in rad/s.
+    #[getter]
+    fn turn_max_rad_s(&self) -> f64 {
+        self.0.turn_max_rad_s
+    }
+
+    /// The smoothed histogram around a place.
+    ///
+    /// Args:
+    ///     grid: an ``eeruf.nav.Himm``.
+    ///     place: (x, y) in metres.
+    ///
+    /// Returns:
+    ///     Array of 72 densities, float64; sector k begins at k times 5 degrees.
+    ///
+    /// Raises:
+    ///     ArgumentError: no grid or no place.
+    ///
+    /// Example:
+    ///     >>> from eeruf import nav
+    ///     >>> grid = nav.Himm()
+    ///     >>> grid.echo((0.05, 0.05, 0.0), range_m=1.0)
+    ///     >>> int(nav.Vfh(smoothing=0).histogram(grid, (0.05, 0.0)).argmax())
+    ///     0
+    #[pyo3(signature = (grid, place))]
+    fn histogram<'py>(&self, grid: &Bound<'py, PyAny>, place: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let smoothed = self.0.smoothed(&self.0.histogram(&grid_of(grid)?.grid, point_of("place", place)?));
+        read_only(place.py(), smoothed.into_iter())
+    }
+
+    /// Where to steer from a place to come to a target.
+    ///
+    /// Args:
+    ///     grid: an ``eeruf.nav.Himm``.
+    ///     place: where the robot is, (x, y) in metres.
+    ///     target: where to, (x, y) in metres.
+    ///
+    /// Returns:
+    ///     A ``Steering``, or None if every direction is blocked.
+    ///
+    /// Raises:
+    ///     ArgumentError: no grid or no point.
+    ///
+    /// Example:
+    ///     >>> from eeruf import nav
+    ///     >>> nav.Vfh().steer(nav.Himm(), place=(0, 0), target=(5, 0))
+    ///     Steering(direction_rad=0.0, valley=(0, 72), trapped=False)
+    #[pyo3(signature = (grid, place, target))]
+    fn steer(
+        &self,
+        grid: &Bound<'_, PyAny>,
+        place: &Bound<'_, PyAny>,
+        target: &Bound<'_, PyAny>,
+    ) -> PyResult<Option<Steering>> {
+        let (place, target): (Point, Point) = (point_of("place", place)?, point_of("target", target)?);
+        Ok(self.0.steer(&grid_of(grid)?.grid, place, target).map(|steering| Steering {
+            direction_rad: steering.direction_rad,
+            valley: (steering.valley.first, steering.valley.sectors),
+            trapped: steering.trapped,
+        }))
+    }
+
+    /// How to drive from a pose to a target, for ``Simulation.set_velocity``: the farther off the heading, the slower.
+    /// Where every way is blocked it stands and looks around.
+    ///
+    /// Args:
+    ///     grid: an ``eeruf.nav.Himm``.
+    ///     pose: where the robot is, (x, y, heading) in metres and radians.
+    ///     target: where to, (x, y) in metres.
+    ///     turn_rad_s: how fast it turns now, in rad/s, -50 to 50.
+    ///     turn_gain: what a steering error of a radian asks for, in rad/s, 0 to 100.
+    ///
+    /// Returns:
+    ///     The speed ahead in m/s, and the rate of turn in rad/s.
+    ///
+    /// Raises:
+    ///     ArgumentError: no grid, no pose, no point, or out of range.
+    ///
+    /// Example:
+    ///     >>> from eeruf import nav
+    ///     >>> nav.Vfh().drive(nav.Himm(), pose=(0, 0, 0), target=(5, 0))
+    ///     (1.0, 0.0)
+    #[pyo3(signature = (grid, pose, target, turn_rad_s=None, *, turn_gain=None))]
+    #[pyo3(text_signature = "($self, grid, pose, target, turn_rad_s=0.0, *, turn_gain=3.0)")]
+    fn drive(
+        &self,
+        grid: &Bound<'_, PyAny>,
+        pose: &Bound<'_, PyAny>,
+        target: &Bound<'_, PyAny>,
+        turn_rad_s: Option<&Bound<'_, PyAny>>,
+        turn_gain: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<(f64, f64)> {
+        let (pose, target) = (to_pose(pose_of("pose", pose)?), point_of("target", target)?);
+        let turn_rad_s = number_or("turn_rad_s", turn_rad_s, 0.0, -50.0..=50.0)?;
+        let turn_gain = number_or("turn_gain", turn_gain, TURN_GAIN, 0.0..=100.0)?;
+        let turn_most = self.0.turn_max_rad_s;
+        Ok(self.0.drive(&grid_of(grid)?.grid, &pose, target, turn_rad_s, turn_gain, turn_most))
+    }
+
+    fn __repr__(&self) -> String {
+        let eeruf_sim::Vfh { window, smoothing, threshold, wide, density_max, .. } = self.0;
+        let eeruf_sim::Vfh { speed_max_m_s, speed_min_m_s, turn_max_rad_s, .. } = self.0;
+        format!(
+            "Vfh(window={window}, smoothing={smoothing}, threshold={threshold:?}, wide={wide}, \
+             density_max={density_max:?}, speed_max_m_s={speed_max_m_s:?}, speed_min_m_s={speed_min_m_s:?}, \
+             turn_max_rad_s={turn_max_rad_s:?})"
+        )
+    }
+}
+
+/// Where to steer.
+///
+/// Example:
+///     >>> from eeruf import nav
+///     >>> steering = nav.Vfh().steer(nav.Himm(), place=(0, 0), target=(0, 5))
+///     >>> round(steering.direction_rad, 3), steering.trapped
+///     (1.571, False)
+#[pyclass(frozen, eq, get_all, module = "eeruf.nav")]
+#[derive(Clone, PartialEq)]
+pub(crate) struct Steering {
+    /// The direction, in radians of the scene, counter-clockwise from the x axis.
+    direction_rad: f64,
+    /// The valley that was chosen: its first sector, and how many it has; 72 if nothing is near.
+    valley: (usize, usize),
+    /// Whether the direction leads away from the target, by more than 90 degrees: the robot is in a dead end, or soon
+    /// will be.
+    trapped: bool,
+}
+
+#[pymethods]
+impl Steering {
+    /// Its fields by their names: a dict of plain values.
+    ///
+    /// Example:
+    ///     >>> from eeruf import nav
+    ///     >>> nav.Vfh().steer(nav.Himm(), place=(0, 0), target=(5, 0)).to_dict()
+    ///     {'direction_rad': 0.0, 'valley': [0, 72], 'trapped': False}
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &["direction_rad", "valley", "trapped"])
+    }
+
+    fn __repr__(&self) -> String {
+        let Self { direction_rad, valley, trapped } = self;
+        let trapped = if *trapped { "True" } else { "False" };
+        format!("Steering(direction_rad={direction_rad:?}, valley={valley:?}, trapped={trapped})")
+    }
+}

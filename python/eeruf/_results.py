@@ -1,0 +1,476 @@
+"""What simulations and experiments find, as frozen classes: a figure has the same name in each of them, and in the program's JSON."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING, Literal, TypedDict, cast
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from eeruf._eeruf import _Method as Method
+    from eeruf._eeruf import _Physics
+
+    _Ending = Literal["finished", "contact", "time_out"]
+    _PilotName = Literal["own", "shared", "published", "published-gro"]
+
+
+class _SummaryFields(TypedDict):
+    method: Method
+    readings: int
+    accepted: int
+    wrong_of_all: float
+    crosstalk_of_all: float
+    confirmed_wrong_of_all: float
+    wrong_of_accepted: float | None
+    rejected: float
+    good_lost: float | None
+    wrong_before_filter: float
+    age_ms: float
+    age_p99_ms: float
+    readings_per_s: float
+    starved: int
+    blind: int
+    starved_in_part: int
+
+
+def _plain(value: object) -> object:
+    """As numbers, texts, lists and dicts."""
+    if isinstance(value, _Result):
+        return value.to_dict()
+    if isinstance(value, dict):
+        return {name: _plain(of) for name, of in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    tolist = getattr(value, "tolist", None)
+    return value if tolist is None else tolist()
+
+
+class _Result:
+    """What all results can do."""
+
+    def to_dict(self) -> dict[str, object]:
+        """Return the fields by their names, with results as dicts and arrays as lists, for JSON and data frames.
+
+        Example:
+            >>> from eeruf.experiments import Spread
+            >>> Spread(p10=0.0, median=0.1, p90=0.5, median_95=(0.0, 0.2), p90_95=(0.4, 0.6)).to_dict()["median_95"]
+            [0.0, 0.2]
+
+        """
+        return {name.name: _plain(getattr(self, name.name)) for name in fields(self)}  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class Summary(_Result):
+    """How good a method was: the figures that are always reported together. Shares are fractions of 1.
+
+    Example:
+        >>> from eeruf import sim
+        >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+        >>> summary = sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[robot]), periods=100).summary()
+        >>> summary.readings, summary.wrong_of_all < 0.01, summary.to_dict()["method"]
+        (800, True, 'eeruf')
+
+    """
+
+    method: Method
+    """The method, one of ``eeruf.sim.METHODS``."""
+    readings: int
+    """How many readings there were."""
+    accepted: int
+    """How many of them were accepted."""
+    wrong_of_all: float
+    """Share of all readings that were accepted and wrong: what does harm."""
+    crosstalk_of_all: float
+    """The part of ``wrong_of_all`` that foreign or stale sound caused."""
+    confirmed_wrong_of_all: float
+    """The part of ``wrong_of_all`` that was confirmed, not only tentative."""
+    wrong_of_accepted: float | None
+    """Share of the accepted readings that were wrong; None if none was accepted."""
+    rejected: float
+    """Share of all readings that were not accepted."""
+    good_lost: float | None
+    """Share of the good readings that were not accepted; None if no reading was good."""
+    wrong_before_filter: float
+    """Share of all readings that would have been wrong without any filter."""
+    age_ms: float
+    """Age of a sensor's last accepted reading, in milliseconds: half of the time it is no older."""
+    age_p99_ms: float
+    """That age, 99 % of the time."""
+    readings_per_s: float
+    """Accepted readings in a second, all sensors together."""
+    starved: int
+    """How many sensors had fewer than 5 % of their readings accepted, the blind ones included."""
+    blind: int
+    """How many sensors never had a reading accepted."""
+    starved_in_part: int
+    """How many of the starved read right in one phase and not in another."""
+
+
+@dataclass(frozen=True)
+class Spread(_Result):
+    """How a figure spreads over geometries.
+
+    Example:
+        >>> import eeruf
+        >>> table = eeruf.experiments.set_one(seeds=2, readings=400, methods=["eeruf"])
+        >>> spread = table.methods["eeruf"].rejected
+        >>> spread.p10 <= spread.median <= spread.p90
+        True
+
+    """
+
+    p10: float
+    """One geometry in ten has no more."""
+    median: float
+    """Half of them have no more."""
+    p90: float
+    """Nine in ten have no more."""
+    median_95: tuple[float, float]
+    """Where the median lies with 95 % confidence, by bootstrap."""
+    p90_95: tuple[float, float]
+    """Where ``p90`` lies with 95 % confidence."""
+
+
+@dataclass(frozen=True)
+class Latency(_Result):
+    """How soon a sensor reads right again after a wall has moved.
+
+    Example:
+        >>> import eeruf
+        >>> table = eeruf.experiments.set_one(seeds=2, readings=400, methods=["eeruf"])
+        >>> table.methods["eeruf"].nearer.steps > 0
+        True
+
+    """
+
+    steps: int
+    """How many steps of sensors were counted."""
+    median: int | None
+    """Half of the steps are seen within as many periods; None if more than half never are."""
+    p90: int | None
+    """Nine in ten are."""
+    never: float
+    """Share of the steps that are not seen within 64 periods."""
+    never_95: tuple[float, float]
+    """Where ``never`` lies with 95 % confidence, by bootstrap."""
+
+
+@dataclass(frozen=True)
+class SetOneFigures(_Result):
+    """A method's figures over the geometries of Set I; those of a :class:`~eeruf.sim.Summary`, spread.
+
+    A spread is None where no geometry has the figure.
+
+    Example:
+        >>> import eeruf
+        >>> table = eeruf.experiments.set_one(seeds=2, readings=400, methods=["conventional"])
+        >>> table.methods["conventional"].wrong_of_all.median > 0.1
+        True
+
+    """
+
+    wrong_of_all: Spread | None
+    """Share of all readings that were accepted and wrong."""
+    crosstalk_of_all: Spread | None
+    """The part of it that foreign or stale sound caused."""
+    confirmed_wrong_of_all: Spread | None
+    """The part of it that was confirmed, not only tentative."""
+    wrong_of_accepted: Spread | None
+    """Share of the accepted readings that were wrong."""
+    wrong_before_filter: Spread | None
+    """Share of all readings that would have been wrong without a filter."""
+    rejected: Spread | None
+    """Share of all readings that were not accepted."""
+    good_lost: Spread | None
+    """Share of the good readings that were not accepted."""
+    age_ms: Spread | None
+    """Median age of the last accepted reading, in milliseconds."""
+    age_p99_ms: Spread | None
+    """The age that 99 % of the last accepted readings do not exceed, in milliseconds."""
+    readings_per_s: Spread | None
+    """Accepted readings in a second, all sensors together."""
+    starved: float
+    """Mean number of sensors that had fewer than 5 % of their readings accepted, the blind ones included."""
+    starved_95: tuple[float, float]
+    """Where ``starved`` lies with 95 % confidence, by bootstrap."""
+    blind: float
+    """Mean number of sensors that never had a reading accepted."""
+    starved_in_part: float
+    """Mean number of starved sensors that read right in one phase and not in another."""
+    nearer: Latency | None
+    """How soon the back wall is read right again when it has come nearer."""
+    farther: Latency | None
+    """How soon it is when it has gone away as far."""
+
+
+@dataclass(frozen=True)
+class SetOne(_Result):
+    """What ``eeruf.experiments.set_one`` finds; ``to_dict`` is what ``eeruf experiment set-one --json`` prints.
+
+    Example:
+        >>> import eeruf
+        >>> table = eeruf.experiments.set_one(seeds=2, readings=400, methods=["eeruf"])
+        >>> table.seeds, table.sensors, list(table.methods)
+        (2, 8, ['eeruf'])
+
+    """
+
+    first: int
+    """The first geometry's number."""
+    seeds: int
+    """How many geometries."""
+    physics: _Physics
+    """Which effects of sound were computed: a preset's name, or each effect."""
+    sensors: int
+    """How many sensors the ring had."""
+    period_us: int
+    """The period, in microseconds."""
+    periods: int
+    """For how many periods each was simulated."""
+    methods: Mapping[Method, SetOneFigures]
+    """The figures of each method, in the order asked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run(_Result):
+    """What came of one course of Set II under one method. Equal runs have equal numbers throughout; runs pickle.
+
+    Example:
+        >>> import eeruf
+        >>> run = eeruf.experiments.set_two(seeds=1, methods=["eeruf"]).runs["eeruf"][0]
+        >>> run.ending, run.track.shape[1], run.track[0, 1:3].tolist()
+        ('finished', 5, [1.0, 3.0])
+
+    """
+
+    course: int
+    """The course's number: its poles are drawn from it."""
+    ending: _Ending
+    """``"finished"``, ``"contact"`` (it touched a pole or a wall), or ``"time_out"``."""
+    time_s: float
+    """For how long the robot drove, in seconds."""
+    way_m: float
+    """How far it drove, in metres."""
+    top_speed_m_s: float
+    """Its highest speed, in m/s."""
+    nearest_m: float
+    """How near its outline came to a pole, in metres; infinite if it never came near one."""
+    readings: int
+    """How many readings its sensors took."""
+    rejected_readings: int
+    """How many of them were not accepted."""
+    wrong_readings: int
+    """How many were accepted and wrong."""
+    phantom_echoes: int
+    """How many echoes were entered into the grid where nothing is."""
+    phantom_cells: int
+    """How many cells of the grid are certain in the end though nothing is there."""
+    poles_passed: int
+    """How many poles the robot came within 1 m of."""
+    poles_unseen: int
+    """How many of them never had an echo entered into the grid."""
+    track: NDArray[np.float64] = field(repr=False)
+    """Where it drove, every 30 ms: rows of time (s), x, y (m), heading (rad) and speed (m/s); shape (n, 5)."""
+    grid: NDArray[np.float64] = field(repr=False)
+    """The cells of 10 cm that are not empty in the end: rows of x, y (m) and certainty, 1 to 15; shape (m, 3)."""
+    poles: NDArray[np.float64] = field(repr=False)
+    """The course's poles: rows of x, y and radius in metres; shape (p, 3)."""
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all fields are equal, arrays by their elements."""
+        if not isinstance(other, Run):
+            return NotImplemented
+        import numpy as np
+
+        return all(np.array_equal(getattr(self, name.name), getattr(other, name.name)) for name in fields(self))
+
+
+@dataclass(frozen=True)
+class SetTwoFigures(_Result):
+    """A method's figures over the courses of Set II. Shares are fractions of 1.
+
+    Example:
+        >>> import eeruf
+        >>> eeruf.experiments.set_two(seeds=1, methods=["eeruf"]).methods["eeruf"].finished
+        1
+
+    """
+
+    courses: int
+    """How many courses."""
+    finished: int
+    """How many were finished without contact."""
+    finished_95: tuple[float, float]
+    """Where the share of finished courses lies with 95 % confidence, by Wilson's interval."""
+    contacts: int
+    """In how many the robot touched something."""
+    timed_out: int
+    """In how many it was stuck, or too slow."""
+    mean_speed_m_s: float
+    """Way over time of all courses together, in m/s."""
+    top_speed_m_s: float
+    """The highest speed in any course, in m/s."""
+    nearest_m: float
+    """How near a pole came to the robot's outline: the mean over the courses, in metres."""
+    wrong_of_all: float
+    """Share of all readings that were accepted and wrong."""
+    rejected: float
+    """Share of all readings that were not accepted."""
+    phantom_echoes: float
+    """Echoes entered into the grid where nothing is, in each course on average."""
+    phantom_cells: float
+    """Cells of the grid that are certain in the end though nothing is there, in each course on average."""
+    poles_missed: float
+    """Share of the poles that the robot came within 1 m of that it never saw."""
+    readings_per_s: float
+    """Accepted readings in a second, all sensors together."""
+
+
+@dataclass(frozen=True)
+class SetTwo(_Result):
+    """What ``eeruf.experiments.set_two`` finds; ``to_dict`` is what ``eeruf experiment set-two --json`` prints, and the runs.
+
+    Example:
+        >>> import eeruf
+        >>> found = eeruf.experiments.set_two(seeds=1, methods=["eeruf"])
+        >>> found.methods["eeruf"].finished, len(found.runs["eeruf"])
+        (1, 1)
+
+    """
+
+    first: int
+    """The first course's number."""
+    pilot: _PilotName
+    """Who steered."""
+    physics: _Physics
+    """Which effects of sound were computed: a preset's name, or each effect."""
+    bodies: bool
+    """Whether robots had bodies."""
+    seeds: int
+    """How many courses."""
+    second_robot_m: tuple[float, float] | None
+    """Where another robot stood and fired, in metres."""
+    speed_m_s: float
+    """The platform's highest speed, in m/s."""
+    methods: Mapping[Method, SetTwoFigures]
+    """The figures of each method, in the order asked for."""
+    runs: Mapping[Method, list[Run]] = field(repr=False)
+    """For each method the runs, in the order of the courses."""
+
+
+@dataclass(frozen=True)
+class SpeedStep(_Result):
+    """Set II at one top speed.
+
+    Example:
+        >>> import eeruf
+        >>> sweep = eeruf.experiments.speed_sweep([0.75], seeds=1, methods=["eeruf"])
+        >>> sweep.steps[0].finished_of_all
+        {'eeruf': 1.0}
+
+    """
+
+    speed_m_s: float
+    """The platform's highest speed, in m/s."""
+    finished_of_all: Mapping[Method, float]
+    """For each method, the share of all courses that were finished without contact."""
+    mean_speed_m_s: Mapping[Method, float]
+    """For each method, way over time of all courses together, in m/s."""
+
+
+@dataclass(frozen=True)
+class SpeedSweep(_Result):
+    """What ``eeruf.experiments.speed_sweep`` finds.
+
+    Example:
+        >>> import eeruf
+        >>> sweep = eeruf.experiments.speed_sweep([0.75, 1.0], seeds=2, methods=["eeruf"])
+        >>> len(sweep.steps), sweep.borne_m_s
+        (2, {'eeruf': 0.75})
+
+    """
+
+    first: int
+    """The first course's number."""
+    pilot: _PilotName
+    """Who steered."""
+    physics: _Physics
+    """Which effects of sound were computed: a preset's name, or each effect."""
+    bodies: bool
+    """Whether robots had bodies."""
+    seeds: int
+    """How many courses."""
+    second_robot_m: tuple[float, float] | None
+    """Where another robot stood and fired, in metres."""
+    steps: tuple[SpeedStep, ...]
+    """What came of it at each speed."""
+    borne_m_s: Mapping[Method, float | None]
+    """For each method the highest of the speeds at which 95 % of the courses were finished; None if there is none."""
+
+
+# A method bears a speed at which this share of the courses is finished.
+_BORNE = 0.95
+
+_Fields = dict[str, object]
+
+
+def _fields(text: str) -> _Fields:
+    return cast("_Fields", json.loads(text))
+
+
+def _pair(value: object) -> tuple[float, float] | None:
+    return None if value is None else cast("tuple[float, float]", tuple(cast("list[float]", value)))
+
+
+def _with_pairs(of: _Fields) -> _Fields:
+    """Bounds of confidence as tuples."""
+    return {name: _pair(value) if name.endswith("_95") else value for name, value in of.items()}
+
+
+def summary(text: str) -> Summary:
+    """Make a summary of what Rust says of it."""
+    return Summary(**cast("_SummaryFields", _fields(text)))
+
+
+def set_one(text: str) -> SetOne:
+    """Make the result of Set I of its JSON."""
+
+    def figures(of: _Fields) -> SetOneFigures:
+        made: _Fields = {}
+        for name, value in _with_pairs(of).items():
+            kind = Latency if name in ("nearer", "farther") else Spread
+            made[name] = kind(**_with_pairs(value)) if isinstance(value, dict) else value  # type: ignore[arg-type]
+        return SetOneFigures(**made)  # type: ignore[arg-type]
+
+    table = _fields(text)
+    table["methods"] = {name: figures(of) for name, of in cast("dict[Method, _Fields]", table["methods"]).items()}
+    return SetOne(**table)  # type: ignore[arg-type]
+
+
+def set_two(text: str, runs: dict[Method, list[_Fields]]) -> SetTwo:
+    """Make the result of Set II of its JSON and the fields of its runs."""
+    table = _fields(text)
+    figures = cast("dict[Method, _Fields]", table["methods"])
+    table["methods"] = {name: SetTwoFigures(**_with_pairs(of)) for name, of in figures.items()}  # type: ignore[arg-type]
+    table["second_robot_m"] = _pair(table["second_robot_m"])
+    table["runs"] = {name: [Run(**run) for run in of] for name, of in runs.items()}  # type: ignore[arg-type]
+    return SetTwo(**table)  # type: ignore[arg-type]
+
+
+def speed_sweep(text: str) -> SpeedSweep:
+    """Make the result of a sweep over speeds of its JSON."""
+    table = _fields(text)
+    steps = tuple(SpeedStep(**step) for step in cast("list[_Fields]", table["steps"]))  # type: ignore[arg-type]
+
+    def borne_m_s(method: Method) -> float | None:
+        return max((step.speed_m_s for step in steps if step.finished_of_all[method] >= _BORNE), default=None)
+
+    table.update(steps=steps, borne_m_s={method: borne_m_s(method) for method in steps[0].finished_of_all})
+    table["second_robot_m"] = _pair(table["second_robot_m"])
+    return SpeedSweep(**table)  # type: ignore[arg-type]

@@ -1,0 +1,241 @@
+"""A ring can be changed while it runs, watched, and adapted."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any, Callable
+
+import eeruf
+import pytest
+from eeruf import tables
+
+FAST = tables.TABLE_I_D.scaled(3, 5)
+
+
+def run(
+    ring: eeruf.Ring | eeruf.HoppingRing,
+    until: Callable[[Any], bool],
+    t_echo_us: Callable[[eeruf.Fire], int | None] = lambda fire: 9_000,
+    see: Callable[[Any, int], object] = lambda event, now_us: None,
+) -> list[Any]:
+    """Events until one of them is the last."""
+    events: list[Any] = []
+    while not events or not until(events[-1]):
+        now_us = ring.next_deadline_us
+        while (event := ring.poll(now_us)) is not None:
+            events.append(event)
+            see(event, now_us)
+            if isinstance(event, eeruf.Fire) and (us := t_echo_us(event)) is not None:
+                ring.echo(event.sensor, now_us + us)
+            if until(event):
+                break
+    return events
+
+
+def period_ended(event: Any) -> bool:
+    return isinstance(event, eeruf.PeriodEnded)
+
+
+def fires(events: list[Any]) -> int:
+    return sum(isinstance(event, eeruf.Fire) for event in events)
+
+
+def test_a_paused_ring_fires_nobody_until_it_goes_on_and_then_compares_with_nothing_from_before() -> None:
+    ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
+    assert fires(run(ring, period_ended)) == 12
+    run(ring, period_ended)
+    ring.pause()
+    assert [fires(run(ring, period_ended)) for _ in range(3)] == [0, 0, 0]
+    ring.resume()
+    run(ring, period_ended)
+    events = run(ring, period_ended)
+    kinds = Counter(event.kind for event in events if isinstance(event, eeruf.Reading))
+    assert fires(events) == 12
+    assert kinds["first"] >= 11 and kinds["accepted"] == 0
+
+
+def test_a_schedule_is_changed_when_the_period_ends() -> None:
+    ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
+    ring.poll(ring.next_deadline_us)
+    ring.change_schedule(FAST)
+    assert ring.schedule == tables.TABLE_I_D
+    run(ring, period_ended)
+    assert ring.schedule == FAST
+    # Back and forth as often as one likes.
+    for schedule in (tables.TABLE_I_D, FAST, tables.TABLE_I_D):
+        ring.change_schedule(schedule)
+        run(ring, period_ended)
+        assert ring.schedule == schedule
+
+
+def test_a_ring_refuses_a_schedule_that_does_not_reject_crosstalk_and_one_without_crosstalk_in_mind_takes_it() -> None:
+    constant = eeruf.Schedule(100_000, tables.TABLE_I_D.t_lag_us, (0,) * 12, (0,) * 12)
+    ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
+    with pytest.raises(eeruf.RingError, match=r"\(13a\)"):
+        ring.change_schedule(constant)
+    run(ring, period_ended)
+    assert ring.schedule == tables.TABLE_I_D
+    with pytest.raises(eeruf.ArgumentError, match="one of 8 sensors; expected one of 12 sensors, as the ring has"):
+        ring.change_schedule(eeruf.Schedule.from_firing(90_000, range(0, 8_000, 1_000), range(0, 16_000, 2_000)))
+    loose = eeruf.Ring.unverified(tables.TABLE_I_D, 500, window_us=36_000)
+    loose.change_schedule(constant)
+    run(loose, period_ended)
+    assert loose.schedule == constant
+
+
+def test_t_delta_window_and_blanking_are_changed_while_it_runs() -> None:
+    ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000, blanking_us=400)
+    assert (ring.t_delta_us, ring.window_us, ring.blanking_us) == (500, 36_000, 400)
+    echoes = iter(range(9_000, 10**9, 700))
+    drifting = lambda fire: next(echoes) // 10 if fire.sensor == 0 else None  # noqa: E731
+    run(ring, period_ended, drifting)
+    run(ring, period_ended, drifting)
+
+    def kind_of_0() -> str:
+        events = run(ring, lambda event: isinstance(event, eeruf.Reading) and event.sensor == 0, drifting)
+        return str(events[-1].kind)
+
+    # 70 us more each time.
+    assert kind_of_0() == "accepted"
+    ring.t_delta_us = 50
+    assert kind_of_0() == "rejected"
+    ring.t_delta_us = 900
+    # What lateness allowed until now was for the smaller one: the next reading is compared with none before or after.
+    assert [kind_of_0() for _ in range(3)] == ["first", "first", "accepted"]
+    ring.blanking_us = 2_000
+    assert [kind_of_0() for _ in range(2)] == ["too_early", "too_early"]
+    ring.blanking_us = 0
+    ring.window_us = 1_000
+    assert kind_of_0() in ("no_echo", "clear")
+    assert (ring.t_delta_us, ring.window_us, ring.blanking_us) == (900, 1_000, 0)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "error"),
+    [
+        ("t_delta_us", 1_000, eeruf.RingError),
+        ("t_delta_us", -1, eeruf.ArgumentError),
+        ("window_us", 100_000, eeruf.RingError),
+        ("window_us", 300, eeruf.RingError),
+        ("blanking_us", 36_000, eeruf.RingError),
+        ("blanking_us", "much", eeruf.ArgumentError),
+    ],
+)
+def test_what_a_ring_cannot_be_changed_to_leaves_it_as_it_was(name: str, value: Any, error: type[Exception]) -> None:
+    ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000, blanking_us=400)
+    with pytest.raises(error):
+        setattr(ring, name, value)
+    assert (ring.t_delta_us, ring.window_us, ring.blanking_us) == (500, 36_000, 400)
+
+
+def test_a_larger_t_delta_is_refused_if_the_next_schedule_does_not_bear_it() -> None:
+    ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
+    ring.change_schedule(FAST)
+    with pytest.raises(eeruf.RingError, match=r"\(13"):
+        ring.t_delta_us = 900
+    assert ring.t_delta_us == 500
+
+
+def test_a_ring_starts_again_after_a_long_sleep() -> None:
+    ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
+    run(ring, period_ended)
+    ring.restart(40 * 60 * 1_000_000)
+    first = ring.poll(40 * 60 * 1_000_000 + 24_000)
+    assert isinstance(first, eeruf.Fire)
+    assert (first.sensor, first.phase) == (0, 0)
+
+
+@pytest.mark.parametrize("hops", [False, True])
+def test_a_sensor_that_hears_echoes_none_of_which_is_accepted_is_told_once(hops: bool) -> None:
+    hopping = eeruf.HoppingSchedule(12, 60_000, 240)
+    ring: Any = (
+        eeruf.HoppingRing(hopping, eeruf.HoppingSettings("balanced", shift_after=0), window_us=36_000)
+        if hops
+        else eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
+    )
+    watch, told, count = eeruf.SensorWatch(12, blind_after=6), [], Counter[int]()
+
+    def t_echo_us(fire: eeruf.Fire) -> int | None:
+        count[fire.sensor] += 1
+        # One hears nothing, one hears noise, the others a wall.
+        return None if fire.sensor == 2 else 4_000 + 1_700 * (count[5] % 13) if fire.sensor == 5 else 9_000
+
+    def see(event: Any, now_us: int) -> None:
+        if (blind := watch.observe(event, now_us)) is not None:
+            told.append((blind, now_us))
+
+    run(ring, lambda event: period_ended(event) and event.period == 20, t_echo_us, see)
+    assert [blind for blind, _ in told] == [eeruf.Blind(5, 6)]
+    now_us = ring.next_deadline_us
+    assert watch.last_accepted(2, now_us) is watch.last_accepted(5, now_us) is None
+    last = watch.last_accepted(3, now_us)
+    assert last is not None
+    assert last.t_echo_us == 9_000
+    assert last.age_us < 130_000
+    older = watch.last_accepted(3, now_us + 1_000_000)
+    assert older is not None
+    assert older.age_us == pytest.approx(last.age_us + 1_000_000, abs=256)
+
+
+def test_a_watch_refuses_what_is_no_event_and_no_sensor() -> None:
+    watch = eeruf.SensorWatch(4)
+    anything: Any = "event"
+    with pytest.raises(eeruf.ArgumentError, match=r"event = 'event'; expected an eeruf\.Fire, Reading or PeriodEnded"):
+        watch.observe(anything, 0)
+    with pytest.raises(eeruf.ArgumentError, match="sensor = 4; expected a whole number from 0 to 3"):
+        watch.last_accepted(4, 0)
+
+
+def test_a_noisy_ring_slows_down_and_a_calm_one_speeds_up() -> None:
+    ladder = [FAST, tables.TABLE_I_D.scaled(4, 5), tables.TABLE_I_D]
+    ring = eeruf.Ring(ladder[0], 500, window_us=36_000)
+    adaptation = eeruf.Adaptation(ladder, t_delta_us=500)
+    noise, changes = iter(range(0, 10**9, 7_000)), []
+
+    def see(event: Any, now_us: int) -> None:
+        if adaptation.adapt(ring, event):
+            changes.append((event.period, adaptation.rung))
+
+    last = lambda event: period_ended(event) and event.period == 47  # noqa: E731
+    run(ring, last, lambda fire: 1_000 + next(noise) % 30_000, see)
+    # Each window of 16 periods moves a rung up, until there is none.
+    assert changes == [(15, 1), (31, 2)]
+    assert adaptation.rejection_rate is not None
+    assert adaptation.rejection_rate > 0.3
+    run(ring, lambda event: period_ended(event) and event.period == 190, see=see)
+    # Four calm windows move one down.
+    assert [rung for _, rung in changes] == [1, 2, 1, 0]
+    assert ring.schedule == adaptation.schedule == FAST
+    assert adaptation.rejection_rate == 0.0
+
+
+def test_a_change_that_the_ring_refuses_leaves_the_adaptation_on_its_rung() -> None:
+    ladder = [FAST, tables.TABLE_I_D]
+    ring = eeruf.Ring(FAST, 500, window_us=36_000)
+    adaptation = eeruf.Adaptation([ladder[0].scaled(5, 6), ladder[0]], 400, window_periods=1)
+    ring = eeruf.Ring(tables.TABLE_I_D, 700, window_us=36_000)
+    noise = iter(range(0, 10**9, 7_000))
+    with pytest.raises(eeruf.RingError):
+        run(
+            ring,
+            lambda event: False,
+            lambda fire: 1_000 + next(noise) % 30_000,
+            lambda event, now_us: adaptation.adapt(ring, event),
+        )
+    assert adaptation.rung == 0
+    assert ring.schedule == tables.TABLE_I_D
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda: eeruf.Adaptation([], 500), eeruf.ScheduleError, "a ladder without schedules"),
+        (lambda: eeruf.Adaptation([tables.TABLE_I_D, FAST], 500), eeruf.ScheduleError, "rung 1 has a period of 60 ms"),
+        (lambda: eeruf.Adaptation([tables.TABLE_I_A], 500), eeruf.RingError, r"\(13a\)"),
+        (lambda: eeruf.Adaptation([FAST], 500, noisy=0.1, calm=0.2), eeruf.ArgumentError, "calm = 0.2; expected at"),
+        (lambda: eeruf.Adaptation([FAST], 500, noisy=2), eeruf.ArgumentError, "noisy = 2; expected a number from 0 to"),
+    ],
+)
+def test_what_is_no_ladder_is_refused(call: Any, error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
+        call()

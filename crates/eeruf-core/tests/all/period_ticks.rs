@@ -58,8 +58,6 @@ fn larger_neighbourhoods_are_proven_within_few_nodes() {
         (8, 6, Layout::Line, 2, 15, 91),
         (12, 6, Layout::Line, 2, 15, 93),
         (12, 6, Layout::Ring, 2, 15, 96),
-        (16, 8, Layout::Line, 2, 15, 122),
-        (16, 8, Layout::Ring, 2, 60, 128),
         (15, 5, Layout::Ring, 1, 30, 79),
         (10, 5, Layout::Blocks, 1, 15, 76),
     ] {

@@ -9,7 +9,6 @@ mod query;
 use meter::Meter;
 pub(super) use query::{Bracket, Objective, Probe, Query};
 
-use super::bounds::Classes;
 use super::firing::Firing;
 use super::random::Random;
 use super::solver::Solver;
@@ -44,17 +43,9 @@ impl<'h, C: Control> Bisection<'h, C> {
         // Another budget, other descents: none is repeated while a budget grows.
         let seed = budget.wrapping_shl(20);
         let mut descents = 0;
-        let classes = Classes::new(&query.problem);
         while solver.nodes() < budget && self.meter.may_go_on() {
             descents += 1;
-            let mut random = Random::new(seed.wrapping_add(descents));
-            // Every other descent starts with orders for whose classes there is room.
-            let orders = classes.filter(|_| descents % 2 == 1);
-            let orders = orders.and_then(|classes| classes.draw(&query.problem, query.period, &mut random));
-            solver.restart(Some(random), None);
-            if let Some(orders) = orders {
-                solver.prefer_orders(orders);
-            }
+            solver.restart(Some(Random::new(seed.wrapping_add(descents))), None);
             let run = (unit * luby(descents)).min(budget - solver.nodes());
             let outcome = self.meter.run(&mut solver, run);
             if outcome != Outcome::BudgetSpent {

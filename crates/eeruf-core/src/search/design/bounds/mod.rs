@@ -19,18 +19,11 @@
 //! The counting is that of `docs/theory.md`, section 5. It uses the problem and its symmetry alone, nothing of the
 //! search.
 
-mod changes;
 mod classes;
 mod cliques;
-mod exclusion;
-mod orders;
-mod permutation;
 
-#[cfg(test)]
-pub(super) use changes::Changes;
 pub(super) use classes::Classes;
 pub(super) use cliques::cliques;
-pub(super) use orders::Orders;
 
 use super::problem::CheckedProblem;
 use cliques::ring_at_once;
@@ -136,15 +129,10 @@ pub(crate) fn strongest(problem: &CheckedProblem) -> Bound {
         }
     }
     if let Some(classes) = Classes::new(problem) {
-        let period = classes.period(problem) as u32;
+        let (clique, cliques, separation) = (classes.n as u32, classes.cliques as u32, problem.separation as u32);
+        let period = classes.period(problem);
         if period > best.period() {
-            best = Bound::Classes {
-                clique: classes.clique(),
-                sensors: classes.sensors(problem),
-                interval,
-                separation: problem.separation as u32,
-                period,
-            };
+            best = Bound::Classes { clique, sensors: clique * cliques, interval, separation, period };
         }
     }
     if best.period() <= 1 { Bound::OneTick } else { best }

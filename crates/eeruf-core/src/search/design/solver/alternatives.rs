@@ -24,14 +24,6 @@ impl State<'_, '_> {
                 decision.tried += 1;
                 decision.tried <= 3
             }
-            Branch::Positions => {
-                let Some(pair) = self.pick_positions(decision) else {
-                    return false;
-                };
-                decision.positive &= !(1 << pair);
-                (decision.y, decision.tried) = (pair, 1);
-                true
-            }
             Branch::Top | Branch::Low | Branch::High => {
                 let Some((x, negative)) = self.pick(decision) else {
                     return false;
@@ -51,7 +43,6 @@ impl State<'_, '_> {
     pub(super) fn apply(&mut self, decision: &Decision) -> Result<(), Conflict> {
         let x = usize::from(decision.x);
         match decision.branch {
-            Branch::Positions => self.fix_positions(decision),
             Branch::Order => self.differences.add_bound(x, usize::from(decision.y), -self.problem.interval),
             Branch::Value => {
                 let (low, high) = (decision.positive as i32, decision.negative as i32);
@@ -66,7 +57,6 @@ impl State<'_, '_> {
             Branch::Top | Branch::Low | Branch::High => {
                 self.ranks.push(decision.branch, decision.x, decision.y == 1);
                 if decision.branch == Branch::Top {
-                    self.positions.begin(self.problem, x);
                     self.sequence = sequence(self.problem, x);
                     let sorting = Sorting::new(self.problem, x);
                     for (x, y) in sorting.pairs() {
@@ -84,9 +74,6 @@ impl State<'_, '_> {
     pub(super) fn retract(&mut self, decision: &Decision) {
         if matches!(decision.branch, Branch::Top | Branch::Low | Branch::High) {
             self.ranks.pop(decision.branch);
-        }
-        if decision.branch == Branch::Positions {
-            self.positions.pop();
         }
     }
 }

@@ -21,9 +21,6 @@ impl State<'_, '_> {
             decision.positive = symmetry::representatives(self.problem);
             return decision;
         }
-        if let Some(decision) = self.branch_on_positions() {
-            return decision;
-        }
         if let Some(decision) = self.branch_on_order() {
             return decision;
         }
@@ -69,8 +66,7 @@ impl State<'_, '_> {
             let first = if let Some(random) = &mut self.random {
                 // `early` and `late` are at least the interval here, or the order would be decided.
                 let fair = random.below((late + early).max(1) as u32) < early.max(0) as u32;
-                let copy = random.below(8) < self.copied_of_8;
-                pattern.filter(|_| copy).unwrap_or(fair)
+                pattern.unwrap_or(fair)
             } else {
                 pattern.unwrap_or(early >= late)
             };
@@ -88,10 +84,6 @@ impl State<'_, '_> {
         if let Some(guide) = &self.guide {
             let times = if phase == 0 { &guide.a } else { &guide.b };
             return Some(times[x] < times[y]);
-        }
-        if let Some(orders) = &self.orders {
-            let ranks = if phase == 0 { &orders.a } else { &orders.b };
-            return Some(ranks[x] < ranks[y]);
         }
         for shift in [shift, 2 * k - shift] {
             let (x, y) = ((x + shift) % k, (y + shift) % k);
@@ -133,28 +125,8 @@ impl State<'_, '_> {
         if count(&low) < count(&high) { low } else { high }
     }
 
-    /// One of the remaining pairs of positions.
-    pub(super) fn pick_positions(&mut self, decision: &Decision) -> Option<u8> {
-        if let Some(orders) = &self.orders {
-            if let Some(pair) = self.positions.of_orders(orders, decision) {
-                return Some(pair);
-            }
-        }
-        let nth = match &mut self.random {
-            Some(random) => random.below(decision.positive.count_ones().max(1)) as usize,
-            None => 0,
-        };
-        // A pair is below 64.
-        Members(decision.positive).nth(nth).map(|pair| pair as u8)
-    }
-
     /// The remaining candidate for a rank that leaves the others most room, or any.
     pub(super) fn pick(&mut self, decision: &Decision) -> Option<(u8, bool)> {
-        if let (Branch::Top, Some(orders)) = (decision.branch, &self.orders) {
-            if let Some(x) = Members(decision.positive & orders.tops).next() {
-                return Some((x as u8, false));
-            }
-        }
         if let Some(random) = &mut self.random {
             let count = decision.positive.count_ones() + decision.negative.count_ones();
             if count > 1 && (decision.branch == Branch::Top || random.below(2) == 0) {

@@ -8,8 +8,6 @@ pub(crate) const DECISION_WORDS: usize = 6;
 pub(crate) enum Branch {
     /// The sensor with the largest `|d|`.
     Top,
-    /// The positions of a sensor in both phases, among adjacent sensors.
-    Positions,
     /// Which of two firings in the same phase comes first.
     Order,
     /// The sensor with the smallest `|d|` of those without a rank, and its sign.
@@ -26,15 +24,13 @@ pub(crate) struct Decision {
     pub(crate) branch: Branch,
     /// A sensor; for [`Branch::Order`] the node to fire first in the first alternative.
     pub(crate) x: u8,
-    /// For [`Branch::Order`] the other node; for ranks 1 if d is negative; for [`Branch::Positions`] the pair of
-    /// positions.
+    /// For [`Branch::Order`] the other node; for ranks 1 if d is negative.
     pub(crate) y: u8,
     /// Alternatives started, for [`Branch::Order`] and [`Branch::Value`].
     pub(crate) tried: u8,
     /// Where the log of the difference bounds stood before the decision.
     pub(crate) mark: u32,
-    /// Remaining sensors with positive d; for [`Branch::Value`] the smallest value, for [`Branch::Positions`]
-    /// the remaining pairs of positions.
+    /// Remaining sensors with positive d; for [`Branch::Value`] the smallest value.
     pub(crate) positive: u64,
     /// Remaining sensors with negative d; for [`Branch::Value`] the largest value.
     pub(crate) negative: u64,
@@ -52,7 +48,6 @@ impl Decision {
             Branch::Low => 2,
             Branch::High => 3,
             Branch::Value => 4,
-            Branch::Positions => 5,
         };
         [
             i32::from_le_bytes([branch, self.x, self.y, self.tried]),
@@ -74,7 +69,6 @@ impl Decision {
             1 => Branch::Order,
             2 => Branch::Low,
             3 => Branch::High,
-            5 => Branch::Positions,
             _ => Branch::Value,
         };
         let join = |low: i32, high: i32| u64::from(high as u32) << 32 | u64::from(low as u32);

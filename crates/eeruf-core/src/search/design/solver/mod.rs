@@ -2,10 +2,9 @@
 //!
 //! A *simple temporal network* holds what is certain: bounds on the differences between any two firing times, kept
 //! closed in a *difference-bound matrix* ([`difference_bounds`]). Orders and ranks are *disjunctive*, so the search
-//! branches on them, in this order (`docs/theory.md`, section 6.4): the sensor with the largest `|d|`; where it helps,
-//! the positions in one clique ([`position_branching`]); the firing orders of conflicting sensors, sensor by sensor;
-//! the ranks of the other `|d|` with their signs, from whichever end has fewer candidates; and, where ranks leave room
-//! and the matrix read as times is no schedule yet, values ([`branching`]). After each decision [`propagate`] draws
+//! branches on them, in this order (`docs/theory.md`, section 6.3): the sensor with the largest `|d|`; the firing orders
+//! of conflicting sensors, sensor by sensor; the ranks of the other `|d|` with their signs, from whichever end has fewer
+//! candidates; and, where ranks leave room and the matrix read as times is no schedule yet, values ([`branching`]). After each decision [`propagate`] draws
 //! conclusions, among them from *Hall intervals* ([`spacing`]).
 //!
 //! There is no recursion: a stack of [`Decision`]s in lent memory, and difference bounds that can be undone. What is on
@@ -13,16 +12,13 @@
 
 mod alternatives;
 mod branching;
-mod clique_positions;
 mod decision;
 mod difference_bounds;
-mod position_branching;
 mod propagate;
 mod ranks;
 mod spacing;
 mod state;
 
-use super::bounds::Orders;
 use super::firing::Firing;
 use super::problem::CheckedProblem;
 use super::random::Random;
@@ -30,7 +26,7 @@ use crate::search::common::{Outcome, ProblemError};
 use decision::{DECISION_WORDS, Decision};
 use state::State;
 
-/// Decisions that can be on the stack at once: every order or pair of positions, every rank, and some values.
+/// Decisions that can be on the stack at once: every order, every rank, and some values.
 pub(crate) const fn max_decisions(sensors: usize) -> usize {
     sensors * sensors.saturating_sub(1) + 8 * sensors + 32
 }
@@ -76,13 +72,6 @@ impl<'p, 'm> Solver<'p, 'm> {
         solver
     }
 
-    /// Leaves out the branching on positions in a clique, for a proof that does not rest on it.
-    #[cfg(test)]
-    pub(crate) fn without_clique_positions(mut self) -> Self {
-        self.state.positions = clique_positions::CliquePositions::NONE;
-        self
-    }
-
     /// How many sensors the problem has.
     pub(crate) fn sensors(&self) -> usize {
         self.state.problem.sensors
@@ -100,11 +89,6 @@ impl<'p, 'm> Solver<'p, 'm> {
         self.state.prefer(random, guide);
         self.depth = 0;
         self.base = 0;
-    }
-
-    /// Tries these orders first, until the next restart.
-    pub(crate) fn prefer_orders(&mut self, orders: Orders) {
-        self.state.prefer_orders(orders);
     }
 
     /// Goes on for at most `budget` nodes; `BudgetSpent` can be continued by calling again.

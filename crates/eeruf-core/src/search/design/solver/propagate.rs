@@ -1,11 +1,9 @@
-//! What follows from the decisions made so far (`docs/theory.md`, sections 6.1 to 6.3).
+//! What follows from the decisions made so far (`docs/theory.md`, sections 6.1 and 6.2).
 //!
-//! Four arguments, repeated until nothing is new: an order that has become impossible leaves the other one; ranked
-//! neighbours are D apart; K values `|d|` must fit ([`spacing`](super::spacing)); and where the difference `d_y - d_x`
-//! is forced for several x, these x are D apart among themselves, so y is that far behind the last of them.
+//! Three arguments, repeated until nothing is new: an order that has become impossible leaves the other one; ranked
+//! neighbours are D apart; and K values `|d|` must fit ([`spacing`](super::spacing)).
 //!
-//! Indices: sensors are below `problem.sensors` and so below `MAX_SENSORS`; a chain holds each sensor at most once, a
-//! set at most the conflicting ones.
+//! Indices: sensors are below `problem.sensors` and so below `MAX_SENSORS`; a chain holds each sensor at most once.
 
 use super::difference_bounds::Conflict;
 use super::spacing::Intervals;
@@ -22,12 +20,12 @@ impl State<'_, '_> {
     pub(super) fn propagate(&mut self) -> Result<(), Conflict> {
         let mut spaced = Intervals::NONE;
         // How many bounds were new when each argument last started: without another since, it finds nothing.
-        let mut started = [u64::MAX; 4];
+        let mut started = [u64::MAX; 3];
         for _ in 0..ROUNDS {
             let before = self.differences.changes();
             for (argument, started) in started.iter_mut().enumerate() {
                 let now = self.differences.changes();
-                // The two that cost more wait until the others have nothing new.
+                // The one that costs more waits until the others have nothing new.
                 if argument == 2 && now != before {
                     break;
                 }
@@ -37,8 +35,7 @@ impl State<'_, '_> {
                 match argument {
                     0 => self.force_orders()?,
                     1 => self.space_ranks()?,
-                    2 => self.space_sizes(&mut spaced)?,
-                    _ => self.set_precedence()?,
+                    _ => self.space_sizes(&mut spaced)?,
                 }
             }
             if self.differences.changes() == before {
@@ -163,60 +160,5 @@ impl State<'_, '_> {
         }
         *spaced = intervals;
         Ok(())
-    }
-
-    /// Sensors whose d lies a forced distance before or behind that of several others.
-    fn set_precedence(&mut self) -> Result<(), Conflict> {
-        for y in 0..self.problem.sensors {
-            self.behind_set(y, false)?;
-            self.behind_set(y, true)?;
-        }
-        Ok(())
-    }
-
-    /// `d_y` against those conflicting x with forced `d_y - d_x > 0`; with `mirrored`, `d_x - d_y > 0`.
-    fn behind_set(&mut self, y: usize, mirrored: bool) -> Result<(), Conflict> {
-        let separation = self.problem.separation;
-        // (forced distance, low end of d_x), largest distance first.
-        let mut set = [(0, 0); MAX_SENSORS];
-        let mut count = 0;
-        let (ya, yb) = (self.node(y, 0), self.node(y, 1));
-        for x in Members(self.problem.conflicts[y]) {
-            let (xa, xb) = (self.node(x, 0), self.node(x, 1));
-            let (low, high) = self.span(x);
-            let (forced, low) = if mirrored {
-                (-(self.differences.at_most(ya, xa) + self.differences.at_most(xb, yb)), -high)
-            } else {
-                (-(self.differences.at_most(xa, ya) + self.differences.at_most(yb, xb)), low)
-            };
-            if forced > 0 {
-                let forced = forced.max(separation);
-                let mut at = count;
-                while at > 0 && set[at - 1].0 < forced {
-                    set[at] = set[at - 1];
-                    at -= 1;
-                }
-                set[at] = (forced, low);
-                count += 1;
-            }
-        }
-        if count == 0 {
-            return Ok(());
-        }
-        let mut least = i32::MIN;
-        let mut lows = [0; MAX_SENSORS];
-        for i in 0..count {
-            let (forced, low) = set[i];
-            let mut at = i;
-            while at > 0 && lows[at - 1] > low {
-                lows[at] = lows[at - 1];
-                at -= 1;
-            }
-            lows[at] = low;
-            // All d of the set, D apart: where the last one is at the earliest.
-            let last = lows[1..=i].iter().fold(lows[0], |last, &low| low.max(last + separation));
-            least = least.max(last + forced);
-        }
-        if mirrored { self.differences.add_bound(ya, yb, -least) } else { self.differences.add_bound(yb, ya, -least) }
     }
 }

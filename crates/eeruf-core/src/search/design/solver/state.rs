@@ -1,13 +1,11 @@
-//! What the search knows and prefers at one node: the difference bounds, the ranks and positions decided, and what to
-//! try first.
+//! What the search knows and prefers at one node: the difference bounds, the ranks decided, and what to try first.
 //!
 //! Indices: sensors are below `problem.sensors` and so below `MAX_SENSORS`, the length of what is indexed by sensor.
 
-use super::super::bounds::{self, Orders};
+use super::super::bounds;
 use super::super::firing::Firing;
 use super::super::problem::CheckedProblem;
 use super::super::random::Random;
-use super::clique_positions::CliquePositions;
 use super::difference_bounds::{Conflict, DifferenceBounds};
 use super::ranks::Ranks;
 use super::spacing::Intervals;
@@ -21,18 +19,13 @@ pub(super) struct State<'p, 'm> {
     pub(super) widest: i32,
     pub(super) differences: DifferenceBounds<'m>,
     pub(super) ranks: Ranks,
-    pub(super) positions: CliquePositions,
     /// Sensors in the order in which their firing orders are decided.
     pub(super) sequence: [u8; MAX_SENSORS],
     pub(super) random: Option<Random>,
     /// A schedule for an easier problem: its orders and signs come first.
     pub(super) guide: Option<Firing>,
-    /// Orders to try first.
-    pub(super) orders: Option<Orders>,
-    /// In how many of 8 decisions an order is copied from the sensors `shift` further along.
-    pub(super) copied_of_8: u32,
+    /// Orders are copied from the sensors so much further along.
     pub(super) shift: usize,
-    clique: usize,
 }
 
 impl<'p, 'm> State<'p, 'm> {
@@ -43,14 +36,10 @@ impl<'p, 'm> State<'p, 'm> {
             widest: (period - problem.window).min(period - 1),
             differences: DifferenceBounds::new(2 * problem.sensors + 1, 1 << 28, bound, log),
             ranks: Ranks::NONE,
-            positions: CliquePositions::new(problem, period),
             sequence: [0; MAX_SENSORS],
             random: None,
             guide: None,
-            orders: None,
-            copied_of_8: 8,
-            shift: 0,
-            clique: bounds::cliques(problem).0 as usize,
+            shift: bounds::cliques(problem).0 as usize,
         }
     }
 
@@ -58,27 +47,13 @@ impl<'p, 'm> State<'p, 'm> {
     pub(super) fn reset(&mut self, root: &[i32]) {
         self.differences.reset(root);
         self.ranks.clear();
-        self.positions.clear();
     }
 
     /// What to try first from now on: alternatives drawn from `random`, or those of a schedule for an easier problem,
     /// or the fixed order.
     pub(super) fn prefer(&mut self, random: Option<Random>, guide: Option<Firing>) {
         self.guide = guide;
-        self.orders = None;
         self.random = random;
-        (self.copied_of_8, self.shift) = (8, self.clique);
-        if let Some(random) = &mut self.random {
-            // Most schedules repeat their orders clique by clique, but not all.
-            self.copied_of_8 = [8, 8, 7, 0][random.below(4) as usize];
-            self.shift += usize::from(random.below(4) == 0);
-        }
-    }
-
-    /// Tries these orders first, until the next restart.
-    pub(super) fn prefer_orders(&mut self, orders: Orders) {
-        self.orders = Some(orders);
-        self.copied_of_8 = 8;
     }
 
     /// The node of sensor `x` in phase a (0) or b (1).

@@ -12,8 +12,6 @@
 //! Waits above 63 ticks do not fit the words; such problems are counted one table at a time.
 
 mod bits;
-mod last_two;
-mod level_order;
 mod memo;
 mod walk;
 
@@ -52,14 +50,7 @@ impl Search<'_> {
         } else if self.problem.wait_max > MASK_MAX {
             count_one_by_one(self, limit, budget)
         } else {
-            let problem = &self.problem;
-            match last_two::words(problem.wait_max) {
-                Some(1) => Counting::<1>::new(problem, memory).run(limit, budget),
-                Some(2) => Counting::<2>::new(problem, memory).run(limit, budget),
-                Some(3) => Counting::<3>::new(problem, memory).run(limit, budget),
-                Some(4) => Counting::<4>::new(problem, memory).run(limit, budget),
-                _ => Counting::<0>::new(problem, memory).run(limit, budget),
-            }
+            Counting::new(&self.problem, memory).run(limit, budget)
         };
         Count { outcome, count, nodes: budget.nodes() - before }
     }

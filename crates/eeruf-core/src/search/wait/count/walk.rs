@@ -1,9 +1,7 @@
-//! The walk of a count: depth first over the levels, each of which places one sensor.
+//! The walk of a count: depth first over the sensors by number, each of which is a level.
 
 use super::super::{Budget, Problem};
 use super::bits::{left_by, reach, span, waits_with};
-use super::last_two::{LastTwo, Set};
-use super::level_order::LevelOrder;
 use super::memo::{Key, Memo, Ticket};
 use crate::conditions::Criterion;
 use crate::schedule::MAX_SENSORS;
@@ -18,10 +16,8 @@ struct Free {
 
 /// Where the walk stands at one level, which places one sensor.
 #[derive(Clone, Copy)]
-struct Level<const N: usize> {
+struct Level {
     free: Free,
-    /// The same as pairs of waits.
-    pairs: Set<N>,
     /// Waits a and b that the sensors placed before leave to this level's sensor.
     left: [u64; 2],
     /// The |d| still to be tried.
@@ -36,75 +32,69 @@ struct Level<const N: usize> {
     ticket: Option<Ticket>,
 }
 
-impl<const N: usize> Level<N> {
-    const NONE: Self = Self {
-        free: Free { d: 0, s: [0; 2] },
-        pairs: [0; N],
-        left: [0; 2],
-        d_left: 0,
-        d: 0,
-        a_left: 0,
-        entered_at: 0,
-        ticket: None,
-    };
+impl Level {
+    const NONE: Self =
+        Self { free: Free { d: 0, s: [0; 2] }, left: [0; 2], d_left: 0, d: 0, a_left: 0, entered_at: 0, ticket: None };
 }
 
 /// The count under way.
-pub(super) struct Counting<'p, 'm, const N: usize> {
+pub(super) struct Counting<'p, 'm> {
     problem: &'p Problem<'p>,
-    sensors: LevelOrder,
+    /// By sensor: those that can fire too close to it.
+    near: [u64; MAX_SENSORS],
+    /// By level: the sensors to come, this level's included, that are near one placed before.
+    touched: [u64; MAX_SENSORS],
     /// By sensor: its waits, while it is placed.
     wait: [[u8; 2]; MAX_SENSORS],
     /// By sensor: the waits a and b left to it at the level surveyed last.
     left: [[u64; 2]; MAX_SENSORS],
-    levels: [Level<N>; MAX_SENSORS],
+    levels: [Level; MAX_SENSORS],
     key: Key,
-    last_two: LastTwo<N>,
     memo: Memo<'m>,
     total: u128,
 }
 
 // Indices: sensors and levels, both below `lag.len() <= MAX_SENSORS`.
-impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
+impl<'p, 'm> Counting<'p, 'm> {
     pub(super) fn new(problem: &'p Problem<'p>, memory: &'m mut [u32]) -> Self {
-        let sensors = LevelOrder::new(problem);
-        let mut counting = Self {
+        let Problem { period, lag, wait_max, interval, conflicts, .. } = *problem;
+        let (mut near, mut touched) = ([0_u64; MAX_SENSORS], [0_u64; MAX_SENSORS]);
+        for (i, &row) in conflicts.iter().enumerate() {
+            for j in Members(row) {
+                let apart = lag[i].abs_diff(lag[j]);
+                if apart < wait_max + interval || period - apart < wait_max + interval {
+                    near[i] |= 1 << j;
+                }
+            }
+        }
+        for level in 1..lag.len() {
+            touched[level] = (touched[level - 1] | near[level - 1]) & (u64::MAX << level);
+        }
+        let widest = touched.iter().map(|touched| touched.count_ones() as usize).max().unwrap_or(0);
+        let masks = 2 * widest + if problem.criterion == Criterion::Paper { 3 } else { 1 };
+        Self {
             problem,
-            sensors,
+            near,
+            touched,
             wait: [[0; 2]; MAX_SENSORS],
-            left: [[span(0, problem.wait_max as i32); 2]; MAX_SENSORS],
+            left: [[span(0, wait_max as i32); 2]; MAX_SENSORS],
             levels: [Level::NONE; MAX_SENSORS],
-            key: Key::new(problem.wait_max >= 32),
-            last_two: LastTwo::new(problem),
-            memo: Memo::new(&mut [], 0),
+            key: Key::new(wait_max >= 32),
+            memo: Memo::new(memory, if wait_max < 32 { masks } else { 2 * masks }),
             total: 0,
-        };
-        let masks = 2 * counting.sensors.widest + if problem.criterion == Criterion::Paper { 3 } else { 1 };
-        counting.memo = Memo::new(memory, if problem.wait_max < 32 { masks } else { 2 * masks });
-        counting
+        }
     }
 
     pub(super) fn run(&mut self, limit: u128, budget: &mut Budget<'_>) -> (Outcome, u128) {
-        let sensors = self.problem.lag.len();
         let wait_max = self.problem.wait_max as i32;
-        let last = sensors - 1;
+        let last = self.problem.lag.len() - 1;
         let mut level = 0;
         let everything = Free { d: span(0, wait_max), s: [span(0, wait_max), span(0, wait_max - 1)] };
         if last == 0 {
             self.total = self.completions(everything, [span(0, wait_max); 2]);
             return self.counted(limit);
         }
-        if N > 0 {
-            let [i, j] = [last - 1, last].map(|level| usize::from(self.sensors.order[level]));
-            self.last_two.set_pair(self.problem, (self.sensors.near[i] >> j & 1 == 1).then_some((i, j)));
-        }
-        let pairs = if N > 0 { self.last_two.rectangle([u64::MAX; 2]) } else { [0; N] };
-        // With two sensors the first is the last but one: there is nothing to walk.
-        if N > 0 && last == 1 {
-            self.total = self.last_two(0, &pairs);
-            return self.counted(limit);
-        }
-        self.enter(0, everything, pairs);
+        self.enter(0, everything);
         loop {
             if self.total >= limit {
                 return (Outcome::Found(()), self.total);
@@ -112,16 +102,14 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
             if !budget.enter() {
                 return (Outcome::BudgetSpent, self.total);
             }
-            if let Some((free, pairs)) = self.place_next(level) {
+            if let Some(free) = self.place_next(level) {
                 let below = level + 1;
-                if N > 0 && below + 1 == last {
-                    self.enter_last_two(below, free, pairs);
-                } else if below == last {
+                if below == last {
                     if self.survey(last) {
-                        let tables = self.completions(free, self.left[usize::from(self.sensors.order[last])]);
+                        let tables = self.completions(free, self.left[last]);
                         self.add(below, tables);
                     }
-                } else if self.enter(below, free, pairs) {
+                } else if self.enter(below, free) {
                     level = below;
                 }
             } else {
@@ -155,73 +143,40 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
     }
 
     /// Enters a level; `false` if it holds no table or is counted already.
-    fn enter(&mut self, level: usize, free: Free, pairs: Set<N>) -> bool {
-        let Some(ticket) = self.open(level, free) else {
-            return false;
-        };
-        let left = self.left[usize::from(self.sensors.order[level])];
-        self.levels[level] =
-            Level { free, pairs, left, d_left: free.d, d: 0, a_left: 0, entered_at: self.total, ticket };
-        true
-    }
-
-    /// Counts the last two levels.
-    fn enter_last_two(&mut self, level: usize, free: Free, pairs: Set<N>) {
-        let Some(ticket) = self.open(level, free) else {
-            return;
-        };
-        let tables = self.last_two(level, &pairs);
-        if let Some(ticket) = ticket {
-            self.memo.keep(ticket, tables);
-        }
-        self.add(level, tables);
-    }
-
-    /// The tables of the last two levels, of which this is the first.
-    fn last_two(&self, level: usize, pairs: &Set<N>) -> u128 {
-        let [own, last] = [level, level + 1].map(|level| {
-            let mut set = self.last_two.rectangle(self.left[usize::from(self.sensors.order[level])]);
-            for n in 0..N {
-                set[n] &= pairs[n];
-            }
-            set
-        });
-        u128::from(self.last_two.count(&own, &last))
-    }
-
-    /// Surveys a level and looks it up. `None` if it is counted, with its tables added, or holds none; else where its
-    /// count is to be kept, if anywhere.
-    fn open(&mut self, level: usize, free: Free) -> Option<Option<Ticket>> {
+    fn enter(&mut self, level: usize, free: Free) -> bool {
         if !self.has_room(free.d, self.problem.lag.len() - level) || !self.survey(level) {
-            return None;
+            return false;
         }
+        let mut ticket = None;
         // Two sensors can be placed in different ways that leave the same; one cannot.
-        if level < 2 || !self.memo.is_useful() {
-            return Some(None);
-        }
-        self.set_key(level, free);
-        match self.memo.look_up(&self.key) {
-            Ok(tables) => {
-                self.add(level, tables);
-                None
+        if level >= 2 && self.memo.is_useful() {
+            self.set_key(level, free);
+            match self.memo.look_up(&self.key) {
+                Ok(tables) => {
+                    self.add(level, tables);
+                    return false;
+                }
+                Err(new) => ticket = Some(new),
             }
-            Err(new) => Some(Some(new)),
         }
+        let left = self.left[level];
+        self.levels[level] = Level { free, left, d_left: free.d, d: 0, a_left: 0, entered_at: self.total, ticket };
+        true
     }
 
     /// Finds the waits left to the sensors that those placed touch; `false` if one of them has none. To the others all
     /// are left, as they were from the start.
     fn survey(&mut self, level: usize) -> bool {
-        Members(self.sensors.touched[level]).all(|j| {
-            self.left[j] = self.left_to(j, self.sensors.placed[level]);
+        Members(self.touched[level]).all(|j| {
+            self.left[j] = self.left_to(j, level);
             self.left[j][0] != 0 && self.left[j][1] != 0
         })
     }
 
     /// Places the next pair of waits of a level; returns what it leaves free.
-    fn place_next(&mut self, level: usize) -> Option<(Free, Set<N>)> {
+    fn place_next(&mut self, level: usize) -> Option<Free> {
         let paper = self.problem.criterion == Criterion::Paper;
-        let Level { free, pairs, left, mut d_left, mut d, mut a_left, .. } = self.levels[level];
+        let Level { free, left, mut d_left, mut d, mut a_left, .. } = self.levels[level];
         while a_left == 0 {
             // The first sensor's negative d are the exchanged phases of its positive ones.
             if d > 0 && level != 0 {
@@ -238,13 +193,8 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
         let a = a_left.trailing_zeros() as i32;
         let here = &mut self.levels[level];
         (here.d_left, here.d, here.a_left) = (d_left, d, a_left & (a_left - 1));
-        self.wait[usize::from(self.sensors.order[level])] = [a as u8, (a - d) as u8];
+        self.wait[level] = [a as u8, (a - d) as u8];
         let reach = reach(self.problem);
-        let pairs = if N > 0 {
-            self.last_two.without(&pairs, a as usize * self.last_two.waits() + (a - d) as usize)
-        } else {
-            pairs
-        };
         let d = d.abs();
         let mut free = free;
         free.d &= !span(d - reach, d + reach);
@@ -253,7 +203,7 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
             free.s[0] &= !span((s - reach + 1).div_euclid(2), (s + reach).div_euclid(2));
             free.s[1] &= !span((s - reach).div_euclid(2), (s + reach - 1).div_euclid(2));
         }
-        Some((free, pairs))
+        Some(free)
     }
 
     /// The number of pairs that complete a table for the last sensor.
@@ -283,10 +233,10 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
         true
     }
 
-    /// The waits that `placed` sensors leave to sensor `j`.
-    fn left_to(&self, j: usize, placed: u64) -> [u64; 2] {
+    /// The waits that the sensors before `level` leave to sensor `j`.
+    fn left_to(&self, j: usize, level: usize) -> [u64; 2] {
         let mut left = [span(0, self.problem.wait_max as i32); 2];
-        for i in Members(self.sensors.near[j] & placed) {
+        for i in Members(self.near[j] & ((1 << level) - 1)) {
             let [(a_same, a_across), (b_same, b_across)] =
                 self.wait[i].map(|wait| left_by(self.problem, i, j, i32::from(wait)));
             left[0] &= a_same & b_across;
@@ -304,7 +254,7 @@ impl<'p, 'm, const N: usize> Counting<'p, 'm, N> {
             self.key.push(free.s[1]);
         }
         let mut exchange = None;
-        for j in Members(self.sensors.touched[level]) {
+        for j in Members(self.touched[level]) {
             let left = self.left[j];
             // The greater side of the first difference goes first.
             if exchange.is_none() && left[0] != left[1] {
@@ -322,14 +272,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counting_keeps_less_than_32_kibibytes_beside_the_memory_lent() {
-        let sizes = [
-            size_of::<Counting<'_, '_, 0>>(),
-            size_of::<Counting<'_, '_, 1>>(),
-            size_of::<Counting<'_, '_, 2>>(),
-            size_of::<Counting<'_, '_, 3>>(),
-            size_of::<Counting<'_, '_, 4>>(),
-        ];
-        assert!(sizes.iter().all(|&size| size < 32 * 1024), "{sizes:?}");
+    fn counting_keeps_less_than_16_kibibytes_beside_the_memory_lent() {
+        assert!(size_of::<Counting<'_, '_>>() < 16 * 1024, "{}", size_of::<Counting<'_, '_>>());
     }
 }

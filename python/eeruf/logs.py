@@ -146,15 +146,23 @@ class Firings(_Columns):
             sends: false where a sensor only listened.
 
         """
-        whole = [np.ascontiguousarray(column, dtype=np.int64) for column in (sensor, fired_us, period, phase)]
-        rows = len(whole[0])
-        made = np.full(rows, -1, dtype=np.int64) if rejected is None else np.ascontiguousarray(rejected, dtype=np.int64)
-        sent = np.ones(rows, dtype=np.bool_) if sends is None else np.ascontiguousarray(sends, dtype=np.bool_)
-        return cls(*whole, np.ascontiguousarray(t_echo_us, dtype=np.float64), made, sent, "unnamed", None)
 
-    def _arguments(self) -> tuple[Any, ...]:
-        whole = (self.sensor, self.fired_us, self.period, self.phase, self.rejected)
-        return (*whole, self.t_echo_us, self.sends)
+        def whole(column: ArrayLike) -> NDArray[np.int64]:
+            return np.ascontiguousarray(column, dtype=np.int64)
+
+        sensors = whole(sensor)
+        rows = len(sensors)
+        return cls(
+            sensor=sensors,
+            fired_us=whole(fired_us),
+            period=whole(period),
+            phase=whole(phase),
+            t_echo_us=np.ascontiguousarray(t_echo_us, dtype=np.float64),
+            rejected=whole(np.full(rows, -1) if rejected is None else rejected),
+            sends=np.ascontiguousarray(np.ones(rows) if sends is None else sends, dtype=np.bool_),
+            clock="unnamed",
+            damage=None,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -296,7 +304,9 @@ def diagnose(
         True
 
     """
-    return Diagnosis(**_eeruf._diagnose(*_firings(log)._arguments(), tolerance_us, max_travel_us))
+    return Diagnosis(
+        **_eeruf._diagnose(**_firings(log).columns(), tolerance_us=tolerance_us, max_travel_us=max_travel_us)
+    )
 
 
 def survey(log: Firings | str | os.PathLike[str], *, tolerance_us: int = 100, until_us: int = 15_000) -> Surveyed:
@@ -319,4 +329,4 @@ def survey(log: Firings | str | os.PathLike[str], *, tolerance_us: int = 100, un
         [7000.0]
 
     """
-    return Surveyed(**_eeruf._survey(*_firings(log)._arguments(), tolerance_us, until_us))
+    return Surveyed(**_eeruf._survey(**_firings(log).columns(), tolerance_us=tolerance_us, until_us=until_us))

@@ -1,6 +1,13 @@
 """Logs of robots: the ranges of bags, MCAP and CSV files, and what a ring's log of firings says about it.
 
 Everything is read by the same code as ``eeruf replay``, ``eeruf diagnose`` and ``eeruf survey``; docs/logs.md says what is read.
+
+Example:
+    >>> import eeruf
+    >>> log = eeruf.logs.Firings.of(sensor=[0, 1], fired_us=[0, 500], period=[0, 0], phase=[0, 0], t_echo_us=[7000.0, 8000.0])
+    >>> eeruf.diagnose(log).sender.tolist()  # two firings prove nothing
+    [-1, -1]
+
 """
 
 from __future__ import annotations
@@ -52,6 +59,14 @@ class Ranges(_Columns):
     ``sensor`` counts through ``names`` (also ``topics`` and ``frames``), ``at_ns`` is the header's time in nanoseconds, and 0 where
     there is none. ``range_m`` is ``inf`` without an echo and ``-inf`` for too close, as in REP 117. ``variance`` is NaN where the
     message has none. ``damage`` says what could not be read, ``skipped`` which topics were left out, and why.
+
+    Example:
+        >>> import eeruf, pathlib, tempfile
+        >>> file = pathlib.Path(tempfile.mkdtemp()) / "log.csv"
+        >>> size = file.write_text("range" + chr(10) + "1.716" + chr(10))
+        >>> eeruf.read_log(file).echo_us(speed_of_sound=343.2).round(3).tolist()
+        [10000.0]
+
     """
 
     sensor: NDArray[np.int64]
@@ -69,7 +84,12 @@ class Ranges(_Columns):
     _columns = ("sensor", "at_ns", "range_m", "min_range_m", "max_range_m", "variance")
 
     def echo_us(self, *, speed_of_sound: float = 343.2) -> NDArray[np.float64]:
-        """Return the times from firing to echo in microseconds; NaN without an echo, and for too close."""
+        """Return the times from firing to echo in microseconds; NaN without an echo, and for too close.
+
+        Args:
+            speed_of_sound: in m/s.
+
+        """
         seen = np.isfinite(self.range_m) & (self.range_m < self.max_range_m) & (self.range_m >= self.min_range_m)
         return np.where(seen, 2e6 * np.where(seen, self.range_m, 0.0) / speed_of_sound, np.nan)
 
@@ -79,7 +99,15 @@ class Firings(_Columns):
     """A ring's log of firings: arrays of equal length.
 
     ``t_echo_us`` is the raw time from firing to the first edge, NaN without one; ``rejected`` is 1 if the ring rejected the reading,
-    0 if not, -1 if the log does not say; ``sends`` is false where a sensor only listened.
+    0 if not, -1 if the log does not say; ``sends`` is false where a sensor only listened. ``clock`` names the clock of ``fired_us``,
+    ``damage`` says what of the file could not be read.
+
+    Example:
+        >>> import eeruf
+        >>> log = eeruf.logs.Firings.of(sensor=[0], fired_us=[0], period=[0], phase=[0], t_echo_us=[7000.0])
+        >>> len(log), log.rejected.tolist()
+        (1, [-1])
+
     """
 
     sensor: NDArray[np.int64]
@@ -89,8 +117,8 @@ class Firings(_Columns):
     t_echo_us: NDArray[np.float64]
     rejected: NDArray[np.int64]
     sends: NDArray[np.bool_]
-    clock: str = "unnamed"
-    damage: str | None = None
+    clock: str
+    damage: str | None
 
     _columns = ("sensor", "fired_us", "period", "phase", "t_echo_us", "rejected", "sends")
 
@@ -106,16 +134,35 @@ class Firings(_Columns):
         rejected: ArrayLike | None = None,
         sends: ArrayLike | None = None,
     ) -> Firings:
-        """Make a log of arrays, as of ``sim.Readings`` or of a data frame's columns."""
-        whole = [np.ascontiguousarray(column, dtype=np.int64) for column in (sensor, fired_us, period, phase)]
-        rows = len(whole[0])
-        made = np.full(rows, -1, dtype=np.int64) if rejected is None else np.ascontiguousarray(rejected, dtype=np.int64)
-        sent = np.ones(rows, dtype=np.bool_) if sends is None else np.ascontiguousarray(sends, dtype=np.bool_)
-        return cls(*whole, np.ascontiguousarray(t_echo_us, dtype=np.float64), made, sent)
+        """Make a log of arrays, as of ``sim.Readings`` or of a data frame's columns.
 
-    def _arguments(self) -> tuple[Any, ...]:
-        whole = (self.sensor, self.fired_us, self.period, self.phase, self.rejected)
-        return (*whole, self.t_echo_us, self.sends)
+        Args:
+            sensor: the sensor, from 0.
+            fired_us: when it fired, in microseconds of one clock.
+            period: the period, from 0.
+            phase: the phase, from 0.
+            t_echo_us: from firing to the first edge, NaN without one.
+            rejected: 1 if the ring rejected the reading, 0 if not, -1 if that is not known.
+            sends: false where a sensor only listened.
+
+        """
+
+        def whole(column: ArrayLike) -> NDArray[np.int64]:
+            return np.ascontiguousarray(column, dtype=np.int64)
+
+        sensors = whole(sensor)
+        rows = len(sensors)
+        return cls(
+            sensor=sensors,
+            fired_us=whole(fired_us),
+            period=whole(period),
+            phase=whole(phase),
+            t_echo_us=np.ascontiguousarray(t_echo_us, dtype=np.float64),
+            rejected=whole(np.full(rows, -1) if rejected is None else rejected),
+            sends=np.ascontiguousarray(np.ones(rows) if sends is None else sends, dtype=np.bool_),
+            clock="unnamed",
+            damage=None,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +173,13 @@ class Diagnosis:
     firing ``sender`` is whose sound its reading is, -1 where that is not sure, ``travel_us`` how long it travelled, ``sure`` how sure
     that is. ``faults`` are ``("deaf", [sensor])``, ``("chattering", [sensor])`` and ``("swapped", [one, other])``.
     ``most_offsets`` is at how many offsets two firings stand to each other at most; below about five nothing can be named.
+
+    Example:
+        >>> import eeruf
+        >>> log = eeruf.logs.Firings.of(sensor=[0], fired_us=[0], period=[0], phase=[0], t_echo_us=[7000.0])
+        >>> eeruf.diagnose(log).faults
+        []
+
     """
 
     paths: dict[str, NDArray[Any]]
@@ -142,6 +196,13 @@ class Surveyed:
 
     ``paths`` as in :class:`Diagnosis`; ``conflicts`` are ``(x, y, us)``: pairs that hear each other in time, and the longest such
     travel time. ``[(x, y) for x, y, _ in conflicts]`` is a ``layout`` for :func:`eeruf.design`.
+
+    Example:
+        >>> import eeruf
+        >>> log = eeruf.logs.Firings.of(sensor=[0], fired_us=[0], period=[0], phase=[0], t_echo_us=[7000.0])
+        >>> eeruf.survey(log).conflicts
+        []
+
     """
 
     paths: dict[str, NDArray[Any]]
@@ -180,10 +241,10 @@ def read_log(
     Example:
         >>> import eeruf, pathlib, tempfile
         >>> file = pathlib.Path(tempfile.mkdtemp()) / "log.csv"
-        >>> _ = file.write_text("t,left,right\\n0.00,1.20,\\n0.06,1.21,2.50\\n")
+        >>> size = file.write_text(chr(10).join(["t,left,right", "0.00,1.20,", "0.06,1.21,2.50"]))
         >>> log = eeruf.read_log(file, time="t")
         >>> log.names, log.range_m.tolist()
-        (['left', 'right'], [1.2, inf, 1.21, 2.5])
+        (['left', 'right'], [1.2, 1.21, inf, 2.5])
 
     """
     found = _eeruf._read_log(
@@ -195,8 +256,20 @@ def read_log(
 def read_firings(path: str | os.PathLike[str]) -> Firings:
     """Read a ring's log of firings, CSV or MCAP; docs/diagnose.md has the format.
 
+    Args:
+        path: the log.
+
     Raises:
         LogError: the log cannot be read.
+
+    Example:
+        >>> import eeruf, pathlib, tempfile
+        >>> file = pathlib.Path(tempfile.mkdtemp()) / "log.csv"
+        >>> lines = ["# clock: board", "sensor,fired_us,period,phase,t_echo_us", "0,15000,0,0,5872"]
+        >>> size = file.write_text(chr(10).join(lines))
+        >>> log = eeruf.read_firings(file)
+        >>> log.clock, log.t_echo_us.tolist()
+        ('board', [5872.0])
 
     """
     return Firings(**_eeruf._read_firings(os.fspath(path)))
@@ -219,8 +292,21 @@ def diagnose(
     Raises:
         LogError: the log cannot be read.
 
+    Example:
+        >>> import eeruf, numpy as np
+        >>> from eeruf import sim
+        >>> scene = sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))
+        >>> r = sim.simulate(scene, "eeruf_hopping", periods=300)
+        >>> log = eeruf.logs.Firings.of(
+        ...     sensor=r.sensor, fired_us=np.rint(1e6 * r.fired_s), period=r.period, phase=r.phase, t_echo_us=r.earliest_us
+        ... )
+        >>> bool((eeruf.diagnose(log).sender >= 0).mean() > 0.3)
+        True
+
     """
-    return Diagnosis(**_eeruf._diagnose(*_firings(log)._arguments(), tolerance_us, max_travel_us))
+    return Diagnosis(
+        **_eeruf._diagnose(**_firings(log).columns(), tolerance_us=tolerance_us, max_travel_us=max_travel_us)
+    )
 
 
 def survey(log: Firings | str | os.PathLike[str], *, tolerance_us: int = 100, until_us: int = 15_000) -> Surveyed:
@@ -234,5 +320,13 @@ def survey(log: Firings | str | os.PathLike[str], *, tolerance_us: int = 100, un
     Raises:
         LogError: the log cannot be read.
 
+    Example:
+        >>> import eeruf
+        >>> alone = eeruf.logs.Firings.of(
+        ...     sensor=[0] * 9, fired_us=range(0, 900_000, 100_000), period=range(9), phase=[0] * 9, t_echo_us=[7000.0] * 9
+        ... )
+        >>> eeruf.survey(alone).paths["travel_us"].tolist()
+        [7000.0]
+
     """
-    return Surveyed(**_eeruf._survey(*_firings(log)._arguments(), tolerance_us, until_us))
+    return Surveyed(**_eeruf._survey(**_firings(log).columns(), tolerance_us=tolerance_us, until_us=until_us))

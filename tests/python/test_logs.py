@@ -29,11 +29,11 @@ def simulated(method: Any, periods: int) -> tuple[eeruf.logs.Firings, sim.Readin
 @pytest.mark.parametrize("name", ["ros1-none.bag", "ros1-bz2.bag", "ros1-lz4.bag", "mcap-jazzy", "mcap-jazzy-zstd"])
 def test_bags_of_all_kinds_are_read_alike(name: str) -> None:
     log, other = eeruf.read_log(BAGS / name), eeruf.read_log(BAGS / "mcap-humble")
-    assert log.damage == [] and len(log) == len(other) > 100
-    assert sorted(log.names) == sorted(other.names)
-    for sensor, topic in enumerate(other.names):
-        ranges = log.range_m[log.sensor == log.names.index(topic)]
-        np.testing.assert_array_equal(ranges, other.range_m[other.sensor == sensor])
+    assert log.damage == [] and len(other) == 12
+    for topic in ["/sonar/0", "/sonar/1"]:
+        here, there = log.sensor == log.names.index(topic), other.sensor == other.names.index(topic)
+        assert here.sum() == 6
+        np.testing.assert_array_equal(log.range_m[here], other.range_m[there])
     assert (log.at_ns > 0).all() and not log.range_m.flags.writeable
 
 
@@ -59,7 +59,7 @@ def test_a_cut_bag_gives_what_can_be_read_and_says_what_cannot(tmp_path: Path) -
     (tmp_path / "cut.bag").write_bytes(whole[: len(whole) // 2 + 2200])
     log = eeruf.read_log(tmp_path / "cut.bag")
     assert 0 < len(log) < len(eeruf.read_log(BAGS / "ros1-none.bag")) and "cut" in log.damage[0]
-    with pytest.raises(eeruf.LogError, match="not-there.bag"):
+    with pytest.raises(eeruf.LogError, match=r"not-there\.bag"):
         eeruf.read_log(tmp_path / "not-there.bag")
 
 

@@ -71,14 +71,13 @@ fn read(line: &SerialPort, to: &Sender<FromLine>) -> std::io::Result<()> {
             let frame = decoder.push(byte);
             let rest_of_a_frame = !begun;
             begun |= byte == 0;
-            match frame {
-                Some(Err(FrameError::Damaged)) if rest_of_a_frame => {}
-                Some(frame) => {
-                    if to.send(FromLine::Frame(frame, now)).is_err() {
-                        return Ok(());
-                    }
-                }
-                None => {}
+            let frame = match frame {
+                None => continue,
+                Some(Err(FrameError::Damaged)) if rest_of_a_frame => continue,
+                Some(frame) => frame,
+            };
+            if to.send(FromLine::Frame(frame, now)).is_err() {
+                return Ok(());
             }
         }
     }

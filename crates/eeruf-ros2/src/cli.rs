@@ -22,11 +22,9 @@ pub(crate) struct Cli {
     /// Write a log that `eeruf diagnose` reads
     #[arg(long, value_name = "FILE.csv")]
     log: Option<PathBuf>,
-    /// Send MAVLink to `udp:HOST:PORT`
-    #[arg(long, value_name = "WHERE")]
+    #[arg(long, value_name = "WHERE", help = "Send MAVLink to `udp:HOST:PORT`")]
     mavlink: Option<String>,
-    /// Speak no ROS: only the log and MAVLink, from a serial line
-    #[arg(long)]
+    #[arg(long, help = "Speak no ROS: only the log and MAVLink, from a serial line")]
     no_ros: bool,
 }
 

@@ -1,7 +1,7 @@
 //! `eeruf-ros2`: a ROS 2 node for rings of ultrasonic sensors that needs no ROS installed.
 //!
 //! It listens to a board over a serial line, or to raw echo times or ranges on topics, publishes what counts as
-//! `sensor_msgs/Range` and what is wrong as `diagnostic_msgs/DiagnosticArray`, sends MAVLink, and writes the log that
+//! `sensor_msgs/Range` and what is wrong as `diagnostic_msgs/DiagnosticArray`, sends `MAVLink`, and writes the log that
 //! `eeruf diagnose` reads. See `docs/ros2.md`.
 
 mod board_clock;

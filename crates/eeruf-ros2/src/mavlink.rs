@@ -1,4 +1,4 @@
-//! MAVLink 2: `DISTANCE_SENSOR` for each sensor, and the `HEARTBEAT` by which others know of us.
+//! `MAVLink` 2: `DISTANCE_SENSOR` for each sensor, and the `HEARTBEAT` by which others know of us.
 //!
 //! Messages and numbers: <https://mavlink.io/en/messages/common.html>; frames:
 //! <https://mavlink.io/en/guide/serialization.html>.
@@ -106,7 +106,7 @@ impl Mavlink {
         self.socket.send_to(&frame, self.to).map(|_| ())
     }
 
-    /// The payload: first the large fields, then the small ones, then what MAVLink 2 added.
+    /// The payload: first the large fields, then the small ones, then what `MAVLink` 2 added.
     fn distance_sensor(&self, sensor: u8, distance: Distance, time_boot_ms: u32) -> Vec<u8> {
         let centimetres = |metres: f32| (100.0 * metres).round() as u16;
         let (least, most) = (centimetres(self.scale.min_m), centimetres(self.scale.max_m));

@@ -1,4 +1,4 @@
-//! The main loop: what comes in from the board or from topics goes out as ranges, diagnostics, MAVLink and a log.
+//! The main loop: what comes in from the board or from topics goes out as ranges, diagnostics, `MAVLink` and a log.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

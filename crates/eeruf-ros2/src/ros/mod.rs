@@ -32,7 +32,7 @@ const ROW: usize = 5;
 
 enum Input {
     None,
-    EchoTimes(Subscription<UInt32MultiArray>),
+    EchoTimes(Box<Subscription<UInt32MultiArray>>),
     Ranges(Vec<Subscription<RangeHeard>>),
 }
 
@@ -93,7 +93,7 @@ impl Ros {
                 let name = &parameters.echo_times_topic;
                 let array = MessageTypeName::new("std_msgs", "UInt32MultiArray");
                 let topic = node.create_topic(&topic_name(name)?, array, &LISTENING).map_err(wrong(name))?;
-                Input::EchoTimes(node.create_subscription(&topic, None).map_err(wrong(name))?)
+                Input::EchoTimes(Box::new(node.create_subscription(&topic, None).map_err(wrong(name))?))
             }
             Source::Ranges => {
                 let mut subscriptions = Vec::new();

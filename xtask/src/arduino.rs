@@ -2,12 +2,15 @@
 //! and run on a simulated Uno among simulated HC-SR04 modules.
 
 mod build;
+mod newping;
 mod tables;
 mod world;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+pub(crate) use newping::newping;
 
 use crate::c::need;
 use crate::steps::{Steps, Trouble, run};
@@ -96,7 +99,7 @@ fn examples(library: &Path, short: bool) -> Result<(), Trouble> {
     println!("| sketch | flash | data + bss | stack | firings/s | accepted/s | wrong of accepted |");
     println!("|---|---:|---:|---:|---:|---:|---:|");
     for example in &EXAMPLES {
-        let sketch = build::sketch(library, &core, example.name)?;
+        let sketch = build::example(library, &core, example.name)?;
         if short && !example.short {
             continue;
         }

@@ -66,6 +66,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     });
     steps.step("C library", crate::c::c);
     crate::arduino::arduino(&crate::arduino::Plan::SHORT, &mut steps);
+    steps.step("MicroPython", crate::micropython::micropython);
     steps.step("Python package", crate::python::python);
     steps.step("page in a browser", || crate::page::page(crate::page::Tests::Short));
     steps.step("firmware on emulated boards", || crate::firmware::firmware(false));

@@ -21,9 +21,15 @@ pub(super) struct Heard {
     firings: Vec<u32>,
     ignored: u32,
     stack: u32,
+    /// The share of the time spent in interrupts, in millionths.
+    interrupts: u32,
     accepted: u32,
     wrong: u32,
+    /// Of the wrong ones: after a module's own sound that came another way, its own of an earlier firing, another's.
+    by_cause: [u32; 3],
 }
+
+const CAUSES: [&str; 3] = ["own", "earlier", "foreign"];
 
 /// Builds `c/arduino/world/world.c`.
 pub(super) fn build() -> Result<PathBuf, Trouble> {
@@ -73,10 +79,27 @@ pub(super) fn run(world: &Path, elf: &Path, example: &Example, seconds: u32) -> 
     let (times, own_mm) = echo_times(example.modules)?;
     let pins = example.triggers.iter().chain(example.echoes).map(ToString::to_string);
     let said = output(
-        Command::new(world).arg(elf).arg(seconds.to_string()).arg(times).arg(example.modules.to_string()).args(pins),
+        Command::new(world)
+            .arg("--pulses")
+            .arg(elf)
+            .arg(seconds.to_string())
+            .arg(times)
+            .arg(example.modules.to_string())
+            .args(pins),
     )
     .ok_or_else(|| Trouble::Failed(format!("{} did not run", example.name)))?;
-    let mut heard = Heard { seconds, firings: vec![], ignored: 0, stack: 0, accepted: 0, wrong: 0 };
+    let mut heard = Heard {
+        seconds,
+        firings: vec![],
+        ignored: 0,
+        stack: 0,
+        interrupts: 0,
+        accepted: 0,
+        wrong: 0,
+        by_cause: [0; 3],
+    };
+    // What ended the last pulse of each module. A sketch says its reading before the module fires again.
+    let mut causes: BTreeMap<usize, usize> = BTreeMap::new();
     for line in said.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
         let numbers = || words.iter().skip(2).filter_map(|word| word.parse().ok());
@@ -84,12 +107,25 @@ pub(super) fn run(world: &Path, elf: &Path, example: &Example, seconds: u32) -> 
             ["world", "firings", ..] => heard.firings = numbers().collect(),
             ["world", "ignored", ..] => heard.ignored = numbers().sum(),
             ["world", "stack", ..] => heard.stack = numbers().sum(),
+            ["world", "interrupts", ..] => heard.interrupts = numbers().sum(),
+            ["world", "pulse", module, cause] => {
+                let cause = CAUSES.iter().position(|known| *known == cause);
+                if let (Ok(module), Some(cause)) = (module.parse(), cause) {
+                    causes.insert(module, cause);
+                }
+            }
             [module, distance] | [module, distance, "cm"] => {
                 let (Ok(module), Ok(distance)) = (module.parse::<usize>(), distance.parse::<u32>()) else { continue };
                 let mm = if words.len() == 3 { 10 * distance } else { distance };
                 heard.accepted += 1;
                 let own = own_mm.get(&(module.wrapping_sub(1)));
-                heard.wrong += u32::from(own.is_none_or(|own| own.abs_diff(mm) > OFF_MM));
+                if own.is_none_or(|own| own.abs_diff(mm) > OFF_MM) {
+                    heard.wrong += 1;
+                    let cause = causes.get(&module).copied();
+                    if let Some(count) = cause.and_then(|cause| heard.by_cause.get_mut(cause)) {
+                        *count += 1;
+                    }
+                }
             }
             _ => {}
         }
@@ -98,6 +134,17 @@ pub(super) fn run(world: &Path, elf: &Path, example: &Example, seconds: u32) -> 
 }
 
 impl Heard {
+    /// The columns of the table beside NewPing.
+    pub(super) fn row_beside_newping(&self) -> String {
+        let per_second = |count: u32| format!("{:.1}", f64::from(count) / f64::from(self.seconds));
+        let share = |count: u32| format!("{:.1} %", 100.0 * f64::from(count) / f64::from(self.accepted.max(1)));
+        let mut columns = vec![self.stack.to_string(), format!("{:.1} %", f64::from(self.interrupts) / 1e4)];
+        columns.extend([self.firings.iter().sum(), self.accepted, self.accepted - self.wrong].map(per_second));
+        columns.push(share(self.wrong));
+        columns.extend(self.by_cause.map(share));
+        columns.join(" | ")
+    }
+
     /// The columns of the table.
     pub(super) fn row(&self) -> String {
         let per_second = |count: u32| f64::from(count) / f64::from(self.seconds);

@@ -24,7 +24,7 @@ use walk::Counting;
 
 /// A sensible amount of memory for [`Search::count`] where there is plenty, in words (4 MiB): a choice.
 /// With less the count is the same, and slower.
-pub const COUNT_WORDS: usize = 1 << 20;
+pub const COUNT_WORDS: usize = 1 << if usize::BITS > 16 { 20 } else { 8 };
 
 /// The outcome of counting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

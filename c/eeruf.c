@@ -59,11 +59,19 @@ static uint16_t add16(uint16_t one, uint16_t other) {
     return narrow((uint32_t)one + other);
 }
 
-static uint16_t less16(uint16_t one, uint16_t other) {
+static OUT_OF_LINE uint16_t less16(uint16_t one, uint16_t other) {
     return one > other ? (uint16_t)(one - other) : 0;
 }
 
-static uint32_t add32(uint32_t one, uint32_t other) {
+static OUT_OF_LINE uint16_t more16(uint16_t one, uint16_t other) {
+    return one > other ? one : other;
+}
+
+static OUT_OF_LINE uint16_t fewer16(uint16_t one, uint16_t other) {
+    return one < other ? one : other;
+}
+
+static OUT_OF_LINE uint32_t add32(uint32_t one, uint32_t other) {
     return one > UINT32_MAX - other ? UINT32_MAX : one + other;
 }
 
@@ -71,7 +79,7 @@ static uint32_t apart(uint32_t one, uint32_t other) {
     return one > other ? one - other : other - one;
 }
 
-static uint32_t longer(uint32_t one, uint32_t other) {
+static OUT_OF_LINE uint32_t longer(uint32_t one, uint32_t other) {
     return one > other ? one : other;
 }
 
@@ -247,7 +255,7 @@ EerufStatus eeruf_schedule_verify(EerufSchedule *schedule, const EerufRequiremen
 #endif
 }
 
-static OUT_OF_LINE EerufStatus schedule_is_usable(const EerufSchedule *schedule) {
+static EerufStatus schedule_is_usable(const EerufSchedule *schedule) {
     uint16_t version;
     if (schedule == NULL) return EERUF_ERR_NULL;
     version = READ16(schedule->version);
@@ -390,15 +398,23 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter) {
 #define STUCK 0x40u        /* its line was high when it was to fire */
 #define UNCOMPARABLE 0x80u /* its next reading is not compared with the one before, nor with the one after */
 
-/* What a scheduler other than a table does. */
-enum { HOP_FIRE, HOP_POSTPONE, HOP_END_PERIOD, HOP_RESTART, HOP_LEAVE_OUT };
+/* Rings that hop in time fire otherwise than by a table. What is linked for all takes `hops` as a constant, so that
+   nothing of the one kind is linked where only the other is polled; HOPS asks the ring. */
 #if EERUF_HOPPING
-#define HOPS(ring) ((ring)->hop != NULL)
-#define HOP(ring, what, sensor, at_us) (ring)->hop(ring, what, sensor, at_us)
+#define HOPS(ring) ((ring)->schedule == NULL)
+static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us);
+static void end_hopping_period(EerufRing *ring, uint32_t now_us);
+static void restart_hopping(EerufRing *ring, uint32_t now_us);
 #else
 #define HOPS(ring) false
-#define HOP(ring, what, sensor, at_us) ((void)0)
+#define fire_hop(ring, sensor, now_us) ((void)0)
+#define end_hopping_period(ring, now_us) ((void)0)
+#define restart_hopping(ring, now_us) ((void)0)
 #endif
+
+static EerufSensor *sensor_of(const EerufRing *ring, uint8_t sensor) {
+    return &ring->sensors[sensor];
+}
 
 static void count(EerufRing *ring, uint8_t kind) {
     if (ring->tally[kind] < UINT8_MAX) ring->tally[kind]++;
@@ -416,7 +432,7 @@ static OUT_OF_LINE void watch(EerufRing *ring) {
     EerufLateness *late = &ring->lateness;
     if (late->watched == 0) {
         uint8_t x;
-        for (x = 0; x < ring->count; x++) ring->sensors[x].total_late = 0;
+        for (x = 0; x < ring->count; x++) sensor_of(ring, x)->total_late = 0;
         late->total = late->total_before = 0;
         late->least = late->least_before = late->uncomparable == FIRST_PERIOD ? UINT16_MAX : 0;
         late->most = late->most_before = 0;
@@ -428,7 +444,7 @@ static OUT_OF_LINE void watch(EerufRing *ring) {
 static void uncompare(EerufRing *ring, uint8_t only) {
     uint8_t x;
     for (x = 0; x < ring->count; x++)
-        if (only == 0 || (ring->sensors[x].flags & only)) ring->sensors[x].flags |= UNCOMPARABLE;
+        if (only == 0 || (sensor_of(ring, x)->flags & only)) sensor_of(ring, x)->flags |= UNCOMPARABLE;
 }
 
 /* The timetable has begun anew. A reading of the first period may hold sound from before. */
@@ -447,15 +463,15 @@ static void add_late(EerufRing *ring, uint16_t late_us) {
     }
 }
 
-static OUT_OF_LINE void note_late(EerufRing *ring, uint16_t late_us) {
-    if (late_us > ring->lateness.latest) ring->lateness.latest = late_us;
+static void note_late(EerufRing *ring, uint16_t late_us) {
+    ring->lateness.latest = more16(ring->lateness.latest, late_us);
 }
 
 /* By how much two stretches may differ: crosstalk must still move by more than t_delta, and no firing be skipped. */
-static uint16_t tolerated(const EerufRing *ring) {
+static uint16_t tolerated(const EerufRing *ring, bool hops) {
     const uint32_t t_delta = ring->t_delta_us;
     uint32_t separation = 2 * t_delta + 1, longest = ring->window_us;
-    if (!HOPS(ring)) {
+    if (!hops) {
         longest = READ32(ring->schedule->min_refire_us);
         if (is_verified(ring->schedule)) separation = READ32(ring->schedule->separation_us);
     }
@@ -465,25 +481,25 @@ static uint16_t tolerated(const EerufRing *ring) {
 }
 
 /* Notes the last firing's stretch; its reading and those pending are not compared if it differs too much. */
-static void stretch_by(EerufRing *ring, uint8_t sensor, uint16_t late_us, uint16_t stretch) {
+static void stretch_by(EerufRing *ring, uint8_t sensor, uint16_t late_us, uint16_t stretch, bool hops) {
     EerufLateness *late = &ring->lateness;
     uint16_t least, most;
-    const uint16_t most_tolerated = tolerated(ring);
+    const uint16_t most_tolerated = tolerated(ring, hops);
     late->last = sensor;
     late->last_late = late_us;
     late->last_stretch = stretch;
     if (late->uncomparable == FIRST_PERIOD) return;
-    least = late->least < late->least_before ? late->least : late->least_before;
-    most = late->most > late->most_before ? late->most : late->most_before;
-    if (stretch < late->least) late->least = stretch;
-    if (stretch > late->most) late->most = stretch;
+    least = fewer16(late->least, late->least_before);
+    most = more16(late->most, late->most_before);
+    late->least = fewer16(late->least, stretch);
+    late->most = more16(late->most, stretch);
     if (less16(stretch, least) > most_tolerated || less16(most, stretch) > most_tolerated) uncompare(ring, LISTENING);
 }
 
 /* A firing came late, or has a stretch because others did. */
-static OUT_OF_LINE void fired_late(EerufRing *ring, uint8_t sensor, uint16_t late_us) {
+static void fired_late(EerufRing *ring, uint8_t sensor, uint16_t late_us, bool hops) {
     EerufLateness *late = &ring->lateness;
-    uint16_t *total = &ring->sensors[sensor].total_late, stretch;
+    uint16_t *total = &sensor_of(ring, sensor)->total_late, stretch;
     if (late_us > 0) {
         watch(ring);
         note_late(ring, late_us);
@@ -491,23 +507,27 @@ static OUT_OF_LINE void fired_late(EerufRing *ring, uint8_t sensor, uint16_t lat
     }
     stretch = late->total >= *total ? (uint16_t)(late->total - *total) : UINT16_MAX;
     *total = late->total;
-    stretch_by(ring, sensor, late_us, HOPS(ring) ? late_us : stretch);
+    stretch_by(ring, sensor, late_us, hops ? late_us : stretch, hops);
 }
 
 static void end_late_period(EerufRing *ring, EerufPeriod *ended) {
     EerufLateness *late = &ring->lateness;
-    const bool uncomparable = late->uncomparable != 0 && late->uncomparable != FIRST_PERIOD;
+    bool uncomparable = false;
     ended->max_late_us = late->latest;
     ended->sum_late_us = ended->max_shift_us = 0;
     late->latest = 0;
-    late->uncomparable = uncomparable ? (uint8_t)(late->uncomparable - 1u) : 0;
+    if (late->uncomparable == FIRST_PERIOD) {
+        late->uncomparable = 0;
+    } else if (late->uncomparable != 0) {
+        late->uncomparable--;
+        uncomparable = true;
+    }
     if (late->watched != 0) {
-        uint16_t most = late->most > late->most_before ? late->most : late->most_before;
-        uint16_t least = late->least < late->least_before ? late->least : late->least_before, forgotten;
+        uint16_t forgotten;
         uint8_t x;
         late->watched--;
         ended->sum_late_us = less16(late->total, late->total_before);
-        ended->max_shift_us = less16(most, least);
+        ended->max_shift_us = less16(more16(late->most, late->most_before), fewer16(late->least, late->least_before));
         late->least_before = late->least;
         late->most_before = late->most;
         late->least = UINT16_MAX;
@@ -515,7 +535,7 @@ static void end_late_period(EerufRing *ring, EerufPeriod *ended) {
         /* All totals from the beginning of this period on, which will be the one before. */
         forgotten = late->total == UINT16_MAX ? UINT16_MAX : late->total_before;
         for (x = 0; x < ring->count; x++)
-            ring->sensors[x].total_late = less16(ring->sensors[x].total_late, forgotten);
+            sensor_of(ring, x)->total_late = less16(sensor_of(ring, x)->total_late, forgotten);
         late->total = (uint16_t)(late->total - forgotten);
         late->total_before = late->total;
     }
@@ -533,20 +553,20 @@ static void turn_once(EerufRing *ring) {
 }
 
 static void skip_silent(EerufRing *ring) {
-    while (ring->next != NOBODY && (ring->paused || (ring->sensors[ring->next].filter.state & DISABLED)))
+    while (ring->next != NOBODY && (ring->paused || (sensor_of(ring, ring->next)->filter.state & DISABLED)))
         turn_once(ring);
 }
 
-static OUT_OF_LINE void turn(EerufRing *ring, uint32_t from_us) {
-    ring->due_us = from_us;
+/* After the firing, or the start of the period, at `due_us`. */
+static OUT_OF_LINE void turn(EerufRing *ring) {
     turn_once(ring);
     skip_silent(ring);
 }
 
-static OUT_OF_LINE void begin_period(EerufRing *ring, uint8_t phase, uint32_t start_us) {
+static OUT_OF_LINE void begin_period(EerufRing *ring, uint8_t phase) {
     ring->phase = phase;
     ring->following = 0;
-    turn(ring, start_us);
+    turn(ring);
 }
 
 /* How long to stay silent after the last firing so that a period which was not verified against it may begin. */
@@ -556,46 +576,44 @@ static uint32_t settling_time(const EerufSchedule *schedule) {
 }
 
 /* No deadline lies further ahead, unless the clock has jumped. */
-static OUT_OF_LINE uint32_t horizon(const EerufRing *ring);
+static OUT_OF_LINE uint32_t horizon(const EerufRing *ring, bool hops);
 
 /* Ends the period of a table. Returns whether the next one does not follow on it as the schedule says. */
 static bool end_period_of_table(EerufRing *ring, uint32_t now_us) {
-    const bool left_out = now_us - ring->due_us > READ32(ring->schedule->period_us);
-    const bool changed = left_out || ring->next_schedule != NULL;
     const uint32_t settling = settling_time(ring->schedule);
-    uint32_t start = left_out ? now_us : ring->due_us;
+    bool changed = now_us - ring->due_us > READ32(ring->schedule->period_us);
+    if (changed) ring->due_us = now_us;
     /* The last firing must not fall half a turn of the clock behind while no sensor is enabled. */
-    if (start - ring->last_fired_us > settling) ring->last_fired_us = start - settling;
-    if (ring->next_schedule != NULL) {
-        const EerufSchedule *next = ring->next_schedule;
-        const uint32_t min_interval = is_verified(next) ? READ32(next->min_interval_us) : 0;
-        const uint32_t settled = ring->last_fired_us + longer(settling, min_interval);
-        if (has_reached(settled, start)) start = settled;
-        ring->schedule = next;
-        ring->next_schedule = NULL;
+    if (ring->due_us - ring->last_fired_us > settling) ring->last_fired_us = ring->due_us - settling;
+    if (ring->hook != NULL) {
+        ring->hook(ring, 0, settling);
+        changed = true;
     }
-    begin_period(ring, ring->phase + 1u < READ8(ring->schedule->phases) ? (uint8_t)(ring->phase + 1u) : 0, start);
+    begin_period(ring, ring->phase + 1u < READ8(ring->schedule->phases) ? (uint8_t)(ring->phase + 1u) : 0);
     return changed;
 }
 
 static void restart_table(EerufRing *ring, uint32_t now_us) {
-    const uint32_t settling = settling_time(ring->schedule), settled = ring->last_fired_us + settling;
+    const uint32_t settling = settling_time(ring->schedule);
+    const uint32_t waits = ring->last_fired_us + settling - now_us;
     /* A clock that has jumped says nothing about when the last firing was. */
-    const bool soon = !has_reached(now_us, settled) && settled - now_us <= horizon(ring);
+    const bool soon = waits - 1u < horizon(ring, false);
     if (!soon) ring->last_fired_us = now_us - settling;
-    begin_period(ring, 0, soon ? settled : now_us);
+    ring->due_us = soon ? now_us + waits : now_us;
+    begin_period(ring, 0);
 }
 
 /* -- What a ring does -- */
 
-static uint32_t horizon(const EerufRing *ring) {
+static uint32_t horizon(const EerufRing *ring, bool hops) {
 #if EERUF_HOPPING
-    if (HOPS(ring)) {
+    if (hops) {
         const EerufHoppingRing *hopping = (const EerufHoppingRing *)(const void *)ring;
         const uint32_t periods = 2 * hopping->config.period_us;
         return add32(periods, add32(hopping->dies_us, hopping->dies_us));
     }
 #endif
+    (void)hops;
     return longer(3 * READ32(ring->schedule->period_us), ring->due_us - ring->last_fired_us);
 }
 
@@ -618,17 +636,8 @@ static EerufStatus allows(const EerufSchedule *schedule, uint32_t t_delta_us, ui
     return window_us > READ32(schedule->min_refire_us) || window_us >= HALF_TURN ? EERUF_ERR_WINDOW : EERUF_OK;
 }
 
-/* Listens and compares so from now on, if it may. */
+/* Listens and compares so from now on, if that is possible. */
 static EerufStatus listen(EerufRing *ring, uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us) {
-    EerufStatus status = EERUF_OK;
-    if (!HOPS(ring)) {
-        status = allows(ring->schedule, t_delta_us, window_us);
-        if (status == EERUF_OK && ring->next_schedule != NULL)
-            status = allows(ring->next_schedule, t_delta_us, window_us);
-    } else if (window_us >= HALF_TURN) {
-        status = EERUF_ERR_WINDOW;
-    }
-    if (status != EERUF_OK) return status;
     if (blanking_us >= window_us || blanking_us > UINT16_MAX) return EERUF_ERR_BLANKING;
     if (t_delta_us >= window_us || t_delta_us > UINT16_MAX) return EERUF_ERR_COARSE_T_DELTA;
     ring->t_delta_us = (uint16_t)t_delta_us;
@@ -661,50 +670,58 @@ static void set_up(EerufRing *ring, EerufSensor *sensors, uint8_t count_of_senso
     }
 }
 
-EerufStatus eeruf_ring_init_unverified(EerufRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
-                                       const EerufSchedule *schedule, const EerufConfig *config, uint32_t now_us) {
+static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
+                        const EerufSchedule *schedule, const EerufConfig *config, uint32_t now_us, bool verified) {
     EerufStatus status;
     uint32_t t_delta_us, window_us;
-    if (ring == NULL || sensors == NULL || schedule == NULL || config == NULL) return EERUF_ERR_NULL;
+    uint8_t count_of_sensors;
+    if (ring == NULL || sensors == NULL || config == NULL) return EERUF_ERR_NULL;
     if (config->version != EERUF_VERSION) return EERUF_ERR_VERSION;
     if (ring_size != sizeof *ring) return EERUF_ERR_MEMORY;
     status = schedule_is_usable(schedule);
     if (status != EERUF_OK) return status;
-    if (sensors_size / sizeof *sensors < READ8(schedule->sensors)) return EERUF_ERR_MEMORY;
+    count_of_sensors = READ8(schedule->sensors);
+    if (sensors_size < count_of_sensors * sizeof *sensors) return EERUF_ERR_MEMORY;
     t_delta_us = config->t_delta_us;
     window_us = config->window_us;
-    if (!is_verified(schedule) && (t_delta_us == 0 || window_us == 0)) return EERUF_ERR_UNVERIFIED;
+    if (!is_verified(schedule) && (verified || t_delta_us == 0 || window_us == 0)) return EERUF_ERR_UNVERIFIED;
     if (t_delta_us == 0) t_delta_us = READ32(schedule->t_delta_us);
     if (window_us == 0) window_us = READ32(schedule->window_us);
-    set_up(ring, sensors, READ8(schedule->sensors), now_us);
-    ring->schedule = schedule;
+    /* What a table was verified for it allows. */
+    if (config->t_delta_us != 0 || config->window_us != 0) status = allows(schedule, t_delta_us, window_us);
+    if (status != EERUF_OK) return status;
+    set_up(ring, sensors, count_of_sensors, now_us);
     status = listen(ring, t_delta_us, window_us, config->blanking_us);
     if (status != EERUF_OK) return status;
     if (config->consecutive < 2 || config->consecutive > 8) return EERUF_ERR_CONSECUTIVE;
+    ring->schedule = schedule;
     ring->consecutive = config->consecutive;
     ring->last_fired_us = now_us - settling_time(schedule);
-    begin_period(ring, 0, now_us);
+    ring->due_us = now_us;
+    begin_period(ring, 0);
     ring->ready = READY;
     return EERUF_OK;
 }
 
 EerufStatus eeruf_ring_init(EerufRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
                             const EerufSchedule *schedule, const EerufConfig *config, uint32_t now_us) {
-    const EerufStatus status = schedule_is_usable(schedule);
-    if (status != EERUF_OK) return status;
-    if (!is_verified(schedule)) return EERUF_ERR_UNVERIFIED;
-    return eeruf_ring_init_unverified(ring, ring_size, sensors, sensors_size, schedule, config, now_us);
+    return init(ring, ring_size, sensors, sensors_size, schedule, config, now_us, true);
+}
+
+EerufStatus eeruf_ring_init_unverified(EerufRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
+                                       const EerufSchedule *schedule, const EerufConfig *config, uint32_t now_us) {
+    return init(ring, ring_size, sensors, sensors_size, schedule, config, now_us, false);
 }
 
 /* Whether a reading will be emitted without a further firing. */
-static OUT_OF_LINE bool has_pending(const EerufRing *ring) {
+static bool has_pending(const EerufRing *ring) {
     return ring->pending > 0 || ring->oldest != NOBODY;
 }
 
 /* Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes. */
 static OUT_OF_LINE void emit_when_oldest_ends(EerufRing *ring) {
     if (ring->pending == 0 && ring->oldest != NOBODY)
-        ring->emit_at_us = ring->sensors[ring->oldest].fired_us + ring->window_us;
+        ring->emit_at_us = sensor_of(ring, ring->oldest)->fired_us + ring->window_us;
 }
 
 /* Finds the next oldest, now that the one that fired at `before` has stopped listening. All others fired later. */
@@ -713,7 +730,7 @@ static void find_oldest(EerufRing *ring, uint32_t before) {
     uint8_t x;
     ring->oldest = NOBODY;
     for (x = 0; x < ring->count; x++) {
-        const EerufSensor *sensor = &ring->sensors[x];
+        const EerufSensor *sensor = sensor_of(ring, x);
         if ((sensor->flags & LISTENING) && sensor->fired_us - before < soonest) {
             ring->oldest = x;
             soonest = sensor->fired_us - before;
@@ -721,22 +738,23 @@ static void find_oldest(EerufRing *ring, uint32_t before) {
     }
 }
 
-static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us) {
-    EerufSensor *fired = &ring->sensors[sensor];
+static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, bool hops) {
+    EerufSensor *fired = sensor_of(ring, sensor);
     const uint16_t late_us = narrow(now_us - ring->due_us);
     fired->flags = (uint8_t)((fired->flags & UNCOMPARABLE) | LISTENING | ring->phase);
     fired->fired_us = now_us;
-    if (late_us != 0 || ring->lateness.watched != 0) fired_late(ring, sensor, late_us);
+    if (late_us != 0 || ring->lateness.watched != 0) fired_late(ring, sensor, late_us, hops);
     if (ring->oldest == NOBODY) {
         ring->oldest = sensor;
         emit_when_oldest_ends(ring);
     }
-    if (HOPS(ring)) {
-        HOP(ring, HOP_FIRE, sensor, now_us);
+    if (hops) {
+        fire_hop(ring, sensor, now_us);
     } else {
         ring->last_fired_us = now_us;
         /* From now, not from when it was due: all that follows moves by as much as this firing is late. */
-        turn(ring, now_us);
+        ring->due_us = now_us;
+        turn(ring);
     }
 }
 
@@ -757,8 +775,9 @@ static void compare(EerufRing *ring, EerufSensor *sensor, int32_t change_us, Eer
     sensor->echo_us = EERUF_NO_ECHO;
 }
 
-static OUT_OF_LINE void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, EerufEvent *event) {
-    EerufSensor *sensor = &ring->sensors[x];
+static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, EerufEvent *event,
+                                     bool hops) {
+    EerufSensor *sensor = sensor_of(ring, x);
     const uint8_t phase = sensor->flags & PHASE;
     EerufReading *reading = &event->u.reading;
     uint8_t ago;
@@ -777,23 +796,21 @@ static OUT_OF_LINE void emit_reading(EerufRing *ring, uint8_t x, const int32_t *
     emit_when_oldest_ends(ring);
     count(ring, reading->kind);
     ago = (uint8_t)(ring->phase - phase);
-    if (HOPS(ring)) ago &= 7u;
+    if (hops) ago &= 7u;
     else if (ring->phase < phase) ago = (uint8_t)(ago + READ8(ring->schedule->phases));
     event->kind = EERUF_EVENT_READING;
-    event->sensor = x;
     event->phase = phase;
-    event->period = ring->period - ago;
+    event->period -= ago;
 }
 
-static OUT_OF_LINE void end_period(EerufRing *ring, uint32_t now_us, EerufEvent *event) {
+static void end_period(EerufRing *ring, uint32_t now_us, EerufEvent *event, bool hops) {
     EerufPeriod *ended = &event->u.ended;
     bool changed = false;
     note_late(ring, narrow(now_us - ring->due_us));
     event->kind = EERUF_EVENT_PERIOD;
     event->sensor = 0;
-    event->phase = ring->phase;
-    event->period = ring->period++;
-    if (HOPS(ring)) HOP(ring, HOP_END_PERIOD, 0, now_us);
+    ring->period++;
+    if (hops) end_hopping_period(ring, now_us);
     else changed = end_period_of_table(ring, now_us);
     end_late_period(ring, ended);
     if (changed) {
@@ -809,99 +826,114 @@ static uint8_t next_pending(const EerufRing *ring, uint32_t now_us) {
     uint8_t x;
     if (ring->pending == 0)
         return ring->oldest != NOBODY && has_reached(now_us, ring->emit_at_us) ? ring->oldest : (uint8_t)NOBODY;
-    if (ring->oldest != NOBODY && (ring->sensors[ring->oldest].flags & CAN_EMIT)) return ring->oldest;
+    if (ring->oldest != NOBODY && (sensor_of(ring, ring->oldest)->flags & CAN_EMIT)) return ring->oldest;
     for (x = 0; x < ring->count; x++)
-        if (ring->sensors[x].flags & CAN_EMIT) return x;
+        if (sensor_of(ring, x)->flags & CAN_EMIT) return x;
     return NOBODY;
 }
 
 /* Something is due. Firing comes first, since it should be on time; but the reading of a sensor is emitted before the
    sensor fires again. */
-static EerufStatus advance(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event) {
+static EerufStatus advance(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event, bool hops) {
     const bool is_due = has_reached(now_us, ring->due_us);
-    uint8_t emits;
-    if (is_due && ring->next != NOBODY) {
-        emits = ring->next;
-        if (!(ring->sensors[emits].flags & (LISTENING | CAN_EMIT))) {
-            event->kind = EERUF_EVENT_FIRE;
-            event->sensor = emits;
-            event->phase = ring->phase;
-            event->period = ring->period;
-            event->u.due_us = ring->due_us;
-            fire(ring, emits, now_us);
-            return EERUF_EVENT;
-        }
+    uint8_t emits = ring->next;
+    const bool fires = is_due && emits != NOBODY;
+    if (!fires) emits = next_pending(ring, now_us);
+    event->sensor = emits;
+    event->phase = ring->phase;
+    event->period = ring->period;
+    if (fires && !(sensor_of(ring, emits)->flags & (LISTENING | CAN_EMIT))) {
+        event->kind = EERUF_EVENT_FIRE;
+        event->u.due_us = ring->due_us;
+        fire(ring, emits, now_us, hops);
+    } else if (emits != NOBODY) {
+        emit_reading(ring, emits, change_us, event, hops);
+    } else if (is_due) {
+        end_period(ring, now_us, event, hops);
     } else {
-        emits = next_pending(ring, now_us);
-        if (emits == NOBODY) {
-            if (!is_due) return EERUF_OK;
-            end_period(ring, now_us, event);
-            return EERUF_EVENT;
-        }
+        return EERUF_OK;
     }
-    emit_reading(ring, emits, change_us, event);
     return EERUF_EVENT;
 }
 
-EerufStatus eeruf_ring_poll_expecting(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event) {
-    const EerufStatus status = is_ready(ring);
-    if (status != EERUF_OK) return status;
+static void restart(EerufRing *ring, uint32_t now_us, bool hops) {
+    uint8_t x;
+    if (hops) restart_hopping(ring, now_us);
+    else restart_table(ring, now_us);
+    for (x = 0; x < ring->count; x++) drop_firing(sensor_of(ring, x));
+    ring->oldest = NOBODY;
+    ring->pending = 0;
+    /* Sound from before may still be heard in the first period. */
+    begin_anew(ring);
+}
+
+static EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event, bool hops) {
     if (event == NULL) return EERUF_ERR_NULL;
     if (has_reached(now_us, ring->due_us) || (has_pending(ring) && has_reached(now_us, ring->emit_at_us)))
-        return advance(ring, now_us, change_us, event);
+        return advance(ring, now_us, change_us, event, hops);
     /* The clock has jumped, or nobody polled for half a turn of it. */
-    if (ring->due_us - now_us > horizon(ring)) (void)eeruf_ring_restart(ring, now_us);
+    if (ring->due_us - now_us > horizon(ring, hops)) restart(ring, now_us, hops);
     return EERUF_OK;
+}
+
+/* A ring that fires by a table. */
+static EerufStatus has_table(const EerufRing *ring) {
+    const EerufStatus status = is_ready(ring);
+    return status == EERUF_OK && HOPS(ring) ? (EerufStatus)EERUF_ERR_HOPPING : status;
+}
+
+EerufStatus eeruf_ring_poll_expecting(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event) {
+    const EerufStatus status = has_table(ring);
+    return status == EERUF_OK ? poll(ring, now_us, change_us, event, false) : status;
 }
 
 EerufStatus eeruf_ring_poll(EerufRing *ring, uint32_t now_us, EerufEvent *event) {
     return eeruf_ring_poll_expecting(ring, now_us, NULL, event);
 }
 
-uint32_t eeruf_ring_deadline(const EerufRing *ring) {
+OUT_OF_LINE uint32_t eeruf_ring_deadline(const EerufRing *ring) {
     if (is_ready(ring) != EERUF_OK) return 0;
     return has_pending(ring) && !has_reached(ring->emit_at_us, ring->due_us) ? ring->emit_at_us : ring->due_us;
 }
 
-EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t x, uint32_t at_us) {
-    const EerufStatus status = has_sensor(ring, x);
-    EerufSensor *sensor;
-    uint32_t t_echo_us;
-    if (status != EERUF_OK) return status;
-    sensor = &ring->sensors[x];
-    t_echo_us = at_us - sensor->fired_us;
-    if (t_echo_us >= HALF_TURN) return EERUF_OK; /* from before it fired, or from a clock that has jumped */
-    if (!(sensor->flags & LISTENING)) {
-        if (t_echo_us <= ring->window_us || (sensor->flags & OUTSIDE)) return EERUF_OK;
-        sensor->flags |= OUTSIDE | CAN_EMIT;
-        sensor->echo_us = t_echo_us;
-    } else if (t_echo_us > ring->window_us) {
-        count(ring, EERUF_READING_LATE);
-        return EERUF_OK;
-    } else if (t_echo_us < ring->blanking_us) {
-        if (sensor->echo_us == EERUF_NO_ECHO) {
+static void hear(EerufRing *ring, uint8_t x, uint32_t at_us) {
+    EerufSensor *sensor = sensor_of(ring, x);
+    const uint32_t t_echo_us = at_us - sensor->fired_us;
+    const uint8_t flags = sensor->flags;
+    const bool inside = t_echo_us <= ring->window_us;
+    if (t_echo_us >= HALF_TURN) return; /* from before it fired, or from a clock that has jumped */
+    if (flags & LISTENING) {
+        if (!inside) {
+            count(ring, EERUF_READING_LATE);
+            return;
+        }
+        if (t_echo_us < ring->blanking_us) {
+            if (sensor->echo_us != EERUF_NO_ECHO) return;
             sensor->flags |= OUTSIDE;
             sensor->echo_us = t_echo_us;
+            return;
         }
-        return EERUF_OK;
+        sensor->flags = (uint8_t)((flags & ~OUTSIDE) | CAN_EMIT);
     } else {
-        if (sensor->flags & OUTSIDE) {
-            sensor->flags &= (uint8_t)~OUTSIDE;
-            sensor->echo_us = EERUF_NO_ECHO;
-        }
-        if (t_echo_us < sensor->echo_us) sensor->echo_us = t_echo_us;
-        if (sensor->flags & CAN_EMIT) return EERUF_OK;
-        sensor->flags |= CAN_EMIT;
+        if (inside || (flags & OUTSIDE)) return;
+        sensor->flags |= OUTSIDE | CAN_EMIT;
     }
+    if ((flags & OUTSIDE) || t_echo_us < sensor->echo_us) sensor->echo_us = t_echo_us;
+    if (flags & CAN_EMIT) return;
     if (!has_pending(ring) || !has_reached(at_us, ring->emit_at_us)) ring->emit_at_us = at_us;
     ring->pending++;
-    return EERUF_OK;
+}
+
+EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t sensor, uint32_t at_us) {
+    const EerufStatus status = has_sensor(ring, sensor);
+    if (status == EERUF_OK) hear(ring, sensor, at_us);
+    return status;
 }
 
 /* The timetable got longer at the firing of a sensor. */
 static void lengthen(EerufRing *ring, uint8_t x, uint16_t later_us) {
     EerufLateness *late = &ring->lateness;
-    EerufSensor *sensor = &ring->sensors[x];
+    EerufSensor *sensor = sensor_of(ring, x);
     const bool watched = late->watched != 0, known = !watched || late->last == x;
     const uint16_t late_us = watched ? late->last_late : 0, stretch = watched ? late->last_stretch : 0;
     watch(ring);
@@ -914,7 +946,7 @@ static void lengthen(EerufRing *ring, uint8_t x, uint16_t later_us) {
         return;
     }
     note_late(ring, add16(late_us, later_us));
-    stretch_by(ring, x, add16(late_us, later_us), add16(stretch, later_us));
+    stretch_by(ring, x, add16(late_us, later_us), add16(stretch, later_us), HOPS(ring));
 }
 
 EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
@@ -922,16 +954,17 @@ EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
     EerufSensor *sensor;
     uint32_t polled_us, later_us;
     if (status != EERUF_OK) return status;
-    sensor = &ring->sensors[x];
+    sensor = sensor_of(ring, x);
     polled_us = sensor->fired_us;
     later_us = at_us - polled_us;
     if (!(sensor->flags & LISTENING) || later_us == 0 || later_us >= HALF_TURN) return EERUF_OK;
     /* Echoes that are in already are nearer. */
     sensor->fired_us = at_us;
     if (sensor->echo_us != EERUF_NO_ECHO) sensor->echo_us = sensor->echo_us > later_us ? sensor->echo_us - later_us : 0;
-    if (HOPS(ring)) {
-        HOP(ring, HOP_POSTPONE, x, later_us);
-    } else {
+#if EERUF_HOPPING
+    if (HOPS(ring)) ring->hook(ring, x, later_us);
+#endif
+    if (!HOPS(ring)) {
         ring->last_fired_us += later_us;
         ring->due_us += later_us;
     }
@@ -943,79 +976,99 @@ EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
     return EERUF_OK;
 }
 
+static void note_stuck(EerufSensor *sensor) {
+    if (sensor->flags & LISTENING) sensor->flags |= STUCK;
+}
+
 EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor) {
     const EerufStatus status = has_sensor(ring, sensor);
-    if (status == EERUF_OK && (ring->sensors[sensor].flags & LISTENING)) ring->sensors[sensor].flags |= STUCK;
+    if (status == EERUF_OK) note_stuck(sensor_of(ring, sensor));
     return status;
 }
 
 bool eeruf_ring_is_enabled(const EerufRing *ring, uint8_t sensor) {
-    return has_sensor(ring, sensor) == EERUF_OK && !(ring->sensors[sensor].filter.state & DISABLED);
+    return has_sensor(ring, sensor) == EERUF_OK && !(sensor_of(ring, sensor)->filter.state & DISABLED);
 }
 
-EerufStatus eeruf_ring_enable(EerufRing *ring, uint8_t sensor, bool enabled) {
-    const EerufStatus status = has_sensor(ring, sensor);
-    EerufFilter *filter;
-    if (status != EERUF_OK) return status;
-    filter = &ring->sensors[sensor].filter;
+static void enable(EerufRing *ring, uint8_t sensor, bool enabled) {
+    EerufFilter *filter = &sensor_of(ring, sensor)->filter;
     if (!enabled) {
         filter->state |= DISABLED;
-        if (HOPS(ring)) HOP(ring, HOP_LEAVE_OUT, sensor, 0);
-        else skip_silent(ring);
     } else if (filter->state & DISABLED) {
         filter->state = 0;
         filter->known_us = EERUF_NO_ECHO;
     }
+}
+
+EerufStatus eeruf_ring_enable(EerufRing *ring, uint8_t sensor, bool enabled) {
+    const EerufStatus status = has_sensor(ring, sensor);
+    if (status != EERUF_OK) return status;
+    if (HOPS(ring)) return EERUF_ERR_HOPPING;
+    enable(ring, sensor, enabled);
+    skip_silent(ring);
     return EERUF_OK;
 }
 
 EerufStatus eeruf_ring_pause(EerufRing *ring, bool paused) {
-    const EerufStatus status = is_ready(ring);
+    const EerufStatus status = has_table(ring);
     uint8_t x;
     if (status != EERUF_OK) return status;
-    if (HOPS(ring)) return EERUF_ERR_HOPPING;
     ring->paused = paused;
     skip_silent(ring);
-    for (x = 0; x < ring->count && !paused; x++) forget(&ring->sensors[x].filter);
+    for (x = 0; x < ring->count && !paused; x++) forget(&sensor_of(ring, x)->filter);
     return EERUF_OK;
 }
 
 EerufStatus eeruf_ring_restart(EerufRing *ring, uint32_t now_us) {
-    const EerufStatus status = is_ready(ring);
-    uint8_t x;
-    if (status != EERUF_OK) return status;
-    if (HOPS(ring)) HOP(ring, HOP_RESTART, 0, now_us);
-    else restart_table(ring, now_us);
-    for (x = 0; x < ring->count; x++) drop_firing(&ring->sensors[x]);
-    ring->oldest = NOBODY;
-    ring->pending = 0;
-    /* Sound from before may still be heard in the first period. */
-    begin_anew(ring);
-    return EERUF_OK;
+    const EerufStatus status = has_table(ring);
+    if (status == EERUF_OK) restart(ring, now_us, false);
+    return status;
 }
 
-EerufStatus eeruf_ring_change_to_unverified(EerufRing *ring, const EerufSchedule *schedule) {
+/* The hook of a ring that changes its schedule at the end of the period, and has been silent for `settling` by then if
+   it may go on. */
+static void change_now(EerufRing *ring, uint8_t unused, uint32_t settling) {
+    const EerufSchedule *next = ring->next_schedule;
+    const uint32_t min_interval = is_verified(next) ? READ32(next->min_interval_us) : 0;
+    const uint32_t settled = ring->last_fired_us + longer(settling, min_interval);
+    (void)unused;
+    if (has_reached(settled, ring->due_us)) ring->due_us = settled;
+    ring->schedule = next;
+    ring->next_schedule = NULL;
+    ring->hook = NULL;
+}
+
+static EerufStatus change(EerufRing *ring, const EerufSchedule *schedule, bool verified) {
     EerufStatus status = is_ready(ring);
     if (status == EERUF_OK) status = schedule_is_usable(schedule);
     if (status != EERUF_OK) return status;
+    if (verified && !is_verified(schedule)) return EERUF_ERR_UNVERIFIED;
     if (HOPS(ring)) return EERUF_ERR_HOPPING;
     if (READ8(schedule->sensors) != ring->count) return EERUF_ERR_SENSORS;
     if (READ8(schedule->phases) != READ8(ring->schedule->phases)) return EERUF_ERR_PHASES;
     status = allows(schedule, ring->t_delta_us, ring->window_us);
-    if (status == EERUF_OK) ring->next_schedule = schedule;
-    return status;
+    if (status != EERUF_OK) return status;
+    ring->next_schedule = schedule;
+    ring->hook = change_now;
+    return EERUF_OK;
 }
 
 EerufStatus eeruf_ring_change_schedule(EerufRing *ring, const EerufSchedule *schedule) {
-    EerufStatus status = is_ready(ring);
-    if (status == EERUF_OK) status = schedule_is_usable(schedule);
-    if (status != EERUF_OK) return status;
-    return is_verified(schedule) ? eeruf_ring_change_to_unverified(ring, schedule) : (EerufStatus)EERUF_ERR_UNVERIFIED;
+    return change(ring, schedule, true);
+}
+
+EerufStatus eeruf_ring_change_to_unverified(EerufRing *ring, const EerufSchedule *schedule) {
+    return change(ring, schedule, false);
 }
 
 /* With one of the three changed. */
 static EerufStatus relisten(EerufRing *ring, uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us) {
-    return HOPS(ring) ? (EerufStatus)EERUF_ERR_HOPPING : listen(ring, t_delta_us, window_us, blanking_us);
+    EerufStatus status;
+    if (HOPS(ring)) return EERUF_ERR_HOPPING;
+    status = allows(ring->schedule, t_delta_us, window_us);
+    if (status == EERUF_OK && ring->next_schedule != NULL)
+        status = allows(ring->next_schedule, t_delta_us, window_us);
+    return status == EERUF_OK ? listen(ring, t_delta_us, window_us, blanking_us) : status;
 }
 
 EerufStatus eeruf_ring_set_t_delta(EerufRing *ring, uint32_t t_delta_us) {
@@ -1255,10 +1308,10 @@ static void set_health(EerufLine *line, uint8_t health) {
     set_bits(line, 0xf0u, (uint8_t)(health << HEALTH_AT));
 }
 
-static EerufStatus has_line(const EerufHcSr04 *modules, uint8_t sensor) {
+static OUT_OF_LINE EerufStatus has_line(const EerufHcSr04 *modules, uint8_t sensor) {
     if (modules == NULL) return EERUF_ERR_NULL;
     if (modules->ready != READY) return EERUF_ERR_NOT_READY;
-    return has_sensor(modules->ring, sensor);
+    return sensor < modules->ring->count ? (EerufStatus)EERUF_OK : (EerufStatus)EERUF_ERR_SENSOR;
 }
 
 static EerufStatus allows_retrigger(const EerufHcSr04Settings *settings, uint32_t min_refire_us) {
@@ -1272,14 +1325,14 @@ EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufL
     if (status != EERUF_OK) return status;
     if (modules == NULL || lines == NULL || settings == NULL) return EERUF_ERR_NULL;
     if (settings->version != EERUF_VERSION) return EERUF_ERR_VERSION;
-    if (modules_size != sizeof *modules || lines_size / sizeof *lines < ring->count) return EERUF_ERR_MEMORY;
+    if (modules_size != sizeof *modules || lines_size < ring->count * sizeof *lines) return EERUF_ERR_MEMORY;
     min_refire_us = HOPS(ring) ? ring->window_us : READ32(ring->schedule->min_refire_us);
     status = allows_retrigger(settings, min_refire_us);
     if (status != EERUF_OK) return status;
     memset(lines, 0, ring->count * sizeof *lines);
     modules->ring = ring;
     modules->lines = lines;
-    modules->settings = *settings;
+    modules->settings = settings;
     modules->ready = READY;
     return EERUF_OK;
 }
@@ -1307,7 +1360,7 @@ static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint32_t n
     EerufLine *line;
     if (status != EERUF_OK) return status;
     line = &modules->lines[sensor];
-    end_firing(line, modules->settings.missing_after);
+    end_firing(line, modules->settings->missing_after);
     line->triggered_us = now_us;
     if (health == EERUF_HEALTH_WELL) {
         set_bits(line, PULSE, AWAITED);
@@ -1315,7 +1368,7 @@ static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint32_t n
     }
     set_bits(line, PULSE, IDLE);
     set_health(line, health);
-    (void)eeruf_ring_stuck(modules->ring, sensor);
+    note_stuck(&modules->ring->sensors[sensor]);
     return EERUF_DO_NOT_TRIGGER;
 }
 
@@ -1333,7 +1386,7 @@ EerufStatus eeruf_hc_sr04_cannot_write(EerufHcSr04 *modules, uint8_t sensor) {
     return status;
 }
 
-EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t at_us) {
+OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t at_us) {
     const EerufStatus status = has_line(modules, sensor);
     EerufLine *line;
     uint32_t since_us, width_us;
@@ -1341,7 +1394,7 @@ EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor, bool high, 
     if (status != EERUF_OK) return status;
     line = &modules->lines[sensor];
     since_us = at_us - line->triggered_us;
-    if (since_us >= HALF_TURN || since_us < modules->settings.deaf_us) return EERUF_OK;
+    if (since_us >= HALF_TURN || since_us < modules->settings->deaf_us) return EERUF_OK;
     pulse = line->state & PULSE;
     if (pulse == AWAITED) {
         line->silent = 0;
@@ -1353,13 +1406,12 @@ EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor, bool high, 
         }
     } else if (pulse == ROSE && !high) {
         width_us = at_us - line->rose_us;
-        if (width_us < modules->settings.shortest_us) {
+        if (width_us < modules->settings->shortest_us) {
             line->state = (uint8_t)((line->state & ~(PULSE | FLAW)) | AWAITED | CHATTERED);
             return EERUF_OK;
         }
         set_bits(line, PULSE, OVER);
-        if (width_us < modules->settings.longest_us)
-            return eeruf_ring_echo(modules->ring, sensor, line->triggered_us + width_us);
+        if (width_us < modules->settings->longest_us) hear(modules->ring, sensor, line->triggered_us + width_us);
     } else if (pulse == OVER && high) {
         set_bits(line, FLAW, CHATTERED);
     }
@@ -1396,7 +1448,7 @@ EerufStatus eeruf_hc_sr04_fired(EerufHcSr04 *modules, uint8_t sensor, uint32_t a
 EerufStatus eeruf_hc_sr04_change_schedule(EerufHcSr04 *modules, const EerufSchedule *schedule) {
     EerufStatus status = has_line(modules, 0);
     if (status == EERUF_OK) status = schedule_is_usable(schedule);
-    if (status == EERUF_OK) status = allows_retrigger(&modules->settings, READ32(schedule->min_refire_us));
+    if (status == EERUF_OK) status = allows_retrigger(modules->settings, READ32(schedule->min_refire_us));
     return status == EERUF_OK ? eeruf_ring_change_schedule(modules->ring, schedule) : status;
 }
 
@@ -1824,7 +1876,8 @@ static void plan(EerufHoppingRing *hopping) {
     look_ahead(hopping);
 }
 
-static void fire_hop(EerufHoppingRing *hopping, uint8_t sensor, uint32_t now_us) {
+static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us) {
+    EerufHoppingRing *hopping = hopping_of(ring);
     EerufHopper *hopper = &hopping->hoppers[sensor];
     const uint32_t late_us = now_us - hopping->ring.due_us;
     const bool solo = hopping->solo_at_us != EERUF_NO_ECHO;
@@ -1841,7 +1894,8 @@ static void fire_hop(EerufHoppingRing *hopping, uint8_t sensor, uint32_t now_us)
     look_ahead(hopping);
 }
 
-static void postpone_hop(EerufHoppingRing *hopping, uint8_t sensor, uint32_t by_us) {
+static void postpone_hop(EerufRing *ring, uint8_t sensor, uint32_t by_us) {
+    EerufHoppingRing *hopping = hopping_of(ring);
     EerufHopper *hopper = &hopping->hoppers[sensor];
     const bool solo = (hopper->flags & SOLO) != 0;
     const uint32_t late_us = add32(hopper->late_us, by_us);
@@ -1856,7 +1910,8 @@ static void postpone_hop(EerufHoppingRing *hopping, uint8_t sensor, uint32_t by_
     look_ahead(hopping);
 }
 
-static void end_hopping_period(EerufHoppingRing *hopping, uint32_t now_us) {
+static void end_hopping_period(EerufRing *ring, uint32_t now_us) {
+    EerufHoppingRing *hopping = hopping_of(ring);
     const bool left_out = now_us - hopping->ring.due_us > hopping->config.period_us;
     hopping->start_us = left_out ? now_us : hopping->ring.due_us;
     hopping->least_late[2] = hopping->least_late[1];
@@ -1880,19 +1935,12 @@ static void leave_out(EerufHoppingRing *hopping, uint8_t sensor) {
     look_ahead(hopping);
 }
 
-static void hop(EerufRing *ring, uint8_t what, uint8_t sensor, uint32_t at_us) {
+static void restart_hopping(EerufRing *ring, uint32_t now_us) {
     EerufHoppingRing *hopping = hopping_of(ring);
-    switch (what) {
-    case HOP_FIRE: fire_hop(hopping, sensor, at_us); break;
-    case HOP_POSTPONE: postpone_hop(hopping, sensor, at_us); break;
-    case HOP_END_PERIOD: end_hopping_period(hopping, at_us); break;
-    case HOP_LEAVE_OUT: leave_out(hopping, sensor); break;
-    default:
-        unsettle(hopping);
-        hopping->start_us = at_us;
-        break_off(hopping);
-        plan(hopping);
-    }
+    unsettle(hopping);
+    hopping->start_us = now_us;
+    break_off(hopping);
+    plan(hopping);
 }
 
 static bool is_prime(uint8_t number) {
@@ -1944,8 +1992,9 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
 
     memset(hopping, 0, sizeof *hopping);
     set_up(&hopping->ring, sensors, config->sensors, now_us);
-    hopping->ring.hop = hop;
-    status = listen(&hopping->ring, config->tracker.t_delta_us, config->window_us, config->blanking_us);
+    hopping->ring.hook = postpone_hop;
+    status = config->window_us >= HALF_TURN ? (EerufStatus)EERUF_ERR_WINDOW : listen(
+        &hopping->ring, config->tracker.t_delta_us, config->window_us, config->blanking_us);
     if (status != EERUF_OK) return status;
     hopping->hoppers = hoppers;
     hopping->config = *config;
@@ -1960,11 +2009,11 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     hopping->candidate = NOBODY;
     memset(hoppers, 0, config->sensors * sizeof *hoppers);
     for (x = 0; x < config->sensors; x++) {
-        const uint8_t n = config->neighbours == 0 ? 1 : config->neighbours;
+        const uint8_t n = config->neighbours == 0 ? 1 : config->neighbours, k = x % n;
+        const uint32_t room = config->period_us - width_us; /* k room / n, in 32 bits */
         forget_tracks(&hoppers[x]);
         hoppers[x].age = EERUF_NEVER;
-        hoppers[x].lag_us = config->lag_us != NULL ? config->lag_us[x]
-                                                   : multiply_divide(x % n, config->period_us - width_us, 0, n);
+        hoppers[x].lag_us = config->lag_us != NULL ? config->lag_us[x] : k * (room / n) + k * (room % n) / n;
     }
     plan(hopping);
     hopping->ring.ready = READY;
@@ -1979,7 +2028,7 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     bool confirmed, served;
     const EerufTrack *believed;
     if (status == EERUF_OK && !HOPS(&hopping->ring)) status = EERUF_ERR_NOT_READY;
-    if (status == EERUF_OK) status = eeruf_ring_poll(&hopping->ring, now_us, event);
+    if (status == EERUF_OK) status = poll(&hopping->ring, now_us, NULL, event, true);
     if (status != EERUF_EVENT) return status;
     if (hopping->changed) firing_changed(hopping);
     hopping->changed = 0;
@@ -2032,7 +2081,15 @@ EerufStatus eeruf_hopping_enable(EerufHoppingRing *hopping, uint8_t sensor, bool
     const EerufStatus status = has_hopper(hopping, sensor);
     if (status != EERUF_OK) return status;
     if (enabled && is_disabled(hopping, sensor)) forget_tracks(&hopping->hoppers[sensor]);
-    return eeruf_ring_enable(&hopping->ring, sensor, enabled);
+    enable(&hopping->ring, sensor, enabled);
+    if (!enabled) leave_out(hopping, sensor);
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_hopping_restart(EerufHoppingRing *hopping, uint32_t now_us) {
+    const EerufStatus status = has_hopper(hopping, 0);
+    if (status == EERUF_OK) restart(&hopping->ring, now_us, true);
+    return status;
 }
 
 uint32_t eeruf_hopping_confirmed_us(const EerufHoppingRing *hopping, uint8_t sensor) {

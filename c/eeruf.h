@@ -243,9 +243,7 @@ typedef struct EerufRing {
     uint16_t ready;
     const EerufSchedule *schedule, *next_schedule;
     EerufSensor *sensors;
-#if EERUF_HOPPING
-    void (*hop)(struct EerufRing *ring, uint8_t what, uint8_t sensor, uint32_t at_us);
-#endif
+    void (*hook)(struct EerufRing *ring, uint8_t sensor, uint32_t us);
     uint32_t due_us, last_fired_us, emit_at_us, window_us, period;
     uint16_t t_delta_us, blanking_us;
     uint8_t count, phase, following, next, paused, oldest, pending, consecutive;
@@ -377,11 +375,12 @@ typedef struct EerufHcSr04 {
     uint16_t ready;
     EerufRing *ring;
     EerufLine *lines;
-    EerufHcSr04Settings settings;
+    const EerufHcSr04Settings *settings;
 } EerufHcSr04;
 
 /* Puts a ring on its lines. Its window should exceed the longest echo by a millisecond, because a line rises only about
-   half a millisecond after the trigger. Poll the ring; hand in edges of lines here, not echoes. */
+   half a millisecond after the trigger. Poll the ring; hand in edges of lines here, not echoes. The settings
+   must last. */
 EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufLine *lines, size_t lines_size,
                                EerufRing *ring, const EerufHcSr04Settings *settings);
 /* For each EERUF_EVENT_FIRE, with the `now_us` of the poll: whether the echo line is high. EERUF_OK: now raise the
@@ -477,7 +476,8 @@ typedef struct EerufHoppingRing {
 } EerufHoppingRing;
 
 /* Makes a hopping ring that begins at `now_us`. Both arrays have a place for each sensor of the config. Poll it with
-   eeruf_hopping_poll, and hand in echoes with the functions of its `ring`. No schedule to change, and no pause. */
+   eeruf_hopping_poll, and hand in echoes, late firings and stuck lines with the functions of its `ring`; the others
+   return EERUF_ERR_HOPPING: there is no schedule to change, and no pause. */
 EerufStatus eeruf_hopping_init(EerufHoppingRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
                                EerufHopper *hoppers, size_t hoppers_size, const EerufHoppingConfig *config,
                                uint32_t now_us);
@@ -485,6 +485,7 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *ring, size_t ring_size, EerufSe
 EerufStatus eeruf_hopping_poll(EerufHoppingRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event);
 /* As eeruf_ring_enable; the tracks of a sensor that is enabled are forgotten. */
 EerufStatus eeruf_hopping_enable(EerufHoppingRing *ring, uint8_t sensor, bool enabled);
+EerufStatus eeruf_hopping_restart(EerufHoppingRing *ring, uint32_t now_us); /* as eeruf_ring_restart */
 /* The echo time that is confirmed, or EERUF_NO_ECHO if none is or nothing is in range. */
 uint32_t eeruf_hopping_confirmed_us(const EerufHoppingRing *ring, uint8_t sensor);
 /* The sensor that the present period belongs to alone, or 255. */

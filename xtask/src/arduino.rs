@@ -2,6 +2,7 @@
 //! and run on a simulated Uno among simulated HC-SR04 modules.
 
 mod build;
+mod newping;
 mod survey;
 mod tables;
 mod world;
@@ -9,6 +10,8 @@ mod world;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+pub(crate) use newping::newping;
 
 use crate::c::need;
 use crate::steps::{Steps, Trouble, run};
@@ -98,12 +101,12 @@ fn examples(library: &Path, short: bool) -> Result<(), Trouble> {
     println!("| sketch | flash | data + bss | stack | firings/s | accepted/s | wrong of accepted |");
     println!("|---|---:|---:|---:|---:|---:|---:|");
     for example in &EXAMPLES {
-        let sketch = build::sketch(library, &core, example.name)?;
+        let sketch = build::example(library, &core, example.name)?;
         if short && !example.short {
             continue;
         }
         let seconds = if short { 3 } else { 20 };
-        let heard = world::run(&world, &sketch.elf, example, seconds)?;
+        let heard = world::run(&world, &sketch.elf, example, seconds, false)?;
         heard.is_plausible(example)?;
         println!("| {} | {} | {} | {} |", example.name, sketch.flash, sketch.ram, heard.row());
     }

@@ -13,6 +13,7 @@ mod firmware;
 mod links;
 mod listings;
 mod measured;
+mod micropython;
 mod mutants;
 mod package;
 mod page;
@@ -65,6 +66,14 @@ enum Verb {
     C,
     /// Pack the Arduino library, build its examples, and run them on a simulated Uno among simulated modules
     Arduino(arduino::Plan),
+    /// Run the tests of c/micropython in MicroPython's WebAssembly build and in CPython
+    Micropython,
+    /// Run NewPing beside the Arduino library on a simulated Uno, and print the table that docs/arduino.md shows
+    Newping {
+        /// A folder with NewPing.h and NewPing.cpp, which are not part of this project
+        #[arg(value_name = "DIR")]
+        folder: std::path::PathBuf,
+    },
     /// Build the wheel and test it: types, examples, and against what Rust says
     Python,
     /// Run a ring on an emulated board, its serial line and the ROS 2 node, and listen with Cyclone DDS and pymavlink
@@ -126,6 +135,12 @@ fn main() -> ExitCode {
         Verb::Arduino(plan) => {
             let mut steps = Steps::default();
             arduino::arduino(&plan, &mut steps);
+            steps.finish(true)
+        }
+        Verb::Micropython => one_step("MicroPython", micropython::micropython),
+        Verb::Newping { folder } => {
+            let mut steps = Steps::default();
+            arduino::newping(&folder, &mut steps);
             steps.finish(true)
         }
         Verb::Python => one_step("Python package", python::python),

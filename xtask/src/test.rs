@@ -33,6 +33,13 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
             run(cargo.args(["build", "--package", "eeruf-core", "--release", "--locked", "--target", target]))
         });
     }
+    steps.step("core and driver for an AVR, without the search", || {
+        let mut cargo = cargo_for_target("avr-none")?;
+        // The target has no processor by default, and so no libraries made for it that others could share.
+        cargo.env("RUSTFLAGS", "-C target-cpu=atmega328p");
+        let packages = ["build", "--package", "eeruf-core", "--package", "eeruf-hc-sr04", "--no-default-features"];
+        run(cargo.args(packages).args(["--release", "--locked", "--target", "avr-none"]))
+    });
     steps.step("lint of the firmware", crate::firmware::lint);
     // What the default compiler can build, Clippy has just built with it.
     let default = version_of_default();
@@ -66,6 +73,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     });
     steps.step("C library", crate::c::c);
     crate::arduino::arduino(&crate::arduino::Plan::SHORT, &mut steps);
+    steps.step("MicroPython", crate::micropython::micropython);
     steps.step("Python package", crate::python::python);
     steps.step("page in a browser", || crate::page::page(crate::page::Tests::Short));
     steps.step("firmware on emulated boards", || crate::firmware::firmware(false));

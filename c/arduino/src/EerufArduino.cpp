@@ -3,14 +3,47 @@
 
 static const uint32_t SOON_US = 300;
 
+#if defined(__AVR__) && defined(portModeRegister)
+// By the port's registers: a quarter of the time of digitalRead, and less flash than the core's functions together.
+static bool isHigh(uint8_t pin) {
+    return *portInputRegister(digitalPinToPort(pin)) & digitalPinToBitMask(pin);
+}
+
+static __attribute__((noinline)) void setBit(const uint16_t *registers, uint8_t pin, bool on) {
+    volatile uint8_t *place = (volatile uint8_t *)pgm_read_word(registers + digitalPinToPort(pin));
+    const uint8_t mask = digitalPinToBitMask(pin), before = SREG;
+    cli(); // an interrupt may change other pins of the port
+    *place = on ? *place | mask : *place & ~mask;
+    SREG = before;
+}
+
+static inline void drive(uint8_t pin, bool high) {
+    setBit(port_to_output_PGM, pin, high);
+}
+
+static inline void setOutput(uint8_t pin, bool output) {
+    setBit(port_to_mode_PGM, pin, output);
+}
+#else
+static bool isHigh(uint8_t pin) {
+    return digitalRead(pin);
+}
+
+static void drive(uint8_t pin, bool high) {
+    digitalWrite(pin, high);
+}
+
+static void setOutput(uint8_t pin, bool output) {
+    pinMode(pin, output ? OUTPUT : INPUT);
+}
+#endif
+
 bool EerufModules::begin() {
     const EerufConfig config = EERUF_CONFIG;
-    const EerufHcSr04Settings settings = EERUF_HC_SR04;
+    static const EerufHcSr04Settings settings = EERUF_HC_SR04;
     for (uint8_t sensor = 0; sensor < count_; sensor++) {
-        pinMode(echoes_[sensor], INPUT);
-        if (triggers_ == echoes_) continue;
-        digitalWrite(triggers_[sensor], LOW);
-        pinMode(triggers_[sensor], OUTPUT);
+        setOutput(echoes_[sensor], false);
+        release(triggers_[sensor]);
     }
     const size_t sensors = count_ * sizeof *sensors_, lines = count_ * sizeof *lines_;
     status_ = eeruf_ring_init(&ring_, sizeof ring_, sensors_, sensors, schedule_, &config, ::micros());
@@ -25,7 +58,7 @@ void EerufModules::sample(EerufModules &self) {
     bool was_high;
     for (uint8_t sensor = 0; sensor < self.count_ && (int32_t)(::micros() - due) < 0; sensor++) {
         if (!eeruf_hc_sr04_awaits(&self.modules_, sensor, &was_high)) continue;
-        const bool high = digitalRead(self.echoes_[sensor]);
+        const bool high = isHigh(self.echoes_[sensor]);
         if (high != was_high) (void)eeruf_hc_sr04_edge(&self.modules_, sensor, high, ::micros());
     }
 }
@@ -38,15 +71,20 @@ void EerufModules::climb(EerufModules &self, const EerufEvent &event) {
     (void)eeruf_adaptation_period(self.adaptation_, &self.ring_, &event);
 }
 
+// Ends a trigger; one that is the echo line too is an input from then on.
+void EerufModules::release(uint8_t pin) {
+    drive(pin, false);
+    setOutput(pin, triggers_ != echoes_);
+}
+
 // A pulse of 10 us on the trigger, unless the line is high.
 void EerufModules::fire(uint8_t sensor, uint32_t now) {
     const uint8_t pin = triggers_[sensor];
-    if (eeruf_hc_sr04_fire(&modules_, sensor, now, digitalRead(echoes_[sensor])) != EERUF_OK) return;
-    digitalWrite(pin, HIGH);
-    pinMode(pin, OUTPUT);
+    if (eeruf_hc_sr04_fire(&modules_, sensor, now, isHigh(echoes_[sensor])) != EERUF_OK) return;
+    drive(pin, true);
+    setOutput(pin, true);
     delayMicroseconds(10);
-    digitalWrite(pin, LOW);
-    if (triggers_ == echoes_) pinMode(pin, INPUT);
+    release(pin);
 }
 
 bool EerufModules::read() {
@@ -75,6 +113,6 @@ bool EerufModules::read() {
 
 uint16_t EerufModules::millimetres(uint32_t soundMmPerS) const {
     if (reading_.t_echo_us == EERUF_NO_ECHO) return 0;
-    const uint32_t mm = eeruf_distance_mm(reading_.t_echo_us, soundMmPerS);
-    return mm > 65535 ? 65535 : mm;
+    // c t / 2 in 32 bits, which holds for these modules: no echo is longer than 36 ms. eeruf_distance_mm takes any.
+    return (reading_.t_echo_us * (soundMmPerS / 8) + 125000) / 250000;
 }

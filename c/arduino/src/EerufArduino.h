@@ -71,6 +71,7 @@ private:
     static void sample(EerufModules &self);
     static void drain(EerufModules &self);
     static void climb(EerufModules &self, const EerufEvent &event);
+    void release(uint8_t pin);
     void fire(uint8_t sensor, uint32_t now);
 
     const EerufSchedule *schedule_;

@@ -1,11 +1,13 @@
 /* A small world around a simulated Arduino Uno: HC-SR04 modules on its pins, in a room where they hear each other.
  *
- *   world SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..
+ *   world [--pulses] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..
  *
  * ECHO_TIMES has a line for each way that sound takes: emitter, receiver, microseconds; `crates/eeruf-sim`'s example
  * echo_times writes it. Pins are the Uno's numbers; the same pin twice is a module with one pin. What the sketch says
  * on its serial line goes to standard output; then come lines that begin with `world`: firings of each module, triggers
- * that came while its line was high, and how many bytes of stack were ever used.
+ * that came while its line was high, how many bytes of stack were ever used, and which share of the time, in millionths,
+ * passed in interrupts. With --pulses there is also a line for each pulse that sound has ended: the module from 1, and
+ * whose sound it was: `own`, `earlier` for its own from an earlier firing, `foreign`.
  *
  * A module whose trigger falls sends its sound 450 us later and raises its line, until the first sound reaches it, its
  * own or another's, or until 38 ms are over. It is deaf for the first 150 us. Time is the Uno's own, to the cycle. */
@@ -36,6 +38,7 @@ static struct Module {
     avr_cycle_count_t rose, fired;
     unsigned firings, ignored;
 } modules[MODULES];
+static int says_pulses;
 static int module_count;
 
 /* The Uno's pins: 0 to 7 are D0 to D7, 8 to 13 are B0 to B5, 14 to 19 (A0 to A5) are C0 to C5. */
@@ -63,8 +66,12 @@ static void set_line(struct Module *module, int high) {
                   (uint32_t)high);
 }
 
-static void on_arrival(struct Module *module) {
-    if (module->line_high && avr->cycle - module->rose >= avr_usec_to_cycles(avr, 150)) set_line(module, 0);
+static void on_arrival(struct Module *module, const struct Module *emitter, unsigned firing) {
+    if (!module->line_high || avr->cycle - module->rose < avr_usec_to_cycles(avr, 150)) return;
+    set_line(module, 0);
+    if (says_pulses)
+        printf("world pulse %d %s\n", (int)(module - modules) + 1,
+               module != emitter ? "foreign" : firing == module->firings ? "own" : "earlier");
 }
 
 static avr_cycle_count_t on_time_out(avr_t *a, avr_cycle_count_t when, void *param) {
@@ -77,7 +84,8 @@ static avr_cycle_count_t on_time_out(avr_t *a, avr_cycle_count_t when, void *par
 /* simavr keeps one timer for each function and parameter, so sound on its way waits here. */
 static struct {
     avr_cycle_count_t at;
-    struct Module *module;
+    struct Module *module, *emitter;
+    unsigned firing; /* which of the emitter's */
 } sounds[WAYS];
 static int sound_count;
 static avr_cycle_count_t next_sound = ~(avr_cycle_count_t)0;
@@ -91,7 +99,7 @@ static void hear_what_is_due(void) {
             i++;
             continue;
         }
-        on_arrival(sounds[i].module);
+        on_arrival(sounds[i].module, sounds[i].emitter, sounds[i].firing);
         sounds[i] = sounds[--sound_count];
     }
 }
@@ -108,6 +116,8 @@ static avr_cycle_count_t on_burst(avr_t *a, avr_cycle_count_t when, void *param)
         if (ways[way].emitter != (int)(module - modules) || sound_count == WAYS) continue;
         sounds[sound_count].at = a->cycle + avr_usec_to_cycles(a, ways[way].after_us);
         if (sounds[sound_count].at < next_sound) next_sound = sounds[sound_count].at;
+        sounds[sound_count].emitter = module;
+        sounds[sound_count].firing = module->firings;
         sounds[sound_count++].module = &modules[ways[way].receiver];
     }
     avr_cycle_timer_register_usec(a, 38000, on_time_out, module);
@@ -125,7 +135,8 @@ static void look_at_triggers(void) {
             module->triggered = 1;
         } else if (!high && module->triggered == 1) {
             module->triggered = 0;
-            if (avr->cycle - module->fired < avr_usec_to_cycles(avr, 10)) continue; /* too short for a module */
+            /* Too short for a module. Data sheets ask for 10 us, of which delayMicroseconds(10) may take a little off. */
+            if (avr->cycle - module->fired < avr_usec_to_cycles(avr, 9)) continue;
             if (module->line_high) {
                 module->ignored++;
                 continue;
@@ -148,9 +159,24 @@ static void on_direction(struct avr_irq_t *irq, uint32_t value, void *param) {
     look_at_triggers();
 }
 
+/* By whole lines, so that others do not come in between. */
 static void on_serial(struct avr_irq_t *irq, uint32_t value, void *param) {
+    static char line[200];
+    static size_t length;
     (void)irq, (void)param;
-    putchar((int)value);
+    line[length++] = (char)value;
+    if (value != '\n' && length < sizeof line) return;
+    fwrite(line, 1, length, stdout);
+    length = 0;
+}
+
+/* Cycles in interrupts; none interrupts another on this controller unless its handler asks for it. */
+static avr_cycle_count_t interrupted, interrupted_since;
+
+static void on_interrupt(struct avr_irq_t *irq, uint32_t value, void *param) {
+    (void)irq, (void)param;
+    if (value != 0) interrupted_since = avr->cycle;
+    else interrupted += avr->cycle - interrupted_since;
 }
 
 static int read_ways(const char *name) {
@@ -177,8 +203,13 @@ int main(int argc, char **argv) {
     const char *port;
     int i;
     memset(&firmware, 0, sizeof firmware);
+    if (argc > 1 && strcmp(argv[1], "--pulses") == 0) {
+        says_pulses = 1;
+        argc--;
+        argv++;
+    }
     if (argc < 5 || (module_count = atoi(argv[4])) < 1 || module_count > MODULES || argc != 5 + 2 * module_count) {
-        fprintf(stderr, "usage: world SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..\n");
+        fprintf(stderr, "usage: world [--pulses] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..\n");
         return 2;
     }
     for (i = 0; i < module_count; i++) {
@@ -205,6 +236,7 @@ int main(int argc, char **argv) {
     }
     avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
     avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_serial, NULL);
+    avr_irq_register_notify(avr_get_interrupt_irq(avr, AVR_INT_ANY) + AVR_INT_IRQ_RUNNING, on_interrupt, NULL);
     for (i = 0; i < module_count; i++) set_line(&modules[i], 0);
     end = (avr_cycle_count_t)(atof(argv[2]) * 16e6);
     while (avr->cycle < end) {
@@ -220,5 +252,6 @@ int main(int argc, char **argv) {
     printf("\nworld ignored");
     for (i = 0; i < module_count; i++) printf(" %u", modules[i].ignored);
     printf("\nworld stack %u\n", deepest_stack());
+    printf("world interrupts %u\n", (unsigned)(interrupted * 1000000u / avr->cycle));
     return 0;
 }

@@ -14,6 +14,7 @@ typedef struct Handle {
     EerufHoppingRing *hopping;
     EerufHopper *hoppers;
     EerufHcSr04 modules;
+    EerufHcSr04Settings settings;
     EerufLine *lines;
     EerufAdaptation adaptation;
     EerufEvent last;
@@ -125,7 +126,9 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
         if (handle->hopping != NULL) return eeruf_hopping_enable(handle->hopping, sensor, value != 0);
         return eeruf_ring_enable(ring, sensor, value != 0);
     case 4: return eeruf_ring_pause(ring, value != 0);
-    case 5: return eeruf_ring_restart(ring, value);
+    case 5:
+        if (handle->hopping != NULL) return eeruf_hopping_restart(handle->hopping, value);
+        return eeruf_ring_restart(ring, value);
     case 6: return eeruf_ring_change_to_unverified(ring, handle->schedules[value]);
     case 7: return eeruf_ring_set_t_delta(ring, value);
     case 8: return eeruf_ring_set_window(ring, value);
@@ -144,13 +147,15 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
 }
 
 int shim_modules(Handle *handle, uint32_t min_retrigger_us, uint16_t shortest_us) {
-    EerufHcSr04Settings settings = EERUF_HC_SR04;
+    const EerufHcSr04Settings usual = EERUF_HC_SR04;
     const size_t size = handle->ring->count * sizeof(EerufLine);
-    settings.min_retrigger_us = min_retrigger_us;
-    settings.shortest_us = shortest_us;
+    handle->settings = usual;
+    handle->settings.min_retrigger_us = min_retrigger_us;
+    handle->settings.shortest_us = shortest_us;
     free(handle->lines);
     handle->lines = (EerufLine *)malloc(size);
-    return eeruf_hc_sr04_init(&handle->modules, sizeof handle->modules, handle->lines, size, handle->ring, &settings);
+    return eeruf_hc_sr04_init(&handle->modules, sizeof handle->modules, handle->lines, size, handle->ring,
+                              &handle->settings);
 }
 
 int shim_adaptation(Handle *handle, uint8_t window, uint8_t patience, uint16_t noisy, uint16_t calm) {

@@ -21,8 +21,9 @@
 //! deadline it gets back, so the same code runs in an interrupt, in a simulator and in a test. Sensors are counted from
 //! 0 in code and printed from 1, as in the paper.
 //!
-//! Features, all off by default, for crates that firmware already uses: `defmt` (formats), `serde` (schedules,
-//! readings and times), `fugit` and `embassy-time` (conversions of times).
+//! Features: `search`, on by default, is the search for schedules, which firmware with a table can leave out (for an
+//! AVR it must). The others are off by default, for crates that firmware already uses: `defmt` (formats), `serde`
+//! (schedules, readings and times), `fugit` and `embassy-time` (conversions of times).
 //!
 //! Equations and sections are those of J. Borenstein and Y. Koren, *Error Eliminating Rapid Ultrasonic Firing for
 //! Mobile Robot Obstacle Avoidance*, IEEE Transactions on Robotics and Automation 11(1), February 1995, pp. 132-138.
@@ -43,6 +44,7 @@ mod reading;
 mod ring;
 mod schedule;
 mod scheduler;
+#[cfg(feature = "search")]
 pub mod search;
 mod sensor_error;
 mod sensor_set;

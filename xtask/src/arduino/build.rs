@@ -86,20 +86,32 @@ pub(super) fn core() -> Result<PathBuf, Trouble> {
 }
 
 /// An example of the packed library.
-pub(super) fn sketch(library: &Path, core: &Path, example: &str) -> Result<Sketch, Trouble> {
+pub(super) fn example(library: &Path, core: &Path, name: &str) -> Result<Sketch, Trouble> {
+    let ino = library.join("examples").join(name).join(format!("{name}.ino"));
+    sketch(name, &ino, &library.join("src"), core, true, &[])
+}
+
+/// A sketch with the sources of a library, which is warned about if it is `ours`.
+pub(super) fn sketch(
+    example: &str,
+    ino: &Path,
+    library: &Path,
+    core: &Path,
+    ours: bool,
+    defines: &[&str],
+) -> Result<Sketch, Trouble> {
     let folder = Path::new(TARGET).join(example);
     fs::create_dir_all(&folder).map_err(failed("target"))?;
-    let include = library.join("src");
-    let include = include.to_string_lossy();
+    let include = library.to_string_lossy();
+    let warnings: &[&str] = if ours { &["-Wall", "-Wextra", "-Werror"] } else { &["-w"] };
     // As the IDE: a sketch is C++ that includes Arduino.h.
-    let ino = library.join("examples").join(example).join(format!("{example}.ino"));
-    let text = fs::read_to_string(&ino).map_err(failed(&ino.display().to_string()))?;
+    let text = fs::read_to_string(ino).map_err(failed(&ino.display().to_string()))?;
     let cpp = folder.join(format!("{example}.cpp"));
     fs::write(&cpp, format!("#include <Arduino.h>\n{text}")).map_err(failed("target"))?;
     let mut objects = vec![];
-    for source in sources(&library.join("src"))?.into_iter().chain([cpp]) {
+    for source in sources(library)?.into_iter().chain([cpp]) {
         let object = folder.join(name(&source) + ".o");
-        compile(&source, &object, &["-Wall", "-Wextra", "-Werror", "-I", &include])?;
+        compile(&source, &object, &[warnings, defines, &["-I", &include]].concat())?;
         objects.push(object);
     }
     let elf = folder.join(format!("{example}.elf"));

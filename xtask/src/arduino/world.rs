@@ -24,9 +24,15 @@ pub(super) struct Heard {
     firings: Vec<u32>,
     ignored: u32,
     stack: u32,
+    /// The share of the time spent in interrupts, in millionths.
+    interrupts: u32,
     accepted: u32,
     wrong: u32,
+    /// Of the wrong ones: after a module's own sound that came another way, its own of an earlier firing, another's.
+    by_cause: [u32; 3],
 }
+
+const CAUSES: [&str; 3] = ["own", "earlier", "foreign"];
 
 /// Builds `c/arduino/world/world.c`.
 pub(super) fn build() -> Result<PathBuf, Trouble> {
@@ -71,11 +77,19 @@ fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>), Trouble
     Ok((file, own_mm))
 }
 
-/// Runs a sketch for some seconds of its own time.
-pub(super) fn run(world: &Path, elf: &Path, example: &Example, seconds: u32) -> Result<Heard, Trouble> {
+/// Runs a sketch for some seconds of its own time. With `causes` the world says what ended each pulse, which it cannot
+/// among a sketch's frames.
+pub(super) fn run(
+    world: &Path,
+    elf: &Path,
+    example: &Example,
+    seconds: u32,
+    causes: bool,
+) -> Result<Heard, Trouble> {
     let (times, own_mm) = echo_times(example.modules)?;
     let pins = example.triggers.iter().chain(example.echoes).map(ToString::to_string);
     let ran = Command::new(world)
+        .args(causes.then_some("--pulses"))
         .arg(elf)
         .arg(seconds.to_string())
         .arg(times)
@@ -86,7 +100,18 @@ pub(super) fn run(world: &Path, elf: &Path, example: &Example, seconds: u32) -> 
         .filter(|ran| ran.status.success())
         .ok_or_else(|| Trouble::Failed(format!("{} did not run", example.name)))?;
     let said = String::from_utf8_lossy(&ran.stdout);
-    let mut heard = Heard { seconds, firings: vec![], ignored: 0, stack: 0, accepted: 0, wrong: 0 };
+    let mut heard = Heard {
+        seconds,
+        firings: vec![],
+        ignored: 0,
+        stack: 0,
+        interrupts: 0,
+        accepted: 0,
+        wrong: 0,
+        by_cause: [0; 3],
+    };
+    // What ended the last pulse of each module. A sketch says its reading before the module fires again.
+    let mut causes: BTreeMap<usize, usize> = BTreeMap::new();
     for line in said.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
         let numbers = || words.iter().skip(2).filter_map(|word| word.parse().ok());
@@ -94,10 +119,18 @@ pub(super) fn run(world: &Path, elf: &Path, example: &Example, seconds: u32) -> 
             ["world", "firings", ..] => heard.firings = numbers().collect(),
             ["world", "ignored", ..] => heard.ignored = numbers().sum(),
             ["world", "stack", ..] => heard.stack = numbers().sum(),
+            ["world", "interrupts", ..] => heard.interrupts = numbers().sum(),
+            ["world", "pulse", module, cause] => {
+                let cause = CAUSES.iter().position(|known| *known == cause);
+                if let (Ok(module), Some(cause)) = (module.parse(), cause) {
+                    causes.insert(module, cause);
+                }
+            }
             [module, distance] | [module, distance, "cm"] => {
                 let (Ok(module), Ok(distance)) = (module.parse::<usize>(), distance.parse::<u32>()) else { continue };
                 let mm = if words.len() == 3 { 10 * distance } else { distance };
-                heard.accept(&own_mm, module.wrapping_sub(1), mm);
+                let cause = causes.get(&module).copied();
+                heard.accept(&own_mm, module.wrapping_sub(1), mm, cause);
             }
             _ => {}
         }
@@ -107,9 +140,15 @@ pub(super) fn run(world: &Path, elf: &Path, example: &Example, seconds: u32) -> 
 }
 
 impl Heard {
-    fn accept(&mut self, own_mm: &BTreeMap<usize, u32>, module: usize, mm: u32) {
+    /// A reading of a module, from 0, and what ended its pulse, if that is known.
+    fn accept(&mut self, own_mm: &BTreeMap<usize, u32>, module: usize, mm: u32, cause: Option<usize>) {
         self.accepted += 1;
-        self.wrong += u32::from(own_mm.get(&module).is_none_or(|own| own.abs_diff(mm) > OFF_MM));
+        if own_mm.get(&module).is_none_or(|own| own.abs_diff(mm) > OFF_MM) {
+            self.wrong += 1;
+            if let Some(count) = cause.and_then(|cause| self.by_cause.get_mut(cause)) {
+                *count += 1;
+            }
+        }
     }
 
     /// What a sketch says in frames, none of which may be damaged or missing; other sketches say none.
@@ -121,10 +160,21 @@ impl Heard {
                 return Err(format!("frame {awaited} is missing"));
             }
             if let Message::Firing(Firing { sensor, kind: ReadingKind::Accepted, t_echo: Some(t_echo), .. }) = message {
-                self.accept(own_mm, sensor.into(), SpeedOfSound::at_celsius_tenths(200).distance_mm(t_echo));
+                self.accept(own_mm, sensor.into(), SpeedOfSound::at_celsius_tenths(200).distance_mm(t_echo), None);
             }
         }
         Ok(())
+    }
+
+    /// The columns of the table beside NewPing.
+    pub(super) fn row_beside_newping(&self) -> String {
+        let per_second = |count: u32| format!("{:.1}", f64::from(count) / f64::from(self.seconds));
+        let share = |count: u32| format!("{:.1} %", 100.0 * f64::from(count) / f64::from(self.accepted.max(1)));
+        let mut columns = vec![self.stack.to_string(), format!("{:.1} %", f64::from(self.interrupts) / 1e4)];
+        columns.extend([self.firings.iter().sum(), self.accepted, self.accepted - self.wrong].map(per_second));
+        columns.push(share(self.wrong));
+        columns.extend(self.by_cause.map(share));
+        columns.join(" | ")
     }
 
     /// The columns of the table.

@@ -9,11 +9,11 @@ EerufSensor sensors[8];
 EerufHopper hoppers[8];
 EerufHcSr04 modules;
 EerufLine lines[8];
+const EerufHcSr04Settings settings = EERUF_HC_SR04;
 
 void setup() {
   // Eight modules, a period of 90 ms, and 60 ms in which each rests.
   const EerufHoppingConfig config = EERUF_HOPPING_BALANCED(8, 90000, 60000);
-  const EerufHcSr04Settings settings = EERUF_HC_SR04;
   Serial.begin(115200);
   int8_t status =
     eeruf_hopping_init(&ring, sizeof ring, sensors, sizeof sensors, hoppers, sizeof hoppers, &config, micros());
@@ -54,6 +54,6 @@ void loop() {
   if (event.kind == EERUF_EVENT_READING && event.u.reading.kind == EERUF_READING_ACCEPTED) {
     Serial.print(event.sensor + 1);
     Serial.print(' ');
-    Serial.println(eeruf_distance_mm(event.u.reading.t_echo_us, EERUF_SOUND_20C));
+    Serial.println(event.u.reading.t_echo_us * 1716 / 10000);  // half of 343.2 m/s; eeruf_distance_mm takes any
   }
 }

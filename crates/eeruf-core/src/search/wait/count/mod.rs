@@ -21,8 +21,8 @@ use bits::MASK_MAX;
 use walk::Counting;
 
 /// A sensible amount of memory for [`Search::count`] where there is plenty, in words (4 MiB): a choice.
-/// With less the count is the same, and slower.
-pub const COUNT_WORDS: usize = 1 << 20;
+/// With less the count is the same, and slower: 1 KiB where `usize` has 16 bits.
+pub const COUNT_WORDS: usize = 1 << if usize::BITS > 16 { 20 } else { 8 };
 
 /// The outcome of counting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,0 +1,572 @@
+"""eeruf in MicroPython: rings of ultrasonic sensors that reject each other's sound (Borenstein and Koren, 1995).
+
+    from eeruf import HcSr04Ring, Schedule
+
+    #                  T_p     phase a        phase b         sensors 0, 1 and 2 fire then, in microseconds
+    ring = HcSr04Ring(Schedule(62000, [[2000, 22000, 42000], [0, 22000, 43000]]).verify(387), pins=[2, 3, 4])
+    while True:
+        reading = ring.read()
+        if reading and reading[KIND] == ACCEPTED:
+            print(reading[SENSOR], reading[T_ECHO] * 1716 // 10000, "mm")
+
+Times are microseconds. `Ring` does, event by event, what the Rust crate eeruf-core does with a ring by a table; it needs no
+hardware and runs under CPython too. Sensors are counted from 0. `eeruf design RING.toml` finds the firing times.
+
+Licence: MIT OR Apache-2.0.
+"""
+
+NOBODY = 255
+NEVER = 0xFFFF  # the age of a sensor none of whose readings was ever accepted
+READING_NAMES = (
+    "first", "accepted", "rejected", "repeated", "no_echo", "clear", "too_early", "late", "stuck", "tentative",
+)  # fmt: skip
+FIRST, ACCEPTED, REJECTED, REPEATED, NO_ECHO, CLEAR, TOO_EARLY, LATE, STUCK, TENTATIVE = range(10)
+# Of events: what they are, then of a firing and a reading the sensor and the phase in which it fires.
+FIRE, READING, PERIOD = range(3)
+# Places in a reading, (READING, sensor, phase, period, kind, t_echo_us, previous_us, age). Without echo a time is None.
+SENSOR, PHASE, KIND, T_ECHO, PREVIOUS, AGE = 1, 2, 4, 5, 6, 7
+
+
+class Schedule:
+    """When each sensor fires: for each phase a list of times after the start of the period, one for each sensor."""
+
+    def __init__(self, period_us, t_fire_us):
+        sensors = len(t_fire_us[0]) if t_fire_us else 0
+        if not 1 <= len(t_fire_us) <= 8:
+            raise ValueError("%d phases: 1 to 8 expected" % len(t_fire_us))
+        if not 1 <= sensors <= 64:
+            raise ValueError("%d sensors: 1 to 64 expected" % sensors)
+        if not 1 <= period_us <= 1 << 28:
+            raise ValueError("period_us = %d: 1 to 268435456 expected" % period_us)
+        self.period_us, self.sensors, self.phases = period_us, sensors, len(t_fire_us)
+        self.t_fire_us = t_fire_us
+        self.order, self.gap_us = [], []
+        for phase, times in enumerate(t_fire_us):
+            if len(times) != sensors:
+                raise ValueError("phase %d has %d firing times, phase 0 has %d" % (phase, len(times), sensors))
+            if min(times) < 0 or max(times) >= period_us:
+                raise ValueError("phase %d: a sensor fires outside the period of %d us" % (phase, period_us))
+            order = sorted(range(sensors), key=lambda x: (times[x], x))
+            at = [times[x] for x in order] + [period_us]
+            self.order.append(order)
+            self.gap_us.append([at[i] - (at[i - 1] if i else 0) for i in range(sensors + 1)])
+        self.min_refire_us = min(
+            t_fire_us[(m + 1) % self.phases][x] + period_us - t_fire_us[m][x]
+            for m in range(self.phases)
+            for x in range(sensors)
+        )
+        # What it was verified for.
+        self.verified = False
+        self.t_delta_us = self.min_interval_us = self.window_us = self.separation_us = 0
+
+    def verify(self, t_delta_us, min_interval_us=0, window_us=0, neighbours=0, layout="ring", stale_echo=False):
+        """Returns the schedule if (13a) and (13b) hold for `t_delta_us` and two of so many neighbours never fire sooner
+        one after the other than `min_interval_us`; else a ValueError says what does not. No window: the longest."""
+        if self.phases != 2:
+            raise ValueError("%d phases: two can be verified" % self.phases)
+        a, b = self.t_fire_us
+        n, needed = self.sensors, 2 * t_delta_us + 1
+        d = [a[x] - b[x] for x in range(n)]
+        separation = 0xFFFFFFFF
+        for x in range(n):
+            for y in range(x + 1 if stale_echo else x):
+                moves = abs(d[x] + d[y]) if x == y else min(abs(d[x] - d[y]), abs(d[x] + d[y]))
+                separation = min(separation, moves)
+                if moves < needed:
+                    raise ValueError(
+                        "crosstalk of sensors %d and %d moves by %d us: %d us needed" % (y, x, moves, needed)
+                    )
+        for x in range(n):
+            for y in range(n):
+                steps = abs(x - y)
+                if layout == "blocks":
+                    close = neighbours > 0 and x // neighbours == y // neighbours
+                else:
+                    close = steps < neighbours or (layout == "ring" and n - steps < neighbours)
+                if x == y or not close:
+                    continue
+                for here, after in ((a, b), (b, a)):
+                    if (
+                        abs(here[x] - here[y]) < min_interval_us
+                        or after[y] + self.period_us - here[x] < min_interval_us
+                    ):
+                        raise ValueError("neighbours %d and %d fire less than %d us apart" % (x, y, min_interval_us))
+        if window_us > self.min_refire_us:
+            raise ValueError("window_us = %d: at most %d possible" % (window_us, self.min_refire_us))
+        self.verified = True
+        self.t_delta_us, self.min_interval_us, self.separation_us = t_delta_us, min_interval_us, separation
+        self.window_us = window_us or self.min_refire_us
+        return self
+
+    def _settling_us(self):
+        return max(self.min_interval_us if self.verified else self.period_us, self.min_refire_us)
+
+
+class _Sensor:
+    def __init__(self):
+        self.fired_us = self.total_late = self.phase = self.score = 0
+        self.age = NEVER
+        self.enabled, self.uncomparable = True, False
+        self.drop()
+
+    def forget(self):
+        self.known_us, self.score, self.confirmed = None, 0, False
+
+    def drop(self):
+        self.echo_us = None
+        self.outside = True  # its only edges so far came outside the window
+        self.listening = self.can_emit = self.stuck = self.uncomparable = False
+        self.forget()
+
+
+def _less(one, other):
+    return one - other if one > other else 0
+
+
+class Ring:
+    """A ring that fires by a verified schedule. `now_us` is a reading of a clock of `clock_bits` bits, which may wrap: 32,
+    or on a board those of `time.ticks_us`, mostly 30. Poll it at its deadline, hand in echoes as they come."""
+
+    def __init__(
+        self, schedule, now_us, t_delta_us=None, window_us=None, blanking_us=0, consecutive=2, clock_bits=32,
+        unverified=False,
+    ):  # fmt: skip
+        if not schedule.verified and (not unverified or t_delta_us is None or window_us is None):
+            raise ValueError("the schedule was not verified")
+        if t_delta_us is None:
+            t_delta_us = schedule.t_delta_us
+        if window_us is None:
+            window_us = schedule.window_us
+        if schedule.verified and t_delta_us > schedule.t_delta_us:
+            raise ValueError("t_delta_us = %d: verified for %d" % (t_delta_us, schedule.t_delta_us))
+        longest = schedule.window_us if schedule.verified else schedule.min_refire_us
+        if window_us > longest:
+            raise ValueError("window_us = %d: at most %d" % (window_us, longest))
+        if not 0 <= blanking_us < min(window_us, 1 << 16):
+            raise ValueError("blanking_us = %d: less than the window of %d us expected" % (blanking_us, window_us))
+        if not 0 <= t_delta_us < min(window_us, 1 << 16):
+            raise ValueError("t_delta_us = %d: less than the window of %d us expected" % (t_delta_us, window_us))
+        if not 2 <= consecutive <= 8:
+            raise ValueError("consecutive = %d: 2 to 8 expected" % consecutive)
+        self._mask, self._half = (1 << clock_bits) - 1, 1 << (clock_bits - 1)
+        if 6 * schedule.period_us > self._half:
+            raise ValueError("period_us = %d: too long for a clock of %d bits" % (schedule.period_us, clock_bits))
+        self.schedule = schedule
+        self.t_delta_us, self.window_us, self.blanking_us = t_delta_us, window_us, blanking_us
+        self.consecutive = consecutive
+        self._sensors = [_Sensor() for _ in range(schedule.sensors)]
+        self._oldest, self._pending, self._emit_at = NOBODY, 0, now_us
+        self._period = 0
+        self._tally = [0] * 10
+        # Lateness; see below. The first period is number 3.
+        self._watched, self._uncomparable, self._last = 0, 3, NOBODY
+        self._latest = self._total = self._total_before = self._last_late = self._last_stretch = 0
+        self._least = self._least_before = 0xFFFF
+        self._most = self._most_before = 0
+        self._last_fired = (now_us - schedule._settling_us()) & self._mask
+        self._due = now_us
+        self._begin_period(0)
+
+    def _reached(self, now_us, deadline_us):
+        return (now_us - deadline_us) & self._mask < self._half
+
+    # -- The scheduler: a firing that is polled late moves all that follow by as much (Sec. 3.1, Fig. 3). --
+
+    def _begin_period(self, phase):
+        self._phase, self._following = phase, 0
+        self._turn()
+
+    def _turn_once(self):
+        order, place = self.schedule.order[self._phase], self._following
+        self._next = order[place] if place < len(order) else NOBODY
+        self._due = (self._due + self.schedule.gap_us[self._phase][place]) & self._mask
+        self._following = place + 1
+
+    def _turn(self):
+        self._turn_once()
+        self._skip()
+
+    def _skip(self):
+        while self._next != NOBODY and not self._sensors[self._next].enabled:
+            self._turn_once()
+
+    def _horizon(self):
+        return max(3 * self.schedule.period_us, (self._due - self._last_fired) & self._mask)
+
+    def _end_schedule_period(self, now_us):
+        settling = self.schedule._settling_us()
+        left_out = (now_us - self._due) & self._mask > self.schedule.period_us
+        if left_out:
+            self._due = now_us
+        if (self._due - self._last_fired) & self._mask > settling:
+            self._last_fired = (self._due - settling) & self._mask
+        self._begin_period((self._phase + 1) % self.schedule.phases)
+        return left_out
+
+    # -- Lateness. Crosstalk moves by what the schedule says and by the emitter's stretch less the receiver's; where
+    #    stretches differ by more than is tolerated, readings are not compared (docs/theory.md, section 2.1). --
+
+    def _watch(self):
+        if not self._watched:
+            for sensor in self._sensors:
+                sensor.total_late = 0
+            self._total = self._total_before = self._most = self._most_before = 0
+            self._least = self._least_before = 0xFFFF if self._uncomparable == 3 else 0
+        self._watched = 3
+
+    def _uncompare(self, only_listening):
+        for sensor in self._sensors:
+            if sensor.listening or not only_listening:
+                sensor.uncomparable = True
+
+    def _add_late(self, late_us):
+        self._total = min(self._total + late_us, 0xFFFF)
+        if self._total == 0xFFFF:
+            self._uncomparable = 2
+            self._uncompare(False)
+
+    def _tolerated(self):
+        schedule = self.schedule
+        separation = schedule.separation_us if schedule.verified else 2 * self.t_delta_us + 1
+        return min(_less(min(separation, schedule.min_refire_us), self.t_delta_us + 1), 0x7FFF)
+
+    def _stretch(self, x, late_us, stretch):
+        self._last, self._last_late, self._last_stretch = x, late_us, stretch
+        if self._uncomparable == 3:
+            return
+        least, most = min(self._least, self._least_before), max(self._most, self._most_before)
+        self._least, self._most = min(self._least, stretch), max(self._most, stretch)
+        if max(_less(stretch, least), _less(most, stretch)) > self._tolerated():
+            self._uncompare(True)
+
+    def _fired_late(self, x, late_us):
+        if late_us:
+            self._watch()
+            self._latest = max(self._latest, late_us)
+            self._add_late(late_us)
+        sensor = self._sensors[x]
+        stretch = self._total - sensor.total_late if self._total >= sensor.total_late else 0xFFFF
+        sensor.total_late = self._total
+        self._stretch(x, late_us, stretch)
+
+    def _end_late_period(self):
+        latest, self._latest = self._latest, 0
+        total = shift = 0
+        uncomparable = self._uncomparable in (1, 2)
+        self._uncomparable = self._uncomparable - 1 if uncomparable else 0
+        if self._watched:
+            self._watched -= 1
+            total = _less(self._total, self._total_before)
+            shift = _less(max(self._most, self._most_before), min(self._least, self._least_before))
+            self._least_before, self._most_before = self._least, self._most
+            self._least, self._most = 0xFFFF, 0
+            forgotten = 0xFFFF if self._total == 0xFFFF else self._total_before
+            for sensor in self._sensors:
+                sensor.total_late = _less(sensor.total_late, forgotten)
+            self._total -= forgotten
+            self._total_before = self._total
+        if uncomparable:
+            self._uncompare(False)
+        return latest, total, shift
+
+    # -- Events --
+
+    def poll(self, now_us, change_us=None):
+        """The next event, or None: then sleep until the deadline. Hand in the echoes you know of before. `change_us`: what
+        a good reading of each sensor should have changed by since its firing before, where the robot moves."""
+        is_due = self._reached(now_us, self._due)
+        pends = self._pending > 0 or self._oldest != NOBODY
+        if not is_due and not (pends and self._reached(now_us, self._emit_at)):
+            if (self._due - now_us) & self._mask > self._horizon():
+                self.restart(now_us)  # the clock has jumped
+            return None
+        x = self._next
+        fires = is_due and x != NOBODY
+        if not fires:
+            x = self._next_pending(now_us)
+        if fires and not self._sensors[x].listening and not self._sensors[x].can_emit:
+            event = (FIRE, x, self._phase, self._due)
+            self._fire(x, now_us)
+            return event
+        if x != NOBODY:
+            return self._emit(x, 0 if change_us is None else change_us[x])
+        return self._end_period(now_us) if is_due else None
+
+    def deadline(self):
+        """When to poll next."""
+        pends = self._pending > 0 or self._oldest != NOBODY
+        return self._emit_at if pends and not self._reached(self._emit_at, self._due) else self._due
+
+    def _next_pending(self, now_us):
+        if self._pending == 0:
+            return self._oldest if self._oldest != NOBODY and self._reached(now_us, self._emit_at) else NOBODY
+        if self._oldest != NOBODY and self._sensors[self._oldest].can_emit:
+            return self._oldest
+        for x, sensor in enumerate(self._sensors):
+            if sensor.can_emit:
+                return x
+        return NOBODY
+
+    def _emit_when_oldest_ends(self):
+        if self._pending == 0 and self._oldest != NOBODY:
+            self._emit_at = (self._sensors[self._oldest].fired_us + self.window_us) & self._mask
+
+    def _find_oldest(self, before):
+        self._oldest, soonest = NOBODY, self._mask
+        for x, sensor in enumerate(self._sensors):
+            if sensor.listening and (sensor.fired_us - before) & self._mask < soonest:
+                self._oldest, soonest = x, (sensor.fired_us - before) & self._mask
+
+    def _fire(self, x, now_us):
+        sensor = self._sensors[x]
+        late_us = min((now_us - self._due) & self._mask, 0xFFFF)
+        sensor.listening, sensor.phase, sensor.fired_us = True, self._phase, now_us
+        sensor.can_emit = sensor.outside = sensor.stuck = False
+        if late_us or self._watched:
+            self._fired_late(x, late_us)
+        if self._oldest == NOBODY:
+            self._oldest = x
+            self._emit_when_oldest_ends()
+        self._last_fired = self._due = now_us
+        self._turn()
+
+    def _compare(self, sensor, change_us):
+        """Ends a firing and compares its reading with the one before (Eq. 11): (kind, echo, previous)."""
+        echo, apart = sensor.echo_us, sensor.uncomparable
+        if apart or sensor.stuck or sensor.outside:
+            sensor.forget()
+        previous = sensor.known_us
+        if sensor.stuck:
+            kind, echo = STUCK, None
+        elif sensor.outside:
+            kind = TOO_EARLY
+        else:
+            if echo is None or previous is None:
+                near = echo is None and previous is None
+            else:
+                near = abs(echo - previous - change_us) <= self.t_delta_us
+            if sensor.score and near:
+                sensor.score = min(sensor.score + 1, self.consecutive)
+                sensor.confirmed = sensor.score >= self.consecutive
+            else:
+                sensor.score, sensor.confirmed = 1, False
+            sensor.known_us = echo
+            if sensor.confirmed:
+                kind = CLEAR if echo is None else ACCEPTED
+            elif echo is None:
+                kind = NO_ECHO
+            elif previous is None:
+                kind = FIRST
+            else:
+                kind = REJECTED if sensor.score == 1 else REPEATED
+        if apart:
+            sensor.forget()
+        sensor.age = 0 if kind == ACCEPTED else min(sensor.age + 1, max(NEVER - 1, sensor.age))
+        sensor.listening = sensor.can_emit = sensor.outside = sensor.stuck = sensor.uncomparable = False
+        sensor.echo_us = None
+        return kind, echo, previous
+
+    def _emit(self, x, change_us):
+        sensor = self._sensors[x]
+        if sensor.can_emit:
+            self._pending -= 1
+        if sensor.listening:
+            kind, echo, previous = self._compare(sensor, change_us)
+            if self._oldest == x:
+                self._find_oldest(sensor.fired_us)
+        else:
+            kind, echo, previous = LATE, sensor.echo_us, None
+            sensor.can_emit, sensor.echo_us = False, None
+        self._emit_when_oldest_ends()
+        self._count(kind)
+        ago = (self._phase - sensor.phase) % self.schedule.phases
+        return (READING, x, sensor.phase, (self._period - ago) & 0xFFFFFFFF, kind, echo, previous, sensor.age)
+
+    def _count(self, kind):
+        self._tally[kind] = min(self._tally[kind] + 1, 255)
+
+    def _end_period(self, now_us):
+        self._latest = max(self._latest, min((now_us - self._due) & self._mask, 0xFFFF))
+        phase, period = self._phase, self._period
+        self._period += 1
+        changed = self._end_schedule_period(now_us)
+        late = self._end_late_period()
+        if changed:
+            self._watch()
+            self._uncomparable = 1
+            self._uncompare(False)
+        tally, self._tally = self._tally, [0] * 10
+        return (PERIOD, phase, period) + late + (tally,)
+
+    # -- What happens to it --
+
+    def echo(self, x, at_us):
+        """An echo, at this instant; of a module that answers with a pulse, the firing's instant plus the pulse's width."""
+        sensor = self._sensors[x]
+        t_echo = (at_us - sensor.fired_us) & self._mask
+        if t_echo >= self._half:
+            return
+        if sensor.listening:
+            if t_echo > self.window_us:
+                self._count(LATE)
+                return
+            if t_echo < self.blanking_us:
+                if sensor.echo_us is None:
+                    sensor.outside, sensor.echo_us = True, t_echo
+                return
+            if sensor.outside or sensor.echo_us is None or t_echo < sensor.echo_us:
+                sensor.echo_us = t_echo
+            sensor.outside = False
+            if sensor.can_emit:
+                return
+        else:
+            if t_echo <= self.window_us or sensor.outside:
+                return
+            sensor.outside, sensor.echo_us = True, t_echo
+        sensor.can_emit = True
+        pends = self._pending > 0 or self._oldest != NOBODY
+        if not pends or not self._reached(at_us, self._emit_at):
+            self._emit_at = at_us
+        self._pending += 1
+
+    def fired(self, x, at_us):
+        """The sensor of the last firing really fired at this instant, later than the poll. Before the next poll."""
+        sensor = self._sensors[x]
+        polled = sensor.fired_us
+        later = (at_us - polled) & self._mask
+        if not sensor.listening or later == 0 or later >= self._half:
+            return
+        sensor.fired_us = at_us
+        if sensor.echo_us is not None:
+            sensor.echo_us = _less(sensor.echo_us, later)
+        self._last_fired = (self._last_fired + later) & self._mask
+        self._due = (self._due + later) & self._mask
+        later = min(later, 0xFFFF)
+        known = not self._watched or self._last == x
+        late_us, stretch = (self._last_late, self._last_stretch) if self._watched else (0, 0)
+        self._watch()
+        self._add_late(later)
+        sensor.total_late = min(sensor.total_late + later, 0xFFFF)
+        if known:
+            late_us = min(late_us + later, 0xFFFF)
+            self._latest = max(self._latest, late_us)
+            self._stretch(x, late_us, min(stretch + later, 0xFFFF))
+        else:
+            self._uncomparable = 2
+            self._uncompare(False)
+        if self._oldest == x:
+            self._find_oldest(polled)
+            self._emit_when_oldest_ends()
+
+    def stuck(self, x):
+        """The echo line of a sensor was high when it was to be fired."""
+        if self._sensors[x].listening:
+            self._sensors[x].stuck = True
+
+    def enable(self, x, enabled=True):
+        """Lets a sensor fire, or not, from its next turn on."""
+        sensor = self._sensors[x]
+        if enabled and not sensor.enabled:
+            sensor.forget()
+        sensor.enabled = enabled
+        self._skip()
+
+    def restart(self, now_us):
+        """Again with the first phase, after a long sleep."""
+        settling = self.schedule._settling_us()
+        waits = (self._last_fired + settling - now_us) & self._mask
+        if 0 < waits <= self._horizon():
+            self._due = (now_us + waits) & self._mask
+        else:
+            self._last_fired, self._due = (now_us - settling) & self._mask, now_us
+        self._begin_period(0)
+        for sensor in self._sensors:
+            sensor.drop()
+        self._oldest, self._pending = NOBODY, 0
+        self._watch()
+        self._uncomparable = 1
+
+
+class HcSr04Ring:
+    """A ring of HC-SR04 modules, on one pin each or with the echo lines on other pins. Needs `machine` and `time`; both may
+    be handed in. A reading is what `Ring.poll` says; `read` samples the lines, so call it often."""
+
+    DEAF_US, SHORTEST_US, LONGEST_US = 100, 100, 36000
+    SOON_US = 1000  # what is due so soon is waited for: modules that fire late by differing times compare less
+
+    def __init__(self, schedule, pins, echoes=None, machine=None, time=None, **ring):
+        if schedule.min_refire_us < 60000:
+            raise ValueError("a module would fire again after %d us: 60000 expected" % schedule.min_refire_us)
+        if len(pins) != schedule.sensors or (echoes is not None and len(echoes) != len(pins)):
+            raise ValueError("%d pins for %d sensors" % (len(pins), schedule.sensors))
+        if machine is None:
+            import machine
+        if time is None:
+            import time
+        self._pin, self._time = machine.Pin, time
+        self._one_pin = echoes is None
+        self._triggers = [machine.Pin(pin) for pin in pins]
+        self._echoes = self._triggers if echoes is None else [machine.Pin(pin) for pin in echoes]
+        for pin in self._echoes:
+            pin.init(machine.Pin.IN)
+        if not self._one_pin:
+            for pin in self._triggers:
+                pin.init(machine.Pin.OUT, value=0)
+        # The period of ticks_us is a power of two: from half a turn on, differences are negative.
+        bits = 1
+        while time.ticks_diff(1 << bits - 1, 0) > 0:
+            bits += 1
+        ring.setdefault("clock_bits", bits)
+        self.ring = Ring(schedule, time.ticks_us(), **ring)
+        self._rose = [None] * len(pins)
+        self._awaits = [False] * len(pins)
+
+    def _sample(self):
+        for x, awaits in enumerate(self._awaits):
+            if not awaits:
+                continue
+            high = self._echoes[x].value()
+            now = self._time.ticks_us()
+            rose = self._rose[x]
+            fired = self.ring._sensors[x].fired_us
+            if rose is None:
+                if high and self._time.ticks_diff(now, fired) >= self.DEAF_US:
+                    self._rose[x] = now
+            elif not high:
+                width = self._time.ticks_diff(now, rose)
+                self._rose[x] = None
+                if width >= self.SHORTEST_US:
+                    self._awaits[x] = False
+                    if width < self.LONGEST_US:
+                        self.ring.echo(x, self._time.ticks_add(fired, width))
+
+    def _trigger(self, x):
+        pin = self._triggers[x]
+        self._rose[x], self._awaits[x] = None, False
+        if self._echoes[x].value():
+            self.ring.stuck(x)
+            return
+        if self._one_pin:
+            pin.init(self._pin.OUT, value=0)
+        self._awaits[x] = True
+        pin.value(1)
+        self._time.sleep_us(10)
+        pin.value(0)
+        if self._one_pin:
+            pin.init(self._pin.IN)
+
+    def read(self):
+        """One step; a reading if there is one, else None."""
+        ticks, diff = self._time.ticks_us, self._time.ticks_diff
+        # The clock is read before the lines, so that no window closes on an edge that came in time.
+        now = ticks()
+        self._sample()
+        while 0 < diff(self.ring.deadline(), now) <= self.SOON_US:
+            now = ticks()
+            self._sample()
+        event = self.ring.poll(now)
+        if event is None:
+            return None
+        if event[0] == FIRE:
+            self._trigger(event[1])
+        return event if event[0] == READING else None

@@ -1,0 +1,28 @@
+// Runs eeruf.py's tests in MicroPython's WebAssembly build: node run.mjs FOLDER_OF_MICROPYTHON corpus.txt
+import { readFileSync } from "node:fs";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath, pathToFileURL } from "node:url";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const [folder, corpus] = process.argv.slice(2);
+const { loadMicroPython } = await import(pathToFileURL(resolve(folder, "micropython.mjs")));
+const micropython = await loadMicroPython({ heapsize: 4 * 1024 * 1024 });
+for (const name of ["eeruf.py", "test_corpus.py", "test_modules.py"]) {
+  micropython.FS.writeFile(`/${name}`, readFileSync(join(here, name)));
+}
+micropython.FS.writeFile("/corpus.txt", readFileSync(corpus));
+try {
+  micropython.runPython(`
+import sys
+sys.path.append("/")
+import test_corpus, test_modules
+print(sys.implementation.name, ".".join(str(n) for n in sys.implementation.version[:3]))
+with open("/corpus.txt") as corpus:
+    test_corpus.main(corpus.read())
+test_modules.main()
+`);
+} catch (error) {
+  // Without the source of the build, which is one line of 100 kB.
+  console.error(error.message);
+  process.exit(1);
+}

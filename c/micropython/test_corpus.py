@@ -1,0 +1,74 @@
+"""Whether eeruf.py says of the corpus what the Rust crate eeruf-core says: python3 test_corpus.py [corpus.txt].
+
+It runs under MicroPython too. What the lines mean stands in crates/eeruf-c-equal/tests/all/corpus.rs."""
+
+import sys
+
+from eeruf import Ring, Schedule
+
+LAYOUTS = ("line", "ring", "blocks")
+
+
+def flat(event):
+    """An event as the corpus has it."""
+    if event is None:
+        return []
+    if event[0] == 1:
+        return [0xFFFFFFFF if number is None else number for number in event]
+    if event[0] == 0:
+        return list(event)
+    return [2, 0] + list(event[1:6]) + event[6]
+
+
+def check(lines):
+    """How many events were compared."""
+    count = rings = 0
+    for number, line in enumerate(lines, 1):
+        words = line.split()
+        what = words[0]
+        n = [int(word) for word in words[1:]]
+        if what == "P":
+            event = flat(ring.poll(n[0]))  # noqa: F821
+            said = [ring.deadline()] + event  # noqa: F821
+            if said != n[1:]:
+                raise AssertionError("line %d: %r, not %r" % (number, said, n[1:]))
+            count += len(event) > 0
+        elif what == "E":
+            ring.echo(n[0], n[1])  # noqa: F821
+        elif what == "K":
+            ring.stuck(n[0])  # noqa: F821
+        elif what == "F":
+            ring.fired(n[0], n[1])  # noqa: F821
+        elif what == "N":
+            ring.enable(n[0], n[1] == 1)  # noqa: F821
+        elif what == "R":
+            ring.restart(n[0])  # noqa: F821
+        elif what == "S":
+            sensors = (len(n) - 2) // n[1]
+            schedule = Schedule(n[0], [n[2 + m * sensors : 2 + (m + 1) * sensors] for m in range(n[1])])
+        elif what == "V":
+            try:
+                schedule.verify(n[0], n[1], n[2], n[3], LAYOUTS[n[4]], n[5] == 1)
+                verified = [schedule.separation_us, schedule.window_us]
+            except ValueError:
+                verified = [0, 0]
+            if verified != n[6:]:
+                raise AssertionError("line %d: verified %r, not %r" % (number, verified, n[6:]))
+        elif what == "L":
+            ring = Ring(schedule, n[4], n[0], n[1], n[2], n[3], unverified=True)
+            rings += 1
+        else:
+            raise AssertionError("line %d: %r" % (number, line))
+    return rings, count
+
+
+def main(text):
+    rings, count = check(text.strip().split("\n"))
+    if count < 1000:
+        raise AssertionError("only %d events" % count)
+    print("%d rings, %d events without a difference" % (rings, count))
+
+
+if __name__ == "__main__":
+    with open(sys.argv[1] if len(sys.argv) > 1 else "../tests/corpus.txt") as corpus:
+        main(corpus.read())

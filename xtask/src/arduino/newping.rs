@@ -1,0 +1,94 @@
+//! NewPing beside eeruf: the same rings on a simulated Uno, among the same simulated modules, in the same room.
+//!
+//! By hand: NewPing is not free to be kept here, so that a folder with its sources is asked for.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::{ALL, Example, TARGET, build, failed, pack, world};
+use crate::c::need;
+use crate::steps::{Steps, Trouble};
+
+/// For how long each row runs, in seconds.
+const SECONDS: u32 = 20;
+
+/// What is compared.
+struct Row {
+    name: &'static str,
+    sketch: &'static str,
+    text: &'static str,
+    defines: &'static [&'static str],
+}
+
+const NEWPING: &str = include_str!("newping/NewPing.ino");
+const EERUF: &str = include_str!("newping/Eeruf.ino");
+const ROWS: [Row; 4] = [
+    Row { name: "NewPing, one module every 33 ms", sketch: "NewPing", text: NEWPING, defines: &[] },
+    Row {
+        name: "eeruf's rate, constant waits, every echo",
+        sketch: "Constant",
+        text: EERUF,
+        defines: &["-DCONSTANT=1", "-DEVERY=1"],
+    },
+    Row {
+        name: "eeruf's rate, constant waits, two agree",
+        sketch: "ConstantCompared",
+        text: EERUF,
+        defines: &["-DCONSTANT=1", "-DEVERY=0"],
+    },
+    Row { name: "eeruf", sketch: "Eeruf", text: EERUF, defines: &["-DCONSTANT=0", "-DEVERY=0"] },
+];
+
+/// Compares with the NewPing in this folder.
+pub(crate) fn newping(folder: &Path, steps: &mut Steps) {
+    steps.step("NewPing beside eeruf", || compare(folder));
+}
+
+/// Where NewPing's sources are, and their version.
+fn sources(folder: &Path) -> Result<(PathBuf, String), Trouble> {
+    let folder = [folder.to_owned(), folder.join("src")]
+        .into_iter()
+        .find(|folder| folder.join("NewPing.h").exists() && folder.join("NewPing.cpp").exists())
+        .ok_or_else(|| Trouble::Failed(format!("{}: no NewPing.h and NewPing.cpp in it", folder.display())))?;
+    let header = fs::read_to_string(folder.join("NewPing.h")).map_err(failed("NewPing.h"))?;
+    let version = header
+        .split_once("NewPing Library - v")
+        .and_then(|(_, rest)| rest.split_whitespace().next())
+        .ok_or_else(|| Trouble::Failed("NewPing.h does not say its version as expected".to_owned()))?;
+    Ok((folder, version.to_owned()))
+}
+
+fn compare(folder: &Path) -> Result<(), Trouble> {
+    let (newping, version) = sources(folder)?;
+    need("avr-g++", "gcc-avr avr-libc binutils-avr arduino-core-avr")?;
+    let (library, core, world) = (pack()?, build::core()?, world::build()?);
+    println!("NewPing {version}, {SECONDS} s each");
+    println!(
+        "| ring | method | flash | data + bss | stack | in interrupts | firings/s | readings/s | right/s | wrong \
+         | own by another way | own from before | foreign |"
+    );
+    println!("|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
+    for modules in [8, 12] {
+        for row in &ROWS {
+            let name = format!("{}{modules}", row.sketch);
+            let ino = Path::new(TARGET).join(format!("{name}.ino"));
+            fs::write(&ino, row.text).map_err(failed("target"))?;
+            let source = if row.sketch == "NewPing" { newping.clone() } else { library.join("src") };
+            let modules_define = format!("-DMODULES={modules}");
+            let defines: Vec<&str> = row.defines.iter().copied().chain([&*modules_define]).collect();
+            // What is not ours is compiled without our warnings.
+            let sketch = build::sketch(&name, &ino, &source, &core, row.sketch != "NewPing", &defines)?;
+            let (pins, _) = ALL.split_at(modules);
+            let example = Example { name: row.name, modules, triggers: pins, echoes: pins, short: false };
+            let heard = world::run(&world, &sketch.elf, &example, SECONDS, true)?;
+            println!(
+                "| {modules} | {} | {} | {} | {} |",
+                row.name,
+                sketch.flash,
+                sketch.ram,
+                heard.row_beside_newping()
+            );
+        }
+    }
+    Ok(())
+}

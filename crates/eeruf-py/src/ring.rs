@@ -387,7 +387,7 @@ impl Ring {
     ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
     ///     'PeriodEnded'
     fn pause(&mut self) {
-        self.0.with(|ring| ring.pause());
+        self.0.with(eeruf_core::Ring::pause);
     }
 
     /// Let sensors fire again, as of the next period. Readings from before are forgotten.
@@ -401,7 +401,7 @@ impl Ring {
     ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
     ///     'Fire'
     fn resume(&mut self) {
-        self.0.with(|ring| ring.resume());
+        self.0.with(eeruf_core::Ring::resume);
     }
 
     /// Start again with phase a at a time, or as soon as the last firings allow: after a long sleep. Firings under way

@@ -386,8 +386,9 @@ impl Ring {
     ///     >>> ring.pause()
     ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
     ///     'PeriodEnded'
+    #[expect(clippy::redundant_closure_for_method_calls, reason = "the method is of rings of one lifetime")]
     fn pause(&mut self) {
-        self.0.with(eeruf_core::Ring::pause);
+        self.0.with(|ring| ring.pause());
     }
 
     /// Let sensors fire again, as of the next period. Readings from before are forgotten.
@@ -400,8 +401,9 @@ impl Ring {
     ///     >>> _ = ring.poll(ring.next_deadline_us)  # the period ends
     ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
     ///     'Fire'
+    #[expect(clippy::redundant_closure_for_method_calls, reason = "the method is of rings of one lifetime")]
     fn resume(&mut self) {
-        self.0.with(eeruf_core::Ring::resume);
+        self.0.with(|ring| ring.resume());
     }
 
     /// Start again with phase a at a time, or as soon as the last firings allow: after a long sleep. Firings under way

@@ -34,6 +34,10 @@ PATHS = ROOM.paths((0, 0), [(1, 0), (2, 0)], 2)
 HANGS_S = 60
 
 
+class Nothing:
+    """A class that takes no arguments."""
+
+
 class Chance:
     """Arguments that make sense, nearly make sense, or make none."""
 
@@ -53,7 +57,19 @@ class Chance:
             lambda: r.choice(["", "line", "ring", "eeruf", "soft", "a", "\0", "\ud800", "x" * 99, "period_us = 1"]),
             lambda: r.choice([np.int8(-3), np.uint8(200), np.uint64(2**64 - 1), np.float32(0.3), np.bool_(True)]),
             lambda: r.choice(
-                [b"", object(), ROBOT, ROOM, READINGS, PATHS, tables.TABLE_I_D, sim.Noise(), nav.Himm(3), print, Chance]
+                [
+                    b"",
+                    object(),
+                    ROBOT,
+                    ROOM,
+                    READINGS,
+                    PATHS,
+                    tables.TABLE_I_D,
+                    sim.Noise(),
+                    nav.Himm(3),
+                    print,
+                    Nothing,
+                ]
             ),
             lambda: np.array(r.choices([0.0, 1.0, -2.0, math.nan, math.inf, 9_000.0], k=r.randrange(9))),
             lambda: np.array(r.choices([0.0, 1.0, 5.0, -3.0], k=12)).reshape(

@@ -386,6 +386,7 @@ impl Ring {
     ///     >>> ring.pause()
     ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
     ///     'PeriodEnded'
+    #[expect(clippy::redundant_closure_for_method_calls, reason = "the method is of rings of one lifetime")]
     fn pause(&mut self) {
         self.0.with(|ring| ring.pause());
     }
@@ -400,6 +401,7 @@ impl Ring {
     ///     >>> _ = ring.poll(ring.next_deadline_us)  # the period ends
     ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
     ///     'Fire'
+    #[expect(clippy::redundant_closure_for_method_calls, reason = "the method is of rings of one lifetime")]
     fn resume(&mut self) {
         self.0.with(|ring| ring.resume());
     }

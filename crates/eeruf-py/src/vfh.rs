@@ -17,8 +17,8 @@ const TURN_GAIN: f64 = 3.0;
 /// The vector field histogram (J. Borenstein and Y. Koren, IEEE T-RA 7(3), 1991): from a certainty grid to where to
 /// steer and how fast to go.
 ///
-/// The cells around the robot become a histogram of obstacle density over 72 sectors of 5 degrees; among its valleys the
-/// one nearest the target is steered for. Directions are in the scene's frame, counter-clockwise.
+/// The cells around the robot become a histogram of obstacle density over 72 sectors of 5 degrees; among its valleys
+/// the one nearest the target is steered for. Directions are in the scene's frame, counter-clockwise.
 ///
 /// Args:
 ///     window: how many cells the active window has on a side, 1 to 4096.

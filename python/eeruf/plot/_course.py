@@ -116,11 +116,12 @@ def _chosen(
         raise ArgumentError(
             f"result = {result!r:.60}; expected what eeruf.experiments.set_two returns, or one of its runs"
         )
+    of_methods = {str(name): of for name, of in result.runs.items()}
     if method is None:
-        method = "eeruf" if "eeruf" in result.runs else next(iter(result.runs))
-    if not isinstance(method, str) or method not in result.runs:
-        raise ArgumentError(f"method = {method!r}; expected one of {', '.join(result.runs)}")
-    runs = {run.course: run for run in result.runs[method]}
+        method = "eeruf" if "eeruf" in of_methods else next(iter(of_methods))
+    if not isinstance(method, str) or method not in of_methods:
+        raise ArgumentError(f"method = {method!r}; expected one of {', '.join(of_methods)}")
+    runs = {run.course: run for run in of_methods[method]}
     if course is None:
         course = min(runs)
     if not isinstance(course, int) or course not in runs:

@@ -87,7 +87,7 @@ def methods(
         has = (title for title in sorted(_TITLES) if any(hasattr(of, title) for of in result.methods.values()))
         raise ArgumentError(f"figure = {figure!r}; expected one of {', '.join(has)}")
     # Set II has one number for all courses.
-    spreads = {name: _quantiles(of) for name, of in figures.items()}
+    spreads: dict[str, dict[str, float]] = {name: _quantiles(of) for name, of in figures.items()}
     chosen = sorted(spreads, key=lambda name: -spreads[name]["median"])
     if names is not None:
         chosen = list(names) if isinstance(names, Iterable) else []

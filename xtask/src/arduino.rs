@@ -110,7 +110,7 @@ fn examples(library: &Path, short: bool) -> Result<(), Trouble> {
         heard.is_plausible(example)?;
         println!("| {} | {} | {} | {} |", example.name, sketch.flash, sketch.ram, heard.row());
     }
-    let sketch = build::sketch(library, &core, "Survey")?;
+    let sketch = build::example(library, &core, "Survey")?;
     if short {
         return Ok(());
     }

@@ -79,13 +79,7 @@ fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>), Trouble
 
 /// Runs a sketch for some seconds of its own time. With `causes` the world says what ended each pulse, which it cannot
 /// among a sketch's frames.
-pub(super) fn run(
-    world: &Path,
-    elf: &Path,
-    example: &Example,
-    seconds: u32,
-    causes: bool,
-) -> Result<Heard, Trouble> {
+pub(super) fn run(world: &Path, elf: &Path, example: &Example, seconds: u32, causes: bool) -> Result<Heard, Trouble> {
     let (times, own_mm) = echo_times(example.modules)?;
     let pins = example.triggers.iter().chain(example.echoes).map(ToString::to_string);
     let ran = Command::new(world)

@@ -57,8 +57,12 @@ def main():
     options = parser.parse_args()
     corpus = {case["id"]: case for case in json.loads((ROOT / "tests/data/critical-paths.json").read_text())["cases"]}
     ours = json.loads(subprocess.run([options.ours], check=True, capture_output=True, text=True).stdout)
-    print(f"pyroomacoustics {pra.__version__} against eeruf-sim, one source, 8 receivers, single thread, best of many runs")
-    print(f"{'scene':<10} {'order':>5} {'paths':>6} {'peer':>12} {'core':>10} {'ratio':>9} {'target':>7} {'whole':>10} {'ratio':>9}  lengths")
+    print(
+        f"pyroomacoustics {pra.__version__} against eeruf-sim, one source, 8 receivers, single thread, best of many runs"
+    )
+    print(
+        f"{'scene':<10} {'order':>5} {'paths':>6} {'peer':>12} {'core':>10} {'ratio':>9} {'target':>7} {'whole':>10} {'ratio':>9}  lengths"
+    )
     for scene, order, target in SCENES:
         seconds, lengths = peer(corpus[scene], order)
         truth = [sorted(p[0] for p in paths if p[1] <= order) for paths in corpus[scene]["paths"]]
@@ -72,7 +76,9 @@ def main():
         )
     big = {name: timing for name, timing in ours.items() if name.startswith(("star1000", "pillars1024"))}
     for name, timing in big.items():
-        print(f"{name}: core {timing['core_us']:.0f} us, whole {timing['whole_us']:.0f} us, mesh built in {timing['build_us'] / 1e3:.1f} ms")
+        print(
+            f"{name}: core {timing['core_us']:.0f} us, whole {timing['whole_us']:.0f} us, mesh built in {timing['build_us'] / 1e3:.1f} ms"
+        )
 
 
 if __name__ == "__main__":

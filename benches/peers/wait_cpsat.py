@@ -56,7 +56,9 @@ def build(case):
         total = [model.new_int_var(0, 2 * wait_max, f"s{i}") for i in range(sensors)]
         for i in range(sensors):
             model.add(total[i] == a[i] + b[i])
-        model.add_no_overlap([model.new_fixed_size_interval_var(total[i], separation, f"si{i}") for i in range(sensors)])
+        model.add_no_overlap(
+            [model.new_fixed_size_interval_var(total[i], separation, f"si{i}") for i in range(sensors)]
+        )
     for i in range(sensors):
         for j in range(i):
             if not conflict(case, i, j) or interval == 0:
@@ -67,10 +69,14 @@ def build(case):
                 if least >= interval or most <= -interval:
                     continue
                 model.add_linear_expression_in_domain(
-                    difference, cp_model.Domain.from_intervals([[least, -interval], [interval, most]])
+                    difference,
+                    cp_model.Domain.from_intervals([[least, -interval], [interval, most]])
                     if least <= -interval and most >= interval
-                    else cp_model.Domain(interval, most) if most >= interval else cp_model.Domain(least, -interval)
-                    if least <= -interval else cp_model.Domain.from_values([])
+                    else cp_model.Domain(interval, most)
+                    if most >= interval
+                    else cp_model.Domain(least, -interval)
+                    if least <= -interval
+                    else cp_model.Domain.from_values([]),
                 )
             for x, y in ((i, j), (j, i)):
                 model.add(period + b[y] + lag[y] - a[x] - lag[x] >= interval)
@@ -91,7 +97,20 @@ def enumerate_all(case, limit):
 
 def eeruf(case):
     """Seconds and count of eeruf's search, the least of its own repeated runs."""
-    words = [case[key] for key in ("sensors", "period", "wait_max", "group", "separation", "min_interval", "neighbours", "criterion", "layout")]
+    words = [
+        case[key]
+        for key in (
+            "sensors",
+            "period",
+            "wait_max",
+            "group",
+            "separation",
+            "min_interval",
+            "neighbours",
+            "criterion",
+            "layout",
+        )
+    ]
     out = subprocess.run(
         [ROOT / "target/release/examples/wait_count", *map(str, words)], check=True, capture_output=True, text=True
     ).stdout.split()
@@ -111,7 +130,10 @@ def main():
         assert count == case["count"], (count, case)
         assert not complete or found == count, (found, case)
         kind = "" if complete else f", stopped after {found} tables"
-        print(f"{count:>9} tables: eeruf {ours * 1e3:8.3f} ms, CP-SAT {theirs:8.3f} s{kind}, ratio {theirs / ours:,.0f}", flush=True)
+        print(
+            f"{count:>9} tables: eeruf {ours * 1e3:8.3f} ms, CP-SAT {theirs:8.3f} s{kind}, ratio {theirs / ours:,.0f}",
+            flush=True,
+        )
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from os import PathLike
-from typing import IO, Final, Literal, SupportsIndex, TypeVar, final
+from typing import IO, Any, Final, Literal, SupportsIndex, TypeVar, final
 
 import numpy as np
 import pandas as pd

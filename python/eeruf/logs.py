@@ -14,9 +14,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
-
-import numpy as np
+from typing import TYPE_CHECKING, Literal
 
 from eeruf import _eeruf
 from eeruf._eeruf import LogError
@@ -24,6 +22,9 @@ from eeruf._eeruf import LogError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    import numpy as np
+    import pandas as pd
+    import polars as pl
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["Diagnosis", "Firings", "LogError", "Ranges", "Surveyed", "diagnose", "read_firings", "read_log", "survey"]
@@ -32,17 +33,17 @@ __all__ = ["Diagnosis", "Firings", "LogError", "Ranges", "Surveyed", "diagnose",
 class _Columns:
     _columns: tuple[str, ...] = ()
 
-    def columns(self) -> dict[str, NDArray[Any]]:
+    def columns(self) -> dict[str, NDArray[np.float64 | np.int64 | np.bool_]]:
         """Return the columns by their names."""
         return {name: getattr(self, name) for name in self._columns}
 
-    def to_pandas(self) -> Any:
+    def to_pandas(self) -> pd.DataFrame:
         """Make a pandas data frame, a row for each reading."""
         import pandas as pd
 
         return pd.DataFrame(self.columns())
 
-    def to_polars(self) -> Any:
+    def to_polars(self) -> pl.DataFrame:
         """Make a polars data frame, a row for each reading."""
         import polars as pl
 
@@ -90,6 +91,8 @@ class Ranges(_Columns):
             speed_of_sound: in m/s.
 
         """
+        import numpy as np
+
         seen = np.isfinite(self.range_m) & (self.range_m < self.max_range_m) & (self.range_m >= self.min_range_m)
         return np.where(seen, 2e6 * np.where(seen, self.range_m, 0.0) / speed_of_sound, np.nan)
 
@@ -146,6 +149,7 @@ class Firings(_Columns):
             sends: false where a sensor only listened.
 
         """
+        import numpy as np
 
         def whole(column: ArrayLike) -> NDArray[np.int64]:
             return np.ascontiguousarray(column, dtype=np.int64)
@@ -182,7 +186,7 @@ class Diagnosis:
 
     """
 
-    paths: dict[str, NDArray[Any]]
+    paths: dict[str, NDArray[np.float64 | np.int64 | np.bool_]]
     sender: NDArray[np.int64]
     travel_us: NDArray[np.float64]
     sure: NDArray[np.float64]
@@ -205,7 +209,7 @@ class Surveyed:
 
     """
 
-    paths: dict[str, NDArray[Any]]
+    paths: dict[str, NDArray[np.float64 | np.int64 | np.bool_]]
     conflicts: list[tuple[int, int, float]]
 
 

@@ -132,6 +132,7 @@ fn study_writes_ranges_poses_scene_and_paths_that_another_reader_reads() {
                 assert!(lines.iter().all(|line| line["points"].as_array().unwrap().len() >= 2));
                 paths += usize::from(!scene);
             }
+            "eeruf.Firing" => assert!(object["sensor"].is_number() && object["period"].is_number()),
             other => panic!("{other}"),
         }
     }

@@ -116,6 +116,8 @@ const MOST_PATHS: usize = 200;
 const LOOKED_AT: usize = 4;
 /// A path supports an offset if it is heard in this share of the slots with that offset in which nothing hid it.
 const SUPPORTS: f64 = 0.5;
+/// Votes by slot begin here, beyond all offsets.
+const BY_SLOT: i64 = 1 << 40;
 
 /// Finds the paths between all sensors of a survey.
 pub fn survey(log: &FiringLog, settings: &PathSettings) -> Surveyed {
@@ -230,8 +232,7 @@ impl Search {
 
     /// What speaks for a path and what against it.
     fn support(&self, sender: u8, travel_us: i64) -> Place {
-        let is_own = sender == self.receiver;
-        // By offset, own echoes by slot: whether it was heard there.
+        // By offset, or by slot: whether it was heard there.
         let mut trials = Vec::<(i64, bool)>::new();
         let mut hits = Vec::new();
         for (place, heard) in self.heard.iter().enumerate() {
@@ -247,8 +248,7 @@ impl Search {
             }
             let is_heard = off.is_some_and(|off| off <= self.tolerance);
             hits.extend(is_heard.then_some(place));
-            // An own echo does not move: what counts is in how many slots it was heard.
-            trials.push((if is_own { i64::from(heard.slot) * (4 * self.tolerance) } else { offset }, is_heard));
+            trials.push((self.vote(heard, sender, offset), is_heard));
         }
         trials.sort_unstable();
         let offsets: Vec<_> = trials.iter().map(|trial| trial.0).collect();
@@ -263,6 +263,17 @@ impl Search {
         let ln_accident =
             if supporting < 2 { 0.0 } else { ln_at_least(supporting, counted.1, self.accident(sender, hits.len())) };
         Place { sender, offsets: counted, ln_accident, hits, trials: trials.len() as u32 }
+    }
+
+    /// Readings that agree count once for each of these: the offset; but the slot for an own echo, which does not move,
+    /// and for a sensor that only listens while one other fires, whose sound it must be.
+    fn vote(&self, heard: &Heard, sender: u8, offset: i64) -> i64 {
+        let listens_to_one = heard.fired.len() == 1;
+        if sender == self.receiver || listens_to_one {
+            BY_SLOT + i64::from(heard.slot) * (4 * self.tolerance)
+        } else {
+            offset
+        }
     }
 
     /// The probability that a stray edge supports a path at one offset: strays may be all edges of the slots in which
@@ -310,17 +321,17 @@ impl Search {
         // At each offset, the latest edge: until then nothing hid another's sound.
         let offsets = self.heard.iter().filter_map(|heard| {
             let offset = Self::offset(heard, sender)?;
-            Some((offset, heard.echo_us.unwrap_or(self.window_us)))
+            Some((offset, self.vote(heard, sender, offset), heard.echo_us.unwrap_or(self.window_us)))
         });
         let offsets: Vec<_> = offsets.collect();
         let mut visible = 0_u128;
         for ms in 0..128 {
             let travel_us = 1000 * i64::from(ms) + 500;
-            let is_seen = |&&(offset, edge): &&(i64, i64)| (self.dead_us..=edge).contains(&(offset + travel_us));
-            let mut seen: Vec<_> = offsets.iter().filter(is_seen).map(|seen| seen.0).collect();
-            seen.sort_unstable();
-            let apart = if sender == self.receiver { seen.len() } else { groups(&seen, 2 * self.tolerance).len() };
-            visible |= u128::from(apart >= 2) << ms;
+            let is_seen =
+                |&&(offset, _, edge): &&(i64, i64, i64)| (self.dead_us..=edge).contains(&(offset + travel_us));
+            let mut votes: Vec<_> = offsets.iter().filter(is_seen).map(|seen| seen.1).collect();
+            votes.sort_unstable();
+            visible |= u128::from(groups(&votes, 2 * self.tolerance).len() >= 2) << ms;
         }
         (offsets.len() as u32, visible)
     }

@@ -3,8 +3,8 @@ use eeruf_core::{Criterion, Layout, Micros, Requirements, VerifiedSchedule, sche
 // 12 sensors, T_p = 65 ms; t_delta = 999 us, 4 adjacent sensors of a line at least 15 ms apart, listening for 30 ms.
 pub const RING: VerifiedSchedule<12> = schedule! {
     period_us: 65_000,
-    t_fire_a_us: [20_000, 3_000, 35_000, 50_000, 18_000, 3_000, 35_000, 52_000, 20_000, 5_000, 35_000, 50_000],
-    t_fire_b_us: [30_000, 15_000, 0, 53_000, 38_000, 21_000, 4_000, 53_000, 36_000, 19_000, 2_000, 55_000],
+    t_fire_a_us: [5_000, 50_000, 35_000, 20_000, 5_000, 50_000, 35_000, 20_000, 5_000, 52_000, 37_000, 22_000],
+    t_fire_b_us: [15_000, 49_000, 0, 34_000, 17_000, 55_000, 2_000, 40_000, 23_000, 55_000, 6_000, 38_000],
     meets: Requirements {
         t_delta: Micros::new(999),
         criterion: Criterion::Exact,

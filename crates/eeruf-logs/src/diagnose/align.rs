@@ -72,7 +72,8 @@ impl fmt::Display for AlignError {
             ),
             Self::Unlike { moves: (explained, of) } => write!(
                 f,
-                "of {of} moves of readings from phase to phase it explains {explained}, as many as accidents may; \
+                "of {of} moves of readings from phase to phase it explains {explained}, no more than another \
+                 schedule may; \
                  expected the schedule that the ring fired by, and sensors that hear each other"
             ),
         }
@@ -89,6 +90,9 @@ const JUMPS: f64 = 0.25;
 const AGREE: usize = 3;
 /// More accidents than this, and nothing is known.
 const ACCIDENTS: f64 = 0.01;
+/// The schedule explains at least this share of the moves. One of another step shares some moves with it, all multiples
+/// of both steps, and explains up to a fifth; that is more than accidents do.
+const EXPLAINS: f64 = 1.0 / 3.0;
 /// So many moves would say whether it is the schedule. Two phases give fewer: a sensor mostly reads its own echo in one and
 /// another's sound in the other, and that move depends on lengths of paths, which nobody knows.
 const ENOUGH: u32 = 20;
@@ -150,7 +154,7 @@ pub fn align(
     let widest = observed.iter().map(|observed| observed.2.abs()).max().unwrap_or(0).max(10 * tolerance);
     let chance = (f64::from(sensors) * (2 * tolerance + 1) as f64 / (2 * widest) as f64).min(0.9);
     let accidents = f64::from(phases) * ln_at_least(hits, of, chance).exp();
-    let is_known = accidents <= ACCIDENTS;
+    let is_known = accidents <= ACCIDENTS && f64::from(hits) >= EXPLAINS * f64::from(of);
     if !is_known && of >= ENOUGH {
         return Err(AlignError::Unlike { moves: (hits, of) });
     }

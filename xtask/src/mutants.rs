@@ -209,7 +209,7 @@ pub(crate) fn run(plan: &Plan) -> ExitCode {
         return ExitCode::FAILURE;
     }
     match try_all(plan) {
-        Ok(missed) if missed == 0 => ExitCode::SUCCESS,
+        Ok(0) => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
         Err(message) => {
             eprintln!("{message}");

@@ -67,10 +67,11 @@ impl Found {
             ::mcap::records::Record::Schema { header, .. } if header.name == FIRING => {
                 self.schemas.insert(header.id);
             }
-            ::mcap::records::Record::Channel(channel) if self.schemas.contains(&channel.schema_id) => {
-                if self.channels.iter().all(|known| known.0 != channel.id) {
-                    self.channels.push((channel.id, channel.topic));
-                }
+            ::mcap::records::Record::Channel(channel)
+                if self.schemas.contains(&channel.schema_id)
+                    && self.channels.iter().all(|known| known.0 != channel.id) =>
+            {
+                self.channels.push((channel.id, channel.topic));
             }
             ::mcap::records::Record::Message { header, data } => {
                 let id = header.channel_id;

@@ -189,7 +189,7 @@ fn paths<'py>(py: Python<'py>, paths: &[FoundPath]) -> PyResult<Bound<'py, PyDic
 /// Which sensors fool each other, from columns.
 #[pyfunction]
 #[pyo3(name = "_diagnose")]
-#[expect(clippy::too_many_arguments, reason = "each of them once, from one place")]
+#[expect(clippy::too_many_arguments, clippy::needless_pass_by_value, reason = "from one place, as PyO3 gives them")]
 pub(crate) fn diagnose<'py>(
     py: Python<'py>,
     sensor: PyReadonlyArray1<'py, i64>,
@@ -235,7 +235,7 @@ fn fault(fault: &Fault) -> Option<(&'static str, Vec<u8>)> {
 /// Who hears whom, from the columns of a measuring run.
 #[pyfunction]
 #[pyo3(name = "_survey")]
-#[expect(clippy::too_many_arguments, reason = "each of them once, from one place")]
+#[expect(clippy::too_many_arguments, clippy::needless_pass_by_value, reason = "from one place, as PyO3 gives them")]
 pub(crate) fn survey<'py>(
     py: Python<'py>,
     sensor: PyReadonlyArray1<'py, i64>,

@@ -177,10 +177,10 @@ pub fn align(
 fn moves(readings: &BTreeMap<(u8, u32), (u8, i64)>, tolerance: i64) -> Vec<(u8, u8, i64)> {
     let mut by = BTreeMap::<(u8, u8), Vec<i64>>::new();
     for (&(sensor, period), &(phase, echo)) in readings {
-        if let Some((_, next)) = period.checked_add(1).and_then(|period| readings.get(&(sensor, period))) {
-            if (next - echo).abs() > 2 * tolerance {
-                by.entry((sensor, phase)).or_default().push(next - echo);
-            }
+        if let Some((_, next)) = period.checked_add(1).and_then(|period| readings.get(&(sensor, period)))
+            && (next - echo).abs() > 2 * tolerance
+        {
+            by.entry((sensor, phase)).or_default().push(next - echo);
         }
     }
     let mut observed = Vec::new();

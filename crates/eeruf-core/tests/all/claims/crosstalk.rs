@@ -68,7 +68,8 @@ fn readings_of_crosstalk(
                 now += *stall;
             }
         }
-        while let Some(at) = arrivals.pop_front_if(|at| now.has_reached(*at)) {
+        while let Some(&at) = arrivals.front().filter(|at| now.has_reached(**at)) {
+            arrivals.pop_front();
             ring.echo(receiver, at).unwrap();
         }
         while let Some(event) = ring.poll(now) {

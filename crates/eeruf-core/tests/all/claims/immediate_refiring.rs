@@ -35,7 +35,8 @@ fn readings_of_y(t_echo: u32, path: u32, lag_y: u32, x: Waits, y: Waits) -> Vec<
     for _ in 0..400 {
         let mut now = ring.next_deadline();
         // Sound that arrives before the ring wants to be polled again interrupts its sleep.
-        if let Some(at) = heard.pop_front_if(|at: &mut Instant| now.has_reached(*at)) {
+        if let Some(&at) = heard.front().filter(|at: &&Instant| now.has_reached(**at)) {
+            heard.pop_front();
             now = at;
             ring.echo(1, at).unwrap();
         }

@@ -232,8 +232,7 @@ fn emulator(board: &Board, image: &Path, shift: u32) -> Command {
 
 /// The boards' rings in the simulated world, in lock step with the host's; the tables that come of it.
 fn in_the_loop() -> Result<String, Trouble> {
-    // With the features of the whole workspace, as built for the tests.
-    run(Command::new("cargo").args(["build", "--quiet", "--locked", "--workspace", "--bin", HARNESS]))?;
+    crate::program::build(&["--bin", HARNESS])?;
     let mut harness = Command::new(format!("target/debug/{HARNESS}{EXE_SUFFIX}"));
     harness.arg("scenes/alcove-hc-sr04.toml");
     for board in &BOARDS {

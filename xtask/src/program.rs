@@ -18,6 +18,12 @@ pub(crate) fn example(name: &str) -> Result<PathBuf, Trouble> {
 }
 
 fn built(what: &[&str], file: &str) -> Result<PathBuf, Trouble> {
-    run(Command::new("cargo").args(["build", "--quiet", "--locked", "--workspace"]).args(what))?;
+    build(what)?;
     std::path::absolute(format!("target/debug/{file}{EXE_SUFFIX}")).map_err(|error| Trouble::Failed(error.to_string()))
+}
+
+/// Builds binaries or examples of the workspace as they were built for the tests. A test is among them, since only then
+/// dependencies have the features that tests ask for.
+pub(crate) fn build(what: &[&str]) -> Result<(), Trouble> {
+    run(Command::new("cargo").args(["build", "--quiet", "--locked", "--workspace", "--test", "line"]).args(what))
 }

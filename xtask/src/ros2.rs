@@ -17,10 +17,8 @@ pub(crate) fn ros2() -> Result<(), Trouble> {
     }
     let emulator = crate::firmware::serial_board()?;
     let python = environment()?;
-    // With the features of the whole workspace, as built for the tests.
     let programs = ["eeruf-ros2", "eeruf-hil", "eeruf"];
-    let bins = programs.iter().flat_map(|program| ["--bin", program]);
-    run(Command::new("cargo").args(["build", "--quiet", "--locked", "--workspace"]).args(bins))?;
+    crate::program::build(&programs.map(|program| ["--bin", program]).concat())?;
     let mut tests = Command::new(python);
     tests.args(["-m", "pytest", "tests/ros2"]).env("EERUF_EMULATOR", emulator);
     for (program, variable) in programs.iter().zip(["EERUF_ROS2", "EERUF_HIL", "EERUF_PROGRAM"]) {

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, cast
 
 from eeruf import _eeruf
 from eeruf._eeruf import LogError
@@ -309,7 +309,11 @@ def diagnose(
 
     """
     return Diagnosis(
-        **_eeruf._diagnose(**_firings(log).columns(), tolerance_us=tolerance_us, max_travel_us=max_travel_us)
+        **_eeruf._diagnose(
+            **cast("dict[str, NDArray[Any]]", _firings(log).columns()),
+            tolerance_us=tolerance_us,
+            max_travel_us=max_travel_us,
+        )
     )
 
 
@@ -333,4 +337,8 @@ def survey(log: Firings | str | os.PathLike[str], *, tolerance_us: int = 100, un
         [7000.0]
 
     """
-    return Surveyed(**_eeruf._survey(**_firings(log).columns(), tolerance_us=tolerance_us, until_us=until_us))
+    return Surveyed(
+        **_eeruf._survey(
+            **cast("dict[str, NDArray[Any]]", _firings(log).columns()), tolerance_us=tolerance_us, until_us=until_us
+        )
+    )

@@ -3,8 +3,9 @@
 use eeruf_core::{HoppingRing, Instant, Micros, Ring, RingEvent, Scheduler, SensorError};
 
 /// A ring that an [`HcSr04Ring`](crate::HcSr04Ring) can drive: [`Ring`], and [`HoppingRing`], of which no sensor stays
-/// blind. Each function does what the ring's own of the same name does.
-pub trait EchoRing {
+/// blind. It has up to `K` sensors, as many as the driver has pins. Each function does what the ring's own of the same
+/// name does.
+pub trait EchoRing<const K: usize> {
     /// The next event, if there is one at `now`; see [`Ring::poll_expecting`].
     fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent>;
     /// When to poll next.
@@ -43,7 +44,7 @@ pub trait EchoRing {
 /// Hands everything on to the ring's own functions; rings differ in how they say how soon a sensor fires again.
 macro_rules! echo_ring {
     ([$($generics:tt)*] $ring:ty, $min_refire:expr) => {
-        impl<$($generics)*> EchoRing for $ring {
+        impl<$($generics)*> EchoRing<K> for $ring {
             fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
                 self.poll_expecting(now, expected_change_us)
             }

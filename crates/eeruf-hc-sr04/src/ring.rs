@@ -21,7 +21,7 @@ pub struct HcSr04Ring<R, T, I, D, const K: usize> {
     lines: Lines<T, I, D, K>,
 }
 
-impl<R: EchoRing, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04Ring<R, T, I, D, K> {
+impl<R: EchoRing<K>, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04Ring<R, T, I, D, K> {
     /// Puts a ring on its pins. Its window should exceed the longest echo by a millisecond, because the line rises only
     /// about half a millisecond after the trigger. The window of a hopping ring must also be as long as the sensors
     /// rest, [`Settings::min_retrigger`](crate::Settings::min_retrigger): it may fire a sensor again once its window

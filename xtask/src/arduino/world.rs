@@ -145,8 +145,12 @@ impl Heard {
         }
     }
 
-    /// What a sketch says in frames, none of which may be damaged or missing; other sketches say none.
-    fn frames(&mut self, line: &[u8], own_mm: &BTreeMap<usize, u32>) -> Result<(), String> {
+    /// What a sketch says in frames, none of which may be damaged or missing; other sketches say none. The simulator
+    /// says before that what it has loaded.
+    fn frames(&mut self, mut line: &[u8], own_mm: &BTreeMap<usize, u32>) -> Result<(), String> {
+        while line.starts_with(b"Loaded ") {
+            line = line.iter().position(|&byte| byte == b'\n').map_or(&[], |end| &line[end + 1..]);
+        }
         let mut decoder = Decoder::default();
         for (frame, awaited) in line.iter().filter_map(|&byte| decoder.push(byte)).zip(0_u16..) {
             let Received { sequence, message } = frame.map_err(|error| error.to_string())?;

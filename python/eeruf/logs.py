@@ -21,10 +21,11 @@ from eeruf._eeruf import LogError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from typing import Any
 
     import numpy as np
-    import pandas as pd
-    import polars as pl
+    import pandas as _pd
+    import polars as _pl
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["Diagnosis", "Firings", "LogError", "Ranges", "Surveyed", "diagnose", "read_firings", "read_log", "survey"]
@@ -37,13 +38,13 @@ class _Columns:
         """Return the columns by their names."""
         return {name: getattr(self, name) for name in self._columns}
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> _pd.DataFrame:
         """Make a pandas data frame, a row for each reading."""
         import pandas as pd
 
         return pd.DataFrame(self.columns())
 
-    def to_polars(self) -> pl.DataFrame:
+    def to_polars(self) -> _pl.DataFrame:
         """Make a polars data frame, a row for each reading."""
         import polars as pl
 

@@ -35,17 +35,41 @@ class _Columns:
     _columns: tuple[str, ...] = ()
 
     def columns(self) -> dict[str, NDArray[np.float64 | np.int64 | np.bool_]]:
-        """Return the columns by their names."""
+        """Return the columns by their names.
+
+        Example:
+            >>> import eeruf
+            >>> log = eeruf.logs.Firings.of(sensor=[0, 1], fired_us=[0, 500], period=[0, 0], phase=[0, 0], t_echo_us=[7000.0, 8000.0])
+            >>> log.columns()["t_echo_us"].tolist()
+            [7000.0, 8000.0]
+
+        """
         return {name: getattr(self, name) for name in self._columns}
 
     def to_pandas(self) -> _pd.DataFrame:
-        """Make a pandas data frame, a row for each reading."""
+        """Make a pandas data frame, a row for each reading.
+
+        Example:
+            >>> import eeruf
+            >>> log = eeruf.logs.Firings.of(sensor=[0, 1], fired_us=[0, 500], period=[0, 0], phase=[0, 0], t_echo_us=[7000.0, 8000.0])
+            >>> log.to_pandas()["sensor"].tolist()
+            [0, 1]
+
+        """
         import pandas as pd
 
         return pd.DataFrame(self.columns())
 
     def to_polars(self) -> _pl.DataFrame:
-        """Make a polars data frame, a row for each reading."""
+        """Make a polars data frame, a row for each reading.
+
+        Example:
+            >>> import eeruf
+            >>> log = eeruf.logs.Firings.of(sensor=[0, 1], fired_us=[0, 500], period=[0, 0], phase=[0, 0], t_echo_us=[7000.0, 8000.0])
+            >>> log.to_polars()["sensor"].to_list()
+            [0, 1]
+
+        """
         import polars as pl
 
         return pl.DataFrame(self.columns())
@@ -90,6 +114,13 @@ class Ranges(_Columns):
 
         Args:
             speed_of_sound: in m/s.
+
+        Example:
+            >>> import eeruf, pathlib, tempfile
+            >>> file = pathlib.Path(tempfile.mkdtemp()) / "log.csv"
+            >>> size = file.write_text("range" + chr(10) + "3.432" + chr(10))
+            >>> eeruf.read_log(file).echo_us().round(3).tolist()
+            [20000.0]
 
         """
         import numpy as np

@@ -71,7 +71,8 @@ def test_a_course_shows_poles_grid_track_and_the_last_place() -> None:
     assert np.array_equal(np.asarray(ax.collections[0].get_array()), run.grid[:, 2])
     circles = [patch for patch in ax.patches if isinstance(patch, matplotlib.patches.Circle)]
     assert [circle.get_center() for circle in circles] == [pytest.approx((9.4, 5.3))]
-    assert ax.get_title(loc="left").startswith("conventional, course 20000: touched something after")
+    ending = {"contact": "touched something", "finished": "finished", "time_out": "not through"}[run.ending]
+    assert ax.get_title(loc="left").startswith(f"conventional, course 20000: {ending} ")
 
 
 def test_a_run_alone_is_drawn_as_well_and_what_is_none_is_refused() -> None:

@@ -82,9 +82,13 @@ def test_an_open_simulation_is_steered_step_by_step() -> None:
     assert 70 < len(first) < len(whole) == 80
     assert np.array_equal(first.t_echo_us, whole.t_echo_us[: len(first)], equal_nan=True)
     each = sim.Simulation(scene, "eeruf", seed=3)
-    for k in range(20):
+    known = 0
+    while known < 20:
+        # Mostly one; windows of sensors that fire together close together.
         reading = each.step_to_reading(1.0)
-        assert (len(reading), reading.sensor[0]) == (1, whole.sensor[k])
+        assert 1 <= len(reading) <= 2
+        assert reading.sensor.tolist() == whole.sensor[known : known + len(reading)].tolist()
+        known += len(reading)
     world.set_velocity(0, v_m_s=0.5, w_rad_s=0.0)
     world.step(1.0)
     assert world.robots[0].pose == pytest.approx((0.5, 0.0, 0.0))
@@ -191,7 +195,9 @@ def test_readings_become_a_polars_frame() -> None:
 
 
 def test_every_reading_of_crosstalk_knows_its_path_and_keeps_it_in_a_pickle() -> None:
-    readings = sim.simulate(sim.Scene.read_toml(SCENES / "alcove.toml"), "conventional", periods=100)
+    # A threshold detector would hear faint echoes later than their sound arrives.
+    scene = sim.Scene.read_toml(SCENES / "alcove.toml").replace(physics="plain")
+    readings = sim.simulate(scene, "conventional", periods=100)
     copy = pickle.loads(pickle.dumps(readings))
     crosstalk = readings.cause == sim.CAUSES.index("crosstalk")
     assert crosstalk.sum() > 100

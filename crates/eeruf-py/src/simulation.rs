@@ -172,6 +172,13 @@ impl Simulation {
     /// Raises:
     ///     ArgumentError: no such time.
     ///     SimulationError: a robot has moved out of the scene's reach.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+    ///     >>> len(world.step_to_reading(0.6)) >= 1, world.time_s < 0.6
+    ///     (True, True)
     #[pyo3(signature = (seconds))]
     fn step_to_reading(&self, seconds: &Bound<'_, PyAny>) -> PyResult<Readings> {
         let py = seconds.py();

@@ -458,6 +458,15 @@ class Reading:
 
 @final
 class PeriodEnded:
+    def __new__(
+        cls,
+        period: _Int,
+        phase: _Int = 0,
+        max_late_us: _Int = 0,
+        sum_late_us: _Int = 0,
+        max_shift_us: _Int = 0,
+        tally: dict[str, int] = {},
+    ) -> PeriodEnded: ...
     @property
     def period(self) -> int: ...
     @property
@@ -566,6 +575,8 @@ class HoppingRing:
     def disable(self, sensor: _Int) -> None: ...
     def enable(self, sensor: _Int) -> None: ...
     def is_enabled(self, sensor: _Int) -> bool: ...
+    def pause(self) -> None: ...
+    def resume(self) -> None: ...
     def restart(self, now_us: _Int) -> None: ...
 
 @final
@@ -689,6 +700,7 @@ class Vfh:
 
 @final
 class Steering:
+    def __new__(cls, direction_rad: float, valley: tuple[int, int] = (0, 72), trapped: bool = False) -> Steering: ...
     @property
     def direction_rad(self) -> float: ...
     @property
@@ -955,6 +967,13 @@ class Readings:
 
 @final
 class RobotState:
+    def __new__(
+        cls,
+        pose: tuple[float, float, float],
+        velocity_m_s: tuple[float, float] = (0.0, 0.0),
+        turn_rad_s: float = 0.0,
+        touches: bool = False,
+    ) -> RobotState: ...
     @property
     def pose(self) -> tuple[float, float, float]: ...
     @property

@@ -217,6 +217,19 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         self.ring.is_enabled(sensor)
     }
 
+    /// Lets no sensor fire until [`resume`](Self::resume); periods go on: see [`Ring::pause`].
+    pub fn pause(&mut self) {
+        self.ring.pause();
+    }
+
+    /// Lets sensors fire again, as of the next period. Their tracks are forgotten.
+    pub fn resume(&mut self) {
+        self.ring.resume();
+        for sensor in 0..self.sensors() {
+            self.tracker.forget(sensor);
+        }
+    }
+
     /// Starts again at `now`: firings under way are dropped, and what is not confirmed has no support.
     pub fn restart(&mut self, now: Instant) {
         self.ring.restart(now);

@@ -3,6 +3,7 @@
 //! `cargo xtask test` runs every check there is, the cheap ones first. A check whose tools are not installed is
 //! skipped, and says loudly what to install; with `--nothing-skipped`, as in CI, that counts as a failure.
 
+mod api;
 mod arduino;
 mod blocks;
 mod c;
@@ -100,6 +101,12 @@ enum Verb {
     Certificates(certificates::Plan),
     /// Pack the crates that are published, and build and test each from its tarball, in a folder of its own (minutes)
     Package,
+    /// Compare the public items of eeruf-core and eeruf-hc-sr04 with those in their api.txt
+    Api {
+        /// Write those files instead
+        #[arg(long)]
+        write: bool,
+    },
     /// Build the documents as one book, with the page and the references for Rust and Python, and follow every link
     Site,
     /// Do everything of a release but uploading, and print what a person must still do (many minutes)
@@ -178,6 +185,7 @@ fn main() -> ExitCode {
             package::package(&mut steps);
             steps.finish(true)
         }
+        Verb::Api { write } => one_step("public items", || api::api(write)),
         Verb::Site => {
             let mut steps = Steps::default();
             site::site(&mut steps);

@@ -10,6 +10,8 @@ mod c;
 mod certificates;
 mod changed;
 mod classic;
+#[cfg(test)]
+mod dependencies;
 mod firmware;
 mod links;
 mod listings;

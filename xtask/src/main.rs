@@ -12,6 +12,7 @@ mod changed;
 mod classic;
 #[cfg(test)]
 mod dependencies;
+mod dist;
 mod firmware;
 mod links;
 mod listings;
@@ -109,6 +110,8 @@ enum Verb {
         #[arg(long)]
         write: bool,
     },
+    /// Build wheels for Linux (glibc and musl, x86_64 and aarch64) and static programs into target/dist (many minutes)
+    Dist(dist::Plan),
     /// Build the documents as one book, with the page and the references for Rust and Python, and follow every link
     Site,
     /// Do everything of a release but uploading, and print what a person must still do (many minutes)
@@ -188,6 +191,11 @@ fn main() -> ExitCode {
             steps.finish(true)
         }
         Verb::Api { write } => one_step("public items", || api::api(write)),
+        Verb::Dist(plan) => {
+            let mut steps = Steps::default();
+            dist::dist(&plan, &mut steps);
+            steps.finish(true)
+        }
         Verb::Site => {
             let mut steps = Steps::default();
             site::site(&mut steps);

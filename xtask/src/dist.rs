@@ -17,7 +17,7 @@ const TARGETS: [(&str, &str); 4] = [
 ];
 /// Where the files of a release lie.
 const DIST: &str = "target/dist";
-/// The environment of the tools from PyPI: maturin, zig as linker and compiler of C for any system, abi3audit.
+/// The environment of the tools from `PyPI`: maturin, zig as linker and compiler of C for any system, abi3audit.
 const TOOLS: &str = "target/dist-tools";
 
 #[derive(clap::Args)]

@@ -16,6 +16,7 @@ mod dist;
 mod firmware;
 mod links;
 mod listings;
+mod materials;
 mod measured;
 mod micropython;
 mod mutants;
@@ -110,8 +111,10 @@ enum Verb {
         #[arg(long)]
         write: bool,
     },
-    /// Build wheels for Linux (glibc and musl, x86_64 and aarch64) and static programs into target/dist (many minutes)
+    /// Build wheels for Linux (glibc and musl, AMD64 and aarch64) and static programs into target/dist (many minutes)
     Dist(dist::Plan),
+    /// Write what is in each published crate, as a bill of materials, into target/materials
+    Materials,
     /// Build the documents as one book, with the page and the references for Rust and Python, and follow every link
     Site,
     /// Do everything of a release but uploading, and print what a person must still do (many minutes)
@@ -196,6 +199,7 @@ fn main() -> ExitCode {
             dist::dist(&plan, &mut steps);
             steps.finish(true)
         }
+        Verb::Materials => one_step("bills of materials", materials::materials),
         Verb::Site => {
             let mut steps = Steps::default();
             site::site(&mut steps);

@@ -38,14 +38,17 @@ pub(crate) fn python() -> Result<(), Trouble> {
     run(&mut tests)
 }
 
-/// Writes the reference, made of docstrings and stubs, into a folder.
+/// Writes the reference, made of docstrings and stubs, into a folder: of the wheel that `EERUF_WHEEL` names, or of one
+/// that is built now.
 pub(crate) fn reference(folder: &Path) -> Result<(), Trouble> {
     let home = Path::new("target/python-reference");
     if !interpreter(home).exists() {
         run(Command::new("python3").args(["-m", "venv"]).arg(home))?;
     }
     let python = interpreter(home);
-    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "pdoc", ".[plot]"]))?;
+    let wheel = std::env::var("EERUF_WHEEL").unwrap_or_else(|_| ".".to_owned());
+    let wheel = format!("{wheel}[plot]");
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--force-reinstall", "pdoc", &wheel]))?;
     run(Command::new(&python)
         .args(["-m", "pdoc", "--docformat", "google", "--output-directory"])
         .arg(folder)
@@ -98,13 +101,37 @@ fn fresh(python: &Path, distribution: &Path) -> Result<(), Trouble> {
     run(Command::new(&program).arg("examples").arg(home))?;
     let study = ["study", "scenes/alcove.toml", "--periods", "100"];
     run(Command::new(&program).args(study).current_dir(home).stdout(std::process::Stdio::null()))?;
-    run(Command::new(&python).args(["-m", "eeruf", "--help"]).stdout(std::process::Stdio::null()))
+    run(Command::new(&python).args(["-m", "eeruf", "--help"]).stdout(std::process::Stdio::null()))?;
+    tutorial(home, &program)
+}
+
+/// Runs what the tutorial says to type, but for how to install, in a folder where a user has the program and no clone.
+fn tutorial(home: &Path, program: &Path) -> Result<(), Trouble> {
+    let text = fs::read_to_string("docs/tutorial.md").map_err(|error| Trouble::Failed(error.to_string()))?;
+    let blocks = text.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let commands: Vec<_> = blocks.flat_map(str::lines).filter(|line| !line.contains(" install ")).collect();
+    let here = std::env::var_os("PATH").unwrap_or_default();
+    let folders = program.parent().map(Path::to_owned).into_iter().chain(std::env::split_paths(&here));
+    let path = std::env::join_paths(folders).map_err(|error| Trouble::Failed(error.to_string()))?;
+    for command in &commands {
+        println!("$ {command}");
+        let mut shell = Command::new("sh");
+        shell.args(["-c", command]).current_dir(home).env("PATH", &path).stdout(std::process::Stdio::null());
+        run(&mut shell)?;
+    }
+    if commands.len() < 3 {
+        Err(Trouble::Failed(format!("few commands in the tutorial: {commands:?}")))
+    } else {
+        Ok(())
+    }
 }
 
 const README_LINES: &str = r#"
 import os, pathlib, re
 lines = re.search(r"^## In Python$.*?^```python\n(.*?)^```$", pathlib.Path("README.md").read_text(), re.M | re.S)[1]
+others = re.search(r"^```python\n(.*?)^```$", pathlib.Path("python/README.md").read_text(), re.M | re.S)[1]
 os.chdir("target/python-fresh")
+exec(others)
 exec(lines)
 assert pathlib.Path("timing.png").stat().st_size > 5_000
 "#;

@@ -52,6 +52,7 @@ pub(crate) fn release(_plan: &Plan) -> ExitCode {
         }
     });
     steps.step("public items", || crate::api::api(false));
+    steps.step("bills of materials", crate::materials::materials);
     crate::package::package(&mut steps);
     steps.step("wheel and source distribution", || crate::python::distributions(Path::new("target/release-files")));
     println!("{}", REMAINS.replace("{VERSION}", &version));

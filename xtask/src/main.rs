@@ -14,6 +14,7 @@ mod classic;
 mod dependencies;
 mod dist;
 mod firmware;
+mod house;
 mod links;
 mod listings;
 mod materials;

@@ -74,3 +74,43 @@ fn pack() -> Result<Vec<String>, Trouble> {
     fs::write(&config, patch).map_err(|error| failed(&config, error))?;
     Ok(crates.into_iter().map(|(name, _)| name).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use cargo_metadata::MetadataCommand;
+
+    #[test]
+    fn each_crate_says_what_a_stranger_asks_or_why_it_is_not_published() {
+        let metadata = MetadataCommand::new().no_deps().exec().unwrap();
+        let mut missing = Vec::new();
+        for package in metadata.workspace_packages() {
+            let name = &package.name;
+            let manifest = fs::read_to_string(&package.manifest_path).unwrap();
+            let mut needs = |what: &str, there: bool| {
+                if !there {
+                    missing.push(format!("{name}: {what}"));
+                }
+            };
+            if package.publish.is_some() {
+                let lines: Vec<_> = manifest.lines().collect();
+                let at = lines.iter().position(|line| *line == "publish = false").unwrap();
+                needs("the reason above `publish = false`", lines[at - 1].starts_with("# "));
+                continue;
+            }
+            let folder = package.manifest_path.parent().unwrap();
+            for file in ["README.md", "LICENSE-MIT", "LICENSE-APACHE"] {
+                needs(file, fs::metadata(folder.join(file)).is_ok_and(|file| file.len() > 500));
+            }
+            needs("documentation", package.documentation.is_some());
+            needs("description", package.description.is_some());
+            needs("repository", package.repository.is_some());
+            needs("licence", package.license.is_some());
+            needs("keywords", !package.keywords.is_empty());
+            needs("categories", !package.categories.is_empty());
+            needs("docs.rs with all features", package.metadata["docs"]["rs"]["all-features"] == true);
+        }
+        assert!(missing.is_empty(), "{missing:#?}");
+    }
+}

@@ -51,6 +51,8 @@ pub(crate) fn release(_plan: &Plan) -> ExitCode {
             None => Err(Trouble::Skipped("no cargo-deny; try: cargo install cargo-deny --locked".to_owned())),
         }
     });
+    steps.step("public items", || crate::api::api(false));
+    steps.step("bills of materials", crate::materials::materials);
     crate::package::package(&mut steps);
     steps.step("wheel and source distribution", || crate::python::distributions(Path::new("target/release-files")));
     println!("{}", REMAINS.replace("{VERSION}", &version));

@@ -23,6 +23,12 @@ pub struct FoundJson {
     /// Why nothing is better; only `design` says it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// The shortest period over the reals in microseconds, as numerator and denominator; only where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub real_period_us: Option<(u64, u64)>,
+    /// Whether no real period is shorter.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub real_proven: Option<bool>,
 }
 
 impl FoundJson {
@@ -36,6 +42,8 @@ impl FoundJson {
             nodes: found.nodes,
             seconds,
             reason: None,
+            real_period_us: None,
+            real_proven: None,
         }
     }
 }

@@ -67,6 +67,9 @@ pub(crate) struct Args {
     /// How many nodes to search at most before giving the best schedule so far
     #[arg(long, default_value_t = 50_000_000, value_name = "NODES")]
     budget: u64,
+    /// Search even where the atlas knows the shortest period
+    #[arg(long)]
+    no_atlas: bool,
     /// How long to search at most before giving the best schedule so far, in seconds; as long again for the certificate
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
@@ -116,7 +119,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         };
         watch.control_flow(how_far)
     };
-    let search = Search { budget: args.budget, what_if: args.form().is_none() };
+    let search = Search { budget: args.budget, what_if: args.form().is_none(), atlas: !args.no_atlas };
     let design = match spec.shortest(&search, &mut control).map_err(bad)? {
         Ok(design) => design,
         Err(none) => {
@@ -181,11 +184,8 @@ fn over_reals(args: &Args, design: &RingDesign, watch: &mut Watch) -> Option<Rea
     if !is_printed && args.certificate_over_reals.is_none() {
         return None;
     }
-    let budget = if args.certificate_over_reals.is_some() {
-        args.certificate_budget
-    } else {
-        real_budget(design.spec.sensors)
-    };
+    let budget =
+        if args.certificate_over_reals.is_some() { args.certificate_budget } else { real_budget(design.spec.sensors) };
     watch.begin_again();
     design.over_reals(budget, |nodes| watch.go_on(|| format!("over the reals: {nodes} nodes")))
 }

@@ -90,11 +90,11 @@ pub(crate) fn describe(
             format!("{:.2} times Table I-d scaled to the same needs ({:.1} a second)", paper / us, rate(paper)),
         ]);
     }
-    table.add_row([
-        "search".to_owned(),
-        format!("{:.1} ms", 1000.0 * seconds),
-        format!("{} nodes, and {} for the choice", found.nodes, preferred.map_or(0, |p| p.nodes)),
-    ]);
+    let from = match design.from_atlas {
+        true => "from the atlas, verified; --no-atlas searches".to_owned(),
+        false => format!("{} nodes, and {} for the choice", found.nodes, preferred.map_or(0, |p| p.nodes)),
+    };
+    table.add_row(["search".to_owned(), format!("{:.1} ms", 1000.0 * seconds), from]);
 
     let mut text = format!("{name}: {} sensors, {}\n{table}\n", spec.sensors, requirements.layout);
     _ = writeln!(text, "\nNot shorter because of {}.", design.reason);

@@ -10,6 +10,7 @@
 //! | `find`, `find_uneven` | the shortest period for it, and what would make it shorter |
 //! | `found` | the answer as it is printed in JSON |
 //! | `hopping` | schedules of many phases: the file, and the shortest period |
+//! | `atlas` | rings whose shortest period is known |
 //! | `ticks`, `certificate` | the problem in ticks, and the proof, as a text that others check |
 //! | `reals` | what the tick costs: the shortest period over the reals |
 //!
@@ -24,6 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod atlas;
 pub mod certificate;
 mod each;
 mod find;

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from eeruf._results import Summary
 from eeruf._types import HeardPaths
+from eeruf.logs import Firings
 
 # Whole numbers: Python's and NumPy's.
 _Int = SupportsIndex
@@ -17,7 +18,6 @@ _Each = _Int | Iterable[_Int]
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.int64]
 _Codes = NDArray[np.int8]
-_Bools = NDArray[np.bool_]
 _Layout = Literal["line", "ring", "blocks"] | Iterable[tuple[_Int, _Int]]
 _Criterion = Literal["exact", "paper"]
 _Progress = bool | Callable[[float | None, str], object] | None
@@ -1047,25 +1047,5 @@ def _read_log(
     no_echo_m: float,
 ) -> dict[str, Any]: ...
 def _read_firings(path: str) -> dict[str, Any]: ...
-def _diagnose(
-    sensor: _Ints,
-    fired_us: _Ints,
-    period: _Ints,
-    phase: _Ints,
-    rejected: _Ints,
-    t_echo_us: _Floats,
-    sends: _Bools,
-    tolerance_us: _Int,
-    max_travel_us: _Int,
-) -> dict[str, Any]: ...
-def _survey(
-    sensor: _Ints,
-    fired_us: _Ints,
-    period: _Ints,
-    phase: _Ints,
-    rejected: _Ints,
-    t_echo_us: _Floats,
-    sends: _Bools,
-    tolerance_us: _Int,
-    until_us: _Int,
-) -> dict[str, Any]: ...
+def _diagnose(firings: Firings, tolerance_us: _Int, max_travel_us: _Int) -> dict[str, Any]: ...
+def _survey(firings: Firings, tolerance_us: _Int, until_us: _Int) -> dict[str, Any]: ...

@@ -10,6 +10,7 @@ mod certificates;
 mod changed;
 mod classic;
 mod firmware;
+mod house;
 mod links;
 mod listings;
 mod measured;

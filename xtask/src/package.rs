@@ -28,7 +28,9 @@ pub(crate) fn package(steps: &mut Steps) {
             for verb in ["build", "test"] {
                 let mut cargo = Command::new("cargo");
                 cargo.args([verb, "--all-features", "--manifest-path"]).arg(&manifest);
-                run(cargo.current_dir(folder()).env("CARGO_TARGET_DIR", folder().join("target")))?;
+                // Nobody debugs what is built here, and it would take gigabytes.
+                cargo.env("CARGO_PROFILE_DEV_DEBUG", "0").env("CARGO_TARGET_DIR", folder().join("target"));
+                run(cargo.current_dir(folder()))?;
             }
             Ok(())
         });
@@ -63,9 +65,9 @@ fn pack() -> Result<Vec<String>, Trouble> {
         run(Command::new("tar").args(["-xzf", tarball.as_str(), "-C"]).arg(&folder))?;
         let unpacked = folder.join(format!("{name}-{version}"));
         fs::rename(&unpacked, folder.join(name)).map_err(|error| failed(&unpacked, error))?;
-        // It names crates that are not published yet.
+        // Its own names crates that are not published yet; ours has the same versions of all others.
         let lock = folder.join(name).join("Cargo.lock");
-        fs::remove_file(&lock).map_err(|error| failed(&lock, error))?;
+        fs::copy("Cargo.lock", &lock).map_err(|error| failed(&lock, error))?;
         patch += &format!("{name} = {{ path = {:?} }}\n", folder.join(name));
     }
     let config = folder.join(".cargo/config.toml");

@@ -14,6 +14,7 @@ const BARE_TARGETS: [&str; 1] = ["thumbv6m-none-eabi"];
 pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     let mut steps = Steps::default();
     steps.step("formatting", || run_cargo(&["fmt", "--all", "--check"]));
+    steps.step("rules of the house", crate::house::check);
     steps.step("listings of the documents", crate::listings::check_all);
     steps.step("links of the documents", crate::links::check_documents);
     steps.step("clippy", || {

@@ -3,8 +3,8 @@
 //! Prints two tables in Markdown: how the boards' rings agree with the host's, and what each fault did. Leaves with 1
 //! if anything is not as it must be.
 //!
-//! `eeruf-hil SCENE --one FAULT PERIODS --board NAME EMULATOR ..`: one run at the pace of the clock on the wall, as it is
-//! needed to test what listens to the board's serial line. Prints what the ring read, as CSV.
+//! `eeruf-hil SCENE --one FAULT PERIODS --board NAME EMULATOR ..`: one run at the pace of the clock on the wall, as it
+//! is needed to test what listens to the board's serial line. Prints what the ring read, as CSV.
 
 mod control;
 mod emulator;

@@ -9,6 +9,7 @@ mod c;
 mod certificates;
 mod changed;
 mod classic;
+mod examples;
 mod firmware;
 mod links;
 mod listings;
@@ -66,6 +67,12 @@ enum Verb {
     C,
     /// Pack the Arduino library, build its examples, and run them on a simulated Uno among simulated modules
     Arduino(arduino::Plan),
+    /// Build the programs in examples/ that one flashes onto a board (minutes)
+    Examples {
+        /// Only this one: uno, pico, nucleo-f401 or esp32-c3
+        #[arg(value_name = "BOARD")]
+        board: Option<String>,
+    },
     /// Run the tests of c/micropython in MicroPython's WebAssembly build and in CPython
     Micropython,
     /// Run NewPing beside the Arduino library on a simulated Uno, and print the table that docs/arduino.md shows
@@ -135,6 +142,11 @@ fn main() -> ExitCode {
         Verb::Arduino(plan) => {
             let mut steps = Steps::default();
             arduino::arduino(&plan, &mut steps);
+            steps.finish(true)
+        }
+        Verb::Examples { board } => {
+            let mut steps = Steps::default();
+            examples::examples(board.as_deref(), &mut steps);
             steps.finish(true)
         }
         Verb::Micropython => one_step("MicroPython", micropython::micropython),

@@ -1,10 +1,16 @@
-//! The C library in `c/`, behind safe functions of numbers, for the tests that compare it with the Rust crates.
+//! The C library in `c/`, behind safe functions of numbers, and what compares it with the Rust crates: rings of each kind
+//! that both run, given the same random numbers, and that must say the same. The tests draw the numbers from seeds, the
+//! fuzz target from bytes.
 //!
 //! Nothing here is for others: firmware in Rust uses `eeruf-core`, firmware in C uses `c/eeruf.h`.
 
 mod border;
 pub mod core_side;
+pub mod hopping;
+pub mod modules;
 mod random;
+pub mod ring;
+pub mod world;
 
 use std::ffi::c_void;
 

@@ -79,9 +79,17 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
     numbers.extend(small.map(u32::from));
     numbers.extend([s.solo_after, s.solo_spacing, s.shift_after, s.shift_spacing, s.neighbours].map(u32::from));
     let lags: Option<[Micros; K]> = r.once_in(2).then(|| [(); K].map(|()| Micros::new(r.within(0, period / 2))));
+    // Mostly the ordinary code, else any, and the one whose period may be shortest.
+    let any_code = HoppingCode::of(K, phases, r.one_of(&[0, r.within(0, 70) as u8]), Micros::new(step));
+    let shortest = HoppingCode::shortest(K, phases, Micros::new(step));
+    let (phases, code, rust) = match (r.within(0, 3), &any_code, &shortest) {
+        (0, Ok(code), _) | (1, _, Ok(code)) => (code.phases(), 1 + code.first_multiplier(), Ok(*code)),
+        _ => (phases, 0, HoppingCode::new(K, phases, Micros::new(step))),
+    };
+    numbers.push(code.into());
     numbers.extend(lags.iter().flatten().map(|lag| lag.as_micros()));
     let status = c.hopping(K as u8, phases, &numbers, start);
-    let rust = HoppingCode::new(K, phases, Micros::new(step)).and_then(|code| {
+    let rust = rust.and_then(|code| {
         let schedule = match lags {
             Some(lags) => HoppingSchedule::<K>::new(code, Micros::new(period), lags)?,
             None => HoppingSchedule::spread(code, Micros::new(period), s.neighbours)?,

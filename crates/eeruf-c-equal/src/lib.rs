@@ -185,8 +185,8 @@ impl C {
 
     /// `eeruf_hopping_init`, with the numbers in the order that `shim.c` names.
     pub fn hopping(&mut self, sensors: u8, phases: u8, numbers: &[u32], now_us: u32) -> i32 {
-        assert!(numbers.len() == 21 || numbers.len() == 21 + usize::from(sensors));
-        let has_lags = u8::from(numbers.len() > 21);
+        assert!(numbers.len() == 22 || numbers.len() == 22 + usize::from(sensors));
+        let has_lags = u8::from(numbers.len() > 22);
         // SAFETY: as many numbers as are read.
         unsafe { border::shim_hopping(self.0, sensors, phases, numbers.as_ptr(), has_lags, now_us) }
     }

@@ -22,7 +22,8 @@ use crate::report::watch::Watch;
 /// Find the schedule with the shortest period for a ring of sensors, and prove that none is shorter.
 ///
 /// With --phases it is one of many phases, for a ring that hops in time and whose sensors do not stay blind: a linear
-/// congruence with lags, and the bound that holds for any such schedule.
+/// congruence with lags, and the bound that holds for any such schedule; --emit rust, c and arduino then write all that
+/// a hopping ring is set up with.
 ///
 /// The ring file says how many sensors there are (sensors, layout, neighbours) and what they need: t_delta_us,
 /// min_interval_us, window_us; or jitter_us and speed_m_s, crosstalk_range_m, max_range_m and retrigger_us,
@@ -197,9 +198,6 @@ fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, Input
                         moves, by odometry"
             .to_owned()));
     }
-    if matches!(args.form(), Some(Form::Arduino)) {
-        return Err(bad("--emit arduino; expected toml, rust, c or json with --phases".to_owned()));
-    }
     let margin = |us| PhaseCriterion::Margin(Micros::new(us));
     let criterion = args.margin_us.map_or(PhaseCriterion::Exact, margin);
     let design = spec.hopping(phases, criterion).map_err(bad)?;
@@ -211,9 +209,9 @@ fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, Input
         Some(Form::Toml) => print!("{}", design.schedule.to_toml()),
         Some(Form::Rust) => print!("{}", design.schedule.to_rust(&requirements)),
         Some(Form::C) => print!("{}", design.schedule.to_c(&requirements)),
+        Some(Form::Arduino) => print!("{}", design.schedule.to_arduino(&requirements, "RING")),
         Some(Form::Json) => println!("{}", to_json(&DesignJson::from(&design))),
-        // Arduino was refused.
-        _ => print!("{}", describe_design(&args.file.display().to_string(), spec, &requirements, &design)),
+        None => print!("{}", describe_design(&args.file.display().to_string(), spec, &requirements, &design)),
     }
     Ok(Answer::Yes)
 }

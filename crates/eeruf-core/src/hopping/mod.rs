@@ -29,7 +29,7 @@ use crate::time::Instant;
 use crate::tracker::{EchoTracker, Firing};
 
 pub use code::HoppingCode;
-pub use emit::{HoppingHeader, HoppingRust, HoppingToml};
+pub use emit::{HoppingHeader, HoppingRust, HoppingTab, HoppingToml};
 pub use error::HoppingError;
 pub use firing::HoppingFiring;
 pub use schedule::HoppingSchedule;

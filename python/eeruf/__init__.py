@@ -66,7 +66,7 @@ from eeruf._eeruf import (
     example,
 )
 from eeruf._sweep import sweep
-from eeruf.logs import diagnose, read_firings, read_log, survey
+from eeruf.logs import diagnose, read_firings, read_log, replay, survey
 
 if TYPE_CHECKING:
     from eeruf import experiments, plot
@@ -117,6 +117,7 @@ __all__ = [
     "plot",
     "read_firings",
     "read_log",
+    "replay",
     "show_versions",
     "sim",
     "survey",

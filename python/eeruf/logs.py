@@ -27,13 +27,25 @@ if TYPE_CHECKING:
     import polars as _pl
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Diagnosis", "Firings", "LogError", "Ranges", "Surveyed", "diagnose", "read_firings", "read_log", "survey"]
+__all__ = [
+    "Diagnosis",
+    "Firings",
+    "LogError",
+    "Ranges",
+    "Replayed",
+    "Surveyed",
+    "diagnose",
+    "read_firings",
+    "read_log",
+    "replay",
+    "survey",
+]
 
 
 class _Columns:
     _columns: tuple[str, ...] = ()
 
-    def columns(self) -> dict[str, NDArray[np.float64 | np.int64 | np.bool_]]:
+    def columns(self) -> dict[str, NDArray[np.float64 | np.int64 | np.int8 | np.bool_]]:
         """Return the columns by their names.
 
         Example:
@@ -226,6 +238,38 @@ class Diagnosis:
 
 
 @dataclass(frozen=True, eq=False)
+class Replayed(_Columns):
+    """What the tracker of a hopping ring makes of each firing of the ring's log: arrays of equal length, by time of firing.
+
+    ``kind`` is an index into ``eeruf.KINDS``, as is ``logged``, what the log says that the ring made of it (-1 where it does not
+    say). ``age`` is how many firings of the sensor ago a reading was last accepted, -1 if none was. ``damage`` says what of the file
+    could not be read.
+
+    Example:
+        >>> import eeruf, pathlib, tempfile
+        >>> file = pathlib.Path(tempfile.mkdtemp()) / "log.csv"
+        >>> head = "sensor,fired_us,period,phase,t_echo_us,reading,solo,steady,changes"
+        >>> rows = [f"0,{60_000 * n},{n},{n},7000,,0,1,0" for n in range(6)]
+        >>> size = file.write_text(chr(10).join([head, *rows]))
+        >>> eeruf.replay(file).age.tolist()
+        [-1, 0, 0, 0, 0, 0]
+
+    """
+
+    sensor: NDArray[np.int64]
+    fired_us: NDArray[np.int64]
+    period: NDArray[np.int64]
+    phase: NDArray[np.int64]
+    t_echo_us: NDArray[np.float64]
+    kind: NDArray[np.int8]
+    age: NDArray[np.int64]
+    logged: NDArray[np.int8]
+    damage: str | None
+
+    _columns = ("sensor", "fired_us", "period", "phase", "t_echo_us", "kind", "age", "logged")
+
+
+@dataclass(frozen=True, eq=False)
 class Surveyed:
     """What a measuring run found.
 
@@ -308,6 +352,39 @@ def read_firings(path: str | os.PathLike[str]) -> Firings:
 
     """
     return Firings(**_eeruf._read_firings(os.fspath(path)))
+
+
+def replay(
+    path: str | os.PathLike[str],
+    t_delta_us: int | None = None,
+    *,
+    settings: _eeruf.HoppingSettings | str = "balanced",
+) -> Replayed:
+    """Run the tracker of a hopping ring again over the ring's own log of firings.
+
+    With the settings of the ring, it accepts exactly what the ring accepted. The log says how each reading was weighed, as one that
+    ``eeruf study --method eeruf_hopping --log`` writes does; docs/diagnose.md has the columns.
+
+    Args:
+        path: the log, CSV or MCAP.
+        t_delta_us: another ``T_delta`` than that of the settings.
+        settings: a :class:`HoppingSettings`, or the name of one.
+
+    Raises:
+        LogError: the log cannot be read, or does not say how readings were weighed.
+        HoppingError: settings that contradict each other.
+
+    Example:
+        >>> import eeruf, pathlib, tempfile
+        >>> file = pathlib.Path(tempfile.mkdtemp()) / "log.csv"
+        >>> head = "sensor,fired_us,period,phase,t_echo_us,reading,solo,steady,changes"
+        >>> rows = [f"0,{60_000 * n},{n},{n},7000,,0,1,0" for n in range(6)]
+        >>> size = file.write_text(chr(10).join([head, *rows]))
+        >>> [eeruf.KINDS[kind] for kind in eeruf.replay(file).kind]
+        ['first', 'tentative', 'tentative', 'tentative', 'accepted', 'accepted']
+
+    """
+    return Replayed(**_eeruf._replay(os.fspath(path), t_delta_us, settings))
 
 
 def _firings(log: Firings | str | os.PathLike[str]) -> Firings:

@@ -2,16 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
-use eeruf_core::{EchoFilter, FilterError, Micros, ReadingKind, Verdict};
+use eeruf_core::{EchoFilter, FilterError, Instant, Micros, RateFilter, ReadingKind, SensorError, Verdict};
 use eeruf_logs::{Echo, McapWriter, Options, RangeUnit, Reading, Report, Sensor, Table, TimeUnit, read_log};
 
 use super::answer::Answer;
+use super::hopping::Hopping;
+use super::replay_hopping::replay_hopping;
 use crate::files::error::InputError;
 use crate::report::draw;
 use crate::report::json::to_json;
 use crate::report::replay::{Column, Counted, Counts, Replay, table};
 
 /// Run the filter over a log of real readings: which would it have accepted?
+///
+/// With --hopping, the tracker of a hopping ring over the ring's own log of firings, as `eeruf study --method
+/// eeruf_hopping --log` writes it.
 ///
 /// The log is an MCAP file, a ROS 2 bag (its folder), a ROS 1 bag or a CSV file. Of bags, sensor_msgs/Range and
 /// LaserScan (up to 64 beams) are read from all topics; a sensor is a topic and a frame, times are those of the
@@ -25,9 +30,14 @@ pub(crate) struct Args {
     /// The log
     #[arg(value_name = "LOG")]
     file: PathBuf,
-    /// T_delta: consecutive readings that differ by no more are near-identical
-    #[arg(long, value_name = "N")]
-    t_delta_us: u32,
+    /// T_delta: consecutive readings that differ by no more are near-identical; with --hopping by default that of the
+    /// settings
+    #[arg(long, value_name = "N", required_unless_present = "hopping")]
+    t_delta_us: Option<u32>,
+    /// The log is that of a hopping ring's firings: run the tracker over it, with these settings
+    #[arg(long, value_name = "SETTING")]
+    #[arg(conflicts_with_all = ["no_echo_m", "consecutive", "max_speed", "time", "time_unit", "range", "range_unit", "sensor", "svg"])]
+    hopping: Option<Hopping>,
     /// In m/s, to turn ranges back into echo times
     #[arg(long, default_value_t = 343.2, value_name = "C", value_parser = positive)]
     speed_of_sound: f64,
@@ -37,6 +47,10 @@ pub(crate) struct Args {
     /// How many readings running must agree
     #[arg(long, default_value_t = 2, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=8))]
     consecutive: u8,
+    /// Without odometry, for a robot that drives at up to V m/s: instead of two readings that agree, three must lie on a
+    /// line, within t_delta, so that echoes may change at any constant rate; the log must have times
+    #[arg(long, value_name = "V", value_parser = speed, conflicts_with = "consecutive")]
+    max_speed: Option<f64>,
     /// CSV: the column with the time
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
@@ -53,7 +67,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "COLUMN")]
     sensor: Option<String>,
     /// Write the log's ranges as MCAP, and beside each topic `TOPIC/accepted`: the accepted ranges, +Inf where nothing
-    /// is in range, -Inf for too close (REP 117), and no message for what was rejected
+    /// is in range, -Inf for too close (REP 117), and no message for what was rejected; with --hopping also
+    /// `TOPIC/confirmed`, without what is tentative
     #[arg(long, value_name = "FILE.mcap")]
     out: Option<PathBuf>,
     /// Draw what happened to each sensor over time, as SVG or, if the name ends in .png, as PNG
@@ -88,7 +103,24 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+fn speed(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if (0.0..=60.0).contains(&value) => Ok(value),
+        _ => Err("expected 0 to 60".to_owned()),
+    }
+}
+
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    if let Some(hopping) = args.hopping {
+        let mut settings = hopping.settings().tracker;
+        if let Some(t_delta) = args.t_delta_us.map(Micros::new) {
+            // What depends on it gives way.
+            settings.t_delta = t_delta;
+            settings.near = settings.near.max(t_delta);
+            settings.tentative_within = settings.tentative_within.min(t_delta);
+        }
+        return replay_hopping(&args.file, settings, args.speed_of_sound, args.out.as_deref(), args.json);
+    }
     let mut replayed = Replayed::new(args)?;
     let report = read_log(&args.file, &options(args), |sensors, reading| replayed.reading(sensors, reading))?;
     if let Some(error) = replayed.failed.take() {
@@ -141,7 +173,7 @@ fn print(args: &Args, report: &Report, sensors: Vec<Filtered>) -> Result<(), Inp
     if let Some(file) = &args.svg {
         let column = |(name, sensor): (&String, Filtered)| Column { name: name.clone(), kinds: sensor.kinds };
         let columns: Vec<_> = names.iter().zip(sensors).map(column).collect();
-        draw::kinds_over_time(&columns, args.t_delta_us).save(file)?;
+        draw::kinds_over_time(&columns, args.t_delta_us.unwrap_or_default()).save(file)?;
     }
     let skipped = report.skipped.iter().map(|topic| match topic.messages {
         0 => format!("{}: {}", topic.topic, topic.why),
@@ -149,9 +181,12 @@ fn print(args: &Args, report: &Report, sensors: Vec<Filtered>) -> Result<(), Inp
     });
     if args.json {
         let damage = report.damage.iter().map(ToString::to_string).collect();
-        println!("{}", to_json(&Replay { total, sensors: counts, damage, skipped: skipped.collect() }));
+        println!(
+            "{}",
+            to_json(&Replay { total, sensors: counts, as_logged: None, damage, skipped: skipped.collect() })
+        );
     } else {
-        println!("{}", table(&args.file, args.t_delta_us, &counts, &total));
+        println!("{}", table(&args.file, args.t_delta_us.unwrap_or_default(), &counts, &total));
         skipped.for_each(|skipped| println!("left out {skipped}"));
     }
     Ok(())
@@ -160,7 +195,7 @@ fn print(args: &Args, report: &Report, sensors: Vec<Filtered>) -> Result<(), Inp
 /// The filters of all sensors, and what they have made of the log so far.
 struct Replayed {
     sensors: Vec<Filtered>,
-    fresh: EchoFilter<1>,
+    fresh: Filter,
     speed_of_sound: f64,
     keep_kinds: bool,
     out: Option<McapWriter>,
@@ -169,9 +204,43 @@ struct Replayed {
     log: PathBuf,
 }
 
+/// The filter of one sensor.
+#[derive(Clone)]
+enum Filter {
+    Plain(EchoFilter<1>),
+    /// With a rate.
+    Rate(RateFilter<1>),
+}
+
+impl Filter {
+    fn new(args: &Args) -> Result<Self, FilterError> {
+        let t_delta = Micros::new(args.t_delta_us.unwrap_or_default());
+        Ok(match args.max_speed {
+            None => Self::Plain(EchoFilter::new(t_delta, args.consecutive)?),
+            // At 60 m/s still far from the largest number.
+            Some(speed) => Self::Rate(RateFilter::new(t_delta, (2e6 * speed / args.speed_of_sound).round() as u32)?),
+        })
+    }
+
+    fn forget(&mut self) -> Result<(), SensorError> {
+        match self {
+            Self::Plain(filter) => filter.forget(0),
+            Self::Rate(filter) => filter.forget(0),
+        }
+    }
+
+    fn push(&mut self, at_ns: u64, t_echo: Option<Micros>) -> Result<Verdict, SensorError> {
+        match self {
+            Self::Plain(filter) => filter.push(0, t_echo),
+            // Of a clock that wraps.
+            Self::Rate(filter) => filter.push(0, Instant::from_micros((at_ns / 1000) as u32), t_echo),
+        }
+    }
+}
+
 /// One sensor.
 struct Filtered {
-    filter: EchoFilter<1>,
+    filter: Filter,
     counted: Counted,
     /// Only if a picture is wanted.
     kinds: Vec<ReadingKind>,
@@ -184,7 +253,7 @@ impl Replayed {
         let bad = |error: FilterError| InputError::new(&args.file, None, error);
         Ok(Self {
             sensors: Vec::new(),
-            fresh: EchoFilter::new(Micros::new(args.t_delta_us), args.consecutive).map_err(bad)?,
+            fresh: Filter::new(args).map_err(bad)?,
             speed_of_sound: args.speed_of_sound,
             keep_kinds: args.svg.is_some(),
             out: args.out.as_deref().map(McapWriter::create).transpose()?,
@@ -224,21 +293,25 @@ impl Filtered {
     /// What the filter makes of a reading; `None` of one that is no number.
     fn kind(&mut self, reading: &Reading, speed_of_sound: f64, log: &Path) -> Result<Option<ReadingKind>, InputError> {
         // Each filter has one sensor, so that it knows it.
+        if reading.at_ns == 0 && matches!(self.filter, Filter::Rate(_)) {
+            let message = "a reading without a time; --max-speed needs --time COLUMN for CSV";
+            return Err(InputError::new(log, None, message));
+        }
         let pushed = |verdict: Result<Verdict, _>| verdict.map(|verdict| Some(verdict.kind));
         match reading.echo() {
             Echo::Invalid => {
                 self.counted.invalid += 1;
                 Ok(None)
             }
-            Echo::TooClose => self.filter.forget(0).map(|()| Some(ReadingKind::TooEarly)),
-            Echo::Nothing => pushed(self.filter.push(0, None)),
+            Echo::TooClose => self.filter.forget().map(|()| Some(ReadingKind::TooEarly)),
+            Echo::Nothing => pushed(self.filter.push(reading.at_ns, None)),
             Echo::At(range_m) => {
                 let t_echo_us = (2e6 * range_m / speed_of_sound).round();
                 if t_echo_us >= f64::from(u32::MAX) {
                     let message = format!("a range of {range_m} m; expected one that sound covers within an hour");
                     return Err(InputError::new(log, None, message));
                 }
-                pushed(self.filter.push(0, Some(Micros::new(t_echo_us as u32))))
+                pushed(self.filter.push(reading.at_ns, Some(Micros::new(t_echo_us as u32))))
             }
         }
         .map_err(|error| InputError::new(log, None, error))

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use eeruf_core::ReadingKind;
-use eeruf_logs::{Firing, FiringLog, McapWriter};
+use eeruf_logs::{Firing, FiringLog, McapWriter, Weighed};
 use eeruf_sim::Readings;
 
 use super::error::InputError;
@@ -21,6 +21,14 @@ pub(crate) fn firing(readings: &Readings, k: usize) -> Firing {
         phase: readings.phase[k],
         t_echo_us: (!readings.earliest_us[k].is_nan()).then(|| readings.earliest_us[k] as u32),
         rejected: Some(readings.kind[k] == ReadingKind::Rejected),
+        weighed: readings.weighed[k].map(|weighed| Weighed {
+            given: k as u64,
+            kind: Some(readings.kind[k]),
+            solo: weighed.solo,
+            steady: weighed.steady,
+            changes: weighed.changes,
+            expected_change_us: weighed.expected_change_us,
+        }),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Logs in, logs out: what `eeruf replay` makes of files from robots.
 
-use eeruf_logs::{Echo, Options, read_log};
+use eeruf_core::{HoppingSettings, ReadingKind};
+use eeruf_logs::{Echo, FiringLog, Options, read_log, replay};
 
 use crate::common::{Scratch, eeruf, json};
 
@@ -276,4 +277,107 @@ fn a_log_without_instants_is_put_onto_its_schedule_and_refused_if_lags_moved() {
     std::fs::write(&log, without(true)).unwrap();
     let moved = eeruf(&["diagnose", path, "--schedule", fired_by]);
     assert!(moved.code == Some(2) && moved.err.contains("jump at once"), "{}{}", moved.out, moved.err);
+}
+
+#[test]
+fn the_replay_of_a_hopping_rings_log_makes_of_each_firing_what_the_run_made_of_it() {
+    // One stands; the other has twelve sensors and drives, with odometry.
+    for (scene, periods, ending) in [("scenes/alcove.toml", 2000, "csv"), ("scenes/pole-course.toml", 150, "mcap")] {
+        let (folder, _) = Scratch::new("unused", "");
+        let log = folder.path().join(format!("log.{ending}"));
+        let (log, periods) = (log.to_str().unwrap(), periods.to_string());
+        let study = ["study", scene, "--method", "eeruf_hopping", "--periods", &periods, "--log", log];
+        let outcome = eeruf(&study);
+        assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""), "{scene}");
+
+        let firings = FiringLog::read(log.as_ref()).unwrap();
+        let settings = HoppingSettings::BALANCED.tracker;
+        let verdicts = replay(&firings, settings).unwrap();
+        let mut counts = [0_u64; ReadingKind::ALL.len()];
+        for (firing, verdict) in firings.firings.iter().zip(&verdicts) {
+            let weighed = firing.weighed.as_ref().unwrap();
+            assert_eq!(weighed.kind, Some(verdict.kind), "{scene}: {firing:?}");
+            counts[verdict.kind as usize] += 1;
+        }
+        // All that matters has happened.
+        let of = |kind: ReadingKind| counts[kind as usize];
+        assert!(of(ReadingKind::Accepted) > 100 && of(ReadingKind::Tentative) > 20 && of(ReadingKind::Rejected) > 300);
+        let weighed = || firings.firings.iter().filter_map(|firing| firing.weighed.as_ref());
+        assert!(weighed().any(|weighed| weighed.solo) && weighed().any(|weighed| !weighed.steady), "{scene}");
+        assert!(weighed().any(|weighed| weighed.changes > 0), "{scene}");
+        assert_eq!(weighed().any(|weighed| weighed.expected_change_us != 0), scene.contains("pole-course"));
+
+        // The command counts the same.
+        let found = json(&["replay", log, "--hopping", "balanced", "--json"]);
+        let total = &found["total"];
+        assert_eq!(found["as_logged"], verdicts.len(), "{scene}");
+        assert_eq!(total["accepted"], of(ReadingKind::Accepted));
+        assert_eq!(total["tentative"], of(ReadingKind::Tentative));
+        assert_eq!((&total["rejected"], &total["blind"]), (&of(ReadingKind::Rejected).into(), &0.into()));
+        let other = json(&["replay", log, "--hopping", "maps", "--json"]);
+        assert!(other["as_logged"].as_u64() < found["as_logged"].as_u64() && other["total"]["tentative"] == 0);
+
+        // And writes it.
+        let out = folder.path().join("out.mcap");
+        let outcome = eeruf(&["replay", log, "--hopping", "balanced", "--out", out.to_str().unwrap()]);
+        assert!(outcome.out.ends_with("readings are what the ring made of them.\n"), "{}", outcome.out);
+        let mut written = [0_u64; 3];
+        let report = read_log(&out, &Options::default(), |sensors, reading| {
+            let topic = &sensors[reading.sensor].topic;
+            written[if topic.ends_with("/accepted") { 1 } else { 2 * usize::from(topic.ends_with("/confirmed")) }] += 1;
+        });
+        assert_eq!(report.unwrap().damage, []);
+        let confirmed = of(ReadingKind::Accepted) + of(ReadingKind::Clear) + of(ReadingKind::TooEarly);
+        assert_eq!(written, [verdicts.len() as u64, confirmed + of(ReadingKind::Tentative), confirmed]);
+    }
+}
+
+#[test]
+fn a_log_that_does_not_say_how_readings_were_weighed_is_refused_with_what_is_missing() {
+    let header = "sensor,fired_us,period,phase,t_echo_us,reading";
+    let (_folder, log) = Scratch::new("log.csv", &format!("{header}\n0,15000,0,0,5872,rejected\n"));
+    let outcome = eeruf(&["replay", log.to_str().unwrap(), "--hopping", "quick"]);
+    assert_eq!((outcome.code, outcome.out.as_str()), (Some(2), ""));
+    assert!(
+        outcome
+            .err
+            .contains("the firing of sensor 1 in period 0 does not say how it was weighed; expected columns solo")
+    );
+    let refused = |header: &str, row: &str| {
+        let (_folder, log) = Scratch::new("log.csv", &format!("{header}\n0,15000,0,0,5872,rejected,{row}\n"));
+        eeruf(&["replay", log.to_str().unwrap(), "--hopping", "quick"]).err
+    };
+    let missing = refused(&format!("{header},solo,changes"), "0,0");
+    assert!(missing.contains("no column `steady`; expected all of solo, steady, changes, or none"), "{missing}");
+    let flag = refused(&format!("{header},solo,steady,changes"), "0,yes,0");
+    assert!(flag.contains("column steady: `yes`; expected 0 or 1"), "{flag}");
+    let none = eeruf(&["replay", log.to_str().unwrap()]);
+    assert!(none.err.contains("--t-delta-us"), "{}", none.err);
+}
+
+#[test]
+fn a_wall_that_comes_nearer_too_fast_for_two_readings_is_accepted_with_a_rate() {
+    // 1 m/s, readings 80 and 120 ms apart: 470 and 700 us from each to the next.
+    let times = (0..40).map(|n| 10.0 + 0.1 * f64::from(n) - if n % 2 == 1 { 0.02 } else { 0.0 });
+    let rows: Vec<_> = times.map(|time| format!("{time:.3},{:.4}", 6.0 - (time - 10.0))).collect();
+    let (folder, log) = Scratch::new("log.csv", &format!("t,ahead\n{}\n", rows.join("\n")));
+    let replay = |more: &[&str]| {
+        let common = ["replay", log.to_str().unwrap(), "--t-delta-us", "300", "--no-echo-m", "9", "--json"];
+        json(&[&common[..], more].concat())["total"].clone()
+    };
+    let plain = replay(&["--time", "t"]);
+    assert_eq!((&plain["accepted"], &plain["rejected"]), (&0.into(), &39.into()));
+    let rated = replay(&["--time", "t", "--max-speed", "1.5"]);
+    assert_eq!((&rated["accepted"], &rated["rejected"], &rated["repeated"]), (&38.into(), &0.into(), &1.into()));
+    // Slower robots have no such echoes: 420 us in the 200 ms of three readings, and t_delta.
+    let slow = replay(&["--time", "t", "--max-speed", "0.36"]);
+    assert_eq!(slow["accepted"], 0);
+    let common = ["replay", log.to_str().unwrap(), "--t-delta-us", "300", "--range", "ahead", "--max-speed", "1"];
+    let without = eeruf(&common);
+    assert!(
+        without.err.ends_with("a reading without a time; --max-speed needs --time COLUMN for CSV\n"),
+        "{}",
+        without.err
+    );
+    drop(folder);
 }

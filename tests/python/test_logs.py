@@ -1,5 +1,7 @@
 """Logs of robots: the same bags as Rust reads, and what a ring's log of firings says."""
 
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -89,3 +91,17 @@ def test_a_survey_says_who_hears_whom(tmp_path: Path) -> None:
     ((x, y, travel_us),) = found.conflicts
     assert (x, y) == (0, 1) and abs(travel_us - 5000) < 1
     assert len(eeruf.read_firings(tmp_path / "survey.csv")) == 2 * slot
+
+
+def test_the_replay_of_a_hopping_rings_log_is_the_run(tmp_path: Path) -> None:
+    log = tmp_path / "log.csv"
+    study = ["study", eeruf.example("scenes/alcove.toml"), "--method", "eeruf_hopping", "--log", log]
+    subprocess.run([sys.executable, "-m", "eeruf", *map(str, study), "--periods", "300"], check=True)
+    run = eeruf.replay(log)
+    assert len(run) > 1500 and (run.kind == run.logged).all() and (run.kind == eeruf.KINDS.index("tentative")).any()
+    assert (np.diff(run.fired_us) >= 0).all() and run.damage is None
+    other = eeruf.replay(log, settings="maps")
+    assert (other.kind != run.kind).any() and not (other.kind == eeruf.KINDS.index("tentative")).any()
+    (tmp_path / "plain.csv").write_text("sensor,fired_us,period,phase,t_echo_us\n0,0,0,0,7000\n")
+    with pytest.raises(eeruf.logs.LogError, match="does not say how it was weighed"):
+        eeruf.replay(tmp_path / "plain.csv")

@@ -64,7 +64,7 @@ pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
 pub use checked::{__checked, __checked_hopping, __checked_uneven, __micros};
 pub use conditions::{Criterion, Interval, Requirements, Separation};
 pub use edges::{Edge, EdgeQueue};
-pub use filter::{EchoFilter, FilterError};
+pub use filter::{EchoFilter, FilterError, RateFilter};
 pub use hopping::{
     HoppingCode, HoppingError, HoppingFiring, HoppingHeader, HoppingListening, HoppingRing, HoppingRust,
     HoppingSchedule, HoppingSettings, HoppingTab, HoppingToml,

@@ -10,17 +10,22 @@ use serde_json::{Value, json};
 
 use crate::error::LogError;
 use crate::firings::{Firing, FiringLog, MAX_SENSORS};
+use crate::weighed::Weighed;
 
 /// The type of the messages.
 pub(crate) const FIRING: &str = "eeruf.Firing";
 
 /// One firing as a message.
 pub(crate) fn message(clock: &str, firing: &Firing) -> Value {
-    let reading = firing.rejected.map(|rejected| if rejected { "rejected" } else { "other" });
-    json!({
+    let reading = Some(firing.reading()).filter(|reading| !reading.is_empty());
+    let mut message = json!({
         "clock": clock, "sensor": firing.sensor, "fired_us": firing.fired_us, "period": firing.period,
         "phase": firing.phase, "t_echo_us": firing.t_echo_us, "reading": reading,
-    })
+    });
+    if let (Some(weighed), Some(fields)) = (&firing.weighed, message.as_object_mut()) {
+        weighed.add_to(fields);
+    }
+    message
 }
 
 /// Reads the firings of a file, as far as it is whole.
@@ -77,8 +82,10 @@ impl Found {
                 let id = header.channel_id;
                 if let Some((_, topic)) = self.channels.iter().find(|known| known.0 == id) {
                     let message = serde_json::from_slice::<Value>(&data).ok();
-                    let firing = message.as_ref().and_then(firing);
-                    let expected = "expected sensor (0 to 63), fired_us, period, phase and t_echo_us (or null)";
+                    let number = (self.firings.len() + self.listened.len()) as u64;
+                    let firing = message.as_ref().and_then(|message| firing(message, number));
+                    let expected = "expected sensor (0 to 63), fired_us, period, phase and t_echo_us (or null), and of \
+                                    solo, steady and changes all or none";
                     let bad = || {
                         LogError::new(file, format!("topic {topic}: {}; {expected}", String::from_utf8_lossy(&data)))
                     };
@@ -112,8 +119,8 @@ impl Found {
     }
 }
 
-/// A firing, if the message has all that one has.
-fn firing(message: &Value) -> Option<Firing> {
+/// The firing at this place, if the message has all that one has.
+fn firing(message: &Value, place: u64) -> Option<Firing> {
     let number = |name: &str| message.get(name)?.as_f64().filter(|number| (0.0..9e15).contains(number));
     let t_echo_us = match message.get("t_echo_us") {
         None | Some(Value::Null) => None,
@@ -126,6 +133,7 @@ fn firing(message: &Value) -> Option<Firing> {
         period: u32::try_from(whole("period")?).ok()?,
         phase: u8::try_from(whole("phase")?).ok()?,
         t_echo_us,
+        weighed: Weighed::of_message(message, place)?,
         rejected: message.get("reading").and_then(Value::as_str).map(|reading| reading == "rejected"),
     })
 }

@@ -11,7 +11,8 @@
 //! CSV with these columns in any order; others are ignored. Times are in microseconds of one clock, which the first
 //! line may name; one of 32 bits may wrap. `t_echo_us` is the raw echo time, from firing to the first edge, empty
 //! without echo. `reading` is what the ring made of it (`rejected`, `accepted`, ..) and may be missing. Sensors,
-//! periods and phases count from 0. A log without `fired_us` can be put onto a fixed schedule
+//! periods and phases count from 0. The log of a hopping ring also says how its tracker weighed each reading, in
+//! columns `given`, `solo`, `steady`, `changes` and `expected_us`: see [`Weighed`]. A log without `fired_us` can be put onto a fixed schedule
 //! ([`align`](crate::align())). Rows may come in any order that is at most 2^31 us out. Where a column `sends` is 0
 //! the sensor only listened from then on, as some can.
 //!
@@ -22,6 +23,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
 
 use crate::error::LogError;
+use crate::weighed::{Columns, Weighed};
 
 /// One firing of one sensor.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +40,8 @@ pub struct Firing {
     pub t_echo_us: Option<u32>,
     /// Whether the ring rejected the reading, if the log says what it made of it.
     pub rejected: Option<bool>,
+    /// How the tracker of a hopping ring weighed the reading, if the log says so.
+    pub weighed: Option<Weighed>,
 }
 
 /// A log of firings, in order of time.
@@ -53,6 +57,18 @@ pub struct FiringLog {
     pub lacks_instants: bool,
     /// What of the file could not be read, if that is so.
     pub damage: Option<String>,
+}
+
+impl Firing {
+    /// What the ring made of the reading, as logs spell it.
+    pub(crate) fn reading(&self) -> &'static str {
+        match (self.weighed.as_ref().and_then(|weighed| weighed.kind), self.rejected) {
+            (Some(kind), _) => kind.as_str(),
+            (None, Some(true)) => "rejected",
+            (None, Some(false)) => "other",
+            (None, None) => "",
+        }
+    }
 }
 
 /// The most sensors of a ring.
@@ -89,10 +105,11 @@ impl FiringLog {
         let [sensor, period] = [needed("sensor")?, needed("period")?];
         let [phase, echo] = [needed("phase")?, needed("t_echo_us")?];
         let (fired, reading, sends) = (column("fired_us"), column("reading"), column("sends"));
+        let weighed = Columns::of(&header).map_err(|message| LogError::new(file, message))?;
         let mut lacks_instants = fired.is_none();
         // The line that the first remark took.
         let before = u64::from(starts_with_remark);
-        let (mut firings, mut listened, mut wraps, mut last) = (Vec::new(), Vec::new(), 0_i64, i64::MIN);
+        let (mut firings, mut listened, mut wraps, mut last, mut number) = (Vec::new(), Vec::new(), 0_i64, i64::MIN, 0);
         for row in reader.records() {
             let row = row
                 .map_err(|error| LogError::at_line(file, error.position().map(|place| place.line() + before), error))?;
@@ -132,13 +149,17 @@ impl FiringLog {
                 None | Some("" | "1") => &mut firings,
                 Some(_) => return Err(bad(sends.unwrap_or_default(), "0 or 1")),
             };
+            let made = reading.map(text).unwrap_or_default();
+            let weighed = weighed.as_ref().map(|columns| columns.read(&row, made, number)).transpose();
+            number += 1;
             rows.push(Firing {
+                weighed: weighed.map_err(|(column, expected)| bad(column, expected))?.flatten(),
                 sensor: known_sensor.ok_or_else(|| bad(sensor, "0 to 63"))?,
                 fired_us,
                 period: text(period).parse().map_err(|_| bad(period, "a number from 0"))?,
                 phase: text(phase).parse().map_err(|_| bad(phase, "0 to 255"))?,
                 t_echo_us,
-                rejected: reading.map(text).filter(|made| !made.is_empty()).map(|made| made == "rejected"),
+                rejected: Some(made).filter(|made| !made.is_empty()).map(|made| made == "rejected"),
             });
         }
         if firings.is_empty() {
@@ -151,25 +172,31 @@ impl FiringLog {
         Ok(Self { listened, lacks_instants, ..Self::new(clock, firings) })
     }
 
-    /// Writes the log as it is read. What the ring made of a reading is written as `rejected` or `other`.
+    /// Writes the log as it is read. What the ring made of a reading is written as `rejected` or `other`, unless the kind
+    /// is known.
     ///
     /// # Errors
     /// If it cannot be written.
     pub fn write(&self, mut output: impl Write) -> std::io::Result<()> {
         let sends = if self.listened.is_empty() { "" } else { ",sends" };
+        let is_weighed = self.firings.iter().any(|firing| firing.weighed.is_some());
+        let weighed = if is_weighed { Columns::HEADER } else { "" };
         writeln!(output, "# clock: {}", self.clock)?;
-        writeln!(output, "sensor,fired_us,period,phase,t_echo_us,reading{sends}")?;
+        writeln!(output, "sensor,fired_us,period,phase,t_echo_us,reading{weighed}{sends}")?;
         for (rows, sends) in [(&self.firings, ",1"), (&self.listened, ",0")] {
             let sends = if self.listened.is_empty() { "" } else { sends };
-            for Firing { sensor, fired_us, period, phase, t_echo_us, rejected } in rows {
+            for firing in rows {
+                let Firing { sensor, fired_us, period, phase, t_echo_us, ref weighed, .. } = *firing;
                 let fired_us = if self.lacks_instants { String::new() } else { fired_us.to_string() };
                 let echo = t_echo_us.map(|us| us.to_string()).unwrap_or_default();
-                let reading = match rejected {
-                    Some(true) => "rejected",
-                    Some(false) => "other",
-                    None => "",
-                };
-                writeln!(output, "{sensor},{fired_us},{period},{phase},{echo},{reading}{sends}")?;
+                let reading = firing.reading();
+                write!(output, "{sensor},{fired_us},{period},{phase},{echo},{reading}")?;
+                match weighed {
+                    Some(weighed) => write!(output, "{}", weighed.fields())?,
+                    None if is_weighed => write!(output, "{}", Columns::EMPTY)?,
+                    None => {}
+                }
+                writeln!(output, "{sends}")?;
             }
         }
         Ok(())

@@ -38,11 +38,13 @@ mod mcap;
 mod message;
 mod options;
 mod reading;
+mod replay;
 mod ros1;
 mod rosbag2;
 mod sink;
 mod survey;
 mod table;
+mod weighed;
 mod write;
 
 use std::fs::File;
@@ -57,8 +59,10 @@ pub use error::{Damage, LogError};
 pub use firings::{Firing, FiringLog};
 pub use options::{Options, RangeUnit, Table, TimeUnit};
 pub use reading::{Echo, Reading, Sensor};
+pub use replay::{ReplayError, replay};
 pub use sink::{Report, Skipped};
 pub use survey::{PathSettings, Surveyed, survey};
+pub use weighed::Weighed;
 pub use write::McapWriter;
 
 /// Reads a log from beginning to end, and calls `each` with the sensors so far and each reading, in the order in which

@@ -72,7 +72,7 @@ mod _eeruf {
         hopping_ring::HoppingRing,
         hopping_schedule::HoppingSchedule,
         hopping_settings::HoppingSettings,
-        logs::{LogError, diagnose, read_firings, read_log, survey},
+        logs::{LogError, diagnose, read_firings, read_log, replay, survey},
         maps::read_map,
         paths::Paths,
         program::{example, run_program},

@@ -9,8 +9,10 @@ use numpy::PyReadonlyArray1;
 use pyo3::{create_exception, prelude::*, types::PyDict};
 
 use crate::{
+    arguments::micros,
     columns::read_only,
     errors::{ArgumentError, EerufError},
+    hopping_settings::tracker_settings,
     watch::in_background,
 };
 
@@ -122,6 +124,39 @@ pub(crate) fn read_firings(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, 
     Ok(out)
 }
 
+/// What the tracker of a hopping ring makes of each firing of the ring's own log, as columns.
+#[pyfunction]
+#[pyo3(name = "_replay")]
+pub(crate) fn replay<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    t_delta_us: Option<&Bound<'py, PyAny>>,
+    settings: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let t_delta = t_delta_us.map(|t_delta| micros("t_delta_us", t_delta)).transpose()?;
+    let settings = tracker_settings(t_delta, settings)?;
+    let (log, verdicts) = in_background(py, None, move |_| {
+        let log = FiringLog::read(&path).map_err(raise)?;
+        let failed = |error| LogError::new_err(format!("{}: {error}", path.display()));
+        let verdicts = eeruf_logs::replay(&log, settings).map_err(failed)?;
+        Ok((log, verdicts))
+    })?;
+    let out = PyDict::new(py);
+    let column = |of: fn(&Firing) -> i64| read_only(py, log.firings.iter().map(of));
+    out.set_item("sensor", column(|row| row.sensor.into())?)?;
+    out.set_item("fired_us", column(|row| row.fired_us)?)?;
+    out.set_item("period", column(|row| row.period.into())?)?;
+    out.set_item("phase", column(|row| row.phase.into())?)?;
+    let echo = |row: &Firing| row.t_echo_us.map_or(f64::NAN, f64::from);
+    out.set_item("t_echo_us", read_only(py, log.firings.iter().map(echo))?)?;
+    out.set_item("kind", read_only(py, verdicts.iter().map(|verdict| verdict.kind as i8))?)?;
+    out.set_item("age", read_only(py, verdicts.iter().map(|verdict| verdict.age.map_or(-1, i64::from)))?)?;
+    let logged = |row: &Firing| row.weighed.as_ref().and_then(|weighed| weighed.kind).map_or(-1, |kind| kind as i8);
+    out.set_item("logged", read_only(py, log.firings.iter().map(logged))?)?;
+    out.set_item("damage", log.damage)?;
+    Ok(out)
+}
+
 /// What `eeruf.logs.Firings` holds.
 #[derive(FromPyObject)]
 pub(crate) struct Columns<'py> {
@@ -164,6 +199,7 @@ fn log_of(columns: &Columns<'_>) -> PyResult<(FiringLog, Vec<usize>)> {
             phase: u8::try_from(phase[row]).map_err(|_| bad("phase", &phase[row], "0 to 255"))?,
             t_echo_us: (!echo.is_nan()).then(|| echo.round() as u32),
             rejected: (rejected[row] >= 0).then_some(rejected[row] == 1),
+            weighed: None,
         };
         if sends[row] {
             firings.push((row, firing));

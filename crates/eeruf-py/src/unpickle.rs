@@ -117,6 +117,8 @@ pub(crate) fn readings_from_columns(
         reference_us: column(columns, "reference_us")?,
         cause: code("cause", CAUSES.len())?.into_iter().map(|cause| CAUSE_OF[cause]).collect(),
         emitted_s: column(columns, "emitted_s")?,
+        // Nothing in Python asks for it.
+        weighed: vec![None; robot.len()],
         path,
         paths,
         robot,

@@ -76,7 +76,8 @@ pub use acoustics::{
 pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice};
 pub use maps::{MapError, OccupancyGrid};
 pub use methods::{
-    BestSchedule, Method, UnknownMethod, best_schedule_for, requirements_of, shortest_schedule_for, table_i_d_for,
+    BestSchedule, Method, UnknownMethod, Weighed, best_schedule_for, requirements_of, shortest_schedule_for,
+    table_i_d_for,
 };
 pub use navigation::{Driven, Himm, LabMate, Vfh};
 pub use results::{

@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use eeruf_core::{HoppingSettings, Micros};
+use eeruf_core::Micros;
 use eeruf_sim::best_schedule_for;
 use eeruf_sim::experiments::set_one::{Alcove, SENSORS, SetOneOptions, set_one, world_of};
 use eeruf_sim::{GainProfile, Method, Options, Robot, simulate};
 
 use super::common::{BUDGET, Common, bad, designing, watched};
+use crate::commands::hopping::Hopping;
 use crate::commands::methods::chosen;
 use crate::files::error::InputError;
 use crate::files::mcap::{Stage, write_mcap};
@@ -45,27 +46,6 @@ pub(crate) struct Args {
     /// Write the readings of the first alcove by all methods as MCAP, for Foxglove and Rerun, instead
     #[arg(long, value_name = "FILE.mcap", conflicts_with_all = ["vary", "svg", "png", "json"])]
     mcap: Option<PathBuf>,
-}
-
-/// The named settings of time hopping.
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum Hopping {
-    /// For most robots
-    Balanced,
-    /// For robots that must stop early
-    Quick,
-    /// For maps: confirmed echoes alone
-    Maps,
-}
-
-impl Hopping {
-    fn settings(self) -> HoppingSettings {
-        match self {
-            Self::Balanced => HoppingSettings::BALANCED,
-            Self::Quick => HoppingSettings::QUICK,
-            Self::Maps => HoppingSettings::MAPS,
-        }
-    }
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), InputError> {

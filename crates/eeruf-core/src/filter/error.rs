@@ -17,6 +17,11 @@ pub enum FilterError {
         /// How much was asked for.
         patience: u8,
     },
+    /// A rate at which no robot's echoes change.
+    Rate {
+        /// What was asked for, in microseconds per second.
+        us_per_s: u32,
+    },
 }
 
 impl fmt::Display for FilterError {
@@ -24,6 +29,7 @@ impl fmt::Display for FilterError {
         match *self {
             Self::Consecutive { consecutive } => write!(f, "{consecutive} consecutive readings; expected 2 to 8"),
             Self::Patience { patience } => write!(f, "a patience of {patience} firings; expected 0 to 15"),
+            Self::Rate { us_per_s } => write!(f, "echoes that change by {us_per_s} us/s; expected 0 to 400000 us/s"),
         }
     }
 }

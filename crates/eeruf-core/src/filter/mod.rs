@@ -14,6 +14,7 @@
 mod agreement;
 mod echoes;
 mod error;
+mod rate;
 mod rule;
 mod state;
 #[cfg(test)]
@@ -27,6 +28,7 @@ use crate::time::Micros;
 pub(crate) use agreement::Agreement;
 pub(crate) use echoes::{NO_ECHO, insert};
 pub use error::FilterError;
+pub use rate::RateFilter;
 pub(crate) use rule::Rule;
 pub(crate) use tracker::Tracker;
 

@@ -70,6 +70,7 @@ pub struct HoppingRing<const K: usize, const H: usize = 4> {
     tally: Tally<u8>,
     /// By how much, in microseconds, firings may differ in lateness and crosstalk still move by more than `t_delta`.
     tolerated: u16,
+    changes: u8,
 }
 
 impl<const K: usize, const H: usize> HoppingRing<K, H> {
@@ -87,7 +88,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         now: Instant,
     ) -> Result<Self, HoppingError> {
         let (code, HoppingListening { window, blanking, .. }) = (schedule.code(), listening);
-        let tracker = EchoTracker::new(settings.tracker)?;
+        let tracker = EchoTracker::new(settings.tracker)?.with_sensors(code.sensors());
         let t_delta = settings.tracker.t_delta;
         if code.step() <= t_delta {
             return Err(HoppingError::TDelta { t_delta, step: code.step() });
@@ -107,7 +108,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         let ring = Ring::with_scheduler(firing, config, now)?;
         // A track may be off by as much as its readings, and a step is at most 65,535 us.
         let tolerated = (code.step().abs_diff(t_delta).as_micros() - 1) / 2;
-        Ok(Self { ring, tracker, tally: Tally::default(), tolerated: tolerated as u16 })
+        Ok(Self { ring, tracker, tally: Tally::default(), tolerated: tolerated as u16, changes: 0 })
     }
 
     /// The next event, if there is one at `now`: see [`Ring::poll`].
@@ -120,6 +121,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         let event = self.ring.poll(now)?;
         if core::mem::take(&mut self.ring.scheduler_mut().changed) {
             self.tracker.firing_changed();
+            self.changes = self.changes.wrapping_add(1);
         }
         Some(match event {
             RingEvent::Reading(reading) => {
@@ -238,6 +240,23 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     /// When sensors fire: lags as they are now, the phase, whose solo period it is.
     pub const fn firing(&self) -> &HoppingFiring<K> {
         self.ring.scheduler()
+    }
+
+    /// For the log of a reading that was just emitted: what was known of its sensor's firing when it was weighed, but
+    /// for the expected change; `None` for a sensor that is not there. With it, the echo times and
+    /// [`changes`](Self::changes) an [`EchoTracker`] does again what this ring's did.
+    pub fn weighed(&self, sensor: u8) -> Option<Firing> {
+        if usize::from(sensor) >= self.sensors() {
+            return None;
+        }
+        let (phase, solo, steady) = self.firing().last_firing(sensor, self.tolerated);
+        Some(Firing { phase, solo, steady, expected_change_us: 0 })
+    }
+
+    /// How often firing times have changed against each other otherwise than by the phase, such as by new lags, modulo
+    /// 256: each time [`EchoTracker::firing_changed`] was called.
+    pub const fn changes(&self) -> u8 {
+        self.changes
     }
 
     /// How many sensors there are.

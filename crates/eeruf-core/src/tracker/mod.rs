@@ -72,6 +72,8 @@ pub struct EchoTracker<const K: usize, const H: usize = 4> {
     /// The sensor that last had a candidate, and for how many pushes that makes others readier.
     candidate: u8,
     readier: u8,
+    /// How many pushes make three periods.
+    three_periods: u8,
 }
 
 /// A sensor has this rate of unexplained readings, of 255, where a tentative echo needs one vote more.
@@ -84,9 +86,21 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
     /// [`TrackerError::Setting`] for a setting out of its range.
     pub const fn new(settings: TrackerSettings) -> Result<Self, TrackerError> {
         match settings.check() {
-            Ok(()) => Ok(Self { sensors: [SensorTracks::NEW; K], settings, candidate: u8::MAX, readier: 0 }),
+            Ok(()) => {
+                let sensors = [SensorTracks::NEW; K];
+                // At most 64 sensors.
+                Ok(Self { sensors, settings, candidate: u8::MAX, readier: 0, three_periods: (3 * K) as u8 })
+            }
             Err(error) => Err(error),
         }
+    }
+
+    /// That the ring has only so many sensors, at most `K`: a sensor is readier to report a tentative echo for three
+    /// periods after another one had a candidate, and a period is so many pushes.
+    #[must_use]
+    pub const fn with_sensors(self, sensors: usize) -> Self {
+        let sensors = if sensors < K { sensors } else { K };
+        Self { three_periods: (3 * sensors) as u8, ..self }
     }
 
     /// How it weighs readings.
@@ -115,8 +129,8 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
         let (verdict, candidate) = tracks.push(heard, &self.settings);
         self.readier = self.readier.saturating_sub(1);
         if candidate {
-            // For three periods; at most 64 sensors.
-            (self.candidate, self.readier) = (sensor as u8, (3 * K) as u8);
+            // At most 64 sensors.
+            (self.candidate, self.readier) = (sensor as u8, self.three_periods);
         }
         Ok(verdict)
     }

@@ -152,6 +152,32 @@ fn the_longest_times_and_the_largest_changes_are_echoes_like_any_other() {
 }
 
 #[test]
+fn a_candidate_makes_other_sensors_readier_for_three_periods_of_the_sensors_that_there_are() {
+    let settings = TrackerSettings { tentative_votes: 3, ..TrackerSettings::BALANCED };
+    let tracker = EchoTracker::<24>::new(settings).unwrap();
+    // After how many pushes in between two close votes no longer suffice.
+    let readier_for = |tracker: &EchoTracker<24>| {
+        let lasts = |pushes: &u32| {
+            let mut tracker = tracker.clone();
+            for phase in 0..2 {
+                tracker.push(0, us(9000), Firing::new(Phase(phase))).unwrap();
+            }
+            tracker.push(1, us(5000), Firing::new(Phase(0))).unwrap();
+            for _ in 0..*pushes {
+                tracker.push(2, None, Firing::new(Phase(0))).unwrap();
+            }
+            let kind = tracker.push(1, us(5000), Firing::new(Phase(1))).unwrap().kind;
+            kind == ReadingKind::Tentative
+        };
+        (0..100).take_while(lasts).count()
+    };
+    // Two pushes are those of the sensor itself.
+    assert_eq!(readier_for(&tracker.clone().with_sensors(12)), 35);
+    assert_eq!(readier_for(&tracker), 71);
+    assert_eq!(readier_for(&tracker.with_sensors(200)), 71);
+}
+
+#[test]
 fn each_error_names_what_is_wrong_and_what_is_expected() {
     let with = |settings| EchoTracker::<1>::new(settings).unwrap_err().to_string();
     let zero = TrackerSettings { t_delta: Micros::ZERO, ..TrackerSettings::BALANCED };

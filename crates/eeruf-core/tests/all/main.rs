@@ -19,6 +19,7 @@ mod period_ticks;
 mod period_variants;
 mod phases;
 mod promises;
+mod rate;
 mod theory;
 mod uneven;
 mod uneven_ring;

@@ -53,7 +53,15 @@ fn log(travel: &Travel, random: &mut Random, strays: i64) -> FiringLog {
             }
             let first = edges.into_iter().filter(|edge| (DEAD..WINDOW).contains(edge)).min();
             let t_echo_us = first.map(|edge| edge as u32);
-            firings.push(Firing { sensor, fired_us: at, period: slot, phase: 0, t_echo_us, rejected: None });
+            firings.push(Firing {
+                sensor,
+                fired_us: at,
+                period: slot,
+                phase: 0,
+                t_echo_us,
+                rejected: None,
+                weighed: None,
+            });
         }
     }
     FiringLog::new("test", firings)
@@ -120,7 +128,7 @@ fn modules_that_can_listen_without_sending_are_surveyed_in_one_pass() {
         for receiver in 0..SENSORS {
             let first = travel[sender][receiver].iter().map(|us| us + random.below(41) - 20).min();
             let (sensor, t_echo_us) = (receiver as u8, first.map(|us| us as u32));
-            let row = Firing { sensor, fired_us: at, period: slot, phase: 0, t_echo_us, rejected: None };
+            let row = Firing { sensor, fired_us: at, period: slot, phase: 0, t_echo_us, rejected: None, weighed: None };
             if receiver == sender { &mut firings } else { &mut listened }.push(row);
         }
     }

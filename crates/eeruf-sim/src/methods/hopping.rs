@@ -1,11 +1,11 @@
 //! A ring that hops in time: core's own, for a robot.
 
 use eeruf_core::{
-    HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, MAX_SENSORS, Micros,
+    Firing, HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, MAX_SENSORS, Micros,
     RingEvent,
 };
 
-use super::ring_runner::{RingRunner, RingStart, Started};
+use super::ring_runner::{RingRunner, RingStart, Started, Weighed};
 use crate::world::Robot;
 
 /// By how much crosstalk moves at least from phase to phase: 90 us more than the tracker's `T_delta`, for jitter and
@@ -24,6 +24,11 @@ impl<const K: usize, const H: usize> RingRunner for HoppingRing<K, H> {
     fn echo(&mut self, sensor: u8, at: Instant) {
         // A ring is as large as its robot's.
         _ = HoppingRing::echo(self, sensor, at);
+    }
+
+    fn weighed(&self, sensor: u8) -> Option<Weighed> {
+        let Firing { solo, steady, .. } = HoppingRing::weighed(self, sensor)?;
+        Some(Weighed { solo, steady, changes: self.changes(), expected_change_us: 0 })
     }
 }
 

@@ -12,5 +12,6 @@ mod schedules;
 pub use best_schedule::{BestSchedule, TICK, best_schedule_for, requirements_of, shortest_schedule_for};
 pub(crate) use method::{Belief, MAX_ECHOES};
 pub use method::{Method, UnknownMethod};
+pub use ring_runner::Weighed;
 pub(crate) use ring_runner::{FiringPlan, RingRunner, RingStart, StartError};
 pub use schedules::table_i_d_for;

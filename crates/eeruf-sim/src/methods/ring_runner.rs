@@ -10,6 +10,20 @@ use super::dither::DitherFiring;
 use super::schedules::widest_dither;
 use crate::world::{AnySchedule, Random, Robot};
 
+/// How the tracker of a hopping ring weighed a reading, beside its phase and echo time: what a log needs for the tracker
+/// to be run over it again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Weighed {
+    /// Whether no other sensor's sound could be heard.
+    pub solo: bool,
+    /// Whether firings were so punctual that crosstalk moved as the schedule says.
+    pub steady: bool,
+    /// How often lags had moved, or the timetable had broken off, modulo 256.
+    pub changes: u8,
+    /// By how much odometry expected the reading to change since the sensor's firing before, in microseconds.
+    pub expected_change_us: i32,
+}
+
 /// A ring of any kind.
 pub(crate) trait RingRunner: Send {
     /// What the ring does now, if anything; `expected_change_us` says by how much a good reading of a sensor should
@@ -19,6 +33,11 @@ pub(crate) trait RingRunner: Send {
     fn next_deadline(&self) -> Instant;
     /// A sensor hears an echo.
     fn echo(&mut self, sensor: u8, at: Instant);
+    /// Of a ring with a tracker: how it weighed the reading of a sensor that it has just emitted, but for the expected
+    /// change.
+    fn weighed(&self, _sensor: u8) -> Option<Weighed> {
+        None
+    }
 }
 
 impl<S: Scheduler + Send, const K: usize, const E: usize> RingRunner for Ring<S, K, E> {

@@ -5,7 +5,10 @@ use std::collections::TryReserveError;
 
 use eeruf_core::ReadingKind;
 
-use crate::{methods::Method, scene::Bounce};
+use crate::{
+    methods::{Method, Weighed},
+    scene::Bounce,
+};
 
 /// A sensor of a world, both counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
@@ -105,6 +108,8 @@ pub struct Readings {
     pub path: Vec<u32>,
     /// When the sound behind `t_echo_us` was sent, in seconds of true time.
     pub emitted_s: Vec<f64>,
+    /// How the ring's tracker weighed it, if it has one.
+    pub weighed: Vec<Option<Weighed>>,
     /// Every path that some reading came along.
     pub paths: Vec<HeardPath>,
 }
@@ -112,7 +117,7 @@ pub struct Readings {
 impl Readings {
     /// How much memory so many readings take, in bytes.
     pub const fn bytes_for(readings: u64) -> u64 {
-        let whole = size_of::<[f64; 8]>() + size_of::<(u32, u32)>() + size_of::<u16>();
+        let whole = size_of::<[f64; 8]>() + size_of::<Option<Weighed>>() + size_of::<(u32, u32)>() + size_of::<u16>();
         readings.saturating_mul((whole + size_of::<(u8, u8, ReadingKind, Cause)>()) as u64)
     }
 
@@ -137,6 +142,7 @@ impl Readings {
             cause: Vec::new(),
             path: Vec::new(),
             emitted_s: Vec::new(),
+            weighed: Vec::new(),
             paths: Vec::new(),
         }
     }
@@ -154,7 +160,8 @@ impl Readings {
         x_m.try_reserve(more)?;
         y_m.try_reserve(more)?;
         heading_rad.try_reserve(more)?;
-        let Self { t_echo_us, earliest_us, reference_us, cause, path, emitted_s, .. } = self;
+        let Self { t_echo_us, earliest_us, reference_us, cause, path, emitted_s, weighed, .. } = self;
+        weighed.try_reserve(more)?;
         t_echo_us.try_reserve(more)?;
         earliest_us.try_reserve(more)?;
         reference_us.try_reserve(more)?;

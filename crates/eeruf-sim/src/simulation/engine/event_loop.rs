@@ -16,7 +16,7 @@ use crate::simulation::options::Options;
 use crate::simulation::receiver::{NEVER, Receiver};
 use crate::{
     geometry::Moment,
-    methods::Method,
+    methods::{Method, Weighed},
     results::Readings,
     threads::Stop,
     tracing::PathsError,
@@ -221,11 +221,15 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
                     self.fire(rings, index, emitter, now)?;
                 }
                 Some(RingEvent::Reading(reading)) => {
+                    let weighed = ring.ring.weighed(reading.sensor);
+                    let expected_change_us = change(reading.sensor);
+                    let weighed = weighed.map(|weighed| Weighed { expected_change_us, ..weighed });
                     let number = ring.sensors.start + usize::from(reading.sensor);
                     if let (Some(receiver), Some(fired)) = (self.receivers.get_mut(number), &self.fired[number]) {
                         let fired_from = fired.pose * ring.robot.sensors[usize::from(reading.sensor)];
                         let reference = self.references[number];
-                        let recorded = self.recorder.record(number, &reading, receiver, reference, &fired_from);
+                        let recorded =
+                            self.recorder.record(number, &reading, weighed, receiver, reference, &fired_from);
                         receiver.stop();
                         if let Some(readings) = recorded {
                             self.kinematics.on_reading(readings, fired);

@@ -8,7 +8,7 @@ use crate::simulation::options::Options;
 use crate::simulation::receiver::{EXTERNAL, Heard, NEVER, Receiver};
 use crate::{
     geometry::Pose,
-    methods::{Belief, Method},
+    methods::{Belief, Method, Weighed},
     results::{Cause, HeardPath, NO_PATH, Readings, SensorId},
 };
 
@@ -82,6 +82,7 @@ impl Recorder {
         &mut self,
         sensor: usize,
         reading: &Reading,
+        weighed: Option<Weighed>,
         receiver: &Receiver,
         reference: u64,
         fired_from: &Pose,
@@ -128,6 +129,7 @@ impl Recorder {
         out.cause.push(cause);
         out.path.push(path);
         out.emitted_s.push(emitted_s);
+        out.weighed.push(weighed);
         Some(out)
     }
 

@@ -1,0 +1,143 @@
+//! The filter with a rate against the plainest worlds there are: one wall, and one path from another sensor, that come
+//! nearer or go away.
+
+use eeruf_core::tables::TABLE_I_D;
+use eeruf_core::{Instant, Layout, Micros, Phase, RateFilter, ReadingKind, Requirements, Schedule};
+
+use crate::common::random::Random;
+
+const SENSORS: usize = 6;
+/// Two phases.
+type Firing = [[i64; SENSORS]; 2];
+
+/// A schedule of random lags whose shifts are further than twice `t_delta` apart, in random order and of random sign, as
+/// the verifier confirms for this window.
+fn draw(random: &mut Random, t_delta: u32, period: u32, window: u32) -> Firing {
+    let separation = 2 * t_delta + 1;
+    let mut shifts = [(); SENSORS].map(|()| 0);
+    let mut shift = random.up_to(separation);
+    for place in &mut shifts {
+        *place = shift;
+        shift += separation + random.up_to(200);
+    }
+    for place in (1..SENSORS).rev() {
+        shifts.swap(place, random.up_to(place as u32) as usize);
+    }
+    let fire = shifts.map(|shift| {
+        let lag = random.up_to(period - 1 - shift);
+        if random.up_to(1) == 0 { [lag + shift, lag] } else { [lag, lag + shift] }
+    });
+    let firing = [0, 1].map(|phase| fire.map(|fire| fire[phase]));
+    let schedule = Schedule::<SENSORS>::from_firing(Micros::new(period), firing.map(|fire| fire.map(Micros::new)));
+    let needs = Requirements {
+        min_interval: Micros::ZERO,
+        layout: Layout::Line(1),
+        window: Micros::new(window),
+        ..Requirements::new(Micros::new(t_delta))
+    };
+    schedule.unwrap().verify(&needs).verified().unwrap();
+    firing.map(|fire| fire.map(i64::from))
+}
+
+/// When a sensor fires in a period.
+fn fires(firing: &Firing, sensor: usize, period: i64, number: i64) -> i64 {
+    number * period + firing[(number % 2) as usize][sensor]
+}
+
+#[test]
+fn one_path_that_grows_at_any_constant_rate_is_never_accepted() {
+    let mut random = Random(1);
+    let (mut heard, mut moved) = (0, 0);
+    for _ in 0..3000 {
+        let t_delta = 20 + random.up_to(500);
+        let (period, window) = (60_000, 30_000);
+        let firing = draw(&mut random, t_delta, period, window);
+        let (x, y) = (random.up_to(SENSORS as u32 - 1) as usize, random.up_to(SENSORS as u32 - 1) as usize);
+        if x == y {
+            continue;
+        }
+        // Up to 3.4 m/s towards or from whatever reflects it; up to three periods old when it is heard.
+        let rate = f64::from(random.up_to(40_000)) * 1e-6 - 0.02;
+        let (length, period) = (f64::from(100_000 + random.up_to(80_000)), i64::from(period));
+        let mut filter = RateFilter::<1>::new(Micros::new(t_delta), 40_000).unwrap();
+        let arrivals: Vec<i64> = (0..60)
+            .map(|number| fires(&firing, x, period, number))
+            .map(|sent| sent + (length + rate * sent as f64).round() as i64)
+            .collect();
+        for number in 4..50 {
+            let fired = fires(&firing, y, period, number);
+            let echoes = arrivals.iter().map(|arrival| arrival - fired);
+            let echo = echoes.filter(|echo| (0..=i64::from(window)).contains(echo)).min();
+            let t_echo = echo.map(|echo| Micros::new(echo as u32));
+            let verdict = filter.push(0, Instant::from_micros(fired as u32), t_echo).unwrap();
+            assert_ne!(verdict.kind, ReadingKind::Accepted, "{firing:?}, {x} to {y}, {length} us, rate {rate}");
+            heard += usize::from(echo.is_some());
+            moved += usize::from(verdict.previous.is_some() && echo.is_some());
+        }
+    }
+    assert!(heard > 30_000 && moved > 20_000, "{heard}, {moved}");
+}
+
+#[test]
+fn a_wall_that_comes_nearer_at_any_constant_rate_is_accepted_from_the_third_reading_on() {
+    let mut random = Random(2);
+    for table in 0..500 {
+        let (firing, period) = if table == 0 {
+            // Of Table I-d six sensors.
+            let at = |phase, x| TABLE_I_D.t_fire(Phase(phase), x).map_or(0, |at| i64::from(at.as_micros()));
+            ([0, 1].map(|phase| core::array::from_fn(|x| at(phase, x))), 100_000)
+        } else {
+            (draw(&mut random, 300, 60_000, 30_000), 60_000)
+        };
+        let rate = f64::from(random.up_to(40_000)) * 1e-6 - 0.02;
+        // Whole microseconds are off by half of one each.
+        let mut filter = RateFilter::<SENSORS>::new(Micros::new(1), 20_000).unwrap();
+        for number in 0..10 {
+            for y in 0..SENSORS {
+                let fired = fires(&firing, y, period, number);
+                let echo = (25_000.0 + rate * fired as f64).round();
+                let (at, t_echo) = (Instant::from_micros(fired as u32), Micros::new(echo as u32));
+                let kind = filter.push(y as u8, at, Some(t_echo)).unwrap().kind;
+                let expected = [ReadingKind::First, ReadingKind::Repeated];
+                assert_eq!(
+                    kind,
+                    expected.get(number as usize).copied().unwrap_or(ReadingKind::Accepted),
+                    "rate {rate}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn of_random_readings_those_are_accepted_that_plain_numbers_say() {
+    let mut random = Random(3);
+    let (mut accepted, mut close) = (0, 0);
+    for _ in 0..60_000 {
+        let t_delta = random.up_to(800);
+        let limit = random.up_to(20_000);
+        let mut filter = RateFilter::<1>::new(Micros::new(t_delta), limit).unwrap();
+        let (mut fired, mut readings) = (random.up_to(u32::MAX), vec![]);
+        for _ in 0..3 {
+            let echo = 10_000 + random.up_to(2_000);
+            readings.push((f64::from(fired.wrapping_sub(1 << 31)), f64::from(echo)));
+            let kind = filter.push(0, Instant::from_micros(fired), Some(Micros::new(echo))).unwrap().kind;
+            if let [(f1, e1), (f2, e2), (f3, e3)] = readings[..] {
+                if f3 < f1 {
+                    // Through the wrap, which these numbers do not know.
+                    continue;
+                }
+                let off = (e2 - (e1 + (e3 - e1) * (f2 - f1) / (f3 - f1))).abs() - f64::from(t_delta);
+                let fast = (e3 - e1).abs() - f64::from(t_delta) - (1e-6 * f64::from(limit) * (f3 - f1)).floor();
+                if off.abs() < 1e-6 {
+                    close += 1;
+                    continue;
+                }
+                assert_eq!(kind == ReadingKind::Accepted, off < 0.0 && fast <= 0.0, "{readings:?}, {t_delta}, {limit}");
+                accepted += usize::from(kind == ReadingKind::Accepted);
+            }
+            fired = fired.wrapping_add(1 + random.up_to(150_000));
+        }
+    }
+    assert!((3_000..50_000).contains(&accepted) && close < 1_000, "{accepted}, {close}");
+}

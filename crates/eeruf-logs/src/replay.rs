@@ -1,0 +1,86 @@
+//! [`replay()`]: the tracker of a hopping ring, run again over the ring's own log.
+
+use core::fmt;
+
+use eeruf_core::{
+    EchoTracker, Firing, MAX_SENSORS, Micros, Phase, ReadingKind, TrackerError, TrackerSettings, Verdict,
+};
+
+use crate::firings::FiringLog;
+
+/// Why the tracker cannot be run over a log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReplayError {
+    /// A setting is out of its range.
+    Tracker(TrackerError),
+    /// The log does not say how a reading was weighed.
+    Weighed {
+        /// The sensor, from 0.
+        sensor: u8,
+        /// The period, from 0.
+        period: u32,
+    },
+}
+
+impl fmt::Display for ReplayError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Tracker(error) => error.fmt(f),
+            Self::Weighed { sensor, period } => write!(
+                f,
+                "the firing of sensor {} in period {period} does not say how it was weighed; expected columns solo, \
+                 steady and changes, as a log of method eeruf_hopping has them",
+                u32::from(*sensor) + 1
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ReplayError {}
+
+impl From<TrackerError> for ReplayError {
+    fn from(error: TrackerError) -> Self {
+        Self::Tracker(error)
+    }
+}
+
+/// What an [`EchoTracker`] with these settings makes of each firing of a log, in the order of
+/// [`firings`](FiringLog::firings). With the settings of the ring that was logged, and from its start, that is what the
+/// ring made of it, to the last bit; a sensor that was enabled again begins anew in the ring, which the log does not say.
+///
+/// The log must say how each reading was weighed ([`Weighed`](crate::Weighed)). Readings that it calls `too_early`,
+/// `stuck` or `late` say nothing about an echo, as in the ring.
+///
+/// # Errors
+/// A setting out of its range, or a firing of which the log does not say how it was weighed.
+pub fn replay(log: &FiringLog, settings: TrackerSettings) -> Result<Vec<Verdict>, ReplayError> {
+    let mut tracker = EchoTracker::<MAX_SENSORS>::new(settings)?.with_sensors(log.sensors());
+    let mut weighed = Vec::with_capacity(log.firings.len());
+    for (place, firing) in log.firings.iter().enumerate() {
+        let missing = ReplayError::Weighed { sensor: firing.sensor, period: firing.period };
+        weighed.push((firing.weighed.as_ref().ok_or(missing)?, place));
+    }
+    weighed.sort_by_key(|(weighed, _)| weighed.given);
+    let nothing = Verdict { kind: ReadingKind::Late, t_echo: None, previous: None, age: None };
+    let mut verdicts = vec![nothing; log.firings.len()];
+    let mut changes = weighed.first().map_or(0, |(weighed, _)| weighed.changes);
+    for (weighed, place) in weighed {
+        if weighed.changes != changes {
+            changes = weighed.changes;
+            tracker.firing_changed();
+        }
+        let firing = &log.firings[place];
+        let (sensor, t_echo) = (usize::from(firing.sensor), firing.t_echo_us.map(Micros::new));
+        verdicts[place] = match weighed.kind {
+            Some(kind @ (ReadingKind::TooEarly | ReadingKind::Stuck)) => tracker.skip(sensor, kind, t_echo)?,
+            Some(kind @ ReadingKind::Late) => Verdict { kind, t_echo, previous: None, age: tracker.age(sensor) },
+            _ => {
+                let (solo, steady) = (weighed.solo, weighed.steady);
+                let expected_change_us = weighed.expected_change_us;
+                let of = Firing { phase: Phase(firing.phase), solo, steady, expected_change_us };
+                tracker.push(sensor, t_echo, of)?
+            }
+        };
+    }
+    Ok(verdicts)
+}

@@ -1,0 +1,24 @@
+//! The settings of time hopping by their names on the command line.
+
+use eeruf_core::HoppingSettings;
+
+/// The named settings of time hopping.
+#[derive(Clone, Copy, clap::ValueEnum)]
+pub(crate) enum Hopping {
+    /// For most robots
+    Balanced,
+    /// For robots that must stop early
+    Quick,
+    /// For maps: confirmed echoes alone
+    Maps,
+}
+
+impl Hopping {
+    pub(crate) fn settings(self) -> HoppingSettings {
+        match self {
+            Self::Balanced => HoppingSettings::BALANCED,
+            Self::Quick => HoppingSettings::QUICK,
+            Self::Maps => HoppingSettings::MAPS,
+        }
+    }
+}

@@ -13,6 +13,7 @@ mod classic;
 #[cfg(test)]
 mod dependencies;
 mod dist;
+mod examples;
 mod firmware;
 mod house;
 mod links;
@@ -72,6 +73,12 @@ enum Verb {
     C,
     /// Pack the Arduino library, build its examples, and run them on a simulated Uno among simulated modules
     Arduino(arduino::Plan),
+    /// Build the programs in examples/ that one flashes onto a board (minutes)
+    Examples {
+        /// Only this one: uno, pico, nucleo-f401 or esp32-c3
+        #[arg(value_name = "BOARD")]
+        board: Option<String>,
+    },
     /// Run the tests of c/micropython in MicroPython's WebAssembly build and in CPython
     Micropython,
     /// Run NewPing beside the Arduino library on a simulated Uno, and print the table that docs/arduino.md shows
@@ -151,6 +158,11 @@ fn main() -> ExitCode {
         Verb::Arduino(plan) => {
             let mut steps = Steps::default();
             arduino::arduino(&plan, &mut steps);
+            steps.finish(true)
+        }
+        Verb::Examples { board } => {
+            let mut steps = Steps::default();
+            examples::examples(board.as_deref(), &mut steps);
             steps.finish(true)
         }
         Verb::Micropython => one_step("MicroPython", micropython::micropython),

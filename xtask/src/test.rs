@@ -34,13 +34,6 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
             run(cargo.args(["build", "--package", "eeruf-core", "--release", "--locked", "--target", target]))
         });
     }
-    steps.step("core and driver for an AVR, without the search", || {
-        let mut cargo = cargo_for_target("avr-none")?;
-        // The target has no processor by default, and so no libraries made for it that others could share.
-        cargo.env("RUSTFLAGS", "-C target-cpu=atmega328p");
-        let packages = ["build", "--package", "eeruf-core", "--package", "eeruf-hc-sr04", "--no-default-features"];
-        run(cargo.args(packages).args(["--release", "--locked", "--target", "avr-none"]))
-    });
     steps.step("lint of the firmware", crate::firmware::lint);
     // What the default compiler can build, Clippy has just built with it.
     let default = version_of_default();

@@ -162,6 +162,7 @@ impl FiringLog {
         for (rows, sends) in [(&self.firings, ",1"), (&self.listened, ",0")] {
             let sends = if self.listened.is_empty() { "" } else { sends };
             for Firing { sensor, fired_us, period, phase, t_echo_us, rejected } in rows {
+                let fired_us = if self.lacks_instants { String::new() } else { fired_us.to_string() };
                 let echo = t_echo_us.map(|us| us.to_string()).unwrap_or_default();
                 let reading = match rejected {
                     Some(true) => "rejected",

@@ -10,11 +10,10 @@
 use std::fmt::Write;
 
 use eeruf_c_equal::core_side::flat;
+use eeruf_c_equal::ring::Verify;
+use eeruf_c_equal::world::{World, same};
 use eeruf_c_equal::{C, Do, Needs, Random};
 use eeruf_core::{Instant, Micros, Ring, RingConfig, RingEvent, Schedule, ScheduledFiring};
-
-use crate::ring::Verify;
-use crate::world::{World, same};
 
 const K: usize = 16;
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../c/tests/corpus.txt");

@@ -24,8 +24,8 @@ pub(crate) fn check_documents() -> Result<(), Trouble> {
     let listed = output(Command::new("git").args(["ls-files", "*.md"]));
     let listed = listed.ok_or_else(|| Trouble::Failed("git ls-files: no answer".to_owned()))?;
     let mut texts = BTreeMap::new();
-    // The book's chapters are named as they lie in the book, and its builder asks for each.
-    for document in listed.lines().filter(|document| *document != CHAPTERS).map(Path::new) {
+    // What is the book's alone is named as it lies in the book, whose builder looks for each.
+    for document in listed.lines().map(Path::new).filter(|document| !document.starts_with("site")) {
         let text = fs::read_to_string(document).map_err(|error| failed(document, &error))?;
         texts.insert(document.to_owned(), text);
     }

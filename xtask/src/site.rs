@@ -12,6 +12,8 @@ use crate::steps::{Steps, Trouble, output, run};
 const SITE: &str = "target/site/book";
 /// What the book is made of.
 const SOURCES: &str = "target/site/src";
+/// Where the book leads to what lies beside it: the references and the page.
+const REFERENCES: &str = "site/references.md";
 /// Where links to sources lead.
 const REPOSITORY: &str = "https://github.com/eeruf/eeruf/blob/main";
 /// The version of mdBook that the site is built with, so that two builds look alike.
@@ -48,6 +50,7 @@ fn book() -> Result<(), Trouble> {
     }
     copy_folder(Path::new("docs"), sources)?;
     write(&sources.join("SUMMARY.md"), &read(Path::new(CHAPTERS))?)?;
+    write(&sources.join("references.md"), &read(Path::new(REFERENCES))?)?;
     for (name, chapter) in OUTSIDE {
         let text = read(Path::new(name))?;
         write(&sources.join(chapter), &rewritten(Path::new(name), &text))?;

@@ -42,7 +42,8 @@ pub const CONFIG: RingConfig = RingConfig::new().with_t_delta(Micros::new(500)).
 /// lateness by 250 us, since the boards also write to the host.
 pub const STEP: Micros = Micros::new(652);
 
-/// The hopping ring of the same sensors, with the same period, and a window for as long as the modules must rest: 60 ms.
+/// The hopping ring of the same sensors, with the same period, and a window for as long as the modules must
+/// rest: 60 ms.
 ///
 /// # Errors
 /// None with these numbers.

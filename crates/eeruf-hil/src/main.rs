@@ -3,10 +3,11 @@
 //! Prints two tables in Markdown: how the boards' rings agree with the host's, and what each fault did. Leaves with 1
 //! if anything is not as it must be.
 //!
-//! `eeruf-hil SCENE --hopping --board NAME EMULATOR .. [--board ..]`: the same of boards whose ring hops in time; one table.
+//! `eeruf-hil SCENE --hopping --board NAME EMULATOR .. [--board ..]`: the same of boards whose ring hops in
+//! time; one table.
 //!
-//! `eeruf-hil SCENE --one FAULT PERIODS --board NAME EMULATOR ..`: one run at the pace of the clock on the wall, as it is
-//! needed to test what listens to the board's serial line. Prints what the ring read, as CSV.
+//! `eeruf-hil SCENE --one FAULT PERIODS --board NAME EMULATOR ..`: one run at the pace of the clock on the wall, as it
+//! is needed to test what listens to the board's serial line. Prints what the ring read, as CSV.
 
 mod control;
 mod emulator;
@@ -139,8 +140,8 @@ fn hopping_table(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
     ))
 }
 
-/// A microsecond may decide who fires alone next, and interrupts come some microseconds earlier or later in each run. So the
-/// table has no counts, and standard error has them.
+/// A microsecond may decide who fires alone next, and interrupts come some microseconds earlier or later in each run. So
+/// the table has no counts, and standard error has them.
 fn hopping_row(world: &World, board: &str, fault: Fault, emulator: &[String]) -> Result<String, String> {
     let run = run_hopping(world, fault, PERIODS, emulator)?;
     let report = run.report_hopping(fault)?;

@@ -1701,9 +1701,26 @@ static uint32_t code_width(const EerufHoppingRing *hopping) {
     return (hopping->cycle - 1u) * hopping->config.step_us;
 }
 
+/* What the phase is multiplied by for a sensor, modulo the cycle. */
+static uint8_t multiplier_of(const EerufHoppingConfig *config, uint8_t sensor) {
+    const uint8_t first = config->code == 0 ? 1 : (uint8_t)(config->code - 1u);
+    return (uint8_t)(sensor + first);
+}
+
+/* By how much less than a period two firings of a sensor are apart at most. */
+static uint32_t longest_drop(const EerufHoppingConfig *config, uint8_t cycle) {
+    uint8_t x, most = 0;
+    for (x = 0; x < config->sensors; x++) {
+        const uint8_t multiplier = (uint8_t)(multiplier_of(config, x) % cycle);
+        if (multiplier != 0 && cycle - multiplier > most) most = (uint8_t)(cycle - multiplier);
+    }
+    return most * config->step_us;
+}
+
 /* When a sensor fires in this period, after its start, unless it is a solo period. */
 static uint32_t offset_of(const EerufHoppingRing *hopping, uint8_t sensor) {
-    const uint16_t place = (uint16_t)((sensor + 1u) * hopping->phase % hopping->cycle);
+    const uint16_t product = (uint16_t)(multiplier_of(&hopping->config, sensor) * hopping->phase);
+    const uint16_t place = product % hopping->cycle;
     return add32(hopping->hoppers[sensor].lag_us, place * hopping->config.step_us);
 }
 
@@ -1977,6 +1994,10 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     if (!is_between(config->phases, 2, 67)) return EERUF_ERR_PHASES;
     if (config->step_us == 0 || config->step_us > UINT16_MAX) return EERUF_ERR_STEP;
     cycle = config->phases > config->sensors ? config->phases : (uint8_t)(config->sensors + 1u);
+    if (config->code != 0) {
+        cycle = config->phases;
+        if (!is_prime(cycle) || cycle < config->sensors || config->code > cycle) return EERUF_ERR_PHASES;
+    }
     while (!is_prime(cycle)) cycle++;
     width_us = (cycle - 1u) * config->step_us;
     if (config->period_us <= width_us || config->period_us > EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
@@ -1987,7 +2008,7 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     if (config->step_us <= config->tracker.t_delta_us) return EERUF_ERR_T_DELTA;
     if (config->tracker.votes > cycle) return EERUF_ERR_VOTES;
     /* The sensor must have stopped listening, and a path must not read the same with two ages. */
-    least_us = longer(add32(config->window_us, width_us), 2 * width_us + config->step_us);
+    least_us = longer(add32(config->window_us, longest_drop(config, cycle)), 2 * width_us + config->step_us);
     if (config->period_us < least_us) return EERUF_ERR_PERIOD;
 
     memset(hopping, 0, sizeof *hopping);

@@ -436,18 +436,20 @@ typedef struct EerufHoppingConfig {
     uint8_t solo_after;          /* firings with nothing accepted */
     uint8_t solo_spacing, shift_after, shift_spacing;
     uint8_t neighbours;
+    uint8_t code;                /* 0; or, with `phases` exactly, a prime: 1 + the multiplier of sensor 0, as
+                                    `eeruf design --phases` writes it for the shortest period */
 } EerufHoppingConfig;
 
 /* The settings of most robots, of those that must stop early, and of those that make maps. */
 #define EERUF_HOPPING_BALANCED(sensors, period_us, window_us)                                                          \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 60, 5, 6, 2, 6, 2}, 84, 5, 3, 5, 8, 4}
+     {150, 400, 60, 5, 6, 2, 6, 2}, 84, 5, 3, 5, 8, 4, 0}
 #define EERUF_HOPPING_QUICK(sensors, period_us, window_us)                                                             \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 100, 4, 6, 2, 6, 2}, 100, 4, 2, 5, 8, 4}
+     {150, 400, 100, 4, 6, 2, 6, 2}, 100, 4, 2, 5, 8, 4, 0}
 #define EERUF_HOPPING_MAPS(sensors, period_us, window_us)                                                              \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 60, 5, 7, 1, 6, 0}, 28, 8, 6, 5, 24, 4}
+     {150, 400, 60, 5, 7, 1, 6, 0}, 28, 8, 6, 5, 24, 4, 0}
 
 /* One hypothesis about a sensor's echo. Not for the caller. */
 typedef struct EerufTrack {

@@ -1,9 +1,11 @@
-//! The scenes and rings of the repository, within the program, so that what the documents show runs anywhere.
+//! The scenes and rings of the repository and the checker of certificates, within the program, so that what the documents
+//! show runs anywhere.
 
 use include_dir::{Dir, include_dir};
 
 static SCENES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/scenes");
 static RINGS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/rings");
+const CHECKER: (&str, &str) = ("checker/check_period.py", include_str!("../checker/check_period.py"));
 
 /// The examples: the path that they have in the repository, as `scenes/alcove.toml`, and their text. In order of paths.
 pub fn all() -> Vec<(String, &'static str)> {
@@ -12,7 +14,7 @@ pub fn all() -> Vec<(String, &'static str)> {
             .files()
             .filter_map(move |file| Some((format!("{folder}/{}", file.path().display()), file.contents_utf8()?)))
     });
-    let mut files: Vec<_> = files.collect();
+    let mut files: Vec<_> = files.chain([(CHECKER.0.to_owned(), CHECKER.1)]).collect();
     files.sort_unstable();
     files
 }
@@ -37,6 +39,7 @@ mod tests {
                 assert_eq!(here, std::fs::read_to_string(&file).expect("it can be read"), "{name}");
             }
         }
+        assert!(text("checker/check_period.py").is_some_and(|text| text.contains("eeruf-certificate")));
         assert!(all().is_sorted() && text("scenes/nowhere.toml").is_none());
     }
 }

@@ -308,6 +308,12 @@ static void hopping_rings(void) {
     WITH(sensors, 65, EERUF_ERR_SENSORS);
     WITH(phases, 1, EERUF_ERR_PHASES);
     WITH(phases, 68, EERUF_ERR_PHASES);
+    WITH(code, 6, EERUF_ERR_PHASES);
+    WITH(code, 5, EERUF_OK);
+    config.phases = 6; /* not a prime */
+    EXPECT(hop(r, s, h, &config), EERUF_ERR_PHASES);
+    config.phases = 3; /* fewer than the sensors */
+    EXPECT(hop(r, s, h, &config), EERUF_ERR_PHASES);
     WITH(step_us, 0, EERUF_ERR_STEP);
     WITH(step_us, 150, EERUF_ERR_T_DELTA);
     WITH(period_us, 36959, EERUF_ERR_PERIOD);

@@ -3,6 +3,8 @@
 //! The targets in `fuzz_targets` only call these, so that a finding can be replayed by an ordinary test. Readers of
 //! files take the file itself, so that any file of the repository is a seed.
 
+#[cfg(feature = "c")]
+pub mod c;
 #[cfg(feature = "certificates")]
 pub mod certificates;
 pub mod filter;

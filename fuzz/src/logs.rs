@@ -1,4 +1,4 @@
-//! Logs of robots: CSV, logs of firings, and bags, told apart as the program tells them apart. Whatever stands in one,
+//! Logs of robots: CSV, logs of firings, and bags, recognised as the program recognises them. Whatever stands in one,
 //! each reading is of a sensor that is known by then, and what cannot be read is said in one line.
 
 use std::fs;

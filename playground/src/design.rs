@@ -120,6 +120,6 @@ fn shortest(spec: &RingSpec, what_if: bool) -> Result<RingDesign, String> {
         std::ops::ControlFlow::Continue(())
     };
     let budget = if spec.sensors > FEW { BUDGET_OF_MANY } else { BUDGET };
-    let found = spec.shortest(&Search { budget, what_if }, &mut control);
+    let found = spec.shortest(&Search { budget, what_if, atlas: false }, &mut control);
     found.map_err(|error: SearchError| error.to_string())?.map_err(|none| none.to_string())
 }

@@ -61,12 +61,12 @@ struct ShownPath {
     corners: Vec<[f64; 2]>,
 }
 
-/// Simulates for so many of the first robot's periods, and shows the readings of the first so many seconds.
+/// Simulates for so many of the robot's periods, and shows the readings of the first so many seconds.
 pub(crate) fn run(world: &World, method: Method, periods: u32, shown_s: f64) -> Result<Run, String> {
     if !(1..=MAX_PERIODS).contains(&periods) {
         return Err(format!("{periods} periods; expected 1 to {MAX_PERIODS}"));
     }
-    let robot = world.robots().first().ok_or("no robot; expected one")?;
+    let [robot] = world.robots() else { return Err(format!("{} robots; expected one", world.robots().len())) };
     let best = if method == Method::EerufBest {
         let keep_going = |at: &eeruf_core::search::Progress| {
             progress(f64::NAN, at.nodes as f64);

@@ -42,13 +42,12 @@ pub(crate) fn trace(world: &World) -> Result<Traced, String> {
     let paths = matrix.paths().iter().filter_map(|path| {
         let ends = (position(path.emitter)?, position(path.receiver)?);
         let corners = scene.bounce_points(ends.0, ends.1, matrix.bounces(path))?;
-        let received = transducer.received(path.amplitude, path.length_m, scene.air());
         Some(TracedPath {
             emitter: path.emitter,
             receiver: path.receiver,
             order: path.order,
             length_m: path.length_m,
-            level_db: 20.0 * (received / floor).log10(),
+            level_db: transducer.level_db(path.amplitude, path.length_m, scene.air()),
             corners: pairs(&corners),
         })
     });

@@ -5,7 +5,8 @@ that alternate and differ from sensor to sensor. A true echo does not care; cros
 
 Times are whole microseconds (``_us``), lengths metres, angles radians. Sensors count from 0. What is wrong with an argument raises
 an :class:`EerufError`, which is a ``ValueError``, with the name, the value and what is expected. ``KINDS`` are the kinds of readings,
-of which arrays hold the indices. ``EXAMPLES`` are the scenes and rings that come along, see :func:`example`.
+of which arrays hold the indices. ``EXAMPLES`` are the scenes, rings and the checker that come along, see
+:func:`example`.
 
 Example:
     >>> import eeruf

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from eeruf._results import Summary
 from eeruf._types import HeardPaths
+from eeruf.logs import Firings
 
 # Whole numbers: Python's and NumPy's.
 _Int = SupportsIndex
@@ -17,7 +18,6 @@ _Each = _Int | Iterable[_Int]
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.int64]
 _Codes = NDArray[np.int8]
-_Bools = NDArray[np.bool_]
 _Layout = Literal["line", "ring", "blocks"] | Iterable[tuple[_Int, _Int]]
 _Criterion = Literal["exact", "paper"]
 _Progress = bool | Callable[[float | None, str], object] | None
@@ -224,6 +224,8 @@ class Found:
         seconds: float,
         reason: str | None = None,
         certificate: str | None = None,
+        real_period_us: tuple[int, int] | None = None,
+        real_proven: bool | None = None,
     ) -> Found: ...
     @property
     def schedule(self) -> Schedule | None: ...
@@ -241,6 +243,10 @@ class Found:
     def reason(self) -> str | None: ...
     @property
     def certificate(self) -> str | None: ...
+    @property
+    def real_period_us(self) -> tuple[int, int] | None: ...
+    @property
+    def real_proven(self) -> bool | None: ...
     def to_dict(self) -> dict[str, object]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -262,6 +268,7 @@ def design(
     intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
     shared_lines: Iterable[Sequence[_Int]] | None = None,
     together: Iterable[Sequence[_Int]] | None = None,
+    over_reals: bool = False,
 ) -> Found: ...
 def check_certificate(text: str) -> int: ...
 def example(name: str) -> str: ...
@@ -458,6 +465,15 @@ class Reading:
 
 @final
 class PeriodEnded:
+    def __new__(
+        cls,
+        period: _Int,
+        phase: _Int = 0,
+        max_late_us: _Int = 0,
+        sum_late_us: _Int = 0,
+        max_shift_us: _Int = 0,
+        tally: dict[str, int] = {},
+    ) -> PeriodEnded: ...
     @property
     def period(self) -> int: ...
     @property
@@ -566,6 +582,8 @@ class HoppingRing:
     def disable(self, sensor: _Int) -> None: ...
     def enable(self, sensor: _Int) -> None: ...
     def is_enabled(self, sensor: _Int) -> bool: ...
+    def pause(self) -> None: ...
+    def resume(self) -> None: ...
     def restart(self, now_us: _Int) -> None: ...
 
 @final
@@ -689,6 +707,7 @@ class Vfh:
 
 @final
 class Steering:
+    def __new__(cls, direction_rad: float, valley: tuple[int, int] = (0, 72), trapped: bool = False) -> Steering: ...
     @property
     def direction_rad(self) -> float: ...
     @property
@@ -955,6 +974,13 @@ class Readings:
 
 @final
 class RobotState:
+    def __new__(
+        cls,
+        pose: tuple[float, float, float],
+        velocity_m_s: tuple[float, float] = (0.0, 0.0),
+        turn_rad_s: float = 0.0,
+        touches: bool = False,
+    ) -> RobotState: ...
     @property
     def pose(self) -> tuple[float, float, float]: ...
     @property
@@ -1041,25 +1067,5 @@ def _read_log(
 ) -> dict[str, Any]: ...
 def _read_firings(path: str) -> dict[str, Any]: ...
 def _replay(path: str, t_delta_us: _Int | None, settings: HoppingSettings | str | None) -> dict[str, Any]: ...
-def _diagnose(
-    sensor: _Ints,
-    fired_us: _Ints,
-    period: _Ints,
-    phase: _Ints,
-    rejected: _Ints,
-    t_echo_us: _Floats,
-    sends: _Bools,
-    tolerance_us: _Int,
-    max_travel_us: _Int,
-) -> dict[str, Any]: ...
-def _survey(
-    sensor: _Ints,
-    fired_us: _Ints,
-    period: _Ints,
-    phase: _Ints,
-    rejected: _Ints,
-    t_echo_us: _Floats,
-    sends: _Bools,
-    tolerance_us: _Int,
-    until_us: _Int,
-) -> dict[str, Any]: ...
+def _diagnose(firings: Firings, tolerance_us: _Int, max_travel_us: _Int) -> dict[str, Any]: ...
+def _survey(firings: Firings, tolerance_us: _Int, until_us: _Int) -> dict[str, Any]: ...

@@ -14,14 +14,13 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, cast
+from typing import TYPE_CHECKING, Literal
 
 from eeruf import _eeruf
 from eeruf._eeruf import LogError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from typing import Any
 
     import numpy as np
     import pandas as _pd
@@ -417,13 +416,7 @@ def diagnose(
         True
 
     """
-    return Diagnosis(
-        **_eeruf._diagnose(
-            **cast("dict[str, NDArray[Any]]", _firings(log).columns()),
-            tolerance_us=tolerance_us,
-            max_travel_us=max_travel_us,
-        )
-    )
+    return Diagnosis(**_eeruf._diagnose(_firings(log), tolerance_us=tolerance_us, max_travel_us=max_travel_us))
 
 
 def survey(log: Firings | str | os.PathLike[str], *, tolerance_us: int = 100, until_us: int = 15_000) -> Surveyed:
@@ -446,8 +439,4 @@ def survey(log: Firings | str | os.PathLike[str], *, tolerance_us: int = 100, un
         [7000.0]
 
     """
-    return Surveyed(
-        **_eeruf._survey(
-            **cast("dict[str, NDArray[Any]]", _firings(log).columns()), tolerance_us=tolerance_us, until_us=until_us
-        )
-    )
+    return Surveyed(**_eeruf._survey(_firings(log), tolerance_us=tolerance_us, until_us=until_us))

@@ -12,6 +12,11 @@ pub(crate) fn prove(design: &RingDesign, budget: usize, watch: &mut Watch) -> Re
     certificate::prove(design, budget, go_on).map_err(|error| error.to_string())
 }
 
+/// What the checker says of the certificate.
+pub(crate) fn claim_of(text: &str) -> String {
+    check(text).map_or_else(|error| format!("refused: {error}"), |certified| certified.to_string())
+}
+
 /// What the checker says of the certificate, and whether the search knows more.
 pub(crate) fn claim(text: &str, design: &RingDesign) -> String {
     let known = design.found.bound.unwrap_or_default();
@@ -19,7 +24,6 @@ pub(crate) fn claim(text: &str, design: &RingDesign) -> String {
         Ok(certified) if certified.claim.bound * certified.claim.problem.tick_us.0 < known.as_micros() => {
             format!("{certified}; a proof of {known} is longer, give it more with --certificate-budget or --time-limit")
         }
-        Ok(certified) => certified.to_string(),
-        Err(error) => format!("refused: {error}"),
+        _ => claim_of(text),
     }
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use clap::ValueEnum;
 use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Micros, PhaseCriterion};
-use eeruf_design::{RingSpec, Search};
+use eeruf_design::{FoundJson, RealPeriod, RingDesign, RingSpec, Search, real_budget};
 
 use super::answer::Answer;
 use super::certificate;
@@ -22,7 +22,8 @@ use crate::report::watch::Watch;
 /// Find the schedule with the shortest period for a ring of sensors, and prove that none is shorter.
 ///
 /// With --phases it is one of many phases, for a ring that hops in time and whose sensors do not stay blind: a linear
-/// congruence with lags, and the bound that holds for any such schedule.
+/// congruence with lags, and the bound that holds for any such schedule; --emit rust, c and arduino then write all that
+/// a hopping ring is set up with.
 ///
 /// The ring file says how many sensors there are (sensors, layout, neighbours) and what they need: t_delta_us,
 /// min_interval_us, window_us; or jitter_us and speed_m_s, crosstalk_range_m, max_range_m and retrigger_us,
@@ -49,12 +50,16 @@ pub(crate) struct Args {
     /// eeruf-check and checker/check_period.py
     #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
+    /// Write a certificate over the reals: that no period is shorter even with firing times that are no whole ticks.
+    /// Not where the proof needs more than a certificate can state
+    #[arg(long, value_name = "FILE")]
+    certificate_over_reals: Option<PathBuf>,
     /// How many nodes the certificate's proof may have; if they do not suffice, it certifies the bound that they prove
-    #[arg(long, default_value_t = 1_000_000, value_name = "NODES", requires = "certificate")]
+    #[arg(long, default_value_t = 1_000_000, value_name = "NODES")]
     certificate_budget: usize,
     /// At least so many phases, 2 to 67: a schedule for a ring that hops in time
     #[arg(long, value_name = "M", value_parser = clap::value_parser!(u8).range(2..=67),
-          conflicts_with_all = ["certificate", "budget", "time_limit"])]
+          conflicts_with_all = ["certificate", "certificate_over_reals", "budget", "time_limit"])]
     phases: Option<u8>,
     /// Many phases: crosstalk need move by T_delta and this margin alone, which is all that jitter and lateness may
     /// use, instead of 2 T_delta + 1
@@ -63,6 +68,9 @@ pub(crate) struct Args {
     /// How many nodes to search at most before giving the best schedule so far
     #[arg(long, default_value_t = 50_000_000, value_name = "NODES")]
     budget: u64,
+    /// Search even where the atlas knows the shortest period
+    #[arg(long)]
+    no_atlas: bool,
     /// How long to search at most before giving the best schedule so far, in seconds; as long again for the certificate
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
@@ -112,7 +120,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         };
         watch.control_flow(how_far)
     };
-    let search = Search { budget: args.budget, what_if: args.form().is_none() };
+    let search = Search { budget: args.budget, what_if: args.form().is_none(), atlas: !args.no_atlas };
     let design = match spec.shortest(&search, &mut control).map_err(bad)? {
         Ok(design) => design,
         Err(none) => {
@@ -124,6 +132,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     watch.begin_again();
     let prove = |_| certificate::prove(&design, args.certificate_budget, &mut watch);
     let certificate = args.certificate.as_ref().map(prove);
+    let real = over_reals(args, &design, &mut watch);
     drop(watch);
     let requirements = design.spec.problem().requirements;
     if let Some(file) = &args.svg {
@@ -142,15 +151,44 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         }
         _ => Answer::Yes,
     };
+    let certified = match (&args.certificate_over_reals, real.as_ref().and_then(|real| real.certificate.as_ref())) {
+        (Some(file), Some(text)) => {
+            write(file, text)?;
+            eprintln!("{}: {}", file.display(), certificate::claim_of(text));
+            certified
+        }
+        (Some(file), None) => {
+            let why = "no proof over the reals that a certificate can state was found";
+            eprintln!("eeruf: {}: not written: {why}", file.display());
+            Answer::No
+        }
+        _ => certified,
+    };
     match args.form() {
         Some(Form::Toml) => print!("{}", design.schedule.to_toml()),
         Some(Form::Rust) => print!("{}", design.schedule.to_rust(&requirements)),
         Some(Form::C) => print!("{}", design.schedule.to_c(&requirements)),
         Some(Form::Arduino) => print!("{}", design.schedule.to_arduino(&requirements, "RING")),
-        Some(Form::Json) => println!("{}", to_json(&design.json(seconds))),
-        None => print!("{}", describe(&args.file.display().to_string(), &spec, &requirements, &design, seconds)),
+        Some(Form::Json) => {
+            let real_period_us = real.as_ref().map(|real| real.period_us);
+            let real_proven = real.as_ref().map(|real| real.proven);
+            println!("{}", to_json(&FoundJson { real_period_us, real_proven, ..design.json(seconds) }));
+        }
+        None => print!("{}", describe(&args.file.display().to_string(), &spec, &design, real.as_ref(), seconds)),
     }
     Ok(certified)
+}
+
+/// What the tick costs, where it is printed or certified.
+fn over_reals(args: &Args, design: &RingDesign, watch: &mut Watch) -> Option<RealPeriod> {
+    let is_printed = matches!(args.form(), None | Some(Form::Json));
+    if !is_printed && args.certificate_over_reals.is_none() {
+        return None;
+    }
+    let budget =
+        if args.certificate_over_reals.is_some() { args.certificate_budget } else { real_budget(design.spec.sensors) };
+    watch.begin_again();
+    design.over_reals(budget, |nodes| watch.go_on(|| format!("over the reals: {nodes} nodes")))
 }
 
 fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, InputError> {
@@ -159,9 +197,6 @@ fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, Input
         return Err(bad("speed_m_s; expected t_delta_us or jitter_us alone with --phases: the tracker follows what \
                         moves, by odometry"
             .to_owned()));
-    }
-    if matches!(args.form(), Some(Form::Arduino)) {
-        return Err(bad("--emit arduino; expected toml, rust, c or json with --phases".to_owned()));
     }
     let margin = |us| PhaseCriterion::Margin(Micros::new(us));
     let criterion = args.margin_us.map_or(PhaseCriterion::Exact, margin);
@@ -174,9 +209,9 @@ fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, Input
         Some(Form::Toml) => print!("{}", design.schedule.to_toml()),
         Some(Form::Rust) => print!("{}", design.schedule.to_rust(&requirements)),
         Some(Form::C) => print!("{}", design.schedule.to_c(&requirements)),
+        Some(Form::Arduino) => print!("{}", design.schedule.to_arduino(&requirements, "RING")),
         Some(Form::Json) => println!("{}", to_json(&DesignJson::from(&design))),
-        // Arduino was refused.
-        _ => print!("{}", describe_design(&args.file.display().to_string(), spec, &requirements, &design)),
+        None => print!("{}", describe_design(&args.file.display().to_string(), spec, &requirements, &design)),
     }
     Ok(Answer::Yes)
 }

@@ -8,10 +8,11 @@ use crate::examples;
 use crate::files::error::InputError;
 use crate::files::write::write;
 
-/// List the example scenes and rings, or write them into a folder, where the commands of the documents then run.
+/// List the example scenes and rings and the checker of certificates in Python, or write them into a folder, where the
+/// commands of the documents then run.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Write scenes/ and rings/ into this folder; files that are there already stay as they are
+    /// Write scenes/, rings/ and checker/ into this folder; files that are there already stay as they are
     #[arg(value_name = "DIR")]
     folder: Option<PathBuf>,
 }

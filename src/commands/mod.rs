@@ -3,6 +3,7 @@
 //! Commands read with `files`, ask the libraries, and hand what they found to `report`; neither knows of them.
 
 mod answer;
+mod atlas;
 mod certificate;
 mod completions;
 mod dataset;
@@ -51,6 +52,7 @@ pub(crate) enum Verb {
     Survey(survey::Args),
     Experiment(experiment::Args),
     Dataset(dataset::Args),
+    Atlas(atlas::Args),
     Examples(examples::Args),
     Completions(completions::Args),
     Man(man::Args),
@@ -70,6 +72,7 @@ impl Verb {
             Self::Survey(args) => survey::run(args),
             Self::Experiment(args) => experiment::run(args),
             Self::Dataset(args) => dataset::run(args),
+            Self::Atlas(args) => atlas::run(args),
             Self::Examples(args) => examples::run(args),
             Self::Completions(args) => completions::run(args),
             Self::Man(args) => man::run(args),

@@ -59,7 +59,6 @@ fn critical_paths(world: &World, max_order: u32) -> Result<PathsJson, eeruf_sim:
     (tracer.pole_shadows, tracer.edges) = (world.physics().shadows, world.physics().edges);
     matrix.compute(&mut tracer, &query)?;
     for path in matrix.paths().iter().filter(|path| path.emitter != path.receiver) {
-        let received = transducer.received(path.amplitude, path.length_m, scene.air());
         out.emitter.push(path.emitter);
         out.receiver.push(path.receiver);
         out.length_m.push(path.length_m);
@@ -67,7 +66,7 @@ fn critical_paths(world: &World, max_order: u32) -> Result<PathsJson, eeruf_sim:
         out.departure_rad.push(path.departure_rad);
         out.arrival_rad.push(path.arrival_rad);
         out.amplitude.push(path.amplitude);
-        out.level_db.push(20.0 * (received / floor).log10());
+        out.level_db.push(transducer.level_db(path.amplitude, path.length_m, scene.air()));
         let bounces = matrix.bounces(path);
         out.walls.push(wall_numbers(bounces));
         out.by_way_of.push(by_way_of(bounces));

@@ -53,7 +53,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "RING.toml")]
     ring: Option<PathBuf>,
     /// Sensors that hear each other within this time are neighbours; what comes later is left to alternating waits
-    #[arg(long, value_name = "N", default_value_t = 15_000, value_parser = clap::value_parser!(u32).range(1000..=120_000))]
+    #[arg(long, value_name = "N", default_value_t = 15_000)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1000..=120_000))]
     until_us: u32,
     /// The ring file's t_delta_us
     #[arg(long, value_name = "N", default_value_t = 999, requires = "ring")]

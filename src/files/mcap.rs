@@ -1,5 +1,5 @@
-//! Simulated readings as an MCAP file, for Foxglove, Rerun and whatever reads ROS 2: ranges, poses, the scene, and along
-//! which path each reading came.
+//! Simulated readings as an MCAP file, for Foxglove, Rerun and whatever reads ROS 2: ranges, poses, the scene, and
+//! along which path each reading came.
 //!
 //! Ranges are `sensor_msgs/msg/Range` in CDR; poses, scene and paths are Foxglove's own messages in JSON. Sensors and
 //! robots are counted from 1 in the names of topics and frames.

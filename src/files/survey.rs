@@ -68,7 +68,7 @@ pub(crate) fn true_paths(world: &World) -> Result<Vec<TruePath>, PathsError> {
         sender: path.emitter as u8,
         receiver: path.receiver as u8,
         travel_us: 1e6 * path.length_m / c,
-        level_db: 20.0 * (transducer.received(path.amplitude, path.length_m, scene.air()) / floor).log10(),
+        level_db: transducer.level_db(path.amplitude, path.length_m, scene.air()),
     };
     Ok(matrix.paths().iter().map(path).collect())
 }

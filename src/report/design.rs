@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use comfy_table::{Table, presets};
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Micros, Phase, Requirements};
-use eeruf_design::{RingDesign, RingSpec, WhatIf};
+use eeruf_design::{RealPeriod, RingDesign, RingSpec, WhatIf};
 use eeruf_sim::AnySchedule;
 
 use super::timing;
@@ -13,11 +13,12 @@ use super::timing;
 pub(crate) fn describe(
     name: &str,
     spec: &RingSpec,
-    requirements: &Requirements<'_>,
     design: &RingDesign,
+    real: Option<&RealPeriod>,
     seconds: f64,
 ) -> String {
     let RingDesign { schedule, found, preferred, what_if, .. } = design;
+    let requirements = &design.spec.problem().requirements;
     let report = schedule.verify(requirements);
     let period = schedule.period();
     let mut table = Table::new();
@@ -28,6 +29,9 @@ pub(crate) fn describe(
         format!("not proven: it may be as short as {}", found.bound.unwrap_or(period))
     };
     table.add_row(["period", &period.to_string(), &proof]);
+    if let Some(real) = real {
+        table.add_row(without_ticks(real, period, spec.tick));
+    }
     let best = |proven: Option<bool>| match proven {
         Some(true) => ", and no schedule of this period has more",
         Some(false) => ", the best found",
@@ -86,11 +90,11 @@ pub(crate) fn describe(
             format!("{:.2} times Table I-d scaled to the same needs ({:.1} a second)", paper / us, rate(paper)),
         ]);
     }
-    table.add_row([
-        "search".to_owned(),
-        format!("{:.1} ms", 1000.0 * seconds),
-        format!("{} nodes, and {} for the choice", found.nodes, preferred.map_or(0, |p| p.nodes)),
-    ]);
+    let from = match design.from_atlas {
+        true => "from the atlas, verified; --no-atlas searches".to_owned(),
+        false => format!("{} nodes, and {} for the choice", found.nodes, preferred.map_or(0, |p| p.nodes)),
+    };
+    table.add_row(["search".to_owned(), format!("{:.1} ms", 1000.0 * seconds), from]);
 
     let mut text = format!("{name}: {} sensors, {}\n{table}\n", spec.sensors, requirements.layout);
     _ = writeln!(text, "\nNot shorter because of {}.", design.reason);
@@ -101,6 +105,23 @@ pub(crate) fn describe(
     text += &timing::diagram(schedule, requirements);
     _ = writeln!(text, "\n{}", schedule.to_toml());
     text
+}
+
+/// What the tick costs.
+fn without_ticks(real: &RealPeriod, period: Micros, tick: Micros) -> [String; 3] {
+    let gain = real.gain_us(period);
+    let verdict = match (gain > 0.0, real.proven) {
+        (true, true) => format!("proven; ticks of {tick} cost {}", milliseconds(gain)),
+        (true, false) => format!("what these firing orders give; ticks of {tick} cost {} or more", milliseconds(gain)),
+        (false, true) => "proven: the same needs are met no faster with finer ticks".to_owned(),
+        (false, false) => "what these firing orders give; finer ticks may gain something with others".to_owned(),
+    };
+    ["without ticks".to_owned(), milliseconds(real.us()), verdict]
+}
+
+/// A time with a fraction, in milliseconds.
+fn milliseconds(us: f64) -> String {
+    format!("{} ms", (us * 1e3).round() / 1e6)
 }
 
 /// A time that all sensors have, or the shortest and the longest.

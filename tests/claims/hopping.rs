@@ -140,19 +140,63 @@ fn emitted_rust_is_checked_by_the_compiler_and_emitted_c_compiles_without_a_warn
     assert_eq!(rust, include_str!("emitted/hopping_8.rs"));
     let c = eeruf(&[&asked[..], &["c"]].concat()).out;
     let (folder, header) = Scratch::new("schedule.h", &c);
-    let user = folder.path().join("user.c");
     let main = "int main(void) { return eeruf_t_fire_us[EERUF_PHASES - 1][EERUF_SENSORS - 1] >= EERUF_PERIOD_US; }";
-    std::fs::write(&user, format!("#include \"{}\"\n{main}\n", header.display())).unwrap();
-    let program = folder.path().join("user");
-    let strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"];
-    assert!(Command::new("gcc").args(strict).arg(&user).arg("-o").arg(&program).status().unwrap().success());
-    assert!(Command::new(program).status().unwrap().success());
+    let alone = format!("#include \"{}\"\n{main}\n", header.display());
+    compile_and_run(&folder, &alone, &["gcc", "-std=c99"]);
+    // With the library: the ring is set up, and fires sensor 5 in the second period when the table says.
+    let main = "static EerufHoppingRing ring;
+        static EerufSensor sensors[EERUF_SENSORS];
+        static EerufHopper hoppers[EERUF_SENSORS];
+        int main(void) {
+            EerufEvent event;
+            uint32_t at = 0;
+            if (eeruf_hopping_init(&ring, sizeof ring, sensors, sizeof sensors, hoppers, sizeof hoppers,
+                                   &eeruf_hopping_config, 0) != EERUF_OK)
+                return 1;
+            for (;;) {
+                if (eeruf_hopping_poll(&ring, at, NULL, &event) != EERUF_EVENT) at = eeruf_ring_deadline(&ring.ring);
+                else if (event.kind == EERUF_EVENT_FIRE && event.sensor == 5 && at > EERUF_PERIOD_US)
+                    return at != EERUF_PERIOD_US + eeruf_t_fire_us[1][5];
+            }
+        }";
+    let with_library = format!("#include <eeruf.h>\n#include \"{}\"\n{main}\n", header.display());
+    for language in [&["gcc", "-std=c99"][..], &["g++", "-xc++", "-std=c++11"]] {
+        compile_and_run(&folder, &with_library, &[language, &["c/eeruf.c"]].concat());
+    }
+}
+
+#[test]
+fn a_ring_that_hops_on_an_arduino_is_set_up_by_what_is_emitted_for_it() {
+    let asked = ["design", "tests/data/hopping-8.toml", "--phases", "11", "--margin-us", "90", "--emit", "arduino"];
+    let (folder, tab) = Scratch::new("ring.h", &eeruf(&asked).out);
+    // The tab asks for the library by its name; what it takes of it is eeruf.h.
+    std::fs::write(folder.path().join("EerufArduino.h"), "#include <eeruf.h>\n").unwrap();
+    let main = "static EerufHoppingRing ring;
+        static EerufSensor sensors[8];
+        static EerufHopper hoppers[8];
+        int main() {
+            return eeruf_hopping_init(&ring, sizeof ring, sensors, sizeof sensors, hoppers, sizeof hoppers, &RING, 0)
+                != EERUF_OK || eeruf_hopping_lag_us(&ring, 7) != RING_lag_us[7];
+        }";
+    let sketch = format!("#include \"{}\"\n{main}\n", tab.display());
+    compile_and_run(&folder, &sketch, &["g++", "-xc++", "-std=c++11", "c/eeruf.c"]);
+}
+
+/// Compiles a program, without a warning, and runs it; it ends well.
+fn compile_and_run(folder: &Scratch, text: &str, compiler: &[&str]) {
+    let (user, program) = (folder.path().join("user.c"), folder.path().join("user"));
+    std::fs::write(&user, text).unwrap();
+    let strict = ["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Ic", "-I"];
+    let mut command = Command::new(compiler[0]);
+    command.args(strict).arg(folder.path()).args(&compiler[1..]).arg(&user).arg("-o").arg(&program);
+    assert!(command.status().unwrap().success(), "{compiler:?}");
+    assert!(Command::new(program).status().unwrap().success(), "{compiler:?}");
 }
 
 #[test]
 fn an_emitted_code_drives_a_hopping_ring() {
-    let listening = HoppingListening::new(Micros::from_millis(36));
-    let settings = HoppingSettings::BALANCED;
+    let (settings, listening) = (hopping_8::SETTINGS, hopping_8::LISTENING);
+    assert_eq!((settings, listening), (HoppingSettings::BALANCED, HoppingListening::new(Micros::from_millis(36))));
     let mut ring = HoppingRing::<8>::new(&hopping_8::RING, settings, listening, 1, Instant::default()).unwrap();
     let mut accepted = 0;
     for _ in 0..500 {

@@ -2,6 +2,7 @@
 
 mod common;
 
+mod atlas;
 mod certificates;
 mod documents;
 mod emitted;

@@ -107,13 +107,17 @@ fn a_replay_draws_what_it_counts() {
 
 #[test]
 fn the_papers_ring_can_run_at_65_ms_and_the_answer_is_the_same_in_every_form() {
-    let found = json(&["design", "rings/paper-12.toml", "--emit", "json"]);
+    let found = json(&["design", "rings/paper-12.toml", "--no-atlas", "--emit", "json"]);
     assert_eq!((&found["value_us"], &found["bound_us"]), (&65_000.into(), &65_000.into()));
     assert_eq!(found["proven"], true);
     assert_eq!(found["schedule"]["period_us"], 65_000);
     assert_eq!(found["schedule"]["t_fire_a_us"].as_array().unwrap().len(), 12);
-    let again = json(&["design", "rings/paper-12.toml", "--json"]);
+    let again = json(&["design", "rings/paper-12.toml", "--no-atlas", "--json"]);
     assert_eq!((&again["schedule"], &again["nodes"]), (&found["schedule"], &found["nodes"]));
+    let known = json(&["design", "rings/paper-12.toml", "--json"]);
+    assert_eq!((&known["from_atlas"], &again["from_atlas"]), (&true.into(), &false.into()));
+    assert_eq!((&known["schedule"], &known["reason"]), (&found["schedule"], &found["reason"]));
+    assert_eq!((&known["nodes"], &known["real_period_us"]), (&0.into(), &serde_json::json!([65_000, 1])));
 
     // The schedule file passes what was asked for, and not a microsecond more of separation or window.
     let toml = eeruf(&["design", "rings/paper-12.toml", "--emit", "toml"]);

@@ -16,7 +16,7 @@ from typing import Any
 import eeruf
 import numpy as np
 import pytest
-from eeruf import Schedule, tables
+from eeruf import Schedule, nav, sim, tables
 
 
 def test_what_compares_equal_pickles_and_prints_so_that_it_can_be_pasted() -> None:
@@ -24,7 +24,19 @@ def test_what_compares_equal_pickles_and_prints_so_that_it_can_be_pasted() -> No
     report = tables.TABLE_I_D.verify(1_500, min_interval_us=18_000)
     assert not report.ok
     reading = eeruf.EchoFilter(1, 500).push(0, 9_000)
-    names = {name: getattr(eeruf, name) for name in ("Schedule", "Found", "Report", "Violation", "Fire", "Reading")}
+    names = {
+        name: getattr(eeruf, name)
+        for name in ("Schedule", "Found", "Report", "Violation", "Fire", "Reading", "PeriodEnded")
+    }
+    names |= {"RobotState": sim.RobotState, "Steering": nav.Steering}
+    ring = eeruf.Ring(tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    while not isinstance(ended := ring.poll(ring.next_deadline_us + 40), eeruf.PeriodEnded):
+        pass
+    robot = sim.Robot((1, 0, 0.3), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+    world.set_velocity(0, v_m_s=0.3, w_rad_s=0.1)
+    world.step(0.06)
+    assert sum(ended.tally.values()) and ended.sum_late_us
     firing = Schedule.from_firing(40_000, [0, 20_000], [2_000, 25_000])
     values = (
         tables.TABLE_I_D,
@@ -36,10 +48,23 @@ def test_what_compares_equal_pickles_and_prints_so_that_it_can_be_pasted() -> No
         eeruf.Violation("interval", (0, 1), ("a", "b"), 1, 2, "Sec. '3.1' \"c\""),
         eeruf.Fire(3),
         reading,
+        ended,
+        world.robots[0],
+        nav.Vfh().steer(nav.Himm(), place=(0, 0), target=(0, 5)),
     )
     for value in values:
         assert pickle.loads(pickle.dumps(value)) == value
         assert eval(repr(value), names) == value
+
+
+def test_what_the_tick_costs_is_a_fraction_that_is_proven_and_survives_a_pickle() -> None:
+    found = eeruf.design(12, 999, 15_000, 45_000, over_reals=True)
+    assert (found.value_us, found.real_period_us, found.real_proven) == (70_000, (69_500, 1), True)
+    assert pickle.loads(pickle.dumps(found)) == found
+    assert found.to_dict()["real_period_us"] == (69_500, 1)
+    without = eeruf.design(12, 999, 15_000, 45_000)
+    assert (without.real_period_us, without.real_proven) == (None, None)
+    assert without.schedule == found.schedule
 
 
 def test_a_certificate_of_design_is_checked_and_survives_a_pickle() -> None:

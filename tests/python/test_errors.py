@@ -98,6 +98,11 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
         eeruf.ArgumentError,
         "progress = 3; expected None, True or a callable",
     ),
+    (
+        lambda: ANY.design(4, 1, 1, 1, over_reals=1),
+        eeruf.ArgumentError,
+        "over_reals = 1; expected True or False",
+    ),
     (lambda: eeruf.design(4, 1, 1, 1, budget=0), eeruf.ArgumentError, "budget = 0"),
     (
         lambda: ANY.tables.TABLE_I_D.verify(1, criterion="strict"),

@@ -70,15 +70,17 @@ def test_a_sweep_of_speeds_is_the_programs() -> None:
 
 @pytest.mark.parametrize("ring", ["paper-12", "ring-24"])
 def test_a_design_is_the_programs(ring: str) -> None:
-    printed = program("design", f"rings/{ring}.toml")
+    printed = program("design", f"rings/{ring}.toml", "--no-atlas")
     arguments: dict[str, Any] = (
         {"sensors": 12, "layout": "line"} if ring == "paper-12" else {"sensors": 24, "layout": "ring"}
     )
-    found = eeruf.design(t_delta_us=999, min_interval_us=15_000, window_us=30_000, **arguments)
+    found = eeruf.design(t_delta_us=999, min_interval_us=15_000, window_us=30_000, over_reals=True, **arguments)
     del printed["seconds"]
+    assert printed.pop("from_atlas") is False
+    printed["real_period_us"] = tuple(printed["real_period_us"])
     assert Schedule.from_firing(**printed.pop("schedule")) == found.schedule
     assert {name: getattr(found, name) for name in printed} == printed
-    assert {"value_us", "bound_us", "proven", "nodes", "reason"} == set(printed)
+    assert {"value_us", "bound_us", "proven", "nodes", "reason", "real_period_us", "real_proven"} == set(printed)
 
 
 def test_the_best_table_of_waits_is_the_programs() -> None:

@@ -29,6 +29,10 @@ struct Example {
     short: bool,
 }
 
+/// `examples/uno`, which is in Rust: wired as Ring8.
+const IN_RUST: Example =
+    Example { name: "examples/uno", modules: 8, triggers: ALL.split_at(8).0, echoes: ALL.split_at(8).1, short: true };
+
 const ALL: [u8; 16] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17];
 
 const EXAMPLES: [Example; 7] = [
@@ -110,6 +114,11 @@ fn examples(library: &Path, short: bool) -> Result<(), Trouble> {
         heard.is_plausible(example)?;
         println!("| {} | {} | {} | {} |", example.name, sketch.flash, sketch.ram, heard.row());
     }
+    let elf = crate::examples::uno()?;
+    let (flash, ram) = build::size(&elf)?;
+    let heard = world::run(&world, &elf, &IN_RUST, if short { 3 } else { 20 }, false)?;
+    heard.is_plausible(&IN_RUST)?;
+    println!("| `{}`, in Rust | {flash} | {ram} | {} |", IN_RUST.name, heard.row());
     let sketch = build::example(library, &core, "Survey")?;
     if short {
         return Ok(());

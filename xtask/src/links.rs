@@ -10,6 +10,9 @@ use pulldown_cmark::{Event, Parser, Tag, TagEnd};
 
 use crate::steps::{Trouble, output};
 
+/// The order of the book's chapters; mdBook's settings lie beside it.
+pub(crate) const CHAPTERS: &str = "site/SUMMARY.md";
+
 /// A link or picture: where it stands in the text, brackets included, and where it leads.
 pub(crate) struct Link {
     pub(crate) range: Range<usize>,
@@ -22,7 +25,7 @@ pub(crate) fn check_documents() -> Result<(), Trouble> {
     let listed = listed.ok_or_else(|| Trouble::Failed("git ls-files: no answer".to_owned()))?;
     let mut texts = BTreeMap::new();
     // The book's chapters are named as they lie in the book, and its builder asks for each.
-    for document in listed.lines().filter(|document| *document != crate::site::CHAPTERS).map(Path::new) {
+    for document in listed.lines().filter(|document| *document != CHAPTERS).map(Path::new) {
         let text = fs::read_to_string(document).map_err(|error| failed(document, &error))?;
         texts.insert(document.to_owned(), text);
     }

@@ -3,15 +3,22 @@
 //! `cargo xtask test` runs every check there is, the cheap ones first. A check whose tools are not installed is
 //! skipped, and says loudly what to install; with `--nothing-skipped`, as in CI, that counts as a failure.
 
+mod api;
 mod arduino;
 mod blocks;
 mod c;
 mod certificates;
 mod changed;
 mod classic;
+#[cfg(test)]
+mod dependencies;
+mod dist;
+mod examples;
 mod firmware;
+mod house;
 mod links;
 mod listings;
+mod materials;
 mod measured;
 mod micropython;
 mod mutants;
@@ -66,6 +73,12 @@ enum Verb {
     C,
     /// Pack the Arduino library, build its examples, and run them on a simulated Uno among simulated modules
     Arduino(arduino::Plan),
+    /// Build the programs in examples/ that one flashes onto a board (minutes)
+    Examples {
+        /// Only this one: uno, pico, nucleo-f401 or esp32-c3
+        #[arg(value_name = "BOARD")]
+        board: Option<String>,
+    },
     /// Run the tests of c/micropython in MicroPython's WebAssembly build and in CPython
     Micropython,
     /// Run NewPing beside the Arduino library on a simulated Uno, and print the table that docs/arduino.md shows
@@ -100,6 +113,16 @@ enum Verb {
     Certificates(certificates::Plan),
     /// Pack the crates that are published, and build and test each from its tarball, in a folder of its own (minutes)
     Package,
+    /// Compare the public items of eeruf-core and eeruf-hc-sr04 with those in their api.txt
+    Api {
+        /// Write those files instead
+        #[arg(long)]
+        write: bool,
+    },
+    /// Build wheels for Linux (glibc and musl, AMD64 and aarch64) and static programs into target/dist (many minutes)
+    Dist(dist::Plan),
+    /// Write what is in each published crate, as a bill of materials, into target/materials
+    Materials,
     /// Build the documents as one book, with the page and the references for Rust and Python, and follow every link
     Site,
     /// Do everything of a release but uploading, and print what a person must still do (many minutes)
@@ -135,6 +158,11 @@ fn main() -> ExitCode {
         Verb::Arduino(plan) => {
             let mut steps = Steps::default();
             arduino::arduino(&plan, &mut steps);
+            steps.finish(true)
+        }
+        Verb::Examples { board } => {
+            let mut steps = Steps::default();
+            examples::examples(board.as_deref(), &mut steps);
             steps.finish(true)
         }
         Verb::Micropython => one_step("MicroPython", micropython::micropython),
@@ -178,6 +206,13 @@ fn main() -> ExitCode {
             package::package(&mut steps);
             steps.finish(true)
         }
+        Verb::Api { write } => one_step("public items", || api::api(write)),
+        Verb::Dist(plan) => {
+            let mut steps = Steps::default();
+            dist::dist(&plan, &mut steps);
+            steps.finish(true)
+        }
+        Verb::Materials => one_step("bills of materials", materials::materials),
         Verb::Site => {
             let mut steps = Steps::default();
             site::site(&mut steps);

@@ -192,8 +192,8 @@ fn lines(file: &Path) -> BTreeSet<String> {
     std::fs::read_to_string(file).unwrap_or_default().lines().map(str::to_owned).collect()
 }
 
-/// Lists mutants as caught before, which cargo-mutants then leaves out. It is not told to deal out parts: it would do so
-/// after it has left out these, so that a part which is taken up again would be another one.
+/// Lists mutants as caught before, which cargo-mutants then leaves out. It does not deal out the parts itself: it would
+/// do so after it has left out these, so that a part which is taken up again would be another one.
 fn leave_out<'m>(folder: &Path, mutants: impl Iterator<Item = &'m String>) -> io::Result<()> {
     let out = folder.join("mutants.out");
     std::fs::create_dir_all(&out)?;

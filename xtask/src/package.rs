@@ -28,7 +28,9 @@ pub(crate) fn package(steps: &mut Steps) {
             for verb in ["build", "test"] {
                 let mut cargo = Command::new("cargo");
                 cargo.args([verb, "--all-features", "--manifest-path"]).arg(&manifest);
-                run(cargo.current_dir(folder()).env("CARGO_TARGET_DIR", folder().join("target")))?;
+                // Nobody debugs what is built here, and it would take gigabytes.
+                cargo.env("CARGO_PROFILE_DEV_DEBUG", "0").env("CARGO_TARGET_DIR", folder().join("target"));
+                run(cargo.current_dir(folder()))?;
             }
             Ok(())
         });
@@ -63,12 +65,52 @@ fn pack() -> Result<Vec<String>, Trouble> {
         run(Command::new("tar").args(["-xzf", tarball.as_str(), "-C"]).arg(&folder))?;
         let unpacked = folder.join(format!("{name}-{version}"));
         fs::rename(&unpacked, folder.join(name)).map_err(|error| failed(&unpacked, error))?;
-        // It names crates that are not published yet.
+        // Its own names crates that are not published yet; ours has the same versions of all others.
         let lock = folder.join(name).join("Cargo.lock");
-        fs::remove_file(&lock).map_err(|error| failed(&lock, error))?;
+        fs::copy("Cargo.lock", &lock).map_err(|error| failed(&lock, error))?;
         patch += &format!("{name} = {{ path = {:?} }}\n", folder.join(name));
     }
     let config = folder.join(".cargo/config.toml");
     fs::write(&config, patch).map_err(|error| failed(&config, error))?;
     Ok(crates.into_iter().map(|(name, _)| name).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use cargo_metadata::MetadataCommand;
+
+    #[test]
+    fn each_crate_says_what_a_stranger_asks_or_why_it_is_not_published() {
+        let metadata = MetadataCommand::new().no_deps().exec().unwrap();
+        let mut missing = Vec::new();
+        for package in metadata.workspace_packages() {
+            let name = &package.name;
+            let manifest = fs::read_to_string(&package.manifest_path).unwrap();
+            let mut needs = |what: &str, there: bool| {
+                if !there {
+                    missing.push(format!("{name}: {what}"));
+                }
+            };
+            if package.publish.is_some() {
+                let lines: Vec<_> = manifest.lines().collect();
+                let at = lines.iter().position(|line| *line == "publish = false").unwrap();
+                needs("the reason above `publish = false`", lines[at - 1].starts_with("# "));
+                continue;
+            }
+            let folder = package.manifest_path.parent().unwrap();
+            for file in ["README.md", "LICENSE-MIT", "LICENSE-APACHE"] {
+                needs(file, fs::metadata(folder.join(file)).is_ok_and(|file| file.len() > 500));
+            }
+            needs("documentation", package.documentation.is_some());
+            needs("description", package.description.is_some());
+            needs("repository", package.repository.is_some());
+            needs("licence", package.license.is_some());
+            needs("keywords", !package.keywords.is_empty());
+            needs("categories", !package.categories.is_empty());
+            needs("docs.rs with all features", package.metadata["docs"]["rs"]["all-features"] == true);
+        }
+        assert!(missing.is_empty(), "{missing:#?}");
+    }
 }

@@ -1,6 +1,7 @@
 //! `cargo xtask python`: builds the wheel once, installs it into a virtual environment of its own, and holds it against
 //! its tests, its types and its examples, and against what Rust says.
 
+use std::collections::BTreeMap;
 use std::env::consts::EXE_SUFFIX;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -29,7 +30,7 @@ pub(crate) fn python() -> Result<(), Trouble> {
     run(tool("ruff").args(["format", "--check", "python", "tests/python", "benches/python"]))?;
     run(tool("mypy").args(["tests/python", "benches/python"]))?;
     run(tool("mypy.stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
-    fresh(&wheel)?;
+    fresh(Path::new("python3"), &wheel)?;
     // What Python is held against: the program, and the paths of the corpus.
     let (program, rust_side) = (crate::program::program()?, crate::program::example("rust_side")?);
     let mut tests = tool("pytest");
@@ -37,14 +38,17 @@ pub(crate) fn python() -> Result<(), Trouble> {
     run(&mut tests)
 }
 
-/// Writes the reference, made of docstrings and stubs, into a folder.
+/// Writes the reference, made of docstrings and stubs, into a folder: of the wheel that `EERUF_WHEEL` names, or of one
+/// that is built now.
 pub(crate) fn reference(folder: &Path) -> Result<(), Trouble> {
     let home = Path::new("target/python-reference");
     if !interpreter(home).exists() {
         run(Command::new("python3").args(["-m", "venv"]).arg(home))?;
     }
     let python = interpreter(home);
-    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "pdoc", ".[plot]"]))?;
+    let wheel = std::env::var("EERUF_WHEEL").unwrap_or_else(|_| ".".to_owned());
+    let wheel = format!("{wheel}[plot]");
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--force-reinstall", "pdoc", &wheel]))?;
     run(Command::new(&python)
         .args(["-m", "pdoc", "--docformat", "google", "--output-directory"])
         .arg(folder)
@@ -60,7 +64,7 @@ pub(crate) fn distributions(folder: &Path) -> Result<(), Trouble> {
     for (verb, ending) in [(&["build", "--locked"][..], "whl"), (&["sdist"], "gz")] {
         let to = folder.join(ending);
         run(Command::new(&python).args(["-m", "maturin"]).args(verb).arg("--out").arg(&to))?;
-        fresh(&only_file(&to)?)?;
+        fresh(Path::new("python3"), &only_file(&to)?)?;
     }
     run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "abi3audit"]))?;
     run(Command::new(&python).args(["-m", "abi3audit", "--strict"]).arg(only_file(&folder.join("whl"))?))
@@ -83,9 +87,9 @@ fn environment(home: &Path) -> Result<PathBuf, Trouble> {
 
 /// What a user does first: the wheel, or the source distribution, in an empty environment, the README's lines, and the
 /// program that came along.
-fn fresh(distribution: &Path) -> Result<(), Trouble> {
+fn fresh(python: &Path, distribution: &Path) -> Result<(), Trouble> {
     let home = Path::new("target/python-fresh");
-    run(Command::new("python3").args(["-m", "venv", "--clear"]).arg(home))?;
+    run(Command::new(python).args(["-m", "venv", "--clear"]).arg(home))?;
     let python = interpreter(home);
     run(Command::new(&python)
         .args(["-m", "pip", "install", "--quiet"])
@@ -97,22 +101,67 @@ fn fresh(distribution: &Path) -> Result<(), Trouble> {
     run(Command::new(&program).arg("examples").arg(home))?;
     let study = ["study", "scenes/alcove.toml", "--periods", "100"];
     run(Command::new(&program).args(study).current_dir(home).stdout(std::process::Stdio::null()))?;
-    run(Command::new(&python).args(["-m", "eeruf", "--help"]).stdout(std::process::Stdio::null()))
+    run(Command::new(&python).args(["-m", "eeruf", "--help"]).stdout(std::process::Stdio::null()))?;
+    tutorial(home, &program)
+}
+
+/// Runs what the tutorial says to type, but for how to install, in a folder where a user has the program and no clone.
+fn tutorial(home: &Path, program: &Path) -> Result<(), Trouble> {
+    let text = fs::read_to_string("docs/tutorial.md").map_err(|error| Trouble::Failed(error.to_string()))?;
+    let blocks = text.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let commands: Vec<_> = blocks.flat_map(str::lines).filter(|line| !line.contains(" install ")).collect();
+    let here = std::env::var_os("PATH").unwrap_or_default();
+    let folders = program.parent().map(Path::to_owned).into_iter().chain(std::env::split_paths(&here));
+    let path = std::env::join_paths(folders).map_err(|error| Trouble::Failed(error.to_string()))?;
+    for command in &commands {
+        println!("$ {command}");
+        let mut shell = Command::new("sh");
+        shell.args(["-c", command]).current_dir(home).env("PATH", &path).stdout(std::process::Stdio::null());
+        run(&mut shell)?;
+    }
+    if commands.len() < 3 {
+        Err(Trouble::Failed(format!("few commands in the tutorial: {commands:?}")))
+    } else {
+        Ok(())
+    }
 }
 
 const README_LINES: &str = r#"
 import os, pathlib, re
 lines = re.search(r"^## In Python$.*?^```python\n(.*?)^```$", pathlib.Path("README.md").read_text(), re.M | re.S)[1]
+others = re.search(r"^```python\n(.*?)^```$", pathlib.Path("python/README.md").read_text(), re.M | re.S)[1]
 os.chdir("target/python-fresh")
+exec(others)
 exec(lines)
 assert pathlib.Path("timing.png").stat().st_size > 5_000
 "#;
+
+/// Installs a wheel under each CPython from 3.9 on that is at hand, and runs README's lines and the program.
+pub(crate) fn under_each_python(wheel: &Path) -> Result<(), Trouble> {
+    let home = PathBuf::from(std::env::var_os("HOME").unwrap_or_default());
+    let kept = [home.join(".pyenv/versions"), home.join(".local/share/uv/python")];
+    let kept = kept.iter().filter_map(|folder| fs::read_dir(folder).ok()).flatten().flatten();
+    let named = (9..20).map(|minor| PathBuf::from(format!("python3.{minor}")));
+    let mut found = BTreeMap::new();
+    for python in named.chain(kept.map(|entry| entry.path().join("bin/python3"))) {
+        let says = "import sys; print(sys.version_info[1] if sys.implementation.name == 'cpython' else 0)";
+        let minor = output(Command::new(&python).args(["-c", says])).and_then(|said| said.parse::<u32>().ok());
+        if let Some(minor) = minor.filter(|minor| *minor >= 9) {
+            found.entry(minor).or_insert(python);
+        }
+    }
+    for (minor, python) in &found {
+        println!("CPython 3.{minor}");
+        fresh(python, wheel)?;
+    }
+    if found.is_empty() { Err(Trouble::Skipped("no CPython from 3.9 on".to_owned())) } else { Ok(()) }
+}
 
 fn interpreter(home: &Path) -> PathBuf {
     home.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" })
 }
 
-fn only_file(folder: &Path) -> Result<PathBuf, Trouble> {
+pub(crate) fn only_file(folder: &Path) -> Result<PathBuf, Trouble> {
     let found = fs::read_dir(folder).ok().and_then(|mut entries| entries.next()).and_then(Result::ok);
     found.map(|entry| entry.path()).ok_or_else(|| Trouble::Failed(format!("no wheel in {}", folder.display())))
 }

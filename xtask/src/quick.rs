@@ -11,6 +11,7 @@ use crate::steps::{Steps, Trouble, run};
 pub(crate) fn run_quick() -> ExitCode {
     let mut steps = Steps::default();
     steps.step("formatting", || cargo(&["fmt", "--all", "--check"]));
+    steps.step("rules of the house", crate::house::check);
     steps.step("listings of the documents", listings::check_all);
     steps.step("clippy", || {
         cargo(&["clippy", "--quiet", "--workspace", "--all-targets", "--locked", "--", "--deny", "warnings"])

@@ -51,6 +51,8 @@ pub(crate) fn release(_plan: &Plan) -> ExitCode {
             None => Err(Trouble::Skipped("no cargo-deny; try: cargo install cargo-deny --locked".to_owned())),
         }
     });
+    steps.step("public items", || crate::api::api(false));
+    steps.step("bills of materials", crate::materials::materials);
     crate::package::package(&mut steps);
     steps.step("wheel and source distribution", || crate::python::distributions(Path::new("target/release-files")));
     println!("{}", REMAINS.replace("{VERSION}", &version));
@@ -82,4 +84,25 @@ fn one_version() -> Result<String, Trouble> {
         }
     }
     if wrong.is_empty() { Ok(version) } else { Err(Trouble::Failed(wrong.join("\n"))) }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    #[test]
+    fn each_heading_of_the_change_log_is_a_version_and_stands_once() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../CHANGELOG.md");
+        let text = std::fs::read_to_string(file).unwrap();
+        let mut versions: Vec<_> = text.lines().filter_map(|line| line.strip_prefix("## ")).collect();
+        let count = versions.len();
+        assert!(count > 0);
+        for version in &versions {
+            let numbers = version.split([',', ' ']).next().unwrap();
+            assert_eq!(numbers.split('.').filter(|number| number.parse::<u32>().is_ok()).count(), 3, "{version}");
+        }
+        versions.sort_unstable();
+        versions.dedup();
+        assert_eq!(versions.len(), count);
+    }
 }

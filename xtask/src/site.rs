@@ -5,15 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::links::{links, parts, within_reach};
+use crate::links::{CHAPTERS, links, parts, within_reach};
 use crate::steps::{Steps, Trouble, output, run};
 
 /// The site, for any web server or a disk.
 const SITE: &str = "target/site/book";
 /// What the book is made of.
 const SOURCES: &str = "target/site/src";
-/// The order of chapters; mdBook's settings lie beside it.
-pub(crate) const CHAPTERS: &str = "site/SUMMARY.md";
 /// Where links to sources lead.
 const REPOSITORY: &str = "https://github.com/eeruf/eeruf/blob/main";
 /// The version of mdBook that the site is built with, so that two builds look alike.
@@ -173,7 +171,8 @@ mod tests {
 
     #[test]
     fn links_lead_to_chapters_in_the_book_and_to_sources_in_the_repository() {
-        let text = "[docs/study.md](docs/study.md#who) ![b](docs/pictures/b.png) [c](CHANGELOG.md) [d](src/main.rs) [e](https://e.org/)";
+        let text = "[docs/study.md](docs/study.md#who) ![b](docs/pictures/b.png) [c](CHANGELOG.md) [d](src/main.rs) \
+                    [e](https://e.org/)";
         let expected = "[docs/study.md](study.md#who) ![b](pictures/b.png) [c](changes.md) \
                         [d](https://github.com/eeruf/eeruf/blob/main/src/main.rs) [e](https://e.org/)";
         assert_eq!(rewritten(Path::new("README.md"), text), expected);

@@ -14,6 +14,7 @@ const BARE_TARGETS: [&str; 1] = ["thumbv6m-none-eabi"];
 pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     let mut steps = Steps::default();
     steps.step("formatting", || run_cargo(&["fmt", "--all", "--check"]));
+    steps.step("rules of the house", crate::house::check);
     steps.step("listings of the documents", crate::listings::check_all);
     steps.step("links of the documents", crate::links::check_documents);
     steps.step("clippy", || {
@@ -33,13 +34,6 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
             run(cargo.args(["build", "--package", "eeruf-core", "--release", "--locked", "--target", target]))
         });
     }
-    steps.step("core and driver for an AVR, without the search", || {
-        let mut cargo = cargo_for_target("avr-none")?;
-        // The target has no processor by default, and so no libraries made for it that others could share.
-        cargo.env("RUSTFLAGS", "-C target-cpu=atmega328p");
-        let packages = ["build", "--package", "eeruf-core", "--package", "eeruf-hc-sr04", "--no-default-features"];
-        run(cargo.args(packages).args(["--release", "--locked", "--target", "avr-none"]))
-    });
     steps.step("lint of the firmware", crate::firmware::lint);
     // What the default compiler can build, Clippy has just built with it.
     let default = version_of_default();
@@ -56,6 +50,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
             run(&mut cargo)
         });
     }
+    steps.step("public items", || crate::api::api(false));
     steps.step("tests and doctests", || run_cargo(&["test", "--workspace", "--locked"]));
     // With the features of the whole workspace, as built for the tests; those of instructions need a runner.
     steps.step("benches, each once", || {

@@ -1,10 +1,16 @@
-//! The C library in `c/`, behind safe functions of numbers, for the tests that compare it with the Rust crates.
+//! The C library in `c/`, behind safe functions of numbers, and what compares it with the Rust crates: rings of each kind
+//! that both run, given the same random numbers, and that must say the same. The tests draw the numbers from seeds, the
+//! fuzz target from bytes.
 //!
 //! Nothing here is for others: firmware in Rust uses `eeruf-core`, firmware in C uses `c/eeruf.h`.
 
 mod border;
 pub mod core_side;
+pub mod hopping;
+pub mod modules;
 mod random;
+pub mod ring;
+pub mod world;
 
 use std::ffi::c_void;
 
@@ -179,8 +185,8 @@ impl C {
 
     /// `eeruf_hopping_init`, with the numbers in the order that `shim.c` names.
     pub fn hopping(&mut self, sensors: u8, phases: u8, numbers: &[u32], now_us: u32) -> i32 {
-        assert!(numbers.len() == 21 || numbers.len() == 21 + usize::from(sensors));
-        let has_lags = u8::from(numbers.len() > 21);
+        assert!(numbers.len() == 22 || numbers.len() == 22 + usize::from(sensors));
+        let has_lags = u8::from(numbers.len() > 22);
         // SAFETY: as many numbers as are read.
         unsafe { border::shim_hopping(self.0, sensors, phases, numbers.as_ptr(), has_lags, now_us) }
     }

@@ -206,7 +206,8 @@ int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t
     config.shift_after = (uint8_t)rest[3];
     config.shift_spacing = (uint8_t)rest[4];
     config.neighbours = (uint8_t)rest[5];
-    config.lag_us = has_lags ? rest + 6 : NULL;
+    config.code = (uint8_t)rest[6];
+    config.lag_us = has_lags ? rest + 7 : NULL;
     handle->hopping = (EerufHoppingRing *)malloc(sizeof(EerufHoppingRing));
     handle->sensors = (EerufSensor *)malloc(sensors_size);
     handle->hoppers = (EerufHopper *)malloc(hoppers_size);

@@ -14,14 +14,17 @@
 //! | `symmetry` | what the root may assume |
 //! | `tree` | the case distinctions |
 //! | `prove` | the proof of a claim |
+//! | `reals`, `linear` | the shortest period over the reals: what the tick costs |
 //! | `search`, `shortest` | the shortest period of an uneven ring, by the same rules |
 #![forbid(unsafe_code)]
 
 mod bounds;
 mod error;
+mod linear;
 mod problem;
 pub mod prove;
 mod read;
+pub mod reals;
 mod rules;
 mod schedule;
 pub mod search;

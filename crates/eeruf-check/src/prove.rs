@@ -5,6 +5,7 @@
 use core::fmt;
 
 use crate::read::{self, Claim};
+use crate::reals::Orders;
 use crate::search::choose;
 use crate::state::{State, event};
 use crate::symmetry;
@@ -18,9 +19,11 @@ pub enum NoProof {
     Budget(usize),
     /// The caller wanted no more.
     Stopped,
-    /// A branch is neither refuted nor is there anything left to branch on. In whole ticks the earliest firing times
+    /// In whole ticks a branch is neither refuted nor is there anything left to branch on. The earliest firing times
     /// there are a schedule with a period of `bound - 1`.
     Feasible([Vec<u32>; 2]),
+    /// The same over the reals: schedules with these orders may or may not have a period below `bound`.
+    Open(Orders),
     /// The claim is wrong in itself.
     Claim(String),
 }
@@ -33,6 +36,7 @@ impl fmt::Display for NoProof {
             Self::Feasible([a, b]) => {
                 write!(f, "the claim is wrong: there is a schedule below the bound, firing at {a:?} and {b:?} ticks")
             }
+            Self::Open(_) => f.write_str("the claim is not proven: the rules leave firing orders open below the bound"),
             Self::Claim(what) => write!(f, "no claim that can be proven: {what}"),
         }
     }
@@ -88,7 +92,18 @@ fn nodes_between(sensors: usize) -> usize {
 /// # Errors
 ///
 /// See [`NoProof`].
-pub fn prove_while(claim: &Claim, budget: usize, mut go_on: impl FnMut(usize) -> bool) -> Result<String, NoProof> {
+pub fn prove_while(claim: &Claim, budget: usize, go_on: impl FnMut(usize) -> bool) -> Result<String, NoProof> {
+    prove_but(claim, budget, go_on, |_| false)
+}
+
+/// The same where over the reals it is no fault of the proof if orders stay open that `are_excluded`; the text is then
+/// no certificate.
+pub(crate) fn prove_but(
+    claim: &Claim,
+    budget: usize,
+    mut go_on: impl FnMut(usize) -> bool,
+    mut are_excluded: impl FnMut(&Orders) -> bool,
+) -> Result<String, NoProof> {
     let mut text = read::write(claim);
     read::claim(&mut Lines::new(&text)).map_err(|error| NoProof::Claim(error.to_string()))?;
     let merged = claim.problem.merged();
@@ -104,14 +119,20 @@ pub fn prove_while(claim: &Claim, budget: usize, mut go_on: impl FnMut(usize) ->
     let mut reached = root;
     loop {
         if let Ok(state) = reached {
-            let Some(branching) = choose(&state, &merged) else {
+            if let Some(branching) = choose(&state, &merged) {
+                text += &branching.line(&firsts);
+                open.push((state, branching, 0));
+            } else if merged.over_reals {
+                let orders = Orders::at(&state);
+                if !are_excluded(&orders) {
+                    return Err(NoProof::Open(orders));
+                }
+            } else {
                 return Err(NoProof::Feasible([0, 1].map(|phase| {
                     let times = merged.of_sensor.iter().map(|&one| -state.bounds.at(event(one, phase), 0) / 2);
                     times.map(|time| time as u32).collect()
                 })));
-            };
-            text += &branching.line(&firsts);
-            open.push((state, branching, 0));
+            }
         }
         let Some((mut state, branching, case)) = open.pop() else {
             return Ok(text + "end\n");

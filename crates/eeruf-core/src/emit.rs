@@ -7,6 +7,7 @@ mod c;
 
 use core::fmt;
 
+pub(crate) use c::EERUF_VERSION;
 pub use c::{ArduinoTab, CHeader};
 
 use crate::conditions::{Criterion, Requirements};

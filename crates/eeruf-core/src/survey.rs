@@ -1,10 +1,10 @@
-//! [`Survey`]: a measuring run after which it is known which sensors of a ring hear each other, and along paths of which
-//! length.
+//! [`Survey`]: a measuring run after which it is known which sensors of a ring hear each other, and along paths of
+//! which length.
 //!
 //! Time is divided into slots, in each of which all earlier sound has died away. In a slot a sensor fires alone, or one
 //! fires and another some time, the *lead*, after it. What the second hears earlier by as much as the lead is longer is
-//! the first one's sound; its own echo does not move. A sensor that cannot listen without sending, as an HC-SR04, can be
-//! surveyed so. Each ordered pair has all leads, so both directions are measured.
+//! the first one's sound; its own echo does not move. A sensor that cannot listen without sending, as an HC-SR04, can
+//! be surveyed so. Each ordered pair has all leads, so both directions are measured.
 
 use crate::schedule::MAX_SENSORS;
 use crate::time::{Instant, Micros};

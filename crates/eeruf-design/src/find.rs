@@ -7,6 +7,7 @@ use eeruf_core::search::{Control, Found, PeriodProblem, Preferred, SearchError, 
 use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_sim::{AnySchedule, ScheduleFile};
 
+use crate::atlas;
 use crate::find_uneven::shortest_uneven;
 use crate::found::FoundJson;
 use crate::ring::RingSpec;
@@ -23,12 +24,14 @@ pub struct Search {
     pub budget: u64,
     /// Whether to look for what would make the period shorter.
     pub what_if: bool,
+    /// Whether the atlas may answer where it knows the shortest period.
+    pub atlas: bool,
 }
 
 impl Default for Search {
-    /// 50 million nodes, and no look at what would be shorter.
+    /// 50 million nodes, no look at what would be shorter; the atlas may answer.
     fn default() -> Self {
-        Self { budget: 50_000_000, what_if: false }
+        Self { budget: 50_000_000, what_if: false, atlas: true }
     }
 }
 
@@ -48,6 +51,8 @@ pub struct RingDesign {
     /// What is known of the choice among the schedules of that period, if the period is proven and all sensors are
     /// alike; otherwise it is the first that was found.
     pub preferred: Option<Preferred<MAX_SENSORS>>,
+    /// Whether period and schedule are the atlas's, and nothing was searched.
+    pub from_atlas: bool,
     /// What would be shorter, if it was asked for.
     pub what_if: Vec<WhatIf>,
 }
@@ -95,6 +100,7 @@ impl RingDesign {
         FoundJson {
             schedule: Some(ScheduleFile::from(&self.schedule)),
             reason: Some(self.reason.clone()),
+            from_atlas: Some(self.from_atlas),
             ..FoundJson::new(&self.found, seconds)
         }
     }
@@ -122,7 +128,11 @@ impl RingSpec {
         loop {
             let spec = self.covering(t_delta);
             let problem = spec.problem();
-            let (mut found, mut reason, mut preferred) = if self.uneven.is_some() {
+            let known = if search.atlas && unproven.is_none() { known(&problem)? } else { None };
+            let from_atlas = known.is_some();
+            let (mut found, mut reason, mut preferred) = if let Some(known) = known {
+                known
+            } else if self.uneven.is_some() {
                 let (found, reason) = shortest_uneven(&problem, search.budget, control)?;
                 (found, reason, None)
             } else {
@@ -150,7 +160,7 @@ impl RingSpec {
                 let what_if = if relax { what_if(&problem, &mut memory, control)? } else { Vec::new() };
                 let t_delta = needed.max(t_delta);
                 let spec = self.covering(t_delta);
-                return Ok(Ok(RingDesign { schedule, t_delta, spec, found, reason, preferred, what_if }));
+                return Ok(Ok(RingDesign { schedule, t_delta, spec, found, reason, preferred, from_atlas, what_if }));
             }
             // Past this point a second of silence would not be enough either.
             if needed > Micros::from_millis(1000) {
@@ -167,6 +177,20 @@ impl RingSpec {
         let change = change.div_ceil(u64::from(self.c.mm_per_s()).max(1));
         self.t_delta.saturating_add(Micros::new(u32::try_from(change).unwrap_or(u32::MAX)))
     }
+}
+
+/// What a search found, why nothing is shorter, and what is known of the choice among the shortest.
+type Answer = (Found<MAX_SENSORS>, String, Option<Preferred<MAX_SENSORS>>);
+
+/// What the atlas says of a problem, if it knows its shortest period.
+fn known(problem: &PeriodProblem<'_>) -> Result<Option<Answer>, SearchError> {
+    let Some((row, schedule)) = atlas::answer(problem) else { return Ok(None) };
+    let period = schedule.period();
+    let [t_delta_proven, min_interval_proven, min_refire_proven] = row.preferred;
+    let preferred = Preferred { schedule, t_delta_proven, min_interval_proven, min_refire_proven, nodes: 0 };
+    let found = Found { schedule: Some(schedule), value: Some(period), bound: Some(period), proven: true, nodes: 0 };
+    let reason = problem.why_shortest(period)?.in_ticks_of(problem.tick).to_string();
+    Ok(Some((found, reason, Some(preferred))))
 }
 
 /// Relaxes one need after the other by a tenth, or by one tick if that is more, or by one neighbour.

@@ -23,6 +23,15 @@ pub struct FoundJson {
     /// Why nothing is better; only `design` says it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// Whether the atlas answered, and nothing was searched; only `design` says it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_atlas: Option<bool>,
+    /// The shortest period over the reals in microseconds, as numerator and denominator; only where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub real_period_us: Option<(u64, u64)>,
+    /// Whether no real period is shorter.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub real_proven: Option<bool>,
 }
 
 impl FoundJson {
@@ -36,6 +45,9 @@ impl FoundJson {
             nodes: found.nodes,
             seconds,
             reason: None,
+            from_atlas: None,
+            real_period_us: None,
+            real_proven: None,
         }
     }
 }

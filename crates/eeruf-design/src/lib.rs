@@ -10,7 +10,9 @@
 //! | `find`, `find_uneven` | the shortest period for it, and what would make it shorter |
 //! | `found` | the answer as it is printed in JSON |
 //! | `hopping` | schedules of many phases: the file, and the shortest period |
+//! | `atlas` | rings whose shortest period is known |
 //! | `ticks`, `certificate` | the problem in ticks, and the proof, as a text that others check |
+//! | `reals` | what the tick costs: the shortest period over the reals |
 //!
 //! ```
 //! use eeruf_design::{RingSpec, Search};
@@ -23,6 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod atlas;
 pub mod certificate;
 mod each;
 mod find;
@@ -31,6 +34,7 @@ mod found;
 mod hopping;
 mod layout;
 mod limits;
+mod reals;
 mod ring;
 mod text;
 mod ticks;
@@ -43,6 +47,7 @@ pub use found::FoundJson;
 pub use hopping::{HoppingDesign, PhaseFile, PhaseSchedule};
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};
+pub use reals::{RealPeriod, over_reals, real_budget};
 pub use ring::{RingFile, RingSpec};
 pub use text::{TextError, parse};
 pub use uneven::OwnedUneven;

@@ -9,7 +9,7 @@ fn read(text: &str) -> RingSpec {
 }
 
 fn design(spec: &RingSpec) -> RingDesign {
-    let found = spec.shortest(&Search { budget: 1_000_000, what_if: false }, &mut ());
+    let found = spec.shortest(&Search { budget: 1_000_000, what_if: false, atlas: false }, &mut ());
     found.expect("it can be searched").expect("there is a schedule")
 }
 

@@ -37,6 +37,10 @@ pub trait EchoRing<const K: usize> {
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
     fn enable(&mut self, sensor: u8) -> Result<(), SensorError>;
+    /// Lets no sensor fire until it is resumed.
+    fn pause(&mut self);
+    /// Lets sensors fire again; what was known of their echoes is forgotten.
+    fn resume(&mut self);
     /// Starts again at `now`.
     fn restart(&mut self, now: Instant);
 }
@@ -69,6 +73,12 @@ macro_rules! echo_ring {
             }
             fn enable(&mut self, sensor: u8) -> Result<(), SensorError> {
                 self.enable(sensor)
+            }
+            fn pause(&mut self) {
+                self.pause();
+            }
+            fn resume(&mut self) {
+                self.resume();
             }
             fn restart(&mut self, now: Instant) {
                 self.restart(now);

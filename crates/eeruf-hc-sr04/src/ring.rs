@@ -117,13 +117,6 @@ impl<R: EchoRing<K>, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr
         self.ring.enable(sensor)
     }
 
-    /// As [`Ring::restart`].
-    pub fn restart(&mut self, now: Instant) {
-        self.ring.restart(now);
-    }
-}
-
-impl<S: Scheduler, T, I, D, const K: usize> HcSr04Ring<Ring<S, K>, T, I, D, K> {
     /// As [`Ring::pause`].
     pub fn pause(&mut self) {
         self.ring.pause();
@@ -134,6 +127,13 @@ impl<S: Scheduler, T, I, D, const K: usize> HcSr04Ring<Ring<S, K>, T, I, D, K> {
         self.ring.resume();
     }
 
+    /// As [`Ring::restart`].
+    pub fn restart(&mut self, now: Instant) {
+        self.ring.restart(now);
+    }
+}
+
+impl<S: Scheduler, T, I, D, const K: usize> HcSr04Ring<Ring<S, K>, T, I, D, K> {
     /// As [`Ring::set_t_delta`].
     ///
     /// # Errors

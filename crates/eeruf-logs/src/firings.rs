@@ -19,7 +19,6 @@
 //! The same in MCAP is a JSON message `eeruf.Firing` for each row, with the columns as its fields and the clock's name
 //! as a field `clock`; see [`McapWriter::firing`](crate::McapWriter::firing).
 
-use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
 
@@ -82,22 +81,7 @@ impl FiringLog {
         Self { clock: clock.to_owned(), firings, ..Self::default() }
     }
 
-    /// Reads a log, CSV or MCAP, as its first bytes say.
-    ///
-    /// # Errors
-    /// A file that cannot be read, columns that are missing, or a value that is none, with its line; MCAP in which
-    /// there is no firing, or there are those of several rings.
-    pub fn read(file: &Path) -> Result<Self, LogError> {
-        let mut opened = BufReader::new(File::open(file).map_err(|error| LogError::new(file, error))?);
-        let first = opened.fill_buf().map_err(|error| LogError::new(file, error))?;
-        if first.starts_with(&crate::mcap::MAGIC) {
-            drop(opened);
-            return crate::firing_messages::read(file);
-        }
-        Self::read_from(opened, file)
-    }
-
-    /// As [`read`](Self::read), from wherever it comes; `file` stands in errors.
+    /// Reads a log in CSV from wherever it comes; `file` stands in errors.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -203,6 +187,7 @@ impl FiringLog {
             let sends = if self.listened.is_empty() { "" } else { sends };
             for firing in rows {
                 let Firing { sensor, fired_us, period, phase, t_echo_us, ref weighed, .. } = *firing;
+                let fired_us = if self.lacks_instants { String::new() } else { fired_us.to_string() };
                 let echo = t_echo_us.map(|us| us.to_string()).unwrap_or_default();
                 let reading = firing.reading();
                 write!(output, "{sensor},{fired_us},{period},{phase},{echo},{reading}")?;

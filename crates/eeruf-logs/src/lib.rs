@@ -31,6 +31,7 @@
 mod bytes;
 mod diagnose;
 mod error;
+mod firing_files;
 mod firing_messages;
 mod firings;
 mod mcap;

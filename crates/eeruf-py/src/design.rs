@@ -6,7 +6,7 @@ use eeruf_core::{
     Criterion, MAX_SENSORS, Micros, Requirements,
     search::{self, Control, PeriodProblem, Progress, SearchError, design as period},
 };
-use eeruf_design::{OwnedUneven, certificate, shortest_uneven};
+use eeruf_design::{OwnedUneven, certificate, over_reals as real_period, real_budget, shortest_uneven};
 use pyo3::prelude::*;
 
 use crate::{
@@ -59,6 +59,9 @@ const FEW_SENSORS: usize = 12;
 ///         ``[(0, 4, 9000)]``; 0 for none.
 ///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
 ///     together: groups of sensors that fire at the same instants, declared not to hear each other.
+///     over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period with firing times
+///         that are no whole ticks, the needs being what they are in ticks, and in ``Found.real_proven`` whether none is
+///         shorter. Only where the period in ticks is proven.
 ///
 /// Returns:
 ///     The shortest period in ``value_us``, or the best found within budget and time; ``proven`` says which.
@@ -72,6 +75,9 @@ const FEW_SENSORS: usize = 12;
 ///     >>> found = eeruf.design(sensors=8, t_delta_us=999, min_interval_us=15_000, window_us=36_000)
 ///     >>> found.value_us, found.proven
 ///     (66000, True)
+///     >>> found = eeruf.design(12, 999, 15_000, 45_000, over_reals=True)
+///     >>> found.value_us, found.real_period_us, found.real_proven
+///     (70000, (69500, 1), True)
 ///     >>> windows = [36_000, 36_000, 12_000, 12_000]
 ///     >>> found = eeruf.design(4, [999, 999, 1500, 1500], 15_000, windows, shared_lines=[(0, 2)])
 ///     >>> found.value_us, found.proven
@@ -80,12 +86,12 @@ const FEW_SENSORS: usize = 12;
 #[pyo3(signature = (
     sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None,
     budget=None, progress=None, certificate=None, time_limit_s=None, refire_us=None, intervals_us=None,
-    shared_lines=None, together=None
+    shared_lines=None, together=None, over_reals=None
 ))]
 #[pyo3(
     text_signature = "(sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, layout=\"line\", \
         stale_echo=False, budget=None, progress=None, certificate=False, time_limit_s=None, refire_us=None, \
-        intervals_us=None, shared_lines=None, together=None)"
+        intervals_us=None, shared_lines=None, together=None, over_reals=False)"
 )]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
 pub(crate) fn design(
@@ -106,6 +112,7 @@ pub(crate) fn design(
     intervals_us: Option<&Bound<'_, PyAny>>,
     shared_lines: Option<&Bound<'_, PyAny>>,
     together: Option<&Bound<'_, PyAny>>,
+    over_reals: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Found> {
     let sensors = requirements::sensors(sensors)?;
     let layout = OwnedLayout::new(layout, requirements::neighbours(neighbours)?, sensors)?;
@@ -118,6 +125,7 @@ pub(crate) fn design(
     let stale_echo = flag("stale_echo", stale_echo, false)?;
     let budget = whole_or("budget", budget, DESIGN_BUDGET, 1..=u64::MAX)?;
     let certificate = flag("certificate", certificate, false)?;
+    let over_reals = flag("over_reals", over_reals, false)?;
     let limit = time_limit_s.map(|seconds| number("time_limit_s", seconds, 1e-3..=1e9)).transpose()?;
     let limit = limit.map_or(Duration::MAX, Duration::from_secs_f64);
     let began = Instant::now();
@@ -134,18 +142,22 @@ pub(crate) fn design(
         };
         let (found, reason) = shortest(&needs, budget, &mut control).map_err(Raise::raise)?;
         let proving = Instant::now();
-        let go_on = |nodes| proving.elapsed() < limit && go_on(&|| format!("certificate: {nodes} nodes"));
-        let certificate = certificate.then(|| certify(&needs, &found, go_on)).transpose()?;
-        Ok((found, reason, certificate))
+        let mut still = |what: &str, nodes| proving.elapsed() < limit && go_on(&|| format!("{what}: {nodes} nodes"));
+        let proof = certificate.then(|| certify(&needs, &found, |nodes| still("certificate", nodes))).transpose()?;
+        let schedule = found.schedule.filter(|_| over_reals && found.proven);
+        let real = schedule.and_then(|schedule| {
+            real_period(&needs, &schedule, real_budget(sensors), |nodes| still("over the reals", nodes))
+        });
+        Ok((found, reason, proof, real))
     };
-    let (found, reason, certificate) = if sensors <= FEW_SENSORS {
+    let (found, reason, certificate, real) = if sensors <= FEW_SENSORS {
         let mut watch = Watch::new(progress)?;
         let designed = py.detach(|| work(&mut |text| watch.go_on(None, text)));
         watch.outcome(designed)?
     } else {
         in_background(py, progress, move |background| work(&mut |text| background.go_on(None, text)))?
     };
-    Ok(Found::of(&found, began, Some(reason)).with_certificate(certificate))
+    Ok(Found::of(&found, began, Some(reason)).with_certificate(certificate).with_reals(real))
 }
 
 /// The certificate of what was found.

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use eeruf_core::{MAX_SENSORS, Micros, search};
+use eeruf_design::RealPeriod;
 use pyo3::{
     prelude::*,
     types::{PyDict, PyTuple},
@@ -47,6 +48,13 @@ pub(crate) struct Found {
     /// A proof for :func:`check_certificate`; None unless ``design`` was asked for one.
     #[pyo3(get)]
     certificate: Option<String>,
+    /// The shortest period over the reals in microseconds, as numerator and denominator in lowest terms; None unless
+    /// ``design`` was asked for it.
+    #[pyo3(get)]
+    real_period_us: Option<(u64, u64)>,
+    /// Whether no real period is shorter; None without one.
+    #[pyo3(get)]
+    real_proven: Option<bool>,
 }
 
 impl Found {
@@ -60,18 +68,26 @@ impl Found {
             seconds: began.elapsed().as_secs_f64(),
             reason,
             certificate: None,
+            real_period_us: None,
+            real_proven: None,
         }
     }
 
     pub(crate) fn with_certificate(self, certificate: Option<String>) -> Self {
         Self { certificate, ..self }
     }
+
+    pub(crate) fn with_reals(self, real: Option<RealPeriod>) -> Self {
+        let real_period_us = real.as_ref().map(|real| real.period_us);
+        Self { real_period_us, real_proven: real.map(|real| real.proven), ..self }
+    }
 }
 
 #[pymethods]
 impl Found {
     #[new]
-    #[pyo3(signature = (schedule, value_us, bound_us, proven, nodes, seconds, reason=None, certificate=None))]
+    #[pyo3(signature = (schedule, value_us, bound_us, proven, nodes, seconds, reason=None, certificate=None,
+        real_period_us=None, real_proven=None))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         schedule: Option<&Bound<'_, PyAny>>,
@@ -82,6 +98,8 @@ impl Found {
         seconds: &Bound<'_, PyAny>,
         reason: Option<&Bound<'_, PyAny>>,
         certificate: Option<&Bound<'_, PyAny>>,
+        real_period_us: Option<(u64, u64)>,
+        real_proven: Option<bool>,
     ) -> PyResult<Self> {
         let schedule = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
         Ok(Self {
@@ -93,6 +111,8 @@ impl Found {
             seconds: number("seconds", seconds, 0.0..=f64::INFINITY)?,
             reason: reason.map(|reason| text("reason", reason, "why")).transpose()?,
             certificate: certificate.map(|proof| text("certificate", proof, "a certificate")).transpose()?,
+            real_period_us,
+            real_proven,
         })
     }
 
@@ -110,7 +130,18 @@ impl Found {
     ///     >>> found["value_us"], found["schedule"]["period_us"]
     ///     (62000, 62000)
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        let fields = ["schedule", "value_us", "bound_us", "proven", "nodes", "seconds", "reason", "certificate"];
+        let fields = [
+            "schedule",
+            "value_us",
+            "bound_us",
+            "proven",
+            "nodes",
+            "seconds",
+            "reason",
+            "certificate",
+            "real_period_us",
+            "real_proven",
+        ];
         to_dict(slf, &fields)
     }
 
@@ -122,9 +153,10 @@ impl Found {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let this = slf.get();
-        let Self { value_us, bound_us, proven, nodes, seconds, .. } = *this;
+        let Self { value_us, bound_us, proven, nodes, seconds, real_period_us, real_proven, .. } = *this;
         let (schedule, reason, certificate) = (this.schedule.clone(), this.reason.clone(), this.certificate.clone());
-        let arguments = (schedule, value_us, bound_us, proven, nodes, seconds, reason, certificate);
+        let arguments =
+            (schedule, value_us, bound_us, proven, nodes, seconds, reason, certificate, real_period_us, real_proven);
         Ok((slf.get_type().into_any(), arguments.into_pyobject(slf.py())?))
     }
 }

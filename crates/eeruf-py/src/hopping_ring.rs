@@ -361,6 +361,34 @@ impl HoppingRing {
         Ok(self.ring.is_enabled(self.sensor(sensor)?))
     }
 
+    /// Let no sensor fire until :meth:`resume`. Readings of firings under way are still emitted, and periods go on.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+    ///     >>> ring.pause()
+    ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
+    ///     'PeriodEnded'
+    fn pause(&mut self) {
+        self.ring.pause();
+    }
+
+    /// Let sensors fire again, as of the next period. What was known of their echoes is forgotten.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
+    ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
+    ///     >>> ring.pause()
+    ///     >>> ring.resume()
+    ///     >>> _ = ring.poll(ring.next_deadline_us)  # the period ends
+    ///     >>> type(ring.poll(ring.next_deadline_us)).__name__
+    ///     'Fire'
+    fn resume(&mut self) {
+        self.ring.resume();
+    }
+
     /// How many sensors it has.
     #[getter]
     fn sensors(&self) -> usize {

@@ -157,15 +157,24 @@ pub(crate) fn replay<'py>(
     Ok(out)
 }
 
+/// What `eeruf.logs.Firings` holds.
+#[derive(FromPyObject)]
+pub(crate) struct Columns<'py> {
+    sensor: PyReadonlyArray1<'py, i64>,
+    fired_us: PyReadonlyArray1<'py, i64>,
+    period: PyReadonlyArray1<'py, i64>,
+    phase: PyReadonlyArray1<'py, i64>,
+    t_echo_us: PyReadonlyArray1<'py, f64>,
+    rejected: PyReadonlyArray1<'py, i64>,
+    sends: PyReadonlyArray1<'py, bool>,
+}
+
 /// A log from columns of equal length; the places of its firings, in their order, among the columns.
-fn log_of(
-    [sensor, fired_us, period, phase, rejected]: [PyReadonlyArray1<'_, i64>; 5],
-    t_echo_us: &PyReadonlyArray1<'_, f64>,
-    sends: &PyReadonlyArray1<'_, bool>,
-) -> PyResult<(FiringLog, Vec<usize>)> {
-    let (sensor, fired_us, period) = (sensor.as_array(), fired_us.as_array(), period.as_array());
-    let (phase, rejected, t_echo_us, sends) =
-        (phase.as_array(), rejected.as_array(), t_echo_us.as_array(), sends.as_array());
+fn log_of(columns: &Columns<'_>) -> PyResult<(FiringLog, Vec<usize>)> {
+    let (sensor, fired_us, period) =
+        (columns.sensor.as_array(), columns.fired_us.as_array(), columns.period.as_array());
+    let (phase, t_echo_us) = (columns.phase.as_array(), columns.t_echo_us.as_array());
+    let (rejected, sends) = (columns.rejected.as_array(), columns.sends.as_array());
     let length = sensor.len();
     let lengths = [fired_us.len(), period.len(), phase.len(), rejected.len(), t_echo_us.len(), sends.len()];
     if lengths.iter().any(|&other| other != length) {
@@ -225,21 +234,15 @@ fn paths<'py>(py: Python<'py>, paths: &[FoundPath]) -> PyResult<Bound<'py, PyDic
 /// Which sensors fool each other, from columns.
 #[pyfunction]
 #[pyo3(name = "_diagnose")]
-#[expect(clippy::too_many_arguments, clippy::needless_pass_by_value, reason = "from one place, as PyO3 gives them")]
+#[expect(clippy::needless_pass_by_value, reason = "as PyO3 gives it")]
 pub(crate) fn diagnose<'py>(
     py: Python<'py>,
-    sensor: PyReadonlyArray1<'py, i64>,
-    fired_us: PyReadonlyArray1<'py, i64>,
-    period: PyReadonlyArray1<'py, i64>,
-    phase: PyReadonlyArray1<'py, i64>,
-    rejected: PyReadonlyArray1<'py, i64>,
-    t_echo_us: PyReadonlyArray1<'py, f64>,
-    sends: PyReadonlyArray1<'py, bool>,
+    firings: Columns<'py>,
     tolerance_us: u32,
     max_travel_us: u32,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let rows = sensor.as_array().len();
-    let (log, places) = log_of([sensor, fired_us, period, phase, rejected], &t_echo_us, &sends)?;
+    let rows = firings.sensor.as_array().len();
+    let (log, places) = log_of(&firings)?;
     let settings = Settings { tolerance_us, max_travel_us, ..Settings::default() };
     let found: Diagnosis = in_background(py, None, move |_| Ok(eeruf_logs::diagnose(&log, &settings)))?;
     let (mut sender, mut travel_us, mut sure) = (vec![-1_i64; rows], vec![f64::NAN; rows], vec![f64::NAN; rows]);
@@ -271,20 +274,14 @@ fn fault(fault: &Fault) -> Option<(&'static str, Vec<u8>)> {
 /// Who hears whom, from the columns of a measuring run.
 #[pyfunction]
 #[pyo3(name = "_survey")]
-#[expect(clippy::too_many_arguments, clippy::needless_pass_by_value, reason = "from one place, as PyO3 gives them")]
+#[expect(clippy::needless_pass_by_value, reason = "as PyO3 gives it")]
 pub(crate) fn survey<'py>(
     py: Python<'py>,
-    sensor: PyReadonlyArray1<'py, i64>,
-    fired_us: PyReadonlyArray1<'py, i64>,
-    period: PyReadonlyArray1<'py, i64>,
-    phase: PyReadonlyArray1<'py, i64>,
-    rejected: PyReadonlyArray1<'py, i64>,
-    t_echo_us: PyReadonlyArray1<'py, f64>,
-    sends: PyReadonlyArray1<'py, bool>,
+    firings: Columns<'py>,
     tolerance_us: u32,
     until_us: u32,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (log, _) = log_of([sensor, fired_us, period, phase, rejected], &t_echo_us, &sends)?;
+    let (log, _) = log_of(&firings)?;
     let settings = PathSettings { tolerance_us, ..PathSettings::default() };
     let found = in_background(py, None, move |_| Ok(eeruf_logs::survey(&log, &settings)))?;
     let out = PyDict::new(py);

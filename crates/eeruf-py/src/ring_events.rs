@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use eeruf_core::{Instant, MAX_SENSORS, Micros, PeriodStats, Phase, ReadingKind, RingEvent, Verdict};
+use eeruf_core::{Instant, MAX_SENSORS, Micros, PeriodStats, Phase, ReadingKind, RingEvent, Tally, Verdict};
 use pyo3::{
     IntoPyObjectExt,
     prelude::*,
@@ -188,6 +188,28 @@ pub(crate) struct PeriodEnded(PeriodStats);
 
 #[pymethods]
 impl PeriodEnded {
+    #[new]
+    #[pyo3(signature = (period, phase=None, max_late_us=None, sum_late_us=None, max_shift_us=None, tally=None))]
+    #[pyo3(text_signature = "(period, phase=0, max_late_us=0, sum_late_us=0, max_shift_us=0, tally={})")]
+    fn new(
+        period: &Bound<'_, PyAny>,
+        phase: Option<&Bound<'_, PyAny>>,
+        max_late_us: Option<&Bound<'_, PyAny>>,
+        sum_late_us: Option<&Bound<'_, PyAny>>,
+        max_shift_us: Option<&Bound<'_, PyAny>>,
+        tally: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let late = |name, value| Ok::<_, PyErr>(Micros::new(whole_or(name, value, 0, 0..=u32::from(u16::MAX))?));
+        Ok(Self(PeriodStats {
+            period: whole("period", period, 0..=u32::MAX)?,
+            phase: Phase(whole_or("phase", phase, 0, 0..=u8::MAX)?),
+            tally: tally.map_or_else(|| Ok(Tally::default()), counted)?,
+            max_late: late("max_late_us", max_late_us)?,
+            sum_late: late("sum_late_us", sum_late_us)?,
+            max_shift: late("max_shift_us", max_shift_us)?,
+        }))
+    }
+
     /// Which period, from 0.
     #[getter]
     fn period(&self) -> u32 {
@@ -246,9 +268,30 @@ impl PeriodEnded {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let (period, phase, tally) = (self.period(), self.phase(), self.tally(py)?.repr()?);
         let (late, sum, shift) = (self.max_late_us(), self.sum_late_us(), self.max_shift_us());
-        let late = format!("max_late_us={late} sum_late_us={sum} max_shift_us={shift}");
-        Ok(format!("<PeriodEnded period={period} phase={phase} {late} tally={tally}>"))
+        let late = format!("max_late_us={late}, sum_late_us={sum}, max_shift_us={shift}");
+        Ok(format!("PeriodEnded(period={period}, phase={phase}, {late}, tally={tally})"))
     }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let ended = slf.get();
+        let late = (ended.max_late_us(), ended.sum_late_us(), ended.max_shift_us());
+        let fields = (ended.period(), ended.phase(), late.0, late.1, late.2, ended.tally(slf.py())?);
+        Ok((slf.get_type().into_any(), fields.into_pyobject(slf.py())?))
+    }
+}
+
+/// How many readings of each kind a dict says there are.
+fn counted(tally: &Bound<'_, PyAny>) -> PyResult<Tally<u8>> {
+    let expected = "a dict of counts by the names in eeruf.KINDS";
+    let mut counted = Tally::default();
+    for (name, count) in tally.cast::<PyDict>().map_err(|_| wrong("tally", shown(tally), expected))? {
+        let kind = ReadingKind::ALL.into_iter().find(|kind| name.eq(kind.as_str()).unwrap_or(false));
+        let kind = kind.ok_or_else(|| wrong("tally", shown(&name), expected))?;
+        for _ in 0..whole("tally", &count, 0..=u8::MAX)? {
+            counted.count(kind);
+        }
+    }
+    Ok(counted)
 }
 
 /// An event as Python sees it.

@@ -2,14 +2,18 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use eeruf_sim::{Body, SimulationError, simulation::expected_readings};
-use pyo3::{prelude::*, types::PyDict};
+use eeruf_sim::{Body, Point, SimulationError, simulation::expected_readings};
+use pyo3::{
+    prelude::*,
+    types::{PyDict, PyTuple},
+};
 
 use crate::{
-    arguments::{number, whole, whole_or},
+    arguments::{flag, number, number_or, whole, whole_or},
     errors::Raise,
     fields::to_dict,
     memory,
+    pose::{point_of, pose_of},
     readings::Readings,
     simulate::Asked,
     watch::{Watch, in_background},
@@ -40,6 +44,24 @@ pub(crate) struct RobotState {
 
 #[pymethods]
 impl RobotState {
+    #[new]
+    #[pyo3(signature = (pose, velocity_m_s=None, turn_rad_s=None, touches=None))]
+    #[pyo3(text_signature = "(pose, velocity_m_s=(0.0, 0.0), turn_rad_s=0.0, touches=False)")]
+    fn new(
+        pose: &Bound<'_, PyAny>,
+        velocity_m_s: Option<&Bound<'_, PyAny>>,
+        turn_rad_s: Option<&Bound<'_, PyAny>>,
+        touches: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let velocity = velocity_m_s.map(|velocity| point_of("velocity_m_s", velocity)).transpose()?;
+        Ok(Self {
+            pose: pose_of("pose", pose)?,
+            velocity_m_s: velocity.map_or((0.0, 0.0), |velocity: Point| (velocity.x, velocity.y)),
+            turn_rad_s: number_or("turn_rad_s", turn_rad_s, 0.0, f64::MIN..=f64::MAX)?,
+            touches: flag("touches", touches, false)?,
+        })
+    }
+
     /// Its fields by their names: a dict of plain values.
     ///
     /// Example:
@@ -54,7 +76,13 @@ impl RobotState {
     fn __repr__(&self) -> String {
         let Self { pose, velocity_m_s, turn_rad_s, touches } = self;
         let touches = if *touches { "True" } else { "False" };
-        format!("<RobotState pose={pose:?} velocity_m_s={velocity_m_s:?} turn_rad_s={turn_rad_s:?} touches={touches}>")
+        format!("RobotState({pose:?}, velocity_m_s={velocity_m_s:?}, turn_rad_s={turn_rad_s:?}, touches={touches})")
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let Self { pose, velocity_m_s, turn_rad_s, touches } = *slf.get();
+        let fields = (pose, velocity_m_s, turn_rad_s, touches).into_pyobject(slf.py())?;
+        Ok((slf.get_type().into_any(), fields))
     }
 }
 

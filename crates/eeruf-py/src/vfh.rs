@@ -1,10 +1,13 @@
 //! `nav.Vfh`: the vector field histogram, and the `Steering` that comes of it.
 
-use eeruf_sim::Point;
-use pyo3::{prelude::*, types::PyDict};
+use eeruf_sim::{Point, navigation::SECTORS};
+use pyo3::{
+    prelude::*,
+    types::{PyDict, PyTuple},
+};
 
 use crate::{
-    arguments::{instance, number_or, whole_or},
+    arguments::{flag, instance, number, number_or, shown, whole_or, wrong},
     columns::read_only,
     fields::to_dict,
     himm::Himm,
@@ -255,6 +258,23 @@ pub(crate) struct Steering {
 
 #[pymethods]
 impl Steering {
+    #[new]
+    #[pyo3(signature = (direction_rad, valley=None, trapped=None))]
+    #[pyo3(text_signature = "(direction_rad, valley=(0, 72), trapped=False)")]
+    fn new(
+        direction_rad: &Bound<'_, PyAny>,
+        valley: Option<&Bound<'_, PyAny>>,
+        trapped: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let valley = valley.map_or(Ok((0, SECTORS)), |valley| {
+            let pair: Option<(usize, usize)> = valley.extract().ok();
+            let within = pair.filter(|&(first, sectors)| first < SECTORS && (1..=SECTORS).contains(&sectors));
+            within.ok_or_else(|| wrong("valley", shown(valley), "a first sector, 0 to 71, and how many, 1 to 72"))
+        })?;
+        let direction_rad = number("direction_rad", direction_rad, f64::MIN..=f64::MAX)?;
+        Ok(Self { direction_rad, valley, trapped: flag("trapped", trapped, false)? })
+    }
+
     /// Its fields by their names: a dict of plain values.
     ///
     /// Example:
@@ -269,5 +289,11 @@ impl Steering {
         let Self { direction_rad, valley, trapped } = self;
         let trapped = if *trapped { "True" } else { "False" };
         format!("Steering(direction_rad={direction_rad:?}, valley={valley:?}, trapped={trapped})")
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let Self { direction_rad, valley, trapped } = *slf.get();
+        let fields = (direction_rad, valley, trapped).into_pyobject(slf.py())?;
+        Ok((slf.get_type().into_any(), fields))
     }
 }

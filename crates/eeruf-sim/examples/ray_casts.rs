@@ -19,7 +19,7 @@ fn corners(random: &mut Random) -> Vec<Vector> {
     let radius = random.between(1.0, 5.0);
     let turned = random.between(0.0, TAU);
     let at = |k: usize| turned + TAU * k as f64 / count as f64;
-    (0..count).map(|k| Vector::new(radius * at(k).cos(), radius * at(k).sin())).collect()
+    (0..count).map(|k| Vector::new(radius * libm::cos(at(k)), radius * libm::sin(at(k)))).collect()
 }
 
 fn walls(corners: &[Vector]) -> impl Iterator<Item = Segment> + '_ {
@@ -44,12 +44,13 @@ fn self_hits(random: &mut Random) -> f64 {
     let mut hit_again = 0;
     for _ in 0..TRIED {
         let angle = random.between(0.0, TAU);
-        let (along, normal) = (Vector::new(angle.cos(), angle.sin()), Vector::new(-angle.sin(), angle.cos()));
+        let (along, normal) =
+            (Vector::new(libm::cos(angle), libm::sin(angle)), Vector::new(-libm::sin(angle), libm::cos(angle)));
         let middle = Vector::new(random.between(-5.0, 5.0), random.between(-5.0, 5.0));
         let wall = Segment::new(middle - along * 20.0, middle + along * 20.0);
         let from = middle + normal * random.between(0.5, 3.0);
         let off = random.between(-1.2, 1.2);
-        let ahead = along * off.sin() - normal * off.cos();
+        let ahead = along * libm::sin(off) - normal * libm::cos(off);
         let Some(way) = wall.cast_local_ray(&Ray::new(from, ahead), 100.0, true) else { continue };
         let back = ahead - normal * (2.0 * ahead.dot(normal));
         hit_again += u32::from(wall.cast_local_ray(&Ray::new(from + ahead * way, back), 100.0, true).is_some());
@@ -62,10 +63,11 @@ fn grazing_m(random: &mut Random) -> f64 {
     let mut worst: f64 = 0.0;
     for _ in 0..TRIED {
         let angle = random.between(0.0, TAU);
-        let (along, normal) = (Vector::new(angle.cos(), angle.sin()), Vector::new(-angle.sin(), angle.cos()));
+        let (along, normal) =
+            (Vector::new(libm::cos(angle), libm::sin(angle)), Vector::new(-libm::sin(angle), libm::cos(angle)));
         let wall = Segment::new(along * -10.0, along * 10.0);
         let height = random.between(1e-4, 9e-4);
-        let (sin, cos) = 1e-4f64.sin_cos();
+        let (sin, cos) = libm::sincos(1e-4);
         let ray = Ray::new(normal * height, along * cos - normal * sin);
         if let Some(way) = wall.cast_local_ray(&ray, 100.0, true) {
             worst = worst.max((way - height / sin).abs());

@@ -44,7 +44,7 @@ fn star(walls: usize) -> Vec<Wall> {
     };
     let corner: Vec<_> = (0..walls)
         .map(|k| {
-            let (sin, cos) = (k as f64 / walls as f64 * std::f64::consts::TAU).sin_cos();
+            let (sin, cos) = libm::sincos(k as f64 / walls as f64 * std::f64::consts::TAU);
             let r = radius();
             [r * cos, r * sin]
         })

@@ -68,7 +68,8 @@ pub(crate) fn json(found: &Found<'_>) -> Value {
         "rejected": found.rejected().map(|(rejected, _)| rejected),
         "rejected_foreign": found.rejected().map(|(_, named)| named),
         "most_offsets": diagnosis.most_offsets,
-        "paths": paths, "sensors": hearing, "faults": faults, "timing": timing, "alignment": alignment, "advice": found.advice(),
+        "paths": paths, "sensors": hearing, "faults": faults, "timing": timing, "alignment": alignment,
+        "advice": found.advice(),
     })
 }
 

@@ -62,9 +62,9 @@ fn head(found: &Found<'_>) -> String {
         let known = if alignment.accidents <= 0.01 { "" } else { ": the readings do not say whether it is the ring's" };
         _ = writeln!(
             text,
-            "Instants are the schedule's, its phase {} being the log's phase 0: it explains {explained} of {of} moves of \
-             readings from phase to phase ({:.0e} such schedules expected by accident){known}, and {:.1} % sure is that it is \
-             this phase. Of jitter and drift nothing is known.",
+            "Instants are the schedule's, its phase {} being the log's phase 0: it explains {explained} of {of} moves \
+             of readings from phase to phase ({:.0e} such schedules expected by accident){known}, and {:.1} % sure is \
+             that it is this phase. Of jitter and drift nothing is known.",
             alignment.rotation,
             alignment.accidents,
             100.0 * alignment.sure,

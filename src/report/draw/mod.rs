@@ -1,5 +1,6 @@
 //! Pictures: one file for each kind, on top of `picture` and `style`.
 
+mod atlas;
 mod course;
 mod crosstalk;
 mod hopping;
@@ -12,6 +13,7 @@ mod spreads;
 mod style;
 mod timing;
 
+pub(crate) use atlas::atlas;
 pub(crate) use course::courses;
 pub(crate) use crosstalk::two_periods;
 pub(crate) use hopping::hopping_diagram;

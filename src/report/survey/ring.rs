@@ -20,7 +20,8 @@ pub(crate) fn ring_file(found: &Found<'_>, needs: &RingNeeds) -> String {
     let longest = intervals.iter().map(|interval| interval.2).max().unwrap_or(0);
     let mut text = format!(
         "# From the survey {}: sensors (from 0) that hear each other within {} us are neighbours, each pair with the\n\
-         # time after which the other's sound has passed. It holds where it was measured: survey where echoes are many.\n\
+         # time after which the other's sound has passed. It holds where it was measured: survey where echoes are \
+         many.\n\
          sensors = {}\nt_delta_us = {}\nwindow_us = {}\nmin_interval_us = {longest}\n",
         found.file.display(),
         found.until_us,

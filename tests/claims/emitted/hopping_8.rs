@@ -1,4 +1,7 @@
-use eeruf_core::{Audible, HoppingSchedule, Layout, Micros, PhaseCriterion, PhaseRequirements, hopping_schedule};
+use eeruf_core::{
+    Audible, HoppingListening, HoppingSchedule, HoppingSettings, Layout, Micros, PhaseCriterion, PhaseRequirements,
+    TrackerSettings, hopping_schedule,
+};
 
 // 8 sensors, 11 phases, T_p = 54.48 ms,
 // t_delta = 150 us, 4 adjacent sensors of a line at least 12 ms apart, listening for 36 ms.
@@ -22,3 +25,17 @@ pub const RING: HoppingSchedule<8> = hopping_schedule! {
         stale_echo: false,
     },
 };
+
+// For `HoppingRing::new`; QUICK and MAPS are the other sets of settings.
+pub const SETTINGS: HoppingSettings = HoppingSettings {
+    tracker: TrackerSettings {
+        t_delta: Micros::new(150),
+        near: Micros::new(400),
+        tentative_within: Micros::new(60),
+        ..TrackerSettings::BALANCED
+    },
+    neighbours: 4,
+    ..HoppingSettings::BALANCED
+};
+
+pub const LISTENING: HoppingListening = HoppingListening::new(Micros::new(36_000));

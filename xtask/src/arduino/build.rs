@@ -121,11 +121,17 @@ pub(super) fn sketch(
         .args(objects)
         .arg(core)
         .arg("-lm"))?;
-    let size = output(Command::new("avr-size").arg(&elf)).ok_or_else(|| Trouble::Failed("avr-size".to_owned()))?;
+    let (flash, ram) = size(&elf)?;
+    Ok(Sketch { elf, flash, ram })
+}
+
+/// Bytes of flash, and of data and bss.
+pub(super) fn size(elf: &Path) -> Result<(u64, u64), Trouble> {
+    let size = output(Command::new("avr-size").arg(elf)).ok_or_else(|| Trouble::Failed("avr-size".to_owned()))?;
     let numbers: Vec<u64> =
         size.lines().nth(1).into_iter().flat_map(str::split_whitespace).filter_map(|n| n.parse().ok()).collect();
     match numbers[..] {
-        [text, data, bss, ..] => Ok(Sketch { elf, flash: text + data, ram: data + bss }),
+        [text, data, bss, ..] => Ok((text + data, data + bss)),
         _ => Err(Trouble::Failed(format!("avr-size said: {size}"))),
     }
 }

@@ -13,7 +13,8 @@ use crate::steps::{Trouble, output};
 const MODULES: usize = 4;
 /// The sketch is through after 28 s.
 const SECONDS: &str = "29";
-/// Modules that hear each other within this time, in microseconds, must be found; what takes longer is seen at few leads.
+/// Modules that hear each other within this time, in microseconds, must be found; what takes longer is seen at few
+/// leads.
 const UNTIL_US: f64 = 15_000.0;
 /// The sketch looks at its lines every few microseconds.
 const OFF_US: f64 = 30.0;

@@ -1,20 +1,19 @@
 //! A corpus of rings for those who cannot call Rust: what happens to each, and what core says. C says the same here;
 //! `c/micropython/test_corpus.py` reads the file. `EERUF_WRITE=1` writes it anew.
 //!
-//! Lines: `S` a schedule, its period, then for each phase its firing times; `V` requirements (`t_delta`, interval, window,
-//! neighbours, layout, stale echo), then separation and window, 0 if they are not met; `L` how a ring listens
-//! (`t_delta`, window, blanking, consecutive) and its start; then echoes `E`, stuck lines `K`, late firings `F`, sensors
-//! enabled or not `N`, restarts `R`, and polls `P` with the deadline after it and the event, if there was one. An echo
-//! time of 2^32 - 1 is none.
+//! Lines: `S` a schedule, its period, then for each phase its firing times; `V` requirements (`t_delta`, interval,
+//! window, neighbours, layout, stale echo), then separation and window, 0 if they are not met; `L` how a ring listens
+//! (`t_delta`, window, blanking, consecutive) and its start; then echoes `E`, stuck lines `K`, late firings `F`,
+//! sensors enabled or not `N`, restarts `R`, and polls `P` with the deadline after it and the event, if there was one.
+//! An echo time of 2^32 - 1 is none.
 
 use std::fmt::Write;
 
 use eeruf_c_equal::core_side::flat;
+use eeruf_c_equal::ring::Verify;
+use eeruf_c_equal::world::{World, same};
 use eeruf_c_equal::{C, Do, Needs, Random};
 use eeruf_core::{Instant, Micros, Ring, RingConfig, RingEvent, Schedule, ScheduledFiring};
-
-use crate::ring::Verify;
-use crate::world::{World, same};
 
 const K: usize = 16;
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../c/tests/corpus.txt");

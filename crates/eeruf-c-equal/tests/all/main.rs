@@ -3,14 +3,53 @@
 //! Each test compares 200,000 events; with `EERUF_C_EVENTS=10000000` as many as that.
 
 mod corpus;
-mod hopping;
-mod modules;
 mod parts;
-mod ring;
 mod serial;
-mod world;
+
+use eeruf_c_equal::{Random, hopping, modules, ring};
 
 /// How many events to compare.
 fn events() -> u64 {
     std::env::var("EERUF_C_EVENTS").map_or(200_000, |events| events.parse().expect("a number of events"))
+}
+
+#[test]
+fn a_ring_by_a_table_says_the_same_event_by_event_whatever_happens_to_it() {
+    let (mut count, mut seed) = (0, 0);
+    while count < crate::events() {
+        count += match seed % 8 {
+            5 => ring::run::<1>(&Random::new(seed)),
+            6 => ring::run::<3>(&Random::new(seed)),
+            7 => ring::run::<8>(&Random::new(seed)),
+            _ => ring::run::<2>(&Random::new(seed)),
+        };
+        seed += 1;
+    }
+    println!("{count} events of {seed} rings");
+}
+
+#[test]
+fn a_hopping_ring_says_the_same_event_by_event_whatever_happens_to_it() {
+    let (mut count, mut seed) = (0, 0);
+    while count < crate::events() {
+        count += match seed % 6 {
+            0 => hopping::run::<1>(&Random::new(seed)),
+            1 => hopping::run::<2>(&Random::new(seed)),
+            2 => hopping::run::<5>(&Random::new(seed)),
+            3 => hopping::run::<12>(&Random::new(seed)),
+            _ => hopping::run::<8>(&Random::new(seed)),
+        };
+        seed += 1;
+    }
+    println!("{count} events of {seed} rings");
+}
+
+#[test]
+fn modules_say_the_same_event_by_event_and_are_as_healthy() {
+    let (mut count, mut seed) = (0, 0);
+    while count < crate::events() {
+        count += modules::run(&Random::new(seed));
+        seed += 1;
+    }
+    println!("{count} events of {seed} rings");
 }

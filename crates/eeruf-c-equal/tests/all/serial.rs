@@ -5,7 +5,7 @@ use eeruf_c_equal::{C, Do, Random};
 use eeruf_core::{Instant, Micros, Phase, Ring, RingConfig, RingEvent, Schedule, ScheduledFiring, tables::PAPER_12};
 use eeruf_serial::{Frame, Recorder};
 
-use crate::world::{World, same};
+use eeruf_c_equal::world::{World, same};
 
 const SENSORS: u8 = 12;
 

@@ -9,7 +9,7 @@ use crate::schedule::{Phase, Schedule, VerifiedFor};
 use crate::time::Micros;
 
 /// `EERUF_VERSION` of the `eeruf.h` that tables are written for.
-const EERUF_VERSION: u16 = 1;
+pub(crate) const EERUF_VERSION: u16 = 1;
 
 /// A schedule as a C header: see [`Schedule::to_c`].
 #[derive(Clone, Copy, Debug)]

@@ -3,20 +3,30 @@
 use core::fmt;
 
 use super::schedule::HoppingSchedule;
-use crate::emit::{Grouped, Numbers, RustLayout};
+use super::settings::HoppingSettings;
+use crate::emit::{EERUF_VERSION, Grouped, Numbers, RustLayout};
+use crate::layout::Layout;
 use crate::phases::{PhaseCriterion, PhaseRequirements};
 use crate::time::Micros;
+use crate::tracker::TrackerSettings;
 
 impl<const K: usize> HoppingSchedule<K> {
     /// A `const RING: HoppingSchedule` in Rust, with the `requirements` for the compiler to check (see
-    /// [`hopping_schedule!`](crate::hopping_schedule!)).
+    /// [`hopping_schedule!`](crate::hopping_schedule!)), and the constants `SETTINGS` and `LISTENING` for a
+    /// [`HoppingRing`](super::HoppingRing): the balanced settings with this `t_delta` and these neighbours.
     pub const fn to_rust<'r>(&'r self, requirements: &'r PhaseRequirements<'r>) -> HoppingRust<'r, K> {
         HoppingRust { schedule: self, requirements }
     }
 
-    /// A C99 header that includes nothing but `<stdint.h>`, with the firing times of each phase.
+    /// A C99 header that includes nothing but `<stdint.h>`, with the firing times of each phase; with `eeruf.h` before
+    /// it, also the constant `eeruf_hopping_config` for `eeruf_hopping_init`, with the settings of [`to_rust`](Self::to_rust).
     pub const fn to_c<'r>(&'r self, requirements: &'r PhaseRequirements<'r>) -> HoppingHeader<'r, K> {
         HoppingHeader { schedule: self, requirements }
+    }
+
+    /// A file of an Arduino sketch with the constant `name` for `eeruf_hopping_init`, as in [`to_c`](Self::to_c).
+    pub const fn to_arduino<'r>(&'r self, requirements: &'r PhaseRequirements<'r>, name: &'r str) -> HoppingTab<'r, K> {
+        HoppingTab { schedule: self, requirements, name }
     }
 
     /// A schedule file, as the program reads it: the code and the lags.
@@ -41,8 +51,9 @@ impl<const K: usize> fmt::Display for HoppingRust<'_, K> {
         let Self { schedule, requirements } = self;
         let PhaseRequirements { t_delta, criterion, audible, min_interval, layout, stale_echo } = requirements;
         let code = schedule.code();
-        write!(f, "use eeruf_core::{{Audible, HoppingSchedule, Layout, Micros, PhaseCriterion, PhaseRequirements, ")?;
-        writeln!(f, "hopping_schedule}};\n")?;
+        writeln!(f, "use eeruf_core::{{")?;
+        write!(f, "    Audible, HoppingListening, HoppingSchedule, HoppingSettings, Layout, Micros, PhaseCriterion, ")?;
+        writeln!(f, "PhaseRequirements,\n    TrackerSettings, hopping_schedule,\n}};\n")?;
         writeln!(f, "// {},", Summary(schedule))?;
         writeln!(f, "// {}.", Promise(requirements))?;
         writeln!(
@@ -71,8 +82,40 @@ impl<const K: usize> fmt::Display for HoppingRust<'_, K> {
         writeln!(f, "        min_interval: Micros::new({}),", Grouped(*min_interval))?;
         writeln!(f, "        layout: {},", RustLayout(*layout))?;
         writeln!(f, "        stale_echo: {stale_echo},")?;
-        writeln!(f, "    }},\n}};")
+        writeln!(f, "    }},\n}};\n")?;
+        let HoppingSettings { tracker, neighbours, .. } = settings(requirements);
+        writeln!(f, "// For `HoppingRing::new`; QUICK and MAPS are the other sets of settings.")?;
+        writeln!(f, "pub const SETTINGS: HoppingSettings = HoppingSettings {{")?;
+        writeln!(f, "    tracker: TrackerSettings {{")?;
+        let TrackerSettings { t_delta, near, tentative_within, .. } = tracker;
+        for (name, time) in [("t_delta", t_delta), ("near", near), ("tentative_within", tentative_within)] {
+            writeln!(f, "        {name}: Micros::new({}),", Grouped(time))?;
+        }
+        writeln!(f, "        ..TrackerSettings::BALANCED\n    }},\n    neighbours: {neighbours},")?;
+        writeln!(f, "    ..HoppingSettings::BALANCED\n}};\n")?;
+        write!(f, "pub const LISTENING: HoppingListening = ")?;
+        if audible.blanking == Micros::ZERO && audible.reach == audible.window {
+            return writeln!(f, "HoppingListening::new(Micros::new({}));", Grouped(audible.window));
+        }
+        writeln!(f, "HoppingListening {{")?;
+        for (name, time) in [("window", audible.window), ("blanking", audible.blanking), ("reach", audible.reach)] {
+            writeln!(f, "    {name}: Micros::new({}),", Grouped(time))?;
+        }
+        writeln!(f, "}};")
     }
+}
+
+/// The balanced settings for such a ring.
+fn settings(requirements: &PhaseRequirements<'_>) -> HoppingSettings {
+    let (balanced, t_delta) = (TrackerSettings::BALANCED, requirements.t_delta);
+    let near = balanced.near.max(t_delta);
+    let tracker =
+        TrackerSettings { t_delta, near, tentative_within: balanced.tentative_within.min(t_delta), ..balanced };
+    let neighbours = match requirements.layout {
+        Layout::Line(n) | Layout::Ring(n) | Layout::Blocks(n) => n,
+        Layout::Graph(_) => 0,
+    };
+    HoppingSettings { tracker, neighbours, ..HoppingSettings::BALANCED }
 }
 
 /// A hopping schedule as a C header: see [`HoppingSchedule::to_c`].
@@ -102,7 +145,62 @@ impl<const K: usize> fmt::Display for HoppingHeader<'_, K> {
             }
             writeln!(f, "}}, /* phase {phase} */")?;
         }
-        writeln!(f, "}};\n\n#endif")
+        writeln!(f, "}};\n\n#ifdef EERUF_H /* with eeruf.h before this file: for eeruf_hopping_init */")?;
+        write!(f, "{}", Constant { schedule, requirements, name: "eeruf_hopping_config" })?;
+        writeln!(f, "#endif\n\n#endif")
+    }
+}
+
+/// A hopping schedule as a file of an Arduino sketch: see [`HoppingSchedule::to_arduino`].
+#[derive(Clone, Copy, Debug)]
+pub struct HoppingTab<'r, const K: usize> {
+    schedule: &'r HoppingSchedule<K>,
+    requirements: &'r PhaseRequirements<'r>,
+    name: &'r str,
+}
+
+impl<const K: usize> fmt::Display for HoppingTab<'_, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { schedule, requirements, name } = self;
+        writeln!(f, "// {},\n// {}.", Summary(schedule), Promise(requirements))?;
+        writeln!(f, "#pragma once\n#include <EerufArduino.h>\n")?;
+        write!(f, "{}", Constant { schedule, requirements, name })
+    }
+}
+
+/// The constant of type `EerufHoppingConfig`, and the lags it points to.
+struct Constant<'r, const K: usize> {
+    schedule: &'r HoppingSchedule<K>,
+    requirements: &'r PhaseRequirements<'r>,
+    name: &'r str,
+}
+
+impl<const K: usize> fmt::Display for Constant<'_, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { schedule, requirements, name } = self;
+        let (code, audible, all) = (schedule.code(), requirements.audible, settings(requirements));
+        write!(f, "static const uint32_t {name}_lag_us[] = {{")?;
+        for (sensor, lag) in schedule.lags().enumerate() {
+            write!(f, "{}{}u", if sensor == 0 { "" } else { ", " }, lag.as_micros())?;
+        }
+        writeln!(
+            f,
+            "}};\n/* The settings of most robots; EERUF_HOPPING_QUICK and _MAPS in eeruf.h have the others. */"
+        )?;
+        writeln!(f, "static const EerufHoppingConfig {name} = {{")?;
+        let (step, period) = (code.step().as_micros(), schedule.period().as_micros());
+        writeln!(f, "    {EERUF_VERSION}, {}, {}, {step}u, {period}u, {name}_lag_us,", code.sensors(), code.phases())?;
+        let times = [audible.window, audible.blanking, audible.reach, all.shift_interval].map(Micros::as_micros);
+        let [window, blanking, reach, shift_interval] = times;
+        write!(f, "    {window}u, {blanking}u, {reach}u, {shift_interval}u,")?;
+        let TrackerSettings { t_delta, near, tentative_within, votes, score_limit, .. } = all.tracker;
+        let TrackerSettings { contradiction, solo_contradiction, tentative_votes, .. } = all.tracker;
+        let [t_delta, near, within] = [t_delta, near, tentative_within].map(Micros::as_micros);
+        write!(f, " 1u,\n    {{{t_delta}, {near}, {within}, {votes}, {score_limit}, {contradiction}, ")?;
+        writeln!(f, "{solo_contradiction}, {tentative_votes}}},")?;
+        let HoppingSettings { solo_rate, solo_after, solo_spacing, shift_after, shift_spacing, neighbours, .. } = all;
+        write!(f, "    {solo_rate}, {solo_after}, {solo_spacing}, {shift_after}, {shift_spacing}, {neighbours}, ")?;
+        writeln!(f, "{},\n}};", 1 + code.first_multiplier())
     }
 }
 
@@ -176,6 +274,22 @@ mod tests {
         let c = schedule.to_c(&requirements).to_string();
         assert!(c.contains("{301u, 9602u, 18000u}, /* phase 1 */"), "{c}");
         assert!(c.contains("#define EERUF_PHASES 3\n") && c.contains("#define EERUF_T_DELTA_US 150u\n"), "{c}");
+        assert!(
+            c.contains("1, 3, 3, 301u, 40000u, eeruf_hopping_config_lag_us,\n    36000u, 0u, 36000u, 8000u, 1u,"),
+            "{c}"
+        );
+        let tab = schedule.to_arduino(&requirements, "PORT").to_string();
+        assert!(tab.contains("PORT_lag_us[] = {0u, 9000u, 18000u};"), "{tab}");
+        assert!(tab.contains("{150, 400, 60, 5, 6, 2, 6, 2},\n    84, 5, 3, 5, 8, 2, 2,\n};"), "{tab}");
+        // What may not be less than T_delta, or more, follows it.
+        let wide = PhaseRequirements { t_delta: Micros::new(500), ..requirements };
+        assert!(schedule.to_c(&wide).to_string().contains("{500, 500, 60,"));
+        let narrow = PhaseRequirements { t_delta: Micros::new(40), ..requirements };
+        assert!(schedule.to_rust(&narrow).to_string().contains("tentative_within: Micros::new(40),"));
+        let mut deaf = requirements;
+        deaf.audible.blanking = Micros::new(900);
+        let rust = schedule.to_rust(&deaf).to_string();
+        assert!(rust.ends_with("    blanking: Micros::new(900),\n    reach: Micros::new(36_000),\n};\n"), "{rust}");
         let five = HoppingCode::shortest(4, 5, Micros::new(301)).unwrap();
         let five = HoppingSchedule::<4>::new(five, Micros::from_millis(40), [Micros::ZERO; 4]).unwrap();
         assert!(five.to_toml().to_string().contains("phases = 5\nfirst_multiplier = 2\n"));

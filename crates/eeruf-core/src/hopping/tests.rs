@@ -47,6 +47,19 @@ fn fire(ring: &mut HoppingRing<8>, periods: u32, hears: impl Fn(u8, usize) -> Op
 }
 
 #[test]
+fn a_paused_ring_keeps_silent_and_believes_nothing_from_before_when_it_goes_on() {
+    let mut ring = ring(HoppingSettings::BALANCED);
+    let wall = |_, _| Some(9_000);
+    fire(&mut ring, 40, wall);
+    assert!((0..8).all(|sensor| ring.tracker().confirmed(sensor).is_some()));
+    ring.pause();
+    assert_eq!(fire(&mut ring, 5, wall), []);
+    ring.resume();
+    assert!((0..8).all(|sensor| ring.tracker().confirmed(sensor).is_none()));
+    assert!(!fire(&mut ring, 2, wall).is_empty());
+}
+
+#[test]
 fn any_two_phases_move_any_path_by_at_least_a_step_for_every_number_of_sensors() {
     for sensors in 1..=64 {
         for code in [HoppingCode::new(sensors, 2, Micros::new(1)), HoppingCode::shortest(sensors, 2, Micros::new(1))] {

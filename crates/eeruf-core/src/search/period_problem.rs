@@ -1,7 +1,7 @@
 //! The user's question, in microseconds: what a ring needs, and the best schedule that meets it.
 
 use super::common::Control;
-use super::design::{self, Firing, InTime, Problem, Shortest};
+use super::design::{self, Explanation, Firing, InTime, Problem, Shortest};
 use super::error::SearchError;
 use super::found::Found;
 use super::grid::Grid;
@@ -101,6 +101,16 @@ impl PeriodProblem<'_> {
     ) -> Result<ShortestPeriod<K>, SearchError> {
         let (grid, rows) = self.grid()?;
         ShortestPeriod::new(grid, design::shortest(&self.problem(grid, &rows), budget, memory, control)?)
+    }
+
+    /// Why no schedule is shorter than this, in a time of which it is known that it is the shortest period.
+    ///
+    /// # Errors
+    /// As for [`shortest`](Self::shortest), and if the period is not a whole number of ticks.
+    pub fn why_shortest(&self, period: Micros) -> Result<Explanation, SearchError> {
+        let (grid, rows) = self.grid()?;
+        let ticks = grid.exactly("the period", period)?;
+        Ok(Explanation::of(&self.problem(grid, &rows).checked()?, ticks))
     }
 
     /// Of all schedules with the period found, the one with the largest `t_delta`; of these, the one with the largest

@@ -80,7 +80,7 @@ fn an_edge_from_before_the_firing_belongs_to_nothing() {
 }
 
 #[test]
-fn the_first_edge_after_the_window_is_told_once_and_one_within_it_comes_too_late_for_its_poll() {
+fn the_first_edge_after_the_window_is_reported_once_and_one_within_it_comes_too_late_for_its_poll() {
     let schedule = schedule();
     let mut ring = ring(&schedule);
     let fired = fire(&mut ring);
@@ -90,9 +90,9 @@ fn the_first_edge_after_the_window_is_told_once_and_one_within_it_comes_too_late
     for late in [WINDOW + 1, WINDOW + 2] {
         ring.echo(0, fired + Micros::new(late)).unwrap();
     }
-    let (now, told) = reading(&mut ring);
-    assert_eq!((told.kind, told.t_echo), (ReadingKind::Late, Some(Micros::new(WINDOW + 1))));
-    assert_eq!((told.period, now.since(fired)), (0, Micros::new(WINDOW + 1)));
+    let (now, got) = reading(&mut ring);
+    assert_eq!((got.kind, got.t_echo), (ReadingKind::Late, Some(Micros::new(WINDOW + 1))));
+    assert_eq!((got.period, now.since(fired)), (0, Micros::new(WINDOW + 1)));
     // The next reading is of the next firing: silence again, which the late edge has not made unlike the one before.
     let next = reading(&mut ring).1;
     assert_eq!((next.kind, next.period), (ReadingKind::Clear, 1));

@@ -111,3 +111,20 @@ fn the_preferred_schedule_of_64_sensors_is_found_up_to_the_longest_period() {
         assert!(preferred.separation.value >= separation && preferred.window.value >= window);
     }
 }
+
+#[test]
+fn a_period_known_to_be_the_shortest_is_explained_as_by_the_search_that_proved_it() {
+    let mut memory = vec![0; memory_words(12)];
+    let mut texts = Vec::new();
+    for window in [15, 30, 45, 60] {
+        let requirements = Requirements { window: ms(window), ..NEEDS };
+        let problem = PeriodProblem { sensors: 12, requirements, tick: ms(1) };
+        let designed = problem.shortest::<12>(1_000_000, &mut memory, &mut ()).unwrap();
+        let why = problem.why_shortest(designed.found.value.unwrap()).unwrap();
+        texts.push(why.in_ticks_of(problem.tick).to_string());
+        assert_eq!(texts.last(), Some(&designed.explanation().to_string()));
+        assert!(problem.why_shortest(Micros::new(500)).is_err(), "no whole number of ticks");
+    }
+    texts.dedup();
+    assert!(texts.len() > 2, "{texts:?}");
+}

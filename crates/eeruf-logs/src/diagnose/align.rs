@@ -1,10 +1,10 @@
 //! Puts a log without instants onto a fixed schedule, and says how sure it is that the ring fired by it.
 //!
-//! What speaks for a schedule are readings that move from one phase to the next: another sensor's sound moves by as much
-//! as the two firings do, and the schedule says by how much that is. Where sound is read in phase p of a sensor, its most
-//! frequent move to the next phase is one observation, which some other sensor's firings must explain. Lags cancel in
-//! moves, so that they moved shows in something else: readings of one phase that stay, and then stay elsewhere, of many
-//! sensors at once.
+//! What speaks for a schedule are readings that move from one phase to the next: another sensor's sound moves by as
+//! much as the two firings do, and the schedule says by how much that is. Where sound is read in phase p of a sensor,
+//! its most frequent move to the next phase is one observation, which some other sensor's firings must explain. Lags
+//! cancel in moves, so that they moved shows in something else: readings of one phase that stay, and then stay
+//! elsewhere, of many sensors at once.
 
 use core::fmt;
 use std::collections::BTreeMap;
@@ -19,8 +19,8 @@ pub struct Alignment {
     pub rotation: u8,
     /// Of how many observed moves the schedule explains how many.
     pub moves: (u32, u32),
-    /// How many schedules would explain as many by accident, of as many as there are rotations. Above 0.01 the readings do
-    /// not say whether the ring fired by it.
+    /// How many schedules would explain as many by accident, of as many as there are rotations. Above 0.01 the readings
+    /// do not say whether the ring fired by it.
     pub accidents: f64,
     /// How sure the rotation is among all, 0 to 1.
     pub sure: f64,
@@ -67,8 +67,8 @@ impl fmt::Display for AlignError {
             }
             Self::Moved { period, jumps: (jumps, of) } => write!(
                 f,
-                "at period {period} the readings of {jumps} of {of} sensors and phases jump at once; expected lags that \
-                 did not move, and a robot that stood"
+                "at period {period} the readings of {jumps} of {of} sensors and phases jump at once; expected lags \
+                 that did not move, and a robot that stood"
             ),
             Self::Unlike { moves: (explained, of) } => write!(
                 f,
@@ -93,8 +93,8 @@ const ACCIDENTS: f64 = 0.01;
 /// The schedule explains at least this share of the moves. One of another step shares some moves with it, all multiples
 /// of both steps, and explains up to a fifth; that is more than accidents do.
 const EXPLAINS: f64 = 1.0 / 3.0;
-/// So many moves would say whether it is the schedule. Two phases give fewer: a sensor mostly reads its own echo in one and
-/// another's sound in the other, and that move depends on lengths of paths, which nobody knows.
+/// So many moves would say whether it is the schedule. Two phases give fewer: a sensor mostly reads its own echo in one
+/// and another's sound in the other, and that move depends on lengths of paths, which nobody knows.
 const ENOUGH: u32 = 20;
 
 /// Puts the firings of a log where a fixed schedule of so many phases has them: the period in microseconds, and when a

@@ -271,6 +271,11 @@ fn a_log_is_read_as_it_was_written_and_a_clock_of_32_bits_may_wrap() {
     let mut text = Vec::new();
     log.write(&mut text).unwrap();
     assert_eq!(FiringLog::read_from(&text[..], "log".as_ref()).unwrap(), log);
+    let without =
+        FiringLog::read_from(&b"sensor,period,phase,t_echo_us\n0,0,0,\n1,0,1,700\n"[..], "log".as_ref()).unwrap();
+    text.clear();
+    without.write(&mut text).unwrap();
+    assert!(without.lacks_instants && FiringLog::read_from(&text[..], "log".as_ref()).unwrap() == without);
     let wrapped = "sensor,fired_us,period,phase,t_echo_us\n0,4294967000,0,0,\n1,5000,0,0,700\n";
     let read = FiringLog::read_from(wrapped.as_bytes(), "log".as_ref()).unwrap();
     assert_eq!((read.clock.as_str(), read.firings[1].fired_us), ("unnamed", 4_294_972_296));

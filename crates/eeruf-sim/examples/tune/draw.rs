@@ -64,7 +64,7 @@ pub(crate) fn candidate(number: usize) -> Candidate {
 }
 
 fn log_between(random: &mut Random, low: f64, high: f64) -> f64 {
-    (random.between(low.ln(), high.ln())).exp()
+    libm::exp(random.between(libm::log(low), libm::log(high)))
 }
 
 /// Rounded to two digits that count.

@@ -24,7 +24,7 @@ pub(crate) fn reflected(
     if !scene.rough {
         return bounces.iter().map(|bounce| surface(scene, *bounce).reflection).product();
     }
-    let unit = |angle: f64| Vector::new(angle.cos(), angle.sin());
+    let unit = |angle: f64| Vector::new(libm::cos(angle), libm::sin(angle));
     let mut product = 1.0;
     let mut follow = |mut direction: Vector, wall: u32| {
         let mirror = &scene.mirrors[wall as usize];

@@ -125,13 +125,26 @@ impl Transducer {
     /// ```
     pub fn detection_floor(&self, air: Air) -> f64 {
         let length_m = 2.0 * self.max_range_m;
-        10f64.powf(-air.absorption_db_per_m(self.frequency_hz) * length_m / 20.0) / length_m
+        libm::exp10(-air.absorption_db_per_m(self.frequency_hz) * length_m / 20.0) / length_m
     }
 
     /// Received level after the time-varying gain, on the scale of [`detection_floor`](Self::detection_floor).
     pub fn received(&self, amplitude: f64, length_m: f64, air: Air) -> f64 {
         let c = air.speed_of_sound();
         amplitude * self.gain.gain(length_m / c, 2.0 * self.max_range_m / c)
+    }
+
+    /// By how many decibels that is above the [`detection_floor`](Self::detection_floor); below 0 nothing is heard.
+    ///
+    /// ```
+    /// use eeruf_sim::{Air, Transducer};
+    /// let (transducer, air) = (Transducer::POLAROID_6500, Air::default());
+    /// let at_the_end_of_its_range = transducer.detection_floor(air);
+    /// let level_db = transducer.level_db(at_the_end_of_its_range, 2.0 * transducer.max_range_m, air);
+    /// assert!(level_db.abs() < 1e-12);
+    /// ```
+    pub fn level_db(&self, amplitude: f64, length_m: f64, air: Air) -> f64 {
+        20.0 * libm::log10(self.received(amplitude, length_m, air) / self.detection_floor(air))
     }
 }
 

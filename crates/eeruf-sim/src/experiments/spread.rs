@@ -84,7 +84,7 @@ mod tests {
         for (count, of) in [(0, 100), (1, 100), (50, 100), (97, 100), (100, 100), (3, 7)] {
             let share = count as f64 / of as f64;
             for p in share_95(count, of) {
-                let off = (share - p).powi(2) - 1.959_964_f64.powi(2) * p * (1.0 - p) / of as f64;
+                let off = (share - p) * (share - p) - 1.959_964 * 1.959_964 * p * (1.0 - p) / of as f64;
                 assert!(off.abs() < 1e-12, "{count} of {of}: {p}");
             }
         }

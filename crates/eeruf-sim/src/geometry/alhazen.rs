@@ -33,7 +33,7 @@ pub fn alhazen(source: Point, receiver: Point, centre: Point, radius_m: f64) -> 
     let point = balance(source, receiver, centre, radius_m)?;
     let normal = (point - centre) / radius_m;
     let (back, on) = (source - point, receiver - point);
-    let incidence_rad = cross(normal, back).abs().atan2(normal.dot(&back));
+    let incidence_rad = libm::atan2(cross(normal, back).abs(), normal.dot(&back));
     // With the circle in between, the angles balance on its far side.
     (normal.dot(&back) > 0.0 && normal.dot(&on) > 0.0).then(|| Specular {
         point,
@@ -51,12 +51,12 @@ fn balance(source: Point, receiver: Point, centre: Point, radius_m: f64) -> Opti
     if !(far_s > radius_m && far_r > radius_m && radius_m > 0.0) {
         return None;
     }
-    let between = cross(to_source, to_receiver).abs().atan2(to_source.dot(&to_receiver));
+    let between = libm::atan2(cross(to_source, to_receiver).abs(), to_source.dot(&to_receiver));
     let half = |far: f64| Half { far, radius: radius_m };
     let t = solve(half(far_s), half(far_r), between);
 
     let towards_receiver = if cross(to_source, to_receiver) < 0.0 { -1.0 } else { 1.0 };
-    let (sin, cos) = (towards_receiver * t).sin_cos();
+    let (sin, cos) = libm::sincos(towards_receiver * t);
     let unit = to_source / far_s;
     let normal = Vector::new(cos * unit.x - sin * unit.y, sin * unit.x + cos * unit.y);
     Some(centre + normal * radius_m)
@@ -72,10 +72,10 @@ struct Half {
 impl Half {
     /// Angle of incidence at the circle's point `t` away from this point's direction, and how fast it grows with `t`.
     fn incidence(self, t: f64) -> (f64, f64) {
-        let (sin, cos) = t.sin_cos();
+        let (sin, cos) = libm::sincos(t);
         let (across, along) = (self.far * sin, self.far * cos - self.radius);
         let slope = self.far * (self.far - self.radius * cos) / (across * across + along * along);
-        (across.atan2(along), slope)
+        (libm::atan2(across, along), slope)
     }
 }
 
@@ -162,7 +162,7 @@ mod tests {
                 let normal = found.point.coords / radius;
                 let (back, on) = ((source - found.point).normalize(), (receiver - found.point).normalize());
                 prop_assert!((cross(normal, back) + cross(normal, on)).abs() < 1e-9);
-                let (sin, cos) = 1e-4f64.sin_cos();
+                let (sin, cos) = libm::sincos(1e-4);
                 for turn in [sin, -sin] {
                     let Point { coords: at } = found.point;
                     let near = Point::new(cos * at.x - turn * at.y, turn * at.x + cos * at.y);

@@ -17,7 +17,7 @@ impl Mirror {
     /// The mirror along the line through two different points; its normal is on the left of `from` to `to`.
     pub(crate) fn through(from: Point, to: Point, reflection: f64) -> Self {
         let along = (to - from).normalize();
-        Self { on: from, normal: Vector::new(-along.y, along.x), turn: 2.0 * along.y.atan2(along.x), reflection }
+        Self { on: from, normal: Vector::new(-along.y, along.x), turn: 2.0 * libm::atan2(along.y, along.x), reflection }
     }
 
     /// Signed distance, positive on the left.
@@ -57,7 +57,7 @@ mod tests {
         assert!((mirror.image(image, mirror.distance(image)) - point).norm() < 1e-14);
         let direction = Vector::new(0.6, -0.8);
         let turned = mirror.turned(direction);
-        let angle = wrap_angle(mirror.turn - direction.y.atan2(direction.x));
-        assert!((turned.y.atan2(turned.x) - angle).abs() < 1e-14);
+        let angle = wrap_angle(mirror.turn - libm::atan2(direction.y, direction.x));
+        assert!((libm::atan2(turned.y, turned.x) - angle).abs() < 1e-14);
     }
 }

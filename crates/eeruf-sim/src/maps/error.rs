@@ -12,7 +12,7 @@ pub struct MapError {
 
 impl MapError {
     pub(super) fn new(file: &Path, message: impl fmt::Display) -> Self {
-        Self { file: file.to_owned(), message: message.to_string() }
+        Self { file: file.to_owned(), message: in_one_line(&message.to_string()) }
     }
 
     /// The file that is wrong: the YAML file or the picture.
@@ -28,8 +28,14 @@ impl MapError {
 
 impl fmt::Display for MapError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.file.display(), self.message)
+        write!(f, "{}: {}", in_one_line(&self.file.display().to_string()), self.message)
     }
 }
 
 impl core::error::Error for MapError {}
+
+/// A text whose control characters are escaped: what a file holds, such as the name of its picture, may span lines.
+fn in_one_line(text: &str) -> String {
+    let escaped = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+    text.chars().map(escaped).collect()
+}

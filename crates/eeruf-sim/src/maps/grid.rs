@@ -142,6 +142,7 @@ mod tests {
         let error = |name, yaml: &str, pgm: &[u8]| map(name, yaml, pgm).unwrap_err().to_string();
         assert!(error("a", "image: no.pgm\nresolution: 1\norigin: [0, 0, 0]", b"").contains("no.pgm: "));
         assert!(error("b", &YAML.replace("0.5", "0"), b"").contains("map.yaml: resolution = 0; expected above 0"));
+        assert!(error("d", &format!("{YAML}mode: \"a\\nb\"\n"), b"").contains("mode = a\\nb; expected"));
         assert!(error("c", YAML, b"P5 2 2 255\n").contains("map.pgm: 0 bytes of pixels; 2 x 2 need 4"));
     }
 }

@@ -106,7 +106,7 @@ pub(super) fn off(corner: Corner, from: Corner, to: Corner) -> f64 {
     let [x, y] = [corner[0] - from[0], corner[1] - from[1]].map(|way| way as f64);
     let squared = dx * dx + dy * dy;
     let share = if squared > 0.0 { ((x * dx + y * dy) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    (x - share * dx).hypot(y - share * dy)
+    libm::hypot(x - share * dx, y - share * dy)
 }
 
 /// Lines that have more in common with another than an end.
@@ -171,7 +171,7 @@ mod tests {
             let [dx, dy] = [b[0] - a[0], b[1] - a[1]].map(|way| way as f64);
             let [x, y] = [point[0] - a[0] as f64, point[1] - a[1] as f64];
             let share = ((x * dx + y * dy) / (dx * dx + dy * dy).max(1e-300)).clamp(0.0, 1.0);
-            (x - share * dx).hypot(y - share * dy)
+            libm::hypot(x - share * dx, y - share * dy)
         });
         each.fold(f64::INFINITY, f64::min)
     }

@@ -64,7 +64,7 @@ impl Driven {
     fn carried(&self, for_s: f64) -> Pose {
         let heading = self.pose.rotation.angle();
         let turned = self.turn_rad_s * for_s;
-        let (sin, cos) = (heading + 0.5 * turned).sin_cos();
+        let (sin, cos) = libm::sincos(heading + 0.5 * turned);
         let way = Vector::new(cos, sin) * (self.speed_m_s * for_s);
         Pose::new(self.pose.translation.vector + way, heading + turned)
     }
@@ -101,7 +101,7 @@ impl LabMate {
         let half = 0.5 * self.side_m;
         let local = pose.inverse_transform_point(&point);
         let (x, y) = (local.x.abs() - half, local.y.abs() - half);
-        if x <= 0.0 && y <= 0.0 { x.max(y) } else { x.max(0.0).hypot(y.max(0.0)) }
+        if x <= 0.0 && y <= 0.0 { x.max(y) } else { libm::hypot(x.max(0.0), y.max(0.0)) }
     }
 }
 

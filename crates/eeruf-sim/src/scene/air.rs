@@ -64,17 +64,19 @@ impl Air {
         let t_rel = t / 293.15;
         let p_rel = self.pressure_kpa / 101.325;
         // Annex B: molar concentration of water vapour, in per cent; 273.16 K is the triple point.
-        let saturation = 10f64.powf(-6.8346 * (273.16 / t).powf(1.261) + 4.6151);
+        let saturation = libm::exp10(-6.8346 * libm::pow(273.16 / t, 1.261) + 4.6151);
         let h = self.humidity_percent * saturation / p_rel;
         // Eqs. (3) and (4): relaxation frequencies of oxygen and nitrogen.
         let oxygen = p_rel * (24.0 + 4.04e4 * h * (0.02 + h) / (0.391 + h));
-        let nitrogen = p_rel * t_rel.powf(-0.5) * (9.0 + 280.0 * h * (-4.170 * (t_rel.powf(-1.0 / 3.0) - 1.0)).exp());
+        let nitrogen = p_rel
+            * libm::pow(t_rel, -0.5)
+            * (9.0 + 280.0 * h * libm::exp(-4.170 * (libm::pow(t_rel, -1.0 / 3.0) - 1.0)));
         // Eq. (5).
         let f2 = frequency_hz * frequency_hz;
         let classical = 1.84e-11 / p_rel * t_rel.sqrt();
-        let relaxation = t_rel.powf(-2.5)
-            * (0.01275 * (-2239.1 / t).exp() / (oxygen + f2 / oxygen)
-                + 0.1068 * (-3352.0 / t).exp() / (nitrogen + f2 / nitrogen));
+        let relaxation = libm::pow(t_rel, -2.5)
+            * (0.01275 * libm::exp(-2239.1 / t) / (oxygen + f2 / oxygen)
+                + 0.1068 * libm::exp(-3352.0 / t) / (nitrogen + f2 / nitrogen));
         8.686 * f2 * (classical + relaxation)
     }
 }

@@ -87,7 +87,7 @@ impl Outline {
             if !(back.norm() > TOUCH_M && cross(back, on) > 0.0 && on.norm() < f64::INFINITY) {
                 return Err(OutlineError::Corner { corner, at: corners[corner] });
             }
-            turned_rad += cross(back, on).atan2(back.dot(&on));
+            turned_rad += libm::atan2(cross(back, on), back.dot(&on));
         }
         // Twice around, as a star is.
         if turned_rad > 1.5 * core::f64::consts::TAU {
@@ -201,7 +201,7 @@ mod tests {
         let dent = [[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]];
         assert_eq!(refused(&dent), "corner 2 is (0.2, 0.2) m; expected a convex outline, counter-clockwise");
         assert!(refused(&[[0.0, 0.0], [1.0, 0.0], [f64::NAN, 1.0]]).starts_with("corner"));
-        let star = [0, 2, 4, 1, 3].map(|k| [(1.2566 * f64::from(k)).cos(), (1.2566 * f64::from(k)).sin()]);
+        let star = [0, 2, 4, 1, 3].map(|k| [libm::cos(1.2566 * f64::from(k)), libm::sin(1.2566 * f64::from(k))]);
         assert!(refused(&star).starts_with("corner 0"));
     }
 }

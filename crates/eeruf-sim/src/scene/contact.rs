@@ -68,7 +68,7 @@ impl Scene {
     /// The nearest wall that a ray meets, with the distance in metres. For drawing and cross-checks: hit points are
     /// parry's, good to about 1e-7 m at grazing angles, and a ray aimed exactly at a corner may slip through.
     pub fn cast_ray(&self, from: Point, heading_rad: f64, max_m: f64, skip: Option<usize>) -> Option<(usize, f64)> {
-        let (sin, cos) = heading_rad.sin_cos();
+        let (sin, cos) = libm::sincos(heading_rad);
         let ray = Ray::new(from.coords.into(), [cos, sin].into());
         let hit = self.wall_boxes.cast_ray(&ray, max_m, |wall, best| {
             let wall = wall as usize;

@@ -44,7 +44,7 @@ impl Material {
             return self.reflection;
         }
         let phase = wave_number * self.roughness_m * cos_incidence;
-        self.reflection * (-2.0 * phase * phase).exp()
+        self.reflection * libm::exp(-2.0 * phase * phase)
     }
 
     /// Whether both numbers make sense.

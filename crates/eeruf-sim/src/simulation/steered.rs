@@ -41,7 +41,7 @@ impl Leg {
         let time_s = now.saturating_sub(since) as f64 * 1e-9;
         let half_rad = 0.5 * w_rad_s * time_s;
         // The chord of the arc, which heads half of the turn aside.
-        let chord_m = v_m_s * time_s * if half_rad.abs() < 1e-6 { 1.0 } else { half_rad.sin() / half_rad };
+        let chord_m = v_m_s * time_s * if half_rad.abs() < 1e-6 { 1.0 } else { libm::sin(half_rad) / half_rad };
         let heading = pose.rotation.angle();
         let ahead = |rad: f64| Vector::new(libm::cos(rad), libm::sin(rad));
         let place = pose.translation.vector + chord_m * ahead(heading + half_rad);

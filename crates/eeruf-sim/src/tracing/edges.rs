@@ -82,8 +82,8 @@ impl EdgeSearch {
                     receiver: receiver as u32,
                     edge: index as u32,
                     length_m,
-                    departure_rad: out.y.atan2(out.x),
-                    arrival_rad: home.y.atan2(home.x),
+                    departure_rad: libm::atan2(out.y, out.x),
+                    arrival_rad: libm::atan2(home.y, home.x),
                     // The series is no number where two of its poles meet.
                     spread: if spread < most { spread } else { most },
                     at: edge.at,
@@ -113,7 +113,7 @@ mod tests {
     }
 
     fn air(length_m: f64) -> f64 {
-        10f64.powf(-Air::default().absorption_db_per_m(49_400.0) * length_m / 20.0)
+        libm::exp10(-Air::default().absorption_db_per_m(49_400.0) * length_m / 20.0)
     }
 
     #[test]
@@ -126,7 +126,7 @@ mod tests {
         // The two corners beside it are in sight as well, the one behind it is not.
         assert_eq!(heard.len(), 3, "{heard:?}");
         let (length_m, amplitude) = heard[0];
-        let below_db = 20.0 * (amplitude / (0.5 * air(2.0))).log10();
+        let below_db = 20.0 * libm::log10(amplitude / (0.5 * air(2.0)));
         assert!((length_m - 2.0).abs() < 1e-12 && (below_db + 36.8).abs() < 0.05, "{length_m} {below_db}");
     }
 
@@ -137,7 +137,7 @@ mod tests {
         let behind = |y: f64| around(panel.clone(), source, Point::new(2.0, y))[0];
         for (y, deeper) in [(0.4, 0.0), (0.0, -1.0), (-1.0, -3.0)] {
             let ((length_m, amplitude), (_, fainter)) = (behind(y), behind(deeper));
-            assert!((length_m - (2f64.hypot(0.5) + 2f64.hypot(y))).abs() < 1e-12);
+            assert!((length_m - (libm::hypot(2.0, 0.5) + libm::hypot(2.0, y))).abs() < 1e-12);
             assert!(amplitude > fainter, "{y}: {amplitude} {fainter}");
         }
         // Just on the shadow's limit half of the wave is there.

@@ -34,7 +34,7 @@ pub fn reception(image: Point, receiver: Point, velocity: Vector, speed_of_sound
 /// For a path over a pole the image moves a little with the receiver; the error is of the order of the pole's radius
 /// times the receiver's speed over that of sound.
 pub fn reception_along(length_m: f64, arrival_rad: f64, velocity: Vector, speed_of_sound: f64) -> Option<Reception> {
-    let approach = velocity.x * arrival_rad.cos() + velocity.y * arrival_rad.sin();
+    let approach = velocity.x * libm::cos(arrival_rad) + velocity.y * libm::sin(arrival_rad);
     solve(length_m * length_m, -length_m * approach, velocity.norm_squared(), speed_of_sound)
 }
 
@@ -74,7 +74,7 @@ mod tests {
             let met = reception(Point::origin(), receiver, velocity, 343.2).unwrap();
             let there = receiver + velocity * met.time_s;
             prop_assert!((there.coords.norm() - met.length_m).abs() < 1e-12);
-            let along = reception_along(receiver.coords.norm(), (-y).atan2(-x), velocity, 343.2).unwrap();
+            let along = reception_along(receiver.coords.norm(), libm::atan2(-y, -x), velocity, 343.2).unwrap();
             prop_assert!((along.time_s - met.time_s).abs() < 1e-14);
         }
     }

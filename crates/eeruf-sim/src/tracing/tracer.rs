@@ -216,7 +216,7 @@ impl Tracer {
             match found.get(index) {
                 FoundPath::Walls(image) => {
                     let ahead = receivers[image.receiver as usize] - image.image;
-                    let there = ahead.y.atan2(ahead.x);
+                    let there = libm::atan2(ahead.y, ahead.x);
                     let departure = if image.order.is_multiple_of(2) { there - image.turn } else { image.turn - there };
                     let angles = [wrap_angle(departure), opposite(there)];
                     let reflection_gain = if scene.rough {
@@ -251,7 +251,7 @@ impl Tracer {
                 }
             }
             paths.length_m.push(length_m);
-            paths.amplitude.push(amplitude * (loss_per_m * length_m).exp());
+            paths.amplitude.push(amplitude * libm::exp(loss_per_m * length_m));
             paths.ends.push(paths.bounces.len() as u32);
         }
     }
@@ -267,7 +267,7 @@ impl Tracer {
         });
         let corrections = poles
             .zip(path.cos_incidence)
-            .map(|(pole, cos)| pole_wave_correction(wave_number * pole.radius_m, cos.min(1.0).acos()));
+            .map(|(pole, cos)| pole_wave_correction(wave_number * pole.radius_m, libm::acos(cos.min(1.0))));
         corrections.product()
     }
 }

@@ -65,7 +65,7 @@ impl Motion {
                     let way = point.coords - from;
                     let length = way.norm();
                     if length > 0.0 {
-                        heading = way.y.atan2(way.x);
+                        heading = libm::atan2(way.y, way.x);
                         if left < length {
                             let ahead = way / length;
                             let pose = Pose::new(from + ahead * left, heading);

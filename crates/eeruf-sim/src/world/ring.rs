@@ -22,7 +22,7 @@ pub fn ring_of(
     let pose = *pose;
     (0..sensors).map(move |sensor| {
         let heading = first_rad + spacing_rad * sensor as f64;
-        let place = Vector::new(radius_m * heading.cos(), radius_m * heading.sin());
+        let place = Vector::new(radius_m * libm::cos(heading), radius_m * libm::sin(heading));
         pose * Pose::new(place, heading)
     })
 }

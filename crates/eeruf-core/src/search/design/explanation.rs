@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-use super::bounds::Bound;
+use super::bounds::{self, Bound};
+use super::problem::CheckedProblem;
 use crate::time::Micros;
 
 /// Why there is no shorter period, or none is known.
@@ -26,6 +27,19 @@ pub enum Explanation {
 }
 
 impl Explanation {
+    /// Why there is nothing shorter than the shortest period.
+    pub(crate) fn of(problem: &CheckedProblem, shortest: u32) -> Self {
+        Self::by(bounds::strongest(problem), shortest)
+    }
+
+    pub(super) fn by(counted: Bound, shortest: u32) -> Self {
+        if shortest == counted.period() {
+            Self::Bound(counted)
+        } else {
+            Self::Exhausted { period: shortest.saturating_sub(1), counted }
+        }
+    }
+
     /// The same in words, with times instead of ticks.
     #[must_use]
     pub const fn in_ticks_of(&self, tick: Micros) -> InTime<'_> {

@@ -81,12 +81,7 @@ pub(crate) fn shortest_period<C: Control>(problem: &CheckedProblem, bisection: &
         }
     }
     let (period, bound) = (bracket.feasible as u32, bracket.infeasible as u32 + 1);
-    let explanation = if bound < period {
-        Explanation::BudgetSpent { bound }
-    } else if period == counted.period() {
-        Explanation::Bound(counted)
-    } else {
-        Explanation::Exhausted { period: period - 1, counted }
-    };
+    let explanation =
+        if bound < period { Explanation::BudgetSpent { bound } } else { Explanation::by(counted, period) };
     Shortest { firing: bracket.firing, period, bound, nodes: bisection.meter.nodes, explanation }
 }

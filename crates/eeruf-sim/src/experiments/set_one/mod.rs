@@ -15,6 +15,6 @@ mod table;
 pub use alcove::{Alcove, RADIUS_M, SENSORS, SPACING_DEG};
 pub use figures::Figures;
 pub use multi_echo::MultiEcho;
-pub use options::SetOneOptions;
+pub use options::{READINGS, SetOneOptions};
 pub use step::{Latency, STEP_M};
-pub use table::{READINGS, SetOne, set_one, world_of};
+pub use table::{SetOne, set_one, world_of};

@@ -4,13 +4,15 @@ use eeruf_core::{HoppingSettings, Micros};
 
 use super::alcove::SENSORS;
 use super::multi_echo::MultiEcho;
-use super::table::READINGS;
 use crate::{
     acoustics::{Physics, Transducer},
     experiments::FIRST,
     methods::{BestSchedule, Method},
     world::Noise,
 };
+
+/// How many readings the paper has of one set-up (Sec. 4): of the conventional method, and of all others in that time.
+pub const READINGS: u32 = 8000;
 
 /// What is asked of Set I.
 #[derive(Clone, Debug, PartialEq)]

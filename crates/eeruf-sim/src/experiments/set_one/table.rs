@@ -18,9 +18,6 @@ use crate::{
     world::{Robot, World, WorldError},
 };
 
-/// How many readings the paper has of one set-up (Sec. 4): of the conventional method, and of all others in that time.
-pub const READINGS: u32 = 8000;
-
 /// Set I over many geometries.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SetOne {

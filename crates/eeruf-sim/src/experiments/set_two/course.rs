@@ -119,7 +119,7 @@ impl Course {
         let mut robot = Robot { body: Some(labmate.body()), ..self.robot() };
         for sensor in &mut robot.sensors {
             let heading = sensor.rotation.angle();
-            let out = Vector::new(heading.cos(), heading.sin());
+            let out = Vector::new(libm::cos(heading), libm::sin(heading));
             let to_edge_m = 0.5 * labmate.side_m / out.x.abs().max(out.y.abs());
             *sensor = Pose::new(out * to_edge_m, heading);
         }
@@ -205,7 +205,7 @@ mod tests {
             assert!((sensor.rotation.angle() - before.rotation.angle()).abs() < 1e-12);
             let [x, y] = [sensor.translation.x, sensor.translation.y];
             assert!((x.abs().max(y.abs()) - 0.375).abs() < 1e-12, "{x} {y}");
-            assert!((y.atan2(x) - sensor.rotation.angle()).abs() < 1e-12);
+            assert!((libm::atan2(y, x) - sensor.rotation.angle()).abs() < 1e-12);
         }
         let world = course.world(square, Some(SECOND_AHEAD)).unwrap();
         assert_eq!(world.robots()[1].body, Some(Body::Disc(RADIUS_M)));

@@ -205,5 +205,5 @@ fn is_number(place: Point, heading_rad: f64) -> bool {
 }
 
 fn along(from: Point, heading_rad: f64, range_m: f64) -> Point {
-    from + Vector::new(heading_rad.cos(), heading_rad.sin()) * range_m
+    from + Vector::new(libm::cos(heading_rad), libm::sin(heading_rad)) * range_m
 }

@@ -211,7 +211,7 @@ impl Vfh {
         };
         let error = wrap_angle(steering.direction_rad - heading);
         let turn = (turn_gain * error).clamp(-turn_most_rad_s, turn_most_rad_s);
-        (self.speed(&smoothed, heading, turn_rad_s) * error.cos().max(0.0), turn)
+        (self.speed(&smoothed, heading, turn_rad_s) * libm::cos(error).max(0.0), turn)
     }
 
     /// The direction that a valley is taken in.
@@ -236,7 +236,7 @@ fn off(valley: &Valley, direction_rad: f64) -> f64 {
 }
 
 fn direction(way: Vector) -> f64 {
-    way.y.atan2(way.x)
+    libm::atan2(way.y, way.x)
 }
 
 /// The sector that a direction lies in.

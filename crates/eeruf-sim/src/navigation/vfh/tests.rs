@@ -34,7 +34,7 @@ fn drive(grid: &Himm, from: Point, target: Point) -> (f64, Vec<Point>) {
     let (mut place, mut track, mut nearest) = (from, vec![from], f64::INFINITY);
     while (target - place).norm() > 0.3 && track.len() < 1000 {
         let Some(steering) = VFH.steer(grid, place, target) else { break };
-        place += Vector::new(steering.direction_rad.cos(), steering.direction_rad.sin()) * 0.05;
+        place += Vector::new(libm::cos(steering.direction_rad), libm::sin(steering.direction_rad)) * 0.05;
         for (cell, _) in grid.occupied(place, 33) {
             nearest = nearest.min((cell - place).norm());
         }
@@ -48,7 +48,7 @@ fn an_obstacle_vector_grows_with_certainty_squared_and_shrinks_with_distance() {
     let mut grid = Himm::new(33, 0.1);
     grid.echo(Point::new(0.05, 0.05), 0.0, 0.0, 1.0);
     let d_max = 1.6 * 2f64.sqrt();
-    let expected = (3.0f64 / 15.0).powi(2) * (1.0 - 1.0 / d_max);
+    let expected = (3.0 / 15.0) * (3.0 / 15.0) * (1.0 - 1.0 / d_max);
     let histogram = VFH.histogram(&grid, Point::new(0.05, 0.0501));
     assert!((histogram[71] - expected).abs() < 1e-6 && histogram.iter().sum::<f64>() == histogram[71]);
     grid.echo(Point::new(0.05, 0.05), 0.0, 0.0, 1.0);

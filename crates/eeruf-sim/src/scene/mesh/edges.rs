@@ -24,7 +24,7 @@ impl Edge {
     /// The direction of a point, from the face through the open space, in radians; none in what is solid.
     pub(crate) fn around(&self, point: Point) -> Option<f64> {
         let out = point - self.at;
-        let angle = (out.y.atan2(out.x) - self.face_rad).rem_euclid(TAU);
+        let angle = (libm::atan2(out.y, out.x) - self.face_rad).rem_euclid(TAU);
         (angle <= self.outside_rad).then_some(angle)
     }
 }
@@ -35,8 +35,8 @@ pub(crate) fn edges_of(vertices: &[Point], pieces: &[Piece], walls: &[Wall]) -> 
     for piece in pieces.iter().filter(|piece| !walls[piece.wall].is_open()) {
         let [from, to] = piece.ends;
         let along = vertices[to] - vertices[from];
-        faces[from].push(along.y.atan2(along.x));
-        faces[to].push((-along.y).atan2(-along.x));
+        faces[from].push(libm::atan2(along.y, along.x));
+        faces[to].push(libm::atan2(-along.y, -along.x));
     }
     let mut edges = Vec::new();
     for (&at, faces) in vertices.iter().zip(&mut faces) {

@@ -23,7 +23,7 @@ impl HearingRange {
     pub(super) fn new(sending: &Transducer, hearing: &Transducer, world: &World) -> Self {
         let air = world.scene().air();
         let floor = hearing.detection_floor(air);
-        let faintest = floor / 10f64.powf(world.noise().fading_db_rms * f64::from(FARTHEST) / 20.0);
+        let faintest = floor / libm::exp10(world.noise().fading_db_rms * f64::from(FARTHEST) / 20.0);
         let longest_m = longest_audible_m(sending, air, faintest);
         Self { sending: *sending, hearing: *hearing, floor, faintest, longest_m }
     }
@@ -40,7 +40,7 @@ fn longest_audible_m(transducer: &Transducer, air: Air, floor: f64) -> f64 {
     let (mut near, mut far) = (0.0, 1.0 / floor);
     while far - near > 1e-3 {
         let middle = 0.5 * (near + far);
-        let heard = 10f64.powf(-loss_db_per_m * middle / 20.0) / middle >= floor;
+        let heard = libm::exp10(-loss_db_per_m * middle / 20.0) / middle >= floor;
         *(if heard { &mut near } else { &mut far }) = middle;
     }
     far + 1e-3

@@ -76,7 +76,8 @@ impl Recorder {
     }
 
     /// Records what the ring makes of a firing. `reference` is the travelling time of what the sensor hears alone,
-    /// `fired_from` its place and heading when it fired. The answer is all readings with this one as the last; none if it does not count.
+    /// `fired_from` its place and heading when it fired. The answer is all readings with this one as the last; none if
+    /// it does not count.
     pub(crate) fn record(
         &mut self,
         sensor: usize,

@@ -83,7 +83,8 @@ impl Audibility {
         let steps = (REACH_M * STEPS_PER_M) as usize;
         self.faint.extend((0..=steps).map(|step| {
             let length_m = step as f64 / STEPS_PER_M;
-            (floor * (-loss_per_m * length_m).exp() * (1.0 - 1e-9)).powi(2)
+            let faint = floor * libm::exp(-loss_per_m * length_m) * (1.0 - 1e-9);
+            faint * faint
         }));
         self.reach = Reach::new(floor, loss_per_m);
     }
@@ -91,7 +92,7 @@ impl Audibility {
     /// Sets where source and receivers head.
     pub(crate) fn aim(&mut self, source_rad: f64, receivers: impl Iterator<Item = Vector>) {
         self.source_rad = source_rad;
-        self.source = Vector::new(source_rad.cos(), source_rad.sin());
+        self.source = Vector::new(libm::cos(source_rad), libm::sin(source_rad));
         self.receivers.clear();
         self.receivers.extend(receivers);
     }
@@ -201,9 +202,10 @@ fn envelope(piston: &Piston) -> Vec<f64> {
     let mut highest: f64 = 0.0;
     // From behind to the front.
     for step in (0..=STEPS).rev() {
-        let angle = 2.0 * (step as f64 / STEPS as f64).asin();
+        let angle = 2.0 * libm::asin(step as f64 / STEPS as f64);
         let shifted = piston.pattern((angle - ASIDE_RAD).max(0.0));
-        highest = highest.max(shifted * shifted).max(piston.pattern(angle).powi(2));
+        let straight = piston.pattern(angle);
+        highest = highest.max(shifted * shifted).max(straight * straight);
         envelope[step] = highest;
     }
     envelope

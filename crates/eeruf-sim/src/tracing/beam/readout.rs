@@ -29,7 +29,7 @@ impl BeamTree {
                 (turn, order) = (image.turn, image.order % 2);
                 // Where the source heads, as seen in the image's world.
                 let heading = if order == 0 { audibility.source_rad() + turn } else { turn - audibility.source_rad() };
-                axis = Vector::new(heading.cos(), heading.sin());
+                axis = Vector::new(libm::cos(heading), libm::sin(heading));
             }
             let Some(at) = receivers.get(image.receiver as usize) else { return true };
             let ahead = at - image.image;

@@ -321,9 +321,9 @@ impl PoleSearch {
             hits.iter().map(|(hit, _)| hit.before_m).sum::<f64>() + hits.last().map_or(0.0, |(hit, _)| hit.after_m);
         let mut cos_incidence = [1.0; 2];
         for (cos, (hit, _)) in cos_incidence.iter_mut().zip(hits) {
-            *cos = hit.incidence_rad.cos();
+            *cos = libm::cos(hit.incidence_rad);
         }
-        let (sin, cos) = arrival_rad.sin_cos();
+        let (sin, cos) = libm::sincos(arrival_rad);
         self.found.push(PolePath {
             receiver: receiver.index,
             length_m,
@@ -340,6 +340,6 @@ impl PoleSearch {
 
 /// The direction at the source of what is `ahead` in the image's world.
 fn unfolded(ahead: Vector, order: u32, turn: f64) -> f64 {
-    let there = ahead.y.atan2(ahead.x);
+    let there = libm::atan2(ahead.y, ahead.x);
     wrap_angle(if order.is_multiple_of(2) { there - turn } else { turn - there })
 }

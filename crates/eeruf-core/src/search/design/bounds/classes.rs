@@ -23,8 +23,8 @@
 //! each of its places needs room for `K / n` sensors or more.
 //!
 //! **Ring** with K a multiple of n, `K >= 2 n`. The same goes all round. Let x and y conflict, x before y in phase b
-//! and behind it in a: `a_x - a_y >= (p_x - p_y) I` and `b_y - b_x >= (q_y - q_x) I`, so `e = d - c I` is no smaller for
-//! x than for y. If `c_x > 0`, somebody in each clique is overtaken so; there is one on either side of x, n sensors
+//! and behind it in a: `a_x - a_y >= (p_x - p_y) I` and `b_y - b_x >= (q_y - q_x) I`, so `e = d - c I` is no smaller
+//! for x than for y. If `c_x > 0`, somebody in each clique is overtaken so; there is one on either side of x, n sensors
 //! apart and so of one class, and their e differ by D. Hence `e_x >= -sigma + D`, and likewise `e_x <= sigma - D` if
 //! `c_x < 0`: in terms of `|d|` every class but 0 loses D at the lower end.
 //!

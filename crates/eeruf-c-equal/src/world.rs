@@ -1,11 +1,13 @@
 //! What happens around a ring: when it is polled, what it hears.
 
-use eeruf_c_equal::{C, Do, Random};
+use crate::{C, Do, Random};
 
 /// A clock that is late, jumps and wraps, and echoes on their way.
-pub(crate) struct World {
-    pub(crate) random: Random,
-    pub(crate) now: u32,
+pub struct World {
+    /// What chance is drawn from.
+    pub random: Random,
+    /// The clock.
+    pub now: u32,
     /// How late polls are, at most, in this run.
     late: u32,
     /// Echo time of what stands before each sensor.
@@ -15,7 +17,8 @@ pub(crate) struct World {
 }
 
 impl World {
-    pub(crate) fn new(random: Random, sensors: u8, window_us: u32) -> Self {
+    /// Some time, and something before each sensor.
+    pub fn new(random: Random, sensors: u8, window_us: u32) -> Self {
         // Clocks wrap in many runs.
         let now = if random.once_in(2) { 0_u32.wrapping_sub(random.duration(5_000_000)) } else { random.any() as u32 };
         let late = random.one_of(&[0, 0, 30, 300, 3_000, 100_000]);
@@ -24,7 +27,7 @@ impl World {
     }
 
     /// Turns the clock, mostly to the deadline or somewhat past it.
-    pub(crate) fn turn_clock(&mut self, deadline: u32) {
+    pub fn turn_clock(&mut self, deadline: u32) {
         let ahead = deadline.wrapping_sub(self.now);
         let ahead = if ahead < 1 << 31 { ahead } else { 0 };
         let r = &self.random;
@@ -43,7 +46,7 @@ impl World {
     }
 
     /// Sound comes back to a sensor that has fired.
-    pub(crate) fn fired(&mut self, sensor: u8) {
+    pub fn fired(&mut self, sensor: u8) {
         let (r, distance) = (&self.random, self.distance_us[usize::from(sensor)]);
         let own = distance.saturating_add(r.duration(300));
         let mut hear = |after: u32| self.echoes.push((self.now.wrapping_add(after), sensor));
@@ -60,7 +63,7 @@ impl World {
     }
 
     /// The echoes that have come by now, and now and then one that has not, out of order, or of nobody.
-    pub(crate) fn heard(&mut self) -> Vec<(u32, u8)> {
+    pub fn heard(&mut self) -> Vec<(u32, u8)> {
         let now = self.now;
         let mut heard: Vec<_> = self.echoes.extract_if(.., |(at, _)| now.wrapping_sub(*at) < 1 << 31).collect();
         if self.random.once_in(100) {
@@ -79,7 +82,10 @@ impl World {
 }
 
 /// Asks C and compares with whether Rust found the sensor.
-pub(crate) fn same<E>(c: &mut C, what: Do, sensor: u8, value: u32, rust: Result<(), E>) {
+///
+/// # Panics
+/// Where they differ.
+pub fn same<E>(c: &mut C, what: Do, sensor: u8, value: u32, rust: Result<(), E>) {
     let expected = if rust.is_ok() { 0 } else { -5 };
     assert_eq!(c.ask(what, sensor, value), expected, "{what:?} of sensor {sensor}, {value}");
 }

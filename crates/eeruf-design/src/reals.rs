@@ -1,0 +1,73 @@
+//! What the tick costs: the shortest period over the reals.
+
+use eeruf_check::reals::shortest_over_reals;
+use eeruf_core::search::PeriodProblem;
+use eeruf_core::{Micros, Phase};
+use eeruf_sim::AnySchedule;
+
+use crate::find::RingDesign;
+use crate::ticks::in_ticks;
+
+/// The shortest period with real firing times in place of whole ticks, all needs being what they are in ticks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RealPeriod {
+    /// The period in microseconds as a fraction in lowest terms: numerator and denominator.
+    pub period_us: (u64, u64),
+    /// Whether no real period is shorter. Otherwise it is the least that the firing orders found so far give.
+    pub proven: bool,
+    /// The certificate that no real period is shorter, if it is proven and the proof needs no more than the rules of
+    /// certificates.
+    pub certificate: Option<String>,
+}
+
+impl RealPeriod {
+    /// The period in microseconds.
+    #[must_use]
+    pub fn us(&self) -> f64 {
+        self.period_us.0 as f64 / self.period_us.1 as f64
+    }
+
+    /// By how much it is shorter than one in whole ticks, in microseconds.
+    #[must_use]
+    pub fn gain_us(&self, period: Micros) -> f64 {
+        (u64::from(period.as_micros()) * self.period_us.1).saturating_sub(self.period_us.0) as f64
+            / self.period_us.1 as f64
+    }
+}
+
+/// How many nodes the question may cost without a wish of the caller's: about as long for many sensors as for 24.
+#[must_use]
+pub fn real_budget(sensors: usize) -> usize {
+    20_000 * 24 * 24 / sensors.max(24).pow(2)
+}
+
+impl RingDesign {
+    /// The shortest period over the reals, beginning with the orders of this design; `None` if the design is not proven
+    /// itself, or numbers become too large.
+    pub fn over_reals(&self, budget: usize, go_on: impl FnMut(usize) -> bool) -> Option<RealPeriod> {
+        self.found.proven.then(|| over_reals(&self.spec.problem(), &self.schedule, budget, go_on))?
+    }
+}
+
+/// The same for any schedule that is the shortest in ticks.
+pub fn over_reals(
+    problem: &PeriodProblem<'_>,
+    schedule: &AnySchedule,
+    budget: usize,
+    go_on: impl FnMut(usize) -> bool,
+) -> Option<RealPeriod> {
+    let tick_us = problem.tick.as_micros().max(1);
+    let fire = [Phase::A, Phase::B].map(|phase| {
+        let time = |sensor| schedule.t_fire(phase, sensor).unwrap_or_default().as_micros() / tick_us;
+        (0..problem.sensors).map(time).collect()
+    });
+    let found = shortest_over_reals(&in_ticks(problem), &fire, budget, go_on)?;
+    let (numerator, denominator) = (u64::from(found.period) * u64::from(tick_us), u64::from(found.denominator));
+    let divisor = greatest_common_divisor(numerator, denominator);
+    let period_us = (numerator / divisor, denominator / divisor);
+    Some(RealPeriod { period_us, proven: found.proven, certificate: found.certificate })
+}
+
+fn greatest_common_divisor(a: u64, b: u64) -> u64 {
+    if b == 0 { a.max(1) } else { greatest_common_divisor(b, a % b) }
+}

@@ -1,0 +1,76 @@
+//! The atlas that comes with the crate.
+#![cfg(feature = "make-atlas")]
+
+use eeruf_check::check;
+use eeruf_core::Micros;
+use eeruf_core::search::design;
+use eeruf_design::atlas::{ATLAS, Ring, Row, all_rings, answer, certificate_of, hash_of, header, rows};
+
+/// A small generator of pseudo-random numbers, the same on every machine (xorshift64*).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, end: usize) -> usize {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        ((self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) % end as u64) as usize
+    }
+}
+
+#[test]
+fn it_has_a_row_for_each_ring_in_their_order_and_each_reads_as_it_was_written() {
+    let all: Vec<Row> = rows(ATLAS).collect();
+    let text: String = all.iter().map(|row| format!("{row}\n")).collect();
+    assert_eq!(format!("{}{text}", header()), ATLAS);
+    assert_eq!(all.iter().map(|row| row.ring).collect::<Vec<Ring>>(), all_rings());
+    assert!(ATLAS.len() < 1_000_000, "{} bytes", ATLAS.len());
+}
+
+#[test]
+fn each_schedule_keeps_what_its_ring_requires_in_its_period_and_not_one_tick_less() {
+    for row in rows(ATLAS) {
+        let problem = row.ring.problem();
+        let schedule = row.schedule(problem.tick).unwrap();
+        let report = schedule.verify(&problem.requirements);
+        assert!(report.ok(), "{row}");
+        assert!(1 <= row.certified && row.certified <= row.bound && row.bound <= row.period, "{row}");
+        let shorter = Row { period: row.period - 1, ..row.clone() };
+        let keeps = shorter.schedule(problem.tick).is_some_and(|schedule| schedule.verify(&problem.requirements).ok());
+        assert!(!keeps, "{row}");
+    }
+}
+
+#[test]
+fn a_proven_row_is_the_answer_to_its_ring_and_an_open_one_is_none() {
+    for row in rows(ATLAS) {
+        let found = answer(&row.ring.problem());
+        assert_eq!(found.map(|(row, _)| row), (row.period == row.bound).then(|| row.clone()), "{row}");
+    }
+}
+
+#[test]
+fn a_sample_is_proven_again_by_the_search_and_its_certificates_are_those_of_the_hashes() {
+    let cases = std::env::var("EERUF_CASES").map_or(12, |cases| cases.parse().expect("a number"));
+    let all: Vec<Row> = rows(ATLAS).collect();
+    let (mut random, mut proven) = (Random(20_001), 0);
+    for _ in 0..cases {
+        let row = &all[random.below(all.len())];
+        let text = certificate_of(row).unwrap_or_else(|error| panic!("{row}: {error}"));
+        let certified = check(&text).unwrap_or_else(|error| panic!("{row}: {error}"));
+        assert_eq!((certified.claim.period, certified.claim.bound), (row.period, row.certified), "{row}");
+        assert_eq!(hash_of(&text), row.hash, "{row}");
+        let problem = row.ring.problem();
+        let mut memory = vec![0; design::memory_words(problem.sensors)];
+        let found = problem.shortest::<64>(100_000, &mut memory, &mut ()).unwrap().found;
+        if row.bound == row.period {
+            assert_eq!((found.value, found.proven), (Some(Micros::from_millis(row.period)), true), "{row}");
+            proven += 1;
+        } else {
+            // Whatever another search comes to, it does not contradict.
+            assert!(found.bound <= Some(Micros::from_millis(row.period)), "{row}");
+            assert!(found.value >= Some(Micros::from_millis(row.bound)), "{row}");
+        }
+    }
+    assert!(2 * proven > cases, "{proven} of {cases} were proven");
+}

@@ -1,0 +1,21 @@
+//! The C library and the crates: whatever the bytes make up happens to a ring in both, and both say the same.
+
+use eeruf_c_equal::{Random, hopping, modules, ring};
+
+/// Compares one ring, of the kind that the first byte says.
+///
+/// # Panics
+/// Where C and Rust differ.
+pub fn check(bytes: &[u8]) {
+    let r = &Random::of_bytes(bytes);
+    match r.within(0, 8) {
+        0 => ring::run::<1>(r),
+        1 | 2 => ring::run::<2>(r),
+        3 => ring::run::<3>(r),
+        4 => ring::run::<8>(r),
+        5 => hopping::run::<2>(r),
+        6 => hopping::run::<8>(r),
+        7 => hopping::run::<12>(r),
+        _ => modules::run(r),
+    };
+}

@@ -1,0 +1,119 @@
+//! `eeruf atlas`: the file of rings whose shortest period is known.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, OpenOptions};
+use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use eeruf_design::atlas::{ATLAS, Ring, Row, all_rings, header, is_in_shard, make, rows};
+
+use super::answer::Answer;
+use crate::files::error::InputError;
+use crate::report::draw;
+use crate::report::watch::Watch;
+
+/// Make the atlas: shortest periods of rings of 2 to 32 sensors, each with its schedule, which `design` answers from.
+///
+/// Rows are appended to FILE one by one, so that it can be ended at any time and takes up where it stopped. Any number
+/// of processes may write to the same file at once, on one machine, each with its share: --shard 1/3, 2/3, 3/3. When
+/// the last ring is done, the file is sorted. Exit code 0 if every ring of the share is done, 1 if it was ended before, 2
+/// for bad input.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The file; without one, that which this program carries is drawn or printed
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// Draw period over number of sensors, as SVG or, if the name ends in .png, as PNG
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Only this share of the rings, of so many
+    #[arg(long, value_name = "I/N", value_parser = share, default_value = "1/1")]
+    shard: Shard,
+    /// Only rings of up to so many sensors
+    #[arg(long, value_name = "K", default_value_t = 32, value_parser = clap::value_parser!(u8).range(2..=32))]
+    most_sensors: u8,
+}
+
+/// One share of so many, from 0.
+#[derive(Clone, Copy)]
+struct Shard {
+    share: usize,
+    of: usize,
+}
+
+fn share(text: &str) -> Result<Shard, String> {
+    let parts = text.split_once('/').and_then(|(share, of)| Some((share.parse().ok()?, of.parse().ok()?)));
+    let shard = parts.filter(|&(share, of): &(usize, usize)| (1..=of).contains(&share));
+    shard.map(|(share, of)| Shard { share: share - 1, of }).ok_or_else(|| "expected I/N such as 2/3".to_owned())
+}
+
+pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    let answer = args.file.as_ref().map_or(Ok(Answer::Yes), |file| search(args, file))?;
+    let text = match &args.file {
+        Some(file) => read(file).map_err(|error| InputError::new(file, None, error))?,
+        None => ATLAS.to_owned(),
+    };
+    match (&args.file, &args.svg) {
+        (_, Some(svg)) => draw::atlas(&rows(&text).collect::<Vec<_>>()).save(svg)?,
+        (None, None) => print!("{text}"),
+        (Some(_), None) => {}
+    }
+    Ok(answer)
+}
+
+/// Searches the rings of the share that are not in the file yet.
+fn search(args: &Args, path: &Path) -> Result<Answer, InputError> {
+    let bad = |error: std::io::Error| InputError::new(path, None, error);
+    let rings: Vec<Ring> = all_rings().into_iter().filter(|ring| ring.sensors <= args.most_sensors).collect();
+    end_last_line(path).map_err(bad)?;
+    let done: BTreeSet<Ring> = rows(&read(path).map_err(bad)?).map(|row| row.ring).collect();
+    let mut watch = Watch::new();
+    let numbered = rings.iter().enumerate().filter(|&(number, _)| is_in_shard(number, args.shard.share, args.shard.of));
+    let left: Vec<&Ring> = numbered.map(|(_, ring)| ring).filter(|ring| !done.contains(ring)).collect();
+    for (number, ring) in left.iter().enumerate() {
+        if !watch.go_on(|| format!("{number} of {} rings, now {ring}", left.len())) {
+            return Ok(Answer::No);
+        }
+        let row = make(ring).map_err(|what| InputError::new(path, None, format!("{ring}: {what}")))?;
+        // One call for the whole line, so that lines of several processes do not mix.
+        let mut file = OpenOptions::new().append(true).create(true).open(path).map_err(bad)?;
+        file.write_all(format!("{row}\n").as_bytes()).map_err(bad)?;
+    }
+    sort_if_complete(path, &rings).map_err(bad)?;
+    Ok(Answer::Yes)
+}
+
+fn read(file: &Path) -> std::io::Result<String> {
+    match fs::read_to_string(file) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(String::new()),
+        read => read,
+    }
+}
+
+/// Ends a line that a process left unfinished, so that it is not taken for the beginning of the next.
+fn end_last_line(path: &Path) -> std::io::Result<()> {
+    let mut file = match OpenOptions::new().read(true).append(true).open(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        file => file?,
+    };
+    if file.metadata()?.len() == 0 {
+        return Ok(());
+    }
+    file.seek(SeekFrom::End(-1))?;
+    let mut last = [0];
+    file.read_exact(&mut last)?;
+    if last == *b"\n" { Ok(()) } else { file.write_all(b"\n") }
+}
+
+/// Writes the file anew in its order, if no ring is missing: under another name, so that it is always whole.
+fn sort_if_complete(file: &Path, rings: &[Ring]) -> std::io::Result<()> {
+    let sorted: BTreeMap<Ring, Row> = rows(&read(file)?).map(|row| (row.ring, row)).collect();
+    if !rings.iter().all(|ring| sorted.contains_key(ring)) {
+        return Ok(());
+    }
+    let mut text = header().to_owned();
+    text.extend(sorted.values().map(|row| format!("{row}\n")));
+    let beside = file.with_extension(format!("{}.tmp", std::process::id()));
+    fs::write(&beside, text)?;
+    fs::rename(&beside, file)
+}

@@ -1,0 +1,86 @@
+//! The atlas: made by any number of processes, ended at any time, and answering for the search.
+
+use std::process::{Command, Stdio};
+
+use crate::common::{Scratch, eeruf, json};
+
+const FEW: [&str; 2] = ["--most-sensors", "4"];
+
+#[test]
+fn two_processes_that_share_the_rings_make_the_file_that_one_makes() {
+    let (folder, one) = Scratch::new("one.txt", "");
+    let both = folder.path().join("both.txt");
+    let made = eeruf(&[&["atlas", one.to_str().unwrap()], &FEW[..]].concat());
+    assert_eq!((made.code, made.out.as_str(), made.err.as_str()), (Some(0), "", ""));
+    let share = |share| {
+        Command::new(env!("CARGO_BIN_EXE_eeruf"))
+            .args(["atlas", both.to_str().unwrap(), "--shard", share])
+            .args(FEW)
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap()
+    };
+    for mut process in [share("1/2"), share("2/2")] {
+        assert!(process.wait().unwrap().success());
+    }
+    let text = |file| std::fs::read_to_string(file).unwrap();
+    assert_eq!(text(&one), text(&both));
+    let rows = text(&one).lines().filter(|line| !line.starts_with('#')).count();
+    assert!(rows > 40, "{rows} rows");
+}
+
+#[test]
+fn a_file_that_was_cut_within_a_row_is_completed_and_rows_that_are_there_are_not_made_again() {
+    let (_folder, file) = Scratch::new("atlas.txt", "");
+    let name = file.to_str().unwrap();
+    let command = [&["atlas", name], &FEW[..]].concat();
+    assert_eq!(eeruf(&command).code, Some(0));
+    let whole = std::fs::read_to_string(&file).unwrap();
+    // As a process leaves it that is ended while it writes: rows in any order, the last cut.
+    let mut rows: Vec<&str> = whole.lines().filter(|line| !line.starts_with('#')).collect();
+    rows.rotate_left(7);
+    // A hash that no search gives shows that its row was kept.
+    let hash = rows[0].split(' ').nth(10).unwrap();
+    let marked = rows[0].replace(hash, &"0".repeat(32));
+    let cut = format!("{marked}\n{}\n{}", rows[1..20].join("\n"), &rows[20][..30]);
+    std::fs::write(&file, cut).unwrap();
+    assert_eq!(eeruf(&command).code, Some(0));
+    let again = std::fs::read_to_string(&file).unwrap();
+    assert_eq!(again.replace(&marked, rows[0]), whole);
+    assert!(again.contains(&marked));
+}
+
+#[test]
+fn a_share_that_makes_no_sense_is_refused() {
+    let (_folder, file) = Scratch::new("atlas.txt", "");
+    for share in ["0/2", "3/2", "1", "a/b"] {
+        let refused = eeruf(&["atlas", file.to_str().unwrap(), "--shard", share]);
+        assert_eq!(refused.code, Some(2), "{share}");
+        assert!(refused.err.contains("expected I/N such as 2/3"), "{}", refused.err);
+    }
+}
+
+#[test]
+fn a_ring_of_the_atlas_is_answered_in_any_tick_that_its_needs_are_as_many_of() {
+    for (tick, us) in [("1000", 1000), ("500", 500)] {
+        let times = |ticks: u32| ticks * us;
+        let ring = format!(
+            "sensors = 12\nt_delta_us = {}\nmin_interval_us = {}\nwindow_us = {}\ntick_us = {tick}\n",
+            times(1) - 1,
+            times(15),
+            times(30)
+        );
+        let (_folder, file) = Scratch::new("ring.toml", &ring);
+        let found = json(&["design", file.to_str().unwrap(), "--json"]);
+        assert_eq!((&found["from_atlas"], &found["value_us"]), (&true.into(), &times(65).into()), "{tick}");
+        // One tick more to listen is another ring.
+        let other = ring.replace(&format!("window_us = {}", times(30)), &format!("window_us = {}", times(31)));
+        std::fs::write(&file, other).unwrap();
+        let searched = json(&["design", file.to_str().unwrap(), "--json"]);
+        assert_eq!((&searched["from_atlas"], &searched["proven"]), (&false.into(), &true.into()), "{tick}");
+    }
+    let described = eeruf(&["design", "rings/paper-12.toml"]);
+    assert!(described.out.contains("from the atlas, verified"), "{}", described.out);
+    let searched = eeruf(&["design", "rings/paper-12.toml", "--no-atlas"]);
+    assert!(searched.out.contains("128 nodes, and"), "{}", searched.out);
+}

@@ -1,0 +1,89 @@
+//! Whether docs/dependencies.md names every dependency, and how many crates each of ours brings along.
+//!
+//! Only tests: nothing here is a command.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use cargo_metadata::MetadataCommand;
+
+use crate::steps::output;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn document() -> String {
+    std::fs::read_to_string(root().join("docs/dependencies.md")).unwrap()
+}
+
+/// What stands between back quotes in a text.
+fn quoted(text: &str) -> BTreeSet<&str> {
+    text.split('`').skip(1).step_by(2).collect()
+}
+
+/// The direct dependencies that are not our own, of all kinds, in all workspaces, and who has them.
+fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
+    let mut found = BTreeMap::<_, BTreeSet<_>>::new();
+    for manifest in ["Cargo.toml", "firmware/Cargo.toml", "fuzz/Cargo.toml"] {
+        let metadata = MetadataCommand::new().manifest_path(root().join(manifest)).no_deps().exec().unwrap();
+        for package in metadata.workspace_packages() {
+            for dependency in package.dependencies.iter().filter(|dependency| dependency.path.is_none()) {
+                found.entry(dependency.name.clone()).or_default().insert(package.name.to_string());
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn every_direct_dependency_is_named_with_its_reason_and_no_other() {
+    let (document, dependencies) = (document(), dependencies());
+    let text = document.replace('\n', " ");
+    let named = quoted(&text);
+    let missing: Vec<_> = dependencies.iter().filter(|(name, _)| !named.contains(name.as_str())).collect();
+    assert!(missing.is_empty(), "docs/dependencies.md does not name {missing:?}");
+    // The first column of the table is of dependencies alone.
+    let rows = document.lines().filter_map(|line| line.strip_prefix("| `"));
+    let first: Vec<_> = rows.map(|row| row.split('|').next().unwrap()).collect();
+    assert!(first.len() > 15, "{first:?}");
+    let gone: Vec<_> = first
+        .iter()
+        .flat_map(|cell| quoted(&format!("`{cell}")).into_iter().map(str::to_owned).collect::<Vec<_>>())
+        .filter(|name| !dependencies.contains_key(name) && !name.starts_with("eeruf"))
+        .collect();
+    assert!(gone.is_empty(), "nothing depends on {gone:?}, which docs/dependencies.md names");
+}
+
+#[test]
+fn as_many_crates_as_the_document_says_are_built_with_each_of_ours() {
+    let document = document();
+    let (mut wrong, mut rows) = (Vec::new(), 0);
+    for row in document.lines().filter(|line| line.starts_with("| `eeruf")) {
+        let cells: Vec<_> = row.split('|').map(str::trim).collect();
+        rows += 1;
+        for package in quoted(cells[1]) {
+            let mut cargo = Command::new("cargo");
+            cargo.args([
+                "tree",
+                "--locked",
+                "--offline",
+                "--edges",
+                "normal",
+                "--prefix",
+                "none",
+                "--package",
+                package,
+            ]);
+            let tree = output(cargo.args(["--target", "x86_64-unknown-linux-gnu"]).current_dir(root())).unwrap();
+            let crates: BTreeSet<_> = tree.lines().filter_map(|line| line.split(" (").next()).collect();
+            let others = crates.iter().filter(|name| !name.starts_with("eeruf")).count();
+            if cells[2] != others.to_string() {
+                wrong.push(format!("{package}: {others}, not {}", cells[2]));
+            }
+        }
+    }
+    assert!(rows >= 6, "{rows} rows of crates");
+    assert!(wrong.is_empty(), "{wrong:?}");
+}

@@ -1,0 +1,67 @@
+//! `cargo xtask examples`: the programs in `examples/` that one flashes onto a board. Each is built and linked as its
+//! README says, with the table that `eeruf design` writes. That of the Uno is run among simulated modules by `cargo xtask
+//! arduino`; nothing else is run.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::steps::{Steps, Trouble, output, run};
+use crate::toolchain::cargo_for_target;
+
+/// Their folders, and the targets they are built for.
+const BOARDS: [(&str, &str); 4] = [
+    UNO,
+    ("pico", "thumbv6m-none-eabi"),
+    ("nucleo-f401", "thumbv7em-none-eabihf"),
+    ("esp32-c3", "riscv32imc-unknown-none-elf"),
+];
+
+const UNO: (&str, &str) = ("uno", "avr-none");
+
+/// All of them, or the one that is named.
+pub(crate) fn examples(only: Option<&str>, steps: &mut Steps) {
+    let is_asked_for = |board: &str| only.is_none_or(|only| only == board);
+    if !BOARDS.iter().any(|(board, _)| is_asked_for(board)) {
+        let known = BOARDS.map(|(board, _)| board).join(", ");
+        let asked = only.unwrap_or_default();
+        steps.step("examples", || Err(Trouble::Failed(format!("no example {asked}; expected one of {known}"))));
+    }
+    for (board, target) in BOARDS.into_iter().filter(|(board, _)| is_asked_for(board)) {
+        steps.step(&format!("table of the example {board}"), || table(&Path::new("examples").join(board)));
+        steps.step(&format!("example {board}"), || build(board, target).map(drop));
+    }
+}
+
+/// `src/ring.rs` is what `eeruf design` says of `ring.toml`.
+fn table(folder: &Path) -> Result<(), Trouble> {
+    let failed = |why: &dyn std::fmt::Display| Trouble::Failed(format!("{}: {why}", folder.display()));
+    let mut design = Command::new(crate::program::program()?);
+    let design = output(design.arg("design").arg(folder.join("ring.toml")).args(["--emit", "rust"]));
+    let design = design.ok_or_else(|| failed(&"eeruf design ring.toml failed"))?;
+    let stands = fs::read_to_string(folder.join("src/ring.rs")).map_err(|error| failed(&error))?;
+    if stands.trim() == design {
+        return Ok(());
+    }
+    Err(failed(&"src/ring.rs is not what eeruf design says of ring.toml"))
+}
+
+/// The program for the Uno, built.
+pub(crate) fn uno() -> Result<PathBuf, Trouble> {
+    let (board, target) = UNO;
+    build(board, target).map(|folder| folder.join("eeruf-example-uno.elf"))
+}
+
+/// Builds an example; the folder that the program is in.
+fn build(board: &str, target: &str) -> Result<PathBuf, Trouble> {
+    let folder = Path::new("examples").join(board);
+    run(Command::new("cargo").current_dir(&folder).args(["fmt", "--check"]))?;
+    let mut cargo = cargo_for_target(target)?;
+    // One folder for all, but not for two compilers.
+    let compiler = if cargo.get_program() == "/usr/bin/cargo" { "debian" } else { "rustup" };
+    let shared = std::path::absolute(Path::new("target/examples").join(compiler));
+    let shared = shared.map_err(|error| Trouble::Failed(error.to_string()))?;
+    cargo.env("CARGO_TARGET_DIR", &shared).current_dir(&folder);
+    run(cargo.args(["build", "--quiet", "--release", "--locked", "--target", target]))?;
+    Ok(shared.join(target).join("release"))
+}

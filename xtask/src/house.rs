@@ -1,0 +1,84 @@
+//! Rules for sources that no linter has: how long a line and a file may be, and words that say too little.
+//! CONTRIBUTING.md has the reasons.
+
+use std::fmt::Write as _;
+use std::process::Command;
+
+use crate::steps::{Trouble, output};
+
+/// As long as a line may be, in characters; the formatter leaves comments and texts as they are.
+const LINE: usize = 120;
+/// As many lines as a file may have, tests included.
+const FILE: usize = 450;
+
+/// Words of tales, not of engineers; each in two parts, so that this file has none of them.
+const WORDS: [(&str, &str); 8] = [
+    ("to", "ld"),
+    ("unto", "ld"),
+    ("how-man", "ieth"),
+    ("to begin wi", "th"),
+    ("deare", "st"),
+    ("doo", "med"),
+    ("hu", "nt"),
+    ("unhar", "med"),
+];
+
+/// Looks through every Rust file of the repository.
+pub(crate) fn check() -> Result<(), Trouble> {
+    let listed = output(Command::new("git").args(["ls-files", "*.rs"]));
+    let listed = listed.ok_or_else(|| Trouble::Failed("git ls-files: no answer".to_owned()))?;
+    let mut broken = String::new();
+    for file in listed.lines() {
+        let text = std::fs::read_to_string(file).map_err(|error| Trouble::Failed(format!("{file}: {error}")))?;
+        for (line, what) in broken_rules(&text) {
+            _ = write!(broken, "\n{file}:{line}: {what}");
+        }
+    }
+    if broken.is_empty() { Ok(()) } else { Err(Trouble::Failed(broken)) }
+}
+
+/// The lines of a file that break a rule, counted from 1, and which.
+fn broken_rules(text: &str) -> Vec<(usize, String)> {
+    let mut broken = Vec::new();
+    for (line, words) in (1..).zip(text.lines()) {
+        let length = words.chars().count();
+        if length > LINE {
+            broken.push((line, format!("{length} characters; expected at most {LINE}")));
+        }
+        for (start, end) in WORDS {
+            let word = [start, end].concat();
+            if has_word(&words.to_lowercase(), &word) {
+                broken.push((line, format!("`{word}`; expected a plainer word")));
+            }
+        }
+    }
+    let lines = text.lines().count();
+    if lines > FILE {
+        broken.push((lines, format!("{lines} lines; expected at most {FILE}: two stories, two files")));
+    }
+    broken
+}
+
+/// Whether it stands there as a word of its own, as a part of `a_name` it does not.
+fn has_word(text: &str, word: &str) -> bool {
+    let of_a_word = |c: char| c.is_alphanumeric() || c == '_';
+    text.match_indices(word)
+        .any(|(at, _)| !text[..at].ends_with(of_a_word) && !text[at + word.len()..].starts_with(of_a_word))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FILE, LINE, broken_rules};
+
+    fn lines_of(text: &str) -> Vec<usize> {
+        broken_rules(text).into_iter().map(|(line, _)| line).collect()
+    }
+
+    #[test]
+    fn long_lines_long_files_and_words_of_tales_are_found() {
+        assert_eq!(lines_of(&format!("a\n{}\n{}", "ä".repeat(LINE), "ä".repeat(LINE + 1))), [3]);
+        assert!(lines_of(&"a\n".repeat(FILE)).is_empty());
+        assert_eq!(lines_of(&"a\n".repeat(FILE + 1)), [FILE + 1]);
+        assert_eq!(lines_of(&["// He was to", "ld\n// hunted, to", "lds"].concat()), [1]);
+    }
+}

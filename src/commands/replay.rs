@@ -36,7 +36,8 @@ pub(crate) struct Args {
     t_delta_us: Option<u32>,
     /// The log is that of a hopping ring's firings: run the tracker over it, with these settings
     #[arg(long, value_name = "SETTING")]
-    #[arg(conflicts_with_all = ["no_echo_m", "consecutive", "max_speed", "time", "time_unit", "range", "range_unit", "sensor", "svg"])]
+    #[arg(conflicts_with_all = ["no_echo_m", "consecutive", "max_speed", "time", "time_unit"])]
+    #[arg(conflicts_with_all = ["range", "range_unit", "sensor", "svg"])]
     hopping: Option<Hopping>,
     /// In m/s, to turn ranges back into echo times
     #[arg(long, default_value_t = 343.2, value_name = "C", value_parser = positive)]
@@ -47,8 +48,8 @@ pub(crate) struct Args {
     /// How many readings running must agree
     #[arg(long, default_value_t = 2, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=8))]
     consecutive: u8,
-    /// Without odometry, for a robot that drives at up to V m/s: instead of two readings that agree, three must lie on a
-    /// line, within t_delta, so that echoes may change at any constant rate; the log must have times
+    /// Without odometry, for a robot that drives at up to V m/s: instead of two readings that agree, three must lie on
+    /// a line, within t_delta, so that echoes may change at any constant rate; the log must have times
     #[arg(long, value_name = "V", value_parser = speed, conflicts_with = "consecutive")]
     max_speed: Option<f64>,
     /// CSV: the column with the time

@@ -15,7 +15,8 @@ const MEASURED: &str = "<!-- measured: ";
 pub(crate) const COMPILERS: &str = "compilers";
 
 /// Tables whose figures depend on the compiler.
-const COMPILED: [&str; 5] = ["instructions", "lateness", "search", "size", "stack"];
+const COMPILED: [&str; 7] =
+    ["hopping instructions", "hopping size", "instructions", "lateness", "search", "size", "stack"];
 
 /// By how much a timing may differ, as a share of the larger one and besides: the emulator does not take every
 /// interrupt at the very same instruction.

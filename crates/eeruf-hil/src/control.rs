@@ -5,10 +5,11 @@
 
 use core::convert::Infallible;
 
-use eeruf_core::{Edge, Instant, Micros, RingEvent, Scheduler};
+use eeruf_core::{Edge, Instant, Micros, Ring, RingEvent, ScheduledRing, Scheduler};
+use eeruf_hil::{CONFIG, SCHEDULE, SENSORS};
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
-use crate::reference::{HostRing, Read, ring};
+use crate::reference::{HostRing, Read, on_pins};
 
 /// When the line of the sensor that is well rises and falls after its trigger: a wall 2 m away.
 const RISE: Micros = Micros::new(460);
@@ -43,7 +44,7 @@ impl InputPin for Idle {
 
 /// The ring without the fault, and what it reads.
 pub(crate) struct Control {
-    ring: HostRing<Idle>,
+    ring: HostRing<ScheduledRing<'static, SENSORS>, Idle>,
     /// The sensor that is well here.
     well: u8,
     /// The edges to come on its line, the later one first.
@@ -53,7 +54,8 @@ pub(crate) struct Control {
 
 impl Control {
     pub(crate) fn new(now: Instant, well: u8) -> Result<Self, String> {
-        Ok(Self { ring: ring(now, |_| Idle)?, well, ahead: Vec::new(), read: Default::default() })
+        let ring = Ring::new(&SCHEDULE, CONFIG, now).map_err(|error| error.to_string())?;
+        Ok(Self { ring: on_pins(ring, |_| Idle)?, well, ahead: Vec::new(), read: Default::default() })
     }
 
     pub(crate) fn edge(&mut self, edge: Edge) -> Result<(), String> {

@@ -11,7 +11,10 @@
 //! what comes out, word by word.
 #![no_std]
 
-use eeruf_core::{Edge, Instant, Micros, Reading, Requirements, RingConfig, RingEvent, Schedule, VerifiedSchedule};
+use eeruf_core::{
+    Edge, HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros,
+    Reading, Requirements, RingConfig, RingEvent, Schedule, VerifiedSchedule,
+};
 use eeruf_hc_sr04::Health;
 
 /// How many sensors there are: as many as in `scenes/alcove-hc-sr04.toml`.
@@ -34,6 +37,22 @@ pub const SCHEDULE: VerifiedSchedule<SENSORS> = {
 /// How the ring listens and compares: as `scenes/alcove-hc-sr04.toml` says, with a window for the longest pulse and its
 /// delay.
 pub const CONFIG: RingConfig = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::from_millis(40));
+
+/// By how much crosstalk moves at least from phase to phase in the hopping ring: so much that firings may differ in
+/// lateness by 250 us, since the boards also write to the host.
+pub const STEP: Micros = Micros::new(652);
+
+/// The hopping ring of the same sensors, with the same period, and a window for as long as the modules must
+/// rest: 60 ms.
+///
+/// # Errors
+/// None with these numbers.
+pub fn hopping_ring(now: Instant) -> Result<HoppingRing<SENSORS>, HoppingError> {
+    let settings = HoppingSettings::BALANCED;
+    let code = HoppingCode::new(SENSORS, settings.tracker.votes, STEP)?;
+    let schedule = HoppingSchedule::spread(code, Micros::from_millis(100), settings.neighbours)?;
+    HoppingRing::new(&schedule, settings, HoppingListening::new(Micros::from_millis(60)), 1, now)
+}
 
 /// What the host says first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,6 +3,9 @@
 //! Prints two tables in Markdown: how the boards' rings agree with the host's, and what each fault did. Leaves with 1
 //! if anything is not as it must be.
 //!
+//! `eeruf-hil SCENE --hopping --board NAME EMULATOR .. [--board ..]`: the same of boards whose ring hops in
+//! time; one table.
+//!
 //! `eeruf-hil SCENE --one FAULT PERIODS --board NAME EMULATOR ..`: one run at the pace of the clock on the wall, as it
 //! is needed to test what listens to the board's serial line. Prints what the ring read, as CSV.
 
@@ -18,7 +21,11 @@ use std::process::ExitCode;
 use eeruf_core::ReadingKind;
 use eeruf_sim::{Method, Options, Readings, World, simulate, sweep};
 
-use crate::run::{Fault, PERIODS, Pace, Run, run};
+use crate::lines::FAULTY;
+use crate::run::{Fault, PERIODS, Pace, Run, run, run_hopping};
+
+/// In this scene no sensor of the hopping ring has fewer of its readings believed.
+const LEAST_BELIEVED: f64 = 0.5;
 
 /// A board's name, and the command that emulates it.
 type Board<'a> = (&'a str, &'a [String]);
@@ -30,11 +37,14 @@ fn main() -> ExitCode {
     let boards: Vec<Board<'_>> =
         parts.filter_map(<[String]>::split_first).map(|(name, emulator)| (&**name, emulator)).collect();
     let Some(scene) = scene.filter(|_| !boards.is_empty()) else {
-        eprintln!("usage: eeruf-hil SCENE [--one FAULT PERIODS] --board NAME EMULATOR [ARGUMENT ..] [--board ..]");
+        eprintln!(
+            "usage: eeruf-hil SCENE [--hopping | --one FAULT PERIODS] --board NAME EMULATOR [ARGUMENT ..] [--board ..]"
+        );
         return ExitCode::from(2);
     };
     let outcome = match (arguments.get(1..4), &boards[..]) {
         (Some([one, fault, periods]), &[(_, emulator)]) if one == "--one" => one_run(scene, fault, periods, emulator),
+        _ if arguments.get(1).is_some_and(|argument| argument == "--hopping") => hopping_table(scene, &boards),
         _ => tables(scene, &boards),
     };
     match outcome {
@@ -110,4 +120,46 @@ fn fault_row(board: &str, fault: Fault, faulty: &Run, fault_free: &Run) -> Resul
     let change = faulty.change_from(fault_free, fault)?;
     let count = faulty.count();
     Ok(format!("| {board} | {fault} | {count} | all | {} | {} | {named} |\n", change.kinds, change.moved))
+}
+
+fn hopping_table(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
+    let world = World::from_toml(Path::new(scene)).map_err(|error| error.to_string())?;
+    let rows = |&(board, emulator): &Board<'_>| -> Result<String, String> {
+        let mut rows = String::new();
+        for fault in [Fault::None].into_iter().chain(Fault::ALL) {
+            rows +=
+                &hopping_row(&world, board, fault, emulator).map_err(|error| format!("{board}: {fault}: {error}"))?;
+        }
+        Ok(rows)
+    };
+    let rows: Vec<String> = sweep(boards, rows).into_iter().collect::<Result<_, _>>()?;
+    Ok(format!(
+        "| board | fault | as the host's ring | believed of each other sensor | latest firing | named |\n\
+         |---|---|---|---|---:|---|\n{}",
+        rows.concat()
+    ))
+}
+
+/// A microsecond may decide who fires alone next, and interrupts come some microseconds earlier or later in each run. So
+/// the table has no counts, and standard error has them.
+fn hopping_row(world: &World, board: &str, fault: Fault, emulator: &[String]) -> Result<String, String> {
+    let run = run_hopping(world, fault, PERIODS, emulator)?;
+    let report = run.report_hopping(fault)?;
+    // When a line is named depends on how often its sensor fires.
+    let named = report.split(" after ").next().unwrap_or_default();
+    let but = matches!(fault, Fault::Line(_)).then_some(FAULTY);
+    let least = run.least_believed(but);
+    let counted = [ReadingKind::Accepted, ReadingKind::Tentative, ReadingKind::Rejected];
+    let [confirmed, tentative, rejected] = counted.map(|kind| run.of(kind, but));
+    eprintln!(
+        "{board}, {fault}: {} readings; of the other sensors {confirmed} confirmed, {tentative} tentative, {rejected} \
+         rejected, and of the worst-off one {:.1} % believed; {report}",
+        run.count(),
+        100.0 * least,
+    );
+    // No sensor is blind, whatever is wrong with another one.
+    if least < LEAST_BELIEVED {
+        return Err(format!("of a sensor {:.1} % of the readings are believed; expected half", 100.0 * least));
+    }
+    Ok(format!("| {board} | {fault} | all | over half | {} | {named} |\n", run.max_late))
 }

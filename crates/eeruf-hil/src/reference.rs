@@ -9,9 +9,9 @@ use std::rc::Rc;
 use std::thread;
 use std::time::Duration;
 
-use eeruf_core::{Edge, Instant, Reading, Ring, RingEvent, ScheduledRing};
-use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings};
-use eeruf_hil::{CONFIG, Record, SCHEDULE, SENSORS, Topic};
+use eeruf_core::{Edge, Instant, Reading, RingEvent};
+use eeruf_hc_sr04::{EchoRing, HcSr04Ring, Health, Pins, Settings};
+use eeruf_hil::{Record, SENSORS, Topic};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
@@ -113,25 +113,28 @@ impl DelayNs for NoDelay {
 }
 
 /// A ring as the board's, on pins of this kind.
-pub(crate) type HostRing<P> = HcSr04Ring<ScheduledRing<'static, SENSORS>, P, P, NoDelay, SENSORS>;
+pub(crate) type HostRing<R, P> = HcSr04Ring<R, P, P, NoDelay, SENSORS>;
 
-/// Sets up a ring as the board does, at the same instant.
-pub(crate) fn ring<P: OutputPin + InputPin>(now: Instant, pin: impl Fn(u8) -> P) -> Result<HostRing<P>, String> {
-    let ring = Ring::new(&SCHEDULE, CONFIG, now).map_err(|error| error.to_string())?;
+/// Puts a ring on pins as the board does.
+pub(crate) fn on_pins<R: EchoRing<SENSORS>, P: OutputPin + InputPin>(
+    ring: R,
+    pin: impl Fn(u8) -> P,
+) -> Result<HostRing<R, P>, String> {
     let pins = core::array::from_fn(|x| Pins { trigger: pin(x as u8), echo: pin(x as u8) });
     HcSr04Ring::new(ring, pins, NoDelay, Settings::default()).map_err(|error| error.to_string())
 }
 
 /// The ring on the host.
-pub(crate) struct Reference<'w> {
+pub(crate) struct Reference<'w, R> {
     session: Shared<'w>,
-    ring: HostRing<Pin<'w>>,
+    ring: HostRing<R, Pin<'w>>,
 }
 
-impl<'w> Reference<'w> {
-    pub(crate) fn new(session: &Shared<'w>, now: Instant) -> Result<Self, String> {
+impl<'w, R: EchoRing<SENSORS>> Reference<'w, R> {
+    /// With a ring that was made as the board's, at the same instant.
+    pub(crate) fn new(session: &Shared<'w>, ring: R) -> Result<Self, String> {
         let pin = |sensor| Pin { session: Rc::clone(session), sensor };
-        Ok(Self { session: Rc::clone(session), ring: ring(now, pin)? })
+        Ok(Self { session: Rc::clone(session), ring: on_pins(ring, pin)? })
     }
 
     pub(crate) fn edge(&mut self, edge: Edge) -> Result<(), String> {

@@ -2,9 +2,9 @@
 
 use core::fmt;
 
-use eeruf_core::{Edge, Instant, Micros, Reading, ReadingKind, RingEvent};
-use eeruf_hc_sr04::Health;
-use eeruf_hil::{Orders, SENSORS, Topic};
+use eeruf_core::{Edge, Instant, Micros, Reading, ReadingKind, Ring, RingEvent};
+use eeruf_hc_sr04::{EchoRing, Health};
+use eeruf_hil::{CONFIG, Orders, SCHEDULE, SENSORS, Topic, hopping_ring};
 use eeruf_sim::{Readings, World};
 
 use crate::control::Control;
@@ -106,7 +106,29 @@ pub(crate) enum Pace {
     Wall,
 }
 
+/// A run of a board whose ring fires by the table of two phases. Where a line has a fault, what the others read is held
+/// against the control.
 pub(crate) fn run(world: &World, fault: Fault, periods: u32, pace: Pace, emulator: &[String]) -> Result<Run, String> {
+    let make = |now| Ring::new(&SCHEDULE, CONFIG, now).map_err(|error| error.to_string());
+    run_ring(world, fault, periods, pace, emulator, make, true)
+}
+
+/// A run of a board whose ring hops. It has no control: whose turn it is to fire alone, and which lag moves, depends on
+/// what all sensors hear, so that a ring without the fault fires at other times.
+pub(crate) fn run_hopping(world: &World, fault: Fault, periods: u32, emulator: &[String]) -> Result<Run, String> {
+    let make = |now| hopping_ring(now).map_err(|error| error.to_string());
+    run_ring(world, fault, periods, Pace::Free, emulator, make, false)
+}
+
+fn run_ring<R: EchoRing<SENSORS>>(
+    world: &World,
+    fault: Fault,
+    periods: u32,
+    pace: Pace,
+    emulator: &[String],
+    make: impl Fn(Instant) -> Result<R, String>,
+    has_control: bool,
+) -> Result<Run, String> {
     let orders = fault.orders(periods);
     let line_fault = if let Fault::Line(fault) = fault { fault } else { LineFault::None };
     let pace = (pace == Pace::Wall).then_some(orders.start);
@@ -114,8 +136,8 @@ pub(crate) fn run(world: &World, fault: Fault, periods: u32, pace: Pace, emulato
     let outcome = (|| {
         // The first thing that a board says is when it set up its ring.
         let now = session.borrow_mut().expect(Topic::Deadline, 0)?.instant();
-        let mut reference = Reference::new(&session, now)?;
-        let mut control = Control::new(now, FAULTY)?;
+        let mut reference = Reference::new(&session, make(now)?)?;
+        let mut control = if has_control { Some(Control::new(now, FAULTY)?) } else { None };
         let mut run = Run {
             read: Default::default(),
             latest_edge: Micros::ZERO,
@@ -131,11 +153,15 @@ pub(crate) fn run(world: &World, fault: Fault, periods: u32, pace: Pace, emulato
                 Some(Topic::Edge) => {
                     let edge = Edge { sensor: record.sensor(), high: record.flag() != 0, at: record.instant() };
                     reference.edge(edge)?;
-                    control.edge(edge)?;
+                    if let Some(control) = &mut control {
+                        control.edge(edge)?;
+                    }
                 }
                 Some(Topic::Poll) => {
                     let event = reference.poll(record.instant())?;
-                    control.follow(record.instant(), event.as_ref())?;
+                    if let Some(control) = &mut control {
+                        control.follow(record.instant(), event.as_ref())?;
+                    }
                     match event {
                         Some(RingEvent::Reading(reading)) => run.take(reading),
                         Some(RingEvent::PeriodEnded(stats)) => {
@@ -159,7 +185,7 @@ pub(crate) fn run(world: &World, fault: Fault, periods: u32, pace: Pace, emulato
         if ended != periods {
             return Err(format!("the board ended after {ended} periods of {periods}"));
         }
-        if matches!(fault, Fault::Line(_)) {
+        if let (Fault::Line(_), Some(control)) = (fault, &control) {
             run.others_are(&control.read)?;
         }
         run.latest_edge = session.borrow().lines.latest;
@@ -192,6 +218,24 @@ impl Run {
 
     pub(crate) fn count(&self) -> usize {
         self.read.iter().map(Vec::len).sum()
+    }
+
+    /// How many readings of a kind there are, of all sensors or of all but this one.
+    pub(crate) fn of(&self, kind: ReadingKind, but: Option<u8>) -> usize {
+        let sensors = self.read.iter().enumerate().filter(|&(sensor, _)| Some(sensor) != but.map(usize::from));
+        sensors.flat_map(|(_, read)| read).filter(|reading| reading.kind == kind).count()
+    }
+
+    /// The share of its readings that the worst-off sensor has believed, tentative or confirmed; the one with the
+    /// fault is left out.
+    pub(crate) fn least_believed(&self, but: Option<u8>) -> f64 {
+        let sensors = self.read.iter().enumerate().filter(|&(sensor, _)| Some(sensor) != but.map(usize::from));
+        let share = |read: &[Reading]| {
+            let believed = [ReadingKind::Accepted, ReadingKind::Tentative, ReadingKind::Clear];
+            let count = read.iter().filter(|reading| believed.contains(&reading.kind)).count();
+            count as f64 / read.len().max(1) as f64
+        };
+        sensors.map(|(_, read)| share(read)).fold(1.0, f64::min)
     }
 
     /// Whether all other sensors read what they would have read without the fault.
@@ -230,6 +274,17 @@ impl Run {
 
     /// What the report calls the fault; it must be this one, and nothing else.
     pub(crate) fn report(&self, fault: Fault) -> Result<String, String> {
+        // The next firing is due up to 24 ms after the stall began.
+        self.report_late(fault, Micros::from_millis(26))
+    }
+
+    /// As [`report`](Self::report), for a hopping ring: after a stall the next firing may be due 40 ms later, if the
+    /// period is one in which a sensor fires alone.
+    pub(crate) fn report_hopping(&self, fault: Fault) -> Result<String, String> {
+        self.report_late(fault, Micros::from_millis(2))
+    }
+
+    fn report_late(&self, fault: Fault, least: Micros) -> Result<String, String> {
         let mut expected = [Health::Well; SENSORS];
         if let (Fault::Line(fault), Some(expected)) = (fault, expected.get_mut(usize::from(FAULTY))) {
             *expected = fault.name();
@@ -238,8 +293,7 @@ impl Run {
             return Err(format!("sensors are called {:?}; expected {expected:?}", self.named));
         }
         let late = fault == Fault::Stall;
-        // The next firing is due up to 24 ms after the stall began.
-        if late != (self.max_late >= Micros::from_millis(26)) {
+        if late != (self.max_late >= least) {
             return Err(format!("the latest firing came {}", self.max_late));
         }
         Ok(match (fault, self.named_after) {

@@ -12,9 +12,9 @@
 //! line may name; one of 32 bits may wrap. `t_echo_us` is the raw echo time, from firing to the first edge, empty
 //! without echo. `reading` is what the ring made of it (`rejected`, `accepted`, ..) and may be missing. Sensors,
 //! periods and phases count from 0. The log of a hopping ring also says how its tracker weighed each reading, in
-//! columns `given`, `solo`, `steady`, `changes` and `expected_us`: see [`Weighed`]. A log without `fired_us` can be put onto a fixed schedule
-//! ([`align`](crate::align())). Rows may come in any order that is at most 2^31 us out. Where a column `sends` is 0
-//! the sensor only listened from then on, as some can.
+//! columns `given`, `solo`, `steady`, `changes` and `expected_us`: see [`Weighed`]. A log without `fired_us` can be
+//! put onto a fixed schedule ([`align`](crate::align())). Rows may come in any order that is at most 2^31 us out. Where
+//! a column `sends` is 0 the sensor only listened from then on, as some can.
 //!
 //! The same in MCAP is a JSON message `eeruf.Firing` for each row, with the columns as its fields and the clock's name
 //! as a field `clock`; see [`McapWriter::firing`](crate::McapWriter::firing).
@@ -172,8 +172,8 @@ impl FiringLog {
         Ok(Self { listened, lacks_instants, ..Self::new(clock, firings) })
     }
 
-    /// Writes the log as it is read. What the ring made of a reading is written as `rejected` or `other`, unless the kind
-    /// is known.
+    /// Writes the log as it is read. What the ring made of a reading is written as `rejected` or `other`, unless the
+    /// kind is known.
     ///
     /// # Errors
     /// If it cannot be written.

@@ -45,8 +45,8 @@ impl Weighed {
         message.extend(fields.map(|(name, value)| (name.to_owned(), value)));
     }
 
-    /// Of a message, the firing with this number: nothing if it has none of the fields that are needed; no answer if one
-    /// is missing or no such value.
+    /// Of a message, the firing with this number: nothing if it has none of the fields that are needed; no answer if
+    /// one is missing or no such value.
     #[expect(clippy::option_option, reason = "no value, and a bad one, are two things")]
     pub(crate) fn of_message(message: &Value, number: u64) -> Option<Option<Self>> {
         let field = |name| message.get(name).filter(|value| !value.is_null());

@@ -121,7 +121,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut number = |default| arguments.next().map_or(Ok(default), |argument| argument.parse::<u32>());
     let (sensors, period) = (number(8)? as usize, Micros::from_millis(number(60)?));
     println!(
-        "{rooms} rooms from {first} on, {sensors} sensors, {PERIODS} periods of {period}: median (95 % interval), 90 %.\n"
+        "{rooms} rooms from {first} on, {sensors} sensors, {PERIODS} periods of {period}: median (95 % interval), \
+         90 %.\n"
     );
     println!("| m/s | filter | T_delta us | wrong, % of all | wrong, % of believed | good lost % | believed % |");
     println!("|---:|---|---:|---|---|---|---|");

@@ -8,10 +8,13 @@ mod host;
 mod lines;
 mod ring;
 
+use eeruf_core::Ring;
+use eeruf_hil::{CONFIG, SCHEDULE};
+
 eeruf_board::say_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, ring::echo_interrupt);
 
 #[eeruf_board::entry]
 fn main() -> ! {
-    ring::run(|_, _, _, _| {})
+    ring::run(|now| Ring::new(&SCHEDULE, CONFIG, now), |_, _, _, _| {})
 }

@@ -2,9 +2,9 @@
 
 use eeruf_board::fake_sensors::Delay;
 use eeruf_board::say::leave;
-use eeruf_core::{EdgeQueue, Instant, Micros, Ring, RingEvent};
-use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings};
-use eeruf_hil::{CONFIG, Record, SCHEDULE};
+use eeruf_core::{EdgeQueue, Instant, Micros, RingEvent};
+use eeruf_hc_sr04::{EchoRing, HcSr04Ring, Health, Pins, Settings};
+use eeruf_hil::{Record, SENSORS};
 
 use crate::host::Host;
 use crate::lines::{self, Pin};
@@ -19,16 +19,19 @@ pub(crate) fn echo_interrupt() {
     }
 }
 
-/// Runs the ring for as many periods as the host orders. `on_event` is called with each event, the instant of its poll,
-/// how the sensors are, and how many edges got lost.
-pub(crate) fn run(mut on_event: impl FnMut(&RingEvent, Instant, &dyn Fn(u8) -> Health, u8)) -> ! {
+/// Makes a ring and runs it for as many periods as the host orders. `on_event` is called with each event, the instant of
+/// its poll, how the sensors are, and how many edges got lost.
+pub(crate) fn run<R: EchoRing<SENSORS>, E>(
+    make: impl FnOnce(Instant) -> Result<R, E>,
+    mut on_event: impl FnMut(&RingEvent, Instant, &dyn Fn(u8) -> Health, u8),
+) -> ! {
     let (host, orders) = Host::open();
     eeruf_board::begin_clock_at(orders.start);
     eeruf_board::start();
     let now = eeruf_board::now();
     lines::begin(now);
     host.say(Record::deadline(now));
-    let Ok(ring) = Ring::new(&SCHEDULE, CONFIG, now) else { leave(2) };
+    let Ok(ring) = make(now) else { leave(2) };
     let pin = |x| Pin { host: &host, sensor: x as u8 };
     let pins = core::array::from_fn(|x| Pins { trigger: pin(x), echo: pin(x) });
     let Ok(mut ring) = HcSr04Ring::new(ring, pins, Delay, Settings::default()) else { leave(3) };

@@ -6,7 +6,8 @@ mod host;
 mod lines;
 mod ring;
 
-use eeruf_hil::SENSORS;
+use eeruf_core::Ring;
+use eeruf_hil::{CONFIG, SCHEDULE, SENSORS};
 use eeruf_serial::Recorder;
 
 eeruf_board::say_panic!();
@@ -16,11 +17,14 @@ eeruf_board::interrupts!(eeruf_board::clear_alarm, ring::echo_interrupt);
 fn main() -> ! {
     let mut recorder = Recorder::<SENSORS>::new("lm3s6965");
     eeruf_board::open_line();
-    ring::run(|event, now, health, edges_lost| {
-        if let Some(frame) = recorder.event(event, now, |sensor| health(sensor) as u8, edges_lost) {
-            // The emulated line takes everything at once. On a real one a frame lasts 2 ms, which is a matter for a
-            // queue and an interrupt.
-            frame.as_bytes().iter().for_each(|&byte| eeruf_board::send(byte));
-        }
-    })
+    ring::run(
+        |now| Ring::new(&SCHEDULE, CONFIG, now),
+        |event, now, health, edges_lost| {
+            if let Some(frame) = recorder.event(event, now, |sensor| health(sensor) as u8, edges_lost) {
+                // The emulated line takes everything at once. On a real one a frame lasts 2 ms, which is a matter for a
+                // queue and an interrupt.
+                frame.as_bytes().iter().for_each(|&byte| eeruf_board::send(byte));
+            }
+        },
+    )
 }

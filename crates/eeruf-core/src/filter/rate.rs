@@ -6,9 +6,9 @@ use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 
 /// Accepts the third of three consecutive readings if the second one lies within `t_delta` of the line between the
-/// first and the third, over the times at which the sensor really fired. So an echo may change at any constant rate, up
-/// to a limit, without odometry; crosstalk that the schedule moves by more than `t_delta` between two readings is as far
-/// from the line as it moves: `docs/theory.md` section 2.2.
+/// first and the third, over the times at which the sensor really fired. So an echo may change at any constant rate,
+/// up to a limit, without odometry; crosstalk that the schedule moves by more than `t_delta` between two readings is as
+/// far from the line as it moves: `docs/theory.md` section 2.2.
 ///
 /// It is for readings of two phases, beside a [`Ring`](crate::Ring), which does not know of it: hand in the raw echo
 /// time of each reading with the instant of its firing, and [`forget`](Self::forget) the sensor before a reading of the
@@ -85,8 +85,8 @@ impl<const K: usize> RateFilter<K> {
         Ok(Self { sensors: [Line::NEW; K], t_delta, us_per_s })
     }
 
-    /// Takes in one firing of a sensor (from 0): when it fired, and the time of its echo, or `None` without echo. Echoes
-    /// after 16.7 s count as none. The verdict is [`Accepted`](ReadingKind::Accepted) for the third reading on a line,
+    /// Takes in one firing of a sensor (from 0): when it fired, and the time of its echo, or `None` without echo.
+    /// Echoes after 16.7 s count as none. The verdict is [`Accepted`](ReadingKind::Accepted) for the third reading on a line,
     /// [`Repeated`](ReadingKind::Repeated) for one that may be the second, [`First`](ReadingKind::First),
     /// [`Rejected`](ReadingKind::Rejected), [`NoEcho`](ReadingKind::NoEcho), or [`Clear`](ReadingKind::Clear) for the
     /// second silence in a row.

@@ -10,8 +10,8 @@ const SENSORS: usize = 6;
 /// Two phases.
 type Firing = [[i64; SENSORS]; 2];
 
-/// A schedule of random lags whose shifts are further than twice `t_delta` apart, in random order and of random sign, as
-/// the verifier confirms for this window.
+/// A schedule of random lags whose shifts are further than twice `t_delta` apart, in random order and of random sign,
+/// as the verifier confirms for this window.
 fn draw(random: &mut Random, t_delta: u32, period: u32, window: u32) -> Firing {
     let separation = 2 * t_delta + 1;
     let mut shifts = [(); SENSORS].map(|()| 0);

@@ -10,8 +10,8 @@ use super::dither::DitherFiring;
 use super::schedules::widest_dither;
 use crate::world::{AnySchedule, Random, Robot};
 
-/// How the tracker of a hopping ring weighed a reading, beside its phase and echo time: what a log needs for the tracker
-/// to be run over it again.
+/// How the tracker of a hopping ring weighed a reading, beside its phase and echo time: what a log needs for the
+/// tracker to be run over it again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Weighed {
     /// Whether no other sensor's sound could be heard.

@@ -1,5 +1,5 @@
-//! The scenes and rings of the repository and the checker of certificates, within the program, so that what the documents
-//! show runs anywhere.
+//! The scenes and rings of the repository and the checker of certificates, within the program, so that what the
+//! documents show runs anywhere.
 
 use include_dir::{Dir, include_dir};
 

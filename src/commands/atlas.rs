@@ -16,8 +16,8 @@ use crate::report::watch::Watch;
 ///
 /// Rows are appended to FILE one by one, so that it can be ended at any time and takes up where it stopped. Any number
 /// of processes may write to the same file at once, on one machine, each with its share: --shard 1/3, 2/3, 3/3. When
-/// the last ring is done, the file is sorted. Exit code 0 if every ring of the share is done, 1 if it was ended before, 2
-/// for bad input.
+/// the last ring is done, the file is sorted. Exit code 0 if every ring of the share is done, 1 if it was ended before,
+/// 2 for bad input.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The file; without one, that which this program carries is drawn or printed

@@ -140,8 +140,8 @@ fn hopping_table(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
     ))
 }
 
-/// A microsecond may decide who fires alone next, and interrupts come some microseconds earlier or later in each run. So
-/// the table has no counts, and standard error has them.
+/// A microsecond may decide who fires alone next, and interrupts come some microseconds earlier or later in each run.
+/// So the table has no counts, and standard error has them.
 fn hopping_row(world: &World, board: &str, fault: Fault, emulator: &[String]) -> Result<String, String> {
     let run = run_hopping(world, fault, PERIODS, emulator)?;
     let report = run.report_hopping(fault)?;

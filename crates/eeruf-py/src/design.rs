@@ -59,8 +59,9 @@ const FEW_SENSORS: usize = 12;
 ///         ``[(0, 4, 9000)]``; 0 for none.
 ///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
 ///     together: groups of sensors that fire at the same instants, declared not to hear each other.
-///     over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period with firing times
-///         that are no whole ticks, the needs being what they are in ticks, and in ``Found.real_proven`` whether none is
+///     over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period with firing
+/// times         that are no whole ticks, the needs being what they are in ticks, and in ``Found.real_proven`` whether
+/// none is
 ///         shorter. Only where the period in ticks is proven.
 ///
 /// Returns:

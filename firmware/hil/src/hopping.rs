@@ -1,6 +1,6 @@
-//! A ring of eight HC-SR04 sensors that hops in time, whose surroundings are the simulator on the host, in lock step. The
-//! main loop is that of any other ring, and also reports to the host everything that goes into the ring and everything
-//! that comes out.
+//! A ring of eight HC-SR04 sensors that hops in time, whose surroundings are the simulator on the host, in lock step.
+//! The main loop is that of any other ring, and also reports to the host everything that goes into the ring and
+//! everything that comes out.
 #![no_std]
 #![no_main]
 

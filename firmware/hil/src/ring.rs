@@ -19,8 +19,8 @@ pub(crate) fn echo_interrupt() {
     }
 }
 
-/// Makes a ring and runs it for as many periods as the host orders. `on_event` is called with each event, the instant of
-/// its poll, how the sensors are, and how many edges got lost.
+/// Makes a ring and runs it for as many periods as the host orders. `on_event` is called with each event, the instant
+/// of its poll, how the sensors are, and how many edges got lost.
 pub(crate) fn run<R: EchoRing<SENSORS>, E>(
     make: impl FnOnce(Instant) -> Result<R, E>,
     mut on_event: impl FnMut(&RingEvent, Instant, &dyn Fn(u8) -> Health, u8),

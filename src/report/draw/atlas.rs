@@ -14,8 +14,8 @@ const LEFT: f64 = 56.0;
 const TOP: f64 = 84.0;
 const BETWEEN: f64 = 40.0;
 
-/// Lines to the left, rings to the right, a curve for each number of neighbours: dots where the period is proven, else a
-/// stroke from the bound to what was found.
+/// Lines to the left, rings to the right, a curve for each number of neighbours: dots where the period is proven, else
+/// a stroke from the bound to what was found.
 pub(crate) fn atlas(rows: &[Row]) -> Picture {
     let drawn = |row: &&Row| (row.ring.separation, row.ring.window) == DRAWN;
     let rows: Vec<&Row> = rows.iter().filter(drawn).collect();

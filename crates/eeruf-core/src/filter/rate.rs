@@ -86,8 +86,8 @@ impl<const K: usize> RateFilter<K> {
     }
 
     /// Takes in one firing of a sensor (from 0): when it fired, and the time of its echo, or `None` without echo.
-    /// Echoes after 16.7 s count as none. The verdict is [`Accepted`](ReadingKind::Accepted) for the third reading on a line,
-    /// [`Repeated`](ReadingKind::Repeated) for one that may be the second, [`First`](ReadingKind::First),
+    /// Echoes after 16.7 s count as none. The verdict is [`Accepted`](ReadingKind::Accepted) for the third reading on a
+    /// line, [`Repeated`](ReadingKind::Repeated) for one that may be the second, [`First`](ReadingKind::First),
     /// [`Rejected`](ReadingKind::Rejected), [`NoEcho`](ReadingKind::NoEcho), or [`Clear`](ReadingKind::Clear) for the
     /// second silence in a row.
     ///

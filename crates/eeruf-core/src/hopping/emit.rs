@@ -19,7 +19,8 @@ impl<const K: usize> HoppingSchedule<K> {
     }
 
     /// A C99 header that includes nothing but `<stdint.h>`, with the firing times of each phase; with `eeruf.h` before
-    /// it, also the constant `eeruf_hopping_config` for `eeruf_hopping_init`, with the settings of [`to_rust`](Self::to_rust).
+    /// it, also the constant `eeruf_hopping_config` for `eeruf_hopping_init`, with the settings of
+    /// [`to_rust`](Self::to_rust).
     pub const fn to_c<'r>(&'r self, requirements: &'r PhaseRequirements<'r>) -> HoppingHeader<'r, K> {
         HoppingHeader { schedule: self, requirements }
     }

@@ -1,7 +1,7 @@
 //! The atlas: rings whose shortest period is known, each with its schedule.
 //!
-//! A text with a line for each ring, in whole ticks, so that it serves for every tick: rings are the same if their needs
-//! are as many ticks. `rings` says which rings it holds, `row` is a line, `find` looks a ring up, and `make`
+//! A text with a line for each ring, in whole ticks, so that it serves for every tick: rings are the same if their
+//! needs are as many ticks. `rings` says which rings it holds, `row` is a line, `find` looks a ring up, and `make`
 //! searches (feature `make-atlas`).
 
 mod find;

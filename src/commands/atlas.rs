@@ -5,7 +5,8 @@ use std::fs::{self, OpenOptions};
 use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use eeruf_design::atlas::{ATLAS, Ring, Row, all_rings, header, is_in_shard, make, rows};
+use eeruf_design::atlas::{ATLAS, Ring, Row, all_rings, is_in_shard, rows};
+use eeruf_design::atlas_making::{header, make};
 
 use super::answer::Answer;
 use crate::files::error::InputError;

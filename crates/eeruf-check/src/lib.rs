@@ -14,13 +14,14 @@
 //! | `symmetry` | what the root may assume |
 //! | `tree` | the case distinctions |
 //! | `prove` | the proof of a claim |
-//! | `reals`, `linear` | the shortest period over the reals: what the tick costs |
+//! | `reals`, `orders`, `linear` | the shortest period over the reals: what the tick costs |
 //! | `search`, `shortest` | the shortest period of an uneven ring, by the same rules |
 #![forbid(unsafe_code)]
 
 mod bounds;
 mod error;
 mod linear;
+mod orders;
 mod problem;
 pub mod prove;
 mod read;
@@ -37,6 +38,7 @@ mod tree;
 use core::fmt;
 
 pub use error::CheckError;
+pub use orders::Orders;
 pub use problem::{MAX_NUMBER, MAX_SENSORS, Problem};
 pub use read::Claim;
 

@@ -4,8 +4,8 @@
 
 use core::fmt;
 
+use crate::orders::Orders;
 use crate::read::{self, Claim};
-use crate::reals::Orders;
 use crate::search::choose;
 use crate::state::{State, event};
 use crate::symmetry;

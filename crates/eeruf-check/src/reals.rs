@@ -7,11 +7,12 @@
 //! but not by a rule of certificates.
 
 use crate::linear::{Row, least_of_first};
+use crate::orders::Orders;
 use crate::problem::{Merged, Problem};
 use crate::prove::{NoProof, prove_but};
 use crate::read::Claim;
 use crate::search::{Decided, Search};
-use crate::state::{State, event};
+use crate::state::event;
 
 /// The shortest period over the reals of some orders, and whether no orders have a shorter one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,17 +28,6 @@ pub struct OverReals {
     /// The certificate of that; there is none where orders had to be excluded by their linear program, which no
     /// certificate can state.
     pub certificate: Option<String>,
-}
-
-/// What decides all alternatives of a schedule. Sensors are those of the merged problem.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Orders {
-    /// For each phase numbers that ascend as those with a gap fire.
-    firing: [Vec<i64>; 2],
-    /// Whether d is negative.
-    negative: Vec<bool>,
-    /// Those with smaller |d| first.
-    ranks: Vec<usize>,
 }
 
 /// How many exchanges the least period of some orders may take: a few for each row is usual.
@@ -137,31 +127,6 @@ fn in_parts(problem: &Problem, parts: u32) -> Option<Problem> {
         gaps: problem.gaps.iter().map(gap).collect::<Option<_>>()?,
         ..problem.clone()
     })
-}
-
-impl Orders {
-    fn of(merged: &Merged, fire: &[Vec<u32>; 2]) -> Self {
-        let firsts = (0..merged.count()).filter_map(|one| merged.of_sensor.iter().position(|&of| of == one));
-        let firsts: Vec<usize> = firsts.collect();
-        let firing = [0, 1].map(|phase: usize| firsts.iter().map(|&x| i64::from(fire[phase][x])).collect::<Vec<_>>());
-        let d = |x: usize| firing[0][x] - firing[1][x];
-        let negative = (0..merged.count()).map(|x| d(x) < 0).collect();
-        let mut ranks: Vec<usize> = (0..merged.count()).collect();
-        ranks.sort_by_key(|&x| d(x).abs());
-        Self { firing, negative, ranks }
-    }
-
-    /// Those of a node with nothing left to branch on.
-    pub(crate) fn at(state: &State) -> Self {
-        let count = state.low.len();
-        // Where those with a gap fire one after the other, so do their earliest times.
-        let earliest = |phase| move |x| -i64::from(state.bounds.at(event(x, phase), 0));
-        let firing = [0, 1].map(|phase| (0..count).map(earliest(phase)).collect());
-        let negative = (0..count).map(|x| state.most(x, false) < 0).collect();
-        let mut ranks: Vec<usize> = (0..count).collect();
-        ranks.sort_by_key(|&x| state.below[x].count_ones());
-        Self { firing, negative, ranks }
-    }
 }
 
 /// The shortest period over the reals of all schedules with these orders, with such a schedule.

@@ -10,7 +10,7 @@
 //! | `find`, `find_uneven` | the shortest period for it, and what would make it shorter |
 //! | `found` | the answer as it is printed in JSON |
 //! | `hopping` | schedules of many phases: the file, and the shortest period |
-//! | `atlas` | rings whose shortest period is known |
+//! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
 //! | `ticks`, `certificate` | the problem in ticks, and the proof, as a text that others check |
 //! | `reals` | what the tick costs: the shortest period over the reals |
 //!
@@ -26,6 +26,8 @@
 //! ```
 
 pub mod atlas;
+#[cfg(feature = "make-atlas")]
+pub mod atlas_making;
 pub mod certificate;
 mod each;
 mod find;

@@ -5,8 +5,7 @@ use eeruf_core::search::{SearchError, design};
 use eeruf_core::{MAX_SENSORS, Micros, Phase};
 use sha2::{Digest, Sha256};
 
-use super::rings::Ring;
-use super::row::Row;
+use crate::atlas::{Ring, Row};
 use crate::certificate::certify;
 
 /// How many nodes the search of a ring may cost, the choice among its shortest schedules, and the proof of its

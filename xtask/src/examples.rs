@@ -1,6 +1,6 @@
 //! `cargo xtask examples`: the programs in `examples/` that one flashes onto a board. Each is built and linked as its
-//! README says, with the table that `eeruf design` writes. That of the Uno is run among simulated modules by `cargo xtask
-//! arduino`; nothing else is run.
+//! README says, with the table that `eeruf design` writes. That of the Uno is run among simulated modules by `cargo
+//! xtask arduino`; nothing else is run.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -40,7 +40,7 @@ pub(crate) struct Plan {
     /// Put the tables into the document instead of comparing them
     #[arg(long)]
     write: bool,
-    /// Only on this board, and without the simulated world: microbit, lm3s6965, an386 or rv_virt
+    /// Only on this board, and without the simulated world
     #[arg(long, value_name = "NAME", conflicts_with = "write", value_parser = BOARDS.map(|board| board.name))]
     board: Option<String>,
 }

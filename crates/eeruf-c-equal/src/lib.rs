@@ -1,6 +1,6 @@
-//! The C library in `c/`, behind safe functions of numbers, and what compares it with the Rust crates: rings of each kind
-//! that both run, given the same random numbers, and that must say the same. The tests draw the numbers from seeds, the
-//! fuzz target from bytes.
+//! The C library in `c/`, behind safe functions of numbers, and what compares it with the Rust crates: rings of each
+//! kind that both run, given the same random numbers, and that must say the same. The tests draw the numbers from
+//! seeds, the fuzz target from bytes.
 //!
 //! Nothing here is for others: firmware in Rust uses `eeruf-core`, firmware in C uses `c/eeruf.h`.
 

@@ -64,11 +64,7 @@ enum Verb {
         nothing_skipped: bool,
     },
     /// Build the firmware, run it on emulated boards, and compare its figures with those of docs/firmware.md
-    Firmware {
-        /// Put the tables into the document instead of comparing them
-        #[arg(long)]
-        write: bool,
-    },
+    Firmware(firmware::Plan),
     /// Compile the C library strictly, misuse it, and compare it with the Rust crates under sanitizers
     C,
     /// Pack the Arduino library, build its examples, and run them on a simulated Uno among simulated modules
@@ -148,10 +144,12 @@ fn main() -> ExitCode {
     match Cli::parse().verb {
         Verb::Test { quick: true, .. } => quick::run_quick(),
         Verb::Test { nothing_skipped, .. } => test::run_all(nothing_skipped),
-        Verb::Firmware { write } => {
+        Verb::Firmware(plan) => {
             let mut steps = Steps::default();
-            steps.step("lint of the firmware", firmware::lint);
-            steps.step("firmware on emulated boards", || firmware::firmware(write));
+            if plan.is_whole() {
+                steps.step("lint of the firmware", firmware::lint);
+            }
+            steps.step("firmware on emulated boards", || firmware::firmware(&plan));
             steps.finish(true)
         }
         Verb::C => one_step("C library", c::c),

@@ -34,8 +34,8 @@ pub(crate) fn write(tables: &Tables) -> Result<(), Trouble> {
     fs::write(DOCUMENT, fresh).map_err(|error| failed(&error))
 }
 
-/// Compares the tables with those of the document.
-pub(crate) fn check(tables: &Tables) -> Result<(), Trouble> {
+/// Compares the tables with those of the document, or with the rows of one board in them.
+pub(crate) fn check(tables: &Tables, only: Option<&str>) -> Result<(), Trouble> {
     let text = read()?;
     let documented: BTreeMap<&str, &str> =
         blocks(&text, MEASURED)?.iter().map(|block| (block.label, block.body)).collect();
@@ -45,7 +45,8 @@ pub(crate) fn check(tables: &Tables) -> Result<(), Trouble> {
         if *name != COMPILERS {
             let now = rows(tables.get(COMPILERS).map_or("", String::as_str));
             let then = rows(documented.get(COMPILERS).unwrap_or(&""));
-            differ.extend(differences(name, expected, measured, |board| {
+            let expected = only.map_or((*expected).to_owned(), |only| rows_of(expected, only));
+            differ.extend(differences(name, &expected, measured, |board| {
                 now.iter().any(|row| row.first() == Some(&board) && then.contains(row))
             }));
         }
@@ -63,6 +64,13 @@ fn read() -> Result<String, Trouble> {
 
 fn failed(why: &dyn std::fmt::Display) -> Trouble {
     Trouble::Failed(format!("{DOCUMENT}: {why}"))
+}
+
+/// A table without the rows of other boards.
+fn rows_of(table: &str, board: &str) -> String {
+    let kept = ["board", "---", board];
+    let is_kept = |line: &&str| rows(line).iter().flatten().next().is_some_and(|first| kept.contains(first));
+    table.lines().filter(is_kept).map(|line| format!("{line}\n")).collect()
 }
 
 /// The cells of each line.
@@ -130,6 +138,12 @@ mod tests {
         assert!(differences("size", &table(3564), &table(3560), |board| board != "microbit").is_empty());
         // What a ring reads does not depend on the compiler.
         assert!(!differences("loop", &table(8000), &table(7999), |_| false).is_empty());
+    }
+
+    #[test]
+    fn one_board_is_compared_with_its_own_rows() {
+        let table = "| board | most |\n|---|---:|\n| microbit | 1 |\n| rv_virt | 2 |\n";
+        assert_eq!(rows_of(table, "rv_virt"), "| board | most |\n|---|---:|\n| rv_virt | 2 |\n");
     }
 
     #[test]

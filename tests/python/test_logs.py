@@ -94,8 +94,9 @@ def test_a_survey_says_who_hears_whom(tmp_path: Path) -> None:
 
 
 def test_the_replay_of_a_hopping_rings_log_is_the_run(tmp_path: Path) -> None:
-    log = tmp_path / "log.csv"
-    study = ["study", eeruf.example("scenes/alcove.toml"), "--method", "eeruf_hopping", "--log", log]
+    log, scene = tmp_path / "log.csv", tmp_path / "alcove.toml"
+    scene.write_text(eeruf.example("scenes/alcove.toml"))
+    study = ["study", scene, "--method", "eeruf_hopping", "--log", log]
     subprocess.run([sys.executable, "-m", "eeruf", *map(str, study), "--periods", "300"], check=True)
     run = eeruf.replay(log)
     assert len(run) > 1500 and (run.kind == run.logged).all() and (run.kind == eeruf.KINDS.index("tentative")).any()

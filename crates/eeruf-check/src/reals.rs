@@ -1,7 +1,7 @@
 //! The shortest period over the reals: what the tick costs.
 //!
 //! With the firing orders, the signs of d and the order of |d| decided, all that is required is linear in the firing
-//! times and the period, so the shortest period of these orders is a fraction that [`linear`](crate::linear) finds
+//! times and the period, so the shortest period of these orders is a fraction that `linear` finds
 //! exactly. Then the tree of a certificate over the reals either refutes every shorter period, or is left with a
 //! branch of other orders. If their shortest period is shorter, it is taken next. If it is not, they are excluded too,
 //! but not by a rule of certificates.

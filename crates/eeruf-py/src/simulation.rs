@@ -76,7 +76,9 @@ impl RobotState {
     fn __repr__(&self) -> String {
         let Self { pose, velocity_m_s, turn_rad_s, touches } = self;
         let touches = if *touches { "True" } else { "False" };
-        format!("RobotState({pose:?}, velocity_m_s={velocity_m_s:?}, turn_rad_s={turn_rad_s:?}, touches={touches})")
+        format!(
+            "RobotState(pose={pose:?}, velocity_m_s={velocity_m_s:?}, turn_rad_s={turn_rad_s:?}, touches={touches})"
+        )
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {

@@ -131,6 +131,8 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.HoppingRing(a(), a(), window_us=m(36_000)),
         lambda: hopping_ring(c),
         lambda: ANY.Fire(a()),
+        lambda: c.random.choice([ANY.PeriodEnded, sim.RobotState, nav.Steering])(a(), a()).to_dict(),
+        lambda: pickle.dumps(ANY.PeriodEnded(m(3), m(1), m(40), m(90), m(0), m({"accepted": 8}))),
         lambda: ANY.Reading(a(), a(), a(), a(), a(), a(), a()),
         lambda: repr(ANY.Violation(m("interval"), m((0, 1)), m(("a", "b")), a(), a(), m("x"))),
         lambda: ANY.Report(a(), a(), a(), a(), a()),
@@ -229,8 +231,7 @@ def hopping_ring(c: Chance) -> None:
         live.wait_us(m(now))
         c.random.choice([live.echo, live.fired])(m(3), m(now))
         c.random.choice([live.disable, live.enable, live.stuck, live.confirmed_us, live.is_enabled])(m(3))
-        if c.random.random() < 0.3:
-            live.restart(m(now))
+        c.random.choice([live.pause, live.resume, lambda: live.restart(m(3)), lambda: None])()
 
 
 def mutated(c: Chance, text: str) -> str:

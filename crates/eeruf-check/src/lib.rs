@@ -16,6 +16,7 @@
 //! | `prove` | the proof of a claim |
 //! | `reals`, `orders`, `linear` | the shortest period over the reals: what the tick costs |
 //! | `search`, `shortest` | the shortest period of an uneven ring, by the same rules |
+//! | `veripb` | the same claim as a model and a proof for VeriPB, a checker that others wrote |
 #![forbid(unsafe_code)]
 
 mod bounds;
@@ -34,6 +35,7 @@ mod state;
 mod symmetry;
 mod text;
 mod tree;
+pub mod veripb;
 
 use core::fmt;
 

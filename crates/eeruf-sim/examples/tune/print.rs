@@ -21,8 +21,8 @@ pub(crate) fn source(rounds: &[Round], found: &[(Method, Tuned)]) -> String {
     let courses = rounds.last().map_or(0, |round| round.courses);
     text += &format!(
         "//! Every course is driven alone, with a second robot behind, and with one ahead.\n\n\
-         use super::pilot::{{Piloting, tuned}};\n\
-         use crate::methods::Method;\n\n\
+         use crate::methods::Method;\n\
+         use crate::navigation::{{Piloting, tuned}};\n\n\
          /// Smoothing, threshold, width of a wide valley, highest density, rate of turn in degrees/s, gain, range\n\
          /// in metres, growth rate operator; of the last {courses} courses how many were finished alone, behind and\n\
          /// ahead.\n\

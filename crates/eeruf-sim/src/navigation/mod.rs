@@ -3,8 +3,11 @@
 
 mod differential_drive;
 mod himm;
+mod piloting;
 mod vfh;
 
 pub use differential_drive::{Driven, LabMate};
 pub use himm::{DECREMENT, Himm, INCREMENT, MAX_VALUE};
+pub use piloting::Piloting;
+pub(crate) use piloting::tuned;
 pub use vfh::{Histogram, SECTOR_RAD, SECTORS, Steering, Valley, Vfh, sector_of};

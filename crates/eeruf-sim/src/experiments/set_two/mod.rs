@@ -13,11 +13,11 @@ mod pilots;
 mod run;
 mod runs;
 
+pub use crate::navigation::Piloting;
 pub use course::{Course, POLE_RADIUS_M, ROOM_M, SECOND_AHEAD, SECOND_BEHIND};
 pub use figures::Figures;
 pub use odometry::OdometryNoise;
 pub use options::SetTwoOptions;
-pub use pilot::Piloting;
 pub use pilots::{Pilots, UnknownPilot};
 pub use run::{Cell, Ending, Place, Run};
 pub use runs::{Drive, MULTI_ECHO_CONSECUTIVE, SetTwo, SpeedStep, drive, set_two, speed_sweep};

@@ -5,8 +5,8 @@
 //! the best 4 on courses 32 to 103. The best is taken.
 //! Every course is driven alone, with a second robot behind, and with one ahead.
 
-use super::pilot::{Piloting, tuned};
 use crate::methods::Method;
+use crate::navigation::{Piloting, tuned};
 
 /// Smoothing, threshold, width of a wide valley, highest density, rate of turn in degrees/s, gain, range
 /// in metres, growth rate operator; of the last 72 courses how many were finished alone, behind and

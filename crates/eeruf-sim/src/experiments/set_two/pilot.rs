@@ -10,7 +10,7 @@ use super::run::{Cell, Ending, Place, Run};
 use crate::{
     geometry::{Moment, Point, Pose, Vector},
     methods::Method,
-    navigation::{Driven, Himm, LabMate, Vfh},
+    navigation::{Driven, Himm, LabMate, Piloting},
     results::{DEFAULT_TOLERANCE_US, Readings},
     scene::Body,
     simulation::Kinematics,
@@ -29,49 +29,6 @@ const PHANTOM_M: f64 = 0.35;
 const CERTAIN: u8 = 6;
 /// A pole that came nearer than this to the platform's middle should have been seen.
 const PASSED_M: f64 = 1.0;
-
-/// How readings become steering.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piloting {
-    /// The vector field histogram; its highest speed is the platform's.
-    pub vfh: Vfh,
-    /// What a steering error of a radian asks for, in rad/s.
-    pub turn_gain: f64,
-    /// Echoes from farther away are not entered into the grid, but clear the way there, in metres.
-    pub range_m: f64,
-    /// Whether cells beside certain ones grow faster, see [`Himm::growth`].
-    pub growth: bool,
-}
-
-impl Piloting {
-    /// What an earlier search found by the score of `eeruf` above all, see [`Pilots::Shared`](super::Pilots::Shared).
-    pub const SHARED: Self = tuned(3, 0.03, 13, 0.7, 360.0, 3.0, 2.75, true);
-}
-
-/// The published method with what a search may change. The arguments stand in the columns of a table.
-#[expect(clippy::too_many_arguments, reason = "a row of a table")]
-pub(super) const fn tuned(
-    smoothing: usize,
-    threshold: f64,
-    wide: usize,
-    density_max: f64,
-    turn_max_deg_s: f64,
-    turn_gain: f64,
-    range_m: f64,
-    growth: bool,
-) -> Piloting {
-    let vfh = Vfh {
-        smoothing,
-        threshold,
-        wide,
-        density_max,
-        turn_max_rad_s: turn_max_deg_s.to_radians(),
-        window: 33,
-        speed_max_m_s: 1.0,
-        speed_min_m_s: 0.04,
-    };
-    Piloting { vfh, turn_gain, range_m, growth }
-}
 
 /// Steers the first robot of a world.
 pub(super) struct Pilot<'w> {

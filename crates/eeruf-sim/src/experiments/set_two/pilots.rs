@@ -4,8 +4,10 @@ use core::fmt;
 use core::str::FromStr;
 
 use super::own_pilots::OWN;
-use super::pilot::Piloting;
-use crate::{methods::Method, navigation::Vfh};
+use crate::{
+    methods::Method,
+    navigation::{Piloting, Vfh},
+};
 
 /// Who steers.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

@@ -1,0 +1,46 @@
+//! All that is chosen when a robot steers by its readings: what a search for pilots changes.
+
+use super::Vfh;
+
+/// How readings become steering.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piloting {
+    /// The vector field histogram; its highest speed is the platform's.
+    pub vfh: Vfh,
+    /// What a steering error of a radian asks for, in rad/s.
+    pub turn_gain: f64,
+    /// Echoes from farther away are not entered into the grid, but clear the way there, in metres.
+    pub range_m: f64,
+    /// Whether cells beside certain ones grow faster, see [`Himm::growth`](super::Himm::growth).
+    pub growth: bool,
+}
+
+impl Piloting {
+    /// What an earlier search found by the score of `eeruf` above all, the same for every method.
+    pub const SHARED: Self = tuned(3, 0.03, 13, 0.7, 360.0, 3.0, 2.75, true);
+}
+
+/// The published method with what a search may change. The arguments stand in the columns of a table.
+#[expect(clippy::too_many_arguments, reason = "a row of a table")]
+pub(crate) const fn tuned(
+    smoothing: usize,
+    threshold: f64,
+    wide: usize,
+    density_max: f64,
+    turn_max_deg_s: f64,
+    turn_gain: f64,
+    range_m: f64,
+    growth: bool,
+) -> Piloting {
+    let vfh = Vfh {
+        smoothing,
+        threshold,
+        wide,
+        density_max,
+        turn_max_rad_s: turn_max_deg_s.to_radians(),
+        window: 33,
+        speed_max_m_s: 1.0,
+        speed_min_m_s: 0.04,
+    };
+    Piloting { vfh, turn_gain, range_m, growth }
+}

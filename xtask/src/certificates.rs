@@ -107,7 +107,7 @@ fn timed(command: &mut Command, total: &mut Duration) -> Result<String, Trouble>
 }
 
 /// Ring files for the table of docs/search.md with so many sensors.
-fn table(sensors: &[u32], tick_us: u32) -> Vec<(String, String)> {
+pub(crate) fn table(sensors: &[u32], tick_us: u32) -> Vec<(String, String)> {
     let mut rings = Vec::new();
     for layout in ["line", "ring"] {
         for sensors in sensors {

@@ -42,7 +42,7 @@ impl<'m> Proof<'m> {
     pub(crate) fn new(model: &'m Model<'m>) -> Self {
         let last = model.lines.len();
         let (steps, at_most_one, size_chains) = (HashMap::new(), HashMap::new(), HashMap::new());
-        let text = format!("pseudo-Boolean proof version 3.0;\nf {last};\n");
+        let text = format!("pseudo-Boolean proof version 3.0\nf {last};\n");
         Self { model, text, last, steps, at_most_one, size_chains, derived: HashSet::new() }
     }
 

@@ -140,7 +140,7 @@ pub(crate) fn read_model(text: &str) -> Vec<Inequality> {
 pub(crate) fn check(model: &str, proof: &str) -> Result<(), String> {
     let mut known: Vec<Option<Inequality>> = read_model(model).into_iter().map(Some).collect();
     let mut lines = proof.lines().enumerate();
-    if lines.next().map(|(_, line)| line) != Some("pseudo-Boolean proof version 3.0;") {
+    if lines.next().map(|(_, line)| line) != Some("pseudo-Boolean proof version 3.0") {
         return Err("line 1: no header".to_owned());
     }
     let mut is_unsatisfiable = false;

@@ -358,4 +358,20 @@ mod tests {
         assert_eq!(rows.len(), 3);
         assert!(rows.iter().all(|row| row.t_echo.is_none()), "{rows:?}");
     }
+
+    #[test]
+    fn a_survey_asks_to_be_polled_when_the_first_window_ends() {
+        let plan = SurveyPlan::new(2).with_leads(2, Micros::new(500)).with_solos(1);
+        let mut survey = Survey::new(plan, Instant::from_micros(0));
+        let mut rows = 0;
+        while let Some(now) = survey.next_deadline() {
+            while let Some(event) = survey.poll(now) {
+                if let SurveyEvent::Row(row) = event {
+                    assert_eq!(now, row.fired + plan.window, "{row:?}");
+                    rows += 1;
+                }
+            }
+        }
+        assert_eq!(rows, 2 + 2 * 2 * 2);
+    }
 }

@@ -189,3 +189,34 @@ fn each_error_names_what_is_wrong_and_what_is_expected() {
     let error = balanced().push(1, None, Firing::new(Phase(0))).unwrap_err();
     assert_eq!(error.to_string(), "sensor 2; expected 1 to 1");
 }
+
+#[test]
+fn the_tracker_knows_each_sensors_age_as_its_verdicts_say_it() {
+    let mut tracker = EchoTracker::<2>::new(TrackerSettings::BALANCED).unwrap();
+    assert_eq!((tracker.age(0), tracker.age(1), tracker.age(2)), (None, None, None));
+    for firing in 0..40_u8 {
+        let echo = if firing % 10 < 6 { us(9000) } else { None };
+        let verdict = tracker.push(1, echo, Firing::new(Phase(firing % PHASES))).unwrap();
+        assert_eq!(tracker.age(1), verdict.age);
+    }
+    assert!(tracker.age(1).is_some());
+    assert_eq!(tracker.age(0), None);
+}
+
+#[test]
+fn a_tentative_echo_needs_one_vote_more_above_the_restless_rate_and_not_at_it() {
+    let mut random = 1_u32;
+    let mut seen = [false; 2];
+    let mut tracker = balanced();
+    for firing in 0..20_000_u32 {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        // Most echoes are like no other.
+        let echo = if random >> 30 == 0 { 9000 } else { 2000 + (random >> 12) % 20_000 };
+        tracker.push(0, us(echo), Firing::new(Phase((firing % u32::from(PHASES)) as u8))).unwrap();
+        let (rate, votes) = (tracker.sensors[0].unexplained(), TrackerSettings::BALANCED.tentative_votes);
+        assert_eq!(tracker.tentative_votes(0), if rate > 178 { votes + 1 } else { votes }, "at a rate of {rate}");
+        seen[0] |= rate == 178;
+        seen[1] |= rate == 179;
+    }
+    assert_eq!(seen, [true, true], "rates that were met");
+}

@@ -3,8 +3,8 @@
 //! fixed time later.
 
 use eeruf_core::{
-    HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros, ReadingKind,
-    RingEvent,
+    HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros, Phase, ReadingKind,
+    RingEvent, Tally,
 };
 use proptest::prelude::*;
 
@@ -140,4 +140,47 @@ fn an_echo_of_ones_own_is_believed_nearly_always() {
         let kinds = readings(&[own], 240, HoppingSettings::BALANCED, late, 1, 400);
         assert!(believed(&kinds) * 10 > kinds.len() * 9, "{late:?}: {} of {}", believed(&kinds), kinds.len());
     }
+}
+
+#[test]
+fn a_reading_has_the_phase_of_its_firing_and_a_period_counts_the_readings_it_gave() {
+    let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
+    let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
+    let listening = HoppingListening { blanking: Micros::new(BLANKING), ..HoppingListening::new(Micros::new(WINDOW)) };
+    let start = Instant::from_micros(0);
+    let mut ring = HoppingRing::<SENSORS>::new(&schedule, HoppingSettings::BALANCED, listening, 1, start).unwrap();
+    let (mut fired, mut given, mut late) = ([None; SENSORS], Tally::<u8>::default(), 0);
+    let (mut periods, mut phases, mut edges) = (0, Vec::new(), Vec::<(Instant, u8)>::new());
+    while periods < 60 {
+        let now = ring.next_deadline();
+        edges.sort_unstable_by_key(|&(at, _)| at.since(start));
+        while let Some(&(at, sensor)) = edges.first().filter(|edge| now.has_reached(edge.0)) {
+            ring.echo(sensor, at).unwrap();
+            edges.remove(0);
+        }
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor, phase, .. } => {
+                    fired[usize::from(sensor)] = Some(phase);
+                    // Now and then after the window.
+                    let length = if periods % 5 == 4 { WINDOW + 9000 } else { 9000 };
+                    edges.push((now + Micros::new(length + u32::from(sensor)), sensor));
+                }
+                RingEvent::Reading(reading) => {
+                    assert_eq!(Some(reading.phase), fired[usize::from(reading.sensor)], "{reading:?}");
+                    late += u32::from(reading.kind == ReadingKind::Late);
+                    given.count(reading.kind);
+                }
+                RingEvent::PeriodEnded(stats) => {
+                    assert_eq!(stats.tally, core::mem::take(&mut given), "period {periods}");
+                    phases.push(stats.phase);
+                    periods += 1;
+                }
+            }
+        }
+    }
+    assert!(late > 0, "no reading was late");
+    let first = usize::from(phases[0].0);
+    let wanted = (first..).map(|phase| Phase((phase % usize::from(code.phases())) as u8));
+    assert!(phases.iter().copied().eq(wanted.take(phases.len())), "{phases:?}");
 }

@@ -127,3 +127,21 @@ fn a_sensor_that_is_not_there_is_named_in_the_error() {
     assert_eq!(ring.fired(2, now), expected);
     assert!(ring.is_enabled(1) && !ring.is_enabled(2));
 }
+
+#[test]
+fn nor_is_one_that_the_ring_has_room_for_but_does_not_have() {
+    let ms = |time| Micros::from_millis(time);
+    let waits: [&[Micros]; 2] = [&[ms(10), ms(55)], &[ms(20), ms(60)]];
+    let schedule = Schedule::<4>::from_slices(ms(100), &[Micros::ZERO; 2], waits).unwrap();
+    let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW));
+    let mut ring = Ring::<_, 4>::unverified(&schedule, config, Instant::from_micros(0)).unwrap();
+    for sensor in [2, 3, 4, 255] {
+        let now = ring.next_deadline();
+        let expected: Result<(), SensorError> = Err(SensorError { sensor, sensors: 2 });
+        assert_eq!(ring.echo(sensor, now), expected);
+        assert_eq!(ring.stuck(sensor), expected);
+        assert_eq!(ring.disable(sensor), expected);
+        assert_eq!(ring.enable(sensor), expected);
+        assert_eq!(ring.fired(sensor, now), expected);
+    }
+}

@@ -181,3 +181,11 @@ fn a_violation_names_sensors_phases_and_what_would_do() {
     assert!(!table.verify(&loose).violations().any(|found| matches!(found, PhaseViolation::Crosstalk { .. })));
     assert_eq!(table.verify(&loose).max_t_delta(), Some(Micros::new(50)));
 }
+
+#[test]
+fn an_interval_too_long_for_32_bits_is_not_taken_for_a_short_one() {
+    // From the one sensor to the other in the next period it is 2^32 + 4 us.
+    let times = [[Micros::ZERO, Micros::new(5)]];
+    let table = PhaseTable::new(Micros::MAX, &times);
+    assert_eq!(table.min_interval(Layout::Line(2)).unwrap().value, Micros::new(5));
+}

@@ -263,3 +263,14 @@ fn a_change_to_a_faster_schedule_is_no_jump_of_the_clock() {
     assert!(events.iter().any(|event| matches!(event, RingEvent::Reading(_))), "{events:?}");
     assert!(now.since(fired) >= slow.min_refire());
 }
+
+#[test]
+fn schedules_are_equal_by_their_times_verified_or_not() {
+    let plain = Schedule::<2>::from_firing(ms(100), [[ms(10), ms(55)], [ms(20), ms(60)]]).unwrap();
+    let verified = verified(100, [10, 55], [20, 60], 40);
+    assert_eq!(plain, *verified);
+    for (period, a, b) in [(101, [10, 55], [20, 60]), (100, [10, 54], [20, 60]), (100, [10, 55], [20, 59])] {
+        let other = Schedule::<2>::from_firing(ms(period), [a.map(ms), b.map(ms)]).unwrap();
+        assert_ne!(plain, other);
+    }
+}

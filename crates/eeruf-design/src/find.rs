@@ -8,7 +8,7 @@ use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_sim::{AnySchedule, ScheduleFile};
 
 use crate::atlas;
-use crate::find_uneven::shortest_uneven;
+use crate::find_uneven::{ToSpare, prefer_uneven, shortest_uneven};
 use crate::found::FoundJson;
 use crate::ring::RingSpec;
 
@@ -16,6 +16,8 @@ use crate::ring::RingSpec;
 const PREFERENCE_BUDGET: u64 = 100_000;
 /// How many nodes it may cost to find out what one need, relaxed, would bring.
 const WHAT_IF_BUDGET: u64 = 20_000;
+/// How many nodes the choice among the shortest schedules of an uneven ring may cost.
+const SPARE_BUDGET: u64 = 30_000;
 
 /// How far to search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,8 +51,11 @@ pub struct RingDesign {
     /// Why it is not shorter, in words.
     pub reason: String,
     /// What is known of the choice among the schedules of that period, if the period is proven and all sensors are
-    /// alike; otherwise it is the first that was found.
+    /// alike.
     pub preferred: Option<Preferred<MAX_SENSORS>>,
+    /// What the schedule of a ring whose sensors are not alike has to spare, if the period is proven: of those with
+    /// this period it is the one with most.
+    pub to_spare: Option<ToSpare>,
     /// Whether period and schedule are the atlas's, and nothing was searched.
     pub from_atlas: bool,
     /// What would be shorter, if it was asked for.
@@ -130,10 +135,15 @@ impl RingSpec {
             let problem = spec.problem();
             let known = if search.atlas && unproven.is_none() { known(&problem)? } else { None };
             let from_atlas = known.is_some();
+            let mut to_spare = None;
             let (mut found, mut reason, mut preferred) = if let Some(known) = known {
                 known
             } else if self.uneven.is_some() {
-                let (found, reason) = shortest_uneven(&problem, search.budget, control)?;
+                let (mut found, reason) = shortest_uneven(&problem, search.budget, control)?;
+                if let Some(schedule) = found.schedule.filter(|_| found.proven) {
+                    let (schedule, spare) = prefer_uneven(&problem, &schedule, SPARE_BUDGET, control)?;
+                    (found.schedule, to_spare) = (Some(schedule), Some(spare));
+                }
                 (found, reason, None)
             } else {
                 let designed: ShortestPeriod<MAX_SENSORS> = problem.shortest(search.budget, &mut memory, control)?;
@@ -149,6 +159,7 @@ impl RingSpec {
                 unproven = Some((found.bound, reason.clone()));
             } else if let Some((bound, why)) = &unproven {
                 (found.proven, found.bound, reason, preferred) = (false, *bound, why.clone(), None);
+                to_spare = None;
             }
             let none = if found.proven { NoSchedule::TooFast } else { NoSchedule::EndedEarly };
             let Some(schedule) = chosen else {
@@ -156,11 +167,24 @@ impl RingSpec {
             };
             let needed = self.t_delta_needed(&schedule);
             if schedule.verify(&self.covering(needed).problem().requirements).ok() {
-                let relax = search.what_if && found.proven && self.uneven.is_none();
-                let what_if = if relax { what_if(&problem, &mut memory, control)? } else { Vec::new() };
+                let what_if = match &self.uneven {
+                    _ if !search.what_if || !found.proven => Vec::new(),
+                    Some(_) => spec.what_if_uneven(control)?,
+                    None => what_if(&problem, &mut memory, control)?,
+                };
                 let t_delta = needed.max(t_delta);
                 let spec = self.covering(t_delta);
-                return Ok(Ok(RingDesign { schedule, t_delta, spec, found, reason, preferred, from_atlas, what_if }));
+                return Ok(Ok(RingDesign {
+                    schedule,
+                    t_delta,
+                    spec,
+                    found,
+                    reason,
+                    preferred,
+                    to_spare,
+                    from_atlas,
+                    what_if,
+                }));
             }
             // Past this point a second of silence would not be enough either.
             if needed > Micros::from_millis(1000) {
@@ -193,6 +217,12 @@ fn known(problem: &PeriodProblem<'_>) -> Result<Option<Answer>, SearchError> {
     Ok(Some((found, reason, Some(preferred))))
 }
 
+/// A tenth less, or a tick if that is more, in whole ticks.
+pub(crate) fn less(time: Micros, tick: Micros) -> Micros {
+    let (us, tick) = (time.as_micros(), tick.as_micros().max(1));
+    Micros::new((us - us / 10).min(us.saturating_sub(1)) / tick * tick)
+}
+
 /// Relaxes one need after the other by a tenth, or by one tick if that is more, or by one neighbour.
 fn what_if(
     problem: &PeriodProblem<'_>,
@@ -200,12 +230,8 @@ fn what_if(
     control: &mut impl Control,
 ) -> Result<Vec<WhatIf>, SearchError> {
     let Requirements { t_delta, min_interval, window, layout, .. } = problem.requirements;
-    let tick = problem.tick.as_micros().max(1);
     // In whole ticks, as others are rounded up to them.
-    let less = |time: Micros| {
-        let us = time.as_micros();
-        Micros::new((us - us / 10).min(us.saturating_sub(1)) / tick * tick)
-    };
+    let less = |time: Micros| less(time, problem.tick);
     let (shorter, listening) = (less(min_interval), less(window));
     let separation = less(problem.requirements.separation()).as_micros();
     let nearer = Micros::new(separation.saturating_sub(1) / 2);

@@ -7,7 +7,7 @@
 //! | `limits`, `layout` | what numbers a ring file may hold; how the sensors stand |
 //! | `each`, `uneven` | one number for all sensors or one for each; what sensors need that are not alike |
 //! | `ring` | the ring file, turned into what a schedule must meet |
-//! | `find`, `find_uneven` | the shortest period for it, and what would make it shorter |
+//! | `find`, `find_uneven`, `what_if_uneven` | the shortest period for it, and what would make it shorter |
 //! | `found` | the answer as it is printed in JSON |
 //! | `hopping` | schedules of many phases: the file, and the shortest period |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
@@ -41,10 +41,11 @@ mod ring;
 mod text;
 mod ticks;
 mod uneven;
+mod what_if_uneven;
 
 pub use each::Each;
 pub use find::{NoSchedule, RingDesign, Search, WhatIf};
-pub use find_uneven::shortest_uneven;
+pub use find_uneven::{ToSpare, prefer_uneven, shortest_uneven};
 pub use found::FoundJson;
 pub use hopping::{HoppingDesign, PhaseFile, PhaseSchedule};
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};

@@ -105,7 +105,7 @@ fn opposite(literal: &str) -> String {
 }
 
 /// Whether unit propagation in these ends in a contradiction.
-fn propagates_to_contradiction<'a>(all: impl Iterator<Item = &'a Inequality> + Clone) -> bool {
+fn propagates_to_contradiction<'a>(all: &(impl Iterator<Item = &'a Inequality> + Clone)) -> bool {
     let mut assigned: HashMap<&str, bool> = HashMap::new();
     loop {
         let mut news = false;
@@ -154,7 +154,7 @@ pub(crate) fn check(model: &str, proof: &str) -> Result<(), String> {
             "rup" => {
                 let new = Inequality::parse(rest);
                 let negated = new.negated();
-                if !propagates_to_contradiction(known.iter().flatten().chain([&negated])) {
+                if !propagates_to_contradiction(&known.iter().flatten().chain([&negated])) {
                     return wrong("unit propagation does not derive it");
                 }
                 known.push(Some(new));
@@ -241,7 +241,7 @@ fn not_redundant(known: &[Option<Inequality>], new: &Inequality, witness: &str) 
         let negated = image.negated();
         let follows = image == *goal && goal != new
             || present.contains(&image)
-            || propagates_to_contradiction(known.iter().flatten().chain([&without, &negated]));
+            || propagates_to_contradiction(&known.iter().flatten().chain([&without, &negated]));
         if !follows {
             return Some(format!("the witness does not keep {goal:?}"));
         }

@@ -127,7 +127,7 @@ fn name(layout: &str, sensors: u32, window_ms: u32, tick_us: u32) -> String {
 }
 
 /// The ring files that users copy.
-fn files() -> Vec<(String, String)> {
+pub(crate) fn files() -> Vec<(String, String)> {
     let mut rings: Vec<(String, String)> = fs::read_dir("rings")
         .into_iter()
         .flatten()

@@ -108,7 +108,7 @@ enum Verb {
     },
     /// Certify the rings of the tables, and have both checkers judge them and mutated ones (minutes)
     Certificates(certificates::Plan),
-    /// Build the proof checker VeriPB, and have it judge the proofs of the table (minutes)
+    /// Build the proof checker VeriPB, and have it judge the proofs of the table and of rings/ (minutes)
     Veripb(veripb::Plan),
     /// Pack the crates that are published, and build and test each from its tarball, in a folder of its own (minutes)
     Package,

@@ -1,5 +1,5 @@
 //! `cargo xtask veripb`: has VeriPB, a checker of pseudo-Boolean proofs that others wrote, judge the proofs of the
-//! table's rings, and refuse broken ones.
+//! table's rings and of `rings/`, and refuse broken ones.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use crate::certificates::table;
+use crate::certificates::{files, table};
 use crate::steps::{Steps, Trouble, output, run};
 
 /// What to check.
@@ -42,7 +42,7 @@ pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
     let sensors: Vec<u32> = [8, 12, 16, 24].into_iter().filter(|sensors| *sensors <= plan.sensors).collect();
     let mut rows = "| ring | nodes | model, bytes | proof, bytes | VeriPB |\n|---|---|---|---|---|\n".to_owned();
     let (mut judged, mut total) = (0, Duration::ZERO);
-    for (name, ring) in table(&sensors, plan.tick_us) {
+    for (name, ring) in table(&sensors, plan.tick_us).into_iter().chain(files()) {
         steps.step(&name, || {
             let took = judge(&program, &name, &ring, &mut rows)?;
             judged += 1;

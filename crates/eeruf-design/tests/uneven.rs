@@ -45,33 +45,26 @@ fn the_uneven_rings_have_a_shortest_period_that_is_verified_and_certified() {
 
 #[test]
 fn of_the_schedules_of_an_uneven_ring_the_one_with_most_to_spare_is_chosen() {
-    let spec = read(
-        "sensors = 4\nlayout = \"line\"\nneighbours = 2\nt_delta_us = [999, 499, 499, 499]\nwindow_us = 25_000\n\
-         min_interval_us = 9_000\nshared_lines = [[0, 3]]",
-    );
-    let found = design(&spec);
+    // So much more of each need than the ring has, in microseconds.
+    let ring = |t_delta: u32, interval: u32, refire: u32| {
+        let t_deltas = [999, 499, 499, 499, 499].map(|us| us + t_delta);
+        read(&format!(
+            "sensors = 5\nneighbours = 3\nt_delta_us = {t_deltas:?}\nwindow_us = {}\nmin_interval_us = {}\n\
+             intervals_us = [[0, 4, {}]]",
+            25_000 + refire,
+            7_000 + interval,
+            4_000 + interval
+        ))
+    };
+    let found = design(&ring(0, 0, 0));
     let spare = found.to_spare.expect("an uneven ring that is proven");
     assert!(found.found.proven && spare.proven == [true; 3], "{spare:?}");
-    let keeps = |t_delta: u32, interval: u32, window: u32| {
-        let text = format!(
-            "sensors = 4\nlayout = \"line\"\nneighbours = 2\nt_delta_us = [{}, {}, {1}, {1}]\nwindow_us = 25_000\n\
-             retrigger_us = {}\nmin_interval_us = {}\nintervals_us = [[0, 3, {}]]",
-            999 + t_delta,
-            499 + t_delta,
-            25_000 + window,
-            9_000 + interval,
-            25_000 + interval,
-        );
-        // The shared line as the interval that it is.
-        read(&text)
-    };
-    let us = Micros::as_micros;
-    let (t_delta, interval) = (us(spare.t_delta), us(spare.interval));
-    let kept = keeps(t_delta, interval, us(spare.refire));
-    assert!(found.schedule.verify(&kept.problem().requirements).ok(), "{spare:?} {:?}", found.schedule);
-    assert!(t_delta + interval + us(spare.refire) > 0, "there is something to spare");
-    // Half a tick more t_delta, or a tick more interval, takes longer.
-    for harder in [keeps(t_delta + 500, 0, 0), keeps(t_delta, interval + 1000, 0)] {
+    let [t_delta, interval, refire] = [spare.t_delta, spare.interval, spare.refire].map(Micros::as_micros);
+    assert_eq!([t_delta, interval, refire], [0, 1000, 0]);
+    assert!(found.schedule.verify(&ring(t_delta, interval, refire).problem().requirements).ok(), "{spare:?}");
+    // Half a tick more t_delta, a tick more interval, or later refiring takes longer.
+    for harder in [ring(t_delta + 500, 0, 0), ring(t_delta, interval + 1000, 0), ring(t_delta, interval, refire + 1000)]
+    {
         let longer = design(&harder);
         assert!(longer.found.proven && longer.found.value > found.found.value, "{:?}", longer.found);
     }

@@ -119,12 +119,20 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
         let r = &world.random;
         if r.once_in(100) {
             let sensor = r.within(0, K as u32) as u8;
-            match r.within(0, 9) {
+            match r.within(0, 12) {
                 0..3 => same(&mut c, Do::Enable, sensor, 0, ring.disable(sensor)),
                 3..8 => same(&mut c, Do::Enable, sensor, 1, ring.enable(sensor)),
                 8 => {
                     let at = world.now.wrapping_add(r.duration(3_000));
                     same(&mut c, Do::Fired, sensor, at, ring.fired(sensor, Instant::from_micros(at)));
+                }
+                9 => {
+                    ring.pause();
+                    same::<()>(&mut c, Do::Pause, 0, 1, Ok(()));
+                }
+                10 | 11 => {
+                    ring.resume();
+                    same::<()>(&mut c, Do::Pause, 0, 0, Ok(()));
                 }
                 _ => {
                     ring.restart(Instant::from_micros(world.now));

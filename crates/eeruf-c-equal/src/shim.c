@@ -125,7 +125,9 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 3:
         if (handle->hopping != NULL) return eeruf_hopping_enable(handle->hopping, sensor, value != 0);
         return eeruf_ring_enable(ring, sensor, value != 0);
-    case 4: return eeruf_ring_pause(ring, value != 0);
+    case 4:
+        if (handle->hopping != NULL) return eeruf_hopping_pause(handle->hopping, value != 0);
+        return eeruf_ring_pause(ring, value != 0);
     case 5:
         if (handle->hopping != NULL) return eeruf_hopping_restart(handle->hopping, value);
         return eeruf_ring_restart(ring, value);
@@ -134,8 +136,8 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 8: return eeruf_ring_set_window(ring, value);
     case 9: return eeruf_ring_set_blanking(ring, value);
     case 10: return eeruf_hc_sr04_edge(&handle->modules, sensor & 0x7fu, sensor >> 7, value);
-    case 11: return eeruf_hc_sr04_fire(&handle->modules, sensor & 0x7fu, value, sensor >> 7);
-    case 12: return eeruf_hc_sr04_cannot_read(&handle->modules, sensor, value);
+    case 11: return eeruf_hc_sr04_fire(&handle->modules, sensor & 0x7fu, sensor >> 7);
+    case 12: return eeruf_hc_sr04_cannot_read(&handle->modules, sensor);
     case 13: return eeruf_hc_sr04_cannot_write(&handle->modules, sensor);
     case 14: return eeruf_hc_sr04_fired(&handle->modules, sensor, value);
     case 15: return eeruf_hc_sr04_change_schedule(&handle->modules, handle->schedules[value]);

@@ -2076,6 +2076,11 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     return EERUF_OK;
 }
 
+/* Whether what a sensor hears of its last firing moves as the code says. */
+static bool was_steady(const EerufHoppingRing *hopping, const EerufHopper *hopper) {
+    return (hopper->flags & SETTLED) && is_steady(hopping, hopper->late_us);
+}
+
 EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const int32_t *change_us,
                                EerufEvent *event) {
     EerufStatus status = hopping == NULL ? (EerufStatus)EERUF_ERR_NULL : is_ready(&hopping->ring);
@@ -2086,7 +2091,10 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     if (status == EERUF_OK && !HOPS(&hopping->ring)) status = EERUF_ERR_NOT_READY;
     if (status == EERUF_OK) status = poll(&hopping->ring, now_us, NULL, event, true);
     if (status != EERUF_EVENT) return status;
-    if (hopping->changed) firing_changed(hopping);
+    if (hopping->changed) {
+        firing_changed(hopping);
+        hopping->changes++;
+    }
     hopping->changed = 0;
     if (event->kind == EERUF_EVENT_FIRE) {
         event->phase = hopping->phase;
@@ -2105,7 +2113,7 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
         if (reading->kind != EERUF_READING_FIRST) {
             end_weighing(&sensor_of(&hopping->ring, event->sensor)->filter, EERUF_NO_ECHO, reading);
         } else {
-            const bool steady = (hopper->flags & SETTLED) && is_steady(hopping, hopper->late_us);
+            const bool steady = was_steady(hopping, hopper);
             if (change_us != NULL) shift_tracks(hopper, change_us[event->sensor]);
             weigh(hopping, event->sensor, (hopper->flags & SOLO) != 0, steady, reading);
         }
@@ -2170,5 +2178,17 @@ uint8_t eeruf_hopping_solo(const EerufHoppingRing *hopping) {
 
 uint32_t eeruf_hopping_lag_us(const EerufHoppingRing *hopping, uint8_t sensor) {
     return has_hopper(hopping, sensor) == EERUF_OK ? hopping->hoppers[sensor].lag_us : 0;
+}
+
+uint8_t eeruf_hopping_weighed(const EerufHoppingRing *hopping, uint8_t sensor) {
+    const EerufHopper *hopper;
+    if (has_hopper(hopping, sensor) != EERUF_OK) return 0;
+    hopper = &hopping->hoppers[sensor];
+    return (uint8_t)((hopper->flags & SOLO ? EERUF_WEIGHED_SOLO : 0u) |
+                     (was_steady(hopping, hopper) ? EERUF_WEIGHED_STEADY : 0u));
+}
+
+uint8_t eeruf_hopping_changes(const EerufHoppingRing *hopping) {
+    return has_hopper(hopping, 0) == EERUF_OK ? hopping->changes : 0;
 }
 #endif

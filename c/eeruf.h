@@ -476,7 +476,7 @@ typedef struct EerufHoppingRing {
     EerufHoppingConfig config;
     uint32_t start_us, length_us, solo_at_us, dies_us, random;
     uint16_t earned, tolerated, least_late[3], most_late[3];
-    uint8_t phase, cycle, planned, place, since_solo, since_shift, changed, candidate, readier;
+    uint8_t phase, cycle, planned, place, since_solo, since_shift, changed, changes, candidate, readier;
     uint8_t tally[EERUF_READING_KINDS];
 } EerufHoppingRing;
 
@@ -500,6 +500,12 @@ uint32_t eeruf_hopping_confirmed_us(const EerufHoppingRing *ring, uint8_t sensor
 uint8_t eeruf_hopping_solo(const EerufHoppingRing *ring);
 /* The lag of a sensor as it is now. */
 uint32_t eeruf_hopping_lag_us(const EerufHoppingRing *ring, uint8_t sensor);
+/* For the log of a reading that the last poll gave: how it was weighed. 0 for a sensor that is not there. */
+#define EERUF_WEIGHED_SOLO 1u   /* no other sensor's sound could be heard */
+#define EERUF_WEIGHED_STEADY 2u /* firings were so punctual that crosstalk moved as the code says */
+uint8_t eeruf_hopping_weighed(const EerufHoppingRing *ring, uint8_t sensor);
+/* How often firing times have changed against each other otherwise than by the phase, modulo 256. */
+uint8_t eeruf_hopping_changes(const EerufHoppingRing *ring);
 #endif
 
 #ifdef __cplusplus

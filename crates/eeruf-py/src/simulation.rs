@@ -1,7 +1,11 @@
 //! `sim.Simulation`, which goes on step by step, and `sim.simulate_blocks`.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::{
+    path::PathBuf,
+    sync::{Mutex, MutexGuard, PoisonError},
+};
 
+use eeruf::Recording;
 use eeruf_sim::{Body, Point, SimulationError, simulation::expected_readings};
 use pyo3::{
     prelude::*,
@@ -9,10 +13,10 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{flag, number, number_or, whole, whole_or},
+    arguments::{flag, number, number_or, shown, whole, whole_or, wrong},
     errors::Raise,
     fields::to_dict,
-    memory,
+    logs, memory,
     pose::{point_of, pose_of},
     readings::Readings,
     simulate::Asked,
@@ -96,11 +100,14 @@ impl RobotState {
 ///     scene: with one robot or more.
 ///     method: one of ``METHODS``.
 ///     seed: of the noise, 0 to 2^64 - 1; the scene's by default.
+///     mcap: a file that each step is written into, for Foxglove, Rerun and ROS 2: ranges, what is accepted, poses, the
+///         scene, each reading's path and each firing. :meth:`close` ends it, and so does ``with``.
 ///
 /// Raises:
 ///     ArgumentError: no such method, or something of the wrong type or out of range.
 ///     SceneError: the scene has no robot.
 ///     SimulationError: a ring cannot fire by the method as it should listen.
+///     LogError: the file cannot be written.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -113,23 +120,44 @@ impl RobotState {
 ///     1.7
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Simulation {
-    under_way: Mutex<eeruf_sim::Simulation>,
+    under_way: Mutex<UnderWay>,
     asked: Asked,
 }
 
+struct UnderWay {
+    simulation: eeruf_sim::Simulation,
+    recording: Option<Recording>,
+}
+
+/// A step cannot be taken, or not written.
+enum StepError {
+    Simulation(SimulationError),
+    Log(eeruf_logs::LogError),
+}
+
+impl Raise for StepError {
+    fn raise(self) -> PyErr {
+        match self {
+            Self::Simulation(error) => error.raise(),
+            Self::Log(error) => logs::raise(error),
+        }
+    }
+}
+
 impl Simulation {
-    fn new_from(py: Python<'_>, asked: Asked, ending: bool) -> PyResult<Self> {
+    fn new_from(py: Python<'_>, asked: Asked, ending: bool, mcap: Option<PathBuf>) -> PyResult<Self> {
         in_background(py, None, move |background| {
             let asked = asked.with_best(background)?;
             let Asked { ref world, method, ref options } = asked;
             let start = if ending { eeruf_sim::Simulation::ending } else { eeruf_sim::Simulation::new };
-            let under_way = start(world.clone(), method, options, background.stop().clone()).map_err(Raise::raise)?;
-            Ok(Self { under_way: Mutex::new(under_way), asked })
+            let simulation = start(world.clone(), method, options, background.stop().clone()).map_err(Raise::raise)?;
+            let recording = mcap.map(|file| Recording::create(&file, &simulation)).transpose().map_err(logs::raise)?;
+            Ok(Self { under_way: Mutex::new(UnderWay { simulation, recording }), asked })
         })
     }
 
     /// Without the interpreter lock: whoever holds the simulation may wait for that.
-    fn lock(&self) -> MutexGuard<'_, eeruf_sim::Simulation> {
+    fn lock(&self) -> MutexGuard<'_, UnderWay> {
         self.under_way.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -147,7 +175,12 @@ impl Simulation {
         let mut watch = Watch::new(progress)?;
         let readings = py.detach(|| {
             let mut keep_going = |share| watch.go_on(Some(share), || format!("simulating {}", self.asked.method));
-            step(&mut self.lock(), &mut keep_going)
+            let UnderWay { simulation, recording } = &mut *self.lock();
+            let readings = step(simulation, &mut keep_going).map_err(StepError::Simulation)?;
+            if let Some(recording) = recording {
+                recording.add(simulation, &readings).map_err(StepError::Log)?;
+            }
+            Ok::<_, StepError>(readings)
         });
         watch.outcome(readings.map(Readings::new).map_err(Raise::raise))
     }
@@ -156,14 +189,51 @@ impl Simulation {
 #[pymethods]
 impl Simulation {
     #[new]
-    #[pyo3(signature = (scene, method=None, *, seed=None))]
-    #[pyo3(text_signature = "(scene, method=\"eeruf\", *, seed=None)")]
+    #[pyo3(signature = (scene, method=None, *, seed=None, mcap=None))]
+    #[pyo3(text_signature = "(scene, method=\"eeruf\", *, seed=None, mcap=None)")]
     fn new(
         scene: &Bound<'_, PyAny>,
         method: Option<&Bound<'_, PyAny>>,
         seed: Option<&Bound<'_, PyAny>>,
+        mcap: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        Self::new_from(scene.py(), Asked::new(scene, method, None, seed)?, false)
+        let file = |path: &Bound<'_, PyAny>| {
+            path.extract::<PathBuf>().map_err(|_| wrong("mcap", shown(path), "the path of a file to write, or None"))
+        };
+        let mcap = mcap.map(file).transpose()?;
+        Self::new_from(scene.py(), Asked::new(scene, method, None, seed)?, false, mcap)
+    }
+
+    /// End the MCAP file, if one is being written; the simulation may go on.
+    ///
+    /// Raises:
+    ///     LogError: what was left could not be written.
+    ///
+    /// Example:
+    ///     >>> from eeruf import read_firings, sim
+    ///     >>> import pathlib, tempfile
+    ///     >>> file = pathlib.Path(tempfile.mkdtemp(), "wall.mcap")
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> with sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]), mcap=file) as world:
+    ///     ...     readings = world.step(0.6)
+    ///     >>> len(read_firings(file)) == len(readings)
+    ///     True
+    fn close(&self, py: Python<'_>) -> PyResult<()> {
+        py.detach(|| self.lock().recording.take().map_or(Ok(()), Recording::finish)).map_err(logs::raise)
+    }
+
+    fn __enter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        slf
+    }
+
+    fn __exit__(
+        &self,
+        py: Python<'_>,
+        _kind: &Bound<'_, PyAny>,
+        _error: &Bound<'_, PyAny>,
+        _traceback: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        self.close(py)
     }
 
     /// Let time pass, without the interpreter lock. Ctrl-C ends it.
@@ -245,7 +315,7 @@ impl Simulation {
         let last = self.asked.world.robots().len() as u32 - 1;
         let robot = whole("robot", robot, 0..=last)? as usize;
         let (v_m_s, w_rad_s) = (number("v_m_s", v_m_s, -50.0..=50.0)?, number("w_rad_s", w_rad_s, -50.0..=50.0)?);
-        py.detach(|| self.lock().set_velocity(robot, v_m_s, w_rad_s)).map_err(Raise::raise)
+        py.detach(|| self.lock().simulation.set_velocity(robot, v_m_s, w_rad_s)).map_err(Raise::raise)
     }
 
     /// The robots now: a list of ``RobotState``.
@@ -253,7 +323,7 @@ impl Simulation {
     fn robots(&self, py: Python<'_>) -> PyResult<Vec<RobotState>> {
         let world = &self.asked.world;
         let state = |(index, robot): (usize, &eeruf_sim::Robot)| {
-            let moment = self.lock().moment(index)?;
+            let moment = self.lock().simulation.moment(index)?;
             let at = moment.pose.translation;
             Ok(RobotState {
                 pose: (at.x, at.y, moment.pose.rotation.angle()),
@@ -269,7 +339,7 @@ impl Simulation {
     /// The time that has passed, in seconds.
     #[getter]
     fn time_s(&self, py: Python<'_>) -> f64 {
-        py.detach(|| self.lock().time_s())
+        py.detach(|| self.lock().simulation.time_s())
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {
@@ -301,7 +371,7 @@ impl ReadingBlocks {
     }
 
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<Readings>> {
-        if py.detach(|| self.simulation.lock().is_over()) {
+        if py.detach(|| self.simulation.lock().simulation.is_over()) {
             return Ok(None);
         }
         let periods = self.block_periods;
@@ -358,6 +428,6 @@ pub(crate) fn simulate_blocks(
     memory::check(&format!("{readings} readings"), bytes, "so fewer block_periods")?;
     // What is wrong with it is said now, not with the first block.
     Watch::new(progress)?;
-    let simulation = Simulation::new_from(scene.py(), asked, true)?;
+    let simulation = Simulation::new_from(scene.py(), asked, true, None)?;
     Ok(ReadingBlocks { simulation, block_periods, progress: progress.map(|progress| progress.clone().unbind()) })
 }

@@ -209,8 +209,73 @@ impl Simulation {
         Ok(self.under_way.with_dependent(|_, events| events.kinematics().moment(robot, self.now)))
     }
 
+    /// Where a robot is or was at a time, and how fast it went: at most ten seconds before it was last steered, as long
+    /// ago as you like if nobody steered it, and not later than now.
+    ///
+    /// # Errors
+    /// No such robot, or another time.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use eeruf_sim::*;
+    /// let robot = Robot::ring(Pose::identity(), 8, 15f64.to_radians(), 0.3, Transducer::POLAROID_6500);
+    /// let wall = Wall::new(9.0, -5.0, 9.0, 5.0);
+    /// let world = World::new(Scene::new(vec![wall], vec![], Air::default())?, vec![robot], Noise::default())?;
+    /// let mut simulation = Simulation::new(Arc::new(world), Method::Eeruf, &Options::default(), Stop::default())?;
+    /// simulation.step(1.0, |_| true)?;
+    /// simulation.set_velocity(0, 0.5, 0.0)?;
+    /// simulation.step(2.0, |_| true)?;
+    /// assert_eq!(simulation.moment_at(0, 0.9)?.pose.translation.x, 0.0);
+    /// assert_eq!(simulation.moment_at(0, 2.0)?.pose.translation.x, 0.5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn moment_at(&self, robot: usize, time_s: f64) -> Result<Moment, SimulationError> {
+        self.known(robot)?;
+        let then = (time_s * 1e9).round();
+        let is_known = |then| self.under_way.with_dependent(|_, events| events.kinematics().knows(robot, then));
+        if !(0.0..=self.now as f64).contains(&then) || !is_known(then as u64) {
+            let expected = "0 to now, and at most 10 s before the robot was last steered";
+            return Err(SimulationError::Number { what: "time_s", value: time_s, expected });
+        }
+        Ok(self.under_way.with_dependent(|_, events| events.kinematics().moment(robot, then as u64)))
+    }
+
+    /// The world that is simulated.
+    pub fn world(&self) -> &Arc<World> {
+        &self.under_way.borrow_owner().world
+    }
+
     fn known(&self, robot: usize) -> Result<(), SimulationError> {
         let robots = self.robots;
         if robot < robots { Ok(()) } else { Err(SimulationError::Robot { robot, robots }) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{acoustics::Transducer, geometry::Pose, scene::Air, scene::Scene, world::Noise, world::Robot};
+
+    #[test]
+    fn where_a_steered_robot_was_is_known_exactly_for_ten_seconds_and_then_forgotten() {
+        let robot = Robot::ring(Pose::identity(), 2, 0.3, 0.1, Transducer::POLAROID_6500);
+        let scene = Scene::new(vec![], vec![], Air::default()).unwrap();
+        let world = World::new(scene, vec![robot], Noise::default()).unwrap();
+        let (options, stop) = (Options::default(), Stop::default());
+        let mut simulation = Simulation::new(Arc::new(world), Method::Sequential, &options, stop).unwrap();
+        let mut seen = vec![];
+        for step in 0..150 {
+            simulation.set_velocity(0, 0.1 * f64::from(step % 5), 0.3 * f64::from(step % 7 - 3)).unwrap();
+            simulation.step(0.1, |_| true).unwrap();
+            seen.push((simulation.time_s(), simulation.moment(0).unwrap().pose));
+            for &(then, pose) in seen.iter().rev().take(99) {
+                let was = simulation.moment_at(0, then).unwrap().pose;
+                assert!((was.translation.vector - pose.translation.vector).norm() < 1e-12, "{then} s");
+            }
+        }
+        let far = simulation.moment_at(0, 3.0).unwrap_err().to_string();
+        assert!(far.starts_with("time_s is 3; expected 0 to now"), "{far}");
+        assert!(simulation.moment_at(0, 15.01).is_err() && simulation.moment_at(1, 1.0).is_err());
+        assert!(simulation.moment_at(0, f64::NAN).is_err());
     }
 }

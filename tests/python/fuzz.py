@@ -288,7 +288,7 @@ class Used(NamedTuple):
 
 
 # What may come in the second half of a run of any length: more is a leak. Caches have filled by then.
-MOST_GROWN = Used(resident_mb=24.0, heap_mb=0.5, objects=3_000)
+MOST_GROWN = Used(resident_mb=8.0, heap_mb=0.5, objects=3_000)
 
 
 class _MallInfo(ctypes.Structure):

@@ -96,6 +96,8 @@ impl Found {
     #[new]
     #[pyo3(signature = (schedule, value_us, bound_us, proven, nodes, seconds, reason=None, certificate=None,
         real_period_us=None, real_proven=None, from_atlas=None))]
+    #[pyo3(text_signature = "(schedule, value_us, bound_us, proven, nodes, seconds, reason=None, certificate=None, \
+            real_period_us=None, real_proven=None, from_atlas=False)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         schedule: Option<&Bound<'_, PyAny>>,

@@ -186,7 +186,7 @@ impl HoppingSchedule {
     /// Example:
     ///     >>> import eeruf
     ///     >>> eeruf.HoppingSchedule(sensors=2, period_us=60_000, step_us=240, phases=5).to_dict()["t_lag_us"]
-    ///     [0, 29520]
+    ///     [0, 14760]
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         to_dict(slf, &["period_us", "step_us", "phases", "first_multiplier", "t_lag_us"])
     }

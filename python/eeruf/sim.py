@@ -6,8 +6,6 @@ follows from it; ``CAUSES`` is what ``Readings.cause`` counts through.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from eeruf._eeruf import (
     CAUSES,
     EERUF_METHODS,
@@ -26,6 +24,8 @@ from eeruf._eeruf import (
     simulate_blocks,
 )
 
+# As in eeruf itself.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from eeruf._results import Summary
 else:

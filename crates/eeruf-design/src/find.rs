@@ -3,37 +3,16 @@
 use std::error::Error;
 use std::fmt;
 
-use eeruf_core::search::{Control, Found, PeriodProblem, Preferred, SearchError, ShortestPeriod, design};
+use eeruf_core::search::{Control, Found, PeriodProblem, Preferred, SearchError, design};
 use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_sim::{AnySchedule, ScheduleFile};
 
-use crate::atlas;
-use crate::find_uneven::shortest_uneven;
 use crate::found::FoundJson;
 use crate::ring::RingSpec;
+use crate::shortest::{Search, Shortest, shortest};
 
-/// How many nodes the choice among the shortest schedules may cost.
-const PREFERENCE_BUDGET: u64 = 100_000;
 /// How many nodes it may cost to find out what one need, relaxed, would bring.
 const WHAT_IF_BUDGET: u64 = 20_000;
-
-/// How far to search.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Search {
-    /// How many nodes to visit at most before giving the best schedule so far.
-    pub budget: u64,
-    /// Whether to look for what would make the period shorter.
-    pub what_if: bool,
-    /// Whether the atlas may answer where it knows the shortest period.
-    pub atlas: bool,
-}
-
-impl Default for Search {
-    /// 50 million nodes, no look at what would be shorter; the atlas may answer.
-    fn default() -> Self {
-        Self { budget: 50_000_000, what_if: false, atlas: true }
-    }
-}
 
 /// A schedule for a ring file.
 #[derive(Clone, Debug)]
@@ -120,7 +99,6 @@ impl RingSpec {
         search: &Search,
         control: &mut impl Control,
     ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
-        let mut memory = vec![0; design::memory_words(self.sensors)];
         let mut t_delta = self.t_delta;
         // The bound and the reason of the first step without a proof. From there on t_delta is that of a schedule that
         // may be longer than necessary, so what is proven with it is not proven of the ring.
@@ -128,23 +106,10 @@ impl RingSpec {
         loop {
             let spec = self.covering(t_delta);
             let problem = spec.problem();
-            let known = if search.atlas && unproven.is_none() { known(&problem)? } else { None };
-            let from_atlas = known.is_some();
-            let (mut found, mut reason, mut preferred) = if let Some(known) = known {
-                known
-            } else if self.uneven.is_some() {
-                let (found, reason) = shortest_uneven(&problem, search.budget, control)?;
-                (found, reason, None)
-            } else {
-                let designed: ShortestPeriod<MAX_SENSORS> = problem.shortest(search.budget, &mut memory, control)?;
-                let preferred = if designed.found.proven {
-                    Some(problem.prefer(&designed, PREFERENCE_BUDGET, &mut memory, control)?)
-                } else {
-                    None
-                };
-                (designed.found, designed.explanation().to_string(), preferred)
-            };
-            let chosen = preferred.map_or(found.schedule, |preferred| Some(preferred.schedule));
+            let asked = Search { atlas: search.atlas && unproven.is_none(), ..*search };
+            let shortest = shortest(&problem, &asked, control)?;
+            let chosen = shortest.schedule();
+            let Shortest { mut found, mut reason, mut preferred, from_atlas } = shortest;
             if !found.proven && unproven.is_none() {
                 unproven = Some((found.bound, reason.clone()));
             } else if let Some((bound, why)) = &unproven {
@@ -157,7 +122,7 @@ impl RingSpec {
             let needed = self.t_delta_needed(&schedule);
             if schedule.verify(&self.covering(needed).problem().requirements).ok() {
                 let relax = search.what_if && found.proven && self.uneven.is_none();
-                let what_if = if relax { what_if(&problem, &mut memory, control)? } else { Vec::new() };
+                let what_if = if relax { what_if(&problem, control)? } else { Vec::new() };
                 let t_delta = needed.max(t_delta);
                 let spec = self.covering(t_delta);
                 return Ok(Ok(RingDesign { schedule, t_delta, spec, found, reason, preferred, from_atlas, what_if }));
@@ -179,26 +144,9 @@ impl RingSpec {
     }
 }
 
-/// What a search found, why nothing is shorter, and what is known of the choice among the shortest.
-type Answer = (Found<MAX_SENSORS>, String, Option<Preferred<MAX_SENSORS>>);
-
-/// What the atlas says of a problem, if it knows its shortest period.
-fn known(problem: &PeriodProblem<'_>) -> Result<Option<Answer>, SearchError> {
-    let Some((row, schedule)) = atlas::answer(problem) else { return Ok(None) };
-    let period = schedule.period();
-    let [t_delta_proven, min_interval_proven, min_refire_proven] = row.preferred;
-    let preferred = Preferred { schedule, t_delta_proven, min_interval_proven, min_refire_proven, nodes: 0 };
-    let found = Found { schedule: Some(schedule), value: Some(period), bound: Some(period), proven: true, nodes: 0 };
-    let reason = problem.why_shortest(period)?.in_ticks_of(problem.tick).to_string();
-    Ok(Some((found, reason, Some(preferred))))
-}
-
 /// Relaxes one need after the other by a tenth, or by one tick if that is more, or by one neighbour.
-fn what_if(
-    problem: &PeriodProblem<'_>,
-    memory: &mut [i32],
-    control: &mut impl Control,
-) -> Result<Vec<WhatIf>, SearchError> {
+fn what_if(problem: &PeriodProblem<'_>, control: &mut impl Control) -> Result<Vec<WhatIf>, SearchError> {
+    let mut memory = vec![0; design::memory_words(problem.sensors)];
     let Requirements { t_delta, min_interval, window, layout, .. } = problem.requirements;
     let tick = problem.tick.as_micros().max(1);
     // In whole ticks, as others are rounded up to them.
@@ -237,7 +185,7 @@ fn what_if(
     }
     let answer = |(need, requirements)| {
         let relaxed = PeriodProblem { requirements, ..*problem };
-        let found = relaxed.shortest::<MAX_SENSORS>(WHAT_IF_BUDGET, memory, control)?.found;
+        let found = relaxed.shortest::<MAX_SENSORS>(WHAT_IF_BUDGET, &mut memory, control)?.found;
         Ok(WhatIf { need, period: found.value, proven: found.proven })
     };
     cases.into_iter().map(answer).collect()

@@ -12,7 +12,7 @@ use crate::ticks::in_ticks;
 ///
 /// # Errors
 /// As for core's search.
-pub fn shortest_uneven(
+pub(crate) fn shortest_uneven(
     problem: &PeriodProblem<'_>,
     budget: u64,
     control: &mut impl Control,

@@ -22,6 +22,7 @@ mod fields;
 mod filter;
 mod found;
 mod himm;
+mod hopping_found;
 mod hopping_ring;
 mod hopping_schedule;
 mod hopping_settings;
@@ -69,6 +70,7 @@ mod _eeruf {
         filter::EchoFilter,
         found::Found,
         himm::Himm,
+        hopping_found::HoppingFound,
         hopping_ring::HoppingRing,
         hopping_schedule::HoppingSchedule,
         hopping_settings::HoppingSettings,
@@ -104,7 +106,7 @@ mod _eeruf {
         module.add("METHODS", PyTuple::new(module.py(), methods.map(eeruf_sim::Method::as_str))?)?;
         let eeruf = methods.into_iter().filter(|method| method.is_eeruf()).map(eeruf_sim::Method::as_str);
         module.add("EERUF_METHODS", PyTuple::new(module.py(), eeruf.collect::<Vec<_>>())?)?;
-        let examples = eeruf::examples::all().into_iter().map(|(name, _)| name);
+        let examples = crate::program::examples::all().into_iter().map(|(name, _)| name);
         module.add("EXAMPLES", PyTuple::new(module.py(), examples.collect::<Vec<_>>())?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
         module.add("CAUSES", PyTuple::new(module.py(), crate::readings::CAUSES)?)?;

@@ -150,8 +150,7 @@ impl Recorder {
 
     /// The record since it was last taken, of this duration, with only the paths that some reading came along.
     pub(crate) fn take(&mut self, paths: &[HeardPath], duration_s: f64) -> Readings {
-        let next = Readings::new(self.readings.method, duration_s, self.ids.len());
-        let mut readings = core::mem::replace(&mut self.readings, next);
+        let mut readings = self.readings.take();
         readings.duration_s = duration_s;
         let mut number = vec![NO_PATH; paths.len()];
         for path in readings.path.iter().filter(|&&path| path != NO_PATH) {

@@ -9,15 +9,16 @@ use crate::simulation::receiver::Echo;
 /// methods believe goes through it as well.
 ///
 /// ```
-/// use eeruf_core::{EchoFilter, Micros, ReadingKind};
+/// use std::collections::HashMap;
+/// use eeruf_core::{Micros, ReadingKind};
 /// use eeruf_sim::{FiredReading, Filter, Judged, OwnError};
 /// /// Believes an echo that is no farther than half a metre off the last one of its sensor.
 /// #[derive(Default)]
-/// struct Near([Option<Micros>; 64]);
+/// struct Near(HashMap<u8, Micros>);
 /// impl Filter for Near {
 ///     fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
 ///         let Some(&echo) = firing.echoes.first() else { return Ok(Judged::SILENT) };
-///         let before = self.0[usize::from(firing.reading.sensor)].replace(echo.t_echo());
+///         let before = self.0.insert(firing.reading.sensor, echo.t_echo());
 ///         let near = before.is_some_and(|before| before.abs_diff(echo.t_echo()) < Micros::new(2_900));
 ///         Ok(Judged { kind: if near { ReadingKind::Accepted } else { ReadingKind::Rejected }, echo: Some(echo) })
 ///     }

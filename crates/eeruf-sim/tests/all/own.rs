@@ -168,7 +168,7 @@ fn an_echo_is_told_from_crosstalk_also_where_a_filter_gives_it_another_time() {
 
 #[test]
 fn a_period_that_cannot_be_fired_ends_the_simulation_with_the_reason() {
-    /// Fires well for three periods, and then as it is told.
+    /// Fires well for three periods, and then otherwise.
     struct Then(FiringPeriod);
     impl Firing for Then {
         fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {

@@ -30,8 +30,8 @@ impl Edge {
     }
 }
 
-/// All edges of these pieces of wall, by the number of their vertex, each with the sides of walls between which its open
-/// space is. Openings have none.
+/// All edges of these pieces of wall, by the number of their vertex, each with the sides of walls between which its
+/// open space is. Openings have none.
 pub(crate) fn edges_of(vertices: &[Point], pieces: &[Piece], walls: &[Wall]) -> (Vec<Edge>, Vec<[Side; 2]>) {
     let (mut edges, mut sides) = (Vec::new(), Vec::new());
     for (&at, faces) in vertices.iter().zip(&faces_of(vertices, pieces, walls)) {

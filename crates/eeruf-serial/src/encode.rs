@@ -56,7 +56,7 @@ impl Encoder {
         content.push(&short(firing.late).to_le_bytes());
         content.push(&firing.age.as_micros().to_le_bytes());
         if let Some(Weighed { solo, steady, changes, expected_change_us }) = firing.weighed {
-            content.push(&[SOLO * u8::from(solo) | STEADY * u8::from(steady), changes]);
+            content.push(&[SOLO * u8::from(solo) + STEADY * u8::from(steady), changes]);
             content.push(&expected_change_us.to_le_bytes());
         }
         content.finish()

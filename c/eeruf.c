@@ -12,15 +12,15 @@
 #define SIZE_IS(type, size) typedef char type##_has_another_size[sizeof(type) == (size) ? 1 : -1]
 #ifdef __AVR__
 SIZE_IS(EerufSensor, 18);
-SIZE_IS(EerufLine, 10);
+SIZE_IS(EerufLine, 6);
 SIZE_IS(EerufSchedule, 36);
 #if EERUF_HOPPING
 SIZE_IS(EerufRing, 73);
-SIZE_IS(EerufHopper, 62);
+SIZE_IS(EerufHopper, 57);
 #endif
 #else
 SIZE_IS(EerufSensor, 20);
-SIZE_IS(EerufLine, 12);
+SIZE_IS(EerufLine, 8);
 #endif
 
 #if defined(__AVR__) && !defined(EERUF_SCHEDULE_IN_RAM)
@@ -67,7 +67,7 @@ static OUT_OF_LINE uint16_t more16(uint16_t one, uint16_t other) {
     return one > other ? one : other;
 }
 
-static OUT_OF_LINE uint16_t fewer16(uint16_t one, uint16_t other) {
+static uint16_t fewer16(uint16_t one, uint16_t other) {
     return one < other ? one : other;
 }
 
@@ -405,11 +405,13 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter) {
 static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us);
 static void end_hopping_period(EerufRing *ring, uint32_t now_us);
 static void restart_hopping(EerufRing *ring, uint32_t now_us);
+static uint32_t horizon_of_hopping(const EerufRing *ring);
 #else
 #define HOPS(ring) false
 #define fire_hop(ring, sensor, now_us) ((void)0)
 #define end_hopping_period(ring, now_us) ((void)0)
 #define restart_hopping(ring, now_us) ((void)0)
+#define horizon_of_hopping(ring) 0u
 #endif
 
 static EerufSensor *sensor_of(const EerufRing *ring, uint8_t sensor) {
@@ -454,12 +456,12 @@ static void begin_anew(EerufRing *ring) {
 }
 
 /* The sum of lateness grows; when it is no longer known, nothing is compared until two periods have ended. */
-static void add_late(EerufRing *ring, uint16_t late_us) {
+static void add_late(EerufRing *ring, uint16_t late_us, bool hops) {
     EerufLateness *late = &ring->lateness;
     late->total = add16(late->total, late_us);
     if (late->total == UINT16_MAX) {
         late->uncomparable = 2;
-        uncompare(ring, 0);
+        if (!hops) uncompare(ring, 0);
     }
 }
 
@@ -468,14 +470,11 @@ static void note_late(EerufRing *ring, uint16_t late_us) {
 }
 
 /* By how much two stretches may differ: crosstalk must still move by more than t_delta, and no firing be skipped. */
-static uint16_t tolerated(const EerufRing *ring, bool hops) {
+static uint16_t tolerated(const EerufRing *ring) {
     const uint32_t t_delta = ring->t_delta_us;
-    uint32_t separation = 2 * t_delta + 1, longest = ring->window_us;
-    if (!hops) {
-        longest = READ32(ring->schedule->min_refire_us);
-        if (is_verified(ring->schedule)) separation = READ32(ring->schedule->separation_us);
-    }
-    separation = shorter(separation, longest);
+    uint32_t separation = 2 * t_delta + 1;
+    if (is_verified(ring->schedule)) separation = READ32(ring->schedule->separation_us);
+    separation = shorter(separation, READ32(ring->schedule->min_refire_us));
     separation = separation > t_delta + 1 ? separation - (t_delta + 1) : 0;
     return separation > UINT16_MAX / 2 ? UINT16_MAX / 2 : (uint16_t)separation;
 }
@@ -484,7 +483,7 @@ static uint16_t tolerated(const EerufRing *ring, bool hops) {
 static void stretch_by(EerufRing *ring, uint8_t sensor, uint16_t late_us, uint16_t stretch, bool hops) {
     EerufLateness *late = &ring->lateness;
     uint16_t least, most;
-    const uint16_t most_tolerated = tolerated(ring, hops);
+    const uint16_t most_tolerated = hops ? 0 : tolerated(ring);
     late->last = sensor;
     late->last_late = late_us;
     late->last_stretch = stretch;
@@ -493,24 +492,27 @@ static void stretch_by(EerufRing *ring, uint8_t sensor, uint16_t late_us, uint16
     most = more16(late->most, late->most_before);
     late->least = fewer16(late->least, stretch);
     late->most = more16(late->most, stretch);
+    if (hops) return;
     if (less16(stretch, least) > most_tolerated || less16(most, stretch) > most_tolerated) uncompare(ring, LISTENING);
 }
 
 /* A firing came late, or has a stretch because others did. */
 static void fired_late(EerufRing *ring, uint8_t sensor, uint16_t late_us, bool hops) {
     EerufLateness *late = &ring->lateness;
-    uint16_t *total = &sensor_of(ring, sensor)->total_late, stretch;
+    uint16_t *total = &sensor_of(ring, sensor)->total_late, stretch = late_us;
     if (late_us > 0) {
         watch(ring);
         note_late(ring, late_us);
-        add_late(ring, late_us);
+        add_late(ring, late_us, hops);
     }
-    stretch = late->total >= *total ? (uint16_t)(late->total - *total) : UINT16_MAX;
-    *total = late->total;
-    stretch_by(ring, sensor, late_us, hops ? late_us : stretch, hops);
+    if (!hops) {
+        stretch = late->total >= *total ? (uint16_t)(late->total - *total) : UINT16_MAX;
+        *total = late->total;
+    }
+    stretch_by(ring, sensor, late_us, stretch, hops);
 }
 
-static void end_late_period(EerufRing *ring, EerufPeriod *ended) {
+static void end_late_period(EerufRing *ring, EerufPeriod *ended, bool hops) {
     EerufLateness *late = &ring->lateness;
     bool uncomparable = false;
     ended->max_late_us = late->latest;
@@ -534,12 +536,12 @@ static void end_late_period(EerufRing *ring, EerufPeriod *ended) {
         late->most = 0;
         /* All totals from the beginning of this period on, which will be the one before. */
         forgotten = late->total == UINT16_MAX ? UINT16_MAX : late->total_before;
-        for (x = 0; x < ring->count; x++)
+        for (x = 0; x < ring->count && !hops; x++)
             sensor_of(ring, x)->total_late = less16(sensor_of(ring, x)->total_late, forgotten);
         late->total = (uint16_t)(late->total - forgotten);
         late->total_before = late->total;
     }
-    if (uncomparable) uncompare(ring, 0);
+    if (uncomparable && !hops) uncompare(ring, 0);
 }
 
 /* -- Scheduled firing (Sec. 3.1, Fig. 3): every sensor fires once per period, by the table. A firing that is polled
@@ -576,7 +578,9 @@ static uint32_t settling_time(const EerufSchedule *schedule) {
 }
 
 /* No deadline lies further ahead, unless the clock has jumped. */
-static OUT_OF_LINE uint32_t horizon(const EerufRing *ring, bool hops);
+static OUT_OF_LINE uint32_t horizon_of_table(const EerufRing *ring) {
+    return longer(3 * READ32(ring->schedule->period_us), ring->due_us - ring->last_fired_us);
+}
 
 /* Ends the period of a table. Returns whether the next one does not follow on it as the schedule says. */
 static bool end_period_of_table(EerufRing *ring, uint32_t now_us) {
@@ -597,25 +601,13 @@ static void restart_table(EerufRing *ring, uint32_t now_us) {
     const uint32_t settling = settling_time(ring->schedule);
     const uint32_t waits = ring->last_fired_us + settling - now_us;
     /* A clock that has jumped says nothing about when the last firing was. */
-    const bool soon = waits - 1u < horizon(ring, false);
+    const bool soon = waits - 1u < horizon_of_table(ring);
     if (!soon) ring->last_fired_us = now_us - settling;
     ring->due_us = soon ? now_us + waits : now_us;
     begin_period(ring, 0);
 }
 
 /* -- What a ring does -- */
-
-static uint32_t horizon(const EerufRing *ring, bool hops) {
-#if EERUF_HOPPING
-    if (hops) {
-        const EerufHoppingRing *hopping = (const EerufHoppingRing *)(const void *)ring;
-        const uint32_t periods = 2 * hopping->config.period_us;
-        return add32(periods, add32(hopping->dies_us, hopping->dies_us));
-    }
-#endif
-    (void)hops;
-    return longer(3 * READ32(ring->schedule->period_us), ring->due_us - ring->last_fired_us);
-}
 
 static EerufStatus is_ready(const EerufRing *ring) {
     if (ring == NULL) return EERUF_ERR_NULL;
@@ -775,15 +767,26 @@ static void compare(EerufRing *ring, EerufSensor *sensor, int32_t change_us, Eer
     sensor->echo_us = EERUF_NO_ECHO;
 }
 
-static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, EerufEvent *event,
-                                     bool hops) {
+/* Ends a firing whose reading the tracker weighs. */
+static void end_hop(EerufSensor *sensor, EerufReading *reading) {
+    const uint8_t flags = sensor->flags;
+    reading->t_echo_us = flags & STUCK ? EERUF_NO_ECHO : sensor->echo_us;
+    reading->kind = EERUF_READING_FIRST;
+    if (flags & STUCK) reading->kind = EERUF_READING_STUCK;
+    else if (flags & OUTSIDE) reading->kind = EERUF_READING_TOO_EARLY;
+    sensor->flags = flags & PHASE;
+    sensor->echo_us = EERUF_NO_ECHO;
+}
+
+static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, EerufEvent *event, bool hops) {
     EerufSensor *sensor = sensor_of(ring, x);
     const uint8_t phase = sensor->flags & PHASE;
     EerufReading *reading = &event->u.reading;
     uint8_t ago;
     if (sensor->flags & CAN_EMIT) ring->pending--; /* counted when its edge came */
     if (sensor->flags & LISTENING) {
-        compare(ring, sensor, change_us == NULL ? 0 : change_us[x], reading);
+        if (hops) end_hop(sensor, reading);
+        else compare(ring, sensor, change_us == NULL ? 0 : change_us[x], reading);
         if (ring->oldest == x) find_oldest(ring, sensor->fired_us);
     } else {
         reading->t_echo_us = sensor->echo_us;
@@ -794,7 +797,7 @@ static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, E
         sensor->echo_us = EERUF_NO_ECHO;
     }
     emit_when_oldest_ends(ring);
-    count(ring, reading->kind);
+    if (!hops) count(ring, reading->kind);
     ago = (uint8_t)(ring->phase - phase);
     if (hops) ago &= 7u;
     else if (ring->phase < phase) ago = (uint8_t)(ago + READ8(ring->schedule->phases));
@@ -812,11 +815,12 @@ static void end_period(EerufRing *ring, uint32_t now_us, EerufEvent *event, bool
     ring->period++;
     if (hops) end_hopping_period(ring, now_us);
     else changed = end_period_of_table(ring, now_us);
-    end_late_period(ring, ended);
+    end_late_period(ring, ended, hops);
     if (changed) {
         begin_anew(ring);
         uncompare(ring, 0);
     }
+    if (hops) return;
     memcpy(ended->tally, ring->tally, sizeof ended->tally);
     memset(ring->tally, 0, sizeof ring->tally);
 }
@@ -872,7 +876,7 @@ static EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t *change_
     if (has_reached(now_us, ring->due_us) || (has_pending(ring) && has_reached(now_us, ring->emit_at_us)))
         return advance(ring, now_us, change_us, event, hops);
     /* The clock has jumped, or nobody polled for half a turn of it. */
-    if (ring->due_us - now_us > horizon(ring, hops)) restart(ring, now_us, hops);
+    if (ring->due_us - now_us > (hops ? horizon_of_hopping(ring) : horizon_of_table(ring))) restart(ring, now_us, hops);
     return EERUF_OK;
 }
 
@@ -894,6 +898,10 @@ EerufStatus eeruf_ring_poll(EerufRing *ring, uint32_t now_us, EerufEvent *event)
 OUT_OF_LINE uint32_t eeruf_ring_deadline(const EerufRing *ring) {
     if (is_ready(ring) != EERUF_OK) return 0;
     return has_pending(ring) && !has_reached(ring->emit_at_us, ring->due_us) ? ring->emit_at_us : ring->due_us;
+}
+
+OUT_OF_LINE uint32_t eeruf_ring_due(const EerufRing *ring) {
+    return is_ready(ring) == EERUF_OK ? ring->due_us : 0;
 }
 
 static void hear(EerufRing *ring, uint8_t x, uint32_t at_us) {
@@ -937,7 +945,7 @@ static void lengthen(EerufRing *ring, uint8_t x, uint16_t later_us) {
     const bool watched = late->watched != 0, known = !watched || late->last == x;
     const uint16_t late_us = watched ? late->last_late : 0, stretch = watched ? late->last_stretch : 0;
     watch(ring);
-    add_late(ring, later_us);
+    add_late(ring, later_us, HOPS(ring));
     sensor->total_late = add16(sensor->total_late, later_us);
     if (!known) {
         /* Another one has fired since. */
@@ -1355,13 +1363,12 @@ static void end_firing(EerufLine *line, uint8_t missing_after) {
 }
 
 /* A firing begins; without health the line is well. */
-static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint32_t now_us, uint8_t health) {
+static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint8_t health) {
     const EerufStatus status = has_line(modules, sensor);
     EerufLine *line;
     if (status != EERUF_OK) return status;
     line = &modules->lines[sensor];
     end_firing(line, modules->settings->missing_after);
-    line->triggered_us = now_us;
     if (health == EERUF_HEALTH_WELL) {
         set_bits(line, PULSE, AWAITED);
         return EERUF_OK;
@@ -1372,12 +1379,12 @@ static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint32_t n
     return EERUF_DO_NOT_TRIGGER;
 }
 
-EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, uint32_t now_us, bool line_is_high) {
-    return begin_firing(modules, sensor, now_us, line_is_high ? EERUF_HEALTH_STUCK_HIGH : EERUF_HEALTH_WELL);
+EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, bool line_is_high) {
+    return begin_firing(modules, sensor, line_is_high ? EERUF_HEALTH_STUCK_HIGH : EERUF_HEALTH_WELL);
 }
 
-EerufStatus eeruf_hc_sr04_cannot_read(EerufHcSr04 *modules, uint8_t sensor, uint32_t now_us) {
-    return begin_firing(modules, sensor, now_us, EERUF_HEALTH_PIN_ERROR);
+EerufStatus eeruf_hc_sr04_cannot_read(EerufHcSr04 *modules, uint8_t sensor) {
+    return begin_firing(modules, sensor, EERUF_HEALTH_PIN_ERROR);
 }
 
 EerufStatus eeruf_hc_sr04_cannot_write(EerufHcSr04 *modules, uint8_t sensor) {
@@ -1389,11 +1396,12 @@ EerufStatus eeruf_hc_sr04_cannot_write(EerufHcSr04 *modules, uint8_t sensor) {
 OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t at_us) {
     const EerufStatus status = has_line(modules, sensor);
     EerufLine *line;
-    uint32_t since_us, width_us;
+    uint32_t fired_us, since_us, width_us;
     uint8_t pulse;
     if (status != EERUF_OK) return status;
     line = &modules->lines[sensor];
-    since_us = at_us - line->triggered_us;
+    fired_us = sensor_of(modules->ring, sensor)->fired_us;
+    since_us = at_us - fired_us;
     if (since_us >= HALF_TURN || since_us < modules->settings->deaf_us) return EERUF_OK;
     pulse = line->state & PULSE;
     if (pulse == AWAITED) {
@@ -1411,7 +1419,7 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor,
             return EERUF_OK;
         }
         set_bits(line, PULSE, OVER);
-        if (width_us < modules->settings->longest_us) hear(modules->ring, sensor, line->triggered_us + width_us);
+        if (width_us < modules->settings->longest_us) hear(modules->ring, sensor, fired_us + width_us);
     } else if (pulse == OVER && high) {
         set_bits(line, FLAW, CHATTERED);
     }
@@ -1438,11 +1446,8 @@ bool eeruf_hc_sr04_awaits(const EerufHcSr04 *modules, uint8_t sensor, bool *was_
 }
 
 EerufStatus eeruf_hc_sr04_fired(EerufHcSr04 *modules, uint8_t sensor, uint32_t at_us) {
-    EerufStatus status = has_line(modules, sensor);
-    if (status != EERUF_OK) return status;
-    status = eeruf_ring_fired(modules->ring, sensor, at_us);
-    if (has_reached(at_us, modules->lines[sensor].triggered_us)) modules->lines[sensor].triggered_us = at_us;
-    return status;
+    const EerufStatus status = has_line(modules, sensor);
+    return status == EERUF_OK ? eeruf_ring_fired(modules->ring, sensor, at_us) : status;
 }
 
 EerufStatus eeruf_hc_sr04_change_schedule(EerufHcSr04 *modules, const EerufSchedule *schedule) {
@@ -1476,9 +1481,13 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
 /* -- The tracker: which echo of a sensor is its own. A reading within t_delta of a track supports it, and only support
    from different phases counts. A later reading contradicts it; an earlier one hides it (docs/hopping.md). -- */
 
-static bool is_within(uint32_t one, uint32_t other, uint32_t most) {
-    if (one == EERUF_NO_ECHO || other == EERUF_NO_ECHO) return one == other;
-    return apart(one, other) <= most;
+static OUT_OF_LINE uint32_t between(uint32_t one, uint32_t other) {
+    return apart(one, other);
+}
+
+/* Echoes are below half a turn, so that silence is further from them than any setting allows. */
+static bool is_within(uint32_t one, uint32_t other, uint16_t most) {
+    return between(one, other) <= most;
 }
 
 static uint16_t phase_bit(uint8_t phase) {
@@ -1539,7 +1548,7 @@ static void miss(EerufTrack *track, uint8_t phase) {
 
 static void support(EerufTrack *track, uint32_t t_echo_us, uint8_t phase, bool solo, const EerufTrackerSettings *how) {
     const bool is_new = (track->phases & phase_bit(phase)) == 0;
-    const uint32_t distance = apart(track->t_echo_us, t_echo_us);
+    const uint32_t distance = between(track->t_echo_us, t_echo_us);
     if (is_new && distance <= how->tentative_within_us && track->close < UINT8_MAX) track->close++;
     track->phases |= phase_bit(phase);
     if (solo) track->solo_votes++;
@@ -1574,13 +1583,13 @@ static bool ranks_below(const EerufTrack *one, const EerufTrack *other) {
     return one->score != other->score ? one->score < other->score : one->age > other->age;
 }
 
-static uint8_t nearest_track(const EerufHopper *hopper, uint32_t t_echo_us, uint32_t t_delta_us) {
+static uint8_t nearest_track(const EerufHopper *hopper, uint32_t t_echo_us, uint16_t t_delta_us) {
     uint8_t place, nearest = NOBODY;
     for (place = 0; place < EERUF_HYPOTHESES; place++) {
         const EerufTrack *track = &hopper->tracks[place];
         if (track->score == 0 || !is_within(track->t_echo_us, t_echo_us, t_delta_us)) continue;
         if (nearest == NOBODY ||
-            apart(track->t_echo_us, t_echo_us) < apart(hopper->tracks[nearest].t_echo_us, t_echo_us))
+            between(track->t_echo_us, t_echo_us) < between(hopper->tracks[nearest].t_echo_us, t_echo_us))
             nearest = place;
     }
     return nearest;
@@ -1600,14 +1609,12 @@ static void begin_track(EerufHopper *hopper, uint32_t t_echo_us, uint8_t phase, 
     weakest->age = 0;
 }
 
-static void weigh_skipped(EerufHopper *hopper, uint8_t kind, uint32_t t_echo_us, uint32_t previous_us,
-                          EerufReading *reading) {
-    if (kind == EERUF_READING_ACCEPTED || kind == EERUF_READING_TENTATIVE) hopper->age = 0;
-    else if (hopper->age < EERUF_NEVER - 1u) hopper->age++;
-    reading->kind = kind;
-    reading->t_echo_us = t_echo_us;
+/* The reading has its kind and echo time already. */
+static void end_weighing(EerufFilter *filter, uint32_t previous_us, EerufReading *reading) {
+    if (reading->kind == EERUF_READING_ACCEPTED || reading->kind == EERUF_READING_TENTATIVE) filter->age = 0;
+    else if (filter->age < EERUF_NEVER - 1u) filter->age++;
     reading->previous_us = previous_us;
-    reading->age = hopper->age;
+    reading->age = filter->age;
 }
 
 /* How many close votes a tentative echo needs now; 0: none is reported. */
@@ -1625,7 +1632,7 @@ static void shift_tracks(EerufHopper *hopper, int32_t change_us) {
     for (place = 0; place < EERUF_HYPOTHESES; place++) {
         uint32_t *held = &hopper->tracks[place].t_echo_us;
         if (*held == EERUF_NO_ECHO) continue;
-        if (change_us >= 0) *held = shorter(add32(*held, (uint32_t)change_us), EERUF_NO_ECHO - 1u);
+        if (change_us >= 0) *held = shorter(*held + (uint32_t)change_us, HALF_TURN - 1u);
         else *held = *held > 0u - (uint32_t)change_us ? *held + (uint32_t)change_us : 0;
     }
 }
@@ -1658,7 +1665,7 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
             tentative = earlier && votes != 0 && (solo || close >= votes);
         } else if (is_near && track->t_echo_us == held_us) {
             /* It follows an echo that moves faster than its support: three tenths of the way. */
-            const uint32_t distance = apart(held_us, t_echo_us) * 3 / 10;
+            const uint32_t distance = between(held_us, t_echo_us) * 3 / 10;
             grow_older(track);
             track->t_echo_us = t_echo_us > held_us ? held_us + distance : held_us - distance;
         } else if (t_echo_us > track->t_echo_us) {
@@ -1683,7 +1690,8 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
     else if (t_echo_us == EERUF_NO_ECHO) kind = EERUF_READING_NO_ECHO;
     else if (tentative) kind = EERUF_READING_TENTATIVE;
     else kind = has_previous ? EERUF_READING_REJECTED : EERUF_READING_FIRST;
-    weigh_skipped(hopper, kind, t_echo_us, previous_us, reading);
+    reading->kind = kind;
+    end_weighing(&sensor_of(&hopping->ring, sensor)->filter, previous_us, reading);
     if (hopping->readier > 0) hopping->readier--;
     if (candidate) {
         hopping->candidate = sensor;
@@ -1717,11 +1725,29 @@ static uint32_t longest_drop(const EerufHoppingConfig *config, uint8_t cycle) {
     return most * config->step_us;
 }
 
-/* When a sensor fires in this period, after its start, unless it is a solo period. */
-static uint32_t offset_of(const EerufHoppingRing *hopping, uint8_t sensor) {
-    const uint16_t product = (uint16_t)(multiplier_of(&hopping->config, sensor) * hopping->phase);
-    const uint16_t place = product % hopping->cycle;
-    return add32(hopping->hoppers[sensor].lag_us, place * hopping->config.step_us);
+static uint32_t times(uint16_t one, uint16_t other) {
+    return (uint32_t)one * other;
+}
+
+/* When a sensor fires in this period, after its start, unless it is a solo period: within it. */
+static OUT_OF_LINE uint32_t offset_of(const EerufHoppingRing *hopping, uint8_t sensor) {
+    const EerufHopper *hopper = &hopping->hoppers[sensor];
+    return hopper->lag_us + times(hopper->place, (uint16_t)hopping->config.step_us);
+}
+
+/* The next phase. A sensor's place is its multiplier times the phase, modulo the cycle; all are less than that, but for
+   the multiplier, which is less than twice as much. */
+static void next_phase(EerufHoppingRing *hopping) {
+    const uint8_t cycle = hopping->cycle;
+    uint8_t x;
+    hopping->phase = hopping->phase + 1u < cycle ? (uint8_t)(hopping->phase + 1u) : 0;
+    for (x = 0; x < hopping->ring.count; x++) {
+        uint8_t place = multiplier_of(&hopping->config, x);
+        if (place >= cycle) place = (uint8_t)(place - cycle);
+        place = (uint8_t)(place + hopping->hoppers[x].place);
+        if (place >= cycle) place = (uint8_t)(place - cycle);
+        hopping->hoppers[x].place = place;
+    }
 }
 
 /* The next firing of the period, or its end. */
@@ -1761,7 +1787,7 @@ static bool is_steady(const EerufHoppingRing *hopping, uint16_t late_us) {
 /* How long after the start of the period a sensor must not fire yet, since it still listens. */
 static uint32_t rests_for(const EerufHoppingRing *hopping, uint8_t sensor) {
     const EerufHopper *hopper = &hopping->hoppers[sensor];
-    const uint32_t rested = hopper->fired_us + hopping->config.window_us;
+    const uint32_t rested = sensor_of(&hopping->ring, sensor)->fired_us + hopping->config.window_us;
     const uint32_t rests = has_reached(hopping->start_us, rested) ? 0 : rested - hopping->start_us;
     /* A clock that has jumped says nothing about when the last firing was. */
     return (hopper->flags & HAS_FIRED) && rests <= hopping->config.window_us ? rests : 0;
@@ -1802,17 +1828,18 @@ static void plan_solo(EerufHoppingRing *hopping, uint8_t sensor) {
 /* Evenly from 0 to `most`, at most 2^28: a xorshift generator (Marsaglia, 2003), the same on every machine. */
 static uint32_t draw(EerufHoppingRing *hopping, uint32_t most) {
     uint32_t r = hopping->random;
-    const uint32_t n = most + 1;
-    uint32_t low, middle;
+    uint32_t drawn = 0;
+    uint8_t bit;
     r ^= r << 13;
     r ^= r >> 17;
     r ^= r << 5;
     hopping->random = r;
-    /* The high word of r n. */
-    low = (r & 0xffffu) * (n & 0xffffu);
-    middle = (r >> 16) * (n & 0xffffu) + (low >> 16);
-    low = (r & 0xffffu) * (n >> 16) + (middle & 0xffffu);
-    return (r >> 16) * (n >> 16) + (middle >> 16) + (low >> 16);
+    /* The high word of r (most + 1), without 64 bits. */
+    for (bit = 0; bit < 32; bit++, r >>= 1) {
+        if (r & 1u) drawn += most + 1;
+        drawn >>= 1;
+    }
+    return drawn;
 }
 
 /* Whether a sensor with this lag keeps the interval from its neighbours, in every phase and across the period's end. */
@@ -1821,7 +1848,7 @@ static bool keeps_interval(const EerufHoppingRing *hopping, uint8_t sensor, uint
     uint8_t x;
     if (hopping->config.shift_interval_us == 0) return true;
     for (x = 0; x < hopping->ring.count; x++) {
-        const uint32_t distance = apart(hopping->hoppers[x].lag_us, lag_us);
+        const uint32_t distance = between(hopping->hoppers[x].lag_us, lag_us);
         const uint32_t across = hopping->config.period_us > distance ? hopping->config.period_us - distance : 0;
         if (!are_neighbours(EERUF_LAYOUT_LINE, hopping->config.neighbours, hopping->ring.count, sensor, x)) continue;
         if (distance < least || across < least) return false;
@@ -1860,8 +1887,8 @@ static void shift_all(EerufHoppingRing *hopping) {
     unsettle(hopping);
 }
 
-/* Decides who fires in the period that begins. */
-static void plan(EerufHoppingRing *hopping) {
+/* Who would fire in the period that begins. */
+static void choose(EerufHoppingRing *hopping) {
     const EerufHoppingConfig *config = &hopping->config;
     EerufHopper *hoppers = hopping->hoppers;
     uint8_t x, at;
@@ -1875,7 +1902,6 @@ static void plan(EerufHoppingRing *hopping) {
         const uint8_t unserved = longest_unserved(hopping);
         if (unserved != NOBODY) {
             plan_solo(hopping, unserved);
-            look_ahead(hopping);
             return;
         }
     }
@@ -1890,6 +1916,12 @@ static void plan(EerufHoppingRing *hopping) {
         hoppers[at].order = x;
         hopping->planned++;
     }
+}
+
+/* Decides who fires in the period that begins. */
+static void plan(EerufHoppingRing *hopping) {
+    choose(hopping);
+    if (hopping->ring.paused) hopping->planned = 0;
     look_ahead(hopping);
 }
 
@@ -1905,7 +1937,6 @@ static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us) {
     if (!solo) note_hop(hopping, hopper->late_us);
     hopping->place++;
     hopping->ring.last_fired_us = now_us;
-    hopper->fired_us = now_us;
     hopper->phase = hopping->phase;
     hopper->flags = (uint8_t)(HAS_FIRED | (solo ? SOLO | SETTLED : hopping->since_shift > 0 ? SETTLED : 0));
     look_ahead(hopping);
@@ -1915,13 +1946,12 @@ static void postpone_hop(EerufRing *ring, uint8_t sensor, uint32_t by_us) {
     EerufHoppingRing *hopping = hopping_of(ring);
     EerufHopper *hopper = &hopping->hoppers[sensor];
     const bool solo = (hopper->flags & SOLO) != 0;
-    const uint32_t late_us = add32(hopper->late_us, by_us);
-    hopper->fired_us += by_us;
+    const uint32_t late_us = add32(hopper->late_us, by_us), fired_us = sensor_of(ring, sensor)->fired_us;
     if (!solo) {
         hopper->late_us = narrow(late_us);
         note_hop(hopping, hopper->late_us);
     }
-    if (!has_reached(hopping->ring.last_fired_us, hopper->fired_us)) hopping->ring.last_fired_us = hopper->fired_us;
+    if (!has_reached(ring->last_fired_us, fired_us)) ring->last_fired_us = fired_us;
     if (late_us > CATCHES_UP_US) break_off(hopping);
     if (late_us > CATCHES_UP_US || solo) hopping->start_us += by_us;
     look_ahead(hopping);
@@ -1939,7 +1969,7 @@ static void end_hopping_period(EerufRing *ring, uint32_t now_us) {
     hopping->most_late[0] = 0;
     if (left_out) break_off(hopping);
     hopping->ring.phase = (hopping->ring.phase + 1u) & 7u;
-    hopping->phase = hopping->phase + 1u < hopping->cycle ? (uint8_t)(hopping->phase + 1u) : 0;
+    next_phase(hopping);
     plan(hopping);
 }
 
@@ -1950,6 +1980,12 @@ static void leave_out(EerufHoppingRing *hopping, uint8_t sensor) {
     if (at == hopping->planned) return;
     for (hopping->planned--; at < hopping->planned; at++) hopping->hoppers[at].order = hopping->hoppers[at + 1].order;
     look_ahead(hopping);
+}
+
+static uint32_t horizon_of_hopping(const EerufRing *ring) {
+    const EerufHoppingRing *hopping = (const EerufHoppingRing *)(const void *)ring;
+    const uint32_t periods = 2 * hopping->config.period_us;
+    return add32(periods, add32(hopping->dies_us, hopping->dies_us));
 }
 
 static void restart_hopping(EerufRing *ring, uint32_t now_us) {
@@ -2033,12 +2069,16 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
         const uint8_t n = config->neighbours == 0 ? 1 : config->neighbours, k = x % n;
         const uint32_t room = config->period_us - width_us; /* k room / n, in 32 bits */
         forget_tracks(&hoppers[x]);
-        hoppers[x].age = EERUF_NEVER;
         hoppers[x].lag_us = config->lag_us != NULL ? config->lag_us[x] : k * (room / n) + k * (room % n) / n;
     }
     plan(hopping);
     hopping->ring.ready = READY;
     return EERUF_OK;
+}
+
+/* Whether what a sensor hears of its last firing moves as the code says. */
+static bool was_steady(const EerufHoppingRing *hopping, const EerufHopper *hopper) {
+    return (hopper->flags & SETTLED) && is_steady(hopping, hopper->late_us);
 }
 
 EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const int32_t *change_us,
@@ -2051,7 +2091,10 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     if (status == EERUF_OK && !HOPS(&hopping->ring)) status = EERUF_ERR_NOT_READY;
     if (status == EERUF_OK) status = poll(&hopping->ring, now_us, NULL, event, true);
     if (status != EERUF_EVENT) return status;
-    if (hopping->changed) firing_changed(hopping);
+    if (hopping->changed) {
+        firing_changed(hopping);
+        hopping->changes++;
+    }
     hopping->changed = 0;
     if (event->kind == EERUF_EVENT_FIRE) {
         event->phase = hopping->phase;
@@ -2066,13 +2109,11 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     reading = &event->u.reading;
     hopper = &hopping->hoppers[event->sensor];
     event->phase = hopper->phase;
-    if (reading->kind == EERUF_READING_LATE) {
-        reading->age = hopper->age;
-    } else {
-        if (reading->kind == EERUF_READING_STUCK || reading->kind == EERUF_READING_TOO_EARLY) {
-            weigh_skipped(hopper, reading->kind, reading->t_echo_us, EERUF_NO_ECHO, reading);
+    if (reading->kind != EERUF_READING_LATE) {
+        if (reading->kind != EERUF_READING_FIRST) {
+            end_weighing(&sensor_of(&hopping->ring, event->sensor)->filter, EERUF_NO_ECHO, reading);
         } else {
-            const bool steady = (hopper->flags & SETTLED) && is_steady(hopping, hopper->late_us);
+            const bool steady = was_steady(hopping, hopper);
             if (change_us != NULL) shift_tracks(hopper, change_us[event->sensor]);
             weigh(hopping, event->sensor, (hopper->flags & SOLO) != 0, steady, reading);
         }
@@ -2107,6 +2148,17 @@ EerufStatus eeruf_hopping_enable(EerufHoppingRing *hopping, uint8_t sensor, bool
     return EERUF_OK;
 }
 
+EerufStatus eeruf_hopping_pause(EerufHoppingRing *hopping, bool paused) {
+    const EerufStatus status = has_hopper(hopping, 0);
+    uint8_t x;
+    if (status != EERUF_OK) return status;
+    hopping->ring.paused = paused;
+    if (paused) hopping->planned = hopping->place;
+    look_ahead(hopping);
+    for (x = 0; x < hopping->ring.count && !paused; x++) forget_tracks(&hopping->hoppers[x]);
+    return EERUF_OK;
+}
+
 EerufStatus eeruf_hopping_restart(EerufHoppingRing *hopping, uint32_t now_us) {
     const EerufStatus status = has_hopper(hopping, 0);
     if (status == EERUF_OK) restart(&hopping->ring, now_us, true);
@@ -2126,5 +2178,17 @@ uint8_t eeruf_hopping_solo(const EerufHoppingRing *hopping) {
 
 uint32_t eeruf_hopping_lag_us(const EerufHoppingRing *hopping, uint8_t sensor) {
     return has_hopper(hopping, sensor) == EERUF_OK ? hopping->hoppers[sensor].lag_us : 0;
+}
+
+uint8_t eeruf_hopping_weighed(const EerufHoppingRing *hopping, uint8_t sensor) {
+    const EerufHopper *hopper;
+    if (has_hopper(hopping, sensor) != EERUF_OK) return 0;
+    hopper = &hopping->hoppers[sensor];
+    return (uint8_t)((hopper->flags & SOLO ? EERUF_WEIGHED_SOLO : 0u) |
+                     (was_steady(hopping, hopper) ? EERUF_WEIGHED_STEADY : 0u));
+}
+
+uint8_t eeruf_hopping_changes(const EerufHoppingRing *hopping) {
+    return has_hopper(hopping, 0) == EERUF_OK ? hopping->changes : 0;
 }
 #endif

@@ -267,6 +267,9 @@ EerufStatus eeruf_ring_poll(EerufRing *ring, uint32_t now_us, EerufEvent *event)
 EerufStatus eeruf_ring_poll_expecting(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event);
 /* When to poll next; 0 for a ring that is not initialised. */
 uint32_t eeruf_ring_deadline(const EerufRing *ring);
+/* When the next firing, or the end of the period, is due, whatever readings wait to be emitted. Who polls with little
+   time to spare waits for it: a reading takes time that makes the firing late. 0 for a ring that is not initialised. */
+uint32_t eeruf_ring_due(const EerufRing *ring);
 
 /* An echo, at this instant. Any number, in any order, at any time, wanted or not. For a module that answers with a
    pulse as long as the echo took this is the firing's instant plus the pulse's width: see EerufHcSr04. */
@@ -364,9 +367,9 @@ typedef struct EerufHcSr04Settings {
 } EerufHcSr04Settings;
 #define EERUF_HC_SR04 {EERUF_VERSION, 100, 100, 36000, 60000, 3}
 
-/* One echo line: 10 bytes on an AVR. Not for the caller. */
+/* One echo line: 6 bytes on an AVR. Not for the caller. */
 typedef struct EerufLine {
-    uint32_t triggered_us, rose_us;
+    uint32_t rose_us;
     uint8_t state, silent;
 } EerufLine;
 
@@ -383,11 +386,11 @@ typedef struct EerufHcSr04 {
    must last. */
 EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufLine *lines, size_t lines_size,
                                EerufRing *ring, const EerufHcSr04Settings *settings);
-/* For each EERUF_EVENT_FIRE, with the `now_us` of the poll: whether the echo line is high. EERUF_OK: now raise the
-   trigger for 10 us. EERUF_DO_NOT_TRIGGER: leave it alone. With one pin for both, read it before it is an output. */
-EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, uint32_t now_us, bool line_is_high);
+/* For each EERUF_EVENT_FIRE, before the next poll: whether the echo line is high. EERUF_OK: now raise the trigger for
+   10 us. EERUF_DO_NOT_TRIGGER: leave it alone. With one pin for both, read it before it is an output. */
+EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, bool line_is_high);
 /* A pin could not be read before the trigger (then nothing is triggered), or written at it. */
-EerufStatus eeruf_hc_sr04_cannot_read(EerufHcSr04 *modules, uint8_t sensor, uint32_t now_us);
+EerufStatus eeruf_hc_sr04_cannot_read(EerufHcSr04 *modules, uint8_t sensor);
 EerufStatus eeruf_hc_sr04_cannot_write(EerufHcSr04 *modules, uint8_t sensor);
 /* An edge of an echo line. Hand in all edges you have before you poll. */
 EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t at_us);
@@ -458,11 +461,11 @@ typedef struct EerufTrack {
     uint8_t solo_votes, score, close, flags, age;
 } EerufTrack;
 
-/* One sensor of a hopping ring: 62 bytes on an AVR, beside its EerufSensor. Not for the caller. */
+/* One sensor of a hopping ring: 57 bytes on an AVR, beside its EerufSensor. Not for the caller. */
 typedef struct EerufHopper {
-    uint32_t lag_us, fired_us;
-    uint16_t late_us, age;
-    uint8_t phase, unserved, misfits, flags, order, unexplained;
+    uint32_t lag_us;
+    uint16_t late_us;
+    uint8_t place, phase, unserved, misfits, flags, order, unexplained;
     EerufTrack tracks[EERUF_HYPOTHESES];
 } EerufHopper;
 
@@ -473,13 +476,14 @@ typedef struct EerufHoppingRing {
     EerufHoppingConfig config;
     uint32_t start_us, length_us, solo_at_us, dies_us, random;
     uint16_t earned, tolerated, least_late[3], most_late[3];
-    uint8_t phase, cycle, planned, place, since_solo, since_shift, changed, candidate, readier;
+    uint8_t phase, cycle, planned, place, since_solo, since_shift, changed, changes, candidate, readier;
     uint8_t tally[EERUF_READING_KINDS];
 } EerufHoppingRing;
 
 /* Makes a hopping ring that begins at `now_us`. Both arrays have a place for each sensor of the config. Poll it with
    eeruf_hopping_poll, and hand in echoes, late firings and stuck lines with the functions of its `ring`; the others
-   return EERUF_ERR_HOPPING: there is no schedule to change, and no pause. */
+   return EERUF_ERR_HOPPING: enabling, pause and restart have functions of their own, and there is no schedule to
+   change. */
 EerufStatus eeruf_hopping_init(EerufHoppingRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
                                EerufHopper *hoppers, size_t hoppers_size, const EerufHoppingConfig *config,
                                uint32_t now_us);
@@ -487,6 +491,8 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *ring, size_t ring_size, EerufSe
 EerufStatus eeruf_hopping_poll(EerufHoppingRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event);
 /* As eeruf_ring_enable; the tracks of a sensor that is enabled are forgotten. */
 EerufStatus eeruf_hopping_enable(EerufHoppingRing *ring, uint8_t sensor, bool enabled);
+/* No sensor fires until it is unset, and then as of the next period; periods go on. Then all tracks are forgotten. */
+EerufStatus eeruf_hopping_pause(EerufHoppingRing *ring, bool paused);
 EerufStatus eeruf_hopping_restart(EerufHoppingRing *ring, uint32_t now_us); /* as eeruf_ring_restart */
 /* The echo time that is confirmed, or EERUF_NO_ECHO if none is or nothing is in range. */
 uint32_t eeruf_hopping_confirmed_us(const EerufHoppingRing *ring, uint8_t sensor);
@@ -494,6 +500,12 @@ uint32_t eeruf_hopping_confirmed_us(const EerufHoppingRing *ring, uint8_t sensor
 uint8_t eeruf_hopping_solo(const EerufHoppingRing *ring);
 /* The lag of a sensor as it is now. */
 uint32_t eeruf_hopping_lag_us(const EerufHoppingRing *ring, uint8_t sensor);
+/* For the log of a reading that the last poll gave: how it was weighed. 0 for a sensor that is not there. */
+#define EERUF_WEIGHED_SOLO 1u   /* no other sensor's sound could be heard */
+#define EERUF_WEIGHED_STEADY 2u /* firings were so punctual that crosstalk moved as the code says */
+uint8_t eeruf_hopping_weighed(const EerufHoppingRing *ring, uint8_t sensor);
+/* How often firing times have changed against each other otherwise than by the phase, modulo 256. */
+uint8_t eeruf_hopping_changes(const EerufHoppingRing *ring);
 #endif
 
 #ifdef __cplusplus

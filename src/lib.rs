@@ -2,7 +2,8 @@
 //!
 //! `commands` has one file for each verb; `files` is what they read, `report` what they print and draw. What the
 //! program can do, other programs do with the libraries that it stands on: [`eeruf_core`], [`eeruf_design`] and
-//! [`eeruf_sim`]. Here is only what starts it, so that the Python package can hold it too, and its example files.
+//! [`eeruf_sim`]. Here is only what starts it, so that the Python package can hold it too, its example files, and what
+//! writes a simulation into an MCAP file while it goes on.
 
 // Doc comments of arguments are what --help prints in a terminal, where backticks only disturb.
 #![allow(clippy::doc_markdown)]
@@ -17,6 +18,7 @@ use std::ffi::OsString;
 use clap::Parser;
 
 use crate::commands::{Answer, Cli};
+pub use crate::files::mcap::Recording;
 
 /// Runs the program with these arguments, of which the first is its own name, and gives its exit code: 0 for yes, 1 for
 /// no (not verified, infeasible), 2 for bad input, which is named in one line on standard error.

@@ -5,8 +5,8 @@
     cargo build --profile wheel -p eeruf-sim --example rust_side   # the same calls in Rust, built as the wheel is
     target/python/bin/python benches/python/overhead.py
 
-Each call is timed by the best of many runs; what Python adds is the difference. Then: how long `import eeruf` takes, and how
-long Ctrl-C takes to end long work. Nothing else should run beside it.
+Each call is timed by the best of many runs; what Python adds is the difference. Then: how much longer than `pass` a process
+runs that imports eeruf, and how long Ctrl-C takes to end long work. Nothing else should run beside it.
 """
 
 from __future__ import annotations
@@ -69,11 +69,31 @@ def calls() -> dict[str, Callable[[], Any]]:
     }
 
 
-def import_ms(what: str) -> float:
-    """Return how long a fresh interpreter takes to import something, in milliseconds: the median of 15."""
-    program = f"import time; start = time.perf_counter(); {what}; print(time.perf_counter() - start)"
-    runs = [subprocess.run([sys.executable, "-c", program], check=True, capture_output=True) for _ in range(15)]
-    return 1e3 * float(np.median([float(run.stdout) for run in runs]))
+def step(**own: Any) -> float:
+    """Return the time of one step that yields a reading, on average over 10,000, in seconds."""
+    robot = sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)
+    scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
+
+    def many() -> None:
+        to_reading = sim.Simulation(scene, "eeruf", **own).step_to_reading
+        for _ in range(10_000):
+            to_reading(1.0)
+
+    return best(many) / 10_000
+
+
+def beyond_pass_ms(what: str) -> float:
+    """Return how much longer a fresh interpreter runs that imports something than one that does nothing, in milliseconds.
+
+    By the clock on the wall, from start to end of the process: the median of 25 differences, one run of each kind in turn.
+    """
+
+    def process_s(program: str) -> float:
+        start = time.perf_counter()
+        subprocess.run([sys.executable, "-c", program], check=True)
+        return time.perf_counter() - start
+
+    return 1e3 * float(np.median([process_s(what) - process_s("pass") for _ in range(25)]))
 
 
 def interrupted_ms(work: str) -> float:
@@ -108,12 +128,17 @@ def main() -> None:
     options = parser.parse_args()
     rust = json.loads(subprocess.run([options.rust, "times"], check=True, capture_output=True, text=True).stdout)
     print("| call | Rust | Python | ratio | Python adds |\n|---|---|---|---|---|")
-    for name, call in calls().items():
-        here, there = best(call), rust[name]
+    times = {name: best(call) for name, call in calls().items()}
+    times |= {"step, one reading": step(), "step, own filter": step(filter=lambda firing: firing.reading)}
+    for name, here in times.items():
+        there = rust[name]
         added, ratio = 1e6 * (here - there), here / there
         print(f"| {name} | {1e6 * there:.1f} us | {1e6 * here:.1f} us | {ratio:.2f} | {added:.1f} us |")
-    alone_ms, numpy_ms, both_ms = (import_ms(f"import {what}") for what in ("eeruf", "numpy", "numpy, eeruf"))
-    print(f"\nimport eeruf: {alone_ms:.0f} ms; import numpy: {numpy_ms:.0f} ms; both: {both_ms:.0f} ms (medians of 15)")
+    names = ("eeruf", "numpy", "numpy, eeruf")
+    alone_ms, numpy_ms, both_ms = (beyond_pass_ms(f"import {name}") for name in names)
+    print(
+        f"\nA process that imports eeruf runs {alone_ms:.0f} ms longer than `pass`; numpy {numpy_ms:.0f}, both {both_ms:.0f} ms"
+    )
     print("\n| Ctrl-C in the middle of | ends within |\n|---|---|")
     for name, work in LONG.items():
         print(f"| {name} | {interrupted_ms(work):.0f} ms |")

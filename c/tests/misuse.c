@@ -225,12 +225,12 @@ static void modules(void) {
     EXPECT(eeruf_hc_sr04_init(&four, sizeof four, lines, sizeof lines, &ring, &settings), EERUF_ERR_VERSION);
     settings.version--;
     EXPECT(eeruf_hc_sr04_init(&four, sizeof four, lines, sizeof lines, &ring, &settings), EERUF_OK);
-    EXPECT(eeruf_hc_sr04_fire(NULL, 0, 0, false), EERUF_ERR_NULL);
-    EXPECT(eeruf_hc_sr04_fire(&none, 0, 0, false), EERUF_ERR_NOT_READY);
-    EXPECT(eeruf_hc_sr04_fire(&four, SENSORS, 0, false), EERUF_ERR_SENSOR);
-    EXPECT(eeruf_hc_sr04_fire(&four, 0, 0, true), EERUF_DO_NOT_TRIGGER);
+    EXPECT(eeruf_hc_sr04_fire(NULL, 0, false), EERUF_ERR_NULL);
+    EXPECT(eeruf_hc_sr04_fire(&none, 0, false), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hc_sr04_fire(&four, SENSORS, false), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_hc_sr04_fire(&four, 0, true), EERUF_DO_NOT_TRIGGER);
     EXPECT(eeruf_hc_sr04_health(&four, 0), EERUF_HEALTH_STUCK_HIGH);
-    EXPECT(eeruf_hc_sr04_cannot_read(&none, 0, 0), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hc_sr04_cannot_read(&none, 0), EERUF_ERR_NOT_READY);
     EXPECT(eeruf_hc_sr04_cannot_write(&four, SENSORS), EERUF_ERR_SENSOR);
     EXPECT(eeruf_hc_sr04_edge(NULL, 0, true, 0), EERUF_ERR_NULL);
     EXPECT(eeruf_hc_sr04_edge(&none, 0, true, 0), EERUF_ERR_NOT_READY);
@@ -289,6 +289,8 @@ static void hopping_rings(void) {
     EXPECT(eeruf_hopping_poll(&hopping, 0, NULL, &event), EERUF_ERR_NOT_READY);
     EXPECT(eeruf_hopping_enable(NULL, 0, true), EERUF_ERR_NULL);
     EXPECT(eeruf_hopping_enable(&hopping, 0, true), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_hopping_pause(NULL, true), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_pause(&hopping, true), EERUF_ERR_NOT_READY);
     EXPECT(eeruf_hopping_confirmed_us(&hopping, 0), EERUF_NO_ECHO);
     EXPECT(eeruf_hopping_solo(&hopping), 255);
     EXPECT(eeruf_hopping_lag_us(&hopping, 0), 0);

@@ -185,7 +185,7 @@ export class Designer {
     line.textContent = "The certificate is being written and checked …";
     try {
       const checked = await this.page.desk.ask({ ask: "certificate", ring });
-      line.textContent = `Checked here by a program that shares nothing with the search: ${checked.says} (${checked.nodes.toLocaleString("en")} cases). `;
+      line.textContent = `Checked here by a program that shares nothing with the search: ${checked.says}, in ${checked.nodes.toLocaleString("en")} cases. `;
       const file = new Blob([checked.text], { type: "text/plain" });
       const link = /** @type {HTMLAnchorElement} */ (
         element("a", { href: URL.createObjectURL(file), download: "ring.certificate" })

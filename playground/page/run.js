@@ -115,7 +115,7 @@ export function foolersSentence(run, sensor) {
       : `${right + wrong} are believed, ${wrong === 0 ? "none" : wrong} of them wrong`;
   const [first] = foolersOf(run, sensor).sort((a, b) => b.wrong - a.wrong);
   const who = first
-    ? ` Most in the way is sensor ${first.emitter + 1}: its sound came first ${first.wrong} times, ${bounces(first.order)}, and was believed ${first.accepted === 0 ? "not once" : `${first.accepted} times`}.`
+    ? ` Most in the way is sensor ${first.emitter + 1}: its sound came first ${first.wrong} times, ${bounces(first.order)}, and was ${first.accepted === 0 ? "never believed" : `believed ${first.accepted} times`}.`
     : " No foreign sound comes before its own echo.";
   return `Of ${readings} readings ${believed}.${who}`;
 }

@@ -20,11 +20,7 @@ Example:
 
 from __future__ import annotations
 
-import importlib
-import sys
-from typing import TYPE_CHECKING
-
-from eeruf import logs, nav, sim, tables
+from eeruf import nav, sim, tables
 from eeruf._eeruf import (
     EXAMPLES,
     KINDS,
@@ -40,6 +36,7 @@ from eeruf._eeruf import (
     Fire,
     Found,
     HoppingError,
+    HoppingFound,
     HoppingRing,
     HoppingSchedule,
     HoppingSettings,
@@ -65,11 +62,13 @@ from eeruf._eeruf import (
     design,
     example,
 )
-from eeruf._sweep import sweep
-from eeruf.logs import diagnose, read_firings, read_log, replay, survey
 
+# Checkers take it for true, as the one of typing, which would cost more to import than all of eeruf.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from eeruf import experiments, plot
+    from eeruf import experiments, logs, plot
+    from eeruf._sweep import sweep
+    from eeruf.logs import diagnose, read_firings, read_log, replay, survey
 
 __all__ = [
     "EXAMPLES",
@@ -86,6 +85,7 @@ __all__ = [
     "Fire",
     "Found",
     "HoppingError",
+    "HoppingFound",
     "HoppingRing",
     "HoppingSchedule",
     "HoppingSettings",
@@ -148,12 +148,21 @@ def show_versions() -> None:
 
 
 if not TYPE_CHECKING:
+    # On first use: nobody who does not need them should wait for them, or for what they import.
+    _MODULES = ("experiments", "logs", "plot")
+    _FUNCTIONS = {"sweep": "_sweep"} | dict.fromkeys(
+        ("diagnose", "read_firings", "read_log", "replay", "survey"), "logs"
+    )
 
     def __getattr__(name: str) -> object:
-        # On first use: nobody who does not need them should wait for them.
-        if name in ("experiments", "plot"):
-            return importlib.import_module(f"eeruf.{name}")
+        from importlib import import_module
+
+        if name in _MODULES:
+            return import_module(f"eeruf.{name}")
+        if name in _FUNCTIONS:
+            globals()[name] = function = getattr(import_module(f"eeruf.{_FUNCTIONS[name]}"), name)
+            return function
         raise AttributeError(f"module 'eeruf' has no attribute {name!r}")
 
     def __dir__() -> list[str]:
-        return sorted({*vars(sys.modules[__name__]), *__all__})
+        return sorted({*globals(), *__all__})

@@ -14,10 +14,10 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 from eeruf import _eeruf
-from eeruf._eeruf import LogError
+from eeruf._eeruf import ArgumentError, LogError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     import pandas as _pd
     import polars as _pl
     from numpy.typing import ArrayLike, NDArray
+
+    _Number = TypeVar("_Number", bound=np.generic)
 
 __all__ = [
     "Diagnosis",
@@ -40,6 +42,21 @@ __all__ = [
     "replay",
     "survey",
 ]
+
+
+def _column(name: str, values: ArrayLike, dtype: type[_Number]) -> NDArray[_Number]:
+    """Make an array with one dimension of what may be a list, an array or a data frame's column."""
+    import numpy as np
+
+    try:
+        # What is no number makes one that is refused when it is looked at.
+        with np.errstate(invalid="ignore"):
+            column = np.asarray(values).astype(dtype, order="C")
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"{name} = {values!r:.60}; expected numbers, one for each firing") from None
+    if column.ndim != 1:
+        raise ArgumentError(f"{name} has the shape {column.shape}; expected one number for each firing")
+    return column
 
 
 class _Columns:
@@ -124,7 +141,10 @@ class Ranges(_Columns):
         """Return the times from firing to echo in microseconds; NaN without an echo, and for too close.
 
         Args:
-            speed_of_sound: in m/s.
+            speed_of_sound: in m/s, above 0.
+
+        Raises:
+            ArgumentError: no such speed.
 
         Example:
             >>> import eeruf, pathlib, tempfile
@@ -136,6 +156,12 @@ class Ranges(_Columns):
         """
         import numpy as np
 
+        try:
+            is_speed = 0 < float(speed_of_sound) < np.inf
+        except (TypeError, ValueError, OverflowError):
+            is_speed = False
+        if not is_speed:
+            raise ArgumentError(f"speed_of_sound = {speed_of_sound!r:.60}; expected a number above 0")
         seen = np.isfinite(self.range_m) & (self.range_m < self.max_range_m) & (self.range_m >= self.min_range_m)
         return np.where(seen, 2e6 * np.where(seen, self.range_m, 0.0) / speed_of_sound, np.nan)
 
@@ -191,22 +217,22 @@ class Firings(_Columns):
             rejected: 1 if the ring rejected the reading, 0 if not, -1 if that is not known.
             sends: false where a sensor only listened.
 
+        Raises:
+            ArgumentError: a column that is no array of such numbers with one dimension.
+
         """
         import numpy as np
 
-        def whole(column: ArrayLike) -> NDArray[np.int64]:
-            return np.ascontiguousarray(column, dtype=np.int64)
-
-        sensors = whole(sensor)
+        sensors = _column("sensor", sensor, np.int64)
         rows = len(sensors)
         return cls(
             sensor=sensors,
-            fired_us=whole(fired_us),
-            period=whole(period),
-            phase=whole(phase),
-            t_echo_us=np.ascontiguousarray(t_echo_us, dtype=np.float64),
-            rejected=whole(np.full(rows, -1) if rejected is None else rejected),
-            sends=np.ascontiguousarray(np.ones(rows) if sends is None else sends, dtype=np.bool_),
+            fired_us=_column("fired_us", fired_us, np.int64),
+            period=_column("period", period, np.int64),
+            phase=_column("phase", phase, np.int64),
+            t_echo_us=_column("t_echo_us", t_echo_us, np.float64),
+            rejected=_column("rejected", np.full(rows, -1) if rejected is None else rejected, np.int64),
+            sends=_column("sends", np.ones(rows) if sends is None else sends, np.bool_),
             clock="unnamed",
             damage=None,
         )
@@ -326,9 +352,7 @@ def read_log(
         (['left', 'right'], [1.2, 1.21, inf, 2.5])
 
     """
-    found = _eeruf._read_log(
-        os.fspath(path), time, time_unit, list(ranges), range_unit, sensor, speed_of_sound, no_echo_m
-    )
+    found = _eeruf._read_log(path, time, time_unit, ranges, range_unit, sensor, speed_of_sound, no_echo_m)
     return Ranges(**found)
 
 
@@ -340,6 +364,7 @@ def read_firings(path: str | os.PathLike[str]) -> Firings:
 
     Raises:
         LogError: the log cannot be read.
+        ArgumentError: an argument is wrong.
 
     Example:
         >>> import eeruf, pathlib, tempfile
@@ -351,7 +376,7 @@ def read_firings(path: str | os.PathLike[str]) -> Firings:
         ('board', [5872.0])
 
     """
-    return Firings(**_eeruf._read_firings(os.fspath(path)))
+    return Firings(**_eeruf._read_firings(path))
 
 
 def replay(
@@ -373,6 +398,7 @@ def replay(
     Raises:
         LogError: the log cannot be read, or does not say how readings were weighed.
         HoppingError: settings that contradict each other.
+        ArgumentError: an argument is wrong.
 
     Example:
         >>> import eeruf, pathlib, tempfile
@@ -384,11 +410,15 @@ def replay(
         ['first', 'tentative', 'tentative', 'tentative', 'accepted', 'accepted']
 
     """
-    return Replayed(**_eeruf._replay(os.fspath(path), t_delta_us, settings))
+    return Replayed(**_eeruf._replay(path, t_delta_us, settings))
 
 
 def _firings(log: Firings | str | os.PathLike[str]) -> Firings:
-    return log if isinstance(log, Firings) else read_firings(log)
+    if isinstance(log, Firings):
+        return log
+    if isinstance(log, (str, os.PathLike)):
+        return read_firings(log)
+    raise ArgumentError(f"log = {log!r:.60}; expected an eeruf.logs.Firings or the path of a log")
 
 
 def diagnose(
@@ -403,6 +433,7 @@ def diagnose(
 
     Raises:
         LogError: the log cannot be read.
+        ArgumentError: an argument is wrong.
 
     Example:
         >>> import eeruf, numpy as np
@@ -429,6 +460,7 @@ def survey(log: Firings | str | os.PathLike[str], *, tolerance_us: int = 100, un
 
     Raises:
         LogError: the log cannot be read.
+        ArgumentError: an argument is wrong.
 
     Example:
         >>> import eeruf

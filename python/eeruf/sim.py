@@ -6,12 +6,11 @@ follows from it; ``CAUSES`` is what ``Readings.cause`` counts through.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from eeruf._eeruf import (
     CAUSES,
     EERUF_METHODS,
     METHODS,
+    FiredReading,
     Material,
     Noise,
     Paths,
@@ -26,6 +25,8 @@ from eeruf._eeruf import (
     simulate_blocks,
 )
 
+# As in eeruf itself.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from eeruf._results import Summary
 else:
@@ -43,6 +44,7 @@ __all__ = [
     "CAUSES",
     "EERUF_METHODS",
     "METHODS",
+    "FiredReading",
     "Material",
     "Noise",
     "Paths",

@@ -7,9 +7,14 @@ Example:
 
 """
 
-from typing import Final
+from __future__ import annotations
 
 from eeruf._eeruf import Schedule
+
+# As in eeruf itself.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Final
 
 _LAGS: Final = (0, 25_000, 50_000, 75_000) * 3
 _A: Final = (24_000,) * 12

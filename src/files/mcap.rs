@@ -7,9 +7,9 @@
 use std::path::Path;
 
 use eeruf_core::ReadingKind;
-use eeruf_logs::{McapWriter, Reading};
+use eeruf_logs::{LogError, McapWriter, Reading};
 use eeruf_sim::experiments::set_two::Place;
-use eeruf_sim::{HeardPath, Point, Pose, Readings, SensorId, Vector, World};
+use eeruf_sim::{HeardPath, Point, Pose, Readings, SensorId, Simulation, Vector, World};
 use serde_json::{Value, json};
 
 use super::error::InputError;
@@ -25,45 +25,60 @@ const SHOWN_NS: u64 = 120_000_000;
 /// A world and where its robots are.
 pub(crate) struct Stage<'a> {
     world: &'a World,
-    /// Where the first robot was, if it did not move as the world says.
-    track: &'a [Place],
+    /// Where a robot is at a time in seconds; nothing where nobody knows.
+    pose: Box<dyn Fn(usize, f64) -> Option<Pose> + 'a>,
 }
 
 impl<'a> Stage<'a> {
     /// Robots move as the world says.
     pub(crate) fn of(world: &'a World) -> Self {
-        Self { world, track: &[] }
+        Self { world, pose: Box::new(|robot, time_s| planned(world, robot, time_s)) }
     }
 
     /// The first robot was driven; its places are in order of time.
     pub(crate) fn driven(world: &'a World, track: &'a [Place]) -> Self {
-        Self { world, track }
+        let pose = |robot, time_s| if robot == 0 { on_track(track, time_s) } else { planned(world, robot, time_s) };
+        Self { world, pose: Box::new(pose) }
     }
 
-    fn pose(&self, robot: usize, time_s: f64) -> Pose {
-        let after = self.track.partition_point(|place| place.time_s <= time_s);
-        let (before, after) = (self.track.get(after.saturating_sub(1)), self.track.get(after));
-        match (robot, before, after) {
-            (0, Some(before), Some(after)) if after.time_s > before.time_s => {
-                let share = ((time_s - before.time_s) / (after.time_s - before.time_s)).clamp(0.0, 1.0);
-                let between = |from: f64, to: f64| from + share * (to - from);
-                // The shorter way round.
-                let turn = (after.heading_rad - before.heading_rad)
-                    .sin()
-                    .atan2((after.heading_rad - before.heading_rad).cos());
-                let place = Vector::new(between(before.x_m, after.x_m), between(before.y_m, after.y_m));
-                Pose::new(place, before.heading_rad + share * turn)
-            }
-            (0, Some(last), _) => Pose::new(Vector::new(last.x_m, last.y_m), last.heading_rad),
-            _ => self.world.robots().get(robot).map_or_else(Pose::identity, |of| of.motion.at(&of.pose, time_s).pose),
-        }
+    /// Robots move as they are steered.
+    fn under_way(simulation: &'a Simulation) -> Self {
+        // What is computed of times may be off by a rounding.
+        let known = |time_s: f64| time_s.clamp(0.0, simulation.time_s());
+        let pose = move |robot, time_s| Some(simulation.moment_at(robot, known(time_s)).ok()?.pose);
+        Self { world: simulation.world(), pose: Box::new(pose) }
+    }
+
+    fn pose(&self, robot: usize, time_s: f64) -> Option<Pose> {
+        (self.pose)(robot, time_s)
     }
 
     fn position(&self, id: SensorId, time_s: f64) -> Option<Point> {
         let robot = usize::from(id.robot);
         let mounted = self.world.robots().get(robot)?.sensors.get(usize::from(id.sensor))?;
-        Some(Point::from((self.pose(robot, time_s) * mounted).translation.vector))
+        Some(Point::from((self.pose(robot, time_s)? * mounted).translation.vector))
     }
+}
+
+fn planned(world: &World, robot: usize, time_s: f64) -> Option<Pose> {
+    let robot = world.robots().get(robot)?;
+    Some(robot.motion.at(&robot.pose, time_s).pose)
+}
+
+/// Between two places, or at the last one.
+fn on_track(track: &[Place], time_s: f64) -> Option<Pose> {
+    let after = track.partition_point(|place| place.time_s <= time_s);
+    let (before, after) = (track.get(after.saturating_sub(1))?, track.get(after));
+    let Some(after) = after.filter(|after| after.time_s > before.time_s) else {
+        return Some(Pose::new(Vector::new(before.x_m, before.y_m), before.heading_rad));
+    };
+    let share = ((time_s - before.time_s) / (after.time_s - before.time_s)).clamp(0.0, 1.0);
+    let between = |from: f64, to: f64| from + share * (to - from);
+    // The shorter way round.
+    let turn = after.heading_rad - before.heading_rad;
+    let turn = turn.sin().atan2(turn.cos());
+    let place = Vector::new(between(before.x_m, after.x_m), between(before.y_m, after.y_m));
+    Some(Pose::new(place, before.heading_rad + share * turn))
 }
 
 /// Writes all runs into one file, each under the name of its method.
@@ -72,7 +87,7 @@ pub(crate) fn write_mcap(file: &Path, stage: &Stage<'_>, runs: &[Readings]) -> R
     // A robot that was driven may have arrived before the time was over.
     let fired_s = |run: &Readings| run.fired_s.iter().copied().fold(0.0, f64::max);
     let end_s = runs.iter().map(fired_s).fold(0.0, f64::max);
-    out.json("/scene", "foxglove.SceneUpdate", START_NS, &scene(stage.world).to_string())?;
+    scene(&mut out, stage.world, 0.0)?;
     let steps = (end_s / POSES_S).ceil() as u64;
     for step in 0..=steps {
         poses(&mut out, stage, step as f64 * POSES_S)?;
@@ -81,6 +96,66 @@ pub(crate) fn write_mcap(file: &Path, stage: &Stage<'_>, runs: &[Readings]) -> R
         readings(&mut out, stage, run)?;
     }
     Ok(out.finish()?)
+}
+
+/// A [`Simulation`] as an MCAP file, written while it goes on, as `eeruf study --mcap` writes a whole one: ranges, what
+/// is accepted, poses, the scene, each reading's path and each firing; `docs/logs.md` has the topics.
+///
+/// ```
+/// use eeruf_sim::*;
+/// use std::sync::Arc;
+/// let robot = Robot::ring(Pose::identity(), 8, 15f64.to_radians(), 0.3, Transducer::POLAROID_6500);
+/// let wall = Wall::new(2.0, -5.0, 2.0, 5.0).with_faces(Faces::Both);
+/// let world = World::new(Scene::new(vec![wall], vec![], Air::default())?, vec![robot], Noise::default())?;
+/// let mut simulation = Simulation::new(Arc::new(world), Method::Eeruf, &Options::default(), Stop::default())?;
+/// let file = std::env::temp_dir().join("eeruf-recording-example.mcap");
+/// let mut recording = eeruf::Recording::create(&file, &simulation)?;
+/// for step in 0..20 {
+///     simulation.set_velocity(0, 0.02 * f64::from(step), 0.1)?;
+///     let readings = simulation.step(0.06, |_| true)?;
+///     recording.add(&simulation, &readings)?;
+/// }
+/// recording.finish()?;
+/// # std::fs::remove_file(&file)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Recording {
+    out: McapWriter,
+    /// When poses are written next, counted in steps.
+    next: u64,
+}
+
+impl Recording {
+    /// Creates the file, and writes the scene.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn create(file: &Path, simulation: &Simulation) -> Result<Self, LogError> {
+        let mut out = McapWriter::create(file)?;
+        scene(&mut out, simulation.world(), simulation.time_s())?;
+        Ok(Self { out, next: (simulation.time_s() / POSES_S).ceil() as u64 })
+    }
+
+    /// Adds what was read in a step, and where robots were since the step before.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn add(&mut self, simulation: &Simulation, read: &Readings) -> Result<(), LogError> {
+        let stage = Stage::under_way(simulation);
+        while self.next as f64 * POSES_S <= simulation.time_s() {
+            poses(&mut self.out, &stage, self.next as f64 * POSES_S)?;
+            self.next += 1;
+        }
+        readings(&mut self.out, &stage, read)
+    }
+
+    /// Writes what is left, and the index. A recording that is dropped does so too, but cannot say if it fails.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn finish(self) -> Result<(), LogError> {
+        self.out.finish()
+    }
 }
 
 fn at_ns(time_s: f64) -> u64 {
@@ -124,8 +199,8 @@ fn entity(id: &str, at_ns: u64, lifetime_ns: u64, lines: &[Value], cylinders: &[
     })
 }
 
-fn scene(world: &World) -> Value {
-    let scene = world.scene();
+fn scene(out: &mut McapWriter, world: &World, time_s: f64) -> Result<(), LogError> {
+    let (scene, now) = (world.scene(), at_ns(time_s));
     let wall = |wall: &eeruf_sim::Wall| line(&[point(&wall.from), point(&wall.to)], [0.2, 0.2, 0.25, 1.0], 3.0);
     let walls: Vec<_> = scene.walls().iter().map(wall).collect();
     let pole = |pole: &eeruf_sim::Pole| {
@@ -136,11 +211,12 @@ fn scene(world: &World) -> Value {
         })
     };
     let poles: Vec<_> = scene.poles().iter().map(pole).collect();
-    json!({"deletions": [], "entities": [entity("scene", START_NS, 0, &walls, &poles)]})
+    let message = json!({"deletions": [], "entities": [entity("scene", now, 0, &walls, &poles)]});
+    out.json("/scene", "foxglove.SceneUpdate", now, &message.to_string())
 }
 
 /// Where robots and sensors are at a moment: transforms, and each robot's pose, which is its odometry without error.
-fn poses(out: &mut McapWriter, stage: &Stage<'_>, time_s: f64) -> Result<(), InputError> {
+fn poses(out: &mut McapWriter, stage: &Stage<'_>, time_s: f64) -> Result<(), LogError> {
     let now = at_ns(time_s);
     let transform = |parent: &str, child: &str, pose: &Pose| {
         json!({
@@ -151,7 +227,7 @@ fn poses(out: &mut McapWriter, stage: &Stage<'_>, time_s: f64) -> Result<(), Inp
     let mut transforms = Vec::new();
     for (number, robot) in stage.world.robots().iter().enumerate() {
         let name = format!("robot_{}", number + 1);
-        let pose = stage.pose(number, time_s);
+        let Some(pose) = stage.pose(number, time_s) else { continue };
         transforms.push(transform("world", &name, &pose));
         for (sensor, mounted) in robot.sensors.iter().enumerate() {
             let id = SensorId { robot: number as u16, sensor: sensor as u8 };
@@ -164,12 +240,12 @@ fn poses(out: &mut McapWriter, stage: &Stage<'_>, time_s: f64) -> Result<(), Inp
         out.json(&format!("/{name}/pose"), "foxglove.PoseInFrame", now, &message.to_string())?;
     }
     let message = json!({"transforms": transforms}).to_string();
-    Ok(out.json("/tf", "foxglove.FrameTransforms", now, &message)?)
+    out.json("/tf", "foxglove.FrameTransforms", now, &message)
 }
 
 /// Each reading as a range, what the method accepts beside it, its path, and the firings of the first robot as
 /// `diagnose` reads them.
-fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(), InputError> {
+fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(), LogError> {
     let world = stage.world;
     let c = world.scene().air().speed_of_sound();
     let mut order: Vec<_> = (0..run.len()).collect();

@@ -129,6 +129,8 @@ fn what_is_wrong_with_a_file_of_many_phases_is_said_in_one_line() {
     }
     let outcome = eeruf(&["design", "rings/labmate-8.toml", "--phases", "11"]);
     assert!(outcome.code == Some(2) && outcome.err.contains(": speed_m_s; expected t_delta_us or"), "{}", outcome.err);
+    let outcome = eeruf(&["design", "rings/hc-sr04-8-two-multiplexers.toml", "--phases", "11"]);
+    assert!(outcome.code == Some(2) && outcome.err.contains(": shared_lines; expected no such key"), "{}", outcome.err);
     let outcome = eeruf(&["verify", "rings/table-i-d.toml", "--margin-us", "90"]);
     assert!(outcome.code == Some(2) && outcome.err.contains("expected a schedule of many phases"), "{}", outcome.err);
 }

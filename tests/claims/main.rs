@@ -11,5 +11,6 @@ mod hopping;
 mod inputs;
 mod logs;
 mod program;
+mod recording;
 mod scene;
 mod study;

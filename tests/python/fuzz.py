@@ -1,13 +1,16 @@
 """Calls everything with anything: `python tests/python/fuzz.py --calls 3000000 --seed 1`.
 
 Whatever it is given, a call works or raises an `EerufError`, a `TypeError` about its arguments' names, a `MemoryError`, or an `OSError`
-about a file, within seconds; and the process does not grow.
+about a file, within seconds; and the process does not grow: what is in use after half of the calls and after all of them
+is compared, when what is no longer needed has been given back to the system. Ends with code 1 if more than `MOST_GROWN` came.
 """
 
 from __future__ import annotations
 
 import argparse
+import ctypes
 import faulthandler
+import gc
 import io
 import math
 import pickle
@@ -17,7 +20,7 @@ import time
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any, Callable, NamedTuple
 
 import eeruf
 import numpy as np
@@ -30,6 +33,13 @@ READINGS = sim.simulate(ROOM, periods=3)
 SLOW = tables.TABLE_I_D.scaled(5, 4)
 HOPPING = eeruf.HoppingSchedule(8, 60_000, 240)
 INLINE = ThreadPoolExecutor(1)
+FIRINGS = eeruf.logs.Firings.of(
+    sensor=READINGS.sensor,
+    fired_us=1e6 * READINGS.fired_s,
+    period=READINGS.period,
+    phase=READINGS.phase,
+    t_echo_us=READINGS.earliest_us,
+)
 PATHS = ROOM.paths((0, 0), [(1, 0), (2, 0)], 2)
 HANGS_S = 60
 
@@ -108,6 +118,8 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.design(
             m(4), m(999), m(15_000), m(36_000), m(1_000), m(4), m("line"), m(False), c.random.randrange(1, 200)
         ),
+        lambda: ANY.design(m(8), m(150), m(9_000), m(36_000), layout=m("ring"), phases=m(5), margin_us=m(90)),
+        lambda: ANY.design(m(8), 999, 15_000, 30_000, atlas=m(True), certificate=False, over_reals=m(False)),
         lambda: ANY.Schedule(a(), a(), a(), a()),
         lambda: ANY.Schedule.from_firing(m(40_000), m([0, 20_000]), m([2_000, 25_000])),
         lambda: ANY.Schedule.from_toml(a()),
@@ -157,6 +169,11 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: [*ANY.sim.simulate_blocks(ROOM, m("eeruf"), c.small(), m(3), block_periods=m(2))],
         lambda: ANY.sim.Simulation(m(ROOM), m("eeruf"), seed=m(3)).step(c.small(1)),
         lambda: ANY.sim.Simulation(ROOM).set_velocity(m(0), m(0.5), m(0.1)),
+        lambda: ANY.sim.Simulation(ROOM, filter=lambda _: m(("accepted", a()))).step(0.1),
+        lambda: ANY.sim.Simulation(ROOM, firing=lambda _: (m(60_000), [(m(0), m(1))], m(1))).step(0.1),
+        lambda: ANY.sim.Simulation(ROOM, firing=m(None), filter=m(None)),
+        lambda: ANY.sim.Simulation(ROOM).change_schedule(m(0), m(ANY.tables.TABLE_I_D)),
+        lambda: ANY.sim.Simulation(ROOM).change_scene(m(ROOM)),
         lambda: grid(c),
         lambda: ANY.nav.Himm(m(9), m(0.1), growth=m(False)).cells(),
         lambda: ANY.nav.Vfh(**{c.random.choice(["window", "smoothing", "threshold", "wide", "density_max"]): a()}),
@@ -169,6 +186,13 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: READINGS.summary(a()),
         lambda: READINGS.is_wrong(a()),
         lambda: tampered(c),
+        lambda: ANY.logs.Firings.of(**{name: m(column) for name, column in FIRINGS.columns().items()}),
+        lambda: c.random.choice([ANY.diagnose, ANY.survey])(m(FIRINGS), tolerance_us=m(75)),
+        lambda: c.random.choice([ANY.read_log, ANY.read_firings, ANY.replay])(m("no such file")),
+        lambda: ANY.read_log(__file__, time=m(None), range_unit=m("m"), ranges=m(()), no_echo_m=m(5.0)),
+        lambda: ANY.example(m("scenes/alcove.toml")),
+        lambda: ANY.sim.read_map(m("no such file"), tolerance_m=m(0.1)),
+        lambda: ANY.Schedule.congruence(m(8), m(60_000), m(240), m([0] * 8)),
         lambda: ANY.sim.Readings.load(m(io.BytesIO(b"nothing"))),
         lambda: ANY.experiments.set_one(
             c.small(1), readings=c.small(8), methods=m(["eeruf"]), progress=c.random.choice([None, False, 3, len])
@@ -254,24 +278,75 @@ def tampered(c: Chance) -> Any:
     return readings.summary(), pickle.dumps(readings)
 
 
+class Used(NamedTuple):
+    """What a process uses when all that it no longer needs has been given back."""
+
+    resident_mb: float
+    """Of the machine's memory, with what lies idle between used pieces."""
+    heap_mb: float
+    """Asked of malloc and not freed: by Rust, NumPy and what Python does not manage itself."""
+    objects: int
+    """Pieces that Python manages itself."""
+
+    def __str__(self) -> str:
+        return f"{self.resident_mb:.1f} MB resident, {self.heap_mb:.3f} MB of the heap, {self.objects} objects"
+
+
+# What may come in the second half of a run of any length: more is a leak. Caches have filled by then.
+MOST_GROWN = Used(resident_mb=8.0, heap_mb=0.5, objects=3_000)
+
+
+class _MallInfo(ctypes.Structure):
+    _fields_ = tuple(
+        (name, ctypes.c_size_t)
+        for name in (
+            "arena",
+            "ordblks",
+            "smblks",
+            "hblks",
+            "hblkhd",
+            "usmblks",
+            "fsmblks",
+            "uordblks",
+            "fordblks",
+            "top",
+        )
+    )
+
+
 def resident_mb() -> float:
-    """How much memory the process has."""
+    """How much of the machine's memory the process has, on Linux."""
     status = Path("/proc/self/status").read_text() if sys.platform == "linux" else "VmRSS: 0"
     return int(status.split("VmRSS:")[1].split()[0]) / 1024
 
 
-def fuzz(number: int, seed: int, *, report: bool = False) -> tuple[Counter[str], float]:
-    """So many calls; how they ended, and by how many MB the process grew after the first tenth."""
-    chance, ended = Chance(seed), Counter[str]()
-    before, began = 0.0, time.monotonic()
+def used() -> Used:
+    """What is used now, on Linux with glibc; elsewhere zeros for what cannot be known."""
+    gc.collect()
+    libc, heap_bytes = ctypes.CDLL(None), 0
+    if hasattr(libc, "mallinfo2"):
+        libc.malloc_trim(0)
+        libc.mallinfo2.restype = _MallInfo
+        of = libc.mallinfo2()
+        heap_bytes = of.uordblks + of.hblkhd
+    return Used(resident_mb(), heap_bytes / 1e6, getattr(sys, "getallocatedblocks", int)())
+
+
+def fuzz(number: int, seed: int, *, report_every: int = 0) -> tuple[Counter[str], list[Used]]:
+    """So many calls; how they ended, and what was used after a tenth of them, after each further tenth, and at the end."""
+    chance, ended, tenths = Chance(seed), Counter[str](), list[Used]()
+    began = time.monotonic()
     table = calls(chance)
     for call in range(number):
         if call % 100 == 0:
             faulthandler.dump_traceback_later(HANGS_S, exit=True)
-        if call == number // 10:
-            before = resident_mb()
-        if report and call % 100_000 == 0:
-            print(f"{call} calls, {time.monotonic() - began:.0f} s, {resident_mb():.0f} MB", flush=True)
+        if call > 0 and call % max(1, number // 10) == 0:
+            tenths.append(used())
+        if report_every > 0 and call % report_every == 0:
+            before_mb = resident_mb()
+            print(
+                f"{call} calls, {time.monotonic() - began:.0f} s, {before_mb:.0f} MB, given back: {used()}", flush=True
+            )
         try:
             chance.random.choice(table)()
             ended["fine"] += 1
@@ -283,7 +358,13 @@ def fuzz(number: int, seed: int, *, report: bool = False) -> tuple[Counter[str],
             assert "argument" in str(error), (call, error)
             ended["TypeError"] += 1
     faulthandler.cancel_dump_traceback_later()
-    return ended, resident_mb() - before
+    return ended, [*tenths[:9], used()]
+
+
+def grown(tenths: list[Used]) -> Used:
+    """What came in the second half of the run."""
+    half, end = tenths[4], tenths[-1]
+    return Used(end.resident_mb - half.resident_mb, end.heap_mb - half.heap_mb, end.objects - half.objects)
 
 
 if __name__ == "__main__":
@@ -291,5 +372,8 @@ if __name__ == "__main__":
     parser.add_argument("--calls", type=int, default=100_000)
     parser.add_argument("--seed", type=int, default=1)
     asked = parser.parse_args()
-    how, grown_mb = fuzz(asked.calls, asked.seed, report=True)
-    print(dict(how.most_common()), f"grew by {grown_mb:.1f} MB")
+    how, at = fuzz(asked.calls, asked.seed, report_every=100_000)
+    print(dict(how.most_common()))
+    print(f"in the end {at[-1]}; in the second half came {grown(at)}")
+    if any(came > most for came, most in zip(grown(at), MOST_GROWN)):
+        sys.exit(f"grew by more than {MOST_GROWN}")

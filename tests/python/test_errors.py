@@ -26,6 +26,7 @@ ANYTHING = st.one_of(
 ANY: Any = eeruf
 WALL = sim.Scene([[0, 0, 1, 0]])
 ROOM = sim.Scene([[5, 2, -5, 2]], robots=[sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)])
+FIRINGS = eeruf.logs.Firings.of(sensor=[0], fired_us=[0], period=[0], phase=[0], t_echo_us=[7000.0])
 
 BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: eeruf.design(0, 1, 1, 1), eeruf.ArgumentError, "sensors = 0; expected a whole number from 1 to 64"),
@@ -102,6 +103,37 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
         lambda: ANY.design(4, 1, 1, 1, over_reals=1),
         eeruf.ArgumentError,
         "over_reals = 1; expected True or False",
+    ),
+    (lambda: eeruf.design(4, 1, 1, 1, phases=68), eeruf.ArgumentError, "phases = 68; expected a whole number from 2"),
+    (lambda: eeruf.design(4, 1, 1, 1, phases=5, stale_echo=True), eeruf.HoppingError, "stale_echo = true; expected"),
+    (lambda: ANY.design(4, 1, 1, 1, margin_us=9), eeruf.ArgumentError, "margin_us = 9; expected no margin without"),
+    (
+        lambda: ANY.design(4, 1, 1, 1, shared_lines=[(0, 1)], phases=5),
+        eeruf.ArgumentError,
+        r"shared_lines = \[\(0, 1\)\]; expected no such argument with phases",
+    ),
+    (
+        lambda: eeruf.design(4, [1, 1], 1, 1, phases=5),
+        eeruf.ArgumentError,
+        "t_delta_us = 2 times; expected one, or one for each of 4 sensors",
+    ),
+    (lambda: ANY.design(4, 1, 1, 1, atlas="yes"), eeruf.ArgumentError, "atlas = 'yes'; expected True or False"),
+    (lambda: ANY.read_log(3), eeruf.ArgumentError, "path = 3; expected the path of a log"),
+    (lambda: ANY.read_log("x", ranges="cm"), eeruf.ArgumentError, "ranges = 'cm'; expected the names of columns"),
+    (lambda: ANY.read_log("x", time=3), eeruf.ArgumentError, "time = 3; expected the name of a column, or None"),
+    (lambda: ANY.read_log("x", time_unit="h"), eeruf.ArgumentError, 'time_unit = \'h\'; expected "s" or "ms"'),
+    (lambda: ANY.read_log("x", no_echo_m=0), eeruf.ArgumentError, "no_echo_m = 0; expected a number above 0"),
+    (lambda: ANY.diagnose(3), eeruf.ArgumentError, "log = 3; expected an eeruf.logs.Firings or the path of a log"),
+    (lambda: ANY.survey(FIRINGS, until_us=-1), eeruf.ArgumentError, "until_us = -1"),
+    (
+        lambda: ANY.logs.Firings.of(sensor=["a"], fired_us=[0], period=[0], phase=[0], t_echo_us=[1]),
+        eeruf.ArgumentError,
+        r"sensor = \['a'\]; expected numbers, one for each firing",
+    ),
+    (
+        lambda: ANY.logs.Firings.of(sensor=3, fired_us=[0], period=[0], phase=[0], t_echo_us=[1]),
+        eeruf.ArgumentError,
+        r"sensor has the shape \(\); expected one number for each firing",
     ),
     (lambda: eeruf.design(4, 1, 1, 1, budget=0), eeruf.ArgumentError, "budget = 0"),
     (

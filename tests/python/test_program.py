@@ -68,19 +68,39 @@ def test_a_sweep_of_speeds_is_the_programs() -> None:
     assert eeruf.experiments.speed_sweep(seeds=1, methods=["comparison", "eeruf"]).to_dict() == printed
 
 
+@pytest.mark.parametrize("atlas", [True, False])
 @pytest.mark.parametrize("ring", ["paper-12", "ring-24"])
-def test_a_design_is_the_programs(ring: str) -> None:
-    printed = program("design", f"rings/{ring}.toml", "--no-atlas")
+def test_a_design_is_the_programs(ring: str, atlas: bool) -> None:
+    printed = program("design", f"rings/{ring}.toml", *([] if atlas else ["--no-atlas"]))
     arguments: dict[str, Any] = (
         {"sensors": 12, "layout": "line"} if ring == "paper-12" else {"sensors": 24, "layout": "ring"}
     )
-    found = eeruf.design(t_delta_us=999, min_interval_us=15_000, window_us=30_000, over_reals=True, **arguments)
+    needs: dict[str, Any] = {"t_delta_us": 999, "min_interval_us": 15_000, "window_us": 30_000}
+    found = eeruf.design(**needs, **arguments, over_reals=True, atlas=atlas)
     del printed["seconds"]
-    assert printed.pop("from_atlas") is False
+    assert printed["from_atlas"] is atlas
+    assert (found.nodes == 0) is atlas
     printed["real_period_us"] = tuple(printed["real_period_us"])
     assert Schedule.from_firing(**printed.pop("schedule")) == found.schedule
     assert {name: getattr(found, name) for name in printed} == printed
-    assert {"value_us", "bound_us", "proven", "nodes", "reason", "real_period_us", "real_proven"} == set(printed)
+    assert {"value_us", "bound_us", "proven", "nodes", "reason", "from_atlas", "real_period_us", "real_proven"} == set(
+        printed
+    )
+    # The atlas answers by default, as there.
+    assert eeruf.design(**needs, **arguments).from_atlas
+
+
+@pytest.mark.parametrize("margin_us", [None, 90])
+def test_a_design_of_many_phases_is_the_programs(margin_us: Any, tmp_path: Path) -> None:
+    file = tmp_path / "ring.toml"
+    file.write_text('sensors = 8\nlayout = "ring"\nt_delta_us = 150\nmin_interval_us = 9000\nwindow_us = 36000\n')
+    printed = program(
+        "design", str(file), "--phases", "5", *([] if margin_us is None else ["--margin-us", str(margin_us)])
+    )
+    found = eeruf.design(8, 150, 9_000, 36_000, layout="ring", phases=5, margin_us=margin_us)
+    assert found.to_dict() == printed
+    assert found.schedule.step_us == (301 if margin_us is None else 240)
+    assert found.bound_us <= found.value_us and found.proven == (found.bound_us == found.value_us)
 
 
 def test_the_best_table_of_waits_is_the_programs() -> None:

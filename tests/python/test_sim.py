@@ -103,6 +103,35 @@ def test_an_open_simulation_is_steered_step_by_step() -> None:
     assert world.robots[0].touches
 
 
+def test_a_simulation_writes_itself_into_mcap_as_it_is_steered(tmp_path: Path) -> None:
+    file = tmp_path / "drive.mcap"
+    scene = sim.Scene([[5, 2, -5, 2]], robots=[sim.Robot((0, 0, 0), 8, 0.26, 0.3)])
+    with sim.Simulation(scene, "eeruf", seed=3, mcap=file) as world:
+        steps = []
+        for k in range(20):
+            world.set_velocity(0, v_m_s=0.05 * k, w_rad_s=0.2)
+            steps.append(world.step(0.06))
+    firings = eeruf.read_firings(file)
+    echoes = np.concatenate([step.earliest_us for step in steps])
+    fired = np.concatenate([step.fired_s for step in steps])
+    order = np.argsort(fired, kind="stable")
+    assert firings.damage is None
+    assert np.array_equal(firings.t_echo_us, np.floor(echoes[order]), equal_nan=True)
+    ranges = eeruf.read_log(file)
+    accepted = [ranges.topics[sensor].endswith("/accepted") for sensor in ranges.sensor]
+    assert sum(accepted) == sum(int(step.is_accepted.sum()) for step in steps)
+    assert len(ranges) == len(fired) + sum(accepted)
+    # It goes on when the file is closed, and closes once.
+    size = file.stat().st_size
+    assert len(world.step(0.06)) > 0
+    world.close()
+    assert file.stat().st_size == size
+    with pytest.raises(eeruf.LogError, match=r"missing.*x\.mcap: "):
+        sim.Simulation(scene, mcap=tmp_path / "missing" / "x.mcap")
+    with pytest.raises(eeruf.ArgumentError, match="mcap = 3; expected the path"):
+        sim.Simulation(scene, mcap=3)  # type: ignore[arg-type]
+
+
 def test_a_tampered_pickle_is_refused() -> None:
     readings = sim.simulate(sim.Scene.read_toml(SCENES / "alcove.toml"), "conventional", periods=20)
     reduced: Any = readings.__reduce__()

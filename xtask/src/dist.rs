@@ -91,7 +91,7 @@ fn tools() -> Result<(), Trouble> {
     if !tool("python").exists() {
         run(Command::new("python3").args(["-m", "venv", TOOLS]))?;
     }
-    let packages = ["maturin>=1.9,<2", "ziglang", "cargo-zigbuild", "abi3audit"];
+    let packages = ["maturin>=1.16,<2", "ziglang", "cargo-zigbuild", "abi3audit"];
     run(Command::new(tool("python")).args(["-m", "pip", "install", "--quiet"]).args(packages))
 }
 
@@ -138,7 +138,8 @@ fn wheel(folder: &Path, target: &str, system: &str) -> Result<PathBuf, Trouble> 
         fs::remove_dir_all(&to).map_err(|error| Trouble::Failed(format!("{}: {error}", to.display())))?;
     }
     let mut maturin = Command::new(tool("maturin"));
-    maturin.args(["build", "--locked", "--zig", "--target", target, "--compatibility", system, "--out"]);
+    maturin.args(crate::python::BUILD);
+    maturin.args(["--zig", "--target", target, "--compatibility", system, "--out"]);
     maturin.arg(Path::new(DIST).join(target));
     alike(&mut maturin, folder)?;
     run(&mut maturin)?;

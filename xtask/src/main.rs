@@ -18,6 +18,7 @@ mod firmware;
 mod house;
 mod links;
 mod listings;
+mod logs;
 mod materials;
 mod measured;
 mod micropython;
@@ -88,6 +89,9 @@ enum Verb {
     Python,
     /// Run a ring on an emulated board, its serial line and the ROS 2 node, and listen with Cyclone DDS and pymavlink
     Ros2,
+    /// Replay bags of a million messages, name senders in 200 alcoves, write the data set: the figures of docs/logs.md,
+    /// docs/diagnose.md and docs/dataset.md, which are also what must hold (many minutes)
+    Logs,
     /// Build the page in playground/, as a folder for a server and as one file for a disk
     Page {
         /// Run its tests, those that CI runs
@@ -174,6 +178,11 @@ fn main() -> ExitCode {
         }
         Verb::Python => one_step("Python package", python::python),
         Verb::Ros2 => one_step("ROS 2 node", ros2::ros2),
+        Verb::Logs => {
+            let mut steps = Steps::default();
+            logs::logs(&mut steps);
+            steps.finish(true)
+        }
         Verb::Page { test, long } => one_step("the page", || {
             page::page(match (test, long) {
                 (_, true) => page::Tests::Long,

@@ -5,6 +5,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread;
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -17,6 +18,7 @@ use crate::toolchain::cargo_for_target;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 const SOURCES: &str = "playground/page";
+const TESTS: &str = "playground/tests";
 /// The folder for a server.
 const FOLDER: &str = "target/page/folder";
 /// The one file for a disk.
@@ -48,8 +50,16 @@ pub(crate) enum Tests {
 
 /// Builds the page and tests it.
 pub(crate) fn page(tests: Tests) -> Result<(), Trouble> {
-    build()?;
-    if tests == Tests::No { Ok(()) } else { test(tests == Tests::Long) }
+    if tests == Tests::No {
+        return build();
+    }
+    // Linking the engine takes one core; what else the tests need is made meanwhile.
+    thread::scope(|scope| {
+        let prepared = scope.spawn(prepare);
+        build()?;
+        prepared.join().map_err(|_| Trouble::Failed("what the tests need cannot be made".to_owned()))?
+    })?;
+    test(tests == Tests::Long)
 }
 
 /// Writes the folder and the one file.
@@ -78,7 +88,7 @@ fn shrink(from: &Path, to: &Path) -> Result<(), Trouble> {
         return Ok(());
     }
     if output(Command::new("wasm-opt").arg("--version")).is_some() {
-        return run(Command::new("wasm-opt").arg("-O3").args(FEATURES).arg(from).arg("-o").arg(to));
+        return run(Command::new("wasm-opt").arg("-O2").args(FEATURES).arg(from).arg("-o").arg(to));
     }
     println!("no wasm-opt, so the engine is a little larger; try: apt install binaryen");
     fs::copy(from, to).map(drop).map_err(|error| failed(&from.display().to_string(), &error))
@@ -145,13 +155,14 @@ fn packed(engine: &[u8]) -> Result<String, Trouble> {
     packed.map(|packed| BASE64_STANDARD.encode(packed)).map_err(|error| failed("eeruf.wasm", &error))
 }
 
-/// Runs the tests in Node and, if there is one, a browser.
-fn test(long: bool) -> Result<(), Trouble> {
+/// Makes what the tests need beside the page: what npm installs, types without a fault, the program that the engine is
+/// held against.
+fn prepare() -> Result<(), Trouble> {
     if output(Command::new("node").arg("--version")).is_none() {
         return Err(Trouble::Skipped("no node; try: apt install nodejs npm".to_owned()));
     }
     let npm = if cfg!(windows) { "npm.cmd" } else { "npm" };
-    let tests = Path::new("playground/tests");
+    let tests = Path::new(TESTS);
     if output(Command::new(npm).arg("--version")).is_none() {
         return Err(Trouble::Skipped("no npm; try: apt install npm".to_owned()));
     }
@@ -163,11 +174,19 @@ fn test(long: bool) -> Result<(), Trouble> {
         write(&tests.join(INSTALLED).display().to_string(), &lock.unwrap_or_default())?;
     }
     run(Command::new(npm).current_dir(tests).args(["run", "--silent", "types"]))?;
-    // What the page is held against.
-    crate::program::program()?;
+    crate::program::program().map(drop)
+}
+
+/// Runs the tests in Node and, if there is one, a browser.
+fn test(long: bool) -> Result<(), Trouble> {
     let mut node = Command::new("node");
-    node.current_dir(tests).args(["--test", "--test-reporter=spec"]);
+    node.current_dir(TESTS).args(["--test", "--test-reporter=spec"]);
     node.env("PAGE_LONG", if long { "1" } else { "" });
+    // Files run beside each other, but where figures are printed. Before Node 20.10 there is no such option.
+    let beside = if long { "--test-concurrency=1" } else { "--test-concurrency=3" };
+    if output(Command::new("node").args([beside, "--version"])).is_some() {
+        node.arg(beside);
+    }
     let browser = ["chromium", "chromium-browser", "google-chrome"].iter().find_map(|name| which(name));
     let Some(browser) = browser else {
         run(node.arg("engine.test.js"))?;

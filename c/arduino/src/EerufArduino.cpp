@@ -4,8 +4,8 @@
 static const uint32_t SOON_US = 300;
 
 #if defined(__AVR__) && defined(portModeRegister)
-// By the port's registers: a quarter of the time of digitalRead, and less flash than the core's functions together.
-static bool isHigh(uint8_t pin) {
+// A quarter of the time of digitalRead, and less flash than the core's functions together.
+bool EerufPin::isHigh(uint8_t pin) {
     return *portInputRegister(digitalPinToPort(pin)) & digitalPinToBitMask(pin);
 }
 
@@ -25,7 +25,7 @@ static inline void setOutput(uint8_t pin, bool output) {
     setBit(port_to_mode_PGM, pin, output);
 }
 #else
-static bool isHigh(uint8_t pin) {
+bool EerufPin::isHigh(uint8_t pin) {
     return digitalRead(pin);
 }
 
@@ -38,12 +38,24 @@ static void setOutput(uint8_t pin, bool output) {
 }
 #endif
 
+void EerufPin::release(uint8_t trigger, uint8_t echo) {
+    drive(trigger, false);
+    setOutput(trigger, trigger != echo);
+}
+
+void EerufPin::trigger(uint8_t trigger, uint8_t echo) {
+    drive(trigger, true);
+    setOutput(trigger, true);
+    delayMicroseconds(10);
+    release(trigger, echo);
+}
+
 bool EerufModules::begin() {
     const EerufConfig config = EERUF_CONFIG;
     static const EerufHcSr04Settings settings = EERUF_HC_SR04;
     for (uint8_t sensor = 0; sensor < count_; sensor++) {
         setOutput(echoes_[sensor], false);
-        release(triggers_[sensor]);
+        EerufPin::release(triggers_[sensor], echoes_[sensor]);
     }
     const size_t sensors = count_ * sizeof *sensors_, lines = count_ * sizeof *lines_;
     status_ = eeruf_ring_init(&ring_, sizeof ring_, sensors_, sensors, schedule_, &config, ::micros());
@@ -54,11 +66,11 @@ bool EerufModules::begin() {
 
 // Edges of the lines that a pulse is awaited on, until something is due: to fire on time matters more.
 void EerufModules::sample(EerufModules &self) {
-    const uint32_t due = eeruf_ring_deadline(&self.ring_);
+    const uint32_t due = eeruf_ring_due(&self.ring_);
     bool was_high;
     for (uint8_t sensor = 0; sensor < self.count_ && (int32_t)(::micros() - due) < 0; sensor++) {
         if (!eeruf_hc_sr04_awaits(&self.modules_, sensor, &was_high)) continue;
-        const bool high = isHigh(self.echoes_[sensor]);
+        const bool high = EerufPin::isHigh(self.echoes_[sensor]);
         if (high != was_high) (void)eeruf_hc_sr04_edge(&self.modules_, sensor, high, ::micros());
     }
 }
@@ -71,20 +83,10 @@ void EerufModules::climb(EerufModules &self, const EerufEvent &event) {
     (void)eeruf_adaptation_period(self.adaptation_, &self.ring_, &event);
 }
 
-// Ends a trigger; one that is the echo line too is an input from then on.
-void EerufModules::release(uint8_t pin) {
-    drive(pin, false);
-    setOutput(pin, triggers_ != echoes_);
-}
-
-// A pulse of 10 us on the trigger, unless the line is high.
-void EerufModules::fire(uint8_t sensor, uint32_t now) {
-    const uint8_t pin = triggers_[sensor];
-    if (eeruf_hc_sr04_fire(&modules_, sensor, now, isHigh(echoes_[sensor])) != EERUF_OK) return;
-    drive(pin, true);
-    setOutput(pin, true);
-    delayMicroseconds(10);
-    release(pin);
+// Unless the line is high.
+void EerufModules::fire(uint8_t sensor) {
+    if (eeruf_hc_sr04_fire(&modules_, sensor, EerufPin::isHigh(echoes_[sensor])) != EERUF_OK) return;
+    EerufPin::trigger(triggers_[sensor], echoes_[sensor]);
 }
 
 bool EerufModules::read() {
@@ -96,10 +98,10 @@ bool EerufModules::read() {
     do {
         now = ::micros();
         collect_(*this);
-    } while (eeruf_ring_deadline(&ring_) - now - 1 < SOON_US);
+    } while (eeruf_ring_due(&ring_) - now - 1 < SOON_US);
     if (eeruf_ring_poll(&ring_, now, &event) != EERUF_EVENT) return false;
     if (event.kind == EERUF_EVENT_FIRE) {
-        fire(event.sensor, now);
+        fire(event.sensor);
     } else if (event.kind == EERUF_EVENT_PERIOD) {
         if (onPeriod_ != nullptr) onPeriod_(*this, event);
     } else {

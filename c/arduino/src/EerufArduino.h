@@ -16,6 +16,15 @@
 
 #include "eeruf.h"
 
+// Pins of modules, without Arduino's functions where that is faster: on an AVR by the port's registers.
+namespace EerufPin {
+bool isHigh(uint8_t pin);
+// Ends a trigger; one that is the echo line too is an input from then on.
+void release(uint8_t trigger, uint8_t echo);
+// A pulse of 10 us.
+void trigger(uint8_t trigger, uint8_t echo);
+} // namespace EerufPin
+
 // What all rings have in common, whatever their number of modules.
 class EerufModules {
 public:
@@ -71,8 +80,7 @@ private:
     static void sample(EerufModules &self);
     static void drain(EerufModules &self);
     static void climb(EerufModules &self, const EerufEvent &event);
-    void release(uint8_t pin);
-    void fire(uint8_t sensor, uint32_t now);
+    void fire(uint8_t sensor);
 
     const EerufSchedule *schedule_;
     const uint8_t *triggers_, *echoes_;

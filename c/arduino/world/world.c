@@ -5,7 +5,7 @@
  * ECHO_TIMES has a line for each way that sound takes: emitter, receiver, microseconds; `crates/eeruf-sim`'s example
  * echo_times writes it. Pins are the Uno's numbers; the same pin twice is a module with one pin. What the sketch says
  * on its serial line goes to standard output; then come lines that begin with `world`: firings of each module, triggers
- * that came while its line was high, how many bytes of stack were ever used, and which share of the time, in millionths,
+ * that came while its line was high, how deep the stack ever was in bytes, and which share of the time, in millionths,
  * passed in interrupts. With --pulses there is also a line for each pulse that sound has ended: the module from 1, and
  * whose sound it was: `own`, `earlier` for its own from an earlier firing, `foreign`.
  *
@@ -23,7 +23,6 @@
 
 #define MODULES 20
 #define WAYS 4096
-#define PAINT 0xa5
 
 static avr_t *avr;
 static struct {
@@ -189,11 +188,13 @@ static int read_ways(const char *name) {
     return way_count;
 }
 
-/* Bytes of stack that were ever used: everything from the top of RAM down to the first stretch of paint. */
-static unsigned deepest_stack(void) {
-    unsigned at, paint = 0;
-    for (at = avr->ramend; at > 0x100 && paint < 16; at--) paint = avr->data[at] == PAINT ? paint + 1 : 0;
-    return avr->ramend - at - paint;
+/* Bytes from the top of RAM down to the stack pointer, at its deepest; it points at the next free one. */
+static unsigned deepest_stack;
+
+static void look_at_stack(void) {
+    const unsigned pointer = avr->data[R_SPL] | (unsigned)avr->data[R_SPH] << 8;
+    /* It is 0 before the program sets it. */
+    if (pointer >= 0x100 && avr->ramend - pointer > deepest_stack) deepest_stack = avr->ramend - pointer;
 }
 
 int main(int argc, char **argv) {
@@ -227,7 +228,6 @@ int main(int argc, char **argv) {
     avr->log = LOG_ERROR;
     avr_load_firmware(avr, &firmware);
     avr->frequency = 16000000;
-    memset(avr->data + 0x100, PAINT, avr->ramend - 0x100 + 1u);
     for (port = "BCD"; *port != 0; port++) {
         void *number = (void *)(intptr_t)index_of(*port);
         const uint32_t io = AVR_IOCTL_IOPORT_GETIRQ(*port);
@@ -245,13 +245,14 @@ int main(int argc, char **argv) {
             printf("world crashed\n");
             return 1;
         }
+        look_at_stack();
         if (avr->cycle >= next_sound) hear_what_is_due();
     }
     printf("\nworld firings");
     for (i = 0; i < module_count; i++) printf(" %u", modules[i].firings);
     printf("\nworld ignored");
     for (i = 0; i < module_count; i++) printf(" %u", modules[i].ignored);
-    printf("\nworld stack %u\n", deepest_stack());
+    printf("\nworld stack %u\n", deepest_stack);
     printf("world interrupts %u\n", (unsigned)(interrupted * 1000000u / avr->cycle));
     return 0;
 }

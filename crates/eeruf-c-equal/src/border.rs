@@ -46,7 +46,7 @@ unsafe extern "C" {
         has_lags: u8,
         now_us: u32,
     ) -> i32;
-    pub(crate) fn shim_hopping_of(handle: *const c_void, sensor: u8, lag: u8) -> u32;
+    pub(crate) fn shim_hopping_of(handle: *const c_void, sensor: u8, what: u8) -> u32;
     pub(crate) fn shim_filter(
         held: *mut u32,
         t_delta_us: u32,
@@ -55,7 +55,13 @@ unsafe extern "C" {
         change_us: i32,
         out: *mut u32,
     ) -> i32;
-    pub(crate) fn shim_serial_event(handle: *mut c_void, sensors: u8, now_us: u32, frame: *mut u8) -> usize;
+    pub(crate) fn shim_serial_event(
+        handle: *mut c_void,
+        sensors: u8,
+        change_us: *const i32,
+        now_us: u32,
+        frame: *mut u8,
+    ) -> usize;
     pub(crate) fn shim_edges_new();
     pub(crate) fn shim_edges_push(sensor: u8, high: u8, at_us: u32) -> i32;
     pub(crate) fn shim_edges_pop(out: *mut u32) -> i32;

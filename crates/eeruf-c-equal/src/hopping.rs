@@ -119,12 +119,20 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
         let r = &world.random;
         if r.once_in(100) {
             let sensor = r.within(0, K as u32) as u8;
-            match r.within(0, 9) {
+            match r.within(0, 12) {
                 0..3 => same(&mut c, Do::Enable, sensor, 0, ring.disable(sensor)),
                 3..8 => same(&mut c, Do::Enable, sensor, 1, ring.enable(sensor)),
                 8 => {
                     let at = world.now.wrapping_add(r.duration(3_000));
                     same(&mut c, Do::Fired, sensor, at, ring.fired(sensor, Instant::from_micros(at)));
+                }
+                9 => {
+                    ring.pause();
+                    same::<()>(&mut c, Do::Pause, 0, 1, Ok(()));
+                }
+                10 | 11 => {
+                    ring.resume();
+                    same::<()>(&mut c, Do::Pause, 0, 0, Ok(()));
                 }
                 _ => {
                     ring.restart(Instant::from_micros(world.now));
@@ -157,6 +165,9 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
                 RingEvent::Reading(reading) => {
                     let confirmed = echo(ring.tracker().confirmed(reading.sensor.into()));
                     assert_eq!(c.confirmed_us(reading.sensor), confirmed, "{}", at());
+                    let how = ring.weighed(reading.sensor).map(|of| u32::from(of.solo) | u32::from(of.steady) << 1);
+                    let weighed = (how.unwrap_or(0), u32::from(ring.changes()));
+                    assert_eq!(c.weighed(reading.sensor), weighed, "{}", at());
                 }
                 RingEvent::PeriodEnded(_) => {
                     for sensor in 0..K as u8 {

@@ -153,12 +153,14 @@ impl C {
         unsafe { border::shim_do(self.0, what as u32, sensor, value) }
     }
 
-    /// The frame that `eeruf_serial_event` makes of the last poll's event; empty if it makes none.
-    pub fn serial_event(&mut self, sensors: u8, now_us: u32) -> Vec<u8> {
+    /// The frame that `eeruf_serial_event` makes of the last poll's event, for a hopping ring
+    /// `eeruf_serial_hopping_event`; empty if it makes none.
+    pub fn serial_event(&mut self, sensors: u8, change_us: Option<&[i32]>, now_us: u32) -> Vec<u8> {
         // As long as EERUF_FRAME.
         let mut frame = vec![0; 78];
-        // SAFETY: a ring that was polled, and room for the longest frame.
-        let size = unsafe { border::shim_serial_event(self.0, sensors, now_us, frame.as_mut_ptr()) };
+        let change_us = change_us.map_or(std::ptr::null(), <[i32]>::as_ptr);
+        // SAFETY: a ring that was polled, a number for each sensor, and room for the longest frame.
+        let size = unsafe { border::shim_serial_event(self.0, sensors, change_us, now_us, frame.as_mut_ptr()) };
         frame.truncate(size);
         frame
     }
@@ -201,6 +203,12 @@ impl C {
     pub fn lag_us(&self, sensor: u8) -> u32 {
         // SAFETY: a hopping ring that was made.
         unsafe { border::shim_hopping_of(self.0, sensor, 1) }
+    }
+
+    /// `eeruf_hopping_weighed` and `eeruf_hopping_changes`.
+    pub fn weighed(&self, sensor: u8) -> (u32, u32) {
+        // SAFETY: a hopping ring that was made.
+        unsafe { (border::shim_hopping_of(self.0, sensor, 2), border::shim_hopping_of(self.0, sensor, 3)) }
     }
 }
 

@@ -125,7 +125,9 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 3:
         if (handle->hopping != NULL) return eeruf_hopping_enable(handle->hopping, sensor, value != 0);
         return eeruf_ring_enable(ring, sensor, value != 0);
-    case 4: return eeruf_ring_pause(ring, value != 0);
+    case 4:
+        if (handle->hopping != NULL) return eeruf_hopping_pause(handle->hopping, value != 0);
+        return eeruf_ring_pause(ring, value != 0);
     case 5:
         if (handle->hopping != NULL) return eeruf_hopping_restart(handle->hopping, value);
         return eeruf_ring_restart(ring, value);
@@ -134,8 +136,8 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 8: return eeruf_ring_set_window(ring, value);
     case 9: return eeruf_ring_set_blanking(ring, value);
     case 10: return eeruf_hc_sr04_edge(&handle->modules, sensor & 0x7fu, sensor >> 7, value);
-    case 11: return eeruf_hc_sr04_fire(&handle->modules, sensor & 0x7fu, value, sensor >> 7);
-    case 12: return eeruf_hc_sr04_cannot_read(&handle->modules, sensor, value);
+    case 11: return eeruf_hc_sr04_fire(&handle->modules, sensor & 0x7fu, sensor >> 7);
+    case 12: return eeruf_hc_sr04_cannot_read(&handle->modules, sensor);
     case 13: return eeruf_hc_sr04_cannot_write(&handle->modules, sensor);
     case 14: return eeruf_hc_sr04_fired(&handle->modules, sensor, value);
     case 15: return eeruf_hc_sr04_change_schedule(&handle->modules, handle->schedules[value]);
@@ -217,8 +219,13 @@ int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t
     return status;
 }
 
-uint32_t shim_hopping_of(const Handle *handle, uint8_t sensor, uint8_t lag) {
-    return lag ? eeruf_hopping_lag_us(handle->hopping, sensor) : eeruf_hopping_confirmed_us(handle->hopping, sensor);
+uint32_t shim_hopping_of(const Handle *handle, uint8_t sensor, uint8_t what) {
+    switch (what) {
+    case 0: return eeruf_hopping_confirmed_us(handle->hopping, sensor);
+    case 1: return eeruf_hopping_lag_us(handle->hopping, sensor);
+    case 2: return eeruf_hopping_weighed(handle->hopping, sensor);
+    default: return eeruf_hopping_changes(handle->hopping);
+    }
 }
 
 /* `held`: known, age, state. `out`: kind, echo, previous, age. */
@@ -263,10 +270,12 @@ int shim_edges_pop(uint32_t *out) {
 }
 
 /* Says over a line what the last poll's event was; the size of the frame. */
-size_t shim_serial_event(Handle *handle, uint8_t sensors, uint32_t now_us, uint8_t *frame) {
+size_t shim_serial_event(Handle *handle, uint8_t sensors, const int32_t *change_us, uint32_t now_us, uint8_t *frame) {
     if (handle->line.clock == NULL) {
         const EerufSerial line = EERUF_SERIAL(handle->late_us, sensors, "board of sixteen letters");
         handle->line = line;
     }
+    if (handle->hopping != NULL)
+        return eeruf_serial_hopping_event(&handle->line, handle->hopping, NULL, &handle->last, change_us, now_us, frame);
     return eeruf_serial_event(&handle->line, handle->ring, NULL, &handle->last, now_us, frame);
 }

@@ -3,39 +3,17 @@
 use std::error::Error;
 use std::fmt;
 
-use eeruf_core::search::{Control, Found, PeriodProblem, Preferred, SearchError, ShortestPeriod, design};
+use eeruf_core::search::{Control, Found, PeriodProblem, Preferred, SearchError, design};
 use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_sim::{AnySchedule, ScheduleFile};
 
-use crate::atlas;
-use crate::find_uneven::{ToSpare, prefer_uneven, shortest_uneven};
+use crate::find_uneven::ToSpare;
 use crate::found::FoundJson;
 use crate::ring::RingSpec;
+use crate::shortest::{Search, Shortest, shortest};
 
-/// How many nodes the choice among the shortest schedules may cost.
-const PREFERENCE_BUDGET: u64 = 100_000;
 /// How many nodes it may cost to find out what one need, relaxed, would bring.
 const WHAT_IF_BUDGET: u64 = 20_000;
-/// How many nodes the choice among the shortest schedules of an uneven ring may cost.
-const SPARE_BUDGET: u64 = 30_000;
-
-/// How far to search.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Search {
-    /// How many nodes to visit at most before giving the best schedule so far.
-    pub budget: u64,
-    /// Whether to look for what would make the period shorter.
-    pub what_if: bool,
-    /// Whether the atlas may answer where it knows the shortest period.
-    pub atlas: bool,
-}
-
-impl Default for Search {
-    /// 50 million nodes, no look at what would be shorter; the atlas may answer.
-    fn default() -> Self {
-        Self { budget: 50_000_000, what_if: false, atlas: true }
-    }
-}
 
 /// A schedule for a ring file.
 #[derive(Clone, Debug)]
@@ -125,7 +103,6 @@ impl RingSpec {
         search: &Search,
         control: &mut impl Control,
     ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
-        let mut memory = vec![0; design::memory_words(self.sensors)];
         let mut t_delta = self.t_delta;
         // The bound and the reason of the first step without a proof. From there on t_delta is that of a schedule that
         // may be longer than necessary, so what is proven with it is not proven of the ring.
@@ -133,28 +110,10 @@ impl RingSpec {
         loop {
             let spec = self.covering(t_delta);
             let problem = spec.problem();
-            let known = if search.atlas && unproven.is_none() { known(&problem)? } else { None };
-            let from_atlas = known.is_some();
-            let mut to_spare = None;
-            let (mut found, mut reason, mut preferred) = if let Some(known) = known {
-                known
-            } else if self.uneven.is_some() {
-                let (mut found, reason) = shortest_uneven(&problem, search.budget, control)?;
-                if let Some(schedule) = found.schedule.filter(|_| found.proven) {
-                    let (schedule, spare) = prefer_uneven(&problem, &schedule, SPARE_BUDGET, control)?;
-                    (found.schedule, to_spare) = (Some(schedule), Some(spare));
-                }
-                (found, reason, None)
-            } else {
-                let designed: ShortestPeriod<MAX_SENSORS> = problem.shortest(search.budget, &mut memory, control)?;
-                let preferred = if designed.found.proven {
-                    Some(problem.prefer(&designed, PREFERENCE_BUDGET, &mut memory, control)?)
-                } else {
-                    None
-                };
-                (designed.found, designed.explanation().to_string(), preferred)
-            };
-            let chosen = preferred.map_or(found.schedule, |preferred| Some(preferred.schedule));
+            let asked = Search { atlas: search.atlas && unproven.is_none(), ..*search };
+            let shortest = shortest(&problem, &asked, control)?;
+            let chosen = shortest.schedule();
+            let Shortest { mut found, mut reason, mut preferred, mut to_spare, from_atlas } = shortest;
             if !found.proven && unproven.is_none() {
                 unproven = Some((found.bound, reason.clone()));
             } else if let Some((bound, why)) = &unproven {
@@ -170,7 +129,7 @@ impl RingSpec {
                 let what_if = match &self.uneven {
                     _ if !search.what_if || !found.proven => Vec::new(),
                     Some(_) => spec.what_if_uneven(control)?,
-                    None => what_if(&problem, &mut memory, control)?,
+                    None => what_if(&problem, control)?,
                 };
                 let t_delta = needed.max(t_delta);
                 let spec = self.covering(t_delta);
@@ -203,20 +162,6 @@ impl RingSpec {
     }
 }
 
-/// What a search found, why nothing is shorter, and what is known of the choice among the shortest.
-type Answer = (Found<MAX_SENSORS>, String, Option<Preferred<MAX_SENSORS>>);
-
-/// What the atlas says of a problem, if it knows its shortest period.
-fn known(problem: &PeriodProblem<'_>) -> Result<Option<Answer>, SearchError> {
-    let Some((row, schedule)) = atlas::answer(problem) else { return Ok(None) };
-    let period = schedule.period();
-    let [t_delta_proven, min_interval_proven, min_refire_proven] = row.preferred;
-    let preferred = Preferred { schedule, t_delta_proven, min_interval_proven, min_refire_proven, nodes: 0 };
-    let found = Found { schedule: Some(schedule), value: Some(period), bound: Some(period), proven: true, nodes: 0 };
-    let reason = problem.why_shortest(period)?.in_ticks_of(problem.tick).to_string();
-    Ok(Some((found, reason, Some(preferred))))
-}
-
 /// A tenth less, or a tick if that is more, in whole ticks.
 pub(crate) fn less(time: Micros, tick: Micros) -> Micros {
     let (us, tick) = (time.as_micros(), tick.as_micros().max(1));
@@ -224,11 +169,8 @@ pub(crate) fn less(time: Micros, tick: Micros) -> Micros {
 }
 
 /// Relaxes one need after the other by a tenth, or by one tick if that is more, or by one neighbour.
-fn what_if(
-    problem: &PeriodProblem<'_>,
-    memory: &mut [i32],
-    control: &mut impl Control,
-) -> Result<Vec<WhatIf>, SearchError> {
+fn what_if(problem: &PeriodProblem<'_>, control: &mut impl Control) -> Result<Vec<WhatIf>, SearchError> {
+    let mut memory = vec![0; design::memory_words(problem.sensors)];
     let Requirements { t_delta, min_interval, window, layout, .. } = problem.requirements;
     // In whole ticks, as others are rounded up to them.
     let less = |time: Micros| less(time, problem.tick);
@@ -263,7 +205,7 @@ fn what_if(
     }
     let answer = |(need, requirements)| {
         let relaxed = PeriodProblem { requirements, ..*problem };
-        let found = relaxed.shortest::<MAX_SENSORS>(WHAT_IF_BUDGET, memory, control)?.found;
+        let found = relaxed.shortest::<MAX_SENSORS>(WHAT_IF_BUDGET, &mut memory, control)?.found;
         Ok(WhatIf { need, period: found.value, proven: found.proven })
     };
     cases.into_iter().map(answer).collect()

@@ -31,7 +31,7 @@ pub struct ToSpare {
 ///
 /// # Errors
 /// As for core's search.
-pub fn shortest_uneven(
+pub(crate) fn shortest_uneven(
     problem: &PeriodProblem<'_>,
     budget: u64,
     control: &mut impl Control,
@@ -75,7 +75,7 @@ fn schedule_of(problem: &PeriodProblem<'_>, period: u32, fire: &FiringTimes) -> 
 ///
 /// # Errors
 /// As for core's search.
-pub fn prefer_uneven(
+pub(crate) fn prefer_uneven(
     problem: &PeriodProblem<'_>,
     schedule: &AnySchedule,
     budget: u64,

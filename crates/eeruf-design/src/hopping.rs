@@ -157,6 +157,32 @@ impl HoppingDesign {
     pub fn proven(&self) -> bool {
         self.schedule.period() == self.period_bound
     }
+
+    /// The shortest period with a linear congruence of at least so many phases, 2 to 67, and lags that keep the
+    /// neighbours' interval.
+    ///
+    /// # Errors
+    /// Phases, step or period out of range, and a stale echo condition, which these codes do not keep.
+    pub fn shortest(sensors: usize, phases: u8, requirements: &PhaseRequirements<'_>) -> Result<Self, String> {
+        if requirements.stale_echo {
+            return Err(
+                "stale_echo = true; expected false with many phases: a sensor's own sound does not move by the \
+                        step of a congruence"
+                    .to_owned(),
+            );
+        }
+        let step = requirements.separation();
+        let code = HoppingCode::shortest(sensors, phases, step).map_err(|error| error.to_string())?;
+        // Which multipliers the sensors have matters to neighbours; the first one lets a sensor fire again soonest.
+        let others = (0..code.phases()).filter_map(|a| HoppingCode::of(sensors, code.phases(), a, step).ok());
+        let found = std::iter::once(code).chain(others).filter_map(|code| shortest(code, requirements));
+        let schedule = found.min_by_key(HoppingSchedule::period).ok_or_else(|| {
+            format!("no period up to {}; expected fewer sensors or shorter times", eeruf_core::MAX_PERIOD)
+        })?;
+        let (period_bound, reason) = period_bound(sensors, requirements);
+        let width_bound = Micros::new((sensors as u32 - 1).saturating_mul(step.as_micros()));
+        Ok(Self { schedule, period_bound, width_bound, reason })
+    }
 }
 
 impl RingSpec {
@@ -172,31 +198,19 @@ impl RingSpec {
         }
     }
 
-    /// The shortest period with a linear congruence of at least so many phases, 2 to 67, and lags that keep the
-    /// neighbours' interval.
+    /// As [`HoppingDesign::shortest`], for this ring.
     ///
     /// # Errors
-    /// Phases, step or period out of range, and a stale echo condition, which these codes do not keep.
+    /// As there, and what sensors or pairs need of their own, but for their `t_delta` and windows, of which the largest
+    /// counts.
     pub fn hopping(&self, phases: u8, criterion: PhaseCriterion) -> Result<HoppingDesign, String> {
-        if self.stale_echo {
-            return Err(
-                "stale_echo = true; expected false with many phases: a sensor's own sound does not move by the \
-                        step of a congruence"
-                    .to_owned(),
-            );
+        if let Some(key) = self.uneven.as_ref().and_then(|uneven| uneven.not_in_many_phases(self.window)) {
+            return Err(format!(
+                "{key}; expected no such key with many phases: their schedules keep one interval between neighbours \
+                 and one window for all sensors"
+            ));
         }
-        let requirements = self.phase_requirements(criterion);
-        let step = requirements.separation();
-        let code = HoppingCode::shortest(self.sensors, phases, step).map_err(|error| error.to_string())?;
-        // Which multipliers the sensors have matters to neighbours; the first one lets a sensor fire again soonest.
-        let others = (0..code.phases()).filter_map(|a| HoppingCode::of(self.sensors, code.phases(), a, step).ok());
-        let found = std::iter::once(code).chain(others).filter_map(|code| shortest(code, &requirements));
-        let schedule = found.min_by_key(HoppingSchedule::period).ok_or_else(|| {
-            format!("no period up to {}; expected fewer sensors or shorter times", eeruf_core::MAX_PERIOD)
-        })?;
-        let (period_bound, reason) = period_bound(self.sensors, &requirements);
-        let width_bound = Micros::new((self.sensors as u32 - 1).saturating_mul(step.as_micros()));
-        Ok(HoppingDesign { schedule, period_bound, width_bound, reason })
+        HoppingDesign::shortest(self.sensors, phases, &self.phase_requirements(criterion))
     }
 }
 

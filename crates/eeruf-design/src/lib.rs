@@ -7,7 +7,8 @@
 //! | `limits`, `layout` | what numbers a ring file may hold; how the sensors stand |
 //! | `each`, `uneven` | one number for all sensors or one for each; what sensors need that are not alike |
 //! | `ring` | the ring file, turned into what a schedule must meet |
-//! | `find`, `find_uneven`, `what_if_uneven` | the shortest period for it, and what would make it shorter |
+//! | `shortest`, `find_uneven` | the shortest period for that |
+//! | `find`, `what_if_uneven` | the same for a ring that may move, and what would make it shorter |
 //! | `found` | the answer as it is printed in JSON |
 //! | `hopping` | schedules of many phases: the file, and the shortest period |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
@@ -38,20 +39,22 @@ mod layout;
 mod limits;
 mod reals;
 mod ring;
+mod shortest;
 mod text;
 mod ticks;
 mod uneven;
 mod what_if_uneven;
 
 pub use each::Each;
-pub use find::{NoSchedule, RingDesign, Search, WhatIf};
-pub use find_uneven::{ToSpare, prefer_uneven, shortest_uneven};
+pub use find::{NoSchedule, RingDesign, WhatIf};
+pub use find_uneven::ToSpare;
 pub use found::FoundJson;
 pub use hopping::{HoppingDesign, PhaseFile, PhaseSchedule};
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};
 pub use reals::{RealPeriod, over_reals, real_budget};
 pub use ring::{RingFile, RingSpec};
+pub use shortest::{Search, Shortest, shortest};
 pub use text::{TextError, parse};
 pub use uneven::OwnedUneven;
 

@@ -65,6 +65,18 @@ impl OwnedUneven {
         Self { t_delta, ..self.clone() }
     }
 
+    /// What of it a schedule of many phases would not keep, by its key, where all listen for the longest `window`.
+    pub(crate) fn not_in_many_phases(&self, window: Micros) -> Option<&'static str> {
+        let later = self.refire.iter().any(|&refire| refire > window);
+        let keys = [
+            (!self.intervals.is_empty(), "intervals_us"),
+            (!self.shared_lines.is_empty(), "shared_lines"),
+            (!self.together.is_empty(), "together"),
+            (later, "retrigger_us"),
+        ];
+        keys.into_iter().find_map(|(is_there, key)| is_there.then_some(key))
+    }
+
     /// The same with other intervals of pairs.
     pub(crate) fn with_intervals(&self, other: impl Fn(Micros) -> Micros) -> Self {
         let intervals = self.intervals.iter().map(|&(x, y, interval)| (x, y, other(interval))).collect();

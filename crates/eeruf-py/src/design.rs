@@ -4,21 +4,20 @@ use std::time::{Duration, Instant};
 
 use eeruf_core::{
     Criterion, MAX_SENSORS, Micros, Requirements,
-    search::{self, Control, PeriodProblem, Progress, SearchError, design as period},
+    search::{self, PeriodProblem, Progress},
 };
-use eeruf_design::{OwnedUneven, certificate, over_reals as real_period, real_budget, shortest_uneven};
+use eeruf_design::{OwnedUneven, Search, certificate, over_reals as real_period, real_budget, shortest};
 use pyo3::prelude::*;
 
 use crate::{
     arguments::{flag, micros, number, whole_or},
     errors::{ArgumentError, CertificateError, Raise},
     found::Found,
+    hopping_found::{HoppingFound, Needs, refuse},
     requirements::{self, OwnedLayout, UnevenArguments, each},
     watch::{Watch, control_flow, in_background},
 };
 
-/// How many nodes the choice among the shortest schedules may cost.
-const PREFERENCE_BUDGET: u64 = 100_000;
 /// How many nodes a search visits unless another budget is given.
 const DESIGN_BUDGET: u64 = 50_000_000;
 /// How many nodes the proof of a certificate may have.
@@ -60,16 +59,24 @@ const FEW_SENSORS: usize = 12;
 ///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
 ///     together: groups of sensors that fire at the same instants, declared not to hear each other.
 ///     over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period with firing
-/// times         that are no whole ticks, the needs being what they are in ticks, and in ``Found.real_proven`` whether
-/// none is
-///         shorter. Only where the period in ticks is proven.
+///         times that are no whole ticks, the needs being what they are in ticks, and in ``Found.real_proven`` whether
+///         none is shorter. Only where the period in ticks is proven.
+///     phases: at least so many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds it.
+///         Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
+///         given but ``margin_us``.
+///     margin_us: with ``phases``: crosstalk need move by ``T_delta`` and this margin alone, which is all that jitter
+///         and lateness may use, instead of ``2 T_delta + 1``.
+///     atlas: whether the atlas of rings whose shortest period is known may answer, as that of the program does;
+///         ``Found.from_atlas`` says whether it did, and ``nodes`` is 0 then.
 ///
 /// Returns:
-///     The shortest period in ``value_us``, or the best found within budget and time; ``proven`` says which.
+///     A :class:`Found`: the shortest period in ``value_us``, or the best found within budget and time; ``proven`` says
+///     which. With ``phases`` a :class:`HoppingFound`.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
 ///     SearchError: needs that make no sense, or too large a grid.
+///     HoppingError: no schedule of so many phases.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -83,20 +90,23 @@ const FEW_SENSORS: usize = 12;
 ///     >>> found = eeruf.design(4, [999, 999, 1500, 1500], 15_000, windows, shared_lines=[(0, 2)])
 ///     >>> found.value_us, found.proven
 ///     (59000, True)
+///     >>> eeruf.design(8, t_delta_us=150, min_interval_us=0, window_us=36_000, phases=5, margin_us=90).value_us
+///     37680
 #[pyfunction]
 #[pyo3(signature = (
     sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None,
     budget=None, progress=None, certificate=None, time_limit_s=None, refire_us=None, intervals_us=None,
-    shared_lines=None, together=None, over_reals=None
+    shared_lines=None, together=None, over_reals=None, phases=None, margin_us=None, atlas=None
 ))]
 #[pyo3(
     text_signature = "(sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, layout=\"line\", \
         stale_echo=False, budget=None, progress=None, certificate=False, time_limit_s=None, refire_us=None, \
-        intervals_us=None, shared_lines=None, together=None, over_reals=False)"
+        intervals_us=None, shared_lines=None, together=None, over_reals=False, phases=None, margin_us=None, \
+        atlas=True)"
 )]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
-pub(crate) fn design(
-    py: Python<'_>,
+pub(crate) fn design<'py>(
+    py: Python<'py>,
     sensors: &Bound<'_, PyAny>,
     t_delta_us: &Bound<'_, PyAny>,
     min_interval_us: &Bound<'_, PyAny>,
@@ -114,7 +124,31 @@ pub(crate) fn design(
     shared_lines: Option<&Bound<'_, PyAny>>,
     together: Option<&Bound<'_, PyAny>>,
     over_reals: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Found> {
+    phases: Option<&Bound<'_, PyAny>>,
+    margin_us: Option<&Bound<'_, PyAny>>,
+    atlas: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    if let Some(phases) = phases {
+        let needless = [
+            ("tick_us", tick_us),
+            ("budget", budget),
+            ("progress", progress),
+            ("certificate", certificate),
+            ("time_limit_s", time_limit_s),
+            ("refire_us", refire_us),
+            ("intervals_us", intervals_us),
+            ("shared_lines", shared_lines),
+            ("together", together),
+            ("over_reals", over_reals),
+            ("atlas", atlas),
+        ];
+        refuse(&needless, "no such argument with phases")?;
+        let needs =
+            Needs { sensors, t_delta_us, min_interval_us, window_us, neighbours, layout, stale_echo, margin_us };
+        return Ok(Bound::new(py, HoppingFound::design(phases, &needs)?)?.into_any());
+    }
+    refuse(&[("margin_us", margin_us)], "no margin without phases")?;
+    let atlas = flag("atlas", atlas, true)?;
     let sensors = requirements::sensors(sensors)?;
     let layout = OwnedLayout::new(layout, requirements::neighbours(neighbours)?, sensors)?;
     let (t_delta, t_deltas) = each("t_delta_us", t_delta_us, 0)?;
@@ -141,7 +175,9 @@ pub(crate) fn design(
             let text = || format!("{} nodes, period {bound} to {best} ticks", at.nodes);
             control_flow(began.elapsed() < limit && go_on(&text))
         };
-        let (found, reason) = shortest(&needs, budget, &mut control).map_err(Raise::raise)?;
+        let shortest =
+            shortest(&needs, &Search { budget, what_if: false, atlas }, &mut control).map_err(Raise::raise)?;
+        let found = search::Found { schedule: shortest.schedule(), ..shortest.found };
         let proving = Instant::now();
         let mut still = |what: &str, nodes| proving.elapsed() < limit && go_on(&|| format!("{what}: {nodes} nodes"));
         let proof = certificate.then(|| certify(&needs, &found, |nodes| still("certificate", nodes))).transpose()?;
@@ -149,16 +185,16 @@ pub(crate) fn design(
         let real = schedule.and_then(|schedule| {
             real_period(&needs, &schedule, real_budget(sensors), |nodes| still("over the reals", nodes))
         });
-        Ok((found, reason, proof, real))
+        Ok((Found::of(&found, began, Some(shortest.reason)).out_of_atlas(shortest.from_atlas), proof, real))
     };
-    let (found, reason, certificate, real) = if sensors <= FEW_SENSORS {
+    let (found, certificate, real) = if sensors <= FEW_SENSORS {
         let mut watch = Watch::new(progress)?;
         let designed = py.detach(|| work(&mut |text| watch.go_on(None, text)));
         watch.outcome(designed)?
     } else {
         in_background(py, progress, move |background| work(&mut |text| background.go_on(None, text)))?
     };
-    Ok(Found::of(&found, began, Some(reason)).with_certificate(certificate).with_reals(real))
+    Ok(Bound::new(py, found.with_certificate(certificate).with_reals(real))?.into_any())
 }
 
 /// The certificate of what was found.
@@ -209,21 +245,4 @@ pub(crate) fn check_certificate(text: &Bound<'_, PyAny>) -> PyResult<u64> {
         return Err(CertificateError::new_err(certified.to_string()));
     }
     Ok(period / fraction)
-}
-
-fn shortest(
-    needs: &PeriodProblem<'_>,
-    budget: u64,
-    control: &mut impl Control,
-) -> Result<(search::Found<MAX_SENSORS>, String), SearchError> {
-    if needs.requirements.uneven.is_some() {
-        return shortest_uneven(needs, budget, control);
-    }
-    let mut memory = vec![0; period::memory_words(needs.sensors)];
-    let designed = needs.shortest::<MAX_SENSORS>(budget, &mut memory, control)?;
-    let mut found = designed.found;
-    if found.proven {
-        found.schedule = Some(needs.prefer(&designed, PREFERENCE_BUDGET, &mut memory, control)?.schedule);
-    }
-    Ok((found, designed.explanation().to_string()))
 }

@@ -55,6 +55,9 @@ pub(crate) struct Found {
     /// Whether no real period is shorter; None without one.
     #[pyo3(get)]
     real_proven: Option<bool>,
+    /// Whether the atlas of proven rings answered, and nothing was searched.
+    #[pyo3(get)]
+    from_atlas: bool,
 }
 
 impl Found {
@@ -70,7 +73,12 @@ impl Found {
             certificate: None,
             real_period_us: None,
             real_proven: None,
+            from_atlas: false,
         }
+    }
+
+    pub(crate) fn out_of_atlas(self, from_atlas: bool) -> Self {
+        Self { from_atlas, ..self }
     }
 
     pub(crate) fn with_certificate(self, certificate: Option<String>) -> Self {
@@ -87,7 +95,9 @@ impl Found {
 impl Found {
     #[new]
     #[pyo3(signature = (schedule, value_us, bound_us, proven, nodes, seconds, reason=None, certificate=None,
-        real_period_us=None, real_proven=None))]
+        real_period_us=None, real_proven=None, from_atlas=None))]
+    #[pyo3(text_signature = "(schedule, value_us, bound_us, proven, nodes, seconds, reason=None, certificate=None, \
+            real_period_us=None, real_proven=None, from_atlas=False)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         schedule: Option<&Bound<'_, PyAny>>,
@@ -100,6 +110,7 @@ impl Found {
         certificate: Option<&Bound<'_, PyAny>>,
         real_period_us: Option<(u64, u64)>,
         real_proven: Option<bool>,
+        from_atlas: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let schedule = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
         Ok(Self {
@@ -113,6 +124,7 @@ impl Found {
             certificate: certificate.map(|proof| text("certificate", proof, "a certificate")).transpose()?,
             real_period_us,
             real_proven,
+            from_atlas: flag("from_atlas", from_atlas, false)?,
         })
     }
 
@@ -141,6 +153,7 @@ impl Found {
             "certificate",
             "real_period_us",
             "real_proven",
+            "from_atlas",
         ];
         to_dict(slf, &fields)
     }
@@ -153,10 +166,21 @@ impl Found {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let this = slf.get();
-        let Self { value_us, bound_us, proven, nodes, seconds, real_period_us, real_proven, .. } = *this;
+        let Self { value_us, bound_us, proven, nodes, seconds, real_period_us, real_proven, from_atlas, .. } = *this;
         let (schedule, reason, certificate) = (this.schedule.clone(), this.reason.clone(), this.certificate.clone());
-        let arguments =
-            (schedule, value_us, bound_us, proven, nodes, seconds, reason, certificate, real_period_us, real_proven);
+        let arguments = (
+            schedule,
+            value_us,
+            bound_us,
+            proven,
+            nodes,
+            seconds,
+            reason,
+            certificate,
+            real_period_us,
+            real_proven,
+            from_atlas,
+        );
         Ok((slf.get_type().into_any(), arguments.into_pyobject(slf.py())?))
     }
 }

@@ -11,6 +11,7 @@ use pyo3::{
 use crate::{
     arguments::{self, micros, times, whole, whole_or, wrong},
     errors::{HoppingError, Raise},
+    fields::to_dict,
     requirements,
 };
 
@@ -178,6 +179,16 @@ impl HoppingSchedule {
         let times = |phase| (0..self.sensors()).filter_map(move |sensor| self.0.t_fire(phase, sensor));
         let all: Vec<_> = (0..self.phases()).flat_map(times).map(|time| i64::from(time.as_micros())).collect();
         PyArray1::from_vec(py, all).reshape([self.phases().into(), self.sensors()])
+    }
+
+    /// The period and the code with its lags by their names: a dict of plain values.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> eeruf.HoppingSchedule(sensors=2, period_us=60_000, step_us=240, phases=5).to_dict()["t_lag_us"]
+    ///     [0, 14760]
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &["period_us", "step_us", "phases", "first_multiplier", "t_lag_us"])
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

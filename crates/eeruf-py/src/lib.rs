@@ -22,6 +22,7 @@ mod fields;
 mod filter;
 mod found;
 mod himm;
+mod hopping_found;
 mod hopping_ring;
 mod hopping_schedule;
 mod hopping_settings;
@@ -30,6 +31,7 @@ mod maps;
 mod memory;
 mod methods;
 mod moments;
+mod own;
 mod owned_ring;
 mod paths;
 mod pose;
@@ -40,6 +42,7 @@ mod requirements;
 mod ring;
 mod ring_events;
 mod robot;
+mod robot_state;
 mod scene;
 mod schedule;
 mod schedule_times;
@@ -69,11 +72,13 @@ mod _eeruf {
         filter::EchoFilter,
         found::Found,
         himm::Himm,
+        hopping_found::HoppingFound,
         hopping_ring::HoppingRing,
         hopping_schedule::HoppingSchedule,
         hopping_settings::HoppingSettings,
         logs::{LogError, diagnose, read_firings, read_log, replay, survey},
         maps::read_map,
+        own::FiredReading,
         paths::Paths,
         program::{example, run_program},
         readings::Readings,
@@ -81,12 +86,13 @@ mod _eeruf {
         ring::Ring,
         ring_events::{Fire, PeriodEnded, Reading},
         robot::Robot,
+        robot_state::RobotState,
         scene::Scene,
         schedule::Schedule,
         search::{WaitSearch, WaitTables},
         sensor_watch::{Blind, LastAccepted, SensorWatch},
         simulate::simulate,
-        simulation::{ReadingBlocks, RobotState, Simulation, simulate_blocks},
+        simulation::{ReadingBlocks, Simulation, simulate_blocks},
         surroundings::{Material, Noise},
         tracker::EchoTracker,
         unpickle::readings_from_columns,
@@ -104,7 +110,7 @@ mod _eeruf {
         module.add("METHODS", PyTuple::new(module.py(), methods.map(eeruf_sim::Method::as_str))?)?;
         let eeruf = methods.into_iter().filter(|method| method.is_eeruf()).map(eeruf_sim::Method::as_str);
         module.add("EERUF_METHODS", PyTuple::new(module.py(), eeruf.collect::<Vec<_>>())?)?;
-        let examples = eeruf::examples::all().into_iter().map(|(name, _)| name);
+        let examples = crate::program::examples::all().into_iter().map(|(name, _)| name);
         module.add("EXAMPLES", PyTuple::new(module.py(), examples.collect::<Vec<_>>())?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
         module.add("CAUSES", PyTuple::new(module.py(), crate::readings::CAUSES)?)?;

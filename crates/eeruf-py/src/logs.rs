@@ -9,7 +9,7 @@ use numpy::PyReadonlyArray1;
 use pyo3::{create_exception, prelude::*, types::PyDict};
 
 use crate::{
-    arguments::micros,
+    arguments::{choice, items, micros, shown, text, wrong},
     columns::read_only,
     errors::{ArgumentError, EerufError},
     hopping_settings::tracker_settings,
@@ -32,23 +32,22 @@ Example:
 
 // Of the macro, which takes errors by value.
 #[expect(clippy::needless_pass_by_value, reason = "as `map_err` gives it")]
-fn raise(error: eeruf_logs::LogError) -> PyErr {
+pub(crate) fn raise(error: eeruf_logs::LogError) -> PyErr {
     LogError::new_err(error.to_string())
 }
 
-fn one_of<T: Copy>(name: &str, value: &str, known: &[(&str, T)]) -> PyResult<T> {
-    let found = known.iter().find(|known| known.0 == value).map(|known| known.1);
-    found.ok_or_else(|| {
-        let names: Vec<_> = known.iter().map(|known| known.0).collect();
-        ArgumentError::new_err(format!("{name}: {value:?}; expected one of {}", names.join(", ")))
-    })
+fn log_file(path: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
+    path.extract().map_err(|_| wrong("path", shown(path), "the path of a log"))
 }
 
-fn above_zero(name: &str, value: f64) -> PyResult<f64> {
-    if value > 0.0 && value.is_finite() {
-        return Ok(value);
-    }
-    Err(ArgumentError::new_err(format!("{name} = {value}; expected a number above 0")))
+/// The name of a column, if there is one.
+fn column_name(name: &str, value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<String>> {
+    value.map(|value| text(name, value, "the name of a column, or None")).transpose()
+}
+
+fn above_zero(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    let number = value.extract().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| wrong(name, shown(value), "a number above 0"))
 }
 
 /// The ranges of a log, as columns, with sensors, damage and what was left out.
@@ -57,14 +56,14 @@ fn above_zero(name: &str, value: f64) -> PyResult<f64> {
 #[expect(clippy::too_many_arguments, reason = "each of them once, from one place")]
 pub(crate) fn read_log<'py>(
     py: Python<'py>,
-    path: PathBuf,
-    time: Option<String>,
-    time_unit: &str,
-    ranges: Vec<String>,
-    range_unit: &str,
-    sensor: Option<String>,
-    speed_of_sound: f64,
-    no_echo_m: f64,
+    path: &Bound<'py, PyAny>,
+    time: Option<&Bound<'py, PyAny>>,
+    time_unit: &Bound<'py, PyAny>,
+    ranges: &Bound<'py, PyAny>,
+    range_unit: &Bound<'py, PyAny>,
+    sensor: Option<&Bound<'py, PyAny>>,
+    speed_of_sound: &Bound<'py, PyAny>,
+    no_echo_m: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let times = [("s", TimeUnit::S), ("ms", TimeUnit::Ms), ("us", TimeUnit::Us), ("ns", TimeUnit::Ns)];
     let units = [
@@ -74,9 +73,18 @@ pub(crate) fn read_log<'py>(
         ("in", RangeUnit::In),
         ("us", RangeUnit::Us),
     ];
-    let (time_unit, range_unit) = (one_of("time_unit", time_unit, &times)?, one_of("range_unit", range_unit, &units)?);
+    let path = log_file(path)?;
+    let expected = "the names of columns";
+    let ranges = items("ranges", ranges, expected)?;
+    let ranges = ranges.iter().map(|name| text("ranges", name, expected));
     let options = Options {
-        table: Table { ranges, range_unit, time, time_unit, sensor },
+        table: Table {
+            ranges: ranges.collect::<PyResult<_>>()?,
+            range_unit: choice("range_unit", Some(range_unit), &units)?,
+            time: column_name("time", time)?,
+            time_unit: choice("time_unit", Some(time_unit), &times)?,
+            sensor: column_name("sensor", sensor)?,
+        },
         speed_of_sound: above_zero("speed_of_sound", speed_of_sound)?,
         no_echo_m: above_zero("no_echo_m", no_echo_m)?,
     };
@@ -105,7 +113,8 @@ pub(crate) fn read_log<'py>(
 /// The firings of a log, as columns, with the clock and the damage.
 #[pyfunction]
 #[pyo3(name = "_read_firings")]
-pub(crate) fn read_firings(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>> {
+pub(crate) fn read_firings<'py>(path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+    let (py, path) = (path.py(), log_file(path)?);
     let log = in_background(py, None, move |_| FiringLog::read(&path).map_err(raise))?;
     let rows = log.firings.iter().map(|row| (row, true)).chain(log.listened.iter().map(|row| (row, false)));
     let rows: Vec<_> = rows.collect();
@@ -128,11 +137,11 @@ pub(crate) fn read_firings(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, 
 #[pyfunction]
 #[pyo3(name = "_replay")]
 pub(crate) fn replay<'py>(
-    py: Python<'py>,
-    path: PathBuf,
+    path: &Bound<'py, PyAny>,
     t_delta_us: Option<&Bound<'py, PyAny>>,
     settings: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let (py, path) = (path.py(), log_file(path)?);
     let t_delta = t_delta_us.map(|t_delta| micros("t_delta_us", t_delta)).transpose()?;
     let settings = tracker_settings(t_delta, settings)?;
     let (log, verdicts) = in_background(py, None, move |_| {
@@ -157,6 +166,9 @@ pub(crate) fn replay<'py>(
     Ok(out)
 }
 
+/// Thirty years, so that differences of moments are far from overflow.
+const MOST_US: u64 = 1_000_000_000_000_000;
+
 /// What `eeruf.logs.Firings` holds.
 #[derive(FromPyObject)]
 pub(crate) struct Columns<'py> {
@@ -167,6 +179,11 @@ pub(crate) struct Columns<'py> {
     t_echo_us: PyReadonlyArray1<'py, f64>,
     rejected: PyReadonlyArray1<'py, i64>,
     sends: PyReadonlyArray1<'py, bool>,
+}
+
+fn columns<'py>(firings: &Bound<'py, PyAny>) -> PyResult<Columns<'py>> {
+    let expected = "an eeruf.logs.Firings of arrays with one dimension, as Firings.of makes it";
+    firings.extract().map_err(|_| wrong("log", shown(firings), expected))
 }
 
 /// A log from columns of equal length; the places of its firings, in their order, among the columns.
@@ -190,6 +207,9 @@ fn log_of(columns: &Columns<'_>) -> PyResult<(FiringLog, Vec<usize>)> {
         let echo = t_echo_us[row];
         if !(echo.is_nan() || (0.0..4e9).contains(&echo)) {
             return Err(bad("t_echo_us", &echo, "0 to 4e9, or NaN"));
+        }
+        if fired_us[row].unsigned_abs() > MOST_US {
+            return Err(bad("fired_us", &fired_us[row], "at most 10^15 from 0"));
         }
         let known = u8::try_from(sensor[row]).ok().filter(|&sensor| sensor < 64);
         let firing = Firing {
@@ -234,13 +254,14 @@ fn paths<'py>(py: Python<'py>, paths: &[FoundPath]) -> PyResult<Bound<'py, PyDic
 /// Which sensors fool each other, from columns.
 #[pyfunction]
 #[pyo3(name = "_diagnose")]
-#[expect(clippy::needless_pass_by_value, reason = "as PyO3 gives it")]
 pub(crate) fn diagnose<'py>(
-    py: Python<'py>,
-    firings: Columns<'py>,
-    tolerance_us: u32,
-    max_travel_us: u32,
+    firings: &Bound<'py, PyAny>,
+    tolerance_us: &Bound<'py, PyAny>,
+    max_travel_us: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let (py, firings) = (firings.py(), columns(firings)?);
+    let tolerance_us = micros("tolerance_us", tolerance_us)?.as_micros();
+    let max_travel_us = micros("max_travel_us", max_travel_us)?.as_micros();
     let rows = firings.sensor.as_array().len();
     let (log, places) = log_of(&firings)?;
     let settings = Settings { tolerance_us, max_travel_us, ..Settings::default() };
@@ -274,14 +295,15 @@ fn fault(fault: &Fault) -> Option<(&'static str, Vec<u8>)> {
 /// Who hears whom, from the columns of a measuring run.
 #[pyfunction]
 #[pyo3(name = "_survey")]
-#[expect(clippy::needless_pass_by_value, reason = "as PyO3 gives it")]
 pub(crate) fn survey<'py>(
-    py: Python<'py>,
-    firings: Columns<'py>,
-    tolerance_us: u32,
-    until_us: u32,
+    firings: &Bound<'py, PyAny>,
+    tolerance_us: &Bound<'py, PyAny>,
+    until_us: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (log, _) = log_of(&firings)?;
+    let py = firings.py();
+    let (log, _) = log_of(&columns(firings)?)?;
+    let tolerance_us = micros("tolerance_us", tolerance_us)?.as_micros();
+    let until_us = micros("until_us", until_us)?.as_micros();
     let settings = PathSettings { tolerance_us, ..PathSettings::default() };
     let found = in_background(py, None, move |_| Ok(eeruf_logs::survey(&log, &settings)))?;
     let out = PyDict::new(py);

@@ -7,11 +7,37 @@ use pyo3::prelude::*;
 use crate::arguments;
 use crate::errors::ArgumentError;
 
+#[cfg(feature = "program")]
+pub(crate) use eeruf::{examples, run};
+
+/// What stands for the program where the package was built without it.
+#[cfg(not(feature = "program"))]
+mod without {
+    use std::ffi::OsString;
+
+    pub(crate) fn run(_: Vec<OsString>) -> u8 {
+        eprintln!("eeruf: this package was built without the program");
+        2
+    }
+
+    pub(crate) mod examples {
+        pub(crate) fn all() -> Vec<(String, &'static str)> {
+            vec![]
+        }
+
+        pub(crate) fn text(_: &str) -> Option<&'static str> {
+            None
+        }
+    }
+}
+#[cfg(not(feature = "program"))]
+pub(crate) use without::{examples, run};
+
 /// Runs the program with the words of a command line, the first its own name, and gives its exit code.
 #[pyfunction]
 #[pyo3(name = "_run_program")]
 pub(crate) fn run_program(py: Python<'_>, words: Vec<OsString>) -> u8 {
-    py.detach(|| eeruf::run(words))
+    py.detach(|| run(words))
 }
 
 /// The text of an example file: a scene for :meth:`sim.Scene.from_toml`, or a ring for the command ``eeruf design``.
@@ -32,8 +58,11 @@ pub(crate) fn run_program(py: Python<'_>, words: Vec<OsString>) -> u8 {
 #[pyo3(signature = (name))]
 pub(crate) fn example(name: &Bound<'_, PyAny>) -> PyResult<&'static str> {
     let name = arguments::text("name", name, "the name of an example")?;
-    eeruf::examples::text(&name).ok_or_else(|| {
-        let names: Vec<_> = eeruf::examples::all().into_iter().map(|(name, _)| name).collect();
+    examples::text(&name).ok_or_else(|| {
+        let names: Vec<_> = examples::all().into_iter().map(|(name, _)| name).collect();
+        if names.is_empty() {
+            return ArgumentError::new_err("no examples: this package was built without the program");
+        }
         ArgumentError::new_err(format!("name: {name:?}; expected one of {}", names.join(", ")))
     })
 }

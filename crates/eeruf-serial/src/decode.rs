@@ -8,8 +8,8 @@ use crc::{CRC_16_IBM_3740, Crc, Table};
 use eeruf_core::{Instant, MAX_SENSORS, Micros, ReadingKind};
 
 use crate::encode::{LONGEST_CLOCK, LONGEST_FRAME};
-use crate::firing::Firing;
-use crate::{FIRING, HELLO, NO_ECHO, PERIOD, VERSION};
+use crate::firing::{Firing, Weighed};
+use crate::{FIRING, HELLO, NO_ECHO, PERIOD, SOLO, STEADY, VERSION, WEIGHED};
 
 const CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_3740);
 
@@ -124,7 +124,7 @@ fn decode(encoded: &mut [u8]) -> Result<Received, FrameError> {
     let sequence = u16::from_le_bytes(fields.take()?);
     let message = match first & 0xF {
         HELLO => hello(fields)?,
-        FIRING => firing(fields)?,
+        kind @ (FIRING | WEIGHED) => firing(fields, kind == WEIGHED)?,
         PERIOD => period(fields)?,
         _ => return Err(FrameError::Content("kind")),
     };
@@ -142,7 +142,7 @@ fn hello(mut fields: Fields<'_>) -> Result<Message, FrameError> {
     Ok(Message::Hello { sensors, clock: clock.ok_or(FrameError::Content("clock"))?.into() })
 }
 
-fn firing(mut fields: Fields<'_>) -> Result<Message, FrameError> {
+fn firing(mut fields: Fields<'_>, is_weighed: bool) -> Result<Message, FrameError> {
     let [sensor, phase, kind] = fields.take()?;
     if usize::from(sensor) >= MAX_SENSORS {
         return Err(FrameError::Content("sensor"));
@@ -156,9 +156,19 @@ fn firing(mut fields: Fields<'_>) -> Result<Message, FrameError> {
         t_echo: Some(u32::from_le_bytes(fields.take()?)).filter(|&us| us != NO_ECHO).map(Micros::new),
         late: Micros::new(u16::from_le_bytes(fields.take()?).into()),
         age: Micros::new(u32::from_le_bytes(fields.take()?)),
+        weighed: if is_weighed { Some(weighed(&mut fields)?) } else { None },
     };
     fields.end()?;
     Ok(Message::Firing(firing))
+}
+
+fn weighed(fields: &mut Fields<'_>) -> Result<Weighed, FrameError> {
+    let [flags, changes] = fields.take()?;
+    if flags & !(SOLO | STEADY) != 0 {
+        return Err(FrameError::Content("flags"));
+    }
+    let expected_change_us = i32::from_le_bytes(fields.take()?);
+    Ok(Weighed { solo: flags & SOLO != 0, steady: flags & STEADY != 0, changes, expected_change_us })
 }
 
 fn period(mut fields: Fields<'_>) -> Result<Message, FrameError> {

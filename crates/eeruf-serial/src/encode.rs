@@ -2,8 +2,8 @@
 
 use eeruf_core::{MAX_SENSORS, Micros};
 
-use crate::firing::Firing;
-use crate::{FIRING, HELLO, NO_ECHO, PERIOD, VERSION};
+use crate::firing::{Firing, Weighed};
+use crate::{FIRING, HELLO, NO_ECHO, PERIOD, SOLO, STEADY, VERSION, WEIGHED};
 
 /// A frame's content at its longest: that of a period's end with 64 sensors, and the check sum.
 const LONGEST_CONTENT: usize = 10 + MAX_SENSORS + 2;
@@ -48,13 +48,17 @@ impl Encoder {
 
     /// A firing.
     pub fn firing(&mut self, firing: &Firing) -> Frame {
-        let mut content = self.begin(FIRING);
+        let mut content = self.begin(if firing.weighed.is_some() { WEIGHED } else { FIRING });
         content.push(&[firing.sensor, firing.phase, firing.kind as u8]);
         content.push(&firing.fired.as_micros().to_le_bytes());
         content.push(&firing.period.to_le_bytes());
         content.push(&firing.t_echo.map_or(NO_ECHO, Micros::as_micros).to_le_bytes());
         content.push(&short(firing.late).to_le_bytes());
         content.push(&firing.age.as_micros().to_le_bytes());
+        if let Some(Weighed { solo, steady, changes, expected_change_us }) = firing.weighed {
+            content.push(&[SOLO * u8::from(solo) + STEADY * u8::from(steady), changes]);
+            content.push(&expected_change_us.to_le_bytes());
+        }
         content.finish()
     }
 

@@ -2,7 +2,8 @@
 //! allocator and a program on the other side reads. Byte by byte: `docs/serial.md`.
 //!
 //! - [`Recorder`] follows the events of a ring and makes the frames: `no_std`, no allocator, no dependency but
-//!   `eeruf-core`. [`Encoder`] is the part of it that knows the bytes.
+//!   `eeruf-core`. [`Encoder`] is the part of it that knows the bytes. Of a hopping ring, frames say how each reading
+//!   was weighed too.
 //! - `Decoder`, with the feature `decode`, reads them: whatever gets lost or flipped on the way costs the frames that
 //!   it hits and no other.
 //!
@@ -37,7 +38,7 @@ mod recorder;
 #[cfg(feature = "decode")]
 pub use decode::{Decoder, FrameError, Message, Received};
 pub use encode::{Encoder, Frame, LONGEST_CLOCK, LONGEST_FRAME};
-pub use firing::Firing;
+pub use firing::{Firing, Weighed};
 pub use recorder::Recorder;
 
 /// The version of the protocol: the upper four bits of each frame's first byte.
@@ -47,6 +48,11 @@ pub const VERSION: u8 = 1;
 const HELLO: u8 = 0;
 const FIRING: u8 = 1;
 const PERIOD: u8 = 2;
+const WEIGHED: u8 = 3;
+
+/// The bits of a weighed firing.
+const SOLO: u8 = 1;
+const STEADY: u8 = 2;
 
 /// An echo time that stands for no echo.
 const NO_ECHO: u32 = u32::MAX;

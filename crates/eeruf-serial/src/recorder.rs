@@ -1,9 +1,9 @@
 //! [`Recorder`]: from the events of a ring to frames.
 
-use eeruf_core::{Instant, Micros, RingEvent};
+use eeruf_core::{HoppingRing, Instant, Micros, RingEvent};
 
 use crate::encode::{Encoder, Frame};
-use crate::firing::Firing;
+use crate::firing::{Firing, Weighed};
 
 /// How many firings there are from one greeting to the next.
 const GREET_EVERY: u8 = 128;
@@ -34,6 +34,32 @@ impl<const K: usize> Recorder<K> {
         health: impl Fn(u8) -> u8,
         edges_lost: u8,
     ) -> Option<Frame> {
+        self.weighed_event(event, now, |_| None, health, edges_lost)
+    }
+
+    /// As [`event`](Self::event), of a hopping ring: its frames also say how readings were weighed, so that `eeruf
+    /// replay --hopping` can do it again. Before the next poll, with the changes that the poll was given, all 0 for a
+    /// robot that stands.
+    pub fn hopping_event<const N: usize, const H: usize>(
+        &mut self,
+        event: &RingEvent,
+        now: Instant,
+        (ring, expected_change_us): (&HoppingRing<N, H>, impl Fn(u8) -> i32),
+        health: impl Fn(u8) -> u8,
+        edges_lost: u8,
+    ) -> Option<Frame> {
+        let weighed = |sensor| Weighed::of(ring, sensor, expected_change_us(sensor));
+        self.weighed_event(event, now, weighed, health, edges_lost)
+    }
+
+    fn weighed_event(
+        &mut self,
+        event: &RingEvent,
+        now: Instant,
+        weighed: impl Fn(u8) -> Option<Weighed>,
+        health: impl Fn(u8) -> u8,
+        edges_lost: u8,
+    ) -> Option<Frame> {
         match *event {
             RingEvent::Fire { sensor, due, .. } => {
                 self.fired(sensor, now, now.since(due));
@@ -52,6 +78,7 @@ impl<const K: usize> Recorder<K> {
                     t_echo: reading.t_echo,
                     late,
                     age: now.since(fired),
+                    weighed: weighed(reading.sensor),
                 }))
             }
             RingEvent::PeriodEnded(ref stats) => {

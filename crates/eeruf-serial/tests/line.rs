@@ -2,7 +2,7 @@
 //! else.
 
 use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
-use eeruf_serial::{Decoder, Encoder, Firing, Frame, FrameError, LONGEST_FRAME, Message, Received, Recorder};
+use eeruf_serial::{Decoder, Encoder, Firing, Frame, FrameError, LONGEST_FRAME, Message, Received, Recorder, Weighed};
 use proptest::prelude::*;
 
 fn received(bytes: &[u8]) -> Vec<Result<Received, FrameError>> {
@@ -10,10 +10,16 @@ fn received(bytes: &[u8]) -> Vec<Result<Received, FrameError>> {
     bytes.iter().filter_map(|&byte| decoder.push(byte)).collect()
 }
 
+fn weighed() -> impl Strategy<Value = Weighed> {
+    (any::<bool>(), any::<bool>(), any::<u8>(), any::<i32>())
+        .prop_map(|(solo, steady, changes, expected_change_us)| Weighed { solo, steady, changes, expected_change_us })
+}
+
 fn firings() -> impl Strategy<Value = Firing> {
     let numbers = (any::<u32>(), any::<u32>(), any::<u16>(), any::<u32>());
-    (0..64_u8, 0..8_u8, 0..ReadingKind::ALL.len(), prop::option::of(0..u32::MAX), numbers).prop_map(
-        |(sensor, phase, kind, t_echo, (fired, period, late, age))| Firing {
+    let weighed = prop::option::of(weighed());
+    (0..64_u8, 0..8_u8, 0..ReadingKind::ALL.len(), prop::option::of(0..u32::MAX), numbers, weighed).prop_map(
+        |(sensor, phase, kind, t_echo, (fired, period, late, age), weighed)| Firing {
             sensor,
             phase,
             kind: ReadingKind::ALL[kind],
@@ -22,6 +28,7 @@ fn firings() -> impl Strategy<Value = Firing> {
             t_echo: t_echo.map(Micros::new),
             late: Micros::new(late.into()),
             age: Micros::new(age),
+            weighed,
         },
     )
 }
@@ -96,6 +103,7 @@ fn a_minute(numbers: &mut Numbers, frames: usize) -> Vec<Frame> {
         t_echo: (numbers.below(4) > 0).then(|| Micros::new(numbers.below(30_000) as u32)),
         late: Micros::new(numbers.below(300) as u32),
         age: Micros::new(30_000),
+        weighed: (n / 8 % 2 == 1).then_some(Weighed { solo: false, steady: true, changes: 3, expected_change_us: -70 }),
     };
     (0..frames).map(|n| encoder.firing(&firing(n, numbers))).collect()
 }
@@ -182,9 +190,9 @@ fn one_wrong_bit_before_packing_is_always_noticed() {
     }
 }
 
-/// The example of docs/serial.md.
+/// The examples of docs/serial.md.
 #[test]
-fn a_firing_is_these_bytes() {
+fn a_firing_is_these_bytes_and_a_weighed_one_these() {
     let firing = Firing {
         sensor: 3,
         phase: 1,
@@ -194,11 +202,21 @@ fn a_firing_is_these_bytes() {
         t_echo: Some(Micros::new(5_872)),
         late: Micros::new(40),
         age: Micros::new(40_100),
+        weighed: None,
     };
     let mut encoder = Encoder::new();
     encoder.hello(8, "board");
-    let hex: Vec<_> = encoder.firing(&firing).as_bytes().iter().map(|byte| format!("{byte:02x}")).collect();
-    assert_eq!(hex.join(" "), "03 11 01 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 03 36 c9 00");
+    let mut hex = |firing: &Firing| {
+        let hex: Vec<_> = encoder.firing(firing).as_bytes().iter().map(|byte| format!("{byte:02x}")).collect();
+        hex.join(" ")
+    };
+    assert_eq!(hex(&firing), "03 11 01 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 03 36 c9 00");
+    let weighed = Some(Weighed { solo: false, steady: true, changes: 7, expected_change_us: -120 });
+    let weighed = hex(&Firing { weighed, ..firing });
+    assert_eq!(
+        weighed,
+        "03 13 02 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 09 02 07 88 ff ff ff 8f 42 00"
+    );
 }
 
 #[test]
@@ -225,6 +243,13 @@ fn what_is_whole_and_of_another_version_or_kind_is_named() {
     assert_eq!(firing(|content| content[5] = 10), FrameError::Content("kind of reading"));
     assert_eq!(packed(&[0x11, 0, 0, 8]), FrameError::Content("length"));
     assert_eq!(packed(&[0x11; 26]), FrameError::Content("kind of reading"));
+    let weighed = |length: usize, flags: u8| {
+        let mut content = vec![0; length];
+        (content[0], content[24]) = (0x13, flags);
+        packed(&content)
+    };
+    assert_eq!(weighed(30, 4), FrameError::Content("flags"));
+    assert_eq!((weighed(29, 3), weighed(31, 3)), (FrameError::Content("length"), FrameError::Content("length")));
 }
 
 #[test]

@@ -108,13 +108,13 @@ impl Ring {
         requirements.layout.check(usize::from(sensors)).ok()?;
         let ticks = |time: Micros| time.as_micros().div_ceil(tick.as_micros());
         let separation = 2 * u64::from(requirements.t_delta.as_micros()) / u64::from(tick.as_micros()) + 1;
-        Some(Self {
-            sensors,
-            neighbourhood: Neighbourhood::of(&requirements.layout, sensors)?,
-            separation: u32::try_from(separation).ok()?,
-            interval: ticks(requirements.min_interval),
-            window: ticks(requirements.window),
-        })
+        let separation = u32::try_from(separation).ok().filter(|ticks| SEPARATIONS.contains(ticks))?;
+        let (interval, window) = (ticks(requirements.min_interval), ticks(requirements.window));
+        if interval != INTERVAL || !WINDOWS.contains(&window) {
+            return None;
+        }
+        let neighbourhood = Neighbourhood::of(&requirements.layout, sensors)?;
+        Some(Self { sensors, neighbourhood, separation, interval, window })
     }
 
     /// What a schedule must meet, in ticks of 1 ms.

@@ -113,7 +113,8 @@ fn of_sensor(
 /// Firings whose echo fits no path and does not repeat. Sound along a path that was not found comes back at the same
 /// time whenever the ring fires alike; noise does not.
 fn wandering(sensor: u8, log: &FiringLog, fits_none: &[bool], tolerance_us: u32) -> Share {
-    let tolerance = i64::from(tolerance_us);
+    // Without any tolerance firings stand alike to the microsecond.
+    let tolerance = i64::from(tolerance_us.max(1));
     // Alike: the same phase, and the last two others that fired before the edge stand alike.
     let mut alike = HashMap::<_, Vec<(i64, bool)>>::new();
     for (place, firing) in log.firings.iter().enumerate().filter(|(_, firing)| firing.sensor == sensor) {
@@ -151,5 +152,23 @@ mod tests {
         near(Share { count: 81, of: 263 }, (0.2553, 0.3662));
         near(Share { count: 15, of: 148 }, (0.0624, 0.1605));
         near(Share { count: 0, of: 20 }, (0.0, 0.1611));
+    }
+
+    #[test]
+    fn without_any_tolerance_edges_repeat_to_the_microsecond() {
+        let firing = |period: u32| Firing {
+            sensor: 0,
+            fired_us: 100_000 * i64::from(period),
+            period,
+            phase: 0,
+            t_echo_us: Some(if period == 3 { 7_001 } else { 7_000 }),
+            rejected: None,
+            weighed: None,
+        };
+        let log = FiringLog::new("board", (0..6).map(firing).collect());
+        assert_eq!(wandering(0, &log, &[true; 6], 0), Share { count: 0, of: 6 });
+        let far = Firing { t_echo_us: Some(9_000), ..firing(6) };
+        let log = FiringLog::new("board", (0..6).map(firing).chain([far]).collect());
+        assert_eq!(wandering(0, &log, &[true; 7], 0), Share { count: 1, of: 7 });
     }
 }

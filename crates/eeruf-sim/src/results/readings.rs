@@ -176,6 +176,42 @@ impl Readings {
         self.emitted_s.capacity() - self.emitted_s.len()
     }
 
+    /// Takes all readings out: the columns themselves if they are at least half full, else copies without room to grow,
+    /// so that who keeps the records of many short steps keeps what is in them and no more.
+    pub(crate) fn take(&mut self) -> Self {
+        if self.room() <= self.len() {
+            let next = Self::new(self.method, self.duration_s, self.sensors);
+            return core::mem::replace(self, next);
+        }
+        let copy = self.clone();
+        self.clear();
+        copy
+    }
+
+    /// Forgets them all, and keeps the room.
+    fn clear(&mut self) {
+        let Self { robot, sensor, period, phase, fired_s, kind, .. } = self;
+        robot.clear();
+        sensor.clear();
+        period.clear();
+        phase.clear();
+        fired_s.clear();
+        kind.clear();
+        let Self { x_m, y_m, heading_rad, .. } = self;
+        x_m.clear();
+        y_m.clear();
+        heading_rad.clear();
+        let Self { t_echo_us, earliest_us, reference_us, cause, path, emitted_s, weighed, paths, .. } = self;
+        weighed.clear();
+        t_echo_us.clear();
+        earliest_us.clear();
+        reference_us.clear();
+        cause.clear();
+        path.clear();
+        emitted_s.clear();
+        paths.clear();
+    }
+
     /// How many readings there are.
     pub fn len(&self) -> usize {
         self.robot.len()

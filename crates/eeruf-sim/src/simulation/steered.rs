@@ -1,15 +1,28 @@
 //! Robots that move as the world says until somebody steers them.
 
+use std::collections::VecDeque;
+
 use super::kinematics::Kinematics;
 use crate::{
     geometry::{Moment, Pose, Vector},
     world::World,
 };
 
+/// For so long before a robot was last steered it is known where it was, in nanoseconds: longer than sound is heard.
+const REMEMBERED: u64 = 10_000_000_000;
+
 /// Robots that somebody steers, each from the moment on at which it was first steered.
 pub(super) struct Steered<'w> {
     world: &'w World,
-    legs: Vec<Option<Leg>>,
+    legs: Vec<Legs>,
+}
+
+/// How a robot was steered, the last leg under way.
+#[derive(Clone, Default)]
+struct Legs {
+    legs: VecDeque<Leg>,
+    /// Before this nobody knows any more.
+    known_since: u64,
 }
 
 /// A constant speed and rate of turn from one moment on.
@@ -24,13 +37,27 @@ struct Leg {
 
 impl<'w> Steered<'w> {
     pub(super) fn new(world: &'w World) -> Self {
-        Self { world, legs: vec![None; world.robots().len()] }
+        Self { world, legs: vec![Legs::default(); world.robots().len()] }
     }
 
     /// From now on a robot goes ahead at `v_m_s` and turns at `w_rad_s`.
     pub(super) fn set(&mut self, robot: usize, now: u64, v_m_s: f64, w_rad_s: f64) {
         let pose = self.moment(robot, now).pose;
-        self.legs[robot] = Some(Leg { since: now, pose, v_m_s, w_rad_s });
+        let Legs { legs, known_since } = &mut self.legs[robot];
+        while legs.get(1).is_some_and(|next| next.since + REMEMBERED <= now) {
+            legs.pop_front();
+            *known_since = legs.front().map_or(0, |first| first.since);
+        }
+        // From one moment to the same nothing moves.
+        if legs.back().is_some_and(|last| last.since == now) {
+            legs.pop_back();
+        }
+        legs.push_back(Leg { since: now, pose, v_m_s, w_rad_s });
+    }
+
+    /// Whether it is known where a robot was then.
+    pub(super) fn knows(&self, robot: usize, then: u64) -> bool {
+        self.legs[robot].known_since <= then
     }
 }
 
@@ -56,7 +83,7 @@ impl Kinematics for Steered<'_> {
     }
 
     fn moment(&self, robot: usize, now: u64) -> Moment {
-        match self.legs[robot] {
+        match self.legs[robot].legs.iter().rfind(|leg| leg.since <= now) {
             Some(leg) => leg.at(now),
             None => {
                 let robot = &self.world.robots()[robot];

@@ -52,6 +52,20 @@ fn the_blocks_of_a_simulation_together_are_the_simulation_bit_for_bit() {
 }
 
 #[test]
+fn who_keeps_the_readings_of_many_short_steps_keeps_no_room_for_more() {
+    let world = Arc::new(room_with(vec![], vec![robot_at(0.0)]));
+    let mut simulation = Simulation::new(world, Method::Eeruf, &Options::default(), Stop::default()).unwrap();
+    for _ in 0..5 {
+        let step = simulation.step(0.06, |_| true).unwrap();
+        let Readings { robot, period, kind, t_echo_us, path, emitted_s, weighed, .. } = &step;
+        let room = [robot.capacity(), period.capacity(), kind.capacity(), t_echo_us.capacity(), path.capacity()];
+        let room = room.into_iter().chain([emitted_s.capacity(), weighed.capacity()]);
+        assert!(room.max() <= Some(2 * step.len()), "{} readings", step.len());
+        assert!(step.len() > 2 && step.len() < 20);
+    }
+}
+
+#[test]
 fn steps_to_the_next_reading_together_are_the_simulation_bit_for_bit() {
     for motion in [Motion::Still, Motion::Constant { velocity: Vector::new(0.05, -0.03), turn_rad_s: 0.1 }] {
         let world = Arc::new(room_with(vec![], vec![robot_at(-0.8), Robot { motion, ..robot_at(0.7) }]));

@@ -1,0 +1,96 @@
+//! The shortest period for what a schedule must meet: out of the atlas where it knows it, else by search.
+
+use eeruf_core::MAX_SENSORS;
+use eeruf_core::search::{Control, Found, PeriodProblem, Preferred, SearchError, ShortestPeriod, design};
+use eeruf_sim::AnySchedule;
+
+use crate::atlas;
+use crate::find_uneven::{ToSpare, prefer_uneven, shortest_uneven};
+
+/// How many nodes the choice among the shortest schedules may cost.
+const PREFERENCE_BUDGET: u64 = 100_000;
+/// How many nodes the choice among the shortest schedules of an uneven ring may cost.
+const SPARE_BUDGET: u64 = 30_000;
+
+/// How far to search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Search {
+    /// How many nodes to visit at most before giving the best schedule so far.
+    pub budget: u64,
+    /// Whether to look for what would make the period shorter.
+    pub what_if: bool,
+    /// Whether the atlas may answer where it knows the shortest period.
+    pub atlas: bool,
+}
+
+impl Default for Search {
+    /// 50 million nodes, no look at what would be shorter; the atlas may answer.
+    fn default() -> Self {
+        Self { budget: 50_000_000, what_if: false, atlas: true }
+    }
+}
+
+/// What is known of the shortest period.
+#[derive(Clone, Debug)]
+pub struct Shortest {
+    /// The shortest period, or the best found.
+    pub found: Found<MAX_SENSORS>,
+    /// Why it is not shorter, in words.
+    pub reason: String,
+    /// What is known of the choice among the schedules of that period, if the period is proven and all sensors are
+    /// alike.
+    pub preferred: Option<Preferred<MAX_SENSORS>>,
+    /// What the schedule of a ring whose sensors are not alike has to spare, if the period is proven: of those with
+    /// this period it is the one with most.
+    pub to_spare: Option<ToSpare>,
+    /// Whether period and schedule are the atlas's, and nothing was searched.
+    pub from_atlas: bool,
+}
+
+impl Shortest {
+    /// The schedule that is preferred, or the first found.
+    #[must_use]
+    pub fn schedule(&self) -> Option<AnySchedule> {
+        self.preferred.map_or(self.found.schedule, |preferred| Some(preferred.schedule))
+    }
+}
+
+/// Finds the shortest period; `what_if` does not matter here.
+///
+/// # Errors
+/// [`SearchError`] for needs that make no sense or are too large to search.
+pub fn shortest(
+    problem: &PeriodProblem<'_>,
+    search: &Search,
+    control: &mut impl Control,
+) -> Result<Shortest, SearchError> {
+    if let Some(known) = search.atlas.then(|| known(problem)).transpose()?.flatten() {
+        return Ok(known);
+    }
+    if problem.requirements.uneven.is_some() {
+        let (mut found, reason) = shortest_uneven(problem, search.budget, control)?;
+        let mut to_spare = None;
+        if let Some(schedule) = found.schedule.filter(|_| found.proven) {
+            let (schedule, spare) = prefer_uneven(problem, &schedule, SPARE_BUDGET, control)?;
+            (found.schedule, to_spare) = (Some(schedule), Some(spare));
+        }
+        return Ok(Shortest { found, reason, preferred: None, to_spare, from_atlas: false });
+    }
+    let mut memory = vec![0; design::memory_words(problem.sensors)];
+    let designed: ShortestPeriod<MAX_SENSORS> = problem.shortest(search.budget, &mut memory, control)?;
+    let choose = || problem.prefer(&designed, PREFERENCE_BUDGET, &mut memory, control);
+    let preferred = designed.found.proven.then(choose).transpose()?;
+    let reason = designed.explanation().to_string();
+    Ok(Shortest { found: designed.found, reason, preferred, to_spare: None, from_atlas: false })
+}
+
+/// What the atlas says of a problem, if it knows its shortest period.
+fn known(problem: &PeriodProblem<'_>) -> Result<Option<Shortest>, SearchError> {
+    let Some((row, schedule)) = atlas::answer(problem) else { return Ok(None) };
+    let period = schedule.period();
+    let [t_delta_proven, min_interval_proven, min_refire_proven] = row.preferred;
+    let preferred = Preferred { schedule, t_delta_proven, min_interval_proven, min_refire_proven, nodes: 0 };
+    let found = Found { schedule: Some(schedule), value: Some(period), bound: Some(period), proven: true, nodes: 0 };
+    let reason = problem.why_shortest(period)?.in_ticks_of(problem.tick).to_string();
+    Ok(Some(Shortest { found, reason, preferred: Some(preferred), to_spare: None, from_atlas: true }))
+}

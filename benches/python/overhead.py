@@ -69,6 +69,19 @@ def calls() -> dict[str, Callable[[], Any]]:
     }
 
 
+def step(**own: Any) -> float:
+    """Return the time of one step that yields a reading, on average over 10,000, in seconds."""
+    robot = sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)
+    scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
+
+    def many() -> None:
+        to_reading = sim.Simulation(scene, "eeruf", **own).step_to_reading
+        for _ in range(10_000):
+            to_reading(1.0)
+
+    return best(many) / 10_000
+
+
 def beyond_pass_ms(what: str) -> float:
     """Return how much longer a fresh interpreter runs that imports something than one that does nothing, in milliseconds.
 
@@ -115,8 +128,10 @@ def main() -> None:
     options = parser.parse_args()
     rust = json.loads(subprocess.run([options.rust, "times"], check=True, capture_output=True, text=True).stdout)
     print("| call | Rust | Python | ratio | Python adds |\n|---|---|---|---|---|")
-    for name, call in calls().items():
-        here, there = best(call), rust[name]
+    times = {name: best(call) for name, call in calls().items()}
+    times |= {"step, one reading": step(), "step, own filter": step(filter=lambda firing: firing.reading)}
+    for name, here in times.items():
+        there = rust[name]
         added, ratio = 1e6 * (here - there), here / there
         print(f"| {name} | {1e6 * there:.1f} us | {1e6 * here:.1f} us | {ratio:.2f} | {added:.1f} us |")
     names = ("eeruf", "numpy", "numpy, eeruf")

@@ -1,15 +1,74 @@
 //! The certificate of a design, and what the checker says of it.
 
+use std::path::Path;
+
+use clap::ValueEnum;
 use eeruf_check::check;
 use eeruf_design::{RingDesign, certificate};
 
+use super::answer::Answer;
+use crate::files::error::InputError;
+use crate::files::write::write;
 use crate::report::watch::Watch;
 
-/// The text of the certificate that the design's period is the shortest, or that none is below the search's bound; or a
-/// lower bound, if budget and time do not suffice for that.
-pub(crate) fn prove(design: &RingDesign, budget: usize, watch: &mut Watch) -> Result<String, String> {
-    let go_on = |nodes| watch.go_on(|| format!("certificate: {nodes} nodes"));
-    certificate::prove(design, budget, go_on).map_err(|error| error.to_string())
+/// Who is to check a certificate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CertificateForm {
+    /// One text for eeruf-check and checker/check_period.py
+    #[default]
+    Eeruf,
+    /// A model and a proof for VeriPB, which others wrote: FILE with the endings .opb and .pbp
+    Veripb,
+}
+
+/// What proves a design's period.
+pub(crate) struct Written {
+    /// The files' texts, by ending if there are several; or why there are none.
+    texts: Result<Vec<(&'static str, String)>, String>,
+    /// What was proven, to be said.
+    claim: String,
+}
+
+impl Written {
+    /// Proves that the design's period is the shortest, or that none is below the search's bound; in eeruf's own form a
+    /// lower bound, if budget and time do not suffice for that.
+    pub(crate) fn new(form: CertificateForm, design: &RingDesign, budget: usize, watch: &mut Watch) -> Self {
+        let go_on = |nodes| watch.go_on(|| format!("certificate: {nodes} nodes"));
+        let proven = match form {
+            CertificateForm::Eeruf => certificate::prove(design, budget, go_on).map(|text| {
+                let claim = claim(&text, design);
+                (vec![("", text)], claim)
+            }),
+            CertificateForm::Veripb => certificate::prove_to_veripb(design, budget, go_on).map(|proven| {
+                let bound = design.found.bound.unwrap_or_default();
+                let claim = format!("for VeriPB, that no schedule has a period below {bound}; {} nodes", proven.nodes);
+                (vec![("opb", proven.model), ("pbp", proven.proof)], claim)
+            }),
+        };
+        match proven {
+            Ok((texts, claim)) => Self { texts: Ok(texts), claim },
+            Err(why) => Self { texts: Err(why.to_string()), claim: String::new() },
+        }
+    }
+
+    /// Writes the files and says what they prove.
+    pub(crate) fn write(&self, file: &Path, condition: &str) -> Result<Answer, InputError> {
+        let texts = match &self.texts {
+            Ok(texts) => texts,
+            Err(why) => {
+                eprintln!("eeruf: {}: not written: {why}", file.display());
+                return Ok(Answer::No);
+            }
+        };
+        let mut names = Vec::new();
+        for (ending, text) in texts {
+            let file = if ending.is_empty() { file.to_owned() } else { file.with_extension(ending) };
+            write(&file, text)?;
+            names.push(file.display().to_string());
+        }
+        eprintln!("{}: {}{condition}", names.join(", "), self.claim);
+        Ok(Answer::Yes)
+    }
 }
 
 /// What the checker says of the certificate.
@@ -18,7 +77,7 @@ pub(crate) fn claim_of(text: &str) -> String {
 }
 
 /// What the checker says of the certificate, and whether the search knows more.
-pub(crate) fn claim(text: &str, design: &RingDesign) -> String {
+fn claim(text: &str, design: &RingDesign) -> String {
     let known = design.found.bound.unwrap_or_default();
     match check(text) {
         Ok(certified) if certified.claim.bound * certified.claim.problem.tick_us.0 < known.as_micros() => {

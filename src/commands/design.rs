@@ -9,7 +9,7 @@ use eeruf_core::{Micros, PhaseCriterion};
 use eeruf_design::{FoundJson, RealPeriod, RingDesign, RingSpec, Search, real_budget};
 
 use super::answer::Answer;
-use super::certificate;
+use super::certificate::{self, CertificateForm, Written};
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;
 use crate::files::write::write;
@@ -50,6 +50,9 @@ pub(crate) struct Args {
     /// eeruf-check and checker/check_period.py
     #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
+    /// Who is to check the certificate
+    #[arg(long, value_enum, default_value_t, value_name = "FORM", requires = "certificate")]
+    certificate_form: CertificateForm,
     /// Write a certificate over the reals: that no period is shorter even with firing times that are no whole ticks.
     /// Not where the proof needs more than a certificate can state
     #[arg(long, value_name = "FILE")]
@@ -130,7 +133,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     };
     let seconds = began.elapsed().as_secs_f64();
     watch.begin_again();
-    let prove = |_| certificate::prove(&design, args.certificate_budget, &mut watch);
+    let prove = |_| Written::new(args.certificate_form, &design, args.certificate_budget, &mut watch);
     let certificate = args.certificate.as_ref().map(prove);
     let real = over_reals(args, &design, &mut watch);
     drop(watch);
@@ -139,15 +142,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         draw::timing_diagram(&design.schedule, &requirements).save(file)?;
     }
     let certified = match (&args.certificate, certificate) {
-        (Some(file), Some(Ok(text))) => {
-            write(file, &text)?;
+        (Some(file), Some(written)) => {
             let t_delta = spec.speed_mm_s.map_or(String::new(), |_| format!(", for a t_delta of {}", design.t_delta));
-            eprintln!("{}: {}{t_delta}", file.display(), certificate::claim(&text, &design));
-            Answer::Yes
-        }
-        (Some(file), Some(Err(why))) => {
-            eprintln!("eeruf: {}: not written: {why}", file.display());
-            Answer::No
+            written.write(file, &t_delta)?
         }
         _ => Answer::Yes,
     };

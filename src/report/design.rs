@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use comfy_table::{Table, presets};
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Micros, Phase, Requirements};
-use eeruf_design::{RealPeriod, RingDesign, RingSpec, WhatIf};
+use eeruf_design::{RealPeriod, RingDesign, RingSpec, ToSpare, WhatIf};
 use eeruf_sim::AnySchedule;
 
 use super::timing;
@@ -17,7 +17,7 @@ pub(crate) fn describe(
     real: Option<&RealPeriod>,
     seconds: f64,
 ) -> String {
-    let RingDesign { schedule, found, preferred, what_if, .. } = design;
+    let RingDesign { schedule, found, preferred, to_spare, what_if, .. } = design;
     let requirements = &design.spec.problem().requirements;
     let report = schedule.verify(requirements);
     let period = schedule.period();
@@ -60,6 +60,14 @@ pub(crate) fn describe(
             },
         ]);
     }
+    if let Some(ToSpare { t_delta, interval, refire, proven, .. }) = to_spare {
+        let whose = if *proven == [true; 3] { "no schedule of this period has more" } else { "the best found" };
+        table.add_row([
+            "to spare".to_owned(),
+            format!("{t_delta}, {interval}, {refire}"),
+            format!("beyond every t_delta, then every interval, then every refire time; {whose}"),
+        ]);
+    }
     table.add_row([
         "listening".to_owned(),
         span(spec.sensors, |sensor| requirements.window_of(sensor)),
@@ -90,9 +98,10 @@ pub(crate) fn describe(
             format!("{:.2} times Table I-d scaled to the same needs ({:.1} a second)", paper / us, rate(paper)),
         ]);
     }
+    let choice = preferred.map(|p| p.nodes).or(to_spare.map(|spare| spare.nodes)).unwrap_or(0);
     let from = match design.from_atlas {
         true => "from the atlas, verified; --no-atlas searches".to_owned(),
-        false => format!("{} nodes, and {} for the choice", found.nodes, preferred.map_or(0, |p| p.nodes)),
+        false => format!("{} nodes, and {choice} for the choice", found.nodes),
     };
     table.add_row(["search".to_owned(), format!("{:.1} ms", 1000.0 * seconds), from]);
 

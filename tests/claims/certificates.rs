@@ -48,6 +48,28 @@ fn both_checkers_refuse_a_certificate_for_a_period_that_is_not_the_shortest() {
 }
 
 #[test]
+fn a_proof_for_veripb_is_written_beside_its_model() {
+    let (_scratch, file) = Scratch::new("ring.toml", "");
+    let name = file.display().to_string();
+    let asked = |ring| ["design", ring, "--json", "--certificate", &name, "--certificate-form", "veripb"];
+    let outcome = eeruf(&asked("rings/hc-sr04-8-two-multiplexers.toml"));
+    assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+    assert!(outcome.err.contains("ring.opb, ") && outcome.err.contains("no schedule has a period below 61.5 ms"));
+    let text = |ending| fs::read_to_string(file.with_extension(ending)).expect("the file is written");
+    let (model, proof) = (text("opb"), text("pbp"));
+    assert!(model.starts_with("* #variable= ") && proof.starts_with("pseudo-Boolean proof version 3.0\n"));
+    let inequalities = model.lines().count() - 1;
+    assert!(
+        model.contains(&format!("#constraint= {inequalities}\n")) && proof.contains(&format!("\nf {inequalities};"))
+    );
+    assert!(proof.ends_with(";\nend pseudo-Boolean proof;\n"), "it has an end");
+    let few = [&asked("rings/paper-12.toml")[..], &["--certificate-budget", "16"]].concat();
+    let outcome = eeruf(&few);
+    assert_eq!(outcome.code, Some(1), "{}", outcome.err);
+    assert!(outcome.err.contains("not written: the proof has more than 16 nodes"), "{}", outcome.err);
+}
+
+#[test]
 fn a_proof_that_is_given_too_few_nodes_certifies_a_lower_bound_and_says_what_a_longer_one_would() {
     let (_scratch, file) = Scratch::new("ring.cert", "");
     let certificate = file.display().to_string();

@@ -1,5 +1,8 @@
 """Logs of robots: the same bags as Rust reads, and what a ring's log of firings says."""
 
+import contextlib
+import shutil
+import sqlite3
 import subprocess
 import sys
 from pathlib import Path
@@ -37,6 +40,17 @@ def test_bags_of_all_kinds_are_read_alike(name: str) -> None:
         assert here.sum() == 6
         np.testing.assert_array_equal(log.range_m[here], other.range_m[there])
     assert (log.at_ns > 0).all() and not log.range_m.flags.writeable
+
+
+@pytest.mark.parametrize("name", ["sqlite-humble", "sqlite-jazzy", "sqlite-jazzy-packed"])
+def test_a_bag_of_sqlite_is_read_as_one_of_mcap_is(name: str, tmp_path: Path) -> None:
+    # The wheel's own SQLite is built without what bags do not need.
+    shutil.copytree(BAGS / name, tmp_path / name)
+    with contextlib.closing(sqlite3.connect(tmp_path / name / f"{name}.db3")) as database:
+        database.executescript((BAGS / name / f"{name}.sql").read_text())
+    log, other = eeruf.read_log(tmp_path / name), eeruf.read_log(BAGS / "mcap-humble")
+    assert log.damage == []
+    np.testing.assert_array_equal(np.sort(log.range_m), np.sort(other.range_m))
 
 
 def test_columns_of_csv_have_any_names_and_units(tmp_path: Path) -> None:

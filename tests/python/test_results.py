@@ -35,6 +35,7 @@ def some_of_each() -> dict[str, Any]:
             eeruf.LastAccepted(9_000, 256),
             nav.Vfh().steer(nav.Himm(), (0, 0), (5, 0)),
             sim.Simulation(ROOM).robots[0],
+            sim.FiredReading(eeruf.EchoFilter(1, 500).push(0, 9_000), (9_000, 11_000), 0.5),
             sim.simulate(ROOM, periods=20).summary(),
             set_one,
             figures,
@@ -54,7 +55,8 @@ RESULTS = some_of_each()
 
 def test_there_is_a_result_of_every_kind() -> None:
     assert set(RESULTS) == set(
-        """Found HoppingFound Report Violation Schedule Fire Reading PeriodEnded Blind LastAccepted Steering RobotState Summary SetOne
+        """Found HoppingFound Report Violation Schedule Fire Reading PeriodEnded Blind LastAccepted Steering RobotState FiredReading
+        Summary SetOne
         SetOneFigures Spread Latency SetTwo SetTwoFigures Run SpeedSweep SpeedStep""".split()
     )
 

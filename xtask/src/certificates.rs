@@ -107,7 +107,7 @@ fn timed(command: &mut Command, total: &mut Duration) -> Result<String, Trouble>
 }
 
 /// Ring files for the table of docs/search.md with so many sensors.
-fn table(sensors: &[u32], tick_us: u32) -> Vec<(String, String)> {
+pub(crate) fn table(sensors: &[u32], tick_us: u32) -> Vec<(String, String)> {
     let mut rings = Vec::new();
     for layout in ["line", "ring"] {
         for sensors in sensors {
@@ -127,7 +127,7 @@ fn name(layout: &str, sensors: u32, window_ms: u32, tick_us: u32) -> String {
 }
 
 /// The ring files that users copy.
-fn files() -> Vec<(String, String)> {
+pub(crate) fn files() -> Vec<(String, String)> {
     let mut rings: Vec<(String, String)> = fs::read_dir("rings")
         .into_iter()
         .flatten()

@@ -37,6 +37,7 @@ mod steps;
 mod test;
 mod toolchain;
 mod tune;
+mod veripb;
 
 use std::process::ExitCode;
 
@@ -111,6 +112,8 @@ enum Verb {
     },
     /// Certify the rings of the tables, and have both checkers judge them and mutated ones (minutes)
     Certificates(certificates::Plan),
+    /// Build the proof checker VeriPB, and have it judge the proofs of the table and of rings/ (minutes)
+    Veripb(veripb::Plan),
     /// Pack the crates that are published, and build and test each from its tarball, in a folder of its own (minutes)
     Package,
     /// Compare the public items of eeruf-core and eeruf-hc-sr04 with those in their api.txt
@@ -206,6 +209,11 @@ fn main() -> ExitCode {
         Verb::Certificates(plan) => {
             let mut steps = Steps::default();
             certificates::run_all(&plan, &mut steps);
+            steps.finish(true)
+        }
+        Verb::Veripb(plan) => {
+            let mut steps = Steps::default();
+            veripb::run_all(&plan, &mut steps);
             steps.finish(true)
         }
         Verb::Package => {

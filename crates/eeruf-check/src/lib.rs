@@ -16,6 +16,8 @@
 //! | `prove` | the proof of a claim |
 //! | `reals`, `orders`, `linear` | the shortest period over the reals: what the tick costs |
 //! | `search`, `shortest` | the shortest period of an uneven ring, by the same rules |
+//! | `spare` | of the schedules with one period, the one with most to spare |
+//! | `veripb` | the same claim as a model and a proof for VeriPB, a checker that others wrote |
 #![forbid(unsafe_code)]
 
 mod bounds;
@@ -30,10 +32,12 @@ mod rules;
 mod schedule;
 pub mod search;
 pub mod shortest;
+pub mod spare;
 mod state;
 mod symmetry;
 mod text;
 mod tree;
+pub mod veripb;
 
 use core::fmt;
 

@@ -83,7 +83,7 @@ pub fn prove(claim: &Claim, budget: usize) -> Result<String, NoProof> {
 
 /// How many nodes lie between two questions whether to go on: few enough to ask every few milliseconds. A node costs
 /// about the cube of the number of sensors.
-fn nodes_between(sensors: usize) -> usize {
+pub(crate) fn nodes_between(sensors: usize) -> usize {
     (64 * 8 * 8 * 8 / sensors.pow(3)).clamp(1, 64)
 }
 

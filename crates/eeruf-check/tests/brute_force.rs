@@ -6,6 +6,7 @@ mod common;
 use common::{Random, feasible, random_problem};
 use eeruf_check::prove::{NoProof, prove};
 use eeruf_check::shortest::{self, Shortest};
+use eeruf_check::spare::most_to_spare;
 use eeruf_check::{Claim, Problem, check};
 
 /// The shortest period, with a schedule, by trying all firing times.
@@ -69,4 +70,42 @@ fn the_search_finds_the_period_that_trying_all_schedules_gives() {
         assert!(prove(&claim, 100_000).is_ok_and(|text| check(&text).is_ok()), "seed {seed}");
     }
     assert!(solved * 3 > cases && hopeless * 10 < cases, "{solved} of {cases} solved, {hopeless} without a schedule");
+}
+
+/// Whether some schedule of this period keeps so much more separation, gaps and windows.
+fn keeps(problem: &Problem, period: u32, more: [u32; 3]) -> bool {
+    let each = |times: &[u32], by: u32| times.iter().map(|time| time + by).collect();
+    let gaps = problem.gaps.iter().map(|&(x, y, after_x, after_y)| (x, y, after_x + more[1], after_y + more[1]));
+    let harder = Problem {
+        separation: each(&problem.separation, more[0]),
+        window: each(&problem.window, more[2]),
+        gaps: gaps.collect(),
+        ..problem.clone()
+    };
+    feasible(&harder, period).is_some()
+}
+
+#[test]
+fn what_is_spared_is_what_trying_all_schedules_gives_need_by_need() {
+    let (mut solved, mut spared) = (0, [0; 3]);
+    for seed in 0..150 {
+        let problem = random_problem(&mut Random(seed + 1));
+        let Some((period, fire)) = shortest(&problem, if problem.sensors() <= 3 { 11 } else { 7 }) else { continue };
+        // One tick more, so that there is a choice.
+        let spare = most_to_spare(&problem, period + 1, fire, 1_000_000, &mut |_| true);
+        assert_eq!(spare.proven, [true; 3], "seed {seed}: the budget suffices");
+        let [separation, gap, window] = spare.more;
+        assert!(keeps(&problem, period + 1, spare.more), "seed {seed}: {spare:?}");
+        let no_gaps = problem.gaps.is_empty();
+        for (need, better) in [[separation + 1, 0, 0], [separation, gap + 1, 0], [separation, gap, window + 1]]
+            .into_iter()
+            .enumerate()
+            .filter(|(need, _)| *need != 1 || !no_gaps)
+        {
+            assert!(!keeps(&problem, period + 1, better), "seed {seed}: need {need} could grow: {spare:?} {problem:?}");
+        }
+        solved += 1;
+        (0..3).for_each(|need| spared[need] += spare.more[need]);
+    }
+    assert!(solved > 50 && spared.iter().all(|more| *more > 10), "{solved} solved, spared {spared:?}");
 }

@@ -2,6 +2,7 @@
 
 use eeruf_check::Claim;
 use eeruf_check::prove::{NoProof, prove_what_can_be};
+use eeruf_check::veripb::{self, VeriPb};
 use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Micros, Phase};
 use eeruf_sim::AnySchedule;
@@ -29,6 +30,23 @@ pub fn certify(
     budget: usize,
     go_on: impl FnMut(usize) -> bool,
 ) -> Result<String, NoProof> {
+    prove_what_can_be(&claim(problem, schedule, bound), budget, go_on)
+}
+
+/// The same as a model and a proof for VeriPB, of the period one tick below the bound.
+///
+/// # Errors
+/// The proof has more than `budget` nodes, `go_on` says no, or the claim is wrong.
+pub fn prove_to_veripb(
+    design: &RingDesign,
+    budget: usize,
+    go_on: impl FnMut(usize) -> bool,
+) -> Result<VeriPb, NoProof> {
+    veripb::prove(&claim(&design.spec.problem(), &design.schedule, design.found.bound), budget, go_on)
+}
+
+/// What a certificate says of the schedule, in ticks.
+pub(crate) fn claim(problem: &PeriodProblem<'_>, schedule: &AnySchedule, bound: Option<Micros>) -> Claim {
     let tick_us = problem.tick.as_micros().max(1);
     let ticks = |time: Micros| time.as_micros() / tick_us;
     let fire = [Phase::A, Phase::B].map(|phase| {
@@ -36,6 +54,5 @@ pub fn certify(
     });
     let period = ticks(schedule.period());
     // There is no bound below one tick.
-    let claim = Claim { problem: in_ticks(problem), period, fire, bound: ticks(bound.unwrap_or_default()).max(1) };
-    prove_what_can_be(&claim, budget, go_on)
+    Claim { problem: in_ticks(problem), period, fire, bound: ticks(bound.unwrap_or_default()).max(1) }
 }

@@ -7,6 +7,7 @@ use eeruf_core::search::{Control, Found, PeriodProblem, Preferred, SearchError, 
 use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_sim::{AnySchedule, ScheduleFile};
 
+use crate::find_uneven::ToSpare;
 use crate::found::FoundJson;
 use crate::ring::RingSpec;
 use crate::shortest::{Search, Shortest, shortest};
@@ -28,8 +29,11 @@ pub struct RingDesign {
     /// Why it is not shorter, in words.
     pub reason: String,
     /// What is known of the choice among the schedules of that period, if the period is proven and all sensors are
-    /// alike; otherwise it is the first that was found.
+    /// alike.
     pub preferred: Option<Preferred<MAX_SENSORS>>,
+    /// What the schedule of a ring whose sensors are not alike has to spare, if the period is proven: of those with
+    /// this period it is the one with most.
+    pub to_spare: Option<ToSpare>,
     /// Whether period and schedule are the atlas's, and nothing was searched.
     pub from_atlas: bool,
     /// What would be shorter, if it was asked for.
@@ -109,11 +113,12 @@ impl RingSpec {
             let asked = Search { atlas: search.atlas && unproven.is_none(), ..*search };
             let shortest = shortest(&problem, &asked, control)?;
             let chosen = shortest.schedule();
-            let Shortest { mut found, mut reason, mut preferred, from_atlas } = shortest;
+            let Shortest { mut found, mut reason, mut preferred, mut to_spare, from_atlas } = shortest;
             if !found.proven && unproven.is_none() {
                 unproven = Some((found.bound, reason.clone()));
             } else if let Some((bound, why)) = &unproven {
                 (found.proven, found.bound, reason, preferred) = (false, *bound, why.clone(), None);
+                to_spare = None;
             }
             let none = if found.proven { NoSchedule::TooFast } else { NoSchedule::EndedEarly };
             let Some(schedule) = chosen else {
@@ -121,11 +126,24 @@ impl RingSpec {
             };
             let needed = self.t_delta_needed(&schedule);
             if schedule.verify(&self.covering(needed).problem().requirements).ok() {
-                let relax = search.what_if && found.proven && self.uneven.is_none();
-                let what_if = if relax { what_if(&problem, control)? } else { Vec::new() };
+                let what_if = match &self.uneven {
+                    _ if !search.what_if || !found.proven => Vec::new(),
+                    Some(_) => spec.what_if_uneven(control)?,
+                    None => what_if(&problem, control)?,
+                };
                 let t_delta = needed.max(t_delta);
                 let spec = self.covering(t_delta);
-                return Ok(Ok(RingDesign { schedule, t_delta, spec, found, reason, preferred, from_atlas, what_if }));
+                return Ok(Ok(RingDesign {
+                    schedule,
+                    t_delta,
+                    spec,
+                    found,
+                    reason,
+                    preferred,
+                    to_spare,
+                    from_atlas,
+                    what_if,
+                }));
             }
             // Past this point a second of silence would not be enough either.
             if needed > Micros::from_millis(1000) {
@@ -144,16 +162,18 @@ impl RingSpec {
     }
 }
 
+/// A tenth less, or a tick if that is more, in whole ticks.
+pub(crate) fn less(time: Micros, tick: Micros) -> Micros {
+    let (us, tick) = (time.as_micros(), tick.as_micros().max(1));
+    Micros::new((us - us / 10).min(us.saturating_sub(1)) / tick * tick)
+}
+
 /// Relaxes one need after the other by a tenth, or by one tick if that is more, or by one neighbour.
 fn what_if(problem: &PeriodProblem<'_>, control: &mut impl Control) -> Result<Vec<WhatIf>, SearchError> {
     let mut memory = vec![0; design::memory_words(problem.sensors)];
     let Requirements { t_delta, min_interval, window, layout, .. } = problem.requirements;
-    let tick = problem.tick.as_micros().max(1);
     // In whole ticks, as others are rounded up to them.
-    let less = |time: Micros| {
-        let us = time.as_micros();
-        Micros::new((us - us / 10).min(us.saturating_sub(1)) / tick * tick)
-    };
+    let less = |time: Micros| less(time, problem.tick);
     let (shorter, listening) = (less(min_interval), less(window));
     let separation = less(problem.requirements.separation()).as_micros();
     let nearer = Micros::new(separation.saturating_sub(1) / 2);

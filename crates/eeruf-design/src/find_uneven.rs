@@ -1,12 +1,31 @@
-//! The shortest period of sensors that are not all alike, by the search of `eeruf-check`.
+//! The shortest period of sensors that are not all alike, and the schedule to prefer of those that have it, by the
+//! search of `eeruf-check`.
 
 use eeruf_check::MAX_NUMBER;
+use eeruf_check::search::FiringTimes;
 use eeruf_check::shortest::{Shortest, shortest};
+use eeruf_check::spare::most_to_spare;
 use eeruf_core::search::{Control, Found, GridError, PeriodProblem, ProblemError, Progress, SearchError};
 use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_sim::AnySchedule;
 
+use crate::certificate::claim;
 use crate::ticks::in_ticks;
+
+/// What a schedule of an uneven ring keeps beyond what is needed, by the same for all sensors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ToSpare {
+    /// By how much every `t_delta` may grow; then
+    pub t_delta: Micros,
+    /// by how much every time between two firings, be it an interval or for a shared line; then
+    pub interval: Micros,
+    /// how much later every sensor is triggered again than it asks for.
+    pub refire: Micros,
+    /// Whether no schedule of this period has more, of each.
+    pub proven: [bool; 3],
+    /// Nodes visited for the choice.
+    pub nodes: u64,
+}
 
 /// The shortest period within `budget` nodes, and why it is not shorter, in words.
 ///
@@ -34,18 +53,43 @@ pub(crate) fn shortest_uneven(
     };
     let found = shortest(&ticks, budget, &mut go_on).ok_or_else(too_long)?;
     let time = |ticks: u32| Micros::new(ticks.saturating_mul(problem.tick.as_micros()));
-    let times = |times: &[u32]| times.iter().map(|&ticks| time(ticks)).collect::<Vec<_>>();
-    let lags = vec![Micros::ZERO; problem.sensors];
-    let [a, b] = found.fire.each_ref().map(|times_in_ticks| times(times_in_ticks));
-    let schedule = AnySchedule::from_slices(time(found.period), &lags, [&a, &b]).map_err(SearchError::Schedule)?;
     let answer = Found {
-        schedule: Some(schedule),
+        schedule: Some(schedule_of(problem, found.period, &found.fire)?),
         value: Some(time(found.period)),
         bound: Some(time(found.bound)),
         proven: found.bound == found.period,
         nodes: found.nodes,
     };
     Ok((answer, reason(&found, &time)))
+}
+
+/// A schedule from firing times in ticks.
+fn schedule_of(problem: &PeriodProblem<'_>, period: u32, fire: &FiringTimes) -> Result<AnySchedule, SearchError> {
+    let time = |ticks: u32| Micros::new(ticks.saturating_mul(problem.tick.as_micros()));
+    let [a, b] = fire.each_ref().map(|times| times.iter().map(|&ticks| time(ticks)).collect::<Vec<_>>());
+    let lags = vec![Micros::ZERO; problem.sensors];
+    AnySchedule::from_slices(time(period), &lags, [&a, &b]).map_err(SearchError::Schedule)
+}
+
+/// Of the schedules with the period of this one, the one with most to spare, within `budget` nodes.
+///
+/// # Errors
+/// As for core's search.
+pub(crate) fn prefer_uneven(
+    problem: &PeriodProblem<'_>,
+    schedule: &AnySchedule,
+    budget: u64,
+    control: &mut impl Control,
+) -> Result<(AnySchedule, ToSpare), SearchError> {
+    let claim = claim(problem, schedule, Some(schedule.period()));
+    let mut go_on = |nodes| control.poll(&Progress::new(nodes, Some(claim.period), Some(claim.period))).is_continue();
+    let spare = most_to_spare(&claim.problem, claim.period, claim.fire.clone(), budget, &mut go_on);
+    let time = |ticks: u32| Micros::new(ticks.saturating_mul(problem.tick.as_micros()));
+    let [separation, gap, window] = spare.more.map(time);
+    // The separation covers twice the t_delta.
+    let t_delta = Micros::new(separation.as_micros() / 2);
+    let to_spare = ToSpare { t_delta, interval: gap, refire: window, proven: spare.proven, nodes: spare.nodes };
+    Ok((schedule_of(problem, claim.period, &spare.fire)?, to_spare))
 }
 
 /// Why the period is not shorter.

@@ -206,8 +206,8 @@ impl RingSpec {
     pub fn hopping(&self, phases: u8, criterion: PhaseCriterion) -> Result<HoppingDesign, String> {
         if let Some(key) = self.uneven.as_ref().and_then(|uneven| uneven.not_in_many_phases(self.window)) {
             return Err(format!(
-                "{key}; expected no such key with many phases: their schedules keep one interval between neighbours and \
-                 one window for all sensors"
+                "{key}; expected no such key with many phases: their schedules keep one interval between neighbours \
+                 and one window for all sensors"
             ));
         }
         HoppingDesign::shortest(self.sensors, phases, &self.phase_requirements(criterion))

@@ -8,7 +8,7 @@
 //! | `each`, `uneven` | one number for all sensors or one for each; what sensors need that are not alike |
 //! | `ring` | the ring file, turned into what a schedule must meet |
 //! | `shortest`, `find_uneven` | the shortest period for that |
-//! | `find` | the same for a ring that may move, and what would make it shorter |
+//! | `find`, `what_if_uneven` | the same for a ring that may move, and what would make it shorter |
 //! | `found` | the answer as it is printed in JSON |
 //! | `hopping` | schedules of many phases: the file, and the shortest period |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
@@ -43,9 +43,11 @@ mod shortest;
 mod text;
 mod ticks;
 mod uneven;
+mod what_if_uneven;
 
 pub use each::Each;
 pub use find::{NoSchedule, RingDesign, WhatIf};
+pub use find_uneven::ToSpare;
 pub use found::FoundJson;
 pub use hopping::{HoppingDesign, PhaseFile, PhaseSchedule};
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};

@@ -5,10 +5,12 @@ use eeruf_core::search::{Control, Found, PeriodProblem, Preferred, SearchError, 
 use eeruf_sim::AnySchedule;
 
 use crate::atlas;
-use crate::find_uneven::shortest_uneven;
+use crate::find_uneven::{ToSpare, prefer_uneven, shortest_uneven};
 
 /// How many nodes the choice among the shortest schedules may cost.
 const PREFERENCE_BUDGET: u64 = 100_000;
+/// How many nodes the choice among the shortest schedules of an uneven ring may cost.
+const SPARE_BUDGET: u64 = 30_000;
 
 /// How far to search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,8 +38,11 @@ pub struct Shortest {
     /// Why it is not shorter, in words.
     pub reason: String,
     /// What is known of the choice among the schedules of that period, if the period is proven and all sensors are
-    /// alike; otherwise it is the first that was found.
+    /// alike.
     pub preferred: Option<Preferred<MAX_SENSORS>>,
+    /// What the schedule of a ring whose sensors are not alike has to spare, if the period is proven: of those with
+    /// this period it is the one with most.
+    pub to_spare: Option<ToSpare>,
     /// Whether period and schedule are the atlas's, and nothing was searched.
     pub from_atlas: bool,
 }
@@ -63,15 +68,20 @@ pub fn shortest(
         return Ok(known);
     }
     if problem.requirements.uneven.is_some() {
-        let (found, reason) = shortest_uneven(problem, search.budget, control)?;
-        return Ok(Shortest { found, reason, preferred: None, from_atlas: false });
+        let (mut found, reason) = shortest_uneven(problem, search.budget, control)?;
+        let mut to_spare = None;
+        if let Some(schedule) = found.schedule.filter(|_| found.proven) {
+            let (schedule, spare) = prefer_uneven(problem, &schedule, SPARE_BUDGET, control)?;
+            (found.schedule, to_spare) = (Some(schedule), Some(spare));
+        }
+        return Ok(Shortest { found, reason, preferred: None, to_spare, from_atlas: false });
     }
     let mut memory = vec![0; design::memory_words(problem.sensors)];
     let designed: ShortestPeriod<MAX_SENSORS> = problem.shortest(search.budget, &mut memory, control)?;
     let choose = || problem.prefer(&designed, PREFERENCE_BUDGET, &mut memory, control);
     let preferred = designed.found.proven.then(choose).transpose()?;
     let reason = designed.explanation().to_string();
-    Ok(Shortest { found: designed.found, reason, preferred, from_atlas: false })
+    Ok(Shortest { found: designed.found, reason, preferred, to_spare: None, from_atlas: false })
 }
 
 /// What the atlas says of a problem, if it knows its shortest period.
@@ -82,5 +92,5 @@ fn known(problem: &PeriodProblem<'_>) -> Result<Option<Shortest>, SearchError> {
     let preferred = Preferred { schedule, t_delta_proven, min_interval_proven, min_refire_proven, nodes: 0 };
     let found = Found { schedule: Some(schedule), value: Some(period), bound: Some(period), proven: true, nodes: 0 };
     let reason = problem.why_shortest(period)?.in_ticks_of(problem.tick).to_string();
-    Ok(Some(Shortest { found, reason, preferred: Some(preferred), from_atlas: true }))
+    Ok(Some(Shortest { found, reason, preferred: Some(preferred), to_spare: None, from_atlas: true }))
 }

@@ -77,6 +77,17 @@ impl OwnedUneven {
         keys.into_iter().find_map(|(is_there, key)| is_there.then_some(key))
     }
 
+    /// The same with other intervals of pairs.
+    pub(crate) fn with_intervals(&self, other: impl Fn(Micros) -> Micros) -> Self {
+        let intervals = self.intervals.iter().map(|&(x, y, interval)| (x, y, other(interval))).collect();
+        Self { intervals, ..self.clone() }
+    }
+
+    /// The same without shared lines, if there are any.
+    pub(crate) fn with_lines_of_their_own(&self) -> Option<Self> {
+        (!self.shared_lines.is_empty()).then(|| Self { shared_lines: Vec::new(), ..self.clone() })
+    }
+
     /// Whether no two sensors that fire together must keep a time between their firings.
     ///
     /// # Errors

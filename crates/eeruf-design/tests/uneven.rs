@@ -44,6 +44,58 @@ fn the_uneven_rings_have_a_shortest_period_that_is_verified_and_certified() {
 }
 
 #[test]
+fn of_the_schedules_of_an_uneven_ring_the_one_with_most_to_spare_is_chosen() {
+    let spec = read(
+        "sensors = 4\nlayout = \"line\"\nneighbours = 2\nt_delta_us = [999, 499, 499, 499]\nwindow_us = 25_000\n\
+         min_interval_us = 9_000\nshared_lines = [[0, 3]]",
+    );
+    let found = design(&spec);
+    let spare = found.to_spare.expect("an uneven ring that is proven");
+    assert!(found.found.proven && spare.proven == [true; 3], "{spare:?}");
+    let keeps = |t_delta: u32, interval: u32, window: u32| {
+        let text = format!(
+            "sensors = 4\nlayout = \"line\"\nneighbours = 2\nt_delta_us = [{}, {}, {1}, {1}]\nwindow_us = 25_000\n\
+             retrigger_us = {}\nmin_interval_us = {}\nintervals_us = [[0, 3, {}]]",
+            999 + t_delta,
+            499 + t_delta,
+            25_000 + window,
+            9_000 + interval,
+            25_000 + interval,
+        );
+        // The shared line as the interval that it is.
+        read(&text)
+    };
+    let us = Micros::as_micros;
+    let (t_delta, interval) = (us(spare.t_delta), us(spare.interval));
+    let kept = keeps(t_delta, interval, us(spare.refire));
+    assert!(found.schedule.verify(&kept.problem().requirements).ok(), "{spare:?} {:?}", found.schedule);
+    assert!(t_delta + interval + us(spare.refire) > 0, "there is something to spare");
+    // Half a tick more t_delta, or a tick more interval, takes longer.
+    for harder in [keeps(t_delta + 500, 0, 0), keeps(t_delta, interval + 1000, 0)] {
+        let longer = design(&harder);
+        assert!(longer.found.proven && longer.found.value > found.found.value, "{:?}", longer.found);
+    }
+}
+
+#[test]
+fn what_would_make_an_uneven_ring_faster_is_said_and_true() {
+    let text = "sensors = 4\nlayout = \"line\"\nneighbours = 2\nt_delta_us = [999, 499, 499, 499]\n\
+                window_us = 25_000\nmin_interval_us = 9_000\n";
+    let shared = read(&format!("{text}shared_lines = [[0, 1], [2, 3]]"));
+    let search = Search { budget: 1_000_000, what_if: true, atlas: false };
+    let found = shared.shortest(&search, &mut ()).expect("it can be searched").expect("there is a schedule");
+    let of = |need: &str| found.what_if.iter().find(|what| what.need.contains(need)).cloned();
+    let own = of("an echo line for each").expect("lines are shared");
+    let alone = design(&read(text));
+    assert!(own.proven && own.period == alone.found.value, "{own:?} {:?}", alone.found);
+    assert!(own.period < found.found.value, "two lines for four sensors take longer");
+    let listening = of("listening a tenth less").expect("there is a window");
+    let less = format!("{text}shared_lines = [[0, 1], [2, 3]]").replace("25_000", "22_000");
+    assert_eq!(listening.period, design(&read(&less)).found.value);
+    assert!(of("every interval").is_some() && of("every t_delta").is_some(), "{:?}", found.what_if);
+}
+
+#[test]
 fn a_list_of_equal_numbers_asks_for_what_one_number_asks_for() {
     for (neighbours, layout) in [(3, "line"), (4, "ring")] {
         let common =

@@ -185,7 +185,7 @@ pub(crate) fn design<'py>(
         let real = schedule.and_then(|schedule| {
             real_period(&needs, &schedule, real_budget(sensors), |nodes| still("over the reals", nodes))
         });
-        Ok((Found::of(&found, began, Some(shortest.reason)).from_atlas(shortest.from_atlas), proof, real))
+        Ok((Found::of(&found, began, Some(shortest.reason)).out_of_atlas(shortest.from_atlas), proof, real))
     };
     let (found, certificate, real) = if sensors <= FEW_SENSORS {
         let mut watch = Watch::new(progress)?;

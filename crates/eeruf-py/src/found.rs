@@ -77,7 +77,7 @@ impl Found {
         }
     }
 
-    pub(crate) fn from_atlas(self, from_atlas: bool) -> Self {
+    pub(crate) fn out_of_atlas(self, from_atlas: bool) -> Self {
         Self { from_atlas, ..self }
     }
 

@@ -31,6 +31,7 @@ mod maps;
 mod memory;
 mod methods;
 mod moments;
+mod own;
 mod owned_ring;
 mod paths;
 mod pose;
@@ -41,6 +42,7 @@ mod requirements;
 mod ring;
 mod ring_events;
 mod robot;
+mod robot_state;
 mod scene;
 mod schedule;
 mod schedule_times;
@@ -76,6 +78,7 @@ mod _eeruf {
         hopping_settings::HoppingSettings,
         logs::{LogError, diagnose, read_firings, read_log, replay, survey},
         maps::read_map,
+        own::FiredReading,
         paths::Paths,
         program::{example, run_program},
         readings::Readings,
@@ -83,12 +86,13 @@ mod _eeruf {
         ring::Ring,
         ring_events::{Fire, PeriodEnded, Reading},
         robot::Robot,
+        robot_state::RobotState,
         scene::Scene,
         schedule::Schedule,
         search::{WaitSearch, WaitTables},
         sensor_watch::{Blind, LastAccepted, SensorWatch},
         simulate::simulate,
-        simulation::{ReadingBlocks, RobotState, Simulation, simulate_blocks},
+        simulation::{ReadingBlocks, Simulation, simulate_blocks},
         surroundings::{Material, Noise},
         tracker::EchoTracker,
         unpickle::readings_from_columns,

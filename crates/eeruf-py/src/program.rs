@@ -60,6 +60,9 @@ pub(crate) fn example(name: &Bound<'_, PyAny>) -> PyResult<&'static str> {
     let name = arguments::text("name", name, "the name of an example")?;
     examples::text(&name).ok_or_else(|| {
         let names: Vec<_> = examples::all().into_iter().map(|(name, _)| name).collect();
+        if names.is_empty() {
+            return ArgumentError::new_err("no examples: this package was built without the program");
+        }
         ArgumentError::new_err(format!("name: {name:?}; expected one of {}", names.join(", ")))
     })
 }

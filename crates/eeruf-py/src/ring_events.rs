@@ -104,6 +104,20 @@ impl Reading {
         Self { phase: Some(phase.0), ..Self::of_filter(sensor, verdict) }
     }
 
+    /// From a ring.
+    pub(crate) fn of_ring(reading: &eeruf_core::Reading) -> Self {
+        let &eeruf_core::Reading { sensor, phase, period, kind, t_echo, previous, age } = reading;
+        let verdict = Verdict { kind, t_echo, previous, age };
+        Self { phase: Some(phase.0), period: Some(period), ..Self::of_filter(sensor, &verdict) }
+    }
+
+    /// What a filter says of a firing.
+    pub(crate) fn judged(&self) -> (ReadingKind, Option<Micros>) {
+        let kind = ReadingKind::ALL.into_iter().find(|kind| kind.as_str() == self.kind);
+        // A reading has one of them.
+        (kind.unwrap_or(ReadingKind::First), self.t_echo_us.map(Micros::new))
+    }
+
     /// From a filter alone, which knows no phases.
     pub(crate) fn of_filter(sensor: u8, verdict: &Verdict) -> Self {
         Self {
@@ -300,16 +314,7 @@ pub(crate) fn to_python<'py>(py: Python<'py>, event: &RingEvent) -> PyResult<Bou
         RingEvent::Fire { sensor, phase, due } => {
             Fire { sensor, phase: phase.0, due_us: due.as_micros() }.into_bound_py_any(py)
         }
-        RingEvent::Reading(reading) => Reading {
-            sensor: reading.sensor,
-            kind: reading.kind.as_str(),
-            t_echo_us: reading.t_echo.map(Micros::as_micros),
-            previous_us: reading.previous.map(Micros::as_micros),
-            age: reading.age,
-            phase: Some(reading.phase.0),
-            period: Some(reading.period),
-        }
-        .into_bound_py_any(py),
+        RingEvent::Reading(reading) => Reading::of_ring(&reading).into_bound_py_any(py),
         RingEvent::PeriodEnded(stats) => PeriodEnded(stats).into_bound_py_any(py),
     }
 }

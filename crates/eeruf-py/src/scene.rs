@@ -66,7 +66,7 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    fn scene(&self) -> &eeruf_sim::Scene {
+    pub(crate) fn scene(&self) -> &eeruf_sim::Scene {
         self.contents.scene()
     }
 

@@ -2,95 +2,29 @@
 
 use std::{
     path::PathBuf,
-    sync::{Mutex, MutexGuard, PoisonError},
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    thread::{self, ThreadId},
 };
 
 use eeruf::Recording;
-use eeruf_sim::{Body, Point, SimulationError, simulation::expected_readings};
-use pyo3::{
-    prelude::*,
-    types::{PyDict, PyTuple},
-};
+use eeruf_sim::{Body, Own, SimulationError, simulation::expected_readings};
+use pyo3::{PyTraverseError, PyVisit, prelude::*};
 
 use crate::{
-    arguments::{flag, number, number_or, shown, whole, whole_or, wrong},
-    errors::Raise,
-    fields::to_dict,
+    arguments::{instance, number, shown, whole, whole_or, wrong},
+    errors::{Raise, SimulationError as SimulationRefused},
     logs, memory,
-    pose::{point_of, pose_of},
+    own::{self, Calls},
     readings::Readings,
+    robot_state::RobotState,
+    scene::Scene,
+    schedule::Schedule,
     simulate::Asked,
     watch::{Watch, in_background},
 };
 
 /// How many periods a block has unless another number is asked for.
 const BLOCK_PERIODS: u32 = 10_000;
-
-/// A robot of a ``Simulation``, now.
-///
-/// Example:
-///     >>> from eeruf import sim
-///     >>> robot = sim.Robot((1, 0, 0), sensors=8, spacing_rad=0.26, radius_m=0.3)
-///     >>> sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot])).robots[0].pose
-///     (1.0, 0.0, 0.0)
-#[pyclass(frozen, eq, get_all, module = "eeruf.sim")]
-#[derive(Clone, PartialEq)]
-pub(crate) struct RobotState {
-    /// (x, y, heading) in metres and radians.
-    pose: (f64, f64, f64),
-    /// Velocity along x and y, in m/s.
-    velocity_m_s: (f64, f64),
-    /// Rate of turn, counter-clockwise, in rad/s.
-    turn_rad_s: f64,
-    /// Whether the disc that holds its sensors touches a wall or a pole.
-    touches: bool,
-}
-
-#[pymethods]
-impl RobotState {
-    #[new]
-    #[pyo3(signature = (pose, velocity_m_s=None, turn_rad_s=None, touches=None))]
-    #[pyo3(text_signature = "(pose, velocity_m_s=(0.0, 0.0), turn_rad_s=0.0, touches=False)")]
-    fn new(
-        pose: &Bound<'_, PyAny>,
-        velocity_m_s: Option<&Bound<'_, PyAny>>,
-        turn_rad_s: Option<&Bound<'_, PyAny>>,
-        touches: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
-        let velocity = velocity_m_s.map(|velocity| point_of("velocity_m_s", velocity)).transpose()?;
-        Ok(Self {
-            pose: pose_of("pose", pose)?,
-            velocity_m_s: velocity.map_or((0.0, 0.0), |velocity: Point| (velocity.x, velocity.y)),
-            turn_rad_s: number_or("turn_rad_s", turn_rad_s, 0.0, f64::MIN..=f64::MAX)?,
-            touches: flag("touches", touches, false)?,
-        })
-    }
-
-    /// Its fields by their names: a dict of plain values.
-    ///
-    /// Example:
-    ///     >>> from eeruf import sim
-    ///     >>> robot = sim.Robot((1, 0, 0), sensors=8, spacing_rad=0.26, radius_m=0.3)
-    ///     >>> sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot])).robots[0].to_dict()["pose"]
-    ///     [1.0, 0.0, 0.0]
-    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["pose", "velocity_m_s", "turn_rad_s", "touches"])
-    }
-
-    fn __repr__(&self) -> String {
-        let Self { pose, velocity_m_s, turn_rad_s, touches } = self;
-        let touches = if *touches { "True" } else { "False" };
-        format!(
-            "RobotState(pose={pose:?}, velocity_m_s={velocity_m_s:?}, turn_rad_s={turn_rad_s:?}, touches={touches})"
-        )
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { pose, velocity_m_s, turn_rad_s, touches } = *slf.get();
-        let fields = (pose, velocity_m_s, turn_rad_s, touches).into_pyobject(slf.py())?;
-        Ok((slf.get_type().into_any(), fields))
-    }
-}
 
 /// A world that goes on step by step: for your own controller, filter, or display.
 ///
@@ -100,13 +34,23 @@ impl RobotState {
 ///     scene: with one robot or more.
 ///     method: one of ``METHODS``.
 ///     seed: of the noise, 0 to 2^64 - 1; the scene's by default.
+///     firing: when the first robot's sensors fire, instead of by the method: a callable that takes the number of a
+///         period, from 0, and returns how long it lasts in microseconds and who fires when in it,
+///         ``(length_us, [(t_fire_us, sensor), ..])``, or the same with the phase, 0 to 7, as a third. A dict by robot
+///         for others. No sensor fires while it listens.
+///     filter: what is believed of the first robot's readings, instead of by the method: a callable that takes a
+///         :class:`FiredReading` and returns ``(kind, t_echo_us)``, or what :meth:`EchoFilter.push` returns. A dict by
+///         robot for others.
 ///     mcap: a file that each step is written into, for Foxglove, Rerun and ROS 2: ranges, what is accepted, poses, the
 ///         scene, each reading's path and each firing. :meth:`close` ends it, and so does ``with``.
+///
+/// What these callables raise comes out of the step that called them, and so does an ArgumentError about what they
+/// return. They run within a step: the simulation itself cannot be asked or steered by them.
 ///
 /// Raises:
 ///     ArgumentError: no such method, or something of the wrong type or out of range.
 ///     SceneError: the scene has no robot.
-///     SimulationError: a ring cannot fire by the method as it should listen.
+///     SimulationError: a ring cannot fire by the method as it should listen, or a period cannot be fired.
 ///     LogError: the file cannot be written.
 ///
 /// Example:
@@ -121,7 +65,10 @@ impl RobotState {
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Simulation {
     under_way: Mutex<UnderWay>,
+    /// Who lets time pass: a callable that is asked for must not wait for that.
+    stepping: Mutex<Option<ThreadId>>,
     asked: Asked,
+    calls: Arc<Calls>,
 }
 
 struct UnderWay {
@@ -129,36 +76,41 @@ struct UnderWay {
     recording: Option<Recording>,
 }
 
-/// A step cannot be taken, or not written.
-enum StepError {
-    Simulation(SimulationError),
-    Log(eeruf_logs::LogError),
-}
-
-impl Raise for StepError {
-    fn raise(self) -> PyErr {
-        match self {
-            Self::Simulation(error) => error.raise(),
-            Self::Log(error) => logs::raise(error),
-        }
-    }
-}
-
 impl Simulation {
-    fn new_from(py: Python<'_>, asked: Asked, ending: bool, mcap: Option<PathBuf>) -> PyResult<Self> {
+    /// With the caller's own firings and filters, or one that ends when the options say.
+    fn new_from(py: Python<'_>, asked: Asked, own: Option<(Own, Arc<Calls>)>, mcap: Option<PathBuf>) -> PyResult<Self> {
         in_background(py, None, move |background| {
             let asked = asked.with_best(background)?;
             let Asked { ref world, method, ref options } = asked;
-            let start = if ending { eeruf_sim::Simulation::ending } else { eeruf_sim::Simulation::new };
-            let simulation = start(world.clone(), method, options, background.stop().clone()).map_err(Raise::raise)?;
+            let (world, stop) = (world.clone(), background.stop().clone());
+            let (simulation, calls) = match own {
+                Some((own, calls)) => (eeruf_sim::Simulation::with_own(world, method, options, own, stop), calls),
+                None => (eeruf_sim::Simulation::ending(world, method, options, stop), Arc::default()),
+            };
+            let simulation = simulation.map_err(|error| calls.raised().unwrap_or_else(|| error.raise()))?;
             let recording = mcap.map(|file| Recording::create(&file, &simulation)).transpose().map_err(logs::raise)?;
-            Ok(Self { under_way: Mutex::new(UnderWay { simulation, recording }), asked })
+            let under_way = Mutex::new(UnderWay { simulation, recording });
+            Ok(Self { under_way, stepping: Mutex::default(), asked, calls })
         })
     }
 
     /// Without the interpreter lock: whoever holds the simulation may wait for that.
-    fn lock(&self) -> MutexGuard<'_, UnderWay> {
-        self.under_way.lock().unwrap_or_else(PoisonError::into_inner)
+    fn lock(&self) -> PyResult<MutexGuard<'_, UnderWay>> {
+        if *self.stepping.lock().unwrap_or_else(PoisonError::into_inner) == Some(thread::current().id()) {
+            let why = "a simulation under way; expected its firing and its filter to leave it alone";
+            return Err(SimulationRefused::new_err(why));
+        }
+        Ok(self.under_way.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Notes on which thread time passes.
+    fn set_stepping(&self, who: Option<ThreadId>) {
+        *self.stepping.lock().unwrap_or_else(PoisonError::into_inner) = who;
+    }
+
+    fn robot(&self, name: &str, robot: &Bound<'_, PyAny>) -> PyResult<usize> {
+        let last = self.asked.world.robots().len() as u32 - 1;
+        Ok(whole(name, robot, 0..=last)? as usize)
     }
 
     /// Lets time pass while Ctrl-C and progress are looked after.
@@ -175,33 +127,41 @@ impl Simulation {
         let mut watch = Watch::new(progress)?;
         let readings = py.detach(|| {
             let mut keep_going = |share| watch.go_on(Some(share), || format!("simulating {}", self.asked.method));
-            let UnderWay { simulation, recording } = &mut *self.lock();
-            let readings = step(simulation, &mut keep_going).map_err(StepError::Simulation)?;
+            let UnderWay { simulation, recording } = &mut *self.lock()?;
+            self.set_stepping(Some(thread::current().id()));
+            let readings = step(simulation, &mut keep_going);
+            self.set_stepping(None);
+            let readings = readings.map_err(|error| self.calls.raised().unwrap_or_else(|| error.raise()))?;
             if let Some(recording) = recording {
-                recording.add(simulation, &readings).map_err(StepError::Log)?;
+                recording.add(simulation, &readings).map_err(logs::raise)?;
             }
-            Ok::<_, StepError>(readings)
+            Ok(readings)
         });
-        watch.outcome(readings.map(Readings::new).map_err(Raise::raise))
+        watch.outcome(readings.map(Readings::new))
     }
 }
 
 #[pymethods]
 impl Simulation {
     #[new]
-    #[pyo3(signature = (scene, method=None, *, seed=None, mcap=None))]
-    #[pyo3(text_signature = "(scene, method=\"eeruf\", *, seed=None, mcap=None)")]
+    #[pyo3(signature = (scene, method=None, *, seed=None, firing=None, filter=None, mcap=None))]
+    #[pyo3(text_signature = "(scene, method=\"eeruf\", *, seed=None, firing=None, filter=None, mcap=None)")]
     fn new(
         scene: &Bound<'_, PyAny>,
         method: Option<&Bound<'_, PyAny>>,
         seed: Option<&Bound<'_, PyAny>>,
+        firing: Option<&Bound<'_, PyAny>>,
+        filter: Option<&Bound<'_, PyAny>>,
         mcap: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let asked = Asked::new(scene, method, None, seed)?;
+        let sensors: Vec<_> = asked.world.robots().iter().map(|robot| robot.sensors.len()).collect();
+        let own = own::own(firing, filter, &sensors)?;
         let file = |path: &Bound<'_, PyAny>| {
             path.extract::<PathBuf>().map_err(|_| wrong("mcap", shown(path), "the path of a file to write, or None"))
         };
         let mcap = mcap.map(file).transpose()?;
-        Self::new_from(scene.py(), Asked::new(scene, method, None, seed)?, false, mcap)
+        Self::new_from(scene.py(), asked, Some(own), mcap)
     }
 
     /// End the MCAP file, if one is being written; the simulation may go on.
@@ -219,7 +179,7 @@ impl Simulation {
     ///     >>> len(read_firings(file)) == len(readings)
     ///     True
     fn close(&self, py: Python<'_>) -> PyResult<()> {
-        py.detach(|| self.lock().recording.take().map_or(Ok(()), Recording::finish)).map_err(logs::raise)
+        py.detach(|| self.lock()?.recording.take().map_or(Ok(()), Recording::finish).map_err(logs::raise))
     }
 
     fn __enter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
@@ -312,10 +272,72 @@ impl Simulation {
         w_rad_s: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
         let py = robot.py();
-        let last = self.asked.world.robots().len() as u32 - 1;
-        let robot = whole("robot", robot, 0..=last)? as usize;
+        let robot = self.robot("robot", robot)?;
         let (v_m_s, w_rad_s) = (number("v_m_s", v_m_s, -50.0..=50.0)?, number("w_rad_s", w_rad_s, -50.0..=50.0)?);
-        py.detach(|| self.lock().simulation.set_velocity(robot, v_m_s, w_rad_s)).map_err(Raise::raise)
+        py.detach(|| self.lock()?.simulation.set_velocity(robot, v_m_s, w_rad_s).map_err(Raise::raise))
+    }
+
+    /// From the end of its present period on a robot's ring fires by another schedule, as late as keeps the intervals
+    /// of both. Readings before and after the change are not compared.
+    ///
+    /// Args:
+    ///     robot: which one, from 0.
+    ///     schedule: a ``Schedule`` of as many sensors.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such robot, or something else than a schedule.
+    ///     SimulationError: a method without such a schedule (immediate refiring, dither, hopping, adaptive, a firing
+    ///         of one's own), a schedule of another number of sensors, or one by which a sensor would fire again while
+    ///         it listens. The ring then goes on as before.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> from eeruf import sim
+    ///     >>> fast, slow = eeruf.tables.TABLE_I_D.scaled(3, 5), eeruf.tables.TABLE_I_D
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=12, spacing_rad=0.26, radius_m=0.3, schedule=fast)
+    ///     >>> world = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]))
+    ///     >>> before = len(world.step(1.2))
+    ///     >>> world.change_schedule(0, slow)
+    ///     >>> len(world.step(1.2)) < 0.75 * before
+    ///     True
+    #[pyo3(signature = (robot, schedule))]
+    fn change_schedule(&self, robot: &Bound<'_, PyAny>, schedule: &Bound<'_, PyAny>) -> PyResult<()> {
+        let py = robot.py();
+        let robot = self.robot("robot", robot)?;
+        let schedule = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
+        py.detach(|| self.lock()?.simulation.change_schedule(robot, &schedule).map_err(Raise::raise))
+    }
+
+    /// From now on sound travels among these walls and poles and in this air: obstacles have moved. Sound that is on
+    /// its way arrives as it would have before. Nobody looks whether the robots stand free in it.
+    ///
+    /// Args:
+    ///     scene: whose robots, noise, seed, order and physics do not count: those of the simulation stay.
+    ///
+    /// Raises:
+    ///     ArgumentError: something else than a scene.
+    ///     SimulationError: a sensor is within something solid or out of the scene's reach. Everything then stays as it
+    ///         was; of a robot that moves it is said when it fires.
+    ///
+    /// Example:
+    ///     >>> from eeruf import sim
+    ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+    ///     >>> near, far = sim.Scene([[5, 2, -5, 2]], robots=[robot]), sim.Scene([[5, 2.5, -5, 2.5]])
+    ///     >>> world = sim.Simulation(near)
+    ///     >>> before = world.step(0.6).t_echo_us[-1]
+    ///     >>> world.change_scene(far)
+    ///     >>> bool(world.step(0.6).t_echo_us[-1] > before + 2_000)
+    ///     True
+    #[pyo3(signature = (scene))]
+    fn change_scene(&self, scene: &Bound<'_, PyAny>) -> PyResult<()> {
+        let py = scene.py();
+        let scene = instance::<Scene>("scene", scene, "an eeruf.sim.Scene")?.get();
+        py.detach(|| {
+            let now = scene.scene();
+            let copied = eeruf_sim::Scene::new(now.walls().to_vec(), now.poles().to_vec(), now.air());
+            let copied = copied.map_err(Raise::raise)?;
+            self.lock()?.simulation.change_scene(copied).map_err(Raise::raise)
+        })
     }
 
     /// The robots now: a list of ``RobotState``.
@@ -323,7 +345,7 @@ impl Simulation {
     fn robots(&self, py: Python<'_>) -> PyResult<Vec<RobotState>> {
         let world = &self.asked.world;
         let state = |(index, robot): (usize, &eeruf_sim::Robot)| {
-            let moment = self.lock().simulation.moment(index)?;
+            let moment = self.lock()?.simulation.moment(index).map_err(Raise::raise)?;
             let at = moment.pose.translation;
             Ok(RobotState {
                 pose: (at.x, at.y, moment.pose.rotation.angle()),
@@ -332,19 +354,27 @@ impl Simulation {
                 touches: world.scene().contact(&Body::Disc(robot.radius_m().max(1e-6)), &moment.pose).is_some(),
             })
         };
-        let states: Result<_, SimulationError> = py.detach(|| world.robots().iter().enumerate().map(state).collect());
-        states.map_err(Raise::raise)
+        py.detach(|| world.robots().iter().enumerate().map(state).collect())
     }
 
     /// The time that has passed, in seconds.
     #[getter]
-    fn time_s(&self, py: Python<'_>) -> f64 {
-        py.detach(|| self.lock().simulation.time_s())
+    fn time_s(&self, py: Python<'_>) -> PyResult<f64> {
+        py.detach(|| Ok(self.lock()?.simulation.time_s()))
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {
         let robots = self.asked.world.robots().len();
-        format!("<Simulation: {robots} robots, {}, after {:.3} s>", self.asked.method, self.time_s(py))
+        let time = self.time_s(py).map_or("in a step".to_owned(), |time_s| format!("after {time_s:.3} s"));
+        format!("<Simulation: {robots} robots, {}, {time}>", self.asked.method)
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.calls.traverse(&visit)
+    }
+
+    fn __clear__(&self) {
+        self.calls.clear();
     }
 }
 
@@ -371,7 +401,7 @@ impl ReadingBlocks {
     }
 
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<Readings>> {
-        if py.detach(|| self.simulation.lock().simulation.is_over()) {
+        if py.detach(|| self.simulation.lock().map(|under_way| under_way.simulation.is_over()))? {
             return Ok(None);
         }
         let periods = self.block_periods;
@@ -428,6 +458,6 @@ pub(crate) fn simulate_blocks(
     memory::check(&format!("{readings} readings"), bytes, "so fewer block_periods")?;
     // What is wrong with it is said now, not with the first block.
     Watch::new(progress)?;
-    let simulation = Simulation::new_from(scene.py(), asked, true, None)?;
+    let simulation = Simulation::new_from(scene.py(), asked, None, None)?;
     Ok(ReadingBlocks { simulation, block_periods, progress: progress.map(|progress| progress.clone().unbind()) })
 }

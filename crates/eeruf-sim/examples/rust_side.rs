@@ -1,18 +1,21 @@
 //! What Rust says and how long it takes, for Python to be held against. Prints one JSON object.
 //!
 //!     rust_side paths    every critical path of the shared corpus
-//!     rust_side times    seconds of one call of `design`, `paths` and `push_many`'s work, best of many
+//!     rust_side times    seconds of one call of `design`, `paths` and `push_many`'s work and of one step, best of many
 //!
 //! `benches/python/overhead.py` times the same calls from Python; `tests/python/test_corpus.py` compares the paths bit
 //! for bit.
 
-use std::{hint::black_box, time::Instant};
+use std::{hint::black_box, sync::Arc, time::Instant};
 
 use eeruf_core::{
     EchoFilter, Layout, MAX_SENSORS, Micros, Requirements,
     search::{PeriodProblem, design},
 };
-use eeruf_sim::{Air, Bounce, Scene, Wall};
+use eeruf_sim::{
+    Air, Bounce, Filter, FiredReading, Judged, Method, Noise, Options, Own, OwnError, Pose, Robot, Scene, Simulation,
+    Stop, Transducer, Wall, World,
+};
 use serde_json::{Map, Value, json};
 
 #[path = "../tests/common/corpus.rs"]
@@ -71,7 +74,36 @@ fn times() -> Value {
         "paths, wall": seconds(|| wall.paths(source, &eight[..1], 1, f64::INFINITY)),
         "paths, alcove": seconds(|| alcove.paths(source, &eight, 3, f64::INFINITY)),
         "push_many, 1,000,000": million(),
+        "step, one reading": step(Own::new),
+        "step, own filter": step(|| Own::new().filter(0, Everything)),
     })
+}
+
+/// Believes every echo.
+struct Everything;
+
+impl Filter for Everything {
+    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+        Ok(Judged::believed(firing.echoes.first().copied()))
+    }
+}
+
+/// One step that yields a reading, on average over 10,000, in a simulation of a ring before a wall.
+fn step(own: impl Fn() -> Own) -> f64 {
+    const STEPS: u32 = 10_000;
+    let ahead = Pose::rotation(1.57);
+    let robot = Robot::ring(ahead, 8, 0.26, 0.3, Transducer::POLAROID_6500);
+    let scene = Scene::new(vec![Wall::new(5.0, 2.0, -5.0, 2.0)], vec![], Air::default()).expect("a wall");
+    let world = Arc::new(World::new(scene, vec![robot], Noise::default()).expect("a robot before a wall"));
+    let many = || {
+        let (options, stop) = (Options::default(), Stop::default());
+        let started = Simulation::with_own(Arc::clone(&world), Method::Eeruf, &options, own(), stop);
+        let mut simulation = started.expect("a ring that fires");
+        for _ in 0..STEPS {
+            black_box(simulation.step_to_reading(1.0, |_| true).expect("a reading"));
+        }
+    };
+    seconds(many) / f64::from(STEPS)
 }
 
 /// What `eeruf.design` does: the shortest period, and of its schedules the one to prefer.

@@ -7,6 +7,8 @@
 //!   for a whole ring and says who hears whom.
 //! - [`reception`] solves for the moment at which sound meets a moving receiver; [`Scene::contact`] for what a robot
 //!   touches.
+//! - A [`Simulation`] goes on step by step under the caller's own controller, and with the caller's own [`Firing`] and
+//!   [`Filter`] where they are given ([`Own`]).
 //! - A [`World`] puts robots with rings, clocks and motions into a scene, from a TOML file or from code; [`simulate()`]
 //!   runs the ring of `eeruf-core` through simulated time under a [`Method`]. Every one of the [`Readings`] knows what
 //!   caused it; [`Summary`] counts the errors and [`Attribution`] says who was fooled by whom.
@@ -71,13 +73,13 @@ pub mod world;
 
 pub use acoustics::{
     GainProfile, Physics, Piston, Transducer, UnknownPhysics, edge_diffraction, pole_wave_correction,
-    rigid_cylinder_form,
+    rigid_cylinder_form, strip_reflection,
 };
 pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice};
 pub use maps::{MapError, OccupancyGrid};
 pub use methods::{
-    BestSchedule, Method, UnknownMethod, Weighed, best_schedule_for, requirements_of, shortest_schedule_for,
-    table_i_d_for,
+    BestSchedule, Firing, FiringPeriod, Method, OwnError, UnknownMethod, Weighed, best_schedule_for, requirements_of,
+    shortest_schedule_for, table_i_d_for,
 };
 pub use navigation::{Driven, Himm, LabMate, Vfh};
 pub use results::{
@@ -86,7 +88,10 @@ pub use results::{
 pub use scene::{
     Air, Body, Bounce, Contact, Edge, Faces, Material, Outline, OutlineError, Pole, Scene, SceneError, Wall,
 };
-pub use simulation::{LockStep, Options, Simulation, SimulationError, simulate, simulate_until, simulate_while};
+pub use simulation::{
+    Echo, Filter, FiredReading, Judged, LockStep, Options, Own, Simulation, SimulationError, simulate, simulate_until,
+    simulate_while,
+};
 pub use threads::{Stop, sweep};
 pub use tracing::{
     CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, MAX_ORDER, Paths, PathsError, Reception, Tracer,

@@ -3,8 +3,8 @@ use eeruf_core::{Criterion, Layout, Micros, Requirements, Uneven, UnevenSchedule
 // 12 sensors, T_p = 33.4 ms; 3 adjacent sensors of a ring at least 6.993 ms apart, and what each sensor and pair needs.
 pub const RING: UnevenSchedule<12> = uneven_schedule! {
     period_us: 33_400,
-    t_fire_a_us: [19_200, 26_200, 9_600, 2_600, 26_400, 13_300, 6_300, 23_800, 16_800, 33_200, 26_200, 11_500],
-    t_fire_b_us: [15_300, 26_200, 8_300, 0, 15_300, 27_300, 600, 14_500, 32_700, 25_700, 6_800, 33_200],
+    t_fire_a_us: [14_200, 25_100, 1_200, 14_800, 23_000, 6_500, 14_800, 24_300, 1_000, 14_800, 23_000, 1_200],
+    t_fire_b_us: [9_500, 26_400, 1_200, 18_200, 10_000, 26_400, 0, 17_700, 9_500, 26_000, 1_300, 17_800],
     meets: Requirements {
         t_delta: Micros::new(882),
         criterion: Criterion::Exact,

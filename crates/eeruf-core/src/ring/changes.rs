@@ -8,14 +8,14 @@ use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 use crate::verified::VerifiedSchedule;
 
-impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s, K, M>, K, E> {
+impl<'s, const N: usize, const M: usize, const K: usize, const E: usize> Ring<ScheduledFiring<'s, N, M>, K, E> {
     /// Changes to another schedule when the present period ends (see [`ScheduledFiring::change_schedule`]). Readings
     /// before and after the change are not compared. `t_delta` and window stay.
     ///
     /// # Errors
     /// [`RingError::TDelta`] or [`RingError::VerifiedWindow`] if the schedule was verified for less than the ring's
     /// `t_delta` or window. The ring then goes on as before.
-    pub fn change_schedule(&mut self, schedule: &'s VerifiedSchedule<K, M>) -> Result<(), RingError> {
+    pub fn change_schedule(&mut self, schedule: &'s VerifiedSchedule<N, M>) -> Result<(), RingError> {
         self.change_to_unverified(schedule)
     }
 
@@ -23,7 +23,7 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s
     ///
     /// # Errors
     /// [`RingError::Window`] if a sensor would fire again while it still listens.
-    pub fn change_to_unverified(&mut self, schedule: &'s Schedule<K, M>) -> Result<(), RingError> {
+    pub fn change_to_unverified(&mut self, schedule: &'s Schedule<N, M>) -> Result<(), RingError> {
         self.listening.is_allowed(schedule.limits())?;
         self.scheduler.change_schedule(schedule);
         Ok(())

@@ -5,7 +5,7 @@ use core::fmt;
 use crate::{simulation::SimulationError, world::WorldError};
 
 /// Why an experiment cannot be run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ExperimentError {
     /// Not one geometry or course.

@@ -13,7 +13,7 @@ struct AdaptiveRing<'s> {
     adaptation: Adaptation<'s, MAX_SENSORS>,
 }
 
-impl RingRunner for AdaptiveRing<'_> {
+impl<'s> RingRunner<'s> for AdaptiveRing<'s> {
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         let event = self.ring.poll_expecting(now, expected_change_us)?;
         if let RingEvent::PeriodEnded(stats) = event {

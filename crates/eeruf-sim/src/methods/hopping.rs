@@ -12,7 +12,7 @@ use crate::world::Robot;
 /// lateness.
 const STEP: Micros = Micros::new(240);
 
-impl<const K: usize, const H: usize> RingRunner for HoppingRing<K, H> {
+impl<const K: usize, const H: usize> RingRunner<'_> for HoppingRing<K, H> {
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         self.poll_expecting(now, expected_change_us)
     }

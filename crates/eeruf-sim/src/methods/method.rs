@@ -5,11 +5,14 @@
 use core::fmt;
 use core::str::FromStr;
 
-use eeruf_core::{Micros, ScheduleError};
+use eeruf_core::{Instant, Micros, ScheduleError};
 use serde::{Serialize, Serializer};
 
 use super::adaptive;
+use super::dither;
+use super::firing::Firing;
 use super::hopping;
+use super::planned_ring::planned;
 use super::ring_runner::{self, FiringPlan, RingRunner, RingStart, StartError, Started};
 use super::schedules::{self, Made, ScheduleQuery};
 use crate::world::{AnySchedule, Robot};
@@ -97,7 +100,7 @@ methods! {
     /// waits span. Consecutive readings are compared.
     Dither = "dither" {
         schedule: schedules::conventional,
-        ring: ring_runner::dithered,
+        ring: dither::dithered,
         belief: Belief::Repeated,
     }
     /// Constant lags (Table I-a): neighbours fire `T_p / n` apart, every period alike. Every echo is believed.
@@ -209,8 +212,14 @@ impl Method {
         (self.row().plan)(robot, schedule)
     }
 
+    /// A robot's ring that fires by the caller's own code, ready to run.
+    pub(crate) fn start_own<'s>(self, robot: &Robot, firing: Box<dyn Firing>, now: Instant) -> Started<'s> {
+        let planned = if self.echoes() > 1 { planned::<MAX_ECHOES> } else { planned::<1> };
+        planned(robot, firing, robot.window, now)
+    }
+
     /// A robot's ring, ready to run.
-    pub(crate) fn start<'s>(self, start: &RingStart<'s>) -> Result<Box<dyn RingRunner + 's>, StartError> {
+    pub(crate) fn start<'s>(self, start: &RingStart<'s>) -> Result<Box<dyn RingRunner<'s> + 's>, StartError> {
         (self.row().ring)(start)
     }
 }

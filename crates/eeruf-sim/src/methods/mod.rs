@@ -4,14 +4,17 @@
 mod adaptive;
 mod best_schedule;
 mod dither;
+mod firing;
 mod hopping;
 mod method;
+mod planned_ring;
 mod ring_runner;
 mod schedules;
 
 pub use best_schedule::{BestSchedule, TICK, best_schedule_for, requirements_of, shortest_schedule_for};
+pub use firing::{Firing, FiringPeriod, OwnError};
 pub(crate) use method::{Belief, MAX_ECHOES};
 pub use method::{Method, UnknownMethod};
 pub use ring_runner::Weighed;
-pub(crate) use ring_runner::{FiringPlan, RingRunner, RingStart, StartError};
+pub(crate) use ring_runner::{ChangeError, FiringPlan, RingRunner, RingStart, StartError};
 pub use schedules::table_i_d_for;

@@ -6,8 +6,7 @@ use eeruf_core::{
     RingEvent, ScheduledFiring, Scheduler, UnevenFiring, UnevenSchedule, VerifiedSchedule, Violation,
 };
 
-use super::dither::DitherFiring;
-use super::schedules::widest_dither;
+use super::firing::OwnError;
 use crate::world::{AnySchedule, Random, Robot};
 
 /// How the tracker of a hopping ring weighed a reading, beside its phase and echo time: what a log needs for the
@@ -24,8 +23,8 @@ pub struct Weighed {
     pub expected_change_us: i32,
 }
 
-/// A ring of any kind.
-pub(crate) trait RingRunner: Send {
+/// A ring of any kind, which can change to schedules that live as long as `'s`.
+pub(crate) trait RingRunner<'s>: Send {
     /// What the ring does now, if anything; `expected_change_us` says by how much a good reading of a sensor should
     /// change.
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent>;
@@ -38,9 +37,48 @@ pub(crate) trait RingRunner: Send {
     fn weighed(&self, _sensor: u8) -> Option<Weighed> {
         None
     }
+    /// Changes to another schedule, of as many sensors, when the present period ends.
+    fn change_schedule(&mut self, _schedule: &'s AnySchedule) -> Result<(), ChangeError> {
+        Err(ChangeError::Fixed)
+    }
+    /// Why it no longer fires, if it does not.
+    fn error(&self) -> Option<&OwnError> {
+        None
+    }
 }
 
-impl<S: Scheduler + Send, const K: usize, const E: usize> RingRunner for Ring<S, K, E> {
+/// Why a ring cannot change to another schedule.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum ChangeError {
+    /// It fires by no schedule that could be changed.
+    Fixed,
+    /// It cannot listen as asked.
+    Ring(RingError),
+}
+
+/// How rings with this scheduler change to another schedule.
+trait Changes<'s>: Scheduler + Send + Sized {
+    fn change<const K: usize, const E: usize>(
+        _ring: &mut Ring<Self, K, E>,
+        _schedule: &'s AnySchedule,
+    ) -> Result<(), ChangeError> {
+        Err(ChangeError::Fixed)
+    }
+}
+
+impl<'s> Changes<'s> for ScheduledFiring<'s, MAX_SENSORS> {
+    fn change<const K: usize, const E: usize>(
+        ring: &mut Ring<Self, K, E>,
+        schedule: &'s AnySchedule,
+    ) -> Result<(), ChangeError> {
+        ring.change_to_unverified(schedule).map_err(ChangeError::Ring)
+    }
+}
+
+impl<'s> Changes<'s> for UnevenFiring<'s, MAX_SENSORS> {}
+impl<'s> Changes<'s> for ImmediateRefiring<'s, MAX_SENSORS> {}
+
+impl<'s, S: Changes<'s>, const K: usize, const E: usize> RingRunner<'s> for Ring<S, K, E> {
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         self.poll_expecting(now, expected_change_us)
     }
@@ -52,6 +90,10 @@ impl<S: Scheduler + Send, const K: usize, const E: usize> RingRunner for Ring<S,
     fn echo(&mut self, sensor: u8, at: Instant) {
         // A ring is as large as its robot's.
         _ = Ring::echo(self, sensor, at);
+    }
+
+    fn change_schedule(&mut self, schedule: &'s AnySchedule) -> Result<(), ChangeError> {
+        S::change(self, schedule)
     }
 }
 
@@ -76,7 +118,7 @@ pub(crate) struct RingStart<'s> {
 }
 
 /// Why a ring cannot be started.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum StartError {
     /// It cannot listen as asked.
     Ring(RingError),
@@ -86,6 +128,8 @@ pub(crate) enum StartError {
     Ladder(LadderError),
     /// It cannot hop as asked.
     Hopping(HoppingError),
+    /// Its first period cannot be fired.
+    Own(OwnError),
 }
 
 impl From<HoppingError> for StartError {
@@ -104,7 +148,14 @@ impl From<RingError> for StartError {
 }
 
 /// A running ring, if it can be started.
-pub(super) type Started<'s> = Result<Box<dyn RingRunner + 's>, StartError>;
+pub(super) type Started<'s> = Result<Box<dyn RingRunner<'s> + 's>, StartError>;
+
+/// How a robot's ring listens and compares.
+pub(super) fn config_of(robot: &Robot) -> RingConfig {
+    let &Robot { t_delta, window, blanking, consecutive, patience, .. } = robot;
+    let listens = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
+    listens.with_consecutive(consecutive).with_patience(patience)
+}
 
 impl<'s> RingStart<'s> {
     /// The schedule to start with.
@@ -114,14 +165,12 @@ impl<'s> RingStart<'s> {
 
     /// How the robot's ring listens and compares.
     pub(super) fn config(&self) -> RingConfig {
-        let &Robot { t_delta, window, blanking, consecutive, patience, .. } = self.robot;
-        let listens = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
-        listens.with_consecutive(consecutive).with_patience(patience)
+        config_of(self.robot)
     }
 
     /// A ring of `E` echoes with this scheduler, no larger than needed: some of its steps take time for each sensor
     /// that it has room for.
-    fn run<S: Scheduler + Send + 's, const E: usize>(&self, scheduler: S) -> Started<'s> {
+    fn run<S: Changes<'s> + 's, const E: usize>(&self, scheduler: S) -> Started<'s> {
         let (config, now) = (self.config().with_echoes::<E>(), self.now);
         Ok(match self.robot.sensors.len() {
             ..=8 => Box::new(Ring::<S, 8, E>::with_scheduler(scheduler, config, now)?),
@@ -148,10 +197,4 @@ pub(super) fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPla
 /// Immediate refiring.
 pub(super) fn immediate<'s>(start: &RingStart<'s>) -> Started<'s> {
     start.run::<_, 1>(ImmediateRefiring::new(start.schedule(), start.robot.min_refire, start.now))
-}
-
-/// The schedule's lags plus random waits.
-pub(super) fn dithered<'s>(start: &RingStart<'s>) -> Started<'s> {
-    let (lags, period) = (start.schedule().t_lag().to_vec(), start.schedule().period());
-    start.run::<_, 1>(DitherFiring::new(lags, period, widest_dither(start.robot), start.random, start.now))
 }

@@ -4,13 +4,13 @@ use core::fmt;
 
 use eeruf_core::{HoppingError, LadderError, RingError, ScheduleError, Violation};
 
-use crate::methods::{Method, StartError};
+use crate::methods::{ChangeError, Method, OwnError, StartError};
 use crate::results::Readings;
 use crate::tracing::PathsError;
 
 /// Why a simulation cannot be run. Robots are counted from 0 in code and printed from 1.
 /// `{:#}` counts from 0 where `{}` counts from 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SimulationError {
     /// The method has no schedule for a robot.
@@ -85,11 +85,46 @@ pub enum SimulationError {
         /// What is expected.
         expected: &'static str,
     },
+    /// The caller's own firing or filter has ended it.
+    Own {
+        /// The robot.
+        robot: usize,
+        /// Which of the two.
+        what: &'static str,
+        /// When, in seconds.
+        at_s: f64,
+        /// Why.
+        error: OwnError,
+    },
+    /// A robot's ring fires by no schedule that could be changed.
+    FixedSchedule {
+        /// The robot.
+        robot: usize,
+        /// The method.
+        method: Method,
+    },
+    /// A schedule for another number of sensors than the robot has.
+    Sensors {
+        /// The robot.
+        robot: usize,
+        /// How many the schedule is for.
+        schedule: usize,
+        /// How many there are.
+        sensors: usize,
+    },
     /// The caller asked to stop.
     Stopped,
 }
 
 impl SimulationError {
+    /// A ring that cannot change to another schedule.
+    pub(super) fn change(robot: usize, method: Method, error: ChangeError) -> Self {
+        match error {
+            ChangeError::Fixed => Self::FixedSchedule { robot, method },
+            ChangeError::Ring(error) => Self::Ring { robot, method, error },
+        }
+    }
+
     /// A ring that cannot be started.
     pub(super) fn start(robot: usize, method: Method, error: StartError) -> Self {
         match error {
@@ -97,6 +132,7 @@ impl SimulationError {
             StartError::Unverified(violation) => Self::Unverified { robot, violation },
             StartError::Ladder(error) => Self::Ladder { robot, error },
             StartError::Hopping(error) => Self::Hopping { robot, error },
+            StartError::Own(error) => Self::Own { robot, what: "firing", at_s: 0.0, error },
         }
     }
 
@@ -134,6 +170,18 @@ impl fmt::Display for SimulationError {
             }
             Self::Robot { robot, robots } => write!(f, "robot {}; expected one of {robots}", robot + first),
             Self::Number { what, value, expected } => write!(f, "{what} is {value}; expected {expected}"),
+            Self::Own { robot, what, at_s, error } => {
+                write!(f, "at {at_s:.3} s: the {what} of robot {}: {error}", robot + first)
+            }
+            Self::FixedSchedule { robot, method } => write!(
+                f,
+                "robot {} fires by {method} or by its own firing; expected a method with a schedule that can be \
+                 changed",
+                robot + first
+            ),
+            Self::Sensors { robot, schedule, sensors } => {
+                write!(f, "robot {}: a schedule of {schedule} sensors; expected one of {sensors}", robot + first)
+            }
             Self::Stopped => write!(f, "stopped"),
         }
     }

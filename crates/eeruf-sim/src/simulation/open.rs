@@ -2,13 +2,23 @@
 
 use std::sync::Arc;
 
-use super::engine::{EventLoop, end_of};
+use elsa::sync::FrozenVec;
+
+use super::channels::Place;
+use super::engine::{EventLoop, Own, end_of};
 use super::engine::{Plan, plans};
 use super::error::SimulationError;
 use super::kinematics::{Kinematics, Planned};
 use super::options::Options;
 use super::steered::Steered;
-use crate::{geometry::Moment, methods::Method, results::Readings, threads::Stop, world::MAX_SPEED, world::World};
+use crate::{
+    geometry::Moment,
+    methods::Method,
+    results::Readings,
+    scene::Scene,
+    threads::Stop,
+    world::{AnySchedule, MAX_SPEED, World},
+};
 
 /// The longest single step, in seconds: far longer than anybody waits for, so that longer is a mistake.
 const MAX_STEP_S: f64 = 1e9;
@@ -16,6 +26,8 @@ const MAX_STEP_S: f64 = 1e9;
 struct Owner {
     world: Arc<World>,
     plans: Vec<Plan>,
+    /// The schedules that rings have changed to, each once.
+    schedules: FrozenVec<Box<AnySchedule>>,
 }
 
 type Events<'a> = EventLoop<'a, Steered<'a>>;
@@ -49,6 +61,7 @@ self_cell::self_cell!(
 /// ```
 pub struct Simulation {
     under_way: UnderWay,
+    method: Method,
     robots: usize,
     /// In true nanoseconds.
     now: u64,
@@ -66,7 +79,23 @@ impl Simulation {
     /// # Errors
     /// As [`simulate`](crate::simulate()).
     pub fn new(world: Arc<World>, method: Method, options: &Options, stop: Stop) -> Result<Self, SimulationError> {
-        Self::until(world, method, options, None, stop)
+        Self::until(world, method, options, Own::new(), None, stop)
+    }
+
+    /// The same with firings or filters of the caller's [`Own`]: for the robots that have none it is as with the
+    /// method alone. A robot with its own firing, but not its own filter, is believed as the method says.
+    ///
+    /// # Errors
+    /// As [`simulate`](crate::simulate()); something of one's own for a robot that is not there, or a first period that
+    /// cannot be fired.
+    pub fn with_own(
+        world: Arc<World>,
+        method: Method,
+        options: &Options,
+        own: Own,
+        stop: Stop,
+    ) -> Result<Self, SimulationError> {
+        Self::until(world, method, options, own, None, stop)
     }
 
     /// The same, but firings after `options.periods` periods of the first robot do not count.
@@ -75,22 +104,25 @@ impl Simulation {
     /// As [`simulate`](crate::simulate()).
     pub fn ending(world: Arc<World>, method: Method, options: &Options, stop: Stop) -> Result<Self, SimulationError> {
         let end = end_of(&world, options.periods);
-        Self::until(world, method, options, Some(end), stop)
+        Self::until(world, method, options, Own::new(), Some(end), stop)
     }
 
     fn until(
         world: Arc<World>,
         method: Method,
         options: &Options,
+        mut own: Own,
         end: Option<u64>,
         stop: Stop,
     ) -> Result<Self, SimulationError> {
         let (robots, period) = (world.robots().len(), end_of(&world, 1));
-        let plans = plans(&world, method, options, &Planned(&world))?;
-        let under_way = UnderWay::try_new(Owner { world, plans }, |Owner { world, plans }| {
-            EventLoop::new(world, plans, method, options, Steered::new(world), end, 0, stop)
+        own.check(robots)?;
+        let plans = plans(&world, method, options, &Planned(&world), &own)?;
+        let owner = Owner { world, plans, schedules: FrozenVec::new() };
+        let under_way = UnderWay::try_new(owner, |Owner { world, plans, .. }| {
+            EventLoop::new(world, plans, method, options, Steered::new(world), &mut own, end, 0, stop)
         })?;
-        Ok(Self { under_way, robots, now: 0, end: end.unwrap_or(u64::MAX), period, over: false })
+        Ok(Self { under_way, method, robots, now: 0, end: end.unwrap_or(u64::MAX), period, over: false })
     }
 
     /// Lets time pass, and returns what was read meanwhile: the readings of all firings whose windows have closed.
@@ -198,6 +230,71 @@ impl Simulation {
         let now = self.now;
         self.under_way.with_dependent_mut(|_, events| events.steer().set(robot, now, v_m_s, w_rad_s));
         Ok(())
+    }
+
+    /// A robot's ring fires by another schedule from the end of its present period on, as late as keeps the intervals
+    /// of both. Readings before and after the change are not compared.
+    ///
+    /// # Errors
+    /// No such robot; a method without such a schedule (immediate refiring, dither, hopping, adaptive, the caller's own
+    /// firing); a schedule for another number of sensors, or by which a sensor would fire again while it listens. The
+    /// ring then goes on as before.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use eeruf_core::Micros;
+    /// use eeruf_sim::*;
+    /// let wall = Wall::new(5.0, 2.0, -5.0, 2.0);
+    /// let robot = Robot::ring(Pose::identity(), 8, 15f64.to_radians(), 0.3, Transducer::POLAROID_6500);
+    /// let world = World::new(Scene::new(vec![wall], vec![], Air::default())?, vec![robot], Noise::default())?;
+    /// let mut simulation = Simulation::new(Arc::new(world), Method::Eeruf, &Options::default(), Stop::default())?;
+    /// assert_eq!(simulation.step(0.6, |_| true)?.len() / 8, 9);
+    /// simulation.change_schedule(0, &table_i_d_for(8, Micros::from_millis(120), 4)?)?;
+    /// simulation.step(0.6, |_| true)?;
+    /// assert_eq!(simulation.step(0.6, |_| true)?.len() / 8, 5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn change_schedule(&mut self, robot: usize, schedule: &AnySchedule) -> Result<(), SimulationError> {
+        self.known(robot)?;
+        let method = self.method;
+        self.under_way.with_dependent_mut(|owner, events| {
+            let sensors = owner.world.robots().get(robot).map_or(0, |robot| robot.sensors.len());
+            if schedule.sensors() != sensors {
+                return Err(SimulationError::Sensors { robot, schedule: schedule.sensors(), sensors });
+            }
+            let known = owner.schedules.iter().find(|known| *known == schedule);
+            let kept = known.unwrap_or_else(|| owner.schedules.push_get(Box::new(*schedule)));
+            events.change_schedule(robot, kept).map_err(|error| SimulationError::change(robot, method, error))
+        })
+    }
+
+    /// From now on sound travels among these walls and poles and in this air: obstacles have moved. Sound that is on
+    /// its way arrives as it would have before. Nobody looks whether robots stand free in it.
+    ///
+    /// # Errors
+    /// [`SimulationError::Paths`] if a sensor is within something solid or out of the scene's reach. Everything then
+    /// stays as it was; of a robot that moves it is said at its next firing.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use eeruf_sim::*;
+    /// let at = |x: f64| Scene::new(vec![Wall::new(x, -5.0, x, 5.0).with_faces(Faces::Both)], vec![], Air::default());
+    /// let robot = Robot::with_sensors(Pose::identity(), vec![Pose::identity()], Transducer::POLAROID_6500);
+    /// let world = World::new(at(2.0)?, vec![robot], Noise::NONE)?.with_physics(Physics::PLAIN)?;
+    /// let options = Options::default();
+    /// let mut simulation = Simulation::new(Arc::new(world), Method::Sequential, &options, Stop::default())?;
+    /// let distance_m = |readings: Readings| (readings.t_echo_us[0] * 343.2e-6 * 5.0).round() / 10.0;
+    /// assert_eq!(distance_m(simulation.step_to_reading(1.0, |_| true)?), 2.0);
+    /// simulation.change_scene(at(3.0)?)?;
+    /// assert_eq!(distance_m(simulation.step_to_reading(1.0, |_| true)?), 3.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn change_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
+        let now = self.now;
+        self.under_way.with_dependent_mut(|owner, events| {
+            let world = Place::Shared(Arc::new(owner.world.with_scene(scene)));
+            events.change_scene(world).map_err(|error| SimulationError::paths(now, error))
+        })
     }
 
     /// Where a robot is now, and how fast it goes.

@@ -101,6 +101,12 @@ impl World {
         Self { seed, ..self }
     }
 
+    /// The same world with another scene, in which nobody looks whether the robots stand free.
+    pub(crate) fn with_scene(&self, scene: Scene) -> Self {
+        let &Self { ref robots, noise, max_order, pole_order, physics, seed, .. } = self;
+        Self { scene, robots: robots.clone(), noise, max_order, pole_order, physics, seed }
+    }
+
     /// Walls, poles and air.
     pub fn scene(&self) -> &Scene {
         &self.scene

@@ -1,8 +1,8 @@
 //! Two facts of the paper, and how bad scenes are refused.
 
 use eeruf_sim::{
-    Air, CrosstalkMatrix, CrosstalkQuery, Faces, Limits, Material, PathsError, Point, Pole, Pose, Scene, SceneError,
-    Tracer, Transducer, Vector, Wall, ring_of,
+    Air, CrosstalkMatrix, CrosstalkQuery, Faces, GainProfile, Limits, Material, PathsError, Point, Pole, Pose, Scene,
+    SceneError, Tracer, Transducer, Vector, Wall, ring_of,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -56,6 +56,35 @@ fn an_eight_millimetre_pole_midway_between_two_sensors_is_heard_at_1_6_metres() 
     };
     assert!(heard_at(1.6));
     assert!(!heard_at(3.2), "but not at any distance");
+}
+
+/// How far a sensor may turn from a smooth wall and still hear its echo, in whole degrees: where the region of constant
+/// depth ends.
+fn heard_up_to_deg(distance_m: f64, gain: GainProfile) -> i32 {
+    let wall = Wall::new(distance_m, -9.0, distance_m, 9.0).with_faces(Faces::Both);
+    let scene = Scene::new(vec![wall], vec![], Air::default()).unwrap();
+    let transducer = Transducer { gain, ..Transducer::POLAROID_6500 };
+    let floor = transducer.detection_floor(scene.air());
+    let heard = |deg: &i32| {
+        let sensors = [Pose::rotation(f64::from(*deg).to_radians())];
+        let limits = Limits::order(1);
+        let query = CrosstalkQuery { scene: &scene, sensors: &sensors, transducer: &transducer, limits, floor };
+        let mut matrix = CrosstalkMatrix::new();
+        matrix.compute(&mut Tracer::new(), &query).unwrap();
+        !matrix.paths().is_empty()
+    };
+    (0..=90).rev().find(heard).unwrap_or(-1)
+}
+
+/// Published regions end near 10 to 15 degrees, 25 to 30 for strong near walls: so they do here beyond a metre, and
+/// with a gain that grows also nearer.
+#[test]
+fn walls_from_a_metre_on_are_heard_as_far_off_the_axis_as_is_reported_and_at_half_a_metre_the_gain_decides() {
+    let constant = [1.0, 2.0, 4.0].map(|distance_m| heard_up_to_deg(distance_m, GainProfile::Constant));
+    assert_eq!(constant, [31, 20, 10]);
+    assert!(heard_up_to_deg(0.5, GainProfile::Constant) >= 85);
+    let grows = [0.5, 1.0].map(|distance_m| heard_up_to_deg(distance_m, GainProfile::SquareRoot));
+    assert!(grows.iter().all(|deg| (8..=30).contains(deg)), "{grows:?}");
 }
 
 fn refused(walls: Vec<Wall>, poles: Vec<Pole>) -> String {

@@ -9,6 +9,8 @@ mod corpus_reader;
 mod facts;
 mod image_source;
 mod open;
+mod own;
+mod panels;
 mod physics;
 mod plain;
 mod properties;

@@ -5,6 +5,9 @@ mod bodies;
 mod hearing_range;
 mod path_numbers;
 
+use core::ops::Deref;
+use std::sync::Arc;
+
 use super::kinematics::Kinematics;
 use super::receiver::{Hearing, NEVER};
 use crate::{
@@ -35,9 +38,29 @@ pub(crate) struct Channel {
     pub(crate) level_over_threshold_db: f32,
 }
 
+/// A world in which sound travels, borrowed or shared.
+#[derive(Clone)]
+pub(crate) enum Place<'w> {
+    Borrowed(&'w World),
+    Shared(Arc<World>),
+}
+
+impl Deref for Place<'_> {
+    type Target = World;
+
+    fn deref(&self) -> &World {
+        match self {
+            Self::Borrowed(world) => world,
+            Self::Shared(world) => world,
+        }
+    }
+}
+
 /// All channels of a world.
 pub(crate) struct Channels<'w> {
-    world: &'w World,
+    world: Place<'w>,
+    /// The same in all worlds that it is exchanged for.
+    world_robots: &'w [Robot],
     /// For each sensor of the world, which one it is.
     ids: Vec<SensorId>,
     /// The first sensor of each robot.
@@ -75,7 +98,8 @@ impl<'w> Channels<'w> {
         let mut tracer = Tracer::new();
         tracer.stop = stop;
         let mut channels = Self {
-            world,
+            world: Place::Borrowed(world),
+            world_robots: world.robots(),
             ids,
             first,
             tracer,
@@ -145,17 +169,30 @@ impl<'w> Channels<'w> {
     }
 
     /// From now on sound travels in the scene of another world, whose sensors are the same. Paths keep their numbers.
-    pub(crate) fn change_scene(&mut self, world: &'w World, kinematics: &impl Kinematics) -> Result<(), PathsError> {
-        self.world = world;
+    /// If there are none to be found, everything stays as it is.
+    pub(crate) fn change_scene(&mut self, world: Place<'w>, kinematics: &impl Kinematics) -> Result<(), PathsError> {
+        let before = core::mem::replace(&mut self.world, world);
+        let changed = self.begin_anew(kinematics);
+        if changed.is_err() {
+            self.world = before;
+            if self.begin_anew(kinematics).is_err() {
+                // It was stopped: they are looked for when something fires.
+                self.moves = true;
+            }
+        }
+        changed
+    }
+
+    fn begin_anew(&mut self, kinematics: &impl Kinematics) -> Result<(), PathsError> {
         self.ranges.clear();
-        self.bodies = Bodies::new(world);
+        self.bodies = Bodies::new(&self.world);
         self.channels.clear();
         self.starts.clear();
         if self.moves { Ok(()) } else { self.compute_all(kinematics) }
     }
 
     fn robot_of(&self, sensor: usize) -> &'w Robot {
-        &self.world.robots()[usize::from(self.ids[sensor].robot)]
+        &self.world_robots[usize::from(self.ids[sensor].robot)]
     }
 
     fn compute_all(&mut self, kinematics: &impl Kinematics) -> Result<(), PathsError> {
@@ -209,7 +246,7 @@ impl<'w> Channels<'w> {
         self.poses.clear();
         self.velocities.clear();
         self.robots.clear();
-        for (index, robot) in self.world.robots().iter().enumerate() {
+        for (index, robot) in self.world_robots.iter().enumerate() {
             let moment = kinematics.moment(index, now);
             self.robots.push(moment.pose);
             for sensor in &robot.sensors {
@@ -228,7 +265,8 @@ impl<'w> Channels<'w> {
         mut found: impl FnMut(usize, Channel),
     ) -> Result<(), PathsError> {
         let Some(&first) = emitters.first() else { return Ok(()) };
-        let (world, sending) = (self.world, &self.robot_of(first).transducer);
+        let (place, sending) = (self.world.clone(), &self.robot_of(first).transducer);
+        let world: &World = &place;
         let hearing: Vec<_> =
             receivers.iter().copied().filter(|&sensor| self.robot_of(sensor).transducer.hears(sending)).collect();
         let sources = self.poses_of(emitters);
@@ -277,7 +315,7 @@ impl<'w> Channels<'w> {
         match self.ranges.iter().find(|range| range.is_of(sending, hearing)) {
             Some(range) => *range,
             None => {
-                let range = HearingRange::new(sending, hearing, self.world);
+                let range = HearingRange::new(sending, hearing, &self.world);
                 self.ranges.push(range);
                 range
             }

@@ -7,20 +7,21 @@
 use eeruf_core::{Instant, RingEvent};
 
 use super::arrivals::{Bursts, Propagation};
+use super::own::Own;
 use super::recorder::Recorder;
 use super::running_ring::{Plan, RunningRing, expected_change_us, plans, start_all};
-use crate::simulation::channels::Channels;
+use crate::simulation::channels::{Channels, Place};
 use crate::simulation::error::SimulationError;
 use crate::simulation::kinematics::Kinematics;
 use crate::simulation::options::Options;
 use crate::simulation::receiver::{NEVER, Receiver};
 use crate::{
     geometry::Moment,
-    methods::{Method, Weighed},
+    methods::{ChangeError, Method, OwnError, Weighed},
     results::Readings,
     threads::Stop,
     tracing::PathsError,
-    world::{Random, Robot, World},
+    world::{AnySchedule, Random, Robot, World},
 };
 
 /// How many events go by between two calls of `keep_going`.
@@ -28,7 +29,8 @@ const EVENTS_PER_CALL: u32 = 8192;
 
 /// A world under way.
 pub(crate) struct EventLoop<'a, K> {
-    world: &'a World,
+    /// The speed of sound, in m/s.
+    c: f64,
     kinematics: K,
     channels: Channels<'a>,
     rings: Vec<RunningRing<'a>>,
@@ -56,10 +58,11 @@ pub(crate) fn run(
     stop: &Stop,
     keep_going: impl FnMut(f64) -> bool,
 ) -> Result<Readings, SimulationError> {
-    let plans = plans(world, method, options, kinematics)?;
+    let mut own = Own::new();
+    let plans = plans(world, method, options, kinematics, &own)?;
     let end = end_of(world, options.periods);
-    let mut events =
-        EventLoop::new(world, &plans, method, options, kinematics, Some(end), expected(world, end), stop.clone())?;
+    let (room, stop) = (expected(world, end), stop.clone());
+    let mut events = EventLoop::new(world, &plans, method, options, kinematics, &mut own, Some(end), room, stop)?;
     events.run_until(u64::MAX, keep_going)?;
     Ok(events.take(end as f64 * 1e-9))
 }
@@ -80,6 +83,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         method: Method,
         options: &Options,
         kinematics: K,
+        own: &mut Own,
         end: Option<u64>,
         room: u64,
         stop: Stop,
@@ -87,12 +91,12 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         let seed = Random::new(options.seed.unwrap_or(world.seed()));
         let channels =
             Channels::new(world, &kinematics, stop.clone()).map_err(|error| SimulationError::paths(0, error))?;
-        let rings = start_all(world, plans, options, &channels, seed)?;
+        let rings = start_all(world, plans, options, &channels, seed, own)?;
         let sensors = channels.ids().len();
         let longest = rings.iter().map(|ring| ring.hearing.window).max().unwrap_or(0);
-        let recorder = Recorder::new(method, options, end.unwrap_or(u64::MAX), room, channels.ids())?;
+        let recorder = Recorder::new(method, options, end.unwrap_or(u64::MAX), room, channels.ids(), own)?;
         Ok(Self {
-            world,
+            c: world.scene().air().speed_of_sound(),
             kinematics,
             channels,
             rings,
@@ -164,7 +168,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             self.until_call -= 1;
             self.recorder.make_room()?;
             match whose {
-                Some(index) => self.step(rings, index, now).map_err(|error| SimulationError::paths(now, error))?,
+                Some(index) => self.step(rings, index, now)?,
                 None => self.burst(rings),
             }
             if to_reading && !self.recorder.is_empty() {
@@ -179,9 +183,16 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
     }
 
     /// From now on the scene is that of another world, whose robots are the same.
-    pub(crate) fn change_scene(&mut self, world: &'a World) -> Result<(), PathsError> {
-        self.world = world;
-        self.channels.change_scene(world, &self.kinematics)
+    pub(crate) fn change_scene(&mut self, world: Place<'a>) -> Result<(), PathsError> {
+        let c = world.scene().air().speed_of_sound();
+        self.channels.change_scene(world, &self.kinematics)?;
+        self.c = c;
+        Ok(())
+    }
+
+    /// A robot's ring changes to another schedule, of as many sensors, when its period ends.
+    pub(crate) fn change_schedule(&mut self, robot: usize, schedule: &'a AnySchedule) -> Result<(), ChangeError> {
+        self.rings.get_mut(robot).map_or(Err(ChangeError::Fixed), |ring| ring.ring.change_schedule(schedule))
     }
 
     /// Where the robots are.
@@ -196,7 +207,10 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
     }
 
     /// One robot's next event: an echo, if one of its sensors hears something now, and whatever its ring then wants.
-    fn step(&mut self, rings: &mut [RunningRing<'_>], index: usize, now: u64) -> Result<(), PathsError> {
+    fn step(&mut self, rings: &mut [RunningRing<'_>], index: usize, now: u64) -> Result<(), SimulationError> {
+        let own = |what: &'static str| {
+            move |error: OwnError| SimulationError::Own { robot: index, what, at_s: now as f64 * 1e-9, error }
+        };
         let ring = &mut rings[index];
         let ticks = ring.clock.ticks(now);
         let instant = ring.clock.instant(ticks);
@@ -206,7 +220,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         loop {
             let ring = &mut rings[index];
             let (receivers, fired) = (&self.receivers, &self.fired);
-            let c = self.world.scene().air().speed_of_sound();
+            let c = self.c;
             let change = |sensor: u8| {
                 let number = ring.sensors.start + usize::from(sensor);
                 match (receivers.get(number), fired.get(number)) {
@@ -218,7 +232,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
                 None => break,
                 Some(RingEvent::Fire { sensor, .. }) => {
                     let emitter = ring.sensors.start + usize::from(sensor);
-                    self.fire(rings, index, emitter, now)?;
+                    self.fire(rings, index, emitter, now).map_err(|error| SimulationError::paths(now, error))?;
                 }
                 Some(RingEvent::Reading(reading)) => {
                     let weighed = ring.ring.weighed(reading.sensor);
@@ -228,10 +242,17 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
                     if let (Some(receiver), Some(fired)) = (self.receivers.get_mut(number), &self.fired[number]) {
                         let fired_from = fired.pose * ring.robot.sensors[usize::from(reading.sensor)];
                         let reference = self.references[number];
-                        let recorded =
-                            self.recorder.record(number, &reading, weighed, receiver, reference, &fired_from);
+                        let recorded = self.recorder.record(
+                            number,
+                            &reading,
+                            weighed,
+                            expected_change_us,
+                            receiver,
+                            reference,
+                            &fired_from,
+                        );
                         receiver.stop();
-                        if let Some(readings) = recorded {
+                        if let Some(readings) = recorded.map_err(own("filter"))? {
                             self.kinematics.on_reading(readings, fired);
                         }
                     }
@@ -240,6 +261,9 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             }
         }
         let ring = &mut rings[index];
+        if let Some(error) = ring.ring.error() {
+            return Err(own("firing")(error.clone()));
+        }
         let deadline = ring.ring.next_deadline();
         // A deadline that has passed would be polled for again at the next tick.
         let ahead = if instant.has_reached(deadline) { 1 } else { u64::from(deadline.since(instant).as_micros()) };

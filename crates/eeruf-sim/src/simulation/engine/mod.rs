@@ -3,6 +3,8 @@
 
 mod arrivals;
 mod event_loop;
+mod filter;
+mod own;
 mod recorder;
 mod running_ring;
 
@@ -10,4 +12,6 @@ pub(super) use arrivals::Propagation;
 pub use event_loop::expected_readings;
 pub(crate) use event_loop::run;
 pub(super) use event_loop::{EventLoop, end_of};
+pub use filter::{Filter, FiredReading, Judged};
+pub use own::Own;
 pub(super) use running_ring::{Plan, plans};

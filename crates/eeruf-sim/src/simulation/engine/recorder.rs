@@ -1,19 +1,18 @@
 //! What becomes of a reading under a method, and its entry in the record: what it says, what it came from, and what the
 //! sensor would have read alone.
 
-use eeruf_core::{Micros, Reading, ReadingKind};
+use eeruf_core::{Reading, ReadingKind};
 
+use super::filter::{Filter, FiredReading, Judged, MAX_MEDIAN, filter_of};
+use super::own::Own;
 use crate::simulation::error::SimulationError;
 use crate::simulation::options::Options;
-use crate::simulation::receiver::{EXTERNAL, Heard, NEVER, Receiver};
+use crate::simulation::receiver::{EXTERNAL, Echo, NEVER, Receiver};
 use crate::{
     geometry::Pose,
-    methods::{Belief, Method, Weighed},
+    methods::{Method, OwnError, Weighed},
     results::{Cause, HeardPath, NO_PATH, Readings, SensorId},
 };
-
-/// The most readings that a median is taken of.
-const MAX_MEDIAN: usize = 15;
 
 /// More than all rings of a world give at one moment.
 const ROOM: usize = 1 << 13;
@@ -21,19 +20,10 @@ const ROOM: usize = 1 << 13;
 /// Writes down the readings.
 pub(crate) struct Recorder {
     readings: Readings,
-    belief: Belief,
+    /// What is believed of each robot's readings.
+    filters: Vec<Box<dyn Filter>>,
     ids: Vec<SensorId>,
     end: u64,
-    median_of: usize,
-    /// The last readings of each sensor, for the median.
-    history: Vec<History>,
-}
-
-/// The last few firings of a sensor: what each heard first, if anything.
-#[derive(Clone, Copy, Default)]
-struct History {
-    heard: [Option<Heard>; MAX_MEDIAN],
-    count: usize,
 }
 
 impl Recorder {
@@ -44,20 +34,24 @@ impl Recorder {
         end: u64,
         expected: u64,
         ids: &[SensorId],
+        own: &mut Own,
     ) -> Result<Self, SimulationError> {
         let median_of = usize::from(options.median_of);
         if median_of == 0 || median_of > MAX_MEDIAN {
             return Err(SimulationError::Median { median_of: options.median_of });
         }
         let duration_s = end as f64 * 1e-9;
-        let belief = method.belief();
-        let history = if belief == Belief::Median { vec![History::default(); ids.len()] } else { Vec::new() };
+        let of_robot = |sensors: &[SensorId]| {
+            let robot = usize::from(sensors[0].robot);
+            own.take_filter(robot).unwrap_or_else(|| filter_of(method.belief(), median_of, sensors.len()))
+        };
+        let filters = ids.chunk_by(|a, b| a.robot == b.robot).map(of_robot).collect();
         let mut readings = Readings::new(method, duration_s, ids.len());
         let reserved = usize::try_from(expected).map(|expected| readings.try_reserve(expected));
         if !matches!(reserved, Ok(Ok(()))) {
             return Err(SimulationError::Memory { readings: expected });
         }
-        Ok(Self { readings, belief, ids: ids.to_vec(), end, median_of, history })
+        Ok(Self { readings, filters, ids: ids.to_vec(), end })
     }
 
     /// Whether nothing was read since the record was last taken.
@@ -75,34 +69,30 @@ impl Recorder {
         self.readings.try_reserve(more).map_err(|_| SimulationError::Memory { readings: (readings + more) as u64 })
     }
 
-    /// Records what the ring makes of a firing. `reference` is the travelling time of what the sensor hears alone,
+    /// Records what is believed of a firing. `reference` is the travelling time of what the sensor hears alone,
     /// `fired_from` its place and heading when it fired. The answer is all readings with this one as the last; none if
     /// it does not count.
+    #[expect(clippy::too_many_arguments, reason = "one reading")]
     pub(crate) fn record(
         &mut self,
         sensor: usize,
         reading: &Reading,
         weighed: Option<Weighed>,
+        expected_change_us: i32,
         receiver: &Receiver,
         reference: u64,
         fired_from: &Pose,
-    ) -> Option<&Readings> {
+    ) -> Result<Option<&Readings>, OwnError> {
         if reading.kind == ReadingKind::Late || receiver.fired >= self.end {
-            return None;
+            return Ok(None);
         }
-        let earliest = receiver.heard().next().copied();
-        let (kind, chosen) = match self.belief {
-            Belief::Repeated => {
-                let t_echo_us = reading.t_echo.map(Micros::as_micros);
-                let chosen = receiver.heard().find(|heard| Some(heard.t_echo_us) == t_echo_us);
-                (reading.kind, chosen.copied())
-            }
-            Belief::All => (accepted_or_silent(earliest), earliest),
-            Belief::Median => self.median(sensor, earliest),
-        };
+        let (echoes, fired_s) = (receiver.heard(), receiver.fired as f64 * 1e-9);
+        let earliest = echoes.first().copied();
+        let firing = FiredReading { reading, echoes, fired_s, expected_change_us };
+        let Judged { kind, echo: chosen } = self.filters[usize::from(self.ids[sensor].robot)].judge(&firing)?;
         let (cause, path, emitted_s) = match chosen {
             None => (Cause::Nothing, NO_PATH, f64::NAN),
-            Some(Heard { arrival, of_this_firing, .. }) => {
+            Some(Echo { arrival, of_this_firing, .. }) => {
                 let (cause, path) = match (arrival.path, of_this_firing) {
                     (EXTERNAL, _) => (Cause::External, NO_PATH),
                     // Whether it is another sensor's sound is decided by `take`, which knows the paths.
@@ -112,13 +102,13 @@ impl Recorder {
                 (cause, path, arrival.sent as f64 * 1e-9)
             }
         };
-        let time_us = |heard: Option<Heard>| heard.map_or(f64::NAN, |heard| f64::from(heard.t_echo_us));
+        let time_us = |echo: Option<Echo>| echo.map_or(f64::NAN, |echo| f64::from(echo.t_echo_us));
         let out = &mut self.readings;
         out.robot.push(self.ids[sensor].robot);
         out.sensor.push(self.ids[sensor].sensor);
         out.period.push(reading.period);
         out.phase.push(reading.phase.0);
-        out.fired_s.push(receiver.fired as f64 * 1e-9);
+        out.fired_s.push(fired_s);
         out.x_m.push(fired_from.translation.x);
         out.y_m.push(fired_from.translation.y);
         out.heading_rad.push(fired_from.rotation.angle());
@@ -130,22 +120,7 @@ impl Recorder {
         out.path.push(path);
         out.emitted_s.push(emitted_s);
         out.weighed.push(weighed);
-        Some(out)
-    }
-
-    fn median(&mut self, sensor: usize, earliest: Option<Heard>) -> (ReadingKind, Option<Heard>) {
-        let history = &mut self.history[sensor];
-        history.heard[history.count % self.median_of] = earliest;
-        history.count += 1;
-        if history.count < self.median_of {
-            return (if earliest.is_some() { ReadingKind::First } else { ReadingKind::NoEcho }, earliest);
-        }
-        let mut last = history.heard;
-        let last = &mut last[..self.median_of];
-        // Without echo counts as beyond all echoes.
-        last.sort_by_key(|heard| heard.map_or(u32::MAX, |heard| heard.t_echo_us));
-        let middle = last[(self.median_of - 1) / 2];
-        (accepted_or_silent(middle), middle)
+        Ok(Some(out))
     }
 
     /// The record since it was last taken, of this duration, with only the paths that some reading came along.
@@ -169,8 +144,4 @@ impl Recorder {
         }
         readings
     }
-}
-
-fn accepted_or_silent(chosen: Option<Heard>) -> ReadingKind {
-    if chosen.is_some() { ReadingKind::Accepted } else { ReadingKind::Clear }
 }

@@ -2,6 +2,7 @@
 
 use eeruf_core::Micros;
 
+use super::own::Own;
 use crate::simulation::channels::Channels;
 use crate::simulation::error::SimulationError;
 use crate::simulation::kinematics::Kinematics;
@@ -19,7 +20,7 @@ const DITHER: u64 = 3;
 /// A ring under way.
 pub(crate) struct RunningRing<'a> {
     pub(crate) robot: &'a Robot,
-    pub(crate) ring: Box<dyn RingRunner + 'a>,
+    pub(crate) ring: Box<dyn RingRunner<'a> + 'a>,
     pub(crate) clock: Ticker,
     pub(crate) hearing: Hearing,
     /// How long each sensor listens, where they are not all alike.
@@ -43,25 +44,29 @@ impl RunningRing<'_> {
     }
 }
 
-/// By which method a robot fires, and what its ring fires by.
-pub(crate) type Plan = (Method, FiringPlan);
+/// By which method a robot fires, and what its ring fires by; none for one that fires by the caller's own code.
+pub(crate) type Plan = (Method, Option<FiringPlan>);
 
-/// By which method each robot fires, and what its ring fires by.
+/// By which method each robot fires, and what its ring fires by, but for those of the caller's `own`.
 pub(crate) fn plans(
     world: &World,
     method: Method,
     options: &Options,
     kinematics: &impl Kinematics,
+    own: &Own,
 ) -> Result<Vec<Plan>, SimulationError> {
     let plan = |(index, robot): (usize, &Robot)| {
         let method = kinematics.method(index, method);
+        if own.fires(index) {
+            return Ok((method, None));
+        }
         let first = method.schedule(robot, options.best.as_ref()).map_err(|error| SimulationError::Schedule {
             robot: index,
             method,
             error,
         })?;
         let plan = method.plan(robot, first).map_err(|error| SimulationError::start(index, method, error))?;
-        Ok((method, plan))
+        Ok((method, Some(plan)))
     };
     world.robots().iter().enumerate().map(plan).collect()
 }
@@ -73,23 +78,31 @@ pub(crate) fn start_all<'a>(
     options: &Options,
     channels: &Channels<'_>,
     seed: Random,
+    own: &mut Own,
 ) -> Result<Vec<RunningRing<'a>>, SimulationError> {
     let mut rings = Vec::with_capacity(plans.len());
     for (index, (robot, (method, plan))) in world.robots().iter().zip(plans).enumerate() {
         let clock = Ticker::new(robot.clock);
         let start = u64::from(robot.start.as_micros());
         let random = seed.of(DITHER).of(index as u64);
-        let ring = method
-            .start(&RingStart { robot, plan, hopping: options.hopping, random, now: clock.instant(start) })
-            .map_err(|error| SimulationError::start(index, *method, error))?;
+        let now = clock.instant(start);
+        let ring = match (plan, own.take_firing(index)) {
+            (Some(plan), None) => method.start(&RingStart { robot, plan, hopping: options.hopping, random, now }),
+            (_, Some(firing)) => method.start_own(robot, firing, now),
+            // Every robot has one of the two.
+            (None, None) => continue,
+        };
+        let ring = ring.map_err(|error| SimulationError::start(index, *method, error))?;
         let true_ns = |time: Micros| clock.true_ns(time.as_micros());
         // Two ticks less, since the clock rounds.
-        let refire = true_ns(method.soonest_refire(robot)).saturating_sub(2000);
+        let soonest = if plan.is_some() { method.soonest_refire(robot) } else { robot.window };
+        let refire = true_ns(soonest).saturating_sub(2000);
         let hearing = Hearing::new(world, robot, method.echoes(), refire, true_ns);
         let first = channels.first_of(index);
         let sensors = first..first + robot.sensors.len();
-        let own = plan.uneven.as_ref().map_or(&[][..], |_| &robot.limits);
-        let windows = own.iter().map(|limits| true_ns(limits.window)).collect();
+        let uneven = plan.as_ref().and_then(|plan| plan.uneven.as_ref());
+        let limits = uneven.map_or(&[][..], |_| &robot.limits);
+        let windows = limits.iter().map(|limits| true_ns(limits.window)).collect();
         rings.push(RunningRing {
             robot,
             ring,

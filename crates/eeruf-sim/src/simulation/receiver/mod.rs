@@ -35,15 +35,34 @@ pub(crate) struct Arrival {
     pub(crate) level_over_threshold_db: f32,
 }
 
-/// An echo that was handed to the ring.
+/// An echo that was handed to the ring. It knows what it came from, and does not say so.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Heard {
+pub struct Echo {
     /// Since the firing, by the robot's clock.
     pub(crate) t_echo_us: u32,
     pub(crate) arrival: Arrival,
     /// Whether it was sent at the very moment at which the sensor fired: its own sound, or that of one which fired
     /// together with it.
     pub(crate) of_this_firing: bool,
+}
+
+impl Echo {
+    const NONE: Self = Self {
+        t_echo_us: 0,
+        arrival: Arrival { onset: 0, at: 0, sent: 0, path: EXTERNAL, level_over_threshold_db: 0.0 },
+        of_this_firing: false,
+    };
+
+    /// Its time since the firing, by the robot's clock.
+    pub const fn t_echo(&self) -> Micros {
+        Micros::new(self.t_echo_us)
+    }
+
+    /// The same sound at another time: what a filter makes of it that smooths.
+    #[must_use]
+    pub const fn at(self, t_echo: Micros) -> Self {
+        Self { t_echo_us: t_echo.as_micros(), ..self }
+    }
 }
 
 /// What all receivers of one robot have in common. Times are true nanoseconds.
@@ -123,7 +142,7 @@ pub(crate) struct Receiver {
     next: Option<Arrival>,
     /// Arrivals yet to come, in no order.
     pending: Vec<Arrival>,
-    heard: [Option<Heard>; MAX_ECHOES],
+    heard: [Echo; MAX_ECHOES],
     heard_count: usize,
 }
 
@@ -137,7 +156,7 @@ impl Receiver {
         firings: 0,
         next: None,
         pending: Vec::new(),
-        heard: [None; MAX_ECHOES],
+        heard: [Echo::NONE; MAX_ECHOES],
         heard_count: 0,
     };
 
@@ -201,7 +220,7 @@ impl Receiver {
     pub(crate) fn hear(&mut self, t_echo_us: u32, hearing: &Hearing) {
         let Some(arrival) = self.next.take() else { return };
         if let Some(entry) = self.heard.get_mut(self.heard_count) {
-            *entry = Some(Heard { t_echo_us, arrival, of_this_firing: arrival.sent == self.fired });
+            *entry = Echo { t_echo_us, arrival, of_this_firing: arrival.sent == self.fired };
             self.heard_count += 1;
         }
         if self.heard_count >= hearing.echoes {
@@ -239,7 +258,7 @@ impl Receiver {
     }
 
     /// What it heard since it fired, earliest first.
-    pub(crate) fn heard(&self) -> impl Iterator<Item = &Heard> {
-        self.heard[..self.heard_count].iter().flatten()
+    pub(crate) fn heard(&self) -> &[Echo] {
+        self.heard.get(..self.heard_count).unwrap_or(&[])
     }
 }

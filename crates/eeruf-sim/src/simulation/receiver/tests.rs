@@ -24,7 +24,7 @@ fn hears(hearing: &Hearing, arrivals: &[(u64, f32)]) -> Vec<u64> {
     while receiver.next_at() != NEVER {
         receiver.hear((receiver.next_at() - 1000) as u32, hearing);
     }
-    receiver.heard().map(|heard| heard.arrival.at).collect()
+    receiver.heard().iter().map(|heard| heard.arrival.at).collect()
 }
 
 #[test]

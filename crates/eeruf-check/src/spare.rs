@@ -1,0 +1,113 @@
+//! Of the schedules with one period, the one with most to spare: larger separations, then larger gaps, then longer
+//! windows, each by the same for all sensors.
+
+use crate::problem::Problem;
+use crate::schedule;
+use crate::search::{Decided, FiringTimes, Search};
+
+/// A schedule that keeps more than the problem asks for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Spare {
+    /// The firing times.
+    pub fire: FiringTimes,
+    /// By how many ticks every separation, then every gap, then every window may grow, in this order: none grows at the
+    /// cost of an earlier one.
+    pub more: [u32; 3],
+    /// Whether no schedule of this period has more.
+    pub proven: [bool; 3],
+    /// Nodes visited.
+    pub nodes: u64,
+}
+
+/// The problem with larger separations, gaps and windows.
+fn harder(problem: &Problem, [separation, gap, window]: [u32; 3]) -> Problem {
+    let more = |times: &[u32], by: u32| times.iter().map(|time| time + by).collect();
+    let gaps = problem.gaps.iter().map(|&(x, y, after_x, after_y)| (x, y, after_x + gap, after_y + gap));
+    Problem {
+        separation: more(&problem.separation, separation),
+        window: more(&problem.window, window),
+        gaps: gaps.collect(),
+        ..problem.clone()
+    }
+}
+
+/// The schedule with most to spare of those with this period, beginning with one of them, by at most `budget` nodes, a
+/// third for each need, and as long as `go_on` says so: it is given the nodes so far.
+#[must_use]
+pub fn most_to_spare(
+    problem: &Problem,
+    period: u32,
+    fire: FiringTimes,
+    budget: u64,
+    go_on: &mut dyn FnMut(u64) -> bool,
+) -> Spare {
+    let mut spare = Spare { fire, more: [0; 3], proven: [false; 3], nodes: 0 };
+    for need in 0..3 {
+        // Without gaps there is none to grow.
+        let most = if need == 1 && problem.gaps.is_empty() { 0 } else { period };
+        spare.proven[need] = grow(problem, period, &mut spare, need, most, budget / 3, go_on);
+    }
+    spare
+}
+
+/// Lets one need grow as far as it can, up to `most`. Whether it is proven that it can grow no further.
+fn grow(
+    problem: &Problem,
+    period: u32,
+    spare: &mut Spare,
+    need: usize,
+    most: u32,
+    budget: u64,
+    go_on: &mut dyn FnMut(u64) -> bool,
+) -> bool {
+    let with = |more: [u32; 3], need: usize, by: u32| {
+        let mut more = more;
+        more[need] += by;
+        more
+    };
+    let mut left = budget;
+    let mut step = 1;
+    let mut effort = 8 * Search::new(problem).depth();
+    loop {
+        // What these times keep anyway.
+        while spare.more[need] < most
+            && schedule::check(&harder(problem, with(spare.more, need, 1)), period, &spare.fire).is_ok()
+        {
+            spare.more[need] += 1;
+        }
+        let room = most - spare.more[need];
+        if room == 0 {
+            return true;
+        }
+        let by = step.min(room);
+        let harder = harder(problem, with(spare.more, need, by));
+        let mut search = Search::new(&harder);
+        let before = spare.nodes;
+        let mut ask = |nodes| go_on(before + nodes);
+        // A full search where it is one tick: only that proves anything.
+        let decided = if by == 1 {
+            match search.find(period, (effort / 2).min(left), left, &spare.fire, &mut ask) {
+                Decided::Open => search.decide(period, effort.min(left), &mut ask),
+                decided => decided,
+            }
+        } else {
+            search.find(period, (effort / 2).min(left), left, &spare.fire, &mut ask)
+        };
+        let nodes = search.nodes();
+        spare.nodes += nodes;
+        left = left.saturating_sub(nodes.max(1));
+        match decided {
+            Decided::Found(fire) => {
+                spare.fire = fire;
+                step *= 2;
+            }
+            Decided::Refuted if by == 1 => return true,
+            Decided::Stopped => return false,
+            Decided::Refuted | Decided::Open if by > 1 => step = 1,
+            Decided::Refuted | Decided::Open => effort *= 2,
+        }
+        if left == 0 {
+            return false;
+        }
+    }
+}

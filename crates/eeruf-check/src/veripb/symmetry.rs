@@ -1,0 +1,105 @@
+//! What the root may assume, as in docs/certificate.md: each assumption is a clause that VeriPB adds by its rule of
+//! redundance, with the permutation as witness.
+
+use super::known::Known;
+use super::literals::{Truth, Variable, before, below};
+use super::proof::{Proof, exchanged, permuted, reversed};
+use crate::bounds::Refuted;
+use crate::problem::{Merged, Problem};
+use crate::symmetry::assumptions;
+use crate::text::Lines;
+
+/// Sensors of which the first has the largest `|d|`.
+type Family = Vec<usize>;
+
+/// Adds all assumptions to the proof, then to what is known.
+pub(crate) fn assume(proof: &mut Proof<'_>, known: &mut Known, problem: &Problem) -> Result<(), Refuted> {
+    let merged = proof.model.merged;
+    let text = assumptions(problem);
+    let mut lines = Lines::new(&text);
+    let mut families: Vec<Family> = Vec::new();
+    let mut generators = Vec::new();
+    let (mut sign, mut reverse) = (None, None);
+    // Only lines that `assumptions` writes, so all can be read.
+    while let Ok((word, numbers)) = lines.next() {
+        let numbers: Vec<usize> = numbers.iter().map(|&number| number as usize).collect();
+        match word {
+            "permutation" => generators.push(of_ones(&numbers, merged)),
+            "greatest" => {
+                families.push(greatest(proof, merged.of_sensor[numbers[0]], &core::mem::take(&mut generators)));
+            }
+            "exchange" => sign = Some(merged.of_sensor[numbers[0]]),
+            "reverse" => reverse = Some((merged.of_sensor[numbers[0]], merged.of_sensor[numbers[1]])),
+            _ => break,
+        }
+    }
+    let positive = sign.map_or(Truth::Always, |x| proof.model.d_from(x, 0));
+    if let Truth::If(positive) = positive {
+        proof.strengthen(&[positive], exchanged);
+    }
+    if let Some((x, y)) = reverse {
+        proof.strengthen(&[before(0, x, y), before(1, x, y)], reversed);
+        known.state.reverse = reverse;
+    }
+    // From here on lemmas may be derived that the permutations would not keep.
+    for family in &families {
+        rank(proof, family);
+        family[1..].iter().for_each(|&x| known.assume_below(x, family[0]));
+    }
+    if let Truth::If(positive) = positive {
+        known.assume(proof, positive)?;
+    }
+    known.propagate(proof)
+}
+
+/// A permutation of the sensors as one of the merged ones.
+fn of_ones(image: &[usize], merged: &Merged) -> Vec<usize> {
+    let mut of_ones = vec![0; merged.count()];
+    for (sensor, &one) in merged.of_sensor.iter().enumerate() {
+        of_ones[one] = merged.of_sensor[image[sensor]];
+    }
+    of_ones
+}
+
+/// Of all that the permutations take `first` to, `first` has the largest `|d|`: for each other one a clause "some `|d|`
+/// is above it", whose witness takes `first` to it.
+fn greatest(proof: &mut Proof<'_>, first: usize, generators: &[Vec<usize>]) -> Family {
+    let mut orbit: Vec<(usize, Vec<usize>)> = vec![(first, (0..proof.model.merged.count()).collect())];
+    let mut next = 0;
+    while next < orbit.len() {
+        for image in generators {
+            let product: Vec<usize> = orbit[next].1.iter().map(|&x| image[x]).collect();
+            if orbit.iter().all(|(one, _)| *one != product[first]) {
+                orbit.push((product[first], product));
+            }
+        }
+        next += 1;
+    }
+    for (y, image) in &orbit[1..] {
+        let above: Vec<_> = orbit.iter().filter(|(x, _)| x != y).map(|(x, _)| below(*y, *x)).collect();
+        proof.strengthen(&above, |variable: Variable| permuted(variable, image));
+    }
+    orbit.into_iter().map(|(one, _)| one).collect()
+}
+
+/// Each of the family but the first has some |d| above it, so the first has the largest: one after the other is left
+/// out, from the last on. Whoever had only the left out one above it has above it what that one has.
+fn rank(proof: &mut Proof<'_>, family: &[usize]) {
+    for &x in family {
+        for &y in family.iter().filter(|&&y| y != x) {
+            for &z in family.iter().filter(|&&z| z != x && z != y) {
+                proof.transitive(x, y, z);
+            }
+        }
+    }
+    for end in (2..family.len()).rev() {
+        for &y in &family[1..end] {
+            let cases: Vec<Truth> =
+                family[..end].iter().filter(|&&x| x != y).map(|&x| Truth::If(below(y, x))).collect();
+            proof.propagated(&cases);
+        }
+    }
+    for &y in &family[1..] {
+        proof.propagated(&[Truth::If(below(y, family[0]))]);
+    }
+}

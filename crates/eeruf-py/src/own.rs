@@ -1,0 +1,292 @@
+//! The caller's own firing and filter of a `sim.Simulation`: Python callables behind the simulator's traits.
+
+use std::{
+    collections::VecDeque,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+};
+
+use eeruf_core::{MAX_SENSORS, Micros, Phase, ReadingKind};
+use eeruf_sim::{Echo, Filter, Firing, FiringPeriod, Judged, Own, OwnError};
+use pyo3::{
+    PyTraverseError, PyVisit,
+    prelude::*,
+    types::{PyDict, PyTuple},
+};
+
+use crate::{
+    arguments::{items, micros, number, shown, whole, wrong},
+    ring_events::Reading,
+};
+
+/// What one firing of one sensor has heard, for a filter of one's own in a :class:`Simulation`.
+///
+/// Example:
+///     >>> from eeruf import sim
+///     >>> heard = []
+///     >>> def believe(firing):
+///     ...     heard.append(firing)
+///     ...     return firing.reading
+///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
+///     >>> _ = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]), filter=believe).step(0.1)
+///     >>> heard[0].reading.sensor, len(heard[0].t_echoes_us), round(heard[0].fired_s, 3)
+///     (0, 0, 0.014)
+#[pyclass(frozen, eq, module = "eeruf.sim")]
+#[derive(Clone, PartialEq)]
+pub(crate) struct FiredReading {
+    /// What the ring itself makes of it, with the paper's filter: its sensor, phase and period too.
+    #[pyo3(get)]
+    reading: Reading,
+    t_echoes_us: Vec<u32>,
+    /// When it fired, in seconds.
+    #[pyo3(get)]
+    fired_s: f64,
+    /// By how much odometry expects a good reading to have changed since the sensor's firing before, in microseconds.
+    #[pyo3(get)]
+    expected_change_us: i32,
+}
+
+#[pymethods]
+impl FiredReading {
+    #[new]
+    #[pyo3(signature = (reading, t_echoes_us, fired_s=None, expected_change_us=None))]
+    #[pyo3(text_signature = "(reading, t_echoes_us, fired_s=0.0, expected_change_us=0)")]
+    fn new(
+        reading: &Bound<'_, PyAny>,
+        t_echoes_us: &Bound<'_, PyAny>,
+        fired_s: Option<&Bound<'_, PyAny>>,
+        expected_change_us: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let reading = crate::arguments::instance::<Reading>("reading", reading, "an eeruf.Reading")?.get().clone();
+        let echoes = crate::arguments::times_of("t_echoes_us", t_echoes_us, "echo")?;
+        Ok(Self {
+            reading,
+            t_echoes_us: echoes.into_iter().map(Micros::as_micros).collect(),
+            fired_s: crate::arguments::number_or("fired_s", fired_s, 0.0, f64::MIN..=f64::MAX)?,
+            expected_change_us: crate::arguments::whole_or(
+                "expected_change_us",
+                expected_change_us,
+                0,
+                i32::MIN..=i32::MAX,
+            )?,
+        })
+    }
+
+    /// The times of its echoes after firing, in microseconds, earliest first: a tuple of one at most, but of up to
+    /// eight under ``"multi_echo"``.
+    #[getter]
+    fn t_echoes_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.t_echoes_us)
+    }
+
+    /// Its fields by their names: a dict of plain values.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> reading = eeruf.EchoFilter(1, 500).push(0, 9_000)
+    ///     >>> eeruf.sim.FiredReading(reading, (9_000,)).to_dict()["t_echoes_us"]
+    ///     [9000]
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        let fields = crate::fields::to_dict(slf, &["reading", "t_echoes_us", "fired_s", "expected_change_us"])?;
+        fields.set_item("reading", slf.getattr("reading")?.call_method0("to_dict")?)?;
+        Ok(fields)
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        let Self { fired_s, expected_change_us, .. } = slf.get();
+        let (reading, echoes) = (slf.getattr("reading")?.repr()?, slf.getattr("t_echoes_us")?.repr()?);
+        Ok(format!(
+            "FiredReading(reading={reading}, t_echoes_us={echoes}, fired_s={fired_s:?}, \
+             expected_change_us={expected_change_us})"
+        ))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let Self { reading, t_echoes_us, fired_s, expected_change_us } = slf.get().clone();
+        let fields = (reading, t_echoes_us, fired_s, expected_change_us).into_pyobject(slf.py())?;
+        Ok((slf.get_type().into_any(), fields))
+    }
+}
+
+/// The callables of a simulation, where the garbage collector finds them, and what one of them has raised.
+#[derive(Default)]
+pub(crate) struct Calls {
+    callables: Vec<Mutex<Option<Py<PyAny>>>>,
+    raised: Mutex<Option<PyErr>>,
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Calls {
+    /// Calls one of them, and keeps what it raises.
+    fn call<T>(&self, index: usize, ask: impl FnOnce(&Bound<'_, PyAny>) -> PyResult<T>) -> Result<T, OwnError> {
+        Python::attach(|py| {
+            let callable = locked(&self.callables[index]).as_ref().map(|callable| callable.clone_ref(py));
+            let Some(callable) = callable else { return Err(OwnError::from("the callable is gone")) };
+            ask(callable.bind(py)).map_err(|error| {
+                let said = OwnError::new(error.to_string());
+                *locked(&self.raised) = Some(error);
+                said
+            })
+        })
+    }
+
+    /// What a callable has raised since this was last asked.
+    pub(crate) fn raised(&self) -> Option<PyErr> {
+        locked(&self.raised).take()
+    }
+
+    pub(crate) fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        // One that is locked is being copied, and so is in use.
+        for callable in self.callables.iter().filter_map(|callable| callable.try_lock().ok()) {
+            visit.call(&*callable)?;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn clear(&self) {
+        for callable in &self.callables {
+            let gone = locked(callable).take();
+            drop(gone);
+        }
+    }
+}
+
+/// The arguments `firing` and `filter` of a simulation of so many robots: a callable for the first one, or a dict of
+/// callables by robot.
+pub(crate) fn own(
+    firing: Option<&Bound<'_, PyAny>>,
+    filter: Option<&Bound<'_, PyAny>>,
+    sensors: &[usize],
+) -> PyResult<(Own, Arc<Calls>)> {
+    let (firing, filter) = (by_robot("firing", firing, sensors.len())?, by_robot("filter", filter, sensors.len())?);
+    let callables = firing.iter().chain(&filter).map(|(_, callable)| Mutex::new(Some(callable.clone().unbind())));
+    let calls = Arc::new(Calls { callables: callables.collect(), raised: Mutex::default() });
+    let mut own = Own::new();
+    for (index, (robot, _)) in firing.iter().enumerate() {
+        own = own.firing(*robot, OwnFiring { calls: Arc::clone(&calls), index });
+    }
+    for (index, (robot, _)) in (firing.len()..).zip(&filter) {
+        let last = vec![VecDeque::new(); sensors[*robot].min(MAX_SENSORS)];
+        own = own.filter(*robot, OwnFilter { calls: Arc::clone(&calls), index, last });
+    }
+    Ok((own, calls))
+}
+
+fn by_robot<'py>(
+    name: &str,
+    value: Option<&Bound<'py, PyAny>>,
+    robots: usize,
+) -> PyResult<Vec<(usize, Bound<'py, PyAny>)>> {
+    let Some(value) = value else { return Ok(vec![]) };
+    if value.is_callable() {
+        return Ok(vec![(0, value.clone())]);
+    }
+    let expected = "a callable, or a dict of callables by robot";
+    let Ok(each) = value.cast::<PyDict>() else { return Err(wrong(name, shown(value), expected)) };
+    let one = |(robot, callable): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
+        let number = whole(&format!("robot of {name}"), &robot, 0..=robots as u64 - 1)? as usize;
+        let called = format!("{name}[{number}]");
+        if callable.is_callable() {
+            Ok((number, callable))
+        } else {
+            Err(wrong(&called, shown(&callable), "a callable"))
+        }
+    };
+    each.iter().map(one).collect()
+}
+
+struct OwnFiring {
+    calls: Arc<Calls>,
+    index: usize,
+}
+
+const PERIOD: &str = "(length_us, [(t_fire_us, sensor), ..]), or the same with the phase, 0 to 7, as a third";
+
+impl Firing for OwnFiring {
+    fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {
+        self.calls.call(self.index, |callable| period_of(&callable.call1((period,))?))
+    }
+}
+
+/// The period that a callable has returned.
+fn period_of(returned: &Bound<'_, PyAny>) -> PyResult<FiringPeriod> {
+    let refused = || wrong("what firing returned", shown(returned), PERIOD);
+    let parts = returned.cast::<PyTuple>().map_err(|_| refused())?;
+    if !(2..=3).contains(&parts.len()) {
+        return Err(refused());
+    }
+    let firings = items("what firing returned", &parts.get_item(1)?, PERIOD)?;
+    let one = |(place, pair): (usize, Bound<'_, PyAny>)| {
+        let pair = pair.cast_into::<PyTuple>().ok().filter(|pair| pair.len() == 2).ok_or_else(refused)?;
+        let at = micros(&format!("t_fire_us of firing {place}"), &pair.get_item(0)?)?;
+        Ok((at, whole(&format!("sensor of firing {place}"), &pair.get_item(1)?, 0..=MAX_SENSORS as u8 - 1)?))
+    };
+    Ok(FiringPeriod {
+        length: micros("length_us", &parts.get_item(0)?)?,
+        phase: if parts.len() == 3 { Phase(whole("phase", &parts.get_item(2)?, 0..=7)?) } else { Phase::A },
+        firings: firings.into_iter().enumerate().map(one).collect::<PyResult<_>>()?,
+    })
+}
+
+struct OwnFilter {
+    calls: Arc<Calls>,
+    index: usize,
+    /// The last echoes of each sensor, the latest first: what a filter returns may be one of them.
+    last: Vec<VecDeque<Echo>>,
+}
+
+/// How many echoes of a sensor are kept.
+const KEPT: usize = 16;
+const JUDGED: &str = "an eeruf.Reading, or (kind, t_echo_us) with None for no echo";
+
+impl Filter for OwnFilter {
+    fn judge(&mut self, firing: &eeruf_sim::FiredReading<'_>) -> Result<Judged, OwnError> {
+        let mut none = VecDeque::new();
+        let last = self.last.get_mut(usize::from(firing.reading.sensor)).unwrap_or(&mut none);
+        for &echo in firing.echoes.iter().rev() {
+            last.truncate(KEPT - 1);
+            last.push_front(echo);
+        }
+        self.calls.call(self.index, |callable| {
+            let fired = FiredReading {
+                reading: Reading::of_ring(firing.reading),
+                t_echoes_us: firing.echoes.iter().map(|echo| echo.t_echo().as_micros()).collect(),
+                fired_s: firing.fired_s,
+                expected_change_us: firing.expected_change_us,
+            };
+            let returned = callable.call1((fired,))?;
+            let (kind, t_echo) = judged(&returned)?;
+            // The echo of that time, the latest of several; or, of a time that is no echo's, the latest of all.
+            let echo = t_echo
+                .map(|t_echo| {
+                    let same = last.iter().find(|echo| echo.t_echo() == t_echo);
+                    let nearest = firing.echoes.first().or_else(|| last.front());
+                    same.or(nearest).map(|echo| echo.at(t_echo)).ok_or_else(|| {
+                        wrong("what filter returned", shown(&returned), "no echo, for a sensor that never had one")
+                    })
+                })
+                .transpose()?;
+            Ok(Judged { kind, echo })
+        })
+    }
+}
+
+/// The kind and the time of an echo that a callable has returned.
+fn judged(returned: &Bound<'_, PyAny>) -> PyResult<(ReadingKind, Option<Micros>)> {
+    if let Ok(reading) = returned.cast::<Reading>() {
+        return Ok(reading.get().judged());
+    }
+    let refused = || wrong("what filter returned", shown(returned), JUDGED);
+    let pair = returned.cast::<PyTuple>().ok().filter(|pair| pair.len() == 2).ok_or_else(refused)?;
+    let said = pair.get_item(0)?.extract::<String>().map_err(|_| refused())?;
+    let kind = ReadingKind::ALL.into_iter().find(|kind| kind.as_str() == said).ok_or_else(refused)?;
+    let time = pair.get_item(1)?;
+    let t_echo = if time.is_none() {
+        None
+    } else {
+        Some(Micros::new(number("t_echo_us that filter returned", &time, 0.0..=f64::from(u32::MAX))?.round() as u32))
+    };
+    Ok((kind, t_echo))
+}

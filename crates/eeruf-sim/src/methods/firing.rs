@@ -1,0 +1,306 @@
+//! [`Firing`]: when the sensors of a ring fire, planned period by period, by a method or by the caller's own code; and
+//! the scheduler that makes core's ring of it.
+
+use core::fmt;
+
+use eeruf_core::{Instant, Limits, MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Micros, Phase, Scheduler};
+
+/// When the sensors of one robot's ring fire. Hand it to a simulation with [`Own`](crate::Own); dither is one as well.
+///
+/// ```
+/// use eeruf_core::{Micros, Phase};
+/// use eeruf_sim::{Firing, FiringPeriod, OwnError};
+/// /// Eight sensors, each 8 ms after the one before, in the other order every second period.
+/// struct BackAndForth;
+/// impl Firing for BackAndForth {
+///     fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {
+///         let place = |sensor: u8| u32::from(if period % 2 == 0 { sensor } else { 7 - sensor });
+///         let firings = (0..8).map(|sensor| (Micros::from_millis(8 * place(sensor)), sensor)).collect();
+///         Ok(FiringPeriod { length: Micros::from_millis(100), phase: Phase((period % 2) as u8), firings })
+///     }
+/// }
+/// assert_eq!(BackAndForth.plan(1).unwrap().firings[7], (Micros::ZERO, 7));
+/// ```
+pub trait Firing: Send {
+    /// Plans a period of the ring: they are counted from 0, and each begins when the one before has ended.
+    ///
+    /// # Errors
+    /// Whatever ends the simulation, with
+    /// [`SimulationError::Own`](crate::SimulationError::Own).
+    fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError>;
+}
+
+impl<F: Firing + ?Sized> Firing for Box<F> {
+    fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {
+        F::plan(self, period)
+    }
+}
+
+/// One period of a [`Firing`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FiringPeriod {
+    /// How long it lasts: 1 us to [`MAX_PERIOD`].
+    pub length: Micros,
+    /// Its phase, which its readings carry: 0 to 7.
+    pub phase: Phase,
+    /// Which sensors fire, each with its time after the beginning of the period and before its end, in any order. A
+    /// sensor may fire several times or not at all, but never while it still listens: within the robot's
+    /// [`window`](crate::Robot::window) of its last firing.
+    pub firings: Vec<(Micros, u8)>,
+}
+
+/// Why a [`Firing`](crate::Firing) or a [`Filter`](crate::Filter) of the caller's ends a simulation: a sentence.
+///
+/// ```
+/// use eeruf_sim::OwnError;
+/// fn refuse() -> Result<(), OwnError> {
+///     Err("the model has not been trained")?
+/// }
+/// assert_eq!(refuse().unwrap_err().to_string(), "the model has not been trained");
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OwnError(Box<str>);
+
+impl OwnError {
+    /// With these words.
+    pub fn new(why: impl Into<String>) -> Self {
+        Self(why.into().into())
+    }
+}
+
+impl From<&str> for OwnError {
+    fn from(why: &str) -> Self {
+        Self(why.into())
+    }
+}
+
+impl From<String> for OwnError {
+    fn from(why: String) -> Self {
+        Self(why.into())
+    }
+}
+
+impl fmt::Display for OwnError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl core::error::Error for OwnError {}
+
+/// Why a period cannot be fired.
+enum Unfit {
+    Length(Micros),
+    Phase(Phase),
+    Sensor { sensor: u8, sensors: usize },
+    Late { sensor: u8, at: Micros, length: Micros },
+    Listens { sensor: u8, at: Micros, after_us: u64, refire: Micros },
+}
+
+/// Sensors are counted from 0, as where they were planned.
+impl fmt::Display for Unfit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Length(length) => write!(f, "lasts {length}; expected 1 us to {MAX_PERIOD}"),
+            Self::Phase(phase) => write!(f, "has phase {}; expected 0 to {}", phase.0, MAX_PHASES - 1),
+            Self::Sensor { sensor, sensors } => {
+                write!(f, "fires sensor {sensor}; expected one of {sensors}, counted from 0")
+            }
+            Self::Late { sensor, at, length } => {
+                write!(f, "fires sensor {sensor} at {at}; expected a time before its end at {length}")
+            }
+            Self::Listens { sensor, at, after_us, refire } => write!(
+                f,
+                "fires sensor {sensor} at {at}, {after_us} us after its last firing; expected {refire} or more, for \
+                 which it listens"
+            ),
+        }
+    }
+}
+
+/// Fires as a [`Firing`] plans: core's contract for it.
+pub(crate) struct PeriodFiring {
+    firing: Box<dyn Firing>,
+    sensors: usize,
+    /// No sensor fires again within this time of firing.
+    refire: Micros,
+    /// The number of the next period to be planned.
+    period: u32,
+    /// Firing times of the present one, in order.
+    due: Vec<(Micros, u8)>,
+    length: Micros,
+    phase: Phase,
+    /// The next of them.
+    next: usize,
+    start: Instant,
+    /// How long ago each sensor fired when the present period begins, as planned; none for long ago.
+    before_us: Vec<Option<u64>>,
+    enabled: [bool; MAX_SENSORS],
+    paused: bool,
+    last_fired: Option<Instant>,
+    /// Why it no longer fires.
+    failed: Option<OwnError>,
+}
+
+impl PeriodFiring {
+    /// A ring of so many sensors, none of which fires again within `refire` of firing. What is wrong with the first
+    /// period, [`error`](Self::error) says.
+    pub(crate) fn new(firing: Box<dyn Firing>, sensors: usize, refire: Micros, now: Instant) -> Self {
+        let mut firing = Self {
+            firing,
+            sensors,
+            refire,
+            period: 0,
+            due: Vec::new(),
+            length: Micros::new(1),
+            phase: Phase::A,
+            next: 0,
+            start: now,
+            before_us: vec![None; sensors],
+            enabled: [true; MAX_SENSORS],
+            paused: false,
+            last_fired: None,
+            failed: None,
+        };
+        firing.begin_period(now);
+        firing
+    }
+
+    /// Why it no longer fires, if it does not.
+    pub(crate) fn error(&self) -> Option<&OwnError> {
+        self.failed.as_ref()
+    }
+
+    fn begin_period(&mut self, start: Instant) {
+        self.start = start;
+        self.next = 0;
+        self.due.clear();
+        if self.failed.is_none() {
+            let number = self.period;
+            let planned = self.firing.plan(number).and_then(|period| {
+                self.take(period).map_err(|unfit| OwnError::new(format!("period {number} {unfit}")))
+            });
+            self.failed = planned.err();
+            self.period = number.wrapping_add(1);
+        }
+        if self.failed.is_some() {
+            // Nothing fires any more; whoever drives the ring looks at the error now.
+            self.due.clear();
+            self.length = MAX_PERIOD;
+        }
+        self.skip_disabled();
+    }
+
+    /// Takes over a planned period, if it can be fired.
+    fn take(&mut self, period: FiringPeriod) -> Result<(), Unfit> {
+        let FiringPeriod { length, phase, mut firings } = period;
+        if length == Micros::ZERO || length > MAX_PERIOD {
+            return Err(Unfit::Length(length));
+        }
+        if usize::from(phase.0) >= MAX_PHASES {
+            return Err(Unfit::Phase(phase));
+        }
+        firings.sort_unstable();
+        for &(at, sensor) in &firings {
+            if at >= length {
+                return Err(Unfit::Late { sensor, at, length });
+            }
+            let sensors = self.sensors;
+            let Some(before_us) = self.before_us.get_mut(usize::from(sensor)) else {
+                return Err(Unfit::Sensor { sensor, sensors });
+            };
+            // A sensor that has fired in this very period did so before it began by a negative time.
+            let at_us = u64::from(at.as_micros());
+            let (refire, after_us) = (self.refire, before_us.map(|before_us| before_us.wrapping_add(at_us)));
+            if let Some(after_us) = after_us.filter(|after_us| *after_us < u64::from(refire.as_micros())) {
+                return Err(Unfit::Listens { sensor, at, after_us, refire });
+            }
+            *before_us = Some(at_us.wrapping_neg());
+        }
+        for before_us in self.before_us.iter_mut().flatten() {
+            *before_us = before_us.wrapping_add(length.as_micros().into());
+        }
+        (self.due, self.length, self.phase) = (firings, length, phase);
+        Ok(())
+    }
+
+    fn skip_disabled(&mut self) {
+        while self.due.get(self.next).is_some_and(|&(_, sensor)| self.paused || !self.is_enabled(sensor)) {
+            self.next += 1;
+        }
+    }
+}
+
+impl Scheduler for PeriodFiring {
+    fn next_firing(&self) -> Option<(u8, Phase)> {
+        self.due.get(self.next).map(|&(_, sensor)| (sensor, self.phase))
+    }
+
+    fn fire(&mut self, now: Instant) {
+        self.start += now.since(self.deadline());
+        self.last_fired = Some(now);
+        self.next += 1;
+        self.skip_disabled();
+    }
+
+    fn postpone(&mut self, _sensor: u8, by: Micros) {
+        self.start += by;
+        self.last_fired = self.last_fired.map(|fired| fired + by);
+    }
+
+    fn end_period(&mut self, _now: Instant) -> (Phase, bool) {
+        let phase = self.phase;
+        self.begin_period(self.deadline());
+        (phase, false)
+    }
+
+    fn deadline(&self) -> Instant {
+        self.start + self.due.get(self.next).map_or(self.length, |&(due, _)| due)
+    }
+
+    fn ended(&mut self, _sensor: u8, _at: Instant) {}
+
+    fn set_enabled(&mut self, sensor: u8, enabled: bool) {
+        if let Some(entry) = self.enabled.get_mut(usize::from(sensor)) {
+            *entry = enabled;
+        }
+        self.skip_disabled();
+    }
+
+    fn set_paused(&mut self, paused: bool) {
+        self.paused = paused;
+        self.skip_disabled();
+    }
+
+    fn sensors(&self) -> usize {
+        self.sensors
+    }
+
+    fn is_enabled(&self, sensor: u8) -> bool {
+        usize::from(sensor) < self.sensors && self.enabled.get(usize::from(sensor)).is_some_and(|&enabled| enabled)
+    }
+
+    fn restart(&mut self, now: Instant) {
+        // A clock that has jumped says nothing about when the last firing was.
+        let settled = self.last_fired.map(|fired| fired + self.refire);
+        let soon = settled.filter(|settled| settled.has_reached(now) && settled.since(now) <= self.refire);
+        self.before_us.fill(None);
+        self.begin_period(soon.unwrap_or(now));
+    }
+
+    fn periods_since(&self, _phase: Phase) -> u8 {
+        0
+    }
+
+    fn limits(&self) -> Limits<'_> {
+        Limits { longest_window: self.refire, verified_for: None }
+    }
+
+    fn min_refire(&self) -> Micros {
+        self.refire
+    }
+
+    fn horizon(&self) -> Micros {
+        self.length.saturating_add(self.length.max(self.refire))
+    }
+}

@@ -1,0 +1,137 @@
+//! [`Filter`]: what is believed of a reading, by a method or by the caller's own code.
+
+use eeruf_core::{Micros, Reading, ReadingKind};
+
+use crate::methods::{Belief, OwnError};
+use crate::simulation::receiver::Echo;
+
+/// What is believed of the readings of one robot's ring. Hand it to a simulation with [`Own`](crate::Own); what the
+/// methods believe goes through it as well.
+///
+/// ```
+/// use std::collections::HashMap;
+/// use eeruf_core::{Micros, ReadingKind};
+/// use eeruf_sim::{FiredReading, Filter, Judged, OwnError};
+/// /// Believes an echo that is no farther than half a metre off the last one of its sensor.
+/// #[derive(Default)]
+/// struct Near(HashMap<u8, Micros>);
+/// impl Filter for Near {
+///     fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+///         let Some(&echo) = firing.echoes.first() else { return Ok(Judged::SILENT) };
+///         let before = self.0.insert(firing.reading.sensor, echo.t_echo());
+///         let near = before.is_some_and(|before| before.abs_diff(echo.t_echo()) < Micros::new(2_900));
+///         Ok(Judged { kind: if near { ReadingKind::Accepted } else { ReadingKind::Rejected }, echo: Some(echo) })
+///     }
+/// }
+/// ```
+pub trait Filter: Send {
+    /// Judges what one firing of one sensor has heard. Firings of a sensor come in order, each once.
+    ///
+    /// # Errors
+    /// Whatever ends the simulation, with [`SimulationError::Own`](crate::SimulationError::Own).
+    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError>;
+}
+
+impl<F: Filter + ?Sized> Filter for Box<F> {
+    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+        F::judge(self, firing)
+    }
+}
+
+/// What one firing of one sensor has heard.
+#[derive(Clone, Copy, Debug)]
+pub struct FiredReading<'a> {
+    /// What the ring itself makes of it, with the filter of core: its sensor, phase and period too.
+    pub reading: &'a Reading,
+    /// Its echoes, earliest first: one at most, but up to eight under [`Method::MultiEcho`](crate::Method::MultiEcho).
+    pub echoes: &'a [Echo],
+    /// When it fired, in seconds of true time.
+    pub fired_s: f64,
+    /// By how much odometry expects a good reading to have changed since the sensor's firing before, in microseconds; 0
+    /// for a robot without odometry.
+    pub expected_change_us: i32,
+}
+
+/// What is believed of a firing.
+#[derive(Clone, Copy, Debug)]
+pub struct Judged {
+    /// What to make of it. [`Accepted`](ReadingKind::Accepted) and [`Clear`](ReadingKind::Clear) count as believed.
+    pub kind: ReadingKind,
+    /// The echo that it stands for: one of this firing, or of an earlier one that the filter has kept; none for
+    /// silence.
+    pub echo: Option<Echo>,
+}
+
+impl Judged {
+    /// Silence, believed: nothing is in range.
+    pub const SILENT: Self = Self { kind: ReadingKind::Clear, echo: None };
+
+    /// An echo or silence, believed.
+    pub const fn believed(echo: Option<Echo>) -> Self {
+        Self { kind: if echo.is_some() { ReadingKind::Accepted } else { ReadingKind::Clear }, echo }
+    }
+}
+
+/// The filter of a method; `median_of` is what [`Belief::Median`] takes the median of, up to [`MAX_MEDIAN`].
+pub(super) fn filter_of(belief: Belief, median_of: usize, sensors: usize) -> Box<dyn Filter> {
+    match belief {
+        Belief::All => Box::new(Everything),
+        Belief::Median => Box::new(Median { of: median_of, history: vec![History::default(); sensors] }),
+        Belief::Repeated => Box::new(AsTheRing),
+    }
+}
+
+/// Believes the earliest echo of every firing.
+struct Everything;
+
+impl Filter for Everything {
+    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+        Ok(Judged::believed(firing.echoes.first().copied()))
+    }
+}
+
+/// Believes what the ring's own filter accepts.
+struct AsTheRing;
+
+impl Filter for AsTheRing {
+    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+        let Reading { kind, t_echo, .. } = *firing.reading;
+        Ok(Judged { kind, echo: firing.echoes.iter().find(|echo| Some(echo.t_echo()) == t_echo).copied() })
+    }
+}
+
+/// The most readings that a median is taken of.
+pub(super) const MAX_MEDIAN: usize = 15;
+
+/// Believes the median of a sensor's last readings.
+struct Median {
+    of: usize,
+    history: Vec<History>,
+}
+
+/// The last few firings of a sensor: what each heard first, if anything.
+#[derive(Clone, Copy, Default)]
+struct History {
+    heard: [Option<Echo>; MAX_MEDIAN],
+    count: usize,
+}
+
+impl Filter for Median {
+    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+        let earliest = firing.echoes.first().copied();
+        let Some(history) = self.history.get_mut(usize::from(firing.reading.sensor)) else {
+            return Ok(Judged::believed(earliest));
+        };
+        history.heard[history.count % self.of] = earliest;
+        history.count += 1;
+        if history.count < self.of {
+            let kind = if earliest.is_some() { ReadingKind::First } else { ReadingKind::NoEcho };
+            return Ok(Judged { kind, echo: earliest });
+        }
+        let mut last = history.heard;
+        let last = &mut last[..self.of];
+        // Without echo counts as beyond all echoes.
+        last.sort_by_key(|heard| heard.map_or(Micros::MAX, |heard| heard.t_echo()));
+        Ok(Judged::believed(last[(self.of - 1) / 2]))
+    }
+}

@@ -1,0 +1,312 @@
+//! Firings and filters of one's own, schedules and scenes that change under way.
+
+use std::sync::Arc;
+
+use eeruf_core::{EchoFilter, MAX_SENSORS, Micros, Phase, ReadingKind};
+use eeruf_sim::*;
+
+/// An alcove in which sensors hear each other, and a robot in it.
+fn alcove(robots: Vec<Robot>) -> Arc<World> {
+    let walls = [[1.1, -0.9], [1.1, 0.9], [-0.8, 0.9], [-0.8, -0.9], [1.1, -0.9]];
+    let scene = Scene::new(Wall::polyline(&walls).collect(), vec![], Air::default()).unwrap();
+    Arc::new(World::new(scene, robots, Noise { bursts_per_s: 3.0, ..Noise::default() }).unwrap().with_seed(20_007))
+}
+
+fn robot() -> Robot {
+    Robot::ring(Pose::rotation(0.2), 8, 15f64.to_radians(), 0.3, Transducer::POLAROID_6500)
+}
+
+fn open(world: &Arc<World>, method: Method, own: Own) -> Result<Simulation, SimulationError> {
+    Simulation::with_own(Arc::clone(world), method, &Options::default(), own, Stop::default())
+}
+
+/// Sensor, period, phase, kind, cause, numbers by their bits, and path of a reading.
+type Row = (SensorId, u32, u8, ReadingKind, Cause, [u64; 5], Option<HeardPath>);
+
+/// All of it of all readings.
+fn columns(readings: &Readings) -> Vec<Row> {
+    let row = |k: usize| {
+        let times = [&readings.fired_s, &readings.t_echo_us, &readings.earliest_us, &readings.emitted_s];
+        let [a, b, c, d] = times.map(|column| column[k].to_bits());
+        let bits = [a, b, c, d, readings.reference_us[k].to_bits()];
+        let path = readings.path_of(k).cloned();
+        (readings.id(k), readings.period[k], readings.phase[k], readings.kind[k], readings.cause[k], bits, path)
+    };
+    (0..readings.len()).map(row).collect()
+}
+
+/// Fires by a schedule of two phases.
+struct ByTable(AnySchedule);
+
+impl Firing for ByTable {
+    fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {
+        let phase = Phase((period % 2) as u8);
+        let firings = (0..self.0.sensors()).filter_map(|sensor| Some((self.0.t_fire(phase, sensor)?, sensor as u8)));
+        Ok(FiringPeriod { length: self.0.period(), phase, firings: firings.collect() })
+    }
+}
+
+/// The paper's filter, of sensors that report up to `E` echoes.
+struct Paper<const E: usize>(EchoFilter<MAX_SENSORS, E>);
+
+impl<const E: usize> Filter for Paper<E> {
+    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+        let times: Vec<_> = firing.echoes.iter().map(Echo::t_echo).collect();
+        let verdict = self.0.push_echoes(firing.reading.sensor, &times, firing.expected_change_us);
+        let verdict = verdict.map_err(|error| error.to_string())?;
+        let echo = firing.echoes.iter().find(|echo| Some(echo.t_echo()) == verdict.t_echo).copied();
+        Ok(Judged { kind: verdict.kind, echo })
+    }
+}
+
+fn paper<const E: usize>() -> Paper<E> {
+    Paper(EchoFilter::new(Micros::new(500), 2).unwrap())
+}
+
+/// Believes the median of three. Of two of the same time it takes the one that the method takes.
+#[derive(Default)]
+struct Median(std::collections::HashMap<u8, ([Option<Echo>; 3], usize)>);
+
+impl Filter for Median {
+    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+        let (last, count) = self.0.entry(firing.reading.sensor).or_default();
+        let echo = firing.echoes.first().copied();
+        last[*count % 3] = echo;
+        *count += 1;
+        if *count < 3 {
+            let kind = if echo.is_some() { ReadingKind::First } else { ReadingKind::NoEcho };
+            return Ok(Judged { kind, echo });
+        }
+        let mut sorted = *last;
+        sorted.sort_by_key(|echo| echo.map_or(Micros::MAX, |echo| echo.t_echo()));
+        Ok(Judged::believed(sorted[1]))
+    }
+}
+
+#[test]
+fn a_filter_of_ones_own_that_does_what_a_methods_does_gives_the_same_readings() {
+    let moving = Robot {
+        motion: Motion::Constant { velocity: Vector::new(0.05, -0.03), turn_rad_s: 0.1 },
+        odometry: true,
+        ..robot()
+    };
+    for robot in [robot(), moving] {
+        let world = alcove(vec![robot]);
+        let pairs: [(Method, Method, Own); 5] = [
+            (Method::Eeruf, Method::Eeruf, Own::new().filter(0, paper::<1>())),
+            (Method::Conventional, Method::Comparison, Own::new().filter(0, paper::<1>())),
+            (Method::MultiEcho, Method::MultiEcho, Own::new().filter(0, paper::<8>())),
+            (Method::Conventional, Method::Median, Own::new().filter(0, Median::default())),
+            (Method::EerufImmediate, Method::EerufImmediate, Own::new().filter(0, paper::<1>())),
+        ];
+        for (under, like, own) in pairs {
+            let mine = open(&world, under, own).unwrap().step(2.0, |_| true).unwrap();
+            let built_in = open(&world, like, Own::new()).unwrap().step(2.0, |_| true).unwrap();
+            assert!(mine.len() > 200, "{}", mine.len());
+            assert_eq!(columns(&mine), columns(&built_in), "{under} {like}");
+        }
+        // Else nothing would be shown.
+        let believes_all = open(&world, Method::Conventional, Own::new()).unwrap().step(2.0, |_| true).unwrap();
+        let compares = open(&world, Method::Comparison, Own::new()).unwrap().step(2.0, |_| true).unwrap();
+        assert_ne!(columns(&believes_all), columns(&compares));
+    }
+}
+
+#[test]
+fn a_firing_of_ones_own_by_a_methods_schedule_gives_the_same_readings() {
+    let table = table_i_d_for(8, robot().period, 4).unwrap();
+    let clock = Robot { clock: Clock { drift_ppm: 80.0, ..Clock::default() }, ..robot() };
+    for robot in [robot(), clock] {
+        let world = alcove(vec![robot]);
+        for method in [Method::Eeruf, Method::MultiEcho] {
+            let mine = open(&world, method, Own::new().firing(0, ByTable(table))).unwrap().step(3.0, |_| true).unwrap();
+            let built_in = open(&world, method, Own::new()).unwrap().step(3.0, |_| true).unwrap();
+            assert!(mine.len() > 300, "{}", mine.len());
+            assert_eq!(columns(&mine), columns(&built_in), "{method}");
+        }
+    }
+}
+
+#[test]
+fn what_is_ones_own_is_of_one_robot_and_the_others_go_by_the_method() {
+    let beside = Robot { pose: Pose::new(Vector::new(0.4, 0.3), 0.9), ..robot() };
+    let here = Robot { pose: Pose::new(Vector::new(-0.4, -0.3), 0.2), ..robot() };
+    let world = alcove(vec![here, beside]);
+    /// Believes nothing.
+    struct Sceptic;
+    impl Filter for Sceptic {
+        fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+            Ok(Judged { kind: ReadingKind::Rejected, echo: firing.echoes.first().copied() })
+        }
+    }
+    let all = open(&world, Method::Conventional, Own::new().filter(1, Sceptic)).unwrap().step(1.0, |_| true).unwrap();
+    let believed = |robot: u16| (0..all.len()).filter(|&k| all.robot[k] == robot && all.is_accepted(k)).count();
+    assert!(believed(0) > 100 && believed(1) == 0, "{} {}", believed(0), believed(1));
+    let error = open(&world, Method::Eeruf, Own::new().filter(2, Sceptic)).err().unwrap();
+    assert_eq!(error.to_string(), "robot 3; expected one of 2");
+}
+
+#[test]
+fn an_echo_is_told_from_crosstalk_also_where_a_filter_gives_it_another_time() {
+    /// Gives every echo two microseconds late.
+    struct Late;
+    impl Filter for Late {
+        fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+            let later = |echo: &Echo| echo.at(echo.t_echo().saturating_add(Micros::new(2)));
+            Ok(Judged::believed(firing.echoes.first().map(later)))
+        }
+    }
+    let world = alcove(vec![robot()]);
+    let late = open(&world, Method::Conventional, Own::new().filter(0, Late)).unwrap().step(2.0, |_| true).unwrap();
+    let prompt = open(&world, Method::Conventional, Own::new()).unwrap().step(2.0, |_| true).unwrap();
+    assert_eq!(late.cause, prompt.cause);
+    assert!(late.cause.contains(&Cause::Own) && late.cause.contains(&Cause::Crosstalk));
+    for (late, prompt) in late.t_echo_us.iter().zip(&prompt.t_echo_us) {
+        assert!(late.is_nan() && prompt.is_nan() || late - prompt == 2.0);
+    }
+}
+
+#[test]
+fn a_period_that_cannot_be_fired_ends_the_simulation_with_the_reason() {
+    /// Fires well for three periods, and then otherwise.
+    struct Then(FiringPeriod);
+    impl Firing for Then {
+        fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {
+            let good = (Micros::from_millis(50), vec![(Micros::ZERO, 0)]);
+            let good = FiringPeriod { length: good.0, phase: Phase::A, firings: good.1 };
+            Ok(if period < 3 { good } else { self.0.clone() })
+        }
+    }
+    let ms = Micros::from_millis;
+    let period = |length, phase, firings: &[(Micros, u8)]| FiringPeriod { length, phase, firings: firings.to_vec() };
+    let refused = [
+        (period(Micros::ZERO, Phase::A, &[]), "lasts 0 us; expected 1 us to 268435.456 ms"),
+        (period(ms(60), Phase(8), &[]), "has phase 8; expected 0 to 7"),
+        (period(ms(60), Phase::A, &[(ms(0), 8)]), "fires sensor 8; expected one of 8, counted from 0"),
+        (period(ms(60), Phase::A, &[(ms(60), 1)]), "fires sensor 1 at 60 ms; expected a time before its end at 60 ms"),
+        (
+            period(ms(60), Phase::A, &[(ms(20), 2), (ms(40), 2)]),
+            "fires sensor 2 at 40 ms, 20000 us after its last firing; expected 36 ms or more, for which it listens",
+        ),
+    ];
+    for (bad, why) in refused {
+        let mut simulation = open(&alcove(vec![robot()]), Method::Eeruf, Own::new().firing(0, Then(bad))).unwrap();
+        assert_eq!(simulation.step(0.14, |_| true).unwrap().len(), 3);
+        let error = simulation.step(1.0, |_| true).unwrap_err().to_string();
+        assert_eq!(error, format!("at 0.150 s: the firing of robot 1: period 3 {why}"));
+        // It does not go on as if nothing had happened.
+        assert!(simulation.step(1.0, |_| true).is_err());
+    }
+    // A sensor still listens across the end of a period.
+    let soon = Then(period(ms(10), Phase::A, &[(ms(0), 0)]));
+    let mut simulation = open(&alcove(vec![robot()]), Method::Eeruf, Own::new().firing(0, soon)).unwrap();
+    let error = simulation.step(1.0, |_| true).unwrap_err().to_string();
+    assert!(error.contains("period 4 fires sensor 0 at 0 us, 10000 us after"), "{error}");
+}
+
+#[test]
+fn errors_of_ones_own_code_come_out_of_the_step_and_the_simulation_goes_on() {
+    struct Once(bool);
+    impl Filter for Once {
+        fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+            if firing.reading.sensor == 3 && !core::mem::replace(&mut self.0, true) {
+                Err("sensor 3 was not expected")?;
+            }
+            Ok(Judged::believed(firing.echoes.first().copied()))
+        }
+    }
+    let world = alcove(vec![robot()]);
+    let mut simulation = open(&world, Method::Conventional, Own::new().filter(0, Once(false))).unwrap();
+    let error = simulation.step(1.0, |_| true).unwrap_err();
+    assert!(error.to_string().ends_with("the filter of robot 1: sensor 3 was not expected"), "{error}");
+    assert!(format!("{error:#}").contains("the filter of robot 0"), "{error:#}");
+    let after = simulation.step(1.0, |_| true).unwrap();
+    let whole = open(&world, Method::Conventional, Own::new()).unwrap().step(1.0, |_| true).unwrap();
+    assert_eq!(after.len(), whole.len() - 1, "the reading that was not judged is lost, and no other");
+    /// Plans nothing at all.
+    struct Never;
+    impl Firing for Never {
+        fn plan(&mut self, _period: u32) -> Result<FiringPeriod, OwnError> {
+            Err("out of service".into())
+        }
+    }
+    let error = open(&world, Method::Eeruf, Own::new().firing(0, Never)).err().unwrap();
+    assert_eq!(error.to_string(), "at 0.000 s: the firing of robot 1: out of service");
+}
+
+#[test]
+fn a_ring_changes_to_another_schedule_when_its_period_ends_and_refuses_what_it_cannot_fire() {
+    let (fast, slow) = (Micros::from_millis(60), Micros::from_millis(120));
+    let slow = table_i_d_for(8, slow, 4).unwrap();
+    let world = alcove(vec![Robot { schedule: Some(table_i_d_for(8, fast, 4).unwrap()), ..robot() }]);
+    for method in [Method::Eeruf, Method::MultiEcho, Method::Conventional, Method::Simultaneous] {
+        let mut simulation = open(&world, method, Own::new()).unwrap();
+        simulation.step(0.7, |_| true).unwrap();
+        simulation.change_schedule(0, &slow).unwrap();
+        simulation.step(1.0, |_| true).unwrap();
+        let after = simulation.step(2.4, |_| true).unwrap();
+        for sensor in 0..8 {
+            let fired: Vec<_> = (0..after.len()).filter(|&k| after.sensor[k] == sensor).collect();
+            assert!((19..=21).contains(&fired.len()), "{method}: {}", fired.len());
+            for pair in fired.windows(2) {
+                let phase = |k: usize| Phase(after.phase[k]);
+                let at = |k: usize| f64::from(slow.t_fire(phase(k), sensor.into()).unwrap().as_micros()) * 1e-6;
+                let between = after.fired_s[pair[1]] - after.fired_s[pair[0]];
+                assert!((between - (0.12 + at(pair[1]) - at(pair[0]))).abs() < 2e-6, "{method}: {between}");
+            }
+        }
+    }
+    for method in [Method::Dither, Method::EerufImmediate, Method::Adaptive, Method::EerufHopping] {
+        let error = open(&world, method, Own::new()).unwrap().change_schedule(0, &slow).unwrap_err();
+        assert_eq!(error, SimulationError::FixedSchedule { robot: 0, method });
+    }
+    let mut simulation = open(&world, Method::Eeruf, Own::new()).unwrap();
+    let refused = [
+        (simulation.change_schedule(1, &slow).unwrap_err(), "robot 2; expected one of 1"),
+        (
+            simulation.change_schedule(0, &table_i_d_for(7, fast, 4).unwrap()).unwrap_err(),
+            "robot 1: a schedule of 7 sensors; expected one of 8",
+        ),
+    ];
+    for (error, message) in refused {
+        assert_eq!(error.to_string(), message);
+    }
+    let soon = table_i_d_for(8, Micros::from_millis(30), 4).unwrap();
+    let error = simulation.change_schedule(0, &soon).unwrap_err().to_string();
+    assert!(error.starts_with("robot 1, method eeruf: a listening window of 36 ms"), "{error}");
+    let untouched = open(&world, Method::Eeruf, Own::new()).unwrap().step(1.0, |_| true).unwrap();
+    assert_eq!(columns(&simulation.step(1.0, |_| true).unwrap()), columns(&untouched));
+}
+
+#[test]
+fn obstacles_that_move_are_heard_where_they_are() {
+    let post = |x: f64| {
+        let wall = Wall::new(2.5, -5.0, 2.5, 5.0).with_faces(Faces::Both);
+        Scene::new(vec![wall], vec![Pole::new(x, 0.0, 0.1)], Air::default()).unwrap()
+    };
+    let single = Robot::with_sensors(Pose::identity(), vec![Pose::identity()], Transducer::POLAROID_6500);
+    let turning = Robot { motion: Motion::Constant { velocity: Vector::zeros(), turn_rad_s: 1e-6 }, ..single.clone() };
+    for robot in [single, turning] {
+        let world = World::new(post(1.1), vec![robot], Noise::NONE).unwrap().with_physics(Physics::PLAIN).unwrap();
+        let mut simulation = open(&Arc::new(world), Method::Sequential, Own::new()).unwrap();
+        for x in [1.1, 1.6, 2.1, 0.8] {
+            simulation.change_scene(post(x)).unwrap();
+            let reading = simulation.step_to_reading(1.0, |_| true).unwrap();
+            assert!((reading.t_echo_us[0] * 343.2e-6 / 2.0 - (x - 0.1)).abs() < 1e-3, "{x}: {:?}", reading.t_echo_us);
+        }
+    }
+}
+
+#[test]
+fn a_scene_in_which_a_sensor_is_inside_something_is_refused_and_the_old_one_stays() {
+    let scene = |poles| {
+        let wall = Wall::new(2.0, -5.0, 2.0, 5.0).with_faces(Faces::Both);
+        Scene::new(vec![wall], poles, Air::default()).unwrap()
+    };
+    let world = Arc::new(World::new(scene(vec![]), vec![robot()], Noise::NONE).unwrap());
+    let mut simulation = open(&world, Method::Eeruf, Own::new()).unwrap();
+    let error = simulation.change_scene(scene(vec![Pole::new(0.0, 0.0, 1.0)])).unwrap_err();
+    assert!(matches!(error, SimulationError::Paths { error: PathsError::Inside { .. }, .. }), "{error}");
+    let untouched = open(&world, Method::Eeruf, Own::new()).unwrap().step(1.0, |_| true).unwrap();
+    assert_eq!(columns(&simulation.step(1.0, |_| true).unwrap()), columns(&untouched));
+}

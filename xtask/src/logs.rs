@@ -1,5 +1,5 @@
-//! `cargo xtask logs`: what is measured of logs and takes minutes: bags of a million messages, as `rosbags` writes them,
-//! who fools whom in 200 alcoves, and the data set. The tests of the same are in `cargo xtask test`.
+//! `cargo xtask logs`: what is measured of logs and takes minutes: bags of a million messages, as `rosbags` writes
+//! them, who fools whom in 200 alcoves, and the data set. The tests of the same are in `cargo xtask test`.
 
 use std::fs;
 use std::path::{Path, PathBuf};

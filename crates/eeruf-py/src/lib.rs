@@ -36,6 +36,7 @@ mod owned_ring;
 mod paths;
 mod pose;
 mod program;
+mod reading_blocks;
 mod readings;
 mod report;
 mod requirements;
@@ -81,6 +82,7 @@ mod _eeruf {
         own::FiredReading,
         paths::Paths,
         program::{example, run_program},
+        reading_blocks::{ReadingBlocks, simulate_blocks},
         readings::Readings,
         report::{Report, Violation},
         ring::Ring,
@@ -92,7 +94,7 @@ mod _eeruf {
         search::{WaitSearch, WaitTables},
         sensor_watch::{Blind, LastAccepted, SensorWatch},
         simulate::simulate,
-        simulation::{ReadingBlocks, Simulation, simulate_blocks},
+        simulation::Simulation,
         surroundings::{Material, Noise},
         tracker::EchoTracker,
         unpickle::readings_from_columns,

@@ -1,4 +1,4 @@
-//! `sim.Simulation`, which goes on step by step, and `sim.simulate_blocks`.
+//! `sim.Simulation`, which goes on step by step.
 
 use std::{
     path::PathBuf,
@@ -7,13 +7,13 @@ use std::{
 };
 
 use eeruf::Recording;
-use eeruf_sim::{Body, Own, SimulationError, simulation::expected_readings};
+use eeruf_sim::{Body, Own, SimulationError};
 use pyo3::{PyTraverseError, PyVisit, prelude::*};
 
 use crate::{
-    arguments::{instance, number, shown, whole, whole_or, wrong},
+    arguments::{instance, number, shown, whole, wrong},
     errors::{Raise, SimulationError as SimulationRefused},
-    logs, memory,
+    logs,
     own::{self, Calls},
     readings::Readings,
     robot_state::RobotState,
@@ -22,9 +22,6 @@ use crate::{
     simulate::Asked,
     watch::{Watch, in_background},
 };
-
-/// How many periods a block has unless another number is asked for.
-const BLOCK_PERIODS: u32 = 10_000;
 
 /// A world that goes on step by step: for your own controller, filter, or display.
 ///
@@ -71,14 +68,19 @@ pub(crate) struct Simulation {
     calls: Arc<Calls>,
 }
 
-struct UnderWay {
-    simulation: eeruf_sim::Simulation,
+pub(crate) struct UnderWay {
+    pub(crate) simulation: eeruf_sim::Simulation,
     recording: Option<Recording>,
 }
 
 impl Simulation {
     /// With the caller's own firings and filters, or one that ends when the options say.
-    fn new_from(py: Python<'_>, asked: Asked, own: Option<(Own, Arc<Calls>)>, mcap: Option<PathBuf>) -> PyResult<Self> {
+    pub(crate) fn new_from(
+        py: Python<'_>,
+        asked: Asked,
+        own: Option<(Own, Arc<Calls>)>,
+        mcap: Option<PathBuf>,
+    ) -> PyResult<Self> {
         in_background(py, None, move |background| {
             let asked = asked.with_best(background)?;
             let Asked { ref world, method, ref options } = asked;
@@ -95,7 +97,7 @@ impl Simulation {
     }
 
     /// Without the interpreter lock: whoever holds the simulation may wait for that.
-    fn lock(&self) -> PyResult<MutexGuard<'_, UnderWay>> {
+    pub(crate) fn lock(&self) -> PyResult<MutexGuard<'_, UnderWay>> {
         if *self.stepping.lock().unwrap_or_else(PoisonError::into_inner) == Some(thread::current().id()) {
             let why = "a simulation under way; expected its firing and its filter to leave it alone";
             return Err(SimulationRefused::new_err(why));
@@ -114,7 +116,7 @@ impl Simulation {
     }
 
     /// Lets time pass while Ctrl-C and progress are looked after.
-    fn go_on(
+    pub(crate) fn go_on(
         &self,
         py: Python<'_>,
         progress: Option<&Bound<'_, PyAny>>,
@@ -376,88 +378,4 @@ impl Simulation {
     fn __clear__(&self) {
         self.calls.clear();
     }
-}
-
-/// The readings of a simulation block by block: an iterator that Ctrl-C interrupts.
-///
-/// Example:
-///     >>> from eeruf import sim
-///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
-///     >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
-///     >>> blocks = list(sim.simulate_blocks(scene, periods=25, block_periods=10))
-///     >>> len(blocks), sum(map(len, blocks))
-///     (3, 200)
-#[pyclass(frozen, module = "eeruf.sim")]
-pub(crate) struct ReadingBlocks {
-    simulation: Simulation,
-    block_periods: u32,
-    progress: Option<Py<PyAny>>,
-}
-
-#[pymethods]
-impl ReadingBlocks {
-    fn __iter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
-        slf
-    }
-
-    fn __next__(&self, py: Python<'_>) -> PyResult<Option<Readings>> {
-        if py.detach(|| self.simulation.lock().map(|under_way| under_way.simulation.is_over()))? {
-            return Ok(None);
-        }
-        let periods = self.block_periods;
-        let progress = self.progress.as_ref().map(|progress| progress.bind(py));
-        self.simulation
-            .go_on(py, progress, |simulation, keep_going| simulation.step_periods(periods, keep_going))
-            .map(Some)
-    }
-}
-
-/// As :func:`simulate`, but block by block: however long it is, it needs no more memory than a block.
-///
-/// Args:
-///     scene: as for :func:`simulate`, and so all others.
-///     method: as for :func:`simulate`.
-///     periods: for how many periods of the first robot, 1 or more.
-///     seed: as for :func:`simulate`.
-///     block_periods: how many periods a block has at most.
-///     progress: as for :func:`simulate`.
-///
-/// Returns:
-///     An iterator of ``Readings``, which together are those of :func:`simulate`.
-///
-/// Raises:
-///     ArgumentError: as for :func:`simulate`, and so all others.
-///     SceneError: as for :func:`simulate`.
-///     SimulationError: as for :func:`simulate`.
-///     MemoryError: a block does not fit into memory.
-///
-/// Example:
-///     >>> from eeruf import sim
-///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
-///     >>> scene = sim.Scene([[5, 2, -5, 2]], robots=[robot])
-///     >>> wrong = 0
-///     >>> for readings in sim.simulate_blocks(scene, periods=2_000, block_periods=500):
-///     ...     wrong += int((readings.is_accepted & readings.is_wrong()).sum())
-///     >>> wrong < 40
-///     True
-#[pyfunction]
-#[pyo3(signature = (scene, method=None, periods=None, seed=None, *, block_periods=None, progress=None))]
-#[pyo3(text_signature = "(scene, method=\"eeruf\", periods=1000, seed=None, *, block_periods=10000, progress=None)")]
-pub(crate) fn simulate_blocks(
-    scene: &Bound<'_, PyAny>,
-    method: Option<&Bound<'_, PyAny>>,
-    periods: Option<&Bound<'_, PyAny>>,
-    seed: Option<&Bound<'_, PyAny>>,
-    block_periods: Option<&Bound<'_, PyAny>>,
-    progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<ReadingBlocks> {
-    let asked = Asked::new(scene, method, periods, seed)?;
-    let block_periods = whole_or("block_periods", block_periods, BLOCK_PERIODS, 1..=u32::MAX)?;
-    let readings = expected_readings(&asked.world, block_periods.min(asked.options.periods));
-    let bytes = eeruf_sim::Readings::bytes_for(readings);
-    memory::check(&format!("{readings} readings"), bytes, "so fewer block_periods")?;
-    // What is wrong with it is said now, not with the first block.
-    Watch::new(progress)?;
-    let simulation = Simulation::new_from(scene.py(), asked, None, None)?;
-    Ok(ReadingBlocks { simulation, block_periods, progress: progress.map(|progress| progress.clone().unbind()) })
 }

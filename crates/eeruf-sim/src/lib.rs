@@ -73,7 +73,7 @@ pub mod world;
 
 pub use acoustics::{
     GainProfile, Physics, Piston, Transducer, UnknownPhysics, edge_diffraction, pole_wave_correction,
-    rigid_cylinder_form, strip_reflection,
+    rigid_cylinder_form,
 };
 pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice};
 pub use maps::{MapError, OccupancyGrid};

@@ -216,7 +216,7 @@ impl<'m> Proof<'m> {
         self.derive_once(format!("pol{line}"));
     }
 
-    /// If all of `set` are below y and have `|d| >= start`, then `|d_y|` is at least a separation for each of them above.
+    /// If all of `set` are below y and have `|d| >= start`, `|d_y|` is at least a separation above for each.
     pub(crate) fn room_below(&mut self, set: &[usize], y: usize, start: i32) {
         let end = start + set.len() as i32 * self.separation();
         self.hall(&with(set, y), start, set.len() as i32);

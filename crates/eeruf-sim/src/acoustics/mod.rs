@@ -3,7 +3,6 @@
 
 mod diffraction;
 mod directivity;
-mod panel;
 mod physics;
 mod reflection;
 mod spreading;
@@ -11,8 +10,6 @@ mod transducer;
 
 pub use diffraction::{edge_diffraction, pole_wave_correction, rigid_cylinder_form};
 pub use directivity::Piston;
-pub use panel::strip_reflection;
-pub(crate) use panel::{panels_around, panels_share};
 pub use physics::{Physics, UnknownPhysics};
 pub(crate) use reflection::reflected;
 pub(crate) use spreading::pole_spread;

@@ -19,8 +19,7 @@ pub struct Physics {
     /// exceeds that of the first Fresnel zone, `sqrt(lambda d1 d2 / (d1 + d2))`. A sensor within a pole or a wall is
     /// then refused as well. Robots' bodies shade in any case.
     pub shadows: bool,
-    /// Whether the free ends of walls and the corners that jut out diffract, once and in plain sight, and panels
-    /// narrower than their first Fresnel zone return less than walls.
+    /// Whether the free ends of walls and the corners that jut out diffract, once and in plain sight.
     pub edges: bool,
     /// Whether a threshold detector hears faint echoes later. An echo just at the threshold is heard a whole burst
     /// late.

@@ -20,7 +20,6 @@ pub use contact::Contact;
 pub use error::{MAX_COORDINATE_M, MAX_POLE_M, MAX_WALLS, MIN_WALL_M, SceneError};
 pub use material::Material;
 pub use mesh::edges::Edge;
-pub(crate) use mesh::panels::Side;
 pub(crate) use mesh::{Beyond, Exit, Gate, Mesh, NONE};
 pub use pole::Pole;
 pub use scene::Scene;

@@ -6,7 +6,6 @@ use super::error::{MAX_COORDINATE_M, MAX_POLE_M, MAX_WALLS, MIN_WALL_M, SceneErr
 use super::mesh::Mesh;
 use super::mesh::edges::{Edge, edges_of};
 use super::mesh::joints::{join_walls, wall_box};
-use super::mesh::panels::Panels;
 use super::pole::Pole;
 use super::wall::Wall;
 use crate::geometry::{Mirror, Point, TOUCH_M};
@@ -24,7 +23,6 @@ pub struct Scene {
     /// Which triangles each pole's disc overlaps: (triangle, pole).
     pub(crate) pole_triangles: Vec<(u32, u32)>,
     edges: Vec<Edge>,
-    pub(crate) panels: Panels,
     /// Whether any surface is rough.
     pub(crate) rough: bool,
 }
@@ -51,8 +49,7 @@ impl Scene {
         let wall_boxes =
             Bvh::from_iter(BvhBuildStrategy::Binned, walls.iter().enumerate().map(|(i, wall)| (i, wall_box(wall))));
         let (vertices, pieces) = join_walls(&walls, &wall_boxes)?;
-        let (edges, sides) = edges_of(&vertices, &pieces, &walls);
-        let panels = Panels::new(&vertices, &pieces, &walls, sides);
+        let edges = edges_of(&vertices, &pieces, &walls);
         let mesh = Mesh::build(vertices, &pieces, &walls, poles.iter().map(|pole| pole.centre))?;
         let mirrors = walls.iter().map(|wall| Mirror::through(wall.from, wall.to, wall.material.reflection)).collect();
         let materials = walls.iter().map(|wall| wall.material).chain(poles.iter().map(|pole| pole.material));
@@ -62,7 +59,7 @@ impl Scene {
             let near = mesh.near(pole.centre, pole.radius_m * (1.0 + 1e-9));
             pole_triangles.extend(near.into_iter().map(|triangle| (triangle, index as u32)));
         }
-        Ok(Self { walls, poles, air, mesh, mirrors, wall_boxes, pole_triangles, edges, panels, rough })
+        Ok(Self { walls, poles, air, mesh, mirrors, wall_boxes, pole_triangles, edges, rough })
     }
 
     /// The walls, in the order given.

@@ -3,7 +3,7 @@
 use super::audibility::Audibility;
 use super::limits::Limits;
 use crate::{
-    acoustics::{edge_diffraction, panels_around},
+    acoustics::edge_diffraction,
     geometry::{Point, TOUCH_M},
     scene::Scene,
     threads::Stop,
@@ -78,10 +78,6 @@ impl EdgeSearch {
                 }
                 let bent = edge_diffraction(wave_number, edge.outside_rad, from_rad, to_rad).abs();
                 let spread = bent / (before_m * after_m * length_m).sqrt();
-                // Both edges of a narrow panel together return what it does.
-                let wavelength_m = core::f64::consts::TAU / wave_number;
-                let panels = panels_around(scene, index, source, at, wavelength_m);
-                let most = most.min(panels.unwrap_or(1.0) / length_m);
                 self.found.push(EdgePath {
                     receiver: receiver as u32,
                     edge: index as u32,

@@ -9,7 +9,7 @@ use super::paths::Paths;
 use super::poles::{PolePath, PoleQuery, PoleSearch, is_shaded};
 use super::ranking::{Found, FoundPath, Rank, Ranking};
 use crate::{
-    acoustics::{panels_share, pole_wave_correction, reflected},
+    acoustics::{pole_wave_correction, reflected},
     geometry::{Point, opposite, wrap_angle},
     scene::{Air, Bounce, Contact, Scene},
     threads::Stop,
@@ -26,8 +26,8 @@ pub struct Tracer {
     /// Whether poles shade what lies behind them where they are thicker than the first Fresnel zone, and sensors within
     /// something solid are refused; see [`Physics::shadows`](crate::Physics::shadows). Off by default.
     pub pole_shadows: bool,
-    /// Whether free ends of walls and corners that jut out diffract, and panels narrower than the first Fresnel zone
-    /// return less than walls; see [`Physics::edges`](crate::Physics::edges). Off by default.
+    /// Whether free ends of walls and corners that jut out diffract; see [`Physics::edges`](crate::Physics::edges). Off
+    /// by default.
     pub edges: bool,
     /// The most bounces of a path with a pole, at most those of all others. The default is [`MAX_ORDER`].
     pub pole_order: u32,
@@ -201,20 +201,15 @@ impl Tracer {
         let found = Found { tree: &self.tree, poles: &self.poles, edges: &self.around };
         let wavelength_m = core::f64::consts::TAU / wave_number;
         let shades = self.pole_shadows && !scene.poles().is_empty();
-        let narrows = self.edges && scene.panels.any();
         for &Rank { length_m, index } in self.ranking.ranks() {
             let start = paths.bounces.len();
             let receiver = found.push_bounces(index, &mut paths.bounces);
-            let mut panels = 1.0;
-            if shades || narrows {
+            if shades {
                 let bounces = &paths.bounces[start..];
                 let corners = scene.bounce_points(source, receivers[receiver as usize], bounces);
-                if shades && corners.as_ref().is_some_and(|corners| is_shaded(scene, corners, bounces, wavelength_m)) {
+                if corners.is_some_and(|corners| is_shaded(scene, &corners, bounces, wavelength_m)) {
                     paths.bounces.truncate(start);
                     continue;
-                }
-                if let Some(corners) = corners.filter(|_| narrows) {
-                    panels = panels_share(scene, &corners, bounces, wavelength_m);
                 }
             }
             let amplitude;
@@ -256,7 +251,7 @@ impl Tracer {
                 }
             }
             paths.length_m.push(length_m);
-            paths.amplitude.push(amplitude * panels * libm::exp(loss_per_m * length_m));
+            paths.amplitude.push(amplitude * libm::exp(loss_per_m * length_m));
             paths.ends.push(paths.bounces.len() as u32);
         }
     }

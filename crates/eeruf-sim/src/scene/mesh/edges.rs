@@ -3,7 +3,6 @@
 use core::f64::consts::{PI, TAU};
 
 use super::Piece;
-use super::panels::{Side, faces_of};
 use crate::geometry::Point;
 use crate::scene::wall::Wall;
 
@@ -30,24 +29,29 @@ impl Edge {
     }
 }
 
-/// All edges of these pieces of wall, by the number of their vertex, each with the sides of walls between which its
-/// open space is. Openings have none.
-pub(crate) fn edges_of(vertices: &[Point], pieces: &[Piece], walls: &[Wall]) -> (Vec<Edge>, Vec<[Side; 2]>) {
-    let (mut edges, mut sides) = (Vec::new(), Vec::new());
-    for (&at, faces) in vertices.iter().zip(&faces_of(vertices, pieces, walls)) {
-        for (k, face) in faces.iter().enumerate() {
-            let face_rad = face.angle_rad;
-            let (next, outside_rad) = match faces.get(k + 1) {
-                Some(next) => (next, next.angle_rad - face_rad),
-                None => (&faces[0], faces[0].angle_rad + TAU - face_rad),
+/// All edges of these pieces of wall, by the number of their vertex. Openings have none.
+pub(crate) fn edges_of(vertices: &[Point], pieces: &[Piece], walls: &[Wall]) -> Vec<Edge> {
+    let mut faces: Vec<Vec<f64>> = vec![Vec::new(); vertices.len()];
+    for piece in pieces.iter().filter(|piece| !walls[piece.wall].is_open()) {
+        let [from, to] = piece.ends;
+        let along = vertices[to] - vertices[from];
+        faces[from].push(libm::atan2(along.y, along.x));
+        faces[to].push(libm::atan2(-along.y, -along.x));
+    }
+    let mut edges = Vec::new();
+    for (&at, faces) in vertices.iter().zip(&mut faces) {
+        faces.sort_by(f64::total_cmp);
+        for (k, &face_rad) in faces.iter().enumerate() {
+            let outside_rad = match faces.get(k + 1) {
+                Some(next) => next - face_rad,
+                None => faces[0] + TAU - face_rad,
             };
             if outside_rad > PI + LEAST_TURN_RAD {
                 edges.push(Edge { at, face_rad, outside_rad });
-                sides.push([face.begins(pieces), next.ends(pieces)]);
             }
         }
     }
-    (edges, sides)
+    edges
 }
 
 #[cfg(test)]

@@ -5,7 +5,6 @@ mod build;
 pub(super) mod edges;
 mod hints;
 pub(super) mod joints;
-pub(super) mod panels;
 
 use crate::geometry::{Point, SAME_DIRECTION, cross};
 use hints::Hints;

@@ -1789,8 +1789,8 @@ static uint32_t rests_for(const EerufHoppingRing *hopping, uint8_t sensor) {
     const EerufHopper *hopper = &hopping->hoppers[sensor];
     const uint32_t rested = sensor_of(&hopping->ring, sensor)->fired_us + hopping->config.window_us;
     const uint32_t rests = has_reached(hopping->start_us, rested) ? 0 : rested - hopping->start_us;
-    /* A clock that has jumped says nothing about when the last firing was. */
-    return (hopper->flags & HAS_FIRED) && rests <= hopping->config.window_us ? rests : 0;
+    /* It may have fired late past the period's end. A clock that has jumped says nothing about when that was. */
+    return (hopper->flags & HAS_FIRED) && rests <= hopping->config.window_us + CATCHES_UP_US ? rests : 0;
 }
 
 static bool is_disabled(const EerufHoppingRing *hopping, uint8_t sensor) {
@@ -1814,7 +1814,8 @@ static uint8_t longest_unserved(const EerufHoppingRing *hopping) {
 static void plan_solo(EerufHoppingRing *hopping, uint8_t sensor) {
     const uint32_t silent = hopping->ring.last_fired_us + hopping->dies_us;
     uint32_t at_us = has_reached(hopping->start_us, silent) ? 0 : silent - hopping->start_us;
-    if (at_us > hopping->dies_us) at_us = 0; /* the clock has jumped */
+    /* The last firing may have been late past the period's end; further ahead the clock has jumped. */
+    if (at_us > hopping->dies_us + CATCHES_UP_US) at_us = 0;
     /* Its own last firing is among those that it waits for, but its window may be longer. */
     at_us = longer(at_us, rests_for(hopping, sensor));
     hopping->earned = (uint16_t)(hopping->earned - ONE_SOLO);

@@ -13,7 +13,7 @@ use crate::time::{Instant, Micros};
 
 /// A firing that is later than this moves all that follow. Up to this the timetable stands, so that lateness does not
 /// add up; intervals can be shorter than planned by as much.
-const CATCHES_UP: Micros = Micros::new(1000);
+pub(super) const CATCHES_UP: Micros = Micros::new(1000);
 
 /// Fires each sensor at its lag plus the wait of the phase, and in a *solo period* one sensor alone.
 ///

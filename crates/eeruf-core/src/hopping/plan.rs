@@ -1,6 +1,6 @@
 //! What the next period of a hopping ring is made of: who fires, whether one sensor has it alone, and new lags.
 
-use super::firing::HoppingFiring;
+use super::firing::{CATCHES_UP, HoppingFiring};
 use super::schedule::longest_lag;
 use super::turn::{FIRED, SETTLED};
 use crate::time::Micros;
@@ -52,8 +52,8 @@ impl<const K: usize> HoppingFiring<K> {
     fn plan_solo(&mut self, sensor: u8) {
         let silent = self.last_fired + self.dies;
         let silent = if self.start.has_reached(silent) { Micros::ZERO } else { silent.since(self.start) };
-        // A clock that has jumped says nothing about when the last firing was.
-        let at = if silent <= self.dies { silent } else { Micros::ZERO };
+        // The last firing may have been late past the period's end. A clock that has jumped says nothing about it.
+        let at = if silent <= self.dies.saturating_add(CATCHES_UP) { silent } else { Micros::ZERO };
         // Its own last firing is among those that it waits for, but its window may be longer.
         let at = at.max(self.rests_for(sensor));
         self.earned -= ONE;
@@ -71,8 +71,9 @@ impl<const K: usize> HoppingFiring<K> {
         let Some(turn) = self.turns.get(usize::from(sensor)) else { return Micros::MAX };
         let rested = turn.fired + self.window;
         let rests = if self.start.has_reached(rested) { Micros::ZERO } else { rested.since(self.start) };
-        // A clock that has jumped says nothing about when the last firing was.
-        if turn.is(FIRED) && rests <= self.window { rests } else { Micros::ZERO }
+        // It may have fired late past the period's end. A clock that has jumped says nothing about when that was.
+        let is_known = turn.is(FIRED) && rests <= self.window.saturating_add(CATCHES_UP);
+        if is_known { rests } else { Micros::ZERO }
     }
 
     fn may_fire(&self, sensor: u8) -> bool {

@@ -184,3 +184,39 @@ fn a_reading_has_the_phase_of_its_firing_and_a_period_counts_the_readings_it_gav
     let wanted = (first..).map(|phase| Phase((phase % usize::from(code.phases())) as u8));
     assert!(phases.iter().copied().eq(wanted.take(phases.len())), "{phases:?}");
 }
+
+#[test]
+fn a_sensor_rests_for_its_window_also_after_a_firing_that_was_late_past_the_periods_end() {
+    let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
+    let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
+    let listening = HoppingListening { blanking: Micros::new(BLANKING), ..HoppingListening::new(Micros::new(WINDOW)) };
+    // Lags that move come to lie at the very end of the period.
+    let settings = HoppingSettings { shift_after: 1, shift_spacing: 1, ..HoppingSettings::BALANCED };
+    for seed in 0..60 {
+        let mut random = Random(seed);
+        let start = Instant::from_micros(0);
+        let mut ring = HoppingRing::<SENSORS>::new(&schedule, settings, listening, seed as u32, start).unwrap();
+        let (mut fired, mut periods, mut last_fired) = ([None; SENSORS], 0, None);
+        while periods < 400 {
+            let now = ring.next_deadline() + Micros::new(random.up_to(999));
+            while let Some(event) = ring.poll(now) {
+                match event {
+                    RingEvent::Fire { sensor, .. } => {
+                        let last: &mut Option<Instant> = &mut fired[usize::from(sensor)];
+                        let rested = last.replace(now).map(|last| now.since(last));
+                        assert!(rested.is_none_or(|rested| rested >= Micros::new(WINDOW)), "{sensor}: {rested:?}");
+                        if ring.firing().solo().is_some() {
+                            let silent = last_fired.map(|last| now.since(last));
+                            assert!(silent.is_none_or(|silent| silent >= Micros::new(WINDOW)), "{sensor}: {silent:?}");
+                        }
+                        last_fired = Some(now);
+                        // What hardly ever fits.
+                        ring.echo(sensor, now + Micros::new(3000 + random.up_to(30_000))).unwrap();
+                    }
+                    RingEvent::Reading(_) => {}
+                    RingEvent::PeriodEnded(_) => periods += 1,
+                }
+            }
+        }
+    }
+}

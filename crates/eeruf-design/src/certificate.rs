@@ -1,14 +1,13 @@
 //! The certificate of a design, proven by `eeruf-check`: of the search it uses only the schedule and the bound.
 
-use eeruf_check::Claim;
 use eeruf_check::prove::{NoProof, prove_what_can_be};
 use eeruf_check::veripb::{self, VeriPb};
+use eeruf_core::Micros;
 use eeruf_core::search::PeriodProblem;
-use eeruf_core::{Micros, Phase};
 use eeruf_sim::AnySchedule;
 
 use crate::find::RingDesign;
-use crate::ticks::in_ticks;
+use crate::ticks::claim;
 
 /// The text of the certificate that the design's period is the shortest, or that none is below the search's bound; or
 /// a lower bound, where that proof has more than `budget` nodes or `go_on`, which is given the nodes so far, says no.
@@ -43,16 +42,4 @@ pub fn prove_to_veripb(
     go_on: impl FnMut(usize) -> bool,
 ) -> Result<VeriPb, NoProof> {
     veripb::prove(&claim(&design.spec.problem(), &design.schedule, design.found.bound), budget, go_on)
-}
-
-/// What a certificate says of the schedule, in ticks.
-pub(crate) fn claim(problem: &PeriodProblem<'_>, schedule: &AnySchedule, bound: Option<Micros>) -> Claim {
-    let tick_us = problem.tick.as_micros().max(1);
-    let ticks = |time: Micros| time.as_micros() / tick_us;
-    let fire = [Phase::A, Phase::B].map(|phase| {
-        (0..problem.sensors).map(|sensor| ticks(schedule.t_fire(phase, sensor).unwrap_or_default())).collect()
-    });
-    let period = ticks(schedule.period());
-    // There is no bound below one tick.
-    Claim { problem: in_ticks(problem), period, fire, bound: ticks(bound.unwrap_or_default()).max(1) }
 }

@@ -9,8 +9,7 @@ use eeruf_core::search::{Control, Found, GridError, PeriodProblem, ProblemError,
 use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_sim::AnySchedule;
 
-use crate::certificate::claim;
-use crate::ticks::in_ticks;
+use crate::ticks::{claim, in_ticks};
 
 /// What a schedule of an uneven ring keeps beyond what is needed, by the same for all sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

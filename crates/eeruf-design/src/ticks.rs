@@ -1,8 +1,9 @@
-//! A problem in the whole ticks of a certificate, of sensors that are alike or not.
+//! A problem and a schedule in the whole ticks of a certificate, of sensors that are alike or not.
 
-use eeruf_check::Problem;
-use eeruf_core::Micros;
+use eeruf_check::{Claim, Problem};
 use eeruf_core::search::PeriodProblem;
+use eeruf_core::{Micros, Phase};
+use eeruf_sim::AnySchedule;
 
 /// The problem in whole ticks: the separation of a sensor is the smallest number of ticks above twice its `t_delta`,
 /// windows and gaps are the smallest that are as long.
@@ -30,4 +31,16 @@ pub(crate) fn in_ticks(problem: &PeriodProblem<'_>) -> Problem {
         together: together.iter().map(members).collect(),
         gaps: gaps.filter(|&(.., after_x, after_y)| after_x > 0 || after_y > 0).collect(),
     }
+}
+
+/// What a certificate says of the schedule, in ticks.
+pub(crate) fn claim(problem: &PeriodProblem<'_>, schedule: &AnySchedule, bound: Option<Micros>) -> Claim {
+    let tick_us = problem.tick.as_micros().max(1);
+    let ticks = |time: Micros| time.as_micros() / tick_us;
+    let fire = [Phase::A, Phase::B].map(|phase| {
+        (0..problem.sensors).map(|sensor| ticks(schedule.t_fire(phase, sensor).unwrap_or_default())).collect()
+    });
+    let period = ticks(schedule.period());
+    // There is no bound below one tick.
+    Claim { problem: in_ticks(problem), period, fire, bound: ticks(bound.unwrap_or_default()).max(1) }
 }

@@ -1,5 +1,5 @@
 // @ts-check
-/** The border to the engine in WebAssembly: a question and its answer are texts. Knows neither page nor worker. */
+/** The way to the engine in WebAssembly: a question and its answer are texts. Knows neither page nor worker. */
 
 /**
  * @typedef {object} Engine

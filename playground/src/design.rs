@@ -5,7 +5,7 @@ use eeruf_core::{Micros, Phase};
 use eeruf_design::{FoundJson, RingDesign, RingSpec, Search, WhatIf};
 use serde::Serialize;
 
-use crate::border::progress;
+use crate::exports::progress;
 
 /// How many nodes a search on the page may visit, and where there are more sensors than [`FEW`], each of whose nodes
 /// costs many times as much: a minute or so.
@@ -19,7 +19,7 @@ const SAID_EVERY: usize = 256;
 
 /// A designed ring. Times in microseconds.
 #[derive(Serialize)]
-pub(crate) struct Designed {
+pub(crate) struct DesignAnswer {
     /// What `eeruf design --json` prints; `seconds` is 0, as there is no clock.
     found: FoundJson,
     /// What `t_delta` must cover, and the largest that the schedule allows.
@@ -61,7 +61,7 @@ pub(crate) struct Checked {
 }
 
 /// The shortest period for a ring file.
-pub(crate) fn design(ring: &str) -> Result<Designed, String> {
+pub(crate) fn design(ring: &str) -> Result<DesignAnswer, String> {
     let spec = RingSpec::from_text(ring).map_err(|error| error.to_string())?;
     let design = shortest(&spec, true)?;
     let requirements = design.spec.problem().requirements;
@@ -76,7 +76,7 @@ pub(crate) fn design(ring: &str) -> Result<Designed, String> {
         period_us: period.map(Micros::as_micros),
         proven: *proven,
     };
-    Ok(Designed {
+    Ok(DesignAnswer {
         found: design.json(0.0),
         t_delta_us: design.t_delta.as_micros(),
         max_t_delta_us: max_t_delta.map(Micros::as_micros),

@@ -3,14 +3,14 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `border` | what JavaScript calls: a text goes in, a text comes out |
+//! | `exports` | what JavaScript calls: a text goes in, a text comes out |
 //! | `question` | which questions there are |
 //! | `trace` | every critical path of a ring, with its corners |
 //! | `run` | a scene under a firing method: readings, figures, who fooled whom |
 //! | `design` | the shortest period for a ring, its proof, its certificate, its source texts |
 
-mod border;
 mod design;
+mod exports;
 mod question;
 mod run;
 mod trace;

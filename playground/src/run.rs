@@ -7,7 +7,7 @@ use eeruf_sim::{
 };
 use serde::Serialize;
 
-use crate::border::progress;
+use crate::exports::progress;
 use crate::trace::pairs;
 
 /// How many nodes the search for `eeruf_best` may cost, as in `eeruf study`.

@@ -13,7 +13,7 @@ use crate::files::survey::{TruePath, simulate, true_paths};
 use crate::files::toml::read_world;
 use crate::files::write::write;
 use crate::report::json::to_json;
-use crate::report::survey::{Found, RingNeeds, Scenes, describe, json, ring_file, who_hears_whom};
+use crate::report::survey::{Found, RingTerms, Scenes, describe, json, ring_file, who_hears_whom};
 
 /// Say from a measuring run which sensors hear each other, along paths of which length and how sure, and write a ring
 /// file for `design`.
@@ -90,12 +90,12 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let surveyed = survey(&log, &settings(args));
     let found = found(args, file, &log, &surveyed, truth.as_ref());
     if let Some(ring) = &args.ring {
-        let needs = RingNeeds {
+        let terms = RingTerms {
             t_delta_us: args.t_delta_us,
             window_us: args.window_us.unwrap_or(surveyed.window_us.next_multiple_of(1000)),
             tolerance_us: args.tolerance_us,
         };
-        write(ring, ring_file(&found, &needs))?;
+        write(ring, ring_file(&found, &terms))?;
     }
     if let Some(file) = &args.svg {
         who_hears_whom(&found).save(file)?;

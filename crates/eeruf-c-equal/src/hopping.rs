@@ -139,7 +139,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
                     same::<()>(&mut c, Do::Restart, 0, world.now, Ok(()));
                 }
             }
-            assert_eq!(c.ask(Do::IsEnabled, sensor, 0) == 1, ring.is_enabled(sensor));
+            assert_eq!(c.call(Do::IsEnabled, sensor, 0) == 1, ring.is_enabled(sensor));
         }
         let changes: Vec<i32> = (0..K).map(|_| r.duration(200) as i32 - 100).collect();
         for _ in 0..20 {
@@ -174,7 +174,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
                         assert_eq!(Some(Micros::new(c.lag_us(sensor))), ring.firing().t_lag(sensor.into()));
                     }
                     let solo = ring.firing().solo().map_or(255, i32::from);
-                    assert_eq!(c.ask(Do::Solo, 0, 0) & 255, solo, "{}", at());
+                    assert_eq!(c.call(Do::Solo, 0, 0) & 255, solo, "{}", at());
                 }
             }
         }

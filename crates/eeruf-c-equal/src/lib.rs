@@ -4,12 +4,12 @@
 //!
 //! Nothing here is for others: firmware in Rust uses `eeruf-core`, firmware in C uses `c/eeruf.h`.
 
-mod border;
 pub mod core_side;
 pub mod hopping;
 pub mod modules;
 mod random;
 pub mod ring;
+mod shim;
 pub mod world;
 
 use std::ffi::c_void;
@@ -84,7 +84,7 @@ impl Default for C {
 impl Drop for C {
     fn drop(&mut self) {
         // SAFETY: made by `shim_new`, and freed once.
-        unsafe { border::shim_free(self.0) }
+        unsafe { shim::shim_free(self.0) }
     }
 }
 
@@ -92,14 +92,14 @@ impl C {
     /// Nothing yet.
     pub fn new() -> Self {
         // SAFETY: takes nothing.
-        Self(unsafe { border::shim_new() })
+        Self(unsafe { shim::shim_new() })
     }
 
     /// `eeruf_schedule_make` of times by phase and sensor: its status. Schedules are numbered as they are made.
     pub fn schedule(&mut self, period_us: u32, sensors: u8, phases: u8, t_fire_us: &[u32]) -> i32 {
         assert_eq!(t_fire_us.len(), usize::from(sensors) * usize::from(phases));
         // SAFETY: as many times as there are sensors and phases.
-        unsafe { border::shim_schedule(self.0, period_us, sensors, phases, t_fire_us.as_ptr()) }
+        unsafe { shim::shim_schedule(self.0, period_us, sensors, phases, t_fire_us.as_ptr()) }
     }
 
     /// `eeruf_schedule_verify` of the schedule with this number, and `eeruf_schedule_check` if that is fine.
@@ -109,7 +109,7 @@ impl C {
         let stale_echo = stale_echo.into();
         // SAFETY: a schedule that was made, and room for four numbers.
         let status = unsafe {
-            border::shim_verify(
+            shim::shim_verify(
                 self.0,
                 schedule,
                 t_delta_us,
@@ -129,7 +129,7 @@ impl C {
     pub fn ring(&mut self, schedule: u32, listening: [u32; 3], consecutive: u8, now_us: u32) -> i32 {
         let [t_delta_us, window_us, blanking_us] = listening;
         // SAFETY: a schedule that was made.
-        unsafe { border::shim_ring(self.0, schedule, t_delta_us, window_us, blanking_us, consecutive, now_us) }
+        unsafe { shim::shim_ring(self.0, schedule, t_delta_us, window_us, blanking_us, consecutive, now_us) }
     }
 
     /// The next event, or the status of a poll without one.
@@ -137,20 +137,20 @@ impl C {
         let mut flat = [0; 17];
         let change_us = change_us.map_or(std::ptr::null(), <[i32]>::as_ptr);
         // SAFETY: a number for each sensor, and room for an event.
-        let status = unsafe { border::shim_poll(self.0, now_us, change_us, flat.as_mut_ptr()) };
+        let status = unsafe { shim::shim_poll(self.0, now_us, change_us, flat.as_mut_ptr()) };
         if status == EVENT { Ok(flat) } else { Err(status) }
     }
 
     /// `eeruf_ring_deadline`.
     pub fn deadline(&self) -> u32 {
         // SAFETY: a ring that was made.
-        unsafe { border::shim_deadline(self.0) }
+        unsafe { shim::shim_deadline(self.0) }
     }
 
     /// One of the functions that take a sensor and a number.
-    pub fn ask(&mut self, what: Do, sensor: u8, value: u32) -> i32 {
+    pub fn call(&mut self, what: Do, sensor: u8, value: u32) -> i32 {
         // SAFETY: a ring, or modules, that were made.
-        unsafe { border::shim_do(self.0, what as u32, sensor, value) }
+        unsafe { shim::shim_do(self.0, what as u32, sensor, value) }
     }
 
     /// The frame that `eeruf_serial_event` makes of the last poll's event, for a hopping ring
@@ -160,7 +160,7 @@ impl C {
         let mut frame = vec![0; 78];
         let change_us = change_us.map_or(std::ptr::null(), <[i32]>::as_ptr);
         // SAFETY: a ring that was polled, a number for each sensor, and room for the longest frame.
-        let size = unsafe { border::shim_serial_event(self.0, sensors, change_us, now_us, frame.as_mut_ptr()) };
+        let size = unsafe { shim::shim_serial_event(self.0, sensors, change_us, now_us, frame.as_mut_ptr()) };
         frame.truncate(size);
         frame
     }
@@ -168,20 +168,20 @@ impl C {
     /// `eeruf_hc_sr04_init`.
     pub fn modules(&mut self, min_retrigger_us: u32, shortest_us: u16) -> i32 {
         // SAFETY: a ring that was made.
-        unsafe { border::shim_modules(self.0, min_retrigger_us, shortest_us) }
+        unsafe { shim::shim_modules(self.0, min_retrigger_us, shortest_us) }
     }
 
     /// `eeruf_adaptation_init` with all schedules made, and its settings.
     pub fn adaptation(&mut self, window: u8, patience: u8, noisy: u16, calm: u16) -> i32 {
         // SAFETY: schedules that were made.
-        unsafe { border::shim_adaptation(self.0, window, patience, noisy, calm) }
+        unsafe { shim::shim_adaptation(self.0, window, patience, noisy, calm) }
     }
 
     /// The adaptation's rung, and the rejection rate, 65,535 without one.
     pub fn rung(&self) -> (u32, u32) {
         let (mut rung, mut permille) = (0, 0);
         // SAFETY: room for both.
-        unsafe { border::shim_rung(self.0, &raw mut rung, &raw mut permille) };
+        unsafe { shim::shim_rung(self.0, &raw mut rung, &raw mut permille) };
         (rung, permille)
     }
 
@@ -190,25 +190,25 @@ impl C {
         assert!(numbers.len() == 22 || numbers.len() == 22 + usize::from(sensors));
         let has_lags = u8::from(numbers.len() > 22);
         // SAFETY: as many numbers as are read.
-        unsafe { border::shim_hopping(self.0, sensors, phases, numbers.as_ptr(), has_lags, now_us) }
+        unsafe { shim::shim_hopping(self.0, sensors, phases, numbers.as_ptr(), has_lags, now_us) }
     }
 
     /// `eeruf_hopping_confirmed_us`.
     pub fn confirmed_us(&self, sensor: u8) -> u32 {
         // SAFETY: a hopping ring that was made.
-        unsafe { border::shim_hopping_of(self.0, sensor, 0) }
+        unsafe { shim::shim_hopping_of(self.0, sensor, 0) }
     }
 
     /// `eeruf_hopping_lag_us`.
     pub fn lag_us(&self, sensor: u8) -> u32 {
         // SAFETY: a hopping ring that was made.
-        unsafe { border::shim_hopping_of(self.0, sensor, 1) }
+        unsafe { shim::shim_hopping_of(self.0, sensor, 1) }
     }
 
     /// `eeruf_hopping_weighed` and `eeruf_hopping_changes`.
     pub fn weighed(&self, sensor: u8) -> (u32, u32) {
         // SAFETY: a hopping ring that was made.
-        unsafe { (border::shim_hopping_of(self.0, sensor, 2), border::shim_hopping_of(self.0, sensor, 3)) }
+        unsafe { (shim::shim_hopping_of(self.0, sensor, 2), shim::shim_hopping_of(self.0, sensor, 3)) }
     }
 }
 
@@ -217,7 +217,7 @@ pub fn filter(held: &mut [u32; 3], t_delta_us: u32, consecutive: u8, t_echo_us: 
     let mut out = [0; 4];
     // SAFETY: room for what is held and for what comes out.
     let status = unsafe {
-        border::shim_filter(held.as_mut_ptr(), t_delta_us, consecutive, t_echo_us, change_us, out.as_mut_ptr())
+        shim::shim_filter(held.as_mut_ptr(), t_delta_us, consecutive, t_echo_us, change_us, out.as_mut_ptr())
     };
     assert_eq!(status, 0);
     out
@@ -226,19 +226,19 @@ pub fn filter(held: &mut [u32; 3], t_delta_us: u32, consecutive: u8, t_echo_us: 
 /// `eeruf_sound_mm_s`.
 pub fn sound_mm_s(celsius_tenths: i16) -> u32 {
     // SAFETY: any number will do, here and below.
-    unsafe { border::eeruf_sound_mm_s(celsius_tenths) }
+    unsafe { shim::eeruf_sound_mm_s(celsius_tenths) }
 }
 
 /// `eeruf_distance_mm`.
 pub fn distance_mm(t_echo_us: u32, c_mm_s: u32) -> u32 {
     // SAFETY: see above.
-    unsafe { border::eeruf_distance_mm(t_echo_us, c_mm_s) }
+    unsafe { shim::eeruf_distance_mm(t_echo_us, c_mm_s) }
 }
 
 /// `eeruf_echo_time_us`.
 pub fn echo_time_us(distance_mm: u32, c_mm_s: u32) -> u32 {
     // SAFETY: see above.
-    unsafe { border::eeruf_echo_time_us(distance_mm, c_mm_s) }
+    unsafe { shim::eeruf_echo_time_us(distance_mm, c_mm_s) }
 }
 
 /// A queue of eight edges; there is one, so only one test uses it.
@@ -249,21 +249,21 @@ impl Edges {
     /// Empties it.
     pub fn new() -> Self {
         // SAFETY: its memory is C's own.
-        unsafe { border::shim_edges_new() };
+        unsafe { shim::shim_edges_new() };
         Self
     }
 
     /// `eeruf_edges_push`.
     pub fn push(&mut self, sensor: u8, high: bool, at_us: u32) {
         // SAFETY: it was made.
-        unsafe { border::shim_edges_push(sensor, high.into(), at_us) };
+        unsafe { shim::shim_edges_push(sensor, high.into(), at_us) };
     }
 
     /// `eeruf_edges_pop`: sensor, level and instant, if there is one; and how many were lost.
     pub fn pop(&mut self) -> (Option<[u32; 3]>, u32) {
         let mut out = [0; 4];
         // SAFETY: room for four numbers.
-        let status = unsafe { border::shim_edges_pop(out.as_mut_ptr()) };
+        let status = unsafe { shim::shim_edges_pop(out.as_mut_ptr()) };
         let [sensor, high, at, lost] = out;
         ((status == 0).then_some([sensor, high, at]), lost)
     }

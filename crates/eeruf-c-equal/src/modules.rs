@@ -165,7 +165,7 @@ pub fn run(r: &Random) -> u64 {
                 Err(SetupError::Ring(error)) => status_of(&error),
                 Err(_) => -21,
             };
-            assert_eq!(c.ask(Do::ChangeModules, 0, number), expected);
+            assert_eq!(c.call(Do::ChangeModules, 0, number), expected);
         }
         for _ in 0..20 {
             let r = &world.random;
@@ -180,12 +180,12 @@ pub fn run(r: &Random) -> u64 {
             if let RingEvent::Fire { sensor, .. } = event {
                 let with_level = sensor | u8::from(next.high) << 7;
                 let status = match next.cannot_read {
-                    true => c.ask(Do::CannotRead, sensor, world.now),
-                    false => c.ask(Do::FireModule, with_level, world.now),
+                    true => c.call(Do::CannotRead, sensor, world.now),
+                    false => c.call(Do::FireModule, with_level, world.now),
                 };
                 assert_eq!(status, if next.high || next.cannot_read { 2 } else { 0 }, "{}", at());
                 if status == 0 && next.cannot_write {
-                    assert_eq!(c.ask(Do::CannotWrite, sensor, 0), 0);
+                    assert_eq!(c.call(Do::CannotWrite, sensor, 0), 0);
                 }
                 pulse(r, &mut edges, world.now, sensor, 3_000 + 4_000 * u32::from(sensor));
                 if r.once_in(12) {
@@ -195,7 +195,7 @@ pub fn run(r: &Random) -> u64 {
             }
             assert_eq!(c.deadline(), modules.next_deadline().as_micros(), "{}", at());
             for sensor in 0..=K as u8 {
-                assert_eq!(c.ask(Do::Health, sensor, 0), health(modules.health(sensor)), "{}", at());
+                assert_eq!(c.call(Do::Health, sensor, 0), health(modules.health(sensor)), "{}", at());
             }
         }
     }

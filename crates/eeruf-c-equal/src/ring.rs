@@ -101,7 +101,7 @@ where
 }
 
 fn change(c: &mut C, what: Do, value: u32, rust: Result<(), RingError>) {
-    assert_eq!(c.ask(what, 0, value), rust.map_or_else(|error| status_of(&error), |()| 0), "{what:?} {value}");
+    assert_eq!(c.call(what, 0, value), rust.map_or_else(|error| status_of(&error), |()| 0), "{what:?} {value}");
 }
 
 type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M>, K>;
@@ -145,7 +145,7 @@ fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, sched
             same(c, Do::Fired, sensor, at, ring.fired(sensor, Instant::from_micros(at)));
         }
     }
-    assert_eq!(c.ask(Do::IsEnabled, sensor, 0) == 1, ring.is_enabled(sensor));
+    assert_eq!(c.call(Do::IsEnabled, sensor, 0) == 1, ring.is_enabled(sensor));
 }
 
 /// One ring for up to 3,000 steps, or until there are no numbers left; how many events it had.

@@ -87,5 +87,5 @@ impl World {
 /// Where they differ.
 pub fn same<E>(c: &mut C, what: Do, sensor: u8, value: u32, rust: Result<(), E>) {
     let expected = if rust.is_ok() { 0 } else { -5 };
-    assert_eq!(c.ask(what, sensor, value), expected, "{what:?} of sensor {sensor}, {value}");
+    assert_eq!(c.call(what, sensor, value), expected, "{what:?} of sensor {sensor}, {value}");
 }

@@ -66,7 +66,7 @@ impl Control {
     }
 
     /// Follows a poll of the board's ring at `now` that returned `event`: fires if that fired, and not otherwise.
-    pub(crate) fn follow(&mut self, now: Instant, event: Option<&RingEvent>) -> Result<(), String> {
+    pub(crate) fn after_poll(&mut self, now: Instant, event: Option<&RingEvent>) -> Result<(), String> {
         while let Some(edge) = self.ahead.pop_if(|edge| now.has_reached(edge.at)) {
             self.ring.edge(edge).map_err(|error| error.to_string())?;
         }

@@ -160,7 +160,7 @@ fn run_ring<R: EchoRing<SENSORS>>(
                 Some(Topic::Poll) => {
                     let event = reference.poll(record.instant())?;
                     if let Some(control) = &mut control {
-                        control.follow(record.instant(), event.as_ref())?;
+                        control.after_poll(record.instant(), event.as_ref())?;
                     }
                     match event {
                         Some(RingEvent::Reading(reading)) => run.take(reading),

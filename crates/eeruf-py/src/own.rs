@@ -6,7 +6,7 @@ use std::{
 };
 
 use eeruf_core::{MAX_SENSORS, Micros, Phase, ReadingKind};
-use eeruf_sim::{Echo, Filter, Firing, FiringPeriod, Judged, Own, OwnError};
+use eeruf_sim::{Echo, Filter, Filtered, Firing, FiringPeriod, Own, OwnError};
 use pyo3::{
     PyTraverseError, PyVisit,
     prelude::*,
@@ -242,7 +242,7 @@ const KEPT: usize = 16;
 const JUDGED: &str = "an eeruf.Reading, or (kind, t_echo_us) with None for no echo";
 
 impl Filter for OwnFilter {
-    fn judge(&mut self, firing: &eeruf_sim::FiredReading<'_>) -> Result<Judged, OwnError> {
+    fn push(&mut self, firing: &eeruf_sim::FiredReading<'_>) -> Result<Filtered, OwnError> {
         let mut none = VecDeque::new();
         let last = self.last.get_mut(usize::from(firing.reading.sensor)).unwrap_or(&mut none);
         for &echo in firing.echoes.iter().rev() {
@@ -257,7 +257,7 @@ impl Filter for OwnFilter {
                 expected_change_us: firing.expected_change_us,
             };
             let returned = callable.call1((fired,))?;
-            let (kind, t_echo) = judged(&returned)?;
+            let (kind, t_echo) = kind_and_t_echo(&returned)?;
             // The echo of that time, the latest of several; or, of a time that is no echo's, the latest of all.
             let echo = t_echo
                 .map(|t_echo| {
@@ -268,15 +268,15 @@ impl Filter for OwnFilter {
                     })
                 })
                 .transpose()?;
-            Ok(Judged { kind, echo })
+            Ok(Filtered { kind, echo })
         })
     }
 }
 
 /// The kind and the time of an echo that a callable has returned.
-fn judged(returned: &Bound<'_, PyAny>) -> PyResult<(ReadingKind, Option<Micros>)> {
+fn kind_and_t_echo(returned: &Bound<'_, PyAny>) -> PyResult<(ReadingKind, Option<Micros>)> {
     if let Ok(reading) = returned.cast::<Reading>() {
-        return Ok(reading.get().judged());
+        return Ok(reading.get().kind_and_t_echo());
     }
     let refused = || wrong("what filter returned", shown(returned), JUDGED);
     let pair = returned.cast::<PyTuple>().ok().filter(|pair| pair.len() == 2).ok_or_else(refused)?;

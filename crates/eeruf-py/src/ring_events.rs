@@ -112,7 +112,7 @@ impl Reading {
     }
 
     /// What a filter says of a firing.
-    pub(crate) fn judged(&self) -> (ReadingKind, Option<Micros>) {
+    pub(crate) fn kind_and_t_echo(&self) -> (ReadingKind, Option<Micros>) {
         let kind = ReadingKind::ALL.into_iter().find(|kind| kind.as_str() == self.kind);
         // A reading has one of them.
         (kind.unwrap_or(ReadingKind::First), self.t_echo_us.map(Micros::new))

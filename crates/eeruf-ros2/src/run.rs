@@ -11,8 +11,8 @@ use eeruf_serial::{Firing, Message, Received};
 use crate::board_clock::BoardClock;
 use crate::board_line::{FromLine, listen, nanoseconds};
 use crate::diagnosis::{Diagnosis, Level};
+use crate::filter::{RangeFilter, Raw};
 use crate::firing_log::FiringLog;
-use crate::judge::{Judge, Raw};
 use crate::mavlink::Mavlink;
 use crate::parameters::{Parameters, Source};
 use crate::range::{Distance, Scale};
@@ -58,7 +58,7 @@ struct EerufNode {
     ros: Option<Ros>,
     mavlink: Option<Mavlink>,
     log: Option<FiringLog>,
-    judge: Judge,
+    filter: RangeFilter,
     diagnosis: Diagnosis,
     scale: Scale,
     clock: BoardClock,
@@ -78,7 +78,7 @@ impl EerufNode {
             ros: parameters.ros.then(|| Ros::open(parameters)).transpose()?,
             mavlink: is_set(&parameters.mavlink).then(|| Mavlink::open(parameters)).transpose()?,
             log: (!log.is_empty()).then(|| FiringLog::create(&parameters.log)).transpose()?,
-            judge: Judge::new(Micros::new(parameters.t_delta_us))?,
+            filter: RangeFilter::new(Micros::new(parameters.t_delta_us))?,
             diagnosis: Diagnosis::new(parameters, 0.0),
             scale: Scale::new(parameters),
             clock: BoardClock::default(),
@@ -158,7 +158,7 @@ impl EerufNode {
             match message {
                 Ok(Heard::Firing { sensor, fired_us, period, phase, t_echo_us }) => {
                     let t_echo = (t_echo_us != u32::MAX).then_some(Micros::new(t_echo_us));
-                    let kind = self.judge.judge(sensor, t_echo.map_or(Raw::Nothing, |t_echo| self.raw(t_echo)))?;
+                    let kind = self.filter.push(sensor, t_echo.map_or(Raw::Nothing, |t_echo| self.raw(t_echo)))?;
                     let fired = eeruf_core::Instant::from_micros(fired_us);
                     let (late, age) = (Micros::ZERO, Micros::ZERO);
                     let firing = Firing { sensor, phase, kind, fired, period, t_echo, late, age, weighed: None };
@@ -174,7 +174,7 @@ impl EerufNode {
                         Distance::Clear => (Raw::Nothing, None),
                         Distance::TooClose => (Raw::TooEarly, None),
                     };
-                    let kind = self.judge.judge(sensor, raw)?;
+                    let kind = self.filter.push(sensor, raw)?;
                     self.reading(sensor, kind, t_echo, Micros::ZERO, nanoseconds());
                 }
                 Ok(Heard::Range { distance: None, .. }) => {}

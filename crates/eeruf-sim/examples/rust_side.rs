@@ -13,7 +13,7 @@ use eeruf_core::{
     search::{PeriodProblem, design},
 };
 use eeruf_sim::{
-    Air, Bounce, Filter, FiredReading, Judged, Method, Noise, Options, Own, OwnError, Pose, Robot, Scene, Simulation,
+    Air, Bounce, Filter, Filtered, FiredReading, Method, Noise, Options, Own, OwnError, Pose, Robot, Scene, Simulation,
     Stop, Transducer, Wall, World,
 };
 use serde_json::{Map, Value, json};
@@ -83,8 +83,8 @@ fn times() -> Value {
 struct Everything;
 
 impl Filter for Everything {
-    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
-        Ok(Judged::believed(firing.echoes.first().copied()))
+    fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
+        Ok(Filtered::accepted(firing.echoes.first().copied()))
     }
 }
 

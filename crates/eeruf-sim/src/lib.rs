@@ -89,8 +89,8 @@ pub use scene::{
     Air, Body, Bounce, Contact, Edge, Faces, Material, Outline, OutlineError, Pole, Scene, SceneError, Wall,
 };
 pub use simulation::{
-    Echo, Filter, FiredReading, Judged, LockStep, Options, Own, Simulation, SimulationError, simulate, simulate_until,
-    simulate_while,
+    Echo, Filter, Filtered, FiredReading, LockStep, Options, Own, Simulation, SimulationError, simulate,
+    simulate_until, simulate_while,
 };
 pub use threads::{Stop, sweep};
 pub use tracing::{

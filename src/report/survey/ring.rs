@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::Found;
 
 /// What a ring file needs besides who hears whom.
-pub(crate) struct RingNeeds {
+pub(crate) struct RingTerms {
     pub(crate) t_delta_us: u32,
     pub(crate) window_us: u32,
     /// Is added to travel times.
@@ -13,9 +13,9 @@ pub(crate) struct RingNeeds {
 }
 
 /// The pairs that hear each other as neighbours, each with the time after which the other's sound has passed.
-pub(crate) fn ring_file(found: &Found<'_>, needs: &RingNeeds) -> String {
+pub(crate) fn ring_file(found: &Found<'_>, terms: &RingTerms) -> String {
     let conflicts = found.surveyed.conflicts(found.until_us);
-    let round = |travel_us: f64| (travel_us.ceil() as u32).saturating_add(needs.tolerance_us).next_multiple_of(100);
+    let round = |travel_us: f64| (travel_us.ceil() as u32).saturating_add(terms.tolerance_us).next_multiple_of(100);
     let intervals: Vec<_> = conflicts.iter().map(|&(x, y, travel_us)| (x, y, round(travel_us))).collect();
     let longest = intervals.iter().map(|interval| interval.2).max().unwrap_or(0);
     let mut text = format!(
@@ -26,8 +26,8 @@ pub(crate) fn ring_file(found: &Found<'_>, needs: &RingNeeds) -> String {
         found.file.display(),
         found.until_us,
         found.surveyed.sensors,
-        needs.t_delta_us,
-        needs.window_us,
+        terms.t_delta_us,
+        terms.window_us,
     );
     let list = |text: &mut String, name: &str, entries: &mut dyn Iterator<Item = String>| {
         let entries: Vec<_> = entries.collect();

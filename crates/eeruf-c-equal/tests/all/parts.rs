@@ -107,12 +107,12 @@ fn adaptation_climbs_and_descends_alike() {
                 Some(RingEvent::Fire { sensor, .. }) => {
                     let after = if r.within(1, 4) <= noise { r.within(5_000, 20_000) } else { 9_000 };
                     ring.echo(sensor, now + Micros::new(after)).unwrap();
-                    assert_eq!(c.ask(Do::Echo, sensor, now.as_micros().wrapping_add(after)), 0);
+                    assert_eq!(c.call(Do::Echo, sensor, now.as_micros().wrapping_add(after)), 0);
                 }
                 Some(RingEvent::PeriodEnded(stats)) => {
                     let changed = rust.adapt(&stats, |schedule| ring.change_schedule(schedule));
                     changes += u32::from(changed == Ok(true));
-                    assert_eq!(c.ask(Do::Adapt, 0, 0), changed.map_or(-16, i32::from));
+                    assert_eq!(c.call(Do::Adapt, 0, 0), changed.map_or(-16, i32::from));
                     let advice = rust.advice(Micros::new(100), SpeedOfSound::AT_20_CELSIUS);
                     let permille = advice.rejection_permille.unwrap_or(u16::MAX);
                     assert_eq!(c.rung(), (advice.rung as u32, permille.into()));

@@ -89,7 +89,7 @@ pub fn check_scheduler<S: Scheduler>(
     let mut check = Check { now, seen: [Seen::default(); MAX_SENSORS], random: seed };
     for poll in 0..polls {
         check.poll(scheduler)?;
-        check.disturb(scheduler, poll)?;
+        check.act_at_random(scheduler, poll)?;
     }
     Ok(())
 }
@@ -202,7 +202,7 @@ impl Check {
     }
 
     /// Disables, enables or restarts now and then.
-    fn disturb<S: Scheduler>(&mut self, scheduler: &mut S, poll: u32) -> Result<(), BrokenPromise> {
+    fn act_at_random<S: Scheduler>(&mut self, scheduler: &mut S, poll: u32) -> Result<(), BrokenPromise> {
         if self.below(20) > 0 {
             return Ok(());
         }

@@ -154,7 +154,7 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
 
     /// The echo time of a sensor that is confirmed; `None` if none is, and for confirmed silence.
     pub fn confirmed(&self, sensor: usize) -> Option<Micros> {
-        self.sensors.get(sensor)?.confirmed()
+        self.sensors.get(sensor)?.reference()
     }
 
     /// Firings of a sensor since its last accepted or tentative reading; `None` if none ever was.

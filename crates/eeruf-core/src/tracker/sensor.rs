@@ -61,14 +61,14 @@ impl<const H: usize> SensorTracks<H> {
     /// Takes in a reading; also whether it may become a tentative one.
     pub(super) fn push(&mut self, heard: Heard, settings: &TrackerSettings) -> (Verdict, bool) {
         let Heard { t_echo, phase, solo, steady, tentative_votes } = heard;
-        let (mut believed, nearest) = self.believed_and_nearest(t_echo, settings.t_delta.as_micros());
+        let (mut confirmed, nearest) = self.confirmed_and_nearest(t_echo, settings.t_delta.as_micros());
         let near = settings.near.as_micros();
-        let is_near = believed.abs_diff(t_echo) <= near;
-        let previous = self.tracks.get(nearest).map_or(believed, Track::t_echo);
+        let is_near = confirmed.abs_diff(t_echo) <= near;
+        let previous = self.tracks.get(nearest).map_or(confirmed, Track::t_echo);
         let mut candidate = false;
         let mut tentative = false;
         if steady {
-            let before = core::mem::replace(&mut believed, NOTHING);
+            let before = core::mem::replace(&mut confirmed, NOTHING);
             for (place, track) in self.tracks.iter_mut().enumerate() {
                 if !track.exists() {
                     continue;
@@ -82,23 +82,23 @@ impl<const H: usize> SensorTracks<H> {
                     tentative = earlier && tentative_votes != 0 && (solo || votes >= tentative_votes);
                 } else if is_near && at == before {
                     track.grow_older();
-                    track.follow(t_echo);
+                    track.catch_up(t_echo);
                 } else if t_echo > at {
                     track.contradict(phase, solo, settings);
                 } else {
                     track.mask(phase);
                 }
-                believed = believed.min(track.believed());
+                confirmed = confirmed.min(track.confirmed());
             }
             if nearest == H && !is_near {
                 self.begin(t_echo, phase, solo);
-                believed = self.believed();
+                confirmed = self.confirmed();
                 tentative = solo && tentative_votes != 0 && t_echo != SILENCE;
             }
             self.explain(nearest != H || is_near);
         }
-        let confirmed = believed.abs_diff(t_echo) <= near;
-        let kind = match (confirmed, t_echo == SILENCE) {
+        let is_confirmed = confirmed.abs_diff(t_echo) <= near;
+        let kind = match (is_confirmed, t_echo == SILENCE) {
             (true, true) => ReadingKind::Clear,
             (true, false) => ReadingKind::Accepted,
             (false, true) => ReadingKind::NoEcho,
@@ -116,32 +116,32 @@ impl<const H: usize> SensorTracks<H> {
 
     /// Whether nothing in range is confirmed.
     pub(super) fn is_clear(&self) -> bool {
-        self.believed() == SILENCE
+        self.confirmed() == SILENCE
     }
 
     /// The echo time that counts now; `None` if none is confirmed, and if it is confirmed that nothing is in range.
-    pub(super) fn confirmed(&self) -> Option<Micros> {
-        duration(self.believed())
+    pub(super) fn reference(&self) -> Option<Micros> {
+        duration(self.confirmed())
     }
 
     /// The earliest confirmed track, [`SILENCE`] among them, or [`NOTHING`].
-    fn believed(&self) -> u32 {
-        self.tracks.iter().map(Track::believed).min().unwrap_or(NOTHING)
+    fn confirmed(&self) -> u32 {
+        self.tracks.iter().map(Track::confirmed).min().unwrap_or(NOTHING)
     }
 
-    /// What is [believed](Self::believed), and the place of the track nearest to a reading and within `t_delta` of it,
+    /// What is [confirmed](Self::confirmed), and the place of the track nearest to a reading and within `t_delta` of it,
     /// or `H`.
     #[inline(always)]
-    fn believed_and_nearest(&self, t_echo: u32, t_delta: u32) -> (u32, usize) {
-        let (mut believed, mut nearest, mut within) = (NOTHING, H, t_delta + 1);
+    fn confirmed_and_nearest(&self, t_echo: u32, t_delta: u32) -> (u32, usize) {
+        let (mut confirmed, mut nearest, mut within) = (NOTHING, H, t_delta + 1);
         for (place, track) in self.tracks.iter().enumerate() {
-            believed = believed.min(track.believed());
+            confirmed = confirmed.min(track.confirmed());
             let distance = track.distance(t_echo);
             if distance < within && track.exists() {
                 (nearest, within) = (place, distance);
             }
         }
-        (believed, nearest)
+        (confirmed, nearest)
     }
 
     fn begin(&mut self, t_echo: u32, phase: u8, solo: bool) {

@@ -63,7 +63,7 @@ impl Track {
 
     /// Its time if it is confirmed; else later than all.
     #[inline(always)]
-    pub(super) const fn believed(&self) -> u32 {
+    pub(super) const fn confirmed(&self) -> u32 {
         if self.exists() && self.is_confirmed() { self.t_echo() } else { u32::MAX }
     }
 
@@ -175,8 +175,8 @@ impl Track {
         }
     }
 
-    /// Follows an echo that moves faster than its support: three tenths of the way.
-    pub(super) fn follow(&mut self, t_echo: u32) {
+    /// Catches up with an echo that moves faster than its support: three tenths of the way.
+    pub(super) fn catch_up(&mut self, t_echo: u32) {
         let way = self.to(t_echo);
         let step = tenth(3 * way.unsigned_abs()) as i32;
         self.set_t_echo(self.t_echo().wrapping_add_signed(if way < 0 { -step } else { step }));

@@ -70,7 +70,7 @@ fn readings(
     kinds
 }
 
-fn believed(kinds: &[ReadingKind]) -> usize {
+fn accepted_or_tentative(kinds: &[ReadingKind]) -> usize {
     kinds.iter().filter(|kind| matches!(kind, ReadingKind::Accepted | ReadingKind::Tentative)).count()
 }
 
@@ -103,7 +103,7 @@ proptest! {
         let path = Path { from, to: (from + further) % 8, length };
         let kinds = readings(&[path], 240, settings, Late { each, stall }, seed, 150);
         prop_assert!(kinds.len() > 20);
-        prop_assert_eq!(believed(&kinds), 0);
+        prop_assert_eq!(accepted_or_tentative(&kinds), 0);
     }
 }
 
@@ -114,7 +114,7 @@ fn a_step_within_t_delta_of_the_lateness_is_what_the_promise_needs() {
     let late = Late { each: 60, stall: 0 };
     for seed in 0..20 {
         let path = Path { from: 0, to: 1, length: 20_000 };
-        assert_eq!(believed(&readings(&[path], 151, HoppingSettings::QUICK, late, seed, 200)), 0);
+        assert_eq!(accepted_or_tentative(&readings(&[path], 151, HoppingSettings::QUICK, late, seed, 200)), 0);
     }
 }
 
@@ -138,7 +138,12 @@ fn an_echo_of_ones_own_is_believed_nearly_always() {
     let own = Path { from: 3, to: 3, length: 12_000 };
     for late in [Late { each: 0, stall: 0 }, Late { each: 40, stall: 0 }, Late { each: 40, stall: 5000 }] {
         let kinds = readings(&[own], 240, HoppingSettings::BALANCED, late, 1, 400);
-        assert!(believed(&kinds) * 10 > kinds.len() * 9, "{late:?}: {} of {}", believed(&kinds), kinds.len());
+        assert!(
+            accepted_or_tentative(&kinds) * 10 > kinds.len() * 9,
+            "{late:?}: {} of {}",
+            accepted_or_tentative(&kinds),
+            kinds.len()
+        );
     }
 }
 

@@ -15,40 +15,40 @@ pub(super) fn contours(width: usize, height: usize, occupied: impl Fn(usize, usi
         let inside = (0..width as i64).contains(&x) && (0..height as i64).contains(&y);
         inside && occupied(x as usize, y as usize)
     };
-    // For each corner, which ways lead on from it: a bit for each heading.
+    // For each corner, which directions lead on from it: a bit for each heading.
     let (columns, rows) = (width + 1, height + 1);
-    let mut ways = vec![0_u8; columns * rows];
+    let mut directions = vec![0_u8; columns * rows];
     for y in 0..rows as i64 {
         for x in 0..columns as i64 {
             let [right_up, left_up, left_down, right_down] = [at(x, y), at(x - 1, y), at(x - 1, y - 1), at(x, y - 1)];
             // A way has a free cell on its left and an occupied one on its right.
             let sides = [(right_up, right_down), (left_up, right_up), (left_down, left_up), (right_down, left_down)];
             let bits = sides.iter().enumerate().filter(|(_, (left, right))| !left && *right);
-            ways[y as usize * columns + x as usize] = bits.fold(0, |bits, (heading, _)| bits | 1 << heading);
+            directions[y as usize * columns + x as usize] = bits.fold(0, |bits, (heading, _)| bits | 1 << heading);
         }
     }
     let mut found = Vec::new();
-    for start in 0..ways.len() {
-        while ways[start] != 0 {
-            found.push(follow(&mut ways, columns, start));
+    for start in 0..directions.len() {
+        while directions[start] != 0 {
+            found.push(trace(&mut directions, columns, start));
         }
     }
     found
 }
 
-/// One outline, whose ways are taken from the map.
-fn follow(ways: &mut [u8], columns: usize, start: usize) -> Vec<Corner> {
+/// One outline, whose directions are taken from the map.
+fn trace(directions: &mut [u8], columns: usize, start: usize) -> Vec<Corner> {
     let mut corners = Vec::new();
     let mut place = start;
-    let first = ways[start].trailing_zeros() as usize;
+    let first = directions[start].trailing_zeros() as usize;
     let mut heading = first;
     loop {
-        ways[place] &= !(1 << heading);
+        directions[place] &= !(1 << heading);
         let [dx, dy] = STEPS[heading];
         place = (place as i64 + dy * columns as i64 + dx) as usize;
         // Left, straight on, right: where two occupied cells touch at a corner, left keeps to the same free cell.
         let next = [heading + 1, heading, heading + 3].map(|next| next % 4);
-        let taken = next.into_iter().find(|&next| ways[place] & (1 << next) != 0);
+        let taken = next.into_iter().find(|&next| directions[place] & (1 << next) != 0);
         // No way leads on where the outline closes.
         let next = taken.unwrap_or(first);
         if next != heading {

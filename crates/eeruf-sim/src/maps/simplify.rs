@@ -46,12 +46,12 @@ impl<'a> Kept<'a> {
         // The first corner is the lowest; the one farthest from it is an end of any line as well.
         let farthest = (0..of.len()).max_by_key(|&corner| square(of[corner], of[0])).unwrap_or(0);
         let mut kept = Self { of, tolerance, corners: BTreeSet::from([0, farthest]) };
-        kept.settle(vec![0, farthest]);
+        kept.refine_until_near(vec![0, farthest]);
         kept
     }
 
     /// Keeps more corners of the lines that begin at these, until what they pass is near enough.
-    fn settle(&mut self, mut open: Vec<usize>) {
+    fn refine_until_near(&mut self, mut open: Vec<usize>) {
         while let Some(first) = open.pop() {
             if let Some((corner, off)) = self.farthest(first)
                 && off > self.tolerance
@@ -84,7 +84,7 @@ impl<'a> Kept<'a> {
     fn refine(&mut self, first: usize) -> bool {
         let Some((corner, _)) = self.farthest(first) else { return false };
         self.corners.insert(corner);
-        self.settle(vec![first, corner]);
+        self.refine_until_near(vec![first, corner]);
         true
     }
 

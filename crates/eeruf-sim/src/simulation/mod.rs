@@ -16,7 +16,7 @@ mod steered;
 pub(crate) use changing::simulate_in_turn;
 pub use engine::expected_readings;
 pub(crate) use engine::run;
-pub use engine::{Filter, FiredReading, Judged, Own};
+pub use engine::{Filter, Filtered, FiredReading, Own};
 pub use error::SimulationError;
 pub(crate) use kinematics::Kinematics;
 pub use lock_step::LockStep;

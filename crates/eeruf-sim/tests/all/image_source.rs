@@ -53,7 +53,7 @@ fn free(walls: &[Wall], from: Point, to: Point, skip: [Option<usize>; 2]) -> Ans
 }
 
 /// Follows one wall sequence back from the receiver.
-fn follow(walls: &[Wall], images: &[Point], sequence: &[usize], receiver: Point) -> Answer {
+fn unfold(walls: &[Wall], images: &[Point], sequence: &[usize], receiver: Point) -> Answer {
     let mut at = receiver;
     let mut last = None;
     let mut answer = Answer::Yes;
@@ -118,7 +118,7 @@ fn image_sources(scene: &Scene, source: Point, receiver: Point, max_order: usize
     let mut next = 0;
     loop {
         if next == 0 {
-            match follow(walls, &images, &sequence, receiver) {
+            match unfold(walls, &images, &sequence, receiver) {
                 Answer::Yes => {
                     let bounces = sequence.iter().map(|w| Bounce::Wall(*w as u32)).collect();
                     found.push((bounces, (receiver - images[images.len() - 1]).norm()));
@@ -230,7 +230,7 @@ fn pole_paths_agree_with_a_plain_search_over_image_sources() {
                 let Some(hit) = shortest_over(from, to, &pole) else {
                     continue;
                 };
-                match (follow(&walls, &out, before, hit), follow(&walls, &home, after, hit)) {
+                match (unfold(&walls, &out, before, hit), unfold(&walls, &home, after, hit)) {
                     (Answer::No, _) | (_, Answer::No) => {}
                     (Answer::Yes, Answer::Yes) => {
                         let wall = |w: &usize| Bounce::Wall(*w as u32);

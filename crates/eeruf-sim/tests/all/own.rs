@@ -50,12 +50,12 @@ impl Firing for ByTable {
 struct Paper<const E: usize>(EchoFilter<MAX_SENSORS, E>);
 
 impl<const E: usize> Filter for Paper<E> {
-    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+    fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
         let times: Vec<_> = firing.echoes.iter().map(Echo::t_echo).collect();
         let verdict = self.0.push_echoes(firing.reading.sensor, &times, firing.expected_change_us);
         let verdict = verdict.map_err(|error| error.to_string())?;
         let echo = firing.echoes.iter().find(|echo| Some(echo.t_echo()) == verdict.t_echo).copied();
-        Ok(Judged { kind: verdict.kind, echo })
+        Ok(Filtered { kind: verdict.kind, echo })
     }
 }
 
@@ -68,18 +68,18 @@ fn paper<const E: usize>() -> Paper<E> {
 struct Median(std::collections::HashMap<u8, ([Option<Echo>; 3], usize)>);
 
 impl Filter for Median {
-    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+    fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
         let (last, count) = self.0.entry(firing.reading.sensor).or_default();
         let echo = firing.echoes.first().copied();
         last[*count % 3] = echo;
         *count += 1;
         if *count < 3 {
             let kind = if echo.is_some() { ReadingKind::First } else { ReadingKind::NoEcho };
-            return Ok(Judged { kind, echo });
+            return Ok(Filtered { kind, echo });
         }
         let mut sorted = *last;
         sorted.sort_by_key(|echo| echo.map_or(Micros::MAX, |echo| echo.t_echo()));
-        Ok(Judged::believed(sorted[1]))
+        Ok(Filtered::accepted(sorted[1]))
     }
 }
 
@@ -135,8 +135,8 @@ fn what_is_ones_own_is_of_one_robot_and_the_others_go_by_the_method() {
     /// Believes nothing.
     struct Sceptic;
     impl Filter for Sceptic {
-        fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
-            Ok(Judged { kind: ReadingKind::Rejected, echo: firing.echoes.first().copied() })
+        fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
+            Ok(Filtered { kind: ReadingKind::Rejected, echo: firing.echoes.first().copied() })
         }
     }
     let all = open(&world, Method::Conventional, Own::new().filter(1, Sceptic)).unwrap().step(1.0, |_| true).unwrap();
@@ -151,9 +151,9 @@ fn an_echo_is_told_from_crosstalk_also_where_a_filter_gives_it_another_time() {
     /// Gives every echo two microseconds late.
     struct Late;
     impl Filter for Late {
-        fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+        fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
             let later = |echo: &Echo| echo.at(echo.t_echo().saturating_add(Micros::new(2)));
-            Ok(Judged::believed(firing.echoes.first().map(later)))
+            Ok(Filtered::accepted(firing.echoes.first().map(later)))
         }
     }
     let world = alcove(vec![robot()]);
@@ -208,11 +208,11 @@ fn a_period_that_cannot_be_fired_ends_the_simulation_with_the_reason() {
 fn errors_of_ones_own_code_come_out_of_the_step_and_the_simulation_goes_on() {
     struct Once(bool);
     impl Filter for Once {
-        fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+        fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
             if firing.reading.sensor == 3 && !core::mem::replace(&mut self.0, true) {
                 Err("sensor 3 was not expected")?;
             }
-            Ok(Judged::believed(firing.echoes.first().copied()))
+            Ok(Filtered::accepted(firing.echoes.first().copied()))
         }
     }
     let world = alcove(vec![robot()]);

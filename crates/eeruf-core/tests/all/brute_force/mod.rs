@@ -74,15 +74,15 @@ fn assert_meets(problem: &Problem<'_>, period: u32, firing: &Firing) {
     assert!(needs(problem, period).met_by(&times(firing)), "{problem:?} at {period}: {:?}", times(firing));
 }
 
-/// How many questions were judged, and how many were too large to judge, by the number of sensors.
+/// How many questions were answered, and how many were too large to try, by the number of sensors.
 #[derive(Default, Debug)]
-struct Judged {
+struct Tally {
     yes: [u32; 7],
     no: [u32; 7],
     unjudged: [u32; 7],
 }
 
-impl Judged {
+impl Tally {
     /// Asserts that no schedule meets this problem.
     fn assert_none(&mut self, problem: &Problem<'_>, period: u32) {
         match brute_force(&needs(problem, period)) {
@@ -106,7 +106,7 @@ impl Judged {
         }
     }
 
-    /// Asserts that enough was judged for each number of sensors, both ways.
+    /// Asserts that enough was answered for each number of sensors, both ways.
     fn assert_enough(&self, both: bool) {
         println!("{self:?}");
         for sensors in 2..=6 {
@@ -118,40 +118,40 @@ impl Judged {
 }
 
 /// Goes through `part` hundredths of the problems that are asked for.
-fn for_each_problem(part: u32, seed: u64, mut judge: impl FnMut(&Problem<'_>, &mut [i32], &mut Random)) {
+fn for_each_problem(part: u32, seed: u64, mut check: impl FnMut(&Problem<'_>, &mut [i32], &mut Random)) {
     let number = |name| std::env::var(name).ok().map(|text: String| text.parse::<u64>().expect(name));
     let problems = number("EERUF_BRUTE_FORCE").unwrap_or(200) * u64::from(part) / 100;
     let mut random = Random(seed ^ number("EERUF_BRUTE_FORCE_SEED").unwrap_or(0) << 8);
     let mut memory = vec![0; memory_words(6)];
     for _ in 0..problems {
         let (rows, problem) = draw(&mut random);
-        judge(&Problem { conflicts: &rows, ..problem }, &mut memory, &mut random);
+        check(&Problem { conflicts: &rows, ..problem }, &mut memory, &mut random);
     }
 }
 
 #[test]
 fn no_period_is_shorter_than_the_shortest() {
-    let mut judged = Judged::default();
+    let mut tally = Tally::default();
     for_each_problem(100, 1, |problem, memory, _| {
         let found = shortest(problem, u64::MAX, memory, &mut ()).unwrap();
         assert!(found.proven());
         assert_meets(problem, found.period, &found.firing);
         if found.period > 1 {
-            judged.assert_none(problem, (found.period - 1).min(MOST_TICKS));
+            tally.assert_none(problem, (found.period - 1).min(MOST_TICKS));
         }
     });
-    judged.assert_enough(false);
+    tally.assert_enough(false);
 }
 
 #[test]
 fn decisions_are_right_at_any_period() {
-    let mut judged = Judged::default();
+    let mut tally = Tally::default();
     for_each_problem(100, 2, |problem, memory, random| {
         let period = 1 + random.up_to(MOST_TICKS - 1);
         let decision = decide(problem, period, u64::MAX, memory, &mut ()).unwrap();
-        judged.assert_decided(problem, period, &decision.outcome);
+        tally.assert_decided(problem, period, &decision.outcome);
     });
-    judged.assert_enough(true);
+    tally.assert_enough(true);
 }
 
 /// A period at which there are schedules, and not a very long one.
@@ -162,7 +162,7 @@ fn some_period(problem: &Problem<'_>, memory: &mut [i32], random: &mut Random) -
 
 #[test]
 fn no_separation_is_larger_than_the_largest() {
-    let mut judged = Judged::default();
+    let mut tally = Tally::default();
     for_each_problem(100, 3, |problem, memory, random| {
         // At some periods there is none at all.
         let Some(period) = some_period(problem, memory, random).map(|period| period - random.up_to(1)) else { return };
@@ -172,22 +172,22 @@ fn no_separation_is_larger_than_the_largest() {
         let largest = maximize_separation(problem, period, u64::MAX, memory, &mut ()).unwrap();
         assert!(largest.proven());
         let Some((separation, firing)) = largest.found else {
-            return judged.assert_none(&Problem { separation: 1, ..*problem }, period);
+            return tally.assert_none(&Problem { separation: 1, ..*problem }, period);
         };
         if problem.sensors == 1 && !problem.stale_echo {
             assert_eq!(separation, period, "a single sensor has no need of separation");
             return assert_meets(&Problem { separation: 1, ..*problem }, period, &firing);
         }
         assert_meets(&Problem { separation, ..*problem }, period, &firing);
-        judged.yes[problem.sensors] += 1;
-        judged.assert_none(&Problem { separation: separation + 1, ..*problem }, period);
+        tally.yes[problem.sensors] += 1;
+        tally.assert_none(&Problem { separation: separation + 1, ..*problem }, period);
     });
-    judged.assert_enough(false);
+    tally.assert_enough(false);
 }
 
 #[test]
 fn no_interval_is_longer_than_the_largest() {
-    let mut judged = Judged::default();
+    let mut tally = Tally::default();
     for_each_problem(100, 4, |problem, memory, random| {
         let Some(period) = some_period(problem, memory, random).map(|period| period - random.up_to(1)) else { return };
         if period == 0 {
@@ -196,22 +196,22 @@ fn no_interval_is_longer_than_the_largest() {
         let largest = maximize_interval(problem, period, u64::MAX, memory, &mut ()).unwrap();
         assert!(largest.proven());
         let Some((interval, firing)) = largest.found else {
-            return judged.assert_none(&Problem { interval: 0, ..*problem }, period);
+            return tally.assert_none(&Problem { interval: 0, ..*problem }, period);
         };
         assert_meets(&Problem { interval, ..*problem }, period, &firing);
-        judged.yes[problem.sensors] += 1;
+        tally.yes[problem.sensors] += 1;
         if problem.conflicts.iter().all(|&row| row == 0) {
             assert_eq!(interval, period, "without conflicts the answer is the period");
         } else {
-            judged.assert_none(&Problem { interval: interval + 1, ..*problem }, period);
+            tally.assert_none(&Problem { interval: interval + 1, ..*problem }, period);
         }
     });
-    judged.assert_enough(false);
+    tally.assert_enough(false);
 }
 
 #[test]
 fn the_preferred_schedule_is_best_in_separation_then_interval_then_window() {
-    let mut judged = Judged::default();
+    let mut tally = Tally::default();
     let mut better = [0; 3];
     for_each_problem(60, 5, |problem, memory, _| {
         let found = shortest(problem, u64::MAX, memory, &mut ()).unwrap();
@@ -226,24 +226,24 @@ fn the_preferred_schedule_is_best_in_separation_then_interval_then_window() {
         let all = Problem { separation: if no_separation { 1 } else { separation }, interval, window, ..*problem };
         assert_meets(&all, period, &best.firing);
         if !no_separation {
-            judged.assert_none(&Problem { separation: separation + 1, ..*problem }, period);
+            tally.assert_none(&Problem { separation: separation + 1, ..*problem }, period);
         }
         if problem.conflicts.iter().any(|&row| row != 0) {
-            judged.assert_none(&Problem { interval: interval + 1, window: problem.window, ..all }, period);
+            tally.assert_none(&Problem { interval: interval + 1, window: problem.window, ..all }, period);
         }
-        judged.assert_none(&Problem { window: window + 1, ..all }, period);
+        tally.assert_none(&Problem { window: window + 1, ..all }, period);
         better[0] += u32::from(!no_separation && separation > problem.separation);
         better[1] += u32::from(problem.conflicts.iter().any(|&row| row != 0) && interval > problem.interval);
         better[2] += u32::from(window > problem.window);
     });
     println!("better than asked for: {better:?}");
     assert!(better.iter().all(|&often| often >= 10), "there was something to prefer: {better:?}");
-    judged.assert_enough(false);
+    tally.assert_enough(false);
 }
 
 #[test]
 fn whether_one_tick_less_of_a_need_allows_a_shorter_period_is_decided_rightly() {
-    let mut judged = Judged::default();
+    let mut tally = Tally::default();
     for_each_problem(60, 6, |problem, memory, _| {
         let period = shortest(problem, u64::MAX, memory, &mut ()).unwrap().period;
         if !(2..=MOST_TICKS).contains(&period) {
@@ -257,10 +257,10 @@ fn whether_one_tick_less_of_a_need_allows_a_shorter_period_is_decided_rightly() 
         ];
         for less in less.into_iter().flatten() {
             let decided = decide(&less, period - 1, u64::MAX, memory, &mut ()).unwrap();
-            judged.assert_decided(&less, period - 1, &decided.outcome);
+            tally.assert_decided(&less, period - 1, &decided.outcome);
         }
     });
-    judged.assert_enough(true);
+    tally.assert_enough(true);
 }
 
 /// Whether a schedule exists, by trying all times of one sensor after the other and asking for everything at the end.

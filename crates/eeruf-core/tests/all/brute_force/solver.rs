@@ -85,7 +85,7 @@ pub(crate) fn brute_force(needs: &Needs) -> Option<bool> {
     let conflicting: Vec<usize> = (0..sensors).filter(|&x| needs.conflicts[x] != 0).collect();
     let mut found = Some(false);
     if conflicting.is_empty() {
-        found = search.place(&open);
+        found = search.assign(&open);
     }
     for &first in &conflicting {
         if found != Some(false) {
@@ -95,7 +95,7 @@ pub(crate) fn brute_force(needs: &Needs) -> Option<bool> {
         for row in &mut open[first] {
             *row &= 1;
         }
-        found = search.place(&open);
+        found = search.assign(&open);
     }
     if found == Some(true) {
         let times: Vec<_> = search.set.iter().map(|times| times.expect("every sensor is set")).collect();
@@ -111,7 +111,7 @@ struct BruteForce<'a> {
 }
 
 impl BruteForce<'_> {
-    fn place(&mut self, open: &[Times]) -> Option<bool> {
+    fn assign(&mut self, open: &[Times]) -> Option<bool> {
         let count = |times: &Times| times.iter().map(|row| row.count_ones()).sum::<u32>();
         let left: Vec<usize> = (0..open.len()).filter(|&x| self.set[x].is_none()).collect();
         let Some(&next) = left.iter().min_by_key(|&&x| count(&open[x])) else { return Some(true) };
@@ -126,7 +126,7 @@ impl BruteForce<'_> {
                 }
                 self.set[next] = Some((a, b));
                 let open: Vec<Times> = (0..open.len()).map(|x| self.remaining(x, open[x], next, (a, b))).collect();
-                if left.iter().all(|&x| x == next || count(&open[x]) > 0) && self.place(&open)? {
+                if left.iter().all(|&x| x == next || count(&open[x]) > 0) && self.assign(&open)? {
                     return Some(true);
                 }
                 self.set[next] = None;

@@ -47,7 +47,7 @@ pub fn assert_serves(problem: &Problem<'_>, period: u32, firing: &Firing) {
 
 /// Whether any schedule exists, by trying all times of one sensor after the other.
 pub fn nested_loops(problem: &Problem<'_>, period: u32) -> bool {
-    fn place(problem: &Problem<'_>, period: u32, a: &mut Vec<u32>, b: &mut Vec<u32>) -> bool {
+    fn assign(problem: &Problem<'_>, period: u32, a: &mut Vec<u32>, b: &mut Vec<u32>) -> bool {
         let k = a.len();
         if k > 0 {
             let rows: Vec<u64> = problem.conflicts[..k].iter().map(|row| row & ((1 << k) - 1)).collect();
@@ -63,7 +63,7 @@ pub fn nested_loops(problem: &Problem<'_>, period: u32) -> bool {
             for tb in 0..period {
                 a.push(ta);
                 b.push(tb);
-                let done = place(problem, period, a, b);
+                let done = assign(problem, period, a, b);
                 a.pop();
                 b.pop();
                 if done {
@@ -73,7 +73,7 @@ pub fn nested_loops(problem: &Problem<'_>, period: u32) -> bool {
         }
         false
     }
-    place(problem, period, &mut Vec::new(), &mut Vec::new())
+    assign(problem, period, &mut Vec::new(), &mut Vec::new())
 }
 
 /// The paper's half ring of 12: 2 ms separation, 15 ms interval, 30 ms window, in ticks of `1 ms / scale`.

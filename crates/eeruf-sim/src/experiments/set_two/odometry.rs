@@ -71,7 +71,7 @@ impl Odometry {
     }
 
     /// Where the robot takes something to be that really is at a pose, from where it really is now.
-    pub(super) fn believed(&self, platform: &Pose, real: &Pose) -> Pose {
+    pub(super) fn estimate_of(&self, platform: &Pose, real: &Pose) -> Pose {
         self.state.pose * platform.inverse() * real
     }
 }

@@ -108,8 +108,8 @@ impl<'w> Pilot<'w> {
     /// Where to, and how fast.
     fn look(&mut self) {
         let Piloting { vfh, turn_gain, .. } = self.piloting;
-        let (believed, turn_most_rad_s) = (self.odometry.pose(), self.labmate.turn_max_rad_s);
-        self.wanted = vfh.drive(&self.grid, believed, TARGET, self.state.turn_rad_s, turn_gain, turn_most_rad_s);
+        let (estimate, turn_most_rad_s) = (self.odometry.pose(), self.labmate.turn_max_rad_s);
+        self.wanted = vfh.drive(&self.grid, estimate, TARGET, self.state.turn_rad_s, turn_gain, turn_most_rad_s);
         let Driven { pose, speed_m_s, .. } = self.state;
         let time_s = (self.steps * STEP_NS) as f64 * 1e-9;
         let (x_m, y_m) = (pose.translation.x, pose.translation.y);
@@ -183,9 +183,9 @@ impl Kinematics for Pilot<'_> {
         let Some(last) = readings.len().checked_sub(1).filter(|&last| readings.robot[last] == 0) else { return };
         let robot = &self.world.robots()[0];
         let sensor = fired.pose * robot.sensors[usize::from(readings.sensor[last])];
-        let believed = self.odometry.believed(&self.state.pose, &sensor);
+        let estimate = self.odometry.estimate_of(&self.state.pose, &sensor);
         let place = |sensor: &Pose| (Point::from(sensor.translation.vector), sensor.rotation.angle());
-        let ((at, heading), (believed_at, believed_heading)) = (place(&sensor), place(&believed));
+        let ((at, heading), (estimated_at, estimated_heading)) = (place(&sensor), place(&estimate));
         let metres_per_us = 0.5e-6 * self.world.scene().air().speed_of_sound();
         let near_m = f64::from(robot.blanking.as_micros()) * metres_per_us;
         self.run.readings += 1;
@@ -197,11 +197,11 @@ impl Kinematics for Pilot<'_> {
         let range_m = readings.t_echo_us[last] * metres_per_us;
         // A tentative echo is one too: to take it for free space would be to drive into what has just come near.
         if readings.kind[last] == ReadingKind::Clear || range_m > self.piloting.range_m {
-            self.grid.clear(believed_at, believed_heading, near_m, self.piloting.range_m);
+            self.grid.clear(estimated_at, estimated_heading, near_m, self.piloting.range_m);
             self.real_grid.clear(at, heading, near_m, self.piloting.range_m);
             return;
         }
-        self.grid.echo(believed_at, believed_heading, near_m, range_m);
+        self.grid.echo(estimated_at, estimated_heading, near_m, range_m);
         self.real_grid.echo(at, heading, near_m, range_m);
         let hit = Point::from(at.coords + (sensor.rotation * Vector::x()) * range_m);
         self.run.phantom_echoes += u32::from(self.is_phantom(hit));

@@ -11,30 +11,30 @@ use crate::simulation::receiver::Echo;
 /// ```
 /// use std::collections::HashMap;
 /// use eeruf_core::{Micros, ReadingKind};
-/// use eeruf_sim::{FiredReading, Filter, Judged, OwnError};
+/// use eeruf_sim::{FiredReading, Filter, Filtered, OwnError};
 /// /// Believes an echo that is no farther than half a metre off the last one of its sensor.
 /// #[derive(Default)]
 /// struct Near(HashMap<u8, Micros>);
 /// impl Filter for Near {
-///     fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
-///         let Some(&echo) = firing.echoes.first() else { return Ok(Judged::SILENT) };
+///     fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
+///         let Some(&echo) = firing.echoes.first() else { return Ok(Filtered::SILENT) };
 ///         let before = self.0.insert(firing.reading.sensor, echo.t_echo());
 ///         let near = before.is_some_and(|before| before.abs_diff(echo.t_echo()) < Micros::new(2_900));
-///         Ok(Judged { kind: if near { ReadingKind::Accepted } else { ReadingKind::Rejected }, echo: Some(echo) })
+///         Ok(Filtered { kind: if near { ReadingKind::Accepted } else { ReadingKind::Rejected }, echo: Some(echo) })
 ///     }
 /// }
 /// ```
 pub trait Filter: Send {
-    /// Judges what one firing of one sensor has heard. Firings of a sensor come in order, each once.
+    /// Takes in what one firing of one sensor has heard. Firings of a sensor come in order, each once.
     ///
     /// # Errors
     /// Whatever ends the simulation, with [`SimulationError::Own`](crate::SimulationError::Own).
-    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError>;
+    fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError>;
 }
 
 impl<F: Filter + ?Sized> Filter for Box<F> {
-    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
-        F::judge(self, firing)
+    fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
+        F::push(self, firing)
     }
 }
 
@@ -54,7 +54,7 @@ pub struct FiredReading<'a> {
 
 /// What is believed of a firing.
 #[derive(Clone, Copy, Debug)]
-pub struct Judged {
+pub struct Filtered {
     /// What to make of it. [`Accepted`](ReadingKind::Accepted) and [`Clear`](ReadingKind::Clear) count as believed.
     pub kind: ReadingKind,
     /// The echo that it stands for: one of this firing, or of an earlier one that the filter has kept; none for
@@ -62,12 +62,12 @@ pub struct Judged {
     pub echo: Option<Echo>,
 }
 
-impl Judged {
+impl Filtered {
     /// Silence, believed: nothing is in range.
     pub const SILENT: Self = Self { kind: ReadingKind::Clear, echo: None };
 
     /// An echo or silence, believed.
-    pub const fn believed(echo: Option<Echo>) -> Self {
+    pub const fn accepted(echo: Option<Echo>) -> Self {
         Self { kind: if echo.is_some() { ReadingKind::Accepted } else { ReadingKind::Clear }, echo }
     }
 }
@@ -85,8 +85,8 @@ pub(super) fn filter_of(belief: Belief, median_of: usize, sensors: usize) -> Box
 struct Everything;
 
 impl Filter for Everything {
-    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
-        Ok(Judged::believed(firing.echoes.first().copied()))
+    fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
+        Ok(Filtered::accepted(firing.echoes.first().copied()))
     }
 }
 
@@ -94,9 +94,9 @@ impl Filter for Everything {
 struct AsTheRing;
 
 impl Filter for AsTheRing {
-    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+    fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
         let Reading { kind, t_echo, .. } = *firing.reading;
-        Ok(Judged { kind, echo: firing.echoes.iter().find(|echo| Some(echo.t_echo()) == t_echo).copied() })
+        Ok(Filtered { kind, echo: firing.echoes.iter().find(|echo| Some(echo.t_echo()) == t_echo).copied() })
     }
 }
 
@@ -117,21 +117,21 @@ struct History {
 }
 
 impl Filter for Median {
-    fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+    fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
         let earliest = firing.echoes.first().copied();
         let Some(history) = self.history.get_mut(usize::from(firing.reading.sensor)) else {
-            return Ok(Judged::believed(earliest));
+            return Ok(Filtered::accepted(earliest));
         };
         history.heard[history.count % self.of] = earliest;
         history.count += 1;
         if history.count < self.of {
             let kind = if earliest.is_some() { ReadingKind::First } else { ReadingKind::NoEcho };
-            return Ok(Judged { kind, echo: earliest });
+            return Ok(Filtered { kind, echo: earliest });
         }
         let mut last = history.heard;
         let last = &mut last[..self.of];
         // Without echo counts as beyond all echoes.
         last.sort_by_key(|heard| heard.map_or(Micros::MAX, |heard| heard.t_echo()));
-        Ok(Judged::believed(last[(self.of - 1) / 2]))
+        Ok(Filtered::accepted(last[(self.of - 1) / 2]))
     }
 }

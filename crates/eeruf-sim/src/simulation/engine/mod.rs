@@ -12,6 +12,6 @@ pub(super) use arrivals::Propagation;
 pub use event_loop::expected_readings;
 pub(crate) use event_loop::run;
 pub(super) use event_loop::{EventLoop, end_of};
-pub use filter::{Filter, FiredReading, Judged};
+pub use filter::{Filter, Filtered, FiredReading};
 pub use own::Own;
 pub(super) use running_ring::{Plan, plans};

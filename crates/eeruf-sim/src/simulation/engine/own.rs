@@ -16,10 +16,10 @@ use crate::simulation::error::SimulationError;
 /// /// The paper's filter, here as one's own: with conventional firing it gives what the method `comparison` does.
 /// struct Mine(EchoFilter<MAX_SENSORS>);
 /// impl Filter for Mine {
-///     fn judge(&mut self, firing: &FiredReading<'_>) -> Result<Judged, OwnError> {
+///     fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
 ///         let echo = firing.echoes.first().copied();
 ///         let verdict = self.0.push(firing.reading.sensor, echo.map(|echo| echo.t_echo()));
-///         Ok(Judged { kind: verdict.map_err(|error| error.to_string())?.kind, echo })
+///         Ok(Filtered { kind: verdict.map_err(|error| error.to_string())?.kind, echo })
 ///     }
 /// }
 /// let robot = Robot::ring(Pose::identity(), 8, 15f64.to_radians(), 0.3, Transducer::POLAROID_6500);

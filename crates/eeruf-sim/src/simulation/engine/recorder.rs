@@ -3,7 +3,7 @@
 
 use eeruf_core::{Reading, ReadingKind};
 
-use super::filter::{Filter, FiredReading, Judged, MAX_MEDIAN, filter_of};
+use super::filter::{Filter, Filtered, FiredReading, MAX_MEDIAN, filter_of};
 use super::own::Own;
 use crate::simulation::error::SimulationError;
 use crate::simulation::options::Options;
@@ -89,7 +89,7 @@ impl Recorder {
         let (echoes, fired_s) = (receiver.heard(), receiver.fired as f64 * 1e-9);
         let earliest = echoes.first().copied();
         let firing = FiredReading { reading, echoes, fired_s, expected_change_us };
-        let Judged { kind, echo: chosen } = self.filters[usize::from(self.ids[sensor].robot)].judge(&firing)?;
+        let Filtered { kind, echo: chosen } = self.filters[usize::from(self.ids[sensor].robot)].push(&firing)?;
         let (cause, path, emitted_s) = match chosen {
             None => (Cause::Nothing, NO_PATH, f64::NAN),
             Some(Echo { arrival, of_this_firing, .. }) => {

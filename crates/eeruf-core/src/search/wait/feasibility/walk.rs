@@ -95,7 +95,7 @@ impl<'p, 'm> Feasibility<'p, 'm> {
                 };
                 depth = above;
                 let taken;
-                (branch, taken) = self.kept(depth);
+                (branch, taken) = self.read_back(depth);
                 self.untake(branch, taken);
                 // The constraints that remain were met before, so they are met now.
                 self.constraints.raise_anew();
@@ -325,7 +325,7 @@ impl<'p, 'm> Feasibility<'p, 'm> {
     }
 
     /// Reads it back.
-    fn kept(&self, depth: usize) -> (Branch, u32) {
+    fn read_back(&self, depth: usize) -> (Branch, u32) {
         match self.trail.get(2 * depth..2 * depth + 2) {
             Some(&[word, taken]) => (Branch::unpack(word), taken),
             _ => (Branch::Rank(0), u32::MAX),

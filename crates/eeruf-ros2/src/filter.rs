@@ -13,22 +13,22 @@ pub(crate) enum Raw {
     TooEarly,
 }
 
-pub(crate) struct Judge(EchoFilter<MAX_SENSORS>);
+pub(crate) struct RangeFilter(EchoFilter<MAX_SENSORS>);
 
-impl Judge {
+impl RangeFilter {
     /// Two readings in a row within `t_delta`, as in the paper.
     pub(crate) fn new(t_delta: Micros) -> Result<Self, String> {
         EchoFilter::new(t_delta, 2).map(Self).map_err(|error| error.to_string())
     }
 
     /// What comes of a reading of a sensor, which must be less than 64.
-    pub(crate) fn judge(&mut self, sensor: u8, raw: Raw) -> Result<ReadingKind, String> {
-        let judged = match raw {
+    pub(crate) fn push(&mut self, sensor: u8, raw: Raw) -> Result<ReadingKind, String> {
+        let kind = match raw {
             Raw::Echo(t_echo) => self.0.push(sensor, Some(t_echo)).map(|verdict| verdict.kind),
             Raw::Nothing => self.0.push(sensor, None).map(|verdict| verdict.kind),
             Raw::TooEarly => self.0.forget(sensor).map(|()| ReadingKind::TooEarly),
         };
-        judged.map_err(|error| error.to_string())
+        kind.map_err(|error| error.to_string())
     }
 }
 
@@ -38,14 +38,14 @@ mod tests {
 
     #[test]
     fn a_reading_is_compared_with_the_one_before_of_its_sensor_and_with_nothing_too_close() {
-        let mut judge = Judge::new(Micros::new(500)).unwrap();
+        let mut filter = RangeFilter::new(Micros::new(500)).unwrap();
         let echo = |us| Raw::Echo(Micros::new(us));
         let mut kinds = |sensor, raws: &[Raw]| {
-            raws.iter().map(|&raw| judge.judge(sensor, raw).unwrap().as_str()).collect::<Vec<_>>()
+            raws.iter().map(|&raw| filter.push(sensor, raw).unwrap().as_str()).collect::<Vec<_>>()
         };
         assert_eq!(kinds(0, &[echo(9_000), echo(9_500), echo(11_000)]), ["first", "accepted", "rejected"]);
         assert_eq!(kinds(1, &[echo(11_000), Raw::TooEarly, echo(11_000)]), ["first", "too_early", "first"]);
         assert_eq!(kinds(0, &[Raw::Nothing, Raw::Nothing]), ["no_echo", "clear"]);
-        assert!(judge.judge(64, Raw::Nothing).is_err());
+        assert!(filter.push(64, Raw::Nothing).is_err());
     }
 }

@@ -68,9 +68,9 @@ pub(crate) fn fresnel(x: f64) -> [f64; 2] {
     [0.5 + f * sin - g * cos, 0.5 - f * cos - g * sin]
 }
 
-/// How much of a wall's reflection a part of it returns, which is limited by two edges. Each is given by how much longer
-/// the way by it is than the path, in wavelengths; infinite where nothing limits the wall. `beside` says that the point
-/// of reflection does not lie between them, but beyond the first one.
+/// How much of an endless wall's reflection a part of it returns, which ends at two edges. Each is given by how much
+/// longer the way by it is than the path, in wavelengths; infinite where the wall does not end. `beside` says that the
+/// point of reflection does not lie between them.
 ///
 /// ```text
 /// |F(v2) -+ F(v1)| / sqrt(2),    v = 2 sqrt(detour / lambda),    F = C + i S

@@ -7,8 +7,8 @@ use crate::{
     scene::{Bounce, Scene},
 };
 
-/// The product of what the walls of a path return, relative to endless ones, by Fresnel's integral over each. Where walls
-/// of one path make it louder one after the other, it is still no louder than one can.
+/// The product of what the walls of a path return, relative to endless ones, by Fresnel's integral over each. Where
+/// several make a path louder, it is still no louder than one can.
 ///
 /// `corners` are those of the path, ends included. An edge of a wall limits it by how much longer the way by that edge
 /// is, with the path's other walls as mirrors: up to its ends, or to the next pole, which makes the sound spread anew.
@@ -22,8 +22,8 @@ pub(super) fn share_of_walls(scene: &Scene, corners: &[Point], bounces: &[Bounce
             let legs = [leg(corner - 1), leg(corner)];
             before_m += legs[0].norm();
             if let Bounce::Wall(wall) = bounces[corner - 1] {
-                let bent = Turn { wall, at: corners[corner], legs, whole_m: [before_m, whole_m - before_m] };
-                share *= bent.share(scene, wavelength_m);
+                let turn = Turn { wall, at: corners[corner], legs, whole_m: [before_m, whole_m - before_m] };
+                share *= turn.share(scene, wavelength_m);
             }
         }
     }

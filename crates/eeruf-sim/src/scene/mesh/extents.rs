@@ -16,8 +16,8 @@ const STRAIGHT_RAD: f64 = 0.0087;
 const LEFT: usize = 0;
 const RIGHT: usize = 1;
 
-/// Where a surface ends, first towards its start and then towards its end. None where another wall meets it at less than
-/// half a turn: what lies beyond the corner is there as an image, and nothing is bent.
+/// Where a surface ends, first towards its start and then towards its end. None where another wall meets it at less
+/// than half a turn: what lies beyond the corner is there as an image, and nothing is bent.
 pub(crate) type Ends = [Option<End>; 2];
 
 /// One end of a surface.
@@ -147,7 +147,7 @@ impl<'a> Corners<'a> {
             let vertex = self.pieces[piece].ends[end];
             let arms = &self.arms[vertex];
             let here = arms.iter().position(|arm| (arm.piece, arm.end) == (piece, end))?;
-            // The open space on the left begins clockwise of the arm at the piece's end, and the other way at its start.
+            // The open space on the left begins clockwise of the arm at the piece's end, not so at its start.
             let clockwise = (side == LEFT) == (end == 1);
             let next = arms[(here + if clockwise { arms.len() - 1 } else { 1 }) % arms.len()];
             let turn = arms[here].angle_rad - next.angle_rad;

@@ -186,7 +186,7 @@ fn a_wall_cut_in_pieces_sounds_as_before() {
 }
 
 #[test]
-fn in_a_room_of_right_angles_nothing_changes_and_at_a_corner_that_juts_out_the_wall_ends() {
+fn in_a_rectangular_room_nothing_changes_and_at_a_corner_that_juts_out_the_wall_ends() {
     let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0], [0.0, 0.0]];
     let room = Scene::new(Wall::polyline(&corners).collect(), vec![], Air::default()).unwrap();
     // Straight into a corner, too: the images are the exact answer there.

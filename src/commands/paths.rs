@@ -56,7 +56,7 @@ fn critical_paths(world: &World, max_order: u32) -> Result<PathsJson, eeruf_sim:
     let mut matrix = CrosstalkMatrix::new();
     let query = CrosstalkQuery { scene, sensors: &ring, transducer, limits: Limits::order(max_order), floor };
     let mut tracer = Tracer::new();
-    (tracer.pole_shadows, tracer.edges) = (world.physics().shadows, world.physics().edges);
+    tracer.follow(&world.physics());
     matrix.compute(&mut tracer, &query)?;
     for path in matrix.paths().iter().filter(|path| path.emitter != path.receiver) {
         out.emitter.push(path.emitter);

@@ -61,7 +61,7 @@ pub(crate) fn true_paths(world: &World) -> Result<Vec<TruePath>, PathsError> {
     let mut matrix = CrosstalkMatrix::new();
     let limits = Limits::order(world.max_order());
     let mut tracer = Tracer::new();
-    (tracer.pole_shadows, tracer.edges) = (world.physics().shadows, world.physics().edges);
+    tracer.follow(&world.physics());
     matrix.compute(&mut tracer, &CrosstalkQuery { scene, sensors: &ring, transducer, limits, floor: 0.5 * floor })?;
     let c = scene.air().speed_of_sound();
     let path = |path: &eeruf_sim::CriticalPath| TruePath {

@@ -40,7 +40,8 @@ use crate::{
 ///     noise: True for a little jitter and fading, False for none, or a :class:`Noise`.
 ///     seed: of the noise, 0 to 2^64 - 1.
 ///     max_order: how many bounces :func:`simulate` follows; 6 unless it is given.
-///     physics: ``"plain"``, ``"default"``, or a dict of what differs from a ``preset``; see ``docs/physics.md``.
+///     physics: ``"plain"``, ``"default"``, or a dict of what differs from a ``preset``: ``shadows``, ``edges``,
+///         ``narrow_panels``, ``range_walk`` (each True or False), ``fading_time_s``; see ``docs/physics.md``.
 ///
 /// Raises:
 ///     ArgumentError: an array of the wrong shape, an index of no wall, something of the wrong type or out of range.

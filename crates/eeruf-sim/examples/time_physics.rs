@@ -32,9 +32,11 @@ fn main() -> Result<(), WorldError> {
         ("plain", Physics::PLAIN),
         ("shadows", Physics { shadows: true, ..Physics::PLAIN }),
         ("edges", Physics { edges: true, ..Physics::PLAIN }),
+        ("narrow_panels", Physics { narrow_panels: true, ..Physics::PLAIN }),
         ("range_walk", Physics { range_walk: true, ..Physics::PLAIN }),
         ("fading_time_s", Physics { fading_time_s: 1.0, ..Physics::PLAIN }),
         ("default", Physics::DEFAULT),
+        ("with panels", Physics { narrow_panels: true, ..Physics::DEFAULT }),
     ] {
         let stands = quickest_ms(&world(Motion::Still, physics)?, 2000);
         let moves = quickest_ms(&world(creeping.clone(), physics)?, 50);

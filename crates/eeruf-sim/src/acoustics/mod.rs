@@ -3,6 +3,7 @@
 
 mod diffraction;
 mod directivity;
+mod panel;
 mod physics;
 mod reflection;
 mod spreading;
@@ -10,6 +11,7 @@ mod transducer;
 
 pub use diffraction::{edge_diffraction, pole_wave_correction, rigid_cylinder_form};
 pub use directivity::Piston;
+pub(crate) use panel::{LOUDEST_PANEL, panel_share};
 pub use physics::{Physics, UnknownPhysics};
 pub(crate) use reflection::reflected;
 pub(crate) use spreading::pole_spread;

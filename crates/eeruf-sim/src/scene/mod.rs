@@ -20,6 +20,7 @@ pub use contact::Contact;
 pub use error::{MAX_COORDINATE_M, MAX_POLE_M, MAX_WALLS, MIN_WALL_M, SceneError};
 pub use material::Material;
 pub use mesh::edges::Edge;
+pub(crate) use mesh::extents::{End, Surface};
 pub(crate) use mesh::{Beyond, Exit, Gate, Mesh, NONE};
 pub use pole::Pole;
 pub use scene::Scene;

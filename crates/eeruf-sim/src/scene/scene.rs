@@ -5,11 +5,13 @@ use super::air::Air;
 use super::error::{MAX_COORDINATE_M, MAX_POLE_M, MAX_WALLS, MIN_WALL_M, SceneError};
 use super::mesh::Mesh;
 use super::mesh::edges::{Edge, edges_of};
+use super::mesh::extents::Extents;
 use super::mesh::joints::{join_walls, wall_box};
 use super::pole::Pole;
 use super::wall::Wall;
 use crate::geometry::{Mirror, Point, TOUCH_M};
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
+use std::sync::OnceLock;
 
 /// Walls, poles and air, checked and ready for questions.
 #[derive(Debug)]
@@ -23,6 +25,8 @@ pub struct Scene {
     /// Which triangles each pole's disc overlaps: (triangle, pole).
     pub(crate) pole_triangles: Vec<(u32, u32)>,
     edges: Vec<Edge>,
+    /// How far walls go on; found when first asked for.
+    extents: OnceLock<Extents>,
     /// Whether any surface is rough.
     pub(crate) rough: bool,
 }
@@ -59,7 +63,18 @@ impl Scene {
             let near = mesh.near(pole.centre, pole.radius_m * (1.0 + 1e-9));
             pole_triangles.extend(near.into_iter().map(|triangle| (triangle, index as u32)));
         }
-        Ok(Self { walls, poles, air, mesh, mirrors, wall_boxes, pole_triangles, edges, rough })
+        Ok(Self {
+            walls,
+            poles,
+            air,
+            mesh,
+            mirrors,
+            wall_boxes,
+            pole_triangles,
+            edges,
+            extents: OnceLock::new(),
+            rough,
+        })
     }
 
     /// The walls, in the order given.
@@ -76,6 +91,15 @@ impl Scene {
     /// [`Physics::edges`](crate::Physics::edges) says so. Those of solid regions, seen from within, are among them.
     pub fn edges(&self) -> &[Edge] {
         &self.edges
+    }
+
+    /// How far walls go on, for [`Physics::narrow_panels`](crate::Physics::narrow_panels).
+    pub(crate) fn extents(&self) -> &Extents {
+        self.extents.get_or_init(|| {
+            // The same walls were joined when the scene was made.
+            let (vertices, pieces) = join_walls(&self.walls, &self.wall_boxes).unwrap_or_default();
+            Extents::new(&vertices, &pieces, &self.walls, &self.edges)
+        })
     }
 
     /// The air.

@@ -132,11 +132,13 @@ impl CrosstalkMatrix {
         self.positions.clear();
         self.positions.extend(sensors.iter().map(|sensor| Point::from(sensor.translation.vector)));
         tracer.frequency_hz = sending.frequency_hz;
+        tracer.burst_cycles = sending.cycles;
         let audibility = match &mut self.audibility {
             Some(audibility) if audibility.is_for([&departing, &arriving]) => audibility,
             audibility => audibility.insert(Audibility::new([departing, arriving])),
         };
-        audibility.set_floor(floor, tracer.loss_per_m(air));
+        // What is certainly too faint is so however loud a panel makes it.
+        audibility.set_floor(floor / tracer.loudest(), tracer.loss_per_m(air));
         for (emitter, pose) in emitters.iter().enumerate() {
             let heading_rad = pose.rotation.angle();
             audibility.aim(heading_rad, sensors.iter().map(|sensor| sensor.rotation * Vector::x()));

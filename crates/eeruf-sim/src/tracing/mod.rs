@@ -8,6 +8,7 @@ mod crosstalk;
 mod edges;
 mod error;
 mod limits;
+mod panels;
 mod paths;
 mod poles;
 mod ranking;

@@ -2,14 +2,15 @@
 
 use super::audibility::Audibility;
 use super::beam::{BeamTree, Growth};
-use super::edges::EdgeSearch;
+use super::edges::{EdgeQuery, EdgeSearch};
 use super::error::PathsError;
 use super::limits::{DEFAULT_FREQUENCY_HZ, Limits, MAX_BEAMS, MAX_ORDER};
+use super::panels::share_of_walls;
 use super::paths::Paths;
 use super::poles::{PolePath, PoleQuery, PoleSearch, is_shaded};
 use super::ranking::{Found, FoundPath, Rank, Ranking};
 use crate::{
-    acoustics::{pole_wave_correction, reflected},
+    acoustics::{LOUDEST_PANEL, Physics, Transducer, pole_wave_correction, reflected},
     geometry::{Point, opposite, wrap_angle},
     scene::{Air, Bounce, Contact, Scene},
     threads::Stop,
@@ -29,6 +30,12 @@ pub struct Tracer {
     /// Whether free ends of walls and corners that jut out diffract; see [`Physics::edges`](crate::Physics::edges). Off
     /// by default.
     pub edges: bool,
+    /// Whether a wall returns as much as its width does; see [`Physics::narrow_panels`](crate::Physics::narrow_panels).
+    /// Off by default.
+    pub narrow_panels: bool,
+    /// How long the burst is, in cycles. If [`narrow_panels`](Self::narrow_panels) is on, ways by a wall's ends that
+    /// differ by less are heard as one. A [`CrosstalkMatrix`](crate::CrosstalkMatrix) sets it to the emitter's.
+    pub burst_cycles: u32,
     /// The most bounces of a path with a pole, at most those of all others. The default is [`MAX_ORDER`].
     pub pole_order: u32,
     /// Ends a question under way with [`PathsError::Stopped`].
@@ -60,6 +67,8 @@ impl Tracer {
             pole_waves: false,
             pole_shadows: false,
             edges: false,
+            narrow_panels: false,
+            burst_cycles: Transducer::POLAROID_6500.cycles,
             pole_order: MAX_ORDER,
             stop: Stop::default(),
             loss: None,
@@ -68,6 +77,18 @@ impl Tracer {
             around: EdgeSearch::default(),
             ranking: Ranking::default(),
         }
+    }
+
+    /// Computes what these effects say about paths: shadows, edges and narrow panels.
+    pub fn follow(&mut self, physics: &Physics) {
+        self.pole_shadows = physics.shadows;
+        self.edges = physics.edges;
+        self.narrow_panels = physics.narrow_panels;
+    }
+
+    /// By how much a path may be louder than whole walls make it.
+    pub(crate) fn loudest(&self) -> f64 {
+        if self.narrow_panels { LOUDEST_PANEL } else { 1.0 }
     }
 
     /// Writes every specular path from the source to each receiver into `paths`.
@@ -117,7 +138,10 @@ impl Tracer {
         self.around.clear();
         if self.edges {
             let wave_number = core::f64::consts::TAU * self.frequency_hz / scene.air().speed_of_sound();
-            if !self.around.search(scene, audibility, source, receivers, limits, wave_number, &self.stop) {
+            let burst_m = f64::from(self.burst_cycles) * core::f64::consts::TAU / wave_number;
+            let joined_m = self.narrow_panels.then_some(burst_m);
+            let query = EdgeQuery { scene, audibility, source, receivers, limits, wave_number, joined_m };
+            if !self.around.search(&query, &self.stop) {
                 return Err(PathsError::Stopped);
             }
         }
@@ -204,12 +228,16 @@ impl Tracer {
         for &Rank { length_m, index } in self.ranking.ranks() {
             let start = paths.bounces.len();
             let receiver = found.push_bounces(index, &mut paths.bounces);
-            if shades {
+            let mut share = 1.0;
+            if shades || self.narrow_panels {
                 let bounces = &paths.bounces[start..];
                 let corners = scene.bounce_points(source, receivers[receiver as usize], bounces);
-                if corners.is_some_and(|corners| is_shaded(scene, &corners, bounces, wavelength_m)) {
+                if shades && corners.as_ref().is_some_and(|corners| is_shaded(scene, corners, bounces, wavelength_m)) {
                     paths.bounces.truncate(start);
                     continue;
+                }
+                if self.narrow_panels {
+                    share = corners.map_or(1.0, |corners| share_of_walls(scene, &corners, bounces, wavelength_m));
                 }
             }
             let amplitude;
@@ -251,7 +279,7 @@ impl Tracer {
                 }
             }
             paths.length_m.push(length_m);
-            paths.amplitude.push(amplitude * libm::exp(loss_per_m * length_m));
+            paths.amplitude.push(share * amplitude * libm::exp(loss_per_m * length_m));
             paths.ends.push(paths.bounces.len() as u32);
         }
     }

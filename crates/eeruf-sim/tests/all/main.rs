@@ -10,6 +10,7 @@ mod facts;
 mod image_source;
 mod open;
 mod own;
+mod panels;
 mod physics;
 mod plain;
 mod properties;

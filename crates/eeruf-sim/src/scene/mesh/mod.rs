@@ -3,6 +3,7 @@
 
 mod build;
 pub(super) mod edges;
+pub(super) mod extents;
 mod hints;
 pub(super) mod joints;
 

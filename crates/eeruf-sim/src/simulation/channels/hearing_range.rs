@@ -1,7 +1,7 @@
 //! How faint the sound of one kind of transducer may be, and how far it may come, to be heard by another.
 
 use crate::{
-    acoustics::Transducer,
+    acoustics::{LOUDEST_PANEL, Transducer},
     scene::Air,
     world::{FARTHEST, World},
 };
@@ -24,7 +24,8 @@ impl HearingRange {
         let air = world.scene().air();
         let floor = hearing.detection_floor(air);
         let faintest = floor / libm::exp10(world.noise().fading_db_rms * f64::from(FARTHEST) / 20.0);
-        let longest_m = longest_audible_m(sending, air, faintest);
+        let loudest = if world.physics().narrow_panels { LOUDEST_PANEL } else { 1.0 };
+        let longest_m = longest_audible_m(sending, air, faintest / loudest);
         Self { sending: *sending, hearing: *hearing, floor, faintest, longest_m }
     }
 

@@ -283,9 +283,9 @@ impl<'w> Channels<'w> {
             let scene = furnished.as_ref().map_or(world.scene(), |furnished| &furnished.scene);
             let limits = Limits { max_order: world.max_order(), max_length_m: range.longest_m };
             self.tracer.pole_order = world.pole_order();
+            self.tracer.follow(&world.physics());
             // A body shades whatever the physics.
-            self.tracer.pole_shadows = world.physics().shadows || furnished.is_some();
-            self.tracer.edges = world.physics().edges;
+            self.tracer.pole_shadows |= furnished.is_some();
             // The receiver's gain depends on when the receiver fired, so it cannot be applied here.
             let flat = Transducer { gain: GainProfile::Constant, ..*transducer };
             let query = CrosstalkQuery { scene, sensors: &sensors, transducer: &flat, limits, floor: range.faintest };

@@ -4,6 +4,7 @@
 use crate::{
     geometry::Point,
     scene::{Bounce, Scene},
+    tracing::bounce_points::parts,
 };
 
 /// Whether a pole stands in a path's way that is too thick there for sound to bend around: nearer to a leg than its
@@ -16,11 +17,7 @@ use crate::{
 /// `corners` are those of the path, ends included. Walls are mirrors, so `d1` and `d2` are counted along the path,
 /// bounces at walls and all, up to its ends or to the next pole or edge, which makes the sound spread anew.
 pub(in crate::tracing) fn is_shaded(scene: &Scene, corners: &[Point], bounces: &[Bounce], wavelength_m: f64) -> bool {
-    let is_pole = |corner: usize| matches!(bounces.get(corner - 1), Some(Bounce::Pole(_) | Bounce::Edge(_)));
-    let last = corners.len() - 1;
-    let mut start = 0;
-    while start < last {
-        let end = (start + 1..last).find(|&corner| is_pole(corner)).unwrap_or(last);
+    for (start, end) in parts(bounces) {
         let whole_m: f64 = corners[start..=end].windows(2).map(|leg| (leg[1] - leg[0]).norm()).sum();
         let mut before_m = 0.0;
         for leg in start..end {
@@ -43,7 +40,6 @@ pub(in crate::tracing) fn is_shaded(scene: &Scene, corners: &[Point], bounces: &
             }
             before_m += length_m;
         }
-        start = end;
     }
     false
 }

@@ -81,6 +81,7 @@ pub(super) struct PhysicsTable {
     preset: Option<String>,
     shadows: Option<bool>,
     edges: Option<bool>,
+    narrow_panels: Option<bool>,
     range_walk: Option<bool>,
     fading_time_s: Option<f64>,
 }
@@ -94,6 +95,7 @@ impl PhysicsFile {
                 Ok(Physics {
                     shadows: table.shadows.unwrap_or(base.shadows),
                     edges: table.edges.unwrap_or(base.edges),
+                    narrow_panels: table.narrow_panels.unwrap_or(base.narrow_panels),
                     range_walk: table.range_walk.unwrap_or(base.range_walk),
                     fading_time_s: table.fading_time_s.unwrap_or(base.fading_time_s),
                 })

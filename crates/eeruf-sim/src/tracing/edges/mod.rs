@@ -1,5 +1,7 @@
 //! Paths around one edge: source, edge, receiver, both in sight of it. Diffraction of the first order, of rigid wedges.
 
+mod join;
+
 use super::audibility::Audibility;
 use super::limits::Limits;
 use crate::{
@@ -28,6 +30,23 @@ pub(crate) struct EdgePath {
 pub(crate) struct EdgeSearch {
     pub(crate) found: Vec<EdgePath>,
     triangles: [Vec<u32>; 2],
+    /// Kept between questions for its memory.
+    places: Vec<u32>,
+}
+
+/// What is asked for.
+#[derive(Clone, Copy)]
+pub(crate) struct EdgeQuery<'a> {
+    pub(crate) scene: &'a Scene,
+    /// What is certainly too faint may be left out.
+    pub(crate) audibility: Option<&'a Audibility>,
+    pub(crate) source: Point,
+    pub(crate) receivers: &'a [Point],
+    pub(crate) limits: Limits,
+    /// In rad/m.
+    pub(crate) wave_number: f64,
+    /// Ways by the ends of a wall whose lengths differ by less than this, in metres, are one. If none, each is alone.
+    pub(crate) joined_m: Option<f64>,
 }
 
 impl EdgeSearch {
@@ -37,17 +56,26 @@ impl EdgeSearch {
 
     /// Finds all paths around an edge to these receivers, but for those that are certainly too faint. Returns whether
     /// these are all: whether the work was not stopped.
-    #[expect(clippy::too_many_arguments, reason = "one question")]
-    pub(crate) fn search(
-        &mut self,
-        scene: &Scene,
-        audibility: Option<&Audibility>,
-        source: Point,
-        receivers: &[Point],
-        limits: Limits,
-        wave_number: f64,
-        stop: &Stop,
-    ) -> bool {
+    pub(crate) fn search(&mut self, query: &EdgeQuery<'_>, stop: &Stop) -> bool {
+        let Some(joined_m) = query.joined_m else { return self.search_each(query, stop) };
+        // Whether two are one must not depend on which of them may be heard alone.
+        let limits = Limits { max_length_m: query.limits.max_length_m + joined_m, ..query.limits };
+        if !self.search_each(&EdgeQuery { audibility: None, limits, ..*query }, stop) {
+            return false;
+        }
+        self.join(query, joined_m);
+        self.found.retain(|path| {
+            let [out, home] = [query.source, query.receivers[path.receiver as usize]].map(|end| path.at - end);
+            let heard = |audibility: &Audibility| {
+                audibility.may_hear_around(path.spread, path.receiver as usize, out, home, path.length_m)
+            };
+            path.length_m <= query.limits.max_length_m && query.audibility.is_none_or(heard)
+        });
+        true
+    }
+
+    fn search_each(&mut self, query: &EdgeQuery<'_>, stop: &Stop) -> bool {
+        let EdgeQuery { scene, audibility, source, receivers, limits, wave_number, .. } = *query;
         self.found.clear();
         if limits.max_order == 0 {
             return true;

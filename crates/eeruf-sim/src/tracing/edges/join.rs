@@ -1,0 +1,97 @@
+//! Ways by the ends of one wall that no burst tells apart: they are not heard each alone, but together by Fresnel's
+//! integral between them.
+
+use super::{EdgePath, EdgeQuery, EdgeSearch, MOST};
+use crate::{
+    acoustics::{LOUDEST_PANEL, panel_share},
+    geometry::{Point, TOUCH_M, cross},
+    scene::{End, NONE, Surface},
+};
+
+impl EdgeSearch {
+    /// Of the ways that were found leaves out those by the ends of a surface that reflects as well, and later than that
+    /// by less than a burst: the reflection has them already. Of a surface beside the point of reflection it makes one
+    /// way of two.
+    pub(super) fn join(&mut self, query: &EdgeQuery<'_>, burst_m: f64) {
+        let EdgeQuery { scene, receivers, .. } = *query;
+        self.places.clear();
+        self.places.resize(scene.edges().len() * receivers.len(), NONE);
+        for (place, path) in self.found.iter().enumerate() {
+            self.places[path.edge as usize * receivers.len() + path.receiver as usize] = place as u32;
+        }
+        let mut gone = vec![false; self.found.len()];
+        let mut joined: Vec<EdgePath> = Vec::new();
+        for receiver in 0..receivers.len() {
+            let first = joined.len();
+            for surface in &scene.extents().surfaces {
+                let place = |end: Option<End>| {
+                    let place = self.places[end?.edge? as usize * receivers.len() + receiver];
+                    (place != NONE).then_some(place as usize)
+                };
+                let places = surface.ends.map(place);
+                if places == [None; 2] {
+                    continue;
+                }
+                let Some(seen) = Seen::new(surface, query.source, receivers[receiver]) else { continue };
+                if seen.is_reflected {
+                    let late = |place: usize| self.found[place].length_m - seen.length_m >= burst_m;
+                    let here = places.map(|place| place.filter(|place| !late(*place)));
+                    let point = surface.on + surface.along * seen.point_m;
+                    if here != [None; 2]
+                        && scene.mesh.sees(query.source, point, &mut self.triangles)
+                        && scene.mesh.sees(receivers[receiver], point, &mut self.triangles)
+                    {
+                        here.into_iter().flatten().for_each(|place| gone[place] = true);
+                    }
+                } else if let [Some(a), Some(b)] = places {
+                    let lengths_m = [a, b].map(|place| self.found[place].length_m);
+                    if (lengths_m[0] - lengths_m[1]).abs() >= burst_m {
+                        continue;
+                    }
+                    (gone[a], gone[b]) = (true, true);
+                    let near = self.found[if lengths_m[0] <= lengths_m[1] { a } else { b }];
+                    let wavelength_m = core::f64::consts::TAU / query.wave_number;
+                    let detours = lengths_m.map(|length_m| (length_m - seen.length_m) / wavelength_m);
+                    let spread = panel_share(detours, true) / near.length_m;
+                    // Both sides of a corner may be seen beside their reflections.
+                    match joined[first..].iter_mut().find(|path| path.edge == near.edge) {
+                        Some(path) => path.spread = (path.spread + spread).min(MOST * LOUDEST_PANEL / near.length_m),
+                        None => joined.push(EdgePath { spread, ..near }),
+                    }
+                }
+            }
+        }
+        let mut gone = gone.into_iter();
+        self.found.retain(|_| !gone.next().unwrap_or_default());
+        self.found.append(&mut joined);
+    }
+}
+
+/// A surface between a source and a receiver that are both before it.
+struct Seen {
+    /// Where its line reflects, from the surface's point on along its direction, in metres.
+    point_m: f64,
+    /// The way by that point.
+    length_m: f64,
+    /// Whether the surface reaches there.
+    is_reflected: bool,
+}
+
+impl Seen {
+    fn new(surface: &Surface, source: Point, receiver: Point) -> Option<Self> {
+        let [source, receiver] = [source, receiver].map(|at| at - surface.on);
+        let heights_m = [source, receiver].map(|at| cross(surface.along, at));
+        if !heights_m.iter().all(|height_m| *height_m > TOUCH_M) {
+            return None;
+        }
+        let [from_m, to_m] = [source, receiver].map(|at| at.dot(&surface.along));
+        let point_m = from_m + (to_m - from_m) * heights_m[0] / (heights_m[0] + heights_m[1]);
+        let [start_m, end_m] = surface.ends.map(|end| end.map(|end| (end.at - surface.on).dot(&surface.along)));
+        Some(Self {
+            point_m,
+            length_m: libm::hypot(to_m - from_m, heights_m[0] + heights_m[1]),
+            is_reflected: start_m.is_none_or(|start_m| point_m >= start_m)
+                && end_m.is_none_or(|end_m| point_m <= end_m),
+        })
+    }
+}

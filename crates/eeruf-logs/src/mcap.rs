@@ -159,8 +159,8 @@ fn is_chunk(input: &mut BufReader<File>, start: u64, size: u64) -> io::Result<bo
     Ok(letter == CHUNK && length <= room)
 }
 
-/// The summary at the end of a file, which repeats schemas and channels and counts messages: empty if there is none, and
-/// nothing if its check sum is wrong.
+/// The summary at the end of a file, which repeats schemas and channels and counts messages: empty if there is none,
+/// and nothing if its check sum is wrong.
 fn summary(file: &mut File, size: u64) -> io::Result<Option<Vec<u8>>> {
     // Where the summary begins, where in it offsets do, and its check sum.
     const FIELDS: usize = 8 + 8 + 4;

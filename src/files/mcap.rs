@@ -5,11 +5,12 @@
 //! robots are counted from 1 in the names of topics and frames.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use eeruf_core::ReadingKind;
 use eeruf_logs::{LogError, McapWriter, Reading};
 use eeruf_sim::experiments::set_two::Place;
-use eeruf_sim::{HeardPath, Point, Pose, Readings, SensorId, Simulation, Vector, World};
+use eeruf_sim::{HeardPath, Point, Pose, Readings, Scene, SensorId, Simulation, Vector, World};
 use serde_json::{Value, json};
 
 use super::error::InputError;
@@ -22,9 +23,14 @@ const POSES_S: f64 = 0.05;
 /// A path is shown for so long.
 const SHOWN_NS: u64 = 120_000_000;
 
+/// What of scenes that were exchanged is kept: longer than sound is on its way.
+const KEPT_S: f64 = 10.0;
+
 /// A world and where its robots are.
 pub(crate) struct Stage<'a> {
     world: &'a World,
+    /// Worlds with the scenes that its own was exchanged for, and since when in seconds, in order of time.
+    changes: &'a [(Arc<World>, f64)],
     /// Where a robot is at a time in seconds; nothing where nobody knows.
     pose: Box<dyn Fn(usize, f64) -> Option<Pose> + 'a>,
 }
@@ -32,21 +38,27 @@ pub(crate) struct Stage<'a> {
 impl<'a> Stage<'a> {
     /// Robots move as the world says.
     pub(crate) fn of(world: &'a World) -> Self {
-        Self { world, pose: Box::new(|robot, time_s| planned(world, robot, time_s)) }
+        Self { world, changes: &[], pose: Box::new(|robot, time_s| planned(world, robot, time_s)) }
     }
 
     /// The first robot was driven; its places are in order of time.
     pub(crate) fn driven(world: &'a World, track: &'a [Place]) -> Self {
         let pose = |robot, time_s| if robot == 0 { on_track(track, time_s) } else { planned(world, robot, time_s) };
-        Self { world, pose: Box::new(pose) }
+        Self { world, changes: &[], pose: Box::new(pose) }
     }
 
-    /// Robots move as they are steered.
-    fn under_way(simulation: &'a Simulation) -> Self {
+    /// Robots move as they are steered, among scenes that change.
+    fn under_way(simulation: &'a Simulation, changes: &'a [(Arc<World>, f64)]) -> Self {
         // What is computed of times may be off by a rounding.
         let known = |time_s: f64| time_s.clamp(0.0, simulation.time_s());
         let pose = move |robot, time_s| Some(simulation.moment_at(robot, known(time_s)).ok()?.pose);
-        Self { world: simulation.world(), pose: Box::new(pose) }
+        Self { world: simulation.world(), changes, pose: Box::new(pose) }
+    }
+
+    /// The scene in which sound travels that was sent at this time.
+    fn scene(&self, sent_s: f64) -> &Scene {
+        let changed = self.changes.iter().rfind(|(_, since_s)| *since_s <= sent_s);
+        changed.or_else(|| self.changes.first()).map_or(self.world, |(world, _)| &**world).scene()
     }
 
     fn pose(&self, robot: usize, time_s: f64) -> Option<Pose> {
@@ -87,7 +99,7 @@ pub(crate) fn write_mcap(file: &Path, stage: &Stage<'_>, runs: &[Readings]) -> R
     // A robot that was driven may have arrived before the time was over.
     let fired_s = |run: &Readings| run.fired_s.iter().copied().fold(0.0, f64::max);
     let end_s = runs.iter().map(fired_s).fold(0.0, f64::max);
-    scene(&mut out, stage.world, 0.0)?;
+    scene(&mut out, stage.world.scene(), 0.0)?;
     let steps = (end_s / POSES_S).ceil() as u64;
     for step in 0..=steps {
         poses(&mut out, stage, step as f64 * POSES_S)?;
@@ -99,7 +111,8 @@ pub(crate) fn write_mcap(file: &Path, stage: &Stage<'_>, runs: &[Readings]) -> R
 }
 
 /// A [`Simulation`] as an MCAP file, written while it goes on, as `eeruf study --mcap` writes a whole one: ranges, what
-/// is accepted, poses, the scene, each reading's path and each firing; `docs/logs.md` has the topics.
+/// is accepted, poses, the scene and what it changes to, each reading's path and each firing; `docs/logs.md` has the
+/// topics.
 ///
 /// ```
 /// use eeruf_sim::*;
@@ -123,6 +136,8 @@ pub struct Recording {
     out: McapWriter,
     /// When poses are written next, counted in steps.
     next: u64,
+    /// The scenes of late, each in its world, and since when in seconds.
+    scenes: Vec<(Arc<World>, f64)>,
 }
 
 impl Recording {
@@ -132,21 +147,33 @@ impl Recording {
     /// If it cannot be written.
     pub fn create(file: &Path, simulation: &Simulation) -> Result<Self, LogError> {
         let mut out = McapWriter::create(file)?;
-        scene(&mut out, simulation.world(), simulation.time_s())?;
-        Ok(Self { out, next: (simulation.time_s() / POSES_S).ceil() as u64 })
+        let (world, since_s) = simulation.world_now();
+        scene(&mut out, world.scene(), simulation.time_s())?;
+        let next = (simulation.time_s() / POSES_S).ceil() as u64;
+        Ok(Self { out, next, scenes: vec![(Arc::clone(world), since_s)] })
     }
 
-    /// Adds what was read in a step, and where robots were since the step before.
+    /// Adds what was read in a step, where robots were since the step before, and the scene if it has changed.
     ///
     /// # Errors
     /// If the file cannot be written.
     pub fn add(&mut self, simulation: &Simulation, read: &Readings) -> Result<(), LogError> {
-        let stage = Stage::under_way(simulation);
+        let (world, since_s) = simulation.world_now();
+        if !self.scenes.last().is_some_and(|(known, _)| Arc::ptr_eq(known, world)) {
+            scene(&mut self.out, world.scene(), since_s)?;
+            self.scenes.push((Arc::clone(world), since_s));
+        }
+        let stage = Stage::under_way(simulation, &self.scenes);
         while self.next as f64 * POSES_S <= simulation.time_s() {
             poses(&mut self.out, &stage, self.next as f64 * POSES_S)?;
             self.next += 1;
         }
-        readings(&mut self.out, &stage, read)
+        readings(&mut self.out, &stage, read)?;
+        drop(stage);
+        let kept_s = simulation.time_s() - KEPT_S;
+        let gone = self.scenes.iter().skip(1).take_while(|(_, since_s)| *since_s < kept_s).count();
+        self.scenes.drain(..gone);
+        Ok(())
     }
 
     /// Writes what is left, and the index. A recording that is dropped does so too, but cannot say if it fails.
@@ -199,8 +226,9 @@ fn entity(id: &str, at_ns: u64, lifetime_ns: u64, lines: &[Value], cylinders: &[
     })
 }
 
-fn scene(out: &mut McapWriter, world: &World, time_s: f64) -> Result<(), LogError> {
-    let (scene, now) = (world.scene(), at_ns(time_s));
+/// Walls and poles, in the place of those before.
+fn scene(out: &mut McapWriter, scene: &Scene, time_s: f64) -> Result<(), LogError> {
+    let now = at_ns(time_s);
     let wall = |wall: &eeruf_sim::Wall| line(&[point(&wall.from), point(&wall.to)], [0.2, 0.2, 0.25, 1.0], 3.0);
     let walls: Vec<_> = scene.walls().iter().map(wall).collect();
     let pole = |pole: &eeruf_sim::Pole| {
@@ -247,12 +275,12 @@ fn poses(out: &mut McapWriter, stage: &Stage<'_>, time_s: f64) -> Result<(), Log
 /// `diagnose` reads them.
 fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(), LogError> {
     let world = stage.world;
-    let c = world.scene().air().speed_of_sound();
     let mut order: Vec<_> = (0..run.len()).collect();
     order.sort_by(|&a, &b| run.fired_s[a].total_cmp(&run.fired_s[b]));
     for k in order {
         let id = run.id(k);
         let robot = &world.robots()[usize::from(id.robot)];
+        let c = stage.scene(run.fired_s[k]).air().speed_of_sound();
         let metres = |us: f64| if us.is_nan() { f64::INFINITY } else { 0.5e-6 * us * c };
         let reading = Reading {
             sensor: usize::from(id.sensor),
@@ -273,7 +301,7 @@ fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(
             let range_m = if run.kind[k] == ReadingKind::Clear { f64::INFINITY } else { metres(run.t_echo_us[k]) };
             out.range(&format!("{topic}/accepted"), &frame, &Reading { range_m, ..reading })?;
         }
-        if let Some(points) = run.path_of(k).and_then(|path| corners(stage, path, run.emitted_s[k], c)) {
+        if let Some(points) = run.path_of(k).and_then(|path| corners(stage, path, run.emitted_s[k])) {
             let is_own = run.path_of(k).is_some_and(|path| path.emitter == path.receiver);
             // Its own echo in green, another's sound in red where it is believed, else in yellow.
             let colour = match (is_own, run.is_accepted(k)) {
@@ -291,8 +319,8 @@ fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(
 }
 
 /// Where the path of a reading ran.
-fn corners(stage: &Stage<'_>, path: &HeardPath, sent_s: f64, c: f64) -> Option<Vec<Point>> {
-    let (from, to) =
-        (stage.position(path.emitter, sent_s)?, stage.position(path.receiver, sent_s + path.length_m / c)?);
-    stage.world.scene().bounce_points(from, to, &path.bounces)
+fn corners(stage: &Stage<'_>, path: &HeardPath, sent_s: f64) -> Option<Vec<Point>> {
+    let scene = stage.scene(sent_s);
+    let heard_s = sent_s + path.length_m / scene.air().speed_of_sound();
+    scene.bounce_points(stage.position(path.emitter, sent_s)?, stage.position(path.receiver, heard_s)?, &path.bounces)
 }

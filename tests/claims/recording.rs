@@ -6,8 +6,10 @@ use std::sync::Arc;
 use eeruf::Recording;
 use eeruf_logs::{FiringLog, Options as ReadOptions, read_log};
 use eeruf_sim::{
-    Air, Faces, Method, Noise, Options, Pose, Robot, Scene, Simulation, Stop, Transducer, Vector, Wall, World,
+    Air, Faces, Method, Noise, Options, Physics, Pole, Pose, Robot, Scene, Simulation, Stop, Transducer, Vector, Wall,
+    World,
 };
+use serde_json::Value;
 
 const START_NS: u64 = 946_684_800_000_000_000;
 
@@ -58,7 +60,7 @@ fn a_recording_has_each_reading_once_and_poses_where_the_robot_was_steered() {
         if !(topic.ends_with("/pose") || topic.ends_with("/paths") || topic == "/scene") {
             continue;
         }
-        let object: serde_json::Value = serde_json::from_slice(&message.data).unwrap();
+        let object: Value = serde_json::from_slice(&message.data).unwrap();
         let time_s = (message.log_time - START_NS) as f64 * 1e-9;
         let was = simulation.moment_at(0, time_s).unwrap().pose;
         if topic.ends_with("/pose") {
@@ -82,4 +84,96 @@ fn a_recording_has_each_reading_once_and_poses_where_the_robot_was_steered() {
     }
     assert_eq!((poses, scenes), (1 + (simulation.time_s() / 0.05).floor() as u32, 1));
     assert!(paths > 200, "{paths}");
+}
+
+/// The messages of the topics that end so, with their times in seconds, in the file's order.
+fn messages(file: &std::path::Path, ending: &str) -> Vec<(f64, Value)> {
+    let bytes = std::fs::read(file).unwrap();
+    let all = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap);
+    all.filter(|message| message.channel.topic.ends_with(ending))
+        .map(|message| {
+            let time_s = (message.log_time - START_NS) as f64 * 1e-9;
+            (time_s, serde_json::from_slice(&message.data).unwrap())
+        })
+        .collect()
+}
+
+#[test]
+fn a_scene_that_is_exchanged_is_drawn_from_then_on_and_sound_that_was_on_its_way_where_it_was() {
+    // A sensor that looks along the x axis, and a wall before it; the air too may be another.
+    let wall_at = |x: f64, temperature_c: f64, poles: Vec<Pole>| {
+        let wall = Wall::new(x, -5.0, x, 5.0).with_faces(Faces::Both);
+        Scene::new(vec![wall], poles, Air { temperature_c, ..Air::default() }).unwrap()
+    };
+    let robot = Robot::with_sensors(Pose::identity(), vec![Pose::identity()], Transducer::POLAROID_6500);
+    let world = World::new(wall_at(2.0, 20.0, vec![]), vec![robot], Noise::NONE).unwrap();
+    let world = Arc::new(world.with_physics(Physics::PLAIN).unwrap());
+    let mut simulation = Simulation::new(world, Method::Sequential, &Options::default(), Stop::default()).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("moved.mcap");
+    // Before the recording begins, between a firing and its echo, and just at a reading; from each on, where the wall
+    // is.
+    let mut walls = vec![];
+    simulation.change_scene(wall_at(2.5, 20.0, vec![])).unwrap();
+    let mut recording = Recording::create(&file, &simulation).unwrap();
+    walls.push((0.0, 2.5));
+    let mut add = |simulation: &mut Simulation, step_s: Option<f64>| {
+        let readings = match step_s {
+            Some(step_s) => simulation.step(step_s, |_| true).unwrap(),
+            None => simulation.step_to_reading(1.0, |_| true).unwrap(),
+        };
+        recording.add(simulation, &readings).unwrap();
+        readings.fired_s
+    };
+    let fired_s = add(&mut simulation, Some(1.0));
+    let next_s = 2.0 * fired_s[fired_s.len() - 1] - fired_s[fired_s.len() - 2];
+    let until_fired_s = (next_s - simulation.time_s()).max(0.0);
+    add(&mut simulation, Some(until_fired_s + 0.005));
+    simulation.change_scene(wall_at(3.0, 20.0, vec![Pole::new(0.0, 4.0, 0.2)])).unwrap();
+    walls.push((simulation.time_s(), 3.0));
+    add(&mut simulation, Some(1.0));
+    let fired_s = add(&mut simulation, None)[0];
+    // Twice without a step: only the last one counts.
+    simulation.change_scene(wall_at(1.0, 20.0, vec![])).unwrap();
+    simulation.change_scene(wall_at(1.5, 40.0, vec![])).unwrap();
+    walls.push((simulation.time_s(), 1.5));
+    assert!(simulation.time_s() > fired_s);
+    for _ in 0..12 {
+        add(&mut simulation, Some(1.7));
+    }
+    recording.finish().unwrap();
+
+    let drawn: Vec<_> = messages(&file, "/scene")
+        .into_iter()
+        .map(|(time_s, message)| {
+            let entity = &message["entities"][0];
+            assert_eq!((entity["id"].as_str(), message["entities"].as_array().unwrap().len()), (Some("scene"), 1));
+            let poles = entity["cylinders"].as_array().unwrap().len();
+            (time_s, entity["lines"][0]["points"][0]["x"].as_f64().unwrap(), poles)
+        })
+        .collect();
+    assert_eq!(drawn.len(), walls.len(), "{drawn:?}");
+    for ((time_s, x, poles), wall) in drawn.iter().zip(&walls) {
+        assert!((time_s - wall.0).abs() < 1e-8 && *x == wall.1, "{drawn:?} {walls:?}");
+        assert_eq!(*poles, usize::from(*x == 3.0));
+    }
+    let paths = messages(&file, "/paths");
+    let mut crossed = 0;
+    for (fired_s, message) in &paths {
+        let wall = walls.iter().rfind(|(since_s, _)| since_s <= fired_s).unwrap().1;
+        let touched = message["entities"][0]["lines"][0]["points"][1]["x"].as_f64().unwrap();
+        assert!((touched - wall).abs() < 1e-9, "fired at {fired_s} s: {touched} m, not {wall} m");
+        // An echo from 2.5 m takes 14.6 ms, and the wall before the last stood at 3 m.
+        let after = |since_s: f64| (0.0..0.0145).contains(&(since_s - fired_s));
+        crossed += usize::from(walls.iter().any(|(since_s, _)| after(*since_s)));
+    }
+    assert!(paths.len() > 200 && crossed >= 1, "{crossed} of {}", paths.len());
+    let mut ranges = vec![];
+    let read = |_: &[eeruf_logs::Sensor], reading: &eeruf_logs::Reading| ranges.push((reading.at_ns, reading.range_m));
+    read_log(&file, &ReadOptions::default(), read).unwrap();
+    for (at_ns, range_m) in ranges {
+        let fired_s = (at_ns - START_NS) as f64 * 1e-9;
+        let wall = walls.iter().rfind(|(since_s, _)| *since_s <= fired_s).unwrap().1;
+        assert!((range_m - wall).abs() < 0.01, "fired at {fired_s} s: {range_m} m, not {wall} m");
+    }
 }

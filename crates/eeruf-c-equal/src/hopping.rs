@@ -165,7 +165,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
                 RingEvent::Reading(reading) => {
                     let confirmed = echo(ring.tracker().confirmed(reading.sensor.into()));
                     assert_eq!(c.confirmed_us(reading.sensor), confirmed, "{}", at());
-                    let how = ring.weighed(reading.sensor).map(|of| u32::from(of.solo) | u32::from(of.steady) << 1);
+                    let how = ring.weighed(reading.sensor, 0).map(|of| u32::from(of.solo) | u32::from(of.steady) << 1);
                     let weighed = (how.unwrap_or(0), u32::from(ring.changes()));
                     assert_eq!(c.weighed(reading.sensor), weighed, "{}", at());
                 }

@@ -67,7 +67,7 @@ pub use edges::{Edge, EdgeQueue};
 pub use filter::{EchoFilter, FilterError, RateFilter};
 pub use hopping::{
     HoppingCode, HoppingError, HoppingFiring, HoppingHeader, HoppingListening, HoppingRing, HoppingRust,
-    HoppingSchedule, HoppingSettings, HoppingTab, HoppingToml,
+    HoppingSchedule, HoppingSettings, HoppingTab, HoppingToml, Weighed,
 };
 pub use interop::DurationError;
 pub use layout::{Layout, LayoutError, neighbour_rows};

@@ -29,6 +29,7 @@
 //! ```
 
 mod bytes;
+mod chunks;
 mod diagnose;
 mod error;
 mod firing_files;
@@ -44,6 +45,7 @@ mod rosbag2;
 mod sink;
 mod survey;
 mod table;
+mod unzstd;
 mod weighed;
 mod write;
 

@@ -9,6 +9,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use crate::bytes::{Bytes, Order};
+use crate::chunks::Chunks;
 use crate::error::LogError;
 use crate::message::Encoding;
 use crate::sink::{Sink, Topic};
@@ -35,6 +36,8 @@ struct Header<'a> {
     size: u32,
     /// Where the index begins; 0 in a bag that was not closed.
     index_at: u64,
+    /// Where the chunk is that a record of the index is about.
+    chunk_at: u64,
     type_name: &'a [u8],
     definition: &'a [u8],
 }
@@ -57,6 +60,7 @@ impl<'a> Header<'a> {
                 b"compression" => header.compression = value,
                 b"size" => header.size = number.u32()?,
                 b"index_pos" => header.index_at = number.u64()?,
+                b"chunk_pos" => header.chunk_at = number.u64()?,
                 b"type" => header.type_name = value,
                 b"message_definition" => header.definition = value,
                 _ => {}
@@ -69,6 +73,10 @@ impl<'a> Header<'a> {
 #[derive(Default)]
 struct State {
     topics: HashMap<u32, Topic>,
+    /// How many messages there are, if the index says so.
+    counted: u64,
+    /// Where the index says that chunks are.
+    chunks: Chunks,
 }
 
 /// Reads a bag to its end, or to where it cannot be read any further.
@@ -77,6 +85,7 @@ pub(crate) fn read(file: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
     let mut opened = File::open(file).map_err(failed)?;
     let size = opened.metadata().map_err(failed)?.len();
     let mut state = State::default();
+    let found_before = sink.found;
     // Connections are found in the chunks too; that there is no index is no damage.
     if let Ok(index) = index(&mut opened, size) {
         state.connections_of(&index, sink);
@@ -91,25 +100,42 @@ pub(crate) fn read(file: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
     let (mut head, mut body, mut chunk) = (Vec::new(), Vec::new(), Vec::new());
     let mut closed = true;
     while at < size {
+        // No record reaches into the next chunk.
+        let (begin, known) = (at, state.chunks.after(at, size));
+        let end = known.unwrap_or(size);
         let mut part = |into: &mut Vec<u8>| -> Result<bool, LogError> {
+            into.clear();
             let mut length = [0; 4];
-            if size - at < 4 {
+            if end - at < 4 {
                 return Ok(false);
             }
             input.read_exact(&mut length).map_err(failed)?;
-            let length = u64::from(u32::from_le_bytes(length));
+            let length = u32::from_le_bytes(length);
             at += 4;
-            if length > size - at {
+            if u64::from(length) > end - at || length > LARGEST_CHUNK {
                 return Ok(false);
             }
-            into.clear();
-            (&mut input).take(length).read_to_end(into).map_err(failed)?;
-            at += length;
+            (&mut input).take(length.into()).read_to_end(into).map_err(failed)?;
+            at += u64::from(length);
             Ok(true)
         };
-        if !part(&mut head)? || !part(&mut body)? {
+        let fits = part(&mut head)? && part(&mut body)?;
+        if let Some(start) = known.filter(|_| !fits) {
+            let is_chunk = is_chunk(&mut input, start).map_err(failed)?;
+            if is_chunk {
+                let message =
+                    format!("what stands from here to the chunk at byte {start} is lost: its records do not fit");
+                sink.damage(file, Some(begin), message);
+            } else {
+                state.chunks.forget(start);
+            }
+            at = if is_chunk { start } else { begin };
+            input.seek(SeekFrom::Start(at)).map_err(failed)?;
+            continue;
+        }
+        if !fits {
             body.clear();
-            input.read_to_end(&mut body).map_err(failed)?;
+            (&mut input).take(LARGEST_CHUNK.into()).read_to_end(&mut body).map_err(failed)?;
             if let Some(header) = Header::of(&head).filter(|header| header.op == CHUNK) {
                 // What stands in it before the cut.
                 _ = unpack_chunk(&header, &body, &mut chunk);
@@ -147,10 +173,22 @@ pub(crate) fn read(file: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
     if !closed {
         sink.damage(file, None, "the bag was not closed, or its end is cut off; all whole chunks were read");
     }
+    sink.counted(file, state.counted, found_before);
     for (_, topic) in state.topics {
         sink.close(&topic);
     }
     Ok(())
+}
+
+/// Whether a chunk begins at a place that the index names.
+fn is_chunk(input: &mut BufReader<File>, start: u64) -> io::Result<bool> {
+    /// More than the header of a chunk has.
+    const LONGEST: u64 = 4096;
+    input.seek(SeekFrom::Start(start))?;
+    let mut head = Vec::new();
+    input.take(LONGEST).read_to_end(&mut head)?;
+    let header = Bytes::new(&head, Order::Little).counted().and_then(Header::of);
+    Ok(header.is_some_and(|header| header.op == CHUNK))
 }
 
 /// The index at the end of a bag, which repeats the connections.
@@ -192,13 +230,22 @@ fn unpack_chunk(header: &Header<'_>, body: &[u8], chunk: &mut Vec<u8>) -> Result
 }
 
 impl State {
-    /// The connections among records.
+    /// The connections among the records of the index, where it says that chunks are, and how many messages it counts.
     fn connections_of(&mut self, records: &[u8], sink: &mut Sink<'_>) -> Option<()> {
         let mut rest = Bytes::new(records, Order::Little);
         while rest.left() > 0 {
             let (header, body) = (Header::of(rest.counted()?)?, rest.counted()?);
-            if header.op == CONNECTION {
-                self.record(&header, body, sink)?;
+            match header.op {
+                CONNECTION => self.record(&header, body, sink)?,
+                CHUNK_INFO => {
+                    self.chunks.add(header.chunk_at);
+                    let mut counts = Bytes::new(body, Order::Little);
+                    while counts.left() > 0 {
+                        counts.u32()?; // The connection.
+                        self.counted += u64::from(counts.u32()?);
+                    }
+                }
+                _ => {}
             }
         }
         Some(())
@@ -221,6 +268,7 @@ impl State {
         let text = |bytes| String::from_utf8_lossy(bytes);
         match header.op {
             MESSAGE => {
+                sink.found += 1;
                 // A message whose connection is lost cannot be read.
                 let topic = self.topics.get_mut(&header.connection?)?;
                 sink.message(topic, header.time_ns, body);
@@ -234,7 +282,8 @@ impl State {
                     entry.insert(sink.topic(&name, &type_name, definition.as_deref(), Some(Encoding::Ros1)));
                 }
             }
-            _ => {}
+            // Nothing else stands in a chunk.
+            _ => return None,
         }
         Some(())
     }

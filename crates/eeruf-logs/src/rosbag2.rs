@@ -1,6 +1,5 @@
 //! Reads ROS 2 bags: folders with `metadata.yaml` and the files that it names, in `SQLite` or MCAP.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use rusqlite::{Connection, OpenFlags};
@@ -9,15 +8,16 @@ use saphyr::{LoadableYamlNode, Yaml};
 use crate::error::LogError;
 use crate::message::Encoding;
 use crate::sink::{Sink, Topic};
+use crate::unzstd::{LARGEST_MESSAGE, Unzstd};
 
 pub(crate) const SQLITE_MAGIC: &[u8; 16] = b"SQLite format 3\0";
-/// The largest message that is unpacked.
-const LARGEST_MESSAGE: u64 = 1 << 26;
 
 /// What `metadata.yaml` says.
 #[derive(Default)]
 struct Metadata {
     files: Vec<PathBuf>,
+    /// How many messages they have.
+    messages: u64,
     /// Whether each message is compressed for itself.
     packed: bool,
 }
@@ -42,6 +42,7 @@ pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
     if files.is_empty() {
         files = bag_files(folder)?;
     }
+    let (damage, found_before) = (sink.report.damage.len(), sink.found);
     for file in files {
         // What cannot be opened takes nothing from the other files.
         let read = match file.extension().and_then(|ending| ending.to_str()) {
@@ -56,6 +57,9 @@ pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
             sink.damage(error.file(), None, error.message());
         }
     }
+    if sink.report.damage.len() == damage {
+        sink.counted(&metadata, found.messages, found_before);
+    }
     Ok(())
 }
 
@@ -68,7 +72,9 @@ impl Metadata {
         let files = files.ok_or("no relative_file_paths")?;
         let files = files.iter().filter_map(Yaml::as_str).map(PathBuf::from).collect();
         let mode = bag.as_mapping_get("compression_mode").and_then(Yaml::as_str).unwrap_or_default();
-        Ok(Self { files, packed: mode.eq_ignore_ascii_case("message") })
+        let messages = bag.as_mapping_get("message_count").and_then(Yaml::as_integer);
+        let messages = messages.and_then(|messages| u64::try_from(messages).ok()).unwrap_or(0);
+        Ok(Self { files, messages, packed: mode.eq_ignore_ascii_case("message") })
     }
 }
 
@@ -105,7 +111,8 @@ pub(crate) fn read_sqlite(file: &Path, packed: bool, sink: &mut Sink<'_>) -> Res
     let mut topics = topics(&database, file, sink).map_err(failed)?;
     let mut query = database.prepare("SELECT topic_id, timestamp, data FROM messages").map_err(failed)?;
     let mut rows = query.query([]).map_err(failed)?;
-    let (mut read, mut orphans, mut unpacked) = (0_u64, 0_u64, Vec::new());
+    let (mut read, mut orphans) = (0_u64, 0_u64);
+    let (mut zstd, mut unpacked) = (Unzstd::default(), Vec::new());
     loop {
         let row = match rows.next() {
             Ok(Some(row)) => row,
@@ -116,6 +123,7 @@ pub(crate) fn read_sqlite(file: &Path, packed: bool, sink: &mut Sink<'_>) -> Res
             }
         };
         read += 1;
+        sink.found += 1;
         let fields = (row.get_ref(0), row.get_ref(1), row.get_ref(2));
         let (Ok(topic), Ok(recorded), Ok(data)) = fields else { continue };
         let (Ok(topic), Ok(recorded), Ok(data)) = (topic.as_i64(), recorded.as_i64(), data.as_blob()) else {
@@ -127,16 +135,13 @@ pub(crate) fn read_sqlite(file: &Path, packed: bool, sink: &mut Sink<'_>) -> Res
             continue;
         };
         let recorded_ns = u64::try_from(recorded).unwrap_or(0);
-        if packed {
-            unpacked.clear();
-            let message = zstd::stream::read::Decoder::with_buffer(data)
-                .and_then(|decoder| decoder.take(LARGEST_MESSAGE).read_to_end(&mut unpacked));
-            match message {
-                Ok(_) => sink.message(topic, recorded_ns, &unpacked),
+        if !packed {
+            sink.message(topic, recorded_ns, data);
+        } else if topic.has_readings() {
+            match zstd.unpack(data, LARGEST_MESSAGE, &mut unpacked) {
+                Ok(()) => sink.message(topic, recorded_ns, &unpacked),
                 Err(_) => orphans += 1,
             }
-        } else {
-            sink.message(topic, recorded_ns, data);
         }
     }
     if orphans > 0 {

@@ -62,6 +62,8 @@ struct Frame {
 /// Takes messages, and hands on readings.
 pub(crate) struct Sink<'a> {
     pub(crate) report: Report,
+    /// How many messages were found, of whatever type and whether or not they could be read.
+    pub(crate) found: u64,
     each: &'a mut dyn FnMut(&[Sensor], &Reading),
     buffer: Vec<Reading>,
     more_damage: u64,
@@ -69,7 +71,7 @@ pub(crate) struct Sink<'a> {
 
 impl<'a> Sink<'a> {
     pub(crate) fn new(each: &'a mut dyn FnMut(&[Sensor], &Reading)) -> Self {
-        Self { report: Report::default(), each, buffer: Vec::new(), more_damage: 0 }
+        Self { report: Report::default(), found: 0, each, buffer: Vec::new(), more_damage: 0 }
     }
 
     /// A topic by its name, the name of its type, the text of its schema if there is one, and its encoding.
@@ -156,6 +158,14 @@ impl<'a> Sink<'a> {
         }
     }
 
+    /// A file says how many messages it has, and before it so many had been found.
+    pub(crate) fn counted(&mut self, file: &Path, counted: u64, before: u64) {
+        let missing = (before + counted).saturating_sub(self.found);
+        if missing > 0 {
+            self.damage(file, None, format!("{missing} of the {counted} messages that it counts were not found"));
+        }
+    }
+
     /// A part of a file cannot be read.
     pub(crate) fn damage(&mut self, file: &Path, at: Option<u64>, message: impl fmt::Display) {
         if self.report.damage.len() < LISTED {
@@ -176,6 +186,11 @@ impl<'a> Sink<'a> {
 }
 
 impl Topic {
+    /// Whether its messages hold readings, as far as its type says.
+    pub(crate) const fn has_readings(&self) -> bool {
+        self.decoding.is_some()
+    }
+
     /// The place of a frame among those of the topic.
     fn frame(&mut self, id: &[u8]) -> usize {
         let known = match self.frames.get(self.next) {

@@ -5,10 +5,10 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use crc::{CRC_16_IBM_3740, Crc, Table};
-use eeruf_core::{Instant, MAX_SENSORS, Micros, ReadingKind};
+use eeruf_core::{Instant, MAX_SENSORS, Micros, ReadingKind, Weighed};
 
 use crate::encode::{LONGEST_CLOCK, LONGEST_FRAME};
-use crate::firing::{Firing, Weighed};
+use crate::firing::Firing;
 use crate::{FIRING, HELLO, NO_ECHO, PERIOD, SOLO, STEADY, VERSION, WEIGHED};
 
 const CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_3740);

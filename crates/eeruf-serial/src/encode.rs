@@ -1,8 +1,8 @@
 //! [`Encoder`]: the bytes of a frame.
 
-use eeruf_core::{MAX_SENSORS, Micros};
+use eeruf_core::{MAX_SENSORS, Micros, Weighed};
 
-use crate::firing::{Firing, Weighed};
+use crate::firing::Firing;
 use crate::{FIRING, HELLO, NO_ECHO, PERIOD, SOLO, STEADY, VERSION, WEIGHED};
 
 /// A frame's content at its longest: that of a period's end with 64 sensors, and the check sum.

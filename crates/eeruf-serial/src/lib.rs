@@ -37,8 +37,9 @@ mod recorder;
 
 #[cfg(feature = "decode")]
 pub use decode::{Decoder, FrameError, Message, Received};
+pub use eeruf_core::Weighed;
 pub use encode::{Encoder, Frame, LONGEST_CLOCK, LONGEST_FRAME};
-pub use firing::{Firing, Weighed};
+pub use firing::Firing;
 pub use recorder::Recorder;
 
 /// The version of the protocol: the upper four bits of each frame's first byte.

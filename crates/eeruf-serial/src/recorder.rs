@@ -1,9 +1,9 @@
 //! [`Recorder`]: from the events of a ring to frames.
 
-use eeruf_core::{HoppingRing, Instant, Micros, RingEvent};
+use eeruf_core::{HoppingRing, Instant, Micros, RingEvent, Weighed};
 
 use crate::encode::{Encoder, Frame};
-use crate::firing::{Firing, Weighed};
+use crate::firing::Firing;
 
 /// How many firings there are from one greeting to the next.
 const GREET_EVERY: u8 = 128;
@@ -48,7 +48,7 @@ impl<const K: usize> Recorder<K> {
         health: impl Fn(u8) -> u8,
         edges_lost: u8,
     ) -> Option<Frame> {
-        let weighed = |sensor| Weighed::of(ring, sensor, expected_change_us(sensor));
+        let weighed = |sensor| ring.weighed(sensor, expected_change_us(sensor));
         self.weighed_event(event, now, weighed, health, edges_lost)
     }
 

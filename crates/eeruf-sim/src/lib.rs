@@ -78,7 +78,7 @@ pub use acoustics::{
 pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice};
 pub use maps::{MapError, OccupancyGrid};
 pub use methods::{
-    BestSchedule, Firing, FiringPeriod, Method, OwnError, UnknownMethod, Weighed, best_schedule_for, requirements_of,
+    BestSchedule, Firing, FiringPeriod, Method, OwnError, UnknownMethod, best_schedule_for, requirements_of,
     shortest_schedule_for, table_i_d_for,
 };
 pub use navigation::{Driven, Himm, LabMate, Vfh};

@@ -19,6 +19,7 @@ mod settings;
 #[cfg(test)]
 mod tests;
 mod turn;
+mod weighed;
 
 use crate::reading::{ReadingKind, Tally, Verdict};
 use crate::ring::{PeriodStats, Reading, Ring, RingConfig, RingEvent};
@@ -34,6 +35,7 @@ pub use error::HoppingError;
 pub use firing::HoppingFiring;
 pub use schedule::HoppingSchedule;
 pub use settings::{HoppingListening, HoppingSettings};
+pub use weighed::Weighed;
 
 /// A ring of up to `K` sensors that hops in time, with `H` hypotheses for each sensor. It is used like a
 /// [`Ring`]; its readings are also [`Tentative`](ReadingKind::Tentative).
@@ -242,15 +244,15 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         self.ring.scheduler()
     }
 
-    /// For the log of a reading that was just emitted: what was known of its sensor's firing when it was weighed, but
-    /// for the expected change; `None` for a sensor that is not there. With it, the echo times and
-    /// [`changes`](Self::changes) an [`EchoTracker`] does again what this ring's did.
-    pub fn weighed(&self, sensor: u8) -> Option<Firing> {
+    /// For the log of a reading that was just emitted: how it was weighed, with the change that the poll expected of
+    /// its sensor, 0 for a robot that stands; `None` for a sensor that is not there. With that, its phase and its echo
+    /// time an [`EchoTracker`] does again what this ring's did.
+    pub fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
         if usize::from(sensor) >= self.sensors() {
             return None;
         }
-        let (phase, solo, steady) = self.firing().last_firing(sensor, self.tolerated);
-        Some(Firing { phase, solo, steady, expected_change_us: 0 })
+        let (_, solo, steady) = self.firing().last_firing(sensor, self.tolerated);
+        Some(Weighed { solo, steady, changes: self.changes, expected_change_us })
     }
 
     /// How often firing times have changed against each other otherwise than by the phase, such as by new lags, modulo

@@ -1,11 +1,11 @@
 //! A ring that hops in time: core's own, for a robot.
 
 use eeruf_core::{
-    Firing, HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, MAX_SENSORS, Micros,
-    RingEvent,
+    HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, MAX_SENSORS, Micros,
+    RingEvent, Weighed,
 };
 
-use super::ring_runner::{RingRunner, RingStart, Started, Weighed};
+use super::ring_runner::{RingRunner, RingStart, Started};
 use crate::world::Robot;
 
 /// By how much crosstalk moves at least from phase to phase: 90 us more than the tracker's `T_delta`, for jitter and
@@ -26,9 +26,8 @@ impl<const K: usize, const H: usize> RingRunner<'_> for HoppingRing<K, H> {
         _ = HoppingRing::echo(self, sensor, at);
     }
 
-    fn weighed(&self, sensor: u8) -> Option<Weighed> {
-        let Firing { solo, steady, .. } = HoppingRing::weighed(self, sensor)?;
-        Some(Weighed { solo, steady, changes: self.changes(), expected_change_us: 0 })
+    fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
+        HoppingRing::weighed(self, sensor, expected_change_us)
     }
 }
 

@@ -3,25 +3,11 @@
 
 use eeruf_core::{
     HoppingError, HoppingSettings, ImmediateRefiring, Instant, LadderError, MAX_SENSORS, Ring, RingConfig, RingError,
-    RingEvent, ScheduledFiring, Scheduler, UnevenFiring, UnevenSchedule, VerifiedSchedule, Violation,
+    RingEvent, ScheduledFiring, Scheduler, UnevenFiring, UnevenSchedule, VerifiedSchedule, Violation, Weighed,
 };
 
 use super::firing::OwnError;
 use crate::world::{AnySchedule, Random, Robot};
-
-/// How the tracker of a hopping ring weighed a reading, beside its phase and echo time: what a log needs for the
-/// tracker to be run over it again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Weighed {
-    /// Whether no other sensor's sound could be heard.
-    pub solo: bool,
-    /// Whether firings were so punctual that crosstalk moved as the schedule says.
-    pub steady: bool,
-    /// How often lags had moved, or the timetable had broken off, modulo 256.
-    pub changes: u8,
-    /// By how much odometry expected the reading to change since the sensor's firing before, in microseconds.
-    pub expected_change_us: i32,
-}
 
 /// A ring of any kind, which can change to schedules that live as long as `'s`.
 pub(crate) trait RingRunner<'s>: Send {
@@ -32,9 +18,9 @@ pub(crate) trait RingRunner<'s>: Send {
     fn next_deadline(&self) -> Instant;
     /// A sensor hears an echo.
     fn echo(&mut self, sensor: u8, at: Instant);
-    /// Of a ring with a tracker: how it weighed the reading of a sensor that it has just emitted, but for the expected
-    /// change.
-    fn weighed(&self, _sensor: u8) -> Option<Weighed> {
+    /// Of a ring with a tracker: how it weighed the reading of a sensor that it has just emitted, with the change that
+    /// was expected.
+    fn weighed(&self, _sensor: u8, _expected_change_us: i32) -> Option<Weighed> {
         None
     }
     /// Changes to another schedule, of as many sensors, when the present period ends.

@@ -3,12 +3,9 @@
 
 use std::collections::TryReserveError;
 
-use eeruf_core::ReadingKind;
+use eeruf_core::{ReadingKind, Weighed};
 
-use crate::{
-    methods::{Method, Weighed},
-    scene::Bounce,
-};
+use crate::{methods::Method, scene::Bounce};
 
 /// A sensor of a world, both counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]

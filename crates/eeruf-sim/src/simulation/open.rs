@@ -65,6 +65,10 @@ pub struct Simulation {
     robots: usize,
     /// In true nanoseconds.
     now: u64,
+    /// All events before this have happened: those of now too, if one of them gave a reading.
+    happened: u64,
+    /// The world with the scene of now, and since when.
+    place: (Arc<World>, u64),
     /// When the last firing that counts may happen.
     end: u64,
     /// The first robot's period.
@@ -118,11 +122,13 @@ impl Simulation {
         let (robots, period) = (world.robots().len(), end_of(&world, 1));
         own.check(robots)?;
         let plans = plans(&world, method, options, &Planned(&world), &own)?;
+        let place = (Arc::clone(&world), 0);
         let owner = Owner { world, plans, schedules: FrozenVec::new() };
         let under_way = UnderWay::try_new(owner, |Owner { world, plans, .. }| {
             EventLoop::new(world, plans, method, options, Steered::new(world), &mut own, end, 0, stop)
         })?;
-        Ok(Self { under_way, method, robots, now: 0, end: end.unwrap_or(u64::MAX), period, over: false })
+        let end = end.unwrap_or(u64::MAX);
+        Ok(Self { under_way, method, robots, now: 0, happened: 0, place, end, period, over: false })
     }
 
     /// Lets time pass, and returns what was read meanwhile: the readings of all firings whose windows have closed.
@@ -171,13 +177,13 @@ impl Simulation {
         let (before, farthest) = (self.now, self.now.saturating_add(ns));
         let until = if farthest >= self.end { u64::MAX } else { farthest };
         let end = self.end;
-        let (more, now, readings) = self.under_way.with_dependent_mut(|_, events| {
+        let (more, at, now, readings) = self.under_way.with_dependent_mut(|_, events| {
             let (more, at) = events.run_to_reading(until, keep_going)?;
             let now = at.map_or(farthest, |at| at.clamp(before, farthest));
             let duration_s = (now.min(end) - before.min(end)) as f64 * 1e-9;
-            Ok::<_, SimulationError>((more, now, events.take(duration_s)))
+            Ok::<_, SimulationError>((more, at, now, events.take(duration_s)))
         })?;
-        (self.now, self.over) = (now, !more);
+        (self.now, self.happened, self.over) = (now, at.map_or(now, |_| now + 1), !more);
         Ok(readings)
     }
 
@@ -202,7 +208,7 @@ impl Simulation {
             let more = events.run_until(until, keep_going)?;
             Ok((more, events.take(duration_s)))
         })?;
-        (self.now, self.over) = (now, !more);
+        (self.now, self.happened, self.over) = (now, now, !more);
         Ok(readings)
     }
 
@@ -290,11 +296,12 @@ impl Simulation {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn change_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
-        let now = self.now;
-        self.under_way.with_dependent_mut(|owner, events| {
-            let world = Place::Shared(Arc::new(owner.world.with_scene(scene)));
-            events.change_scene(world).map_err(|error| SimulationError::paths(now, error))
-        })
+        let world = Arc::new(self.world().with_scene(scene));
+        let (now, place) = (self.now, Place::Shared(Arc::clone(&world)));
+        let changed = self.under_way.with_dependent_mut(|_, events| events.change_scene(place));
+        changed.map_err(|error| SimulationError::paths(now, error))?;
+        self.place = (world, self.happened);
+        Ok(())
     }
 
     /// Where a robot is now, and how fast it goes.
@@ -337,9 +344,15 @@ impl Simulation {
         Ok(self.under_way.with_dependent(|_, events| events.kinematics().moment(robot, then as u64)))
     }
 
-    /// The world that is simulated.
+    /// The world that is simulated, as it was at first.
     pub fn world(&self) -> &Arc<World> {
         &self.under_way.borrow_owner().world
+    }
+
+    /// The world with the scene of now, and since when, in seconds: what fires from then on is heard in it, until
+    /// [`change_scene`](Self::change_scene) gives another one.
+    pub fn world_now(&self) -> (&Arc<World>, f64) {
+        (&self.place.0, self.place.1 as f64 * 1e-9)
     }
 
     fn known(&self, robot: usize) -> Result<(), SimulationError> {

@@ -17,7 +17,7 @@ use crate::simulation::options::Options;
 use crate::simulation::receiver::{NEVER, Receiver};
 use crate::{
     geometry::Moment,
-    methods::{ChangeError, Method, OwnError, Weighed},
+    methods::{ChangeError, Method, OwnError},
     results::Readings,
     threads::Stop,
     tracing::PathsError,
@@ -235,9 +235,8 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
                     self.fire(rings, index, emitter, now).map_err(|error| SimulationError::paths(now, error))?;
                 }
                 Some(RingEvent::Reading(reading)) => {
-                    let weighed = ring.ring.weighed(reading.sensor);
                     let expected_change_us = change(reading.sensor);
-                    let weighed = weighed.map(|weighed| Weighed { expected_change_us, ..weighed });
+                    let weighed = ring.ring.weighed(reading.sensor, expected_change_us);
                     let number = ring.sensors.start + usize::from(reading.sensor);
                     if let (Some(receiver), Some(fired)) = (self.receivers.get_mut(number), &self.fired[number]) {
                         let fired_from = fired.pose * ring.robot.sensors[usize::from(reading.sensor)];

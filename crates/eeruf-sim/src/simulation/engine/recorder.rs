@@ -1,7 +1,7 @@
 //! What becomes of a reading under a method, and its entry in the record: what it says, what it came from, and what the
 //! sensor would have read alone.
 
-use eeruf_core::{Reading, ReadingKind};
+use eeruf_core::{Reading, ReadingKind, Weighed};
 
 use super::filter::{Filter, Filtered, FiredReading, MAX_MEDIAN, filter_of};
 use super::own::Own;
@@ -10,7 +10,7 @@ use crate::simulation::options::Options;
 use crate::simulation::receiver::{EXTERNAL, Echo, NEVER, Receiver};
 use crate::{
     geometry::Pose,
-    methods::{Method, OwnError, Weighed},
+    methods::{Method, OwnError},
     results::{Cause, HeardPath, NO_PATH, Readings, SensorId},
 };
 

@@ -133,7 +133,9 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
                 let phases = self.firing().code.phases();
                 // It has begun the next one already.
                 let phase = Phase(self.firing().phase.checked_sub(1).unwrap_or(phases - 1));
-                RingEvent::PeriodEnded(PeriodStats { phase, tally: core::mem::take(&mut self.tally), ..stats })
+                // Edges that came late, but before their window was closed, make no reading: the ring counted them.
+                let tally = core::mem::take(&mut self.tally).with(ReadingKind::Late, &stats.tally);
+                RingEvent::PeriodEnded(PeriodStats { phase, tally, ..stats })
             }
             RingEvent::Fire { sensor, due, .. } => RingEvent::Fire { sensor, phase: self.firing().phase(), due },
         })

@@ -186,6 +186,43 @@ fn a_reading_has_the_phase_of_its_firing_and_a_period_counts_the_readings_it_gav
 }
 
 #[test]
+fn a_period_counts_late_edges_of_both_kinds_before_and_after_the_window_was_closed() {
+    let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
+    let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
+    let start = Instant::from_micros(0);
+    let listening = HoppingListening::new(Micros::new(WINDOW));
+    let mut ring = HoppingRing::<SENSORS>::new(&schedule, HoppingSettings::BALANCED, listening, 1, start).unwrap();
+    let (mut late, mut given, mut periods) = (0, 0, 0);
+    while periods < 20 {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor: 0, .. } => {
+                    // Two after the window, which has not been polled for: they are counted and make no reading.
+                    ring.echo(0, now + Micros::new(WINDOW + 1)).unwrap();
+                    ring.echo(0, now + Micros::new(WINDOW + 2)).unwrap();
+                    late += 2;
+                }
+                // And one after its reading.
+                RingEvent::Reading(reading) if reading.sensor == 0 && reading.kind != ReadingKind::Late => {
+                    ring.echo(0, now + Micros::new(1)).unwrap();
+                }
+                RingEvent::Reading(reading) => {
+                    let is_late = u32::from(reading.kind == ReadingKind::Late);
+                    (late, given) = (late + is_late, given + is_late);
+                }
+                RingEvent::Fire { .. } => {}
+                RingEvent::PeriodEnded(stats) => {
+                    assert_eq!(stats.tally.of(ReadingKind::Late), core::mem::take(&mut late), "period {periods}");
+                    periods += 1;
+                }
+            }
+        }
+    }
+    assert!(given > 10, "{given}");
+}
+
+#[test]
 fn a_sensor_rests_for_its_window_also_after_a_firing_that_was_late_past_the_periods_end() {
     let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();

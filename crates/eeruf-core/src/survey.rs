@@ -159,6 +159,7 @@ pub enum SurveyEvent {
 
 /// A sensor in a slot.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Listener {
     sensor: u8,
     due: Instant,
@@ -180,6 +181,7 @@ struct Listener {
 /// assert_eq!((row.sensor, row.t_echo), (0, Some(Micros::new(5_800))));
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Survey {
     plan: SurveyPlan,
     slot: u32,

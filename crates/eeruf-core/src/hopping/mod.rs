@@ -64,6 +64,7 @@ pub use settings::{HoppingListening, HoppingSettings};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HoppingRing<const K: usize, const H: usize = 4> {
     ring: Ring<HoppingFiring<K>, K>,
     tracker: EchoTracker<K, H>,

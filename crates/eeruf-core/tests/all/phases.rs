@@ -40,6 +40,15 @@ fn check<const K: usize>(kind: &str, period_us: u32, times: &[Vec<u32>], [separa
         assert_eq!(least.value.as_micros(), separation, "{kind}: {least:?}");
         assert_eq!(least.ages.0, least.ages.1);
     }
+    // What it names moves by so much.
+    let path = |phase: Phase, age: i8| {
+        let (phase, age) = (i64::from(phase.0), i64::from(age));
+        let sent = (phase - age).rem_euclid(times.len() as i64);
+        let t_fire = |phase: i64, sensor: u8| i64::from(times[phase as usize][usize::from(sensor)]);
+        t_fire(sent, least.sensors.0) - age * i64::from(period_us) - t_fire(phase, least.sensors.1)
+    };
+    let (one, other) = (path(least.phases.0, least.ages.0), path(least.phases.1, least.ages.1));
+    assert_eq!((one - other).unsigned_abs(), u64::from(least.value.as_micros()), "{least:?}");
     assert_eq!(table.min_refire().map(|refire| refire.value), Some(Micros::new(gap)));
     assert_eq!(table.min_interval(Layout::Line(4)).map(|interval| interval.value), Some(Micros::new(nearest)));
 }

@@ -297,6 +297,7 @@ mod tests {
             }
         }
         assert_eq!((seen.len(), plan.slots(), plan.slot(plan.slots())), (0, 5 * 2 + 20 * 3, None));
+        assert_eq!(plan.duration_us(), 70 * (800 + 36_000 + 57_000));
         assert_eq!(SurveyPlan::new(0).slot(0), None);
         assert_eq!(SurveyPlan::new(1).slots(), 3);
     }

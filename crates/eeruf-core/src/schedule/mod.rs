@@ -235,12 +235,19 @@ mod tests {
             all.sort_unstable();
             assert!(all.into_iter().eq(0..12));
         }
+        let together = Schedule::<4>::from_firing(Micros::from_millis(9), [ms([5, 3, 5, 3]), ms([0; 4])]).unwrap();
+        assert_eq!(together.firing_order(Phase::A), [1, 3, 0, 2], "those that fire together keep their order");
+        assert_eq!(together.firing_order(Phase::B), [0, 1, 2, 3]);
     }
 
     #[test]
     fn table_i_d_refires_after_76_to_124_ms() {
         assert_eq!(TABLE_I_D.min_refire(), Micros::from_millis(76));
         assert_eq!(TABLE_I_D.max_refire(), Micros::from_millis(124));
+        let after = |phase, sensor| TABLE_I_D.refire_after(phase, sensor);
+        let known = [(Phase::A, 0), (Phase::B, 0), (Phase::A, 11), (Phase::B, 11)].map(|(phase, x)| after(phase, x));
+        assert_eq!(known, [94, 106, 80, 120].map(|refire| Some(Micros::from_millis(refire))));
+        assert_eq!([after(Phase::A, 12), after(Phase(2), 0)], [None; 2]);
         // Sec. 3.1: 999 us at 343.2 m/s allow 1.38 m/s.
         assert_eq!(TABLE_I_D.max_speed_mm_s(Micros::new(999), 343_200), 1382);
     }

@@ -279,6 +279,8 @@ fn a_schedule_takes_what_just_fits_and_nothing_more() {
     // No neighbours count as one, and nobody is beyond the last sensor.
     let [none, one] = [0, 1].map(|neighbours| HoppingSchedule::<4>::spread(code, us(60_000), neighbours).unwrap());
     assert_eq!((none, none.t_lag(2), none.t_lag(3)), (one, Some(us(0)), None));
+    let two = HoppingSchedule::<3>::spread(code, us(60_000), 2).unwrap();
+    assert_eq!([0, 1, 2].map(|sensor| two.t_lag(sensor)), [0, (60_000 - width) / 2, 0].map(|lag| Some(us(lag))));
     assert_eq!((none.t_fire(1, 2), none.t_fire(1, 3)), (Some(us(720)), None));
 }
 

@@ -198,3 +198,14 @@ fn an_interval_too_long_for_32_bits_is_not_taken_for_a_short_one() {
     let table = PhaseTable::new(Micros::MAX, &times);
     assert_eq!(table.min_interval(Layout::Line(2)).unwrap().value, Micros::new(5));
 }
+
+#[test]
+fn a_path_that_is_heard_in_one_phase_only_counts_for_no_separation() {
+    let us = Micros::new;
+    // By half a period the one firing moves: no window of 5 ms hears a path in both phases, of whatever length.
+    let rows = [[us(0), us(10_000)], [us(0), us(40_000)]];
+    let table = PhaseTable::new(us(60_000), &rows);
+    let audible = |window| Audible { window: us(window), blanking: us(0), reach: us(200_000) };
+    assert_eq!(table.separation(&audible(29_999)), None);
+    assert_eq!(table.separation(&audible(30_000)).map(|least| least.value), Some(us(30_000)));
+}

@@ -87,8 +87,9 @@ impl Scheduler for Faulty {
         self.disabled[usize::from(sensor)] = !enabled;
         match self.fault {
             Fault::FiresTheDisabled | Fault::FiresWhatItSaysIsDisabled => {}
-            Fault::SaysThatASilentOneIsEnabled if sensor == 3 => self.inner.set_enabled(sensor, false),
-            Fault::ForgetsASensor if sensor == 3 => self.inner.set_enabled(sensor, false),
+            Fault::SaysThatASilentOneIsEnabled | Fault::ForgetsASensor if sensor == 3 => {
+                self.inner.set_enabled(sensor, false);
+            }
             _ => self.inner.set_enabled(sensor, enabled),
         }
     }

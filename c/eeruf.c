@@ -820,7 +820,6 @@ static void end_period(EerufRing *ring, uint32_t now_us, EerufEvent *event, bool
         begin_anew(ring);
         uncompare(ring, 0);
     }
-    if (hops) return;
     memcpy(ended->tally, ring->tally, sizeof ended->tally);
     memset(ring->tally, 0, sizeof ring->tally);
 }
@@ -2103,8 +2102,6 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     }
     if (event->kind == EERUF_EVENT_PERIOD) {
         event->phase = hopping->phase > 0 ? (uint8_t)(hopping->phase - 1u) : (uint8_t)(hopping->cycle - 1u);
-        memcpy(event->u.ended.tally, hopping->tally, sizeof hopping->tally);
-        memset(hopping->tally, 0, sizeof hopping->tally);
         return status;
     }
     reading = &event->u.reading;
@@ -2130,7 +2127,7 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
         if (served) hopper->unserved = 0;
         else if (hopper->unserved < UINT8_MAX) hopper->unserved++;
     }
-    if (hopping->tally[reading->kind] < UINT8_MAX) hopping->tally[reading->kind]++;
+    count(&hopping->ring, reading->kind);
     return status;
 }
 

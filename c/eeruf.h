@@ -477,7 +477,6 @@ typedef struct EerufHoppingRing {
     uint32_t start_us, length_us, solo_at_us, dies_us, random;
     uint16_t earned, tolerated, least_late[3], most_late[3];
     uint8_t phase, cycle, planned, place, since_solo, since_shift, changed, changes, candidate, readier;
-    uint8_t tally[EERUF_READING_KINDS];
 } EerufHoppingRing;
 
 /* Makes a hopping ring that begins at `now_us`. Both arrays have a place for each sensor of the config. Poll it with

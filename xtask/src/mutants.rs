@@ -4,35 +4,88 @@
 //! outside `search/`; with it, one of ten parts of the mutants of `search/`, or whichever `--shard K/N` names. This
 //! takes hours, so it is no part of `test`.
 //!
-//! First the quick tests run for each mutant; all tests run only for those that the quick ones leave. What was caught
-//! is written down and not tried again, also when a run was ended early: delete the folder `target/mutants` to begin
-//! anew. What it builds stands there too, so that a later run need not build what the tests use.
+//! First the quick tests run for each mutant; the comparison with the C library runs only for those that the quick
+//! ones leave (not for the search, which C does not have), and all tests of the core only for what that leaves. What
+//! came of a mutant is written down and not tried again, also when a run was ended early: `--again` tries once more
+//! what no test noticed, as after new tests; delete the folder `target/mutants` to begin anew. What it builds stands
+//! there too, so that a later run need not build what the tests use.
 //!
 //! Mutants that may survive stand in `.cargo/mutants.toml`, each with its reason.
+
+mod outcomes;
 
 use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
+use outcomes::Outcomes;
+
 /// The part of the search that is tried unless another is asked for.
 const SHARD: &str = "0/10";
 
-/// Tests that each take longer than all others together, by parts of their names; of the search, and of the rest.
+/// Tests that each take longer than all others together, by parts of their paths, so that none is left out for its name
+/// alone; of the search, and of the rest.
 const SLOW_OF_SEARCH: [&str; 4] = [
     "every_code_up_to_64_sensors",
     "period_ticks::",
     "of_64_sensors_is_found_up_to_the_longest_period",
     "sixty_four_sensors_in_one_clique",
 ];
-const SLOW_OF_REST: [&str; 6] =
-    ["every_code_up_to_64_sensors", "period_", "brute_force::", "wait_", "immediate_refiring_keeps", "one_path_of_any"];
+const SLOW_OF_REST: [&str; 15] = [
+    "every_code_up_to_64_sensors",
+    "brute_force::",
+    "period_corpus::",
+    "period_edges::",
+    "period_limits::",
+    "period_small::",
+    "period_ticks::",
+    "period_variants::",
+    "wait_limits::",
+    "wait_small::",
+    "wait_tables::",
+    "immediate_refiring_keeps",
+    "finer_ticks_gain",
+    "no_repeating_pattern",
+    "below_the_bound_of_classes",
+];
+
+/// Features of the core that have tests.
+const FEATURES: &str = "embassy-time,fugit,serde";
 
 /// Which tests run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Round {
     Quick,
+    /// The comparison with the C library, event by event.
+    Twin,
     All,
+}
+
+impl Round {
+    const EACH: [Self; 3] = [Self::Quick, Self::Twin, Self::All];
+
+    fn of(name: &str) -> Self {
+        Self::EACH.into_iter().find(|round| format!("{round:?}") == name).unwrap_or(Self::All)
+    }
+
+    /// Tests that use the processor for longer than this are ended and have failed: a loop without end takes little of
+    /// a busy machine's time, and a machine that is only busy ends nothing. Unbroken they take a tenth of it.
+    fn most_seconds(self) -> Option<u32> {
+        match self {
+            Self::Quick | Self::Twin => Some(20).filter(|_| cfg!(target_os = "linux")),
+            Self::All => None,
+        }
+    }
+
+    /// What a round has beside what is set for all: few cases, and the same ones for each mutant.
+    fn environment(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Quick => &[("PROPTEST_CASES", "64"), ("PROPTEST_RNG_SEED", "1")],
+            Self::Twin => &[("EERUF_C_EVENTS", "100000")],
+            Self::All => &[],
+        }
+    }
 }
 
 /// What to break.
@@ -44,6 +97,9 @@ pub(crate) struct Plan {
     /// Only the part K of N, with K from 0; a tenth of the search unless another is named
     #[arg(long, value_name = "K/N", value_parser = shard)]
     shard: Option<String>,
+    /// Try again what no test noticed before
+    #[arg(long)]
+    again: bool,
     /// Only these files, as globs
     #[arg(value_name = "FILE")]
     files: Vec<String>,
@@ -89,13 +145,30 @@ impl Plan {
             ["mutants", "--iterate", "--no-shuffle", "--colors", "never", "--output"].map(str::to_owned).to_vec();
         args.push(self.folder().display().to_string());
         args.extend(self.source());
-        if let Round::Quick = round {
-            // Nothing else is built.
-            args.extend(["--cargo-arg=--lib", "--cargo-arg=--test=all", "--", "--"].map(str::to_owned));
-            let slow: &[&str] = if self.search { &SLOW_OF_SEARCH } else { &SLOW_OF_REST };
-            args.extend(slow.iter().flat_map(|name| ["--skip".to_owned(), (*name).to_owned()]));
+        args.extend(round.most_seconds().map(|seconds| {
+            format!(r#"--cargo-arg=--config=target.'cfg(target_os = "linux")'.runner=["prlimit", "--cpu={seconds}"]"#)
+        }));
+        // What is built only with a feature can be noticed only with it.
+        let features = format!("--features={FEATURES}");
+        match round {
+            Round::Quick => {
+                // Nothing else is built.
+                args.extend([&features, "--cargo-arg=--lib", "--cargo-arg=--test=all", "--", "--"].map(str::to_owned));
+                let slow: &[&str] = if self.search { &SLOW_OF_SEARCH } else { &SLOW_OF_REST };
+                args.extend(slow.iter().flat_map(|name| ["--skip".to_owned(), (*name).to_owned()]));
+            }
+            Round::Twin => {
+                args.extend(["--test-package=eeruf-c-equal", "--cargo-arg=--test=all"].map(str::to_owned));
+            }
+            Round::All => args.push(features),
         }
         args
+    }
+
+    /// The rounds that can notice anything.
+    fn rounds(&self) -> impl Iterator<Item = Round> {
+        let search = self.search;
+        Round::EACH.into_iter().filter(move |round| !(search && *round == Round::Twin))
     }
 }
 
@@ -106,90 +179,6 @@ fn shard(text: &str) -> Result<String, String> {
         Some((k, n)) if k < n => Ok(text.to_owned()),
         _ => Err(format!("expected K/N with K from 0 to N - 1, such as {SHARD}")),
     }
-}
-
-/// What came of mutants, over all runs.
-#[derive(Debug, Default, PartialEq)]
-struct Outcomes {
-    caught: BTreeSet<String>,
-    timeouts: BTreeSet<String>,
-    unviable: BTreeSet<String>,
-    /// What the quick tests left, and what all did when they ran last.
-    left: BTreeSet<String>,
-    missed: BTreeSet<String>,
-}
-
-impl Outcomes {
-    /// What was written down.
-    fn read(folder: &Path) -> Self {
-        let of = |name: &str| lines(&folder.join(name));
-        let (caught, unviable) = (of("caught.txt"), of("unviable.txt"));
-        Self { caught, timeouts: of("timeout.txt"), unviable, left: of("left.txt"), missed: of("missed.txt") }
-    }
-
-    /// Adds what the last run found, also one that was ended early, and writes all down.
-    fn add(&mut self, folder: &Path, round: Round) -> io::Result<()> {
-        let last = |name: &str| lines(&folder.join("mutants.out").join(name));
-        self.caught.extend(last("caught.txt"));
-        self.timeouts.extend(last("timeout.txt"));
-        self.unviable.extend(last("unviable.txt"));
-        match round {
-            Round::Quick => self.left.extend(last("missed.txt")),
-            Round::All => self.missed.extend(last("missed.txt")),
-        }
-        let Self { caught, timeouts, unviable, left, missed } = self;
-        timeouts.retain(|mutant| !caught.contains(mutant));
-        for open in [&mut *left, &mut *missed] {
-            open.retain(|mutant| !caught.contains(mutant) && !timeouts.contains(mutant));
-        }
-        for (name, mutants) in [
-            ("caught.txt", caught),
-            ("timeout.txt", timeouts),
-            ("unviable.txt", unviable),
-            ("left.txt", left),
-            ("missed.txt", missed),
-        ] {
-            let text: String = mutants.iter().map(|mutant| format!("{mutant}\n")).collect();
-            std::fs::write(folder.join(name), text)?;
-        }
-        // What was added is not added again as what another round found; its logs stay.
-        let (out, last) = (folder.join("mutants.out"), folder.join("last"));
-        if out.exists() {
-            _ = std::fs::remove_dir_all(&last);
-            std::fs::rename(out, last)?;
-        }
-        Ok(())
-    }
-
-    /// Which of these are still to be tried in a round.
-    fn open<'m>(&self, wanted: &'m BTreeSet<String>, round: Round) -> Vec<&'m String> {
-        let done = |mutant: &&String| {
-            let known = [&self.caught, &self.timeouts, &self.unviable].iter().any(|set| set.contains(*mutant));
-            known || (matches!(round, Round::Quick) && self.left.contains(*mutant))
-        };
-        wanted.iter().filter(|mutant| !done(mutant)).collect()
-    }
-
-    /// A test that never ends has noticed the mutant, too.
-    fn summary(&self, wanted: &BTreeSet<String>) -> String {
-        let count = |set: &BTreeSet<String>| set.intersection(wanted).count();
-        let (caught, timeouts, missed) = (count(&self.caught), count(&self.timeouts), count(&self.missed));
-        let (noticed, unviable) = (caught + timeouts, count(&self.unviable));
-        let all = noticed + missed;
-        if all == 0 {
-            return "no mutants were tried".to_owned();
-        }
-        let percent = 100.0 * noticed as f64 / all as f64;
-        format!(
-            "{caught} caught, {timeouts} timeouts, {missed} missed of {all}: {percent:.1} % noticed; \
-             {unviable} more do not compile"
-        )
-    }
-}
-
-/// The mutants that a file names; none if there is no such file.
-fn lines(file: &Path) -> BTreeSet<String> {
-    std::fs::read_to_string(file).unwrap_or_default().lines().map(str::to_owned).collect()
 }
 
 /// Lists mutants as caught before, which cargo-mutants then leaves out. It does not deal out the parts itself: it would
@@ -235,12 +224,16 @@ fn try_all(plan: &Plan) -> Result<usize, String> {
     let (all, wanted) = (list(vec![])?, list(plan.shard())?);
     let build = std::env::current_dir().map_err(failed)?.join("target/mutants/build");
     let mut outcomes = Outcomes::read(&folder);
-    for round in [Round::Quick, Round::All] {
-        // What a run left that was ended early.
-        let began_in = folder.join("round.txt");
-        if let Ok(began) = std::fs::read_to_string(&began_in) {
-            outcomes.add(&folder, if began == "All" { Round::All } else { Round::Quick }).map_err(failed)?;
-        }
+    // What a run left that was ended early.
+    let began_in = folder.join("round.txt");
+    if let Ok(began) = std::fs::read_to_string(&began_in) {
+        outcomes.add(&folder, Round::of(&began)).map_err(failed)?;
+    }
+    if plan.again {
+        outcomes.forget(&wanted);
+        outcomes.write(&folder).map_err(failed)?;
+    }
+    for round in plan.rounds() {
         let open = outcomes.open(&wanted, round);
         if open.is_empty() {
             continue;
@@ -251,6 +244,7 @@ fn try_all(plan: &Plan) -> Result<usize, String> {
         leave_out(&folder, all.iter().filter(|mutant| !open.contains(mutant))).map_err(failed)?;
         let mut cargo = Command::new("cargo");
         cargo.args(plan.args(round)).env("CARGO_TARGET_DIR", &build).env("CARGO_INCREMENTAL", "1");
+        cargo.envs(round.environment().iter().copied());
         let status = cargo.status().map_err(cargo_failed)?;
         outcomes.add(&folder, round).map_err(failed)?;
         // 0 is all caught, 2 some missed and 3 some without end; anything else is trouble, such as tests that fail
@@ -275,7 +269,7 @@ mod tests {
     use super::*;
 
     fn plan(search: bool, shard: Option<&str>) -> Plan {
-        Plan { search, shard: shard.map(str::to_owned), files: vec![] }
+        Plan { search, shard: shard.map(str::to_owned), again: false, files: vec![] }
     }
 
     #[test]
@@ -301,46 +295,24 @@ mod tests {
     fn the_quick_tests_come_first_and_differ_for_the_search() {
         let quick = plan(false, Some("0/17")).args(Round::Quick).join(" ");
         assert!(quick.contains("--cargo-arg=--lib --cargo-arg=--test=all -- -- --skip every_code"), "{quick}");
+        assert!(quick.contains("--features=embassy-time,fugit,serde"), "{quick}");
+        assert_eq!(quick.contains(r#"runner=["prlimit", "--cpu=20"]"#), cfg!(target_os = "linux"), "{quick}");
         assert!(quick.contains("--skip brute_force::") && !quick.contains("--shard"), "{quick}");
         let search = plan(true, None).args(Round::Quick).join(" ");
         assert!(!search.contains("brute_force"), "what judges the search is needed there: {search}");
         let all = plan(false, None).args(Round::All).join(" ");
-        assert!(all.ends_with("--exclude crates/eeruf-core/src/search/**"), "{all}");
+        assert!(
+            all.ends_with("--exclude crates/eeruf-core/src/search/** --features=embassy-time,fugit,serde"),
+            "{all}"
+        );
     }
 
     #[test]
-    fn what_earlier_runs_found_is_kept_and_what_does_not_compile_is_not_counted() {
-        let folder = std::env::temp_dir().join(format!("eeruf-mutants-{}", std::process::id()));
-        let out = folder.join("mutants.out");
-        let wanted: BTreeSet<String> = ["a", "b", "c", "d", "e", "f", "g"].map(str::to_owned).into();
-        let run = |round, files: [(&str, &str); 4]| {
-            std::fs::create_dir_all(&out).unwrap();
-            for (name, text) in files {
-                std::fs::write(out.join(name), text).unwrap();
-            }
-            let mut outcomes = Outcomes::read(&folder);
-            outcomes.add(&folder, round).unwrap();
-            assert_eq!(Outcomes::read(&folder), outcomes, "all of it is written down");
-            outcomes
-        };
-        // Ended before `g` was tried.
-        let quick =
-            [("caught.txt", "a\nb\n"), ("missed.txt", "c\nd\n"), ("timeout.txt", "e\n"), ("unviable.txt", "f\n")];
-        let outcomes = run(Round::Quick, quick);
-        assert_eq!(outcomes.open(&wanted, Round::Quick), ["g"]);
-        assert_eq!(outcomes.open(&wanted, Round::All), ["c", "d", "g"]);
-        let all = [("caught.txt", "c\n"), ("missed.txt", "d\n"), ("timeout.txt", ""), ("unviable.txt", "")];
-        let outcomes = run(Round::All, all);
-        let says = "3 caught, 1 timeouts, 1 missed of 5: 80.0 % noticed; 1 more do not compile";
-        assert_eq!(outcomes.summary(&wanted), says);
-        // What stood elsewhere before the source changed is not counted.
-        let now: BTreeSet<String> = ["a", "d"].map(str::to_owned).into();
-        assert_eq!(
-            outcomes.summary(&now),
-            "1 caught, 0 timeouts, 1 missed of 2: 50.0 % noticed; 0 more do not compile"
-        );
-        assert!(!out.exists(), "or it would be added once more");
-        std::fs::remove_dir_all(&folder).unwrap();
-        assert_eq!(Outcomes::default().summary(&wanted), "no mutants were tried");
+    fn c_judges_what_it_has_and_nothing_of_the_search() {
+        let rounds = |search| plan(search, None).rounds().collect::<Vec<_>>();
+        assert_eq!((rounds(false), rounds(true)), (Round::EACH.to_vec(), vec![Round::Quick, Round::All]));
+        let twin = plan(false, None).args(Round::Twin).join(" ");
+        assert!(twin.ends_with("--test-package=eeruf-c-equal --cargo-arg=--test=all"), "{twin}");
+        assert!(Round::EACH.into_iter().all(|round| Round::of(&format!("{round:?}")) == round));
     }
 }

@@ -138,6 +138,7 @@ const fn bit(rows: &[u64], x: usize, y: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
     use super::*;
 
     #[test]
@@ -167,6 +168,13 @@ mod tests {
         assert_eq!(Layout::Graph(&rows).check(6), Ok(()));
         assert_eq!(Layout::Graph(&rows).check(5), Err(LayoutError { pair: (2, 5), sensors: 5 }));
         assert_eq!(Layout::Ring(9).check(2), Ok(()));
+    }
+
+    #[test]
+    fn an_error_names_the_pair_and_how_many_sensors_there_are() {
+        let error = neighbour_rows([(2, 3)], 3).unwrap_err();
+        assert_eq!(std::format!("{error}"), "sensors 3 and 4 as neighbours; expected two different ones of 3");
+        assert_eq!(std::format!("{error:#}"), "sensors 2 and 3 as neighbours; expected two different ones of 3");
     }
 
     #[test]

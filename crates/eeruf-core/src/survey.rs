@@ -159,6 +159,7 @@ pub enum SurveyEvent {
 
 /// A sensor in a slot.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Listener {
     sensor: u8,
     due: Instant,
@@ -180,6 +181,7 @@ struct Listener {
 /// assert_eq!((row.sensor, row.t_echo), (0, Some(Micros::new(5_800))));
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Survey {
     plan: SurveyPlan,
     slot: u32,
@@ -295,6 +297,7 @@ mod tests {
             }
         }
         assert_eq!((seen.len(), plan.slots(), plan.slot(plan.slots())), (0, 5 * 2 + 20 * 3, None));
+        assert_eq!(plan.duration_us(), 70 * (800 + 36_000 + 57_000));
         assert_eq!(SurveyPlan::new(0).slot(0), None);
         assert_eq!(SurveyPlan::new(1).slots(), 3);
     }

@@ -21,6 +21,7 @@ pub(super) const CATCHES_UP: Micros = Micros::new(1000);
 /// period after the change is *unsettled*: its readings may hold sound from before. A solo period lasts long enough
 /// that all sound from before it has died when its sensor fires, and that sensor's own when the next period begins.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HoppingFiring<const K: usize> {
     pub(super) turns: [Turn; K],
     /// Who fires in this period, in order.

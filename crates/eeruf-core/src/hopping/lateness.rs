@@ -2,6 +2,7 @@
 
 /// The least and the most by which some firings were late, in microseconds.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Spread {
     least: u16,
     most: u16,
@@ -18,6 +19,7 @@ impl Spread {
 /// How late the firings of this period and of the two before were: no older ones can be heard in a reading that is
 /// emitted now, if sound dies within a period.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Lateness {
     periods: [Spread; 3],
 }

@@ -66,6 +66,7 @@ pub use weighed::Weighed;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HoppingRing<const K: usize, const H: usize = 4> {
     ring: Ring<HoppingFiring<K>, K>,
     tracker: EchoTracker<K, H>,
@@ -135,7 +136,9 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
                 let phases = self.firing().code.phases();
                 // It has begun the next one already.
                 let phase = Phase(self.firing().phase.checked_sub(1).unwrap_or(phases - 1));
-                RingEvent::PeriodEnded(PeriodStats { phase, tally: core::mem::take(&mut self.tally), ..stats })
+                // Edges that came late, but before their window was closed, make no reading: the ring counted them.
+                let tally = core::mem::take(&mut self.tally).with(ReadingKind::Late, &stats.tally);
+                RingEvent::PeriodEnded(PeriodStats { phase, tally, ..stats })
             }
             RingEvent::Fire { sensor, due, .. } => RingEvent::Fire { sensor, phase: self.firing().phase(), due },
         })

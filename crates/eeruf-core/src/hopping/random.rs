@@ -2,6 +2,7 @@
 
 /// A xorshift generator of 32 bits (Marsaglia, 2003): four bytes, no multiplication.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct SmallRandom(u32);
 
 impl SmallRandom {

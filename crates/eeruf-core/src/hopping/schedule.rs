@@ -9,6 +9,7 @@ use crate::time::Micros;
 /// When the sensors of a [`HoppingRing`](super::HoppingRing) fire: each once a period, at its lag plus the wait of the
 /// code. `K` is the most sensors that it has room for; the code says how many there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HoppingSchedule<const K: usize> {
     code: HoppingCode,
     period: Micros,

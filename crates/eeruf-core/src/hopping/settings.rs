@@ -62,6 +62,7 @@ impl Default for HoppingSettings {
 
 /// The settings of a ring that are about firing: the tracker has the others.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Pace {
     pub(super) solo_rate: u8,
     pub(super) solo_after: u8,

@@ -2,6 +2,7 @@
 
 extern crate std;
 use super::*;
+use crate::scheduler::{Limits, Scheduler, check_scheduler};
 use crate::time::Micros;
 use std::string::ToString;
 use std::vec::Vec;
@@ -157,6 +158,88 @@ fn no_sensor_fires_again_while_it_listens_and_neighbours_keep_the_interval_asked
 fn the_same_seed_and_echoes_give_the_same_firings() {
     let run = || fire(&mut ring(HoppingSettings::QUICK), 300, |_, firing| Some(3000 + (firing as u32 * 7919) % 30_000));
     assert_eq!(run(), run());
+}
+
+/// Firing for sensors that never hear what fits: they get solo periods and new lags.
+struct Fooled(HoppingFiring<8>);
+
+impl Scheduler for Fooled {
+    fn deadline(&self) -> Instant {
+        self.0.deadline()
+    }
+
+    fn next_firing(&self) -> Option<(u8, Phase)> {
+        self.0.next_firing()
+    }
+
+    fn fire(&mut self, now: Instant) {
+        self.0.fire(now);
+    }
+
+    fn postpone(&mut self, sensor: u8, by: Micros) {
+        self.0.postpone(sensor, by);
+    }
+
+    fn end_period(&mut self, now: Instant) -> (Phase, bool) {
+        self.0.end_period(now)
+    }
+
+    fn ended(&mut self, sensor: u8, at: Instant) {
+        self.0.ended(sensor, at);
+        self.0.heard(sensor, false, false);
+    }
+
+    fn sensors(&self) -> usize {
+        self.0.sensors()
+    }
+
+    fn set_enabled(&mut self, sensor: u8, enabled: bool) {
+        self.0.set_enabled(sensor, enabled);
+    }
+
+    fn set_paused(&mut self, paused: bool) {
+        self.0.set_paused(paused);
+    }
+
+    fn is_enabled(&self, sensor: u8) -> bool {
+        self.0.is_enabled(sensor)
+    }
+
+    fn restart(&mut self, now: Instant) {
+        self.0.restart(now);
+    }
+
+    fn periods_since(&self, phase: Phase) -> u8 {
+        self.0.periods_since(phase)
+    }
+
+    fn limits(&self) -> Limits<'_> {
+        self.0.limits()
+    }
+
+    fn min_refire(&self) -> Micros {
+        self.0.min_refire()
+    }
+
+    fn horizon(&self) -> Micros {
+        self.0.horizon()
+    }
+}
+
+#[test]
+fn hopping_keeps_what_every_scheduler_promises() {
+    for seed in 0..40 {
+        let reach = if seed % 2 == 0 { WINDOW } else { Micros::from_millis(90) };
+        let listening = HoppingListening { blanking: Micros::new(2380), reach, ..HoppingListening::new(WINDOW) };
+        let hurried = HoppingSettings { solo_rate: 255, solo_spacing: 2, shift_spacing: 2, ..HoppingSettings::QUICK };
+        for settings in [HoppingSettings::BALANCED, hurried] {
+            // The clock wraps on the way.
+            let now = Instant::from_micros(u32::MAX - 500_000);
+            let mut fooled = Fooled(HoppingFiring::new(&schedule(), settings, listening, seed, now));
+            check_scheduler(&mut fooled, now, 2_000, seed).unwrap();
+            assert!(fooled.0.t_lag(3) != schedule().t_lag(3), "no lag was drawn");
+        }
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@ use crate::time::{Instant, Micros};
 
 /// One sensor's firings.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Turn {
     pub(super) lag: Micros,
     /// What it waits after that in the present phase, in steps of the code.

@@ -39,6 +39,7 @@ pub use verify::{PhaseCriterion, PhaseRequirements, PhaseVerification, PhaseViol
 /// assert!(SAFE);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseTable<'a, const K: usize> {
     sensors: u8,
     period: Micros,
@@ -47,6 +48,7 @@ pub struct PhaseTable<'a, const K: usize> {
 
 /// What of a path can be heard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Audible {
     /// How long a sensor listens after it has fired.
     pub window: Micros,
@@ -65,6 +67,7 @@ impl Audible {
 
 /// By how much crosstalk moves at least, and where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseSeparation {
     /// By how much.
     pub value: Micros,
@@ -78,6 +81,7 @@ pub struct PhaseSeparation {
 
 /// The shortest time between two firings, and where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseInterval {
     /// How long.
     pub value: Micros,

@@ -8,6 +8,7 @@ use crate::time::Micros;
 
 /// By how much crosstalk must move from phase to phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum PhaseCriterion {
     /// `2 T_delta + 1 us`, as in (13a) and (13b).
     Exact,
@@ -18,6 +19,7 @@ pub enum PhaseCriterion {
 
 /// What firing times of many phases must keep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseRequirements<'a> {
     /// `T_delta`: a reading supports a track that it differs from by no more.
     pub t_delta: Micros,
@@ -69,6 +71,7 @@ impl<const K: usize> PhaseTable<'_, K> {
 
 /// What was found of firing times of many phases, against what was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseVerification<'r> {
     requirements: &'r PhaseRequirements<'r>,
     separation: Option<PhaseSeparation>,
@@ -177,6 +180,7 @@ impl<'r> PhaseVerification<'r> {
 
 /// One requirement that firing times of many phases do not keep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum PhaseViolation {
     /// Crosstalk would be believed.
@@ -275,6 +279,7 @@ impl fmt::Display for PhaseViolation {
 
 /// What does not hold: see [`PhaseVerification::violations`].
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseViolations<'r> {
     verification: PhaseVerification<'r>,
     next: u8,

@@ -235,12 +235,19 @@ mod tests {
             all.sort_unstable();
             assert!(all.into_iter().eq(0..12));
         }
+        let together = Schedule::<4>::from_firing(Micros::from_millis(9), [ms([5, 3, 5, 3]), ms([0; 4])]).unwrap();
+        assert_eq!(together.firing_order(Phase::A), [1, 3, 0, 2], "those that fire together keep their order");
+        assert_eq!(together.firing_order(Phase::B), [0, 1, 2, 3]);
     }
 
     #[test]
     fn table_i_d_refires_after_76_to_124_ms() {
         assert_eq!(TABLE_I_D.min_refire(), Micros::from_millis(76));
         assert_eq!(TABLE_I_D.max_refire(), Micros::from_millis(124));
+        let after = |phase, sensor| TABLE_I_D.refire_after(phase, sensor);
+        let known = [(Phase::A, 0), (Phase::B, 0), (Phase::A, 11), (Phase::B, 11)].map(|(phase, x)| after(phase, x));
+        assert_eq!(known, [94, 106, 80, 120].map(|refire| Some(Micros::from_millis(refire))));
+        assert_eq!([after(Phase::A, 12), after(Phase(2), 0)], [None; 2]);
         // Sec. 3.1: 999 us at 343.2 m/s allow 1.38 m/s.
         assert_eq!(TABLE_I_D.max_speed_mm_s(Micros::new(999), 343_200), 1382);
     }
@@ -252,5 +259,38 @@ mod tests {
         assert_eq!(scaled.t_wait(Phase::A)[0], Micros::new(14_400));
         assert_eq!(TABLE_I_D.scaled(1, 3).unwrap().t_wait(Phase::B)[9], Micros::new(5333));
         assert!(TABLE_I_D.scaled(0, 5).is_err() && TABLE_I_D.scaled(u32::MAX, 1).is_err());
+        let two = Schedule::<2>::from_firing(Micros::new(100), [[7, 8].map(Micros::new); 2]).unwrap();
+        assert_eq!(two.scaled(1, 5).unwrap().t_wait(Phase::B), [1, 2].map(Micros::new));
+        // Times beyond 32 bits do not come round to small ones.
+        let whole = Schedule::<1>::from_firing(Micros::new(1 << 16), [[Micros::ZERO]; 2]).unwrap();
+        assert!(whole.scaled((1 << 16) + 1, 1).is_err());
+    }
+
+    #[test]
+    fn what_just_fits_is_a_schedule_and_one_more_is_none() {
+        let most = Schedule::<64, 8>::from_firing(MAX_PERIOD, [[MAX_PERIOD.saturating_sub(Micros::new(1)); 64]; 8]);
+        assert_eq!(most.map(|most| (most.sensors(), most.min_refire())), Ok((64, MAX_PERIOD)));
+        let long = MAX_PERIOD.saturating_add(Micros::new(1));
+        assert_eq!(Schedule::<1>::from_firing(long, [[Micros::ZERO]; 2]), Err(ScheduleError::Period { period: long }));
+        let period = Micros::from_millis(9);
+        let none = Schedule::<1, 0>::from_firing(period, []);
+        assert_eq!(none, Err(ScheduleError::Phases { phases: 0 }));
+        let nine = Schedule::<1, 9>::from_firing(period, [[Micros::ZERO]; 9]);
+        assert_eq!(nine, Err(ScheduleError::Phases { phases: 9 }));
+        let (lags, waits) = ([Micros::ZERO; 65], [&[Micros::ZERO; 65][..]; 2]);
+        let refused = |capacity| Some(ScheduleError::Sensors { sensors: 65, capacity });
+        assert_eq!(Schedule::<100>::from_slices(period, &lags, waits).err(), refused(64));
+        assert_eq!(Schedule::<64>::from_slices(period, &lags, waits).err(), refused(64));
+        assert_eq!(Schedule::<3>::from_slices(period, &lags, waits).err(), refused(3));
+        let (lags, waits) = ([Micros::ZERO; 3], [&[Micros::ZERO; 3][..]; 2]);
+        assert!(Schedule::<3>::from_slices(period, &lags, waits).is_ok());
+    }
+
+    #[test]
+    fn the_fastest_motion_stops_at_the_largest_number() {
+        let short = Schedule::<1>::from_firing(Micros::new(1), [[Micros::ZERO]; 2]).unwrap();
+        assert_eq!(short.max_speed_mm_s(Micros::new(3), u32::MAX), u32::MAX);
+        assert_eq!(short.max_speed_mm_s(Micros::new(2), u32::MAX), u32::MAX);
+        assert_eq!(short.max_speed_mm_s(Micros::new(1), u32::MAX), u32::MAX / 2);
     }
 }

@@ -66,6 +66,7 @@ impl Firing {
 /// # Ok::<(), eeruf_core::TrackerError>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct EchoTracker<const K: usize, const H: usize = 4> {
     sensors: [SensorTracks<H>; K],
     settings: TrackerSettings,

@@ -13,6 +13,7 @@ const NEVER: u16 = u16::MAX;
 
 /// What one firing of a sensor was like, for those who know more than the echo time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Heard {
     pub(super) t_echo: u32,
     pub(super) phase: u8,
@@ -24,6 +25,7 @@ pub(super) struct Heard {
 
 /// The hypotheses about one sensor.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct SensorTracks<const H: usize> {
     tracks: [Track; H],
     /// Firings since the last accepted reading.

@@ -14,6 +14,7 @@ pub(super) const LATEST: u32 = SILENCE - (1 << 16);
 ///
 /// Eight bytes, since a ring keeps four of them for each sensor.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Track {
     /// The echo time in microseconds, or [`SILENCE`]; in the lowest byte the age: firings since it was last supported.
     echo_and_age: u32,

@@ -35,11 +35,16 @@ enum Fault {
     NeverRests,
     ForgetsASensor,
     ForgetsWhatIsEnabled,
+    FiresWhatItSaysIsDisabled,
+    SaysThatASilentOneIsEnabled,
+    FiresOneThatIsNotThere,
 }
 
 struct Faulty {
     inner: ScheduledFiring<'static, 12>,
     fault: Fault,
+    /// What it says is disabled.
+    disabled: [bool; 12],
 }
 
 impl Scheduler for Faulty {
@@ -52,7 +57,8 @@ impl Scheduler for Faulty {
     }
 
     fn next_firing(&self) -> Option<(u8, Phase)> {
-        self.inner.next_firing()
+        let sensor = |sensor| if self.fault == Fault::FiresOneThatIsNotThere && sensor == 11 { 12 } else { sensor };
+        self.inner.next_firing().map(|(next, phase)| (sensor(next), phase))
     }
 
     fn fire(&mut self, now: Instant) {
@@ -78,9 +84,12 @@ impl Scheduler for Faulty {
     }
 
     fn set_enabled(&mut self, sensor: u8, enabled: bool) {
+        self.disabled[usize::from(sensor)] = !enabled;
         match self.fault {
-            Fault::FiresTheDisabled => {}
-            Fault::ForgetsASensor if sensor == 3 => self.inner.set_enabled(sensor, false),
+            Fault::FiresTheDisabled | Fault::FiresWhatItSaysIsDisabled => {}
+            Fault::SaysThatASilentOneIsEnabled | Fault::ForgetsASensor if sensor == 3 => {
+                self.inner.set_enabled(sensor, false);
+            }
             _ => self.inner.set_enabled(sensor, enabled),
         }
     }
@@ -90,7 +99,13 @@ impl Scheduler for Faulty {
     }
 
     fn is_enabled(&self, sensor: u8) -> bool {
-        self.fault == Fault::ForgetsWhatIsEnabled || self.inner.is_enabled(sensor)
+        match self.fault {
+            Fault::ForgetsWhatIsEnabled => true,
+            Fault::FiresWhatItSaysIsDisabled | Fault::SaysThatASilentOneIsEnabled => {
+                self.disabled.get(usize::from(sensor)) == Some(&false)
+            }
+            _ => self.inner.is_enabled(sensor),
+        }
     }
 
     fn restart(&mut self, now: Instant) {
@@ -122,7 +137,8 @@ impl Scheduler for Faulty {
 /// What the check finds with some seed.
 fn found(fault: Fault) -> Option<BrokenPromise> {
     (0..40).find_map(|seed| {
-        let mut faulty = Faulty { inner: ScheduledFiring::new(&TABLE_I_D, START), fault };
+        let inner = ScheduledFiring::new(&TABLE_I_D, START);
+        let mut faulty = Faulty { inner, fault, disabled: [false; 12] };
         check_scheduler(&mut faulty, START, 2_000, seed).err()
     })
 }
@@ -136,6 +152,119 @@ fn the_check_finds_each_promise_that_is_broken() {
     assert!(matches!(found(Fault::DeadlineFarAhead), Some(BrokenPromise::Horizon { .. })));
     assert_eq!(found(Fault::NeverRests), Some(BrokenPromise::Endless));
     assert!(matches!(found(Fault::ForgetsASensor), Some(BrokenPromise::Enabled { sensor: 3 })));
+    assert!(matches!(found(Fault::FiresWhatItSaysIsDisabled), Some(BrokenPromise::WrongSensor { sensor: ..12 })));
+    assert_eq!(found(Fault::SaysThatASilentOneIsEnabled), Some(BrokenPromise::Silent { sensor: 3 }));
+    assert_eq!(found(Fault::FiresOneThatIsNotThere), Some(BrokenPromise::WrongSensor { sensor: 12 }));
+}
+
+/// One sensor that fires as often as it is allowed to, and what was asked of it.
+struct Metronome {
+    due: Instant,
+    enabled: bool,
+    every: Micros,
+    horizon: Micros,
+    /// A checksum of all calls that change something (FNV-1a).
+    calls: u32,
+}
+
+impl Metronome {
+    fn new(every: Micros, horizon: Micros) -> Self {
+        Self { due: START, enabled: true, every, horizon, calls: 0x811c_9dc5 }
+    }
+
+    fn called(&mut self, what: u32, with: u32) {
+        for word in [what, with] {
+            self.calls = (self.calls ^ word).wrapping_mul(0x0100_0193);
+        }
+    }
+}
+
+impl Scheduler for Metronome {
+    fn deadline(&self) -> Instant {
+        self.due
+    }
+
+    fn next_firing(&self) -> Option<(u8, Phase)> {
+        self.enabled.then_some((0, Phase::A))
+    }
+
+    fn fire(&mut self, now: Instant) {
+        self.called(0, now.as_micros());
+        self.due = now + self.every;
+    }
+
+    fn postpone(&mut self, _sensor: u8, by: Micros) {
+        self.called(1, by.as_micros());
+        self.due += by;
+    }
+
+    fn end_period(&mut self, now: Instant) -> (Phase, bool) {
+        self.called(2, now.as_micros());
+        self.due = now + self.every;
+        (Phase::A, false)
+    }
+
+    fn ended(&mut self, _sensor: u8, at: Instant) {
+        self.called(3, at.as_micros());
+    }
+
+    fn sensors(&self) -> usize {
+        1
+    }
+
+    fn set_enabled(&mut self, sensor: u8, enabled: bool) {
+        self.called(4, (u32::from(sensor) << 1) + u32::from(enabled));
+        self.enabled = enabled;
+    }
+
+    fn set_paused(&mut self, _paused: bool) {
+        self.called(5, 0);
+    }
+
+    fn is_enabled(&self, sensor: u8) -> bool {
+        sensor == 0 && self.enabled
+    }
+
+    fn restart(&mut self, now: Instant) {
+        self.called(6, now.as_micros());
+    }
+
+    fn periods_since(&self, _phase: Phase) -> u8 {
+        0
+    }
+
+    fn limits(&self) -> Limits<'_> {
+        Limits { longest_window: self.every, verified_for: None }
+    }
+
+    fn min_refire(&self) -> Micros {
+        self.every
+    }
+
+    fn horizon(&self) -> Micros {
+        self.horizon
+    }
+}
+
+#[test]
+fn the_check_allows_exactly_what_is_promised() {
+    let every = Micros::from_millis(50);
+    for seed in 0..20 {
+        check_scheduler(&mut Metronome::new(every, every), START, 500, seed).unwrap();
+        let far = check_scheduler(&mut Metronome::new(every, Micros::new(49_999)), START, 500, seed);
+        assert_eq!(far, Err(BrokenPromise::Horizon { ahead: every }));
+    }
+}
+
+#[test]
+fn the_check_makes_the_same_calls_every_time() {
+    let calls = |seed| {
+        let mut metronome = Metronome::new(Micros::from_millis(50), Micros::from_millis(50));
+        check_scheduler(&mut metronome, START, 2_000, seed).unwrap();
+        metronome.calls
+    };
+    // What somebody's test found with a seed it finds again.
+    assert_eq!([0, 1, 2].map(calls), [3_753_173_269, 3_957_200_330, 1_690_996_254]);
 }
 
 #[test]

@@ -3,8 +3,8 @@
 //! fixed time later.
 
 use eeruf_core::{
-    HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros, Phase, ReadingKind,
-    RingEvent, Tally,
+    HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, MAX_PERIOD,
+    Micros, Phase, PhaseRequirements, PhaseTable, ReadingKind, RingEvent, Tally,
 };
 use proptest::prelude::*;
 
@@ -191,6 +191,43 @@ fn a_reading_has_the_phase_of_its_firing_and_a_period_counts_the_readings_it_gav
 }
 
 #[test]
+fn a_period_counts_late_edges_of_both_kinds_before_and_after_the_window_was_closed() {
+    let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
+    let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
+    let start = Instant::from_micros(0);
+    let listening = HoppingListening::new(Micros::new(WINDOW));
+    let mut ring = HoppingRing::<SENSORS>::new(&schedule, HoppingSettings::BALANCED, listening, 1, start).unwrap();
+    let (mut late, mut given, mut periods) = (0, 0, 0);
+    while periods < 20 {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor: 0, .. } => {
+                    // Two after the window, which has not been polled for: they are counted and make no reading.
+                    ring.echo(0, now + Micros::new(WINDOW + 1)).unwrap();
+                    ring.echo(0, now + Micros::new(WINDOW + 2)).unwrap();
+                    late += 2;
+                }
+                // And one after its reading.
+                RingEvent::Reading(reading) if reading.sensor == 0 && reading.kind != ReadingKind::Late => {
+                    ring.echo(0, now + Micros::new(1)).unwrap();
+                }
+                RingEvent::Reading(reading) => {
+                    let is_late = u32::from(reading.kind == ReadingKind::Late);
+                    (late, given) = (late + is_late, given + is_late);
+                }
+                RingEvent::Fire { .. } => {}
+                RingEvent::PeriodEnded(stats) => {
+                    assert_eq!(stats.tally.of(ReadingKind::Late), core::mem::take(&mut late), "period {periods}");
+                    periods += 1;
+                }
+            }
+        }
+    }
+    assert!(given > 10, "{given}");
+}
+
+#[test]
 fn a_sensor_rests_for_its_window_also_after_a_firing_that_was_late_past_the_periods_end() {
     let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
@@ -224,4 +261,63 @@ fn a_sensor_rests_for_its_window_also_after_a_firing_that_was_late_past_the_peri
             }
         }
     }
+}
+
+#[test]
+fn a_schedule_takes_what_just_fits_and_nothing_more() {
+    let us = Micros::new;
+    let code = HoppingCode::new(3, 2, us(240)).unwrap();
+    let width = code.width().as_micros();
+    let least = HoppingSchedule::<3>::new(code, us(width + 1), [Micros::ZERO; 3]).unwrap();
+    assert_eq!(least.longest_lag(), Micros::ZERO);
+    let short = HoppingSchedule::<3>::new(code, us(width), [Micros::ZERO; 3]).unwrap_err();
+    assert_eq!(short, HoppingError::Period { period: us(width), least: us(width + 1) });
+    let most = HoppingSchedule::<3>::new(code, MAX_PERIOD, [us(MAX_PERIOD.as_micros() - width - 1); 3]).unwrap();
+    assert_eq!(most.t_lag(2), Some(most.longest_lag()));
+    let longer = HoppingSchedule::<3>::new(code, MAX_PERIOD, [us(0), us(0), us(MAX_PERIOD.as_micros() - width)]);
+    let (lag, most) = (us(MAX_PERIOD.as_micros() - width), most.longest_lag());
+    assert_eq!(longer, Err(HoppingError::Lag { sensor: 2, lag, most }));
+    let long = us(MAX_PERIOD.as_micros() + 1);
+    assert!(matches!(HoppingSchedule::<3>::new(code, long, [us(0); 3]), Err(HoppingError::Period { .. })));
+    let narrow = HoppingSchedule::<2>::new(code, us(60_000), [us(0); 2]);
+    assert_eq!(narrow, Err(HoppingError::Sensors { sensors: 3, most: 2 }));
+    // No neighbours count as one, and nobody is beyond the last sensor.
+    let [none, one] = [0, 1].map(|neighbours| HoppingSchedule::<4>::spread(code, us(60_000), neighbours).unwrap());
+    assert_eq!((none, none.t_lag(2), none.t_lag(3)), (one, Some(us(0)), None));
+    let two = HoppingSchedule::<3>::spread(code, us(60_000), 2).unwrap();
+    assert_eq!([0, 1, 2].map(|sensor| two.t_lag(sensor)), [0, (60_000 - width) / 2, 0].map(|lag| Some(us(lag))));
+    assert_eq!((none.t_fire(1, 2), none.t_fire(1, 3)), (Some(us(720)), None));
+}
+
+#[test]
+fn the_table_of_a_schedule_says_when_each_sensor_fires_over_and_over_again() {
+    let code = HoppingCode::new(3, 2, Micros::new(240)).unwrap();
+    let schedule = HoppingSchedule::<4>::spread(code, Micros::new(30_000), 2).unwrap();
+    let table = schedule.table::<12>();
+    for (phase, row) in table.iter().enumerate() {
+        for (sensor, &t_fire) in row.iter().enumerate() {
+            let says = schedule.t_fire(phase as u8, sensor).unwrap_or(Micros::ZERO);
+            assert_eq!((t_fire, table[phase % usize::from(code.phases())][sensor]), (says, says), "{phase} {sensor}");
+        }
+    }
+    assert!(table[1][2] != Micros::ZERO);
+}
+
+#[test]
+fn what_is_proven_of_the_separation_is_what_trying_all_phases_finds() {
+    let requirements = PhaseRequirements::new(Micros::new(100), Micros::new(800));
+    for sensors in 2..=4 {
+        let code = HoppingCode::new(sensors, 2, Micros::new(240)).unwrap();
+        let two_ages = 2 * code.width().as_micros() + 240;
+        for period in [two_ages - 1, two_ages, two_ages + 500] {
+            let schedule = HoppingSchedule::<4>::spread(code, Micros::new(period), 2).unwrap();
+            let table = schedule.table::<67>();
+            let cycle = PhaseTable::new(schedule.period(), &table[..code.phases().into()]).with_sensors(sensors);
+            let tried = cycle.separation(&requirements.audible).map(|separation| separation.value);
+            let says = schedule.verify(&requirements).separation().map(|separation| separation.value);
+            assert_eq!(says, tried, "{sensors} sensors, {period} us");
+        }
+    }
+    let alone = HoppingSchedule::<1>::spread(HoppingCode::new(1, 2, Micros::new(240)).unwrap(), Micros::new(9_000), 1);
+    assert!(alone.unwrap().verify(&requirements).separation().is_none());
 }

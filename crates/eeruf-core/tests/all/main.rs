@@ -8,6 +8,10 @@ mod conditions_naive;
 mod contract;
 mod edges;
 mod fired;
+// A binary of its own where the features are tested by themselves; here too, for mutants.
+#[cfg(feature = "serde")]
+#[path = "../formats.rs"]
+mod formats;
 mod hopping;
 mod lateness;
 mod listening;

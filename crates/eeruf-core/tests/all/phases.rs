@@ -40,6 +40,15 @@ fn check<const K: usize>(kind: &str, period_us: u32, times: &[Vec<u32>], [separa
         assert_eq!(least.value.as_micros(), separation, "{kind}: {least:?}");
         assert_eq!(least.ages.0, least.ages.1);
     }
+    // What it names moves by so much.
+    let path = |phase: Phase, age: i8| {
+        let (phase, age) = (i64::from(phase.0), i64::from(age));
+        let sent = (phase - age).rem_euclid(times.len() as i64);
+        let t_fire = |phase: i64, sensor: u8| i64::from(times[phase as usize][usize::from(sensor)]);
+        t_fire(sent, least.sensors.0) - age * i64::from(period_us) - t_fire(phase, least.sensors.1)
+    };
+    let (one, other) = (path(least.phases.0, least.ages.0), path(least.phases.1, least.ages.1));
+    assert_eq!((one - other).unsigned_abs(), u64::from(least.value.as_micros()), "{least:?}");
     assert_eq!(table.min_refire().map(|refire| refire.value), Some(Micros::new(gap)));
     assert_eq!(table.min_interval(Layout::Line(4)).map(|interval| interval.value), Some(Micros::new(nearest)));
 }
@@ -188,4 +197,15 @@ fn an_interval_too_long_for_32_bits_is_not_taken_for_a_short_one() {
     let times = [[Micros::ZERO, Micros::new(5)]];
     let table = PhaseTable::new(Micros::MAX, &times);
     assert_eq!(table.min_interval(Layout::Line(2)).unwrap().value, Micros::new(5));
+}
+
+#[test]
+fn a_path_that_is_heard_in_one_phase_only_counts_for_no_separation() {
+    let us = Micros::new;
+    // By half a period the one firing moves: no window of 5 ms hears a path in both phases, of whatever length.
+    let rows = [[us(0), us(10_000)], [us(0), us(40_000)]];
+    let table = PhaseTable::new(us(60_000), &rows);
+    let audible = |window| Audible { window: us(window), blanking: us(0), reach: us(200_000) };
+    assert_eq!(table.separation(&audible(29_999)), None);
+    assert_eq!(table.separation(&audible(30_000)).map(|least| least.value), Some(us(30_000)));
 }

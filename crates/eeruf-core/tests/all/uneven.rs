@@ -4,7 +4,8 @@
 use eeruf_core::search::PeriodProblem;
 use eeruf_core::search::design::memory_words;
 use eeruf_core::{
-    Layout, Micros, Requirements, Schedule, Uneven, UnevenError, Verification, ViolationKind, uneven_schedule,
+    Layout, Micros, Requirements, Schedule, Uneven, UnevenError, Verification, ViolationKind, tables::TABLE_I_D,
+    uneven_schedule,
 };
 
 use crate::common::random::Random;
@@ -297,4 +298,26 @@ fn needs_that_make_no_sense_are_named_with_what_is_expected() {
     let lines = Uneven { shared_lines: &[0b0110, 0b1100], together: &[0b0011, 0b1100], ..none };
     assert_eq!(Uneven { intervals: &intervals, t_delta: &each, ..lines }.check(4), Ok(()));
     assert_eq!(Uneven { together: &[1 << 63 | 1], ..none }.check(64), Ok(()));
+}
+
+#[test]
+fn separation_and_interval_count_the_pairs_that_need_them() {
+    let even = Requirements { min_interval: Micros::from_millis(17), ..Requirements::new(Micros::new(999)) };
+    let found = |requirements: &Requirements<'_>| {
+        let verification = TABLE_I_D.verify(requirements);
+        let (separation, interval) = (verification.separation(), verification.min_interval());
+        (separation.map(|least| least.value), interval.map(|least| least.value))
+    };
+    let with = |uneven| Requirements { uneven: Some(uneven), ..even };
+    assert_eq!(found(&with(Uneven::NONE)), found(&even));
+    // Two alone that need an interval: in the second phase they fire after 18 ms and after 50 + 8.
+    let two = Uneven { intervals: &[(0, 6, Micros::from_millis(1))], ..Uneven::NONE };
+    let apart = Requirements { layout: Layout::Line(1), ..with(two) };
+    assert_eq!(found(&apart).1, Some(Micros::from_millis(40)));
+    // All that must fire together need no separation.
+    assert_eq!(found(&with(Uneven { together: &[0xfff], ..Uneven::NONE })).0, None);
+    let closest = TABLE_I_D.verify(&even).separation().unwrap();
+    let pair = [1 << closest.sensors.0 | 1 << closest.sensors.1];
+    let others = with(Uneven { together: &pair, ..Uneven::NONE });
+    assert_ne!(TABLE_I_D.verify(&others).separation().unwrap().sensors, closest.sensors);
 }

@@ -2,8 +2,8 @@
 
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{
-    Blind, Instant, LastAccepted, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, SensorError,
-    SensorWatch,
+    Blind, Instant, LastAccepted, Micros, Phase, Reading, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing,
+    SensorError, SensorWatch,
 };
 
 fn at(us: u32) -> Instant {
@@ -173,4 +173,14 @@ fn another_window_counts_at_once_for_firings_that_are_under_way() {
     let second = ring.next_deadline();
     assert!(matches!(ring.poll(second), Some(RingEvent::Reading(_) | RingEvent::Fire { .. })));
     assert_eq!((ring.window(), ring.blanking()), (Micros::from_millis(10), Micros::from_millis(2)));
+}
+
+#[test]
+fn the_longest_echo_time_that_is_accepted_is_known_as_an_echo() {
+    let mut watch = SensorWatch::<1>::new(3);
+    let (period, kind, t_echo) = (0, ReadingKind::Accepted, Some(Micros::MAX));
+    let reading = Reading { sensor: 0, phase: Phase::A, period, kind, t_echo, previous: t_echo, age: Some(0) };
+    assert_eq!(watch.observe(&RingEvent::Reading(reading), Instant::from_micros(0)), None);
+    let last = watch.last_accepted(0, Instant::from_micros(0)).unwrap();
+    assert_eq!(last.map(|last| last.t_echo), Some(Micros::new(u32::MAX - 1)));
 }

@@ -160,3 +160,20 @@ fn a_world_written_to_a_file_and_read_again_gives_the_same_bit_for_bit() {
         assert_eq!((again.max_order(), again.seed()), (3, u64::MAX - u64::from(number)));
     }
 }
+
+#[test]
+fn headings_that_no_angle_has_move_by_a_last_bit_when_they_are_written_and_then_no_more() {
+    let mut moved = 0;
+    for spacing_deg in [7.5, 15.0, 361.0, 1530.0, 10_000.1, 1e9] {
+        let pose = "pose = { x_m = 0, y_m = 0, heading_deg = 1234.5 }";
+        let text = format!("[[robot]]\n{pose}\nring = {{ sensors = 64, spacing_deg = {spacing_deg}, radius_m = 0.3 }}");
+        let read = |text: &str| WorldParts::from_text(Path::new("w.toml"), text).unwrap();
+        let (first, again) = (read(&text), read(&read(&text).to_toml()));
+        assert_eq!(first.to_toml(), again.to_toml(), "{spacing_deg}");
+        for (before, after) in first.robots[0].sensors.iter().zip(&again.robots[0].sensors) {
+            moved += u32::from(before != after);
+            assert!((before.inverse() * after).rotation.angle().abs() < 4e-16, "{spacing_deg}");
+        }
+    }
+    assert!(moved > 0, "no heading was without an angle");
+}

@@ -12,7 +12,8 @@ use crate::{
 };
 
 /// Writes the world file of a scene with these robots, noise, physics, order and seed: reading it again gives the same,
-/// bit for bit, with the schedules in it.
+/// bit for bit, with the schedules in it. Only the last bit of a heading may move, and only the first time; see
+/// [`heading_rad`].
 pub fn world_file(
     scene: &Scene,
     robots: &[Robot],
@@ -99,8 +100,16 @@ fn pose_table(pose: &Pose) -> Table {
     table
 }
 
-/// An angle whose pose is this one, bit for bit where there is one near by: sine and cosine are what a pose holds.
+/// An angle whose pose is this one, bit for bit where there is one near by: sine and cosine are what a pose holds, and
+/// of those there are more than of angles. Where there is none, as after several turns, it is one whose pose differs in
+/// the last bits, and whose own heading is that angle again.
 pub fn heading_rad(pose: &Pose) -> f64 {
+    let angle = pose.rotation.angle();
+    exact_angle(pose).or_else(|| exact_angle(&Pose::rotation(angle))).unwrap_or(angle)
+}
+
+/// An angle whose sine and cosine are those of this pose.
+fn exact_angle(pose: &Pose) -> Option<f64> {
     let angle = pose.rotation.angle();
     // What was given may have been up to a turn more or less.
     for turned in [0.0, core::f64::consts::TAU, -core::f64::consts::TAU] {
@@ -108,13 +117,13 @@ pub fn heading_rad(pose: &Pose) -> f64 {
         for _ in 0..8 {
             for candidate in [above, below] {
                 if Pose::rotation(candidate).rotation == pose.rotation {
-                    return candidate;
+                    return Some(candidate);
                 }
             }
             (above, below) = (above.next_up(), below.next_down());
         }
     }
-    angle
+    None
 }
 
 fn robot_table(robot: &Robot) -> Table {

@@ -165,6 +165,7 @@ export class Designer {
       this.#show();
       this.page.designed(this.answer);
       this.#say("");
+      await this.#find(ring);
       await this.#certify(ring);
     } catch (error) {
       const cancelled = error instanceof Cancelled;
@@ -173,6 +174,25 @@ export class Designer {
       this.go.disabled = false;
       this.cancel.hidden = true;
     }
+  }
+
+  /** Finds what would make the period shorter. @param {string} ring */
+  async #find(ring) {
+    const list = byId("faster", HTMLElement);
+    const { value_us } = this.answer.found;
+    list.replaceChildren(element("li", {}, "…"));
+    /** @type {{need: string, period_us: number | null, proven: boolean}[]} */
+    const all = await this.page.desk.ask({ ask: "faster", ring });
+    const lines = all.map((one) => {
+      const shorter = one.period_us !== null && one.period_us < value_us;
+      const verdict = shorter
+        ? `${inMs(one.period_us)}${one.proven ? "" : " or less"}`
+        : one.proven
+          ? "no shorter"
+          : "not found out";
+      return element("li", {}, `${one.need}: `, element("strong", {}, verdict));
+    });
+    list.replaceChildren(...lines);
   }
 
   /** @param {string} ring */
@@ -198,26 +218,15 @@ export class Designer {
   }
 
   #show() {
-    const { found, what_if } = this.answer;
+    const { found } = this.answer;
     this.result.hidden = false;
     byId("period", HTMLElement).textContent = inMs(found.value_us);
     byId("proof", HTMLElement).textContent = found.proven
-      ? "proven: no schedule with these guarantees is shorter"
+      ? `proven${found.from_atlas ? ", from the atlas" : ""}: no schedule with these guarantees is shorter`
       : `not proven: it may be as short as ${inMs(found.bound_us)}; eeruf design searches for longer`;
     byId("reason", HTMLElement).textContent = `Not shorter because of ${found.reason}.`;
     byId("facts", HTMLElement).replaceChildren(
       ...this.#facts().map(([name, value]) => element("div", {}, element("dt", {}, name), element("dd", {}, value))),
-    );
-    byId("faster", HTMLElement).replaceChildren(
-      ...what_if.map((/** @type {any} */ one) => {
-        const shorter = one.period_us !== null && one.period_us < found.value_us;
-        const verdict = shorter
-          ? `${inMs(one.period_us)}${one.proven ? "" : " or less"}`
-          : one.proven
-            ? "no shorter"
-            : "not found out";
-        return element("li", {}, `${one.need}: `, element("strong", {}, verdict));
-      }),
     );
     this.cursor = { at: 0, sensor: 0 };
     this.time.max = String(2 * found.value_us);

@@ -1,5 +1,8 @@
 //! The shortest period for a ring: what `eeruf design` says, and its certificate.
 
+use std::cell::RefCell;
+use std::ops::ControlFlow;
+
 use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Micros, Phase};
 use eeruf_design::{FoundJson, RingDesign, RingSpec, Search, WhatIf};
@@ -12,6 +15,8 @@ use crate::exports::progress;
 const BUDGET: u64 = 2_000_000;
 const BUDGET_OF_MANY: u64 = 50_000;
 const FEW: usize = 24;
+/// The rings of the atlas whose search takes long: see `build.rs`.
+const ATLAS: &str = include_str!(concat!(env!("OUT_DIR"), "/atlas.txt"));
 /// How many nodes the certificate's proof may have, as by default in `eeruf design`.
 const CERTIFICATE_BUDGET: usize = 1_000_000;
 /// After so many nodes of a proof the page learns how far it is.
@@ -38,15 +43,15 @@ pub(crate) struct DesignAnswer {
     fire_us: [Vec<u32>; 2],
     /// Whether the verifier, which shares nothing with the search, agrees.
     verified: bool,
-    what_if: Vec<What>,
     rust: String,
     c: String,
     arduino: String,
     toml: String,
 }
 
+/// What one need, relaxed, would bring.
 #[derive(Serialize)]
-struct What {
+pub(crate) struct What {
     need: String,
     period_us: Option<u32>,
     proven: bool,
@@ -62,8 +67,8 @@ pub(crate) struct Checked {
 
 /// The shortest period for a ring file.
 pub(crate) fn design(ring: &str) -> Result<DesignAnswer, String> {
-    let spec = RingSpec::from_text(ring).map_err(|error| error.to_string())?;
-    let design = shortest(&spec, true)?;
+    let design = shortest(ring)?;
+    let spec = &design.spec;
     let requirements = design.spec.problem().requirements;
     let schedule = &design.schedule;
     let report = schedule.verify(&requirements);
@@ -71,11 +76,6 @@ pub(crate) fn design(ring: &str) -> Result<DesignAnswer, String> {
     let speed = schedule.max_speed_mm_s(max_t_delta.unwrap_or(Micros::ZERO), spec.c.mm_per_s());
     let fire =
         |phase| (0..spec.sensors).filter_map(move |sensor| schedule.t_fire(phase, sensor)).map(Micros::as_micros);
-    let what = |WhatIf { need, period, proven }: &WhatIf| What {
-        need: need.clone(),
-        period_us: period.map(Micros::as_micros),
-        proven: *proven,
-    };
     Ok(DesignAnswer {
         found: design.json(0.0),
         t_delta_us: design.t_delta.as_micros(),
@@ -88,7 +88,6 @@ pub(crate) fn design(ring: &str) -> Result<DesignAnswer, String> {
         speed_m_s: f64::from(speed) / 1000.0,
         fire_us: [Phase::A, Phase::B].map(|phase| fire(phase).collect()),
         verified: report.ok(),
-        what_if: design.what_if.iter().map(what).collect(),
         rust: schedule.to_rust(&requirements).to_string(),
         c: schedule.to_c(&requirements).to_string(),
         arduino: schedule.to_arduino(&requirements, "RING").to_string(),
@@ -96,10 +95,16 @@ pub(crate) fn design(ring: &str) -> Result<DesignAnswer, String> {
     })
 }
 
+/// What would make the same answer shorter.
+pub(crate) fn faster(ring: &str) -> Result<Vec<What>, String> {
+    let relaxed = shortest(ring)?.what_if(&mut say).map_err(|error| error.to_string())?;
+    let what = |WhatIf { need, period, proven }| What { need, period_us: period.map(Micros::as_micros), proven };
+    Ok(relaxed.into_iter().map(what).collect())
+}
+
 /// The certificate of the same answer, checked as `eeruf-check` does.
 pub(crate) fn certificate(ring: &str) -> Result<Checked, String> {
-    let spec = RingSpec::from_text(ring).map_err(|error| error.to_string())?;
-    let design = shortest(&spec, false)?;
+    let design = shortest(ring)?;
     let mut calls = 0;
     let keep_going = |nodes: usize| {
         calls += 1;
@@ -114,12 +119,27 @@ pub(crate) fn certificate(ring: &str) -> Result<Checked, String> {
     Ok(Checked { says: certified.to_string(), nodes: certified.nodes, text })
 }
 
-fn shortest(spec: &RingSpec, what_if: bool) -> Result<RingDesign, String> {
-    let mut control = |at: &Progress| {
-        progress(f64::NAN, at.nodes as f64);
-        std::ops::ControlFlow::Continue(())
-    };
+thread_local! {
+    /// The last answer, since what follows is asked of it.
+    static LAST: RefCell<Option<(String, RingDesign)>> = const { RefCell::new(None) };
+}
+
+fn shortest(ring: &str) -> Result<RingDesign, String> {
+    let known =
+        LAST.with_borrow(|last| last.as_ref().filter(|(text, _)| text == ring).map(|(_, design)| design.clone()));
+    if let Some(design) = known {
+        return Ok(design);
+    }
+    let spec = RingSpec::from_text(ring).map_err(|error| error.to_string())?;
     let budget = if spec.sensors > FEW { BUDGET_OF_MANY } else { BUDGET };
-    let found = spec.shortest(&Search { budget, what_if, atlas: false }, &mut control);
-    found.map_err(|error: SearchError| error.to_string())?.map_err(|none| none.to_string())
+    let found = spec.shortest(&Search { budget, what_if: false, atlas: ATLAS }, &mut say);
+    let design = found.map_err(|error: SearchError| error.to_string())?.map_err(|none| none.to_string())?;
+    LAST.set(Some((ring.to_owned(), design.clone())));
+    Ok(design)
+}
+
+/// Tells the page how far a search is.
+fn say(at: &Progress) -> ControlFlow<()> {
+    progress(f64::NAN, at.nodes as f64);
+    ControlFlow::Continue(())
 }

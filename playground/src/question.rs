@@ -18,6 +18,8 @@ enum Question {
     Run { scene: String, method: String, periods: u32, shown_s: f64 },
     /// The shortest period for a ring.
     Design { ring: String },
+    /// What would make it shorter.
+    Faster { ring: String },
     /// The certificate that it is the shortest, checked.
     Certificate { ring: String },
 }
@@ -40,6 +42,7 @@ pub(crate) fn answer(question: &[u8]) -> String {
             run::run(&world, method, periods, shown_s)
         })),
         Ok(Question::Design { ring }) => json(design::design(&ring)),
+        Ok(Question::Faster { ring }) => json(design::faster(&ring)),
         Ok(Question::Certificate { ring }) => json(design::certificate(&ring)),
         Err(error) => json::<()>(Err(error.to_string())),
     }

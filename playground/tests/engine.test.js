@@ -71,8 +71,9 @@ test("for twenty rings the page's design is to the bit that of the program", () 
   assert.equal(RINGS.length, 20);
   RINGS.forEach((ring, k) => {
     const ours = ask({ ask: "design", ring }).ok;
-    // The page searches always, and not over the reals.
-    const printed = program("design", file(`ring-${k}.toml`, ring), "--no-atlas");
+    // The page's atlas is a part of the program's, and it does not search over the reals.
+    const atlas = ours.found.from_atlas ? [] : ["--no-atlas"];
+    const printed = program("design", file(`ring-${k}.toml`, ring), ...atlas);
     const { seconds, real_period_us: _period, real_proven: _proven, ...theirs } = printed;
     assert.ok(seconds >= 0);
     const { seconds: none, ...found } = ours.found;
@@ -85,6 +86,19 @@ test("for twenty rings the page's design is to the bit that of the program", () 
     );
     assert.deepEqual([ours.rust, ours.c, ours.arduino, ours.toml], emitted);
   });
+});
+
+test("of a ring whose search takes long the page's atlas answers, as the program's does, at once", () => {
+  const patch = { module: "hc_sr04", layout: "ring", sensors: 24, crosstalk: 2.5, jitter: 100, speed: 0, tick: 1000 };
+  const ring = ringText({ ...firstState(), .../** @type {object} */ (patch) });
+  const before = progressCalls;
+  const ours = ask({ ask: "design", ring }).ok;
+  assert.deepEqual([ours.found.from_atlas, ours.found.nodes, ours.verified], [true, 0, true]);
+  assert.equal(progressCalls, before);
+  const printed = program("design", file("atlas.toml", ring));
+  assert.deepEqual([ours.found.schedule, printed.from_atlas], [printed.schedule, true]);
+  // What a key press has time for is not in it.
+  assert.equal(ask({ ask: "design", ring: ring.replace("sensors = 24", "sensors = 8") }).ok.found.from_atlas, false);
 });
 
 test("the page's certificate is to the letter that of the program", () => {

@@ -366,6 +366,20 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
     await context.close();
   });
 
+  test("a ring that takes long to search is answered from the atlas, and the page says so", async () => {
+    const patch = { module: "hc_sr04", layout: "ring", sensors: 24, crosstalk: 2.5, jitter: 100, speed: 0, tick: 1000 };
+    const known = toHash(/** @type {any} */ ({ ...firstState(), ...patch }));
+    const { context, page, troubles } = await open(browser, `${server.url}#${known}`);
+    await page.locator("#design-go").click();
+    await assertText(page.locator("#proof"), /^proven, from the atlas: no schedule/);
+    await page.locator("#design-cancel").click();
+    await page.locator("#ring-sensors").fill("4");
+    await page.locator("#ring-sensors").press("Enter");
+    await assertText(page.locator("#proof"), /^proven: no schedule/);
+    assert.deepEqual(troubles, []);
+    await context.close();
+  });
+
   test("a long search is stopped by its button, and the page goes on", async () => {
     const hard = { ...firstState(), sensors: 40, layout: "ring", tick: 10, crosstalk: 2.37, range: 4.13 };
     const { context, page, troubles } = await open(browser, `${server.url}#${toHash(/** @type {any} */ (hard))}`);

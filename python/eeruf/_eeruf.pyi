@@ -227,6 +227,8 @@ class Found:
         real_period_us: tuple[int, int] | None = None,
         real_proven: bool | None = None,
         from_atlas: bool = False,
+        spare_us: tuple[int, int, int] | None = None,
+        spare_proven: tuple[bool, bool, bool] | None = None,
     ) -> Found: ...
     @property
     def schedule(self) -> Schedule | None: ...
@@ -250,6 +252,10 @@ class Found:
     def real_proven(self) -> bool | None: ...
     @property
     def from_atlas(self) -> bool: ...
+    @property
+    def spare_us(self) -> tuple[int, int, int] | None: ...
+    @property
+    def spare_proven(self) -> tuple[bool, bool, bool] | None: ...
     def to_dict(self) -> dict[str, object]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -546,12 +552,16 @@ class Ring:
     def __new__(
         cls,
         schedule: Schedule,
-        t_delta_us: _Int,
+        t_delta_us: _Each,
         now_us: _Int = 0,
         *,
-        window_us: _Int,
+        window_us: _Each,
         blanking_us: _Int = 0,
         consecutive: _Int = 2,
+        refire_us: _Each | None = None,
+        intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
+        shared_lines: Iterable[Sequence[_Int]] | None = None,
+        together: Iterable[Sequence[_Int]] | None = None,
     ) -> Ring: ...
     @staticmethod
     def unverified(

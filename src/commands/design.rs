@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use clap::ValueEnum;
 use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Micros, PhaseCriterion};
+use eeruf_design::atlas::ATLAS;
 use eeruf_design::{FoundJson, RealPeriod, RingDesign, RingSpec, Search, real_budget};
 
 use super::answer::Answer;
@@ -123,7 +124,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         };
         watch.control_flow(how_far)
     };
-    let search = Search { budget: args.budget, what_if: args.form().is_none(), atlas: !args.no_atlas };
+    let atlas = if args.no_atlas { "" } else { ATLAS };
+    let search = Search { budget: args.budget, what_if: args.form().is_none(), atlas };
     let design = match spec.shortest(&search, &mut control).map_err(bad)? {
         Ok(design) => design,
         Err(none) => {

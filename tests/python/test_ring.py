@@ -239,3 +239,26 @@ def test_a_change_that_the_ring_refuses_leaves_the_adaptation_on_its_rung() -> N
 def test_what_is_no_ladder_is_refused(call: Any, error: type[Exception], message: str) -> None:
     with pytest.raises(error, match=message):
         call()
+
+
+def test_each_sensor_of_an_uneven_ring_listens_as_long_as_it_may_also_by_another_schedule() -> None:
+    needs: dict[str, Any] = {"t_delta_us": [999, 999, 1500, 1500], "window_us": [36_000, 36_000, 12_000, 12_000]}
+    found = eeruf.design(4, min_interval_us=15_000, shared_lines=[(0, 2)], **needs)
+    assert found.schedule is not None
+    assert found.spare_us is not None and found.spare_proven is not None
+    ring = eeruf.Ring(found.schedule, shared_lines=[(0, 2)], **needs)
+    # At 13 ms only the two that look far still listen.
+    last = lambda event: period_ended(event) and event.period % 8 == 7  # noqa: E731
+    for schedule in (found.schedule, found.schedule.scaled(3, 2)):
+        ring.change_schedule(schedule)
+        events = run(ring, last, lambda fire: 13_000)
+        assert ring.schedule == schedule
+        accepted = {event.sensor for event in events if isinstance(event, eeruf.Reading) and event.kind == "accepted"}
+        assert accepted == {0, 1}
+    # The near ones would share the line sooner than the far ones are done.
+    with pytest.raises(eeruf.RingError, match="1 and 3"):
+        ring.change_schedule(found.schedule.scaled(3, 4))
+    with pytest.raises(eeruf.ArgumentError, match="one of 12 sensors; expected one of 4 sensors"):
+        ring.change_schedule(tables.TABLE_I_D)
+    with pytest.raises(eeruf.ArgumentError, match="3 values; expected one for each of 4 sensors"):
+        eeruf.Ring(found.schedule, [999] * 3, window_us=12_000)

@@ -1,7 +1,7 @@
 //! What one sensor or one pair needs, by [`Requirements`], whether all are alike or not.
 
 use crate::conditions::Requirements;
-use crate::time::{Micros, shorter};
+use crate::time::{Micros, longer, shorter};
 use crate::uneven::Uneven;
 
 impl Requirements<'_> {
@@ -83,22 +83,21 @@ impl Requirements<'_> {
         if self.share_a_line(x, y) && window.as_micros() > interval.as_micros() { window } else { interval }
     }
 
-    /// The smallest `t_delta`, the longest gap that any two of so many sensors keep, and the smallest window.
+    /// The smallest `t_delta`, the longest time that any one or two of so many sensors keep between firings, and the
+    /// smallest window.
     pub(crate) const fn strictest(&self, sensors: usize) -> (Micros, Micros, Micros) {
         let (mut t_delta, mut gap, mut window) = (Micros::MAX, self.min_interval, Micros::MAX);
         let mut x = 0;
         while x < sensors {
             t_delta = shorter(t_delta, self.t_delta_of(x));
+            gap = longer(gap, longer(self.window_of(x), self.refire_of(x)));
             // No window of its own allows any.
             if self.window_of(x).as_micros() > 0 {
                 window = shorter(window, self.window_of(x));
             }
             let mut y = 0;
             while y < sensors {
-                let after = self.gap_after(sensors, x, y);
-                if after.as_micros() > gap.as_micros() {
-                    gap = after;
-                }
+                gap = longer(gap, self.gap_after(sensors, x, y));
                 y += 1;
             }
             x += 1;

@@ -38,6 +38,8 @@ pub struct RingDesign {
     pub from_atlas: bool,
     /// What would be shorter, if it was asked for.
     pub what_if: Vec<WhatIf>,
+    /// The ring with the `t_delta` that was last asked for.
+    pub(crate) asked: RingSpec,
 }
 
 /// Why a robot that moves gets no schedule.
@@ -78,12 +80,26 @@ pub struct WhatIf {
 }
 
 impl RingDesign {
+    /// What one need, relaxed, would bring; nothing where the period is not proven.
+    ///
+    /// # Errors
+    /// As for [`RingSpec::shortest`].
+    pub fn what_if(&self, control: &mut impl Control) -> Result<Vec<WhatIf>, SearchError> {
+        match &self.asked.uneven {
+            _ if !self.found.proven => Ok(Vec::new()),
+            Some(_) => self.asked.what_if_uneven(control),
+            None => what_if(&self.asked.problem(), control),
+        }
+    }
+
     /// The answer as `--json` prints it.
     pub fn json(&self, seconds: f64) -> FoundJson {
         FoundJson {
             schedule: Some(ScheduleFile::from(&self.schedule)),
             reason: Some(self.reason.clone()),
             from_atlas: Some(self.from_atlas),
+            spare_us: self.to_spare.map(|spare| spare.in_us()),
+            spare_proven: self.to_spare.map(|spare| spare.proven),
             ..FoundJson::new(&self.found, seconds)
         }
     }
@@ -110,7 +126,7 @@ impl RingSpec {
         loop {
             let spec = self.covering(t_delta);
             let problem = spec.problem();
-            let asked = Search { atlas: search.atlas && unproven.is_none(), ..*search };
+            let asked = Search { atlas: if unproven.is_none() { search.atlas } else { "" }, ..*search };
             let shortest = shortest(&problem, &asked, control)?;
             let chosen = shortest.schedule();
             let Shortest { mut found, mut reason, mut preferred, mut to_spare, from_atlas } = shortest;
@@ -126,14 +142,9 @@ impl RingSpec {
             };
             let needed = self.t_delta_needed(&schedule);
             if schedule.verify(&self.covering(needed).problem().requirements).ok() {
-                let what_if = match &self.uneven {
-                    _ if !search.what_if || !found.proven => Vec::new(),
-                    Some(_) => spec.what_if_uneven(control)?,
-                    None => what_if(&problem, control)?,
-                };
-                let t_delta = needed.max(t_delta);
+                let (t_delta, asked) = (needed.max(t_delta), spec);
                 let spec = self.covering(t_delta);
-                return Ok(Ok(RingDesign {
+                let mut design = RingDesign {
                     schedule,
                     t_delta,
                     spec,
@@ -142,8 +153,13 @@ impl RingSpec {
                     preferred,
                     to_spare,
                     from_atlas,
-                    what_if,
-                }));
+                    what_if: Vec::new(),
+                    asked,
+                };
+                if search.what_if {
+                    design.what_if = design.what_if(control)?;
+                }
+                return Ok(Ok(design));
             }
             // Past this point a second of silence would not be enough either.
             if needed > Micros::from_millis(1000) {

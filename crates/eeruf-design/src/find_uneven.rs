@@ -26,6 +26,14 @@ pub struct ToSpare {
     pub nodes: u64,
 }
 
+impl ToSpare {
+    /// The three in microseconds, as JSON and Python have them.
+    #[must_use]
+    pub fn in_us(&self) -> [u32; 3] {
+        [self.t_delta, self.interval, self.refire].map(Micros::as_micros)
+    }
+}
+
 /// The shortest period within `budget` nodes, and why it is not shorter, in words.
 ///
 /// # Errors

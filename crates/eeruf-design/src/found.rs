@@ -26,6 +26,13 @@ pub struct FoundJson {
     /// Whether the atlas answered, and nothing was searched; only `design` says it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_atlas: Option<bool>,
+    /// What an uneven ring's schedule keeps beyond every `t_delta`, then every interval and turn on a shared line, then
+    /// every refire time; only where that was chosen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spare_us: Option<[u32; 3]>,
+    /// Whether no schedule of this period has more, of each.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spare_proven: Option<[bool; 3]>,
     /// The shortest period over the reals in microseconds, as numerator and denominator; only where it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub real_period_us: Option<(u64, u64)>,
@@ -46,6 +53,8 @@ impl FoundJson {
             seconds,
             reason: None,
             from_atlas: None,
+            spare_us: None,
+            spare_proven: None,
             real_period_us: None,
             real_proven: None,
         }

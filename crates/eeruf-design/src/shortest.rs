@@ -19,14 +19,15 @@ pub struct Search {
     pub budget: u64,
     /// Whether to look for what would make the period shorter.
     pub what_if: bool,
-    /// Whether the atlas may answer where it knows the shortest period.
-    pub atlas: bool,
+    /// The atlas that may answer where it knows the shortest period: [`atlas::ATLAS`], a part of it, or an empty text
+    /// for none.
+    pub atlas: &'static str,
 }
 
 impl Default for Search {
     /// 50 million nodes, no look at what would be shorter; the atlas may answer.
     fn default() -> Self {
-        Self { budget: 50_000_000, what_if: false, atlas: true }
+        Self { budget: 50_000_000, what_if: false, atlas: atlas::ATLAS }
     }
 }
 
@@ -64,7 +65,7 @@ pub fn shortest(
     search: &Search,
     control: &mut impl Control,
 ) -> Result<Shortest, SearchError> {
-    if let Some(known) = search.atlas.then(|| known(problem)).transpose()?.flatten() {
+    if let Some(known) = known(problem, search.atlas)? {
         return Ok(known);
     }
     if problem.requirements.uneven.is_some() {
@@ -84,9 +85,9 @@ pub fn shortest(
     Ok(Shortest { found: designed.found, reason, preferred, to_spare: None, from_atlas: false })
 }
 
-/// What the atlas says of a problem, if it knows its shortest period.
-fn known(problem: &PeriodProblem<'_>) -> Result<Option<Shortest>, SearchError> {
-    let Some((row, schedule)) = atlas::answer(problem) else { return Ok(None) };
+/// What an atlas says of a problem, if it knows its shortest period.
+fn known(problem: &PeriodProblem<'_>, rows: &str) -> Result<Option<Shortest>, SearchError> {
+    let Some((row, schedule)) = atlas::answer(rows, problem) else { return Ok(None) };
     let period = schedule.period();
     let [t_delta_proven, min_interval_proven, min_refire_proven] = row.preferred;
     let preferred = Preferred { schedule, t_delta_proven, min_interval_proven, min_refire_proven, nodes: 0 };

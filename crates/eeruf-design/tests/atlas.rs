@@ -4,7 +4,7 @@
 use eeruf_check::check;
 use eeruf_core::Micros;
 use eeruf_core::search::design;
-use eeruf_design::atlas::{ATLAS, Ring, Row, all_rings, answer, rows};
+use eeruf_design::atlas::{ATLAS, Neighbourhood, Ring, Row, all_rings, answer, rows};
 use eeruf_design::atlas_making::{certificate_of, hash_of, header};
 
 /// A small generator of pseudo-random numbers, the same on every machine (xorshift64*).
@@ -43,9 +43,24 @@ fn each_schedule_keeps_what_its_ring_requires_in_its_period_and_not_one_tick_les
 }
 
 #[test]
+fn no_row_is_longer_than_sensors_by_colours_with_ranks_that_grow_take() {
+    for row in rows(ATLAS) {
+        let Ring { sensors, neighbourhood, separation, interval, window } = row.ring;
+        let (sensors, colours) = match neighbourhood {
+            Neighbourhood::All => (u32::from(sensors), u32::from(sensors)),
+            Neighbourhood::Line(n) => (u32::from(sensors), u32::from(n)),
+            // As many blocks as there is room for; a colour is a place in a block.
+            Neighbourhood::Ring(n) => (u32::from(sensors), u32::from(sensors.div_ceil(sensors / n))),
+        };
+        let simple = (colours * interval).max(window) + (sensors - 1) * separation;
+        assert!(row.period <= simple, "{row}: {simple}");
+    }
+}
+
+#[test]
 fn a_proven_row_is_the_answer_to_its_ring_and_an_open_one_is_none() {
     for row in rows(ATLAS) {
-        let found = answer(&row.ring.problem());
+        let found = answer(ATLAS, &row.ring.problem());
         assert_eq!(found.map(|(row, _)| row), (row.period == row.bound).then(|| row.clone()), "{row}");
     }
 }

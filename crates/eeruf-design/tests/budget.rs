@@ -10,7 +10,7 @@ fn whatever_the_budget_bounds_hold_and_what_is_proven_is_the_shortest() {
              60\nspeed_m_s = 0.5\ntick_us = 100\n"
         );
         let spec = RingSpec::from_text(&ring).unwrap();
-        let within = |budget| spec.shortest(&Search { budget, what_if: false, atlas: false }, &mut ()).unwrap();
+        let within = |budget| spec.shortest(&Search { budget, what_if: false, atlas: "" }, &mut ()).unwrap();
         let shortest = within(1_000_000).unwrap().found;
         assert!(shortest.proven);
         let mut unproven = 0;

@@ -2,7 +2,7 @@
 
 use eeruf_core::{
     Edge, EdgeQueue, Instant, Micros, Ring, RingError, RingEvent, ScheduledFiring, Scheduler, SensorError,
-    VerifiedSchedule,
+    UnevenFiring, UnevenSchedule, VerifiedSchedule,
 };
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
@@ -166,6 +166,18 @@ impl<'s, T, I, D, const K: usize, const M: usize> HcSr04Ring<Ring<ScheduledFirin
     /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered, and as
     /// [`Ring::change_schedule`]. The ring then goes on as before.
     pub fn change_schedule(&mut self, schedule: &'s VerifiedSchedule<K, M>) -> Result<(), SetupError> {
+        self.lines.allow(schedule.min_refire())?;
+        Ok(self.ring.change_schedule(schedule)?)
+    }
+}
+
+impl<'s, T, I, D, const K: usize> HcSr04Ring<Ring<UnevenFiring<'s, K>, K>, T, I, D, K> {
+    /// As [`Ring::change_schedule`] of a ring of sensors that are not all alike.
+    ///
+    /// # Errors
+    /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered, and as
+    /// [`Ring::change_schedule`]. The ring then goes on as before.
+    pub fn change_schedule(&mut self, schedule: &'s UnevenSchedule<K>) -> Result<(), SetupError> {
         self.lines.allow(schedule.min_refire())?;
         Ok(self.ring.change_schedule(schedule)?)
     }

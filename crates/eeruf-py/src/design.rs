@@ -6,7 +6,7 @@ use eeruf_core::{
     Criterion, MAX_SENSORS, Micros, Requirements,
     search::{self, PeriodProblem, Progress},
 };
-use eeruf_design::{OwnedUneven, Search, certificate, over_reals as real_period, real_budget, shortest};
+use eeruf_design::{OwnedUneven, Search, atlas::ATLAS, certificate, over_reals as real_period, real_budget, shortest};
 use pyo3::prelude::*;
 
 use crate::{
@@ -148,7 +148,7 @@ pub(crate) fn design<'py>(
         return Ok(Bound::new(py, HoppingFound::design(phases, &needs)?)?.into_any());
     }
     refuse(&[("margin_us", margin_us)], "no margin without phases")?;
-    let atlas = flag("atlas", atlas, true)?;
+    let atlas = if flag("atlas", atlas, true)? { ATLAS } else { "" };
     let sensors = requirements::sensors(sensors)?;
     let layout = OwnedLayout::new(layout, requirements::neighbours(neighbours)?, sensors)?;
     let (t_delta, t_deltas) = each("t_delta_us", t_delta_us, 0)?;
@@ -185,7 +185,8 @@ pub(crate) fn design<'py>(
         let real = schedule.and_then(|schedule| {
             real_period(&needs, &schedule, real_budget(sensors), |nodes| still("over the reals", nodes))
         });
-        Ok((Found::of(&found, began, Some(shortest.reason)).out_of_atlas(shortest.from_atlas), proof, real))
+        let found = Found::of(&found, began, Some(shortest.reason)).with_spare(shortest.to_spare);
+        Ok((found.out_of_atlas(shortest.from_atlas), proof, real))
     };
     let (found, certificate, real) = if sensors <= FEW_SENSORS {
         let mut watch = Watch::new(progress)?;

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use eeruf_core::{MAX_SENSORS, Micros, search};
-use eeruf_design::RealPeriod;
+use eeruf_design::{RealPeriod, ToSpare};
 use pyo3::{
     prelude::*,
     types::{PyDict, PyTuple},
@@ -58,6 +58,13 @@ pub(crate) struct Found {
     /// Whether the atlas of proven rings answered, and nothing was searched.
     #[pyo3(get)]
     from_atlas: bool,
+    /// Of a ring whose sensors are not all alike: what its schedule keeps beyond every ``t_delta``, then every interval
+    /// and turn on a shared line, then every refire time, in microseconds; else None.
+    #[pyo3(get)]
+    spare_us: Option<(u32, u32, u32)>,
+    /// Whether no schedule of this period has more, of each; None without them.
+    #[pyo3(get)]
+    spare_proven: Option<(bool, bool, bool)>,
 }
 
 impl Found {
@@ -74,11 +81,19 @@ impl Found {
             real_period_us: None,
             real_proven: None,
             from_atlas: false,
+            spare_us: None,
+            spare_proven: None,
         }
     }
 
     pub(crate) fn out_of_atlas(self, from_atlas: bool) -> Self {
         Self { from_atlas, ..self }
+    }
+
+    pub(crate) fn with_spare(self, spare: Option<ToSpare>) -> Self {
+        let (spare_us, spare_proven) =
+            (spare.map(|spare| spare.in_us().into()), spare.map(|spare| spare.proven.into()));
+        Self { spare_us, spare_proven, ..self }
     }
 
     pub(crate) fn with_certificate(self, certificate: Option<String>) -> Self {
@@ -95,9 +110,9 @@ impl Found {
 impl Found {
     #[new]
     #[pyo3(signature = (schedule, value_us, bound_us, proven, nodes, seconds, reason=None, certificate=None,
-        real_period_us=None, real_proven=None, from_atlas=None))]
+        real_period_us=None, real_proven=None, from_atlas=None, spare_us=None, spare_proven=None))]
     #[pyo3(text_signature = "(schedule, value_us, bound_us, proven, nodes, seconds, reason=None, certificate=None, \
-            real_period_us=None, real_proven=None, from_atlas=False)")]
+            real_period_us=None, real_proven=None, from_atlas=False, spare_us=None, spare_proven=None)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         schedule: Option<&Bound<'_, PyAny>>,
@@ -111,6 +126,8 @@ impl Found {
         real_period_us: Option<(u64, u64)>,
         real_proven: Option<bool>,
         from_atlas: Option<&Bound<'_, PyAny>>,
+        spare_us: Option<(u32, u32, u32)>,
+        spare_proven: Option<(bool, bool, bool)>,
     ) -> PyResult<Self> {
         let schedule = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
         Ok(Self {
@@ -125,6 +142,8 @@ impl Found {
             real_period_us,
             real_proven,
             from_atlas: flag("from_atlas", from_atlas, false)?,
+            spare_us,
+            spare_proven,
         })
     }
 
@@ -154,6 +173,8 @@ impl Found {
             "real_period_us",
             "real_proven",
             "from_atlas",
+            "spare_us",
+            "spare_proven",
         ];
         to_dict(slf, &fields)
     }
@@ -165,22 +186,12 @@ impl Found {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let this = slf.get();
-        let Self { value_us, bound_us, proven, nodes, seconds, real_period_us, real_proven, from_atlas, .. } = *this;
-        let (schedule, reason, certificate) = (this.schedule.clone(), this.reason.clone(), this.certificate.clone());
-        let arguments = (
-            schedule,
-            value_us,
-            bound_us,
-            proven,
-            nodes,
-            seconds,
-            reason,
-            certificate,
-            real_period_us,
-            real_proven,
-            from_atlas,
-        );
-        Ok((slf.get_type().into_any(), arguments.into_pyobject(slf.py())?))
+        let Self { value_us, bound_us, proven, nodes, seconds, real_period_us, real_proven, .. } = *slf.get();
+        let Self { schedule, reason, certificate, from_atlas, spare_us, spare_proven, .. } = slf.get().clone();
+        // Tuples of more than twelve have no conversion.
+        let first = (schedule, value_us, bound_us, proven, nodes, seconds).into_pyobject(slf.py())?;
+        let rest = (reason, certificate, real_period_us, real_proven, from_atlas, spare_us, spare_proven);
+        let arguments = first.as_sequence().concat(rest.into_pyobject(slf.py())?.as_sequence())?.to_tuple()?;
+        Ok((slf.get_type().into_any(), arguments))
     }
 }

@@ -1,18 +1,84 @@
 //! A ring with the schedules that it borrows, so that it can change from one to another.
 
-use eeruf_core::{Instant, MAX_SENSORS, Micros, Requirements, RingConfig, ScheduledRing};
+use eeruf_core::{
+    Instant, MAX_SENSORS, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, ScheduledRing, SensorError,
+    UnevenFiring, UnevenSchedule,
+};
 use eeruf_sim::AnySchedule;
 use elsa::sync::FrozenVec;
 use pyo3::prelude::*;
 
-use crate::{arguments::wrong, errors::Raise};
+use crate::{arguments::wrong, errors::Raise, requirements::OwnedRequirements};
 
-type Scheduled<'s> = ScheduledRing<'s, MAX_SENSORS>;
+/// A ring of sensors that are alike, or of some that are not.
+pub(crate) enum AnyRing<'s> {
+    Even(ScheduledRing<'s, MAX_SENSORS>),
+    Uneven(Ring<UnevenFiring<'s, MAX_SENSORS>, MAX_SENSORS>),
+}
+
+/// Hands calls on to the ring, whichever it is.
+macro_rules! either {
+    ($(fn $name:ident(&self $(, $argument:ident: $type:ty)*) -> $returns:ty;)*
+     $(mut fn $name_mut:ident(&mut self $(, $argument_mut:ident: $type_mut:ty)*) -> $returns_mut:ty;)*) => {
+        impl AnyRing<'_> {
+            $(pub(crate) fn $name(&self $(, $argument: $type)*) -> $returns {
+                match self {
+                    Self::Even(ring) => ring.$name($($argument),*),
+                    Self::Uneven(ring) => ring.$name($($argument),*),
+                }
+            })*
+            $(pub(crate) fn $name_mut(&mut self $(, $argument_mut: $type_mut)*) -> $returns_mut {
+                match self {
+                    Self::Even(ring) => ring.$name_mut($($argument_mut),*),
+                    Self::Uneven(ring) => ring.$name_mut($($argument_mut),*),
+                }
+            })*
+        }
+    };
+}
+
+either! {
+    fn next_deadline(&self) -> Instant;
+    fn sensors(&self) -> usize;
+    fn t_delta(&self) -> Micros;
+    fn window(&self) -> Micros;
+    fn blanking(&self) -> Micros;
+    fn is_enabled(&self, sensor: u8) -> bool;
+    mut fn poll_expecting(&mut self, now: Instant, change: impl FnMut(u8) -> i32) -> Option<RingEvent>;
+    mut fn set_t_delta(&mut self, t_delta: Micros) -> Result<(), RingError>;
+    mut fn set_window(&mut self, window: Micros) -> Result<(), RingError>;
+    mut fn set_blanking(&mut self, blanking: Micros) -> Result<(), RingError>;
+    mut fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError>;
+    mut fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError>;
+    mut fn stuck(&mut self, sensor: u8) -> Result<(), SensorError>;
+    mut fn disable(&mut self, sensor: u8) -> Result<(), SensorError>;
+    mut fn enable(&mut self, sensor: u8) -> Result<(), SensorError>;
+    mut fn pause(&mut self) -> ();
+    mut fn resume(&mut self) -> ();
+    mut fn restart(&mut self, now: Instant) -> ();
+}
+
+impl AnyRing<'_> {
+    /// The schedule of the present period.
+    pub(crate) fn schedule(&self) -> &AnySchedule {
+        match self {
+            Self::Even(ring) => ring.schedule(),
+            Self::Uneven(ring) => ring.schedule().verified().schedule(),
+        }
+    }
+}
+
+/// A schedule as a ring borrows it.
+#[derive(PartialEq)]
+enum Kept {
+    Even(AnySchedule),
+    Uneven(Box<UnevenSchedule<MAX_SENSORS>>),
+}
 
 /// The schedules that a ring has fired by, each once.
 struct Schedules {
-    first: AnySchedule,
-    others: FrozenVec<Box<AnySchedule>>,
+    first: Kept,
+    others: FrozenVec<Box<Kept>>,
 }
 
 self_cell::self_cell!(
@@ -20,15 +86,24 @@ self_cell::self_cell!(
     struct WithSchedules {
         owner: Schedules,
         #[covariant]
-        dependent: Scheduled,
+        dependent: AnyRing,
     }
 );
 
-/// A ring that owns its schedules, and knows whether they have to reject crosstalk.
+/// What a ring's schedules must keep.
+enum Judged {
+    /// Nothing: the conventional method, for comparison.
+    NotAtAll,
+    /// They reject crosstalk at the ring's `t_delta`.
+    ByTDelta,
+    /// What each sensor needs.
+    BySensor(OwnedRequirements),
+}
+
+/// A ring that owns its schedules, and knows what they have to keep.
 pub(crate) struct OwnedRing {
     ring: WithSchedules,
-    /// Whether its schedules have to reject crosstalk at its `t_delta`.
-    verified: bool,
+    judged: Judged,
     /// What it fires by from the end of the present period on.
     next: Box<AnySchedule>,
 }
@@ -41,37 +116,52 @@ fn verify(schedule: &AnySchedule, t_delta: Micros) -> PyResult<()> {
 }
 
 impl OwnedRing {
+    fn begin(schedule: AnySchedule, kept: Kept, judged: Judged, config: RingConfig, now: Instant) -> PyResult<Self> {
+        let schedules = Schedules { first: kept, others: FrozenVec::new() };
+        let ring = WithSchedules::try_new(schedules, |schedules| match &schedules.first {
+            Kept::Even(schedule) => ScheduledRing::unverified(schedule, config, now).map(AnyRing::Even),
+            Kept::Uneven(schedule) => Ring::uneven(schedule, config, now).map(AnyRing::Uneven),
+        });
+        Ok(Self { ring: ring.map_err(Raise::raise)?, judged, next: Box::new(schedule) })
+    }
+
     /// With a schedule that need not reject crosstalk.
     pub(crate) fn new(schedule: AnySchedule, config: RingConfig, now: Instant) -> PyResult<Self> {
-        let schedules = Schedules { first: schedule, others: FrozenVec::new() };
-        let ring = WithSchedules::try_new(schedules, |schedules| Scheduled::unverified(&schedules.first, config, now));
-        Ok(Self { ring: ring.map_err(Raise::raise)?, verified: false, next: Box::new(schedule) })
+        Self::begin(schedule, Kept::Even(schedule), Judged::NotAtAll, config, now)
+    }
+
+    /// With a schedule that keeps what each sensor needs; so must then all to which it changes.
+    pub(crate) fn uneven(
+        schedule: AnySchedule,
+        needs: OwnedRequirements,
+        config: RingConfig,
+        now: Instant,
+    ) -> PyResult<Self> {
+        let kept = schedule.verify(&needs.requirements()).verified_uneven().map_err(Raise::raise)?;
+        Self::begin(schedule, Kept::Uneven(Box::new(kept)), Judged::BySensor(needs), config, now)
     }
 
     /// The same, if its schedule rejects crosstalk; so must then all to which it changes.
     pub(crate) fn verified(self) -> PyResult<Self> {
         verify(self.ring().schedule(), self.ring().t_delta())?;
-        Ok(Self { verified: true, ..self })
+        Ok(Self { judged: Judged::ByTDelta, ..self })
     }
 
-    pub(crate) fn ring(&self) -> &Scheduled<'_> {
+    pub(crate) fn ring(&self) -> &AnyRing<'_> {
         self.ring.borrow_dependent()
     }
 
-    pub(crate) fn with<T>(&mut self, call: impl FnOnce(&mut Scheduled<'_>) -> T) -> T {
+    pub(crate) fn with<T>(&mut self, call: impl FnOnce(&mut AnyRing<'_>) -> T) -> T {
         self.ring.with_dependent_mut(|_, ring| call(ring))
     }
 
-    pub(crate) fn change<E: Raise>(
-        &mut self,
-        change: impl FnOnce(&mut Scheduled<'_>) -> Result<(), E>,
-    ) -> PyResult<()> {
+    pub(crate) fn change<E: Raise>(&mut self, change: impl FnOnce(&mut AnyRing<'_>) -> Result<(), E>) -> PyResult<()> {
         self.with(change).map_err(Raise::raise)
     }
 
     /// Compares with another `t_delta`, at which what it fires by must reject crosstalk.
     pub(crate) fn set_t_delta(&mut self, t_delta: Micros) -> PyResult<()> {
-        if self.verified {
+        if matches!(self.judged, Judged::ByTDelta) {
             verify(self.ring().schedule(), t_delta)?;
             verify(&self.next, t_delta)?;
         }
@@ -85,13 +175,26 @@ impl OwnedRing {
             let expected = format!("one of {sensors} sensors, as the ring has");
             return Err(wrong("schedule", format!("one of {} sensors", schedule.sensors()), expected));
         }
-        if self.verified {
-            verify(schedule, self.ring().t_delta())?;
-        }
+        let next = match &self.judged {
+            Judged::BySensor(needs) => {
+                let verified = schedule.verify(&needs.requirements()).verified_uneven().map_err(Raise::raise)?;
+                Kept::Uneven(Box::new(verified))
+            }
+            Judged::ByTDelta => {
+                verify(schedule, self.ring().t_delta())?;
+                Kept::Even(*schedule)
+            }
+            Judged::NotAtAll => Kept::Even(*schedule),
+        };
         let changed = self.ring.with_dependent_mut(|schedules, ring| {
             let mut known = core::iter::once(&schedules.first).chain(&schedules.others);
-            let kept = known.find(|known| *known == schedule);
-            ring.change_to_unverified(kept.unwrap_or_else(|| schedules.others.push_get(Box::new(*schedule))))
+            let kept = known.find(|known| **known == next);
+            match (kept.unwrap_or_else(|| schedules.others.push_get(Box::new(next))), ring) {
+                (Kept::Even(schedule), AnyRing::Even(ring)) => ring.change_to_unverified(schedule),
+                (Kept::Uneven(schedule), AnyRing::Uneven(ring)) => ring.change_schedule(schedule),
+                // A ring's schedules are judged alike.
+                _ => Err(RingError::Unverified),
+            }
         });
         changed.map_err(Raise::raise)?;
         *self.next = *schedule;

@@ -62,6 +62,16 @@ pub(crate) struct OwnedRequirements {
 }
 
 impl OwnedRequirements {
+    /// Whether they say what single sensors need.
+    pub(crate) fn is_uneven(&self) -> bool {
+        self.uneven.is_some()
+    }
+
+    /// The largest `t_delta` and window.
+    pub(crate) fn most(&self) -> [Micros; 2] {
+        [self.t_delta, self.window]
+    }
+
     pub(crate) fn requirements(&self) -> Requirements<'_> {
         Requirements {
             t_delta: self.t_delta,

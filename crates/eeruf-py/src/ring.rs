@@ -7,6 +7,7 @@ use crate::{
     arguments::{instance, micros, whole, whole_or},
     moments::{expected_changes, instant, until},
     owned_ring::OwnedRing,
+    requirements::{RequirementArguments, UnevenArguments},
     ring_events::to_python,
     schedule::Schedule,
 };
@@ -18,16 +19,23 @@ use crate::{
 ///
 /// Args:
 ///     schedule: when the sensors fire.
-///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11).
+///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for all, or
+///         a sequence with one for each sensor.
 ///     now_us: when the first period begins.
-///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more.
+///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more. One for all, or a sequence.
 ///     blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
 ///     consecutive: how many readings in a row must agree, 2 to 8.
+///     refire_us: how soon a sensor may be triggered again, as for :func:`design`. With this, with those below or with a
+///         sequence above the ring is one of sensors that are not all alike: its schedule must keep what each needs,
+///         each listens and compares by its own numbers, and ``t_delta_us`` and ``window_us`` say the largest.
+///     intervals_us: pairs of sensors with the least time between their firings: ``[(0, 4, 9000)]``.
+///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
+///     together: groups of sensors that fire at the same instants, declared not to hear each other.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
 ///     RingError: the ring cannot listen like that, such as longer than the schedule lets it; or the schedule does not
-///         reject crosstalk at this ``t_delta_us`` (see ``Ring.unverified``).
+///         reject crosstalk at this ``t_delta_us`` (see ``Ring.unverified``), or breaks what a sensor needs.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -41,6 +49,11 @@ use crate::{
 ///     ...             kinds.append(event.kind)
 ///     >>> kinds == ["first"] * 12 + ["accepted"] * 12
 ///     True
+///     >>> needs = dict(t_delta_us=[999, 999, 1500, 1500], window_us=[36_000, 36_000, 12_000, 12_000])
+///     >>> found = eeruf.design(4, min_interval_us=15_000, shared_lines=[(0, 2)], **needs)
+///     >>> ring = eeruf.Ring(found.schedule, shared_lines=[(0, 2)], **needs)
+///     >>> ring.t_delta_us, ring.window_us
+///     (1500, 36000)
 #[pyclass(module = "eeruf")]
 pub(crate) struct Ring(pub(crate) OwnedRing);
 
@@ -51,11 +64,31 @@ impl Ring {
     }
 }
 
+fn config(
+    t_delta: Micros,
+    window: Micros,
+    blanking_us: Option<&Bound<'_, PyAny>>,
+    consecutive: Option<&Bound<'_, PyAny>>,
+) -> PyResult<RingConfig> {
+    Ok(RingConfig::new()
+        .with_blanking(blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?)
+        .with_consecutive(whole_or("consecutive", consecutive, 2, 0..=u8::MAX)?)
+        .with_t_delta(t_delta)
+        .with_window(window))
+}
+
+fn begins(now_us: Option<&Bound<'_, PyAny>>) -> PyResult<Instant> {
+    now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))
+}
+
 #[pymethods]
 impl Ring {
     #[new]
-    #[pyo3(signature = (schedule, t_delta_us, now_us=None, *, window_us, blanking_us=None, consecutive=None))]
-    #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us, blanking_us=0, consecutive=2)")]
+    #[pyo3(signature = (schedule, t_delta_us, now_us=None, *, window_us, blanking_us=None, consecutive=None,
+        refire_us=None, intervals_us=None, shared_lines=None, together=None))]
+    #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us, blanking_us=0, consecutive=2, \
+            refire_us=None, intervals_us=None, shared_lines=None, together=None)")]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         schedule: &Bound<'_, PyAny>,
         t_delta_us: &Bound<'_, PyAny>,
@@ -63,9 +96,23 @@ impl Ring {
         window_us: &Bound<'_, PyAny>,
         blanking_us: Option<&Bound<'_, PyAny>>,
         consecutive: Option<&Bound<'_, PyAny>>,
+        refire_us: Option<&Bound<'_, PyAny>>,
+        intervals_us: Option<&Bound<'_, PyAny>>,
+        shared_lines: Option<&Bound<'_, PyAny>>,
+        together: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let ring = Self::unverified(schedule, t_delta_us, now_us, window_us, blanking_us, consecutive)?;
-        ring.0.verified().map(Self)
+        let fires = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
+        let needs = RequirementArguments {
+            uneven: UnevenArguments { refire_us, intervals_us, shared_lines, together },
+            ..RequirementArguments::alike(Some(t_delta_us), None, None, None, None, (Some(window_us), None))
+        };
+        let needs = needs.owned(&fires)?;
+        let [t_delta, window] = needs.most();
+        let config = config(t_delta, window, blanking_us, consecutive)?;
+        if needs.is_uneven() {
+            return OwnedRing::uneven(fires, needs, config, begins(now_us)?).map(Self);
+        }
+        OwnedRing::new(fires, config, begins(now_us)?)?.verified().map(Self)
     }
 
     /// A ring whose schedule need not reject crosstalk: the conventional method, for comparison.
@@ -98,14 +145,10 @@ impl Ring {
         blanking_us: Option<&Bound<'_, PyAny>>,
         consecutive: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let config = RingConfig::new()
-            .with_blanking(blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?)
-            .with_consecutive(whole_or("consecutive", consecutive, 2, 0..=u8::MAX)?)
-            .with_t_delta(micros("t_delta_us", t_delta_us)?)
-            .with_window(micros("window_us", window_us)?);
-        let now = now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))?;
+        let (t_delta, window) = (micros("t_delta_us", t_delta_us)?, micros("window_us", window_us)?);
+        let config = config(t_delta, window, blanking_us, consecutive)?;
         let schedule = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
-        OwnedRing::new(schedule, config, now).map(Self)
+        OwnedRing::new(schedule, config, begins(now_us)?).map(Self)
     }
 
     /// The next event at a time. Call again until there is none, then wait until ``next_deadline_us``.
@@ -181,7 +224,7 @@ impl Ring {
     }
 
     /// Fire by another schedule when the present period ends. Readings before and after it are not compared;
-    /// ``t_delta_us`` and ``window_us`` stay.
+    /// ``t_delta_us`` and ``window_us`` stay, and so does what each sensor needs where they are not all alike.
     ///
     /// Args:
     ///     schedule: of as many sensors.
@@ -189,7 +232,7 @@ impl Ring {
     /// Raises:
     ///     ArgumentError: no schedule, or not of as many sensors.
     ///     RingError: a sensor would fire again while it still listens, or the schedule does not reject crosstalk at
-    ///         this ``t_delta_us``. The ring goes on as before.
+    ///         this ``t_delta_us``, or breaks what a sensor needs. The ring goes on as before.
     ///
     /// Example:
     ///     >>> import eeruf

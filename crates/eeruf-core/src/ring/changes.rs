@@ -3,9 +3,10 @@
 use super::listening::Listening;
 use super::{NOBODY, Ring, RingError};
 use crate::schedule::Schedule;
-use crate::scheduler::{ScheduledFiring, Scheduler};
+use crate::scheduler::{ScheduledFiring, Scheduler, UnevenFiring};
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
+use crate::uneven_schedule::UnevenSchedule;
 use crate::verified::VerifiedSchedule;
 
 impl<'s, const N: usize, const M: usize, const K: usize, const E: usize> Ring<ScheduledFiring<'s, N, M>, K, E> {
@@ -25,6 +26,23 @@ impl<'s, const N: usize, const M: usize, const K: usize, const E: usize> Ring<Sc
     /// [`RingError::Window`] if a sensor would fire again while it still listens.
     pub fn change_to_unverified(&mut self, schedule: &'s Schedule<N, M>) -> Result<(), RingError> {
         self.listening.is_allowed(schedule.limits())?;
+        self.scheduler.change_schedule(schedule);
+        Ok(())
+    }
+}
+
+impl<'s, const K: usize, const E: usize> Ring<UnevenFiring<'s, K>, K, E> {
+    /// Changes to another schedule when the present period ends (see [`UnevenFiring::change_schedule`]). Readings
+    /// before and after the change are not compared. What the ring asks for at most stays; each sensor listens and
+    /// compares as the schedules allow it, in the first period after the change by the lesser of both.
+    ///
+    /// # Errors
+    /// [`RingError`] if the largest `t_delta` or window that the schedule was verified for is less than what the ring
+    /// asks for at most, or if a sensor would listen no longer than the blanking time. The ring then goes on as before.
+    pub fn change_schedule(&mut self, schedule: &'s UnevenSchedule<K>) -> Result<(), RingError> {
+        // What it would be told if it began with that schedule.
+        let begun = UnevenFiring::new(schedule, Instant::from_micros(0));
+        Listening::checked(self.t_delta(), self.window(), self.blanking(), &begun)?;
         self.scheduler.change_schedule(schedule);
         Ok(())
     }

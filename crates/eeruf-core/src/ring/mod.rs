@@ -114,7 +114,7 @@ impl<'s, const K: usize, const E: usize> Ring<UnevenFiring<'s, K>, K, E> {
         Self::with_scheduler(UnevenFiring::new(schedule, now), config, now)
     }
 
-    /// The schedule.
+    /// The schedule of the present period.
     pub const fn schedule(&self) -> &'s UnevenSchedule<K> {
         self.scheduler.schedule()
     }

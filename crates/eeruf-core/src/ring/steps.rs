@@ -106,6 +106,11 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if S::COMPARES && (changed || uncomparable) {
             self.uncompare_next();
         }
+        if S::UNEVEN {
+            // Another schedule may allow other windows, also to firings under way.
+            self.find_first_to_close();
+            self.emit_when_oldest_ends();
+        }
         let stats = PeriodStats {
             period: self.period,
             phase,

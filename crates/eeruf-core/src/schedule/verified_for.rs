@@ -10,7 +10,8 @@ use crate::time::Micros;
 pub struct VerifiedFor {
     /// `T_delta`, for which (13a), (13b) hold; the smallest where sensors have their own.
     pub t_delta: Micros,
-    /// The least interval between neighbours; where pairs have their own, the longest time that any of them keeps.
+    /// The least interval between neighbours; where sensors are not all alike, the longest time that any pair, or any
+    /// sensor for itself, keeps between firings: a period that another schedule begins waits for it.
     pub min_interval: Micros,
     /// `T_wind`; the shortest refire time where no window was asked for, the smallest where sensors have their own.
     pub window: Micros,

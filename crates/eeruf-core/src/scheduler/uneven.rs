@@ -7,24 +7,37 @@ use crate::time::{Instant, Micros};
 use crate::uneven_schedule::{SensorLimits, UnevenSchedule};
 
 /// Scheduled firing by an [`UnevenSchedule`]: as [`ScheduledFiring`], and each sensor may listen and compare as it was
-/// verified for.
+/// verified for; in the first period after a change of schedules by the lesser of what both allow it.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 pub struct UnevenFiring<'s, const K: usize> {
     firing: ScheduledFiring<'s, K>,
     uneven: &'s UnevenSchedule<K>,
+    /// That of the period before: its last firings may still be listening.
+    before: &'s UnevenSchedule<K>,
+    next: Option<&'s UnevenSchedule<K>>,
 }
 
 impl<'s, const K: usize> UnevenFiring<'s, K> {
     /// Begins the first period of `schedule` at `now`, with all sensors enabled.
     pub const fn new(schedule: &'s UnevenSchedule<K>, now: Instant) -> Self {
-        Self { firing: ScheduledFiring::new(schedule.verified().schedule(), now), uneven: schedule }
+        let firing = ScheduledFiring::new(schedule.verified().schedule(), now);
+        Self { firing, uneven: schedule, before: schedule, next: None }
     }
 
-    /// The schedule.
+    /// The schedule of the present period.
     pub const fn schedule(&self) -> &'s UnevenSchedule<K> {
         self.uneven
+    }
+
+    /// Changes to another schedule when the present period ends.
+    ///
+    /// Its first period begins late enough after the last firing to keep every interval, window and refire time that
+    /// either schedule was verified for, of whatever sensors.
+    pub const fn change_schedule(&mut self, schedule: &'s UnevenSchedule<K>) {
+        self.firing.change_schedule(schedule.verified().schedule());
+        self.next = Some(schedule);
     }
 }
 
@@ -37,9 +50,16 @@ impl<const K: usize> Scheduler for UnevenFiring<'_, K> {
         Limits { longest_window: most.window, verified_for: Some(most) }
     }
 
+    fn next_limits(&self) -> Option<Limits<'_>> {
+        let most = self.next?.most();
+        Some(Limits { longest_window: most.window, verified_for: Some(most) })
+    }
+
     #[inline]
     fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
-        self.uneven.each().get(usize::from(sensor)).copied()
+        let (now, before) =
+            (self.uneven.each().get(usize::from(sensor))?, self.before.each().get(usize::from(sensor))?);
+        Some(SensorLimits { t_delta: now.t_delta.min(before.t_delta), window: now.window.min(before.window) })
     }
 
     #[inline]
@@ -62,6 +82,8 @@ impl<const K: usize> Scheduler for UnevenFiring<'_, K> {
     }
 
     fn end_period(&mut self, now: Instant) -> (Phase, bool) {
+        self.before = self.uneven;
+        self.uneven = self.next.take().unwrap_or(self.uneven);
         self.firing.end_period(now)
     }
 

@@ -225,8 +225,8 @@ fn a_verified_uneven_schedule_allows_each_sensor_its_own_and_all_together_the_le
     assert_eq!((of(2), of(3)), (Some((Micros::new(999), Micros::from_millis(40))), None));
     let least = CORNERS.verified().verified_for();
     assert_eq!((least.t_delta, least.window), (Micros::new(499), Micros::from_millis(12)));
-    // The longest that any pair keeps: the first listens for 24 ms on the line that it shares.
-    assert_eq!((least.min_interval, least.separation), (Micros::from_millis(24), Micros::from_millis(4)));
+    // The longest that any pair or sensor keeps: the third listens for 40 ms before it fires again.
+    assert_eq!((least.min_interval, least.separation), (Micros::from_millis(40), Micros::from_millis(4)));
     let late = Requirements {
         layout: Layout::Line(1),
         uneven: Some(Uneven { shared_lines: &[0b011], ..Uneven::NONE }),

@@ -192,3 +192,101 @@ fn lateness_that_the_closest_pair_has_to_spare_is_borne_and_one_more_microsecond
         assert_eq!(first == 4, comparable, "late by {late} us: {kinds:?}");
     }
 }
+
+/// The same sensors on the same lines, two of which look farther, the first farther than any fires again.
+fn farther() -> UnevenSchedule<4> {
+    let schedule = Schedule::from_firing(Micros::from_millis(80), [ms([62, 20, 44, 4]), ms([58, 10, 26, 30])])
+        .expect("it lies within");
+    let requirements = Requirements {
+        layout: Layout::Line(1),
+        uneven: Some(Uneven {
+            window: &ms([70, 20, 60, 16]),
+            t_delta: &[Micros::new(1_900), Micros::new(1_200), Micros::new(1_500), Micros::new(300)],
+            shared_lines: &[0b1010],
+            ..Uneven::NONE
+        }),
+        ..Requirements::new(Micros::new(99))
+    };
+    schedule.verify(&requirements).verified_uneven().expect("it keeps all")
+}
+
+#[test]
+fn between_two_uneven_schedules_nothing_fires_or_listens_sooner_or_longer_than_both_allow() {
+    let schedules = [corners(), farther()];
+    let limits = |of: usize, sensor: usize| schedules[of].limits_of(sensor).unwrap();
+    // No more than either allows, so that it can change between them.
+    let config = RingConfig::new().with_window(Micros::from_millis(50)).with_t_delta(Micros::new(1_900));
+    let mut ring: Ring<_, 4> = Ring::uneven(&schedules[0], config, Instant::from_micros(u32::MAX - 500_000)).unwrap();
+    let mut random = Random(5);
+    // The schedules of the present period and the one before, when each sensor fired and by which, and until when it
+    // listened.
+    let (mut present, mut before) = (0, 0);
+    let mut fired: [Option<(Instant, usize)>; 4] = [None; 4];
+    let (mut changes, mut cut, mut accepted, mut asked) = (0, 0, 0, None);
+    while changes < 400 {
+        let now = ring.next_deadline();
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor, .. } => {
+                    let x = usize::from(sensor);
+                    for y in [x, x ^ 2].into_iter().filter(|&y| y == x || x % 2 == 1) {
+                        let (at, by) =
+                            fired[y].unwrap_or((Instant::from_micros(now.as_micros().wrapping_sub(999_999)), 0));
+                        assert!(now.since(at) >= limits(by, y).window, "{x} {} after {y}", now.since(at));
+                    }
+                    fired[x] = Some((now, present));
+                    let least =
+                        |of: fn(eeruf_core::SensorLimits) -> Micros| of(limits(present, x)).min(of(limits(before, x)));
+                    assert_eq!(ring.window_of(sensor), least(|limits| limits.window).min(Micros::from_millis(50)));
+                    assert_eq!(ring.t_delta_of(sensor), least(|limits| limits.t_delta).min(Micros::new(1_900)));
+                    if random.up_to(1) == 0 {
+                        ring.echo(sensor, now + Micros::from_millis(8)).unwrap();
+                    }
+                }
+                RingEvent::Reading(reading) => {
+                    let (at, by) = fired[usize::from(reading.sensor)].unwrap();
+                    let window = limits(by, reading.sensor.into()).window.min(Micros::from_millis(50));
+                    if reading.t_echo.is_none() && now.since(at) < window {
+                        // Its window was cut at the end of the period, or it fired in the first after a change.
+                        assert_ne!((present, before), (by, by));
+                        cut += 1;
+                    }
+                    assert!(now.since(at) <= window || before != present, "{reading:?}");
+                    accepted += u32::from(reading.kind == ReadingKind::Accepted);
+                }
+                RingEvent::PeriodEnded(_) => {
+                    before = present;
+                    if let Some(next) = asked.take() {
+                        (present, changes) = (next, changes + 1);
+                    }
+                    assert_eq!(*ring.schedule(), schedules[present]);
+                    if random.up_to(3) == 0 {
+                        ring.change_schedule(&schedules[1 - present]).unwrap();
+                        asked = Some(1 - present);
+                    }
+                }
+            }
+        }
+    }
+    assert!(cut > 50 && accepted > 100, "{cut} {accepted}");
+}
+
+#[test]
+fn a_change_to_an_uneven_schedule_that_allows_less_is_refused_and_the_ring_goes_on() {
+    let schedules = [corners(), farther()];
+    let at = Instant::from_micros(0);
+    let mut ring: Ring<_, 4> = Ring::uneven(&schedules[1], RingConfig::new(), at).unwrap();
+    let (window, verified) = (Micros::from_millis(70), Micros::from_millis(50));
+    assert_eq!(ring.change_schedule(&schedules[0]), Err(RingError::VerifiedWindow { window, verified }));
+    ring.set_window(verified).unwrap();
+    ring.set_blanking(Micros::from_millis(10)).unwrap();
+    // The one that looks nearest would never hear anything.
+    let (blanking, window) = (Micros::from_millis(10), Micros::from_millis(9));
+    assert_eq!(ring.change_schedule(&schedules[0]), Err(RingError::Blanking { blanking, window }));
+    ring.set_blanking(Micros::ZERO).unwrap();
+    ring.change_schedule(&schedules[0]).unwrap();
+    // What it changes to counts from then on.
+    let (window, verified) = (Micros::from_millis(51), Micros::from_millis(50));
+    assert_eq!(ring.set_window(window), Err(RingError::VerifiedWindow { window, verified }));
+    assert_eq!(*ring.schedule(), schedules[1]);
+}

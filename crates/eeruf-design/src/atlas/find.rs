@@ -1,4 +1,4 @@
-//! Looks a ring up in the atlas that comes with this crate.
+//! The atlas that comes with this crate, and how a ring is looked up in it.
 
 use eeruf_core::search::PeriodProblem;
 use eeruf_sim::AnySchedule;
@@ -6,20 +6,20 @@ use eeruf_sim::AnySchedule;
 use super::rings::Ring;
 use super::row::Row;
 
-/// The atlas: a line for each ring.
+/// The atlas that comes with this crate: a line for each ring.
 #[cfg(feature = "atlas")]
 pub const ATLAS: &str = include_str!("atlas.txt");
 /// Without the feature `atlas` there is none.
 #[cfg(not(feature = "atlas"))]
 pub const ATLAS: &str = "";
 
-/// The proven row of a problem's ring, and its schedule in the problem's ticks, which keeps the requirements.
+/// The proven row of a problem's ring in an atlas such as [`ATLAS`], and its schedule in the problem's ticks, which keeps the requirements.
 ///
 /// A schedule of the atlas that the verifier refuses is as good as none.
 #[must_use]
-pub fn answer(problem: &PeriodProblem<'_>) -> Option<(Row, AnySchedule)> {
+pub fn answer(atlas: &str, problem: &PeriodProblem<'_>) -> Option<(Row, AnySchedule)> {
     let begins = format!("{} ", Ring::of(problem)?);
-    let line = ATLAS.lines().find(|line| line.starts_with(&begins))?;
+    let line = atlas.lines().find(|line| line.starts_with(&begins))?;
     let row: Row = line.parse().ok()?;
     let schedule = row.schedule(problem.tick)?;
     (row.bound == row.period && schedule.verify(&problem.requirements).ok()).then_some((row, schedule))

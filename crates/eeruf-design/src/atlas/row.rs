@@ -19,7 +19,7 @@ pub struct Row {
     pub bound: u32,
     /// As far as a certificate proves that.
     pub certified: u32,
-    /// The first 32 digits of the certificate's SHA-256.
+    /// The first 32 digits of the certificate's SHA-256; empty where a part of the atlas leaves them out.
     pub hash: String,
     /// Whether it is proven that no schedule of this period has a larger `t_delta`, a larger interval at this
     /// `t_delta`, a longer refire time at both.
@@ -53,6 +53,7 @@ impl Row {
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { ring, period, bound, certified, hash, preferred, fire } = self;
+        let hash = if hash.is_empty() { "-" } else { hash };
         let preferred = preferred.map(|is_proven| if is_proven { 'y' } else { 'n' });
         write!(f, "{ring} {period} {bound} {certified} {} {hash} ", preferred.iter().collect::<String>())?;
         for &time in fire.iter().flatten() {
@@ -76,7 +77,8 @@ impl FromStr for Row {
         let number = |word: &str| word.parse::<u32>().map_err(|_| bad("expected a number"));
         let proven: Vec<bool> = preferred.chars().map(|letter| letter == 'y').collect();
         let preferred = proven.try_into().map_err(|_| bad("expected three letters y or n"))?;
-        if hash.len() != HASH || !hash.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+        let hash = hash.strip_prefix('-').unwrap_or(hash);
+        if !hash.is_empty() && hash.len() != HASH || !hash.bytes().all(|digit| digit.is_ascii_hexdigit()) {
             return Err(bad("expected 32 digits of a hash"));
         }
         let value = |digit: &u8| DIGITS.iter().position(|other| other == digit).map(|value| value as u32);

@@ -33,7 +33,7 @@ impl Firing {
     }
 
     /// `|d|` of sensor `x`, which is below `MAX_SENSORS`.
-    fn size(&self, x: usize) -> i32 {
+    pub(crate) fn size(&self, x: usize) -> i32 {
         self.a[x].abs_diff(self.b[x]) as i32
     }
 
@@ -82,16 +82,4 @@ impl Firing {
         }
         period
     }
-}
-
-/// Firing one by one: sensor i at `i I` in phase b and at `i (I + D)` in phase a, so that `d = i D`. It always serves,
-/// at a long period.
-pub(crate) fn one_by_one(problem: &CheckedProblem) -> Firing {
-    let mut firing = Firing { a: [0; MAX_SENSORS], b: [0; MAX_SENSORS], sensors: problem.sensors };
-    for i in 0..problem.sensors {
-        let b = i as i32 * problem.interval;
-        firing.b[i] = b as u32;
-        firing.a[i] = (b + problem.least + i as i32 * problem.separation) as u32;
-    }
-    firing
 }

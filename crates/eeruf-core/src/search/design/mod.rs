@@ -52,6 +52,7 @@
 
 mod bisect;
 mod bounds;
+mod construct;
 mod decide;
 mod explanation;
 mod firing;

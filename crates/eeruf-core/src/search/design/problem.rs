@@ -73,7 +73,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// A period at which firing one by one always works: see [`firing::one_by_one`](super::firing::one_by_one).
+/// A period at which firing one by one always works: sensor i at `i I` in phase b and at `i (I + D)` in phase a.
 pub(crate) fn one_by_one(problem: &Problem<'_>) -> u64 {
     let k = problem.sensors.min(MAX_SENSORS) as u64;
     let (d, i) = (u64::from(problem.separation), u64::from(problem.interval_that_counts()));

@@ -2,8 +2,9 @@
 
 use super::bisect::{Bisection, Bracket, Objective, Query};
 use super::bounds;
+use super::construct::constructed;
 use super::explanation::Explanation;
-use super::firing::{self, Firing};
+use super::firing::Firing;
 use super::problem::{CheckedProblem, Problem};
 use super::solver::check_memory;
 use crate::search::common::{Control, ProblemError};
@@ -56,7 +57,7 @@ pub fn shortest<C: Control>(
 /// be proven.
 pub(crate) fn shortest_period<C: Control>(problem: &CheckedProblem, bisection: &mut Bisection<'_, C>) -> Shortest {
     let counted = bounds::strongest(problem);
-    let firing = firing::one_by_one(problem);
+    let firing = constructed(problem);
     let query = Query { problem: *problem, period: firing.period(problem) };
     let mut bracket = Bracket {
         query: &query,

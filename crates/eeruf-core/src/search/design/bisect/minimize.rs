@@ -4,7 +4,7 @@
 //! decide, so budgets grow from round to round.
 
 use super::super::bounds;
-use super::super::firing;
+use super::super::construct::constructed;
 use super::super::problem::CheckedProblem;
 use super::{Bisection, Bracket, Objective, Probe, Query};
 use crate::search::common::{Control, Outcome};
@@ -28,7 +28,7 @@ impl<C: Control> Bisection<'_, C> {
         let (limit, start) = (self.meter.limit, self.meter.nodes);
         self.meter.limit = start + limit.saturating_sub(start) / 2;
         (self.meter.ticks, self.meter.bound) = (ticks as u32, bracket.infeasible as u32 + 1);
-        let firing = firing::one_by_one(coarse);
+        let firing = constructed(coarse);
         let feasible = firing.period(coarse);
         let query = Query { problem: *coarse, period: feasible };
         // No coarse period below the fine bound, rounded up.
@@ -120,7 +120,7 @@ impl<C: Control> Bisection<'_, C> {
         let outcome = if excluded {
             Outcome::Exhausted
         } else {
-            let guide = bracket.searched.then_some(bracket.firing);
+            let guide = (bracket.searched || !thorough).then_some(bracket.firing);
             self.probe(&Probe { query, budget, guide, thorough })
         };
         match &outcome {

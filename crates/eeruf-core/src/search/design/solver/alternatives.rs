@@ -24,7 +24,7 @@ impl State<'_, '_> {
                 decision.tried += 1;
                 decision.tried <= 3
             }
-            Branch::Top | Branch::Low | Branch::High => {
+            Branch::Top | Branch::Rank => {
                 let Some((x, negative)) = self.pick(decision) else {
                     return false;
                 };
@@ -54,8 +54,8 @@ impl State<'_, '_> {
                 };
                 self.bound_size(x, low, high)
             }
-            Branch::Top | Branch::Low | Branch::High => {
-                self.ranks.push(decision.branch, decision.x, decision.y == 1);
+            Branch::Top | Branch::Rank => {
+                self.ranks.push(decision.x, decision.y == 1);
                 if decision.branch == Branch::Top {
                     self.sequence = sequence(self.problem, x);
                     let sorting = Sorting::new(self.problem, x);
@@ -72,8 +72,8 @@ impl State<'_, '_> {
 
     /// Takes back what [`apply`](Self::apply) stored outside the difference bounds.
     pub(super) fn retract(&mut self, decision: &Decision) {
-        if matches!(decision.branch, Branch::Top | Branch::Low | Branch::High) {
-            self.ranks.pop(decision.branch);
+        if matches!(decision.branch, Branch::Top | Branch::Rank) {
+            self.ranks.pop();
         }
     }
 }

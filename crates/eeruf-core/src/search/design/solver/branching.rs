@@ -100,29 +100,20 @@ impl State<'_, '_> {
         None
     }
 
-    /// The end of the ranks with fewer candidates.
+    /// The sensors that may have the largest `|d|` of those without a rank.
     fn branch_on_rank(&mut self, unranked: u64) -> Decision {
         let separation = self.problem.separation;
         let intervals = self.intervals();
-        let mut low = Decision::new(Branch::Low);
-        let mut high = Decision::new(Branch::High);
+        let mut decision = Decision::new(Branch::Rank);
         for x in Members(unranked) {
-            let (d_low, d_high) = self.span(x);
-            let others = unranked & !(1 << x);
-            let signs = |decision: &mut Decision| {
+            let (low, high) = self.span(x);
+            if Members(unranked & !(1 << x)).all(|y| intervals.low[y] + separation <= intervals.high[x]) {
                 // d = 0 counts as positive.
-                decision.positive |= u64::from(d_high >= 0) << x;
-                decision.negative |= u64::from(d_low < 0) << x;
-            };
-            if Members(others).all(|y| intervals.low[x] + separation <= intervals.high[y]) {
-                signs(&mut low);
-            }
-            if Members(others).all(|y| intervals.low[y] + separation <= intervals.high[x]) {
-                signs(&mut high);
+                decision.positive |= u64::from(high >= 0) << x;
+                decision.negative |= u64::from(low < 0) << x;
             }
         }
-        let count = |decision: &Decision| decision.positive.count_ones() + decision.negative.count_ones();
-        if count(&low) < count(&high) { low } else { high }
+        decision
     }
 
     /// The remaining candidate for a rank that leaves the others most room, or any.
@@ -138,9 +129,7 @@ impl State<'_, '_> {
         }
         if let Some(guide) = &self.guide {
             let d = |x: usize| i64::from(guide.a[x]) - i64::from(guide.b[x]);
-            let key = |x: usize| {
-                if decision.branch == Branch::Low { d(x).abs() } else { -d(x).abs() }
-            };
+            let key = |x: usize| -d(x).abs();
             let best = Members(decision.positive | decision.negative).min_by_key(|&x| key(x))?;
             let negative = decision.negative >> best & 1 == 1 && (d(best) < 0 || decision.positive >> best & 1 == 0);
             return Some((best as u8, negative));
@@ -149,9 +138,7 @@ impl State<'_, '_> {
             return Members(decision.positive).next().map(|x| (x as u8, false));
         }
         let intervals = self.intervals();
-        let key = |x: usize| {
-            if decision.branch == Branch::Low { intervals.high[x] } else { -intervals.low[x] }
-        };
+        let key = |x: usize| -intervals.low[x];
         let best = Members(decision.positive | decision.negative).min_by_key(|&x| key(x))?;
         Some((best as u8, decision.positive >> best & 1 == 0))
     }

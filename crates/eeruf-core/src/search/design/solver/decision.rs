@@ -10,12 +10,14 @@ pub(crate) enum Branch {
     Top,
     /// Which of two firings in the same phase comes first.
     Order,
-    /// The sensor with the smallest `|d|` of those without a rank, and its sign.
-    Low,
     /// The sensor with the largest `|d|` of those without a rank, and its sign.
-    High,
+    Rank,
     /// The value of `|d|` of a sensor.
     Value,
+}
+
+impl Branch {
+    const ALL: [Self; 4] = [Self::Top, Self::Order, Self::Rank, Self::Value];
 }
 
 /// A decision, with the alternative being tried in `x`, `y` and `tried`.
@@ -42,13 +44,7 @@ impl Decision {
     }
 
     pub(crate) fn pack(&self) -> [i32; DECISION_WORDS] {
-        let branch = match self.branch {
-            Branch::Top => 0,
-            Branch::Order => 1,
-            Branch::Low => 2,
-            Branch::High => 3,
-            Branch::Value => 4,
-        };
+        let branch = Branch::ALL.iter().position(|&branch| branch == self.branch).unwrap_or(0) as u8;
         [
             i32::from_le_bytes([branch, self.x, self.y, self.tried]),
             self.mark as i32,
@@ -64,13 +60,7 @@ impl Decision {
             return Self::new(Branch::Value);
         };
         let [branch, x, y, tried] = first.to_le_bytes();
-        let branch = match branch {
-            0 => Branch::Top,
-            1 => Branch::Order,
-            2 => Branch::Low,
-            3 => Branch::High,
-            _ => Branch::Value,
-        };
+        let branch = Branch::ALL.get(usize::from(branch)).copied().unwrap_or(Branch::Value);
         let join = |low: i32, high: i32| u64::from(high as u32) << 32 | u64::from(low as u32);
         Self { branch, x, y, tried, mark: mark as u32, positive: join(p, q), negative: join(r, s) }
     }

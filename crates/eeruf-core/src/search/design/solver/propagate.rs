@@ -3,12 +3,11 @@
 //! Three arguments, repeated until nothing is new: an order that has become impossible leaves the other one; ranked
 //! neighbours are D apart; and K values `|d|` must fit ([`spacing`](super::spacing)).
 //!
-//! Indices: sensors are below `problem.sensors` and so below `MAX_SENSORS`; a chain holds each sensor at most once.
+//! Indices: sensors are below `problem.sensors` and so below `MAX_SENSORS`.
 
 use super::difference_bounds::Conflict;
 use super::spacing::Intervals;
 use super::state::State;
-use crate::schedule::MAX_SENSORS;
 use crate::search::common::Members;
 
 /// Rounds after each decision. Almost always a few are enough. In fine ticks conclusions can go round in circles and
@@ -73,24 +72,13 @@ impl State<'_, '_> {
 
     /// Adds the separation between sensors whose order of `|d|` is known.
     fn space_ranks(&mut self) -> Result<(), Conflict> {
-        let mut chain = [0u8; MAX_SENSORS];
-        let (lows, highs) = (self.ranks.lows().len(), self.ranks.highs().len());
-        chain[..lows].copy_from_slice(self.ranks.lows());
-        for (slot, &x) in chain[lows..].iter_mut().zip(self.ranks.highs().iter().rev()) {
-            *slot = x;
+        let ranks = self.ranks;
+        for pair in ranks.highs().windows(2) {
+            self.behind(usize::from(pair[1]), usize::from(pair[0]))?;
         }
-        let unranked = self.problem.all() & !self.ranks.ranked;
-        for i in 1..lows + highs {
-            if i != lows || unranked == 0 {
-                self.behind(usize::from(chain[i - 1]), usize::from(chain[i]))?;
-            }
-        }
-        for x in Members(unranked) {
-            if lows > 0 {
-                self.behind(usize::from(chain[lows - 1]), x)?;
-            }
-            if highs > 0 {
-                self.behind(x, usize::from(chain[lows]))?;
+        if let Some(&last) = ranks.highs().last() {
+            for x in Members(self.problem.all() & !ranks.ranked) {
+                self.behind(x, usize::from(last))?;
             }
         }
         Ok(())

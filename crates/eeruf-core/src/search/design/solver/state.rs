@@ -46,7 +46,7 @@ impl<'p, 'm> State<'p, 'm> {
     /// Forgets all decisions; `root` holds the difference bounds without any.
     pub(super) fn reset(&mut self, root: &[i32]) {
         self.differences.reset(root);
-        self.ranks.clear();
+        self.ranks = Ranks::NONE;
     }
 
     /// What to try first from now on: alternatives drawn from `random`, or those of a schedule for an easier problem,
@@ -102,12 +102,6 @@ impl<'p, 'm> State<'p, 'm> {
             intervals.high[x] = high.max(-low).min(self.widest);
         }
         let unranked = self.problem.all() & !self.ranks.ranked;
-        if let Some(&last) = self.ranks.lows().last() {
-            let floor = intervals.low[usize::from(last)] + self.problem.separation;
-            for x in Members(unranked) {
-                intervals.low[x] = intervals.low[x].max(floor);
-            }
-        }
         if let Some(&last) = self.ranks.highs().last() {
             let ceiling = intervals.high[usize::from(last)] - self.problem.separation;
             for x in Members(unranked) {

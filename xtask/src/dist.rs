@@ -148,6 +148,11 @@ impl Compiler {
         let root = folder.components().collect::<PathBuf>();
         let flags = [(&cargo, "/cargo"), (&root, "/eeruf")]
             .map(|(from, to)| format!("--remap-path-prefix={}={to}", from.display()));
+        let mut flags = flags.join(" ");
+        if !self.environment.is_empty() {
+            // Sources bring no start-up files of musl's; zig has them.
+            flags += " -Clink-self-contained=no";
+        }
         let time = output(Command::new("git").args(["log", "-1", "--format=%ct"]).current_dir(&folder));
         let time = time.ok_or_else(|| Trouble::Failed("no git log to take the time from".to_owned()))?;
         let mut path = vec![tool("")];
@@ -159,7 +164,7 @@ impl Compiler {
             .current_dir(&folder)
             .envs(self.environment.iter().copied())
             .env("CARGO_TARGET_DIR", folder.join(self.target_folder))
-            .env("RUSTFLAGS", flags.join(" "))
+            .env("RUSTFLAGS", flags)
             .env("CFLAGS", format!("-ffile-prefix-map={}=/cargo", cargo.display()))
             .env("SOURCE_DATE_EPOCH", time)
             .env("PATH", path);

@@ -12,6 +12,7 @@ mod diagnose;
 mod examples;
 mod experiment;
 mod hopping;
+mod licenses;
 mod man;
 mod methods;
 mod paths;
@@ -56,6 +57,7 @@ pub(crate) enum Verb {
     Examples(examples::Args),
     Completions(completions::Args),
     Man(man::Args),
+    Licenses(licenses::Args),
 }
 
 impl Verb {
@@ -76,6 +78,7 @@ impl Verb {
             Self::Examples(args) => examples::run(args),
             Self::Completions(args) => completions::run(args),
             Self::Man(args) => man::run(args),
+            Self::Licenses(args) => licenses::run(args),
         }
     }
 }

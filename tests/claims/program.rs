@@ -325,6 +325,17 @@ fn shells_complete_every_verb_and_the_manual_has_a_page_for_each() {
 }
 
 #[test]
+fn the_program_prints_its_licences_and_those_of_what_is_within_it() {
+    let said = eeruf(&["licenses"]);
+    assert_eq!(said.code, Some(0));
+    let own = [include_str!("../../LICENSE-MIT"), include_str!("../../src/report/draw/font/LICENSE")];
+    let others = ["\nclap 4", "\nzstd-sys 2", "SQLite", "Rust's standard library", "END OF TERMS AND CONDITIONS"];
+    for part in own.into_iter().chain(others) {
+        assert!(said.out.contains(part), "{part}");
+    }
+}
+
+#[test]
 fn the_version_names_the_commit_of_the_clone() {
     let said = eeruf(&["--version"]).out;
     let rest = said.trim().strip_prefix(concat!("eeruf ", env!("CARGO_PKG_VERSION"))).expect("name and version");

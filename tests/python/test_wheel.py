@@ -33,6 +33,13 @@ def test_the_wheel_has_stubs_and_says_that_it_is_typed() -> None:
     assert not any("test" in name for name in names)
 
 
+def test_the_wheel_has_the_licences_of_all_that_is_within_it() -> None:
+    licenses = [name for name in zipfile.ZipFile(wheel()).namelist() if ".dist-info/licenses/" in name]
+    for name in ("LICENSE-MIT", "LICENSE-APACHE", "LICENSE-THIRD-PARTY.txt", "font/LICENSE"):
+        assert any(path.endswith(name) for path in licenses), licenses
+    assert "LICENSE-THIRD-PARTY.txt" in metadata.metadata("eeruf").get_all("License-File", [])
+
+
 def test_importing_brings_a_few_modules_of_eeruf_and_none_that_takes_longer_than_they() -> None:
     program = "import sys; before = set(sys.modules); import eeruf; print(*sorted(set(sys.modules) - before))"
     run = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)

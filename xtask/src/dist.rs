@@ -17,6 +17,12 @@ const TARGETS: [(&str, &str); 4] = [
 ];
 /// Where the files of a release lie.
 const DIST: &str = "target/dist";
+/// What the programs for all targets must answer alike.
+const SAY_ALIKE: [&[&str]; 3] = [
+    &["--version"],
+    &["design", "rings/hc-sr04-8.toml", "--no-atlas", "--emit", "c"],
+    &["study", "scenes/alcove-hc-sr04.toml", "--periods", "100"],
+];
 /// The environment of the tools from `PyPI`: maturin, zig as linker and compiler of C for any system, abi3audit.
 const TOOLS: &str = "target/dist-tools";
 
@@ -44,7 +50,7 @@ pub(crate) fn dist(plan: &Plan, steps: &mut Steps) {
     if !tools_there {
         return;
     }
-    let mut first = Vec::new();
+    let (mut first, mut answers) = (Vec::new(), None);
     for (target, system) in TARGETS {
         if !plan.targets.is_empty() && !plan.targets.iter().any(|wanted| wanted == target) {
             continue;
@@ -62,8 +68,11 @@ pub(crate) fn dist(plan: &Plan, steps: &mut Steps) {
             steps.step(&format!("program for {target}"), || {
                 let program = program(Path::new("."), target)?;
                 stands_alone(&program)?;
-                if target.starts_with(env::consts::ARCH) {
-                    run(Command::new(&program).arg("--version"))?;
+                if let Some(said) = says(&program, target)? {
+                    let before = answers.get_or_insert_with(|| said.clone());
+                    if *before != said {
+                        return Err(Trouble::Failed("it says something else than the one before".to_owned()));
+                    }
                 }
                 first.push((target, "", program));
                 Ok(())
@@ -95,44 +104,77 @@ fn tools() -> Result<(), Trouble> {
     run(Command::new(tool("python")).args(["-m", "pip", "install", "--quiet"]).args(packages))
 }
 
-/// What makes a build in this folder like one in any other: paths are named from it, times are the commit's.
-fn alike(command: &mut Command, folder: &Path) -> Result<(), Trouble> {
-    let folder = std::path::absolute(folder).map_err(|error| Trouble::Failed(error.to_string()))?;
-    let home = env::var_os("HOME").map(PathBuf::from).unwrap_or_default();
-    let cargo = env::var_os("CARGO_HOME").map_or(home.join(".cargo"), PathBuf::from);
-    let root = folder.components().collect::<PathBuf>();
-    let flags = [(&cargo, "/cargo"), (&root, "/eeruf")]
-        .map(|(from, to)| format!("--remap-path-prefix={}={to}", from.display()));
-    let time = output(Command::new("git").args(["log", "-1", "--format=%ct"]).current_dir(&folder));
-    let time = time.ok_or_else(|| Trouble::Failed("no git log to take the time from".to_owned()))?;
-    let path = env::join_paths(
-        [tool("").as_path()]
-            .into_iter()
-            .map(Path::to_owned)
-            .chain(env::split_paths(&env::var_os("PATH").unwrap_or_default())),
-    );
-    command
-        .current_dir(&folder)
-        .env("CARGO_TARGET_DIR", folder.join("target"))
-        .env("RUSTFLAGS", flags.join(" "))
-        .env("CFLAGS", format!("-ffile-prefix-map={}=/cargo", cargo.display()))
-        .env("SOURCE_DATE_EPOCH", time)
-        .env("PATH", path.map_err(|error| Trouble::Failed(error.to_string()))?);
-    Ok(())
+/// A compiler that has the libraries of a target, or makes them.
+struct Compiler {
+    /// What the environment of a build needs so that it is taken.
+    environment: Vec<(&'static str, &'static str)>,
+    /// Compilers that come from different places must not share a folder.
+    target_folder: &'static str,
 }
 
-/// Whether the compiler has the libraries of a target.
-fn wants(target: &str) -> Result<(), Trouble> {
-    let libdir = output(Command::new("rustc").args(["--print", "target-libdir", "--target", target]));
-    if libdir.is_some_and(|folder| Path::new(&folder).exists()) {
-        return Ok(());
+impl Compiler {
+    /// The compiler at hand, where it has the target; else the one whose sources of the standard library are here.
+    fn of(target: &str) -> Result<Self, Trouble> {
+        let printed = |what: &str| output(Command::new("rustc").args(["--print", what, "--target", target]));
+        let has_std = |folder: String| {
+            let mut entries = Path::new(&folder).read_dir().ok()?.flatten();
+            Some(entries.any(|entry| entry.file_name().to_string_lossy().starts_with("libstd-")))
+        };
+        let has_sources = |root: &Path| root.join("lib/rustlib/src/rust/library/Cargo.lock").exists();
+        if printed("target-libdir").and_then(has_std) == Some(true) {
+            return Ok(Self { environment: vec![], target_folder: "target" });
+        }
+        let from_sources = vec![("RUSTC_BOOTSTRAP", "1"), ("CARGO_UNSTABLE_BUILD_STD", "std,panic_unwind")];
+        if printed("sysroot").is_some_and(|root| has_sources(Path::new(&root))) {
+            return Ok(Self { environment: from_sources, target_folder: "target" });
+        }
+        if ["/usr/bin/cargo", "/usr/bin/rustc"].iter().all(|path| Path::new(path).exists())
+            && has_sources(Path::new("/usr"))
+        {
+            let debian = vec![("CARGO", "/usr/bin/cargo"), ("RUSTC", "/usr/bin/rustc")];
+            return Ok(Self { environment: [from_sources, debian].concat(), target_folder: "target/debian" });
+        }
+        Err(Trouble::Skipped(format!(
+            "no standard library for {target}; try: rustup target add {target}, or rustup component add rust-src, or \
+             Debian's rustc-web, cargo-web and rust-web-src"
+        )))
     }
-    Err(Trouble::Skipped(format!("no standard library for {target}; try: rustup target add {target}")))
+
+    /// A build with it in this folder, like one in any other: paths are named from it, times are the commit's.
+    fn set_up(&self, command: &mut Command, folder: &Path) -> Result<(), Trouble> {
+        let folder = std::path::absolute(folder).map_err(|error| Trouble::Failed(error.to_string()))?;
+        let home = env::var_os("HOME").map(PathBuf::from).unwrap_or_default();
+        let cargo = env::var_os("CARGO_HOME").map_or(home.join(".cargo"), PathBuf::from);
+        let root = folder.components().collect::<PathBuf>();
+        let flags = [(&cargo, "/cargo"), (&root, "/eeruf")]
+            .map(|(from, to)| format!("--remap-path-prefix={}={to}", from.display()));
+        let mut flags = flags.join(" ");
+        if !self.environment.is_empty() {
+            // Sources bring no start-up files of musl's; zig has them.
+            flags += " -Clink-self-contained=no";
+        }
+        let time = output(Command::new("git").args(["log", "-1", "--format=%ct"]).current_dir(&folder));
+        let time = time.ok_or_else(|| Trouble::Failed("no git log to take the time from".to_owned()))?;
+        let mut path = vec![tool("")];
+        // maturin and zigbuild call compilers by their bare names.
+        path.extend((self.target_folder != "target").then(|| PathBuf::from("/usr/bin")));
+        path.extend(env::split_paths(&env::var_os("PATH").unwrap_or_default()));
+        let path = env::join_paths(path).map_err(|error| Trouble::Failed(error.to_string()))?;
+        command
+            .current_dir(&folder)
+            .envs(self.environment.iter().copied())
+            .env("CARGO_TARGET_DIR", folder.join(self.target_folder))
+            .env("RUSTFLAGS", flags)
+            .env("CFLAGS", format!("-ffile-prefix-map={}=/cargo", cargo.display()))
+            .env("SOURCE_DATE_EPOCH", time)
+            .env("PATH", path);
+        Ok(())
+    }
 }
 
-/// Builds the wheel from the clone in this folder.
+/// Builds the wheel from the clone in this folder, and packs it so that it is alike in any folder.
 fn wheel(folder: &Path, target: &str, system: &str) -> Result<PathBuf, Trouble> {
-    wants(target)?;
+    let compiler = Compiler::of(target)?;
     let to = folder.join(DIST).join(target);
     if to.exists() {
         fs::remove_dir_all(&to).map_err(|error| Trouble::Failed(format!("{}: {error}", to.display())))?;
@@ -141,19 +183,21 @@ fn wheel(folder: &Path, target: &str, system: &str) -> Result<PathBuf, Trouble> 
     maturin.args(crate::python::BUILD);
     maturin.args(["--zig", "--target", target, "--compatibility", system, "--out"]);
     maturin.arg(Path::new(DIST).join(target));
-    alike(&mut maturin, folder)?;
+    compiler.set_up(&mut maturin, folder)?;
     run(&mut maturin)?;
-    crate::python::only_file(&to)
+    let wheel = crate::python::only_file(&to)?;
+    run(Command::new(tool("python")).arg("xtask/repack.py").arg(&wheel))?;
+    Ok(wheel)
 }
 
 /// Builds the program from the clone in this folder.
 fn program(folder: &Path, target: &str) -> Result<PathBuf, Trouble> {
-    wants(target)?;
+    let compiler = Compiler::of(target)?;
     let mut cargo = Command::new("cargo");
     cargo.args(["zigbuild", "--locked", "--profile", "wheel", "--package", "eeruf", "--target", target]);
-    alike(&mut cargo, folder)?;
+    compiler.set_up(&mut cargo, folder)?;
     run(&mut cargo)?;
-    Ok(folder.join(format!("target/{target}/wheel/eeruf")))
+    Ok(folder.join(compiler.target_folder).join(target).join("wheel/eeruf"))
 }
 
 /// Whether a program needs no library and no loader.
@@ -162,6 +206,31 @@ fn stands_alone(program: &Path) -> Result<(), Trouble> {
         .ok_or_else(|| Trouble::Skipped("no readelf; try: apt install binutils".to_owned()))?;
     let needs: Vec<_> = said.lines().filter(|line| line.contains("(NEEDED)") || line.contains("INTERP")).collect();
     if needs.is_empty() { Ok(()) } else { Err(Trouble::Failed(format!("it is not static: {needs:?}"))) }
+}
+
+/// What a program prints, here or in an emulator; nothing where neither can run it.
+fn says(program: &Path, target: &str) -> Result<Option<Vec<String>>, Trouble> {
+    let (architecture, _) = target.split_once('-').unwrap_or((target, ""));
+    let emulator = format!("qemu-{architecture}");
+    let start = if architecture == env::consts::ARCH {
+        Command::new(program)
+    } else if output(Command::new(&emulator).arg("--version")).is_some() {
+        let mut start = Command::new(emulator);
+        start.arg(program);
+        start
+    } else {
+        println!("not run: no {emulator}; try: apt install qemu-user");
+        return Ok(None);
+    };
+    let mut answers = Vec::new();
+    for words in SAY_ALIKE {
+        let mut command = Command::new(start.get_program());
+        let said = output(command.args(start.get_args()).args(words));
+        let said = said.ok_or_else(|| Trouble::Failed(format!("{command:?}: no answer")))?;
+        println!("{command:?}: {} bytes", said.len());
+        answers.push(said);
+    }
+    Ok(Some(answers))
 }
 
 /// Builds from a clone elsewhere what was built here, and compares.
@@ -179,7 +248,7 @@ fn again(first: &[(&str, &str, PathBuf)]) -> Result<(), Trouble> {
     if differ.is_empty() { Ok(()) } else { Err(Trouble::Failed(format!("two builds differ in {}", differ.join(", ")))) }
 }
 
-/// The parts that differ between two wheels, or the names of two programs that do.
+/// The files that differ within two wheels; the name of a wheel or a program that differs for another reason.
 fn differences(one: &Path, other: &Path) -> Result<Vec<String>, Trouble> {
     if one.extension().is_some_and(|ending| ending == "whl") {
         let (one, other) = (parts(one)?, parts(other)?);
@@ -187,28 +256,25 @@ fn differences(one: &Path, other: &Path) -> Result<Vec<String>, Trouble> {
         let mut names: Vec<_> = names.cloned().collect();
         names.sort();
         names.dedup();
-        return Ok(names);
+        if !names.is_empty() {
+            return Ok(names);
+        }
     }
     let read = |file: &Path| fs::read(file).map_err(|error| Trouble::Failed(format!("{}: {error}", file.display())));
     Ok(if read(one)? == read(other)? { vec![] } else { vec![one.display().to_string()] })
 }
 
-/// The check sums of a wheel's files, but for what names the folder: the bill of materials, and the record of it.
+/// The check sums of a wheel's files.
 fn parts(wheel: &Path) -> Result<BTreeMap<String, String>, Trouble> {
     let listed = output(Command::new(tool("python")).arg("-c").arg(PARTS).arg(wheel));
     let listed = listed.ok_or_else(|| Trouble::Failed(format!("{}: not a wheel", wheel.display())))?;
     Ok(listed.lines().filter_map(|line| line.split_once(' ')).map(|(sum, name)| (name.into(), sum.into())).collect())
 }
 
-/// Prints a SHA-256 and a name for each file of a wheel. The bill names packages by the folder that they were built in.
-const PARTS: &str = r#"
-import hashlib, re, sys, zipfile
+/// Prints a SHA-256 and a name for each file of a wheel.
+const PARTS: &str = "
+import hashlib, sys, zipfile
 wheel = zipfile.ZipFile(sys.argv[1])
 for name in sorted(wheel.namelist()):
-    content = wheel.read(name)
-    if "/sboms/" in name:
-        content = re.sub(rb"path\+file://[^#\"]*?(/crates/[a-z0-9-]+)?(?=#)", rb"path+file://\1", content)
-    if name.endswith("/RECORD"):
-        content = re.sub(rb"(?m)^[^,]*/sboms/.*$", b"", content)
-    print(hashlib.sha256(content).hexdigest(), name)
-"#;
+    print(hashlib.sha256(wheel.read(name)).hexdigest(), name)
+";

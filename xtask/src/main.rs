@@ -23,6 +23,7 @@ mod materials;
 mod measured;
 mod micropython;
 mod mutants;
+mod notices;
 mod package;
 mod page;
 mod periods;
@@ -126,6 +127,12 @@ enum Verb {
     Dist(dist::Plan),
     /// Write what is in each published crate, as a bill of materials, into target/materials
     Materials,
+    /// Hold the notices of what others wrote in program and wheel against what cargo-about finds
+    Notices {
+        /// Write LICENSE-THIRD-PARTY.txt instead
+        #[arg(long)]
+        write: bool,
+    },
     /// Build the documents as one book, with the page and the references for Rust and Python, and follow every link
     Site,
     /// Do everything of a release but uploading, and print what a person must still do (many minutes)
@@ -228,6 +235,7 @@ fn main() -> ExitCode {
             steps.finish(true)
         }
         Verb::Materials => one_step("bills of materials", materials::materials),
+        Verb::Notices { write } => one_step("notices", || notices::notices(write)),
         Verb::Site => {
             let mut steps = Steps::default();
             site::site(&mut steps);

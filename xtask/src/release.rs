@@ -51,6 +51,7 @@ pub(crate) fn release(_plan: &Plan) -> ExitCode {
             None => Err(Trouble::Skipped("no cargo-deny; try: cargo install cargo-deny --locked".to_owned())),
         }
     });
+    steps.step("notices", || crate::notices::notices(false));
     steps.step("public items", || crate::api::api(false));
     steps.step("bills of materials", crate::materials::materials);
     crate::package::package(&mut steps);

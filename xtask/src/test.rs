@@ -94,7 +94,8 @@ fn each_feature_alone(metadata: &Metadata) -> Result<(), Trouble> {
             run_cargo(&[&["check", "--package", &package.name, "--locked"], &features[..]].concat())?;
         }
     }
-    Ok(())
+    // The wheel without the command, which docs/python.md says how to build.
+    run_cargo(&["check", "--package", "eeruf-py", "--locked", "--no-default-features"])
 }
 
 /// The packages of the workspace by the minimum version of Rust that they declare, as "1.85".

@@ -30,9 +30,7 @@ Example:
 "
 );
 
-// Of the macro, which takes errors by value.
-#[expect(clippy::needless_pass_by_value, reason = "as `map_err` gives it")]
-pub(crate) fn raise(error: eeruf_logs::LogError) -> PyErr {
+pub(crate) fn raise(error: impl std::fmt::Display) -> PyErr {
     LogError::new_err(error.to_string())
 }
 

@@ -8,12 +8,32 @@ use crate::arguments;
 use crate::errors::ArgumentError;
 
 #[cfg(feature = "program")]
-pub(crate) use eeruf::{examples, run};
+pub(crate) use eeruf::{Recording, examples, run};
 
 /// What stands for the program where the package was built without it.
 #[cfg(not(feature = "program"))]
 mod without {
     use std::ffi::OsString;
+    use std::path::Path;
+
+    use eeruf_sim::{Readings, Simulation};
+
+    /// There is none: what would write it is the program's.
+    pub(crate) enum Recording {}
+
+    impl Recording {
+        pub(crate) fn create(file: &Path, _: &Simulation) -> Result<Self, String> {
+            Err(format!("{}: not written, as this package was built without the program", file.display()))
+        }
+
+        pub(crate) fn add(&mut self, _: &Simulation, _: &Readings) -> Result<(), String> {
+            match *self {}
+        }
+
+        pub(crate) fn finish(self) -> Result<(), String> {
+            match self {}
+        }
+    }
 
     pub(crate) fn run(_: Vec<OsString>) -> u8 {
         eprintln!("eeruf: this package was built without the program");
@@ -31,7 +51,7 @@ mod without {
     }
 }
 #[cfg(not(feature = "program"))]
-pub(crate) use without::{examples, run};
+pub(crate) use without::{Recording, examples, run};
 
 /// Runs the program with the words of a command line, the first its own name, and gives its exit code.
 #[pyfunction]

@@ -6,7 +6,6 @@ use std::{
     thread::{self, ThreadId},
 };
 
-use eeruf::Recording;
 use eeruf_sim::{Body, Own, SimulationError};
 use pyo3::{PyTraverseError, PyVisit, prelude::*};
 
@@ -15,6 +14,7 @@ use crate::{
     errors::{Raise, SimulationError as SimulationRefused},
     logs,
     own::{self, Calls},
+    program::Recording,
     readings::Readings,
     robot_state::RobotState,
     scene::Scene,

@@ -1,0 +1,31 @@
+//! `eeruf licenses`: under which terms the program may be used, and what others wrote of it.
+
+use std::io::{self, Write as _};
+use std::path::Path;
+
+use super::answer::Answer;
+use crate::files::error::InputError;
+
+/// In the order in which they are printed.
+const TEXTS: [(&str, &str); 3] = [
+    (
+        "eeruf: MIT or Apache-2.0, as you like (the text of the latter is below, among what others wrote)",
+        include_str!("../../LICENSE-MIT"),
+    ),
+    ("The letters in its pictures: Bitstream-Vera", include_str!("../report/draw/font/LICENSE")),
+    ("What others wrote", include_str!("../../LICENSE-THIRD-PARTY.txt")),
+];
+
+/// Print the licences of this program and of what is within it that others wrote
+#[derive(clap::Args)]
+pub(crate) struct Args {}
+
+pub(crate) fn run(_: &Args) -> Result<Answer, InputError> {
+    let mut out = io::stdout().lock();
+    for (title, text) in TEXTS {
+        let line = "=".repeat(title.chars().count());
+        writeln!(out, "{title}\n{line}\n\n{text}")
+            .map_err(|error| InputError::new(Path::new("standard output"), None, error))?;
+    }
+    Ok(Answer::Yes)
+}

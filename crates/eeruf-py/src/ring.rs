@@ -19,14 +19,14 @@ use crate::{
 ///
 /// Args:
 ///     schedule: when the sensors fire.
-///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for all, or
-///         a sequence with one for each sensor.
+///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11). One for all,
+///         or a sequence with one for each sensor.
 ///     now_us: when the first period begins.
 ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more. One for all, or a sequence.
 ///     blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
 ///     consecutive: how many readings in a row must agree, 2 to 8.
-///     refire_us: how soon a sensor may be triggered again, as for :func:`design`. With this, with those below or with a
-///         sequence above the ring is one of sensors that are not all alike: its schedule must keep what each needs,
+///     refire_us: how soon a sensor may be triggered again, as for :func:`design`. With this, with those below or with
+///         a sequence above the ring is one of sensors that are not all alike: its schedule must keep what each needs,
 ///         each listens and compares by its own numbers, and ``t_delta_us`` and ``window_us`` say the largest.
 ///     intervals_us: pairs of sensors with the least time between their firings: ``[(0, 4, 9000)]``.
 ///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.

@@ -13,7 +13,8 @@ pub const ATLAS: &str = include_str!("atlas.txt");
 #[cfg(not(feature = "atlas"))]
 pub const ATLAS: &str = "";
 
-/// The proven row of a problem's ring in an atlas such as [`ATLAS`], and its schedule in the problem's ticks, which keeps the requirements.
+/// The proven row of a problem's ring in an atlas such as [`ATLAS`], and its schedule in the problem's ticks,
+/// which keeps the requirements.
 ///
 /// A schedule of the atlas that the verifier refuses is as good as none.
 #[must_use]

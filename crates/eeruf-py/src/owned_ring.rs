@@ -70,15 +70,15 @@ impl AnyRing<'_> {
 
 /// A schedule as a ring borrows it.
 #[derive(PartialEq)]
-enum Kept {
-    Even(AnySchedule),
+enum Borrowed {
+    Even(Box<AnySchedule>),
     Uneven(Box<UnevenSchedule<MAX_SENSORS>>),
 }
 
 /// The schedules that a ring has fired by, each once.
 struct Schedules {
-    first: Kept,
-    others: FrozenVec<Box<Kept>>,
+    first: Borrowed,
+    others: FrozenVec<Box<Borrowed>>,
 }
 
 self_cell::self_cell!(
@@ -91,19 +91,19 @@ self_cell::self_cell!(
 );
 
 /// What a ring's schedules must keep.
-enum Judged {
+enum Promise {
     /// Nothing: the conventional method, for comparison.
-    NotAtAll,
+    Nothing,
     /// They reject crosstalk at the ring's `t_delta`.
-    ByTDelta,
+    TDelta,
     /// What each sensor needs.
-    BySensor(OwnedRequirements),
+    EachSensor(OwnedRequirements),
 }
 
 /// A ring that owns its schedules, and knows what they have to keep.
 pub(crate) struct OwnedRing {
     ring: WithSchedules,
-    judged: Judged,
+    promise: Promise,
     /// What it fires by from the end of the present period on.
     next: Box<AnySchedule>,
 }
@@ -116,18 +116,24 @@ fn verify(schedule: &AnySchedule, t_delta: Micros) -> PyResult<()> {
 }
 
 impl OwnedRing {
-    fn begin(schedule: AnySchedule, kept: Kept, judged: Judged, config: RingConfig, now: Instant) -> PyResult<Self> {
-        let schedules = Schedules { first: kept, others: FrozenVec::new() };
+    fn begin(
+        schedule: AnySchedule,
+        borrowed: Borrowed,
+        promise: Promise,
+        config: RingConfig,
+        now: Instant,
+    ) -> PyResult<Self> {
+        let schedules = Schedules { first: borrowed, others: FrozenVec::new() };
         let ring = WithSchedules::try_new(schedules, |schedules| match &schedules.first {
-            Kept::Even(schedule) => ScheduledRing::unverified(schedule, config, now).map(AnyRing::Even),
-            Kept::Uneven(schedule) => Ring::uneven(schedule, config, now).map(AnyRing::Uneven),
+            Borrowed::Even(schedule) => ScheduledRing::unverified(schedule, config, now).map(AnyRing::Even),
+            Borrowed::Uneven(schedule) => Ring::uneven(schedule, config, now).map(AnyRing::Uneven),
         });
-        Ok(Self { ring: ring.map_err(Raise::raise)?, judged, next: Box::new(schedule) })
+        Ok(Self { ring: ring.map_err(Raise::raise)?, promise, next: Box::new(schedule) })
     }
 
     /// With a schedule that need not reject crosstalk.
     pub(crate) fn new(schedule: AnySchedule, config: RingConfig, now: Instant) -> PyResult<Self> {
-        Self::begin(schedule, Kept::Even(schedule), Judged::NotAtAll, config, now)
+        Self::begin(schedule, Borrowed::Even(Box::new(schedule)), Promise::Nothing, config, now)
     }
 
     /// With a schedule that keeps what each sensor needs; so must then all to which it changes.
@@ -137,14 +143,14 @@ impl OwnedRing {
         config: RingConfig,
         now: Instant,
     ) -> PyResult<Self> {
-        let kept = schedule.verify(&needs.requirements()).verified_uneven().map_err(Raise::raise)?;
-        Self::begin(schedule, Kept::Uneven(Box::new(kept)), Judged::BySensor(needs), config, now)
+        let borrowed = schedule.verify(&needs.requirements()).verified_uneven().map_err(Raise::raise)?;
+        Self::begin(schedule, Borrowed::Uneven(Box::new(borrowed)), Promise::EachSensor(needs), config, now)
     }
 
     /// The same, if its schedule rejects crosstalk; so must then all to which it changes.
     pub(crate) fn verified(self) -> PyResult<Self> {
         verify(self.ring().schedule(), self.ring().t_delta())?;
-        Ok(Self { judged: Judged::ByTDelta, ..self })
+        Ok(Self { promise: Promise::TDelta, ..self })
     }
 
     pub(crate) fn ring(&self) -> &AnyRing<'_> {
@@ -161,7 +167,7 @@ impl OwnedRing {
 
     /// Compares with another `t_delta`, at which what it fires by must reject crosstalk.
     pub(crate) fn set_t_delta(&mut self, t_delta: Micros) -> PyResult<()> {
-        if matches!(self.judged, Judged::ByTDelta) {
+        if matches!(self.promise, Promise::TDelta) {
             verify(self.ring().schedule(), t_delta)?;
             verify(&self.next, t_delta)?;
         }
@@ -175,24 +181,24 @@ impl OwnedRing {
             let expected = format!("one of {sensors} sensors, as the ring has");
             return Err(wrong("schedule", format!("one of {} sensors", schedule.sensors()), expected));
         }
-        let next = match &self.judged {
-            Judged::BySensor(needs) => {
+        let next = match &self.promise {
+            Promise::EachSensor(needs) => {
                 let verified = schedule.verify(&needs.requirements()).verified_uneven().map_err(Raise::raise)?;
-                Kept::Uneven(Box::new(verified))
+                Borrowed::Uneven(Box::new(verified))
             }
-            Judged::ByTDelta => {
+            Promise::TDelta => {
                 verify(schedule, self.ring().t_delta())?;
-                Kept::Even(*schedule)
+                Borrowed::Even(Box::new(*schedule))
             }
-            Judged::NotAtAll => Kept::Even(*schedule),
+            Promise::Nothing => Borrowed::Even(Box::new(*schedule)),
         };
         let changed = self.ring.with_dependent_mut(|schedules, ring| {
             let mut known = core::iter::once(&schedules.first).chain(&schedules.others);
-            let kept = known.find(|known| **known == next);
-            match (kept.unwrap_or_else(|| schedules.others.push_get(Box::new(next))), ring) {
-                (Kept::Even(schedule), AnyRing::Even(ring)) => ring.change_to_unverified(schedule),
-                (Kept::Uneven(schedule), AnyRing::Uneven(ring)) => ring.change_schedule(schedule),
-                // A ring's schedules are judged alike.
+            let borrowed = known.find(|known| **known == next);
+            match (borrowed.unwrap_or_else(|| schedules.others.push_get(Box::new(next))), ring) {
+                (Borrowed::Even(schedule), AnyRing::Even(ring)) => ring.change_to_unverified(schedule),
+                (Borrowed::Uneven(schedule), AnyRing::Uneven(ring)) => ring.change_schedule(schedule),
+                // All of a ring's schedules keep the same promise.
                 _ => Err(RingError::Unverified),
             }
         });

@@ -10,11 +10,11 @@ use crate::steps::{Trouble, output};
 const INSTRUCTIONS: [(&str, u32); 5] = [("idle_poll", 44), ("fire", 95), ("echo", 67), ("stamp", 60), ("reading", 423)];
 /// What a hopping ring of twelve costs there, as `docs/hopping.md` has it: it may not grow unnoticed.
 const HOPPING: [(&str, u32); 6] =
-    [("idle_poll", 62), ("fire", 255), ("echo", 77), ("reading", 1452), ("period_ended", 3108), ("new_lags", 18_444)];
-const HOPPING_FLASH: u64 = 8088;
+    [("idle_poll", 62), ("fire", 255), ("echo", 77), ("reading", 1458), ("period_ended", 3204), ("new_lags", 18_540)];
+const HOPPING_FLASH: u64 = 8140;
 const HOPPING_RAM: u64 = 1036;
 /// What a poll of it takes of the stack there.
-const HOPPING_STACK: u64 = 404;
+const HOPPING_STACK: u64 = 396;
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
 const FLASH: u64 = 4332;

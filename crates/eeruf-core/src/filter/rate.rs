@@ -214,6 +214,17 @@ mod tests {
     }
 
     #[test]
+    fn the_age_counts_readings_since_the_last_accepted_one_and_is_none_before_the_first() {
+        let mut filter = RateFilter::<1>::new(Micros::new(500), 0).unwrap();
+        let age = |(number, echo): (u32, u32)| {
+            filter.push(0, Instant::from_micros(100 * number), Some(Micros::new(echo))).unwrap().age
+        };
+        let readings = [8_000, 8_000, 8_000, 12_000, 8_000, 8_000, 8_000];
+        let ages: Vec<_> = (0..).zip(readings).map(age).collect();
+        assert_eq!(ages, [None, None, Some(0), Some(1), Some(2), Some(3), Some(0)]);
+    }
+
+    #[test]
     fn the_longest_times_are_compared_without_overflow() {
         use ReadingKind::*;
         let longest = Some(LONGEST);

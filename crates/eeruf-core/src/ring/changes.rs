@@ -40,7 +40,7 @@ impl<'s, const K: usize, const E: usize> Ring<UnevenFiring<'s, K>, K, E> {
     /// [`RingError`] if the largest `t_delta` or window that the schedule was verified for is less than what the ring
     /// asks for at most, or if a sensor would listen no longer than the blanking time. The ring then goes on as before.
     pub fn change_schedule(&mut self, schedule: &'s UnevenSchedule<K>) -> Result<(), RingError> {
-        // What it would be told if it began with that schedule.
+        // As if it began with that schedule.
         let begun = UnevenFiring::new(schedule, Instant::from_micros(0));
         Listening::checked(self.t_delta(), self.window(), self.blanking(), &begun)?;
         self.scheduler.change_schedule(schedule);

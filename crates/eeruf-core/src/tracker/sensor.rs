@@ -131,8 +131,8 @@ impl<const H: usize> SensorTracks<H> {
         self.tracks.iter().map(Track::confirmed).min().unwrap_or(NOTHING)
     }
 
-    /// What is [confirmed](Self::confirmed), and the place of the track nearest to a reading and within `t_delta` of it,
-    /// or `H`.
+    /// What is [confirmed](Self::confirmed), and the place of the track that is nearest to a reading and within
+    /// `t_delta` of it, or `H`.
     #[inline(always)]
     fn confirmed_and_nearest(&self, t_echo: u32, t_delta: u32) -> (u32, usize) {
         let (mut confirmed, mut nearest, mut within) = (NOTHING, H, t_delta + 1);

@@ -183,14 +183,11 @@ export class Designer {
     list.replaceChildren(element("li", {}, "…"));
     /** @type {{need: string, period_us: number | null, proven: boolean}[]} */
     const all = await this.page.desk.ask({ ask: "faster", ring });
-    const lines = all.map((one) => {
-      const shorter = one.period_us !== null && one.period_us < value_us;
-      const verdict = shorter
-        ? `${inMs(one.period_us)}${one.proven ? "" : " or less"}`
-        : one.proven
-          ? "no shorter"
-          : "not found out";
-      return element("li", {}, `${one.need}: `, element("strong", {}, verdict));
+    const lines = all.map(({ need, period_us, proven }) => {
+      const unknown = proven ? "no shorter" : "not found out";
+      const shorter = period_us !== null && period_us < value_us;
+      const verdict = shorter ? `${inMs(period_us)}${proven ? "" : " or less"}` : unknown;
+      return element("li", {}, `${need}: `, element("strong", {}, verdict));
     });
     list.replaceChildren(...lines);
   }

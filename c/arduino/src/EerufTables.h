@@ -57,12 +57,12 @@ static const EerufSchedule EERUF_HC_SR04_4 EERUF_FLASH = {
 // 5 sensors, T_p = 76.5 ms;
 // t_delta = 471 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 static const uint8_t EERUF_HC_SR04_5_order[] EERUF_FLASH = {
-    1, 2, 3, 4, 0, /* phase a */
-    1, 3, 2, 0, 4, /* phase b */
+    1, 0, 2, 3, 4, /* phase a */
+    0, 1, 2, 4, 3, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_5_gap_us[] EERUF_FLASH = {
-    15000u, 15000u, 15000u, 16000u, 15000u, 500u,
-    14500u, 15000u, 15000u, 15000u, 15000u, 2000u,
+    1500u, 15000u, 15000u, 15000u, 15000u, 15000u,
+    0u, 15000u, 15000u, 16000u, 15000u, 15500u,
 };
 static const EerufSchedule EERUF_HC_SR04_5 EERUF_FLASH = {
     1, 5, 2, EERUF_HC_SR04_5_order, EERUF_HC_SR04_5_gap_us,
@@ -73,12 +73,12 @@ static const EerufSchedule EERUF_HC_SR04_5 EERUF_FLASH = {
 // 6 sensors, T_p = 91.5 ms;
 // t_delta = 557 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 static const uint8_t EERUF_HC_SR04_6_order[] EERUF_FLASH = {
-    1, 2, 3, 4, 0, 5, /* phase a */
-    1, 2, 0, 3, 5, 4, /* phase b */
+    1, 2, 0, 3, 4, 5, /* phase a */
+    0, 1, 3, 2, 4, 5, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_6_gap_us[] EERUF_FLASH = {
-    0u, 16500u, 15000u, 15000u, 15000u, 15000u, 15000u,
-    0u, 15000u, 15500u, 15000u, 15000u, 15000u, 16000u,
+    1000u, 15000u, 15000u, 15000u, 15000u, 15000u, 15500u,
+    0u, 15000u, 15000u, 15000u, 16000u, 16500u, 14000u,
 };
 static const EerufSchedule EERUF_HC_SR04_6 EERUF_FLASH = {
     1, 6, 2, EERUF_HC_SR04_6_order, EERUF_HC_SR04_6_gap_us,
@@ -89,12 +89,12 @@ static const EerufSchedule EERUF_HC_SR04_6 EERUF_FLASH = {
 // 8 sensors, T_p = 67 ms;
 // t_delta = 416 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 static const uint8_t EERUF_HC_SR04_8_order[] EERUF_FLASH = {
-    2, 6, 1, 5, 7, 3, 4, 0, /* phase a */
-    2, 6, 1, 5, 3, 7, 0, 4, /* phase b */
+    0, 4, 1, 5, 2, 6, 3, 7, /* phase a */
+    0, 4, 1, 5, 2, 6, 3, 7, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_8_gap_us[] EERUF_FLASH = {
-    0u, 3000u, 16000u, 1000u, 16000u, 5000u, 15000u, 2000u, 9000u,
-    6000u, 0u, 15000u, 0u, 15000u, 0u, 15000u, 1000u, 15000u,
+    0u, 1000u, 16000u, 1000u, 16000u, 1000u, 16000u, 1000u, 15000u,
+    0u, 0u, 15000u, 0u, 15000u, 0u, 15000u, 0u, 22000u,
 };
 static const EerufSchedule EERUF_HC_SR04_8 EERUF_FLASH = {
     1, 8, 2, EERUF_HC_SR04_8_order, EERUF_HC_SR04_8_gap_us,
@@ -105,12 +105,12 @@ static const EerufSchedule EERUF_HC_SR04_8 EERUF_FLASH = {
 // 8 sensors, T_p = 100.5 ms;
 // t_delta = 524 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 90 ms.
 static const uint8_t EERUF_HC_SR04_8_SLOWER_order[] EERUF_FLASH = {
-    2, 6, 1, 5, 7, 3, 4, 0, /* phase a */
-    2, 6, 1, 5, 3, 7, 0, 4, /* phase b */
+    4, 0, 1, 5, 2, 6, 3, 7, /* phase a */
+    0, 4, 5, 1, 6, 2, 3, 7, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_8_SLOWER_gap_us[] EERUF_FLASH = {
-    0u, 1500u, 24000u, 1500u, 27000u, 3000u, 22500u, 7500u, 13500u,
-    9000u, 0u, 22500u, 0u, 22500u, 0u, 22500u, 1500u, 22500u,
+    9000u, 1500u, 22500u, 0u, 22500u, 0u, 22500u, 0u, 22500u,
+    0u, 3000u, 22500u, 3000u, 24000u, 1500u, 24000u, 9000u, 13500u,
 };
 static const EerufSchedule EERUF_HC_SR04_8_SLOWER EERUF_FLASH = {
     1, 8, 2, EERUF_HC_SR04_8_SLOWER_order, EERUF_HC_SR04_8_SLOWER_gap_us,
@@ -122,11 +122,11 @@ static const EerufSchedule EERUF_HC_SR04_8_SLOWER EERUF_FLASH = {
 // t_delta = 611 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 120 ms.
 static const uint8_t EERUF_HC_SR04_8_SLOWEST_order[] EERUF_FLASH = {
     4, 0, 1, 5, 2, 6, 3, 7, /* phase a */
-    0, 4, 5, 1, 6, 2, 3, 7, /* phase b */
+    0, 4, 5, 1, 2, 6, 3, 7, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_8_SLOWEST_gap_us[] EERUF_FLASH = {
     9000u, 1500u, 30000u, 0u, 30000u, 0u, 30000u, 0u, 30000u,
-    0u, 3000u, 30000u, 3000u, 31500u, 1500u, 31500u, 9000u, 21000u,
+    0u, 7500u, 30000u, 3000u, 34500u, 1500u, 31500u, 1500u, 21000u,
 };
 static const EerufSchedule EERUF_HC_SR04_8_SLOWEST EERUF_FLASH = {
     1, 8, 2, EERUF_HC_SR04_8_SLOWEST_order, EERUF_HC_SR04_8_SLOWEST_gap_us,
@@ -137,12 +137,12 @@ static const EerufSchedule EERUF_HC_SR04_8_SLOWEST EERUF_FLASH = {
 // 10 sensors, T_p = 77.5 ms;
 // t_delta = 474 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 static const uint8_t EERUF_HC_SR04_10_order[] EERUF_FLASH = {
-    6, 1, 5, 9, 0, 4, 2, 8, 3, 7, /* phase a */
-    1, 6, 0, 5, 9, 4, 8, 3, 7, 2, /* phase b */
+    6, 1, 5, 0, 4, 9, 3, 8, 2, 7, /* phase a */
+    0, 6, 1, 5, 8, 4, 9, 3, 7, 2, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_10_gap_us[] EERUF_FLASH = {
-    0u, 1500u, 14500u, 1000u, 15000u, 1000u, 15000u, 2500u, 12500u, 2500u, 12000u,
-    500u, 2500u, 12500u, 2500u, 12500u, 2500u, 12500u, 3000u, 13000u, 2000u, 14000u,
+    0u, 2500u, 12500u, 2500u, 12500u, 2500u, 12500u, 2500u, 12500u, 2500u, 15000u,
+    1000u, 0u, 15000u, 1000u, 15000u, 1000u, 14000u, 2000u, 13500u, 2500u, 12500u,
 };
 static const EerufSchedule EERUF_HC_SR04_10 EERUF_FLASH = {
     1, 10, 2, EERUF_HC_SR04_10_order, EERUF_HC_SR04_10_gap_us,
@@ -153,12 +153,12 @@ static const EerufSchedule EERUF_HC_SR04_10 EERUF_FLASH = {
 // 12 sensors, T_p = 71 ms;
 // t_delta = 439 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 static const uint8_t EERUF_HC_SR04_12_order[] EERUF_FLASH = {
-    2, 10, 6, 1, 9, 5, 11, 7, 3, 8, 4, 0, /* phase a */
-    6, 2, 10, 1, 5, 9, 3, 11, 7, 0, 4, 8, /* phase b */
+    0, 4, 8, 1, 5, 9, 2, 6, 10, 3, 7, 11, /* phase a */
+    0, 4, 8, 1, 5, 9, 2, 6, 10, 3, 7, 11, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_12_gap_us[] EERUF_FLASH = {
-    0u, 10000u, 3000u, 14000u, 1000u, 4000u, 12000u, 3000u, 2000u, 13000u, 2000u, 2000u, 5000u,
-    8000u, 2000u, 0u, 15000u, 0u, 0u, 15000u, 0u, 1000u, 14000u, 1000u, 5000u, 10000u,
+    0u, 1000u, 1000u, 16000u, 1000u, 1000u, 16000u, 1000u, 1000u, 16000u, 1000u, 1000u, 15000u,
+    0u, 0u, 0u, 15000u, 0u, 0u, 15000u, 0u, 0u, 15000u, 0u, 0u, 26000u,
 };
 static const EerufSchedule EERUF_HC_SR04_12 EERUF_FLASH = {
     1, 12, 2, EERUF_HC_SR04_12_order, EERUF_HC_SR04_12_gap_us,
@@ -169,12 +169,12 @@ static const EerufSchedule EERUF_HC_SR04_12 EERUF_FLASH = {
 // 16 sensors, T_p = 75 ms;
 // t_delta = 463 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 static const uint8_t EERUF_HC_SR04_16_order[] EERUF_FLASH = {
-    2, 14, 10, 6, 1, 13, 9, 5, 15, 11, 7, 3, 12, 8, 4, 0, /* phase a */
-    10, 6, 2, 14, 9, 1, 5, 13, 3, 15, 7, 11, 0, 4, 8, 12, /* phase b */
+    0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15, /* phase a */
+    0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_16_gap_us[] EERUF_FLASH = {
-    0u, 14000u, 1000u, 6000u, 10000u, 1000u, 4000u, 4000u, 8000u, 3000u, 4000u, 2000u, 9000u, 4000u, 2000u, 2000u, 1000u,
-    10000u, 2000u, 2000u, 0u, 14000u, 1000u, 0u, 0u, 15000u, 0u, 1000u, 0u, 14000u, 1000u, 3000u, 2000u, 10000u,
+    0u, 1000u, 1000u, 1000u, 16000u, 1000u, 1000u, 1000u, 16000u, 1000u, 1000u, 1000u, 16000u, 1000u, 1000u, 1000u, 15000u,
+    0u, 0u, 0u, 0u, 15000u, 0u, 0u, 0u, 15000u, 0u, 0u, 0u, 15000u, 0u, 0u, 0u, 30000u,
 };
 static const EerufSchedule EERUF_HC_SR04_16 EERUF_FLASH = {
     1, 16, 2, EERUF_HC_SR04_16_order, EERUF_HC_SR04_16_gap_us,
@@ -185,12 +185,12 @@ static const EerufSchedule EERUF_HC_SR04_16 EERUF_FLASH = {
 // 24 sensors, T_p = 94.5 ms;
 // t_delta = 576 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 static const uint8_t EERUF_HC_SR04_24_order[] EERUF_FLASH = {
-    15, 1, 21, 11, 7, 17, 3, 23, 13, 9, 19, 5, 14, 10, 18, 22, 6, 2, 12, 16, 8, 20, 0, 4, /* phase a */
-    15, 11, 3, 7, 19, 23, 13, 1, 9, 21, 17, 5, 0, 20, 4, 16, 12, 8, 2, 18, 14, 22, 10, 6, /* phase b */
+    3, 7, 21, 11, 15, 1, 5, 19, 9, 13, 23, 17, 6, 10, 22, 14, 18, 2, 12, 16, 8, 4, 20, 0, /* phase a */
+    15, 11, 19, 3, 7, 23, 13, 9, 21, 1, 5, 17, 0, 4, 8, 12, 16, 20, 2, 6, 10, 18, 22, 14, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_24_gap_us[] EERUF_FLASH = {
-    0u, 1500u, 4500u, 4500u, 1000u, 8500u, 2000u, 7500u, 2500u, 1000u, 7000u, 2000u, 13000u, 500u, 4500u, 0u, 2000u, 3500u, 10000u, 4500u, 2000u, 1500u, 2500u, 0u, 8500u,
-    6000u, 1500u, 4000u, 0u, 0u, 0u, 16000u, 4000u, 0u, 0u, 500u, 1000u, 18500u, 500u, 1000u, 0u, 1500u, 3500u, 15000u, 500u, 1000u, 500u, 3000u, 500u, 16000u,
+    0u, 4500u, 0u, 1500u, 3000u, 10500u, 4500u, 0u, 1500u, 6000u, 7500u, 4500u, 1500u, 13500u, 1500u, 3000u, 0u, 4500u, 15000u, 1500u, 1500u, 1500u, 0u, 1500u, 6000u,
+    9000u, 1500u, 1500u, 1500u, 0u, 0u, 16500u, 3000u, 0u, 1500u, 0u, 6000u, 13500u, 0u, 0u, 6000u, 0u, 0u, 13500u, 1500u, 4500u, 0u, 0u, 1500u, 13500u,
 };
 static const EerufSchedule EERUF_HC_SR04_24 EERUF_FLASH = {
     1, 24, 2, EERUF_HC_SR04_24_order, EERUF_HC_SR04_24_gap_us,

@@ -185,7 +185,7 @@ impl ViolationKind {
     }
 }
 
-/// One requirement that does not hold.
+/// One requirement that does not hold. Printed, it counts sensors from 1; by `{:#}` from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Violation {
@@ -203,7 +203,8 @@ pub struct Violation {
 
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (x, y) = (self.sensors.0 + 1, self.sensors.1 + 1);
+        let first = u8::from(!f.alternate());
+        let (x, y) = (self.sensors.0 + first, self.sensors.1 + first);
         let (value, required, source) = (self.value, self.required, self.kind.source());
         match self.kind {
             ViolationKind::CrosstalkA | ViolationKind::CrosstalkB => write!(

@@ -51,7 +51,9 @@ pub(crate) fn reference(folder: &Path) -> Result<(), Trouble> {
     let python = interpreter(home);
     let wheel = std::env::var("EERUF_WHEEL").unwrap_or_else(|_| ".".to_owned());
     let wheel = format!("{wheel}[plot]");
-    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--force-reinstall", "pdoc", &wheel]))?;
+    // Annotations name what they come from.
+    let packages = ["pdoc", "pandas", "polars", &wheel];
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--force-reinstall"]).args(packages))?;
     run(Command::new(&python)
         .args(["-m", "pdoc", "--docformat", "google", "--output-directory"])
         .arg(folder)

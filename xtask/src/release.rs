@@ -47,7 +47,11 @@ pub(crate) fn release(_plan: &Plan) -> ExitCode {
     });
     steps.step("licences and sources of dependencies", || {
         match output(Command::new("cargo").args(["deny", "--version"])) {
-            Some(_) => run(Command::new("cargo").args(["deny", "--locked", "check", "licenses", "bans", "sources"])),
+            Some(_) => {
+                // Else it looks at the package in the root alone: not at the wheel, not at the ROS 2 node.
+                let check = ["deny", "--locked", "--workspace", "check", "licenses", "bans", "sources"];
+                run(Command::new("cargo").args(check))
+            }
             None => Err(Trouble::Skipped("no cargo-deny; try: cargo install cargo-deny --locked".to_owned())),
         }
     });

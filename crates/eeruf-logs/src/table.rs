@@ -35,6 +35,7 @@ pub(crate) fn read_from(input: impl Read, file: &Path, options: &Options, sink: 
     while reader.read_record(&mut row).map_err(bad)? {
         rows.row(&row)?;
     }
+    rows.end();
     if rows.sink.report.sensors.is_empty() {
         return Err(LogError::new(
             file,
@@ -115,6 +116,19 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             self.sink.reading(&reading);
         }
         Ok(())
+    }
+
+    /// A sensor that was asked for by name and never heard anything is one all the same.
+    fn end(&mut self) {
+        for index in 0..self.columns.len() {
+            if let Column::Unknown(empty @ 1..) = self.columns[index]
+                && !self.options.table.ranges.is_empty()
+            {
+                let sensor = self.add(self.header.get(index).unwrap_or_default());
+                let nothing = self.reading(sensor, 0, f64::INFINITY);
+                (0..empty).for_each(|_| self.sink.reading(&nothing));
+            }
+        }
     }
 
     fn add(&mut self, name: &str) -> usize {

@@ -55,3 +55,16 @@ fn a_column_may_say_whose_reading_a_row_is() {
     let error = echoes(text, Table { ranges: vec![], ..table }).unwrap_err();
     assert_eq!(error, "0 columns with ranges; with a column of sensors expected is one");
 }
+
+#[test]
+fn a_sensor_asked_for_by_name_that_never_hears_anything_is_there() {
+    let text = "left,deaf,right\n1.0,,\n1.1,,2.0\n";
+    let deaf = |ranges: &[&str]| {
+        let ranges = ranges.iter().map(|&name| name.to_owned()).collect();
+        let read = echoes(text, Table { ranges, ..Table::default() }).unwrap();
+        read.into_iter().filter(|(name, ..)| name == "deaf").map(|(.., echo)| echo).collect::<Vec<_>>()
+    };
+    assert_eq!(deaf(&["left", "deaf", "right"]), [Echo::Nothing; 2]);
+    // Nobody said that it is a sensor.
+    assert_eq!(deaf(&[]), []);
+}

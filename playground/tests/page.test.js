@@ -367,12 +367,13 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
   });
 
   test("a ring that takes long to search is answered from the atlas, and the page says so", async () => {
-    const patch = { module: "hc_sr04", layout: "ring", sensors: 24, crosstalk: 2.5, jitter: 100, speed: 0, tick: 1000 };
+    const patch = { module: "hc_sr04", layout: "ring", sensors: 20, crosstalk: 2.5, jitter: 100, speed: 0, tick: 1000 };
     const known = toHash(/** @type {any} */ ({ ...firstState(), ...patch }));
     const { context, page, troubles } = await open(browser, `${server.url}#${known}`);
     await page.locator("#design-go").click();
     await assertText(page.locator("#proof"), /^proven, from the atlas: no schedule/);
-    await page.locator("#design-cancel").click();
+    // What would be faster is still sought, or was found meanwhile.
+    await page.locator("#design-cancel").click({ timeout: 3000 }).catch(() => {});
     await page.locator("#ring-sensors").fill("4");
     await page.locator("#ring-sensors").press("Enter");
     await assertText(page.locator("#proof"), /^proven: no schedule/);

@@ -15,7 +15,8 @@ pub(crate) const FILE: &str = "LICENSE-THIRD-PARTY.txt";
 /// What is linked and is no crate.
 const OTHERS: &str = "xtask/notices/others.txt";
 const HEAD: &str = "\
-What others wrote and is within the program eeruf and the Python package eeruf, and under which licence it is used there.
+What others wrote and is within the program eeruf and the Python package eeruf, and under which licence it is used \
+there.
 Made by `cargo xtask notices --write`, from the texts that came with each part; SPDX's where none did.
 
 ";
@@ -174,9 +175,11 @@ mod tests {
             let one = |name: &&str| json!({ "crate": { "name": name, "version": "1.0.0" } });
             names.iter().map(one).collect::<Vec<_>>()
         };
+        let unnamed = "Terms\n\nEND OF TERMS AND CONDITIONS\n  Copyright [yyyy]";
+        let named = " Terms \nEND OF TERMS AND CONDITIONS\n  Copyright 2020 C";
         let found = json!({ "licenses": [
-            { "id": "Apache-2.0", "text": "Terms\n\nEND OF TERMS AND CONDITIONS\n  Copyright [yyyy]", "used_by": crates(&["a", "b"]) },
-            { "id": "Apache-2.0", "text": " Terms \nEND OF TERMS AND CONDITIONS\n  Copyright 2020 C", "used_by": crates(&["c"]) },
+            { "id": "Apache-2.0", "text": unnamed, "used_by": crates(&["a", "b"]) },
+            { "id": "Apache-2.0", "text": named, "used_by": crates(&["c"]) },
             { "id": "MIT", "text": "Copyright D", "used_by": crates(&["c"]) },
         ], "notices": [{ "crate": { "name": "b" }, "text": "heed" }] });
         let text = text(&found, "others\n").unwrap();

@@ -41,6 +41,7 @@ mod readings;
 mod report;
 mod requirements;
 mod ring;
+mod ring_arguments;
 mod ring_events;
 mod robot;
 mod robot_state;

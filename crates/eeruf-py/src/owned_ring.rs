@@ -8,7 +8,11 @@ use eeruf_sim::AnySchedule;
 use elsa::sync::FrozenVec;
 use pyo3::prelude::*;
 
-use crate::{arguments::wrong, errors::Raise, requirements::OwnedRequirements};
+use crate::{
+    arguments::{whole, wrong},
+    errors::Raise,
+    requirements::OwnedRequirements,
+};
 
 /// A ring of sensors that are alike, or of some that are not.
 pub(crate) enum AnyRing<'s> {
@@ -151,6 +155,12 @@ impl OwnedRing {
     pub(crate) fn verified(self) -> PyResult<Self> {
         verify(self.ring().schedule(), self.ring().t_delta())?;
         Ok(Self { promise: Promise::TDelta, ..self })
+    }
+
+    /// The number of one of its sensors.
+    pub(crate) fn sensor(&self, sensor: &Bound<'_, PyAny>) -> PyResult<u8> {
+        // At most 64.
+        whole("sensor", sensor, 0..=self.ring().sensors() as u8 - 1)
     }
 
     pub(crate) fn ring(&self) -> &AnyRing<'_> {

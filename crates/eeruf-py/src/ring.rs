@@ -1,13 +1,13 @@
 //! `Ring`.
 
-use eeruf_core::{Instant, Micros, RingConfig};
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{instance, micros, whole, whole_or},
+    arguments::{instance, micros},
     moments::{expected_changes, instant, until},
     owned_ring::OwnedRing,
     requirements::{RequirementArguments, UnevenArguments},
+    ring_arguments::{begins, config},
     ring_events::to_python,
     schedule::Schedule,
 };
@@ -56,30 +56,6 @@ use crate::{
 ///     (1500, 36000)
 #[pyclass(module = "eeruf")]
 pub(crate) struct Ring(pub(crate) OwnedRing);
-
-impl Ring {
-    fn sensor(&self, sensor: &Bound<'_, PyAny>) -> PyResult<u8> {
-        // At most 64.
-        whole("sensor", sensor, 0..=self.0.ring().sensors() as u8 - 1)
-    }
-}
-
-fn config(
-    t_delta: Micros,
-    window: Micros,
-    blanking_us: Option<&Bound<'_, PyAny>>,
-    consecutive: Option<&Bound<'_, PyAny>>,
-) -> PyResult<RingConfig> {
-    Ok(RingConfig::new()
-        .with_blanking(blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?)
-        .with_consecutive(whole_or("consecutive", consecutive, 2, 0..=u8::MAX)?)
-        .with_t_delta(t_delta)
-        .with_window(window))
-}
-
-fn begins(now_us: Option<&Bound<'_, PyAny>>) -> PyResult<Instant> {
-    now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))
-}
 
 #[pymethods]
 impl Ring {
@@ -309,7 +285,7 @@ impl Ring {
     ///     9000
     #[pyo3(signature = (sensor, at_us))]
     fn echo(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
-        let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
+        let (sensor, at) = (self.0.sensor(sensor)?, instant("at_us", at_us)?);
         self.0.change(|ring| ring.echo(sensor, at))
     }
 
@@ -334,7 +310,7 @@ impl Ring {
     ///     8900
     #[pyo3(signature = (sensor, at_us))]
     fn fired(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
-        let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
+        let (sensor, at) = (self.0.sensor(sensor)?, instant("at_us", at_us)?);
         self.0.change(|ring| ring.fired(sensor, at))
     }
 
@@ -358,7 +334,7 @@ impl Ring {
     ///     (0, 'stuck')
     #[pyo3(signature = (sensor))]
     fn stuck(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
-        let sensor = self.sensor(sensor)?;
+        let sensor = self.0.sensor(sensor)?;
         self.0.change(|ring| ring.stuck(sensor))
     }
 
@@ -378,7 +354,7 @@ impl Ring {
     ///     False
     #[pyo3(signature = (sensor))]
     fn disable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
-        let sensor = self.sensor(sensor)?;
+        let sensor = self.0.sensor(sensor)?;
         self.0.change(|ring| ring.disable(sensor))
     }
 
@@ -399,7 +375,7 @@ impl Ring {
     ///     True
     #[pyo3(signature = (sensor))]
     fn enable(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
-        let sensor = self.sensor(sensor)?;
+        let sensor = self.0.sensor(sensor)?;
         self.0.change(|ring| ring.enable(sensor))
     }
 
@@ -418,7 +394,7 @@ impl Ring {
     ///     True
     #[pyo3(signature = (sensor))]
     fn is_enabled(&self, sensor: &Bound<'_, PyAny>) -> PyResult<bool> {
-        Ok(self.0.ring().is_enabled(self.sensor(sensor)?))
+        Ok(self.0.ring().is_enabled(self.0.sensor(sensor)?))
     }
 
     /// Let no sensor fire until :meth:`resume`. Readings of firings under way are still emitted, and periods go on.

@@ -32,16 +32,15 @@ fn settings(r: &Random) -> HoppingSettings {
         let t_delta = r.within(1, 220);
         let near = r.within(t_delta, 600);
         let votes = r.within(2, 7) as u8;
-        settings.tracker = TrackerSettings {
-            t_delta: Micros::new(t_delta),
-            near: Micros::new(near),
-            votes,
-            score_limit: r.within(votes.into(), 15) as u8,
-            contradiction: r.within(1, 4) as u8,
-            solo_contradiction: r.within(1, 9) as u8,
-            tentative_votes: r.one_of(&[0, 2, 3, 4, 1]),
-            tentative_within: Micros::new(r.within(0, t_delta)),
-        };
+        settings.tracker = TrackerSettings::BALANCED
+            .with_t_delta(Micros::new(t_delta))
+            .with_near(Micros::new(near))
+            .with_votes(votes)
+            .with_score_limit(r.within(votes.into(), 15) as u8)
+            .with_contradiction(r.within(1, 4) as u8)
+            .with_solo_contradiction(r.within(1, 9) as u8)
+            .with_tentative_votes(r.one_of(&[0, 2, 3, 4, 1]))
+            .with_tentative_within(Micros::new(r.within(0, t_delta)));
         settings.solo_rate = r.one_of(&[0, 255, r.within(0, 255) as u8]);
         settings.solo_after = r.within(0, 9) as u8;
         settings.solo_spacing = r.within(0, 5) as u8;
@@ -64,11 +63,9 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
     let period = r.one_of(&[60_000, r.within(20_000, 120_000), r.duration(1 << 28)]);
     let window = r.one_of(&[36_000, 30_000, r.within(1, 40_000)]);
     let blanking = r.one_of(&[0, 500, r.duration(4_000)]);
-    let listening = HoppingListening {
-        window: Micros::new(window),
-        blanking: Micros::new(blanking),
-        reach: Micros::new(r.one_of(&[window, r.duration(100_000)])),
-    };
+    let listening = HoppingListening::new(Micros::new(window))
+        .with_blanking(Micros::new(blanking))
+        .with_reach(Micros::new(r.one_of(&[window, r.duration(100_000)])));
     // Also where the clock begins, at which sensors would seem to have just fired.
     let (random_seed, start) = (r.within(0, 3), r.one_of(&[r.any() as u32, r.duration(50_000)]));
     let t = s.tracker;

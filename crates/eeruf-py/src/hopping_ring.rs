@@ -84,11 +84,9 @@ impl HoppingRing {
         seed: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let window = micros("window_us", window_us)?;
-        let listening = HoppingListening {
-            window,
-            blanking: blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?,
-            reach: reach_us.map_or(Ok(window), |value| micros("reach_us", value))?,
-        };
+        let listening = HoppingListening::new(window)
+            .with_blanking(blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?)
+            .with_reach(reach_us.map_or(Ok(window), |value| micros("reach_us", value))?);
         let now = now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))?;
         let seed = whole_or("seed", seed, 1, 0..=u32::MAX)?;
         let settings = HoppingSettings::of("settings", settings)?;
@@ -164,7 +162,7 @@ impl HoppingRing {
         self.schedule.clone()
     }
 
-    /// How it fires and believes.
+    /// How it fires and weighs readings.
     #[getter]
     fn settings(&self) -> HoppingSettings {
         self.settings.clone()

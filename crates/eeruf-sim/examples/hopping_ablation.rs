@@ -37,20 +37,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 fn rows() -> [(&'static str, HoppingSettings); 9] {
     const ALL: HoppingSettings = HoppingSettings::BALANCED;
-    let tracker = |tracker| HoppingSettings { tracker, ..ALL };
+    const TRACKER: TrackerSettings = TrackerSettings::BALANCED;
     [
         ("balanced", ALL),
-        ("lags stay", HoppingSettings { shift_after: 0, ..ALL }),
-        ("no solo periods", HoppingSettings { solo_rate: 0, ..ALL }),
-        ("neither: code and tracker alone", HoppingSettings { shift_after: 0, solo_rate: 0, ..ALL }),
-        ("drawn lags keep nothing", HoppingSettings { shift_interval: Micros::ZERO, ..ALL }),
-        ("confirmed alone", tracker(TrackerSettings { tentative_votes: 0, ..TrackerSettings::BALANCED })),
-        ("3 votes confirm", tracker(TrackerSettings { votes: 3, score_limit: 4, ..TrackerSettings::BALANCED })),
-        (
-            "accepted within t_delta alone",
-            tracker(TrackerSettings { near: Micros::new(150), ..TrackerSettings::BALANCED }),
-        ),
-        ("a contradiction takes 1", tracker(TrackerSettings { contradiction: 1, ..TrackerSettings::BALANCED })),
+        ("lags stay", ALL.with_shift_after(0)),
+        ("no solo periods", ALL.with_solo_rate(0)),
+        ("neither: code and tracker alone", ALL.with_shift_after(0).with_solo_rate(0)),
+        ("drawn lags keep nothing", ALL.with_shift_interval(Micros::ZERO)),
+        ("confirmed alone", ALL.with_tracker(TRACKER.with_tentative_votes(0))),
+        ("3 votes confirm", ALL.with_tracker(TRACKER.with_votes(3).with_score_limit(4))),
+        ("accepted within t_delta alone", ALL.with_tracker(TRACKER.with_near(Micros::new(150)))),
+        ("a contradiction takes 1", ALL.with_tracker(TRACKER.with_contradiction(1))),
     ]
 }
 

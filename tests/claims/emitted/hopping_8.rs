@@ -27,15 +27,13 @@ pub const RING: HoppingSchedule<8> = hopping_schedule! {
 };
 
 // For `HoppingRing::new`; QUICK and MAPS are the other sets of settings.
-pub const SETTINGS: HoppingSettings = HoppingSettings {
-    tracker: TrackerSettings {
-        t_delta: Micros::new(150),
-        near: Micros::new(400),
-        tentative_within: Micros::new(60),
-        ..TrackerSettings::BALANCED
-    },
-    neighbours: 4,
-    ..HoppingSettings::BALANCED
-};
+pub const SETTINGS: HoppingSettings = HoppingSettings::BALANCED
+    .with_tracker(
+        TrackerSettings::BALANCED
+            .with_t_delta(Micros::new(150))
+            .with_near(Micros::new(400))
+            .with_tentative_within(Micros::new(60)),
+    )
+    .with_neighbours(4);
 
 pub const LISTENING: HoppingListening = HoppingListening::new(Micros::new(36_000));

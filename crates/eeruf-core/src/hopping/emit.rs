@@ -86,23 +86,20 @@ impl<const K: usize> fmt::Display for HoppingRust<'_, K> {
         writeln!(f, "    }},\n}};\n")?;
         let HoppingSettings { tracker, neighbours, .. } = settings(requirements);
         writeln!(f, "// For `HoppingRing::new`; QUICK and MAPS are the other sets of settings.")?;
-        writeln!(f, "pub const SETTINGS: HoppingSettings = HoppingSettings {{")?;
-        writeln!(f, "    tracker: TrackerSettings {{")?;
+        writeln!(f, "pub const SETTINGS: HoppingSettings = HoppingSettings::BALANCED")?;
+        writeln!(f, "    .with_tracker(\n        TrackerSettings::BALANCED")?;
         let TrackerSettings { t_delta, near, tentative_within, .. } = tracker;
         for (name, time) in [("t_delta", t_delta), ("near", near), ("tentative_within", tentative_within)] {
-            writeln!(f, "        {name}: Micros::new({}),", Grouped(time))?;
+            writeln!(f, "            .with_{name}(Micros::new({}))", Grouped(time))?;
         }
-        writeln!(f, "        ..TrackerSettings::BALANCED\n    }},\n    neighbours: {neighbours},")?;
-        writeln!(f, "    ..HoppingSettings::BALANCED\n}};\n")?;
+        writeln!(f, "    )\n    .with_neighbours({neighbours});\n")?;
         write!(f, "pub const LISTENING: HoppingListening = ")?;
         if audible.blanking == Micros::ZERO && audible.reach == audible.window {
             return writeln!(f, "HoppingListening::new(Micros::new({}));", Grouped(audible.window));
         }
-        writeln!(f, "HoppingListening {{")?;
-        for (name, time) in [("window", audible.window), ("blanking", audible.blanking), ("reach", audible.reach)] {
-            writeln!(f, "    {name}: Micros::new({}),", Grouped(time))?;
-        }
-        writeln!(f, "}};")
+        writeln!(f, "HoppingListening::new(Micros::new({}))", Grouped(audible.window))?;
+        writeln!(f, "    .with_blanking(Micros::new({}))", Grouped(audible.blanking))?;
+        writeln!(f, "    .with_reach(Micros::new({}));", Grouped(audible.reach))
     }
 }
 

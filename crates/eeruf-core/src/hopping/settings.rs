@@ -7,6 +7,7 @@ use crate::tracker::TrackerSettings;
 /// [`QUICK`](Self::QUICK) and [`MAPS`](Self::MAPS); `docs/hopping.md` says which is for whom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub struct HoppingSettings {
     /// How readings are weighed.
     pub tracker: TrackerSettings,
@@ -52,6 +53,54 @@ impl HoppingSettings {
         shift_spacing: 24,
         ..Self::BALANCED
     };
+
+    /// Weighing readings so.
+    #[must_use]
+    pub const fn with_tracker(self, tracker: TrackerSettings) -> Self {
+        Self { tracker, ..self }
+    }
+
+    /// Earning so much of a solo period with each period, in 1/256; 0: none is ever held.
+    #[must_use]
+    pub const fn with_solo_rate(self, solo_rate: u8) -> Self {
+        Self { solo_rate, ..self }
+    }
+
+    /// Asking for a solo period after so many firings with nothing accepted.
+    #[must_use]
+    pub const fn with_solo_after(self, solo_after: u8) -> Self {
+        Self { solo_after, ..self }
+    }
+
+    /// With so many periods at least from one solo period to the next.
+    #[must_use]
+    pub const fn with_solo_spacing(self, solo_spacing: u8) -> Self {
+        Self { solo_spacing, ..self }
+    }
+
+    /// Drawing a new lag after so many readings that do not fit; 0: lags stay.
+    #[must_use]
+    pub const fn with_shift_after(self, shift_after: u8) -> Self {
+        Self { shift_after, ..self }
+    }
+
+    /// With so many periods at least from one change of lags to the next.
+    #[must_use]
+    pub const fn with_shift_spacing(self, shift_spacing: u8) -> Self {
+        Self { shift_spacing, ..self }
+    }
+
+    /// Keeping this much between neighbours where lags are drawn anew.
+    #[must_use]
+    pub const fn with_shift_interval(self, shift_interval: Micros) -> Self {
+        Self { shift_interval, ..self }
+    }
+
+    /// With so many adjacent sensors of a line as neighbours.
+    #[must_use]
+    pub const fn with_neighbours(self, neighbours: u8) -> Self {
+        Self { neighbours, ..self }
+    }
 }
 
 impl Default for HoppingSettings {
@@ -84,6 +133,7 @@ impl Pace {
 /// How a [`HoppingRing`](super::HoppingRing) listens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub struct HoppingListening {
     /// `T_wind`: how long a sensor listens after it has fired.
     pub window: Micros,
@@ -98,5 +148,17 @@ impl HoppingListening {
     /// This window, no blanking, and sound that is heard for as long as the window.
     pub const fn new(window: Micros) -> Self {
         Self { window, blanking: Micros::ZERO, reach: window }
+    }
+
+    /// Deaf for this long after firing; shorter than the window.
+    #[must_use]
+    pub const fn with_blanking(self, blanking: Micros) -> Self {
+        Self { blanking, ..self }
+    }
+
+    /// With sound that is heard for this long.
+    #[must_use]
+    pub const fn with_reach(self, reach: Micros) -> Self {
+        Self { reach, ..self }
     }
 }

@@ -7,6 +7,7 @@ use crate::time::Micros;
 /// [`QUICK`](Self::QUICK) and [`MAPS`](Self::MAPS).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub struct TrackerSettings {
     /// `T_delta`: a reading supports a track that it differs from by no more. 1 us to 65,535 us.
     pub t_delta: Micros,
@@ -45,6 +46,54 @@ impl TrackerSettings {
     pub const QUICK: Self = Self { votes: 4, tentative_within: Micros::new(100), ..Self::BALANCED };
     /// For maps: confirmed echoes alone, and beliefs that last.
     pub const MAPS: Self = Self { tentative_votes: 0, score_limit: 7, contradiction: 1, ..Self::BALANCED };
+
+    /// With this `t_delta`, 1 us to 65,535 us.
+    #[must_use]
+    pub const fn with_t_delta(self, t_delta: Micros) -> Self {
+        Self { t_delta, ..self }
+    }
+
+    /// Accepting readings this near a confirmed track, `t_delta` to 65,535 us.
+    #[must_use]
+    pub const fn with_near(self, near: Micros) -> Self {
+        Self { near, ..self }
+    }
+
+    /// Confirming after so many votes, 2 to 15.
+    #[must_use]
+    pub const fn with_votes(self, votes: u8) -> Self {
+        Self { votes, ..self }
+    }
+
+    /// With scores of at most this, `votes` to 15.
+    #[must_use]
+    pub const fn with_score_limit(self, score_limit: u8) -> Self {
+        Self { score_limit, ..self }
+    }
+
+    /// With contradictions that take so much, 1 to 15.
+    #[must_use]
+    pub const fn with_contradiction(self, contradiction: u8) -> Self {
+        Self { contradiction, ..self }
+    }
+
+    /// With contradictions that take so much where the sensor fired alone, 1 to 15.
+    #[must_use]
+    pub const fn with_solo_contradiction(self, solo_contradiction: u8) -> Self {
+        Self { solo_contradiction, ..self }
+    }
+
+    /// Reporting as tentative after so many phases, 2 to 15; 0: never.
+    #[must_use]
+    pub const fn with_tentative_votes(self, tentative_votes: u8) -> Self {
+        Self { tentative_votes, ..self }
+    }
+
+    /// Reporting as tentative what agrees within this, at most `t_delta`.
+    #[must_use]
+    pub const fn with_tentative_within(self, tentative_within: Micros) -> Self {
+        Self { tentative_within, ..self }
+    }
 
     /// Whether each setting is in its range, as [`EchoTracker::new`](super::EchoTracker::new) checks it.
     ///

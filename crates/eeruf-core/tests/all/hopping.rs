@@ -40,7 +40,7 @@ fn readings(
 ) -> Vec<ReadingKind> {
     let code = HoppingCode::new(SENSORS, 2, Micros::new(step)).unwrap();
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
-    let listening = HoppingListening { blanking: Micros::new(BLANKING), ..HoppingListening::new(Micros::new(WINDOW)) };
+    let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
     let mut random = Random(seed);
     let start = Instant::from_micros(0);
     let mut ring = HoppingRing::<SENSORS>::new(&schedule, settings, listening, seed as u32, start).unwrap();
@@ -77,12 +77,9 @@ fn accepted_or_tentative(kinds: &[ReadingKind]) -> usize {
 fn settings() -> impl Strategy<Value = HoppingSettings> {
     let named = prop_oneof![Just(HoppingSettings::BALANCED), Just(HoppingSettings::QUICK), Just(HoppingSettings::MAPS)];
     (named, 0..128_u8, 1..6_u8, prop_oneof![Just(0_u8), 1..6_u8], 1..12_u8).prop_map(
-        |(named, solo_rate, solo_spacing, shift_after, shift_spacing)| HoppingSettings {
-            solo_rate,
-            solo_spacing,
-            shift_after,
-            shift_spacing,
-            ..named
+        |(named, solo_rate, solo_spacing, shift_after, shift_spacing)| {
+            let solo = named.with_solo_rate(solo_rate).with_solo_spacing(solo_spacing);
+            solo.with_shift_after(shift_after).with_shift_spacing(shift_spacing)
         },
     )
 }
@@ -151,7 +148,7 @@ fn an_echo_of_ones_own_is_believed_nearly_always() {
 fn a_reading_has_the_phase_of_its_firing_and_a_period_counts_the_readings_it_gave() {
     let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
-    let listening = HoppingListening { blanking: Micros::new(BLANKING), ..HoppingListening::new(Micros::new(WINDOW)) };
+    let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
     let start = Instant::from_micros(0);
     let mut ring = HoppingRing::<SENSORS>::new(&schedule, HoppingSettings::BALANCED, listening, 1, start).unwrap();
     let (mut fired, mut given, mut late) = ([None; SENSORS], Tally::<u8>::default(), 0);
@@ -231,9 +228,9 @@ fn a_period_counts_late_edges_of_both_kinds_before_and_after_the_window_was_clos
 fn a_sensor_rests_for_its_window_also_after_a_firing_that_was_late_past_the_periods_end() {
     let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
-    let listening = HoppingListening { blanking: Micros::new(BLANKING), ..HoppingListening::new(Micros::new(WINDOW)) };
+    let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
     // Lags that move come to lie at the very end of the period.
-    let settings = HoppingSettings { shift_after: 1, shift_spacing: 1, ..HoppingSettings::BALANCED };
+    let settings = HoppingSettings::BALANCED.with_shift_after(1).with_shift_spacing(1);
     for seed in 0..60 {
         let mut random = Random(seed);
         let start = Instant::from_micros(0);

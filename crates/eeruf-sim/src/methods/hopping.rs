@@ -1,8 +1,7 @@
 //! A ring that hops in time: core's own, for a robot.
 
 use eeruf_core::{
-    HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, MAX_SENSORS, Micros,
-    RingEvent, Weighed,
+    HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, Instant, MAX_SENSORS, Micros, RingEvent, Weighed,
 };
 
 use super::ring_runner::{RingRunner, RingStart, Started};
@@ -45,8 +44,8 @@ fn ring<'s, const K: usize>(start: &RingStart<'s>) -> Started<'s> {
     // Each phase gives one vote.
     let code = HoppingCode::new(sensors.len(), start.hopping.tracker.votes, STEP)?;
     let schedule = HoppingSchedule::<K>::spread(code, period, neighbours)?;
-    let settings = HoppingSettings { neighbours, ..start.hopping };
-    let listening = HoppingListening { blanking, ..HoppingListening::new(window) };
+    let settings = start.hopping.with_neighbours(neighbours);
+    let listening = HoppingListening::new(window).with_blanking(blanking);
     let seed = start.random.of(0).bits() as u32;
     Ok(Box::new(HoppingRing::<K>::new(&schedule, settings, listening, seed, start.now)?))
 }

@@ -29,6 +29,7 @@ use sensor::{LISTENING, Noted, STUCK, Sensor};
 pub use config::RingConfig;
 pub use error::RingError;
 pub use events::{PeriodStats, Reading, RingEvent};
+pub(crate) use steps::Step;
 
 /// A ring of up to `K` sensors: the scheduler `S` says when each fires, and the filter says what each reading is worth.
 /// `E` is the number of echoes that a sensor reports of one firing.
@@ -187,14 +188,25 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// [`EchoFilter::push_echoes`]: crate::EchoFilter::push_echoes
     #[inline]
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
-        let due = self.scheduler.deadline();
-        if now.has_reached(due) || (self.has_pending() && now.has_reached(self.emit_at)) {
+        if self.is_due(now) {
             return self.advance(now, expected_change_us);
         }
-        if due.since(now) > self.scheduler.horizon() {
+        if self.has_jumped(now) {
             self.clock_jumped(now);
         }
         None
+    }
+
+    /// Whether there may be an event.
+    #[inline(always)]
+    pub(crate) fn is_due(&self, now: Instant) -> bool {
+        now.has_reached(self.scheduler.deadline()) || (self.has_pending() && now.has_reached(self.emit_at))
+    }
+
+    /// Whether the clock must have jumped, since what is next is too far ahead.
+    #[inline(always)]
+    pub(crate) fn has_jumped(&self, now: Instant) -> bool {
+        self.scheduler.deadline().since(now) > self.scheduler.horizon()
     }
 
     /// When to poll next. In the past if an event is pending.
@@ -309,6 +321,22 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
 
     pub(crate) const fn scheduler_mut(&mut self) -> &mut S {
         &mut self.scheduler
+    }
+
+    /// The scheduler, and when each sensor last fired, if it ever has.
+    pub(crate) fn scheduler_and_firings(&mut self) -> (&mut S, impl Fn(u8) -> Instant + '_) {
+        let sensors = &self.sensors;
+        (&mut self.scheduler, |sensor| sensors.get(usize::from(sensor)).map_or(Instant::default(), |of| of.fired))
+    }
+
+    /// When a sensor last fired, if it ever has.
+    pub(crate) fn last_firing(&self, sensor: u8) -> Option<Instant> {
+        self.sensors.get(usize::from(sensor)).map(|of| of.fired)
+    }
+
+    /// Counts a reading that was [taken](Self::take_reading).
+    pub(crate) fn count(&mut self, kind: ReadingKind) {
+        self.tally.count(kind);
     }
 
     /// The clock has jumped.

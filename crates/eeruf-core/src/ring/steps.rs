@@ -5,33 +5,50 @@ use super::sensor::{LISTENING, READY, Sensor, UNCOMPARABLE};
 use super::{NOBODY, PeriodStats, Reading, Ring, RingEvent};
 use crate::filter::Rule;
 use crate::reading::Verdict;
+use crate::schedule::Phase;
 use crate::scheduler::{Limits, Scheduler};
 use crate::time::{Instant, Micros};
 
+/// What a ring does at an instant at which something is due.
+pub(crate) enum Step {
+    /// It has fired a sensor, in this phase of its scheduler.
+    Fired { sensor: u8, phase: Phase, due: Instant },
+    /// The reading of a sensor is to be emitted.
+    Emit(u8),
+    /// The period ends, if that is due.
+    End,
+}
+
 impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
-    /// Something is due. Firing comes first, since it should be on time; but the reading of a sensor is emitted before
-    /// the sensor fires again.
+    /// Something is due.
     #[inline]
     pub(super) fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+        match self.step(now) {
+            Step::Fired { sensor, phase, due } => Some(RingEvent::Fire { sensor, phase, due }),
+            Step::Emit(sensor) => self.emit_reading(sensor, expected_change_us),
+            Step::End => self.end_period(now),
+        }
+    }
+
+    /// Does what is due, or says what is to be done. Firing comes first, since it should be on time; but the reading of
+    /// a sensor is emitted before the sensor fires again.
+    #[inline(always)]
+    pub(crate) fn step(&mut self, now: Instant) -> Step {
         let due = self.scheduler.deadline();
         let fires = if now.has_reached(due) { self.scheduler.next_firing() } else { None };
-        let emits = match fires {
+        match fires {
             Some((sensor, phase)) => match self.sensors.get_mut(usize::from(sensor)) {
-                Some(pending) if pending.is(LISTENING | READY) => Some(sensor),
+                Some(pending) if pending.is(LISTENING | READY) => Step::Emit(sensor),
                 fired => {
                     if let Some(fired) = fired {
                         fired.fire(phase, now);
                     }
                     self.has_fired(sensor, now.since(due), now);
                     self.scheduler.fire(now);
-                    return Some(RingEvent::Fire { sensor, phase, due });
+                    Step::Fired { sensor, phase, due }
                 }
             },
-            None => self.next_pending(now),
-        };
-        match emits {
-            Some(sensor) => self.emit_reading(sensor, expected_change_us),
-            None => self.end_period(now),
+            None => self.next_pending(now).map_or(Step::End, Step::Emit),
         }
     }
 
@@ -91,8 +108,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         u16::try_from(tolerated).unwrap_or(MOST_TOLERATED).min(MOST_TOLERATED)
     }
 
+    /// Ends the period, if that is due.
     #[inline(never)]
-    fn end_period(&mut self, now: Instant) -> Option<RingEvent> {
+    pub(crate) fn end_period(&mut self, now: Instant) -> Option<RingEvent> {
         let due = self.scheduler.deadline();
         if !now.has_reached(due) {
             return None;
@@ -170,7 +188,19 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     }
 
     #[inline(never)]
-    fn emit_reading(&mut self, sensor: u8, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+    fn emit_reading(&mut self, sensor: u8, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+        let reading = self.take_reading(sensor, expected_change_us)?;
+        self.tally.count(reading.kind);
+        Some(RingEvent::Reading(reading))
+    }
+
+    /// The reading of a sensor, which ends its firing. It is yet to be counted.
+    #[inline(always)]
+    pub(crate) fn take_reading(
+        &mut self,
+        sensor: u8,
+        mut expected_change_us: impl FnMut(u8) -> i32,
+    ) -> Option<Reading> {
         let heard = self.sensors.get_mut(usize::from(sensor))?;
         let phase = heard.phase();
         let (listened, fired) = (heard.is(LISTENING), heard.fired);
@@ -195,10 +225,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             }
         }
         self.emit_when_oldest_ends();
-        self.tally.count(verdict.kind);
         let Verdict { kind, t_echo, previous, age } = verdict;
         let period = self.period.wrapping_sub(self.scheduler.periods_since(phase).into());
-        Some(RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age }))
+        Some(Reading { sensor, phase, period, kind, t_echo, previous, age })
     }
 
     /// Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes.

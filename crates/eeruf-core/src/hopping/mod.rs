@@ -23,7 +23,7 @@ mod turn;
 mod weighed;
 
 use crate::reading::{ReadingKind, Verdict};
-use crate::ring::{PeriodStats, Reading, Ring, RingConfig, RingEvent, Step};
+use crate::ring::{PeriodStats, Reading, Ring, RingConfig, RingEvent};
 use crate::sensor_error::SensorError;
 use crate::time::Instant;
 use crate::tracker::{EchoTracker, Firing};
@@ -120,31 +120,47 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     }
 
     /// As [`poll`](Self::poll), for a robot that moves: see [`Ring::poll_expecting`].
+    #[inline]
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+        if let Some((sensor, _, due)) = self.ring.fire_due(now) {
+            self.notice_changes();
+            return Some(RingEvent::Fire { sensor, phase: self.firing().phase(), due });
+        }
+        self.poll_others(now, expected_change_us)
+    }
+
+    /// What may be due beside a firing.
+    #[inline(never)]
+    fn poll_others(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         if !self.ring.is_due(now) {
             if self.ring.has_jumped(now) {
                 self.restart(now);
             }
             return None;
         }
-        match self.ring.step(now) {
-            Step::Fired { sensor, due, .. } => {
-                self.notice_changes();
-                Some(RingEvent::Fire { sensor, phase: self.firing().phase(), due })
-            }
-            Step::Emit(sensor) => self.emit_reading(sensor, expected_change_us),
-            Step::End => self.end_period(now),
+        match self.ring.emits(now) {
+            Some(sensor) => self.emit_reading(sensor, expected_change_us),
+            None => self.end_period(now),
         }
     }
 
     /// Lets the tracker know where firing times have changed.
+    #[inline(always)]
     fn notice_changes(&mut self) {
-        if core::mem::take(&mut self.ring.scheduler_mut().changed) {
-            self.tracker.firing_changed();
-            self.changes = self.changes.wrapping_add(1);
+        if self.ring.scheduler().changed {
+            self.take_changes();
         }
     }
 
+    #[cold]
+    #[inline(never)]
+    fn take_changes(&mut self) {
+        self.ring.scheduler_mut().changed = false;
+        self.tracker.firing_changed();
+        self.changes = self.changes.wrapping_add(1);
+    }
+
+    #[inline(never)]
     fn end_period(&mut self, now: Instant) -> Option<RingEvent> {
         let ended = self.firing().phase();
         let mut event = self.ring.end_period(now);

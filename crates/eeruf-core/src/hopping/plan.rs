@@ -2,7 +2,7 @@
 
 use super::schedule::longest_lag;
 use super::timetable::{CATCHES_UP, Timetable};
-use super::turn::{DISABLED, FIRED, SETTLED, Turn};
+use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
 use crate::time::{Instant, Micros};
 
 /// A whole solo period, and the most that is saved up.
@@ -29,6 +29,8 @@ impl<const K: usize> Timetable<K> {
         if self.pace.shift_after > 0 && self.since_shift >= self.pace.shift_spacing {
             self.shift_all();
         }
+        // Right after a change there is sound from before.
+        self.kind = if self.since_shift > 0 { FIRED | SETTLED } else { FIRED };
         // At most 64 sensors.
         for sensor in 0..self.code.sensors() as u8 {
             let Some(turn) = self.turns.get(usize::from(sensor)) else { break };
@@ -58,7 +60,7 @@ impl<const K: usize> Timetable<K> {
         let at = at.max(self.turns.get(usize::from(sensor)).map_or(Micros::MAX, |turn| self.rests_for(turn, fired)));
         self.earned -= ONE;
         self.since_solo = 0;
-        (self.is_solo, self.solo_at) = (true, at);
+        (self.kind, self.solo_at) = (FIRED | SOLO | SETTLED, at);
         self.length = self.length.max(at.saturating_add(self.dies));
         if let Some(first) = self.turns.first_mut() {
             first.order = sensor;
@@ -102,7 +104,7 @@ impl<const K: usize> Timetable<K> {
     }
 
     /// Who fires at a place of the period's order.
-    fn order(&self, place: u8) -> u8 {
+    pub(super) fn order(&self, place: u8) -> u8 {
         self.turns.get(usize::from(place)).map_or(u8::MAX, |turn| turn.order)
     }
 

@@ -5,7 +5,7 @@ use super::lateness::Lateness;
 use super::random::SmallRandom;
 use super::schedule::HoppingSchedule;
 use super::settings::{HoppingListening, HoppingSettings, Pace};
-use super::turn::{DISABLED, SETTLED, SOLO, Turn};
+use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
 use crate::schedule::Phase;
 use crate::scheduler::{Limits, Scheduler};
 use crate::time::{Instant, Micros};
@@ -39,7 +39,8 @@ pub(crate) struct Timetable<const K: usize> {
     pub(super) phase: u8,
     /// Counts periods modulo 8, for the ring.
     count: u8,
-    pub(super) is_solo: bool,
+    /// What is noted of each sensor that fires in it: [`FIRED`], [`SOLO`] and [`SETTLED`].
+    pub(super) kind: u8,
     /// Whether lags have changed or the timetable broke off, for the tracker.
     pub(super) changed: bool,
     pub(super) since_shift: u8,
@@ -82,7 +83,7 @@ impl<const K: usize> Timetable<K> {
             planned: 0,
             phase: 0,
             count: 0,
-            is_solo: false,
+            kind: FIRED,
             changed: false,
             since_shift: 0,
             since_solo: 0,
@@ -114,7 +115,7 @@ impl<const K: usize> Timetable<K> {
 
     /// The sensor that the present period belongs to, if it is a solo period.
     pub(super) fn solo(&self) -> Option<u8> {
-        self.turns.first().filter(|_| self.is_solo).map(|turn| turn.order)
+        self.turns.first().filter(|_| self.is_solo()).map(|turn| turn.order)
     }
 
     /// Of a sensor's last firing: its phase, whether it was alone, and whether what it hears moves as the code says.
@@ -144,32 +145,45 @@ impl<const K: usize> Timetable<K> {
         if self.start.has_reached(silent) { Micros::ZERO } else { silent.since(self.start) }
     }
 
+    /// Whether the present period belongs to one sensor.
+    #[inline(always)]
+    const fn is_solo(&self) -> bool {
+        self.kind & SOLO != 0
+    }
+
     /// When a sensor fires in this period, after its start, unless it is a solo period.
+    #[inline(always)]
     pub(super) fn offset(&self, sensor: u8) -> Micros {
         let Some(turn) = self.turns.get(usize::from(sensor)) else { return Micros::MAX };
-        let step = self.code.step().as_micros();
-        turn.lag.saturating_add(Micros::new(u32::from(turn.place) * step))
+        // The step is at most 65,535 us, the lag less than a period of at most 2^28 us.
+        Micros::new(turn.lag.as_micros() + u32::from(turn.place) * self.code.step().as_micros())
     }
 
     /// Who fires next, and when; or when the period ends.
-    pub(super) fn find_next(&mut self) {
+    pub(super) fn find_due(&mut self) {
+        if self.is_solo() && self.place < self.planned {
+            self.next = self.order(self.place);
+            self.due = self.start + self.solo_at;
+        } else {
+            self.find_next();
+        }
+    }
+
+    /// The same unless a solo firing is still to come.
+    #[inline(always)]
+    fn find_next(&mut self) {
         let turn = self.turns.get(usize::from(self.place)).filter(|_| self.place < self.planned);
         self.next = turn.map_or(NOBODY, |turn| turn.order);
-        let after = match turn {
-            None => self.length,
-            Some(_) if self.is_solo => self.solo_at,
-            Some(turn) => self.offset(turn.order),
-        };
-        self.due = self.start + after;
+        self.due = self.start + turn.map_or(self.length, |turn| self.offset(turn.order));
     }
 
     /// Another period: nobody fires until it is [planned](Self::plan).
     fn begin_period(&mut self) {
         self.place = 0;
         self.planned = 0;
-        self.is_solo = false;
+        self.kind = FIRED;
         self.length = self.period;
-        self.find_next();
+        self.find_due();
     }
 
     /// Lets nobody fire for what is left of the period, if the ring is paused.
@@ -177,7 +191,28 @@ impl<const K: usize> Timetable<K> {
         if self.paused {
             self.planned = self.place;
         }
-        self.find_next();
+        self.find_due();
+    }
+
+    /// The firing of a sensor came late.
+    #[cold]
+    #[inline(never)]
+    fn fired_late(&mut self, sensor: u8, late: Micros) {
+        if late > CATCHES_UP {
+            self.break_off();
+        }
+        // Nothing else fires in a solo period, so that it may move freely.
+        if late > CATCHES_UP || self.is_solo() {
+            self.start += late;
+            self.find_due();
+        }
+        if !self.is_solo() {
+            let late = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
+            self.lateness.note(late);
+            if let Some(turn) = self.turns.get_mut(usize::from(sensor)) {
+                turn.late = late;
+            }
+        }
     }
 
     /// Nothing that is heard across this moment moves as the code says.
@@ -198,29 +233,22 @@ impl<const K: usize> Scheduler for Timetable<K> {
         (usize::from(self.next) < K).then_some((self.next, Phase(self.count)))
     }
 
+    #[inline(always)]
     fn fire(&mut self, now: Instant) {
-        if usize::from(self.next) >= K {
-            return;
-        }
-        let late = now.since(self.due);
-        if late > CATCHES_UP {
-            self.break_off();
-        }
-        // Nothing else fires in a solo period, so that it may move freely.
-        if late > CATCHES_UP || self.is_solo {
-            self.start += late;
-        }
-        let late = if self.is_solo { 0 } else { u16::try_from(late.as_micros()).unwrap_or(u16::MAX) };
-        if !self.is_solo {
-            self.lateness.note(late);
+        let (sensor, late) = (self.next, now.since(self.due));
+        let Some(turn) = self.turns.get_mut(usize::from(sensor)) else { return };
+        turn.fire(self.phase, self.kind);
+        self.last_fired = now;
+        if late == Micros::ZERO && !self.is_solo() {
+            self.lateness.note_punctual();
         }
         self.place += 1;
-        self.last_fired = now;
-        let settled = if self.is_solo { SOLO | SETTLED } else { SETTLED * u8::from(self.since_shift > 0) };
-        if let Some(turn) = self.turns.get_mut(usize::from(self.next)) {
-            turn.fire(late, self.phase, settled);
-        }
+        // There is no second firing in a solo period.
         self.find_next();
+        // Last, since it is rare: what is known here need not be saved for afterwards.
+        if late != Micros::ZERO {
+            self.fired_late(sensor, late);
+        }
     }
 
     fn postpone(&mut self, sensor: u8, by: Micros) {
@@ -236,7 +264,7 @@ impl<const K: usize> Scheduler for Timetable<K> {
         }
         if late > CATCHES_UP || is_solo {
             self.start += by;
-            self.find_next();
+            self.find_due();
         }
     }
 
@@ -271,7 +299,7 @@ impl<const K: usize> Scheduler for Timetable<K> {
         }
         if !enabled {
             self.leave_out(sensor, self.place);
-            self.find_next();
+            self.find_due();
         }
     }
 

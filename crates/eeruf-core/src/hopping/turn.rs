@@ -44,9 +44,10 @@ impl Turn {
         self.flags = if on { self.flags | flag } else { self.flags & !flag };
     }
 
-    /// A sensor that fires is not [`DISABLED`].
-    pub(super) fn fire(&mut self, late: u16, phase: u8, flags: u8) {
-        (self.late, self.phase, self.flags) = (late, phase, flags | FIRED);
+    /// It fires, on time. It is not [`DISABLED`].
+    #[inline(always)]
+    pub(super) fn fire(&mut self, phase: u8, flags: u8) {
+        (self.late, self.phase, self.flags) = (0, phase, flags);
     }
 
     pub(super) fn heard(&mut self, accepted: bool, fits: bool) {

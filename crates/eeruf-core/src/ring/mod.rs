@@ -29,7 +29,6 @@ use sensor::{LISTENING, Noted, STUCK, Sensor};
 pub use config::RingConfig;
 pub use error::RingError;
 pub use events::{PeriodStats, Reading, RingEvent};
-pub(crate) use steps::Step;
 
 /// A ring of up to `K` sensors: the scheduler `S` says when each fires, and the filter says what each reading is worth.
 /// `E` is the number of echoes that a sensor reports of one firing.
@@ -62,13 +61,13 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     /// How many sensors have a reading to emit before their window closes.
     ready: u8,
     agreement: Agreement,
-    tally: Tally<u8>,
-    lateness: Lateness,
-    scheduler: S,
     /// When the next reading can be emitted: when an edge came, or when the window of the oldest closes.
     emit_at: Instant,
     listening: Listening,
     period: u32,
+    scheduler: S,
+    lateness: Lateness,
+    tally: Tally<u8>,
     sensors: [Sensor<E>; K],
     /// The sum of lateness at each sensor's last firing (see [`Lateness`]); in an array of its own, since a sensor's
     /// other fields fill their words.

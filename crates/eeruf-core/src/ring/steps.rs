@@ -9,54 +9,53 @@ use crate::schedule::Phase;
 use crate::scheduler::{Limits, Scheduler};
 use crate::time::{Instant, Micros};
 
-/// What a ring does at an instant at which something is due.
-pub(crate) enum Step {
-    /// It has fired a sensor, in this phase of its scheduler.
-    Fired { sensor: u8, phase: Phase, due: Instant },
-    /// The reading of a sensor is to be emitted.
-    Emit(u8),
-    /// The period ends, if that is due.
-    End,
-}
-
 impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
-    /// Something is due.
+    /// Something is due. Firing comes first, since it should be on time; but the reading of a sensor is emitted before
+    /// the sensor fires again.
     #[inline]
     pub(super) fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
-        match self.step(now) {
-            Step::Fired { sensor, phase, due } => Some(RingEvent::Fire { sensor, phase, due }),
-            Step::Emit(sensor) => self.emit_reading(sensor, expected_change_us),
-            Step::End => self.end_period(now),
+        if let Some((sensor, phase, due)) = self.fire_due(now) {
+            return Some(RingEvent::Fire { sensor, phase, due });
+        }
+        match self.emits(now) {
+            Some(sensor) => self.emit_reading(sensor, expected_change_us),
+            None => self.end_period(now),
         }
     }
 
-    /// Does what is due, or says what is to be done. Firing comes first, since it should be on time; but the reading of
-    /// a sensor is emitted before the sensor fires again.
+    /// Fires the sensor that is due, unless it has a reading to emit before; returns its phase and when it was due.
     #[inline(always)]
-    pub(crate) fn step(&mut self, now: Instant) -> Step {
+    pub(crate) fn fire_due(&mut self, now: Instant) -> Option<(u8, Phase, Instant)> {
         let due = self.scheduler.deadline();
-        let fires = if now.has_reached(due) { self.scheduler.next_firing() } else { None };
-        match fires {
-            Some((sensor, phase)) => match self.sensors.get_mut(usize::from(sensor)) {
-                Some(pending) if pending.is(LISTENING | READY) => Step::Emit(sensor),
-                fired => {
-                    if let Some(fired) = fired {
-                        fired.fire(phase, now);
-                    }
-                    self.has_fired(sensor, now.since(due), now);
-                    self.scheduler.fire(now);
-                    Step::Fired { sensor, phase, due }
-                }
-            },
-            None => self.next_pending(now).map_or(Step::End, Step::Emit),
+        if !now.has_reached(due) {
+            return None;
         }
-    }
-
-    #[inline]
-    fn has_fired(&mut self, sensor: u8, late: Micros, now: Instant) {
+        let (sensor, phase) = self.scheduler.next_firing()?;
+        if let Some(fired) = self.sensors.get_mut(usize::from(sensor)) {
+            if fired.is(LISTENING | READY) {
+                return None;
+            }
+            fired.fire(phase, now, S::COMPARES);
+        }
+        self.has_fired(sensor, now);
+        self.scheduler.fire(now);
+        // Last, since it is rare.
+        let late = now.since(due);
         if late != Micros::ZERO || self.lateness.is_watching() {
             self.fired_late(sensor, late);
         }
+        Some((sensor, phase, due))
+    }
+
+    /// The sensor that has a reading to emit, where none is to [fire](Self::fire_due).
+    #[inline(always)]
+    pub(crate) fn emits(&self, now: Instant) -> Option<u8> {
+        let fires = if now.has_reached(self.scheduler.deadline()) { self.scheduler.next_firing() } else { None };
+        fires.map(|(sensor, _)| sensor).or_else(|| self.next_pending(now))
+    }
+
+    #[inline]
+    fn has_fired(&mut self, sensor: u8, now: Instant) {
         if self.oldest == NOBODY || (S::UNEVEN && self.closes_first(sensor, now)) {
             self.oldest = sensor;
             if self.ready == 0 {

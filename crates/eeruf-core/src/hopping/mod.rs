@@ -122,23 +122,30 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     /// As [`poll`](Self::poll), for a robot that moves: see [`Ring::poll_expecting`].
     #[inline]
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
-        if let Some((sensor, _, due)) = self.ring.fire_due(now) {
-            self.notice_changes();
-            return Some(RingEvent::Fire { sensor, phase: self.firing().phase(), due });
+        match self.ring.fire_due(now) {
+            Ok((sensor, _, due)) => {
+                self.notice_changes();
+                Some(RingEvent::Fire { sensor, phase: self.firing().phase(), due })
+            }
+            Err(first) => self.poll_others(now, first, expected_change_us),
         }
-        self.poll_others(now, expected_change_us)
     }
 
-    /// What may be due beside a firing.
+    /// What may be due beside a firing; a sensor whose reading is to be emitted before it fires comes `first`.
     #[inline(never)]
-    fn poll_others(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+    fn poll_others(
+        &mut self,
+        now: Instant,
+        first: Option<u8>,
+        expected_change_us: impl FnMut(u8) -> i32,
+    ) -> Option<RingEvent> {
         if !self.ring.is_due(now) {
             if self.ring.has_jumped(now) {
                 self.restart(now);
             }
             return None;
         }
-        match self.ring.emits(now) {
+        match first.or_else(|| self.ring.next_pending(now)) {
             Some(sensor) => self.emit_reading(sensor, expected_change_us),
             None => self.end_period(now),
         }
@@ -193,19 +200,21 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     fn weigh(&mut self, reading: &Reading, mut expected_change_us: impl FnMut(u8) -> i32) -> Verdict {
         let &Reading { sensor, kind, t_echo, .. } = reading;
         let place = usize::from(sensor);
-        let verdict = match kind {
+        let weighed = match kind {
             ReadingKind::Late => return Verdict { kind, t_echo, previous: None, age: self.tracker.age(place) },
-            ReadingKind::Stuck | ReadingKind::TooEarly => self.tracker.skip(place, kind, t_echo),
+            ReadingKind::Stuck | ReadingKind::TooEarly => {
+                self.tracker.skip(place, kind, t_echo).map(|verdict| (verdict, self.tracker.is_clear(place)))
+            }
             _ => {
                 let (phase, solo, steady) = self.ring.scheduler().last_firing(sensor, self.tolerated);
                 let expected_change_us = expected_change_us(sensor);
-                self.tracker.push(place, t_echo, Firing { phase, solo, steady, expected_change_us })
+                self.tracker.weigh(place, t_echo, Firing { phase, solo, steady, expected_change_us })
             }
         };
-        let Ok(verdict) = verdict else { return Verdict { kind, t_echo, previous: None, age: None } };
+        let Ok((verdict, is_clear)) = weighed else { return Verdict { kind, t_echo, previous: None, age: None } };
         let confirmed = matches!(verdict.kind, ReadingKind::Accepted | ReadingKind::Clear);
         // A sensor that is known to have nothing in range is not fooled by what does not fit.
-        let fits = confirmed || self.tracker.is_clear(place);
+        let fits = confirmed || is_clear;
         // Nor does silence or another lag help one whose line is stuck: it costs the others nothing.
         if verdict.kind != ReadingKind::Stuck {
             self.ring.scheduler_mut().heard(sensor, confirmed || verdict.kind == ReadingKind::Tentative, fits);

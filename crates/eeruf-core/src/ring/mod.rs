@@ -60,6 +60,8 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     oldest: u8,
     /// How many sensors have a reading to emit before their window closes.
     ready: u8,
+    /// The last of them to get it, or a sensor that has emitted it since.
+    last_ready: u8,
     agreement: Agreement,
     /// When the next reading can be emitted: when an edge came, or when the window of the oldest closes.
     emit_at: Instant,
@@ -158,6 +160,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             oldest: NOBODY,
             ready: 0,
             agreement,
+            last_ready: NOBODY,
             tally: Tally::default(),
             lateness: Lateness::NEW,
             scheduler,
@@ -237,6 +240,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
                     self.emit_at = at;
                 }
                 self.ready = self.ready.saturating_add(1);
+                self.last_ready = sensor;
             }
             Noted::Late => self.tally.count(ReadingKind::Late),
             // As is every edge of a sensor that the ring has room for and does not have.

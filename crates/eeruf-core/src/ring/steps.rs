@@ -14,26 +14,26 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// the sensor fires again.
     #[inline]
     pub(super) fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
-        if let Some((sensor, phase, due)) = self.fire_due(now) {
-            return Some(RingEvent::Fire { sensor, phase, due });
-        }
-        match self.emits(now) {
+        let first = match self.fire_due(now) {
+            Ok((sensor, phase, due)) => return Some(RingEvent::Fire { sensor, phase, due }),
+            Err(first) => first,
+        };
+        match first.or_else(|| self.next_pending(now)) {
             Some(sensor) => self.emit_reading(sensor, expected_change_us),
             None => self.end_period(now),
         }
     }
 
-    /// Fires the sensor that is due, unless it has a reading to emit before; returns its phase and when it was due.
+    /// Fires the sensor that is due; returns its phase and when it was due. `Err` if none is to fire, with the sensor
+    /// that has a reading to emit before it fires.
     #[inline(always)]
-    pub(crate) fn fire_due(&mut self, now: Instant) -> Option<(u8, Phase, Instant)> {
+    pub(crate) fn fire_due(&mut self, now: Instant) -> Result<(u8, Phase, Instant), Option<u8>> {
         let due = self.scheduler.deadline();
-        if !now.has_reached(due) {
-            return None;
-        }
-        let (sensor, phase) = self.scheduler.next_firing()?;
+        let fires = if now.has_reached(due) { self.scheduler.next_firing() } else { None };
+        let Some((sensor, phase)) = fires else { return Err(None) };
         if let Some(fired) = self.sensors.get_mut(usize::from(sensor)) {
             if fired.is(LISTENING | READY) {
-                return None;
+                return Err(Some(sensor));
             }
             fired.fire(phase, now, S::COMPARES);
         }
@@ -44,14 +44,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if late != Micros::ZERO || self.lateness.is_watching() {
             self.fired_late(sensor, late);
         }
-        Some((sensor, phase, due))
-    }
-
-    /// The sensor that has a reading to emit, where none is to [fire](Self::fire_due).
-    #[inline(always)]
-    pub(crate) fn emits(&self, now: Instant) -> Option<u8> {
-        let fires = if now.has_reached(self.scheduler.deadline()) { self.scheduler.next_firing() } else { None };
-        fires.map(|(sensor, _)| sensor).or_else(|| self.next_pending(now))
+        Ok((sensor, phase, due))
     }
 
     #[inline]
@@ -164,7 +157,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     }
 
     /// A sensor with an echo in, or one whose window has closed.
-    fn next_pending(&self, now: Instant) -> Option<u8> {
+    pub(crate) fn next_pending(&self, now: Instant) -> Option<u8> {
         if self.ready > 0 {
             return self.first_ready();
         }
@@ -174,16 +167,16 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// A sensor with a reading to emit. The oldest goes first: after it the next oldest must be searched for too, so
     /// this saves a search where a poll costs most.
     fn first_ready(&self) -> Option<u8> {
-        if self.sensor(self.oldest).is_some_and(|oldest| oldest.is(READY)) {
+        let is_ready = |x: u8| self.sensor(x).is_some_and(|sensor| sensor.is(READY));
+        if self.ready == 1 && is_ready(self.last_ready) {
+            // The only one.
+            return Some(self.last_ready);
+        }
+        if is_ready(self.oldest) {
             return Some(self.oldest);
         }
-        for (x, sensor) in self.sensors.iter().enumerate() {
-            if sensor.is(READY) {
-                // At most 64 sensors.
-                return Some(x as u8);
-            }
-        }
-        None
+        // At most 64 sensors.
+        (0..K as u8).find(|&x| is_ready(x))
     }
 
     #[inline(never)]

@@ -111,14 +111,6 @@ impl<N: Copy + Into<u32> + TryFrom<u32>> Tally<N> {
         }
     }
 
-    /// This tally, with as many of one kind as `other` has.
-    pub(crate) fn with(mut self, kind: ReadingKind, other: &Self) -> Self {
-        if let (Some(count), Some(&counted)) = (self.counts.get_mut(kind as usize), other.counts.get(kind as usize)) {
-            *count = counted;
-        }
-        self
-    }
-
     /// The number of readings of one kind.
     pub fn of(&self, kind: ReadingKind) -> u32 {
         self.counts.get(kind as usize).map_or(0, |&count| count.into())

@@ -68,7 +68,7 @@ mod everything_public_has_a_format {
         formats::<(Verification<'_, 12>, Violation, ViolationKind, Violations<'_, 12>)>();
         formats::<(SensorLimits, Uneven<'_>, UnevenError, UnevenFiring<'_, 12>, UnevenSchedule<12>)>();
         formats::<(HoppingCode, HoppingSchedule<12>, HoppingSettings, HoppingListening, HoppingError)>();
-        formats::<(HoppingRing<12>, HoppingRing<12, 8>, HoppingFiring<12>)>();
+        formats::<(HoppingRing<12>, HoppingRing<12, 8>, HoppingFiring<'_, 12>)>();
         formats::<(EchoTracker<12>, TrackerSettings, TrackerError, Firing, RateFilter<12>, Survey)>();
         formats::<(PhaseTable<'_, 12>, PhaseRequirements<'_>, PhaseCriterion, Audible)>();
         formats::<(PhaseVerification<'_>, PhaseViolation, PhaseViolations<'_>, PhaseSeparation, PhaseInterval)>();

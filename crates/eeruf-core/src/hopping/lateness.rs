@@ -32,6 +32,13 @@ impl Lateness {
         *present = present.and(Spread { least: late, most: late });
     }
 
+    /// As `note(0)`, the least there is.
+    #[inline(always)]
+    pub(super) fn note_punctual(&mut self) {
+        let [present, ..] = &mut self.periods;
+        present.least = 0;
+    }
+
     /// The timetable has moved: nothing that is heard across it moves as the code says.
     pub(super) fn break_off(&mut self) {
         let [present, ..] = &mut self.periods;

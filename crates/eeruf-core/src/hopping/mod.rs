@@ -18,16 +18,17 @@ mod schedule;
 mod settings;
 #[cfg(test)]
 mod tests;
+mod timetable;
 mod turn;
 mod weighed;
 
-use crate::reading::{ReadingKind, Tally, Verdict};
+use crate::reading::{ReadingKind, Verdict};
 use crate::ring::{PeriodStats, Reading, Ring, RingConfig, RingEvent};
-use crate::schedule::Phase;
-use crate::scheduler::Scheduler as _;
 use crate::sensor_error::SensorError;
 use crate::time::Instant;
 use crate::tracker::{EchoTracker, Firing};
+
+use timetable::Timetable;
 
 pub use code::HoppingCode;
 pub use emit::{HoppingHeader, HoppingRust, HoppingTab, HoppingToml};
@@ -68,9 +69,8 @@ pub use weighed::Weighed;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HoppingRing<const K: usize, const H: usize = 4> {
-    ring: Ring<HoppingFiring<K>, K>,
+    ring: Ring<Timetable<K>, K>,
     tracker: EchoTracker<K, H>,
-    tally: Tally<u8>,
     /// By how much, in microseconds, firings may differ in lateness and crosstalk still move by more than `t_delta`.
     tolerated: u16,
     changes: u8,
@@ -106,12 +106,12 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         if schedule.period() < least {
             return Err(HoppingError::Period { period: schedule.period(), least });
         }
-        let firing = HoppingFiring::new(schedule, settings, listening, seed, now);
+        let timetable = Timetable::new(schedule, settings, listening, seed, now);
         let config = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
-        let ring = Ring::with_scheduler(firing, config, now)?;
+        let ring = Ring::with_scheduler(timetable, config, now)?;
         // A track may be off by as much as its readings, and a step is at most 65,535 us.
         let tolerated = (code.step().abs_diff(t_delta).as_micros() - 1) / 2;
-        Ok(Self { ring, tracker, tally: Tally::default(), tolerated: tolerated as u16, changes: 0 })
+        Ok(Self { ring, tracker, tolerated: tolerated as u16, changes: 0 })
     }
 
     /// The next event, if there is one at `now`: see [`Ring::poll`].
@@ -120,54 +120,106 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     }
 
     /// As [`poll`](Self::poll), for a robot that moves: see [`Ring::poll_expecting`].
-    pub fn poll_expecting(&mut self, now: Instant, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
-        let event = self.ring.poll(now)?;
-        if core::mem::take(&mut self.ring.scheduler_mut().changed) {
-            self.tracker.firing_changed();
-            self.changes = self.changes.wrapping_add(1);
+    #[inline]
+    pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+        match self.ring.fire_due(now) {
+            Ok((sensor, _, due)) => {
+                self.notice_changes();
+                Some(RingEvent::Fire { sensor, phase: self.firing().phase(), due })
+            }
+            Err(first) => self.poll_others(now, first, expected_change_us),
         }
-        Some(match event {
-            RingEvent::Reading(reading) => {
-                let reading = self.weigh(reading, &mut expected_change_us);
-                self.tally.count(reading.kind);
-                RingEvent::Reading(reading)
+    }
+
+    /// What may be due beside a firing; a sensor whose reading is to be emitted before it fires comes `first`.
+    #[inline(never)]
+    fn poll_others(
+        &mut self,
+        now: Instant,
+        first: Option<u8>,
+        expected_change_us: impl FnMut(u8) -> i32,
+    ) -> Option<RingEvent> {
+        if !self.ring.is_due(now) {
+            if self.ring.has_jumped(now) {
+                self.restart(now);
             }
-            RingEvent::PeriodEnded(stats) => {
-                let phases = self.firing().code.phases();
-                // It has begun the next one already.
-                let phase = Phase(self.firing().phase.checked_sub(1).unwrap_or(phases - 1));
-                // Edges that came late, but before their window was closed, make no reading: the ring counted them.
-                let tally = core::mem::take(&mut self.tally).with(ReadingKind::Late, &stats.tally);
-                RingEvent::PeriodEnded(PeriodStats { phase, tally, ..stats })
-            }
-            RingEvent::Fire { sensor, due, .. } => RingEvent::Fire { sensor, phase: self.firing().phase(), due },
-        })
+            return None;
+        }
+        match first.or_else(|| self.ring.next_pending(now)) {
+            Some(sensor) => self.emit_reading(sensor, expected_change_us),
+            None => self.end_period(now),
+        }
+    }
+
+    /// Lets the tracker know where firing times have changed.
+    #[inline(always)]
+    fn notice_changes(&mut self) {
+        if self.ring.scheduler().changed {
+            self.take_changes();
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn take_changes(&mut self) {
+        self.ring.scheduler_mut().changed = false;
+        self.tracker.firing_changed();
+        self.changes = self.changes.wrapping_add(1);
+    }
+
+    #[inline(never)]
+    fn end_period(&mut self, now: Instant) -> Option<RingEvent> {
+        let ended = self.firing().phase();
+        let mut event = self.ring.end_period(now);
+        if let Some(RingEvent::PeriodEnded(PeriodStats { phase, .. })) = &mut event {
+            *phase = ended;
+            self.plan();
+            self.notice_changes();
+        }
+        event
+    }
+
+    /// Plans the period that has begun.
+    fn plan(&mut self) {
+        let (timetable, fired) = self.ring.scheduler_and_firings();
+        timetable.plan(fired);
+    }
+
+    #[inline(never)]
+    fn emit_reading(&mut self, sensor: u8, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+        let reading = self.ring.take_reading(sensor, |_| 0)?;
+        self.notice_changes();
+        let phase = self.ring.scheduler().last_firing(sensor, self.tolerated).0;
+        let Verdict { kind, t_echo, previous, age } = self.weigh(&reading, expected_change_us);
+        self.ring.count(kind);
+        Some(RingEvent::Reading(Reading { phase, kind, t_echo, previous, age, ..reading }))
     }
 
     /// What the tracker makes of a reading.
-    fn weigh(&mut self, reading: Reading, expected_change_us: &mut impl FnMut(u8) -> i32) -> Reading {
-        let Reading { sensor, kind, t_echo, .. } = reading;
+    #[inline(always)]
+    fn weigh(&mut self, reading: &Reading, mut expected_change_us: impl FnMut(u8) -> i32) -> Verdict {
+        let &Reading { sensor, kind, t_echo, .. } = reading;
         let place = usize::from(sensor);
-        let (phase, solo, steady) = self.firing().last_firing(sensor, self.tolerated);
-        if kind == ReadingKind::Late {
-            return Reading { phase, age: self.tracker.age(place), ..reading };
-        }
         let weighed = match kind {
-            ReadingKind::Stuck | ReadingKind::TooEarly => self.tracker.skip(place, kind, t_echo),
+            ReadingKind::Late => return Verdict { kind, t_echo, previous: None, age: self.tracker.age(place) },
+            ReadingKind::Stuck | ReadingKind::TooEarly => {
+                self.tracker.skip(place, kind, t_echo).map(|verdict| (verdict, self.tracker.is_clear(place)))
+            }
             _ => {
+                let (phase, solo, steady) = self.ring.scheduler().last_firing(sensor, self.tolerated);
                 let expected_change_us = expected_change_us(sensor);
-                self.tracker.push(place, t_echo, Firing { phase, solo, steady, expected_change_us })
+                self.tracker.weigh(place, t_echo, Firing { phase, solo, steady, expected_change_us })
             }
         };
-        let Ok(Verdict { kind, t_echo, previous, age }) = weighed else { return reading };
-        let confirmed = matches!(kind, ReadingKind::Accepted | ReadingKind::Clear);
+        let Ok((verdict, is_clear)) = weighed else { return Verdict { kind, t_echo, previous: None, age: None } };
+        let confirmed = matches!(verdict.kind, ReadingKind::Accepted | ReadingKind::Clear);
         // A sensor that is known to have nothing in range is not fooled by what does not fit.
-        let fits = confirmed || self.tracker.is_clear(place);
+        let fits = confirmed || is_clear;
         // Nor does silence or another lag help one whose line is stuck: it costs the others nothing.
-        if kind != ReadingKind::Stuck {
-            self.ring.scheduler_mut().heard(sensor, confirmed || kind == ReadingKind::Tentative, fits);
+        if verdict.kind != ReadingKind::Stuck {
+            self.ring.scheduler_mut().heard(sensor, confirmed || verdict.kind == ReadingKind::Tentative, fits);
         }
-        Reading { phase, kind, t_echo, previous, age, ..reading }
+        verdict
     }
 
     /// When to poll next. In the past if an event is pending.
@@ -188,7 +240,13 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
     pub fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
-        self.ring.fired(sensor, at)
+        let polled = self.ring.last_firing(sensor);
+        self.ring.fired(sensor, at)?;
+        let fired = self.ring.last_firing(sensor);
+        if let Some(fired) = fired.filter(|_| fired != polled) {
+            self.ring.scheduler_mut().fired(fired);
+        }
+        Ok(())
     }
 
     /// The echo line of a sensor was high when it was to fire: see [`Ring::stuck`].
@@ -240,11 +298,12 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     /// Starts again at `now`: firings under way are dropped, and what is not confirmed has no support.
     pub fn restart(&mut self, now: Instant) {
         self.ring.restart(now);
+        self.plan();
     }
 
     /// When sensors fire: lags as they are now, the phase, whose solo period it is.
-    pub const fn firing(&self) -> &HoppingFiring<K> {
-        self.ring.scheduler()
+    pub const fn firing(&self) -> HoppingFiring<'_, K> {
+        HoppingFiring(self.ring.scheduler())
     }
 
     /// For the log of a reading that was just emitted: how it was weighed, with the change that the poll expected of
@@ -254,7 +313,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         if usize::from(sensor) >= self.sensors() {
             return None;
         }
-        let (_, solo, steady) = self.firing().last_firing(sensor, self.tolerated);
+        let (_, solo, steady) = self.ring.scheduler().last_firing(sensor, self.tolerated);
         Some(Weighed { solo, steady, changes: self.changes, expected_change_us })
     }
 
@@ -266,7 +325,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
 
     /// How many sensors there are.
     pub fn sensors(&self) -> usize {
-        self.firing().sensors()
+        self.ring.sensors()
     }
 
     /// What is known of each sensor's echo.

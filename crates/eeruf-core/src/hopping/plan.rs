@@ -1,9 +1,9 @@
 //! What the next period of a hopping ring is made of: who fires, whether one sensor has it alone, and new lags.
 
-use super::firing::{CATCHES_UP, HoppingFiring};
 use super::schedule::longest_lag;
-use super::turn::{FIRED, SETTLED};
-use crate::time::Micros;
+use super::timetable::{CATCHES_UP, Timetable};
+use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
+use crate::time::{Instant, Micros};
 
 /// A whole solo period, and the most that is saved up.
 const ONE: u16 = 256;
@@ -11,27 +11,30 @@ const MOST: u16 = 2 * ONE;
 /// How many lags are drawn in search of one that keeps the neighbours' interval.
 const DRAWS: u8 = 8;
 
-impl<const K: usize> HoppingFiring<K> {
-    /// Decides who fires in the period that begins.
-    pub(super) fn plan(&mut self) {
-        self.planned = 0;
-        self.solo_at = None;
-        self.length = self.period;
+impl<const K: usize> Timetable<K> {
+    /// Decides who fires in the period that has begun. `fired` says when a sensor that has fired last did.
+    pub(super) fn plan(&mut self, fired: impl Fn(u8) -> Instant) {
         self.since_solo = self.since_solo.saturating_add(1);
         self.earned = (self.earned + u16::from(self.pace.solo_rate)).min(MOST);
-        if self.earned >= ONE && self.since_solo >= self.pace.solo_spacing {
-            if let Some(sensor) = self.longest_unserved() {
-                self.plan_solo(sensor);
-                return;
-            }
+        let may_be_solo = self.earned >= ONE && self.since_solo >= self.pace.solo_spacing;
+        match if may_be_solo { self.longest_unserved() } else { None } {
+            Some(sensor) => self.plan_solo(sensor, fired(sensor)),
+            None => self.plan_all(fired),
         }
+        self.obey_pause();
+    }
+
+    fn plan_all(&mut self, fired: impl Fn(u8) -> Instant) {
         self.since_shift = self.since_shift.saturating_add(1);
         if self.pace.shift_after > 0 && self.since_shift >= self.pace.shift_spacing {
             self.shift_all();
         }
+        // Right after a change there is sound from before.
+        self.kind = if self.since_shift > 0 { FIRED | SETTLED } else { FIRED };
         // At most 64 sensors.
         for sensor in 0..self.code.sensors() as u8 {
-            if self.may_fire(sensor) {
+            let Some(turn) = self.turns.get(usize::from(sensor)) else { break };
+            if !turn.is(DISABLED) && self.offset(sensor) >= self.rests_for(turn, fired(sensor)) {
                 self.insert(sensor);
             }
         }
@@ -41,7 +44,7 @@ impl<const K: usize> HoppingFiring<K> {
     fn longest_unserved(&self) -> Option<u8> {
         let mut longest = (self.pace.solo_after.saturating_sub(1), None);
         for (sensor, turn) in self.turns.iter().enumerate().take(self.code.sensors()) {
-            if turn.unserved > longest.0 && !self.disabled.contains(sensor as u8) {
+            if turn.unserved > longest.0 && !turn.is(DISABLED) {
                 longest = (turn.unserved, Some(sensor as u8));
             }
         }
@@ -49,70 +52,65 @@ impl<const K: usize> HoppingFiring<K> {
     }
 
     /// Gives the period to one sensor, which fires when all else is silent.
-    fn plan_solo(&mut self, sensor: u8) {
-        let silent = self.last_fired + self.dies;
-        let silent = if self.start.has_reached(silent) { Micros::ZERO } else { silent.since(self.start) };
+    fn plan_solo(&mut self, sensor: u8, fired: Instant) {
+        let silent = self.rings_for();
         // The last firing may have been late past the period's end. A clock that has jumped says nothing about it.
         let at = if silent <= self.dies.saturating_add(CATCHES_UP) { silent } else { Micros::ZERO };
         // Its own last firing is among those that it waits for, but its window may be longer.
-        let at = at.max(self.rests_for(sensor));
+        let at = at.max(self.turns.get(usize::from(sensor)).map_or(Micros::MAX, |turn| self.rests_for(turn, fired)));
         self.earned -= ONE;
         self.since_solo = 0;
-        self.solo_at = Some(at);
+        (self.kind, self.solo_at) = (FIRED | SOLO | SETTLED, at);
         self.length = self.length.max(at.saturating_add(self.dies));
-        if let Some(first) = self.order.first_mut() {
-            *first = sensor;
+        if let Some(first) = self.turns.first_mut() {
+            first.order = sensor;
             self.planned = 1;
         }
     }
 
-    /// How long after the start of the period a sensor must not fire yet, since it still listens.
-    fn rests_for(&self, sensor: u8) -> Micros {
-        let Some(turn) = self.turns.get(usize::from(sensor)) else { return Micros::MAX };
-        let rested = turn.fired + self.window;
+    /// How long after the start of the period a sensor that has last `fired` then must not fire yet, since it still
+    /// listens.
+    fn rests_for(&self, turn: &Turn, fired: Instant) -> Micros {
+        let rested = fired + self.window;
         let rests = if self.start.has_reached(rested) { Micros::ZERO } else { rested.since(self.start) };
         // It may have fired late past the period's end. A clock that has jumped says nothing about when that was.
         let is_known = turn.is(FIRED) && rests <= self.window.saturating_add(CATCHES_UP);
         if is_known { rests } else { Micros::ZERO }
     }
 
-    fn may_fire(&self, sensor: u8) -> bool {
-        !self.disabled.contains(sensor) && self.offset(sensor) >= self.rests_for(sensor)
-    }
-
     /// Insertion by firing time; sensors that fire together keep their order.
     fn insert(&mut self, sensor: u8) {
         let offset = self.offset(sensor);
-        let mut at = usize::from(self.planned);
+        let mut at = self.planned;
         while at > 0 {
-            let Some(&before) = self.order.get(at - 1) else { break };
+            let before = self.order(at - 1);
             if self.offset(before) <= offset {
                 break;
             }
-            if let Some(entry) = self.order.get_mut(at) {
-                *entry = before;
-            }
+            self.set_order(at, before);
             at -= 1;
         }
-        if let Some(entry) = self.order.get_mut(at) {
-            *entry = sensor;
-            self.planned += 1;
-        }
+        self.set_order(at, sensor);
+        self.planned += 1;
     }
 
     /// Takes a sensor out of those that fire from this place on.
     pub(super) fn leave_out(&mut self, sensor: u8, place: u8) {
-        let (from, to) = (usize::from(place), usize::from(self.planned));
-        let Some(to_come) = self.order.get_mut(from..to) else { return };
-        if let Some(at) = to_come.iter().position(|&entry| entry == sensor) {
-            for behind in at..to_come.len() {
-                if let Some(&next) = to_come.get(behind + 1) {
-                    if let Some(entry) = to_come.get_mut(behind) {
-                        *entry = next;
-                    }
-                }
-            }
-            self.planned -= 1;
+        let Some(at) = (place..self.planned).find(|&at| self.order(at) == sensor) else { return };
+        self.planned -= 1;
+        for at in at..self.planned {
+            self.set_order(at, self.order(at + 1));
+        }
+    }
+
+    /// Who fires at a place of the period's order.
+    pub(super) fn order(&self, place: u8) -> u8 {
+        self.turns.get(usize::from(place)).map_or(u8::MAX, |turn| turn.order)
+    }
+
+    fn set_order(&mut self, place: u8, sensor: u8) {
+        if let Some(turn) = self.turns.get_mut(usize::from(place)) {
+            turn.order = sensor;
         }
     }
 
@@ -130,7 +128,7 @@ impl<const K: usize> HoppingFiring<K> {
             self.changed = true;
             // What is pending was fired with the lags of before.
             for turn in &mut self.turns {
-                turn.clear(SETTLED);
+                turn.set(SETTLED, false);
             }
         }
     }

@@ -2,6 +2,7 @@
 
 extern crate std;
 use super::*;
+use crate::schedule::Phase;
 use crate::scheduler::{Limits, Scheduler, check_scheduler};
 use crate::time::Micros;
 use std::string::ToString;
@@ -160,8 +161,15 @@ fn the_same_seed_and_echoes_give_the_same_firings() {
     assert_eq!(run(), run());
 }
 
-/// Firing for sensors that never hear what fits: they get solo periods and new lags.
-struct Fooled(HoppingFiring<8>);
+/// Firing for sensors that never hear what fits: they get solo periods and new lags. It knows when each last fired, as
+/// a ring does.
+struct Fooled(Timetable<8>, [Instant; 8]);
+
+impl Fooled {
+    fn plan(&mut self) {
+        self.0.plan(|sensor| self.1[usize::from(sensor)]);
+    }
+}
 
 impl Scheduler for Fooled {
     fn deadline(&self) -> Instant {
@@ -173,15 +181,23 @@ impl Scheduler for Fooled {
     }
 
     fn fire(&mut self, now: Instant) {
+        if let Some((sensor, _)) = self.0.next_firing() {
+            self.1[usize::from(sensor)] = now;
+        }
         self.0.fire(now);
     }
 
     fn postpone(&mut self, sensor: u8, by: Micros) {
         self.0.postpone(sensor, by);
+        let fired = &mut self.1[usize::from(sensor)];
+        *fired += by;
+        self.0.fired(*fired);
     }
 
     fn end_period(&mut self, now: Instant) -> (Phase, bool) {
-        self.0.end_period(now)
+        let ended = self.0.end_period(now);
+        self.plan();
+        ended
     }
 
     fn ended(&mut self, sensor: u8, at: Instant) {
@@ -207,6 +223,7 @@ impl Scheduler for Fooled {
 
     fn restart(&mut self, now: Instant) {
         self.0.restart(now);
+        self.plan();
     }
 
     fn periods_since(&self, phase: Phase) -> u8 {
@@ -235,7 +252,7 @@ fn hopping_keeps_what_every_scheduler_promises() {
         for settings in [HoppingSettings::BALANCED, hurried] {
             // The clock wraps on the way.
             let now = Instant::from_micros(u32::MAX - 500_000);
-            let mut fooled = Fooled(HoppingFiring::new(&schedule(), settings, listening, seed, now));
+            let mut fooled = Fooled(Timetable::new(&schedule(), settings, listening, seed, now), [now; 8]);
             check_scheduler(&mut fooled, now, 2_000, seed).unwrap();
             assert!(fooled.0.t_lag(3) != schedule().t_lag(3), "no lag was drawn");
         }

@@ -60,14 +60,16 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     oldest: u8,
     /// How many sensors have a reading to emit before their window closes.
     ready: u8,
+    /// The last of them to get it, or a sensor that has emitted it since.
+    last_ready: u8,
     agreement: Agreement,
-    tally: Tally<u8>,
-    lateness: Lateness,
-    scheduler: S,
     /// When the next reading can be emitted: when an edge came, or when the window of the oldest closes.
     emit_at: Instant,
     listening: Listening,
     period: u32,
+    scheduler: S,
+    lateness: Lateness,
+    tally: Tally<u8>,
     sensors: [Sensor<E>; K],
     /// The sum of lateness at each sensor's last firing (see [`Lateness`]); in an array of its own, since a sensor's
     /// other fields fill their words.
@@ -158,6 +160,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             oldest: NOBODY,
             ready: 0,
             agreement,
+            last_ready: NOBODY,
             tally: Tally::default(),
             lateness: Lateness::NEW,
             scheduler,
@@ -187,14 +190,25 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// [`EchoFilter::push_echoes`]: crate::EchoFilter::push_echoes
     #[inline]
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
-        let due = self.scheduler.deadline();
-        if now.has_reached(due) || (self.has_pending() && now.has_reached(self.emit_at)) {
+        if self.is_due(now) {
             return self.advance(now, expected_change_us);
         }
-        if due.since(now) > self.scheduler.horizon() {
+        if self.has_jumped(now) {
             self.clock_jumped(now);
         }
         None
+    }
+
+    /// Whether there may be an event.
+    #[inline(always)]
+    pub(crate) fn is_due(&self, now: Instant) -> bool {
+        now.has_reached(self.scheduler.deadline()) || (self.has_pending() && now.has_reached(self.emit_at))
+    }
+
+    /// Whether the clock must have jumped, since what is next is too far ahead.
+    #[inline(always)]
+    pub(crate) fn has_jumped(&self, now: Instant) -> bool {
+        self.scheduler.deadline().since(now) > self.scheduler.horizon()
     }
 
     /// When to poll next. In the past if an event is pending.
@@ -226,6 +240,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
                     self.emit_at = at;
                 }
                 self.ready = self.ready.saturating_add(1);
+                self.last_ready = sensor;
             }
             Noted::Late => self.tally.count(ReadingKind::Late),
             // As is every edge of a sensor that the ring has room for and does not have.
@@ -309,6 +324,22 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
 
     pub(crate) const fn scheduler_mut(&mut self) -> &mut S {
         &mut self.scheduler
+    }
+
+    /// The scheduler, and when each sensor last fired, if it ever has.
+    pub(crate) fn scheduler_and_firings(&mut self) -> (&mut S, impl Fn(u8) -> Instant + '_) {
+        let sensors = &self.sensors;
+        (&mut self.scheduler, |sensor| sensors.get(usize::from(sensor)).map_or(Instant::default(), |of| of.fired))
+    }
+
+    /// When a sensor last fired, if it ever has.
+    pub(crate) fn last_firing(&self, sensor: u8) -> Option<Instant> {
+        self.sensors.get(usize::from(sensor)).map(|of| of.fired)
+    }
+
+    /// Counts a reading that was [taken](Self::take_reading).
+    pub(crate) fn count(&mut self, kind: ReadingKind) {
+        self.tally.count(kind);
     }
 
     /// The clock has jumped.

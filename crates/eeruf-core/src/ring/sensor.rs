@@ -61,8 +61,11 @@ impl<const E: usize> Sensor<E> {
         Phase(self.tracker.flags & PHASE)
     }
 
-    pub(super) fn fire(&mut self, phase: Phase, now: Instant) {
-        self.tracker.flags = (self.tracker.flags & UNCOMPARABLE) | LISTENING | phase.0;
+    /// `compares`: whether its reading will be compared with the one before.
+    #[inline]
+    pub(super) fn fire(&mut self, phase: Phase, now: Instant, compares: bool) {
+        let uncomparable = if compares { self.tracker.flags & UNCOMPARABLE } else { 0 };
+        self.tracker.flags = uncomparable | LISTENING | phase.0;
         self.fired = now;
     }
 

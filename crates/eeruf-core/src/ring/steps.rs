@@ -5,6 +5,7 @@ use super::sensor::{LISTENING, READY, Sensor, UNCOMPARABLE};
 use super::{NOBODY, PeriodStats, Reading, Ring, RingEvent};
 use crate::filter::Rule;
 use crate::reading::Verdict;
+use crate::schedule::Phase;
 use crate::scheduler::{Limits, Scheduler};
 use crate::time::{Instant, Micros};
 
@@ -13,33 +14,41 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// the sensor fires again.
     #[inline]
     pub(super) fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
-        let due = self.scheduler.deadline();
-        let fires = if now.has_reached(due) { self.scheduler.next_firing() } else { None };
-        let emits = match fires {
-            Some((sensor, phase)) => match self.sensors.get_mut(usize::from(sensor)) {
-                Some(pending) if pending.is(LISTENING | READY) => Some(sensor),
-                fired => {
-                    if let Some(fired) = fired {
-                        fired.fire(phase, now);
-                    }
-                    self.has_fired(sensor, now.since(due), now);
-                    self.scheduler.fire(now);
-                    return Some(RingEvent::Fire { sensor, phase, due });
-                }
-            },
-            None => self.next_pending(now),
+        let first = match self.fire_due(now) {
+            Ok((sensor, phase, due)) => return Some(RingEvent::Fire { sensor, phase, due }),
+            Err(first) => first,
         };
-        match emits {
+        match first.or_else(|| self.next_pending(now)) {
             Some(sensor) => self.emit_reading(sensor, expected_change_us),
             None => self.end_period(now),
         }
     }
 
-    #[inline]
-    fn has_fired(&mut self, sensor: u8, late: Micros, now: Instant) {
+    /// Fires the sensor that is due; returns its phase and when it was due. `Err` if none is to fire, with the sensor
+    /// that has a reading to emit before it fires.
+    #[inline(always)]
+    pub(crate) fn fire_due(&mut self, now: Instant) -> Result<(u8, Phase, Instant), Option<u8>> {
+        let due = self.scheduler.deadline();
+        let fires = if now.has_reached(due) { self.scheduler.next_firing() } else { None };
+        let Some((sensor, phase)) = fires else { return Err(None) };
+        if let Some(fired) = self.sensors.get_mut(usize::from(sensor)) {
+            if fired.is(LISTENING | READY) {
+                return Err(Some(sensor));
+            }
+            fired.fire(phase, now, S::COMPARES);
+        }
+        self.has_fired(sensor, now);
+        self.scheduler.fire(now);
+        // Last, since it is rare.
+        let late = now.since(due);
         if late != Micros::ZERO || self.lateness.is_watching() {
             self.fired_late(sensor, late);
         }
+        Ok((sensor, phase, due))
+    }
+
+    #[inline]
+    fn has_fired(&mut self, sensor: u8, now: Instant) {
         if self.oldest == NOBODY || (S::UNEVEN && self.closes_first(sensor, now)) {
             self.oldest = sensor;
             if self.ready == 0 {
@@ -91,8 +100,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         u16::try_from(tolerated).unwrap_or(MOST_TOLERATED).min(MOST_TOLERATED)
     }
 
+    /// Ends the period, if that is due.
     #[inline(never)]
-    fn end_period(&mut self, now: Instant) -> Option<RingEvent> {
+    pub(crate) fn end_period(&mut self, now: Instant) -> Option<RingEvent> {
         let due = self.scheduler.deadline();
         if !now.has_reached(due) {
             return None;
@@ -147,7 +157,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     }
 
     /// A sensor with an echo in, or one whose window has closed.
-    fn next_pending(&self, now: Instant) -> Option<u8> {
+    pub(crate) fn next_pending(&self, now: Instant) -> Option<u8> {
         if self.ready > 0 {
             return self.first_ready();
         }
@@ -157,20 +167,32 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// A sensor with a reading to emit. The oldest goes first: after it the next oldest must be searched for too, so
     /// this saves a search where a poll costs most.
     fn first_ready(&self) -> Option<u8> {
-        if self.sensor(self.oldest).is_some_and(|oldest| oldest.is(READY)) {
+        let is_ready = |x: u8| self.sensor(x).is_some_and(|sensor| sensor.is(READY));
+        if self.ready == 1 && is_ready(self.last_ready) {
+            // The only one.
+            return Some(self.last_ready);
+        }
+        if is_ready(self.oldest) {
             return Some(self.oldest);
         }
-        for (x, sensor) in self.sensors.iter().enumerate() {
-            if sensor.is(READY) {
-                // At most 64 sensors.
-                return Some(x as u8);
-            }
-        }
-        None
+        // At most 64 sensors.
+        (0..K as u8).find(|&x| is_ready(x))
     }
 
     #[inline(never)]
-    fn emit_reading(&mut self, sensor: u8, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+    fn emit_reading(&mut self, sensor: u8, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+        let reading = self.take_reading(sensor, expected_change_us)?;
+        self.tally.count(reading.kind);
+        Some(RingEvent::Reading(reading))
+    }
+
+    /// The reading of a sensor, which ends its firing. It is yet to be counted.
+    #[inline(always)]
+    pub(crate) fn take_reading(
+        &mut self,
+        sensor: u8,
+        mut expected_change_us: impl FnMut(u8) -> i32,
+    ) -> Option<Reading> {
         let heard = self.sensors.get_mut(usize::from(sensor))?;
         let phase = heard.phase();
         let (listened, fired) = (heard.is(LISTENING), heard.fired);
@@ -195,10 +217,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             }
         }
         self.emit_when_oldest_ends();
-        self.tally.count(verdict.kind);
         let Verdict { kind, t_echo, previous, age } = verdict;
         let period = self.period.wrapping_sub(self.scheduler.periods_since(phase).into());
-        Some(RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age }))
+        Some(Reading { sensor, phase, period, kind, t_echo, previous, age })
     }
 
     /// Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes.

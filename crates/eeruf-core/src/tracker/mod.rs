@@ -20,7 +20,7 @@ use crate::schedule::Phase;
 use crate::time::Micros;
 
 pub use error::TrackerError;
-use sensor::{Heard, SensorTracks};
+use sensor::{Heard, SensorTracks, Weighed};
 pub use settings::TrackerSettings;
 use track::{LATEST, SILENCE};
 
@@ -119,6 +119,17 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
     /// # Errors
     /// [`TrackerError::Sensor`] for a sensor that is not there.
     pub fn push(&mut self, sensor: usize, t_echo: Option<Micros>, firing: Firing) -> Result<Verdict, TrackerError> {
+        self.weigh(sensor, t_echo, firing).map(|(verdict, _)| verdict)
+    }
+
+    /// As [`push`](Self::push); also whether it is [clear](Self::is_clear) now.
+    #[inline(always)]
+    pub(crate) fn weigh(
+        &mut self,
+        sensor: usize,
+        t_echo: Option<Micros>,
+        firing: Firing,
+    ) -> Result<(Verdict, bool), TrackerError> {
         let tentative_votes = self.tentative_votes(sensor);
         let Some(tracks) = self.sensors.get_mut(sensor) else {
             return Err(TrackerError::Sensor { sensor, sensors: K });
@@ -127,13 +138,13 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
         let t_echo = t_echo.map_or(SILENCE, |t_echo| t_echo.as_micros().min(LATEST));
         tracks.shift(expected_change_us);
         let heard = Heard { t_echo, phase, solo, steady, tentative_votes };
-        let (verdict, candidate) = tracks.push(heard, &self.settings);
+        let Weighed { verdict, candidate, is_clear } = tracks.push(heard, &self.settings);
         self.readier = self.readier.saturating_sub(1);
         if candidate {
             // At most 64 sensors.
             (self.candidate, self.readier) = (sensor as u8, self.three_periods);
         }
-        Ok(verdict)
+        Ok((verdict, is_clear))
     }
 
     /// A firing that says nothing about the echo time, such as one with an echo within the blanking time: nothing is

@@ -1,7 +1,7 @@
 //! [`SensorTracks`]: the tracks of one sensor, and what a reading does to them.
 
 use super::settings::TrackerSettings;
-use super::track::{SILENCE, Track};
+use super::track::{SILENCE, Track, bit};
 use crate::reading::{ReadingKind, Verdict};
 use crate::time::Micros;
 
@@ -21,6 +21,15 @@ pub(super) struct Heard {
     pub(super) steady: bool,
     /// How many close votes a tentative echo needs; 0: none is reported.
     pub(super) tentative_votes: u8,
+}
+
+/// What came of a reading.
+pub(super) struct Weighed {
+    pub(super) verdict: Verdict,
+    /// Whether it may become a tentative one.
+    pub(super) candidate: bool,
+    /// Whether it is confirmed now that nothing is in range.
+    pub(super) is_clear: bool,
 }
 
 /// The hypotheses about one sensor.
@@ -60,9 +69,10 @@ impl<const H: usize> SensorTracks<H> {
         }
     }
 
-    /// Takes in a reading; also whether it may become a tentative one.
-    pub(super) fn push(&mut self, heard: Heard, settings: &TrackerSettings) -> (Verdict, bool) {
+    /// Takes in a reading.
+    pub(super) fn push(&mut self, heard: Heard, settings: &TrackerSettings) -> Weighed {
         let Heard { t_echo, phase, solo, steady, tentative_votes } = heard;
+        let phase = bit(phase);
         let (mut confirmed, nearest) = self.confirmed_and_nearest(t_echo, settings.t_delta.as_micros());
         let near = settings.near.as_micros();
         let is_near = confirmed.abs_diff(t_echo) <= near;
@@ -71,6 +81,7 @@ impl<const H: usize> SensorTracks<H> {
         let mut tentative = false;
         if steady {
             let before = core::mem::replace(&mut confirmed, NOTHING);
+            let weights = settings.contradictions(solo);
             for (place, track) in self.tracks.iter_mut().enumerate() {
                 if !track.exists() {
                     continue;
@@ -86,15 +97,16 @@ impl<const H: usize> SensorTracks<H> {
                     track.grow_older();
                     track.catch_up(t_echo);
                 } else if t_echo > at {
-                    track.contradict(phase, solo, settings);
+                    track.contradict(phase, weights);
                 } else {
                     track.mask(phase);
                 }
                 confirmed = confirmed.min(track.confirmed());
             }
             if nearest == H && !is_near {
-                self.begin(t_echo, phase, solo);
-                confirmed = self.confirmed();
+                if self.begin(t_echo, phase, solo).is_confirmed() {
+                    confirmed = self.confirmed();
+                }
                 tentative = solo && tentative_votes != 0 && t_echo != SILENCE;
             }
             self.explain(nearest != H || is_near);
@@ -108,7 +120,8 @@ impl<const H: usize> SensorTracks<H> {
             (false, false) if previous == NOTHING => ReadingKind::First,
             (false, false) => ReadingKind::Rejected,
         };
-        (self.verdict(kind, duration(t_echo), duration(previous)), candidate)
+        let verdict = self.verdict(kind, duration(t_echo), duration(previous));
+        Weighed { verdict, candidate, is_clear: confirmed == SILENCE }
     }
 
     /// A firing that says nothing about the echo time.
@@ -137,19 +150,24 @@ impl<const H: usize> SensorTracks<H> {
     fn confirmed_and_nearest(&self, t_echo: u32, t_delta: u32) -> (u32, usize) {
         let (mut confirmed, mut nearest, mut within) = (NOTHING, H, t_delta + 1);
         for (place, track) in self.tracks.iter().enumerate() {
-            confirmed = confirmed.min(track.confirmed());
+            if !track.exists() {
+                continue;
+            }
+            if track.is_confirmed() {
+                confirmed = confirmed.min(track.t_echo());
+            }
             let distance = track.distance(t_echo);
-            if distance < within && track.exists() {
+            if distance < within {
                 (nearest, within) = (place, distance);
             }
         }
         (confirmed, nearest)
     }
 
-    fn begin(&mut self, t_echo: u32, phase: u8, solo: bool) {
-        if let Some(weakest) = self.tracks.iter_mut().min_by_key(|track| track.rank()) {
-            *weakest = Track::new(t_echo, phase, solo);
-        }
+    /// Begins a track in the place of the weakest, which is returned.
+    fn begin(&mut self, t_echo: u32, phase: u16, solo: bool) -> Track {
+        let weakest = self.tracks.iter_mut().min_by_key(|track| track.rank());
+        weakest.map_or(Track::NONE, |weakest| core::mem::replace(weakest, Track::new(t_echo, phase, solo)))
     }
 
     fn explain(&mut self, explained: bool) {

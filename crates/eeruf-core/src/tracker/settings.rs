@@ -126,6 +126,14 @@ impl TrackerSettings {
     }
 }
 
+impl TrackerSettings {
+    /// What a contradiction takes from the score of a track that is not confirmed, and of one that is.
+    #[inline(always)]
+    pub(super) const fn contradictions(&self, solo: bool) -> (u8, u8) {
+        if solo { (self.solo_contradiction, self.solo_contradiction) } else { (1, self.contradiction) }
+    }
+}
+
 impl Default for TrackerSettings {
     fn default() -> Self {
         Self::BALANCED

@@ -37,7 +37,8 @@ const CONTRADICTED: u8 = 2;
 const CLOSE_VOTE: u8 = 4;
 const MOST_CLOSE: u8 = !(CONFIRMED | CONTRADICTED);
 
-const fn bit(phase: u8) -> u16 {
+/// The bit of a phase.
+pub(super) const fn bit(phase: u8) -> u16 {
     1 << (phase & 15)
 }
 
@@ -46,9 +47,9 @@ impl Track {
         Self { echo_and_age: (SILENCE << 8) | AGE, phases: 0, score_and_solo: 0, close_and_flags: 0 };
 
     /// After the first reading at this time.
-    pub(super) const fn new(t_echo: u32, phase: u8, solo: bool) -> Self {
+    pub(super) const fn new(t_echo: u32, bit: u16, solo: bool) -> Self {
         let score_and_solo = if solo { 2 + SOLO_VOTE } else { 1 };
-        Self { echo_and_age: t_echo << 8, phases: bit(phase), score_and_solo, close_and_flags: CLOSE_VOTE }
+        Self { echo_and_age: t_echo << 8, phases: bit, score_and_solo, close_and_flags: CLOSE_VOTE }
     }
 
     #[inline(always)]
@@ -99,13 +100,13 @@ impl Track {
     }
 
     /// A reading within `t_delta` of it.
-    pub(super) fn support(&mut self, t_echo: u32, phase: u8, solo: bool, settings: &TrackerSettings) {
-        let new = self.phases & bit(phase) == 0;
+    pub(super) fn support(&mut self, t_echo: u32, bit: u16, solo: bool, settings: &TrackerSettings) {
+        let new = self.phases & bit == 0;
         let is_close = self.distance(t_echo) <= settings.tentative_within.as_micros();
         if new && is_close && self.close_and_flags < MOST_CLOSE {
             self.close_and_flags += CLOSE_VOTE;
         }
-        self.phases |= bit(phase);
+        self.phases |= bit;
         let (mut score, mut solo_votes) = (self.score_and_solo & SCORE, self.score_and_solo / SOLO_VOTE);
         if solo {
             solo_votes = (solo_votes + 1).min(settings.votes);
@@ -136,37 +137,37 @@ impl Track {
         }
     }
 
-    /// A later reading, or silence: its echo would have come first.
-    pub(super) fn contradict(&mut self, phase: u8, solo: bool, settings: &TrackerSettings) {
-        let weight = match (solo, self.is_confirmed()) {
-            (true, _) => settings.solo_contradiction,
-            (false, true) => settings.contradiction,
-            (false, false) => 1,
-        };
+    /// A later reading, or silence: its echo would have come first. It weighs the one if the track is not confirmed,
+    /// the other if it is.
+    pub(super) fn contradict(&mut self, bit: u16, weights: (u8, u8)) {
+        let weight = if self.is_confirmed() { weights.1 } else { weights.0 };
         // Without its votes of solo periods.
         self.score_and_solo = (self.score_and_solo & SCORE).saturating_sub(weight);
         self.close_and_flags |= CONTRADICTED;
         self.grow_older();
-        self.miss(phase);
+        self.miss(bit);
     }
 
     /// An earlier reading hides whether its echo came.
-    pub(super) fn mask(&mut self, phase: u8) {
+    pub(super) fn mask(&mut self, bit: u16) {
         self.grow_older();
         if self.is_confirmed() {
-            self.miss(phase);
+            self.miss(bit);
         }
     }
 
     /// The last firing in this phase did not support it. One phase alone, in which a path repeats itself, keeps no
     /// track confirmed.
-    fn miss(&mut self, phase: u8) {
-        self.phases &= !bit(phase);
-        let solo_votes = self.score_and_solo / SOLO_VOTE;
-        let several_phases = self.phases & self.phases.wrapping_sub(1) != 0;
-        let two_votes = several_phases || solo_votes + u8::from(self.phases != 0) >= 2;
-        if !two_votes {
-            self.close_and_flags &= !CONFIRMED;
+    #[inline(always)]
+    fn miss(&mut self, bit: u16) {
+        self.phases &= !bit;
+        if self.is_confirmed() {
+            let solo_votes = self.score_and_solo / SOLO_VOTE;
+            let several_phases = self.phases & self.phases.wrapping_sub(1) != 0;
+            let two_votes = several_phases || solo_votes + u8::from(self.phases != 0) >= 2;
+            if !two_votes {
+                self.close_and_flags &= !CONFIRMED;
+            }
         }
     }
 

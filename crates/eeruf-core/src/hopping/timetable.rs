@@ -1,0 +1,343 @@
+//! [`Timetable`]: the scheduler of a hopping ring. What a period is made of is decided in `plan`.
+
+use super::code::HoppingCode;
+use super::lateness::Lateness;
+use super::random::SmallRandom;
+use super::schedule::HoppingSchedule;
+use super::settings::{HoppingListening, HoppingSettings, Pace};
+use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
+use crate::schedule::Phase;
+use crate::scheduler::{Limits, Scheduler};
+use crate::time::{Instant, Micros};
+
+/// A firing that is later than this moves all that follow. Up to this the timetable stands, so that lateness does not
+/// add up; intervals can be shorter than planned by as much.
+pub(super) const CATCHES_UP: Micros = Micros::new(1000);
+
+/// No sensor has this number.
+const NOBODY: u8 = u8::MAX;
+
+/// Fires each sensor at its lag plus the wait of the phase, and in a *solo period* one sensor alone.
+///
+/// Crosstalk moves by at least the step of the code from phase to phase while lags stand. When lags change, the first
+/// period after the change is *unsettled*: its readings may hold sound from before. A solo period lasts long enough
+/// that all sound from before it has died when its sensor fires, and that sensor's own when the next period begins.
+///
+/// A period that begins is to be [planned](Self::plan), by when sensors last fired: the ring knows that, and it would
+/// take four bytes a sensor to know it here too.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+// In this order: a Cortex-M0 reaches only the first 31 bytes of a structure, and the first 31 of its words, in one
+// instruction. What a firing needs comes first.
+#[repr(C)]
+pub(crate) struct Timetable<const K: usize> {
+    /// Who fires next, or [`NOBODY`].
+    next: u8,
+    /// How many of this period have fired, and how many fire in it.
+    place: u8,
+    pub(super) planned: u8,
+    pub(super) phase: u8,
+    /// Counts periods modulo 8, for the ring.
+    count: u8,
+    /// What is noted of each sensor that fires in it: [`FIRED`], [`SOLO`] and [`SETTLED`].
+    pub(super) kind: u8,
+    /// Whether lags have changed or the timetable broke off, for the tracker.
+    pub(super) changed: bool,
+    pub(super) since_shift: u8,
+    pub(super) since_solo: u8,
+    paused: bool,
+    /// What has been earned of solo periods, in 1/256.
+    pub(super) earned: u16,
+    pub(super) start: Instant,
+    /// When the next firing or the end of the period is due: it is asked for several times a poll.
+    due: Instant,
+    /// When any sensor last fired.
+    last_fired: Instant,
+    lateness: Lateness,
+    pub(super) code: HoppingCode,
+    /// How long the period lasts.
+    pub(super) length: Micros,
+    /// After how long its sensor fires in a solo period.
+    pub(super) solo_at: Micros,
+    pub(super) period: Micros,
+    pub(super) random: SmallRandom,
+    pub(super) window: Micros,
+    /// From a firing until its sensor no longer listens, and nothing of it is heard in a window that opens then.
+    pub(super) dies: Micros,
+    pub(super) pace: Pace,
+    pub(super) turns: [Turn; K],
+}
+
+impl<const K: usize> Timetable<K> {
+    pub(super) fn new(
+        schedule: &HoppingSchedule<K>,
+        settings: HoppingSettings,
+        listening: HoppingListening,
+        seed: u32,
+        now: Instant,
+    ) -> Self {
+        let HoppingListening { window, blanking, reach } = listening;
+        let mut timetable = Self {
+            next: NOBODY,
+            place: 0,
+            planned: 0,
+            phase: 0,
+            count: 0,
+            kind: FIRED,
+            changed: false,
+            since_shift: 0,
+            since_solo: 0,
+            paused: false,
+            earned: 0,
+            start: now,
+            due: now,
+            last_fired: now,
+            lateness: Lateness::NEW,
+            code: *schedule.code(),
+            length: schedule.period(),
+            solo_at: Micros::ZERO,
+            period: schedule.period(),
+            random: SmallRandom::new(seed),
+            window,
+            dies: reach.saturating_sub(blanking).max(window).saturating_add(Micros::new(1)),
+            pace: Pace::of(&settings),
+            turns: core::array::from_fn(|sensor| Turn::new(schedule.t_lag(sensor).unwrap_or(Micros::ZERO))),
+        };
+        // No sensor has fired.
+        timetable.plan(|_| now);
+        timetable
+    }
+
+    /// The lag of a sensor as it is now; `None` for one that is not there.
+    pub(super) fn t_lag(&self, sensor: usize) -> Option<Micros> {
+        self.turns.get(sensor).filter(|_| sensor < self.code.sensors()).map(|turn| turn.lag)
+    }
+
+    /// The sensor that the present period belongs to, if it is a solo period.
+    pub(super) fn solo(&self) -> Option<u8> {
+        self.turns.first().filter(|_| self.is_solo()).map(|turn| turn.order)
+    }
+
+    /// Of a sensor's last firing: its phase, whether it was alone, and whether what it hears moves as the code says.
+    pub(super) fn last_firing(&self, sensor: u8, tolerated: u16) -> (Phase, bool, bool) {
+        let Some(turn) = self.turns.get(usize::from(sensor)) else { return (Phase(0), false, false) };
+        let steady = turn.is(SETTLED) && self.lateness.is_steady(turn.late, tolerated);
+        (Phase(turn.phase), turn.is(SOLO), steady)
+    }
+
+    /// What became of a sensor's reading.
+    pub(super) fn heard(&mut self, sensor: u8, accepted: bool, fits: bool) {
+        if let Some(turn) = self.turns.get_mut(usize::from(sensor)) {
+            turn.heard(accepted, fits);
+        }
+    }
+
+    /// The last firing turns out to have been `at` this instant.
+    pub(super) fn fired(&mut self, at: Instant) {
+        if !self.last_fired.has_reached(at) {
+            self.last_fired = at;
+        }
+    }
+
+    /// For how long after the start of the period something may still be heard, of whoever fired last.
+    pub(super) fn rings_for(&self) -> Micros {
+        let silent = self.last_fired + self.dies;
+        if self.start.has_reached(silent) { Micros::ZERO } else { silent.since(self.start) }
+    }
+
+    /// Whether the present period belongs to one sensor.
+    #[inline(always)]
+    const fn is_solo(&self) -> bool {
+        self.kind & SOLO != 0
+    }
+
+    /// When a sensor fires in this period, after its start, unless it is a solo period.
+    #[inline(always)]
+    pub(super) fn offset(&self, sensor: u8) -> Micros {
+        let Some(turn) = self.turns.get(usize::from(sensor)) else { return Micros::MAX };
+        // The step is at most 65,535 us, the lag less than a period of at most 2^28 us.
+        Micros::new(turn.lag.as_micros() + u32::from(turn.place) * self.code.step().as_micros())
+    }
+
+    /// Who fires next, and when; or when the period ends.
+    pub(super) fn find_due(&mut self) {
+        if self.is_solo() && self.place < self.planned {
+            self.next = self.order(self.place);
+            self.due = self.start + self.solo_at;
+        } else {
+            self.find_next();
+        }
+    }
+
+    /// The same unless a solo firing is still to come.
+    #[inline(always)]
+    fn find_next(&mut self) {
+        let turn = self.turns.get(usize::from(self.place)).filter(|_| self.place < self.planned);
+        self.next = turn.map_or(NOBODY, |turn| turn.order);
+        self.due = self.start + turn.map_or(self.length, |turn| self.offset(turn.order));
+    }
+
+    /// Another period: nobody fires until it is [planned](Self::plan).
+    fn begin_period(&mut self) {
+        self.place = 0;
+        self.planned = 0;
+        self.kind = FIRED;
+        self.length = self.period;
+        self.find_due();
+    }
+
+    /// Lets nobody fire for what is left of the period, if the ring is paused.
+    pub(super) fn obey_pause(&mut self) {
+        if self.paused {
+            self.planned = self.place;
+        }
+        self.find_due();
+    }
+
+    /// The firing of a sensor came late.
+    #[cold]
+    #[inline(never)]
+    fn fired_late(&mut self, sensor: u8, late: Micros) {
+        if late > CATCHES_UP {
+            self.break_off();
+        }
+        // Nothing else fires in a solo period, so that it may move freely.
+        if late > CATCHES_UP || self.is_solo() {
+            self.start += late;
+            self.find_due();
+        }
+        if !self.is_solo() {
+            let late = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
+            self.lateness.note(late);
+            if let Some(turn) = self.turns.get_mut(usize::from(sensor)) {
+                turn.late = late;
+            }
+        }
+    }
+
+    /// Nothing that is heard across this moment moves as the code says.
+    fn break_off(&mut self) {
+        self.lateness.break_off();
+        self.changed = true;
+    }
+}
+
+impl<const K: usize> Scheduler for Timetable<K> {
+    const COMPARES: bool = false;
+
+    fn deadline(&self) -> Instant {
+        self.due
+    }
+
+    fn next_firing(&self) -> Option<(u8, Phase)> {
+        (usize::from(self.next) < K).then_some((self.next, Phase(self.count)))
+    }
+
+    #[inline(always)]
+    fn fire(&mut self, now: Instant) {
+        let (sensor, late) = (self.next, now.since(self.due));
+        let Some(turn) = self.turns.get_mut(usize::from(sensor)) else { return };
+        turn.fire(self.phase, self.kind);
+        self.last_fired = now;
+        if late == Micros::ZERO && !self.is_solo() {
+            self.lateness.note_punctual();
+        }
+        self.place += 1;
+        // There is no second firing in a solo period.
+        self.find_next();
+        // Last, since it is rare: what is known here need not be saved for afterwards.
+        if late != Micros::ZERO {
+            self.fired_late(sensor, late);
+        }
+    }
+
+    fn postpone(&mut self, sensor: u8, by: Micros) {
+        let Some(turn) = self.turns.get_mut(usize::from(sensor)) else { return };
+        let is_solo = turn.is(SOLO);
+        let late = Micros::new(turn.late.into()).saturating_add(by);
+        if !is_solo {
+            turn.late = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
+            self.lateness.note(turn.late);
+        }
+        if late > CATCHES_UP {
+            self.break_off();
+        }
+        if late > CATCHES_UP || is_solo {
+            self.start += by;
+            self.find_due();
+        }
+    }
+
+    fn end_period(&mut self, now: Instant) -> (Phase, bool) {
+        let phase = Phase(self.count);
+        let end = self.due;
+        let left_out = now.since(end) > self.period;
+        self.start = if left_out { now } else { end };
+        self.lateness.end_period();
+        if left_out {
+            self.break_off();
+        }
+        self.count = (self.count + 1) & 7;
+        let code = self.code;
+        self.phase = if self.phase + 1 < code.phases() { self.phase + 1 } else { 0 };
+        for (sensor, turn) in (0..).zip(self.turns.iter_mut().take(code.sensors())) {
+            turn.place = if self.phase == 0 { 0 } else { code.next_place(sensor, turn.place) };
+        }
+        self.begin_period();
+        (phase, false)
+    }
+
+    fn ended(&mut self, _sensor: u8, _at: Instant) {}
+
+    fn sensors(&self) -> usize {
+        self.code.sensors()
+    }
+
+    fn set_enabled(&mut self, sensor: u8, enabled: bool) {
+        if let Some(turn) = self.turns.get_mut(usize::from(sensor)) {
+            turn.set(DISABLED, !enabled);
+        }
+        if !enabled {
+            self.leave_out(sensor, self.place);
+            self.find_due();
+        }
+    }
+
+    fn set_paused(&mut self, paused: bool) {
+        self.paused = paused;
+        self.obey_pause();
+    }
+
+    fn is_enabled(&self, sensor: u8) -> bool {
+        let turn = self.turns.get(usize::from(sensor)).filter(|_| usize::from(sensor) < self.sensors());
+        turn.is_some_and(|turn| !turn.is(DISABLED))
+    }
+
+    fn restart(&mut self, now: Instant) {
+        for turn in &mut self.turns {
+            turn.set(SETTLED, false);
+        }
+        self.start = now;
+        self.break_off();
+        self.begin_period();
+    }
+
+    fn periods_since(&self, phase: Phase) -> u8 {
+        self.count.wrapping_sub(phase.0) & 7
+    }
+
+    fn limits(&self) -> Limits<'_> {
+        Limits { longest_window: self.min_refire(), verified_for: None }
+    }
+
+    fn min_refire(&self) -> Micros {
+        // No sensor is planned to fire sooner.
+        self.window
+    }
+
+    fn horizon(&self) -> Micros {
+        // Longer than the longest solo period.
+        let dies = self.dies.saturating_add(self.dies);
+        self.period.saturating_add(self.period).saturating_add(dies)
+    }
+}

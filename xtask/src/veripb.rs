@@ -66,7 +66,8 @@ fn judge(program: &Path, name: &str, ring: &str, rows: &mut String) -> Result<Du
     let said = design.output().map_err(|error| failed(&file, error))?;
     let said = String::from_utf8_lossy(&said.stderr).trim().to_owned();
     println!("{said}");
-    let nodes = said.rsplit("; ").next().and_then(|rest| rest.strip_suffix(" nodes")).unwrap_or("?").to_owned();
+    let nodes =
+        said.rsplit("; ").next().and_then(|rest| rest.split_once(" nodes")).map_or("?", |(nodes, _)| nodes).to_owned();
     let began = Instant::now();
     if !accepts(program, &model, &proof) {
         return Err(Trouble::Failed(format!("{}: VeriPB refuses it", proof.display())));
@@ -99,7 +100,8 @@ fn loosened(line: &str) -> String {
 }
 
 /// The proof with one line broken: its first clause claims a contradiction; the witness of its first symmetry forgets a
-/// variable. And without all of its sums, of which one alone may be spared, since others lead the same way.
+/// variable. And without all of its sums, of which one alone may be spared, since others lead the same way. A proof without
+/// sums is unit propagation alone, which finds the contradiction at its first clause as well: only its witness is broken.
 fn broken_proofs(proof: &str) -> Vec<(&'static str, String)> {
     let lines: Vec<&str> = proof.lines().collect();
     let with = |at: usize, line: &str| {
@@ -108,8 +110,9 @@ fn broken_proofs(proof: &str) -> Vec<(&'static str, String)> {
         broken.join("\n") + "\n"
     };
     let mut broken = Vec::new();
+    let by_sums = lines.iter().any(|line| line.starts_with("pol"));
     let last = lines.iter().rposition(|line| line.starts_with("red")).unwrap_or(0);
-    if let Some(clause) = (last..lines.len()).find(|&i| lines[i].starts_with("rup +")) {
+    if let Some(clause) = (last..lines.len()).find(|&i| by_sums && lines[i].starts_with("rup +")) {
         broken.push(("with a clause that claims too much", with(clause, "rup >= 1;")));
     }
     if let Some(first) = lines.iter().position(|line| line.starts_with("red")) {
@@ -117,8 +120,10 @@ fn broken_proofs(proof: &str) -> Vec<(&'static str, String)> {
         let forgetful = words[..words.len() - 3].join(" ") + ";";
         broken.push(("with a witness that forgets a variable", with(first, &forgetful)));
     }
-    let sums = lines.iter().map(|line| if line.starts_with("pol") { "pol 1;" } else { line });
-    broken.push(("without its sums", sums.collect::<Vec<_>>().join("\n") + "\n"));
+    if by_sums {
+        let sums = lines.iter().map(|line| if line.starts_with("pol") { "pol 1;" } else { line });
+        broken.push(("without its sums", sums.collect::<Vec<_>>().join("\n") + "\n"));
+    }
     broken
 }
 

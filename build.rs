@@ -4,7 +4,6 @@ use std::process::Command;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    println!("cargo::rerun-if-changed=.cargo_vcs_info.json");
     let version = std::env::var("CARGO_PKG_VERSION").expect("cargo sets it");
     let version = commit().map_or_else(|| version.clone(), |commit| format!("{version} ({commit})"));
     println!("cargo::rustc-env=EERUF_VERSION={version}");
@@ -13,6 +12,8 @@ fn main() {
 /// The commit: of the tarball as cargo noted it there, else of the clone; none where neither is at hand.
 fn commit() -> Option<String> {
     if let Ok(noted) = std::fs::read_to_string(".cargo_vcs_info.json") {
+        // Named only where it is: a file that is missing counts as changed, and all would be built anew each time.
+        println!("cargo::rerun-if-changed=.cargo_vcs_info.json");
         let (_, rest) = noted.split_once("\"sha1\": \"")?;
         return rest.get(..7).map(str::to_owned);
     }

@@ -380,6 +380,8 @@ class SpeedStep(_Result):
     """The platform's highest speed, in m/s."""
     finished_of_all: Mapping[Method, float]
     """For each method, the share of all courses that were finished without contact."""
+    finished_95: Mapping[Method, tuple[float, float]]
+    """For each method, where that share lies with 95 % confidence, by Wilson's interval."""
     mean_speed_m_s: Mapping[Method, float]
     """For each method, way over time of all courses together, in m/s."""
 
@@ -466,7 +468,13 @@ def set_two(text: str, runs: dict[Method, list[_Fields]]) -> SetTwo:
 def speed_sweep(text: str) -> SpeedSweep:
     """Make the result of a sweep over speeds of its JSON."""
     table = _fields(text)
-    steps = tuple(SpeedStep(**step) for step in cast("list[_Fields]", table["steps"]))  # type: ignore[arg-type]
+
+    def made(step: _Fields) -> SpeedStep:
+        bounds = cast("dict[Method, list[float]]", step["finished_95"])
+        pairs = {method: _pair(pair) for method, pair in bounds.items()}
+        return SpeedStep(**{**step, "finished_95": pairs})  # type: ignore[arg-type]
+
+    steps = tuple(made(step) for step in cast("list[_Fields]", table["steps"]))
 
     def borne_m_s(method: Method) -> float | None:
         return max((step.speed_m_s for step in steps if step.finished_of_all[method] >= _BORNE), default=None)

@@ -25,7 +25,7 @@ EVERYTHING = sim.Scene(
     noise=sim.Noise(fading_db_rms=2.0, bursts_per_s=3.0),
     seed=2**64 - 1,
     max_order=4,
-    physics={"preset": "default", "narrow_panels": True, "fading_time_s": 0.4},
+    physics={"preset": "default", "narrow_panels": False, "fading_time_s": 0.4},
     robots=[
         sim.Robot((0, 0, 0.3), 6, 0.4, 0.1, "hc_sr04", gain="linear", blanking_us=300, odometry=True,
                   velocity_m_s=(0.05, 0.01), turn_rad_s=0.2, clock_offset_us=5, clock_drift_ppm=-20.0, body=0.15),
@@ -69,7 +69,7 @@ def test_all_that_a_scene_was_made_of_can_be_read() -> None:
     assert (EVERYTHING.open, EVERYTHING.two_sided, EVERYTHING.seed, EVERYTHING.max_order) == ([1], [3], 2**64 - 1, 4)
     assert EVERYTHING.materials[2] == sim.Material(0.7, 0.0002)
     assert EVERYTHING.pole_materials == [sim.Material(0.9)] * 2
-    effects = {"shadows": True, "edges": True, "narrow_panels": True, "range_walk": True, "fading_time_s": 0.4}
+    effects = {"shadows": True, "edges": True, "narrow_panels": False, "range_walk": True, "fading_time_s": 0.4}
     assert EVERYTHING.physics == effects
     assert EVERYTHING.noise == sim.Noise(fading_db_rms=2.0, bursts_per_s=3.0)
     moving, driving = EVERYTHING.robots

@@ -10,7 +10,7 @@ use eeruf_sim::*;
 
 const WIDTHS_MM: [f64; 6] = [1.0, 10.0, 20.0, 50.0, 83.0, 100.0];
 const ALCOVES: u64 = 3;
-const WITH_PANELS: Physics = Physics { narrow_panels: true, ..Physics::DEFAULT };
+const WITHOUT: Physics = Physics { narrow_panels: false, ..Physics::DEFAULT };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let widths = WIDTHS_MM.map(|width_mm| format!(" {width_mm} mm |")).concat();
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("|---|{}", "---:|".repeat(7));
     for number in FIRST..FIRST + ALCOVES {
         let world = |physics| Alcove::random(number).world()?.with_seed(number).with_physics(physics);
-        let worlds = [world(Physics::DEFAULT)?, world(WITH_PANELS)?];
+        let worlds = [world(WITHOUT)?, world(Physics::DEFAULT)?];
         let (off, on) = (heard(&worlds[0])?, heard(&worlds[1])?);
         let changes_db = off.iter().filter_map(|(path, was)| on.get(path).map(|is| 20.0 * libm::log10(is / was)));
         let changes_db: Vec<_> = changes_db.collect();

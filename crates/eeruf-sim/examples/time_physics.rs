@@ -36,7 +36,7 @@ fn main() -> Result<(), WorldError> {
         ("range_walk", Physics { range_walk: true, ..Physics::PLAIN }),
         ("fading_time_s", Physics { fading_time_s: 1.0, ..Physics::PLAIN }),
         ("default", Physics::DEFAULT),
-        ("with panels", Physics { narrow_panels: true, ..Physics::DEFAULT }),
+        ("without panels", Physics { narrow_panels: false, ..Physics::DEFAULT }),
     ] {
         let stands = quickest_ms(&world(Motion::Still, physics)?, 2000);
         let moves = quickest_ms(&world(creeping.clone(), physics)?, 50);

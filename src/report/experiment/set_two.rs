@@ -116,18 +116,19 @@ impl Sweep {
         let mut header = vec!["method".to_owned()];
         header.extend(self.steps.iter().map(|step| format!("{} m/s", step.speed_m_s)));
         header.push("sustained m/s".to_owned());
-        let rows =
-            self.borne_m_s.iter().enumerate().map(|(index, (method, sustained))| {
-                let mut row = vec![method.to_string()];
-                row.extend(self.steps.iter().map(|step| {
-                    format!("{:.0} ({:.2})", 100.0 * step.finished[index].1, step.mean_speed_m_s[index].1)
-                }));
-                row.push(sustained.map_or_else(|| "-".to_owned(), |speed| speed.to_string()));
-                row
-            });
+        let rows = self.borne_m_s.iter().enumerate().map(|(index, (method, sustained))| {
+            let mut row = vec![method.to_string()];
+            row.extend(self.steps.iter().map(|step| {
+                let [low, high] = step.finished_95[index].1.map(|share| 100.0 * share);
+                let (share, mean_m_s) = (100.0 * step.finished[index].1, step.mean_speed_m_s[index].1);
+                format!("{share:.0} ({low:.0}-{high:.0}), {mean_m_s:.2}")
+            }));
+            row.push(sustained.map_or_else(|| "-".to_owned(), |speed| speed.to_string()));
+            row
+        });
         let mut text = format!(
-            "Set II: {} at several top speeds{}{}, pilot: {}, physics: {}: finished %, and (mean speed in m/s).\n\
-             Sustained is the highest speed at which {:.0} % of the courses are finished; {FILTERS}.\n\n",
+            "Set II: {} at several top speeds{}{}, pilot: {}, physics: {}: finished % with 95 % intervals (Wilson's),\n\
+             mean speed in m/s. Sustained is the highest speed at which {:.0} % of the courses are finished; {FILTERS}.\n\n",
             courses(self.first, self.seeds),
             beside(self.second_robot_m),
             bodies(self.bodies),

@@ -22,7 +22,7 @@ pub struct Physics {
     /// Whether the free ends of walls and the corners that jut out diffract, once and in plain sight.
     pub edges: bool,
     /// Whether a wall that is narrow against the first Fresnel zone, `sqrt(lambda r)` wide at distance r, returns as
-    /// much as its width does instead of what an endless wall does. Off in both presets.
+    /// much as its width does instead of what an endless wall does.
     pub narrow_panels: bool,
     /// Whether a threshold detector hears faint echoes later. An echo just at the threshold is heard a whole burst
     /// late.
@@ -34,15 +34,15 @@ pub struct Physics {
 
 impl Physics {
     /// The simplest physics, which the simulator began with and methods were tuned under: poles of any thickness are
-    /// transparent, edges are silent, an echo is heard at its onset however faint it is, and each arrival fades on its
-    /// own.
+    /// transparent, edges are silent, a wall returns as much however narrow it is, an echo is heard at its onset however
+    /// faint it is, and each arrival fades on its own.
     pub const PLAIN: Self =
         Self { shadows: false, edges: false, narrow_panels: false, range_walk: false, fading_time_s: 0.0 };
 
-    /// What worlds have unless asked otherwise: everything but `narrow_panels` on, with the numbers that
-    /// `docs/physics.md` gives reasons for.
+    /// What worlds have unless asked otherwise: everything on, with the numbers that `docs/physics.md` gives reasons
+    /// for.
     pub const DEFAULT: Self =
-        Self { shadows: true, edges: true, narrow_panels: false, range_walk: true, fading_time_s: 1.0 };
+        Self { shadows: true, edges: true, narrow_panels: true, range_walk: true, fading_time_s: 1.0 };
 
     /// The presets by their names.
     pub const PRESETS: [(&'static str, Self); 2] = [("plain", Self::PLAIN), ("default", Self::DEFAULT)];

@@ -338,14 +338,15 @@ fn beside_its_reflection_a_panel_returns_kirchhoffs_integral_in_one() {
 }
 
 #[test]
-fn with_presets_nothing_of_it_is_there() {
+fn default_has_it_and_under_plain_nothing_of_it_is_there() {
     let mut random = Random::from_state(5);
     let (scene, source, receiver) = furnished(&mut random);
     let rows = |physics| traced(&scene, source, receiver, physics, 3);
-    assert!(Physics::PRESETS.iter().all(|(_, preset)| !preset.narrow_panels));
     assert_ne!(rows(NARROW), rows(Physics::PLAIN));
     let plain = scene.paths(source, &[receiver], 3, FAR).unwrap();
     assert_eq!(rows(Physics::PLAIN).iter().map(|row| row.2).collect::<Vec<_>>(), plain.amplitude);
+    assert_ne!(rows(Physics::DEFAULT), rows(Physics { narrow_panels: false, ..Physics::DEFAULT }));
+    assert_eq!(rows(Physics::DEFAULT), rows(Physics { shadows: true, ..WITH_EDGES }));
 }
 
 #[test]

@@ -57,6 +57,19 @@ fn with_bodies_the_second_robot_is_an_obstacle_and_courses_are_finished_all_the_
 }
 
 #[test]
+fn in_the_labs_rectangle_the_width_of_walls_changes_nothing() {
+    // docs/experiments.md and docs/physics.md say so.
+    let without = Physics { narrow_panels: false, ..Physics::DEFAULT };
+    for (second_robot, bodies) in [(None, false), (Some(SECOND_BEHIND), false), (Some(SECOND_AHEAD), true)] {
+        let run = |physics| {
+            let methods = [Method::Conventional, Method::Eeruf, Method::MultiEcho];
+            set_two(&SetTwoOptions { physics, second_robot, bodies, ..options(3, &methods) }, &|_| true).unwrap().runs
+        };
+        assert_eq!(run(Physics::DEFAULT), run(without));
+    }
+}
+
+#[test]
 fn with_a_pilot_of_its_own_conventional_firing_finishes_more_than_half_of_the_courses() {
     for second_robot in [None, Some(SECOND_BEHIND), Some(SECOND_AHEAD)] {
         let asked = SetTwoOptions { second_robot, ..options(40, &[Method::Conventional]) };
@@ -141,6 +154,7 @@ fn a_sweep_tells_at_each_speed_what_a_run_at_that_speed_tells() {
         let found = set_two(&SetTwoOptions { labmate, ..asked.clone() }, &|_| true).unwrap();
         for (place, (method, figures)) in found.methods.iter().enumerate() {
             assert_eq!(step.finished[place], (*method, figures.finished as f64 / 4.0));
+            assert_eq!(step.finished_95[place], (*method, figures.finished_95));
             assert_eq!(step.mean_speed_m_s[place], (*method, figures.mean_speed_m_s));
             assert!(figures.top_speed_m_s <= step.speed_m_s && figures.mean_speed_m_s < figures.top_speed_m_s);
         }

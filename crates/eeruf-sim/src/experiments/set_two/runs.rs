@@ -169,6 +169,9 @@ pub struct SpeedStep {
     /// For each method, the share of courses finished without contact.
     #[serde(serialize_with = "by_name", rename = "finished_of_all")]
     pub finished: Vec<(Method, f64)>,
+    /// For each method, where that share lies with 95 % confidence, by Wilson's interval.
+    #[serde(serialize_with = "by_name")]
+    pub finished_95: Vec<(Method, [f64; 2])>,
     /// For each method, the mean speed in m/s.
     #[serde(serialize_with = "by_name")]
     pub mean_speed_m_s: Vec<(Method, f64)>,
@@ -192,6 +195,7 @@ pub fn speed_sweep(
         steps.push(SpeedStep {
             speed_m_s,
             finished: each(|of| of.finished as f64 / of.courses as f64),
+            finished_95: found.methods.iter().map(|(method, of)| (*method, of.finished_95)).collect(),
             mean_speed_m_s: each(|of| of.mean_speed_m_s),
         });
     }

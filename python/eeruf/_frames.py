@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
@@ -70,33 +69,33 @@ def save(
     parts.update({f"paths.{name}": column for name, column in paths.items() if name != "walls"})
     parts["paths.wall_counts"] = np.array([len(wall) for wall in walls], dtype=np.int64)
     parts["paths.walls"] = np.array([bounce for wall in walls for bounce in wall], dtype=np.int64)
-    np.savez_compressed(file, **parts)
+    try:
+        np.savez_compressed(file, **parts)
+    except (AttributeError, TypeError, ValueError) as error:
+        raise _eeruf.ArgumentError(f"file = {file!r:.60}; expected a path, or a file that takes bytes") from error
 
 
 def load(file: str | PathLike[str] | IO[bytes]) -> _eeruf.Readings:
     """Read what ``save`` wrote."""
-
-    def refuse() -> _eeruf.ArgumentError:
-        return _eeruf.ArgumentError(f"file = {file!r:.60}; expected what Readings.save wrote, in its format {_FORMAT}")
-
     try:
-        loaded = np.load(file, allow_pickle=False)
-        if not isinstance(loaded, np.lib.npyio.NpzFile):
-            raise refuse()
-        with loaded as parts:
-            if int(parts["format"]) != _FORMAT:
-                raise refuse()
-            arrays = {name: parts[name] for name in parts.files}
-    except (KeyError, ValueError, TypeError, zipfile.BadZipFile) as error:
-        raise error if isinstance(error, _eeruf.EerufError) else refuse() from error
-    about = [arrays.pop(name, None) for name in ("format", "method", "duration_s", "sensors")]
+        return _loaded(file)
+    except (_eeruf.EerufError, OSError, MemoryError):
+        raise
+    except Exception as error:
+        # Of the kinds that a damaged file ends in, NumPy, zipfile and zlib name some.
+        raise _eeruf.ArgumentError(
+            f"file = {file!r:.60}; expected what Readings.save wrote, in its format {_FORMAT}"
+        ) from error
+
+
+def _loaded(file: str | PathLike[str] | IO[bytes]) -> _eeruf.Readings:
+    """Read what ``save`` wrote, or end in an error of any kind."""
+    with np.load(file, allow_pickle=False) as parts:
+        arrays = {name: parts[name] for name in parts.files}
+    if int(arrays.pop("format")) != _FORMAT:
+        raise ValueError("of another format")
+    method, duration_s, sensors = (arrays.pop(name) for name in ("method", "duration_s", "sensors"))
     paths: dict[str, Any] = {name[6:]: arrays.pop(name) for name in list(arrays) if name.startswith("paths.")}
-    counts, walls = paths.pop("wall_counts", None), paths.get("walls")
-    if any(part is None for part in (*about, counts, walls)):
-        raise refuse()
-    ends = np.cumsum(counts)
-    paths["walls"] = [tuple(walls[end - count : end].tolist()) for end, count in zip(ends, counts)]  # type: ignore[index]
-    try:
-        return _eeruf._readings_from_columns(str(about[1]), float(about[2]), int(about[3]), arrays, paths)  # type: ignore[arg-type]
-    except KeyError as error:
-        raise refuse() from error
+    counts, walls = paths.pop("wall_counts"), paths["walls"]
+    paths["walls"] = [tuple(walls[end - count : end].tolist()) for end, count in zip(np.cumsum(counts), counts)]
+    return _eeruf._readings_from_columns(str(method), float(duration_s), int(sensors), arrays, paths)

@@ -16,6 +16,7 @@ import math
 import pickle
 import random
 import sys
+import tempfile
 import time
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
@@ -41,6 +42,15 @@ FIRINGS = eeruf.logs.Firings.of(
     t_echo_us=READINGS.earliest_us,
 )
 PATHS = ROOM.paths((0, 0), [(1, 0), (2, 0)], 2)
+UNEVEN: dict[str, Any] = {"t_delta_us": [999, 999, 1_500, 1_500], "window_us": [36_000, 36_000, 12_000, 12_000]}
+FOUND = eeruf.design(4, min_interval_us=15_000, shared_lines=[(0, 2)], certificate=True, **UNEVEN)
+FITS: Any = FOUND.schedule
+LONGER = FITS.scaled(3, 1)
+CERTIFICATE = FOUND.certificate or ""
+KEPT_UNTIL_THE_END = tempfile.TemporaryDirectory(prefix="eeruf-fuzz-")
+FOLDER = Path(KEPT_UNTIL_THE_END.name)
+SAVED = io.BytesIO()
+READINGS.save(SAVED)
 HANGS_S = 60
 
 
@@ -76,6 +86,8 @@ class Chance:
                     PATHS,
                     tables.TABLE_I_D,
                     sim.Noise(),
+                    FOUND,
+                    FITS,
                     nav.Himm(3),
                     print,
                     Nothing,
@@ -110,6 +122,52 @@ class Chance:
         """What is good, most of the time."""
         return good if self.random.random() < 0.7 else self.anything()
 
+    def one_wrong(self, good: dict[str, Any]) -> dict[str, Any]:
+        """Half the time with one thing that is not good."""
+        wrong = {self.random.choice(list(good)): self.anything()} if self.random.random() < 0.5 else {}
+        return {**good, **wrong}
+
+    def each(self, good: int, count: int = 4) -> Any:
+        """A number for all sensors or a list with one for each, of any kind and now and then of another length."""
+        r = self.random
+        near = [
+            good + r.choice([0, 0, 0, 1, -1, 500]) for _ in range(r.choice([count, count, count, 0, count + 1, 65]))
+        ]
+        return self.mostly(
+            r.choice([good, near, tuple(near), np.array(near), iter(near), [*near[:-1], self.anything()]])
+        )
+
+    def groups(self) -> Any:
+        """Groups of sensors, as those that share a line or fire together."""
+        good = self.random.choice(
+            [None, [(0, 2)], [[0, 1], (2, 3)], [[0, 1, 2, 3]], np.array([[1, 3]]), [(0,)], [(1, 1)]]
+        )
+        return self.mostly(good)
+
+    def uneven(self) -> dict[str, Any]:
+        """What only an uneven ring needs, some of it or none."""
+        all_of_it = {
+            "refire_us": self.each(60_000),
+            "intervals_us": self.mostly([(0, 1, 20_000), (self.anything(), 2, 1_000)][: self.random.randrange(3)]),
+            "shared_lines": self.groups(),
+            "together": self.groups(),
+        }
+        return {name: value for name, value in all_of_it.items() if self.random.random() < 0.4}
+
+    def place(self, good: object) -> Any:
+        """Where something is written to: a text names a file in the folder of this run alone."""
+        thing = self.mostly(good)
+        return f"{FOLDER}/{thing}" if isinstance(thing, str) else thing
+
+    def file(self, name: str, content: bytes) -> Path:
+        """A file of this name with a piece changed, most of the time."""
+        path, changed = FOLDER / name, bytearray(content)
+        for _ in range(self.random.randrange(3)):
+            at = self.random.randrange(len(changed) + 1)
+            changed[at : at + self.random.randrange(4)] = self.random.randbytes(self.random.randrange(4))
+        path.write_bytes(changed)
+        return path
+
 
 def calls(c: Chance) -> list[Callable[[], Any]]:
     """Every entry, with arguments by chance."""
@@ -120,10 +178,26 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         ),
         lambda: ANY.design(m(8), m(150), m(9_000), m(36_000), layout=m("ring"), phases=m(5), margin_us=m(90)),
         lambda: ANY.design(m(8), 999, 15_000, 30_000, atlas=m(True), certificate=False, over_reals=m(False)),
+        lambda: ANY.design(
+            m(4),
+            c.each(999),
+            m(15_000),
+            c.each(36_000),
+            budget=c.random.randrange(1, 200),
+            atlas=m(False),
+            **c.uneven(),
+        ),
+        lambda: ANY.design(m(3), c.each(999, 3), 15_000, c.each(30_000, 3), certificate=m(True), over_reals=m(True)),
+        lambda: FITS.verify(c.each(999), m(0), window_us=c.each(12_000), **c.uneven()),
+        lambda: ANY.check_certificate(mutated(c, CERTIFICATE)),
+        lambda: uneven_ring(c),
+        lambda: unverified_ring(c),
         lambda: ANY.Schedule(a(), a(), a(), a()),
         lambda: ANY.Schedule.from_firing(m(40_000), m([0, 20_000]), m([2_000, 25_000])),
         lambda: ANY.Schedule.from_toml(a()),
         lambda: ANY.Schedule.from_json(a()),
+        lambda: ANY.Schedule.from_toml(mutated(c, SLOW.to_toml())),
+        lambda: ANY.Schedule.from_json(mutated(c, SLOW.to_json())),
         lambda: ANY.Schedule.read_toml(m("no such file")),
         lambda: tables.TABLE_I_D.scaled(a(), a()),
         lambda: tables.TABLE_I_D.verify(m(999), m(0), m(4), m("line"), m("exact"), m(0), m(False)),
@@ -131,8 +205,11 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: tables.TABLE_I_D.to_c(m(999), m(0), m(4), m("line"), m("exact"), m(0), m(False)),
         lambda: ANY.WaitSearch(m(3), m(40), m(4), m(1), m(None), t_delta_us=m(1), layout=m("line")).count(c.small(50)),
         lambda: ANY.WaitSearch(3, 40, 4, 1, t_delta_us=1).best(m("interval"), c.random.randrange(1, 50)),
+        lambda: [next(ANY.WaitSearch(3, 40, m(4), 1, m([0, 9, 18]), t_delta_us=1, layout=m([(0, 1)])).all(), None)],
+        lambda: ANY.WaitSearch(m(3), 40, 4, 1, t_delta_us=1, criterion=m("exact"), min_interval_us=m(1)).first(),
         lambda: ANY.EchoFilter(m(2), m(500), m(2), echoes=m(1), patience=m(0)).push_many(a()),
         lambda: ANY.EchoFilter(2, 500).push(m(0), m(9_000), m(0)),
+        lambda: ANY.EchoFilter(2, 500).forget(a()),
         lambda: ANY.EchoFilter(2, 500, echoes=4).push_echoes(m(0), m([9_000, 12_000]), m(0)),
         lambda: ring(c),
         lambda: ANY.HoppingSchedule(m(8), m(60_000), m(240), m(5), m(None), neighbours=m(4)),
@@ -140,6 +217,7 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.HoppingSettings(m("quick"), **{c.random.choice(["votes", "near_us", "nonsense"]): a()}),
         lambda: ANY.EchoTracker(m(2), m(150), settings=m("maps")).push(m(0), m(3), m(9_000), m(0), solo=m(True)),
         lambda: ANY.EchoTracker(2).push_many(m([3]), m([[9_000, 9_000]])),
+        lambda: tracker(c),
         lambda: ANY.HoppingRing(a(), a(), window_us=m(36_000)),
         lambda: hopping_ring(c),
         lambda: ANY.Fire(a()),
@@ -149,16 +227,30 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: repr(ANY.Violation(m("interval"), m((0, 1)), m(("a", "b")), a(), a(), m("x"))),
         lambda: ANY.Report(a(), a(), a(), a(), a()),
         lambda: ANY.Found(a(), a(), a(), a(), a(), a()),
+        lambda: ANY.HoppingFound(m(HOPPING), m(60_000), m(60_000), m(True), m("proven"), m(240), m(240)).to_dict(),
+        lambda: ANY.sim.FiredReading(m(ANY.Reading(3, "first", 9_000)), m([9_000]), m(0.5), m(0)).to_dict(),
         lambda: ANY.check_certificate(a()),
         lambda: ANY.sim.Material(m(0.9), m(0.0)),
         lambda: ANY.sim.Noise(fading_db_rms=m(1.0), jitter_us_rms=m(1.0), bursts_per_s=m(1.0), burst_db=m(1.0)),
         lambda: ANY.sim.Robot(m((0, 0, 0)), m(4), m(0.2), m(0.1), m("hc_sr04"), gain=m("linear"), t_delta_us=m(500)),
         lambda: ANY.sim.Robot((0, 0, 0), m([(0, 0, 0)]), window_us=m(36_000), velocity_m_s=m((0, 1)), schedule=m(None)),
         lambda: ANY.sim.Robot((0, 0, 0), 4, 0.2, 0.1, waypoints_m=m([(1, 1)]), speed_m_s=m(1), clock_drift_ppm=m(3.0)),
+        lambda: ANY.sim.Robot(
+            m((0, 0, 0)), 4, 0.2, 0.1, body=m(0.2), turn_rad_s=m(0.1), start_us=m(3), neighbours=m(3)
+        ),
+        lambda: ROBOT.replace(body=m([(0.2, 0.2), (-0.2, 0.2), (-0.2, -0.2)]), odometry=m(True), consecutive=m(2)),
         lambda: ROBOT.replace(**{c.word(): a(), "patience": m(3)}),
         lambda: ANY.sim.Scene(a(), m(None), m(None), m(None), materials=m("soft")),
         lambda: ANY.sim.Scene([[5, 2, -5, 2]], poles=a(), pole_materials=m("soft"), temperature_c=m(20.0)),
         lambda: ANY.sim.Scene([[5, 2, -5, 2]], noise=m(True), seed=m(3), max_order=m(2), robots=m([ROBOT])),
+        lambda: ANY.sim.Scene(
+            [[5, 2, -5, 2], [5, 3, -5, 3]],
+            open=m([0]),
+            two_sided=m([1]),
+            physics=m({c.word(): a()}),
+            pressure_kpa=m(99.0),
+        ).to_toml(),
+        lambda: ROOM.replace(physics=m("plain"), two_sided=m([0]), humidity_percent=m(20))._repr_svg_(),
         lambda: ROOM.replace(**{c.word(): a()}),
         lambda: ANY.sim.Scene.from_toml(a()),
         lambda: ANY.sim.Scene.from_toml(mutated(c, ROOM.to_toml())),
@@ -169,10 +261,12 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: [*ANY.sim.simulate_blocks(ROOM, m("eeruf"), c.small(), m(3), block_periods=m(2))],
         lambda: ANY.sim.Simulation(m(ROOM), m("eeruf"), seed=m(3)).step(c.small(1)),
         lambda: ANY.sim.Simulation(ROOM).set_velocity(m(0), m(0.5), m(0.1)),
+        lambda: ANY.sim.Simulation(ROOM, m("eeruf_hopping")).step_to_reading(c.small(1)),
+        lambda: recorded(c),
         lambda: ANY.sim.Simulation(ROOM, filter=lambda _: m(("accepted", a()))).step(0.1),
         lambda: ANY.sim.Simulation(ROOM, firing=lambda _: (m(60_000), [(m(0), m(1))], m(1))).step(0.1),
         lambda: ANY.sim.Simulation(ROOM, firing=m(None), filter=m(None)),
-        lambda: ANY.sim.Simulation(ROOM).change_schedule(m(0), m(ANY.tables.TABLE_I_D)),
+        lambda: ANY.sim.Simulation(ROOM).change_schedule(m(0), m(LONGER)),
         lambda: ANY.sim.Simulation(ROOM).change_scene(m(ROOM)),
         lambda: grid(c),
         lambda: ANY.nav.Himm(m(9), m(0.1), growth=m(False)).cells(),
@@ -189,14 +283,23 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.logs.Firings.of(**{name: m(column) for name, column in FIRINGS.columns().items()}),
         lambda: c.random.choice([ANY.diagnose, ANY.survey])(m(FIRINGS), tolerance_us=m(75)),
         lambda: c.random.choice([ANY.read_log, ANY.read_firings, ANY.replay])(m("no such file")),
+        lambda: ANY.read_log(c.file("log.csv", b"time,range\n0.1,0.5\n0.2,0.6\n"), time=m("time")).echo_us(
+            speed_of_sound=m(343.2)
+        ),
+        lambda: log_of_firings(c),
         lambda: ANY.read_log(__file__, time=m(None), range_unit=m("m"), ranges=m(()), no_echo_m=m(5.0)),
         lambda: ANY.example(m("scenes/alcove.toml")),
         lambda: ANY.sim.read_map(m("no such file"), tolerance_m=m(0.1)),
-        lambda: ANY.Schedule.congruence(m(8), m(60_000), m(240), m([0] * 8)),
+        lambda: ANY.sim.read_map(occupancy_map(c), tolerance_m=m(0.1)),
+        lambda: ANY.Schedule.congruence(m(8), m(60_000), m(240), t_lag_us=m([0] * 8), phases=m(5)),
         lambda: ANY.sim.Readings.load(m(io.BytesIO(b"nothing"))),
+        lambda: ANY.sim.Readings.load(c.file("readings.npz", SAVED.getvalue())).summary(),
+        lambda: READINGS.save(c.place(c.random.choice([io.BytesIO(), FOLDER / "own.npz"]))),
         lambda: ANY.experiments.set_one(
             c.small(1), readings=c.small(8), methods=m(["eeruf"]), progress=c.random.choice([None, False, 3, len])
         ),
+        lambda: ANY.experiments.set_two(1, methods=m([]), second_robot=m("behind"), pilot=m("own"), physics=m("plain")),
+        lambda: ANY.experiments.speed_sweep(m([]), seeds=m(1), methods=m([]), bodies=m(True), t_delta_us=m(150)),
         lambda: ANY.sweep(
             m(repr),
             m([1]),
@@ -206,26 +309,104 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
     ]
 
 
+def tried(call: Callable[..., Any], *arguments: Any) -> Any:
+    """What a call returns; None where it refuses its arguments, as it may."""
+    try:
+        return call(*arguments)
+    except eeruf.EerufError as error:
+        assert str(error), "an error says what is wrong"
+        return None
+
+
 def ring(c: Chance) -> None:
-    """A ring that is polled and disturbed at any time."""
-    m = c.mostly
-    live = ANY.Ring(tables.TABLE_I_D, m(500), m(0), window_us=m(36_000), blanking_us=m(0), consecutive=m(2))
-    watch, adaptation = ANY.SensorWatch(12, 2), ANY.Adaptation([tables.TABLE_I_D, SLOW], 500, window_periods=1)
-    for now in range(0, 200_000, 20_000):
-        event = live.poll(m(now), m(None))
+    """A ring of like sensors."""
+    good = {"t_delta_us": 500, "now_us": c.random.choice([0, 3, 2**32 - 9]), "window_us": 36_000, "consecutive": 2}
+    live = ANY.Ring(tables.TABLE_I_D, **c.one_wrong(good), blanking_us=c.random.choice([0, 900]))
+    run(c, live, ANY.Adaptation([tables.TABLE_I_D, SLOW], 500, window_periods=1))
+
+
+def uneven_ring(c: Chance) -> None:
+    """A ring whose sensors differ, share lines, or rest longer."""
+    needs: dict[str, Any] = {**UNEVEN, "shared_lines": [(0, 2)], "now_us": 0, "consecutive": 2}
+    if c.random.random() < 0.4:
+        needs = {"t_delta_us": c.each(900), "window_us": c.each(12_000), **c.uneven()}
+    live = ANY.Ring(c.random.choice([FITS, LONGER]), **c.one_wrong(needs))
+    run(c, live, ANY.Adaptation([FITS, LONGER], 1_500, window_periods=1))
+
+
+def unverified_ring(c: Chance) -> None:
+    """A ring of any schedule, good or not."""
+    firing = {"period_us": 60_000, "t_fire_a_us": [0, 20_000], "t_fire_b_us": [c.random.randrange(60_000), 25_000]}
+    good = {"t_delta_us": 500, "now_us": 0, "window_us": c.random.choice([900, 12_000, 36_000]), "blanking_us": 0}
+    live = ANY.Ring.unverified(ANY.Schedule.from_firing(**c.one_wrong(firing)), **c.one_wrong(good))
+    run(c, live, ANY.Adaptation([SLOW], 500))
+
+
+def run(c: Chance, live: Any, adaptation: Any) -> None:
+    """Polls and disturbs a ring at any time; what it refuses must leave it as it was."""
+    m, r = c.mostly, c.random
+    watch = ANY.SensorWatch(live.sensors, 2)
+    now = 0
+    for _ in range(r.choice([3, 12, 40])):
+        # In time or late; now and then at no time at all.
+        now = r.choice([live.next_deadline_us, now, now + r.randrange(90_000)])
+        event = tried(live.poll, m(now), m(None))
         if event is not None:
-            watch.observe(event, m(now))
-            adaptation.adapt(live, event)
+            tried(watch.observe, event, m(now))
+            tried(adaptation.adapt, m(live), event)
             event.to_dict()
-        live.wait_us(m(now))
-        c.random.choice([live.echo, live.fired])(m(3), m(now))
-        c.random.choice([live.disable, live.enable, live.stuck, live.is_enabled])(m(3))
-        c.random.choice([live.pause, live.resume, lambda: live.restart(m(3)), lambda: live.change_schedule(m(SLOW))])()
-        setattr(
-            live,
-            c.random.choice(["t_delta_us", "window_us", "blanking_us"]),
-            c.random.choice([0, 9, 900, c.anything()]),
-        )
+        live.wait_us(now)
+        tried(r.choice([live.echo, live.echo, live.fired]), m(r.randrange(live.sensors)), m(now + 9_000))
+        if r.random() < 0.2:
+            disturb(c, live, now)
+        if r.random() < 0.1:
+            to = [0, 9, 900, c.anything(), c.each(900, live.sensors)]
+            tried(setattr, live, r.choice(["t_delta_us", "window_us", "blanking_us"]), r.choice(to))
+            tried(live.change_schedule, m(r.choice([live.schedule, live.schedule.scaled(5, 4), SLOW])))
+        assert live.schedule.sensors == live.sensors
+    tried(adaptation.max_speed_m_s, m(500), m(343.2))
+
+
+def disturb(c: Chance, live: Any, now: int) -> None:
+    """What may happen to a ring of either kind between two polls."""
+    tried(c.random.choice([live.disable, live.enable, live.stuck, live.is_enabled]), c.mostly(1))
+    tried(live.wait_us, c.anything())
+    c.random.choice([live.pause, live.resume, live.resume, lambda: tried(live.restart, c.mostly(now))])()
+
+
+def tracker(c: Chance) -> None:
+    """A tracker that is asked, told to forget, and fed on."""
+    m = c.mostly
+    live = ANY.EchoTracker(**c.one_wrong({"sensors": 2, "t_delta_us": 150, "settings": "quick"}))
+    for phase in range(9):
+        tried(live.push, m(0), m(phase), m(9_000), m(0))
+        tried(c.random.choice([live.confirmed_us, live.is_clear, live.forget]), m(1))
+    live.firing_changed()
+    tried(live.push, m(0), m(3), m(9_000))
+
+
+def recorded(c: Chance) -> None:
+    """A simulation that writes itself into a file, until it is closed."""
+    with ANY.sim.Simulation(ROOM, mcap=c.place(FOLDER / "own.mcap")) as live:
+        live.step(c.small(0))
+        c.random.choice([live.close, lambda: None])()
+        live.step(0.1)
+
+
+def log_of_firings(c: Chance) -> None:
+    """A log of firings whose bytes somebody changed, read and replayed."""
+    rows = "".join(f"{at % 2},{40_000 * at},{at // 2},{at // 2 % 2},{9_000 + at}\n" for at in range(8))
+    file = c.file("firings.csv", f"sensor,fired_us,period,phase,t_echo_us\n{rows}".encode())
+    c.random.choice([ANY.read_firings, ANY.replay, ANY.diagnose, ANY.survey])(file)
+
+
+def occupancy_map(c: Chance) -> Path:
+    """A map of 6 by 4 cells, one of its files changed."""
+    c.file("map.pgm", b"P5 6 4 255\n" + bytes([0, 0, 0, 0, 0, 0, 0, 254, 254, 254, 254, 0] * 2))
+    return c.file(
+        "map.yaml",
+        b"image: map.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n",
+    )
 
 
 def grid(c: Chance) -> None:
@@ -233,29 +414,31 @@ def grid(c: Chance) -> None:
     m = c.mostly
     live, vfh = ANY.nav.Himm(9), ANY.nav.Vfh()
     for _ in range(6):
-        live.echo(m((0.0, 0.0, 1.0)), m(0.4), m(0.0))
-        live.clear(m((0.0, 0.0, 1.0)), m(0.4), m(0.0))
-        live.move_to(m((0.1, 0.3)))
-        live.enter(m(READINGS), m(3.0), m(0.0), robot=m(0), sound_m_s=m(343.2))
-    live.value(c.anything())
+        tried(live.echo, m((0.0, 0.0, 1.0)), m(0.4), m(0.0))
+        tried(live.clear, m((0.0, 0.0, 1.0)), m(0.4), m(0.0))
+        tried(live.move_to, m((0.1, 0.3)))
+        tried(lambda: live.enter(m(READINGS), m(3.0), m(0.0), robot=m(0), sound_m_s=m(343.2)))
+    tried(live.value, c.anything())
     live.to_numpy()
-    vfh.histogram(m(live), m((0.0, 0.0)))
-    vfh.steer(m(live), m((0.0, 0.0)), m((1.0, 0.0)))
-    vfh.drive(m(live), m((0.0, 0.0, 0.0)), m((1.0, 0.0)), m(0.0), turn_gain=m(3.0))
+    tried(vfh.histogram, m(live), m((0.0, 0.0)))
+    tried(vfh.steer, m(live), m((0.0, 0.0)), m((1.0, 0.0)))
+    tried(lambda: vfh.drive(m(live), m((0.0, 0.0, 0.0)), m((1.0, 0.0)), m(0.0), turn_gain=m(3.0)))
 
 
 def hopping_ring(c: Chance) -> None:
     """A hopping ring that is polled and disturbed at any time."""
-    m = c.mostly
-    live = ANY.HoppingRing(
-        HOPPING, m("quick"), m(0), window_us=m(36_000), blanking_us=m(0), reach_us=m(None), seed=m(1)
-    )
-    for now in range(0, 200_000, 20_000):
-        live.poll(m(now), m(None))
-        live.wait_us(m(now))
-        c.random.choice([live.echo, live.fired])(m(3), m(now))
-        c.random.choice([live.disable, live.enable, live.stuck, live.confirmed_us, live.is_enabled])(m(3))
-        c.random.choice([live.pause, live.resume, lambda: live.restart(m(3)), lambda: None])()
+    m, r = c.mostly, c.random
+    good = {"settings": "quick", "now_us": 0, "window_us": 36_000, "blanking_us": 0, "reach_us": None, "seed": 1}
+    live = ANY.HoppingRing(HOPPING, **c.one_wrong(good))
+    now = 0
+    for _ in range(r.choice([3, 12, 40])):
+        now = r.choice([live.next_deadline_us, now, now + r.randrange(90_000)])
+        tried(live.poll, m(now), m(None))
+        live.wait_us(now)
+        tried(r.choice([live.echo, live.echo, live.fired]), m(r.randrange(8)), m(now + 9_000))
+        tried(r.choice([live.confirmed_us, live.is_clear]), m(3))
+        if r.random() < 0.2:
+            disturb(c, live, now)
 
 
 def mutated(c: Chance, text: str) -> str:
@@ -275,6 +458,8 @@ def tampered(c: Chance) -> Any:
     column[c.random.randrange(len(column))] = c.random.choice([0, 1, -1, 64, 100, -128, 127])
     changed = {**columns, name: c.mostly(column)}
     readings = rebuild(c.mostly(method), c.mostly(duration_s), c.mostly(sensors), changed, c.mostly(paths))
+    if c.random.random() < 0.02:
+        c.random.choice([readings.to_pandas, readings.to_polars])()
     return readings.summary(), pickle.dumps(readings)
 
 

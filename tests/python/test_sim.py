@@ -1,6 +1,8 @@
 """Scenes, simulations and sweeps."""
 
+import contextlib
 import functools
+import io
 import pickle
 from pathlib import Path
 from typing import Any
@@ -192,6 +194,15 @@ def test_readings_are_saved_loaded_and_streamed(tmp_path: Path) -> None:
             sim.Readings.load(tmp_path / name)
     with pytest.raises(FileNotFoundError):
         sim.Readings.load(tmp_path / "missing.npz")
+    whole = (tmp_path / "readings.npz").read_bytes()
+    for at in range(0, len(whole), 997):
+        damaged = whole[:at] + bytes([whole[at] ^ 255]) + whole[at + 1 :]
+        with contextlib.suppress(eeruf.EerufError):
+            assert len(sim.Readings.load(io.BytesIO(damaged))) == len(readings)
+    wrong: Any
+    for wrong in (True, None, "\0", io.StringIO()):
+        with pytest.raises(eeruf.ArgumentError, match=r"^file = .*; expected a path, or a file that takes bytes$"):
+            readings.save(wrong)
     table = pyarrow.table(readings)
     assert table.num_rows == len(readings)
     assert table["path"].null_count == int((readings.path < 0).sum())

@@ -54,10 +54,7 @@ pub(crate) fn reference(folder: &Path) -> Result<(), Trouble> {
     // Annotations name what they come from.
     let packages = ["pdoc", "pandas", "polars", &wheel];
     run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--force-reinstall"]).args(packages))?;
-    run(Command::new(&python)
-        .args(["-m", "pdoc", "--docformat", "google", "--output-directory"])
-        .arg(folder)
-        .arg("eeruf"))
+    run(Command::new(&python).arg("xtask/reference.py").arg(folder))
 }
 
 /// Builds the wheel and the source distribution into a folder, and tries each in an empty environment.

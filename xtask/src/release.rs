@@ -49,7 +49,8 @@ pub(crate) fn release(_plan: &Plan) -> ExitCode {
         match output(Command::new("cargo").args(["deny", "--version"])) {
             Some(_) => {
                 // Else it looks at the package in the root alone: not at the wheel, not at the ROS 2 node.
-                let check = ["deny", "--locked", "--workspace", "check", "licenses", "bans", "sources"];
+                let check =
+                    ["deny", "--locked", "--workspace", "--log-level", "error", "check", "licenses", "bans", "sources"];
                 run(Command::new("cargo").args(check))
             }
             None => Err(Trouble::Skipped("no cargo-deny; try: cargo install cargo-deny --locked".to_owned())),

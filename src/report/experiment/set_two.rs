@@ -128,7 +128,8 @@ impl Sweep {
         });
         let mut text = format!(
             "Set II: {} at several top speeds{}{}, pilot: {}, physics: {}: finished % with 95 % intervals (Wilson's),\n\
-             mean speed in m/s. Sustained is the highest speed at which {:.0} % of the courses are finished; {FILTERS}.\n\n",
+             mean speed in m/s. Sustained is the highest speed at which {:.0} % of the courses are finished; \
+             {FILTERS}.\n\n",
             courses(self.first, self.seeds),
             beside(self.second_robot_m),
             bodies(self.bodies),

@@ -34,8 +34,8 @@ pub struct Physics {
 
 impl Physics {
     /// The simplest physics, which the simulator began with and methods were tuned under: poles of any thickness are
-    /// transparent, edges are silent, a wall returns as much however narrow it is, an echo is heard at its onset however
-    /// faint it is, and each arrival fades on its own.
+    /// transparent, edges are silent, a wall returns as much however narrow it is, an echo is heard at its onset
+    /// however faint it is, and each arrival fades on its own.
     pub const PLAIN: Self =
         Self { shadows: false, edges: false, narrow_panels: false, range_walk: false, fading_time_s: 0.0 };
 

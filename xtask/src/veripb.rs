@@ -101,8 +101,8 @@ fn loosened(line: &str) -> String {
 
 /// The proof with one line broken: its first clause claims a contradiction; the witness of its first symmetry forgets a
 /// variable. And without all of its sums, of which one alone may be spared, since others lead the same way. A proof
-/// without sums is unit propagation alone, which finds the contradiction at its first clause as well: only its witness is
-/// broken.
+/// without sums is unit propagation alone, which finds the contradiction at its first clause as well: only its witness
+/// is broken.
 fn broken_proofs(proof: &str) -> Vec<(&'static str, String)> {
     let lines: Vec<&str> = proof.lines().collect();
     let with = |at: usize, line: &str| {

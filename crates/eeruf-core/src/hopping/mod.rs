@@ -139,7 +139,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         first: Option<u8>,
         expected_change_us: impl FnMut(u8) -> i32,
     ) -> Option<RingEvent> {
-        if !self.ring.is_due(now) {
+        if first.is_none() && !self.ring.is_due(now) {
             if self.ring.has_jumped(now) {
                 self.restart(now);
             }

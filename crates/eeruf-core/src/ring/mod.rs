@@ -69,11 +69,11 @@ pub struct Ring<S, const K: usize, const E: usize = 1> {
     period: u32,
     scheduler: S,
     lateness: Lateness,
-    tally: Tally<u8>,
     sensors: [Sensor<E>; K],
     /// The sum of lateness at each sensor's last firing (see [`Lateness`]); in an array of its own, since a sensor's
     /// other fields fill their words.
     totals: [u16; K],
+    tally: Tally<u8>,
 }
 
 /// A [`Ring`] with scheduled firing by a schedule of the paper's kind.

@@ -53,7 +53,8 @@ pub use events::{PeriodStats, Reading, RingEvent};
 /// ```
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-// In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction.
+// In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction, of single bytes 31.
+// What comes before the sensors is whole words, or they are built on the stack and copied.
 #[repr(C)]
 pub struct Ring<S, const K: usize, const E: usize = 1> {
     /// The sensor whose window closes first, or [`NOBODY`].

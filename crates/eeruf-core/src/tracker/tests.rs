@@ -220,3 +220,15 @@ fn a_tentative_echo_needs_one_vote_more_above_the_restless_rate_and_not_at_it() 
     }
     assert_eq!(seen, [true, true], "rates that were met");
 }
+
+#[test]
+fn a_reading_that_takes_the_place_of_confirmed_silence_is_not_clear() {
+    let mut tracker = EchoTracker::<1, 1>::new(TrackerSettings::BALANCED).unwrap();
+    for phase in 0..5 {
+        let (_, is_clear) = tracker.weigh(0, None, Firing::new(Phase(phase))).unwrap();
+        assert_eq!((is_clear, tracker.is_clear(0)), (phase == 4, phase == 4));
+    }
+    // There is room for one track alone.
+    let (_, is_clear) = tracker.weigh(0, Some(Micros::new(9_000)), Firing::new(Phase(5))).unwrap();
+    assert_eq!((is_clear, tracker.is_clear(0)), (false, false));
+}

@@ -51,6 +51,8 @@ KEPT_UNTIL_THE_END = tempfile.TemporaryDirectory(prefix="eeruf-fuzz-")
 FOLDER = Path(KEPT_UNTIL_THE_END.name)
 SAVED = io.BytesIO()
 READINGS.save(SAVED)
+# What they bring on first use is no growth.
+READINGS.to_pandas(), READINGS.to_polars()
 HANGS_S = 60
 
 

@@ -87,12 +87,12 @@ impl<const K: usize> fmt::Display for HoppingRust<'_, K> {
         let HoppingSettings { tracker, neighbours, .. } = settings(requirements);
         writeln!(f, "// For `HoppingRing::new`; QUICK and MAPS are the other sets of settings.")?;
         writeln!(f, "pub const SETTINGS: HoppingSettings = HoppingSettings::BALANCED")?;
-        writeln!(f, "    .with_tracker(\n        TrackerSettings::BALANCED")?;
+        write!(f, "    .with_tracker(\n        TrackerSettings::BALANCED")?;
         let TrackerSettings { t_delta, near, tentative_within, .. } = tracker;
         for (name, time) in [("t_delta", t_delta), ("near", near), ("tentative_within", tentative_within)] {
-            writeln!(f, "            .with_{name}(Micros::new({}))", Grouped(time))?;
+            write!(f, "\n            .with_{name}(Micros::new({}))", Grouped(time))?;
         }
-        writeln!(f, "    )\n    .with_neighbours({neighbours});\n")?;
+        writeln!(f, ",\n    )\n    .with_neighbours({neighbours});\n")?;
         write!(f, "pub const LISTENING: HoppingListening = ")?;
         if audible.blanking == Micros::ZERO && audible.reach == audible.window {
             return writeln!(f, "HoppingListening::new(Micros::new({}));", Grouped(audible.window));
@@ -283,11 +283,14 @@ mod tests {
         let wide = PhaseRequirements { t_delta: Micros::new(500), ..requirements };
         assert!(schedule.to_c(&wide).to_string().contains("{500, 500, 60,"));
         let narrow = PhaseRequirements { t_delta: Micros::new(40), ..requirements };
-        assert!(schedule.to_rust(&narrow).to_string().contains("tentative_within: Micros::new(40),"));
+        assert!(schedule.to_rust(&narrow).to_string().contains(".with_tentative_within(Micros::new(40)),"));
         let mut deaf = requirements;
         deaf.audible.blanking = Micros::new(900);
         let rust = schedule.to_rust(&deaf).to_string();
-        assert!(rust.ends_with("    blanking: Micros::new(900),\n    reach: Micros::new(36_000),\n};\n"), "{rust}");
+        assert!(
+            rust.ends_with("    .with_blanking(Micros::new(900))\n    .with_reach(Micros::new(36_000));\n"),
+            "{rust}"
+        );
         let five = HoppingCode::shortest(4, 5, Micros::new(301)).unwrap();
         let five = HoppingSchedule::<4>::new(five, Micros::from_millis(40), [Micros::ZERO; 4]).unwrap();
         assert!(five.to_toml().to_string().contains("phases = 5\nfirst_multiplier = 2\n"));

@@ -32,6 +32,7 @@ pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
     let installed = PathBuf::from(FOLDER).join("bin/veripb");
     let program = plan.program.clone().unwrap_or(installed);
     steps.step("build", || {
+        fs::create_dir_all(FOLDER).map_err(|error| Trouble::Failed(format!("{FOLDER}: {error}")))?;
         run(Command::new("cargo").args(["build", "--release", "--locked", "-p", "eeruf"]))?;
         if program.exists() {
             return Ok(());

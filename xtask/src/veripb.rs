@@ -101,20 +101,21 @@ fn loosened(line: &str) -> String {
 }
 
 /// The proof with one line broken: its first clause claims a contradiction; the witness of its first symmetry forgets a
-/// variable. And without all of its sums, of which one alone may be spared, since others lead the same way. A proof
-/// without sums is unit propagation alone, which finds the contradiction at its first clause as well: only its witness
-/// is broken.
+/// variable. And without all of its sums, of which one alone may be spared, since others lead the same way. None for a
+/// proof without sums: unit propagation refutes its model before the first line, so that no line can be wrong.
 fn broken_proofs(proof: &str) -> Vec<(&'static str, String)> {
     let lines: Vec<&str> = proof.lines().collect();
+    if !lines.iter().any(|line| line.starts_with("pol")) {
+        return Vec::new();
+    }
     let with = |at: usize, line: &str| {
         let mut broken = lines.clone();
         broken[at] = line;
         broken.join("\n") + "\n"
     };
     let mut broken = Vec::new();
-    let by_sums = lines.iter().any(|line| line.starts_with("pol"));
     let last = lines.iter().rposition(|line| line.starts_with("red")).unwrap_or(0);
-    if let Some(clause) = (last..lines.len()).find(|&i| by_sums && lines[i].starts_with("rup +")) {
+    if let Some(clause) = (last..lines.len()).find(|&i| lines[i].starts_with("rup +")) {
         broken.push(("with a clause that claims too much", with(clause, "rup >= 1;")));
     }
     if let Some(first) = lines.iter().position(|line| line.starts_with("red")) {
@@ -122,10 +123,8 @@ fn broken_proofs(proof: &str) -> Vec<(&'static str, String)> {
         let forgetful = words[..words.len() - 3].join(" ") + ";";
         broken.push(("with a witness that forgets a variable", with(first, &forgetful)));
     }
-    if by_sums {
-        let sums = lines.iter().map(|line| if line.starts_with("pol") { "pol 1;" } else { line });
-        broken.push(("without its sums", sums.collect::<Vec<_>>().join("\n") + "\n"));
-    }
+    let sums = lines.iter().map(|line| if line.starts_with("pol") { "pol 1;" } else { line });
+    broken.push(("without its sums", sums.collect::<Vec<_>>().join("\n") + "\n"));
     broken
 }
 

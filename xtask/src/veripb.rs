@@ -51,7 +51,7 @@ pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
             Ok(())
         });
     }
-    println!("\n{rows}\n{judged} proofs accepted in {:.1} s, each refused when broken", total.as_secs_f64());
+    println!("\n{rows}\n{judged} proofs accepted in {:.1} s, each that has sums refused when broken", total.as_secs_f64());
 }
 
 /// Designs a ring, and has VeriPB accept the proof and refuse three that cannot be one. How long it took to accept it.
@@ -75,6 +75,12 @@ fn judge(program: &Path, name: &str, ring: &str, rows: &mut String) -> Result<Du
     }
     let took = began.elapsed();
     let (model_text, proof_text) = (read(&model)?, read(&proof)?);
+    let seconds = took.as_secs_f64();
+    let _ = writeln!(rows, "| {name} | {nodes} | {} | {} | {seconds:.1} s |", model_text.len(), proof_text.len());
+    // Without sums, unit propagation refutes the model before the first line, so that no line can be wrong.
+    if !proof_text.lines().any(|line| line.starts_with("pol")) {
+        return Ok(took);
+    }
     let broken = path("broken.pbp");
     for (what, text) in broken_proofs(&proof_text) {
         write(&broken, &text)?;
@@ -90,8 +96,6 @@ fn judge(program: &Path, name: &str, ring: &str, rows: &mut String) -> Result<Du
     if accepts(program, &less, &proof) {
         return Err(Trouble::Failed(format!("{}: VeriPB accepts the proof without intervals", less.display())));
     }
-    let seconds = took.as_secs_f64();
-    let _ = writeln!(rows, "| {name} | {nodes} | {} | {} | {seconds:.1} s |", model_text.len(), proof_text.len());
     Ok(took)
 }
 
@@ -101,13 +105,9 @@ fn loosened(line: &str) -> String {
 }
 
 /// The proof with one line broken: its first clause claims a contradiction; the witness of its first symmetry forgets a
-/// variable. And without all of its sums, of which one alone may be spared, since others lead the same way. None for a
-/// proof without sums: unit propagation refutes its model before the first line, so that no line can be wrong.
+/// variable. And without all of its sums, of which one alone may be spared, since others lead the same way.
 fn broken_proofs(proof: &str) -> Vec<(&'static str, String)> {
     let lines: Vec<&str> = proof.lines().collect();
-    if !lines.iter().any(|line| line.starts_with("pol")) {
-        return Vec::new();
-    }
     let with = |at: usize, line: &str| {
         let mut broken = lines.clone();
         broken[at] = line;

@@ -51,7 +51,10 @@ pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
             Ok(())
         });
     }
-    println!("\n{rows}\n{judged} proofs accepted in {:.1} s, each that has sums refused when broken", total.as_secs_f64());
+    println!(
+        "\n{rows}\n{judged} proofs accepted in {:.1} s, each that has sums refused when broken",
+        total.as_secs_f64()
+    );
 }
 
 /// Designs a ring, and has VeriPB accept the proof and refuse three that cannot be one. How long it took to accept it.

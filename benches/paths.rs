@@ -1,11 +1,18 @@
-//! Paths per second on the scenes of the shared corpus: the core alone (images seen) and the whole answer.
+//! Paths per second on the scenes of the shared corpus: the core alone (images seen), also for a source that moves, and
+//! the whole answer.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use eeruf_sim::{Limits, Paths, Tracer};
+use eeruf_sim::{Limits, Paths, Point, Tracer};
 use std::{hint::black_box, time::Duration};
 
 #[path = "../crates/eeruf-sim/tests/common/corpus.rs"]
 mod corpus;
+
+/// Places within a hundredth of the source's distance from the origin, in an order that jumps to and fro. Where a source
+/// stands still the processor learns which way each branch goes, and pillars40 takes two thirds of the time.
+fn places(source: Point) -> Vec<Point> {
+    (0..512).map(|k| source * (1.0 + 0.02 * (f64::from(k * 197 % 512) / 512.0 - 0.5))).collect()
+}
 
 fn paths(criterion: &mut Criterion) {
     let cases = corpus::corpus();
@@ -20,6 +27,11 @@ fn paths(criterion: &mut Criterion) {
         group.throughput(Throughput::Elements(found.len() as u64));
         group.bench_function(format!("{id}/core"), |bencher| {
             bencher.iter(|| black_box(tracer.visible_images(&scene, black_box(source), &receivers, limits)));
+        });
+        let mut places = places(source).into_iter().cycle();
+        group.bench_function(format!("{id}/core, moving"), |bencher| {
+            bencher
+                .iter(|| black_box(tracer.visible_images(&scene, places.next().unwrap_or(source), &receivers, limits)));
         });
         group.bench_function(format!("{id}/whole"), |bencher| {
             bencher.iter(|| black_box(tracer.trace(&scene, black_box(source), &receivers, limits, &mut found)));

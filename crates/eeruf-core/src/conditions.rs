@@ -274,3 +274,15 @@ impl fmt::Display for Criterion {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::Criterion;
+    use std::string::ToString;
+
+    #[test]
+    fn criteria_have_the_names_that_files_use() {
+        assert_eq!([Criterion::Paper, Criterion::Exact].map(|criterion| criterion.to_string()), ["paper", "exact"]);
+    }
+}

@@ -285,6 +285,34 @@ mod tests {
     }
 
     #[test]
+    fn a_schedule_of_uneven_sensors_is_written_as_firing_times_though_it_has_lags() {
+        let rust = TABLE_I_D.to_rust(&Requirements { uneven: Some(Uneven::NONE), ..REQUIREMENTS }).to_string();
+        assert!(rust.contains("pub const RING: UnevenSchedule<12> = uneven_schedule! {"), "{rust}");
+        assert!(rust.contains("    t_fire_a_us: [24_000, 49_000,") && !rust.contains("t_lag_us"), "{rust}");
+    }
+
+    #[test]
+    fn a_list_stays_on_its_line_up_to_120_columns() {
+        let (mut on_one, mut on_many) = (0, 0);
+        for count in 1..=64 {
+            for last in [1, 2, 4, 8, 16] {
+                let mut items = std::vec![1; count];
+                items[count - 1] = last;
+                let uneven = Uneven { together: &items, ..Uneven::NONE };
+                let text = UnevenSource(&uneven).to_string();
+                let each: std::vec::Vec<_> = items.iter().map(|set| std::format!("{set:#b}")).collect();
+                let line = std::format!("            together: &[{}],", each.join(", "));
+                assert_eq!(text.lines().any(|found| found == line), line.len() <= 120, "{text}");
+                let alone = text.lines().filter(|found| found.starts_with("                0b")).count();
+                assert_eq!(alone, if line.len() <= 120 { 0 } else { count }, "{text}");
+                on_one += u32::from(line.len() == 120);
+                on_many += u32::from(line.len() == 121);
+            }
+        }
+        assert!(on_one > 0 && on_many > 0, "both sides of the limit are tried");
+    }
+
+    #[test]
     fn numbers_are_grouped_by_thousands() {
         for (us, text) in [(0, "0"), (999, "999"), (1000, "1_000"), (65_005, "65_005"), (1_000_070, "1_000_070")] {
             assert_eq!(Grouped(Micros::new(us)).to_string(), text);

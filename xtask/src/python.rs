@@ -28,6 +28,7 @@ pub(crate) fn python() -> Result<(), Trouble> {
     };
     run(tool("maturin").args(BUILD).arg("--out").arg(&wheels))?;
     let wheel = only_file(&wheels)?;
+    sources_are_whole(&python, &home)?;
     run(tool("pip").args(["install", "--quiet", "--force-reinstall", "--no-deps"]).arg(&wheel))?;
     run(tool("ruff").args(["check", "python", "tests/python", "benches/python"]))?;
     run(tool("ruff").args(["format", "--check", "python", "tests/python", "benches/python"]))?;
@@ -39,6 +40,21 @@ pub(crate) fn python() -> Result<(), Trouble> {
     let mut tests = tool("pytest");
     tests.env("EERUF_WHEEL", &wheel).env("EERUF_PROGRAM", program).env("EERUF_RUST_SIDE", rust_side);
     run(&mut tests)
+}
+
+/// Packs the sources, and has Cargo read their manifests away from the repository by checking the smallest package: what
+/// it cannot read names a file that was not packed. Building all of them is left to `release`.
+fn sources_are_whole(python: &Path, home: &Path) -> Result<(), Trouble> {
+    let folder = home.join("sources");
+    if folder.exists() {
+        fs::remove_dir_all(&folder).map_err(|error| Trouble::Failed(format!("{}: {error}", folder.display())))?;
+    }
+    run(Command::new(python).args(["-m", "maturin", "sdist", "--out"]).arg(&folder))?;
+    let packed = only_file(&folder)?;
+    run(Command::new(python).args(["-m", "tarfile", "-e"]).args([&packed, &folder]))?;
+    fs::remove_file(&packed).map_err(|error| Trouble::Failed(format!("{}: {error}", packed.display())))?;
+    let manifest = only_file(&folder)?.join("Cargo.toml");
+    run(Command::new("cargo").args(["check", "--quiet", "--package", "eeruf-check", "--manifest-path"]).arg(manifest))
 }
 
 /// Writes the reference, made of docstrings and stubs, into a folder: of the wheel that `EERUF_WHEEL` names, or of one

@@ -13,6 +13,7 @@ mod fired;
 #[path = "../formats.rs"]
 mod formats;
 mod hopping;
+mod hopping_log;
 mod lateness;
 mod listening;
 mod period_corpus;

@@ -43,7 +43,7 @@ pub(crate) fn python() -> Result<(), Trouble> {
 }
 
 /// Packs the sources, and has Cargo read their manifests away from the repository by checking the smallest package: what
-/// it cannot read names a file that was not packed. Building all of them is left to `release`.
+/// it cannot read names a file that was not packed. Building all of it is left to `release`.
 fn sources_are_whole(python: &Path, home: &Path) -> Result<(), Trouble> {
     let folder = home.join("sources");
     if folder.exists() {

@@ -42,7 +42,7 @@ pub(crate) fn python() -> Result<(), Trouble> {
     run(&mut tests)
 }
 
-/// Packs the sources, and has Cargo read their manifests away from the repository by checking the smallest package: what
+/// Packs the sources, and has Cargo read their manifests away from the repository by checking the least package: what
 /// it cannot read names a file that was not packed. Building all of it is left to `release`.
 fn sources_are_whole(python: &Path, home: &Path) -> Result<(), Trouble> {
     let folder = home.join("sources");

@@ -105,3 +105,40 @@ impl Requirements<'_> {
         (t_delta, gap, if window.as_micros() == u32::MAX { Micros::ZERO } else { window })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::Layout;
+
+    const fn ms(ms: u32) -> Micros {
+        Micros::from_millis(ms)
+    }
+
+    #[test]
+    fn after_a_firing_the_other_keeps_the_interval_or_the_window_of_the_line_that_they_share() {
+        let windows = [ms(12), ms(40), ms(40)];
+        let uneven = Uneven { window: &windows, shared_lines: &[0b011], intervals: &[(0, 1, ms(20))], ..Uneven::NONE };
+        let requirements = Requirements {
+            min_interval: ms(15),
+            layout: Layout::Line(2),
+            uneven: Some(uneven),
+            ..Requirements::new(Micros::new(999))
+        };
+        // The window of who fired first, where it is longer; sensors 2 and 3 share nothing, 1 and 3 are no neighbours.
+        for (x, y, gap) in [(0, 1, 20), (1, 0, 40), (1, 2, 15), (2, 1, 15), (0, 2, 0), (2, 0, 0)] {
+            assert_eq!(requirements.gap_after(3, x, y), ms(gap), "{x} {y}");
+        }
+        // No window or time to refire is as long as that of the shared line.
+        assert_eq!(requirements.strictest(3), (Micros::new(999), ms(40), ms(12)));
+    }
+
+    #[test]
+    fn the_strictest_gap_may_be_that_of_one_pair_or_of_one_sensor() {
+        let of = |uneven| Requirements { uneven: Some(uneven), ..Requirements::new(Micros::new(99)) }.strictest(3);
+        let pair = Uneven { intervals: &[(1, 2, ms(30))], ..Uneven::NONE };
+        assert_eq!(of(pair).1, ms(30));
+        let (t_delta, refire) = ([99, 50, 70].map(Micros::new), [ms(9), ms(33), ms(1)]);
+        assert_eq!(of(Uneven { t_delta: &t_delta, refire: &refire, ..pair }), (Micros::new(50), ms(33), Micros::ZERO));
+    }
+}

@@ -7,6 +7,8 @@ use eeruf_core::{
 use proptest::prelude::*;
 use serde_json::Value;
 
+use crate::common::random::Random;
+
 const AUDIBLE: Audible =
     Audible { window: Micros::new(36_000), blanking: Micros::new(2380), reach: Micros::new(40_000) };
 
@@ -208,4 +210,58 @@ fn a_path_that_is_heard_in_one_phase_only_counts_for_no_separation() {
     let audible = |window| Audible { window: us(window), blanking: us(0), reach: us(200_000) };
     assert_eq!(table.separation(&audible(29_999)), None);
     assert_eq!(table.separation(&audible(30_000)).map(|least| least.value), Some(us(30_000)));
+}
+
+/// What separates a table of two sensors, by trying each length of a path: from x to y, of any two phases and ages.
+fn tried(times: &[[u32; 2]], period: u32, audible: &Audible, stale: bool) -> Option<u32> {
+    let phases = times.len() as i64;
+    let us = |time: Micros| i64::from(time.as_micros());
+    // What a path of this length reads in a phase, if its sound is so many periods old.
+    let reading = |x: usize, y: usize, (phase, age): (i64, i64), length: i64| {
+        let sent = (phase - age).rem_euclid(phases) as usize;
+        i64::from(times[sent][x]) + length - i64::from(times[phase as usize][y]) - age * i64::from(period)
+    };
+    let heard = |reads: i64| (us(audible.blanking)..=us(audible.window)).contains(&reads);
+    let events: Vec<_> = (0..phases).flat_map(|phase| (-1..=3).map(move |age| (phase, age))).collect();
+    let mut least = None;
+    for (x, y) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        for &one in &events {
+            for &other in events.iter().filter(|other| other.0 > one.0) {
+                // Own sound that is no period old, or a whole cycle, is as it should be.
+                let counts = if stale { x == y && one.1 % phases != 0 && other.1 % phases != 0 } else { x != y };
+                let lengths = (0..=us(audible.reach)).filter(|_| counts);
+                for (a, b) in lengths.map(|length| (reading(x, y, one, length), reading(x, y, other, length))) {
+                    if heard(a) && heard(b) {
+                        least = Some(least.map_or(a.abs_diff(b), |least: u64| least.min(a.abs_diff(b))));
+                    }
+                }
+            }
+        }
+    }
+    least.map(|least| least as u32)
+}
+
+#[test]
+fn a_table_is_as_separate_as_trying_each_length_of_a_path_finds() {
+    let (mut random, mut apart, mut by_age) = (Random(11), 0, [0; 5]);
+    for _ in 0..800 {
+        let (phases, period) = (2 + random.up_to(3) as usize, 8 + random.up_to(12));
+        let times: Vec<[u32; 2]> = (0..phases).map(|_| [(); 2].map(|()| random.up_to(period + 2))).collect();
+        let audible = Audible {
+            window: Micros::new(2 + random.up_to(period)),
+            blanking: Micros::new(random.up_to(3)),
+            reach: Micros::new(random.up_to(4 * period)),
+        };
+        let rows: Vec<_> = times.iter().map(|row| row.map(Micros::new)).collect();
+        let table = PhaseTable::new(Micros::new(period), &rows);
+        for (stale, says) in [(false, table.separation(&audible)), (true, table.stale_separation(&audible))] {
+            let value = says.map(|separation| separation.value.as_micros());
+            assert_eq!(value, tried(&times, period, &audible, stale), "{times:?}, {period} us, {audible:?}, {stale}");
+            apart += u32::from(value.is_some_and(|value| value > 0));
+            for age in says.iter().flat_map(|separation| [separation.ages.0, separation.ages.1]) {
+                by_age[usize::try_from(age + 1).unwrap()] += 1;
+            }
+        }
+    }
+    assert!(apart > 200 && by_age.iter().all(|&often| often > 5), "{apart} {by_age:?}");
 }

@@ -37,7 +37,7 @@ eeruf.design(64, 499, 9_000, 36_000, layout=pairs, budget=2**60, progress=tell)
     "simulate": """
 robots = [eeruf.sim.Robot((x, 0, 1.57), 12, 0.26, 0.3) for x in range(4)]
 walls = [[8, 3, -4, 3], [-4, 3, -4, -3], [-4, -3, 8, -3], [8, -3, 8, 3]]
-eeruf.sim.simulate(eeruf.sim.Scene(walls, robots=robots), periods=10_000_000, progress=tell)
+eeruf.sim.simulate(eeruf.sim.Scene(walls, robots=robots), periods=1_000_000, progress=tell)
 """,
     "set_one": "eeruf.experiments.set_one(100_000, progress=tell)",
     "set_two": "eeruf.experiments.set_two(100_000, second_robot='ahead', progress=tell)",

@@ -112,6 +112,7 @@ mod tests {
 
 #[cfg(test)]
 mod tests_of_core {
+    extern crate std;
     use super::*;
 
     #[test]
@@ -120,6 +121,8 @@ mod tests_of_core {
         assert_eq!(Duration::from(Micros::MAX), Duration::from_micros(u32::MAX.into()));
         assert_eq!(Micros::try_from(Duration::from(Micros::MAX)), Ok(Micros::MAX));
         assert_eq!(Micros::try_from(Duration::from_micros(1 << 32)), Err(DurationError));
+        let says = std::format!("{DurationError}");
+        assert!(says.starts_with("a duration too long; expected at most 4294967"), "{says}");
     }
 }
 

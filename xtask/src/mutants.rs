@@ -158,7 +158,7 @@ impl Plan {
                 args.extend(slow.iter().flat_map(|name| ["--skip".to_owned(), (*name).to_owned()]));
             }
             Round::Twin => {
-                // cargo-mutants would ask the core's own tests about unbroken code; `passes_unbroken` asks the right ones.
+                // cargo-mutants would ask the core's own tests about unbroken code; `passes_unbroken` asks these.
                 let unbroken = ["--baseline=skip", "--timeout=120"];
                 let twin = ["--test-package=eeruf-c-equal", "--cargo-arg=--test=all"];
                 args.extend(unbroken.into_iter().chain(twin).map(str::to_owned));

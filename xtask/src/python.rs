@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::env::consts::EXE_SUFFIX;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -18,9 +19,7 @@ pub(crate) fn python() -> Result<(), Trouble> {
     let python = environment(&home)?;
     let wheels = home.join("wheels");
     // Only the wheel that is built now.
-    if wheels.exists() {
-        fs::remove_dir_all(&wheels).map_err(|error| Trouble::Failed(format!("{}: {error}", wheels.display())))?;
-    }
+    remove(&wheels)?;
     let tool = |name: &str| {
         let mut command = Command::new(&python);
         command.args(["-m", name]);
@@ -46,15 +45,23 @@ pub(crate) fn python() -> Result<(), Trouble> {
 /// it cannot read names a file that was not packed. Building all of it is left to `release`.
 fn sources_are_whole(python: &Path, home: &Path) -> Result<(), Trouble> {
     let folder = home.join("sources");
-    if folder.exists() {
-        fs::remove_dir_all(&folder).map_err(|error| Trouble::Failed(format!("{}: {error}", folder.display())))?;
-    }
+    remove(&folder)?;
     run(Command::new(python).args(["-m", "maturin", "sdist", "--out"]).arg(&folder))?;
     let packed = only_file(&folder)?;
     run(Command::new(python).args(["-m", "tarfile", "-e"]).args([&packed, &folder]))?;
     fs::remove_file(&packed).map_err(|error| Trouble::Failed(format!("{}: {error}", packed.display())))?;
     let manifest = only_file(&folder)?.join("Cargo.toml");
     run(Command::new("cargo").args(["check", "--quiet", "--package", "eeruf-check", "--manifest-path"]).arg(manifest))
+}
+
+/// Removes a folder that an earlier run left, if there is one.
+fn remove(folder: &Path) -> Result<(), Trouble> {
+    match fs::remove_dir_all(folder) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => {
+            Err(Trouble::Failed(format!("{}: {error}", folder.display())))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Writes the reference, made of docstrings and stubs, into a folder: of the wheel that `EERUF_WHEEL` names, or of one
@@ -76,9 +83,7 @@ pub(crate) fn reference(folder: &Path) -> Result<(), Trouble> {
 /// Builds the wheel and the source distribution into a folder, and tries each in an empty environment.
 pub(crate) fn distributions(folder: &Path) -> Result<(), Trouble> {
     let python = environment(Path::new("target/python"))?;
-    if folder.exists() {
-        fs::remove_dir_all(folder).map_err(|error| Trouble::Failed(format!("{}: {error}", folder.display())))?;
-    }
+    remove(folder)?;
     for (verb, ending) in [(&BUILD[..], "whl"), (&["sdist"], "gz")] {
         let to = folder.join(ending);
         run(Command::new(&python).args(["-m", "maturin"]).args(verb).arg("--out").arg(&to))?;

@@ -1475,7 +1475,6 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
 #define CATCHES_UP_US 1000u /* a firing that is later moves all that follow */
 #define ONE_SOLO 256u       /* what a solo period costs; as much again may be saved up */
 #define DRAWS 8u            /* lags that are drawn in search of one that keeps the neighbours' interval */
-#define RESTLESS 178u       /* of 255: with so many unexplained readings a tentative echo needs one vote more */
 
 /* -- The tracker: which echo of a sensor is its own. A reading within t_delta of a track supports it, and only support
    from different phases counts. A later reading contradicts it; an earlier one hides it (docs/hopping.md). -- */
@@ -1616,15 +1615,6 @@ static void end_weighing(EerufFilter *filter, uint32_t previous_us, EerufReading
     reading->age = filter->age;
 }
 
-/* How many close votes a tentative echo needs now; 0: none is reported. */
-static uint8_t tentative_votes(const EerufHoppingRing *hopping, uint8_t sensor) {
-    uint8_t votes = hopping->config.tracker.tentative_votes;
-    if (votes == 0) return 0;
-    if (hopping->hoppers[sensor].unexplained > RESTLESS) votes++;
-    if (hopping->readier > 0 && hopping->candidate != sensor) votes--;
-    return votes < 2 ? 2 : votes;
-}
-
 /* The tracks move with the robot. */
 static void shift_tracks(EerufHopper *hopper, int32_t change_us) {
     uint8_t place;
@@ -1640,7 +1630,7 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
     const EerufTrackerSettings *how = &hopping->config.tracker;
     EerufHopper *hopper = &hopping->hoppers[sensor];
     const uint32_t t_echo_us = reading->t_echo_us;
-    const uint8_t phase = hopper->phase, votes = tentative_votes(hopping, sensor);
+    const uint8_t phase = hopper->phase, votes = how->tentative_votes;
     const uint8_t nearest = nearest_track(hopper, t_echo_us, how->t_delta_us);
     const EerufTrack *believed = believed_of(hopper);
     /* A copy: the tracks move below. Without one no echo is as late. */
@@ -1649,7 +1639,7 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
     const bool is_near = believes && is_within(held_us, t_echo_us, how->near_us);
     const bool has_previous = believes || nearest != NOBODY;
     const uint32_t previous_us = nearest != NOBODY ? hopper->tracks[nearest].t_echo_us : held_us;
-    bool candidate = false, tentative = false, confirmed;
+    bool tentative = false, confirmed;
     uint8_t place, kind;
     for (place = 0; place < EERUF_HYPOTHESES && steady; place++) {
         EerufTrack *track = &hopper->tracks[place];
@@ -1660,7 +1650,6 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
             support(track, t_echo_us, phase, solo, how);
             close = track->flags & CONTRADICTED ? 0 : track->close;
             earlier = (!believes || track->t_echo_us < held_us) && track->t_echo_us != EERUF_NO_ECHO;
-            candidate = earlier && !(track->flags & TRACK_CONFIRMED) && close >= 2;
             tentative = earlier && votes != 0 && (solo || close >= votes);
         } else if (is_near && track->t_echo_us == held_us) {
             /* It follows an echo that moves faster than its support: three tenths of the way. */
@@ -1674,14 +1663,9 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
             if (track->flags & TRACK_CONFIRMED) miss(track, phase);
         }
     }
-    if (steady) {
-        const bool explained = nearest != NOBODY || is_near;
-        if (!explained) {
-            begin_track(hopper, t_echo_us, phase, solo);
-            tentative = solo && votes != 0 && t_echo_us != EERUF_NO_ECHO;
-        }
-        if (explained) hopper->unexplained = (uint8_t)(hopper->unexplained - hopper->unexplained / 16);
-        else hopper->unexplained = (uint8_t)(hopper->unexplained + (255u - hopper->unexplained) / 16);
+    if (steady && nearest == NOBODY && !is_near) {
+        begin_track(hopper, t_echo_us, phase, solo);
+        tentative = solo && votes != 0 && t_echo_us != EERUF_NO_ECHO;
     }
     believed = believed_of(hopper);
     confirmed = believed != NULL && is_within(believed->t_echo_us, t_echo_us, how->near_us);
@@ -1691,11 +1675,6 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
     else kind = has_previous ? EERUF_READING_REJECTED : EERUF_READING_FIRST;
     reading->kind = kind;
     end_weighing(&sensor_of(&hopping->ring, sensor)->filter, previous_us, reading);
-    if (hopping->readier > 0) hopping->readier--;
-    if (candidate) {
-        hopping->candidate = sensor;
-        hopping->readier = (uint8_t)(3u * hopping->ring.count);
-    }
 }
 
 /* -- Firing: each sensor at its lag plus the wait of the phase, and in a solo period one sensor alone -- */
@@ -2063,7 +2042,6 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     /* A track may be off by as much as its readings. */
     hopping->tolerated = (uint16_t)((config->step_us - config->tracker.t_delta_us - 1) / 2);
     hopping->least_late[0] = hopping->least_late[1] = hopping->least_late[2] = UINT16_MAX;
-    hopping->candidate = NOBODY;
     memset(hoppers, 0, config->sensors * sizeof *hoppers);
     for (x = 0; x < config->sensors; x++) {
         const uint8_t n = config->neighbours == 0 ? 1 : config->neighbours, k = x % n;

@@ -443,13 +443,16 @@ typedef struct EerufHoppingConfig {
                                     `eeruf design --phases` writes it for the shortest period */
 } EerufHoppingConfig;
 
-/* The settings of most robots, of those that must stop early, and of those that make maps. */
+/* The settings of most robots, of those that must stop early, of those that drive, and of those that make maps. */
 #define EERUF_HOPPING_BALANCED(sensors, period_us, window_us)                                                          \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
      {150, 400, 60, 5, 6, 2, 6, 2}, 84, 5, 3, 5, 8, 4, 0}
 #define EERUF_HOPPING_QUICK(sensors, period_us, window_us)                                                             \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
      {150, 400, 100, 4, 6, 2, 6, 2}, 100, 4, 2, 5, 8, 4, 0}
+#define EERUF_HOPPING_DRIVING(sensors, period_us, window_us)                                                           \
+    {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
+     {150, 400, 100, 4, 6, 2, 6, 2}, 0, 5, 3, 5, 8, 4, 0}
 #define EERUF_HOPPING_MAPS(sensors, period_us, window_us)                                                              \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
      {150, 400, 60, 5, 7, 1, 6, 0}, 28, 8, 6, 5, 24, 4, 0}
@@ -461,11 +464,11 @@ typedef struct EerufTrack {
     uint8_t solo_votes, score, close, flags, age;
 } EerufTrack;
 
-/* One sensor of a hopping ring: 57 bytes on an AVR, beside its EerufSensor. Not for the caller. */
+/* One sensor of a hopping ring: 56 bytes on an AVR, beside its EerufSensor. Not for the caller. */
 typedef struct EerufHopper {
     uint32_t lag_us;
     uint16_t late_us;
-    uint8_t place, phase, unserved, misfits, flags, order, unexplained;
+    uint8_t place, phase, unserved, misfits, flags, order;
     EerufTrack tracks[EERUF_HYPOTHESES];
 } EerufHopper;
 
@@ -476,7 +479,7 @@ typedef struct EerufHoppingRing {
     EerufHoppingConfig config;
     uint32_t start_us, length_us, solo_at_us, dies_us, random;
     uint16_t earned, tolerated, least_late[3], most_late[3];
-    uint8_t phase, cycle, planned, place, since_solo, since_shift, changed, changes, candidate, readier;
+    uint8_t phase, cycle, planned, place, since_solo, since_shift, changed, changes;
 } EerufHoppingRing;
 
 /* Makes a hopping ring that begins at `now_us`. Both arrays have a place for each sensor of the config. Poll it with

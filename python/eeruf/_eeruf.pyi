@@ -48,7 +48,7 @@ _Phase = Literal["a", "b"]
 _Condition = Literal[
     "crosstalk_a", "crosstalk_b", "stale_echo", "interval", "window", "shared_line", "refire", "together"
 ]
-_Hopping = Literal["balanced", "quick", "maps"]
+_Hopping = Literal["balanced", "quick", "driving", "maps"]
 _Pose = tuple[float, float, float]
 
 _Case = TypeVar("_Case")

@@ -9,6 +9,8 @@ pub(crate) enum Hopping {
     Balanced,
     /// For robots that must stop early
     Quick,
+    /// For robots that drive: no solo periods
+    Driving,
     /// For maps: confirmed echoes alone
     Maps,
 }
@@ -18,6 +20,7 @@ impl Hopping {
         match self {
             Self::Balanced => HoppingSettings::BALANCED,
             Self::Quick => HoppingSettings::QUICK,
+            Self::Driving => HoppingSettings::DRIVING,
             Self::Maps => HoppingSettings::MAPS,
         }
     }

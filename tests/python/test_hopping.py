@@ -94,7 +94,7 @@ def test_every_setting_can_be_changed_and_read_back() -> None:
         assert differ == [field]
 
 
-@pytest.mark.parametrize("settings", ["balanced", "quick", "maps"])
+@pytest.mark.parametrize("settings", ["balanced", "quick", "driving", "maps"])
 def test_a_sensor_that_always_hears_another_first_is_not_fooled_and_sees_its_wall(settings: str) -> None:
     # Sensor 1 fires 14.4 ms after sensor 0: its sound arrives 3 to 6 ms into the window, before the wall's echo.
     ring = HoppingRing(EIGHT, HoppingSettings(settings), window_us=WINDOW_US, blanking_us=1_000)  # type: ignore[arg-type]

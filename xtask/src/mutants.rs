@@ -70,10 +70,10 @@ impl Round {
     }
 
     /// Tests that use the processor for longer than this are ended and have failed: a loop without end takes little of
-    /// a busy machine's time, and a machine that is only busy ends nothing. Unbroken they take a tenth of it.
+    /// a busy machine's time, and a machine that is only busy ends nothing. Unbroken they take a third of it.
     fn most_seconds(self) -> Option<u32> {
         match self {
-            Self::Quick | Self::Twin => Some(20).filter(|_| cfg!(target_os = "linux")),
+            Self::Quick | Self::Twin => Some(10).filter(|_| cfg!(target_os = "linux")),
             Self::All => None,
         }
     }
@@ -81,7 +81,7 @@ impl Round {
     /// What a round has beside what is set for all: few cases, and the same ones for each mutant.
     fn environment(self) -> &'static [(&'static str, &'static str)] {
         match self {
-            Self::Quick => &[("PROPTEST_CASES", "64"), ("PROPTEST_RNG_SEED", "1")],
+            Self::Quick => &[("PROPTEST_CASES", "16"), ("PROPTEST_RNG_SEED", "1")],
             Self::Twin => &[("EERUF_C_EVENTS", "100000")],
             Self::All => &[],
         }
@@ -310,7 +310,7 @@ mod tests {
         let quick = plan(false, Some("0/17")).args(Round::Quick).join(" ");
         assert!(quick.contains("--cargo-arg=--lib --cargo-arg=--test=all -- -- --skip every_code"), "{quick}");
         assert!(quick.contains("--features=embassy-time,fugit,serde"), "{quick}");
-        assert_eq!(quick.contains(r#"runner=["prlimit", "--cpu=20"]"#), cfg!(target_os = "linux"), "{quick}");
+        assert_eq!(quick.contains(r#"runner=["prlimit", "--cpu=10"]"#), cfg!(target_os = "linux"), "{quick}");
         assert!(quick.contains("--skip brute_force::") && !quick.contains("--shard"), "{quick}");
         let search = plan(true, None).args(Round::Quick).join(" ");
         assert!(!search.contains("brute_force"), "what judges the search is needed there: {search}");

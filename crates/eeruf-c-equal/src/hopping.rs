@@ -27,7 +27,8 @@ fn status_of(error: &HoppingError) -> i32 {
 }
 
 fn settings(r: &Random) -> HoppingSettings {
-    let mut settings = r.one_of(&[HoppingSettings::BALANCED, HoppingSettings::QUICK, HoppingSettings::MAPS]);
+    let mut settings =
+        r.one_of(&[HoppingSettings::BALANCED, HoppingSettings::QUICK, HoppingSettings::DRIVING, HoppingSettings::MAPS]);
     if r.once_in(2) {
         let t_delta = r.within(1, 220);
         let near = r.within(t_delta, 600);

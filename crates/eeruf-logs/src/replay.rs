@@ -55,7 +55,7 @@ impl From<TrackerError> for ReplayError {
 /// # Errors
 /// A setting out of its range, or a firing of which the log does not say how it was weighed.
 pub fn replay(log: &FiringLog, settings: TrackerSettings) -> Result<Vec<Verdict>, ReplayError> {
-    let mut tracker = EchoTracker::<MAX_SENSORS>::new(settings)?.with_sensors(log.sensors());
+    let mut tracker = EchoTracker::<MAX_SENSORS>::new(settings)?;
     let mut weighed = Vec::with_capacity(log.firings.len());
     for (place, firing) in log.firings.iter().enumerate() {
         let missing = ReplayError::Weighed { sensor: firing.sensor, period: firing.period };

@@ -8,14 +8,15 @@ use crate::{
     errors::{ArgumentError, Raise},
 };
 
-/// The three named sets.
-const NAMED: [(&str, Core); 3] = [("balanced", Core::BALANCED), ("quick", Core::QUICK), ("maps", Core::MAPS)];
+/// The named sets.
+const NAMED: [(&str, Core); 4] =
+    [("balanced", Core::BALANCED), ("quick", Core::QUICK), ("driving", Core::DRIVING), ("maps", Core::MAPS)];
 
 /// How a hopping ring, or its tracker alone, weighs readings and fires. Immutable; they compare, hash and pickle.
 ///
 /// Args:
 ///     name: what to start from: ``"balanced"`` for most robots, ``"quick"`` for those that must stop early (a little
-///         more is wrong), ``"maps"`` for confirmed echoes alone.
+///         more is wrong), ``"driving"`` for those that drive (no solo periods), ``"maps"`` for confirmed echoes alone.
 ///     changes: whatever is to be different, by the names of the attributes; whole numbers.
 ///
 /// Raises:
@@ -95,7 +96,7 @@ impl HoppingSettings {
         if value.is_instance_of::<pyo3::types::PyString>() {
             return choice(name, Some(value), &NAMED);
         }
-        let expected = "\"balanced\" or \"quick\" or \"maps\", or an eeruf.HoppingSettings";
+        let expected = "\"balanced\" or \"quick\" or \"driving\" or \"maps\", or an eeruf.HoppingSettings";
         Ok(instance::<Self>(name, value, expected)?.get().0)
     }
 

@@ -11,6 +11,7 @@ use eeruf_sim::experiments::set_two::{
 use eeruf_sim::{Method, Point, Robot};
 
 use super::common::{BUDGET, Common, bad, designing, watched};
+use crate::commands::hopping::Hopping;
 use crate::commands::methods::chosen;
 use crate::files::error::InputError;
 use crate::files::mcap::{Stage, write_mcap};
@@ -37,6 +38,9 @@ pub(crate) struct Args {
     /// printed side by side
     #[arg(long = "pilot", value_name = "PILOT", num_args = 1.., value_delimiter = ',', default_value = "own")]
     pilots: Vec<Pilots>,
+    /// How eeruf_hopping fires and believes
+    #[arg(long, value_name = "SETTING", default_value = "driving")]
+    hopping: Hopping,
     /// Let another robot with 24 sensors fire 24 times in 80 ms in a corner of the lab: behind the start, or ahead,
     /// where all sensors face it
     #[arg(long, value_name = "WHERE", num_args = 0..=1, default_missing_value = "behind")]
@@ -98,6 +102,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         first: args.common.first,
         physics: args.common.physics,
         bodies: args.bodies,
+        hopping: args.hopping.settings(),
         second_robot: args.second_robot.map(Corner::position),
         labmate: LabMate { speed_max_m_s: args.speed, ..LabMate::default() },
         odometry: !args.no_odometry,

@@ -85,7 +85,7 @@ impl<const K: usize> fmt::Display for HoppingRust<'_, K> {
         writeln!(f, "        stale_echo: {stale_echo},")?;
         writeln!(f, "    }},\n}};\n")?;
         let HoppingSettings { tracker, neighbours, .. } = settings(requirements);
-        writeln!(f, "// For `HoppingRing::new`; QUICK and MAPS are the other sets of settings.")?;
+        writeln!(f, "// For `HoppingRing::new`; QUICK, DRIVING and MAPS are other sets of settings.")?;
         writeln!(f, "pub const SETTINGS: HoppingSettings = HoppingSettings::BALANCED")?;
         write!(f, "    .with_tracker(\n        TrackerSettings::BALANCED")?;
         let TrackerSettings { t_delta, near, tentative_within, .. } = tracker;
@@ -183,7 +183,7 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
         }
         writeln!(
             f,
-            "}};\n/* The settings of most robots; EERUF_HOPPING_QUICK and _MAPS in eeruf.h have the others. */"
+            "}};\n/* The settings of most robots; EERUF_HOPPING_QUICK, _DRIVING and _MAPS in eeruf.h have others. */"
         )?;
         writeln!(f, "static const EerufHoppingConfig {name} = {{")?;
         let (step, period) = (code.step().as_micros(), schedule.period().as_micros());

@@ -91,7 +91,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         now: Instant,
     ) -> Result<Self, HoppingError> {
         let (code, HoppingListening { window, blanking, .. }) = (schedule.code(), listening);
-        let tracker = EchoTracker::new(settings.tracker)?.with_sensors(code.sensors());
+        let tracker = EchoTracker::new(settings.tracker)?;
         let t_delta = settings.tracker.t_delta;
         if code.step() <= t_delta {
             return Err(HoppingError::TDelta { t_delta, step: code.step() });

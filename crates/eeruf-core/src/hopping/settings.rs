@@ -4,7 +4,8 @@ use crate::time::Micros;
 use crate::tracker::TrackerSettings;
 
 /// How a [`HoppingRing`](super::HoppingRing) fires and believes. Begin with one of [`BALANCED`](Self::BALANCED),
-/// [`QUICK`](Self::QUICK) and [`MAPS`](Self::MAPS); `docs/hopping.md` says which is for whom.
+/// [`QUICK`](Self::QUICK), [`DRIVING`](Self::DRIVING) and [`MAPS`](Self::MAPS); `docs/hopping.md` says which is for
+/// whom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -44,6 +45,9 @@ impl HoppingSettings {
     /// For robots that must stop early: a little more is wrong.
     pub const QUICK: Self =
         Self { tracker: TrackerSettings::QUICK, solo_rate: 100, solo_after: 4, solo_spacing: 2, ..Self::BALANCED };
+    /// For robots that drive: what they see changes by itself, so that no sensor needs solo periods, which silence all
+    /// others and believe at once what another robot sends.
+    pub const DRIVING: Self = Self { tracker: TrackerSettings::QUICK, solo_rate: 0, ..Self::BALANCED };
     /// For maps: confirmed echoes alone, and few solo periods.
     pub const MAPS: Self = Self {
         tracker: TrackerSettings::MAPS,

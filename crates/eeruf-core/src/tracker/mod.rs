@@ -20,7 +20,7 @@ use crate::schedule::Phase;
 use crate::time::Micros;
 
 pub use error::TrackerError;
-use sensor::{Heard, SensorTracks, Weighed};
+use sensor::{Heard, SensorTracks};
 pub use settings::TrackerSettings;
 use track::{LATEST, SILENCE};
 
@@ -70,15 +70,7 @@ impl Firing {
 pub struct EchoTracker<const K: usize, const H: usize = 4> {
     sensors: [SensorTracks<H>; K],
     settings: TrackerSettings,
-    /// The sensor that last had a candidate, and for how many pushes that makes others readier.
-    candidate: u8,
-    readier: u8,
-    /// How many pushes make three periods.
-    three_periods: u8,
 }
-
-/// A sensor has this rate of unexplained readings, of 255, where a tentative echo needs one vote more.
-const RESTLESS: u8 = 178;
 
 impl<const K: usize, const H: usize> EchoTracker<K, H> {
     /// A tracker that knows nothing yet.
@@ -87,21 +79,9 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
     /// [`TrackerError::Setting`] for a setting out of its range.
     pub const fn new(settings: TrackerSettings) -> Result<Self, TrackerError> {
         match settings.check() {
-            Ok(()) => {
-                let sensors = [SensorTracks::NEW; K];
-                // At most 64 sensors.
-                Ok(Self { sensors, settings, candidate: u8::MAX, readier: 0, three_periods: (3 * K) as u8 })
-            }
+            Ok(()) => Ok(Self { sensors: [SensorTracks::NEW; K], settings }),
             Err(error) => Err(error),
         }
-    }
-
-    /// That the ring has only so many sensors, at most `K`: a sensor is readier to report a tentative echo for three
-    /// periods after another one had a candidate, and a period is so many pushes.
-    #[must_use]
-    pub const fn with_sensors(self, sensors: usize) -> Self {
-        let sensors = if sensors < K { sensors } else { K };
-        Self { three_periods: (3 * sensors) as u8, ..self }
     }
 
     /// How it weighs readings.
@@ -130,21 +110,13 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
         t_echo: Option<Micros>,
         firing: Firing,
     ) -> Result<(Verdict, bool), TrackerError> {
-        let tentative_votes = self.tentative_votes(sensor);
         let Some(tracks) = self.sensors.get_mut(sensor) else {
             return Err(TrackerError::Sensor { sensor, sensors: K });
         };
         let Firing { phase: Phase(phase), solo, steady, expected_change_us } = firing;
         let t_echo = t_echo.map_or(SILENCE, |t_echo| t_echo.as_micros().min(LATEST));
         tracks.shift(expected_change_us);
-        let heard = Heard { t_echo, phase, solo, steady, tentative_votes };
-        let Weighed { verdict, candidate, is_clear } = tracks.push(heard, &self.settings);
-        self.readier = self.readier.saturating_sub(1);
-        if candidate {
-            // At most 64 sensors.
-            (self.candidate, self.readier) = (sensor as u8, self.three_periods);
-        }
-        Ok((verdict, is_clear))
+        Ok(tracks.push(Heard { t_echo, phase, solo, steady }, &self.settings))
     }
 
     /// A firing that says nothing about the echo time, such as one with an echo within the blanking time: nothing is
@@ -187,17 +159,5 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
         for tracks in &mut self.sensors {
             tracks.firing_changed();
         }
-    }
-
-    /// How many close votes a sensor's tentative echo needs now: one more where much is unexplained, one fewer while
-    /// another sensor has a candidate as well, at least two.
-    fn tentative_votes(&self, sensor: usize) -> u8 {
-        let votes = self.settings.tentative_votes;
-        if votes == 0 {
-            return 0;
-        }
-        let restless = self.sensors.get(sensor).is_some_and(|tracks| tracks.unexplained() > RESTLESS);
-        let readier = self.readier > 0 && usize::from(self.candidate) != sensor;
-        (votes + u8::from(restless)).saturating_sub(readier.into()).max(2)
     }
 }

@@ -19,17 +19,6 @@ pub(super) struct Heard {
     pub(super) phase: u8,
     pub(super) solo: bool,
     pub(super) steady: bool,
-    /// How many close votes a tentative echo needs; 0: none is reported.
-    pub(super) tentative_votes: u8,
-}
-
-/// What came of a reading.
-pub(super) struct Weighed {
-    pub(super) verdict: Verdict,
-    /// Whether it may become a tentative one.
-    pub(super) candidate: bool,
-    /// Whether it is confirmed now that nothing is in range.
-    pub(super) is_clear: bool,
 }
 
 /// The hypotheses about one sensor.
@@ -39,12 +28,10 @@ pub(super) struct SensorTracks<const H: usize> {
     tracks: [Track; H],
     /// Firings since the last accepted reading.
     age: u16,
-    /// How often readings were of nothing known, in 1/255, of about the last 16.
-    unexplained: u8,
 }
 
 impl<const H: usize> SensorTracks<H> {
-    pub(super) const NEW: Self = Self { tracks: [Track::NONE; H], age: NEVER, unexplained: 0 };
+    pub(super) const NEW: Self = Self { tracks: [Track::NONE; H], age: NEVER };
 
     pub(super) fn forget(&mut self) {
         self.tracks = [Track::NONE; H];
@@ -56,10 +43,6 @@ impl<const H: usize> SensorTracks<H> {
         }
     }
 
-    pub(super) const fn unexplained(&self) -> u8 {
-        self.unexplained
-    }
-
     /// All values move with the robot.
     pub(super) fn shift(&mut self, change_us: i32) {
         if change_us != 0 {
@@ -69,15 +52,15 @@ impl<const H: usize> SensorTracks<H> {
         }
     }
 
-    /// Takes in a reading.
-    pub(super) fn push(&mut self, heard: Heard, settings: &TrackerSettings) -> Weighed {
-        let Heard { t_echo, phase, solo, steady, tentative_votes } = heard;
+    /// Takes in a reading; also whether it is confirmed now that nothing is in range.
+    pub(super) fn push(&mut self, heard: Heard, settings: &TrackerSettings) -> (Verdict, bool) {
+        let Heard { t_echo, phase, solo, steady } = heard;
         let phase = bit(phase);
         let (mut confirmed, nearest) = self.confirmed_and_nearest(t_echo, settings.t_delta.as_micros());
         let near = settings.near.as_micros();
         let is_near = confirmed.abs_diff(t_echo) <= near;
         let previous = self.tracks.get(nearest).map_or(confirmed, Track::t_echo);
-        let mut candidate = false;
+        let reports_tentative = settings.tentative_votes != 0;
         let mut tentative = false;
         if steady {
             let before = core::mem::replace(&mut confirmed, NOTHING);
@@ -89,10 +72,9 @@ impl<const H: usize> SensorTracks<H> {
                 let at = track.t_echo();
                 if place == nearest {
                     track.support(t_echo, phase, solo, settings);
-                    let votes = track.close_votes();
                     let earlier = track.t_echo() < before.min(SILENCE);
-                    candidate = earlier && !track.is_confirmed() && votes >= 2;
-                    tentative = earlier && tentative_votes != 0 && (solo || votes >= tentative_votes);
+                    let enough = solo || track.close_votes() >= settings.tentative_votes;
+                    tentative = earlier && reports_tentative && enough;
                 } else if is_near && at == before {
                     track.grow_older();
                     track.catch_up(t_echo);
@@ -107,9 +89,8 @@ impl<const H: usize> SensorTracks<H> {
                 if self.begin(t_echo, phase, solo).is_confirmed() {
                     confirmed = self.confirmed();
                 }
-                tentative = solo && tentative_votes != 0 && t_echo != SILENCE;
+                tentative = solo && reports_tentative && t_echo != SILENCE;
             }
-            self.explain(nearest != H || is_near);
         }
         let is_confirmed = confirmed.abs_diff(t_echo) <= near;
         let kind = match (is_confirmed, t_echo == SILENCE) {
@@ -120,8 +101,7 @@ impl<const H: usize> SensorTracks<H> {
             (false, false) if previous == NOTHING => ReadingKind::First,
             (false, false) => ReadingKind::Rejected,
         };
-        let verdict = self.verdict(kind, duration(t_echo), duration(previous));
-        Weighed { verdict, candidate, is_clear: confirmed == SILENCE }
+        (self.verdict(kind, duration(t_echo), duration(previous)), confirmed == SILENCE)
     }
 
     /// A firing that says nothing about the echo time.
@@ -168,13 +148,6 @@ impl<const H: usize> SensorTracks<H> {
     fn begin(&mut self, t_echo: u32, phase: u16, solo: bool) -> Track {
         let weakest = self.tracks.iter_mut().min_by_key(|track| track.rank());
         weakest.map_or(Track::NONE, |weakest| core::mem::replace(weakest, Track::new(t_echo, phase, solo)))
-    }
-
-    fn explain(&mut self, explained: bool) {
-        let target: i16 = if explained { 0 } else { 255 };
-        let held = i16::from(self.unexplained);
-        // Between 0 and 255.
-        self.unexplained = (held + (target - held) / 16) as u8;
     }
 
     fn verdict(&mut self, kind: ReadingKind, t_echo: Option<Micros>, previous: Option<Micros>) -> Verdict {

@@ -83,7 +83,8 @@ fn random_echoes_are_hardly_ever_believed() {
     };
     let seen = kinds(&mut balanced(), (0..20_000).map(|_| random()));
     let believed = seen.iter().filter(|kind| matches!(kind, ReadingKind::Accepted | ReadingKind::Tentative)).count();
-    assert!(believed < 200, "{believed} of 20,000");
+    let confirmed = seen.iter().filter(|kind| matches!(kind, ReadingKind::Accepted)).count();
+    assert!(believed < 400 && confirmed < 40, "{believed}, {confirmed} of them confirmed, of 20,000");
 }
 
 #[test]
@@ -152,32 +153,6 @@ fn the_longest_times_and_the_largest_changes_are_echoes_like_any_other() {
 }
 
 #[test]
-fn a_candidate_makes_other_sensors_readier_for_three_periods_of_the_sensors_that_there_are() {
-    let settings = TrackerSettings { tentative_votes: 3, ..TrackerSettings::BALANCED };
-    let tracker = EchoTracker::<24>::new(settings).unwrap();
-    // After how many pushes in between two close votes no longer suffice.
-    let readier_for = |tracker: &EchoTracker<24>| {
-        let lasts = |pushes: &u32| {
-            let mut tracker = tracker.clone();
-            for phase in 0..2 {
-                tracker.push(0, us(9000), Firing::new(Phase(phase))).unwrap();
-            }
-            tracker.push(1, us(5000), Firing::new(Phase(0))).unwrap();
-            for _ in 0..*pushes {
-                tracker.push(2, None, Firing::new(Phase(0))).unwrap();
-            }
-            let kind = tracker.push(1, us(5000), Firing::new(Phase(1))).unwrap().kind;
-            kind == ReadingKind::Tentative
-        };
-        (0..100).take_while(lasts).count()
-    };
-    // Two pushes are those of the sensor itself.
-    assert_eq!(readier_for(&tracker.clone().with_sensors(12)), 35);
-    assert_eq!(readier_for(&tracker), 71);
-    assert_eq!(readier_for(&tracker.with_sensors(200)), 71);
-}
-
-#[test]
 fn each_error_names_what_is_wrong_and_what_is_expected() {
     let with = |settings| EchoTracker::<1>::new(settings).unwrap_err().to_string();
     let zero = TrackerSettings { t_delta: Micros::ZERO, ..TrackerSettings::BALANCED };
@@ -201,24 +176,6 @@ fn the_tracker_knows_each_sensors_age_as_its_verdicts_say_it() {
     }
     assert!(tracker.age(1).is_some());
     assert_eq!(tracker.age(0), None);
-}
-
-#[test]
-fn a_tentative_echo_needs_one_vote_more_above_the_restless_rate_and_not_at_it() {
-    let mut random = 1_u32;
-    let mut seen = [false; 2];
-    let mut tracker = balanced();
-    for firing in 0..20_000_u32 {
-        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        // Most echoes are like no other.
-        let echo = if random >> 30 == 0 { 9000 } else { 2000 + (random >> 12) % 20_000 };
-        tracker.push(0, us(echo), Firing::new(Phase((firing % u32::from(PHASES)) as u8))).unwrap();
-        let (rate, votes) = (tracker.sensors[0].unexplained(), TrackerSettings::BALANCED.tentative_votes);
-        assert_eq!(tracker.tentative_votes(0), if rate > 178 { votes + 1 } else { votes }, "at a rate of {rate}");
-        seen[0] |= rate == 178;
-        seen[1] |= rate == 179;
-    }
-    assert_eq!(seen, [true, true], "rates that were met");
 }
 
 #[test]

@@ -75,7 +75,12 @@ fn accepted_or_tentative(kinds: &[ReadingKind]) -> usize {
 }
 
 fn settings() -> impl Strategy<Value = HoppingSettings> {
-    let named = prop_oneof![Just(HoppingSettings::BALANCED), Just(HoppingSettings::QUICK), Just(HoppingSettings::MAPS)];
+    let named = prop_oneof![
+        Just(HoppingSettings::BALANCED),
+        Just(HoppingSettings::QUICK),
+        Just(HoppingSettings::DRIVING),
+        Just(HoppingSettings::MAPS),
+    ];
     (named, 0..128_u8, 1..6_u8, prop_oneof![Just(0_u8), 1..6_u8], 1..12_u8).prop_map(
         |(named, solo_rate, solo_spacing, shift_after, shift_spacing)| {
             let solo = named.with_solo_rate(solo_rate).with_solo_spacing(solo_spacing);

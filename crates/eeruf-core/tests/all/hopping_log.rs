@@ -32,7 +32,7 @@ fn a_tracker_does_from_the_log_what_the_rings_own_did() {
     for seed in 0..12 {
         let settings = HoppingSettings::BALANCED.with_shift_after(10).with_shift_spacing(12);
         let (mut ring, mut random) = (ring(settings, seed as u32), Random(seed));
-        let mut twin = EchoTracker::<SENSORS>::new(settings.tracker).unwrap().with_sensors(SENSORS);
+        let mut twin = EchoTracker::<SENSORS>::new(settings.tracker).unwrap();
         // When each sensor fired, what it is to report, and edges that are still to come.
         let (mut fired, mut raw, mut edges) = ([0; SENSORS], [None; SENSORS], Vec::<(u32, u8)>::new());
         let (mut periods, mut known) = (0, 0_u8);

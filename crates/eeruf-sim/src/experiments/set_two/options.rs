@@ -1,6 +1,6 @@
 //! What is asked of Set II.
 
-use eeruf_core::Micros;
+use eeruf_core::{HoppingSettings, Micros};
 
 use super::odometry::OdometryNoise;
 use super::pilots::Pilots;
@@ -24,6 +24,8 @@ pub struct SetTwoOptions {
     pub methods: Vec<Method>,
     /// What [`Method::EerufBest`] fires by, see [`best_schedule_for`](crate::best_schedule_for).
     pub best: Option<BestSchedule>,
+    /// How [`Method::EerufHopping`] fires and believes. The default is [`HoppingSettings::DRIVING`].
+    pub hopping: HoppingSettings,
     /// Where another robot stands that fires 24 times in 80 ms, if there is one.
     pub second_robot: Option<Point>,
     /// The platform.
@@ -62,6 +64,7 @@ impl Default for SetTwoOptions {
                 Method::MultiEcho,
             ],
             best: None,
+            hopping: HoppingSettings::DRIVING,
             second_robot: None,
             labmate: LabMate::default(),
             odometry: true,

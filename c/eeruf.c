@@ -52,11 +52,12 @@ static bool has_reached(uint32_t now, uint32_t deadline) {
 }
 
 static uint16_t narrow(uint32_t time) {
-    return time > UINT16_MAX ? UINT16_MAX : (uint16_t)time;
+    return (uint16_t)(time >> 16) != 0 ? UINT16_MAX : (uint16_t)time;
 }
 
 static uint16_t add16(uint16_t one, uint16_t other) {
-    return narrow((uint32_t)one + other);
+    const uint16_t sum = (uint16_t)(one + other);
+    return sum < one ? UINT16_MAX : sum;
 }
 
 static OUT_OF_LINE uint16_t less16(uint16_t one, uint16_t other) {
@@ -97,8 +98,9 @@ static bool is_verified(const EerufSchedule *schedule) {
 static uint8_t firing(const EerufSchedule *schedule, uint8_t sensors, uint8_t phase, uint8_t place, uint32_t *gap_us) {
     const uint8_t *order = READ_POINTER(const uint8_t *, schedule->order);
     const uint32_t *gaps = READ_POINTER(const uint32_t *, schedule->gap_us);
-    *gap_us = READ32(gaps[(uint16_t)phase * (sensors + 1u) + place]);
-    return place < sensors ? READ8(order[(uint16_t)phase * sensors + place]) : (uint8_t)NOBODY;
+    const uint16_t at = (uint16_t)(phase * sensors + place);
+    *gap_us = READ32(gaps[at + phase]);
+    return place < sensors ? READ8(order[at]) : (uint8_t)NOBODY;
 }
 
 /* When a sensor fires in a phase, after the start of the period. */
@@ -341,22 +343,12 @@ static bool near_identical(uint32_t echo_us, uint32_t previous_us, int32_t chang
     return apart(echo_us, previous_us + (uint32_t)change_us) <= t_delta_us;
 }
 
-static void write_reading(EerufReading *reading, EerufFilter *filter, uint8_t kind, uint32_t t_echo_us,
-                          uint32_t previous_us) {
-    if (kind == EERUF_READING_ACCEPTED) filter->age = 0;
-    else if (filter->age < EERUF_NEVER - 1u) filter->age++;
-    reading->t_echo_us = t_echo_us;
-    reading->previous_us = previous_us;
-    reading->age = filter->age;
-    reading->kind = kind;
-}
-
-/* Compares the echo of a firing with the one before. */
-static void push(EerufFilter *filter, uint16_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us, int32_t change_us,
-                 EerufReading *reading) {
+/* Compares the echo of a firing with the one before. Returns the kind of the reading. */
+static uint8_t push(EerufFilter *filter, uint16_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us,
+                    int32_t change_us) {
     const uint32_t previous_us = filter->known_us;
     const bool silent = t_echo_us == EERUF_NO_ECHO;
-    uint8_t before = filter->state & (SCORE | CONFIRMED), now = 1, kind;
+    uint8_t before = filter->state & (SCORE | CONFIRMED), now = 1;
     if (before != 0 && near_identical(t_echo_us, previous_us, change_us, t_delta_us)) {
         now = before & SCORE;
         if (now < consecutive) now++;
@@ -364,12 +356,17 @@ static void push(EerufFilter *filter, uint16_t t_delta_us, uint8_t consecutive, 
     }
     filter->known_us = t_echo_us;
     filter->state = (uint8_t)((filter->state & DISABLED) | now);
-    if (now & CONFIRMED) kind = silent ? EERUF_READING_CLEAR : EERUF_READING_ACCEPTED;
-    else if (silent) kind = EERUF_READING_NO_ECHO;
-    else if (previous_us == EERUF_NO_ECHO) kind = EERUF_READING_FIRST;
-    else if (now == 1) kind = EERUF_READING_REJECTED;
-    else kind = EERUF_READING_REPEATED;
-    write_reading(reading, filter, kind, t_echo_us, previous_us);
+    if (now & CONFIRMED) return silent ? EERUF_READING_CLEAR : EERUF_READING_ACCEPTED;
+    if (silent) return EERUF_READING_NO_ECHO;
+    if (previous_us == EERUF_NO_ECHO) return EERUF_READING_FIRST;
+    return now == 1 ? EERUF_READING_REJECTED : EERUF_READING_REPEATED;
+}
+
+/* A filter's reading has its kind. */
+static void note_age(EerufReading *reading, EerufFilter *filter) {
+    if (reading->kind == EERUF_READING_ACCEPTED) filter->age = 0;
+    else if (filter->age < EERUF_NEVER - 1u) filter->age++;
+    reading->age = filter->age;
 }
 
 EerufStatus eeruf_filter_push(EerufFilter *filter, uint32_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us,
@@ -378,7 +375,10 @@ EerufStatus eeruf_filter_push(EerufFilter *filter, uint32_t t_delta_us, uint8_t 
     if (consecutive < 2 || consecutive > 8) return EERUF_ERR_CONSECUTIVE;
     if (t_delta_us > UINT16_MAX) return EERUF_ERR_COARSE_T_DELTA;
     if (t_echo_us >= HALF_TURN && t_echo_us != EERUF_NO_ECHO) return EERUF_ERR_RANGE;
-    push(filter, (uint16_t)t_delta_us, consecutive, t_echo_us, expected_change_us, reading);
+    reading->t_echo_us = t_echo_us;
+    reading->previous_us = filter->known_us;
+    reading->kind = push(filter, (uint16_t)t_delta_us, consecutive, t_echo_us, expected_change_us);
+    note_age(reading, filter);
     return EERUF_OK;
 }
 
@@ -433,8 +433,9 @@ static void count(EerufRing *ring, uint8_t kind) {
 static OUT_OF_LINE void watch(EerufRing *ring) {
     EerufLateness *late = &ring->lateness;
     if (late->watched == 0) {
-        uint8_t x;
-        for (x = 0; x < ring->count; x++) sensor_of(ring, x)->total_late = 0;
+        EerufSensor *sensor = ring->sensors;
+        uint8_t left;
+        for (left = ring->count; left > 0; left--, sensor++) sensor->total_late = 0;
         late->total = late->total_before = 0;
         late->least = late->least_before = late->uncomparable == FIRST_PERIOD ? UINT16_MAX : 0;
         late->most = late->most_before = 0;
@@ -444,9 +445,10 @@ static OUT_OF_LINE void watch(EerufRing *ring) {
 
 /* The next reading of every sensor may be of sound from before or after a shift that is not known. */
 static void uncompare(EerufRing *ring, uint8_t only) {
-    uint8_t x;
-    for (x = 0; x < ring->count; x++)
-        if (only == 0 || (sensor_of(ring, x)->flags & only)) sensor_of(ring, x)->flags |= UNCOMPARABLE;
+    EerufSensor *sensor = ring->sensors;
+    uint8_t left;
+    for (left = ring->count; left > 0; left--, sensor++)
+        if (only == 0 || (sensor->flags & only)) sensor->flags |= UNCOMPARABLE;
 }
 
 /* The timetable has begun anew. A reading of the first period may hold sound from before. */
@@ -475,7 +477,8 @@ static uint16_t tolerated(const EerufRing *ring) {
     uint32_t separation = 2 * t_delta + 1;
     if (is_verified(ring->schedule)) separation = READ32(ring->schedule->separation_us);
     separation = shorter(separation, READ32(ring->schedule->min_refire_us));
-    separation = separation > t_delta + 1 ? separation - (t_delta + 1) : 0;
+    if (separation <= t_delta) return 0;
+    separation -= t_delta + 1;
     return separation > UINT16_MAX / 2 ? UINT16_MAX / 2 : (uint16_t)separation;
 }
 
@@ -586,6 +589,7 @@ static OUT_OF_LINE uint32_t horizon_of_table(const EerufRing *ring) {
 static bool end_period_of_table(EerufRing *ring, uint32_t now_us) {
     const uint32_t settling = settling_time(ring->schedule);
     bool changed = now_us - ring->due_us > READ32(ring->schedule->period_us);
+    uint8_t phase;
     if (changed) ring->due_us = now_us;
     /* The last firing must not fall half a turn of the clock behind while no sensor is enabled. */
     if (ring->due_us - ring->last_fired_us > settling) ring->last_fired_us = ring->due_us - settling;
@@ -593,18 +597,22 @@ static bool end_period_of_table(EerufRing *ring, uint32_t now_us) {
         ring->hook(ring, 0, settling);
         changed = true;
     }
-    begin_period(ring, ring->phase + 1u < READ8(ring->schedule->phases) ? (uint8_t)(ring->phase + 1u) : 0);
+    phase = (uint8_t)(ring->phase + 1u);
+    begin_period(ring, phase < READ8(ring->schedule->phases) ? phase : 0);
     return changed;
 }
 
-static void restart_table(EerufRing *ring, uint32_t now_us) {
-    const uint32_t settling = settling_time(ring->schedule);
-    const uint32_t waits = ring->last_fired_us + settling - now_us;
-    /* A clock that has jumped says nothing about when the last firing was. */
-    const bool soon = waits - 1u < horizon_of_table(ring);
-    if (!soon) ring->last_fired_us = now_us - settling;
-    ring->due_us = soon ? now_us + waits : now_us;
+/* Begins with the first phase, silent for long enough by then. */
+static OUT_OF_LINE void begin_table(EerufRing *ring, uint32_t at_us) {
+    ring->due_us = at_us;
+    ring->last_fired_us = at_us - settling_time(ring->schedule);
     begin_period(ring, 0);
+}
+
+static void restart_table(EerufRing *ring, uint32_t now_us) {
+    const uint32_t settled_us = ring->last_fired_us + settling_time(ring->schedule);
+    /* A clock that has jumped says nothing about when the last firing was. */
+    begin_table(ring, settled_us - now_us - 1u < horizon_of_table(ring) ? settled_us : now_us);
 }
 
 /* -- What a ring does -- */
@@ -688,9 +696,7 @@ static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors,
     if (config->consecutive < 2 || config->consecutive > 8) return EERUF_ERR_CONSECUTIVE;
     ring->schedule = schedule;
     ring->consecutive = config->consecutive;
-    ring->last_fired_us = now_us - settling_time(schedule);
-    ring->due_us = now_us;
-    begin_period(ring, 0);
+    begin_table(ring, now_us);
     ring->ready = READY;
     return EERUF_OK;
 }
@@ -707,7 +713,7 @@ EerufStatus eeruf_ring_init_unverified(EerufRing *ring, size_t ring_size, EerufS
 
 /* Whether a reading will be emitted without a further firing. */
 static bool has_pending(const EerufRing *ring) {
-    return ring->pending > 0 || ring->oldest != NOBODY;
+    return (uint8_t)(ring->pending | (ring->oldest ^ NOBODY)) != 0;
 }
 
 /* Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes. */
@@ -718,16 +724,17 @@ static OUT_OF_LINE void emit_when_oldest_ends(EerufRing *ring) {
 
 /* Finds the next oldest, now that the one that fired at `before` has stopped listening. All others fired later. */
 static void find_oldest(EerufRing *ring, uint32_t before) {
+    const EerufSensor *sensor = ring->sensors;
     uint32_t soonest = UINT32_MAX;
-    uint8_t x;
-    ring->oldest = NOBODY;
-    for (x = 0; x < ring->count; x++) {
-        const EerufSensor *sensor = sensor_of(ring, x);
-        if ((sensor->flags & LISTENING) && sensor->fired_us - before < soonest) {
-            ring->oldest = x;
-            soonest = sensor->fired_us - before;
+    uint8_t x, oldest = NOBODY;
+    for (x = 0; x < ring->count; x++, sensor++) {
+        const uint32_t since = sensor->fired_us - before;
+        if ((sensor->flags & LISTENING) && since < soonest) {
+            oldest = x;
+            soonest = since;
         }
     }
+    ring->oldest = oldest;
 }
 
 static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, bool hops) {
@@ -750,32 +757,23 @@ static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, bool hops) {
     }
 }
 
-/* Ends a firing and compares its reading with the one before. */
+/* Ends a firing and compares its reading, which has its echo time already, with the one before. */
 static void compare(EerufRing *ring, EerufSensor *sensor, int32_t change_us, EerufReading *reading) {
+    EerufFilter *filter = &sensor->filter;
     const uint8_t flags = sensor->flags;
-    if (flags & UNCOMPARABLE) forget(&sensor->filter);
-    if (flags & (STUCK | OUTSIDE)) {
-        const bool stuck = (flags & STUCK) != 0;
-        forget(&sensor->filter);
-        write_reading(reading, &sensor->filter, (uint8_t)(stuck ? EERUF_READING_STUCK : EERUF_READING_TOO_EARLY),
-                      stuck ? EERUF_NO_ECHO : sensor->echo_us, EERUF_NO_ECHO);
-    } else {
-        push(&sensor->filter, ring->t_delta_us, ring->consecutive, sensor->echo_us, change_us, reading);
-    }
-    if (flags & UNCOMPARABLE) forget(&sensor->filter);
-    sensor->flags = flags & PHASE;
-    sensor->echo_us = EERUF_NO_ECHO;
-}
-
-/* Ends a firing whose reading the tracker weighs. */
-static void end_hop(EerufSensor *sensor, EerufReading *reading) {
-    const uint8_t flags = sensor->flags;
-    reading->t_echo_us = flags & STUCK ? EERUF_NO_ECHO : sensor->echo_us;
-    reading->kind = EERUF_READING_FIRST;
+    if (flags & (UNCOMPARABLE | STUCK | OUTSIDE)) forget(filter);
+    reading->previous_us = filter->known_us;
     if (flags & STUCK) reading->kind = EERUF_READING_STUCK;
     else if (flags & OUTSIDE) reading->kind = EERUF_READING_TOO_EARLY;
-    sensor->flags = flags & PHASE;
-    sensor->echo_us = EERUF_NO_ECHO;
+    else reading->kind = push(filter, ring->t_delta_us, ring->consecutive, reading->t_echo_us, change_us);
+    note_age(reading, filter);
+    if (flags & UNCOMPARABLE) forget(filter);
+}
+
+/* The kind of a reading that the tracker weighs. */
+static uint8_t kind_of_hop(uint8_t flags) {
+    if (flags & STUCK) return EERUF_READING_STUCK;
+    return flags & OUTSIDE ? EERUF_READING_TOO_EARLY : EERUF_READING_FIRST;
 }
 
 static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, EerufEvent *event, bool hops) {
@@ -784,17 +782,18 @@ static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, E
     EerufReading *reading = &event->u.reading;
     uint8_t ago;
     if (sensor->flags & CAN_EMIT) ring->pending--; /* counted when its edge came */
+    reading->t_echo_us = sensor->flags & STUCK ? EERUF_NO_ECHO : sensor->echo_us;
+    sensor->echo_us = EERUF_NO_ECHO;
     if (sensor->flags & LISTENING) {
-        if (hops) end_hop(sensor, reading);
+        if (hops) reading->kind = kind_of_hop(sensor->flags);
         else compare(ring, sensor, change_us == NULL ? 0 : change_us[x], reading);
+        sensor->flags = phase;
         if (ring->oldest == x) find_oldest(ring, sensor->fired_us);
     } else {
-        reading->t_echo_us = sensor->echo_us;
         reading->previous_us = EERUF_NO_ECHO;
         reading->age = sensor->filter.age;
         reading->kind = EERUF_READING_LATE;
         sensor->flags &= (uint8_t)~CAN_EMIT;
-        sensor->echo_us = EERUF_NO_ECHO;
     }
     emit_when_oldest_ends(ring);
     if (!hops) count(ring, reading->kind);
@@ -809,6 +808,7 @@ static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, E
 static void end_period(EerufRing *ring, uint32_t now_us, EerufEvent *event, bool hops) {
     EerufPeriod *ended = &event->u.ended;
     bool changed = false;
+    uint8_t kind;
     note_late(ring, narrow(now_us - ring->due_us));
     event->kind = EERUF_EVENT_PERIOD;
     event->sensor = 0;
@@ -820,43 +820,20 @@ static void end_period(EerufRing *ring, uint32_t now_us, EerufEvent *event, bool
         begin_anew(ring);
         uncompare(ring, 0);
     }
-    memcpy(ended->tally, ring->tally, sizeof ended->tally);
-    memset(ring->tally, 0, sizeof ring->tally);
+    for (kind = 0; kind < EERUF_READING_KINDS; kind++) {
+        ended->tally[kind] = ring->tally[kind];
+        ring->tally[kind] = 0;
+    }
 }
 
 /* A sensor with a reading to emit, or NOBODY: the oldest, or the first with an echo in. */
-static uint8_t next_pending(const EerufRing *ring, uint32_t now_us) {
+static uint8_t next_pending(const EerufRing *ring, bool emits) {
     uint8_t x;
-    if (ring->pending == 0)
-        return ring->oldest != NOBODY && has_reached(now_us, ring->emit_at_us) ? ring->oldest : (uint8_t)NOBODY;
+    if (ring->pending == 0) return emits ? ring->oldest : (uint8_t)NOBODY;
     if (ring->oldest != NOBODY && (sensor_of(ring, ring->oldest)->flags & CAN_EMIT)) return ring->oldest;
     for (x = 0; x < ring->count; x++)
         if (sensor_of(ring, x)->flags & CAN_EMIT) return x;
     return NOBODY;
-}
-
-/* Something is due. Firing comes first, since it should be on time; but the reading of a sensor is emitted before the
-   sensor fires again. */
-static EerufStatus advance(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event, bool hops) {
-    const bool is_due = has_reached(now_us, ring->due_us);
-    uint8_t emits = ring->next;
-    const bool fires = is_due && emits != NOBODY;
-    if (!fires) emits = next_pending(ring, now_us);
-    event->sensor = emits;
-    event->phase = ring->phase;
-    event->period = ring->period;
-    if (fires && !(sensor_of(ring, emits)->flags & (LISTENING | CAN_EMIT))) {
-        event->kind = EERUF_EVENT_FIRE;
-        event->u.due_us = ring->due_us;
-        fire(ring, emits, now_us, hops);
-    } else if (emits != NOBODY) {
-        emit_reading(ring, emits, change_us, event, hops);
-    } else if (is_due) {
-        end_period(ring, now_us, event, hops);
-    } else {
-        return EERUF_OK;
-    }
-    return EERUF_EVENT;
 }
 
 static void restart(EerufRing *ring, uint32_t now_us, bool hops) {
@@ -870,13 +847,34 @@ static void restart(EerufRing *ring, uint32_t now_us, bool hops) {
     begin_anew(ring);
 }
 
+/* Firing comes first, since it should be on time; but a sensor's reading is emitted before it fires again. */
 static EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event, bool hops) {
+    const uint32_t late_us = now_us - ring->due_us;
+    const bool is_due = late_us < HALF_TURN, emits = has_pending(ring) && has_reached(now_us, ring->emit_at_us);
+    uint8_t sensor = NOBODY;
+    bool fires = false;
     if (event == NULL) return EERUF_ERR_NULL;
-    if (has_reached(now_us, ring->due_us) || (has_pending(ring) && has_reached(now_us, ring->emit_at_us)))
-        return advance(ring, now_us, change_us, event, hops);
-    /* The clock has jumped, or nobody polled for half a turn of it. */
-    if (ring->due_us - now_us > (hops ? horizon_of_hopping(ring) : horizon_of_table(ring))) restart(ring, now_us, hops);
-    return EERUF_OK;
+    if (!is_due && !emits) {
+        /* The clock has jumped, or nobody polled for half a turn of it. */
+        if (0u - late_us > (hops ? horizon_of_hopping(ring) : horizon_of_table(ring))) restart(ring, now_us, hops);
+        return EERUF_OK;
+    }
+    if (is_due) sensor = ring->next;
+    if (sensor == NOBODY) sensor = next_pending(ring, emits);
+    else fires = !(sensor_of(ring, sensor)->flags & (LISTENING | CAN_EMIT));
+    event->sensor = sensor;
+    event->phase = ring->phase;
+    event->period = ring->period;
+    if (fires) {
+        event->kind = EERUF_EVENT_FIRE;
+        event->u.due_us = ring->due_us;
+        fire(ring, sensor, now_us, hops);
+    } else if (sensor != NOBODY) {
+        emit_reading(ring, sensor, change_us, event, hops);
+    } else {
+        end_period(ring, now_us, event, hops);
+    }
+    return EERUF_EVENT;
 }
 
 /* A ring that fires by a table. */
@@ -1344,36 +1342,36 @@ EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufL
     return EERUF_OK;
 }
 
-/* Sets the health by the last firing, before the next trigger. */
-static void end_firing(EerufLine *line, uint8_t missing_after) {
-    const uint8_t pulse = line->state & PULSE, flaw = line->state & FLAW;
+/* The health by the last firing, before the next trigger. */
+static uint8_t end_firing(EerufLine *line, uint8_t missing_after) {
+    const uint8_t state = line->state, pulse = state & PULSE, flaw = state & FLAW;
     if (pulse == AWAITED && flaw == 0) {
         if (line->silent < UINT8_MAX) line->silent++;
-        if (line->silent >= missing_after) set_health(line, EERUF_HEALTH_MISSING);
+        if (line->silent >= missing_after) return EERUF_HEALTH_MISSING;
     } else if (pulse == ROSE) {
         /* If the line is still high it is stuck, as will be seen. */
-        set_health(line, EERUF_HEALTH_LOSES_EDGES);
+        return EERUF_HEALTH_LOSES_EDGES;
     } else if (pulse != IDLE) {
         /* A pulse may follow what was taken for the end of one whose beginning was too soon after the trigger. */
-        if (flaw == 0 || (pulse == OVER && flaw == LOST_EDGE)) set_health(line, EERUF_HEALTH_WELL);
-        else set_health(line, flaw == CHATTERED ? EERUF_HEALTH_CHATTERS : EERUF_HEALTH_LOSES_EDGES);
+        if (flaw == 0 || (pulse == OVER && flaw == LOST_EDGE)) return EERUF_HEALTH_WELL;
+        return flaw == CHATTERED ? EERUF_HEALTH_CHATTERS : EERUF_HEALTH_LOSES_EDGES;
     }
-    set_bits(line, FLAW, 0);
+    return (uint8_t)(state >> HEALTH_AT);
 }
 
 /* A firing begins; without health the line is well. */
 static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint8_t health) {
     const EerufStatus status = has_line(modules, sensor);
     EerufLine *line;
+    uint8_t ended;
     if (status != EERUF_OK) return status;
     line = &modules->lines[sensor];
-    end_firing(line, modules->settings->missing_after);
+    ended = end_firing(line, modules->settings->missing_after);
     if (health == EERUF_HEALTH_WELL) {
-        set_bits(line, PULSE, AWAITED);
+        line->state = (uint8_t)((uint8_t)(ended << HEALTH_AT) | AWAITED);
         return EERUF_OK;
     }
-    set_bits(line, PULSE, IDLE);
-    set_health(line, health);
+    line->state = (uint8_t)((uint8_t)(health << HEALTH_AT) | IDLE);
     note_stuck(&modules->ring->sensors[sensor]);
     return EERUF_DO_NOT_TRIGGER;
 }

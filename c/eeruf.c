@@ -331,8 +331,9 @@ static void forget(EerufFilter *filter) {
 }
 
 /* Eq. (11), after taking off the change that is expected. Echoes are below half a turn. */
-static bool near_identical(uint32_t echo_us, uint32_t previous_us, int32_t change_us, uint32_t t_delta_us) {
-    if (echo_us == EERUF_NO_ECHO || previous_us == EERUF_NO_ECHO) return echo_us == previous_us;
+static bool near_identical(uint32_t echo_us, uint32_t previous_us, int32_t change_us, uint16_t t_delta_us) {
+    /* Silence does not move, and is further from any echo than any t_delta. */
+    if (echo_us == EERUF_NO_ECHO || previous_us == EERUF_NO_ECHO) change_us = 0;
     if (change_us < 0) {
         /* The same with echoes exchanged, so that the change is taken off the later one. */
         const uint32_t earlier = previous_us;
@@ -485,8 +486,7 @@ static uint16_t tolerated(const EerufRing *ring) {
 /* Notes the last firing's stretch; its reading and those pending are not compared if it differs too much. */
 static void stretch_by(EerufRing *ring, uint8_t sensor, uint16_t late_us, uint16_t stretch, bool hops) {
     EerufLateness *late = &ring->lateness;
-    uint16_t least, most;
-    const uint16_t most_tolerated = hops ? 0 : tolerated(ring);
+    uint16_t least, most, most_tolerated;
     late->last = sensor;
     late->last_late = late_us;
     late->last_stretch = stretch;
@@ -496,13 +496,14 @@ static void stretch_by(EerufRing *ring, uint8_t sensor, uint16_t late_us, uint16
     late->least = fewer16(late->least, stretch);
     late->most = more16(late->most, stretch);
     if (hops) return;
+    most_tolerated = tolerated(ring);
     if (less16(stretch, least) > most_tolerated || less16(most, stretch) > most_tolerated) uncompare(ring, LISTENING);
 }
 
 /* A firing came late, or has a stretch because others did. */
-static void fired_late(EerufRing *ring, uint8_t sensor, uint16_t late_us, bool hops) {
+static void fired_late(EerufRing *ring, EerufSensor *fired, uint8_t sensor, uint16_t late_us, bool hops) {
     EerufLateness *late = &ring->lateness;
-    uint16_t *total = &sensor_of(ring, sensor)->total_late, stretch = late_us;
+    uint16_t *total = &fired->total_late, stretch = late_us;
     if (late_us > 0) {
         watch(ring);
         note_late(ring, late_us);
@@ -586,9 +587,9 @@ static OUT_OF_LINE uint32_t horizon_of_table(const EerufRing *ring) {
 }
 
 /* Ends the period of a table. Returns whether the next one does not follow on it as the schedule says. */
-static bool end_period_of_table(EerufRing *ring, uint32_t now_us) {
+static bool end_period_of_table(EerufRing *ring, uint32_t now_us, uint32_t late_us) {
     const uint32_t settling = settling_time(ring->schedule);
-    bool changed = now_us - ring->due_us > READ32(ring->schedule->period_us);
+    bool changed = late_us > READ32(ring->schedule->period_us);
     uint8_t phase;
     if (changed) ring->due_us = now_us;
     /* The last firing must not fall half a turn of the clock behind while no sensor is enabled. */
@@ -737,12 +738,11 @@ static void find_oldest(EerufRing *ring, uint32_t before) {
     ring->oldest = oldest;
 }
 
-static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, bool hops) {
+static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late_us, bool hops) {
     EerufSensor *fired = sensor_of(ring, sensor);
-    const uint16_t late_us = narrow(now_us - ring->due_us);
     fired->flags = (uint8_t)((fired->flags & UNCOMPARABLE) | LISTENING | ring->phase);
     fired->fired_us = now_us;
-    if (late_us != 0 || ring->lateness.watched != 0) fired_late(ring, sensor, late_us, hops);
+    if (late_us != 0 || ring->lateness.watched != 0) fired_late(ring, fired, sensor, late_us, hops);
     if (ring->oldest == NOBODY) {
         ring->oldest = sensor;
         emit_when_oldest_ends(ring);
@@ -778,14 +778,14 @@ static uint8_t kind_of_hop(uint8_t flags) {
 
 static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, EerufEvent *event, bool hops) {
     EerufSensor *sensor = sensor_of(ring, x);
-    const uint8_t phase = sensor->flags & PHASE;
+    const uint8_t flags = sensor->flags, phase = flags & PHASE;
     EerufReading *reading = &event->u.reading;
     uint8_t ago;
-    if (sensor->flags & CAN_EMIT) ring->pending--; /* counted when its edge came */
-    reading->t_echo_us = sensor->flags & STUCK ? EERUF_NO_ECHO : sensor->echo_us;
+    if (flags & CAN_EMIT) ring->pending--; /* counted when its edge came */
+    reading->t_echo_us = flags & STUCK ? EERUF_NO_ECHO : sensor->echo_us;
     sensor->echo_us = EERUF_NO_ECHO;
-    if (sensor->flags & LISTENING) {
-        if (hops) reading->kind = kind_of_hop(sensor->flags);
+    if (flags & LISTENING) {
+        if (hops) reading->kind = kind_of_hop(flags);
         else compare(ring, sensor, change_us == NULL ? 0 : change_us[x], reading);
         sensor->flags = phase;
         if (ring->oldest == x) find_oldest(ring, sensor->fired_us);
@@ -793,7 +793,7 @@ static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, E
         reading->previous_us = EERUF_NO_ECHO;
         reading->age = sensor->filter.age;
         reading->kind = EERUF_READING_LATE;
-        sensor->flags &= (uint8_t)~CAN_EMIT;
+        sensor->flags = (uint8_t)(flags & ~CAN_EMIT);
     }
     emit_when_oldest_ends(ring);
     if (!hops) count(ring, reading->kind);
@@ -805,16 +805,16 @@ static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, E
     event->period -= ago;
 }
 
-static void end_period(EerufRing *ring, uint32_t now_us, EerufEvent *event, bool hops) {
+static void end_period(EerufRing *ring, uint32_t now_us, uint32_t late_us, EerufEvent *event, bool hops) {
     EerufPeriod *ended = &event->u.ended;
     bool changed = false;
     uint8_t kind;
-    note_late(ring, narrow(now_us - ring->due_us));
+    note_late(ring, narrow(late_us));
     event->kind = EERUF_EVENT_PERIOD;
     event->sensor = 0;
     ring->period++;
     if (hops) end_hopping_period(ring, now_us);
-    else changed = end_period_of_table(ring, now_us);
+    else changed = end_period_of_table(ring, now_us, late_us);
     end_late_period(ring, ended, hops);
     if (changed) {
         begin_anew(ring);
@@ -868,11 +868,11 @@ static EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t *change_
     if (fires) {
         event->kind = EERUF_EVENT_FIRE;
         event->u.due_us = ring->due_us;
-        fire(ring, sensor, now_us, hops);
+        fire(ring, sensor, now_us, narrow(late_us), hops);
     } else if (sensor != NOBODY) {
         emit_reading(ring, sensor, change_us, event, hops);
     } else {
-        end_period(ring, now_us, event, hops);
+        end_period(ring, now_us, late_us, event, hops);
     }
     return EERUF_EVENT;
 }

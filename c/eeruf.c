@@ -363,7 +363,7 @@ static uint8_t push(EerufFilter *filter, uint16_t t_delta_us, uint8_t consecutiv
     return now == 1 ? EERUF_READING_REJECTED : EERUF_READING_REPEATED;
 }
 
-/* A filter's reading has its kind. */
+/* The reading has its kind already. */
 static void note_age(EerufReading *reading, EerufFilter *filter) {
     if (reading->kind == EERUF_READING_ACCEPTED) filter->age = 0;
     else if (filter->age < EERUF_NEVER - 1u) filter->age++;
@@ -712,7 +712,8 @@ EerufStatus eeruf_ring_init_unverified(EerufRing *ring, size_t ring_size, EerufS
     return init(ring, ring_size, sensors, sensors_size, schedule, config, now_us, false);
 }
 
-/* Whether a reading will be emitted without a further firing. */
+/* Whether a reading will be emitted without a further firing: one is pending or there is an oldest. In one byte, since
+   two branches take more. */
 static bool has_pending(const EerufRing *ring) {
     return (uint8_t)(ring->pending | (ring->oldest ^ NOBODY)) != 0;
 }
@@ -826,7 +827,7 @@ static void end_period(EerufRing *ring, uint32_t now_us, uint32_t late_us, Eeruf
     }
 }
 
-/* A sensor with a reading to emit, or NOBODY: the oldest, or the first with an echo in. */
+/* A sensor with a reading to emit, or NOBODY: the first with an echo in, or the oldest if it is time for that. */
 static uint8_t next_pending(const EerufRing *ring, bool emits) {
     uint8_t x;
     if (ring->pending == 0) return emits ? ring->oldest : (uint8_t)NOBODY;
@@ -1538,33 +1539,34 @@ static void grow_older(EerufTrack *track) {
 }
 
 /* The last firing in this phase did not support it. One phase alone keeps no track confirmed. */
-static void miss(EerufTrack *track, uint8_t phase) {
-    track->phases &= (uint16_t)~phase_bit(phase);
+static void miss(EerufTrack *track, uint16_t phase) {
+    track->phases &= (uint16_t)~phase;
     if (votes_of(track) < 2) track->flags &= (uint8_t)~TRACK_CONFIRMED;
 }
 
-static void support(EerufTrack *track, uint32_t t_echo_us, uint8_t phase, bool solo, const EerufTrackerSettings *how) {
-    const bool is_new = (track->phases & phase_bit(phase)) == 0;
+/* Moves a track towards an echo. */
+static OUT_OF_LINE void follow(EerufTrack *track, uint32_t t_echo_us, uint32_t by_us) {
+    track->t_echo_us += t_echo_us > track->t_echo_us ? by_us : 0u - by_us;
+}
+
+static void support(EerufTrack *track, uint32_t t_echo_us, uint16_t phase, bool solo, const EerufTrackerSettings *how) {
+    const bool is_new = (track->phases & phase) == 0;
     const uint32_t distance = between(track->t_echo_us, t_echo_us);
     if (is_new && distance <= how->tentative_within_us && track->close < UINT8_MAX) track->close++;
-    track->phases |= phase_bit(phase);
-    if (solo) track->solo_votes++;
-    if (track->solo_votes > how->votes) track->solo_votes = how->votes;
+    track->phases |= phase;
+    if (solo && track->solo_votes < how->votes) track->solo_votes++;
     /* A path repeats itself in its own phase for ever, so that says nothing new of a track yet to be confirmed. */
     if (is_new || solo || (track->flags & TRACK_CONFIRMED)) {
         track->score = (uint8_t)(track->score + (solo ? 2u : 1u));
         if (track->score > how->score_limit) track->score = how->score_limit;
     }
     track->age = 0;
-    if (track->t_echo_us != EERUF_NO_ECHO) {
-        /* A quarter of the way, so that one early or late edge does not move it far. */
-        if (t_echo_us > track->t_echo_us) track->t_echo_us += distance / 4;
-        else track->t_echo_us -= distance / 4;
-    }
+    /* A quarter of the way, so that one early or late edge does not move it far. */
+    if (track->t_echo_us != EERUF_NO_ECHO) follow(track, t_echo_us, distance / 4);
     if (votes_of(track) >= how->votes && track->score >= how->votes) track->flags |= TRACK_CONFIRMED;
 }
 
-static void contradict(EerufTrack *track, uint8_t phase, bool solo, const EerufTrackerSettings *how) {
+static void contradict(EerufTrack *track, uint16_t phase, bool solo, const EerufTrackerSettings *how) {
     const uint8_t weight = solo ? how->solo_contradiction : (track->flags & TRACK_CONFIRMED) ? how->contradiction : 1;
     track->score = track->score > weight ? (uint8_t)(track->score - weight) : 0;
     track->flags |= CONTRADICTED;
@@ -1592,13 +1594,13 @@ static uint8_t nearest_track(const EerufHopper *hopper, uint32_t t_echo_us, uint
     return nearest;
 }
 
-static void begin_track(EerufHopper *hopper, uint32_t t_echo_us, uint8_t phase, bool solo) {
+static void begin_track(EerufHopper *hopper, uint32_t t_echo_us, uint16_t phase, bool solo) {
     EerufTrack *weakest = &hopper->tracks[0];
     uint8_t place;
     for (place = 1; place < EERUF_HYPOTHESES; place++)
         if (ranks_below(&hopper->tracks[place], weakest)) weakest = &hopper->tracks[place];
     weakest->t_echo_us = t_echo_us;
-    weakest->phases = phase_bit(phase);
+    weakest->phases = phase;
     weakest->score = solo ? 2 : 1;
     weakest->solo_votes = solo ? 1 : 0;
     weakest->close = 1;
@@ -1607,10 +1609,9 @@ static void begin_track(EerufHopper *hopper, uint32_t t_echo_us, uint8_t phase, 
 }
 
 /* The reading has its kind and echo time already. */
-static void end_weighing(EerufFilter *filter, uint32_t previous_us, EerufReading *reading) {
+static void end_weighing(EerufFilter *filter, EerufReading *reading) {
     if (reading->kind == EERUF_READING_ACCEPTED || reading->kind == EERUF_READING_TENTATIVE) filter->age = 0;
     else if (filter->age < EERUF_NEVER - 1u) filter->age++;
-    reading->previous_us = previous_us;
     reading->age = filter->age;
 }
 
@@ -1638,19 +1639,19 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
     const EerufTrackerSettings *how = &hopping->config.tracker;
     EerufHopper *hopper = &hopping->hoppers[sensor];
     const uint32_t t_echo_us = reading->t_echo_us;
-    const uint8_t phase = hopper->phase, votes = tentative_votes(hopping, sensor);
+    const uint16_t phase = phase_bit(hopper->phase);
+    const uint8_t votes = tentative_votes(hopping, sensor);
     const uint8_t nearest = nearest_track(hopper, t_echo_us, how->t_delta_us);
     const EerufTrack *believed = believed_of(hopper);
     /* A copy: the tracks move below. Without one no echo is as late. */
     const bool believes = believed != NULL;
     const uint32_t held_us = believes ? believed->t_echo_us : EERUF_NO_ECHO;
     const bool is_near = believes && is_within(held_us, t_echo_us, how->near_us);
-    const bool has_previous = believes || nearest != NOBODY;
-    const uint32_t previous_us = nearest != NOBODY ? hopper->tracks[nearest].t_echo_us : held_us;
     bool candidate = false, tentative = false, confirmed;
+    EerufTrack *track = hopper->tracks;
     uint8_t place, kind;
-    for (place = 0; place < EERUF_HYPOTHESES && steady; place++) {
-        EerufTrack *track = &hopper->tracks[place];
+    reading->previous_us = nearest != NOBODY ? track[nearest].t_echo_us : held_us;
+    for (place = 0; place < EERUF_HYPOTHESES && steady; place++, track++) {
         if (track->score == 0) continue;
         if (place == nearest) {
             bool earlier;
@@ -1662,9 +1663,8 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
             tentative = earlier && votes != 0 && (solo || close >= votes);
         } else if (is_near && track->t_echo_us == held_us) {
             /* It follows an echo that moves faster than its support: three tenths of the way. */
-            const uint32_t distance = between(held_us, t_echo_us) * 3 / 10;
             grow_older(track);
-            track->t_echo_us = t_echo_us > held_us ? held_us + distance : held_us - distance;
+            follow(track, t_echo_us, between(held_us, t_echo_us) * 3 / 10);
         } else if (t_echo_us > track->t_echo_us) {
             contradict(track, phase, solo, how);
         } else {
@@ -1679,16 +1679,15 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
             tentative = solo && votes != 0 && t_echo_us != EERUF_NO_ECHO;
         }
         if (explained) hopper->unexplained = (uint8_t)(hopper->unexplained - hopper->unexplained / 16);
-        else hopper->unexplained = (uint8_t)(hopper->unexplained + (255u - hopper->unexplained) / 16);
+        else hopper->unexplained = (uint8_t)(hopper->unexplained + (uint8_t)~hopper->unexplained / 16);
     }
     believed = believed_of(hopper);
     confirmed = believed != NULL && is_within(believed->t_echo_us, t_echo_us, how->near_us);
-    if (confirmed) kind = t_echo_us == EERUF_NO_ECHO ? EERUF_READING_CLEAR : EERUF_READING_ACCEPTED;
-    else if (t_echo_us == EERUF_NO_ECHO) kind = EERUF_READING_NO_ECHO;
+    if (t_echo_us == EERUF_NO_ECHO) kind = confirmed ? EERUF_READING_CLEAR : EERUF_READING_NO_ECHO;
+    else if (confirmed) kind = EERUF_READING_ACCEPTED;
     else if (tentative) kind = EERUF_READING_TENTATIVE;
-    else kind = has_previous ? EERUF_READING_REJECTED : EERUF_READING_FIRST;
+    else kind = believes || nearest != NOBODY ? EERUF_READING_REJECTED : EERUF_READING_FIRST;
     reading->kind = kind;
-    end_weighing(&sensor_of(&hopping->ring, sensor)->filter, previous_us, reading);
     if (hopping->readier > 0) hopping->readier--;
     if (candidate) {
         hopping->candidate = sensor;
@@ -1781,13 +1780,18 @@ static bool is_steady(const EerufHoppingRing *hopping, uint16_t late_us) {
     return true;
 }
 
+/* How long after the start of the period so much time has passed since a firing, which may have been late past the end
+   of its period. A clock that has jumped says nothing about when that was. */
+static OUT_OF_LINE uint32_t wait_after(const EerufHoppingRing *hopping, uint32_t fired_us, uint32_t passes_us) {
+    const uint32_t waits = fired_us + passes_us - hopping->start_us;
+    return waits > HALF_TURN || waits > passes_us + CATCHES_UP_US ? 0 : waits;
+}
+
 /* How long after the start of the period a sensor must not fire yet, since it still listens. */
 static uint32_t rests_for(const EerufHoppingRing *hopping, uint8_t sensor) {
     const EerufHopper *hopper = &hopping->hoppers[sensor];
-    const uint32_t rested = sensor_of(&hopping->ring, sensor)->fired_us + hopping->config.window_us;
-    const uint32_t rests = has_reached(hopping->start_us, rested) ? 0 : rested - hopping->start_us;
-    /* It may have fired late past the period's end. A clock that has jumped says nothing about when that was. */
-    return (hopper->flags & HAS_FIRED) && rests <= hopping->config.window_us + CATCHES_UP_US ? rests : 0;
+    const uint32_t fired_us = sensor_of(&hopping->ring, sensor)->fired_us;
+    return hopper->flags & HAS_FIRED ? wait_after(hopping, fired_us, hopping->config.window_us) : 0;
 }
 
 static bool is_disabled(const EerufHoppingRing *hopping, uint8_t sensor) {
@@ -1809,12 +1813,9 @@ static uint8_t longest_unserved(const EerufHoppingRing *hopping) {
 
 /* Gives the period to one sensor, which fires when all else is silent. */
 static void plan_solo(EerufHoppingRing *hopping, uint8_t sensor) {
-    const uint32_t silent = hopping->ring.last_fired_us + hopping->dies_us;
-    uint32_t at_us = has_reached(hopping->start_us, silent) ? 0 : silent - hopping->start_us;
-    /* The last firing may have been late past the period's end; further ahead the clock has jumped. */
-    if (at_us > hopping->dies_us + CATCHES_UP_US) at_us = 0;
     /* Its own last firing is among those that it waits for, but its window may be longer. */
-    at_us = longer(at_us, rests_for(hopping, sensor));
+    const uint32_t at_us =
+        longer(wait_after(hopping, hopping->ring.last_fired_us, hopping->dies_us), rests_for(hopping, sensor));
     hopping->earned = (uint16_t)(hopping->earned - ONE_SOLO);
     hopping->since_solo = 0;
     hopping->solo_at_us = at_us;
@@ -1888,14 +1889,13 @@ static void shift_all(EerufHoppingRing *hopping) {
 /* Who would fire in the period that begins. */
 static void choose(EerufHoppingRing *hopping) {
     const EerufHoppingConfig *config = &hopping->config;
-    EerufHopper *hoppers = hopping->hoppers;
-    uint8_t x, at;
+    EerufHopper *hoppers = hopping->hoppers, *place;
+    uint8_t x;
     hopping->place = hopping->planned = 0;
     hopping->solo_at_us = EERUF_NO_ECHO;
     hopping->length_us = config->period_us;
     if (hopping->since_solo < UINT8_MAX) hopping->since_solo++;
-    hopping->earned = (uint16_t)(hopping->earned + config->solo_rate);
-    if (hopping->earned > 2 * ONE_SOLO) hopping->earned = 2 * ONE_SOLO;
+    hopping->earned = fewer16((uint16_t)(hopping->earned + config->solo_rate), 2 * ONE_SOLO);
     if (hopping->earned >= ONE_SOLO && hopping->since_solo >= config->solo_spacing) {
         const uint8_t unserved = longest_unserved(hopping);
         if (unserved != NOBODY) {
@@ -1909,10 +1909,10 @@ static void choose(EerufHoppingRing *hopping) {
         const uint32_t offset = offset_of(hopping, x);
         if (is_disabled(hopping, x) || offset < rests_for(hopping, x)) continue;
         /* Insertion by firing time; sensors that fire together keep their order. */
-        for (at = hopping->planned; at > 0 && offset_of(hopping, hoppers[at - 1].order) > offset; at--)
-            hoppers[at].order = hoppers[at - 1].order;
-        hoppers[at].order = x;
-        hopping->planned++;
+        place = &hoppers[hopping->planned++];
+        for (; place > hoppers && offset_of(hopping, place[-1].order) > offset; place--)
+            place->order = place[-1].order;
+        place->order = x;
     }
 }
 
@@ -1923,36 +1923,37 @@ static void plan(EerufHoppingRing *hopping) {
     look_ahead(hopping);
 }
 
+/* A firing is later than planned, now by `by_us` more. Nothing else fires in a solo period, so that it may move. */
+static OUT_OF_LINE void hop_late(EerufHoppingRing *hopping, EerufHopper *hopper, uint32_t late_us, uint32_t by_us) {
+    const bool solo = (hopper->flags & SOLO) != 0;
+    if (!solo) {
+        hopper->late_us = narrow(late_us);
+        note_hop(hopping, hopper->late_us);
+    }
+    if (late_us > CATCHES_UP_US) break_off(hopping);
+    if (late_us > CATCHES_UP_US || solo) hopping->start_us += by_us;
+    look_ahead(hopping);
+}
+
 static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us) {
     EerufHoppingRing *hopping = hopping_of(ring);
     EerufHopper *hopper = &hopping->hoppers[sensor];
-    const uint32_t late_us = now_us - hopping->ring.due_us;
+    const uint32_t late_us = now_us - ring->due_us;
     const bool solo = hopping->solo_at_us != EERUF_NO_ECHO;
-    if (late_us > CATCHES_UP_US) break_off(hopping);
-    /* Nothing else fires in a solo period, so that it may move freely. */
-    if (late_us > CATCHES_UP_US || solo) hopping->start_us += late_us;
-    hopper->late_us = solo ? 0 : narrow(late_us);
-    if (!solo) note_hop(hopping, hopper->late_us);
+    ring->last_fired_us = now_us;
     hopping->place++;
-    hopping->ring.last_fired_us = now_us;
+    hopper->late_us = 0;
     hopper->phase = hopping->phase;
     hopper->flags = (uint8_t)(HAS_FIRED | (solo ? SOLO | SETTLED : hopping->since_shift > 0 ? SETTLED : 0));
-    look_ahead(hopping);
+    hop_late(hopping, hopper, late_us, late_us);
 }
 
 static void postpone_hop(EerufRing *ring, uint8_t sensor, uint32_t by_us) {
     EerufHoppingRing *hopping = hopping_of(ring);
     EerufHopper *hopper = &hopping->hoppers[sensor];
-    const bool solo = (hopper->flags & SOLO) != 0;
-    const uint32_t late_us = add32(hopper->late_us, by_us), fired_us = sensor_of(ring, sensor)->fired_us;
-    if (!solo) {
-        hopper->late_us = narrow(late_us);
-        note_hop(hopping, hopper->late_us);
-    }
+    const uint32_t fired_us = sensor_of(ring, sensor)->fired_us;
     if (!has_reached(ring->last_fired_us, fired_us)) ring->last_fired_us = fired_us;
-    if (late_us > CATCHES_UP_US) break_off(hopping);
-    if (late_us > CATCHES_UP_US || solo) hopping->start_us += by_us;
-    look_ahead(hopping);
+    hop_late(hopping, hopper, add32(hopper->late_us, by_us), by_us);
 }
 
 static void end_hopping_period(EerufRing *ring, uint32_t now_us) {
@@ -2106,13 +2107,13 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     hopper = &hopping->hoppers[event->sensor];
     event->phase = hopper->phase;
     if (reading->kind != EERUF_READING_LATE) {
-        if (reading->kind != EERUF_READING_FIRST) {
-            end_weighing(&sensor_of(&hopping->ring, event->sensor)->filter, EERUF_NO_ECHO, reading);
-        } else {
+        reading->previous_us = EERUF_NO_ECHO;
+        if (reading->kind == EERUF_READING_FIRST) {
             const bool steady = was_steady(hopping, hopper);
             if (change_us != NULL) shift_tracks(hopper, change_us[event->sensor]);
             weigh(hopping, event->sensor, (hopper->flags & SOLO) != 0, steady, reading);
         }
+        end_weighing(&sensor_of(&hopping->ring, event->sensor)->filter, reading);
     }
     /* Nor does silence or another lag help a sensor whose line is stuck: it costs the others nothing. */
     if (reading->kind != EERUF_READING_LATE && reading->kind != EERUF_READING_STUCK) {

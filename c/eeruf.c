@@ -52,11 +52,12 @@ static bool has_reached(uint32_t now, uint32_t deadline) {
 }
 
 static uint16_t narrow(uint32_t time) {
-    return time > UINT16_MAX ? UINT16_MAX : (uint16_t)time;
+    return (uint16_t)(time >> 16) != 0 ? UINT16_MAX : (uint16_t)time;
 }
 
 static uint16_t add16(uint16_t one, uint16_t other) {
-    return narrow((uint32_t)one + other);
+    const uint16_t sum = (uint16_t)(one + other);
+    return sum < one ? UINT16_MAX : sum;
 }
 
 static OUT_OF_LINE uint16_t less16(uint16_t one, uint16_t other) {
@@ -97,8 +98,9 @@ static bool is_verified(const EerufSchedule *schedule) {
 static uint8_t firing(const EerufSchedule *schedule, uint8_t sensors, uint8_t phase, uint8_t place, uint32_t *gap_us) {
     const uint8_t *order = READ_POINTER(const uint8_t *, schedule->order);
     const uint32_t *gaps = READ_POINTER(const uint32_t *, schedule->gap_us);
-    *gap_us = READ32(gaps[(uint16_t)phase * (sensors + 1u) + place]);
-    return place < sensors ? READ8(order[(uint16_t)phase * sensors + place]) : (uint8_t)NOBODY;
+    const uint16_t at = (uint16_t)(phase * sensors + place);
+    *gap_us = READ32(gaps[at + phase]);
+    return place < sensors ? READ8(order[at]) : (uint8_t)NOBODY;
 }
 
 /* When a sensor fires in a phase, after the start of the period. */
@@ -329,8 +331,9 @@ static void forget(EerufFilter *filter) {
 }
 
 /* Eq. (11), after taking off the change that is expected. Echoes are below half a turn. */
-static bool near_identical(uint32_t echo_us, uint32_t previous_us, int32_t change_us, uint32_t t_delta_us) {
-    if (echo_us == EERUF_NO_ECHO || previous_us == EERUF_NO_ECHO) return echo_us == previous_us;
+static bool near_identical(uint32_t echo_us, uint32_t previous_us, int32_t change_us, uint16_t t_delta_us) {
+    /* Silence does not move, and is further from any echo than any t_delta. */
+    if (echo_us == EERUF_NO_ECHO || previous_us == EERUF_NO_ECHO) change_us = 0;
     if (change_us < 0) {
         /* The same with echoes exchanged, so that the change is taken off the later one. */
         const uint32_t earlier = previous_us;
@@ -341,22 +344,12 @@ static bool near_identical(uint32_t echo_us, uint32_t previous_us, int32_t chang
     return apart(echo_us, previous_us + (uint32_t)change_us) <= t_delta_us;
 }
 
-static void write_reading(EerufReading *reading, EerufFilter *filter, uint8_t kind, uint32_t t_echo_us,
-                          uint32_t previous_us) {
-    if (kind == EERUF_READING_ACCEPTED) filter->age = 0;
-    else if (filter->age < EERUF_NEVER - 1u) filter->age++;
-    reading->t_echo_us = t_echo_us;
-    reading->previous_us = previous_us;
-    reading->age = filter->age;
-    reading->kind = kind;
-}
-
-/* Compares the echo of a firing with the one before. */
-static void push(EerufFilter *filter, uint16_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us, int32_t change_us,
-                 EerufReading *reading) {
+/* Compares the echo of a firing with the one before. Returns the kind of the reading. */
+static uint8_t push(EerufFilter *filter, uint16_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us,
+                    int32_t change_us) {
     const uint32_t previous_us = filter->known_us;
     const bool silent = t_echo_us == EERUF_NO_ECHO;
-    uint8_t before = filter->state & (SCORE | CONFIRMED), now = 1, kind;
+    uint8_t before = filter->state & (SCORE | CONFIRMED), now = 1;
     if (before != 0 && near_identical(t_echo_us, previous_us, change_us, t_delta_us)) {
         now = before & SCORE;
         if (now < consecutive) now++;
@@ -364,12 +357,17 @@ static void push(EerufFilter *filter, uint16_t t_delta_us, uint8_t consecutive, 
     }
     filter->known_us = t_echo_us;
     filter->state = (uint8_t)((filter->state & DISABLED) | now);
-    if (now & CONFIRMED) kind = silent ? EERUF_READING_CLEAR : EERUF_READING_ACCEPTED;
-    else if (silent) kind = EERUF_READING_NO_ECHO;
-    else if (previous_us == EERUF_NO_ECHO) kind = EERUF_READING_FIRST;
-    else if (now == 1) kind = EERUF_READING_REJECTED;
-    else kind = EERUF_READING_REPEATED;
-    write_reading(reading, filter, kind, t_echo_us, previous_us);
+    if (now & CONFIRMED) return silent ? EERUF_READING_CLEAR : EERUF_READING_ACCEPTED;
+    if (silent) return EERUF_READING_NO_ECHO;
+    if (previous_us == EERUF_NO_ECHO) return EERUF_READING_FIRST;
+    return now == 1 ? EERUF_READING_REJECTED : EERUF_READING_REPEATED;
+}
+
+/* The reading has its kind already. */
+static void note_age(EerufReading *reading, EerufFilter *filter) {
+    if (reading->kind == EERUF_READING_ACCEPTED) filter->age = 0;
+    else if (filter->age < EERUF_NEVER - 1u) filter->age++;
+    reading->age = filter->age;
 }
 
 EerufStatus eeruf_filter_push(EerufFilter *filter, uint32_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us,
@@ -378,7 +376,10 @@ EerufStatus eeruf_filter_push(EerufFilter *filter, uint32_t t_delta_us, uint8_t 
     if (consecutive < 2 || consecutive > 8) return EERUF_ERR_CONSECUTIVE;
     if (t_delta_us > UINT16_MAX) return EERUF_ERR_COARSE_T_DELTA;
     if (t_echo_us >= HALF_TURN && t_echo_us != EERUF_NO_ECHO) return EERUF_ERR_RANGE;
-    push(filter, (uint16_t)t_delta_us, consecutive, t_echo_us, expected_change_us, reading);
+    reading->t_echo_us = t_echo_us;
+    reading->previous_us = filter->known_us;
+    reading->kind = push(filter, (uint16_t)t_delta_us, consecutive, t_echo_us, expected_change_us);
+    note_age(reading, filter);
     return EERUF_OK;
 }
 
@@ -433,8 +434,9 @@ static void count(EerufRing *ring, uint8_t kind) {
 static OUT_OF_LINE void watch(EerufRing *ring) {
     EerufLateness *late = &ring->lateness;
     if (late->watched == 0) {
-        uint8_t x;
-        for (x = 0; x < ring->count; x++) sensor_of(ring, x)->total_late = 0;
+        EerufSensor *sensor = ring->sensors;
+        uint8_t left;
+        for (left = ring->count; left > 0; left--, sensor++) sensor->total_late = 0;
         late->total = late->total_before = 0;
         late->least = late->least_before = late->uncomparable == FIRST_PERIOD ? UINT16_MAX : 0;
         late->most = late->most_before = 0;
@@ -444,9 +446,10 @@ static OUT_OF_LINE void watch(EerufRing *ring) {
 
 /* The next reading of every sensor may be of sound from before or after a shift that is not known. */
 static void uncompare(EerufRing *ring, uint8_t only) {
-    uint8_t x;
-    for (x = 0; x < ring->count; x++)
-        if (only == 0 || (sensor_of(ring, x)->flags & only)) sensor_of(ring, x)->flags |= UNCOMPARABLE;
+    EerufSensor *sensor = ring->sensors;
+    uint8_t left;
+    for (left = ring->count; left > 0; left--, sensor++)
+        if (only == 0 || (sensor->flags & only)) sensor->flags |= UNCOMPARABLE;
 }
 
 /* The timetable has begun anew. A reading of the first period may hold sound from before. */
@@ -475,15 +478,15 @@ static uint16_t tolerated(const EerufRing *ring) {
     uint32_t separation = 2 * t_delta + 1;
     if (is_verified(ring->schedule)) separation = READ32(ring->schedule->separation_us);
     separation = shorter(separation, READ32(ring->schedule->min_refire_us));
-    separation = separation > t_delta + 1 ? separation - (t_delta + 1) : 0;
+    if (separation <= t_delta) return 0;
+    separation -= t_delta + 1;
     return separation > UINT16_MAX / 2 ? UINT16_MAX / 2 : (uint16_t)separation;
 }
 
 /* Notes the last firing's stretch; its reading and those pending are not compared if it differs too much. */
 static void stretch_by(EerufRing *ring, uint8_t sensor, uint16_t late_us, uint16_t stretch, bool hops) {
     EerufLateness *late = &ring->lateness;
-    uint16_t least, most;
-    const uint16_t most_tolerated = hops ? 0 : tolerated(ring);
+    uint16_t least, most, most_tolerated;
     late->last = sensor;
     late->last_late = late_us;
     late->last_stretch = stretch;
@@ -493,13 +496,14 @@ static void stretch_by(EerufRing *ring, uint8_t sensor, uint16_t late_us, uint16
     late->least = fewer16(late->least, stretch);
     late->most = more16(late->most, stretch);
     if (hops) return;
+    most_tolerated = tolerated(ring);
     if (less16(stretch, least) > most_tolerated || less16(most, stretch) > most_tolerated) uncompare(ring, LISTENING);
 }
 
 /* A firing came late, or has a stretch because others did. */
-static void fired_late(EerufRing *ring, uint8_t sensor, uint16_t late_us, bool hops) {
+static void fired_late(EerufRing *ring, EerufSensor *fired, uint8_t sensor, uint16_t late_us, bool hops) {
     EerufLateness *late = &ring->lateness;
-    uint16_t *total = &sensor_of(ring, sensor)->total_late, stretch = late_us;
+    uint16_t *total = &fired->total_late, stretch = late_us;
     if (late_us > 0) {
         watch(ring);
         note_late(ring, late_us);
@@ -583,9 +587,10 @@ static OUT_OF_LINE uint32_t horizon_of_table(const EerufRing *ring) {
 }
 
 /* Ends the period of a table. Returns whether the next one does not follow on it as the schedule says. */
-static bool end_period_of_table(EerufRing *ring, uint32_t now_us) {
+static bool end_period_of_table(EerufRing *ring, uint32_t now_us, uint32_t late_us) {
     const uint32_t settling = settling_time(ring->schedule);
-    bool changed = now_us - ring->due_us > READ32(ring->schedule->period_us);
+    bool changed = late_us > READ32(ring->schedule->period_us);
+    uint8_t phase;
     if (changed) ring->due_us = now_us;
     /* The last firing must not fall half a turn of the clock behind while no sensor is enabled. */
     if (ring->due_us - ring->last_fired_us > settling) ring->last_fired_us = ring->due_us - settling;
@@ -593,18 +598,22 @@ static bool end_period_of_table(EerufRing *ring, uint32_t now_us) {
         ring->hook(ring, 0, settling);
         changed = true;
     }
-    begin_period(ring, ring->phase + 1u < READ8(ring->schedule->phases) ? (uint8_t)(ring->phase + 1u) : 0);
+    phase = (uint8_t)(ring->phase + 1u);
+    begin_period(ring, phase < READ8(ring->schedule->phases) ? phase : 0);
     return changed;
 }
 
-static void restart_table(EerufRing *ring, uint32_t now_us) {
-    const uint32_t settling = settling_time(ring->schedule);
-    const uint32_t waits = ring->last_fired_us + settling - now_us;
-    /* A clock that has jumped says nothing about when the last firing was. */
-    const bool soon = waits - 1u < horizon_of_table(ring);
-    if (!soon) ring->last_fired_us = now_us - settling;
-    ring->due_us = soon ? now_us + waits : now_us;
+/* Begins with the first phase, silent for long enough by then. */
+static OUT_OF_LINE void begin_table(EerufRing *ring, uint32_t at_us) {
+    ring->due_us = at_us;
+    ring->last_fired_us = at_us - settling_time(ring->schedule);
     begin_period(ring, 0);
+}
+
+static void restart_table(EerufRing *ring, uint32_t now_us) {
+    const uint32_t settled_us = ring->last_fired_us + settling_time(ring->schedule);
+    /* A clock that has jumped says nothing about when the last firing was. */
+    begin_table(ring, settled_us - now_us - 1u < horizon_of_table(ring) ? settled_us : now_us);
 }
 
 /* -- What a ring does -- */
@@ -688,9 +697,7 @@ static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors,
     if (config->consecutive < 2 || config->consecutive > 8) return EERUF_ERR_CONSECUTIVE;
     ring->schedule = schedule;
     ring->consecutive = config->consecutive;
-    ring->last_fired_us = now_us - settling_time(schedule);
-    ring->due_us = now_us;
-    begin_period(ring, 0);
+    begin_table(ring, now_us);
     ring->ready = READY;
     return EERUF_OK;
 }
@@ -705,9 +712,10 @@ EerufStatus eeruf_ring_init_unverified(EerufRing *ring, size_t ring_size, EerufS
     return init(ring, ring_size, sensors, sensors_size, schedule, config, now_us, false);
 }
 
-/* Whether a reading will be emitted without a further firing. */
+/* Whether a reading will be emitted without a further firing: one is pending or there is an oldest. In one byte, since
+   two branches take more. */
 static bool has_pending(const EerufRing *ring) {
-    return ring->pending > 0 || ring->oldest != NOBODY;
+    return (uint8_t)(ring->pending | (ring->oldest ^ NOBODY)) != 0;
 }
 
 /* Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes. */
@@ -718,24 +726,24 @@ static OUT_OF_LINE void emit_when_oldest_ends(EerufRing *ring) {
 
 /* Finds the next oldest, now that the one that fired at `before` has stopped listening. All others fired later. */
 static void find_oldest(EerufRing *ring, uint32_t before) {
+    const EerufSensor *sensor = ring->sensors;
     uint32_t soonest = UINT32_MAX;
-    uint8_t x;
-    ring->oldest = NOBODY;
-    for (x = 0; x < ring->count; x++) {
-        const EerufSensor *sensor = sensor_of(ring, x);
-        if ((sensor->flags & LISTENING) && sensor->fired_us - before < soonest) {
-            ring->oldest = x;
-            soonest = sensor->fired_us - before;
+    uint8_t x, oldest = NOBODY;
+    for (x = 0; x < ring->count; x++, sensor++) {
+        const uint32_t since = sensor->fired_us - before;
+        if ((sensor->flags & LISTENING) && since < soonest) {
+            oldest = x;
+            soonest = since;
         }
     }
+    ring->oldest = oldest;
 }
 
-static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, bool hops) {
+static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late_us, bool hops) {
     EerufSensor *fired = sensor_of(ring, sensor);
-    const uint16_t late_us = narrow(now_us - ring->due_us);
     fired->flags = (uint8_t)((fired->flags & UNCOMPARABLE) | LISTENING | ring->phase);
     fired->fired_us = now_us;
-    if (late_us != 0 || ring->lateness.watched != 0) fired_late(ring, sensor, late_us, hops);
+    if (late_us != 0 || ring->lateness.watched != 0) fired_late(ring, fired, sensor, late_us, hops);
     if (ring->oldest == NOBODY) {
         ring->oldest = sensor;
         emit_when_oldest_ends(ring);
@@ -750,51 +758,43 @@ static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, bool hops) {
     }
 }
 
-/* Ends a firing and compares its reading with the one before. */
+/* Ends a firing and compares its reading, which has its echo time already, with the one before. */
 static void compare(EerufRing *ring, EerufSensor *sensor, int32_t change_us, EerufReading *reading) {
+    EerufFilter *filter = &sensor->filter;
     const uint8_t flags = sensor->flags;
-    if (flags & UNCOMPARABLE) forget(&sensor->filter);
-    if (flags & (STUCK | OUTSIDE)) {
-        const bool stuck = (flags & STUCK) != 0;
-        forget(&sensor->filter);
-        write_reading(reading, &sensor->filter, (uint8_t)(stuck ? EERUF_READING_STUCK : EERUF_READING_TOO_EARLY),
-                      stuck ? EERUF_NO_ECHO : sensor->echo_us, EERUF_NO_ECHO);
-    } else {
-        push(&sensor->filter, ring->t_delta_us, ring->consecutive, sensor->echo_us, change_us, reading);
-    }
-    if (flags & UNCOMPARABLE) forget(&sensor->filter);
-    sensor->flags = flags & PHASE;
-    sensor->echo_us = EERUF_NO_ECHO;
-}
-
-/* Ends a firing whose reading the tracker weighs. */
-static void end_hop(EerufSensor *sensor, EerufReading *reading) {
-    const uint8_t flags = sensor->flags;
-    reading->t_echo_us = flags & STUCK ? EERUF_NO_ECHO : sensor->echo_us;
-    reading->kind = EERUF_READING_FIRST;
+    if (flags & (UNCOMPARABLE | STUCK | OUTSIDE)) forget(filter);
+    reading->previous_us = filter->known_us;
     if (flags & STUCK) reading->kind = EERUF_READING_STUCK;
     else if (flags & OUTSIDE) reading->kind = EERUF_READING_TOO_EARLY;
-    sensor->flags = flags & PHASE;
-    sensor->echo_us = EERUF_NO_ECHO;
+    else reading->kind = push(filter, ring->t_delta_us, ring->consecutive, reading->t_echo_us, change_us);
+    note_age(reading, filter);
+    if (flags & UNCOMPARABLE) forget(filter);
+}
+
+/* The kind of a reading that the tracker weighs. */
+static uint8_t kind_of_hop(uint8_t flags) {
+    if (flags & STUCK) return EERUF_READING_STUCK;
+    return flags & OUTSIDE ? EERUF_READING_TOO_EARLY : EERUF_READING_FIRST;
 }
 
 static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, EerufEvent *event, bool hops) {
     EerufSensor *sensor = sensor_of(ring, x);
-    const uint8_t phase = sensor->flags & PHASE;
+    const uint8_t flags = sensor->flags, phase = flags & PHASE;
     EerufReading *reading = &event->u.reading;
     uint8_t ago;
-    if (sensor->flags & CAN_EMIT) ring->pending--; /* counted when its edge came */
-    if (sensor->flags & LISTENING) {
-        if (hops) end_hop(sensor, reading);
+    if (flags & CAN_EMIT) ring->pending--; /* counted when its edge came */
+    reading->t_echo_us = flags & STUCK ? EERUF_NO_ECHO : sensor->echo_us;
+    sensor->echo_us = EERUF_NO_ECHO;
+    if (flags & LISTENING) {
+        if (hops) reading->kind = kind_of_hop(flags);
         else compare(ring, sensor, change_us == NULL ? 0 : change_us[x], reading);
+        sensor->flags = phase;
         if (ring->oldest == x) find_oldest(ring, sensor->fired_us);
     } else {
-        reading->t_echo_us = sensor->echo_us;
         reading->previous_us = EERUF_NO_ECHO;
         reading->age = sensor->filter.age;
         reading->kind = EERUF_READING_LATE;
-        sensor->flags &= (uint8_t)~CAN_EMIT;
-        sensor->echo_us = EERUF_NO_ECHO;
+        sensor->flags = (uint8_t)(flags & ~CAN_EMIT);
     }
     emit_when_oldest_ends(ring);
     if (!hops) count(ring, reading->kind);
@@ -806,57 +806,35 @@ static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, E
     event->period -= ago;
 }
 
-static void end_period(EerufRing *ring, uint32_t now_us, EerufEvent *event, bool hops) {
+static void end_period(EerufRing *ring, uint32_t now_us, uint32_t late_us, EerufEvent *event, bool hops) {
     EerufPeriod *ended = &event->u.ended;
     bool changed = false;
-    note_late(ring, narrow(now_us - ring->due_us));
+    uint8_t kind;
+    note_late(ring, narrow(late_us));
     event->kind = EERUF_EVENT_PERIOD;
     event->sensor = 0;
     ring->period++;
     if (hops) end_hopping_period(ring, now_us);
-    else changed = end_period_of_table(ring, now_us);
+    else changed = end_period_of_table(ring, now_us, late_us);
     end_late_period(ring, ended, hops);
     if (changed) {
         begin_anew(ring);
         uncompare(ring, 0);
     }
-    memcpy(ended->tally, ring->tally, sizeof ended->tally);
-    memset(ring->tally, 0, sizeof ring->tally);
+    for (kind = 0; kind < EERUF_READING_KINDS; kind++) {
+        ended->tally[kind] = ring->tally[kind];
+        ring->tally[kind] = 0;
+    }
 }
 
-/* A sensor with a reading to emit, or NOBODY: the oldest, or the first with an echo in. */
-static uint8_t next_pending(const EerufRing *ring, uint32_t now_us) {
+/* A sensor with a reading to emit, or NOBODY: the first with an echo in, or the oldest if it is time for that. */
+static uint8_t next_pending(const EerufRing *ring, bool emits) {
     uint8_t x;
-    if (ring->pending == 0)
-        return ring->oldest != NOBODY && has_reached(now_us, ring->emit_at_us) ? ring->oldest : (uint8_t)NOBODY;
+    if (ring->pending == 0) return emits ? ring->oldest : (uint8_t)NOBODY;
     if (ring->oldest != NOBODY && (sensor_of(ring, ring->oldest)->flags & CAN_EMIT)) return ring->oldest;
     for (x = 0; x < ring->count; x++)
         if (sensor_of(ring, x)->flags & CAN_EMIT) return x;
     return NOBODY;
-}
-
-/* Something is due. Firing comes first, since it should be on time; but the reading of a sensor is emitted before the
-   sensor fires again. */
-static EerufStatus advance(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event, bool hops) {
-    const bool is_due = has_reached(now_us, ring->due_us);
-    uint8_t emits = ring->next;
-    const bool fires = is_due && emits != NOBODY;
-    if (!fires) emits = next_pending(ring, now_us);
-    event->sensor = emits;
-    event->phase = ring->phase;
-    event->period = ring->period;
-    if (fires && !(sensor_of(ring, emits)->flags & (LISTENING | CAN_EMIT))) {
-        event->kind = EERUF_EVENT_FIRE;
-        event->u.due_us = ring->due_us;
-        fire(ring, emits, now_us, hops);
-    } else if (emits != NOBODY) {
-        emit_reading(ring, emits, change_us, event, hops);
-    } else if (is_due) {
-        end_period(ring, now_us, event, hops);
-    } else {
-        return EERUF_OK;
-    }
-    return EERUF_EVENT;
 }
 
 static void restart(EerufRing *ring, uint32_t now_us, bool hops) {
@@ -870,13 +848,34 @@ static void restart(EerufRing *ring, uint32_t now_us, bool hops) {
     begin_anew(ring);
 }
 
+/* Firing comes first, since it should be on time; but a sensor's reading is emitted before it fires again. */
 static EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event, bool hops) {
+    const uint32_t late_us = now_us - ring->due_us;
+    const bool is_due = late_us < HALF_TURN, emits = has_pending(ring) && has_reached(now_us, ring->emit_at_us);
+    uint8_t sensor = NOBODY;
+    bool fires = false;
     if (event == NULL) return EERUF_ERR_NULL;
-    if (has_reached(now_us, ring->due_us) || (has_pending(ring) && has_reached(now_us, ring->emit_at_us)))
-        return advance(ring, now_us, change_us, event, hops);
-    /* The clock has jumped, or nobody polled for half a turn of it. */
-    if (ring->due_us - now_us > (hops ? horizon_of_hopping(ring) : horizon_of_table(ring))) restart(ring, now_us, hops);
-    return EERUF_OK;
+    if (!is_due && !emits) {
+        /* The clock has jumped, or nobody polled for half a turn of it. */
+        if (0u - late_us > (hops ? horizon_of_hopping(ring) : horizon_of_table(ring))) restart(ring, now_us, hops);
+        return EERUF_OK;
+    }
+    if (is_due) sensor = ring->next;
+    if (sensor == NOBODY) sensor = next_pending(ring, emits);
+    else fires = !(sensor_of(ring, sensor)->flags & (LISTENING | CAN_EMIT));
+    event->sensor = sensor;
+    event->phase = ring->phase;
+    event->period = ring->period;
+    if (fires) {
+        event->kind = EERUF_EVENT_FIRE;
+        event->u.due_us = ring->due_us;
+        fire(ring, sensor, now_us, narrow(late_us), hops);
+    } else if (sensor != NOBODY) {
+        emit_reading(ring, sensor, change_us, event, hops);
+    } else {
+        end_period(ring, now_us, late_us, event, hops);
+    }
+    return EERUF_EVENT;
 }
 
 /* A ring that fires by a table. */
@@ -1344,36 +1343,36 @@ EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufL
     return EERUF_OK;
 }
 
-/* Sets the health by the last firing, before the next trigger. */
-static void end_firing(EerufLine *line, uint8_t missing_after) {
-    const uint8_t pulse = line->state & PULSE, flaw = line->state & FLAW;
+/* The health by the last firing, before the next trigger. */
+static uint8_t end_firing(EerufLine *line, uint8_t missing_after) {
+    const uint8_t state = line->state, pulse = state & PULSE, flaw = state & FLAW;
     if (pulse == AWAITED && flaw == 0) {
         if (line->silent < UINT8_MAX) line->silent++;
-        if (line->silent >= missing_after) set_health(line, EERUF_HEALTH_MISSING);
+        if (line->silent >= missing_after) return EERUF_HEALTH_MISSING;
     } else if (pulse == ROSE) {
         /* If the line is still high it is stuck, as will be seen. */
-        set_health(line, EERUF_HEALTH_LOSES_EDGES);
+        return EERUF_HEALTH_LOSES_EDGES;
     } else if (pulse != IDLE) {
         /* A pulse may follow what was taken for the end of one whose beginning was too soon after the trigger. */
-        if (flaw == 0 || (pulse == OVER && flaw == LOST_EDGE)) set_health(line, EERUF_HEALTH_WELL);
-        else set_health(line, flaw == CHATTERED ? EERUF_HEALTH_CHATTERS : EERUF_HEALTH_LOSES_EDGES);
+        if (flaw == 0 || (pulse == OVER && flaw == LOST_EDGE)) return EERUF_HEALTH_WELL;
+        return flaw == CHATTERED ? EERUF_HEALTH_CHATTERS : EERUF_HEALTH_LOSES_EDGES;
     }
-    set_bits(line, FLAW, 0);
+    return (uint8_t)(state >> HEALTH_AT);
 }
 
 /* A firing begins; without health the line is well. */
 static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint8_t health) {
     const EerufStatus status = has_line(modules, sensor);
     EerufLine *line;
+    uint8_t ended;
     if (status != EERUF_OK) return status;
     line = &modules->lines[sensor];
-    end_firing(line, modules->settings->missing_after);
+    ended = end_firing(line, modules->settings->missing_after);
     if (health == EERUF_HEALTH_WELL) {
-        set_bits(line, PULSE, AWAITED);
+        line->state = (uint8_t)((uint8_t)(ended << HEALTH_AT) | AWAITED);
         return EERUF_OK;
     }
-    set_bits(line, PULSE, IDLE);
-    set_health(line, health);
+    line->state = (uint8_t)((uint8_t)(health << HEALTH_AT) | IDLE);
     note_stuck(&modules->ring->sensors[sensor]);
     return EERUF_DO_NOT_TRIGGER;
 }
@@ -1539,33 +1538,34 @@ static void grow_older(EerufTrack *track) {
 }
 
 /* The last firing in this phase did not support it. One phase alone keeps no track confirmed. */
-static void miss(EerufTrack *track, uint8_t phase) {
-    track->phases &= (uint16_t)~phase_bit(phase);
+static void miss(EerufTrack *track, uint16_t phase) {
+    track->phases &= (uint16_t)~phase;
     if (votes_of(track) < 2) track->flags &= (uint8_t)~TRACK_CONFIRMED;
 }
 
-static void support(EerufTrack *track, uint32_t t_echo_us, uint8_t phase, bool solo, const EerufTrackerSettings *how) {
-    const bool is_new = (track->phases & phase_bit(phase)) == 0;
+/* Moves a track towards an echo. */
+static OUT_OF_LINE void follow(EerufTrack *track, uint32_t t_echo_us, uint32_t by_us) {
+    track->t_echo_us += t_echo_us > track->t_echo_us ? by_us : 0u - by_us;
+}
+
+static void support(EerufTrack *track, uint32_t t_echo_us, uint16_t phase, bool solo, const EerufTrackerSettings *how) {
+    const bool is_new = (track->phases & phase) == 0;
     const uint32_t distance = between(track->t_echo_us, t_echo_us);
     if (is_new && distance <= how->tentative_within_us && track->close < UINT8_MAX) track->close++;
-    track->phases |= phase_bit(phase);
-    if (solo) track->solo_votes++;
-    if (track->solo_votes > how->votes) track->solo_votes = how->votes;
+    track->phases |= phase;
+    if (solo && track->solo_votes < how->votes) track->solo_votes++;
     /* A path repeats itself in its own phase for ever, so that says nothing new of a track yet to be confirmed. */
     if (is_new || solo || (track->flags & TRACK_CONFIRMED)) {
         track->score = (uint8_t)(track->score + (solo ? 2u : 1u));
         if (track->score > how->score_limit) track->score = how->score_limit;
     }
     track->age = 0;
-    if (track->t_echo_us != EERUF_NO_ECHO) {
-        /* A quarter of the way, so that one early or late edge does not move it far. */
-        if (t_echo_us > track->t_echo_us) track->t_echo_us += distance / 4;
-        else track->t_echo_us -= distance / 4;
-    }
+    /* A quarter of the way, so that one early or late edge does not move it far. */
+    if (track->t_echo_us != EERUF_NO_ECHO) follow(track, t_echo_us, distance / 4);
     if (votes_of(track) >= how->votes && track->score >= how->votes) track->flags |= TRACK_CONFIRMED;
 }
 
-static void contradict(EerufTrack *track, uint8_t phase, bool solo, const EerufTrackerSettings *how) {
+static void contradict(EerufTrack *track, uint16_t phase, bool solo, const EerufTrackerSettings *how) {
     const uint8_t weight = solo ? how->solo_contradiction : (track->flags & TRACK_CONFIRMED) ? how->contradiction : 1;
     track->score = track->score > weight ? (uint8_t)(track->score - weight) : 0;
     track->flags |= CONTRADICTED;
@@ -1593,13 +1593,13 @@ static uint8_t nearest_track(const EerufHopper *hopper, uint32_t t_echo_us, uint
     return nearest;
 }
 
-static void begin_track(EerufHopper *hopper, uint32_t t_echo_us, uint8_t phase, bool solo) {
+static void begin_track(EerufHopper *hopper, uint32_t t_echo_us, uint16_t phase, bool solo) {
     EerufTrack *weakest = &hopper->tracks[0];
     uint8_t place;
     for (place = 1; place < EERUF_HYPOTHESES; place++)
         if (ranks_below(&hopper->tracks[place], weakest)) weakest = &hopper->tracks[place];
     weakest->t_echo_us = t_echo_us;
-    weakest->phases = phase_bit(phase);
+    weakest->phases = phase;
     weakest->score = solo ? 2 : 1;
     weakest->solo_votes = solo ? 1 : 0;
     weakest->close = 1;
@@ -1608,10 +1608,9 @@ static void begin_track(EerufHopper *hopper, uint32_t t_echo_us, uint8_t phase, 
 }
 
 /* The reading has its kind and echo time already. */
-static void end_weighing(EerufFilter *filter, uint32_t previous_us, EerufReading *reading) {
+static void end_weighing(EerufFilter *filter, EerufReading *reading) {
     if (reading->kind == EERUF_READING_ACCEPTED || reading->kind == EERUF_READING_TENTATIVE) filter->age = 0;
     else if (filter->age < EERUF_NEVER - 1u) filter->age++;
-    reading->previous_us = previous_us;
     reading->age = filter->age;
 }
 
@@ -1630,19 +1629,19 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
     const EerufTrackerSettings *how = &hopping->config.tracker;
     EerufHopper *hopper = &hopping->hoppers[sensor];
     const uint32_t t_echo_us = reading->t_echo_us;
-    const uint8_t phase = hopper->phase, votes = how->tentative_votes;
+    const uint16_t phase = phase_bit(hopper->phase);
+    const uint8_t votes = how->tentative_votes;
     const uint8_t nearest = nearest_track(hopper, t_echo_us, how->t_delta_us);
     const EerufTrack *believed = believed_of(hopper);
     /* A copy: the tracks move below. Without one no echo is as late. */
     const bool believes = believed != NULL;
     const uint32_t held_us = believes ? believed->t_echo_us : EERUF_NO_ECHO;
     const bool is_near = believes && is_within(held_us, t_echo_us, how->near_us);
-    const bool has_previous = believes || nearest != NOBODY;
-    const uint32_t previous_us = nearest != NOBODY ? hopper->tracks[nearest].t_echo_us : held_us;
     bool tentative = false, confirmed;
+    EerufTrack *track = hopper->tracks;
     uint8_t place, kind;
-    for (place = 0; place < EERUF_HYPOTHESES && steady; place++) {
-        EerufTrack *track = &hopper->tracks[place];
+    reading->previous_us = nearest != NOBODY ? track[nearest].t_echo_us : held_us;
+    for (place = 0; place < EERUF_HYPOTHESES && steady; place++, track++) {
         if (track->score == 0) continue;
         if (place == nearest) {
             bool earlier;
@@ -1653,9 +1652,8 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
             tentative = earlier && votes != 0 && (solo || close >= votes);
         } else if (is_near && track->t_echo_us == held_us) {
             /* It follows an echo that moves faster than its support: three tenths of the way. */
-            const uint32_t distance = between(held_us, t_echo_us) * 3 / 10;
             grow_older(track);
-            track->t_echo_us = t_echo_us > held_us ? held_us + distance : held_us - distance;
+            follow(track, t_echo_us, between(held_us, t_echo_us) * 3 / 10);
         } else if (t_echo_us > track->t_echo_us) {
             contradict(track, phase, solo, how);
         } else {
@@ -1669,12 +1667,11 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
     }
     believed = believed_of(hopper);
     confirmed = believed != NULL && is_within(believed->t_echo_us, t_echo_us, how->near_us);
-    if (confirmed) kind = t_echo_us == EERUF_NO_ECHO ? EERUF_READING_CLEAR : EERUF_READING_ACCEPTED;
-    else if (t_echo_us == EERUF_NO_ECHO) kind = EERUF_READING_NO_ECHO;
+    if (t_echo_us == EERUF_NO_ECHO) kind = confirmed ? EERUF_READING_CLEAR : EERUF_READING_NO_ECHO;
+    else if (confirmed) kind = EERUF_READING_ACCEPTED;
     else if (tentative) kind = EERUF_READING_TENTATIVE;
-    else kind = has_previous ? EERUF_READING_REJECTED : EERUF_READING_FIRST;
+    else kind = believes || nearest != NOBODY ? EERUF_READING_REJECTED : EERUF_READING_FIRST;
     reading->kind = kind;
-    end_weighing(&sensor_of(&hopping->ring, sensor)->filter, previous_us, reading);
 }
 
 /* -- Firing: each sensor at its lag plus the wait of the phase, and in a solo period one sensor alone -- */
@@ -1762,13 +1759,18 @@ static bool is_steady(const EerufHoppingRing *hopping, uint16_t late_us) {
     return true;
 }
 
+/* How long after the start of the period so much time has passed since a firing, which may have been late past the end
+   of its period. A clock that has jumped says nothing about when that was. */
+static OUT_OF_LINE uint32_t wait_after(const EerufHoppingRing *hopping, uint32_t fired_us, uint32_t passes_us) {
+    const uint32_t waits = fired_us + passes_us - hopping->start_us;
+    return waits > HALF_TURN || waits > passes_us + CATCHES_UP_US ? 0 : waits;
+}
+
 /* How long after the start of the period a sensor must not fire yet, since it still listens. */
 static uint32_t rests_for(const EerufHoppingRing *hopping, uint8_t sensor) {
     const EerufHopper *hopper = &hopping->hoppers[sensor];
-    const uint32_t rested = sensor_of(&hopping->ring, sensor)->fired_us + hopping->config.window_us;
-    const uint32_t rests = has_reached(hopping->start_us, rested) ? 0 : rested - hopping->start_us;
-    /* It may have fired late past the period's end. A clock that has jumped says nothing about when that was. */
-    return (hopper->flags & HAS_FIRED) && rests <= hopping->config.window_us + CATCHES_UP_US ? rests : 0;
+    const uint32_t fired_us = sensor_of(&hopping->ring, sensor)->fired_us;
+    return hopper->flags & HAS_FIRED ? wait_after(hopping, fired_us, hopping->config.window_us) : 0;
 }
 
 static bool is_disabled(const EerufHoppingRing *hopping, uint8_t sensor) {
@@ -1790,12 +1792,9 @@ static uint8_t longest_unserved(const EerufHoppingRing *hopping) {
 
 /* Gives the period to one sensor, which fires when all else is silent. */
 static void plan_solo(EerufHoppingRing *hopping, uint8_t sensor) {
-    const uint32_t silent = hopping->ring.last_fired_us + hopping->dies_us;
-    uint32_t at_us = has_reached(hopping->start_us, silent) ? 0 : silent - hopping->start_us;
-    /* The last firing may have been late past the period's end; further ahead the clock has jumped. */
-    if (at_us > hopping->dies_us + CATCHES_UP_US) at_us = 0;
     /* Its own last firing is among those that it waits for, but its window may be longer. */
-    at_us = longer(at_us, rests_for(hopping, sensor));
+    const uint32_t at_us =
+        longer(wait_after(hopping, hopping->ring.last_fired_us, hopping->dies_us), rests_for(hopping, sensor));
     hopping->earned = (uint16_t)(hopping->earned - ONE_SOLO);
     hopping->since_solo = 0;
     hopping->solo_at_us = at_us;
@@ -1869,14 +1868,13 @@ static void shift_all(EerufHoppingRing *hopping) {
 /* Who would fire in the period that begins. */
 static void choose(EerufHoppingRing *hopping) {
     const EerufHoppingConfig *config = &hopping->config;
-    EerufHopper *hoppers = hopping->hoppers;
-    uint8_t x, at;
+    EerufHopper *hoppers = hopping->hoppers, *place;
+    uint8_t x;
     hopping->place = hopping->planned = 0;
     hopping->solo_at_us = EERUF_NO_ECHO;
     hopping->length_us = config->period_us;
     if (hopping->since_solo < UINT8_MAX) hopping->since_solo++;
-    hopping->earned = (uint16_t)(hopping->earned + config->solo_rate);
-    if (hopping->earned > 2 * ONE_SOLO) hopping->earned = 2 * ONE_SOLO;
+    hopping->earned = fewer16((uint16_t)(hopping->earned + config->solo_rate), 2 * ONE_SOLO);
     if (hopping->earned >= ONE_SOLO && hopping->since_solo >= config->solo_spacing) {
         const uint8_t unserved = longest_unserved(hopping);
         if (unserved != NOBODY) {
@@ -1890,10 +1888,10 @@ static void choose(EerufHoppingRing *hopping) {
         const uint32_t offset = offset_of(hopping, x);
         if (is_disabled(hopping, x) || offset < rests_for(hopping, x)) continue;
         /* Insertion by firing time; sensors that fire together keep their order. */
-        for (at = hopping->planned; at > 0 && offset_of(hopping, hoppers[at - 1].order) > offset; at--)
-            hoppers[at].order = hoppers[at - 1].order;
-        hoppers[at].order = x;
-        hopping->planned++;
+        place = &hoppers[hopping->planned++];
+        for (; place > hoppers && offset_of(hopping, place[-1].order) > offset; place--)
+            place->order = place[-1].order;
+        place->order = x;
     }
 }
 
@@ -1904,36 +1902,37 @@ static void plan(EerufHoppingRing *hopping) {
     look_ahead(hopping);
 }
 
+/* A firing is later than planned, now by `by_us` more. Nothing else fires in a solo period, so that it may move. */
+static OUT_OF_LINE void hop_late(EerufHoppingRing *hopping, EerufHopper *hopper, uint32_t late_us, uint32_t by_us) {
+    const bool solo = (hopper->flags & SOLO) != 0;
+    if (!solo) {
+        hopper->late_us = narrow(late_us);
+        note_hop(hopping, hopper->late_us);
+    }
+    if (late_us > CATCHES_UP_US) break_off(hopping);
+    if (late_us > CATCHES_UP_US || solo) hopping->start_us += by_us;
+    look_ahead(hopping);
+}
+
 static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us) {
     EerufHoppingRing *hopping = hopping_of(ring);
     EerufHopper *hopper = &hopping->hoppers[sensor];
-    const uint32_t late_us = now_us - hopping->ring.due_us;
+    const uint32_t late_us = now_us - ring->due_us;
     const bool solo = hopping->solo_at_us != EERUF_NO_ECHO;
-    if (late_us > CATCHES_UP_US) break_off(hopping);
-    /* Nothing else fires in a solo period, so that it may move freely. */
-    if (late_us > CATCHES_UP_US || solo) hopping->start_us += late_us;
-    hopper->late_us = solo ? 0 : narrow(late_us);
-    if (!solo) note_hop(hopping, hopper->late_us);
+    ring->last_fired_us = now_us;
     hopping->place++;
-    hopping->ring.last_fired_us = now_us;
+    hopper->late_us = 0;
     hopper->phase = hopping->phase;
     hopper->flags = (uint8_t)(HAS_FIRED | (solo ? SOLO | SETTLED : hopping->since_shift > 0 ? SETTLED : 0));
-    look_ahead(hopping);
+    hop_late(hopping, hopper, late_us, late_us);
 }
 
 static void postpone_hop(EerufRing *ring, uint8_t sensor, uint32_t by_us) {
     EerufHoppingRing *hopping = hopping_of(ring);
     EerufHopper *hopper = &hopping->hoppers[sensor];
-    const bool solo = (hopper->flags & SOLO) != 0;
-    const uint32_t late_us = add32(hopper->late_us, by_us), fired_us = sensor_of(ring, sensor)->fired_us;
-    if (!solo) {
-        hopper->late_us = narrow(late_us);
-        note_hop(hopping, hopper->late_us);
-    }
+    const uint32_t fired_us = sensor_of(ring, sensor)->fired_us;
     if (!has_reached(ring->last_fired_us, fired_us)) ring->last_fired_us = fired_us;
-    if (late_us > CATCHES_UP_US) break_off(hopping);
-    if (late_us > CATCHES_UP_US || solo) hopping->start_us += by_us;
-    look_ahead(hopping);
+    hop_late(hopping, hopper, add32(hopper->late_us, by_us), by_us);
 }
 
 static void end_hopping_period(EerufRing *ring, uint32_t now_us) {
@@ -2086,13 +2085,13 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     hopper = &hopping->hoppers[event->sensor];
     event->phase = hopper->phase;
     if (reading->kind != EERUF_READING_LATE) {
-        if (reading->kind != EERUF_READING_FIRST) {
-            end_weighing(&sensor_of(&hopping->ring, event->sensor)->filter, EERUF_NO_ECHO, reading);
-        } else {
+        reading->previous_us = EERUF_NO_ECHO;
+        if (reading->kind == EERUF_READING_FIRST) {
             const bool steady = was_steady(hopping, hopper);
             if (change_us != NULL) shift_tracks(hopper, change_us[event->sensor]);
             weigh(hopping, event->sensor, (hopper->flags & SOLO) != 0, steady, reading);
         }
+        end_weighing(&sensor_of(&hopping->ring, event->sensor)->filter, reading);
     }
     /* Nor does silence or another lag help a sensor whose line is stuck: it costs the others nothing. */
     if (reading->kind != EERUF_READING_LATE && reading->kind != EERUF_READING_STUCK) {

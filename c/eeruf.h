@@ -452,7 +452,7 @@ typedef struct EerufHoppingConfig {
      {150, 400, 100, 4, 6, 2, 6, 2}, 100, 4, 2, 5, 8, 4, 0}
 #define EERUF_HOPPING_DRIVING(sensors, period_us, window_us)                                                           \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 100, 4, 6, 2, 6, 2}, 0, 5, 3, 5, 8, 4, 0}
+     {150, 400, 60, 5, 6, 2, 6, 2}, 0, 5, 3, 0, 8, 4, 0}
 #define EERUF_HOPPING_MAPS(sensors, period_us, window_us)                                                              \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
      {150, 400, 60, 5, 7, 1, 6, 0}, 28, 8, 6, 5, 24, 4, 0}

@@ -13,7 +13,9 @@ static __attribute__((noinline)) void setBit(const uint16_t *registers, uint8_t 
     volatile uint8_t *place = (volatile uint8_t *)pgm_read_word(registers + digitalPinToPort(pin));
     const uint8_t mask = digitalPinToBitMask(pin), before = SREG;
     cli(); // an interrupt may change other pins of the port
-    *place = on ? *place | mask : *place & ~mask;
+    uint8_t bits = *place | mask;
+    if (!on) bits ^= mask;
+    *place = bits;
     SREG = before;
 }
 
@@ -38,14 +40,17 @@ static void setOutput(uint8_t pin, bool output) {
 }
 #endif
 
+static void setPin(uint8_t pin, bool high, bool output) {
+    drive(pin, high);
+    setOutput(pin, output);
+}
+
 void EerufPin::release(uint8_t trigger, uint8_t echo) {
-    drive(trigger, false);
-    setOutput(trigger, trigger != echo);
+    setPin(trigger, false, trigger != echo);
 }
 
 void EerufPin::trigger(uint8_t trigger, uint8_t echo) {
-    drive(trigger, true);
-    setOutput(trigger, true);
+    setPin(trigger, true, true);
     delayMicroseconds(10);
     release(trigger, echo);
 }
@@ -53,9 +58,10 @@ void EerufPin::trigger(uint8_t trigger, uint8_t echo) {
 bool EerufModules::begin() {
     const EerufConfig config = EERUF_CONFIG;
     static const EerufHcSr04Settings settings = EERUF_HC_SR04;
-    for (uint8_t sensor = 0; sensor < count_; sensor++) {
-        setOutput(echoes_[sensor], false);
-        EerufPin::release(triggers_[sensor], echoes_[sensor]);
+    const uint8_t *echo = echoes_, *trigger = triggers_;
+    for (uint8_t left = count_; left > 0; left--, echo++, trigger++) {
+        setOutput(*echo, false);
+        EerufPin::release(*trigger, *echo);
     }
     const size_t sensors = count_ * sizeof *sensors_, lines = count_ * sizeof *lines_;
     status_ = eeruf_ring_init(&ring_, sizeof ring_, sensors_, sensors, schedule_, &config, ::micros());
@@ -67,10 +73,11 @@ bool EerufModules::begin() {
 // Edges of the lines that a pulse is awaited on, until something is due: to fire on time matters more.
 void EerufModules::sample(EerufModules &self) {
     const uint32_t due = eeruf_ring_due(&self.ring_);
+    const uint8_t *echo = self.echoes_;
     bool was_high;
-    for (uint8_t sensor = 0; sensor < self.count_ && (int32_t)(::micros() - due) < 0; sensor++) {
+    for (uint8_t sensor = 0; sensor < self.count_ && (int32_t)(::micros() - due) < 0; sensor++, echo++) {
         if (!eeruf_hc_sr04_awaits(&self.modules_, sensor, &was_high)) continue;
-        const bool high = EerufPin::isHigh(self.echoes_[sensor]);
+        const bool high = EerufPin::isHigh(*echo);
         if (high != was_high) (void)eeruf_hc_sr04_edge(&self.modules_, sensor, high, ::micros());
     }
 }

@@ -9,7 +9,7 @@ pub(crate) enum Hopping {
     Balanced,
     /// For robots that must stop early
     Quick,
-    /// For robots that drive: no solo periods
+    /// For robots that drive: no solo periods, and lags stay
     Driving,
     /// For maps: confirmed echoes alone
     Maps,

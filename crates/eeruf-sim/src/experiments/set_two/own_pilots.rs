@@ -24,6 +24,6 @@ pub(super) const OWN: [(Method, Piloting); 13] = [
     (Method::Eeruf, tuned(3, 0.02, 12, 0.47, 330.0, 2.4, 2.2, false)), // 71, 70, 63
     (Method::EerufBest, tuned(2, 0.1, 21, 0.37, 270.0, 4.7, 1.3, true)), // 71, 70, 70
     (Method::Adaptive, tuned(1, 0.011, 15, 0.12, 320.0, 1.9, 3.2, true)), // 69, 61, 49
-    (Method::EerufHopping, tuned(4, 0.047, 16, 0.7, 250.0, 2.7, 1.9, true)), // 72, 70, 67
+    (Method::EerufHopping, tuned(3, 0.02, 12, 0.47, 330.0, 2.4, 2.2, false)), // 71, 71, 70
     (Method::MultiEcho, tuned(2, 0.1, 21, 0.37, 270.0, 4.7, 1.3, true)), // 72, 72, 72
 ];

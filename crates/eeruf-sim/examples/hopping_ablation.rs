@@ -42,7 +42,7 @@ fn rows() -> [(&'static str, HoppingSettings); 9] {
         ("balanced", ALL),
         ("lags stay", ALL.with_shift_after(0)),
         ("no solo periods", ALL.with_solo_rate(0)),
-        ("neither: code and tracker alone", ALL.with_shift_after(0).with_solo_rate(0)),
+        ("neither: `driving`", HoppingSettings::DRIVING),
         ("drawn lags keep nothing", ALL.with_shift_interval(Micros::ZERO)),
         ("confirmed alone", ALL.with_tracker(TRACKER.with_tentative_votes(0))),
         ("3 votes confirm", ALL.with_tracker(TRACKER.with_votes(3).with_score_limit(4))),

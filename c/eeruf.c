@@ -16,7 +16,7 @@ SIZE_IS(EerufLine, 6);
 SIZE_IS(EerufSchedule, 36);
 #if EERUF_HOPPING
 SIZE_IS(EerufRing, 73);
-SIZE_IS(EerufHopper, 57);
+SIZE_IS(EerufHopper, 56);
 #endif
 #else
 SIZE_IS(EerufSensor, 20);

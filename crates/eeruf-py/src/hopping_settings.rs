@@ -16,8 +16,8 @@ const NAMED: [(&str, Core); 4] =
 ///
 /// Args:
 ///     name: what to start from: ``"balanced"`` for most robots, ``"quick"`` for those that must stop early (a little
-///         more is wrong), ``"driving"`` for those that drive (no solo periods, and lags stay), ``"maps"`` for confirmed
-///         echoes alone.
+///         more is wrong), ``"driving"`` for those that drive (no solo periods, and lags stay), ``"maps"`` for
+///         confirmed echoes alone.
 ///     changes: whatever is to be different, by the names of the attributes; whole numbers.
 ///
 /// Raises:

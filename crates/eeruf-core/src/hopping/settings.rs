@@ -45,8 +45,8 @@ impl HoppingSettings {
     /// For robots that must stop early: a little more is wrong.
     pub const QUICK: Self =
         Self { tracker: TrackerSettings::QUICK, solo_rate: 100, solo_after: 4, solo_spacing: 2, ..Self::BALANCED };
-    /// For robots that drive: the code and the tracker alone. What moves is not blind for long, solo periods silence all
-    /// others and believe at once what another robot sends, and a new lag costs all support so far.
+    /// For robots that drive: the code and the tracker alone. What moves is not blind for long, solo periods silence
+    /// all others and believe at once what another robot sends, and a new lag costs all support so far.
     pub const DRIVING: Self = Self { solo_rate: 0, shift_after: 0, ..Self::BALANCED };
     /// For maps: confirmed echoes alone, and few solo periods.
     pub const MAPS: Self = Self {

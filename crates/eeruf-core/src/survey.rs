@@ -355,6 +355,49 @@ mod tests {
     }
 
     #[test]
+    fn a_plan_says_what_it_was_made_with_and_nothing_longer_than_ten_seconds() {
+        let plan = SurveyPlan::new(3).with_solos(1).with_leads(2, Micros::new(500));
+        let plan = plan.with_window(Micros::from_millis(30), Micros::from_millis(5));
+        assert_eq!(
+            (plan.sensors(), plan.window(), plan.slot_length()),
+            (3, Micros::from_millis(30), Micros::new(35_500))
+        );
+        // After each alone come all pairs, sensor by sensor, and then all of them with the next lead.
+        let pairs = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)];
+        for (number, (first, second)) in (3..).zip(pairs.into_iter().cycle()).take(12) {
+            let lead = if number < 9 { Micros::ZERO } else { Micros::new(500) };
+            assert_eq!(plan.slot(number), Some(SurveySlot { first, second: Some((second, lead)) }), "{number}");
+        }
+        let [most, more] = [10_000_000, 10_000_001].map(Micros::new);
+        for time in [more, Micros::MAX] {
+            let plan = SurveyPlan::new(1).with_leads(2, time).with_window(time, Micros::ZERO);
+            assert_eq!((plan.window(), plan.slot_length()), (most, Micros::new(20_000_000)));
+        }
+    }
+
+    #[test]
+    fn however_often_it_is_polled_a_survey_begins_no_slot_early_and_none_before_all_is_logged() {
+        let plan = SurveyPlan::new(2).with_leads(2, Micros::new(400)).with_solos(1);
+        let plan = plan.with_window(Micros::from_millis(3), Micros::ZERO);
+        let mut survey = Survey::new(plan, Instant::from_micros(0));
+        let (mut fired, mut rows) = (Vec::new(), 0);
+        for now in (0..60_000).step_by(100).map(Instant::from_micros) {
+            // One event a poll: the end of a slot comes before its second row is fetched.
+            match survey.poll(now) {
+                Some(SurveyEvent::Fire { sensor }) => fired.push((now.as_micros(), sensor)),
+                Some(SurveyEvent::Row(_)) => rows += 1,
+                None => {}
+            }
+        }
+        assert!(survey.is_over());
+        let slots = (0..plan.slots()).map(|number| plan.slot(number).unwrap());
+        let planned: usize = slots.map(|slot| 1 + usize::from(slot.second.is_some())).sum();
+        assert_eq!((fired.len(), rows), (planned, planned));
+        let begins: Vec<_> = fired.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
+        assert!(begins[0] == 3_400 && begins.iter().all(|&apart| apart <= 400 || apart >= 3_000), "{begins:?}");
+    }
+
+    #[test]
     fn an_edge_after_the_window_is_no_echo() {
         let plan = SurveyPlan::new(1).with_window(Micros::new(1000), Micros::new(1000));
         let (_, rows) = run(plan, |_| 0);

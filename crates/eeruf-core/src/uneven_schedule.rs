@@ -100,3 +100,29 @@ impl<const K: usize> Verification<'_, K> {
         Ok(UnevenSchedule { schedule: verified, most, each })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{conditions::Requirements, layout::Layout, schedule::Schedule, uneven::Uneven};
+
+    #[test]
+    fn room_for_more_sensors_changes_nothing() {
+        let firing = [[0, 5, 40], [2, 12, 24]].map(|phase| phase.map(Micros::from_millis));
+        let requirements = Requirements {
+            layout: Layout::Line(1),
+            uneven: Some(Uneven { t_delta: &[1_500, 2_400, 900].map(Micros::new), ..Uneven::NONE }),
+            ..Requirements::new(Micros::new(99))
+        };
+        let period = Micros::from_millis(60);
+        let exact = Schedule::<3>::from_firing(period, firing).unwrap();
+        let roomy = Schedule::<5>::from_slices(period, &[Micros::ZERO; 3], [&firing[0], &firing[1]]).unwrap();
+        let (exact, roomy) = (exact.verify(&requirements), roomy.verify(&requirements));
+        let (exact, roomy) = (exact.verified_uneven().unwrap(), roomy.verified_uneven().unwrap());
+        assert_eq!(exact.most(), roomy.most());
+        for sensor in 0..5 {
+            assert_eq!(exact.limits_of(sensor), roomy.limits_of(sensor));
+        }
+        assert_eq!((exact.limits_of(2).is_some(), roomy.limits_of(3)), (true, None));
+    }
+}

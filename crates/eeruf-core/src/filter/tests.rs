@@ -154,3 +154,54 @@ fn errors_say_what_is_expected() {
 fn a_sensor_with_one_echo_is_remembered_in_eight_bytes() {
     assert_eq!(size_of::<Tracker<1>>(), 8);
 }
+
+#[test]
+fn an_echo_that_is_waited_for_holds_back_only_what_is_later_and_would_be_accepted() {
+    use ReadingKind::*;
+    // Another is heard twice of three times: not accepted anyway.
+    let mut three = filter::<2>(100, 3).with_patience(5).unwrap();
+    let seen = kinds(&mut three, &[&[1000], &[1000], &[1000], &[2000], &[2000]]);
+    assert_eq!(seen, [First, Repeated, Accepted, Rejected, Repeated]);
+    // The later one of two is missing.
+    let mut two = filter::<2>(100, 2).with_patience(5).unwrap();
+    let seen = kinds(&mut two, &[&[1000, 2000], &[1000, 2000], &[1000], &[1000]]);
+    assert_eq!(seen, [First, Accepted, Accepted, Accepted]);
+}
+
+#[test]
+fn an_echo_that_is_waited_for_takes_the_place_of_a_later_one_that_is_heard() {
+    use ReadingKind::*;
+    let mut filter = filter::<2>(100, 2).with_patience(5).unwrap();
+    let seen = kinds(&mut filter, &[&[1000], &[1000], &[2000, 3000], &[1000, 2000]]);
+    assert_eq!(seen, [First, Accepted, Rejected, Accepted]);
+}
+
+#[test]
+fn an_echo_that_is_waited_for_stands_behind_the_earlier_ones() {
+    let mut filter = filter::<3>(100, 2).with_patience(5).unwrap();
+    kinds(&mut filter, &[&[500, 1000], &[500, 1000], &[500]]);
+    let verdict = filter.push_echoes(0, &[Micros::new(3000)], 0).unwrap();
+    assert_eq!((verdict.kind, verdict.previous), (ReadingKind::Rejected, Some(Micros::new(500))));
+}
+
+#[test]
+fn an_echo_that_is_waited_for_beyond_the_longest_time_is_no_silence() {
+    let mut filter = filter::<2>(100, 3).with_patience(6).unwrap();
+    let mut push = |us: &[u32], change| {
+        let echoes: Vec<_> = us.iter().map(|&us| Micros::new(us)).collect();
+        filter.push_echoes(0, &echoes, change).unwrap().kind
+    };
+    for _ in 0..3 {
+        push(&[u32::MAX - 10], 0);
+    }
+    let silent = [push(&[], 1000), push(&[], 0), push(&[], 0)];
+    assert_eq!(silent[..2], [ReadingKind::NoEcho; 2]);
+}
+
+#[test]
+fn patience_is_for_sensors_that_report_several_echoes() {
+    let firings: Vec<&[u32]> =
+        [&[5000][..], &[5000], &[9000], &[9000], &[], &[], &[5000], &[5000]].into_iter().collect();
+    let patient = &mut filter::<1>(100, 2).with_patience(8).unwrap();
+    assert_eq!(kinds(patient, &firings), kinds(&mut filter::<1>(100, 2), &firings));
+}

@@ -315,3 +315,14 @@ fn each_error_names_what_is_wrong_and_what_is_expected() {
     let error = new(&schedule(), HoppingSettings { tracker, ..HoppingSettings::BALANCED }).unwrap_err();
     assert_eq!(text(error), "a t_delta of 240 us; expected less than 240 us, by which the code moves crosstalk");
 }
+
+#[test]
+fn a_code_has_the_phases_asked_for_up_to_67_and_a_step_of_16_bits() {
+    let code = |phases, step| HoppingCode::new(2, phases, Micros::new(step)).map(|code| (code.phases(), code.width()));
+    assert_eq!(code(13, 240), Ok((13, Micros::new(12 * 240))));
+    assert_eq!(code(67, 65_535), Ok((67, Micros::new(66 * 65_535))));
+    assert_eq!(code(68, 1), Err(HoppingError::Phases { phases: 68 }));
+    for step in [65_536, 70_000].map(Micros::new) {
+        assert_eq!(HoppingCode::new(2, 2, step), Err(HoppingError::Step { step }));
+    }
+}

@@ -1,7 +1,7 @@
 //! What a ring and its schedulers promise, where it was once broken: intervals through restarts and changes, firing
 //! after long silences, sizes and settings that do not fit.
 
-use eeruf_core::tables::{TABLE_I_A, TABLE_I_D};
+use eeruf_core::tables::{PAPER_12, TABLE_I_A, TABLE_I_D};
 use eeruf_core::{
     EchoFilter, ImmediateRefiring, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingError,
     RingEvent, Schedule, ScheduledFiring, ScheduledRing, Scheduler, SchedulerStep, VerifiedSchedule,
@@ -273,4 +273,9 @@ fn schedules_are_equal_by_their_times_verified_or_not() {
         let other = Schedule::<2>::from_firing(ms(period), [a.map(ms), b.map(ms)]).unwrap();
         assert_ne!(plain, other);
     }
+}
+
+#[test]
+fn the_papers_ring_of_twelve_is_verified_for_17_ms_between_neighbours() {
+    assert_eq!(PAPER_12.verified_for().min_interval, Micros::from_millis(17));
 }

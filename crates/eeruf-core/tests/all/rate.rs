@@ -141,3 +141,23 @@ fn of_random_readings_those_are_accepted_that_plain_numbers_say() {
     }
     assert!((3_000..50_000).contains(&accepted) && close < 1_000, "{accepted}, {close}");
 }
+
+#[test]
+fn the_latest_echo_is_one_and_a_later_one_is_silence() {
+    let mut filter = RateFilter::<1>::new(Micros::new(500), 5_000).unwrap();
+    let latest = Micros::new((1 << 24) - 1);
+    let mut push = |at, t_echo| filter.push(0, Instant::from_micros(at), Some(t_echo)).unwrap();
+    let first = push(0, latest);
+    assert_eq!((first.kind, first.previous, first.t_echo), (ReadingKind::First, None, Some(latest)));
+    let later = push(60_000, Micros::new(1 << 24));
+    assert_eq!((later.kind, later.previous, later.t_echo), (ReadingKind::NoEcho, Some(latest), None));
+}
+
+#[test]
+fn the_age_of_what_was_once_accepted_stays_below_never() {
+    let mut filter = RateFilter::<1>::new(Micros::new(500), 5_000).unwrap();
+    let kinds = [0, 60_000, 120_000].map(|at| filter.push(0, Instant::from_micros(at), Some(Micros::new(9_000))));
+    assert_eq!(kinds[2].unwrap().kind, ReadingKind::Accepted);
+    let ages: Vec<_> = (0..70_000).map(|_| filter.push(0, Instant::from_micros(0), None).unwrap().age).collect();
+    assert_eq!((ages[0], ages[65_000], ages[69_999]), (Some(1), Some(65_001), Some(65_534)));
+}

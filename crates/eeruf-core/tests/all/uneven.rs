@@ -314,10 +314,22 @@ fn separation_and_interval_count_the_pairs_that_need_them() {
     let two = Uneven { intervals: &[(0, 6, Micros::from_millis(1))], ..Uneven::NONE };
     let apart = Requirements { layout: Layout::Line(1), ..with(two) };
     assert_eq!(found(&apart).1, Some(Micros::from_millis(40)));
+    assert_eq!(TABLE_I_D.verify(&apart).min_interval().unwrap().sensors, (0, 6));
     // All that must fire together need no separation.
     assert_eq!(found(&with(Uneven { together: &[0xfff], ..Uneven::NONE })).0, None);
     let closest = TABLE_I_D.verify(&even).separation().unwrap();
     let pair = [1 << closest.sensors.0 | 1 << closest.sensors.1];
     let others = with(Uneven { together: &pair, ..Uneven::NONE });
     assert_ne!(TABLE_I_D.verify(&others).separation().unwrap().sensors, closest.sensors);
+}
+
+#[test]
+fn sensors_that_no_ring_has_share_nothing() {
+    let everywhere = [u64::MAX];
+    let uneven = Uneven { shared_lines: &everywhere, together: &everywhere, ..Uneven::NONE };
+    let requirements = Requirements { uneven: Some(uneven), ..Requirements::new(Micros::new(999)) };
+    assert!(requirements.share_a_line(0, 63) && requirements.fire_together(63, 0));
+    for (x, y) in [(0, 64), (64, 0), (64, 64)] {
+        assert!(!requirements.share_a_line(x, y) && !requirements.fire_together(x, y), "{x} {y}");
+    }
 }

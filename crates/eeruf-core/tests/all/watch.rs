@@ -55,8 +55,8 @@ fn the_last_accepted_echo_stays_known_and_its_age_grows_with_time_through_a_wrap
         assert_eq!(t_echo, Micros::new(9_019));
         assert!((4_000_000..4_100_000).contains(&age.as_micros()), "{age}");
     }
-    // An hour of silence counts as half a turn of the clock.
-    let (now, _) = run(&mut ring, &mut watch, 36_000, |_, _| None);
+    // Silence for longer than a turn of the clock, which is 72 minutes, counts as half a turn.
+    let (now, _) = run(&mut ring, &mut watch, 50_000, |_, _| None);
     let last = watch.last_accepted(0, now).unwrap().unwrap();
     assert_eq!((last.t_echo, last.age), (Micros::new(9_019), Micros::new(1 << 31)));
     let (now, _) = run(&mut ring, &mut watch, 3, |_, _| Some(5_000));
@@ -183,4 +183,25 @@ fn the_longest_echo_time_that_is_accepted_is_known_as_an_echo() {
     assert_eq!(watch.observe(&RingEvent::Reading(reading), Instant::from_micros(0)), None);
     let last = watch.last_accepted(0, Instant::from_micros(0)).unwrap();
     assert_eq!(last.map(|last| last.t_echo), Some(Micros::new(u32::MAX - 1)));
+}
+
+#[test]
+fn confirmed_silence_ends_a_count_of_rejected_echoes_and_the_count_never_touches_the_time() {
+    let reading = |kind| {
+        let t_echo = (kind != ReadingKind::Clear).then_some(Micros::new(9_000));
+        RingEvent::Reading(Reading { sensor: 0, phase: Phase(0), period: 0, kind, t_echo, previous: None, age: None })
+    };
+    let mut watch = SensorWatch::<1>::new(3);
+    let mut observe = |kind| watch.observe(&reading(kind), at(0)).is_some();
+    let seen = [ReadingKind::Rejected, ReadingKind::Rejected, ReadingKind::Clear].map(&mut observe);
+    assert_eq!(seen, [false; 3]);
+    assert_eq!([ReadingKind::Rejected; 4].map(observe), [false, false, true, false]);
+    // As many as can be counted, and more.
+    let mut watch = SensorWatch::<1>::new(255);
+    watch.observe(&reading(ReadingKind::Accepted), at(1_000_000));
+    let age = |watch: &SensorWatch<1>| watch.last_accepted(0, at(2_000_000)).unwrap().unwrap().age;
+    let before = age(&watch);
+    let blind: Vec<_> =
+        (0..600).filter(|_| watch.observe(&reading(ReadingKind::Rejected), at(1_500_000)).is_some()).collect();
+    assert_eq!((blind, age(&watch)), (vec![254], before));
 }

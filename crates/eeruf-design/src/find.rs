@@ -38,8 +38,6 @@ pub struct RingDesign {
     pub from_atlas: bool,
     /// What would be shorter, if it was asked for.
     pub what_if: Vec<WhatIf>,
-    /// The ring with the `t_delta` that was last asked for.
-    pub(crate) asked: RingSpec,
 }
 
 /// Why a robot that moves gets no schedule.
@@ -85,10 +83,10 @@ impl RingDesign {
     /// # Errors
     /// As for [`RingSpec::shortest`].
     pub fn what_if(&self, control: &mut impl Control) -> Result<Vec<WhatIf>, SearchError> {
-        match &self.asked.uneven {
+        match &self.spec.uneven {
             _ if !self.found.proven => Ok(Vec::new()),
-            Some(_) => self.asked.what_if_uneven(control),
-            None => what_if(&self.asked.problem(), control),
+            Some(_) => self.spec.what_if_uneven(control),
+            None => what_if(&self.spec.problem(), control),
         }
     }
 
@@ -142,7 +140,7 @@ impl RingSpec {
             };
             let needed = self.t_delta_needed(&schedule);
             if schedule.verify(&self.covering(needed).problem().requirements).ok() {
-                let (t_delta, asked) = (needed.max(t_delta), spec);
+                let t_delta = needed.max(t_delta);
                 let spec = self.covering(t_delta);
                 let mut design = RingDesign {
                     schedule,
@@ -154,7 +152,6 @@ impl RingSpec {
                     to_spare,
                     from_atlas,
                     what_if: Vec::new(),
-                    asked,
                 };
                 if search.what_if {
                     design.what_if = design.what_if(control)?;

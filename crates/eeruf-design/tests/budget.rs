@@ -31,13 +31,13 @@ fn whatever_the_budget_bounds_hold_and_what_is_proven_is_the_shortest() {
 }
 
 #[test]
-fn what_would_be_faster_is_compared_with_the_needs_that_are_told() {
+fn what_would_be_faster_is_compared_with_the_needs_that_are_printed() {
     // It moves, so that the needed t_delta depends on the schedule that is found.
-    let ring = "sensors = 8\nlayout = \"line\"\nneighbours = 4\nmax_range_m = 4\ncrosstalk_range_m = 2\njitter_us = 60\n\
-                speed_m_s = 1\ntick_us = 100\n";
+    let ring = "sensors = 8\nlayout = \"line\"\nneighbours = 4\nmax_range_m = 4\ncrosstalk_range_m = 2\n\
+                jitter_us = 60\nspeed_m_s = 1\ntick_us = 100\n";
     let spec = RingSpec::from_text(ring).unwrap();
     let search = Search { budget: 100_000, what_if: true, atlas: "" };
     let design = spec.shortest(&search, &mut ()).unwrap().unwrap();
-    let told = format!("instead of {}", design.t_delta);
-    assert!(design.t_delta > spec.t_delta && design.what_if.iter().any(|case| case.need.ends_with(&told)), "{told}");
+    let needed = format!("instead of {}", design.t_delta);
+    assert!(design.t_delta > spec.t_delta && design.what_if.iter().any(|case| case.need.ends_with(&needed)), "{needed}");
 }

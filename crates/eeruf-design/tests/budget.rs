@@ -39,5 +39,8 @@ fn what_would_be_faster_is_compared_with_the_needs_that_are_printed() {
     let search = Search { budget: 100_000, what_if: true, atlas: "" };
     let design = spec.shortest(&search, &mut ()).unwrap().unwrap();
     let needed = format!("instead of {}", design.t_delta);
-    assert!(design.t_delta > spec.t_delta && design.what_if.iter().any(|case| case.need.ends_with(&needed)), "{needed}");
+    assert!(
+        design.t_delta > spec.t_delta && design.what_if.iter().any(|case| case.need.ends_with(&needed)),
+        "{needed}"
+    );
 }

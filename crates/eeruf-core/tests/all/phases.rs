@@ -265,3 +265,12 @@ fn a_table_is_as_separate_as_trying_each_length_of_a_path_finds() {
     }
     assert!(apart > 200 && by_age.iter().all(|&often| often > 5), "{apart} {by_age:?}");
 }
+
+#[test]
+fn neighbours_that_fire_last_and_first_are_close_across_the_end_of_a_period() {
+    let rows = [[0, 50], [20, 50], [0, 45]].map(|row| row.map(Micros::from_millis));
+    let table = PhaseTable::new(Micros::from_millis(60), &rows);
+    let least = table.min_interval(Layout::Line(2)).unwrap();
+    // The second sensor after 50 ms of phase 1, and the first at once in phase 2.
+    assert_eq!((least.value, least.sensors, least.phases), (Micros::from_millis(10), (1, 0), (Phase(1), Phase(2))));
+}

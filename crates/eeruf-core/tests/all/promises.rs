@@ -1,10 +1,12 @@
 //! What a ring and its schedulers promise, where it was once broken: intervals through restarts and changes, firing
 //! after long silences, sizes and settings that do not fit.
 
+use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
+
 use eeruf_core::tables::{PAPER_12, TABLE_I_A, TABLE_I_D};
 use eeruf_core::{
-    EchoFilter, ImmediateRefiring, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingError,
-    RingEvent, Schedule, ScheduledFiring, ScheduledRing, Scheduler, SchedulerStep, VerifiedSchedule,
+    EchoFilter, ImmediateRefiring, Instant, Layout, Micros, Phase, ReadingKind, Requirements, Ring, RingConfig,
+    RingError, RingEvent, Schedule, ScheduledFiring, ScheduledRing, Scheduler, SchedulerStep, VerifiedSchedule,
 };
 
 fn ms(ms: u32) -> Micros {
@@ -278,4 +280,19 @@ fn schedules_are_equal_by_their_times_verified_or_not() {
 #[test]
 fn the_papers_ring_of_twelve_is_verified_for_17_ms_between_neighbours() {
     assert_eq!(PAPER_12.verified_for().min_interval, Micros::from_millis(17));
+}
+
+#[test]
+fn a_schedule_knows_its_phases_whether_it_was_verified_and_nothing_of_what_is_not_there() {
+    assert_eq!((TABLE_I_D.phases(), TABLE_I_D.is_verified(), PAPER_12.is_verified()), (2, false, true));
+    let firings = [(2, 0), (0, 12), (2, 12)].map(|(phase, sensor)| TABLE_I_D.t_fire(Phase(phase), sensor));
+    assert_eq!(firings, [None; 3]);
+}
+
+#[test]
+fn schedules_hash_as_they_compare() {
+    let hash = |schedule: &Schedule<12>| BuildHasherDefault::<DefaultHasher>::default().hash_one(schedule);
+    let verified: &Schedule<12> = &PAPER_12;
+    assert_eq!((verified, hash(verified)), (&TABLE_I_D, hash(&TABLE_I_D)));
+    assert!(TABLE_I_A != TABLE_I_D && hash(&TABLE_I_A) != hash(&TABLE_I_D));
 }

@@ -73,6 +73,7 @@ impl Plan {
 
 pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
     steps.step("tables of the Arduino library", || tables::check(plan.write));
+    steps.step("tables of the examples", crate::examples::tables);
     steps.step("Arduino library", || pack().and_then(|library| examples(&library, plan.short)));
 }
 

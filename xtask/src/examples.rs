@@ -28,13 +28,19 @@ pub(crate) fn examples(only: Option<&str>, steps: &mut Steps) {
         steps.step("examples", || Err(Trouble::Failed(format!("no example {asked}; expected one of {known}"))));
     }
     for (board, target) in BOARDS.into_iter().filter(|(board, _)| is_asked_for(board)) {
-        steps.step(&format!("table of the example {board}"), || table(&Path::new("examples").join(board)));
+        steps.step(&format!("table of the example {board}"), || table(board));
         steps.step(&format!("example {board}"), || build(board, target).map(drop));
     }
 }
 
+/// The table of each: building them takes minutes, and a better table must not be forgotten in them until then.
+pub(crate) fn tables() -> Result<(), Trouble> {
+    BOARDS.into_iter().try_for_each(|(board, _)| table(board))
+}
+
 /// `src/ring.rs` is what `eeruf design` says of `ring.toml`.
-fn table(folder: &Path) -> Result<(), Trouble> {
+fn table(board: &str) -> Result<(), Trouble> {
+    let folder = Path::new("examples").join(board);
     let failed = |why: &dyn std::fmt::Display| Trouble::Failed(format!("{}: {why}", folder.display()));
     let mut design = Command::new(crate::program::program()?);
     let design = output(design.arg("design").arg(folder.join("ring.toml")).args(["--emit", "rust"]));

@@ -3,8 +3,8 @@ use eeruf_core::{Criterion, Layout, Micros, Requirements, VerifiedSchedule, sche
 // 8 sensors, T_p = 67 ms; t_delta = 416 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 pub const RING: VerifiedSchedule<8> = schedule! {
     period_us: 67_000,
-    t_fire_a_us: [58_000, 19_000, 0, 41_000, 56_000, 20_000, 3_000, 36_000],
-    t_fire_b_us: [51_000, 21_000, 6_000, 36_000, 52_000, 21_000, 6_000, 36_000],
+    t_fire_a_us: [0, 17_000, 34_000, 51_000, 1_000, 18_000, 35_000, 52_000],
+    t_fire_b_us: [0, 15_000, 30_000, 45_000, 0, 15_000, 30_000, 45_000],
     meets: Requirements {
         t_delta: Micros::new(416),
         criterion: Criterion::Exact,

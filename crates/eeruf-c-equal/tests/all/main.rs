@@ -5,6 +5,7 @@
 mod corpus;
 mod parts;
 mod serial;
+mod settings;
 
 use eeruf_c_equal::{Random, hopping, modules, ring};
 

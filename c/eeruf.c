@@ -16,7 +16,7 @@ SIZE_IS(EerufLine, 6);
 SIZE_IS(EerufSchedule, 36);
 #if EERUF_HOPPING
 SIZE_IS(EerufRing, 73);
-SIZE_IS(EerufHopper, 56);
+SIZE_IS(EerufHopper, 57);
 #endif
 #else
 SIZE_IS(EerufSensor, 20);
@@ -1473,6 +1473,8 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
 
 #define CATCHES_UP_US 1000u /* a firing that is later moves all that follow */
 #define ONE_SOLO 256u       /* what a solo period costs; as much again may be saved up */
+#define LEAST_CHANGE_US 20  /* an expected change that tells how much of it there is */
+#define WHOLE 64            /* as much more as is expected */
 #define DRAWS 8u            /* lags that are drawn in search of one that keeps the neighbours' interval */
 
 /* -- The tracker: which echo of a sensor is its own. A reading within t_delta of a track supports it, and only support
@@ -1505,6 +1507,7 @@ static void forget_tracks(EerufHopper *hopper) {
         hopper->tracks[place].t_echo_us = EERUF_NO_ECHO;
         hopper->tracks[place].age = UINT8_MAX;
     }
+    hopper->surplus = 0;
 }
 
 /* What is not confirmed cannot be compared with what comes. */
@@ -1614,20 +1617,32 @@ static void end_weighing(EerufFilter *filter, EerufReading *reading) {
     reading->age = filter->age;
 }
 
-/* The tracks move with the robot. */
+/* The tracks move with the robot, by the expected change and what there is more of it. */
 static void shift_tracks(EerufHopper *hopper, int32_t change_us) {
     uint8_t place;
+    if (change_us > INT16_MAX) change_us = INT16_MAX;
+    if (change_us < INT16_MIN) change_us = INT16_MIN;
+    change_us += change_us * hopper->surplus / WHOLE;
     for (place = 0; place < EERUF_HYPOTHESES; place++) {
         uint32_t *held = &hopper->tracks[place].t_echo_us;
-        if (*held == EERUF_NO_ECHO) continue;
-        if (change_us >= 0) *held = shorter(*held + (uint32_t)change_us, HALF_TURN - 1u);
-        else *held = *held > 0u - (uint32_t)change_us ? *held + (uint32_t)change_us : 0;
+        /* What is before the firing wraps, to what is later than all. */
+        const uint32_t moved_us = *held + (uint32_t)change_us;
+        if (*held != EERUF_NO_ECHO && moved_us < HALF_TURN) *held = moved_us;
     }
 }
 
-static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool steady, EerufReading *reading) {
+/* A reading this much later than a track that it supports tells how much the echo really changed. */
+static void learn(EerufHopper *hopper, int32_t later_us, int32_t change_us) {
+    int32_t surplus = hopper->surplus;
+    if (change_us >= LEAST_CHANGE_US) surplus += later_us / 32;
+    else if (change_us <= -LEAST_CHANGE_US) surplus -= later_us / 32;
+    hopper->surplus = (int8_t)(surplus > WHOLE ? WHOLE : surplus < -WHOLE ? -WHOLE : surplus);
+}
+
+static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_t change_us, EerufReading *reading) {
     const EerufTrackerSettings *how = &hopping->config.tracker;
     EerufHopper *hopper = &hopping->hoppers[sensor];
+    const bool solo = (hopper->flags & SOLO) != 0;
     const uint32_t t_echo_us = reading->t_echo_us;
     const uint16_t phase = phase_bit(hopper->phase);
     const uint8_t votes = how->tentative_votes;
@@ -1646,6 +1661,7 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool solo, bool ste
         if (place == nearest) {
             bool earlier;
             uint8_t close;
+            learn(hopper, (int32_t)(t_echo_us - track->t_echo_us), change_us);
             support(track, t_echo_us, phase, solo, how);
             close = track->flags & CONTRADICTED ? 0 : track->close;
             earlier = (!believes || track->t_echo_us < held_us) && track->t_echo_us != EERUF_NO_ECHO;
@@ -1931,8 +1947,21 @@ static void postpone_hop(EerufRing *ring, uint8_t sensor, uint32_t by_us) {
     EerufHoppingRing *hopping = hopping_of(ring);
     EerufHopper *hopper = &hopping->hoppers[sensor];
     const uint32_t fired_us = sensor_of(ring, sensor)->fired_us;
+    const uint32_t late_us = add32(hopper->late_us, by_us);
+    uint8_t at;
     if (!has_reached(ring->last_fired_us, fired_us)) ring->last_fired_us = fired_us;
-    hop_late(hopping, hopper, add32(hopper->late_us, by_us), by_us);
+    /* It was noted to be less late: all that this period has had so far are noted again, since steady lateness is
+       none. It is one of them, or the last of the period before. */
+    if (!(hopper->flags & SOLO)) {
+        hopper->late_us = narrow(late_us);
+        if (hopping->most_late[0] != UINT16_MAX) {
+            hopping->least_late[0] = UINT16_MAX;
+            hopping->most_late[0] = 0;
+        }
+        for (at = 0; at < hopping->place; at++)
+            note_hop(hopping, hopping->hoppers[hopping->hoppers[at].order].late_us);
+    }
+    hop_late(hopping, hopper, late_us, by_us);
 }
 
 static void end_hopping_period(EerufRing *ring, uint32_t now_us) {
@@ -2085,12 +2114,11 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     hopper = &hopping->hoppers[event->sensor];
     event->phase = hopper->phase;
     if (reading->kind != EERUF_READING_LATE) {
+        const int32_t change = change_us == NULL ? 0 : change_us[event->sensor];
         reading->previous_us = EERUF_NO_ECHO;
-        if (reading->kind == EERUF_READING_FIRST) {
-            const bool steady = was_steady(hopping, hopper);
-            if (change_us != NULL) shift_tracks(hopper, change_us[event->sensor]);
-            weigh(hopping, event->sensor, (hopper->flags & SOLO) != 0, steady, reading);
-        }
+        shift_tracks(hopper, change);
+        if (reading->kind == EERUF_READING_FIRST)
+            weigh(hopping, event->sensor, was_steady(hopping, hopper), change, reading);
         end_weighing(&sensor_of(&hopping->ring, event->sensor)->filter, reading);
     }
     /* Nor does silence or another lag help a sensor whose line is stuck: it costs the others nothing. */

@@ -464,11 +464,12 @@ typedef struct EerufTrack {
     uint8_t solo_votes, score, close, flags, age;
 } EerufTrack;
 
-/* One sensor of a hopping ring: 56 bytes on an AVR, beside its EerufSensor. Not for the caller. */
+/* One sensor of a hopping ring: 57 bytes on an AVR, beside its EerufSensor. Not for the caller. */
 typedef struct EerufHopper {
     uint32_t lag_us;
     uint16_t late_us;
     uint8_t place, phase, unserved, misfits, flags, order;
+    int8_t surplus;
     EerufTrack tracks[EERUF_HYPOTHESES];
 } EerufHopper;
 

@@ -73,7 +73,9 @@ pub fn replay(log: &FiringLog, settings: TrackerSettings) -> Result<Vec<Verdict>
         let firing = &log.firings[place];
         let (sensor, t_echo) = (usize::from(firing.sensor), firing.t_echo_us.map(Micros::new));
         verdicts[place] = match weighed.kind {
-            Some(kind @ (ReadingKind::TooEarly | ReadingKind::Stuck)) => tracker.skip(sensor, kind, t_echo)?,
+            Some(kind @ (ReadingKind::TooEarly | ReadingKind::Stuck)) => {
+                tracker.skip(sensor, kind, t_echo, weighed.expected_change_us)?
+            }
             Some(kind @ ReadingKind::Late) => Verdict { kind, t_echo, previous: None, age: tracker.age(sensor) },
             _ => {
                 let (solo, steady) = (weighed.solo, weighed.steady);

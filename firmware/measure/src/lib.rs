@@ -215,8 +215,8 @@ macro_rules! hopping_in_static_memory {
 
         #[unsafe(no_mangle)]
         #[inline(never)]
-        fn ring_poll(ring: &mut HoppingRing<$k>, now: Instant) -> Option<RingEvent> {
-            ring.poll(now)
+        fn ring_poll(ring: &mut HoppingRing<$k>, now: Instant, change_us: &[i32; $k]) -> Option<RingEvent> {
+            ring.poll_expecting(now, |sensor| change_us.get(usize::from(sensor)).copied().unwrap_or(0))
         }
 
         #[unsafe(no_mangle)]
@@ -264,7 +264,7 @@ macro_rules! hopping_in_static_memory {
             // SAFETY: it has just been written.
             let ring = unsafe { memory.assume_init_mut() };
             loop {
-                while let Some(event) = ring_poll(ring, eeruf_board::now()) {
+                while let Some(event) = ring_poll(ring, eeruf_board::now(), black_box(&[0; $k])) {
                     if let RingEvent::Fire { sensor, .. } = black_box(event) {
                         _ = black_box(ring_echo(ring, sensor, eeruf_board::now()));
                     }

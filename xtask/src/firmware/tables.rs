@@ -9,8 +9,15 @@ use crate::steps::{Trouble, output};
 /// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions).
 const INSTRUCTIONS: [(&str, u32); 5] = [("idle_poll", 44), ("fire", 92), ("echo", 67), ("stamp", 60), ("reading", 415)];
 /// What a hopping ring of twelve costs there, as `docs/hopping.md` has it: it may not grow unnoticed.
-const HOPPING: [(&str, u32); 6] =
-    [("idle_poll", 60), ("fire", 117), ("echo", 73), ("reading", 1192), ("period_ended", 3074), ("new_lags", 19_397)];
+const HOPPING: [(&str, u32); 7] = [
+    ("idle_poll", 67),
+    ("fire", 117),
+    ("echo", 73),
+    ("reading", 1192),
+    ("reading_moving", 1192),
+    ("period_ended", 3074),
+    ("new_lags", 19_397),
+];
 const HOPPING_FLASH: u64 = 7824;
 const HOPPING_RAM: u64 = 952;
 /// What a poll of it takes of the stack there.

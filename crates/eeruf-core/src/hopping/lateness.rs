@@ -39,6 +39,14 @@ impl Lateness {
         present.least = 0;
     }
 
+    /// As if none of this period's firings had been noted, unless the timetable has moved.
+    pub(super) fn begin_anew(&mut self) {
+        let [present, ..] = &mut self.periods;
+        if present.most != u16::MAX {
+            *present = Spread::NONE;
+        }
+    }
+
     /// The timetable has moved: nothing that is heard across it moves as the code says.
     pub(super) fn break_off(&mut self) {
         let [present, ..] = &mut self.periods;
@@ -56,5 +64,41 @@ impl Lateness {
         let [present, before, before_that] = self.periods;
         let Spread { least, most } = present.and(before).and(before_that);
         late.saturating_sub(least) <= tolerated && most.saturating_sub(late) <= tolerated
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TOLERATED: u16 = 44;
+
+    #[test]
+    fn a_punctual_firing_is_one_that_is_late_by_nothing() {
+        let mut lateness = Lateness::NEW;
+        lateness.note(200);
+        assert!(lateness.is_steady(200, TOLERATED));
+        lateness.note_punctual();
+        assert!(!lateness.is_steady(200, TOLERATED));
+        // What it differs from is forgotten after two more periods.
+        for remembered in [true, true, false] {
+            lateness.end_period();
+            lateness.note(200);
+            assert_eq!(lateness.is_steady(200, TOLERATED), !remembered);
+        }
+    }
+
+    #[test]
+    fn nothing_is_steady_in_the_period_in_which_the_timetable_moves_and_the_two_after_it() {
+        let mut lateness = Lateness::NEW;
+        lateness.break_off();
+        for steady in [false, false, false, true] {
+            lateness.note_punctual();
+            assert_eq!(lateness.is_steady(0, TOLERATED), steady);
+            for late in [200, u16::MAX / 2, u16::MAX] {
+                assert!(!lateness.is_steady(late, u16::MAX / 2) || steady);
+            }
+            lateness.end_period();
+        }
     }
 }

@@ -189,27 +189,25 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     fn emit_reading(&mut self, sensor: u8, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         let reading = self.ring.take_reading(sensor, |_| 0)?;
         self.notice_changes();
-        let phase = self.ring.scheduler().last_firing(sensor, self.tolerated).0;
-        let Verdict { kind, t_echo, previous, age } = self.weigh(&reading, expected_change_us);
+        let (phase, solo, steady) = self.ring.scheduler().last_firing(sensor, self.tolerated);
+        let firing = Firing { phase, solo, steady, expected_change_us: 0 };
+        let Verdict { kind, t_echo, previous, age } = self.weigh(&reading, firing, expected_change_us);
         self.ring.count(kind);
         Some(RingEvent::Reading(Reading { phase, kind, t_echo, previous, age, ..reading }))
     }
 
     /// What the tracker makes of a reading.
     #[inline(always)]
-    fn weigh(&mut self, reading: &Reading, mut expected_change_us: impl FnMut(u8) -> i32) -> Verdict {
+    fn weigh(&mut self, reading: &Reading, firing: Firing, mut expected_change_us: impl FnMut(u8) -> i32) -> Verdict {
         let &Reading { sensor, kind, t_echo, .. } = reading;
         let place = usize::from(sensor);
         let weighed = match kind {
             ReadingKind::Late => return Verdict { kind, t_echo, previous: None, age: self.tracker.age(place) },
             ReadingKind::Stuck | ReadingKind::TooEarly => {
-                self.tracker.skip(place, kind, t_echo).map(|verdict| (verdict, self.tracker.is_clear(place)))
+                let skipped = self.tracker.skip(place, kind, t_echo, expected_change_us(sensor));
+                skipped.map(|verdict| (verdict, self.tracker.is_clear(place)))
             }
-            _ => {
-                let (phase, solo, steady) = self.ring.scheduler().last_firing(sensor, self.tolerated);
-                let expected_change_us = expected_change_us(sensor);
-                self.tracker.weigh(place, t_echo, Firing { phase, solo, steady, expected_change_us })
-            }
+            _ => self.tracker.weigh(place, t_echo, Firing { expected_change_us: expected_change_us(sensor), ..firing }),
         };
         let Ok((verdict, is_clear)) = weighed else { return Verdict { kind, t_echo, previous: None, age: None } };
         let confirmed = matches!(verdict.kind, ReadingKind::Accepted | ReadingKind::Clear);

@@ -90,7 +90,7 @@ impl<const K: usize> HoppingSchedule<K> {
     }
 
     /// Checks the schedule. That crosstalk moves by the step is proven (`docs/theory.md`, section 9.1) and not worked
-    /// out again where the period is longer than twice the code and a step, so that this is cheap enough for the
+    /// out again where the period is at least twice the code and a step, so that this is cheap enough for the
     /// compiler; [`PhaseTable::verify`] works it out.
     pub const fn verify<'r>(&self, requirements: &'r PhaseRequirements<'r>) -> PhaseVerification<'r> {
         let rows = self.table::<{ HoppingCode::MAX_PHASES as usize }>();

@@ -215,6 +215,19 @@ impl<const K: usize> Timetable<K> {
         }
     }
 
+    /// A firing was later than it was noted to be, by as much as the poll was late: all that this period has had so far
+    /// are noted again, since steady lateness is none. It is one of them, or the last of the period before.
+    #[cold]
+    #[inline(never)]
+    fn note_anew(&mut self, late: u16) {
+        self.lateness.begin_anew();
+        for place in 0..self.place {
+            let fired = self.turns.get(usize::from(self.order(place)));
+            self.lateness.note(fired.map_or(late, |turn| turn.late));
+        }
+        self.lateness.note(late);
+    }
+
     /// Nothing that is heard across this moment moves as the code says.
     fn break_off(&mut self) {
         self.lateness.break_off();
@@ -230,7 +243,9 @@ impl<const K: usize> Scheduler for Timetable<K> {
     }
 
     fn next_firing(&self) -> Option<(u8, Phase)> {
-        (usize::from(self.next) < K).then_some((self.next, Phase(self.count)))
+        // What is room for a sensor of this number, which the compiler need not ask again; nobody has none.
+        let room = const { if K < NOBODY as usize { K } else { NOBODY as usize } };
+        (usize::from(self.next) < room).then_some((self.next, Phase(self.count)))
     }
 
     #[inline(always)]
@@ -256,8 +271,9 @@ impl<const K: usize> Scheduler for Timetable<K> {
         let is_solo = turn.is(SOLO);
         let late = Micros::new(turn.late.into()).saturating_add(by);
         if !is_solo {
-            turn.late = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
-            self.lateness.note(turn.late);
+            let late = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
+            turn.late = late;
+            self.note_anew(late);
         }
         if late > CATCHES_UP {
             self.break_off();

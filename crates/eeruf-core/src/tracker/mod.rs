@@ -35,8 +35,9 @@ pub struct Firing {
     /// Whether firings were punctual enough that crosstalk moved as the schedule says. An echo of a firing that was
     /// not supports nothing.
     pub steady: bool,
-    /// By how many microseconds a good reading should have changed since this sensor's firing before: `-2 v dt / c`
-    /// for an object approached at `v`.
+    /// By how many microseconds a good reading should have changed since this sensor's firing before, if it comes from
+    /// straight ahead: `-2 d / c` for a sensor carried forward by `d`. What part of it there really is the tracker
+    /// learns for each sensor, from none to twice: walls seen at a slant change otherwise.
     pub expected_change_us: i32,
 }
 
@@ -115,18 +116,23 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
         };
         let Firing { phase: Phase(phase), solo, steady, expected_change_us } = firing;
         let t_echo = t_echo.map_or(SILENCE, |t_echo| t_echo.as_micros().min(LATEST));
-        tracks.shift(expected_change_us);
-        Ok(tracks.push(Heard { t_echo, phase, solo, steady }, &self.settings))
+        Ok(tracks.push(Heard { t_echo, phase, solo, steady, change_us: expected_change_us }, &self.settings))
     }
 
     /// A firing that says nothing about the echo time, such as one with an echo within the blanking time: nothing is
-    /// supported or contradicted, and the age grows.
+    /// supported or contradicted, and the age grows; tracks move by `expected_change_us`, as in a [`Firing`].
     ///
     /// # Errors
     /// [`TrackerError::Sensor`] for a sensor that is not there.
-    pub fn skip(&mut self, sensor: usize, kind: ReadingKind, t_echo: Option<Micros>) -> Result<Verdict, TrackerError> {
+    pub fn skip(
+        &mut self,
+        sensor: usize,
+        kind: ReadingKind,
+        t_echo: Option<Micros>,
+        expected_change_us: i32,
+    ) -> Result<Verdict, TrackerError> {
         match self.sensors.get_mut(sensor) {
-            Some(tracks) => Ok(tracks.skip(kind, t_echo)),
+            Some(tracks) => Ok(tracks.skip(kind, t_echo, expected_change_us)),
             None => Err(TrackerError::Sensor { sensor, sensors: K }),
         }
     }

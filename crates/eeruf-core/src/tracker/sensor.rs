@@ -19,6 +19,7 @@ pub(super) struct Heard {
     pub(super) phase: u8,
     pub(super) solo: bool,
     pub(super) steady: bool,
+    pub(super) change_us: i32,
 }
 
 /// The hypotheses about one sensor.
@@ -28,13 +29,24 @@ pub(super) struct SensorTracks<const H: usize> {
     tracks: [Track; H],
     /// Firings since the last accepted reading.
     age: u16,
+    /// How much more than the expected change there is, in 1/64 of it, as echoes that supported a track showed so far:
+    /// a wall that it sees at a slant comes nearer more slowly than one straight ahead, or faster.
+    surplus: i8,
 }
 
+/// As much more as is expected: a surplus is between none at all and twice as much.
+const WHOLE: i32 = 64;
+
+/// A smaller change, in microseconds, tells nothing of how much of it there is.
+const LEAST_CHANGE_US: i32 = 20;
+const FEWEST_CHANGE_US: i32 = -LEAST_CHANGE_US;
+
 impl<const H: usize> SensorTracks<H> {
-    pub(super) const NEW: Self = Self { tracks: [Track::NONE; H], age: NEVER };
+    pub(super) const NEW: Self = Self { tracks: [Track::NONE; H], age: NEVER, surplus: 0 };
 
     pub(super) fn forget(&mut self) {
         self.tracks = [Track::NONE; H];
+        self.surplus = 0;
     }
 
     pub(super) fn firing_changed(&mut self) {
@@ -43,19 +55,35 @@ impl<const H: usize> SensorTracks<H> {
         }
     }
 
-    /// All values move with the robot.
-    pub(super) fn shift(&mut self, change_us: i32) {
-        if change_us != 0 {
+    /// All tracks move with the robot, by the expected change and what there is more of it.
+    #[inline(always)]
+    fn shift(&mut self, expected_us: i32) {
+        if expected_us != 0 {
+            let most = if expected_us < 0 { i16::MIN } else { i16::MAX };
+            let expected_us = i32::from(i16::try_from(expected_us).unwrap_or(most));
+            let change_us = expected_us + expected_us * i32::from(self.surplus) / WHOLE;
             for track in &mut self.tracks {
                 track.shift(change_us);
             }
         }
     }
 
+    /// A reading this much later than a track that it supports tells how much the echo really changed.
+    #[inline(always)]
+    fn learn(surplus: &mut i8, later_us: i32, change_us: i32) {
+        let more_us = match change_us {
+            LEAST_CHANGE_US.. => later_us,
+            ..=FEWEST_CHANGE_US => -later_us,
+            _ => return,
+        };
+        *surplus = (i32::from(*surplus) + more_us / 32).clamp(-WHOLE, WHOLE) as i8;
+    }
+
     /// Takes in a reading; also whether it is confirmed now that nothing is in range.
     pub(super) fn push(&mut self, heard: Heard, settings: &TrackerSettings) -> (Verdict, bool) {
-        let Heard { t_echo, phase, solo, steady } = heard;
+        let Heard { t_echo, phase, solo, steady, change_us } = heard;
         let phase = bit(phase);
+        self.shift(change_us);
         let (mut confirmed, nearest) = self.confirmed_and_nearest(t_echo, settings.t_delta.as_micros());
         let near = settings.near.as_micros();
         let is_near = confirmed.abs_diff(t_echo) <= near;
@@ -71,6 +99,7 @@ impl<const H: usize> SensorTracks<H> {
                 }
                 let at = track.t_echo();
                 if place == nearest {
+                    Self::learn(&mut self.surplus, track.to(t_echo), change_us);
                     track.support(t_echo, phase, solo, settings);
                     let earlier = track.t_echo() < before.min(SILENCE);
                     let enough = solo || track.close_votes() >= settings.tentative_votes;
@@ -105,7 +134,8 @@ impl<const H: usize> SensorTracks<H> {
     }
 
     /// A firing that says nothing about the echo time.
-    pub(super) fn skip(&mut self, kind: ReadingKind, t_echo: Option<Micros>) -> Verdict {
+    pub(super) fn skip(&mut self, kind: ReadingKind, t_echo: Option<Micros>, change_us: i32) -> Verdict {
+        self.shift(change_us);
         self.verdict(kind, t_echo, None)
     }
 

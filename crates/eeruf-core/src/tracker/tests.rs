@@ -109,6 +109,60 @@ fn an_echo_that_moves_faster_than_its_support_is_followed() {
     assert!(seen.iter().all(|&kind| kind == ReadingKind::Accepted), "{seen:?}");
 }
 
+/// How many of the last 300 of 400 readings are accepted of a robot that swings to and fro, ten firings each way, while
+/// odometry expects 100 us from firing to firing and the echo moves by `part` of it. Each third firing hears crosstalk.
+fn accepted_of_a_swing(part: f64) -> usize {
+    let mut tracker = balanced();
+    let mut t_echo = 9000.0;
+    let accepted = (0..400_u16).filter(|firing| {
+        let expected_change_us = if firing / 10 % 2 == 0 { 100 } else { -100 };
+        t_echo += part * f64::from(expected_change_us);
+        let of = Firing { expected_change_us, ..Firing::new(Phase((firing % 11) as u8)) };
+        let heard = if firing % 3 == 0 { 3000 + 301 * u32::from(firing % 11) } else { t_echo as u32 };
+        let kind = tracker.push(0, us(heard), of).unwrap().kind;
+        *firing >= 100 && kind == ReadingKind::Accepted
+    });
+    accepted.count()
+}
+
+#[test]
+fn how_much_of_the_expected_change_there_is_is_learned_from_none_to_twice() {
+    for part in [0.0, 0.5, 0.8, 1.0, 1.3, 2.0] {
+        assert!(accepted_of_a_swing(part) >= 195, "{part}: {}", accepted_of_a_swing(part));
+    }
+    // Neither four times as much nor the contrary.
+    assert!([4.0, -2.0].iter().all(|&part| accepted_of_a_swing(part) < 150));
+}
+
+#[test]
+fn tracks_move_with_the_robot_also_while_readings_say_nothing() {
+    let mut tracker = balanced();
+    kinds(&mut tracker, [us(9000); 11]);
+    for _ in 0..10 {
+        tracker.skip(0, ReadingKind::TooEarly, us(100), -90).unwrap();
+    }
+    assert_eq!(tracker.confirmed(0), us(8100));
+    assert_eq!(tracker.push(0, us(8100), Firing::new(Phase(0))).unwrap().kind, ReadingKind::Accepted);
+}
+
+#[test]
+fn a_track_stays_where_a_change_would_move_it_before_the_firing_or_past_the_latest_echo() {
+    let confirmed_after = |t_echo, expected_change_us| {
+        let mut tracker = balanced();
+        kinds(&mut tracker, [us(t_echo); 11]);
+        tracker.skip(0, ReadingKind::TooEarly, None, expected_change_us).unwrap();
+        tracker.confirmed(0)
+    };
+    assert_eq!([confirmed_after(500, -500), confirmed_after(500, -501)], [us(0), us(500)]);
+    assert_eq!([confirmed_after(LATEST - 9, 9), confirmed_after(LATEST - 9, 10)], [us(LATEST), us(LATEST - 9)]);
+    // What no robot does counts as the most that one does.
+    assert_eq!([confirmed_after(40_000, i32::MAX), confirmed_after(40_000, i32::MIN)], [us(72_767), us(7_232)]);
+    let mut silent = balanced();
+    kinds(&mut silent, [None; 11]);
+    silent.skip(0, ReadingKind::TooEarly, None, 1000).unwrap();
+    assert!(silent.is_clear(0));
+}
+
 #[test]
 fn the_change_that_odometry_expects_moves_all_tracks() {
     let mut tracker = balanced();

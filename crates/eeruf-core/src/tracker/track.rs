@@ -28,6 +28,7 @@ pub(super) struct Track {
 }
 
 const ECHO_BITS: u32 = 24;
+const ECHO_AT: u32 = 32 - ECHO_BITS;
 const AGE: u32 = 0xff;
 /// Scores and votes are at most 15.
 const SCORE: u8 = 0x0f;
@@ -92,10 +93,13 @@ impl Track {
         self.t_echo().abs_diff(t_echo)
     }
 
-    /// Moves with the robot, by this many microseconds.
-    pub(super) fn shift(&mut self, change_us: i32) {
-        if self.t_echo() != SILENCE {
-            self.set_t_echo(self.t_echo().saturating_add_signed(change_us).min(LATEST));
+    /// Moves with the robot, by at most 65,536 us, unless that were later than the latest echo or before the firing.
+    #[inline(always)]
+    pub(super) const fn shift(&mut self, change_us: i32) {
+        // What is before the firing wraps, to what is later than the latest.
+        let moved = self.echo_and_age.wrapping_add_signed(change_us << ECHO_AT);
+        if self.echo_and_age < SILENCE << ECHO_AT && moved < (LATEST + 1) << ECHO_AT {
+            self.echo_and_age = moved;
         }
     }
 
@@ -189,7 +193,8 @@ impl Track {
     }
 
     /// How much later a reading is, which is at most 65,535 us: it supports the track, or is near it.
-    const fn to(&self, t_echo: u32) -> i32 {
+    #[inline(always)]
+    pub(super) const fn to(&self, t_echo: u32) -> i32 {
         t_echo.wrapping_sub(self.t_echo()) as i32
     }
 }

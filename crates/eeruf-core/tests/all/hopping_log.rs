@@ -89,7 +89,7 @@ fn a_tracker_does_from_the_log_what_the_rings_own_did() {
                                 age: twin.age(place),
                             },
                             kind @ (ReadingKind::Stuck | ReadingKind::TooEarly) => {
-                                twin.skip(place, kind, raw[place]).unwrap()
+                                twin.skip(place, kind, raw[place], change).unwrap()
                             }
                             _ => {
                                 let firing = Firing {

@@ -1,9 +1,9 @@
 //! Instructions of each call of a hopping ring of twelve sensors, the fewest and the most over 400 periods in which
 //! sensors hear their own echoes, crosstalk, noise and nothing, so that there are solo periods and new lags. To be run
-//! with `-icount shift=10`, as `instructions`.
+//! with `-icount shift=10`, as `instructions`. In the second half of the periods its robot moves to and fro.
 //!
 //! Prints one line per kind of call: name, fewest, most. Call and return count; reading the timer does not.
-//! `period_ended` plans the next period; `new_lags` does where lags change.
+//! `reading_moving` is one of the second half; `period_ended` plans the next period; `new_lags` does where lags change.
 #![no_std]
 #![no_main]
 
@@ -17,8 +17,8 @@ eeruf_board::no_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
 
 #[inline(never)]
-fn poll(ring: &mut HoppingRing<12>, now: Instant) -> Option<RingEvent> {
-    ring.poll(now)
+fn poll(ring: &mut HoppingRing<12>, now: Instant, change_us: &[i32; 12]) -> Option<RingEvent> {
+    ring.poll_expecting(now, |sensor| change_us.get(usize::from(sensor)).copied().unwrap_or(0))
 }
 
 #[inline(never)]
@@ -48,14 +48,18 @@ fn main() -> ! {
     let mut fire = Range::new("fire");
     let mut heard = Range::new("echo");
     let mut reading = Range::new("reading");
+    let mut reading_moving = Range::new("reading_moving");
     let mut ended = Range::new("period_ended");
     let mut new_lags = Range::new("new_lags");
     let (mut periods, mut noise) = (0, 1_u32);
     while periods < 400 {
         let now = black_box(ring.next_deadline());
+        let moves = periods >= 200;
+        let change_us = if periods & 1 == 0 { 100 } else { -100 };
+        let change_us = black_box([if moves { change_us } else { 0 }; 12]);
         loop {
             let lags: [Option<Micros>; 12] = core::array::from_fn(|sensor| ring.firing().t_lag(sensor));
-            let (taken, event) = counts(|| poll(ring, now));
+            let (taken, event) = counts(|| poll(ring, now, &change_us));
             match event {
                 None => {
                     idle.note(taken);
@@ -73,7 +77,7 @@ fn main() -> ! {
                         heard.note(taken);
                     }
                 }
-                Some(RingEvent::Reading(_)) => reading.note(taken),
+                Some(RingEvent::Reading(_)) => if moves { &mut reading_moving } else { &mut reading }.note(taken),
                 Some(RingEvent::PeriodEnded(_)) => {
                     let changed = (0..12).any(|sensor| lags.get(sensor) != Some(&ring.firing().t_lag(sensor)));
                     if changed { &mut new_lags } else { &mut ended }.note(taken);
@@ -82,7 +86,7 @@ fn main() -> ! {
             }
         }
     }
-    for range in [&idle, &fire, &heard, &reading, &ended, &new_lags] {
+    for range in [&idle, &fire, &heard, &reading, &reading_moving, &ended, &new_lags] {
         range.say();
     }
     leave(0)

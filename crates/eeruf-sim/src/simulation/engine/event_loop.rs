@@ -39,8 +39,9 @@ pub(crate) struct EventLoop<'a, K> {
     receivers: Vec<Receiver>,
     /// What each sensor reads alone, at its last firing.
     references: Vec<u64>,
-    /// Where each sensor's robot was then.
+    /// Where each sensor's robot was then, and at the firing before.
     fired: Vec<Option<Moment>>,
+    fired_before: Vec<Option<Moment>>,
     propagation: Propagation,
     recorder: Recorder,
     /// Nothing that happens later is reported.
@@ -104,6 +105,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             receivers: vec![Receiver::NEW; sensors],
             references: vec![NEVER; sensors],
             fired: vec![None; sensors],
+            fired_before: vec![None; sensors],
             propagation: Propagation::new(world, seed),
             recorder,
             last: end.map_or(u64::MAX - 1, |end| end + longest + 1000),
@@ -219,12 +221,14 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         }
         loop {
             let ring = &mut rings[index];
-            let (receivers, fired) = (&self.receivers, &self.fired);
+            let (before, fired) = (&self.fired_before, &self.fired);
             let c = self.c;
             let change = |sensor: u8| {
                 let number = ring.sensors.start + usize::from(sensor);
-                match (receivers.get(number), fired.get(number)) {
-                    (Some(receiver), Some(Some(fired))) => expected_change_us(ring.robot, receiver, fired, sensor, c),
+                match (before.get(number), fired.get(number)) {
+                    (Some(Some(before)), Some(Some(fired))) => {
+                        expected_change_us(ring.robot, sensor, &before.pose, &fired.pose, c)
+                    }
                     _ => 0,
                 }
             };
@@ -297,6 +301,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             // Paths are looked for anew, which takes as long as many events.
             self.until_call = self.until_call.saturating_sub(EVENTS_PER_CALL / 64);
         }
+        self.fired_before[emitter] = self.fired[emitter];
         self.fired[emitter] = Some(self.kinematics.moment(index, now));
         self.channels.prepare(emitter, now, &self.kinematics)?;
         let hearing = rings[index].hearing_of(emitter);

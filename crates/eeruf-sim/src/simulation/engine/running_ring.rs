@@ -7,11 +7,11 @@ use crate::simulation::channels::Channels;
 use crate::simulation::error::SimulationError;
 use crate::simulation::kinematics::Kinematics;
 use crate::simulation::options::Options;
-use crate::simulation::receiver::{Hearing, NEVER, Receiver};
+use crate::simulation::receiver::{Hearing, NEVER};
 use crate::{
-    geometry::Moment,
+    geometry::Pose,
     methods::{FiringPlan, Method, RingRunner, RingStart},
-    world::{Random, Robot, Ticker, World, offset},
+    world::{Random, Robot, Ticker, World},
 };
 
 /// What the stream of random numbers is for.
@@ -117,22 +117,14 @@ pub(crate) fn start_all<'a>(
     Ok(rings)
 }
 
-/// By how much a good reading of a sensor should have changed since its firing before: `-2 v dt / c`, with `v` the
-/// speed at which the robot carried it forward when it fired. Nothing without odometry.
-pub(crate) fn expected_change_us(
-    robot: &Robot,
-    receiver: &Receiver,
-    fired: &Moment,
-    sensor: u8,
-    speed_of_sound: f64,
-) -> i32 {
-    let Some(pose) = robot.sensors.get(usize::from(sensor)) else { return 0 };
-    if !robot.odometry || receiver.firings < 2 {
-        return 0;
-    }
-    let heading = fired.pose.rotation * pose.rotation;
-    let velocity = fired.velocity_at(fired.pose.rotation * offset(pose));
-    let v = velocity.x * heading.re + velocity.y * heading.im;
-    let dt_us = (receiver.fired - receiver.fired_before) as f64 * 1e-3;
-    (-2.0 * v * dt_us / speed_of_sound).round() as i32
+/// By how much a good reading of a sensor should have changed since its firing before: `-2 d / c`, with `d` the way
+/// that the robot carried it forward in between, as odometry knows it. Nothing without odometry.
+pub(crate) fn expected_change_us(robot: &Robot, sensor: u8, before: &Pose, fired: &Pose, speed_of_sound: f64) -> i32 {
+    let Some(pose) = robot.sensors.get(usize::from(sensor)).filter(|_| robot.odometry) else { return 0 };
+    let (before, fired) = (before * pose, fired * pose);
+    let way = fired.translation.vector - before.translation.vector;
+    // Forward as it looked half way.
+    let heading = before.rotation.slerp(&fired.rotation, 0.5);
+    let forward = way.x * heading.re + way.y * heading.im;
+    (-2e6 * forward / speed_of_sound).round() as i32
 }

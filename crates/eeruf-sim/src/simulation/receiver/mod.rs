@@ -133,9 +133,8 @@ pub(crate) struct Receiver {
     until: u64,
     /// Arrivals up to this moment matter to the present firing only.
     own_until: u64,
-    /// When it last fired, and the time before.
+    /// When it last fired.
     pub(crate) fired: u64,
-    pub(crate) fired_before: u64,
     /// How often it has fired.
     pub(crate) firings: u32,
     /// What it will hear next.
@@ -152,7 +151,6 @@ impl Receiver {
         until: 0,
         own_until: 0,
         fired: 0,
-        fired_before: 0,
         firings: 0,
         next: None,
         pending: Vec::new(),
@@ -175,7 +173,7 @@ impl Receiver {
 
     /// Begins to listen.
     pub(crate) fn fire(&mut self, now: u64, hearing: &Hearing) {
-        (self.fired_before, self.fired) = (self.fired, now);
+        self.fired = now;
         self.firings += 1;
         self.open = now + hearing.blanking;
         self.until = now + hearing.window;

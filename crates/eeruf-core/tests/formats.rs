@@ -5,6 +5,41 @@
 mod schedules_as_serde_sees_them {
     use eeruf_core::tables::{PAPER_12, TABLE_I_D};
     use eeruf_core::{Micros, Schedule};
+    use serde::de::{Deserialize, Deserializer, Error, Visitor, value};
+    use serde::forward_to_deserialize_any;
+
+    /// A format that tells the fields it is asked for, and has none of them.
+    struct AsksFor;
+
+    impl<'de> Deserializer<'de> for AsksFor {
+        type Error = value::Error;
+
+        fn deserialize_any<V: Visitor<'de>>(self, _visitor: V) -> Result<V::Value, value::Error> {
+            Err(Error::custom("no struct"))
+        }
+
+        fn deserialize_struct<V: Visitor<'de>>(
+            self,
+            name: &'static str,
+            fields: &'static [&'static str],
+            _visitor: V,
+        ) -> Result<V::Value, value::Error> {
+            Err(Error::custom(format_args!("{name} of {}", fields.join(" "))))
+        }
+
+        forward_to_deserialize_any! {
+            bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit unit_struct
+            newtype_struct seq tuple tuple_struct map enum identifier ignored_any
+        }
+    }
+
+    #[test]
+    fn a_format_is_asked_for_the_fields_of_as_many_phases_as_there_are() {
+        let one = Schedule::<2, 1>::deserialize(AsksFor).unwrap_err().to_string();
+        assert_eq!(one, "Schedule of period_us t_lag_us t_wait_a_us");
+        let three = Schedule::<2, 3>::deserialize(AsksFor).unwrap_err().to_string();
+        assert_eq!(three, "Schedule of period_us t_lag_us t_wait_a_us t_wait_b_us t_wait_c_us");
+    }
 
     #[test]
     fn a_schedule_goes_into_json_and_back_with_the_keys_of_a_schedule_file() {
@@ -35,7 +70,7 @@ mod schedules_as_serde_sees_them {
             (r#"{"period_us": 60, "t_lag_us": [0], "t_wait_a_us": [9]}"#, "missing field `t_wait_b_us`"),
             (r#"{"period_us": 60, "period_us": 60}"#, "duplicate field `period_us`"),
             (r#"{"t_wait_c_us": [9]}"#, "a field of a schedule of 2 phases"),
-            (r#"{"t_lag_us": [0, 1, 2]}"#, "up to 2 times"),
+            (r#"{"t_lag_us": [0, 1, 2]}"#, "invalid length 3, expected up to 2 times"),
             (r#"[60, [0], [9], [60]]"#, "sensor 1 fires 60 us into phase b; expected less than the period of 60 us"),
             (r#"[60, [0], [9], [1, 2]]"#, "phase b has 2 waits; expected one for each of 1 sensors"),
             ("[60, [0], [9]]", "invalid length 3"),
@@ -44,6 +79,114 @@ mod schedules_as_serde_sees_them {
             let error = serde_json::from_str::<Schedule<2>>(text).unwrap_err().to_string();
             assert!(error.contains(expected), "{text}: {error}");
         }
+    }
+}
+
+#[cfg(feature = "serde")]
+mod a_format_that_counts_fields {
+    use eeruf_core::{Micros, Schedule};
+    use serde::de::value::Error;
+    use serde::ser::{Error as _, Impossible, Serialize, SerializeStruct, Serializer};
+
+    /// Counts the fields of a struct, which formats such as CBOR write before them.
+    struct Count;
+
+    /// How many fields were announced, and how many came.
+    struct Fields(usize, usize);
+
+    type Never = Impossible<(usize, usize), Error>;
+
+    macro_rules! refuse {
+        ($($name:ident($($of:ty),*) -> $gives:ty;)*) => {
+            $(fn $name(self, $(_: $of),*) -> Result<$gives, Error> {
+                Err(Error::custom("no struct"))
+            })*
+        };
+    }
+
+    impl Serializer for Count {
+        type Ok = (usize, usize);
+        type Error = Error;
+        type SerializeSeq = Never;
+        type SerializeTuple = Never;
+        type SerializeTupleStruct = Never;
+        type SerializeTupleVariant = Never;
+        type SerializeMap = Never;
+        type SerializeStruct = Fields;
+        type SerializeStructVariant = Never;
+
+        refuse! {
+            serialize_bool(bool) -> Self::Ok;
+            serialize_i8(i8) -> Self::Ok;
+            serialize_i16(i16) -> Self::Ok;
+            serialize_i32(i32) -> Self::Ok;
+            serialize_i64(i64) -> Self::Ok;
+            serialize_u8(u8) -> Self::Ok;
+            serialize_u16(u16) -> Self::Ok;
+            serialize_u32(u32) -> Self::Ok;
+            serialize_u64(u64) -> Self::Ok;
+            serialize_f32(f32) -> Self::Ok;
+            serialize_f64(f64) -> Self::Ok;
+            serialize_char(char) -> Self::Ok;
+            serialize_str(&str) -> Self::Ok;
+            serialize_bytes(&[u8]) -> Self::Ok;
+            serialize_none() -> Self::Ok;
+            serialize_unit() -> Self::Ok;
+            serialize_unit_struct(&'static str) -> Self::Ok;
+            serialize_unit_variant(&'static str, u32, &'static str) -> Self::Ok;
+            serialize_seq(Option<usize>) -> Never;
+            serialize_tuple(usize) -> Never;
+            serialize_tuple_struct(&'static str, usize) -> Never;
+            serialize_tuple_variant(&'static str, u32, &'static str, usize) -> Never;
+            serialize_map(Option<usize>) -> Never;
+            serialize_struct_variant(&'static str, u32, &'static str, usize) -> Never;
+        }
+
+        fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<Self::Ok, Error> {
+            value.serialize(self)
+        }
+
+        fn serialize_newtype_struct<T: Serialize + ?Sized>(self, _: &'static str, of: &T) -> Result<Self::Ok, Error> {
+            of.serialize(self)
+        }
+
+        fn serialize_newtype_variant<T: Serialize + ?Sized>(
+            self,
+            _: &'static str,
+            _: u32,
+            _: &'static str,
+            of: &T,
+        ) -> Result<Self::Ok, Error> {
+            of.serialize(self)
+        }
+
+        fn serialize_struct(self, _: &'static str, announced: usize) -> Result<Fields, Error> {
+            Ok(Fields(announced, 0))
+        }
+    }
+
+    impl SerializeStruct for Fields {
+        type Ok = (usize, usize);
+        type Error = Error;
+
+        fn serialize_field<T: Serialize + ?Sized>(&mut self, _: &'static str, _: &T) -> Result<(), Error> {
+            self.1 += 1;
+            Ok(())
+        }
+
+        fn end(self) -> Result<(usize, usize), Error> {
+            Ok((self.0, self.1))
+        }
+    }
+
+    fn fields<const M: usize>() -> (usize, usize) {
+        let schedule = Schedule::<2, M>::from_firing(Micros::new(60), [[Micros::ZERO; 2]; M]).unwrap();
+        schedule.serialize(Count).unwrap()
+    }
+
+    #[test]
+    fn a_schedule_says_as_many_as_it_writes() {
+        assert_eq!([fields::<1>(), fields::<2>(), fields::<3>(), fields::<8>()], [(3, 3), (4, 4), (5, 5), (10, 10)]);
     }
 }
 

@@ -188,3 +188,26 @@ const fn is_prime(number: u8) -> bool {
     }
     number > 1
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_waits_worked_out_one_from_the_other_are_those_of_the_code() {
+        let step = Micros::new(240);
+        for sensors in 1..=MAX_SENSORS {
+            for code in [HoppingCode::new(sensors, 2, step), HoppingCode::shortest(sensors, 2, step)] {
+                let code = code.unwrap();
+                for sensor in 0..sensors as u8 {
+                    let mut place = 0;
+                    for phase in 0..code.phases() {
+                        let waits = Micros::new(u32::from(place) * step.as_micros());
+                        assert_eq!(waits, code.wait(sensor.into(), phase), "{code:?}, sensor {sensor}, phase {phase}");
+                        place = code.next_place(sensor, place);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -291,6 +291,16 @@ mod tests {
             rust.ends_with("    .with_blanking(Micros::new(900))\n    .with_reach(Micros::new(36_000));\n"),
             "{rust}"
         );
+        // Sound that is heard for as long as the window, without blanking, is what listening is unless it is said.
+        let rust = schedule.to_rust(&requirements).to_string();
+        assert!(rust.ends_with("HoppingListening = HoppingListening::new(Micros::new(36_000));\n"), "{rust}");
+        let mut far = requirements;
+        far.audible.reach = Micros::from_millis(50);
+        let rust = schedule.to_rust(&far).to_string();
+        assert!(
+            rust.ends_with("    .with_blanking(Micros::new(0))\n    .with_reach(Micros::new(50_000));\n"),
+            "{rust}"
+        );
         let five = HoppingCode::shortest(4, 5, Micros::new(301)).unwrap();
         let five = HoppingSchedule::<4>::new(five, Micros::from_millis(40), [Micros::ZERO; 4]).unwrap();
         assert!(five.to_toml().to_string().contains("phases = 5\nfirst_multiplier = 2\n"));

@@ -1,6 +1,9 @@
 //! What a hopping ring fires, and what it refuses.
 
 extern crate std;
+
+mod planning;
+
 use super::*;
 use crate::schedule::Phase;
 use crate::scheduler::{Limits, Scheduler, check_scheduler};

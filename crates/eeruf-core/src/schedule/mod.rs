@@ -210,6 +210,29 @@ mod tests {
     }
 
     #[test]
+    fn each_error_has_a_fixed_text_for_compile_time_checks() {
+        let (period, phase, t_fire) = (Micros::ZERO, Phase::A, Micros::ZERO);
+        let texts = [
+            ScheduleError::Sensors { sensors: 0, capacity: 1 },
+            ScheduleError::Phases { phases: 0 },
+            ScheduleError::Waits { phase, waits: 0, sensors: 1 },
+            ScheduleError::Period { period },
+            ScheduleError::Fire { sensor: 0, phase, t_fire, period },
+            ScheduleError::Scale { num: 1 },
+        ]
+        .map(|error| error.as_str());
+        let expected = [
+            "a schedule has 1 to 64 sensors",
+            "a schedule has 1 to 8 phases",
+            "each phase needs one wait for each sensor",
+            "a period is 1 us to 268 s",
+            "each sensor must fire inside its period: t_lag + t_wait < period",
+            "a scale needs a denominator above zero",
+        ];
+        assert_eq!(texts, expected);
+    }
+
+    #[test]
     fn a_table_of_run_time_size_equals_the_same_table_as_arrays_in_all_it_tells() {
         let lags = ms([0, 20, 40]);
         let (a, b) = (ms([9, 9, 9]), ms([7, 5, 3]));

@@ -272,3 +272,103 @@ fn a_broken_promise_names_the_sensor_the_value_and_what_is_expected() {
     let broken = BrokenPromise::MinRefire { sensor: 2, after: Micros::from_millis(7) };
     assert_eq!(broken.to_string(), "it fires sensor 3 again after 7 ms; expected min_refire or more");
 }
+
+/// Three enabled sensors, none of which ever fires: at each deadline so many periods end at once.
+struct Periods {
+    due: Instant,
+    at_once: u32,
+    left: u32,
+    every: Micros,
+}
+
+impl Periods {
+    fn new(at_once: u32, every: Micros) -> Self {
+        Self { due: START + every, at_once, left: at_once, every }
+    }
+}
+
+impl Scheduler for Periods {
+    fn deadline(&self) -> Instant {
+        self.due
+    }
+
+    fn next_firing(&self) -> Option<(u8, Phase)> {
+        None
+    }
+
+    fn fire(&mut self, _now: Instant) {}
+
+    fn postpone(&mut self, _sensor: u8, _by: Micros) {}
+
+    fn end_period(&mut self, now: Instant) -> (Phase, bool) {
+        self.left -= 1;
+        if self.left == 0 {
+            (self.left, self.due) = (self.at_once, now + self.every);
+        }
+        (Phase::A, false)
+    }
+
+    fn ended(&mut self, _sensor: u8, _at: Instant) {}
+
+    fn sensors(&self) -> usize {
+        3
+    }
+
+    fn set_enabled(&mut self, _sensor: u8, _enabled: bool) {}
+
+    fn set_paused(&mut self, _paused: bool) {}
+
+    fn is_enabled(&self, sensor: u8) -> bool {
+        sensor < 3
+    }
+
+    fn restart(&mut self, _now: Instant) {}
+
+    fn periods_since(&self, _phase: Phase) -> u8 {
+        0
+    }
+
+    fn limits(&self) -> Limits<'_> {
+        Limits { longest_window: self.every, verified_for: None }
+    }
+
+    fn min_refire(&self) -> Micros {
+        self.every
+    }
+
+    fn horizon(&self) -> Micros {
+        self.every
+    }
+}
+
+#[test]
+fn the_check_takes_fewer_steps_at_once_than_four_a_sensor_and_eight_for_coming_to_rest() {
+    let steps = |at_once| check_scheduler(&mut Periods::new(at_once, Micros::from_millis(50)), START, 1, 0);
+    assert_eq!(steps(4 * 3 + 7), Ok(()));
+    assert_eq!(steps(4 * 3 + 8), Err(BrokenPromise::Endless));
+}
+
+#[test]
+fn the_check_calls_a_sensor_silent_after_more_than_four_horizons_and_not_at_four() {
+    let every = Micros::from_millis(50);
+    // A run in which all polls are on time and nothing else is done: the sensors wait since the first one's end.
+    let after = |polls, seed| {
+        let mut periods = Periods::new(1, every);
+        let result = check_scheduler(&mut periods, START, polls, seed);
+        (periods.due.since(START).as_micros(), result)
+    };
+    let seed = (0..1000).find(|&seed| after(5, seed).0 == 6 * 50_000).unwrap();
+    assert_eq!(after(5, seed).1, Ok(()));
+    assert_eq!(after(6, seed).1, Err(BrokenPromise::Silent { sensor: 0 }));
+}
+
+#[test]
+fn a_deadline_as_far_ahead_as_the_horizon_is_no_jump_of_the_clock() {
+    let every = Micros::from_millis(50);
+    let mut metronome = Metronome::new(every, every);
+    assert!(metronome.poll(START).is_some());
+    let calls = metronome.calls;
+    assert_eq!((metronome.poll(START), metronome.calls), (None, calls), "nothing is due");
+    let sooner = Instant::from_micros(START.as_micros() - 1);
+    assert_eq!((metronome.poll(sooner), metronome.calls != calls), (None, true), "it is restarted");
+}

@@ -3,8 +3,8 @@
 //! fixed time later.
 
 use eeruf_core::{
-    HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, MAX_PERIOD,
-    Micros, Phase, PhaseRequirements, PhaseTable, ReadingKind, RingEvent, Tally,
+    Audible, HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant,
+    MAX_PERIOD, Micros, Phase, PhaseRequirements, PhaseTable, ReadingKind, RingEvent, Tally,
 };
 use proptest::prelude::*;
 
@@ -150,7 +150,7 @@ fn an_echo_of_ones_own_is_believed_nearly_always() {
 }
 
 #[test]
-fn a_reading_has_the_phase_of_its_firing_and_a_period_counts_the_readings_it_gave() {
+fn a_reading_has_the_phase_and_period_of_its_firing_and_a_period_counts_the_readings_it_gave() {
     let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
     let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
@@ -168,13 +168,17 @@ fn a_reading_has_the_phase_of_its_firing_and_a_period_counts_the_readings_it_gav
         while let Some(event) = ring.poll(now) {
             match event {
                 RingEvent::Fire { sensor, phase, .. } => {
-                    fired[usize::from(sensor)] = Some(phase);
+                    fired[usize::from(sensor)] = Some((phase, periods));
                     // Now and then after the window.
                     let length = if periods % 5 == 4 { WINDOW + 9000 } else { 9000 };
                     edges.push((now + Micros::new(length + u32::from(sensor)), sensor));
                 }
                 RingEvent::Reading(reading) => {
-                    assert_eq!(Some(reading.phase), fired[usize::from(reading.sensor)], "{reading:?}");
+                    assert_eq!(
+                        Some((reading.phase, reading.period)),
+                        fired[usize::from(reading.sensor)],
+                        "{reading:?}"
+                    );
                     late += u32::from(reading.kind == ReadingKind::Late);
                     given.count(reading.kind);
                 }
@@ -298,11 +302,13 @@ fn a_schedule_takes_what_just_fits_and_nothing_more() {
 fn the_table_of_a_schedule_says_when_each_sensor_fires_over_and_over_again() {
     let code = HoppingCode::new(3, 2, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<4>::spread(code, Micros::new(30_000), 2).unwrap();
-    let table = schedule.table::<12>();
+    // More phases than a byte counts.
+    let table = schedule.table::<300>();
     for (phase, row) in table.iter().enumerate() {
+        let first = phase % usize::from(code.phases());
         for (sensor, &t_fire) in row.iter().enumerate() {
-            let says = schedule.t_fire(phase as u8, sensor).unwrap_or(Micros::ZERO);
-            assert_eq!((t_fire, table[phase % usize::from(code.phases())][sensor]), (says, says), "{phase} {sensor}");
+            let says = schedule.t_fire(first as u8, sensor).unwrap_or(Micros::ZERO);
+            assert_eq!((t_fire, table[first][sensor]), (says, says), "{phase} {sensor}");
         }
     }
     assert!(table[1][2] != Micros::ZERO);
@@ -310,7 +316,12 @@ fn the_table_of_a_schedule_says_when_each_sensor_fires_over_and_over_again() {
 
 #[test]
 fn what_is_proven_of_the_separation_is_what_trying_all_phases_finds() {
-    let requirements = PhaseRequirements::new(Micros::new(100), Micros::new(800));
+    // Sound is heard for many periods: paths read with two ages.
+    let audible = Audible { reach: Micros::new(20_000), ..Audible::new(Micros::new(800)) };
+    let requirements = PhaseRequirements { audible, ..PhaseRequirements::new(Micros::new(100), audible.window) };
+    // No path is heard in two phases.
+    let short = PhaseRequirements::new(Micros::new(100), Micros::new(200));
+    let mut least = Micros::MAX;
     for sensors in 2..=4 {
         let code = HoppingCode::new(sensors, 2, Micros::new(240)).unwrap();
         let two_ages = 2 * code.width().as_micros() + 240;
@@ -321,8 +332,13 @@ fn what_is_proven_of_the_separation_is_what_trying_all_phases_finds() {
             let tried = cycle.separation(&requirements.audible).map(|separation| separation.value);
             let says = schedule.verify(&requirements).separation().map(|separation| separation.value);
             assert_eq!(says, tried, "{sensors} sensors, {period} us");
+            least = says.map_or(least, |says| says.min(least));
+            // From there on it is proven, whatever is heard.
+            let says = schedule.verify(&short).separation().map(|separation| separation.value);
+            assert_eq!(says, (period >= two_ages).then_some(code.step()), "{sensors} sensors, {period} us");
         }
     }
+    assert_eq!(least, Micros::new(239), "no path that reads with two ages was tried");
     let alone = HoppingSchedule::<1>::spread(HoppingCode::new(1, 2, Micros::new(240)).unwrap(), Micros::new(9_000), 1);
     assert!(alone.unwrap().verify(&requirements).separation().is_none());
 }

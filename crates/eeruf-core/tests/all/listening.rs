@@ -145,3 +145,81 @@ fn nor_is_one_that_the_ring_has_room_for_but_does_not_have() {
         assert_eq!(ring.fired(sensor, now), expected);
     }
 }
+
+#[test]
+fn a_reading_says_the_phase_and_the_period_of_its_firing() {
+    let schedule = schedule();
+    let mut ring = ring(&schedule);
+    for period in 0..6 {
+        let due = fire_of_0(&mut ring);
+        let RingEvent::Fire { phase, .. } = ring.poll(due).unwrap() else { panic!("sensor 0 fires") };
+        let reading = reading(&mut ring).1;
+        assert_eq!((reading.phase, reading.phase.0, reading.period), (phase, (period % 2) as u8, period));
+    }
+}
+
+/// Polls until sensor 0 is next to fire: when it is due.
+fn fire_of_0(ring: &mut ScheduledRing<'_, 2>) -> Instant {
+    for _ in 0..100 {
+        let now = ring.next_deadline();
+        if matches!(ring.clone().poll(now), Some(RingEvent::Fire { sensor: 0, .. })) {
+            return now;
+        }
+        ring.poll(now);
+    }
+    panic!("sensor 0 never fires");
+}
+
+#[test]
+fn of_echoes_that_are_in_at_one_poll_that_of_the_sensor_which_fired_first_is_emitted_first() {
+    let ms = |times: [u32; 2]| times.map(Micros::from_millis);
+    let schedule = Schedule::from_firing(Micros::from_millis(100), [ms([10, 15]), ms([15, 10])]).unwrap();
+    let mut ring = ring(&schedule);
+    for period in 0..4 {
+        let mut fired = vec![];
+        while fired.len() < 2 {
+            let now = ring.next_deadline();
+            if let Some(RingEvent::Fire { sensor, .. }) = ring.poll(now) {
+                fired.push(sensor);
+            }
+        }
+        let edge = ring.next_deadline();
+        // Edges are handed in by sensor, either of which may have fired first.
+        for sensor in [0, 1] {
+            ring.echo(sensor, edge).unwrap();
+        }
+        let read = [0, 1].map(|_| match ring.poll(edge) {
+            Some(RingEvent::Reading(reading)) => reading.sensor,
+            other => panic!("{other:?}"),
+        });
+        assert_eq!(read[..], fired, "period {period}");
+    }
+}
+
+#[test]
+fn where_sensors_report_two_echoes_each_is_heard_until_the_window_closes() {
+    let schedule = schedule();
+    let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW)).with_echoes::<2>();
+    let mut ring = Ring::<_, 2, 2>::unverified(&schedule, config, Instant::from_micros(0)).unwrap();
+    // Another first echo each time, and the same second one.
+    let mut first = [4_000, 6_000, 8_000].into_iter();
+    let (mut fired, mut read) = (Instant::from_micros(0), vec![]);
+    while read.len() < 3 {
+        let now = ring.next_deadline();
+        match ring.poll(now) {
+            Some(RingEvent::Fire { sensor: 0, .. }) => {
+                fired = now;
+                for edge in [first.next().unwrap(), 20_000] {
+                    ring.echo(0, fired + Micros::new(edge)).unwrap();
+                }
+            }
+            Some(RingEvent::Reading(reading)) if reading.sensor == 0 => {
+                assert_eq!(now.since(fired), Micros::new(WINDOW));
+                read.push((reading.kind, reading.t_echo.unwrap().as_micros()));
+            }
+            _ => {}
+        }
+    }
+    let expected = [(ReadingKind::First, 4_000), (ReadingKind::Accepted, 20_000), (ReadingKind::Accepted, 20_000)];
+    assert_eq!(read, expected);
+}

@@ -4,6 +4,7 @@
 mod brute_force;
 mod claims;
 mod common;
+mod comparing;
 mod conditions_naive;
 mod contract;
 mod edges;
@@ -13,7 +14,10 @@ mod fired;
 #[path = "../formats.rs"]
 mod formats;
 mod hopping;
+mod hopping_late;
 mod hopping_log;
+mod hopping_settings;
+mod immediate;
 mod lateness;
 mod listening;
 mod period_corpus;

@@ -274,3 +274,55 @@ fn neighbours_that_fire_last_and_first_are_close_across_the_end_of_a_period() {
     // The second sensor after 50 ms of phase 1, and the first at once in phase 2.
     assert_eq!((least.value, least.sensors, least.phases), (Micros::from_millis(10), (1, 0), (Phase(1), Phase(2))));
 }
+
+/// Two sensors that move by 500 us and 3 ms from one phase to the other: crosstalk moves by 2.5 ms, the first one's own
+/// stale echo by 1 ms.
+const MOVING: [[Micros; 2]; 2] = [[Micros::ZERO, Micros::new(20_000)], [Micros::new(500), Micros::new(23_000)]];
+
+/// What `MOVING` just keeps at a period of 60 ms.
+const JUST_KEPT: PhaseRequirements = PhaseRequirements {
+    criterion: PhaseCriterion::Margin(Micros::new(600)),
+    audible: Audible { reach: Micros::new(100_000), ..Audible::new(Micros::new(57_000)) },
+    min_interval: Micros::new(20_000),
+    layout: Layout::Line(2),
+    stale_echo: true,
+    ..PhaseRequirements::new(Micros::new(400), Micros::ZERO)
+};
+
+#[test]
+fn what_is_kept_just_so_is_kept_and_a_microsecond_more_is_named() {
+    let table = PhaseTable::new(Micros::new(60_000), &MOVING);
+    let kept = table.verify(&JUST_KEPT);
+    assert_eq!((kept.ok(), kept.violations().next()), (true, None));
+    let margin = |us| PhaseCriterion::Margin(Micros::new(us));
+    let stale = PhaseRequirements { criterion: margin(601), ..JUST_KEPT };
+    let crosstalk = PhaseRequirements { criterion: margin(2_101), stale_echo: false, ..JUST_KEPT };
+    let interval = PhaseRequirements { min_interval: Micros::new(20_001), ..JUST_KEPT };
+    let audible = Audible { window: Micros::new(57_001), ..JUST_KEPT.audible };
+    let window = PhaseRequirements { audible, ..JUST_KEPT };
+    // As `--json` and Python spell them, and where they come from.
+    for (asked, name, source) in [
+        (crosstalk, "crosstalk", "Eqs. (13a), (13b) for many phases"),
+        (stale, "stale_echo", "Eq. (13b) with x = y"),
+        (interval, "interval", "Sec. 3.1 c"),
+        (window, "window", "T_wind"),
+    ] {
+        let found = table.verify(&asked);
+        let named: Vec<_> = found.violations().map(|violation| (violation.as_str(), violation.source())).collect();
+        assert_eq!((found.ok(), named), (false, vec![(name, source)]));
+    }
+}
+
+#[test]
+fn a_stale_echo_that_moves_less_than_crosstalk_limits_t_delta_where_it_is_asked_for() {
+    let table = PhaseTable::new(Micros::new(60_000), &MOVING);
+    let found = |stale_echo, criterion| {
+        let asked = PhaseRequirements { stale_echo, criterion, ..JUST_KEPT };
+        let found = table.verify(&asked);
+        (found.stale_separation().map(|stale| stale.value), found.max_t_delta())
+    };
+    let us = |us| Some(Micros::new(us));
+    assert_eq!(found(true, JUST_KEPT.criterion), (us(1_000), us(400)));
+    assert_eq!(found(true, PhaseCriterion::Exact), (us(1_000), us(499)));
+    assert_eq!(found(false, JUST_KEPT.criterion), (None, us(1_900)));
+}

@@ -1,0 +1,80 @@
+//! Whose period it is, and whether lags change, as planned.
+
+use super::*;
+
+const HURRIED: HoppingSettings =
+    HoppingSettings { solo_after: 1, solo_spacing: 1, shift_after: 0, ..HoppingSettings::BALANCED };
+
+fn fooled(settings: HoppingSettings) -> Fooled {
+    let now = Instant::from_micros(0);
+    Fooled(Timetable::new(&schedule(), settings, HoppingListening::new(WINDOW), 1, now), [now; 8])
+}
+
+/// A period in which all fire on time; `hears` says of a sensor whether its reading is accepted and whether it fits.
+/// Returns whose it is alone.
+fn period(fooled: &mut Fooled, hears: impl Fn(u8) -> (bool, bool)) -> Option<u8> {
+    let solo = fooled.0.solo();
+    while let Some((sensor, _)) = fooled.next_firing() {
+        fooled.fire(fooled.deadline());
+        let (accepted, fits) = hears(sensor);
+        fooled.0.heard(sensor, accepted, fits);
+    }
+    fooled.end_period(fooled.deadline());
+    solo
+}
+
+fn lags(fooled: &Fooled) -> Vec<Option<Micros>> {
+    (0..8).map(|sensor| fooled.0.t_lag(sensor)).collect()
+}
+
+#[test]
+fn two_solo_periods_are_saved_up_at_most_and_each_costs_one() {
+    let mut fooled = fooled(HoppingSettings { solo_rate: 1, ..HURRIED });
+    let mut solos =
+        |periods, accepted| (0..periods).filter(|_| period(&mut fooled, |_| (accepted, accepted)).is_some()).count();
+    assert_eq!(solos(600, true), 0);
+    // A third has been earned 256 periods after the first was taken.
+    assert_eq!((solos(250, false), solos(20, false)), (2, 1));
+}
+
+#[test]
+fn a_solo_period_is_asked_for_after_so_many_firings_with_nothing_accepted() {
+    for solo_after in 2..=6 {
+        let mut fooled = fooled(HoppingSettings { solo_rate: 255, solo_after, ..HURRIED });
+        // Sensor 5 hears nothing that is accepted.
+        let solos: Vec<_> = (0..=solo_after).map(|_| period(&mut fooled, |sensor| (sensor != 5, true))).collect();
+        let (before, after) = solos.split_at(solo_after.into());
+        assert!(before.iter().all(Option::is_none) && after == [Some(5)], "{solo_after}: {solos:?}");
+    }
+}
+
+#[test]
+fn lags_stay_where_settings_say_so_whatever_does_not_fit() {
+    let mut fooled = fooled(HoppingSettings { shift_spacing: 1, ..HURRIED });
+    let before = lags(&fooled);
+    for _ in 0..100 {
+        period(&mut fooled, |_| (false, false));
+    }
+    assert_eq!(lags(&fooled), before);
+}
+
+#[test]
+fn what_is_heard_in_the_period_after_lags_have_changed_is_unsettled_and_in_no_other() {
+    let mut fooled = fooled(HoppingSettings { solo_rate: 0, shift_after: 1, shift_spacing: 3, ..HURRIED });
+    let mut changed = 0;
+    let mut before = lags(&fooled);
+    for number in 0..60 {
+        let now = lags(&fooled);
+        period(&mut fooled, |_| (false, false));
+        changed += u32::from(now != before);
+        // The plan of the next period may have unsettled what was fired in this one.
+        if lags(&fooled) == now {
+            for sensor in 0..8 {
+                let (_, _, steady) = fooled.0.last_firing(sensor, u16::MAX);
+                assert_eq!(steady, now == before, "period {number}, sensor {sensor}");
+            }
+        }
+        before = now;
+    }
+    assert!(changed > 10, "{changed}");
+}

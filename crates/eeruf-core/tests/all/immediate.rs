@@ -1,0 +1,90 @@
+//! What immediate refiring promises a ring, one promise at a time; the whole contract, which takes longer, is held in
+//! `contract`.
+
+use eeruf_core::tables::TABLE_I_D;
+use eeruf_core::{ImmediateRefiring, Instant, Micros, Phase, Schedule, Scheduler, SchedulerStep};
+
+fn ms(ms: u32) -> Micros {
+    Micros::from_millis(ms)
+}
+
+fn at(ms: u32) -> Instant {
+    Instant::from_micros(1000 * ms)
+}
+
+/// Two sensors whose waits are 10 and 55 ms, in periods of 100 ms.
+fn schedule() -> Schedule<2> {
+    Schedule::new(ms(100), [Micros::ZERO; 2], [[ms(10), ms(55)]; 2]).unwrap()
+}
+
+/// Polls whenever something is due until some instant, each firing ended 5 ms later: who fired when.
+fn firings(refiring: &mut ImmediateRefiring<'_, 2>, until: Instant) -> Vec<(u8, Instant)> {
+    let mut fired = vec![];
+    while until.has_reached(refiring.deadline()) {
+        let now = refiring.deadline();
+        if let Some(SchedulerStep::Fire { sensor, .. }) = refiring.poll(now) {
+            refiring.ended(sensor, now + ms(5));
+            fired.push((sensor, now));
+        }
+    }
+    fired
+}
+
+#[test]
+fn a_sensor_that_fired_later_than_it_was_polled_waits_for_its_refire_time_from_then() {
+    let schedule = schedule();
+    let mut refiring = ImmediateRefiring::new(&schedule, ms(40), at(0));
+    assert!(matches!(refiring.poll(at(10)), Some(SchedulerStep::Fire { sensor: 0, .. })));
+    refiring.postpone(0, ms(3));
+    refiring.ended(0, at(20));
+    assert_eq!((refiring.deadline(), refiring.next_firing()), (at(10 + 3 + 40), Some((0, Phase::B))));
+}
+
+#[test]
+fn the_end_of_a_period_does_not_change_when_a_sensor_that_listens_fires_again() {
+    let schedule = schedule();
+    let mut refiring = ImmediateRefiring::new(&schedule, ms(120), at(0));
+    for now in [10, 55] {
+        assert!(matches!(refiring.poll(at(now)), Some(SchedulerStep::Fire { .. })));
+    }
+    assert!(matches!(refiring.poll(at(100)), Some(SchedulerStep::PeriodEnded { phase: Phase::A, .. })));
+    refiring.ended(0, at(101));
+    assert_eq!((refiring.deadline(), refiring.next_firing()), (at(10 + 120), Some((0, Phase::B))));
+}
+
+#[test]
+fn the_end_of_the_period_is_a_deadline_when_no_sensor_is_due_before_it() {
+    let schedule = schedule();
+    let mut refiring = ImmediateRefiring::new(&schedule, ms(400), at(0));
+    firings(&mut refiring, at(60));
+    assert_eq!((refiring.deadline(), refiring.next_firing()), (at(100), None));
+}
+
+#[test]
+fn a_disabled_sensor_does_not_fire_until_it_is_enabled_and_none_while_all_pause() {
+    let schedule = schedule();
+    let mut refiring = ImmediateRefiring::new(&schedule, ms(40), at(0));
+    refiring.set_enabled(0, false);
+    assert!(!refiring.is_enabled(0) && refiring.is_enabled(1));
+    let fired = firings(&mut refiring, at(300));
+    assert!(fired.len() > 3 && fired.iter().all(|&(sensor, _)| sensor == 1), "{fired:?}");
+    refiring.set_enabled(0, true);
+    refiring.set_paused(true);
+    assert!(refiring.is_enabled(0) && firings(&mut refiring, at(600)).is_empty());
+    refiring.set_paused(false);
+    let fired = firings(&mut refiring, at(900));
+    assert!([0, 1].iter().all(|sensor| fired.iter().any(|(fired, _)| fired == sensor)), "{fired:?}");
+}
+
+#[test]
+fn no_sensor_beyond_the_last_is_enabled() {
+    let refiring = ImmediateRefiring::new(&TABLE_I_D, Micros::ZERO, at(0));
+    assert!((0..=u8::MAX).all(|sensor| refiring.is_enabled(sensor) == (sensor < 12)));
+}
+
+#[test]
+fn it_has_no_common_phases_and_the_refire_time_that_it_was_given() {
+    let refiring = ImmediateRefiring::new(&TABLE_I_D, ms(40), at(0));
+    assert_eq!([Phase::A, Phase::B].map(|phase| refiring.periods_since(phase)), [0; 2]);
+    assert_eq!(refiring.min_refire(), ms(40));
+}

@@ -1,6 +1,6 @@
 //! Robots that swing before the alcoves of Set I: to and fro by 0.15 m at 0.5 m/s along their heading, while they turn
 //! by 10 degrees to either side at 20 degrees/s. Beside what each method loses stands what is lost to whoever wants two
-//! readings that agree, though it knew whose each echo is and how it moves.
+//! readings that agree since the echo came to be from where it is, though it knew whose each is and how it moves.
 //!
 //! `cargo run --release -p eeruf-sim --example swinging -- [ALCOVES [FIRST [PHYSICS [SPEED [TURN]]]]]`, with
 //! speeds in m/s and degrees/s.

@@ -215,8 +215,8 @@ impl<const K: usize> Timetable<K> {
         }
     }
 
-    /// A firing was later than it was noted to be, by as much as the poll was late: all that this period has had so far
-    /// are noted again, since steady lateness is none. It is one of them, or the last of the period before.
+    /// A firing was later than was noted when it was polled for: all that this period has had so far are noted again,
+    /// since firings that are late alike are steady. It is one of them, or the last of the period before.
     #[cold]
     #[inline(never)]
     fn note_anew(&mut self, late: u16) {
@@ -243,7 +243,7 @@ impl<const K: usize> Scheduler for Timetable<K> {
     }
 
     fn next_firing(&self) -> Option<(u8, Phase)> {
-        // What is room for a sensor of this number, which the compiler need not ask again; nobody has none.
+        // However much room there is, nobody has this number. To compare with the room spares the look-up its check.
         let room = const { if K < NOBODY as usize { K } else { NOBODY as usize } };
         (usize::from(self.next) < room).then_some((self.next, Phase(self.count)))
     }

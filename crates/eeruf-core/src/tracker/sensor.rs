@@ -39,7 +39,7 @@ const WHOLE: i32 = 64;
 
 /// A smaller change, in microseconds, tells nothing of how much of it there is.
 const LEAST_CHANGE_US: i32 = 20;
-const FEWEST_CHANGE_US: i32 = -LEAST_CHANGE_US;
+const LEAST_CHANGE_SOONER_US: i32 = -LEAST_CHANGE_US;
 
 impl<const H: usize> SensorTracks<H> {
     pub(super) const NEW: Self = Self { tracks: [Track::NONE; H], age: NEVER, surplus: 0 };
@@ -73,7 +73,7 @@ impl<const H: usize> SensorTracks<H> {
     fn learn(surplus: &mut i8, later_us: i32, change_us: i32) {
         let more_us = match change_us {
             LEAST_CHANGE_US.. => later_us,
-            ..=FEWEST_CHANGE_US => -later_us,
+            ..=LEAST_CHANGE_SOONER_US => -later_us,
             _ => return,
         };
         *surplus = (i32::from(*surplus) + more_us / 32).clamp(-WHOLE, WHOLE) as i8;

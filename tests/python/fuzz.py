@@ -27,6 +27,18 @@ import eeruf
 import numpy as np
 from eeruf import nav, sim, tables
 
+# Of glibc's malloc.h.
+M_ARENA_MAX = -8
+
+
+def keep_one_heap() -> None:
+    """One heap for all threads from now on: of any other, malloc_trim keeps the end, as large as it ever was."""
+    libc = ctypes.CDLL(None)
+    if hasattr(libc, "mallopt"):
+        libc.mallopt(M_ARENA_MAX, 1)
+
+
+keep_one_heap()
 ANY: Any = eeruf
 ROBOT = sim.Robot((0.3, 0.7, 1.57), 4, 0.26, 0.1)
 ROOM = sim.Scene([[5, 2, -5, 2]], robots=[ROBOT])

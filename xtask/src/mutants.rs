@@ -71,9 +71,10 @@ impl Round {
 
     /// Tests that use the processor for longer than this are ended and have failed: a loop without end takes little of
     /// a busy machine's time, and a machine that is only busy ends nothing. Unbroken they take a third of it.
-    fn most_seconds(self) -> Option<u32> {
+    fn most_seconds(self, search: bool) -> Option<u32> {
         match self {
-            Self::Quick | Self::Twin => Some(10).filter(|_| cfg!(target_os = "linux")),
+            _ if !cfg!(target_os = "linux") => None,
+            Self::Quick | Self::Twin => Some(if search { 30 } else { 10 }),
             Self::All => None,
         }
     }
@@ -144,8 +145,11 @@ impl Plan {
         let mut args: Vec<String> =
             ["mutants", "--iterate", "--no-shuffle", "--colors", "never", "--output"].map(str::to_owned).to_vec();
         args.push(self.folder().display().to_string());
+        // Tests of the search compute for long, those of the rest hardly, and then building counts more.
+        let level = u8::from(self.search);
+        args.push(format!("--cargo-arg=--config=profile.dev.package.eeruf-core.opt-level={level}"));
         args.extend(self.source());
-        args.extend(round.most_seconds().map(|seconds| {
+        args.extend(round.most_seconds(self.search).map(|seconds| {
             format!(r#"--cargo-arg=--config=target.'cfg(target_os = "linux")'.runner=["prlimit", "--cpu={seconds}"]"#)
         }));
         // What is built only with a feature can be noticed only with it.
@@ -314,6 +318,8 @@ mod tests {
         assert!(quick.contains("--skip brute_force::") && !quick.contains("--shard"), "{quick}");
         let search = plan(true, None).args(Round::Quick).join(" ");
         assert!(!search.contains("brute_force"), "what judges the search is needed there: {search}");
+        assert_eq!(search.contains(r#"runner=["prlimit", "--cpu=30"]"#), cfg!(target_os = "linux"), "{search}");
+        assert!(search.contains("eeruf-core.opt-level=1") && quick.contains("eeruf-core.opt-level=0"), "{search}");
         let all = plan(false, None).args(Round::All).join(" ");
         assert!(
             all.ends_with("--exclude crates/eeruf-core/src/search/** --features=embassy-time,fugit,serde"),

@@ -1500,13 +1500,15 @@ static uint8_t votes_of(const EerufTrack *track) {
     return votes;
 }
 
+static void forget_track(EerufTrack *track) {
+    memset(track, 0, sizeof *track);
+    track->t_echo_us = EERUF_NO_ECHO;
+    track->age = UINT8_MAX;
+}
+
 static void forget_tracks(EerufHopper *hopper) {
     uint8_t place;
-    memset(hopper->tracks, 0, sizeof hopper->tracks);
-    for (place = 0; place < EERUF_HYPOTHESES; place++) {
-        hopper->tracks[place].t_echo_us = EERUF_NO_ECHO;
-        hopper->tracks[place].age = UINT8_MAX;
-    }
+    for (place = 0; place < EERUF_HYPOTHESES; place++) forget_track(&hopper->tracks[place]);
     hopper->surplus = 0;
 }
 
@@ -1530,7 +1532,7 @@ static const EerufTrack *believed_of(const EerufHopper *hopper) {
     uint8_t place;
     for (place = 0; place < EERUF_HYPOTHESES; place++) {
         const EerufTrack *track = &hopper->tracks[place];
-        if (track->score == 0 || !(track->flags & TRACK_CONFIRMED)) continue;
+        if (!(track->flags & TRACK_CONFIRMED)) continue;
         if (earliest == NULL || track->t_echo_us < earliest->t_echo_us) earliest = track;
     }
     return earliest;
@@ -1570,7 +1572,12 @@ static void support(EerufTrack *track, uint32_t t_echo_us, uint16_t phase, bool 
 
 static void contradict(EerufTrack *track, uint16_t phase, bool solo, const EerufTrackerSettings *how) {
     const uint8_t weight = solo ? how->solo_contradiction : (track->flags & TRACK_CONFIRMED) ? how->contradiction : 1;
-    track->score = track->score > weight ? (uint8_t)(track->score - weight) : 0;
+    if (track->score <= weight) {
+        /* Were it confirmed still, it would keep its place from all that come. */
+        forget_track(track);
+        return;
+    }
+    track->score = (uint8_t)(track->score - weight);
     track->flags |= CONTRADICTED;
     track->solo_votes = 0;
     grow_older(track);

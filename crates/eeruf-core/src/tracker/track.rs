@@ -67,7 +67,7 @@ impl Track {
     /// Its time if it is confirmed; else later than all.
     #[inline(always)]
     pub(super) const fn confirmed(&self) -> u32 {
-        if self.exists() && self.is_confirmed() { self.t_echo() } else { u32::MAX }
+        if self.is_confirmed() { self.t_echo() } else { u32::MAX }
     }
 
     #[inline(always)]
@@ -145,8 +145,14 @@ impl Track {
     /// the other if it is.
     pub(super) fn contradict(&mut self, bit: u16, weights: (u8, u8)) {
         let weight = if self.is_confirmed() { weights.1 } else { weights.0 };
+        let score = (self.score_and_solo & SCORE).saturating_sub(weight);
+        if score == 0 {
+            // Were it confirmed still, it would keep its place from all that come.
+            *self = Self::NONE;
+            return;
+        }
         // Without its votes of solo periods.
-        self.score_and_solo = (self.score_and_solo & SCORE).saturating_sub(weight);
+        self.score_and_solo = score;
         self.close_and_flags |= CONTRADICTED;
         self.grow_older();
         self.miss(bit);

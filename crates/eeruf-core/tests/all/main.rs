@@ -30,6 +30,7 @@ mod phases;
 mod promises;
 mod rate;
 mod theory;
+mod tracker_naive;
 mod uneven;
 mod uneven_ring;
 mod wait_limits;

@@ -32,7 +32,7 @@ M_ARENA_MAX = -8
 
 
 def keep_one_heap() -> None:
-    """One heap for all threads from now on: of any other, malloc_trim keeps the end, as large as it ever was."""
+    """One heap for all threads from now on: of any other malloc_trim keeps the free end, as large as it ever was."""
     libc = ctypes.CDLL(None)
     if hasattr(libc, "mallopt"):
         libc.mallopt(M_ARENA_MAX, 1)

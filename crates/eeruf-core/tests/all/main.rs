@@ -33,6 +33,7 @@ mod theory;
 mod tracker_naive;
 mod uneven;
 mod uneven_ring;
+mod wait_answers;
 mod wait_limits;
 mod wait_small;
 mod wait_tables;

@@ -320,6 +320,22 @@ fn what_is_confirmed_no_more_keeps_no_place_from_what_comes() {
 }
 
 #[test]
+fn a_track_that_is_masked_for_long_stays_where_it_is() {
+    let mut tracker = EchoTracker::<1>::new(TrackerSettings::BALANCED).unwrap();
+    let mut phases = (0..11).cycle();
+    let mut push = |t_echo| tracker.push(0, Some(Micros::new(t_echo)), Firing::new(Phase(phases.next().unwrap())));
+    for _ in 0..22 {
+        push(9_000).unwrap();
+    }
+    // Earlier ones by chance, longer than an age is counted.
+    let mut random = Random(3);
+    for _ in 0..600 {
+        push(random.up_to(8_000)).unwrap();
+    }
+    assert_eq!(push(9_000).unwrap().previous, Some(Micros::new(9_000)));
+}
+
+#[test]
 fn each_setting_of_a_tracker_is_set_alone() {
     let us = Micros::new;
     let kept = TrackerSettings::MAPS;

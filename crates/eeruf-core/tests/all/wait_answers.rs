@@ -1,5 +1,5 @@
-//! What the search for waits says beside its tables: how far apart a table keeps sensors, which pairs of waits can be told
-//! apart at all, that a question without an answer has no bound, and what is wrong with a question.
+//! What the search for waits says beside its tables: how far apart a table keeps sensors, which pairs of waits differ
+//! enough, that a question without an answer has no bound, and what is wrong with a question.
 
 use eeruf_core::search::wait::{Budget, MEMORY_WORDS, Objective, Problem, Search};
 use eeruf_core::search::{Outcome, WaitProblem, WaitSearch};
@@ -37,7 +37,7 @@ fn the_separation_of_a_table_is_the_largest_that_nested_loops_find_it_to_keep() 
 }
 
 #[test]
-fn pairs_whose_sums_are_alike_are_told_apart_by_differences_alone() {
+fn pairs_whose_sums_are_alike_differ_by_the_exact_criterion_alone() {
     // |d| is 0, 2 and 4; s is 8 each.
     let pairs = [(4, 4), (5, 3), (6, 2)];
     let count = |criterion, separation| {

@@ -8,6 +8,7 @@ mod comparing;
 mod conditions_naive;
 mod contract;
 mod edges;
+mod effort;
 mod fired;
 // A binary of its own where the features are tested by themselves; here too, for mutants.
 #[cfg(feature = "serde")]

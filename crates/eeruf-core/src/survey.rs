@@ -298,6 +298,9 @@ mod tests {
         }
         assert_eq!((seen.len(), plan.slots(), plan.slot(plan.slots())), (0, 5 * 2 + 20 * 3, None));
         assert_eq!(plan.duration_us(), 70 * (800 + 36_000 + 57_000));
+        // The first pair comes first, however many slots are before it.
+        let once = SurveyPlan::new(5).with_solos(1);
+        assert_eq!(once.slot(5), Some(SurveySlot { first: 0, second: Some((1, Micros::ZERO)) }));
         assert_eq!(SurveyPlan::new(0).slot(0), None);
         assert_eq!(SurveyPlan::new(1).slots(), 3);
     }

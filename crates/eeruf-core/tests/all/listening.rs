@@ -99,6 +99,18 @@ fn the_first_edge_after_the_window_is_reported_once_and_one_within_it_comes_too_
 }
 
 #[test]
+fn a_late_edge_is_reported_at_once_when_no_sensor_listens() {
+    let schedule = schedule();
+    let mut ring = ring(&schedule);
+    let fired = fire(&mut ring);
+    assert_eq!(reading(&mut ring).1.kind, ReadingKind::NoEcho);
+    let late = fired + Micros::new(WINDOW + 10_000);
+    ring.echo(0, late).unwrap();
+    assert_eq!(ring.next_deadline(), late);
+    assert_eq!(reading(&mut ring).1.kind, ReadingKind::Late);
+}
+
+#[test]
 fn a_line_that_was_high_makes_its_firing_stuck_whatever_follows_and_the_next_one_is_heard() {
     let schedule = schedule();
     let mut ring = ring(&schedule);

@@ -120,6 +120,79 @@ fn forty_minutes_without_sensors_do_not_delay_a_change_of_schedule() {
 }
 
 #[test]
+fn forty_minutes_without_sensors_do_not_delay_a_restart() {
+    let mut scheduler = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
+    time_to_fire(&mut scheduler, Instant::from_micros(0));
+    scheduler.set_paused(true);
+    let mut now = Instant::from_micros(0);
+    while now.as_micros() < 40 * 60 * 1_000_000 {
+        now = scheduler.deadline();
+        assert!(matches!(scheduler.poll(now), Some(SchedulerStep::PeriodEnded { .. })));
+    }
+    scheduler.set_paused(false);
+    scheduler.restart(now);
+    assert!(time_to_fire(&mut scheduler, now) <= ms(200));
+}
+
+#[test]
+fn periods_in_which_nothing_fires_are_caught_up_with_if_the_poll_is_no_more_than_one_late() {
+    for (late, ended) in [(ms(99), 1), (ms(100), 2), (Micros::new(100_001), 1), (ms(60_000), 1)] {
+        let mut ring: ScheduledRing<12> = Ring::unverified(&TABLE_I_D, CONFIG, Instant::from_micros(0)).unwrap();
+        ring.pause();
+        let now = ring.next_deadline() + late;
+        let mut events = 0;
+        while let Some(event) = ring.poll(now) {
+            assert!(matches!(event, RingEvent::PeriodEnded(_)));
+            events += 1;
+        }
+        assert_eq!(events, ended, "{late:?} late");
+    }
+}
+
+/// Whether a reading survives a poll at an instant so long before the end of the period.
+fn outlasts_a_step_back(back: u32) -> bool {
+    let schedule = Schedule::<1>::from_firing(ms(20), [[ms(17)], [ms(18)]]).unwrap();
+    let mut ring: ScheduledRing<1> = Ring::unverified(&schedule, CONFIG, Instant::from_micros(0)).unwrap();
+    assert!(matches!(ring.poll(Instant::from_micros(17_000)), Some(RingEvent::Fire { .. })));
+    assert_eq!(ring.poll(Instant::from_micros(20_000_u32.wrapping_sub(back))), None);
+    loop {
+        match ring.poll(ring.next_deadline()) {
+            Some(RingEvent::Fire { .. }) => return false,
+            Some(RingEvent::Reading(_)) => return true,
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn a_clock_that_steps_back_until_three_periods_are_left_has_not_jumped_and_one_microsecond_more_is_a_jump() {
+    assert_eq!([20_001, 60_000, 60_001].map(outlasts_a_step_back), [true, true, false]);
+}
+
+#[test]
+fn a_reading_is_of_the_period_and_phase_in_which_its_sensor_fired() {
+    // The window closes in the next period, which is of the other phase.
+    let schedule = Schedule::<1>::from_firing(ms(20), [[ms(17)], [ms(18)]]).unwrap();
+    let mut ring: ScheduledRing<1> = Ring::unverified(&schedule, CONFIG, Instant::from_micros(0)).unwrap();
+    let (mut period, mut fired, mut readings) = (0, None, 0);
+    while readings < 9 {
+        match ring.poll(ring.next_deadline()) {
+            Some(RingEvent::Fire { phase, .. }) => fired = Some((period, phase)),
+            Some(RingEvent::PeriodEnded(stats)) => {
+                assert_eq!(stats.period, period);
+                period += 1;
+            }
+            Some(RingEvent::Reading(reading)) => {
+                assert_eq!(Some((reading.period, reading.phase)), fired.take());
+                assert_eq!((reading.period, reading.period + 1), (readings, period));
+                readings += 1;
+            }
+            _ => {}
+        }
+    }
+}
+
+#[test]
 fn a_ring_smaller_than_its_scheduler_is_refused() {
     let scheduler = ScheduledFiring::new(&TABLE_I_D, Instant::default());
     let error = Ring::<_, 8, 1>::with_scheduler(scheduler, CONFIG, Instant::default());

@@ -123,6 +123,12 @@ fn where_all_are_alike_an_uneven_ring_does_what_a_ring_does() {
         let (sensor, at) =
             (random.up_to(11) as u8, Instant::from_micros(now.as_micros().wrapping_sub(random.up_to(40_000))));
         assert_eq!(one.echo(sensor, at), other.echo(sensor, at));
+        match random.up_to(199) {
+            0 => (one.restart(now), other.restart(now)),
+            1 => (one.pause(), other.pause()),
+            2..=9 => (one.resume(), other.resume()),
+            _ => ((), ()),
+        };
         loop {
             let event = one.poll(now);
             assert_eq!(event, other.poll(now), "poll {poll}");

@@ -32,9 +32,10 @@ const SLOW_OF_SEARCH: [&str; 4] = [
     "of_64_sensors_is_found_up_to_the_longest_period",
     "sixty_four_sensors_in_one_clique",
 ];
-const SLOW_OF_REST: [&str; 15] = [
+const SLOW_OF_REST: [&str; 16] = [
     "every_code_up_to_64_sensors",
     "brute_force::",
+    "effort::",
     "period_corpus::",
     "period_edges::",
     "period_limits::",

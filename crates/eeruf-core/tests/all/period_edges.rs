@@ -5,6 +5,7 @@ use eeruf_core::search::{PeriodProblem, SearchError};
 use eeruf_core::{Layout, Micros, Requirements};
 
 use crate::common::naive;
+use crate::common::naive_period::assert_serves;
 
 fn ms(ms: u32) -> Micros {
     Micros::from_millis(ms)
@@ -45,6 +46,18 @@ fn the_largest_interval_is_found_whatever_interval_is_asked_for() {
     assert!(found > Some(ms(15)));
     for min_interval in [Micros::ZERO, ms(100_000), Micros::MAX] {
         assert_eq!(largest(min_interval), found, "asked for {min_interval}");
+    }
+}
+
+#[test]
+fn what_holds_of_less_than_half_an_interval_to_spare_is_not_taken_to_hold_of_half_of_one() {
+    // Pairs of neighbours in a line, in two and a half intervals: there is one permutation for all only below that.
+    for (sensors, interval, separation) in [(4, 2, 1), (4, 4, 2), (6, 4, 1)] {
+        let rows = naive::conflicts(naive::Layout::Line, sensors, 2);
+        let problem = Problem { sensors, conflicts: &rows, separation, interval, window: interval, stale_echo: false };
+        let found = shortest(&problem, u64::MAX, &mut vec![0; memory_words(sensors)], &mut ()).unwrap();
+        assert_eq!((found.period, found.bound), (5 * interval / 2, 5 * interval / 2), "{problem:?}");
+        assert_serves(&problem, found.period, &found.firing);
     }
 }
 

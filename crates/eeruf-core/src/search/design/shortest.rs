@@ -76,7 +76,7 @@ pub(crate) fn shortest_period<C: Control>(problem: &CheckedProblem, bisection: &
             if !(between && bisection.finds(least, 64 * problem.sensors as u64, &mut bracket)) {
                 let budget = bisection.minimize_in_coarse_ticks(&coarse, ticks, &mut bracket);
                 // As ticks were multiplied, the times may serve at a period that is shorter still.
-                bracket.feasible = bracket.firing.period(problem).max(bracket.infeasible + 1);
+                bracket.feasible = bracket.firing.period(problem);
                 bisection.bisect(budget, &mut bracket);
             }
         }

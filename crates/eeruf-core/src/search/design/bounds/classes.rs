@@ -11,8 +11,7 @@
 //!
 //! Its **class** is `|c|`. As long as `sigma < I` each class has room for as many `|d|` as fit D apart into
 //! `|c| I - sigma ..= |c| I + sigma`, cut off at `least` below and at the `T_p - R` that the window leaves above. The n
-//! values c are how far the places of a permutation move; at most `2 (n - |c|)` of them move that far. **Disjoint
-//! cliques** share the room of the classes.
+//! values c are how far the places of a permutation move. **Disjoint cliques** share the room of the classes.
 //!
 //! **Line** (each n adjacent sensors conflict). Sensors i and i + n both conflict with the n - 1 between them, whose
 //! firings leave `2 (n - 1)` gaps, in two periods end to end. A gap with u firings of sensor i and v of sensor i + n in
@@ -96,9 +95,8 @@ impl Classes {
             let (low, high) = ((middle - spare + passed).max(problem.least), period - problem.window);
             let high = high.min(middle + spare);
             let values = if low <= high { (high - low) / separation + 1 } else { 0 };
-            let most = if class > 0 { 2 * (n - class) } else { n };
-            sum += values.min(most * cliques);
-            *room = (values / cliques).min(most);
+            sum += values.min(n * cliques);
+            *room = values / cliques;
         }
         let opposite = self.ring && alike && cliques == 2 && 2 * spare < n * separation;
         sum < n * cliques || opposite || alike && !permutes(n as usize, &mut room)

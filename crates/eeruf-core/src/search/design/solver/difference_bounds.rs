@@ -99,9 +99,6 @@ impl<'m> DifferenceBounds<'m> {
         if self.log.len() - self.used <= n {
             self.used = 0;
             self.overrun = true;
-            if self.log.len() <= n {
-                return;
-            }
         }
         let end = self.used + n;
         self.log[self.used..end].copy_from_slice(&self.bound[i * n..(i + 1) * n]);
@@ -147,5 +144,23 @@ impl<'m> DifferenceBounds<'m> {
         self.used = 0;
         self.overrun = false;
         self.mark();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn that_the_log_ran_over_is_said_once_and_only_then() {
+        // Room for two rows of three nodes.
+        let (mut bound, mut log) = ([0; 9], [0; 8]);
+        let mut differences = DifferenceBounds::new(3, 1000, &mut bound, &mut log);
+        let overruns = [(0, 1), (0, 2), (1, 2)].map(|(u, v)| {
+            differences.mark();
+            differences.add_bound(u, v, 5).unwrap();
+            differences.take_overrun()
+        });
+        assert_eq!((overruns, differences.take_overrun()), ([false, false, true], false));
     }
 }

@@ -148,3 +148,22 @@ impl<'m> Memo<'m> {
 fn same(own: &[u32], key: &[u32; KEY_WORDS]) -> bool {
     own.iter().zip(key).fold(0, |differ, (x, y)| differ | (x ^ y)) == 0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_keys_differ_by_their_last_word() {
+        let key = |last: u64| {
+            let mut key = Key::new(true);
+            key.start(MAX_SENSORS - 1);
+            (0..2 + 2 * MAX_SENSORS).for_each(|_| key.push(u64::MAX));
+            key.push(last << 32);
+            key
+        };
+        let (one, other) = (key(1), key(2));
+        assert_eq!(one.len, KEY_WORDS);
+        assert!(same(&one.words, &one.words) && !same(&one.words, &other.words));
+    }
+}

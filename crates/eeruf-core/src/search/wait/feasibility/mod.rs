@@ -35,16 +35,13 @@ pub(super) fn decide(
     budget: &mut Budget<'_>,
     wait: &mut [i32; 2 * MAX_SENSORS],
 ) -> Outcome {
-    let sensors = problem.lag.len();
     let conflict = problem.conflicts.iter().any(|&row| row != 0);
     // Sums below stay small after this.
     if problem.is_beyond_capacity() {
         return Outcome::Exhausted;
     }
-    // A single sensor is never compared with anything.
-    let separation = if sensors == 1 { 0 } else { problem.separation };
     let interval = if conflict { problem.interval } else { 0 };
-    let exact = Problem { criterion: Criterion::Exact, separation, interval, ..*problem };
+    let exact = Problem { criterion: Criterion::Exact, interval, ..*problem };
     let outcome = Feasibility::new(&exact, memory, Style::default()).run(budget, wait);
     if problem.criterion == Criterion::Exact || outcome != Outcome::Found(()) {
         // Without a table under the weaker criterion there is none under the stronger.

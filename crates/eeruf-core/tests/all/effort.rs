@@ -1,5 +1,6 @@
-//! What each search does for its answer: the same steps on each machine, written down in `tests/data/search-effort.txt`.
-//! A change that makes it take others shows there what it costs or saves. `EERUF_WRITE=1` writes the file anew.
+//! What each search does for its answer, step by step, the same on each machine: written down in
+//! `tests/data/search-effort.txt`. A change that makes it take other steps shows there what it costs or saves.
+//! `EERUF_WRITE=1` writes the file anew.
 
 use std::fmt::{Debug, Write as _};
 use std::ops::ControlFlow;

@@ -65,3 +65,23 @@ impl Decision {
         Self { branch, x, y, tried, mark: mark as u32, positive: join(p, q), negative: join(r, s) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_packed_is_unpacked_up_to_the_64th_sensor() {
+        for branch in [Branch::Top, Branch::Order, Branch::Rank, Branch::Value] {
+            let mut decision = Decision::new(branch);
+            (decision.x, decision.y, decision.tried, decision.mark) = (63, 128, 3, 0x1234_5678);
+            (decision.positive, decision.negative) = (0x8123_4567_89ab_cdef, 0xfedc_ba98_7654_3210);
+            let again = Decision::unpack(&decision.pack());
+            assert_eq!((again.branch, again.x, again.y, again.tried), (branch, 63, 128, 3));
+            assert_eq!(
+                (again.mark, again.positive, again.negative),
+                (0x1234_5678, decision.positive, decision.negative)
+            );
+        }
+    }
+}

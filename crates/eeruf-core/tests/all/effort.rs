@@ -90,7 +90,7 @@ impl Record {
                 (format!("{value:?} <= {:?}", most.bound), most.nodes, most.found)
             });
         }
-        // The longest that is excluded, and the shortest that is not.
+        // The longest that is excluded, and the shortest that was found.
         for period in [shortest.bound.max(2) - 1, shortest.period] {
             self.ask(&format!("{name} decide {period}"), |mut control| {
                 let decided = decide(problem, period, BUDGET, &mut memory, &mut control).unwrap();

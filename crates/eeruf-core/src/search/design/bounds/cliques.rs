@@ -50,7 +50,7 @@ pub(crate) fn disjoint_cliques(problem: &CheckedProblem) -> (u32, u32) {
 /// are n apart all round.
 pub(super) fn ring_at_once(problem: &CheckedProblem) -> Option<u32> {
     let k = problem.sensors as u32;
-    let n = problem.conflicts[0].trailing_ones().max((problem.conflicts[0] >> 1).trailing_ones() + 1);
-    let consecutive = (1..n).all(|step| step < k && problem.conflict(0, step as usize));
-    (consecutive && n > 1 && n <= k && symmetry::is_ring(problem)).then(|| (k / n).max(1))
+    // Sensor 0 itself and those that follow it without a gap, so at most k.
+    let n = (problem.conflicts[0] >> 1).trailing_ones() + 1;
+    (n > 1 && symmetry::is_ring(problem)).then(|| k / n)
 }

@@ -182,3 +182,17 @@ pub(super) fn check_memory(memory: &mut [i32], sensors: usize) -> Result<&mut [i
     let (words, needed) = (memory.len(), memory_words(sensors));
     if words < needed { Err(ProblemError::Memory { words, needed }) } else { Ok(memory) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schedule::MAX_SENSORS;
+
+    #[test]
+    fn every_order_in_both_phases_and_every_rank_fit_on_the_stack() {
+        for sensors in 1..=MAX_SENSORS {
+            let pairs = sensors * (sensors - 1) / 2;
+            assert!(max_decisions(sensors) >= 2 * pairs + sensors, "{sensors}");
+        }
+    }
+}

@@ -9,6 +9,8 @@ use eeruf_design::atlas::{ATLAS, Ring, Row, all_rings, is_in_shard, rows};
 use eeruf_design::atlas_making::{header, make};
 
 use super::answer::Answer;
+use super::arguments::picture;
+use crate::console::print;
 use crate::files::error::InputError;
 use crate::report::draw;
 use crate::report::watch::Watch;
@@ -25,7 +27,7 @@ pub(crate) struct Args {
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     /// Draw period over number of sensors, as SVG or, if the name ends in .png, as PNG
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = picture())]
     svg: Option<PathBuf>,
     /// Only this share of the rings, of so many
     #[arg(long, value_name = "I/N", value_parser = share, default_value = "1/1")]
@@ -56,7 +58,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     };
     match (&args.file, &args.svg) {
         (_, Some(svg)) => draw::atlas(&rows(&text).collect::<Vec<_>>()).save(svg)?,
-        (None, None) => print!("{text}"),
+        (None, None) => print(&text)?,
         (Some(_), None) => {}
     }
     Ok(answer)

@@ -5,6 +5,7 @@ use clap_complete::Shell;
 
 use super::Cli;
 use super::answer::Answer;
+use crate::console::print;
 use crate::files::error::InputError;
 
 /// Print the script that lets a shell complete verbs and options
@@ -23,6 +24,8 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
-    clap_complete::generate(args.shell, &mut Cli::command(), "eeruf", &mut std::io::stdout());
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), "eeruf", &mut script);
+    print(String::from_utf8_lossy(&script))?;
     Ok(Answer::Yes)
 }

@@ -10,7 +10,9 @@ use eeruf_design::atlas::ATLAS;
 use eeruf_design::{FoundJson, RealPeriod, RingDesign, RingSpec, Search, real_budget};
 
 use super::answer::Answer;
+use super::arguments::picture;
 use super::certificate::{self, CertificateForm, Written};
+use crate::console::{print, print_line, tell};
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;
 use crate::files::write::write;
@@ -45,7 +47,7 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "emit")]
     json: bool,
     /// Draw the timing of two periods, as SVG or, if the name ends in .png, as PNG
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = picture())]
     svg: Option<PathBuf>,
     /// Write a certificate that no period is shorter, or shorter than the bound where the search ended early; for
     /// eeruf-check and checker/check_period.py
@@ -129,7 +131,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let design = match spec.shortest(&search, &mut control).map_err(bad)? {
         Ok(design) => design,
         Err(none) => {
-            println!("{}: {none}", args.file.display());
+            tell(format!("{}: {none}\n", args.file.display()))?;
             return Ok(Answer::No);
         }
     };
@@ -164,16 +166,16 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         _ => certified,
     };
     match args.form() {
-        Some(Form::Toml) => print!("{}", design.schedule.to_toml()),
-        Some(Form::Rust) => print!("{}", design.schedule.to_rust(&requirements)),
-        Some(Form::C) => print!("{}", design.schedule.to_c(&requirements)),
-        Some(Form::Arduino) => print!("{}", design.schedule.to_arduino(&requirements, "RING")),
+        Some(Form::Toml) => print(design.schedule.to_toml())?,
+        Some(Form::Rust) => print(design.schedule.to_rust(&requirements))?,
+        Some(Form::C) => print(design.schedule.to_c(&requirements))?,
+        Some(Form::Arduino) => print(design.schedule.to_arduino(&requirements, "RING"))?,
         Some(Form::Json) => {
             let real_period_us = real.as_ref().map(|real| real.period_us);
             let real_proven = real.as_ref().map(|real| real.proven);
-            println!("{}", to_json(&FoundJson { real_period_us, real_proven, ..design.json(seconds) }));
+            print_line(to_json(&FoundJson { real_period_us, real_proven, ..design.json(seconds) }))?;
         }
-        None => print!("{}", describe(&args.file.display().to_string(), &spec, &design, real.as_ref(), seconds)),
+        None => tell(describe(&args.file.display().to_string(), &spec, &design, real.as_ref(), seconds))?,
     }
     Ok(certified)
 }
@@ -205,12 +207,12 @@ fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, Input
         draw::hopping_diagram(&design.schedule, requirements.audible.window).save(file)?;
     }
     match args.form() {
-        Some(Form::Toml) => print!("{}", design.schedule.to_toml()),
-        Some(Form::Rust) => print!("{}", design.schedule.to_rust(&requirements)),
-        Some(Form::C) => print!("{}", design.schedule.to_c(&requirements)),
-        Some(Form::Arduino) => print!("{}", design.schedule.to_arduino(&requirements, "RING")),
-        Some(Form::Json) => println!("{}", to_json(&DesignJson::from(&design))),
-        None => print!("{}", describe_design(&args.file.display().to_string(), spec, &requirements, &design)),
+        Some(Form::Toml) => print(design.schedule.to_toml())?,
+        Some(Form::Rust) => print(design.schedule.to_rust(&requirements))?,
+        Some(Form::C) => print(design.schedule.to_c(&requirements))?,
+        Some(Form::Arduino) => print(design.schedule.to_arduino(&requirements, "RING"))?,
+        Some(Form::Json) => print_line(to_json(&DesignJson::from(&design)))?,
+        None => tell(describe_design(&args.file.display().to_string(), spec, &requirements, &design))?,
     }
     Ok(Answer::Yes)
 }

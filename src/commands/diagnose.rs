@@ -6,7 +6,10 @@ use eeruf_core::{Micros, Phase};
 use eeruf_logs::{Alignment, FiringLog, Settings, Timing, align, diagnose, timing};
 
 use super::answer::Answer;
+use super::arguments::picture;
+use crate::console::{print_line, tell};
 use crate::files::error::InputError;
+use crate::files::kind::expect_log;
 use crate::files::toml::{FoundSchedule, read_any_schedule, read_schedule};
 use crate::report::diagnose::{Found, describe, json, who_fools_whom};
 use crate::report::json::to_json;
@@ -41,7 +44,7 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 343.2, value_name = "C")]
     speed_of_sound: f64,
     /// Draw who fools whom, as SVG or, if the name ends in .png, as PNG
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = picture())]
     svg: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
@@ -53,6 +56,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         let message = format!("--speed-of-sound {}; expected a number above zero", args.speed_of_sound);
         return Err(InputError::new(&args.file, None, message));
     }
+    expect_log(&args.file)?;
     let mut log = FiringLog::read(&args.file)?;
     let settings =
         Settings { tolerance_us: args.tolerance_us, max_travel_us: args.max_travel_us, ..Settings::default() };
@@ -76,9 +80,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         who_fools_whom(&found).save(file)?;
     }
     if args.json {
-        println!("{}", to_json(&json(&found)));
+        print_line(to_json(&json(&found)))?;
     } else {
-        print!("{}", describe(&found));
+        tell(describe(&found))?;
     }
     if let Some(damage) = &log.damage {
         return Err(InputError::new(&args.file, None, damage));

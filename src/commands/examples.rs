@@ -4,6 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use super::answer::Answer;
+use crate::console::print_line;
 use crate::examples;
 use crate::files::error::InputError;
 use crate::files::write::write;
@@ -20,19 +21,19 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     for (name, text) in examples::all() {
         let Some(folder) = &args.folder else {
-            println!("{name}");
+            print_line(name)?;
             continue;
         };
         let file = folder.join(name);
         if file.exists() {
-            println!("{} is there already", file.display());
+            print_line(format_args!("{} is there already", file.display()))?;
             continue;
         }
         if let Some(folder) = file.parent() {
             fs::create_dir_all(folder).map_err(|error| InputError::new(folder, None, error))?;
         }
         write(&file, text)?;
-        println!("{}", file.display());
+        print_line(file.display())?;
     }
     Ok(Answer::Yes)
 }

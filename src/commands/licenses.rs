@@ -1,9 +1,7 @@
 //! `eeruf licenses`: under which terms the program may be used, and what others wrote of it.
 
-use std::io::{self, Write as _};
-use std::path::Path;
-
 use super::answer::Answer;
+use crate::console::print_line;
 use crate::files::error::InputError;
 
 /// In the order in which they are printed.
@@ -21,11 +19,9 @@ const TEXTS: [(&str, &str); 3] = [
 pub(crate) struct Args {}
 
 pub(crate) fn run(_: &Args) -> Result<Answer, InputError> {
-    let mut out = io::stdout().lock();
     for (title, text) in TEXTS {
         let line = "=".repeat(title.chars().count());
-        writeln!(out, "{title}\n{line}\n\n{text}")
-            .map_err(|error| InputError::new(Path::new("standard output"), None, error))?;
+        print_line(format_args!("{title}\n{line}\n\n{text}"))?;
     }
     Ok(Answer::Yes)
 }

@@ -6,6 +6,7 @@ use eeruf_sim::MAX_ORDER;
 use eeruf_sim::{CrosstalkMatrix, CrosstalkQuery, Limits, Tracer, World};
 
 use super::answer::Answer;
+use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::toml::read_world;
 use crate::report::bounces::{by_way_of, wall_numbers};
@@ -35,14 +36,14 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let bad = |error| InputError::new(&args.file, None, error);
     let paths = critical_paths(&world, max_order).map_err(|error| bad(error.to_string()))?;
     if args.json {
-        println!("{}", to_json(&paths));
+        print_line(to_json(&paths))?;
     } else {
-        println!(
-            "{}: {} critical paths of up to {max_order} bounces; levels in dB above what is just heard",
+        tell(format!(
+            "{}: {} critical paths of up to {max_order} bounces; levels in dB above what is just heard\n{}\n",
             args.file.display(),
-            paths.order.len()
-        );
-        println!("{}", paths.table());
+            paths.order.len(),
+            paths.table(),
+        ))?;
     }
     Ok(Answer::Yes)
 }

@@ -6,9 +6,13 @@ use eeruf_core::{EchoFilter, FilterError, Instant, Micros, RateFilter, ReadingKi
 use eeruf_logs::{Echo, McapWriter, Options, RangeUnit, Reading, Report, Sensor, Table, TimeUnit, read_log};
 
 use super::answer::Answer;
+use super::arguments::picture;
 use super::hopping::Hopping;
 use super::replay_hopping::replay_hopping;
+use crate::console::{print_line, tell};
 use crate::files::error::InputError;
+use crate::files::implausible::warn_of_option;
+use crate::files::kind::expect_log;
 use crate::report::draw;
 use crate::report::json::to_json;
 use crate::report::replay::{Column, Counted, Counts, Replay, table};
@@ -73,7 +77,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.mcap")]
     out: Option<PathBuf>,
     /// Draw what happened to each sensor over time, as SVG or, if the name ends in .png, as PNG
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = picture())]
     svg: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
@@ -112,6 +116,8 @@ fn speed(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    expect_log(&args.file)?;
+    warn_of_option("--t-delta-us", "t_delta_us", args.t_delta_us.unwrap_or_default())?;
     if let Some(hopping) = args.hopping {
         let mut settings = hopping.settings().tracker;
         if let Some(t_delta) = args.t_delta_us.map(Micros::new) {
@@ -182,13 +188,12 @@ fn print(args: &Args, report: &Report, sensors: Vec<Filtered>) -> Result<(), Inp
     });
     if args.json {
         let damage = report.damage.iter().map(ToString::to_string).collect();
-        println!(
-            "{}",
-            to_json(&Replay { total, sensors: counts, as_logged: None, damage, skipped: skipped.collect() })
-        );
+        let replay = Replay { total, sensors: counts, as_logged: None, damage, skipped: skipped.collect() };
+        print_line(to_json(&replay))?;
     } else {
-        println!("{}", table(&args.file, args.t_delta_us.unwrap_or_default(), &counts, &total));
-        skipped.for_each(|skipped| println!("left out {skipped}"));
+        let table = table(&args.file, args.t_delta_us.unwrap_or_default(), &counts, &total);
+        let skipped: String = skipped.map(|skipped| format!("left out {skipped}\n")).collect();
+        tell(format!("{table}\n{skipped}"))?;
     }
     Ok(())
 }

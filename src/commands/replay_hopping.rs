@@ -6,6 +6,7 @@ use eeruf_core::{ReadingKind, TrackerSettings, Verdict};
 use eeruf_logs::{Firing, FiringLog, McapWriter, Reading, replay};
 
 use super::answer::Answer;
+use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::report::json::to_json;
 use crate::report::replay::{Counted, Counts, Replay, hopping_table};
@@ -41,9 +42,10 @@ pub(crate) fn replay_hopping(
     let total = counts.iter().fold(Counts::default(), Counts::plus);
     if json {
         let (damage, as_logged) = (log.damage.iter().cloned().collect(), (known > 0).then_some(same));
-        println!("{}", to_json(&Replay { total, sensors: counts, as_logged, damage, skipped: vec![] }));
+        print_line(to_json(&Replay { total, sensors: counts, as_logged, damage, skipped: vec![] }))?;
     } else {
-        println!("{}", hopping_table(file, settings.t_delta.as_micros(), &counts, &total, (known, same)));
+        let table = hopping_table(file, settings.t_delta.as_micros(), &counts, &total, (known, same));
+        tell(format!("{table}\n"))?;
     }
     match log.damage {
         None => Ok(Answer::Yes),

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use eeruf_sim::{Air, Noise, OccupancyGrid, Physics, Scene, world_file};
 
 use super::answer::Answer;
+use crate::console::{print, print_line};
 use crate::files::error::InputError;
 
 /// Print a scene file whose walls are the outlines in an occupancy grid, as the ROS map_server saves it: a YAML file
@@ -37,11 +38,11 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let bad = |error: eeruf_sim::SceneError| InputError::new(&args.file, None, error);
     let (count, [columns, rows]) = (walls.len(), grid.size());
     let scene = Scene::new(walls, vec![], Air::default()).map_err(bad)?;
-    println!(
+    print_line(format_args!(
         "# {}: {columns} x {rows} cells of {} m; {count} walls within {tolerance_m} m of their edges.",
         args.file.display(),
         grid.cell_m(),
-    );
-    print!("{}", world_file(&scene, &[], &Noise::default(), &Physics::DEFAULT, eeruf_sim::world::DEFAULT_ORDER, 0));
+    ))?;
+    print(world_file(&scene, &[], &Noise::default(), &Physics::DEFAULT, eeruf_sim::world::DEFAULT_ORDER, 0))?;
     Ok(Answer::Yes)
 }

@@ -10,6 +10,7 @@ use eeruf_core::search::{Found, Outcome, Progress, SearchError, WaitSearch};
 use eeruf_design::FoundJson;
 
 use super::answer::Answer;
+use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::waits::{WaitSpec, read_waits};
 use crate::report::json::to_json;
@@ -53,12 +54,18 @@ enum Best {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let spec = read_waits(&args.file)?;
-    let answer = if args.count { count(args, &spec) } else { find(args, &spec) };
-    answer.map_err(|error| InputError::new(&args.file, None, error))
+    let found = if args.count { count(args, &spec) } else { find(args, &spec) };
+    let (answer, text) = found.map_err(|error| InputError::new(&args.file, None, error))?;
+    if args.json {
+        print_line(text)?;
+    } else {
+        tell(text)?;
+    }
+    Ok(answer)
 }
 
-/// How many tables there are.
-fn count(args: &Args, spec: &WaitSpec) -> Result<Answer, SearchError> {
+/// Counts the tables, and says how many.
+fn count(args: &Args, spec: &WaitSpec) -> Result<(Answer, String), SearchError> {
     let search = WaitSearch::new(&spec.problem())?;
     let began = Instant::now();
     let mut watch = Watch::new();
@@ -67,21 +74,23 @@ fn count(args: &Args, spec: &WaitSpec) -> Result<Answer, SearchError> {
     let count = search.count(None, &mut vec![0; COUNT_WORDS], &mut budget)?;
     let exact = count.outcome == Outcome::Exhausted;
     let none = exact && count.count == 0;
-    if args.json {
-        println!("{}", to_json(&CountJson { count: count.count, at_least: !exact }));
+    let text = if args.json {
+        to_json(&CountJson { count: count.count, at_least: !exact })
     } else {
         let at_least = if exact { "" } else { "at least " };
         let seconds = began.elapsed().as_secs_f64();
-        println!("{at_least}{} tables ({} nodes in {seconds:.3} s)", count.count, count.nodes);
+        let mut text = format!("{at_least}{} tables ({} nodes in {seconds:.3} s)\n", count.count, count.nodes);
         if none {
-            println!("{}", search.why_none(REASON_BUDGET, &mut vec![0; memory_words(spec.problem().sensors)])?);
+            let why = search.why_none(REASON_BUDGET, &mut vec![0; memory_words(spec.problem().sensors)])?;
+            text += &format!("{why}\n");
         }
-    }
-    Ok(if none { Answer::No } else { Answer::Yes })
+        text
+    };
+    Ok((if none { Answer::No } else { Answer::Yes }, text))
 }
 
-/// One table, or the best.
-fn find(args: &Args, spec: &WaitSpec) -> Result<Answer, SearchError> {
+/// Finds one table, or the best, and prints it.
+fn find(args: &Args, spec: &WaitSpec) -> Result<(Answer, String), SearchError> {
     let search = WaitSearch::new(&spec.problem())?;
     let began = Instant::now();
     let mut watch = Watch::new();
@@ -99,20 +108,21 @@ fn find(args: &Args, spec: &WaitSpec) -> Result<Answer, SearchError> {
     };
     let seconds = began.elapsed().as_secs_f64();
     let none = found.schedule.is_none() && found.proven;
-    if args.json {
-        println!("{}", to_json(&FoundJson::new(&found, seconds)));
+    let text = if args.json {
+        to_json(&FoundJson::new(&found, seconds))
     } else {
         let what = match args.best {
             Some(Best::Interval) => "smallest interval ",
             Some(Best::TDelta) => "t_delta ",
             None => "a table",
         };
-        println!("{}", describe(what, &found, seconds));
+        let mut text = format!("{}\n", describe(what, &found, seconds));
         if none {
-            println!("{}", search.why_none(REASON_BUDGET, &mut memory)?);
+            text += &format!("{}\n", search.why_none(REASON_BUDGET, &mut memory)?);
         }
-    }
-    Ok(if none { Answer::No } else { Answer::Yes })
+        text
+    };
+    Ok((if none { Answer::No } else { Answer::Yes }, text))
 }
 
 fn nodes_so_far(progress: &Progress) -> String {

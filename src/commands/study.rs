@@ -7,6 +7,7 @@ use eeruf_sim::{Method, Options, Physics, SimulationError, World, shortest_sched
 
 use super::answer::Answer;
 use super::methods::chosen;
+use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::firings::write_firings;
 use crate::files::mcap::{Stage, write_mcap};
@@ -48,8 +49,8 @@ pub(crate) struct Args {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-    /// Simulate only these methods
-    #[arg(long = "method", value_name = "NAME", num_args = 1.., value_delimiter = ',')]
+    /// Simulate only these methods, separated by commas: eeruf,sequential
+    #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
     /// Another seed than the scene's
     #[arg(long, value_name = "N")]
@@ -71,7 +72,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         world = world.with_physics(physics).map_err(|error| InputError::new(&args.file, None, error))?;
     }
     if args.log.is_some() && args.methods.len() != 1 {
-        return Err(InputError::new(&args.file, None, "--log needs one --method, whose firings are written"));
+        let message =
+            format!("--log with {} methods; expected one --method, whose firings it writes", args.methods.len());
+        return Err(InputError::new(&args.file, None, message));
     }
     let study = study(args, &world)?;
     if let (Some(file), Some(readings)) = (&args.log, study.runs.first()) {
@@ -86,9 +89,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         }
     }
     if args.json {
-        println!("{}", to_json(&StudyJson::new(&args.file, &world, &study)));
+        print_line(to_json(&StudyJson::new(&args.file, &world, &study)))?;
     } else {
-        print!("{}", text::describe(&args.file, &world, &study));
+        tell(text::describe(&args.file, &world, &study))?;
     }
     Ok(Answer::Yes)
 }

@@ -7,8 +7,11 @@ use eeruf_logs::{FiringLog, PathSettings, Surveyed, survey};
 use eeruf_sim::{Physics, World};
 
 use super::answer::Answer;
+use super::arguments::picture;
+use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::firings::csv;
+use crate::files::kind::expect_log;
 use crate::files::survey::{TruePath, simulate, true_paths};
 use crate::files::toml::read_world;
 use crate::files::write::write;
@@ -66,7 +69,7 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 343.2, value_name = "C")]
     speed_of_sound: f64,
     /// Draw who hears whom, as SVG or, if the name ends in .png, as PNG
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = picture())]
     svg: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
@@ -85,7 +88,10 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let simulated = args.simulate.first().map(|scene| simulated(args, scene)).transpose()?;
     let (log, truth) = match simulated {
         Some((log, truth, physics)) => (log, Some((truth, physics))),
-        None => (FiringLog::read(file)?, None),
+        None => {
+            expect_log(file)?;
+            (FiringLog::read(file)?, None)
+        }
     };
     let surveyed = survey(&log, &settings(args));
     let found = found(args, file, &log, &surveyed, truth.as_ref());
@@ -101,9 +107,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         who_hears_whom(&found).save(file)?;
     }
     if args.json {
-        println!("{}", to_json(&json(&found)));
+        print_line(to_json(&json(&found)))?;
     } else {
-        print!("{}", describe(&found));
+        tell(describe(&found))?;
     }
     match &log.damage {
         Some(damage) => Err(InputError::new(file, None, damage)),
@@ -138,7 +144,7 @@ fn several(args: &Args) -> Result<Answer, InputError> {
         let surveyed = survey(&log, &settings(args));
         lines.push(&found(args, scene, &log, &surveyed, Some(&(truth, physics))));
     }
-    print!("{}", lines.describe());
+    tell(lines.describe())?;
     Ok(Answer::Yes)
 }
 

@@ -9,7 +9,9 @@ use eeruf_design::{LayoutKey, LayoutName, PhaseSchedule};
 use eeruf_sim::AnySchedule;
 
 use super::answer::Answer;
+use crate::console::{print_line, tell};
 use crate::files::error::InputError;
+use crate::files::implausible::warn_of_option;
 use crate::files::ring::read_ring;
 use crate::files::toml::{FoundSchedule, read_any_schedule};
 use crate::report::json::to_json;
@@ -119,6 +121,9 @@ impl LayoutArg {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    warn_of_option("--t-delta-us", "t_delta_us", args.t_delta_us)?;
+    warn_of_option("--min-interval-us", "min_interval_us", args.min_interval_us)?;
+    warn_of_option("--window-us", "window_us", args.window_us)?;
     let schedule = match read_any_schedule(&args.file)? {
         FoundSchedule::Two(schedule) => schedule,
         FoundSchedule::Many(schedule) => return many_phases(args, &schedule),
@@ -140,7 +145,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         // Where t_delta must cover motion, it must do so at the longest time between two firings.
         let spec = spec.covering(spec.t_delta_needed(&schedule));
         let requirements = Requirements { criterion, ..spec.problem().requirements };
-        return Ok(answer(args, &schedule, &requirements));
+        return answer(args, &schedule, &requirements);
     }
     let layout = args.layout.key().owned(args.neighbours, schedule.sensors());
     let layout = layout.map_err(|message| InputError::new(&args.file, None, message))?;
@@ -153,18 +158,18 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         stale_echo: args.stale_echo,
         uneven: None,
     };
-    Ok(answer(args, &schedule, &requirements))
+    answer(args, &schedule, &requirements)
 }
 
 /// Prints what was found.
-fn answer(args: &Args, schedule: &AnySchedule, requirements: &Requirements<'_>) -> Answer {
+fn answer(args: &Args, schedule: &AnySchedule, requirements: &Requirements<'_>) -> Result<Answer, InputError> {
     let report = schedule.verify(requirements);
     if args.json {
-        println!("{}", to_json(&ReportJson::from(&report)));
+        print_line(to_json(&ReportJson::from(&report)))?;
     } else {
-        print!("{}", describe(&args.file.display().to_string(), schedule, requirements, &report));
+        tell(describe(&args.file.display().to_string(), schedule, requirements, &report))?;
     }
-    if report.ok() { Answer::Yes } else { Answer::No }
+    Ok(if report.ok() { Answer::Yes } else { Answer::No })
 }
 
 fn many_phases(args: &Args, schedule: &PhaseSchedule) -> Result<Answer, InputError> {
@@ -194,9 +199,9 @@ fn many_phases(args: &Args, schedule: &PhaseSchedule) -> Result<Answer, InputErr
     }
     let report = schedule.verify(&requirements);
     if args.json {
-        println!("{}", to_json(&phases::ReportJson::from(&report)));
+        print_line(to_json(&phases::ReportJson::from(&report)))?;
     } else {
-        print!("{}", phases::describe(&args.file.display().to_string(), schedule, &requirements, &report));
+        tell(phases::describe(&args.file.display().to_string(), schedule, &requirements, &report))?;
     }
     Ok(if report.ok() { Answer::Yes } else { Answer::No })
 }

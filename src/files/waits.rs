@@ -8,6 +8,7 @@ use eeruf_design::{LayoutKey, OwnedLayout, four, neighbours_in_range, sensors_in
 use serde::Deserialize;
 
 use super::error::InputError;
+use super::kind::Kind;
 use super::toml::read_toml;
 
 /// A ring file for `search`: the paper's problem.
@@ -47,13 +48,13 @@ pub(crate) struct WaitSpec {
 
 /// Reads a ring file for `search`.
 pub(crate) fn read_waits(file: &Path) -> Result<WaitSpec, InputError> {
-    let waits = read_toml::<WaitFile>(file)?;
-    let layout = sensors_in_range(waits.sensors)
-        .and_then(|()| neighbours_in_range(waits.neighbours))
-        .and_then(|()| waits.layout.owned(waits.neighbours, waits.sensors))
-        .map_err(|message| InputError::new(file, None, message))?;
-    let t_lag = waits.t_lag_us.as_ref().map(|lags| lags.iter().copied().map(Micros::new).collect());
-    Ok(WaitSpec { file: waits, layout, t_lag })
+    read_toml(file, Kind::Waits, |waits: WaitFile| {
+        sensors_in_range(waits.sensors)?;
+        neighbours_in_range(waits.neighbours)?;
+        let layout = waits.layout.owned(waits.neighbours, waits.sensors)?;
+        let t_lag = waits.t_lag_us.as_ref().map(|lags| lags.iter().copied().map(Micros::new).collect());
+        Ok(WaitSpec { file: waits, layout, t_lag })
+    })
 }
 
 impl WaitSpec {

@@ -7,5 +7,5 @@ use super::error::InputError;
 
 /// Writes a file that the user asked for.
 pub(crate) fn write(file: &Path, contents: impl AsRef<[u8]>) -> Result<(), InputError> {
-    fs::write(file, contents).map_err(|error| InputError::new(file, None, error))
+    fs::write(file, contents).map_err(|error| InputError::writing(file, &error))
 }

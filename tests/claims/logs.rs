@@ -88,7 +88,7 @@ fn diagnose_says_from_a_log_of_study_who_fools_whom_and_that_two_phases_do_not_t
 fn study_writes_the_log_of_one_method() {
     let outcome = eeruf(&["study", "scenes/wall.toml", "--log", "log.csv"]);
     assert_eq!(outcome.code, Some(2));
-    assert!(outcome.err.ends_with("--log needs one --method, whose firings are written\n"), "{}", outcome.err);
+    assert!(outcome.err.ends_with("expected one --method, whose firings it writes\n"), "{}", outcome.err);
 }
 
 #[test]

@@ -101,7 +101,7 @@ fn the_table_names_every_method_and_who_was_fooled_by_whom() {
 
 #[test]
 fn each_robot_has_a_table_and_crosstalk_between_robots_is_told_apart() {
-    let outcome = eeruf(&["study", "scenes/lab.toml", "--periods", "40", "--method", "conventional", "eeruf"]);
+    let outcome = eeruf(&["study", "scenes/lab.toml", "--periods", "40", "--method", "conventional,eeruf"]);
     assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
     for said in ["Robot 1: 8 sensors", "Robot 2: 24 sensors", " of robot 2 |"] {
         assert!(outcome.out.contains(said), "{said}\n{}", outcome.out);
@@ -220,7 +220,7 @@ fn bad_scenes_get_one_line_that_names_file_line_value_and_what_is_expected() {
     assert!(outcome.err.contains("no-such-scene.toml"), "{}", outcome.err);
     let outcome = eeruf(&["study", "scenes/alcove.toml", "--method", "eruf"]);
     assert_eq!(outcome.code, Some(2));
-    assert!(outcome.err.contains("no method `eruf`; expected simultaneous, "), "{}", outcome.err);
+    assert!(outcome.err.contains("`eruf`; expected simultaneous, "), "{}", outcome.err);
 }
 
 #[test]

@@ -10,6 +10,7 @@ use eeruf_sim::{GainProfile, Method, Options, Robot, simulate};
 use super::common::{BUDGET, Common, bad, designing, watched};
 use crate::commands::hopping::Hopping;
 use crate::commands::methods::chosen;
+use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::mcap::{Stage, write_mcap};
 use crate::report::draw;
@@ -25,8 +26,8 @@ use crate::report::watch::Watch;
 pub(crate) struct Args {
     #[command(flatten)]
     common: Common,
-    /// Simulate only these methods
-    #[arg(long = "method", value_name = "NAME", num_args = 1.., value_delimiter = ',')]
+    /// Simulate only these methods, separated by commas: eeruf,sequential
+    #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
     /// How many sensors the ring has
     #[arg(long, value_name = "N", default_value_t = SENSORS as u8)]
@@ -77,9 +78,9 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     drop(watched);
     args.common.draw("set-one", || draw::set_one(&found))?;
     if args.common.json {
-        println!("{}", to_json(&found));
+        print_line(to_json(&found))?;
     } else {
-        print!("{}", describe(&found, &best));
+        tell(describe(&found, &best))?;
     }
     Ok(())
 }
@@ -155,9 +156,9 @@ fn vary(args: &Args, options: &SetOneOptions) -> Result<(), InputError> {
     if args.common.json {
         let tables: serde_json::Map<_, _> =
             found.iter().map(|(name, table)| ((*name).to_owned(), serde_json::json!(table))).collect();
-        println!("{}", to_json(&tables));
+        print_line(to_json(&tables))?;
     } else {
-        print!("{}", describe_variations(&found));
+        tell(describe_variations(&found))?;
     }
     Ok(())
 }

@@ -13,6 +13,7 @@ use eeruf_sim::{Method, Point, Robot};
 use super::common::{BUDGET, Common, bad, designing, watched};
 use crate::commands::hopping::Hopping;
 use crate::commands::methods::chosen;
+use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::mcap::{Stage, write_mcap};
 use crate::report::draw;
@@ -29,14 +30,14 @@ use crate::report::watch::Watch;
 pub(crate) struct Args {
     #[command(flatten)]
     common: Common,
-    /// Drive by these methods only; by default sequential, far_groups, conventional, comparison, eeruf, eeruf_best,
+    /// Drive by these methods only, separated by commas; by default sequential, far_groups, conventional, comparison, eeruf, eeruf_best,
     /// adaptive, eeruf_hopping and multi_echo
-    #[arg(long = "method", value_name = "NAME", num_args = 1.., value_delimiter = ',')]
+    #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
     /// Who steers: each method's own pilot, found by the same search for each; one shared by all that an earlier search
     /// found by the score of eeruf; or the published settings, with and without the growth rate operator. Several are
     /// printed side by side
-    #[arg(long = "pilot", value_name = "PILOT", num_args = 1.., value_delimiter = ',', default_value = "own")]
+    #[arg(long = "pilot", value_name = "PILOT,..", value_delimiter = ',', default_value = "own")]
     pilots: Vec<Pilots>,
     /// How eeruf_hopping fires and believes
     #[arg(long, value_name = "SETTING", default_value = "driving")]
@@ -136,7 +137,11 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         let steps = speed_sweep(&options, &SPEEDS, &watched).map_err(|error| bad(&error))?;
         drop(watched);
         let sweep = Sweep::of(&options, steps);
-        print!("{}", if args.common.json { to_json(&sweep) + "\n" } else { sweep.describe() });
+        if args.common.json {
+            print_line(to_json(&sweep))?;
+        } else {
+            tell(sweep.describe())?;
+        }
         return Ok(());
     }
     let mut each = Vec::new();
@@ -146,13 +151,12 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         each.push(found);
     }
     drop(watched);
-    let text = match &each[..] {
-        [found] if args.common.json => to_json(found) + "\n",
-        [found] => describe(found),
-        _ if args.common.json => to_json(&SideBySide::of(&each)) + "\n",
-        _ => SideBySide::of(&each).describe(),
-    };
-    print!("{text}");
+    match &each[..] {
+        [found] if args.common.json => print_line(to_json(found))?,
+        [found] => tell(describe(found))?,
+        _ if args.common.json => print_line(to_json(&SideBySide::of(&each)))?,
+        _ => tell(SideBySide::of(&each).describe())?,
+    }
     Ok(())
 }
 

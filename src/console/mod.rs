@@ -1,0 +1,13 @@
+//! The terminal: the only writer of standard output, warnings and errors on standard error, and how wide and colourful
+//! lines are.
+//!
+//! Depends on no other room of the program.
+
+mod fit;
+mod out;
+mod say;
+mod settings;
+
+pub(crate) use out::{OutputError, print, print_line, tell};
+pub(crate) use say::{error, warning};
+pub(crate) use settings::{Settings, set, settings};

@@ -1,0 +1,68 @@
+//! Standard output: a full disk, and a reader that goes away.
+
+use std::fs::OpenOptions;
+use std::process::{Command, Stdio};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_eeruf");
+
+/// One run of each command that prints, fast.
+const RUNS: [&[&str]; 18] = [
+    &["design", "rings/paper-12.toml"],
+    &["design", "rings/paper-12.toml", "--json"],
+    &["design", "rings/paper-12.toml", "--emit", "rust"],
+    &["verify", "rings/table-i-d.toml"],
+    &["verify", "rings/table-i-d.toml", "--json"],
+    &["search", "rings/table-i-waits.toml"],
+    &["study", "scenes/alcove.toml", "--periods", "2", "--method", "eeruf"],
+    &["paths", "scenes/alcove.toml", "--order", "1"],
+    &["replay", "tests/data/scitos-g5-24-sonars.csv", "--t-delta-us", "500"],
+    &["experiment", "set-one", "--seeds", "1", "--method", "sequential"],
+    &["atlas"],
+    &["examples"],
+    &["completions", "bash"],
+    &["licenses"],
+    &["--help"],
+    &["--version"],
+    &["help", "design"],
+    &["verify", "--help"],
+];
+
+fn run(words: &[&str], out: impl Into<Stdio>) -> std::process::Output {
+    let mut command = Command::new(PROGRAM);
+    command.args(words).current_dir(env!("CARGO_MANIFEST_DIR")).stdout(out);
+    command.output().expect("the program was built beside this test")
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn full_disk_is_exit_74_and_a_sentence() {
+    for words in RUNS {
+        let full = OpenOptions::new().write(true).open("/dev/full").expect("a device of Linux");
+        let outcome = run(words, full);
+        let err = String::from_utf8_lossy(&outcome.stderr);
+        assert_eq!(outcome.status.code(), Some(74), "{words:?}: {err}");
+        assert!(err.starts_with("eeruf: standard output: No space left"), "{words:?}: {err}");
+        assert!(err.contains("; expected room for it") && err.lines().count() == 1, "{words:?}: {err}");
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn full_disk_under_a_named_file_is_exit_74() {
+    for option in ["--svg", "--certificate"] {
+        let outcome = run(&["design", "rings/paper-12.toml", option, "/dev/full"], Stdio::null());
+        let err = String::from_utf8_lossy(&outcome.stderr);
+        assert!(outcome.status.code() == Some(74) && err.starts_with("eeruf: /dev/full: No space left"), "{err}");
+    }
+}
+
+#[test]
+fn closed_pipe_ends_quietly() {
+    for words in RUNS {
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let outcome = run(words, writer);
+        assert_eq!(String::from_utf8_lossy(&outcome.stderr), "", "{words:?}");
+        assert!(matches!(outcome.status.code(), None | Some(0)), "{words:?}: {}", outcome.status);
+    }
+}

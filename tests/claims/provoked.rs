@@ -1,0 +1,373 @@
+//! Runs that provoke errors and warnings: each names thing, value and expectation in one style, on lines of at most 80
+//! columns, and none panics or hangs.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// A run that should have ended long ago hangs.
+const HANGS_AFTER: Duration = Duration::from_secs(120);
+
+struct Ended {
+    code: Option<i32>,
+    out: String,
+    err: String,
+}
+
+/// Runs the program in a folder with so many columns.
+fn run(folder: &Path, words: &[&str], columns: usize) -> Ended {
+    let (out, err) = (folder.join("out.txt"), folder.join("err.txt"));
+    let create = |file: &Path| fs::File::create(file).expect("the folder can be written to");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_eeruf"))
+        .args(words)
+        .current_dir(folder)
+        .env("COLUMNS", columns.to_string())
+        .stdin(Stdio::null())
+        .stdout(create(&out))
+        .stderr(create(&err))
+        .spawn()
+        .expect("the program was built beside this test");
+    let began = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait().expect("a child of ours") {
+            break status;
+        }
+        if began.elapsed() > HANGS_AFTER {
+            child.kill().expect("a child of ours");
+            panic!("{words:?} hangs");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    };
+    let text = |file: &Path| String::from_utf8_lossy(&fs::read(file).expect("it was created")).into_owned();
+    Ended { code: status.code(), out: text(&out), err: text(&err) }
+}
+
+const RING: &str = "sensors = 4\nt_delta_us = 900\nmin_interval_us = 15000\nwindow_us = 30000\ntick_us = 1000\n";
+const WAITS: &str = "sensors = 3\nperiod_us = 40000\nwait_max_us = 9000\ntick_us = 1000\nt_delta_us = 999\nt_lag_us = [0, 5000, 10000]\n";
+const SCHEDULE: &str = "period_us = 100000\nt_fire_a_us = [0, 20000]\nt_fire_b_us = [4000, 30000]\n";
+const SCENE: &str = "[[wall]]\npoints_m = [[1.0, -2.0], [1.0, 2.0]]\n[[robot]]\npose = { x_m = 0.0, y_m = 0.0 }\nring = { \
+                     sensors = 4, spacing_deg = 15, radius_m = 0.3 }\nperiod_us = 60_000\nt_delta_us = 200\n";
+const LOG: &str = "a,b\n1.0,2.0\n1.0,2.0\n1.1,2.1\n";
+
+/// The files of the corpus, beside those that are right.
+fn write_files(folder: &Path) {
+    let files: [(&str, &[u8]); 14] = [
+        ("ring.toml", RING.as_bytes()),
+        ("waits.toml", WAITS.as_bytes()),
+        ("schedule.toml", SCHEDULE.as_bytes()),
+        ("scene.toml", SCENE.as_bytes()),
+        ("log.csv", LOG.as_bytes()),
+        ("map.yaml", b"image: none.pgm\nresolution: 0.05\n"),
+        ("empty.toml", b""),
+        ("empty.csv", b""),
+        ("latin.toml", b"sensors = \xff\xfe\n"),
+        ("latin.csv", b"a,b\n\xff,\xfe\n"),
+        ("no.bag", b"#ROSBAG V2.0\nshort"),
+        ("no.mcap", b"not at all"),
+        ("wrong.toml", b"a = ["),
+        ("list.toml", b"sensors = [1, 2]\n"),
+    ];
+    for (name, contents) in files {
+        fs::write(folder.join(name), contents).expect("the folder can be written to");
+    }
+    fs::create_dir(folder.join("folder.toml")).expect("the folder can be written to");
+}
+
+/// A file whose text has one thing replaced, the words before its name, and what the answer says.
+type Spoilt<'a> = (&'a str, &'a str, &'a str, &'a str, &'a str);
+
+/// Wrong keys, types and values in files.
+const REFUSED_FILES: [Spoilt<'static>; 40] = [
+    ("design", RING, "sensors = 4", "sensors = 0", "0 sensors; expected 1 to 64"),
+    ("design", RING, "sensors = 4", "sensors = 65", "65 sensors; expected 1 to 64"),
+    ("design", RING, "sensors = 4", "sensors = -4", "integer `-4`, expected a whole number"),
+    ("design", RING, "sensors = 4", "sensors = 4.5", "floating point `4.5`, expected"),
+    ("design", RING, "sensors = 4", "sensors = nan", "expected"),
+    ("design", RING, "sensors = 4", "sensors = 1e300", "expected"),
+    ("design", RING, "sensors = 4", "sensors = \"4\"", "string \"4\", expected"),
+    ("design", RING, "sensors = 4", "sensors = true", "boolean `true`, expected"),
+    ("design", RING, "sensors = 4", "sensor = 4", "unknown field `sensor`, expected"),
+    ("design", RING, "sensors = 4", "", "sensors"),
+    ("design", RING, "t_delta_us", "t_delta_ms", "unknown field `t_delta_ms`, expected"),
+    ("design", RING, "t_delta_us = 900\n", "", "t_delta_us"),
+    ("design", RING, "window_us = 30000", "window_us = 0", "expected window_us or max_range_m above zero"),
+    ("design", RING, "tick_us = 1000", "tick_us = 0", "expected 1 us or more"),
+    ("design", RING, "tick_us = 1000", "neighbours = 0", "neighbours = 0; expected 1 to 64"),
+    ("design", RING, "tick_us = 1000", "neighbours = 65", "neighbours = 65; expected 1 to 64"),
+    ("design", RING, "tick_us = 1000", "layout = \"star\"", "expected"),
+    ("design", RING, "tick_us = 1000", "layout = [[0, 9]]", "[0, 9]; expected two different sensors"),
+    ("design", RING, "tick_us = 1000", "layout = [[1, 1]]", "[1, 1]; expected two different sensors"),
+    ("design", RING, "tick_us = 1000", "max_range_m = 3.0", "expected either window_us, or max_range_m"),
+    ("design", RING, "tick_us = 1000", "jitter_us = 30", "expected either t_delta_us, or jitter_us"),
+    ("design", RING, "15000", "4000000000", "expected at most 268435.456 ms"),
+    ("search", WAITS, "[0, 5000, 10000]", "[0, 500, 10000]", "a lag of 500 us; expected a whole number of ticks"),
+    ("search", WAITS, "[0, 5000, 10000]", "[0]", "1 lags; expected one for each of 3 sensors"),
+    ("search", WAITS, "sensors = 3", "sensors = 65", "65 sensors; expected 1 to 64"),
+    ("search", WAITS, "tick_us = 1000", "tick_us = 3000", "expected a whole number of ticks"),
+    ("search", WAITS, "wait_max_us = 9000", "wait_max_us = -1", "integer `-1`, expected"),
+    ("verify", SCHEDULE, "100000", "0", "a period of 0 us; expected 1 us to"),
+    ("verify", SCHEDULE, "[0, 20000]", "[0]", "expected"),
+    ("verify", SCHEDULE, "[0, 20000]", "[0, 200000]", "sensor 2 fires 200 ms into phase a; expected less than"),
+    ("verify", SCHEDULE, "[0, 20000]", "[0, -1]", "integer `-1`, expected"),
+    ("verify", SCHEDULE, "t_fire_b_us", "t_fire_c_us", "unknown field `t_fire_c_us`, expected"),
+    ("verify", SCHEDULE, "[0, 20000]", "[0, 1e300]", "expected"),
+    ("study", SCENE, "sensors = 4", "sensors = 65", "robot 1 has 65 sensors; expected 1 to 64"),
+    ("study", SCENE, "[1.0, 2.0]]", "[nan, 2.0]]", "expected"),
+    ("study", SCENE, "[1.0, 2.0]]", "[1e300, 2.0]]", "expected"),
+    ("study", SCENE, "radius_m = 0.3", "radius_m = inf", "expected"),
+    ("study", SCENE, "points_m", "point_m", "unknown field `point_m`, expected"),
+    ("paths", SCENE, "period_us = 60_000", "period_us = 0", "expected"),
+    ("paths", SCENE, "period_us = 60_000", "transducer = \"hc-sr04\"", "expected"),
+];
+
+/// Wrong arguments and wrong files.
+const REFUSED_RUNS: [(&[&str], &str); 56] = [
+    (&[], "no command; expected one"),
+    (&["desing", "ring.toml"], "`desing`; expected a command; did you mean design?"),
+    (&["design"], "<RING.toml>: missing; expected a value"),
+    (&["verify"], "<SCHEDULE.toml>: missing; expected a value"),
+    (&["replay", "log.csv"], "--t-delta-us <N>: missing; expected a value"),
+    (&["design", "ring.toml", "ring.toml"], "ring.toml: unknown; expected an option or argument"),
+    (&["design", "ring.toml", "--emitt", "rust"], "--emitt: unknown; expected an option"),
+    (&["design", "ring.toml", "--emit", "ada"], "--emit <FORM>: `ada`; expected a value of its list: toml, rust, c"),
+    (&["design", "ring.toml", "--emit"], "--emit <FORM>: no value; expected one"),
+    (&["design", "ring.toml", "--phases", "1"], "--phases <M>: `1`; expected a number in 2..=67"),
+    (&["design", "ring.toml", "--phases", "x"], "--phases <M>: `x`; expected a whole number"),
+    (&["design", "ring.toml", "--time-limit", "0"], "--time-limit <S>: `0`; expected seconds above 0"),
+    (&["design", "ring.toml", "--time-limit", "nan"], "--time-limit <S>: `nan`; expected seconds above 0"),
+    (&["design", "ring.toml", "--budget", "-1"], "-1: unknown; expected an option"),
+    (&["design", "ring.toml", "--margin-us", "5"], "--phases <M>: missing; expected a value"),
+    (&["design", "ring.toml", "--emit", "c", "--json"], "given with --json; expected one of the two"),
+    (&["design", "ring.toml", "--json", "--json"], "--json: given more than once; expected once"),
+    (
+        &["design", "ring.toml", "--svg", "out.jpg"],
+        "--svg <FILE>: `out.jpg`; expected a name that ends in .svg or .png",
+    ),
+    (&["design", "ring.toml", "--svg", "no/such/out.svg"], "no/such/out.svg: No such file"),
+    (&["verify", "schedule.toml", "--t-delta-us", "1.5"], "--t-delta-us <N>: `1.5`; expected a whole number"),
+    (&["verify", "schedule.toml", "--t-delta-us", "1e300"], "--t-delta-us <N>: `1e300`; expected a whole number"),
+    (&["verify", "schedule.toml", "--t-delta-us", "99999999999"], "`99999999999`; expected a number in 0..=4294967295"),
+    (&["verify", "schedule.toml", "--neighbours", "0"], "--neighbours <N>: `0`; expected a number in 1..=64"),
+    (&["verify", "schedule.toml", "--layout", "star"], "--layout <LAYOUT>: `star`; expected line, ring, blocks"),
+    (&["verify", "schedule.toml", "--layout", "0-9"], "layout: neighbours [0, 9]; expected two different sensors"),
+    (&["verify", "schedule.toml", "--criterion", "strict"], "--criterion <CRITERION>: `strict`; expected"),
+    (&["verify", "schedule.toml", "--margin-us", "5"], "--margin-us 5; expected a schedule of many phases"),
+    (&["verify", "schedule.toml", "--ring", "ring.toml"], "4 sensors; expected the 2 of the schedule"),
+    (&["study", "scene.toml", "--periods", "0"], "--periods <N>: `0`; expected a number in 1..=10000000"),
+    (&["study", "scene.toml", "--method", "eruf"], "--method <NAME,..>: `eruf`; expected"),
+    (&["study", "scene.toml", "--physics", "real"], "--physics <PRESET>: `real`; expected"),
+    (&["study", "scene.toml", "--log", "out.csv"], "--log with 0 methods; expected one --method"),
+    (&["paths", "scene.toml", "--order", "-1"], "-1: unknown; expected an option"),
+    (&["experiment"], "no command; expected one"),
+    (&["experiment", "set-four"], "`set-four`; expected a command"),
+    (&["experiment", "set-one", "--seeds", "0"], "--seeds <N>: `0`; expected a number in 1..=100000"),
+    (&["experiment", "set-two", "--speed", "nan"], "--speed <M/S>: `nan`; expected 0.1 to 5"),
+    (&["atlas", "--shard", "3/2"], "--shard <I/N>: `3/2`; expected I/N such as 2/3"),
+    (&["scene", "map.yaml"], "map.yaml: "),
+    (&["completions", "cmd"], "<SHELL>: `cmd`; expected a value of its list: bash"),
+    (&["verify", "ring.toml"], "this is a ring for `eeruf design`; expected a schedule; did you mean `eeruf design"),
+    (&["verify", "scene.toml"], "this is a scene; expected a schedule; did you mean `eeruf study"),
+    (&["verify", "waits.toml"], "this is a ring for `eeruf search`; expected a schedule; did you mean `eeruf search"),
+    (&["verify", "log.csv"], "this is a log; expected a schedule; did you mean `eeruf replay log.csv`?"),
+    (
+        &["design", "schedule.toml"],
+        "this is a schedule; expected a ring for `eeruf design`; did you mean `eeruf verify",
+    ),
+    (&["study", "schedule.toml"], "this is a schedule; expected a scene; did you mean `eeruf verify"),
+    (&["search", "ring.toml"], "this is a ring for `eeruf design`; expected a ring for `eeruf search`"),
+    (&["paths", "map.yaml"], "this is a map; expected a scene; did you mean `eeruf scene map.yaml`?"),
+    (&["replay", "schedule.toml", "--t-delta-us", "500"], "this is a schedule; expected a log; did you mean"),
+    (&["diagnose", "scene.toml"], "this is a scene; expected a log; did you mean `eeruf study scene.toml`?"),
+    (&["verify", "folder.toml"], "folder.toml: Is a directory"),
+    (&["verify", "none.toml"], "none.toml: No such file"),
+    (&["design", "latin.toml"], "latin.toml: stream did not contain valid UTF-8"),
+    (&["design", "wrong.toml"], "wrong.toml, line 1: "),
+    (&["replay", "empty.csv", "--t-delta-us", "500"], "no readings; expected a header and rows"),
+    (&["diagnose", "none.csv"], "none.csv: No such file"),
+];
+
+/// Legal and implausible input, and its warning.
+const IMPLAUSIBLE: [Spoilt<'static>; 16] = [
+    ("design", RING, "window_us = 30000", "window_us = 30", "window_us: 30; expected 1000 to 1000000; likely millis"),
+    ("design", RING, "min_interval_us = 15000", "min_interval_us = 15", "min_interval_us: 15; expected 200 to"),
+    ("design", RING, "t_delta_us = 900", "t_delta_us = 1", "t_delta_us: 1; expected 20 to 20000; T_delta is in micro"),
+    ("design", RING, "tick_us = 1000", "tick_us = 200000", "tick_us: 200000; expected 1 to 100000"),
+    ("design", RING, "window_us = 30000", "max_range_m = 400.0", "max_range_m: 400; expected 0.05 to 30; likely centi"),
+    ("search", WAITS, "wait_max_us = 9000", "wait_max_us = 9", "wait_max_us: 9; expected 200 to"),
+    ("verify", SCHEDULE, "period_us = 100000", "period_us = 100000000", "period_us: 100000000; expected 2000 to"),
+    (
+        "study --periods 2 --method sequential",
+        SCENE,
+        "spacing_deg = 15",
+        "spacing_deg = 360",
+        "spacing_deg: 360; expected",
+    ),
+    ("study --periods 2 --method sequential", SCENE, "spacing_deg = 15", "spacing_deg = 0.26", "likely radians"),
+    ("paths", SCENE, "[1.0, 2.0]]", "[1.0, 500.0]]", "points_m: 500; expected 0 to 200; likely centimetres"),
+    ("paths", SCENE, "x_m = 0.0", "x_m = -300.0", "x_m: -300; expected 0 to 200; likely centimetres"),
+    ("paths", SCENE, "radius_m = 0.3", "radius_m = 0.0003", "radius_m: 0.0003; expected 0.001 to 20"),
+    ("paths", SCENE, "t_delta_us = 200", "t_delta_us = 1", "t_delta_us: 1; expected 20 to 20000"),
+    ("verify --t-delta-us 2", SCHEDULE, "", "", "--t-delta-us: 2; expected 20 to 20000"),
+    ("verify --window-us 30", SCHEDULE, "", "", "--window-us: 30; expected 1000 to 1000000; likely milliseconds"),
+    ("verify --min-interval-us 15", SCHEDULE, "", "", "--min-interval-us: 15; expected 200 to"),
+];
+
+fn longest(text: &str) -> usize {
+    text.lines().map(|line| line.chars().count()).max().unwrap_or(0)
+}
+
+/// One line of words, however it was wrapped.
+fn joined(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The text with one thing replaced, in a file of the folder, and the words that name it.
+fn spoil<'a>(folder: &Path, (words, text, old, new, _): Spoilt<'a>) -> Vec<&'a str> {
+    assert!(text.contains(old), "{old}");
+    let spoilt = if old.is_empty() { text.to_owned() } else { text.replacen(old, new, 1) };
+    fs::write(folder.join("spoilt.toml"), spoilt).expect("the folder can be written to");
+    let mut words: Vec<_> = words.split(' ').collect();
+    words.insert(1, "spoilt.toml");
+    words
+}
+
+/// Returns the faults of an answer that should name thing, value and expectation.
+fn faults_of(ended: &Ended, columns: usize, says: &str) -> Vec<&'static str> {
+    let Ended { code, out, err } = ended;
+    // A word that is longer than the line is broken.
+    let squeezed = |text: &str| text.split_whitespace().collect::<String>();
+    let held = [
+        ("its exit code is not 2", *code == Some(2)),
+        ("it prints to standard output", out.is_empty()),
+        ("its style differs", err.starts_with("eeruf: ") && err.matches("eeruf: ").count() == 1),
+        ("a line is too long", longest(err) <= columns),
+        ("it panics", !err.contains("panicked")),
+        ("it names no expectation", err.contains("expected")),
+        ("it does not say so", squeezed(err).contains(&squeezed(says))),
+    ];
+    held.into_iter().filter(|(_, held)| !held).map(|(fault, _)| fault).collect()
+}
+
+#[test]
+fn provoked_errors_name_thing_value_and_expectation() {
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    write_files(folder.path());
+    assert!(REFUSED_FILES.len() + REFUSED_RUNS.len() + IMPLAUSIBLE.len() >= 109);
+    let mut faulty = vec![];
+    for columns in [80, 40] {
+        let mut note = |words: &[&str], new: &str, says: &str| {
+            let ended = run(folder.path(), words, columns);
+            let faults = faults_of(&ended, columns, says);
+            if !faults.is_empty() {
+                faulty.push(format!("{words:?} {new}: {faults:?}: expected {says} in\n{}", ended.err));
+            }
+        };
+        for (words, says) in REFUSED_RUNS {
+            note(words, "", says);
+        }
+        for spoilt in REFUSED_FILES {
+            let words = spoil(folder.path(), spoilt);
+            note(&words, spoilt.3, spoilt.4);
+        }
+    }
+    assert!(faulty.is_empty(), "{}", faulty.join("\n"));
+}
+
+#[test]
+fn implausible_input_warns_unless_quiet() {
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    for spoilt in IMPLAUSIBLE {
+        let words = spoil(folder.path(), spoilt);
+        let of = format!("{} {}", spoilt.0, spoilt.3);
+        let warned = run(folder.path(), &words, 80);
+        assert!(matches!(warned.code, Some(0 | 1)), "{of}: {}", warned.err);
+        assert!(warned.err.starts_with("eeruf: warning: ") && longest(&warned.err) <= 80, "{of}: {}", warned.err);
+        assert!(joined(&warned.err).contains(spoilt.4), "{of}: {}", warned.err);
+        let quiet = run(folder.path(), &[&words[..], &["--quiet"]].concat(), 80);
+        assert_eq!((quiet.err.as_str(), quiet.code), ("", warned.code), "{of}");
+        let denied = run(folder.path(), &[&words[..], &["--deny-warnings"]].concat(), 80);
+        assert_eq!((denied.code, denied.out.as_str()), (Some(2), ""), "{of}: {}", denied.err);
+        assert!(joined(&denied.err).contains(spoilt.4), "{of}: {}", denied.err);
+    }
+}
+
+#[test]
+fn plausible_examples_do_not_warn() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    for (verb, of) in [("verify", "rings"), ("paths", "scenes")] {
+        for entry in fs::read_dir(root.join(of)).expect("the repository has it") {
+            let file = entry.expect("an entry").path();
+            let ended = run(folder.path(), &[verb, file.to_str().expect("UTF-8")], 80);
+            assert!(!ended.err.contains("warning"), "{}: {}", file.display(), ended.err);
+        }
+    }
+}
+
+#[test]
+fn tables_fit_80_and_40_columns() {
+    let root = env!("CARGO_MANIFEST_DIR");
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    let in_root = |name: &str| format!("{root}/{name}");
+    let (scene, log) = (in_root("scenes/alcove.toml"), in_root("tests/data/scitos-g5-24-sonars.csv"));
+    let (table, ring) = (in_root("rings/table-i-d.toml"), in_root("rings/paper-12.toml"));
+    let runs: [&[&str]; 7] = [
+        &["study", &scene, "--periods", "20"],
+        &["paths", &scene],
+        &["replay", &log, "--t-delta-us", "500"],
+        &["verify", &table, "--t-delta-us", "1000"],
+        &["design", &ring],
+        &["experiment", "set-one", "--seeds", "2"],
+        &["experiment", "set-two", "--seeds", "1", "--method", "sequential"],
+    ];
+    for words in runs {
+        let whole = run(folder.path(), words, 80);
+        assert!(longest(&whole.out) <= 80 && !whole.out.contains("Left out at"), "{words:?}\n{}", whole.out);
+        let narrow = run(folder.path(), words, 40);
+        assert!(longest(&narrow.out) <= 40, "{words:?}\n{}", narrow.out);
+    }
+    let wide = run(folder.path(), &["study", &scene, "--periods", "20", "--wide"], 40);
+    assert!(longest(&wide.out) > 80, "{}", wide.out);
+}
+
+#[test]
+fn colours_are_asked_for_or_absent() {
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    let coloured = run(folder.path(), &["verify", "none.toml", "--color", "always"], 80);
+    assert!(coloured.err.starts_with("\x1b[1;31meeruf: \x1b[0m"), "{:?}", coloured.err);
+    for when in ["auto", "never"] {
+        let plain = run(folder.path(), &["verify", "none.toml", "--color", when], 80);
+        assert!(!plain.err.contains('\x1b'), "{:?}", plain.err);
+    }
+}
+
+#[test]
+fn help_of_each_command_has_example_and_exit_codes() {
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    let all = run(folder.path(), &["--help"], 80).out;
+    let (_, groups) = all.split_once("Commands by what they are for:").expect("the groups");
+    for verb in [
+        "design",
+        "verify",
+        "search",
+        "study",
+        "paths",
+        "scene",
+        "replay",
+        "diagnose",
+        "survey",
+        "experiment",
+        "dataset",
+        "atlas",
+        "examples",
+        "completions",
+        "man",
+        "licenses",
+    ] {
+        let help = run(folder.path(), &[verb, "--help"], 80).out;
+        assert!(help.contains(&format!("Example:\n  eeruf {verb}")) && help.contains("Exit codes: 0 "), "{help}");
+        assert!(longest(&help) <= 80 && help.contains("--deny-warnings"), "{help}");
+        assert!(groups.contains(verb), "{verb}: {groups}");
+    }
+}

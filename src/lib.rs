@@ -1,9 +1,9 @@
 //! The program `eeruf`: design, verify and study firing schedules, and see what the filter makes of recorded readings.
 //!
 //! `commands` has one file for each verb; `files` is what they read, `report` what they print and draw, `console` the
-//! terminal. What the program can do, other programs do with the libraries that it stands on: [`eeruf_core`], [`eeruf_design`] and
-//! [`eeruf_sim`]. Here is only what starts it, so that the Python package can hold it too, its example files, and what
-//! writes a simulation into an MCAP file while it goes on.
+//! terminal. What the program can do, other programs do with the libraries that it stands on: [`eeruf_core`],
+//! [`eeruf_design`] and [`eeruf_sim`]. Here is only what starts it, so that the Python package can hold it too, its
+//! example files, and what writes a simulation into an MCAP file while it goes on.
 
 // Doc comments of arguments are what --help prints in a terminal, where backticks only disturb.
 #![allow(clippy::doc_markdown)]
@@ -25,8 +25,8 @@ use crate::files::error::InputError;
 pub use crate::files::mcap::Recording;
 
 /// Runs the program with these arguments, of which the first is its own name, and gives its exit code: 0 for yes, 1 for
-/// no (not verified, infeasible), 2 for bad input, which is named in one line on standard error, 74 if the output cannot
-/// be written.
+/// no (not verified, infeasible), 2 for bad input, which is named in one line on standard error,
+/// 74 if the output cannot be written.
 ///
 /// It takes the process for its own: Ctrl-C ends what it does, and so does a pipe whose reader went away.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
@@ -49,8 +49,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 
 /// Prints help and version, or the error in the arguments.
 fn not_parsed(error: &clap::Error, arguments: &[OsString]) -> u8 {
+    let words: Vec<_> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    console::set(commands::arguments::settings(&words));
     if error.use_stderr() {
-        let words: Vec<_> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
         console::error(commands::arguments::describe(error, &words));
         return 2;
     }

@@ -5,6 +5,17 @@ use std::path::PathBuf;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
+use crate::console::Settings;
+
+/// The options of output among arguments that were not parsed.
+pub(crate) fn settings(words: &[String]) -> Settings {
+    let has = |option: &str| words.iter().any(|word| word == option);
+    let is_after_color = |when: &str| words.windows(2).any(|pair| pair[0] == "--color" && pair[1] == when);
+    let is_color = |when: &str| is_after_color(when) || has(&format!("--color={when}"));
+    let colour = if is_color("always") { Some(true) } else { is_color("never").then_some(false) };
+    Settings { wide: has("--wide"), colour, ..Settings::default() }
+}
+
 /// Parses the name of a picture: SVG or PNG by its ending, SVG without one.
 pub(crate) fn picture() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|file| {

@@ -92,11 +92,20 @@ macro_rules! help {
 
 #[derive(Subcommand)]
 pub(crate) enum Verb {
-    #[command(after_help = help!("design rings/paper-12.toml --emit rust", "0 a schedule; 1 none meets the needs; 2 bad input"))]
+    #[command(after_help = help!(
+        "design rings/paper-12.toml --emit rust",
+        "0 a schedule; 1 none meets the needs; 2 bad input"
+    ))]
     Design(design::Args),
-    #[command(after_help = help!("verify rings/table-i-d.toml --t-delta-us 999", "0 verified; 1 not verified; 2 bad input"))]
+    #[command(after_help = help!(
+        "verify rings/table-i-d.toml --t-delta-us 999",
+        "0 verified; 1 not verified; 2 bad input"
+    ))]
     Verify(verify::Args),
-    #[command(after_help = help!("search rings/table-i-waits.toml --best interval", "0 a table; 1 none; 2 bad input"))]
+    #[command(after_help = help!(
+        "search rings/table-i-waits.toml --best interval",
+        "0 a table; 1 none; 2 bad input"
+    ))]
     Search(search::Args),
     #[command(after_help = help!("study scenes/alcove.toml --method sequential,eeruf", "0 simulated; 2 bad input"))]
     Study(study::Args),
@@ -106,15 +115,24 @@ pub(crate) enum Verb {
     Scene(scene::Args),
     #[command(after_help = help!("replay log.csv --t-delta-us 500", "0 replayed; 2 bad input or a damaged log"))]
     Replay(replay::Args),
-    #[command(after_help = help!("diagnose firings.csv --schedule schedule.toml", "0 nothing is broken; 1 something is; 2 bad input or a damaged log"))]
+    #[command(after_help = help!(
+        "diagnose firings.csv --schedule schedule.toml",
+        "0 nothing is broken; 1 something is; 2 bad input or a damaged log"
+    ))]
     Diagnose(diagnose::Args),
     #[command(after_help = help!("survey survey.csv --ring ring.toml", "0 surveyed; 2 bad input or a damaged log"))]
     Survey(survey::Args),
-    #[command(after_help = help!("experiment set-one --seeds 20 --method sequential,eeruf", "0 repeated; 2 bad input"))]
+    #[command(after_help = help!(
+        "experiment set-one --seeds 20 --method sequential,eeruf",
+        "0 repeated; 2 bad input"
+    ))]
     Experiment(experiment::Args),
     #[command(after_help = help!("dataset out --alcoves 2 --courses 1", "0 written; 2 bad input"))]
     Dataset(dataset::Args),
-    #[command(after_help = help!("atlas --svg atlas.svg", "0 every ring of the share is done; 1 ended before; 2 bad input"))]
+    #[command(after_help = help!(
+        "atlas --svg atlas.svg",
+        "0 every ring of the share is done; 1 ended before; 2 bad input"
+    ))]
     Atlas(atlas::Args),
     #[command(after_help = help!("examples .", "0 written; 2 bad input"))]
     Examples(examples::Args),

@@ -100,7 +100,7 @@ impl<'a> Table<'a> {
             return None;
         }
         let is_padded = |cell: &&str| cell.starts_with("  ") && !cell.trim().is_empty();
-        let is_right = (0..header.len()).map(|k| rows.iter().map(|row| &row[k]).any(|cell| is_padded(cell))).collect();
+        let is_right = (0..header.len()).map(|k| rows.iter().map(|row| &row[k]).any(is_padded)).collect();
         let trimmed = |row: Vec<&'a str>| row.into_iter().map(str::trim).collect();
         Some(Self { header: trimmed(header), rows: rows.into_iter().map(trimmed).collect(), is_right })
     }

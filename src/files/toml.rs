@@ -79,8 +79,8 @@ pub(crate) fn read_world(file: &Path) -> Result<World, InputError> {
         let report = schedule.verify(&nothing_asked);
         let Some(most) = report.max_t_delta().filter(|&most| most < robot.t_delta) else { continue };
         let message = format!(
-            "robot {number}: t_delta_us: {}; expected at most {}, which is what its schedule rejects; readings of others \
-             pass; see `eeruf verify`",
+            "robot {number}: t_delta_us: {}; expected at most {}, what its schedule rejects; crosstalk passes; see \
+             `eeruf verify`",
             robot.t_delta.as_micros(),
             most.as_micros()
         );

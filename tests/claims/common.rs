@@ -14,6 +14,7 @@ pub(crate) struct Outcome {
 pub(crate) fn eeruf(args: &[&str]) -> Outcome {
     let output = Command::new(env!("CARGO_BIN_EXE_eeruf"))
         .args(args)
+        .env_remove("COLUMNS")
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .output()
         .expect("the program was built beside this test");

@@ -44,9 +44,11 @@ fn run(folder: &Path, words: &[&str], columns: usize) -> Ended {
 }
 
 const RING: &str = "sensors = 4\nt_delta_us = 900\nmin_interval_us = 15000\nwindow_us = 30000\ntick_us = 1000\n";
-const WAITS: &str = "sensors = 3\nperiod_us = 40000\nwait_max_us = 9000\ntick_us = 1000\nt_delta_us = 999\nt_lag_us = [0, 5000, 10000]\n";
+const WAITS: &str = "sensors = 3\nperiod_us = 40000\nwait_max_us = 9000\ntick_us = 1000\nt_delta_us = 999\n\
+    t_lag_us = [0, 5000, 10000]\n";
 const SCHEDULE: &str = "period_us = 100000\nt_fire_a_us = [0, 20000]\nt_fire_b_us = [4000, 30000]\n";
-const SCENE: &str = "[[wall]]\npoints_m = [[1.0, -2.0], [1.0, 2.0]]\n[[robot]]\npose = { x_m = 0.0, y_m = 0.0 }\nring = { \
+const SCENE: &str = "[[wall]]\npoints_m = [[1.0, -2.0], [1.0, 2.0]]\n[[robot]]\npose = { x_m = 0.0, y_m = 0.0 }\n\
+    ring = { \
                      sensors = 4, spacing_deg = 15, radius_m = 0.3 }\nperiod_us = 60_000\nt_delta_us = 200\n";
 const LOG: &str = "a,b\n1.0,2.0\n1.0,2.0\n1.1,2.1\n";
 

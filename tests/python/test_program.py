@@ -4,6 +4,7 @@ import functools
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -154,3 +155,13 @@ def test_a_report_is_the_programs() -> None:
     violations = [Violation(**violation) for violation in fields]
     assert list(report.violations) == violations
     assert len(violations) > 2
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
+def test_full_disk_is_exit_74_and_a_sentence() -> None:
+    for words in (["examples"], ["--help"], ["verify", "rings/table-i-d.toml", "--json"]):
+        with open("/dev/full", "w") as full:
+            command = [sys.executable, "-m", "eeruf", *words]
+            run = subprocess.run(command, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True)
+        assert run.returncode == 74, run.stderr
+        assert run.stderr.startswith("eeruf: standard output: No space left"), run.stderr

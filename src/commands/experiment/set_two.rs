@@ -30,8 +30,8 @@ use crate::report::watch::Watch;
 pub(crate) struct Args {
     #[command(flatten)]
     common: Common,
-    /// Drive by these methods only, separated by commas; by default sequential, far_groups, conventional, comparison, eeruf, eeruf_best,
-    /// adaptive, eeruf_hopping and multi_echo
+    /// Drive by these methods only, separated by commas; by default sequential, far_groups, conventional, comparison,
+    /// eeruf, eeruf_best, adaptive, eeruf_hopping and multi_echo
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
     /// Who steers: each method's own pilot, found by the same search for each; one shared by all that an earlier search

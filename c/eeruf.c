@@ -11,15 +11,16 @@
 /* Sizes that tables and callers rely on. */
 #define SIZE_IS(type, size) typedef char type##_has_another_size[sizeof(type) == (size) ? 1 : -1]
 #ifdef __AVR__
-SIZE_IS(EerufSensor, 18);
+SIZE_IS(EerufSensor, 12 + 4 * EERUF_FIRINGS);
 SIZE_IS(EerufLine, 6);
-SIZE_IS(EerufSchedule, 36);
+SIZE_IS(EerufSchedule, 44);
 #if EERUF_HOPPING
-SIZE_IS(EerufRing, 73);
+SIZE_IS(EerufRing, 70);
+SIZE_IS(EerufHopSensor, 16);
 SIZE_IS(EerufHopper, 57);
 #endif
 #else
-SIZE_IS(EerufSensor, 20);
+SIZE_IS(EerufSensor, 16 + 4 * EERUF_FIRINGS);
 SIZE_IS(EerufLine, 8);
 #endif
 
@@ -58,18 +59,6 @@ static uint16_t narrow(uint32_t time) {
 static uint16_t add16(uint16_t one, uint16_t other) {
     const uint16_t sum = (uint16_t)(one + other);
     return sum < one ? UINT16_MAX : sum;
-}
-
-static OUT_OF_LINE uint16_t less16(uint16_t one, uint16_t other) {
-    return one > other ? (uint16_t)(one - other) : 0;
-}
-
-static OUT_OF_LINE uint16_t more16(uint16_t one, uint16_t other) {
-    return one > other ? one : other;
-}
-
-static uint16_t fewer16(uint16_t one, uint16_t other) {
-    return one < other ? one : other;
 }
 
 static OUT_OF_LINE uint32_t add32(uint32_t one, uint32_t other) {
@@ -175,6 +164,7 @@ EerufStatus eeruf_schedule_make(EerufSchedule *schedule, uint8_t *order, size_t 
     schedule->gap_us = gap_us;
     schedule->period_us = period_us;
     schedule->min_refire_us = shortest_refire(schedule);
+    schedule->path_change_us = EERUF_AS_T_DELTA;
     return EERUF_OK;
 #endif
 }
@@ -233,6 +223,12 @@ static EerufStatus meets(const EerufSchedule *schedule, const EerufRequirements 
     return needs->window_us > READ32(schedule->min_refire_us) ? EERUF_ERR_WINDOW : EERUF_OK;
 }
 
+/* For how long sound may be audible where crosstalk moves: its own echo, sent two firings before, reads the same. */
+static uint32_t audible_for(const EerufSchedule *schedule) {
+    const uint32_t period_us = READ32(schedule->period_us);
+    return READ8(schedule->stale_echo) ? 2 * period_us : period_us;
+}
+
 EerufStatus eeruf_schedule_verify(EerufSchedule *schedule, const EerufRequirements *requirements) {
 #if defined(__AVR__) && !defined(EERUF_SCHEDULE_IN_RAM)
     (void)schedule, (void)requirements;
@@ -252,6 +248,8 @@ EerufStatus eeruf_schedule_verify(EerufSchedule *schedule, const EerufRequiremen
     schedule->layout = requirements->layout;
     schedule->neighbours = requirements->neighbours;
     schedule->stale_echo = requirements->stale_echo;
+    schedule->path_change_us = EERUF_AS_T_DELTA;
+    schedule->audible_us = audible_for(schedule);
     schedule->verified = 1;
     return EERUF_OK;
 #endif
@@ -270,7 +268,7 @@ static EerufStatus schedule_is_usable(const EerufSchedule *schedule) {
 EerufStatus eeruf_schedule_check(const EerufSchedule *schedule) {
     EerufStatus status = schedule_is_usable(schedule);
     EerufRequirements promised;
-    uint32_t separation_us, gap_us;
+    uint32_t separation_us, gap_us, path_change_us;
     uint8_t sensors, phase, place, seen;
     if (status != EERUF_OK) return status;
     if (READ32(schedule->period_us) - 1u >= EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
@@ -299,14 +297,17 @@ EerufStatus eeruf_schedule_check(const EerufSchedule *schedule) {
     promised.stale_echo = READ8(schedule->stale_echo);
     status = meets(schedule, &promised, &separation_us);
     if (status != EERUF_OK) return status;
-    return separation_us == READ32(schedule->separation_us) ? EERUF_OK : EERUF_ERR_TABLE;
+    if (separation_us != READ32(schedule->separation_us)) return EERUF_ERR_TABLE;
+    path_change_us = READ32(schedule->path_change_us);
+    if (path_change_us != EERUF_AS_T_DELTA && separation_us - promised.t_delta_us <= path_change_us)
+        return EERUF_ERR_CROSSTALK;
+    return READ32(schedule->audible_us) - 1u >= audible_for(schedule) ? EERUF_ERR_TABLE : EERUF_OK;
 }
 
 /* ---- The filter ---- */
 
-/* How sure the filter is of an echo, in one byte: a score of up to `consecutive`, and whether that was reached. */
-#define SCORE 0x0fu
-#define CONFIRMED 0x10u
+/* How many readings in a row an echo was in, up to `consecutive`; 0 where nothing is known. */
+#define RUN 0x0fu
 #define DISABLED 0x80u /* of a ring's sensor, kept in the same byte */
 
 const char *eeruf_reading_name(uint8_t kind) {
@@ -321,6 +322,8 @@ const char *eeruf_reading_name(uint8_t kind) {
     case EERUF_READING_LATE: return "late";
     case EERUF_READING_STUCK: return "stuck";
     case EERUF_READING_TENTATIVE: return "tentative";
+    case EERUF_READING_AMBIGUOUS: return "ambiguous";
+    case EERUF_READING_UNANSWERED: return "unanswered";
     default: return "?";
     }
 }
@@ -344,23 +347,39 @@ static bool near_identical(uint32_t echo_us, uint32_t previous_us, int32_t chang
     return apart(echo_us, previous_us + (uint32_t)change_us) <= t_delta_us;
 }
 
-/* Compares the echo of a firing with the one before. Returns the kind of the reading. */
-static uint8_t push(EerufFilter *filter, uint16_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us,
-                    int32_t change_us) {
-    const uint32_t previous_us = filter->known_us;
-    const bool silent = t_echo_us == EERUF_NO_ECHO;
-    uint8_t before = filter->state & (SCORE | CONFIRMED), now = 1;
-    if (before != 0 && near_identical(t_echo_us, previous_us, change_us, t_delta_us)) {
-        now = before & SCORE;
-        if (now < consecutive) now++;
-        if (now >= consecutive) now |= CONFIRMED;
+/* Whether a reading agrees with the one before. */
+static bool agrees(const EerufFilter *filter, uint16_t t_delta_us, uint32_t t_echo_us, int32_t change_us) {
+    return (filter->state & RUN) != 0 && near_identical(t_echo_us, filter->known_us, change_us, t_delta_us);
+}
+
+/* Takes in a reading that agrees with the one before or not, or agrees but is explained. Returns its kind. */
+static uint8_t push(EerufFilter *filter, uint8_t consecutive, uint32_t t_echo_us, bool agreed, bool explained) {
+    const bool silent = t_echo_us == EERUF_NO_ECHO, was_silent = filter->known_us == EERUF_NO_ECHO;
+    uint8_t run = 1;
+    if (agreed && !explained) {
+        run = filter->state & RUN;
+        if (run < consecutive) run++;
     }
     filter->known_us = t_echo_us;
-    filter->state = (uint8_t)((filter->state & DISABLED) | now);
-    if (now & CONFIRMED) return silent ? EERUF_READING_CLEAR : EERUF_READING_ACCEPTED;
+    filter->state = (uint8_t)((filter->state & DISABLED) | run);
+    if (run >= consecutive) return silent ? EERUF_READING_CLEAR : EERUF_READING_ACCEPTED;
     if (silent) return EERUF_READING_NO_ECHO;
-    if (previous_us == EERUF_NO_ECHO) return EERUF_READING_FIRST;
-    return now == 1 ? EERUF_READING_REJECTED : EERUF_READING_REPEATED;
+    if (explained) return EERUF_READING_AMBIGUOUS;
+    if (was_silent) return EERUF_READING_FIRST;
+    return run == 1 ? EERUF_READING_REJECTED : EERUF_READING_REPEATED;
+}
+
+/* The firing that an echo time is measured from was so much later, modulo 2^32. False if the echo came before it; it
+   then counts as having come with it. */
+static bool shift(uint32_t *t_echo_us, uint32_t later_us) {
+    const uint32_t echo_us = *t_echo_us;
+    if (echo_us == EERUF_NO_ECHO) return true;
+    if (later_us >= HALF_TURN) {
+        *t_echo_us = shorter(add32(echo_us, 0u - later_us), EERUF_NO_ECHO - 1u);
+        return true;
+    }
+    *t_echo_us = echo_us < later_us ? 0 : echo_us - later_us;
+    return echo_us >= later_us;
 }
 
 /* The reading has its kind already. */
@@ -372,13 +391,16 @@ static void note_age(EerufReading *reading, EerufFilter *filter) {
 
 EerufStatus eeruf_filter_push(EerufFilter *filter, uint32_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us,
                               int32_t expected_change_us, EerufReading *reading) {
+    bool agreed;
     if (filter == NULL || reading == NULL) return EERUF_ERR_NULL;
     if (consecutive < 2 || consecutive > 8) return EERUF_ERR_CONSECUTIVE;
     if (t_delta_us > UINT16_MAX) return EERUF_ERR_COARSE_T_DELTA;
     if (t_echo_us >= HALF_TURN && t_echo_us != EERUF_NO_ECHO) return EERUF_ERR_RANGE;
     reading->t_echo_us = t_echo_us;
+    reading->explained_by = EERUF_BY_NOTHING;
     reading->previous_us = filter->known_us;
-    reading->kind = push(filter, (uint16_t)t_delta_us, consecutive, t_echo_us, expected_change_us);
+    agreed = agrees(filter, (uint16_t)t_delta_us, t_echo_us, expected_change_us);
+    reading->kind = push(filter, consecutive, t_echo_us, agreed, false);
     note_age(reading, filter);
     return EERUF_OK;
 }
@@ -397,155 +419,150 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter) {
 #define CAN_EMIT 0x10u     /* it has a reading that can be emitted before its window closes */
 #define OUTSIDE 0x20u      /* its only edges so far came outside the window */
 #define STUCK 0x40u        /* its line was high when it was to fire */
-#define UNCOMPARABLE 0x80u /* its next reading is not compared with the one before, nor with the one after */
 
 /* Rings that hop in time fire otherwise than by a table. What is linked for all takes `hops` as a constant, so that
    nothing of the one kind is linked where only the other is polled; HOPS asks the ring. */
 #if EERUF_HOPPING
 #define HOPS(ring) ((ring)->schedule == NULL)
+#define STRIDE(ring) ((ring)->stride) /* hopping rings have shorter EerufHopSensors */
 static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us);
 static void end_hopping_period(EerufRing *ring, uint32_t now_us);
 static void restart_hopping(EerufRing *ring, uint32_t now_us);
 static uint32_t horizon_of_hopping(const EerufRing *ring);
 #else
 #define HOPS(ring) false
+#define STRIDE(ring) sizeof(EerufSensor)
 #define fire_hop(ring, sensor, now_us) ((void)0)
 #define end_hopping_period(ring, now_us) ((void)0)
 #define restart_hopping(ring, now_us) ((void)0)
 #define horizon_of_hopping(ring) 0u
 #endif
 
+static EerufSensor *after(const EerufSensor *sensor, size_t bytes) {
+    return (EerufSensor *)(void *)((uint8_t *)(uintptr_t)sensor + bytes);
+}
+
 static EerufSensor *sensor_of(const EerufRing *ring, uint8_t sensor) {
-    return &ring->sensors[sensor];
+    return after(ring->sensors, (size_t)sensor * STRIDE(ring));
 }
 
 static void count(EerufRing *ring, uint8_t kind) {
     if (ring->tally[kind] < UINT8_MAX) ring->tally[kind]++;
 }
 
-/* -- Lateness. A late firing delays all that follow, so the stretch of a firing, the time since the same sensor's
-   firing before less what the schedule says, is the sum of all lateness in between. Crosstalk moves by what the
-   schedule says and by the emitter's stretch less the receiver's: where stretches differ by more than is tolerated,
-   readings are not compared (docs/theory.md, section 2.1). -- */
+/* -- What was fired: see the header, and docs/theory.md, section 2.1. While all firings kept a verified timetable,
+   (13a) and (13b) say what asking would find. A late firing delays all that follow, so the time between two firings is
+   off by at most the lateness in between; a verified schedule has some of that to spare. -- */
 
-#define FIRST_PERIOD 3u /* nothing has fired before, so that firings have no stretch */
-#define WATCHED 3u      /* at so many period ends something late is still remembered */
+#define AS_T_DELTA UINT16_MAX        /* the path change of a ring that follows its t_delta */
+#define MAX_AUDIBLE ((uint32_t)1 << 26)
+#define LONG_AGO ((uint32_t)1 << 30) /* nothing is heard from then */
+#define STEP_BACK ((uint32_t)1 << 20) /* what lies so little ahead of now is from before the clock stepped back */
 
-static OUT_OF_LINE void watch(EerufRing *ring) {
-    EerufLateness *late = &ring->lateness;
-    if (late->watched == 0) {
-        EerufSensor *sensor = ring->sensors;
-        uint8_t left;
-        for (left = ring->count; left > 0; left--, sensor++) sensor->total_late = 0;
-        late->total = late->total_before = 0;
-        late->least = late->least_before = late->uncomparable == FIRST_PERIOD ? UINT16_MAX : 0;
-        late->most = late->most_before = 0;
-    }
-    late->watched = WATCHED;
+/* For so many ends of periods an irregularity is remembered: the first of three readings, which a filter over three may
+   compare, was fired three periods ago, and sound is audible for two. */
+#define WATCHED 6u
+#define ALWAYS UINT8_MAX /* nothing is proven of the timetable, so that each reading is asked about */
+
+static uint32_t path_change_of(const EerufRing *ring) {
+    return ring->path_change_us == AS_T_DELTA ? ring->t_delta_us : ring->path_change_us;
 }
 
-/* The next reading of every sensor may be of sound from before or after a shift that is not known. */
-static void uncompare(EerufRing *ring, uint8_t only) {
-    EerufSensor *sensor = ring->sensors;
-    uint8_t left;
-    for (left = ring->count; left > 0; left--, sensor++)
-        if (only == 0 || (sensor->flags & only)) sensor->flags |= UNCOMPARABLE;
-}
-
-/* The timetable has begun anew. A reading of the first period may hold sound from before. */
-static void begin_anew(EerufRing *ring) {
-    watch(ring);
-    ring->lateness.uncomparable = 1;
-}
-
-/* The sum of lateness grows; when it is no longer known, nothing is compared until two periods have ended. */
-static void add_late(EerufRing *ring, uint16_t late_us, bool hops) {
-    EerufLateness *late = &ring->lateness;
-    late->total = add16(late->total, late_us);
-    if (late->total == UINT16_MAX) {
-        late->uncomparable = 2;
-        if (!hops) uncompare(ring, 0);
-    }
+/* Something irregular happened, or something else is asked of the schedule: whether it was verified for that. */
+static OUT_OF_LINE void disturb(EerufRing *ring) {
+    const EerufSchedule *schedule = ring->schedule;
+    uint32_t promised_us;
+    ring->watched = ALWAYS;
+    if (HOPS(ring) || !is_verified(schedule)) return;
+    promised_us = READ32(schedule->path_change_us);
+    if (promised_us == EERUF_AS_T_DELTA) promised_us = READ32(schedule->t_delta_us);
+    if (ring->path_change_us != AS_T_DELTA && ring->path_change_us > promised_us) return;
+    if (ring->audible_us > READ32(schedule->audible_us)) return;
+    /* Sound that was sent two periods apart differs by the time until a sensor fires again. */
+    if (ring->t_delta_us + path_change_of(ring) < READ32(schedule->min_refire_us)) ring->watched = WATCHED;
 }
 
 static void note_late(EerufRing *ring, uint16_t late_us) {
-    ring->lateness.latest = more16(ring->lateness.latest, late_us);
+    if (late_us > ring->latest_us) ring->latest_us = late_us;
 }
 
-/* By how much two stretches may differ: crosstalk must still move by more than t_delta, and no firing be skipped. */
-static uint16_t tolerated(const EerufRing *ring) {
-    const uint32_t t_delta = ring->t_delta_us;
-    uint32_t separation = 2 * t_delta + 1;
-    if (is_verified(ring->schedule)) separation = READ32(ring->schedule->separation_us);
-    separation = shorter(separation, READ32(ring->schedule->min_refire_us));
-    if (separation <= t_delta) return 0;
-    separation -= t_delta + 1;
-    return separation > UINT16_MAX / 2 ? UINT16_MAX / 2 : (uint16_t)separation;
+/* The timetable got longer at a firing. */
+static void add_late(EerufRing *ring, uint16_t late_us) {
+    note_late(ring, late_us);
+    ring->sum_late_us = add16(ring->sum_late_us, late_us);
 }
 
-/* Notes the last firing's stretch; its reading and those pending are not compared if it differs too much. */
-static void stretch_by(EerufRing *ring, uint8_t sensor, uint16_t late_us, uint16_t stretch, bool hops) {
-    EerufLateness *late = &ring->lateness;
-    uint16_t least, most, most_tolerated;
-    late->last = sensor;
-    late->last_late = late_us;
-    late->last_stretch = stretch;
-    if (late->uncomparable == FIRST_PERIOD) return;
-    least = fewer16(late->least, late->least_before);
-    most = more16(late->most, late->most_before);
-    late->least = fewer16(late->least, stretch);
-    late->most = more16(late->most, stretch);
-    if (hops) return;
-    most_tolerated = tolerated(ring);
-    if (less16(stretch, least) > most_tolerated || less16(most, stretch) > most_tolerated) uncompare(ring, LISTENING);
+/* A firing came late. No two readings hear more than four periods. */
+static OUT_OF_LINE void fired_late(EerufRing *ring, uint16_t late_us, bool hops) {
+    uint32_t needed_us;
+    add_late(ring, late_us);
+    if (EERUF_FIRINGS == 1 || hops || ring->watched == ALWAYS) return;
+    needed_us = ring->t_delta_us + path_change_of(ring) + 4 * (uint32_t)ring->sum_late_us + 1u;
+    if (READ32(ring->schedule->separation_us) < needed_us) ring->watched = WATCHED;
 }
 
-/* A firing came late, or has a stretch because others did. */
-static void fired_late(EerufRing *ring, EerufSensor *fired, uint8_t sensor, uint16_t late_us, bool hops) {
-    EerufLateness *late = &ring->lateness;
-    uint16_t *total = &fired->total_late, stretch = late_us;
-    if (late_us > 0) {
-        watch(ring);
-        note_late(ring, late_us);
-        add_late(ring, late_us, hops);
+#if EERUF_FIRINGS > 1
+/* Whose sound could be both the echo that a sensor heard `first_us` after the firing before its last one and the one
+   that it heard `second_us` after its last. */
+static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, const EerufSensor *own, uint32_t first_us,
+                                       uint32_t second_us) {
+    const uint32_t heard_before = own->fired_us[1] + first_us, heard = own->fired_us[0] + second_us;
+    const uint32_t audible = ring->audible_us, between = heard - heard_before, change = path_change_of(ring);
+    const EerufSensor *sensor = ring->sensors;
+    uint32_t length = heard_before - ring->known_from_us;
+    uint8_t x = 0, by = EERUF_BY_NOTHING;
+    for (;;) {
+        const uint32_t *before = sensor->fired_us, *fired;
+        /* All that is forgotten was fired before this. An instant after the first reading leaves that open. */
+        if (length < audible || length >= HALF_TURN) by = EERUF_BY_HISTORY;
+        if (x == ring->count) return by;
+        do {
+            length = heard_before - *before;
+            if (length > audible || before == own->fired_us + 1) continue;
+            /* Both may be one firing if the readings are as close as that. */
+            for (fired = sensor->fired_us; fired <= before; fired++) {
+                if (fired == own->fired_us || heard - *fired > audible) continue;
+                if (apart(*fired - *before, between) <= change) return x;
+            }
+        } while (++before < sensor->fired_us + EERUF_FIRINGS);
+        sensor++;
+        x++;
     }
+}
+
+static bool is_long_ago(uint32_t instant, uint32_t now_us) {
+    return now_us - instant - LONG_AGO - 1u < 0u - STEP_BACK - LONG_AGO - 1u;
+}
+
+#endif
+
+/* All firings so long ago that nothing is heard of them. */
+static OUT_OF_LINE void forget_firings(EerufSensor *sensor, uint8_t firings, uint32_t now_us) {
+    while (firings-- > 0) sensor->fired_us[firings] = now_us - LONG_AGO;
+}
+
+static void end_late_period(EerufRing *ring, EerufPeriod *ended, uint32_t now_us, bool hops) {
+    ended->max_late_us = ring->latest_us;
+    ended->sum_late_us = ring->sum_late_us;
+    ring->latest_us = ring->sum_late_us = 0;
+#if EERUF_FIRINGS > 1
     if (!hops) {
-        stretch = late->total >= *total ? (uint16_t)(late->total - *total) : UINT16_MAX;
-        *total = late->total;
+        EerufSensor *sensor = ring->sensors;
+        uint8_t left;
+        if (ring->watched != 0 && ring->watched != ALWAYS) ring->watched--;
+        /* Old firings must not come round with the clock. */
+        for (left = ring->count; left > 0; left--, sensor++) {
+            if (is_long_ago(sensor->fired_us[0], now_us)) {
+                forget_firings(sensor, EERUF_FIRINGS, now_us);
+                /* No edge is an echo of them. */
+                if (!(sensor->flags & LISTENING)) sensor->flags |= OUTSIDE;
+            }
+        }
+        if (is_long_ago(ring->known_from_us, now_us)) ring->known_from_us = now_us - LONG_AGO;
     }
-    stretch_by(ring, sensor, late_us, stretch, hops);
-}
-
-static void end_late_period(EerufRing *ring, EerufPeriod *ended, bool hops) {
-    EerufLateness *late = &ring->lateness;
-    bool uncomparable = false;
-    ended->max_late_us = late->latest;
-    ended->sum_late_us = ended->max_shift_us = 0;
-    late->latest = 0;
-    if (late->uncomparable == FIRST_PERIOD) {
-        late->uncomparable = 0;
-    } else if (late->uncomparable != 0) {
-        late->uncomparable--;
-        uncomparable = true;
-    }
-    if (late->watched != 0) {
-        uint16_t forgotten;
-        uint8_t x;
-        late->watched--;
-        ended->sum_late_us = less16(late->total, late->total_before);
-        ended->max_shift_us = less16(more16(late->most, late->most_before), fewer16(late->least, late->least_before));
-        late->least_before = late->least;
-        late->most_before = late->most;
-        late->least = UINT16_MAX;
-        late->most = 0;
-        /* All totals from the beginning of this period on, which will be the one before. */
-        forgotten = late->total == UINT16_MAX ? UINT16_MAX : late->total_before;
-        for (x = 0; x < ring->count && !hops; x++)
-            sensor_of(ring, x)->total_late = less16(sensor_of(ring, x)->total_late, forgotten);
-        late->total = (uint16_t)(late->total - forgotten);
-        late->total_before = late->total;
-    }
-    if (uncomparable && !hops) uncompare(ring, 0);
+#else
+    (void)now_us, (void)hops;
+#endif
 }
 
 /* -- Scheduled firing (Sec. 3.1, Fig. 3): every sensor fires once per period, by the table. A firing that is polled
@@ -647,27 +664,32 @@ static EerufStatus listen(EerufRing *ring, uint32_t t_delta_us, uint32_t window_
     return EERUF_OK;
 }
 
-static OUT_OF_LINE void drop_firing(EerufSensor *sensor) {
+static OUT_OF_LINE void drop_firing(const EerufRing *ring, uint8_t x, uint32_t now_us) {
+    EerufSensor *sensor = sensor_of(ring, x);
+    forget_firings(sensor, HOPS(ring) ? 1 : EERUF_FIRINGS, now_us);
     sensor->echo_us = EERUF_NO_ECHO;
     forget(&sensor->filter);
     sensor->flags = OUTSIDE;
 }
 
-/* Everything but listening and scheduler. */
-static void set_up(EerufRing *ring, EerufSensor *sensors, uint8_t count_of_sensors, uint32_t now_us) {
+/* Everything but listening and scheduler. As if silence had come before: what was fired earlier is for the caller to
+   wait for. */
+static void set_up(EerufRing *ring, const EerufSchedule *schedule, void *sensors, uint8_t count_of_sensors,
+                   size_t stride, uint32_t now_us) {
     uint8_t x;
     memset(ring, 0, sizeof *ring);
-    memset(sensors, 0, count_of_sensors * sizeof *sensors);
-    ring->sensors = sensors;
+    memset(sensors, 0, count_of_sensors * stride);
+    ring->schedule = schedule;
+    ring->sensors = (EerufSensor *)sensors;
+    ring->stride = (uint8_t)stride;
     ring->count = count_of_sensors;
     ring->oldest = NOBODY;
     ring->emit_at_us = now_us;
     ring->consecutive = 2;
-    ring->lateness.uncomparable = FIRST_PERIOD;
-    ring->lateness.least = ring->lateness.least_before = UINT16_MAX;
+    ring->known_from_us = now_us - LONG_AGO;
     for (x = 0; x < count_of_sensors; x++) {
-        sensors[x].filter.age = EERUF_NEVER;
-        drop_firing(&sensors[x]);
+        drop_firing(ring, x, now_us);
+        sensor_of(ring, x)->filter.age = EERUF_NEVER;
     }
 }
 
@@ -691,11 +713,21 @@ static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors,
     /* What a table was verified for it allows. */
     if (config->t_delta_us != 0 || config->window_us != 0) status = allows(schedule, t_delta_us, window_us);
     if (status != EERUF_OK) return status;
-    set_up(ring, sensors, count_of_sensors, now_us);
+    set_up(ring, schedule, sensors, count_of_sensors, sizeof *sensors, now_us);
     status = listen(ring, t_delta_us, window_us, config->blanking_us);
     if (status != EERUF_OK) return status;
+    if (config->audible_us > MAX_AUDIBLE) return EERUF_ERR_AUDIBLE;
+    if (config->path_change_us >= AS_T_DELTA) return EERUF_ERR_PATH_CHANGE;
+    ring->path_change_us = (uint16_t)config->path_change_us;
+    if (config->path_change_us == 0) ring->path_change_us = narrow(READ32(schedule->path_change_us));
+    ring->audible_us = config->audible_us;
+    /* One that was not verified does not say it. */
+    if (ring->audible_us == 0) ring->audible_us = READ32(schedule->audible_us);
+    if (ring->audible_us == 0) ring->audible_us = READ32(schedule->period_us);
+    ring->audible_us = shorter(ring->audible_us, MAX_AUDIBLE);
+    disturb(ring);
+    if (ring->watched == WATCHED) ring->watched = 0; /* nothing has been fired yet */
     if (config->consecutive < 2 || config->consecutive > 8) return EERUF_ERR_CONSECUTIVE;
-    ring->schedule = schedule;
     ring->consecutive = config->consecutive;
     begin_table(ring, now_us);
     ring->ready = READY;
@@ -721,16 +753,18 @@ static bool has_pending(const EerufRing *ring) {
 /* Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes. */
 static OUT_OF_LINE void emit_when_oldest_ends(EerufRing *ring) {
     if (ring->pending == 0 && ring->oldest != NOBODY)
-        ring->emit_at_us = sensor_of(ring, ring->oldest)->fired_us + ring->window_us;
+        ring->emit_at_us = sensor_of(ring, ring->oldest)->fired_us[0] + ring->window_us;
 }
 
-/* Finds the next oldest, now that the one that fired at `before` has stopped listening. All others fired later. */
+/* Finds the next oldest, now that the one that fired at `before` has stopped listening. All others fired later, or
+   earlier by no more than the clock has stepped back: 1 us before is not 71 minutes after. */
 static void find_oldest(EerufRing *ring, uint32_t before) {
     const EerufSensor *sensor = ring->sensors;
     uint32_t soonest = UINT32_MAX;
     uint8_t x, oldest = NOBODY;
-    for (x = 0; x < ring->count; x++, sensor++) {
-        const uint32_t since = sensor->fired_us - before;
+    before -= STEP_BACK;
+    for (x = 0; x < ring->count; x++, sensor = after(sensor, STRIDE(ring))) {
+        const uint32_t since = sensor->fired_us[0] - before;
         if ((sensor->flags & LISTENING) && since < soonest) {
             oldest = x;
             soonest = since;
@@ -741,9 +775,15 @@ static void find_oldest(EerufRing *ring, uint32_t before) {
 
 static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late_us, bool hops) {
     EerufSensor *fired = sensor_of(ring, sensor);
-    fired->flags = (uint8_t)((fired->flags & UNCOMPARABLE) | LISTENING | ring->phase);
-    fired->fired_us = now_us;
-    if (late_us != 0 || ring->lateness.watched != 0) fired_late(ring, fired, sensor, late_us, hops);
+    fired->flags = (uint8_t)(LISTENING | ring->phase);
+#if EERUF_FIRINGS > 1
+    if (!hops) {
+        uint8_t place;
+        for (place = EERUF_FIRINGS - 1; place > 0; place--) fired->fired_us[place] = fired->fired_us[place - 1];
+    }
+#endif
+    fired->fired_us[0] = now_us;
+    if (late_us != 0) fired_late(ring, late_us, hops);
     if (ring->oldest == NOBODY) {
         ring->oldest = sensor;
         emit_when_oldest_ends(ring);
@@ -762,13 +802,22 @@ static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late
 static void compare(EerufRing *ring, EerufSensor *sensor, int32_t change_us, EerufReading *reading) {
     EerufFilter *filter = &sensor->filter;
     const uint8_t flags = sensor->flags;
-    if (flags & (UNCOMPARABLE | STUCK | OUTSIDE)) forget(filter);
+    if (flags & (STUCK | OUTSIDE)) forget(filter);
     reading->previous_us = filter->known_us;
-    if (flags & STUCK) reading->kind = EERUF_READING_STUCK;
-    else if (flags & OUTSIDE) reading->kind = EERUF_READING_TOO_EARLY;
-    else reading->kind = push(filter, ring->t_delta_us, ring->consecutive, reading->t_echo_us, change_us);
+    if (flags & STUCK) {
+        reading->kind = EERUF_READING_STUCK;
+    } else if (flags & OUTSIDE) {
+        reading->kind = EERUF_READING_TOO_EARLY;
+    } else {
+        const uint32_t echo_us = reading->t_echo_us;
+        const bool agreed = agrees(filter, ring->t_delta_us, echo_us, change_us);
+#if EERUF_FIRINGS > 1
+        if (agreed && ring->watched != 0 && echo_us != EERUF_NO_ECHO)
+            reading->explained_by = explanation(ring, sensor, filter->known_us, echo_us);
+#endif
+        reading->kind = push(filter, ring->consecutive, echo_us, agreed, reading->explained_by != EERUF_BY_NOTHING);
+    }
     note_age(reading, filter);
-    if (flags & UNCOMPARABLE) forget(filter);
 }
 
 /* The kind of a reading that the tracker weighs. */
@@ -784,12 +833,13 @@ static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, E
     uint8_t ago;
     if (flags & CAN_EMIT) ring->pending--; /* counted when its edge came */
     reading->t_echo_us = flags & STUCK ? EERUF_NO_ECHO : sensor->echo_us;
+    reading->explained_by = EERUF_BY_NOTHING;
     sensor->echo_us = EERUF_NO_ECHO;
     if (flags & LISTENING) {
         if (hops) reading->kind = kind_of_hop(flags);
         else compare(ring, sensor, change_us == NULL ? 0 : change_us[x], reading);
         sensor->flags = phase;
-        if (ring->oldest == x) find_oldest(ring, sensor->fired_us);
+        if (ring->oldest == x) find_oldest(ring, sensor->fired_us[0]);
     } else {
         reading->previous_us = EERUF_NO_ECHO;
         reading->age = sensor->filter.age;
@@ -816,11 +866,8 @@ static void end_period(EerufRing *ring, uint32_t now_us, uint32_t late_us, Eeruf
     ring->period++;
     if (hops) end_hopping_period(ring, now_us);
     else changed = end_period_of_table(ring, now_us, late_us);
-    end_late_period(ring, ended, hops);
-    if (changed) {
-        begin_anew(ring);
-        uncompare(ring, 0);
-    }
+    end_late_period(ring, ended, now_us, hops);
+    if (changed) disturb(ring);
     for (kind = 0; kind < EERUF_READING_KINDS; kind++) {
         ended->tally[kind] = ring->tally[kind];
         ring->tally[kind] = 0;
@@ -839,13 +886,19 @@ static uint8_t next_pending(const EerufRing *ring, bool emits) {
 
 static void restart(EerufRing *ring, uint32_t now_us, bool hops) {
     uint8_t x;
+    /* Sound from before may still be heard, and its firings are no longer known by this clock. One that was said to
+       fire a little later still does. */
+    ring->known_from_us = now_us;
+    for (x = 0; x < ring->count; x++) {
+        const uint32_t fired_us = sensor_of(ring, x)->fired_us[0];
+        if (!hops && fired_us - ring->known_from_us - 1u < STEP_BACK) ring->known_from_us = fired_us;
+        drop_firing(ring, x, now_us);
+    }
     if (hops) restart_hopping(ring, now_us);
     else restart_table(ring, now_us);
-    for (x = 0; x < ring->count; x++) drop_firing(sensor_of(ring, x));
     ring->oldest = NOBODY;
     ring->pending = 0;
-    /* Sound from before may still be heard in the first period. */
-    begin_anew(ring);
+    disturb(ring);
 }
 
 /* Firing comes first, since it should be on time; but a sensor's reading is emitted before it fires again. */
@@ -904,7 +957,7 @@ OUT_OF_LINE uint32_t eeruf_ring_due(const EerufRing *ring) {
 
 static void hear(EerufRing *ring, uint8_t x, uint32_t at_us) {
     EerufSensor *sensor = sensor_of(ring, x);
-    const uint32_t t_echo_us = at_us - sensor->fired_us;
+    const uint32_t t_echo_us = at_us - sensor->fired_us[0];
     const uint8_t flags = sensor->flags;
     const bool inside = t_echo_us <= ring->window_us;
     if (t_echo_us >= HALF_TURN) return; /* from before it fired, or from a clock that has jumped */
@@ -936,23 +989,15 @@ EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t sensor, uint32_t at_us) {
     return status;
 }
 
-/* The timetable got longer at the firing of a sensor. */
-static void lengthen(EerufRing *ring, uint8_t x, uint16_t later_us) {
-    EerufLateness *late = &ring->lateness;
-    EerufSensor *sensor = sensor_of(ring, x);
-    const bool watched = late->watched != 0, known = !watched || late->last == x;
-    const uint16_t late_us = watched ? late->last_late : 0, stretch = watched ? late->last_stretch : 0;
-    watch(ring);
-    add_late(ring, later_us, HOPS(ring));
-    sensor->total_late = add16(sensor->total_late, later_us);
-    if (!known) {
-        /* Another one has fired since. */
-        late->uncomparable = 2;
-        uncompare(ring, 0);
-        return;
-    }
-    note_late(ring, add16(late_us, later_us));
-    stretch_by(ring, x, add16(late_us, later_us), add16(stretch, later_us), HOPS(ring));
+/* Whether a sensor may have fired at another instant than it was polled for: after its firing before. */
+static bool may_have_fired(const EerufRing *ring, const EerufSensor *sensor, uint32_t at_us) {
+    (void)ring;
+    if (HOPS(ring)) return has_reached(at_us, sensor->fired_us[0]);
+#if EERUF_FIRINGS > 1
+    return at_us - sensor->fired_us[1] - 1u < HALF_TURN - 1u;
+#else
+    return true;
+#endif
 }
 
 EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
@@ -961,25 +1006,39 @@ EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
     uint32_t polled_us, later_us;
     if (status != EERUF_OK) return status;
     sensor = sensor_of(ring, x);
-    polled_us = sensor->fired_us;
+    polled_us = sensor->fired_us[0];
     later_us = at_us - polled_us;
-    if (!(sensor->flags & LISTENING) || later_us == 0 || later_us >= HALF_TURN) return EERUF_OK;
-    /* Echoes that are in already are nearer. */
-    sensor->fired_us = at_us;
-    if (sensor->echo_us != EERUF_NO_ECHO) sensor->echo_us = sensor->echo_us > later_us ? sensor->echo_us - later_us : 0;
+    if (later_us == 0 || !may_have_fired(ring, sensor, at_us)) return EERUF_OK;
+    sensor->fired_us[0] = at_us;
+    /* The reading of a firing that has ended is with the filter. */
+    if (!(sensor->flags & LISTENING) && !shift(&sensor->filter.known_us, later_us)) forget(&sensor->filter);
+    /* Where the first edge came before it fired, it may have kept out the echo. */
+    if (!shift(&sensor->echo_us, later_us)) sensor->flags |= OUTSIDE;
+    if (sensor->flags & LISTENING) {
+        if (later_us < HALF_TURN) {
 #if EERUF_HOPPING
-    if (HOPS(ring)) ring->hook(ring, x, later_us);
+            if (HOPS(ring)) ring->hook(ring, x, later_us);
 #endif
-    if (!HOPS(ring)) {
-        ring->last_fired_us += later_us;
-        ring->due_us += later_us;
+            if (!HOPS(ring)) {
+                ring->last_fired_us += later_us;
+                ring->due_us += later_us;
+            }
+            add_late(ring, narrow(later_us));
+        }
+        if (ring->oldest == x) {
+            find_oldest(ring, polled_us);
+            emit_when_oldest_ends(ring);
+        }
     }
-    lengthen(ring, x, narrow(later_us));
-    if (ring->oldest == x) {
-        find_oldest(ring, polled_us);
-        emit_when_oldest_ends(ring);
-    }
+#if EERUF_HOPPING
+    if (HOPS(ring) && !has_reached(ring->last_fired_us, at_us)) ring->last_fired_us = at_us;
+#endif
+    disturb(ring);
     return EERUF_OK;
+}
+
+uint32_t eeruf_ring_fired_at(const EerufRing *ring, uint8_t sensor) {
+    return has_sensor(ring, sensor) == EERUF_OK ? sensor_of(ring, sensor)->fired_us[0] : 0;
 }
 
 static void note_stuck(EerufSensor *sensor) {
@@ -1003,6 +1062,7 @@ static void enable(EerufRing *ring, uint8_t sensor, bool enabled) {
     } else if (filter->state & DISABLED) {
         filter->state = 0;
         filter->known_us = EERUF_NO_ECHO;
+        disturb(ring);
     }
 }
 
@@ -1021,7 +1081,9 @@ EerufStatus eeruf_ring_pause(EerufRing *ring, bool paused) {
     if (status != EERUF_OK) return status;
     ring->paused = paused;
     skip_silent(ring);
-    for (x = 0; x < ring->count && !paused; x++) forget(&sensor_of(ring, x)->filter);
+    if (paused) return EERUF_OK;
+    for (x = 0; x < ring->count; x++) forget(&sensor_of(ring, x)->filter);
+    disturb(ring);
     return EERUF_OK;
 }
 
@@ -1079,12 +1141,8 @@ static EerufStatus relisten(EerufRing *ring, uint32_t t_delta_us, uint32_t windo
 
 EerufStatus eeruf_ring_set_t_delta(EerufRing *ring, uint32_t t_delta_us) {
     EerufStatus status = is_ready(ring);
-    bool grows;
-    if (status != EERUF_OK) return status;
-    grows = t_delta_us > ring->t_delta_us;
-    status = relisten(ring, t_delta_us, ring->window_us, ring->blanking_us);
-    /* What lateness allowed until now was for the smaller one. */
-    if (status == EERUF_OK && grows) uncompare(ring, 0);
+    if (status == EERUF_OK) status = relisten(ring, t_delta_us, ring->window_us, ring->blanking_us);
+    if (status == EERUF_OK) disturb(ring);
     return status;
 }
 
@@ -1098,6 +1156,24 @@ EerufStatus eeruf_ring_set_window(EerufRing *ring, uint32_t window_us) {
 EerufStatus eeruf_ring_set_blanking(EerufRing *ring, uint32_t blanking_us) {
     const EerufStatus status = is_ready(ring);
     return status == EERUF_OK ? relisten(ring, ring->t_delta_us, ring->window_us, blanking_us) : status;
+}
+
+EerufStatus eeruf_ring_set_path_change(EerufRing *ring, uint32_t path_change_us) {
+    const EerufStatus status = has_table(ring);
+    if (status != EERUF_OK) return status;
+    if (path_change_us >= AS_T_DELTA) return EERUF_ERR_PATH_CHANGE;
+    ring->path_change_us = (uint16_t)path_change_us;
+    disturb(ring);
+    return EERUF_OK;
+}
+
+EerufStatus eeruf_ring_set_audible(EerufRing *ring, uint32_t audible_us) {
+    const EerufStatus status = has_table(ring);
+    if (status != EERUF_OK) return status;
+    if (audible_us > MAX_AUDIBLE) return EERUF_ERR_AUDIBLE;
+    ring->audible_us = audible_us;
+    disturb(ring);
+    return EERUF_OK;
 }
 
 /* ---- Distances ---- */
@@ -1201,6 +1277,7 @@ EerufStatus eeruf_adaptation_period(EerufAdaptation *adaptation, EerufRing *ring
     if (event->kind != EERUF_EVENT_PERIOD) return EERUF_ERR_RANGE;
     adaptation->accepted = add16(adaptation->accepted, event->u.ended.tally[EERUF_READING_ACCEPTED]);
     adaptation->rejected = add16(adaptation->rejected, event->u.ended.tally[EERUF_READING_REJECTED]);
+    adaptation->rejected = add16(adaptation->rejected, event->u.ended.tally[EERUF_READING_AMBIGUOUS]);
     adaptation->repeated = add16(adaptation->repeated, event->u.ended.tally[EERUF_READING_REPEATED]);
     if (adaptation->periods < UINT8_MAX) adaptation->periods++;
     if (adaptation->periods < adaptation->window) return EERUF_OK;
@@ -1373,7 +1450,7 @@ static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint8_t he
         return EERUF_OK;
     }
     line->state = (uint8_t)((uint8_t)(health << HEALTH_AT) | IDLE);
-    note_stuck(&modules->ring->sensors[sensor]);
+    note_stuck(sensor_of(modules->ring, sensor));
     return EERUF_DO_NOT_TRIGGER;
 }
 
@@ -1398,7 +1475,7 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor,
     uint8_t pulse;
     if (status != EERUF_OK) return status;
     line = &modules->lines[sensor];
-    fired_us = sensor_of(modules->ring, sensor)->fired_us;
+    fired_us = sensor_of(modules->ring, sensor)->fired_us[0];
     since_us = at_us - fired_us;
     if (since_us >= HALF_TURN || since_us < modules->settings->deaf_us) return EERUF_OK;
     pulse = line->state & PULSE;
@@ -1470,6 +1547,14 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
 /* The flags of a track. */
 #define TRACK_CONFIRMED 1u
 #define CONTRADICTED 2u
+
+static OUT_OF_LINE uint16_t less16(uint16_t one, uint16_t other) {
+    return one > other ? (uint16_t)(one - other) : 0;
+}
+
+static uint16_t fewer16(uint16_t one, uint16_t other) {
+    return one < other ? one : other;
+}
 
 #define CATCHES_UP_US 1000u /* a firing that is later moves all that follow */
 #define ONE_SOLO 256u       /* what a solo period costs; as much again may be saved up */
@@ -1634,7 +1719,7 @@ static void shift_tracks(EerufHopper *hopper, int32_t change_us) {
         uint32_t *held = &hopper->tracks[place].t_echo_us;
         /* What is before the firing wraps, to what is later than all. */
         const uint32_t moved_us = *held + (uint32_t)change_us;
-        if (*held != EERUF_NO_ECHO && moved_us < HALF_TURN) *held = moved_us;
+        if (*held != EERUF_NO_ECHO && moved_us <= EERUF_HOPPING_MAX_WINDOW_US) *held = moved_us;
     }
 }
 
@@ -1792,12 +1877,12 @@ static OUT_OF_LINE uint32_t wait_after(const EerufHoppingRing *hopping, uint32_t
 /* How long after the start of the period a sensor must not fire yet, since it still listens. */
 static uint32_t rests_for(const EerufHoppingRing *hopping, uint8_t sensor) {
     const EerufHopper *hopper = &hopping->hoppers[sensor];
-    const uint32_t fired_us = sensor_of(&hopping->ring, sensor)->fired_us;
+    const uint32_t fired_us = sensor_of(&hopping->ring, sensor)->fired_us[0];
     return hopper->flags & HAS_FIRED ? wait_after(hopping, fired_us, hopping->config.window_us) : 0;
 }
 
 static bool is_disabled(const EerufHoppingRing *hopping, uint8_t sensor) {
-    return (hopping->ring.sensors[sensor].filter.state & DISABLED) != 0;
+    return (sensor_of(&hopping->ring, sensor)->filter.state & DISABLED) != 0;
 }
 
 /* The sensor with nothing accepted for longest, if that is long enough. */
@@ -1953,10 +2038,8 @@ static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us) {
 static void postpone_hop(EerufRing *ring, uint8_t sensor, uint32_t by_us) {
     EerufHoppingRing *hopping = hopping_of(ring);
     EerufHopper *hopper = &hopping->hoppers[sensor];
-    const uint32_t fired_us = sensor_of(ring, sensor)->fired_us;
     const uint32_t late_us = add32(hopper->late_us, by_us);
     uint8_t at;
-    if (!has_reached(ring->last_fired_us, fired_us)) ring->last_fired_us = fired_us;
     /* It was noted to be less late: all that this period has had so far are noted again, since steady lateness is
        none. It is one of them, or the last of the period before. */
     if (!(hopper->flags & SOLO)) {
@@ -2029,9 +2112,9 @@ static EerufStatus tracker_is_fine(const EerufTrackerSettings *how) {
     return fine ? EERUF_OK : EERUF_ERR_TRACKER;
 }
 
-EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
-                               EerufHopper *hoppers, size_t hoppers_size, const EerufHoppingConfig *config,
-                               uint32_t now_us) {
+EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, EerufHopSensor *sensors,
+                               size_t sensors_size, EerufHopper *hoppers, size_t hoppers_size,
+                               const EerufHoppingConfig *config, uint32_t now_us) {
     EerufStatus status;
     uint32_t width_us, least_us;
     uint8_t x, cycle;
@@ -2060,12 +2143,12 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     /* The sensor must have stopped listening, and a path must not read the same with two ages. */
     least_us = longer(add32(config->window_us, longest_drop(config, cycle)), 2 * width_us + config->step_us);
     if (config->period_us < least_us) return EERUF_ERR_PERIOD;
+    if (config->window_us > EERUF_HOPPING_MAX_WINDOW_US) return EERUF_ERR_WINDOW;
 
     memset(hopping, 0, sizeof *hopping);
-    set_up(&hopping->ring, sensors, config->sensors, now_us);
+    set_up(&hopping->ring, NULL, sensors, config->sensors, sizeof *sensors, now_us);
     hopping->ring.hook = postpone_hop;
-    status = config->window_us >= HALF_TURN ? (EerufStatus)EERUF_ERR_WINDOW : listen(
-        &hopping->ring, config->tracker.t_delta_us, config->window_us, config->blanking_us);
+    status = listen(&hopping->ring, config->tracker.t_delta_us, config->window_us, config->blanking_us);
     if (status != EERUF_OK) return status;
     hopping->hoppers = hoppers;
     hopping->config = *config;

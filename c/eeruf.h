@@ -34,11 +34,21 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define EERUF_VERSION 1u /* goes up with each change of a structure or a table */
+#define EERUF_VERSION 2u /* goes up with each change of a structure or a table */
 
 /* Leave out time hopping with -DEERUF_HOPPING=0; the linker leaves it out too if you do not call it. */
 #ifndef EERUF_HOPPING
 #define EERUF_HOPPING 1
+#endif
+
+/* How many firings a ring by a table remembers of each sensor, 4 bytes each: 1 to 32, the same for library and program.
+   Four suffice where sound is audible for no longer than a period; readings that sound of a forgotten firing might
+   explain are ambiguous. With 1 agreement alone decides, and crosstalk that repeats is accepted: a baseline. */
+#ifndef EERUF_FIRINGS
+#define EERUF_FIRINGS 4
+#endif
+#if EERUF_FIRINGS < 1 || EERUF_FIRINGS > 32
+#error "EERUF_FIRINGS: expected 1 to 32"
 #endif
 
 /* Schedules lie in flash: on an AVR that has its own address space, which PROGMEM names. -DEERUF_SCHEDULE_IN_RAM for
@@ -77,7 +87,7 @@ enum {
     EERUF_ERR_UNVERIFIED = -14,  /* the schedule was not verified */
     EERUF_ERR_T_DELTA = -15,     /* more t_delta than the schedule was verified for */
     EERUF_ERR_VERIFIED_WINDOW = -16, /* a longer window than the schedule was verified for */
-    EERUF_ERR_WINDOW = -17,      /* a sensor would fire again while it still listens */
+    EERUF_ERR_WINDOW = -17,      /* a sensor would fire again while it still listens, or too long a window to hop */
     EERUF_ERR_BLANKING = -18,    /* blanking no shorter than the window, or longer than 65,535 us */
     EERUF_ERR_COARSE_T_DELTA = -19, /* t_delta no shorter than the window, or longer than 65,535 us */
     EERUF_ERR_CONSECUTIVE = -20, /* not 2 to 8 readings compared */
@@ -88,7 +98,9 @@ enum {
     EERUF_ERR_TRACKER = -25,     /* a setting of the tracker outside its range */
     EERUF_ERR_RANGE = -26,       /* a number outside its range */
     EERUF_ERR_HOPPING = -27,     /* a hopping ring cannot do this */
-    EERUF_ERR_VOTES = -28        /* more votes to confirm an echo than there are phases: none would be */
+    EERUF_ERR_VOTES = -28,       /* more votes to confirm an echo than there are phases: none would be */
+    EERUF_ERR_AUDIBLE = -29,     /* sound that is audible for longer than 67,108,864 us */
+    EERUF_ERR_PATH_CHANGE = -30  /* a path of sound that changes by more than 65,534 us */
 };
 
 /* The library's EERUF_VERSION, to be compared with the header's. */
@@ -102,6 +114,8 @@ uint16_t eeruf_version(void);
 
 /* Which sensors are neighbours: less than `neighbours` apart on a line or a closed ring, or in one block of so many. */
 enum { EERUF_LAYOUT_LINE = 0, EERUF_LAYOUT_RING = 1, EERUF_LAYOUT_BLOCKS = 2, EERUF_LAYOUT_OTHER = 3 };
+
+#define EERUF_AS_T_DELTA UINT32_MAX /* a path of sound changes by as much as the receiver's t_delta */
 
 /* When each sensor fires. `eeruf design --emit c` writes it as a constant in flash; eeruf_schedule_make makes one. */
 typedef struct EerufSchedule {
@@ -117,6 +131,8 @@ typedef struct EerufSchedule {
     uint32_t min_interval_us;
     uint32_t window_us;
     uint32_t separation_us; /* by how much crosstalk moves at least from one reading to the next */
+    uint32_t path_change_us; /* P: by how much a path of sound may change meanwhile, or EERUF_AS_T_DELTA */
+    uint32_t audible_us;    /* R: for how long sound may be heard after its firing */
     uint8_t verified;
     uint8_t layout;         /* EERUF_LAYOUT_.. */
     uint8_t neighbours;
@@ -160,15 +176,21 @@ enum {
     EERUF_READING_LATE = 7,     /* an edge after the window has ended */
     EERUF_READING_STUCK = 8,    /* the echo line was high when the sensor was to fire */
     EERUF_READING_TENTATIVE = 9, /* few readings support it so far, none contradicts: slow down (time hopping only) */
-    EERUF_READING_KINDS = 10
+    EERUF_READING_AMBIGUOUS = 10, /* near-identical, but another sensor's sound explains both: not believed */
+    EERUF_READING_UNANSWERED = 11, /* no evidence at all: no edge, no sign that it listened; never free space */
+    EERUF_READING_KINDS = 12
 };
 const char *eeruf_reading_name(uint8_t kind); /* "accepted"; not linked unless called */
+
+#define EERUF_BY_HISTORY 0xFEu /* a firing that may explain an ambiguous reading is no longer remembered */
+#define EERUF_BY_NOTHING 0xFFu
 
 typedef struct EerufReading {
     uint32_t t_echo_us;   /* EERUF_NO_ECHO without echo */
     uint32_t previous_us; /* what it was compared with, or EERUF_NO_ECHO */
     uint16_t age;         /* firings since the last accepted reading, or EERUF_NEVER */
     uint8_t kind;         /* EERUF_READING_.. */
+    uint8_t explained_by; /* why it is ambiguous: a sensor, or EERUF_BY_HISTORY; else EERUF_BY_NOTHING */
 } EerufReading;
 
 /* One sensor's filter, for those who fire by other means. */
@@ -185,15 +207,21 @@ EerufStatus eeruf_filter_push(EerufFilter *filter, uint32_t t_delta_us, uint8_t 
                               int32_t expected_change_us, EerufReading *reading);
 EerufStatus eeruf_filter_forget(EerufFilter *filter); /* compare the next reading with nothing; the age goes on */
 
-/* ---- The ring ---- */
+/* ---- The ring: a reading is accepted if it agrees with the one before and no firing explains both ----
 
-/* One sensor of a ring: 18 bytes on an AVR. Not for the caller. */
+   Sound of a sensor explains two readings, heard at h1 and h2, if it fired at a and b with 0 <= h1 - a <= R,
+   0 <= h2 - b <= R and |(h2 - b) - (h1 - a)| <= P; the receiver's own two firings, whose echoes it is meant to hear, do
+   not count. That is asked of what was fired, not of what was planned: late polls, pauses, restarts and changes of
+   schedule may cost readings, but no single path of foreign sound that is audible for at most R and changes by at most
+   P is ever accepted. Such readings are EERUF_READING_AMBIGUOUS. While firings are as punctual as the schedule was
+   verified for, none is, and the ring does not ask. */
+
+/* One sensor of a ring: 28 bytes on an AVR. Not for the caller. */
 typedef struct EerufSensor {
-    uint32_t fired_us;
     uint32_t echo_us;
     EerufFilter filter;
     uint8_t flags;
-    uint16_t total_late;
+    uint32_t fired_us[EERUF_FIRINGS]; /* the last first */
 } EerufSensor;
 
 /* How a ring listens and compares. */
@@ -203,8 +231,10 @@ typedef struct EerufConfig {
     uint32_t t_delta_us;  /* 0: what the schedule was verified for, at most 65,535 us */
     uint32_t window_us;   /* 0: what the schedule was verified for */
     uint32_t blanking_us; /* edges sooner than this after firing are ringing, not echoes */
+    uint32_t path_change_us; /* P; 0: what the schedule was verified for, t_delta unless less or more was asked for */
+    uint32_t audible_us;  /* R; 0: what the schedule was verified for, its period if it was not */
 } EerufConfig;
-#define EERUF_CONFIG {EERUF_VERSION, 2, 0, 0, 0}
+#define EERUF_CONFIG {EERUF_VERSION, 2, 0, 0, 0, 0, 0}
 
 enum {
     EERUF_EVENT_FIRE = 0,    /* fire this sensor, now */
@@ -216,7 +246,6 @@ enum {
 typedef struct EerufPeriod {
     uint16_t max_late_us;  /* the latest poll for a firing or the end */
     uint16_t sum_late_us;  /* by which the timetable got longer */
-    uint16_t max_shift_us; /* by how much crosstalk may have moved because of lateness, from one reading to the next */
     uint8_t tally[EERUF_READING_KINDS]; /* readings by kind; each stops at 255 */
 } EerufPeriod;
 
@@ -232,22 +261,15 @@ typedef struct EerufEvent {
     } u;
 } EerufEvent;
 
-/* How far late firings have stretched the timetable. Not for the caller. */
-typedef struct EerufLateness {
-    uint8_t watched, uncomparable, last;
-    uint16_t latest, total, total_before, least, most, least_before, most_before, last_late, last_stretch;
-} EerufLateness;
-
-/* A ring: 73 bytes on an AVR. Initialise it with eeruf_ring_init; not for the caller otherwise. */
+/* A ring: 70 bytes on an AVR. Initialise it with eeruf_ring_init; not for the caller otherwise. */
 typedef struct EerufRing {
     uint16_t ready;
     const EerufSchedule *schedule, *next_schedule;
     EerufSensor *sensors;
     void (*hook)(struct EerufRing *ring, uint8_t sensor, uint32_t us);
-    uint32_t due_us, last_fired_us, emit_at_us, window_us, period;
-    uint16_t t_delta_us, blanking_us;
-    uint8_t count, phase, following, next, paused, oldest, pending, consecutive;
-    EerufLateness lateness;
+    uint32_t due_us, last_fired_us, emit_at_us, window_us, period, audible_us, known_from_us;
+    uint16_t t_delta_us, blanking_us, path_change_us, latest_us, sum_late_us;
+    uint8_t count, phase, following, next, paused, oldest, pending, consecutive, watched, stride;
     uint8_t tally[EERUF_READING_KINDS];
 } EerufRing;
 
@@ -255,12 +277,14 @@ typedef struct EerufRing {
    schedule. Sizes are in bytes. The config may ask for less than the schedule was verified for, not for more. */
 EerufStatus eeruf_ring_init(EerufRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
                             const EerufSchedule *schedule, const EerufConfig *config, uint32_t now_us);
-/* By a schedule that need not be verified: the conventional method, for comparison. Crosstalk may be accepted. */
+/* By a schedule that need not be verified; the config says t_delta and window. Crosstalk is not accepted either, but
+   what it could explain is ambiguous: with constant waits nearly all. */
 EerufStatus eeruf_ring_init_unverified(EerufRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
                                        const EerufSchedule *schedule, const EerufConfig *config, uint32_t now_us);
 
 /* EERUF_EVENT with the next event, or EERUF_OK if there is none at `now_us`: then sleep until the deadline. Hand in the
-   edges you know of before. A late poll loses nothing: what is due is postponed, and all that follows with it. */
+   edges you know of before. A late poll loses nothing: what is due is postponed, and all that follows with it. Where
+   that shifts crosstalk so that it could explain a reading, the reading is ambiguous. */
 EerufStatus eeruf_ring_poll(EerufRing *ring, uint32_t now_us, EerufEvent *event);
 /* As eeruf_ring_poll for a robot that moves: what a good reading of each sensor should have changed by since its firing
    before, one number for each sensor, or null. */
@@ -274,8 +298,13 @@ uint32_t eeruf_ring_due(const EerufRing *ring);
 /* An echo, at this instant. Any number, in any order, at any time, wanted or not. For a module that answers with a
    pulse as long as the echo took this is the firing's instant plus the pulse's width: see EerufHcSr04. */
 EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t sensor, uint32_t at_us);
-/* The sensor of the last EERUF_EVENT_FIRE really fired at this instant, later than the poll. Before the next poll. */
+/* Corrects when a sensor last fired, to an instant before or after the poll: by what a timer captured, for example.
+   Echo times count from it. If it is later, all that follows moves by as much. Call it before the readings that may
+   hold the firing's sound are polled for: an accepted reading cannot be taken back. An instant that is not after the
+   firing before is ignored; a hopping ring takes only instants after the poll. */
 EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t sensor, uint32_t at_us);
+/* When a sensor last fired; 0 for one that is not there. */
+uint32_t eeruf_ring_fired_at(const EerufRing *ring, uint8_t sensor);
 /* The echo line of a sensor was high when it was to be fired: its reading is EERUF_READING_STUCK. */
 EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor);
 
@@ -291,6 +320,10 @@ EerufStatus eeruf_ring_change_to_unverified(EerufRing *ring, const EerufSchedule
 EerufStatus eeruf_ring_set_t_delta(EerufRing *ring, uint32_t t_delta_us);
 EerufStatus eeruf_ring_set_window(EerufRing *ring, uint32_t window_us);
 EerufStatus eeruf_ring_set_blanking(EerufRing *ring, uint32_t blanking_us);
+/* P, at most 65,534 us: for a robot that moves at v its jitter and 2 v dt / c. Less than t_delta makes fewer readings
+   ambiguous where firings are late. And R, at most 67,108,864 us. */
+EerufStatus eeruf_ring_set_path_change(EerufRing *ring, uint32_t path_change_us);
+EerufStatus eeruf_ring_set_audible(EerufRing *ring, uint32_t audible_us);
 
 /* ---- Adaptation: fire more slowly where too much is rejected, and faster again when it is calm ---- */
 
@@ -410,6 +443,7 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor);
 /* ---- Time hopping: a cycle of many phases, so that no sensor stays blind ---- */
 
 #define EERUF_HYPOTHESES 4
+#define EERUF_HOPPING_MAX_WINDOW_US 16711679u /* echoes are told apart up to it, as in Rust, which keeps 24 bits */
 
 /* How readings are weighed: begin with one of the three sets below. */
 typedef struct EerufTrackerSettings {
@@ -430,7 +464,8 @@ typedef struct EerufHoppingConfig {
     uint32_t step_us;            /* the code's: crosstalk moves by at least this; 1 to 65,535 */
     uint32_t period_us;          /* at least window + (phases - 1) step */
     const uint32_t *lag_us;      /* one for each sensor, in RAM; null: `neighbours` adjacent ones spread evenly */
-    uint32_t window_us, blanking_us;
+    uint32_t window_us;          /* at most EERUF_HOPPING_MAX_WINDOW_US */
+    uint32_t blanking_us;
     uint32_t reach_us;           /* after how long no sound is heard any more */
     uint32_t shift_interval_us;  /* what neighbours keep when a lag is drawn anew */
     uint32_t seed;               /* of the draws */
@@ -457,6 +492,15 @@ typedef struct EerufHoppingConfig {
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
      {150, 400, 60, 5, 7, 1, 6, 0}, 28, 8, 6, 5, 24, 4, 0}
 
+/* What a hopping ring has of each sensor in place of an EerufSensor: its last firing is enough. 16 bytes on an AVR. Not
+   for the caller. */
+typedef struct EerufHopSensor {
+    uint32_t echo_us;
+    EerufFilter filter;
+    uint8_t flags;
+    uint32_t fired_us[1];
+} EerufHopSensor;
+
 /* One hypothesis about a sensor's echo. Not for the caller. */
 typedef struct EerufTrack {
     uint32_t t_echo_us;
@@ -464,7 +508,7 @@ typedef struct EerufTrack {
     uint8_t solo_votes, score, close, flags, age;
 } EerufTrack;
 
-/* One sensor of a hopping ring: 57 bytes on an AVR, beside its EerufSensor. Not for the caller. */
+/* One sensor of a hopping ring: 57 bytes on an AVR, beside its EerufHopSensor. Not for the caller. */
 typedef struct EerufHopper {
     uint32_t lag_us;
     uint16_t late_us;
@@ -487,9 +531,9 @@ typedef struct EerufHoppingRing {
    eeruf_hopping_poll, and hand in echoes, late firings and stuck lines with the functions of its `ring`; the others
    return EERUF_ERR_HOPPING: enabling, pause and restart have functions of their own, and there is no schedule to
    change. */
-EerufStatus eeruf_hopping_init(EerufHoppingRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
-                               EerufHopper *hoppers, size_t hoppers_size, const EerufHoppingConfig *config,
-                               uint32_t now_us);
+EerufStatus eeruf_hopping_init(EerufHoppingRing *ring, size_t ring_size, EerufHopSensor *sensors,
+                               size_t sensors_size, EerufHopper *hoppers, size_t hoppers_size,
+                               const EerufHoppingConfig *config, uint32_t now_us);
 /* As eeruf_ring_poll_expecting; `change_us` may be null. Readings are also EERUF_READING_TENTATIVE. */
 EerufStatus eeruf_hopping_poll(EerufHoppingRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event);
 /* As eeruf_ring_enable; the tracks of a sensor that is enabled are forgotten. */

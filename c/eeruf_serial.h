@@ -68,7 +68,7 @@ static inline void eeruf_frame_put(EerufFrame *frame, uint32_t value, uint8_t by
 
 static inline EerufFrame eeruf_frame_begin(EerufSerial *line, uint8_t kind, uint8_t *bytes) {
     EerufFrame frame = {bytes, 0xFFFF, 0, 0};
-    eeruf_frame_put(&frame, (uint32_t)0x10 | kind, 1);
+    eeruf_frame_put(&frame, (uint32_t)0x20 | kind, 1);
     eeruf_frame_put(&frame, line->sequence++, 2);
     return frame;
 }
@@ -108,7 +108,7 @@ static inline size_t eeruf_frame_of_event(EerufSerial *line, const EerufRing *ri
     if (event->kind == EERUF_EVENT_READING) {
         uint32_t fired_us;
         if (event->sensor >= line->sensors || event->sensor >= ring->count) return 0;
-        fired_us = ring->sensors[event->sensor].fired_us;
+        fired_us = eeruf_ring_fired_at(ring, event->sensor);
         frame = eeruf_frame_begin(line, weighed == NULL ? 1 : 3, bytes);
         eeruf_frame_put(&frame, event->sensor, 1);
         eeruf_frame_put(&frame, event->phase, 1);
@@ -118,6 +118,7 @@ static inline size_t eeruf_frame_of_event(EerufSerial *line, const EerufRing *ri
         eeruf_frame_put(&frame, event->u.reading.t_echo_us, 4);
         eeruf_frame_put(&frame, line->late_us[event->sensor], 2);
         eeruf_frame_put(&frame, now_us - fired_us, 4);
+        eeruf_frame_put(&frame, event->u.reading.explained_by, 1);
         if (weighed != NULL) {
             eeruf_frame_put(&frame, weighed->how, 1);
             eeruf_frame_put(&frame, weighed->changes, 1);

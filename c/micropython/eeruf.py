@@ -19,12 +19,19 @@ NOBODY = 255
 NEVER = 0xFFFF  # the age of a sensor none of whose readings was ever accepted
 READING_NAMES = (
     "first", "accepted", "rejected", "repeated", "no_echo", "clear", "too_early", "late", "stuck", "tentative",
+    "ambiguous", "unanswered",
 )  # fmt: skip
 FIRST, ACCEPTED, REJECTED, REPEATED, NO_ECHO, CLEAR, TOO_EARLY, LATE, STUCK, TENTATIVE = range(10)
+AMBIGUOUS, UNANSWERED = 10, 11
+HISTORY = "history"  # explains an ambiguous reading if a firing that could have been heard is forgotten
 # Of events: what they are, then of a firing and a reading the sensor and the phase in which it fires.
 FIRE, READING, PERIOD = range(3)
-# Places in a reading, (READING, sensor, phase, period, kind, t_echo_us, previous_us, age). Without echo a time is None.
-SENSOR, PHASE, KIND, T_ECHO, PREVIOUS, AGE = 1, 2, 4, 5, 6, 7
+_REMEMBERED = 4  # firings of each sensor: enough if sound is heard for no longer than a period
+_WATCHED = 6  # ends of periods for which an irregular firing may explain a reading
+_ALWAYS = 255  # the schedule is not proven, so the ring searches at each reading
+# Places in a reading, (READING, sensor, phase, period, kind, t_echo_us, previous_us, age, explained_by). Without echo a
+# time is None. `explained_by`: the sensor whose sound could be both echoes, or HISTORY; None unless ambiguous.
+SENSOR, PHASE, KIND, T_ECHO, PREVIOUS, AGE, EXPLAINED_BY = 1, 2, 4, 5, 6, 7, 8
 
 
 class Schedule:
@@ -58,6 +65,7 @@ class Schedule:
         # What it was verified for.
         self.verified = False
         self.t_delta_us = self.min_interval_us = self.window_us = self.separation_us = 0
+        self.audible_us = period_us  # how long sound may be heard
 
     def verify(self, t_delta_us, min_interval_us=0, window_us=0, neighbours=0, layout="ring", stale_echo=False):
         """Returns the schedule if (13a) and (13b) hold for `t_delta_us` and two of so many neighbours never fire sooner
@@ -96,6 +104,7 @@ class Schedule:
         self.verified = True
         self.t_delta_us, self.min_interval_us, self.separation_us = t_delta_us, min_interval_us, separation
         self.window_us = window_us or self.min_refire_us
+        self.audible_us = (2 if stale_echo else 1) * self.period_us
         return self
 
     def _settling_us(self):
@@ -103,33 +112,38 @@ class Schedule:
 
 
 class _Sensor:
-    def __init__(self):
-        self.fired_us = self.total_late = self.phase = self.score = 0
+    def __init__(self, long_ago_us):
+        self.firings = [long_ago_us] * _REMEMBERED  # the latest first
+        self.phase = self.score = 0
         self.age = NEVER
-        self.enabled, self.uncomparable = True, False
-        self.drop()
+        self.enabled = True
+        self.drop(long_ago_us)
 
     def forget(self):
         self.known_us, self.score, self.confirmed = None, 0, False
 
-    def drop(self):
+    def forget_firings(self, long_ago_us):
+        for i in range(_REMEMBERED):
+            self.firings[i] = long_ago_us
+
+    def drop(self, long_ago_us):
+        self.forget_firings(long_ago_us)
         self.echo_us = None
         self.outside = True  # its only edges so far came outside the window
-        self.listening = self.can_emit = self.stuck = self.uncomparable = False
+        self.listening = self.can_emit = self.stuck = False
         self.forget()
-
-
-def _less(one, other):
-    return one - other if one > other else 0
 
 
 class Ring:
     """A ring that fires by a verified schedule. `now_us` is a reading of a clock of `clock_bits` bits, which may wrap: 32,
-    or on a board those of `time.ticks_us`, mostly 30. Poll it at its deadline, hand in echoes as they come."""
+    or on a board those of `time.ticks_us`, mostly 30. Poll it at its deadline, hand in echoes as they come.
+
+    It never accepts a single path of foreign sound that is heard for at most `audible_us` (None: as verified) and changes
+    from one reading to the next by at most `path_change_us` (None: `t_delta_us`)."""
 
     def __init__(
         self, schedule, now_us, t_delta_us=None, window_us=None, blanking_us=0, consecutive=2, clock_bits=32,
-        unverified=False,
+        unverified=False, path_change_us=None, audible_us=None,
     ):  # fmt: skip
         if not schedule.verified and (not unverified or t_delta_us is None or window_us is None):
             raise ValueError("the schedule was not verified")
@@ -149,20 +163,26 @@ class Ring:
         if not 2 <= consecutive <= 8:
             raise ValueError("consecutive = %d: 2 to 8 expected" % consecutive)
         self._mask, self._half = (1 << clock_bits) - 1, 1 << (clock_bits - 1)
+        # Longer ago than any sound is heard; by how much a clock may step back; the longest that sound can be heard.
+        self._long_ago, self._step_back = 1 << (clock_bits - 2), 1 << min(20, clock_bits - 4)
+        self._max_audible = 1 << min(26, clock_bits - 4)
         if 6 * schedule.period_us > self._half:
             raise ValueError("period_us = %d: too long for a clock of %d bits" % (schedule.period_us, clock_bits))
         self.schedule = schedule
         self.t_delta_us, self.window_us, self.blanking_us = t_delta_us, window_us, blanking_us
         self.consecutive = consecutive
-        self._sensors = [_Sensor() for _ in range(schedule.sensors)]
+        self._known_from = (now_us - self._long_ago) & self._mask  # firings before are not known
+        self._sensors = [_Sensor(self._known_from) for _ in range(schedule.sensors)]
         self._oldest, self._pending, self._emit_at = NOBODY, 0, now_us
         self._period = 0
-        self._tally = [0] * 10
-        # Lateness; see below. The first period is number 3.
-        self._watched, self._uncomparable, self._last = 0, 3, NOBODY
-        self._latest = self._total = self._total_before = self._last_late = self._last_stretch = 0
-        self._least = self._least_before = 0xFFFF
-        self._most = self._most_before = 0
+        self._tally = [0] * len(READING_NAMES)
+        # At how many more ends of periods an irregular firing can be heard; this period's lateness.
+        self._watched = self._latest = self._total = 0
+        self.path_change_us = None
+        self.set_audible(min(schedule.audible_us, self._max_audible) if audible_us is None else audible_us)
+        self.set_path_change(path_change_us)
+        if self._proven:
+            self._watched = 0
         self._last_fired = (now_us - schedule._settling_us()) & self._mask
         self._due = now_us
         self._begin_period(0)
@@ -203,71 +223,97 @@ class Ring:
         self._begin_period((self._phase + 1) % self.schedule.phases)
         return left_out
 
-    # -- Lateness. Crosstalk moves by what the schedule says and by the emitter's stretch less the receiver's; where
-    #    stretches differ by more than is tolerated, readings are not compared (docs/theory.md, section 2.1). --
+    # -- Near-identical readings are ambiguous if sound of one sensor explains both. While firings keep a verified
+    #    timetable there is none, and the ring does not search (docs/theory.md, section 2.1). --
 
-    def _watch(self):
-        if not self._watched:
-            for sensor in self._sensors:
-                sensor.total_late = 0
-            self._total = self._total_before = self._most = self._most_before = 0
-            self._least = self._least_before = 0xFFFF if self._uncomparable == 3 else 0
-        self._watched = 3
+    def set_path_change(self, path_change_us):
+        """Sets by how much a path of foreign sound may change from one reading to the next, None for `t_delta_us`."""
+        if path_change_us is not None and not 0 <= path_change_us < 0xFFFF:
+            raise ValueError("path_change_us = %d: 0 to 65534 expected" % path_change_us)
+        self.path_change_us = path_change_us
+        self._prove()
 
-    def _uncompare(self, only_listening):
-        for sensor in self._sensors:
-            if sensor.listening or not only_listening:
-                sensor.uncomparable = True
+    def set_audible(self, audible_us):
+        """Sets for how long sound is heard after it was sent."""
+        if not 0 <= audible_us <= self._max_audible:
+            raise ValueError("audible_us = %d: 0 to %d expected" % (audible_us, self._max_audible))
+        self.audible_us = audible_us
+        self._prove()
 
-    def _add_late(self, late_us):
+    def _prove(self):
+        """Updates `_proven`, true if the schedule was verified for what the ring asks, and `_spare`, the lateness of a
+        period's firings together that crosstalk still stands."""
+        schedule, asked = self.schedule, self.path_change_us
+        self._change_us = self.t_delta_us if asked is None else asked
+        twice = self.t_delta_us + self._change_us
+        self._proven = (
+            schedule.verified
+            and (asked or 0) <= schedule.t_delta_us
+            and self.audible_us <= schedule.audible_us
+            and twice < schedule.min_refire_us
+        )
+        self._spare = min(max(schedule.separation_us - twice - 1, 0) // 4, 0xFFFF)
+        self._disturb()
+
+    def _disturb(self):
+        self._watched = _WATCHED if self._proven else _ALWAYS
+
+    def _fired_late(self, late_us):
+        self._latest = max(self._latest, late_us)
         self._total = min(self._total + late_us, 0xFFFF)
-        if self._total == 0xFFFF:
-            self._uncomparable = 2
-            self._uncompare(False)
+        if self._total > self._spare:
+            self._disturb()
 
-    def _tolerated(self):
-        schedule = self.schedule
-        separation = schedule.separation_us if schedule.verified else 2 * self.t_delta_us + 1
-        return min(_less(min(separation, schedule.min_refire_us), self.t_delta_us + 1), 0x7FFF)
-
-    def _stretch(self, x, late_us, stretch):
-        self._last, self._last_late, self._last_stretch = x, late_us, stretch
-        if self._uncomparable == 3:
-            return
-        least, most = min(self._least, self._least_before), max(self._most, self._most_before)
-        self._least, self._most = min(self._least, stretch), max(self._most, stretch)
-        if max(_less(stretch, least), _less(most, stretch)) > self._tolerated():
-            self._uncompare(True)
-
-    def _fired_late(self, x, late_us):
-        if late_us:
-            self._watch()
-            self._latest = max(self._latest, late_us)
-            self._add_late(late_us)
-        sensor = self._sensors[x]
-        stretch = self._total - sensor.total_late if self._total >= sensor.total_late else 0xFFFF
-        sensor.total_late = self._total
-        self._stretch(x, late_us, stretch)
-
-    def _end_late_period(self):
-        latest, self._latest = self._latest, 0
-        total = shift = 0
-        uncomparable = self._uncomparable in (1, 2)
-        self._uncomparable = self._uncomparable - 1 if uncomparable else 0
-        if self._watched:
+    def _end_late_period(self, now_us):
+        latest, total = self._latest, self._total
+        self._latest = self._total = 0
+        if 0 < self._watched < _ALWAYS:
             self._watched -= 1
-            total = _less(self._total, self._total_before)
-            shift = _less(max(self._most, self._most_before), min(self._least, self._least_before))
-            self._least_before, self._most_before = self._least, self._most
-            self._least, self._most = 0xFFFF, 0
-            forgotten = 0xFFFF if self._total == 0xFFFF else self._total_before
-            for sensor in self._sensors:
-                sensor.total_late = _less(sensor.total_late, forgotten)
-            self._total -= forgotten
-            self._total_before = self._total
-        if uncomparable:
-            self._uncompare(False)
-        return latest, total, shift
+        # Before the clock comes round to them.
+        long_ago = (now_us - self._long_ago) & self._mask
+        for sensor in self._sensors:
+            if self._is_long_ago(sensor.firings[0], now_us):
+                sensor.forget_firings(long_ago)
+                if not sensor.listening:
+                    sensor.outside = True  # no edge is an echo of them
+        if self._is_long_ago(self._known_from, now_us):
+            self._known_from = long_ago
+        return latest, total
+
+    def _is_long_ago(self, at_us, now_us):
+        # What lies just ahead of now is from before the clock stepped back.
+        return self._long_ago < (now_us - at_us) & self._mask <= self._mask - self._step_back
+
+    def _explanation(self, receiver, first, second):
+        """The sensor whose sound could be both echoes, `first` after the receiver's firing before its last and `second`
+        after the last; HISTORY if a forgotten firing's could, else None."""
+        mask, half, audible = self._mask, self._half, self.audible_us
+        own = self._sensors[receiver].firings
+        first, second = (own[1] + first) & mask, (own[0] + second) & mask
+        # The time between the two sounds is that between their firings, but for the change of the path.
+        apart = (second - first) & mask
+        least, most = apart - self._change_us, apart + self._change_us
+        age = (first - self._known_from) & mask
+        forgotten = age < audible or age >= half
+        x = 0
+        for sensor in self._sensors:
+            firings = sensor.firings
+            # The receiver's own two firings are those whose echoes it is meant to hear.
+            latest = 1 if x == receiver else 0
+            left_out = 1 if x == receiver else -1
+            for i in range(_REMEMBERED):
+                a = firings[i]
+                age = (first - a) & mask
+                if age <= audible and i != left_out:
+                    for j in range(latest, i + 1):
+                        b = firings[j]
+                        if least <= (b - a) & mask <= most and (second - b) & mask <= audible:
+                            return x
+            # Whatever is forgotten came before the last of them.
+            if age < audible or age >= half:
+                forgotten = True
+            x += 1
+        return HISTORY if forgotten else None
 
     # -- Events --
 
@@ -309,31 +355,37 @@ class Ring:
 
     def _emit_when_oldest_ends(self):
         if self._pending == 0 and self._oldest != NOBODY:
-            self._emit_at = (self._sensors[self._oldest].fired_us + self.window_us) & self._mask
+            self._emit_at = (self._sensors[self._oldest].firings[0] + self.window_us) & self._mask
 
     def _find_oldest(self, before):
+        before -= self._step_back  # 1 us before is not a turn of the clock after
         self._oldest, soonest = NOBODY, self._mask
         for x, sensor in enumerate(self._sensors):
-            if sensor.listening and (sensor.fired_us - before) & self._mask < soonest:
-                self._oldest, soonest = x, (sensor.fired_us - before) & self._mask
+            if sensor.listening and (sensor.firings[0] - before) & self._mask < soonest:
+                self._oldest, soonest = x, (sensor.firings[0] - before) & self._mask
 
     def _fire(self, x, now_us):
         sensor = self._sensors[x]
         late_us = min((now_us - self._due) & self._mask, 0xFFFF)
-        sensor.listening, sensor.phase, sensor.fired_us = True, self._phase, now_us
+        sensor.listening, sensor.phase = True, self._phase
         sensor.can_emit = sensor.outside = sensor.stuck = False
-        if late_us or self._watched:
-            self._fired_late(x, late_us)
+        firings = sensor.firings
+        for i in range(_REMEMBERED - 1, 0, -1):
+            firings[i] = firings[i - 1]
+        firings[0] = now_us
+        if late_us:
+            self._fired_late(late_us)
         if self._oldest == NOBODY:
             self._oldest = x
             self._emit_when_oldest_ends()
         self._last_fired = self._due = now_us
         self._turn()
 
-    def _compare(self, sensor, change_us):
-        """Ends a firing and compares its reading with the one before (Eq. 11): (kind, echo, previous)."""
-        echo, apart = sensor.echo_us, sensor.uncomparable
-        if apart or sensor.stuck or sensor.outside:
+    def _compare(self, x, change_us):
+        """Ends a firing and compares its reading with the one before (Eq. 11): (kind, echo, previous, explained_by)."""
+        sensor = self._sensors[x]
+        echo, explained_by = sensor.echo_us, None
+        if sensor.stuck or sensor.outside:
             sensor.forget()
         previous = sensor.known_us
         if sensor.stuck:
@@ -345,7 +397,9 @@ class Ring:
                 near = echo is None and previous is None
             else:
                 near = abs(echo - previous - change_us) <= self.t_delta_us
-            if sensor.score and near:
+                if near and self._watched:
+                    explained_by = self._explanation(x, previous, echo)
+            if sensor.score and near and explained_by is None:
                 sensor.score = min(sensor.score + 1, self.consecutive)
                 sensor.confirmed = sensor.score >= self.consecutive
             else:
@@ -355,32 +409,33 @@ class Ring:
                 kind = CLEAR if echo is None else ACCEPTED
             elif echo is None:
                 kind = NO_ECHO
+            elif explained_by is not None:
+                kind = AMBIGUOUS
             elif previous is None:
                 kind = FIRST
             else:
                 kind = REJECTED if sensor.score == 1 else REPEATED
-        if apart:
-            sensor.forget()
         sensor.age = 0 if kind == ACCEPTED else min(sensor.age + 1, max(NEVER - 1, sensor.age))
-        sensor.listening = sensor.can_emit = sensor.outside = sensor.stuck = sensor.uncomparable = False
+        sensor.listening = sensor.can_emit = sensor.outside = sensor.stuck = False
         sensor.echo_us = None
-        return kind, echo, previous
+        return kind, echo, previous, explained_by
 
     def _emit(self, x, change_us):
         sensor = self._sensors[x]
         if sensor.can_emit:
             self._pending -= 1
         if sensor.listening:
-            kind, echo, previous = self._compare(sensor, change_us)
+            kind, echo, previous, explained_by = self._compare(x, change_us)
             if self._oldest == x:
-                self._find_oldest(sensor.fired_us)
+                self._find_oldest(sensor.firings[0])
         else:
-            kind, echo, previous = LATE, sensor.echo_us, None
+            kind, echo, previous, explained_by = LATE, sensor.echo_us, None, None
             sensor.can_emit, sensor.echo_us = False, None
         self._emit_when_oldest_ends()
         self._count(kind)
         ago = (self._phase - sensor.phase) % self.schedule.phases
-        return (READING, x, sensor.phase, (self._period - ago) & 0xFFFFFFFF, kind, echo, previous, sensor.age)
+        period = (self._period - ago) & 0xFFFFFFFF
+        return (READING, x, sensor.phase, period, kind, echo, previous, sensor.age, explained_by)
 
     def _count(self, kind):
         self._tally[kind] = min(self._tally[kind] + 1, 255)
@@ -390,12 +445,10 @@ class Ring:
         phase, period = self._phase, self._period
         self._period += 1
         changed = self._end_schedule_period(now_us)
-        late = self._end_late_period()
+        late = self._end_late_period(now_us)
         if changed:
-            self._watch()
-            self._uncomparable = 1
-            self._uncompare(False)
-        tally, self._tally = self._tally, [0] * 10
+            self._disturb()
+        tally, self._tally = self._tally, [0] * len(READING_NAMES)
         return (PERIOD, phase, period) + late + (tally,)
 
     # -- What happens to it --
@@ -403,7 +456,7 @@ class Ring:
     def echo(self, x, at_us):
         """An echo, at this instant; of a module that answers with a pulse, the firing's instant plus the pulse's width."""
         sensor = self._sensors[x]
-        t_echo = (at_us - sensor.fired_us) & self._mask
+        t_echo = (at_us - sensor.firings[0]) & self._mask
         if t_echo >= self._half:
             return
         if sensor.listening:
@@ -430,33 +483,38 @@ class Ring:
         self._pending += 1
 
     def fired(self, x, at_us):
-        """The sensor of the last firing really fired at this instant, later than the poll. Before the next poll."""
+        """Corrects when a sensor last fired, before or after its poll. Call it before you poll for readings that may hold
+        its sound. An instant that is not after the firing before is ignored."""
         sensor = self._sensors[x]
-        polled = sensor.fired_us
-        later = (at_us - polled) & self._mask
-        if not sensor.listening or later == 0 or later >= self._half:
+        firings = sensor.firings
+        polled = firings[0]
+        if at_us == polled or at_us == firings[1] or not self._reached(at_us, firings[1]):
             return
-        sensor.fired_us = at_us
+        firings[0] = at_us
+        later = (at_us - polled) & self._mask
+        earlier = later >= self._half
+        if earlier:
+            later -= self._mask + 1
+        if not sensor.listening and sensor.known_us is not None:
+            sensor.known_us -= later
+            if sensor.known_us < 0:
+                sensor.forget()
         if sensor.echo_us is not None:
-            sensor.echo_us = _less(sensor.echo_us, later)
-        self._last_fired = (self._last_fired + later) & self._mask
-        self._due = (self._due + later) & self._mask
-        later = min(later, 0xFFFF)
-        known = not self._watched or self._last == x
-        late_us, stretch = (self._last_late, self._last_stretch) if self._watched else (0, 0)
-        self._watch()
-        self._add_late(later)
-        sensor.total_late = min(sensor.total_late + later, 0xFFFF)
-        if known:
-            late_us = min(late_us + later, 0xFFFF)
-            self._latest = max(self._latest, late_us)
-            self._stretch(x, late_us, min(stretch + later, 0xFFFF))
-        else:
-            self._uncomparable = 2
-            self._uncompare(False)
-        if self._oldest == x:
-            self._find_oldest(polled)
-            self._emit_when_oldest_ends()
+            sensor.echo_us -= later
+            if sensor.echo_us < 0:
+                # The first edge came before it fired, and may have kept out the echo.
+                sensor.echo_us, sensor.outside = 0, True
+        if sensor.listening:
+            if not earlier:
+                self._last_fired = (self._last_fired + later) & self._mask
+                self._due = (self._due + later) & self._mask
+                later = min(later, 0xFFFF)
+                self._latest = max(self._latest, later)
+                self._total = min(self._total + later, 0xFFFF)
+            if self._oldest == x:
+                self._find_oldest(polled)
+                self._emit_when_oldest_ends()
+        self._disturb()
 
     def stuck(self, x):
         """The echo line of a sensor was high when it was to be fired."""
@@ -468,6 +526,7 @@ class Ring:
         sensor = self._sensors[x]
         if enabled and not sensor.enabled:
             sensor.forget()
+            self._disturb()
         sensor.enabled = enabled
         self._skip()
 
@@ -481,10 +540,11 @@ class Ring:
             self._last_fired, self._due = (now_us - settling) & self._mask, now_us
         self._begin_period(0)
         for sensor in self._sensors:
-            sensor.drop()
+            sensor.drop((now_us - self._long_ago) & self._mask)
         self._oldest, self._pending = NOBODY, 0
-        self._watch()
-        self._uncomparable = 1
+        # Sound from before may still be heard.
+        self._known_from = now_us
+        self._disturb()
 
 
 class HcSr04Ring:
@@ -528,7 +588,7 @@ class HcSr04Ring:
             high = self._echoes[x].value()
             now = self._time.ticks_us()
             rose = self._rose[x]
-            fired = self.ring._sensors[x].fired_us
+            fired = self.ring._sensors[x].firings[0]
             if rose is None:
                 if high and self._time.ticks_diff(now, fired) >= self.DEAF_US:
                     self._rose[x] = now

@@ -1,11 +1,12 @@
 """Whether eeruf.py says of the corpus what the Rust crate eeruf-core says: python3 test_corpus.py [corpus.txt].
 
-It runs under MicroPython too. What the lines mean stands in crates/eeruf-c-equal/tests/all/corpus.rs."""
+It runs under MicroPython too. What the lines mean stands in crates/eeruf-core/tests/all/corpus.rs."""
 
 import sys
 
-from eeruf import Ring, Schedule
+from eeruf import HISTORY, READING, Ring, Schedule
 
+NONE = 0xFFFFFFFF
 LAYOUTS = ("line", "ring", "blocks")
 
 
@@ -13,11 +14,12 @@ def flat(event):
     """An event as the corpus has it."""
     if event is None:
         return []
-    if event[0] == 1:
-        return [0xFFFFFFFF if number is None else number for number in event]
+    if event[0] == READING:
+        explained_by = 255 if event[8] is None else 254 if event[8] == HISTORY else event[8]
+        return [NONE if number is None else number for number in event[:8]] + [explained_by]
     if event[0] == 0:
         return list(event)
-    return [2, 0] + list(event[1:6]) + event[6]
+    return list(event[:5]) + event[5]
 
 
 def check(lines):
@@ -41,6 +43,10 @@ def check(lines):
             ring.fired(n[0], n[1])  # noqa: F821
         elif what == "N":
             ring.enable(n[0], n[1] == 1)  # noqa: F821
+        elif what == "C":
+            ring.set_path_change(n[0])  # noqa: F821
+        elif what == "A":
+            ring.set_audible(n[0])  # noqa: F821
         elif what == "R":
             ring.restart(n[0])  # noqa: F821
         elif what == "S":
@@ -55,7 +61,11 @@ def check(lines):
             if verified != n[6:]:
                 raise AssertionError("line %d: verified %r, not %r" % (number, verified, n[6:]))
         elif what == "L":
-            ring = Ring(schedule, n[4], n[0], n[1], n[2], n[3], unverified=True)
+            path_change, audible = [None if number == NONE else number for number in n[4:6]]
+            ring = Ring(
+                schedule, n[6], n[0], n[1], n[2], n[3],
+                unverified=True, path_change_us=path_change, audible_us=audible,
+            )  # fmt: skip
             rings += 1
         else:
             raise AssertionError("line %d: %r" % (number, line))

@@ -1,6 +1,9 @@
 """HcSr04Ring on simulated modules, whose clock has 30 bits and wraps, as on most boards."""
 
-from eeruf import ACCEPTED, FIRST, KIND, REJECTED, SENSOR, STUCK, T_ECHO, HcSr04Ring, Ring, Schedule
+from eeruf import (
+    ACCEPTED, AGE, AMBIGUOUS, EXPLAINED_BY, FIRST, HISTORY, KIND, REJECTED, SENSOR, STUCK, T_ECHO,
+    HcSr04Ring, Ring, Schedule,
+)  # fmt: skip
 
 PERIOD = 1 << 30
 
@@ -95,8 +98,59 @@ def border():
         raise AssertionError("t_delta: %r" % kinds)
 
 
+def readings(ring, count, correct_us=0):
+    """The next readings, where each sensor sees a wall after 9 ms and fires this much later than it is polled for."""
+    found = []
+    while len(found) < count:
+        now = ring.deadline()
+        event = ring.poll(now)
+        if event and event[0] == 0:
+            fired = (now + correct_us) % PERIOD
+            ring.fired(event[1], fired)
+            ring.echo(event[1], (fired + 9000) % PERIOD)
+        elif event and event[0] == 1:
+            found.append(event)
+    return found
+
+
+def ambiguous():
+    """Readings that other sound explains do not count; a ring that restarts knows no firings from before."""
+    lags = [0, 20000, 40000]
+    constant = Schedule(62000, [lags, lags])
+    ring = Ring(constant, PERIOD - 500000, 387, 60000, clock_bits=30, unverified=True)
+    for reading in readings(ring, 30)[9:]:
+        if (reading[KIND], reading[EXPLAINED_BY]) != (AMBIGUOUS, 1 if reading[SENSOR] == 0 else 0):
+            raise AssertionError("constant waits: %r" % (reading,))
+    varied = Schedule(62000, [[2000, 22000, 42000], [0, 22000, 43000]]).verify(387)
+    for correct_us in (-300, 0, 300):
+        ring = Ring(varied, PERIOD - 500000, clock_bits=30, path_change_us=100, audible_us=55000)
+        for reading in readings(ring, 30, correct_us)[6:]:
+            if reading[KIND:AGE] != (ACCEPTED, 9000, 9000):
+                raise AssertionError("fired %d us later: %r" % (correct_us, reading))
+    ring = Ring(varied, 0, clock_bits=30, audible_us=120000)
+    readings(ring, 12)
+    ring.restart(ring.deadline())
+    for reading in readings(ring, 6)[3:]:
+        if (reading[KIND], reading[EXPLAINED_BY]) != (AMBIGUOUS, HISTORY):
+            raise AssertionError("after a restart: %r" % (reading,))
+
+
+def room():
+    """A schedule has 1 to 64 sensors, as in Rust and in C."""
+    for sensors, refused in ((64, False), (65, True), (256, True)):
+        try:
+            Schedule(62000, [list(range(sensors))] * 2)
+            said = None
+        except ValueError as error:
+            said = str(error)
+        if said != ("%d sensors: 1 to 64 expected" % sensors if refused else None):
+            raise AssertionError("%d sensors: %r" % (sensors, said))
+
+
 def main():
     border()
+    ambiguous()
+    room()
     for start in (0, PERIOD - 1000000):
         firings, accepted, stuck = run(start, ())
         # 32 periods in two seconds; the first echo has nothing to agree with.

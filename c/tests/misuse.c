@@ -93,6 +93,14 @@ static void schedules(void) {
     broken.separation_us++;
     EXPECT(eeruf_schedule_check(&broken), EERUF_ERR_TABLE);
     broken = schedule;
+    broken.audible_us++;
+    EXPECT(eeruf_schedule_check(&broken), EERUF_ERR_TABLE);
+    broken = schedule;
+    broken.path_change_us = broken.separation_us - broken.t_delta_us;
+    EXPECT(eeruf_schedule_check(&broken), EERUF_ERR_CROSSTALK);
+    broken.path_change_us--;
+    EXPECT(eeruf_schedule_check(&broken), EERUF_OK);
+    broken = schedule;
     broken.t_delta_us = 1000;
     EXPECT(eeruf_schedule_check(&broken), EERUF_ERR_CROSSTALK);
     order[1] = 0; /* twice */
@@ -128,6 +136,9 @@ static void before_init(EerufRing *none, int status) {
     EXPECT(eeruf_ring_set_t_delta(none, 1), status);
     EXPECT(eeruf_ring_set_window(none, 1), status);
     EXPECT(eeruf_ring_set_blanking(none, 1), status);
+    EXPECT(eeruf_ring_set_path_change(none, 1), status);
+    EXPECT(eeruf_ring_set_audible(none, 1), status);
+    EXPECT(eeruf_ring_fired_at(none, 0), 0);
 }
 
 static void rings(void) {
@@ -160,6 +171,12 @@ static void rings(void) {
     config.blanking_us = 36000;
     EXPECT(init(sizeof ring, sizeof sensors, &schedule, &config), EERUF_ERR_BLANKING);
     config.blanking_us = 0;
+    config.audible_us = 0x4000001u;
+    EXPECT(init(sizeof ring, sizeof sensors, &schedule, &config), EERUF_ERR_AUDIBLE);
+    config.audible_us = 0x4000000u;
+    config.path_change_us = 65535;
+    EXPECT(init(sizeof ring, sizeof sensors, &schedule, &config), EERUF_ERR_PATH_CHANGE);
+    config.path_change_us = config.audible_us = 0;
     EXPECT(eeruf_ring_poll(&ring, 0, &event), EERUF_ERR_NOT_READY); /* none of these has made a ring */
     EXPECT(init(sizeof ring, sizeof sensors, &schedule, &config), EERUF_OK);
     EXPECT(eeruf_ring_poll(&ring, 0, NULL), EERUF_ERR_NULL);
@@ -173,6 +190,12 @@ static void rings(void) {
     EXPECT(eeruf_ring_set_t_delta(&ring, 1000), EERUF_ERR_T_DELTA);
     EXPECT(eeruf_ring_set_window(&ring, 900), EERUF_ERR_COARSE_T_DELTA);
     EXPECT(eeruf_ring_set_blanking(&ring, 36000), EERUF_ERR_BLANKING);
+    EXPECT(eeruf_ring_set_path_change(&ring, 65535), EERUF_ERR_PATH_CHANGE);
+    EXPECT(eeruf_ring_set_path_change(&ring, EERUF_AS_T_DELTA), EERUF_ERR_PATH_CHANGE);
+    EXPECT(eeruf_ring_set_path_change(&ring, 65534), EERUF_OK);
+    EXPECT(eeruf_ring_set_audible(&ring, 0x4000001u), EERUF_ERR_AUDIBLE);
+    EXPECT(eeruf_ring_set_audible(&ring, 0x4000000u), EERUF_OK);
+    EXPECT(eeruf_ring_fired_at(&ring, SENSORS), 0);
 }
 
 static void filters_and_edges(void) {
@@ -275,15 +298,16 @@ static void adaptations(void) {
 #if EERUF_HOPPING
 static EerufHoppingRing hopping;
 static EerufHopper hoppers[SENSORS];
+static EerufHopSensor hop_sensors[SENSORS];
 
 static EerufStatus hop(size_t ring_size, size_t sensors_size, size_t hoppers_size, const EerufHoppingConfig *config) {
-    return eeruf_hopping_init(&hopping, ring_size, sensors, sensors_size, hoppers, hoppers_size, config, 0);
+    return eeruf_hopping_init(&hopping, ring_size, hop_sensors, sensors_size, hoppers, hoppers_size, config, 0);
 }
 
 static void hopping_rings(void) {
     const EerufHoppingConfig fine = EERUF_HOPPING_BALANCED(SENSORS, 60000, 36000);
     const uint32_t late[SENSORS] = {0, 1, 2, 59040};
-    const size_t r = sizeof hopping, s = sizeof sensors, h = sizeof hoppers;
+    const size_t r = sizeof hopping, s = sizeof hop_sensors, h = sizeof hoppers;
     EerufHoppingConfig config = fine;
     EXPECT(eeruf_hopping_poll(NULL, 0, NULL, &event), EERUF_ERR_NULL);
     EXPECT(eeruf_hopping_poll(&hopping, 0, NULL, &event), EERUF_ERR_NOT_READY);
@@ -294,9 +318,9 @@ static void hopping_rings(void) {
     EXPECT(eeruf_hopping_confirmed_us(&hopping, 0), EERUF_NO_ECHO);
     EXPECT(eeruf_hopping_solo(&hopping), 255);
     EXPECT(eeruf_hopping_lag_us(&hopping, 0), 0);
-    EXPECT(eeruf_hopping_init(NULL, r, sensors, s, hoppers, h, &config, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_init(NULL, r, hop_sensors, s, hoppers, h, &config, 0), EERUF_ERR_NULL);
     EXPECT(eeruf_hopping_init(&hopping, r, NULL, s, hoppers, h, &config, 0), EERUF_ERR_NULL);
-    EXPECT(eeruf_hopping_init(&hopping, r, sensors, s, NULL, h, &config, 0), EERUF_ERR_NULL);
+    EXPECT(eeruf_hopping_init(&hopping, r, hop_sensors, s, NULL, h, &config, 0), EERUF_ERR_NULL);
     EXPECT(hop(r, s, h, NULL), EERUF_ERR_NULL);
     EXPECT(hop(r - 1, s, h, &config), EERUF_ERR_MEMORY);
     EXPECT(hop(r, s - 1, h, &config), EERUF_ERR_MEMORY);
@@ -326,6 +350,12 @@ static void hopping_rings(void) {
     WITH(sensors, 2, EERUF_OK);
     WITH(tracker.near_us, 149, EERUF_ERR_TRACKER);
     WITH(blanking_us, 36000, EERUF_ERR_BLANKING);
+    config = fine;
+    config.period_us = 30000000;
+    config.window_us = EERUF_HOPPING_MAX_WINDOW_US;
+    EXPECT(hop(r, s, h, &config), EERUF_OK);
+    config.window_us++;
+    EXPECT(hop(r, s, h, &config), EERUF_ERR_WINDOW);
     EXPECT(hop(r, s, h, &fine), EERUF_OK);
     EXPECT(eeruf_hopping_poll(&hopping, 0, NULL, NULL), EERUF_ERR_NULL);
     EXPECT(eeruf_hopping_enable(&hopping, SENSORS, true), EERUF_ERR_SENSOR);
@@ -334,6 +364,8 @@ static void hopping_rings(void) {
     EXPECT(eeruf_ring_set_t_delta(&hopping.ring, 1), EERUF_ERR_HOPPING);
     EXPECT(eeruf_ring_set_window(&hopping.ring, 1), EERUF_ERR_HOPPING);
     EXPECT(eeruf_ring_set_blanking(&hopping.ring, 1), EERUF_ERR_HOPPING);
+    EXPECT(eeruf_ring_set_path_change(&hopping.ring, 1), EERUF_ERR_HOPPING);
+    EXPECT(eeruf_ring_set_audible(&hopping.ring, 1), EERUF_ERR_HOPPING);
     EXPECT(eeruf_ring_change_schedule(&hopping.ring, &schedule), EERUF_ERR_HOPPING);
 }
 #endif
@@ -341,7 +373,9 @@ static void hopping_rings(void) {
 int main(void) {
     EXPECT(eeruf_version(), EERUF_VERSION);
     EXPECT(strcmp(eeruf_reading_name(EERUF_READING_CLEAR), "clear"), 0);
-    EXPECT(strcmp(eeruf_reading_name(200), "?"), 0);
+    EXPECT(strcmp(eeruf_reading_name(EERUF_READING_AMBIGUOUS), "ambiguous"), 0);
+    EXPECT(strcmp(eeruf_reading_name(EERUF_READING_UNANSWERED), "unanswered"), 0);
+    EXPECT(strcmp(eeruf_reading_name(EERUF_READING_KINDS), "?"), 0);
     EXPECT(strcmp(eeruf_health_name(EERUF_HEALTH_LOSES_EDGES), "loses edges"), 0);
     EXPECT(strcmp(eeruf_health_name(200), "?"), 0);
     schedules();

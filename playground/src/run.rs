@@ -120,7 +120,7 @@ fn first_readings(readings: &Readings, until_s: f64) -> Shown {
         shown.verdict.push(match readings.kind[reading] {
             ReadingKind::Accepted => "accepted",
             ReadingKind::Clear | ReadingKind::NoEcho => "none",
-            ReadingKind::Rejected => "rejected",
+            ReadingKind::Rejected | ReadingKind::Ambiguous => "rejected",
             _ => "first",
         });
         shown.wrong.push(readings.is_wrong(reading, DEFAULT_TOLERANCE_US));

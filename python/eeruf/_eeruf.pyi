@@ -22,7 +22,18 @@ _Layout = Literal["line", "ring", "blocks"] | Iterable[tuple[_Int, _Int]]
 _Criterion = Literal["exact", "paper"]
 _Progress = bool | Callable[[float | None, str], object] | None
 _Kind = Literal[
-    "first", "accepted", "rejected", "repeated", "no_echo", "clear", "too_early", "late", "stuck", "tentative"
+    "first",
+    "accepted",
+    "rejected",
+    "repeated",
+    "no_echo",
+    "clear",
+    "too_early",
+    "late",
+    "stuck",
+    "tentative",
+    "ambiguous",
+    "unanswered",
 ]
 _Method = Literal[
     "simultaneous",
@@ -358,9 +369,7 @@ class WaitTables(Iterator[Schedule]):
 
 @final
 class EchoFilter:
-    def __new__(
-        cls, sensors: _Int, t_delta_us: _Int, consecutive: _Int = 2, *, echoes: _Int = 1, patience: _Int = 0
-    ) -> EchoFilter: ...
+    def __new__(cls, sensors: _Int, t_delta_us: _Int, consecutive: _Int = 2, *, echoes: _Int = 1) -> EchoFilter: ...
     @property
     def sensors(self) -> int: ...
     @property
@@ -369,8 +378,6 @@ class EchoFilter:
     def consecutive(self) -> int: ...
     @property
     def echoes(self) -> int: ...
-    @property
-    def patience(self) -> int: ...
     def push(self, sensor: _Int, t_echo_us: _Int | None, expected_change_us: _Int = 0) -> Reading: ...
     def push_echoes(self, sensor: _Int, t_echoes_us: Iterable[_Int], expected_change_us: _Int = 0) -> Reading: ...
     def push_many(self, t_echo_us: ArrayLike) -> NDArray[np.int8]: ...
@@ -500,6 +507,7 @@ class Reading:
         age: _Int | None = None,
         phase: _Int | None = None,
         period: _Int | None = None,
+        explained_by: _Int | Literal["history"] | None = None,
     ) -> Reading: ...
     @property
     def sensor(self) -> int: ...
@@ -515,6 +523,8 @@ class Reading:
     def phase(self) -> int | None: ...
     @property
     def period(self) -> int | None: ...
+    @property
+    def explained_by(self) -> int | Literal["history"] | None: ...
     def to_dict(self) -> dict[str, object]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -528,7 +538,6 @@ class PeriodEnded:
         phase: _Int = 0,
         max_late_us: _Int = 0,
         sum_late_us: _Int = 0,
-        max_shift_us: _Int = 0,
         tally: dict[str, int] = {},
     ) -> PeriodEnded: ...
     @property
@@ -539,8 +548,6 @@ class PeriodEnded:
     def max_late_us(self) -> int: ...
     @property
     def sum_late_us(self) -> int: ...
-    @property
-    def max_shift_us(self) -> int: ...
     @property
     def tally(self) -> dict[str, int]: ...
     def to_dict(self) -> dict[str, object]: ...
@@ -558,6 +565,8 @@ class Ring:
         window_us: _Each,
         blanking_us: _Int = 0,
         consecutive: _Int = 2,
+        path_change_us: _Int | None = None,
+        audible_us: _Int | None = None,
         refire_us: _Each | None = None,
         intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
         shared_lines: Iterable[Sequence[_Int]] | None = None,
@@ -572,6 +581,8 @@ class Ring:
         window_us: _Int,
         blanking_us: _Int = 0,
         consecutive: _Int = 2,
+        path_change_us: _Int | None = None,
+        audible_us: _Int | None = None,
     ) -> Ring: ...
     @property
     def schedule(self) -> Schedule: ...
@@ -590,6 +601,14 @@ class Ring:
     def blanking_us(self) -> int: ...
     @blanking_us.setter
     def blanking_us(self, value: _Int, /) -> None: ...
+    @property
+    def path_change_us(self) -> int: ...
+    @path_change_us.setter
+    def path_change_us(self, value: _Int, /) -> None: ...
+    @property
+    def audible_us(self) -> int: ...
+    @audible_us.setter
+    def audible_us(self, value: _Int, /) -> None: ...
     @property
     def next_deadline_us(self) -> int: ...
     def wait_us(self, now_us: _Int) -> int: ...
@@ -832,7 +851,6 @@ class Robot:
         schedule: Schedule | None = None,
         neighbours: _Int = 4,
         consecutive: _Int = 2,
-        patience: _Int = 0,
         odometry: bool = False,
         velocity_m_s: tuple[float, float] | None = None,
         turn_rad_s: float | None = None,
@@ -877,8 +895,6 @@ class Robot:
     def neighbours(self) -> int: ...
     @property
     def consecutive(self) -> int: ...
-    @property
-    def patience(self) -> int: ...
     @property
     def odometry(self) -> bool: ...
     @property

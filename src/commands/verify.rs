@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::ValueEnum;
-use eeruf_core::{Audible, Criterion, Micros, PhaseCriterion, PhaseRequirements, Requirements};
+use eeruf_core::{Audible, Criterion, HoppingListening, Micros, PhaseCriterion, PhaseRequirements, Requirements};
 use eeruf_design::{LayoutKey, LayoutName, PhaseSchedule};
 use eeruf_sim::AnySchedule;
 
@@ -196,6 +196,14 @@ fn many_phases(args: &Args, schedule: &PhaseSchedule) -> Result<Answer, InputErr
     };
     if window == Micros::ZERO {
         return Err(bad("--window-us 0; expected how long a sensor listens: without it nothing is heard".to_owned()));
+    }
+    let most = HoppingListening::MAX_WINDOW;
+    if schedule.hopping().is_some() && window > most {
+        return Err(bad(format!(
+            "--window-us {}; expected at most {} for a ring that hops",
+            args.window_us,
+            most.as_micros()
+        )));
     }
     let report = schedule.verify(&requirements);
     if args.json {

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use eeruf_core::ReadingKind;
 use eeruf_logs::{Firing, FiringLog, McapWriter, Weighed};
 use eeruf_sim::Readings;
 
@@ -20,7 +19,7 @@ pub(crate) fn firing(readings: &Readings, k: usize) -> Firing {
         period: readings.period[k],
         phase: readings.phase[k],
         t_echo_us: (!readings.earliest_us[k].is_nan()).then(|| readings.earliest_us[k] as u32),
-        rejected: Some(readings.kind[k] == ReadingKind::Rejected),
+        rejected: Some(readings.kind[k].is_rejected()),
         weighed: readings.weighed[k].map(|weighed| Weighed {
             given: k as u64,
             kind: Some(readings.kind[k]),

@@ -86,7 +86,7 @@ impl Counts {
             tentative: None,
             blind: None,
             accepted: of(ReadingKind::Accepted),
-            rejected: of(ReadingKind::Rejected),
+            rejected: of(ReadingKind::Rejected) + of(ReadingKind::Ambiguous),
             repeated: of(ReadingKind::Repeated),
             first: of(ReadingKind::First),
             no_echo: of(ReadingKind::NoEcho),

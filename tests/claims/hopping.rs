@@ -127,6 +127,19 @@ fn what_is_wrong_with_a_file_of_many_phases_is_said_in_one_line() {
         let prefix = format!("eeruf: {}{expected}", file.display());
         assert!(outcome.err.starts_with(&prefix) && outcome.err.lines().count() == 1, "{}\n{prefix}", outcome.err);
     }
+    let (_folder, file) =
+        Scratch::new("long.toml", "period_us = 30000000\nstep_us = 240\nphases = 11\nt_lag_us = [0, 20000]\n");
+    let outcome = eeruf(&["verify", file.to_str().unwrap(), "--t-delta-us", "150", "--window-us", "16711679"]);
+    // It is judged, and not refused.
+    assert_eq!(outcome.code, Some(1), "{}", outcome.err);
+    let outcome = eeruf(&["verify", file.to_str().unwrap(), "--t-delta-us", "150", "--window-us", "16711680"]);
+    let expected = ": --window-us 16711680; expected at most 16711679 for a ring that hops";
+    assert!(outcome.code == Some(2) && outcome.err.contains(expected), "{}", outcome.err);
+    let text = std::fs::read_to_string("tests/data/hopping-8.toml").unwrap();
+    let (_folder, file) = Scratch::new("wide.toml", &text.replace("window_us = 36_000", "window_us = 20_000_000"));
+    let outcome = eeruf(&["design", file.to_str().unwrap(), "--phases", "11"]);
+    let expected = ": a listening window of 20000 ms; expected at most 16711.679 ms with many phases";
+    assert!(outcome.code == Some(2) && outcome.err.contains(expected), "{}", outcome.err);
     let outcome = eeruf(&["design", "rings/labmate-8.toml", "--phases", "11"]);
     assert!(outcome.code == Some(2) && outcome.err.contains(": speed_m_s; expected t_delta_us or"), "{}", outcome.err);
     let outcome = eeruf(&["design", "rings/hc-sr04-8-two-multiplexers.toml", "--phases", "11"]);
@@ -147,7 +160,7 @@ fn emitted_rust_is_checked_by_the_compiler_and_emitted_c_compiles_without_a_warn
     compile_and_run(&folder, &alone, &["gcc", "-std=c99"]);
     // With the library: the ring is set up, and fires sensor 5 in the second period when the table says.
     let main = "static EerufHoppingRing ring;
-        static EerufSensor sensors[EERUF_SENSORS];
+        static EerufHopSensor sensors[EERUF_SENSORS];
         static EerufHopper hoppers[EERUF_SENSORS];
         int main(void) {
             EerufEvent event;
@@ -174,7 +187,7 @@ fn a_ring_that_hops_on_an_arduino_is_set_up_by_what_is_emitted_for_it() {
     // The tab asks for the library by its name; what it takes of it is eeruf.h.
     std::fs::write(folder.path().join("EerufArduino.h"), "#include <eeruf.h>\n").unwrap();
     let main = "static EerufHoppingRing ring;
-        static EerufSensor sensors[8];
+        static EerufHopSensor sensors[8];
         static EerufHopper hoppers[8];
         int main() {
             return eeruf_hopping_init(&ring, sizeof ring, sensors, sizeof sensors, hoppers, sizeof hoppers, &RING, 0)

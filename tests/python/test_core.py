@@ -186,7 +186,7 @@ def test_a_filter_of_several_echoes_judges_single_ones_as_one_of_single_echoes_d
     chance = np.random.default_rng(2)
     echoes = np.where(chance.random((300, 3)) < 0.2, np.nan, chance.integers(0, 3, (300, 3)) * 300 + 9_000.0)
     one, several = eeruf.EchoFilter(3, 500), eeruf.EchoFilter(3, 500, echoes=8)
-    assert (one.echoes, several.echoes, several.patience) == (1, 8, 0)
+    assert (one.echoes, several.echoes) == (1, 8)
     assert np.array_equal(one.push_many(echoes), several.push_many(echoes))
 
 

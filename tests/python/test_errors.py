@@ -35,7 +35,6 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: eeruf.design(4, 1, 1, 0), eeruf.ArgumentError, "window_us = 0"),
     (lambda: eeruf.Schedule(10, (1, 2), (1,), (2,)), eeruf.ScheduleError, "phase a has 1 waits; expected one for each"),
     (lambda: eeruf.EchoFilter(4, 500, 9), eeruf.FilterError, "9 consecutive readings; expected 2 to 8"),
-    (lambda: eeruf.EchoFilter(4, 500, patience=16), eeruf.FilterError, "patience"),
     (
         lambda: eeruf.EchoFilter(4, 500, echoes=9),
         eeruf.ArgumentError,
@@ -157,6 +156,11 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: ANY.Ring("I-d", 500, window_us=1), eeruf.ArgumentError, "schedule = 'I-d'; expected an eeruf.Schedule"),
     (lambda: eeruf.Ring(tables.TABLE_I_D, 500, window_us=90_000), eeruf.RingError, "listening window of 90 ms"),
     (lambda: eeruf.Fire(64), eeruf.ArgumentError, "sensor = 64; expected a whole number from 0 to 63"),
+    (
+        lambda: ANY.Reading(0, "ambiguous", explained_by=64),
+        eeruf.ArgumentError,
+        'explained_by = 64; expected 0 to 63, "history" or None',
+    ),
     (lambda: ANY.Reading(0, "loud"), eeruf.ArgumentError, "kind = 'loud'; expected \"first\" or"),
     (
         lambda: ANY.Report(1, 1, 1, 1, [3]),
@@ -285,7 +289,7 @@ def test_the_core_never_panics_whatever_it_is_given(arguments: list[Any], layout
         lambda: ANY.WaitSearch(4, 100, 10, 1, t_delta_us=1).best(arguments[0], arguments[1]),
         lambda: ANY.EchoFilter(arguments[0], arguments[1], arguments[2]).push(0, arguments[3]),
         lambda: ANY.EchoFilter(4, 500).push(arguments[0], arguments[1], arguments[2]),
-        lambda: ANY.EchoFilter(4, 500, echoes=arguments[3], patience=arguments[2]).push_echoes(0, arguments[0]),
+        lambda: ANY.EchoFilter(4, 500, echoes=arguments[3]).push_echoes(0, arguments[0]),
         lambda: ANY.EchoFilter(4, 500).forget(arguments[0]),
         lambda: ANY.Ring(tables.TABLE_I_D, 500, window_us=36_000).poll(arguments[0], arguments[1]),
         lambda: ANY.Ring(tables.TABLE_I_D, arguments[0], arguments[1], window_us=arguments[2]).poll(arguments[3]),

@@ -188,6 +188,11 @@ def test_each_error_names_what_is_wrong_from_sensor_0_and_what_is_expected() -> 
         ),
         (lambda: HoppingRing(EIGHT, window_us=60_000), eeruf.HoppingError, "a period of 60 ms; expected 62.4 ms"),
         (lambda: HoppingRing(EIGHT, window_us=100, blanking_us=100), eeruf.HoppingError, "blanking"),
+        (
+            lambda: HoppingRing(HoppingSchedule(8, 30_000_000, 240), window_us=16_711_680),
+            eeruf.HoppingError,
+            "a listening window of 16711.68 ms; expected at most 16711.679 ms",
+        ),
     ):
         with pytest.raises(error, match=text):
             make()

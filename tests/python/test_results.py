@@ -106,3 +106,11 @@ def test_equal_runs_and_results_are_equal_and_others_are_not() -> None:
     other = dataclasses.replace(again.runs["eeruf"][0], grid=np.zeros((0, 3)))
     assert other != again.runs["eeruf"][0]
     assert dataclasses.replace(again, runs={"eeruf": [other]}) != again
+
+
+@pytest.mark.parametrize("by", [3, "history"])
+def test_an_ambiguous_reading_names_its_explanation(by: Any) -> None:
+    reading = eeruf.Reading(0, "ambiguous", 9_000, explained_by=by)
+    assert reading.explained_by == reading.to_dict()["explained_by"] == by
+    assert eval(repr(reading), {"Reading": eeruf.Reading}) == pickle.loads(pickle.dumps(reading)) == reading
+    assert reading != eeruf.Reading(0, "ambiguous", 9_000)

@@ -100,8 +100,9 @@ def test_t_delta_window_and_blanking_are_changed_while_it_runs() -> None:
     ring.t_delta_us = 50
     assert kind_of_0() == "rejected"
     ring.t_delta_us = 900
-    # What lateness allowed until now was for the smaller one: the next reading is compared with none before or after.
-    assert [kind_of_0() for _ in range(3)] == ["first", "first", "accepted"]
+    assert [kind_of_0() for _ in range(3)] == ["accepted"] * 3
+    ring.path_change_us, ring.audible_us = 100, 90_000
+    assert (ring.path_change_us, ring.audible_us, kind_of_0()) == (100, 90_000, "accepted")
     ring.blanking_us = 2_000
     assert [kind_of_0() for _ in range(2)] == ["too_early", "too_early"]
     ring.blanking_us = 0

@@ -85,8 +85,8 @@ def test_replace_changes_what_it_names_and_nothing_else() -> None:
     assert colder.replace(temperature_c=3.0).to_toml() == EVERYTHING.to_toml()
     assert EVERYTHING.replace(walls=WALLS[:1]).materials == [sim.Material(0.95)]
     robot = EVERYTHING.robots[0]
-    assert robot.replace(patience=3).patience == 3
-    assert robot.replace(patience=3).replace(patience=0) == robot
+    assert robot.replace(consecutive=3).consecutive == 3
+    assert robot.replace(consecutive=3).replace(consecutive=robot.consecutive) == robot
     assert robot.replace(waypoints_m=[(1, 1)], speed_m_s=0.2).velocity_m_s is None
     assert robot.replace(sensors=[(0, 0, 0)]).sensors == 1
     assert robot.replace(sensors=8).radius_m == 0.1

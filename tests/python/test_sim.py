@@ -43,7 +43,7 @@ def test_every_method_runs_in_a_scene_made_in_code(method: Any) -> None:
 
 
 def test_scenes_robots_and_readings_pickle() -> None:
-    robot = sim.Robot((-0.26, 0.17, 1.65), 8, 0.26, 0.3, t_delta_us=100, consecutive=5, patience=12)
+    robot = sim.Robot((-0.26, 0.17, 1.65), 8, 0.26, 0.3, t_delta_us=100, consecutive=5)
     assert eval(repr(robot), {"Robot": sim.Robot}) == robot
     assert pickle.loads(pickle.dumps(robot)) == robot
     made = sim.Scene(ALCOVE, poles=[[0.0, 1.0, 0.004]], robots=[robot])

@@ -231,7 +231,7 @@ class Cable:
 
 def firings(contents):
     """Sensor and period of the frames that are firings."""
-    fields = [struct.unpack("<BHBBBIIIHI", content) for content in contents if content[0] == 0x11]
+    fields = [struct.unpack("<BHBBBIIIHIB", content) for content in contents if content[0] == 0x21]
     return [(sensor, period) for _, _, sensor, _, _, _, period, *_ in fields]
 
 

@@ -9,7 +9,7 @@ use crate::steps::{Trouble, output};
 /// As long as a line may be, in characters; the formatter leaves comments and texts as they are.
 const LINE: usize = 120;
 /// As many lines as a file may have, tests included.
-const FILE: usize = 450;
+const FILE: usize = 700;
 
 /// Words of tales, not of engineers; each in two parts, so that this file has none of them.
 const WORDS: [(&str, &str); 8] = [

@@ -100,7 +100,7 @@ bool EerufModules::read() {
     EerufEvent event;
     if (status_ != EERUF_OK) return false;
     // A firing that is due within 0.3 ms is waited for, while lines are sampled: where modules fire late, by differing
-    // times, less can be compared. The clock is read before: then no window closes on an edge that came in time.
+    // times, more is ambiguous. The clock is read before: then no window closes on an edge that came in time.
     uint32_t now;
     do {
         now = ::micros();

@@ -9,7 +9,7 @@
 //
 // read() samples the echo lines, fires what is due and returns; what is due within 0.3 ms it waits for. Call it as
 // often as you can: echo times are as exact as the calls are frequent, and where modules fire late by more than the
-// table has to spare (some 0.5 ms), readings are compared with nothing.
+// table has to spare, a reading that sound of another module could explain is not accepted but ambiguous.
 #pragma once
 
 #include <Arduino.h>
@@ -39,6 +39,7 @@ public:
     bool clear() const { return reading_.kind == EERUF_READING_CLEAR; }       // nothing is in range
     uint32_t micros() const { return reading_.t_echo_us; } // the echo time, EERUF_NO_ECHO without echo
     uint16_t age() const { return reading_.age; }          // firings since its last accepted reading
+    uint8_t explainedBy() const { return reading_.explained_by; } // the sensor that makes it ambiguous, or EERUF_BY_..
     // The distance at this temperature; 0 without echo.
     uint16_t millimetres(uint32_t soundMmPerS = EERUF_SOUND_20C) const;
 

@@ -1,33 +1,44 @@
 //! Core's events and errors as the numbers that C gives.
 
-use eeruf_core::{Micros, PeriodStats, Phase, Reading, ReadingKind, RingError, RingEvent, Tally, ViolationKind};
+use eeruf_core::{
+    Explanation, Micros, PeriodStats, Phase, Reading, ReadingKind, RingError, RingEvent, Tally, ViolationKind,
+};
 
 use crate::{Flat, NO_ECHO};
 
 /// An event as numbers.
 pub fn flat(event: &RingEvent) -> Flat {
-    let mut flat = [0; 17];
+    let mut flat = [0; 18];
     match *event {
         RingEvent::Fire { sensor, phase: Phase(phase), due } => {
             flat[1..4].copy_from_slice(&[sensor.into(), phase.into(), due.as_micros()]);
         }
-        RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age }) => {
-            let numbers = [echo(t_echo), echo(previous), age.unwrap_or(u16::MAX).into()];
+        RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age, explained_by }) => {
+            let numbers = [echo(t_echo), echo(previous), age.unwrap_or(u16::MAX).into(), explanation(explained_by)];
             flat[..5].copy_from_slice(&[1, sensor.into(), phase.0.into(), period, kind as u32]);
-            flat[5..8].copy_from_slice(&numbers);
+            flat[5..9].copy_from_slice(&numbers);
         }
-        RingEvent::PeriodEnded(PeriodStats { period, phase, tally, max_late, sum_late, max_shift }) => {
+        RingEvent::PeriodEnded(PeriodStats { period, phase, tally, max_late, sum_late }) => {
             flat[..4].copy_from_slice(&[2, 0, phase.0.into(), period]);
-            flat[4..7].copy_from_slice(&[max_late, sum_late, max_shift].map(Micros::as_micros));
-            flat[7..].copy_from_slice(&counts(&tally));
+            flat[4..6].copy_from_slice(&[max_late, sum_late].map(Micros::as_micros));
+            flat[6..].copy_from_slice(&counts(&tally));
         }
     }
     flat
 }
 
 /// How many readings of each kind.
-fn counts(tally: &Tally<u8>) -> [u32; 10] {
+fn counts(tally: &Tally<u8>) -> [u32; 12] {
     ReadingKind::ALL.map(|kind| tally.of(kind))
+}
+
+/// An explanation as a number.
+pub fn explanation(explained_by: Option<Explanation>) -> u32 {
+    match explained_by {
+        None => 0xFF,
+        Some(Explanation::Sensor(sensor)) => sensor.into(),
+        Some(Explanation::History) => 0xFE,
+    }
 }
 
 /// An echo time as a number.
@@ -45,6 +56,8 @@ pub fn status_of(error: &RingError) -> i32 {
         RingError::Blanking { .. } => -18,
         RingError::CoarseTDelta { .. } => -19,
         RingError::Filter(_) => -20,
+        RingError::Audible { .. } => -29,
+        RingError::PathChange { .. } => -30,
         _ => unreachable!("{error}"),
     }
 }

@@ -17,7 +17,7 @@ use std::ffi::c_void;
 pub use random::Random;
 
 /// An event as numbers: kind, sensor, phase, then what the kind has.
-pub type Flat = [u32; 17];
+pub type Flat = [u32; 18];
 /// The number that stands for no echo, on both sides.
 pub const NO_ECHO: u32 = u32::MAX;
 /// The status of a poll that had an event.
@@ -46,6 +46,9 @@ pub enum Do {
     Health,
     IsEnabled,
     Adapt,
+    SetPathChange,
+    SetAudible,
+    FiredAt,
     Solo,
 }
 
@@ -125,16 +128,15 @@ impl C {
         (status, Numbers { min_refire_us, window_us, separation_us, max_speed_mm_s })
     }
 
-    /// `eeruf_ring_init_unverified` with `t_delta_us`, `window_us`, `blanking_us`.
-    pub fn ring(&mut self, schedule: u32, listening: [u32; 3], consecutive: u8, now_us: u32) -> i32 {
-        let [t_delta_us, window_us, blanking_us] = listening;
-        // SAFETY: a schedule that was made.
-        unsafe { shim::shim_ring(self.0, schedule, t_delta_us, window_us, blanking_us, consecutive, now_us) }
+    /// `eeruf_ring_init_unverified` with `t_delta_us`, `window_us`, `blanking_us`, `path_change_us`, `audible_us`.
+    pub fn ring(&mut self, schedule: u32, listening: [u32; 5], consecutive: u8, now_us: u32) -> i32 {
+        // SAFETY: a schedule that was made, and five numbers.
+        unsafe { shim::shim_ring(self.0, schedule, listening.as_ptr(), consecutive, now_us) }
     }
 
     /// The next event, or the status of a poll without one.
     pub fn poll(&mut self, now_us: u32, change_us: Option<&[i32]>) -> Result<Flat, i32> {
-        let mut flat = [0; 17];
+        let mut flat = [0; 18];
         let change_us = change_us.map_or(std::ptr::null(), <[i32]>::as_ptr);
         // SAFETY: a number for each sensor, and room for an event.
         let status = unsafe { shim::shim_poll(self.0, now_us, change_us, flat.as_mut_ptr()) };
@@ -151,6 +153,12 @@ impl C {
     pub fn call(&mut self, what: Do, sensor: u8, value: u32) -> i32 {
         // SAFETY: a ring, or modules, that were made.
         unsafe { shim::shim_do(self.0, what as u32, sensor, value) }
+    }
+
+    /// Makes the last event, a reading, an ambiguous one.
+    pub fn explain(&mut self, explained_by: u8) {
+        // SAFETY: an event that was polled.
+        unsafe { shim::shim_explain(self.0, explained_by) }
     }
 
     /// The frame that `eeruf_serial_event` makes of the last poll's event, for a hopping ring
@@ -212,9 +220,9 @@ impl C {
     }
 }
 
-/// `eeruf_filter_push` of a filter that holds these three numbers: kind, echo, previous echo, age.
-pub fn filter(held: &mut [u32; 3], t_delta_us: u32, consecutive: u8, t_echo_us: u32, change_us: i32) -> [u32; 4] {
-    let mut out = [0; 4];
+/// `eeruf_filter_push` of a filter that holds these three numbers: kind, echo, previous echo, age, explanation.
+pub fn filter(held: &mut [u32; 3], t_delta_us: u32, consecutive: u8, t_echo_us: u32, change_us: i32) -> [u32; 5] {
+    let mut out = [0; 5];
     // SAFETY: room for what is held and for what comes out.
     let status = unsafe {
         shim::shim_filter(held.as_mut_ptr(), t_delta_us, consecutive, t_echo_us, change_us, out.as_mut_ptr())

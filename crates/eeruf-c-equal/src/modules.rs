@@ -123,7 +123,7 @@ pub fn run(r: &Random) -> u64 {
     let config = RingConfig::new().with_window(Micros::new(40_000)).with_blanking(Micros::new(r.duration(400)));
     let blanking = config.blanking.as_micros();
     let ring = Ring::new(&schedules[0], config, Instant::from_micros(start)).unwrap();
-    assert_eq!(c.ring(0, [0, 40_000, blanking], 2, start), 0);
+    assert_eq!(c.ring(0, [0, 40_000, blanking, 0, 0], 2, start), 0);
     let fault = Cell::new(Fault::default());
     let pins = [(); K].map(|()| Pins { trigger: Pin(&fault), echo: Pin(&fault) });
     let mut settings = Settings::default();

@@ -109,7 +109,7 @@ type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M>, K>;
 /// What a caller may do now and then.
 fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, schedules: &'s [Schedule<K, M>], now: u32) {
     let sensor = r.within(0, ring.sensors() as u32) as u8;
-    match r.within(0, 13) {
+    match r.within(0, 16) {
         0 => {
             ring.pause();
             change(c, Do::Pause, 1, Ok(()));
@@ -140,8 +140,17 @@ fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, sched
             let blanking = r.duration(80_000);
             change(c, Do::SetBlanking, blanking, ring.set_blanking(Micros::new(blanking)));
         }
+        13 => {
+            let change = r.one_of(&[r.duration(2_000), r.duration(80_000), 0]);
+            self::change(c, Do::SetPathChange, change, ring.set_path_change(Micros::new(change)));
+        }
+        14 => {
+            let audible = r.one_of(&[r.within(1, 200_000), r.duration(1 << 27), ring.audible().as_micros()]);
+            change(c, Do::SetAudible, audible, ring.set_audible(Micros::new(audible)));
+        }
         _ => {
-            let at = now.wrapping_sub(r.duration(3_000)).wrapping_add(r.duration(6_000));
+            let by = r.one_of(&[50, 6_000, 200_000]);
+            let at = now.wrapping_sub(r.duration(by)).wrapping_add(r.duration(by));
             same(c, Do::Fired, sensor, at, ring.fired(sensor, Instant::from_micros(at)));
         }
     }
@@ -170,12 +179,15 @@ where
     let longest = first.min_refire().as_micros();
     let window = r.one_of(&[0, longest, r.within(0, longest), r.duration(longest), longest.saturating_add(1)]);
     let (t_delta, blanking) = (r.one_of(&[0, r.duration(900)]), r.one_of(&[0, 0, r.duration(3_000)]));
+    let path_change = r.one_of(&[0, 0, r.duration(1_000), r.duration(70_000)]);
+    let audible = r.one_of(&[0, 0, 0, r.within(1, 2 * period.min(200_000)), r.duration(1 << 27)]);
     let consecutive = r.one_of(&[2, 2, 2, 3, r.within(0, 9) as u8]);
     let start = r.any() as u32;
     let some = |us: u32| (us != 0).then_some(Micros::new(us));
     let mut config = RingConfig::new().with_blanking(Micros::new(blanking)).with_consecutive(consecutive);
     (config.t_delta, config.window) = (some(t_delta), some(window));
-    let status = c.ring(0, [t_delta, window, blanking], consecutive, start);
+    (config.path_change, config.audible) = (some(path_change), some(audible));
+    let status = c.ring(0, [t_delta, window, blanking, path_change, audible], consecutive, start);
     let mut ring = match Table::<M>::unverified(&schedules[0], config, Instant::from_micros(start)) {
         Ok(ring) => ring,
         Err(error) => {
@@ -216,7 +228,9 @@ where
                     same(&mut c, Do::Stuck, sensor, 0, ring.stuck(sensor));
                 }
                 if world.random.once_in(15) {
-                    let at = world.now.wrapping_add(world.random.duration(20_000));
+                    let early = world.random.once_in(2);
+                    let by = world.random.duration(if early { 300 } else { 20_000 });
+                    let at = if early { world.now.wrapping_sub(by) } else { world.now.wrapping_add(by) };
                     same(&mut c, Do::Fired, sensor, at, ring.fired(sensor, Instant::from_micros(at)));
                 }
             }

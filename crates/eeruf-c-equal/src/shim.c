@@ -12,6 +12,7 @@ typedef struct Handle {
     EerufRing *ring;
     EerufSensor *sensors;
     EerufHoppingRing *hopping;
+    EerufHopSensor *hop_sensors;
     EerufHopper *hoppers;
     EerufHcSr04 modules;
     EerufHcSr04Settings settings;
@@ -36,6 +37,7 @@ void shim_free(Handle *handle) {
     if (handle->hopping == NULL) free(handle->ring);
     free(handle->hopping);
     free(handle->sensors);
+    free(handle->hop_sensors);
     free(handle->hoppers);
     free(handle->lines);
     free(handle);
@@ -68,13 +70,15 @@ int shim_verify(Handle *handle, unsigned number, uint32_t t_delta_us, uint32_t m
     return status;
 }
 
-int shim_ring(Handle *handle, unsigned schedule, uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us,
-              uint8_t consecutive, uint32_t now_us) {
+/* `listening`: t_delta, window, blanking, path change, audible. */
+int shim_ring(Handle *handle, unsigned schedule, const uint32_t *listening, uint8_t consecutive, uint32_t now_us) {
     EerufConfig config = EERUF_CONFIG;
     const size_t sensors_size = handle->schedules[schedule]->sensors * sizeof(EerufSensor);
-    config.t_delta_us = t_delta_us;
-    config.window_us = window_us;
-    config.blanking_us = blanking_us;
+    config.t_delta_us = listening[0];
+    config.window_us = listening[1];
+    config.blanking_us = listening[2];
+    config.path_change_us = listening[3];
+    config.audible_us = listening[4];
     config.consecutive = consecutive;
     free(handle->sensors);
     if (handle->ring == NULL) handle->ring = (EerufRing *)malloc(sizeof(EerufRing));
@@ -94,15 +98,15 @@ static void flatten(const EerufEvent *event, uint32_t *out) {
         out[5] = event->u.reading.t_echo_us;
         out[6] = event->u.reading.previous_us;
         out[7] = event->u.reading.age;
+        out[8] = event->u.reading.explained_by;
     } else if (event->kind == EERUF_EVENT_PERIOD) {
         out[4] = event->u.ended.max_late_us;
         out[5] = event->u.ended.sum_late_us;
-        out[6] = event->u.ended.max_shift_us;
-        for (kind = 0; kind < EERUF_READING_KINDS; kind++) out[7 + kind] = event->u.ended.tally[kind];
+        for (kind = 0; kind < EERUF_READING_KINDS; kind++) out[6 + kind] = event->u.ended.tally[kind];
     }
 }
 
-/* `out` has 17 places, all zero. */
+/* `out` has 18 places, all zero. */
 int shim_poll(Handle *handle, uint32_t now_us, const int32_t *change_us, uint32_t *out) {
     const EerufStatus status = handle->hopping != NULL
                                    ? eeruf_hopping_poll(handle->hopping, now_us, change_us, &handle->last)
@@ -144,6 +148,9 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 16: return eeruf_hc_sr04_health(&handle->modules, sensor);
     case 17: return eeruf_ring_is_enabled(ring, sensor);
     case 18: return eeruf_adaptation_period(&handle->adaptation, ring, &handle->last);
+    case 19: return eeruf_ring_set_path_change(ring, value);
+    case 20: return eeruf_ring_set_audible(ring, value);
+    case 21: return (int)eeruf_ring_fired_at(ring, sensor);
     default: return eeruf_hopping_solo(handle->hopping);
     }
 }
@@ -182,7 +189,7 @@ void shim_rung(const Handle *handle, uint32_t *rung, uint32_t *permille) {
 int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t *numbers, uint8_t has_lags,
                  uint32_t now_us) {
     const uint32_t *tracker = numbers + 7, *rest = numbers + 15;
-    const size_t sensors_size = sensors * sizeof(EerufSensor), hoppers_size = sensors * sizeof(EerufHopper);
+    const size_t sensors_size = sensors * sizeof(EerufHopSensor), hoppers_size = sensors * sizeof(EerufHopper);
     EerufHoppingConfig config = EERUF_HOPPING_BALANCED(0, 0, 0);
     EerufStatus status;
     config.sensors = sensors;
@@ -211,9 +218,9 @@ int shim_hopping(Handle *handle, uint8_t sensors, uint8_t phases, const uint32_t
     config.code = (uint8_t)rest[6];
     config.lag_us = has_lags ? rest + 7 : NULL;
     handle->hopping = (EerufHoppingRing *)malloc(sizeof(EerufHoppingRing));
-    handle->sensors = (EerufSensor *)malloc(sensors_size);
+    handle->hop_sensors = (EerufHopSensor *)malloc(sensors_size);
     handle->hoppers = (EerufHopper *)malloc(hoppers_size);
-    status = eeruf_hopping_init(handle->hopping, sizeof(EerufHoppingRing), handle->sensors, sensors_size,
+    status = eeruf_hopping_init(handle->hopping, sizeof(EerufHoppingRing), handle->hop_sensors, sensors_size,
                                 handle->hoppers, hoppers_size, &config, now_us);
     handle->ring = &handle->hopping->ring;
     return status;
@@ -228,11 +235,11 @@ uint32_t shim_hopping_of(const Handle *handle, uint8_t sensor, uint8_t what) {
     }
 }
 
-/* `held`: known, age, state. `out`: kind, echo, previous, age. */
+/* `held`: known, age, state. `out`: kind, echo, previous, age, by whom explained. */
 int shim_filter(uint32_t *held, uint32_t t_delta_us, uint8_t consecutive, uint32_t t_echo_us, int32_t change_us,
                 uint32_t *out) {
     EerufFilter filter = EERUF_FILTER;
-    EerufReading reading = {0, 0, 0, 0};
+    EerufReading reading = {0, 0, 0, 0, 0};
     EerufStatus status;
     filter.known_us = held[0];
     filter.age = (uint16_t)held[1];
@@ -245,6 +252,7 @@ int shim_filter(uint32_t *held, uint32_t t_delta_us, uint8_t consecutive, uint32
     out[1] = reading.t_echo_us;
     out[2] = reading.previous_us;
     out[3] = reading.age;
+    out[4] = reading.explained_by;
     return status;
 }
 
@@ -270,6 +278,12 @@ int shim_edges_pop(uint32_t *out) {
 }
 
 /* Says over a line what the last poll's event was; the size of the frame. */
+/* Makes the last event, a reading, an ambiguous one. */
+void shim_explain(Handle *handle, uint8_t explained_by) {
+    handle->last.u.reading.kind = EERUF_READING_AMBIGUOUS;
+    handle->last.u.reading.explained_by = explained_by;
+}
+
 size_t shim_serial_event(Handle *handle, uint8_t sensors, const int32_t *change_us, uint32_t now_us, uint8_t *frame) {
     if (handle->line.clock == NULL) {
         const EerufSerial line = EERUF_SERIAL(handle->late_us, sensors, "board of sixteen letters");

@@ -26,9 +26,7 @@ unsafe extern "C" {
     pub(crate) fn shim_ring(
         handle: *mut c_void,
         schedule: u32,
-        t_delta_us: u32,
-        window_us: u32,
-        blanking_us: u32,
+        listening: *const u32,
         consecutive: u8,
         now_us: u32,
     ) -> i32;
@@ -55,6 +53,7 @@ unsafe extern "C" {
         change_us: i32,
         out: *mut u32,
     ) -> i32;
+    pub(crate) fn shim_explain(handle: *mut c_void, explained_by: u8);
     pub(crate) fn shim_serial_event(
         handle: *mut c_void,
         sensors: u8,

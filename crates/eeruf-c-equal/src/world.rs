@@ -34,7 +34,8 @@ impl World {
         self.now = match r.within(0, 999) {
             0 => r.any() as u32,
             1 => self.now.wrapping_sub(r.duration(10_000_000)),
-            2..100 => self.now.wrapping_add(r.duration(5_000)),
+            2..20 => self.now.wrapping_sub(r.duration(40)),
+            20..100 => self.now.wrapping_add(r.duration(5_000)),
             100..110 => self.now.wrapping_add(ahead).wrapping_add(r.duration(1_000_000)),
             110..500 => self.now.wrapping_add(ahead).wrapping_add(r.duration(self.late)),
             _ => self.now.wrapping_add(ahead),

@@ -122,7 +122,7 @@ impl<'s, const K: usize> Adaptation<'s, K> {
         stats: &PeriodStats,
         change: impl FnOnce(&'s VerifiedSchedule<K>) -> Result<(), Refused>,
     ) -> Result<bool, Refused> {
-        for kind in [ReadingKind::Accepted, ReadingKind::Rejected, ReadingKind::Repeated] {
+        for kind in [ReadingKind::Accepted, ReadingKind::Rejected, ReadingKind::Repeated, ReadingKind::Ambiguous] {
             for _ in 0..stats.tally.of(kind) {
                 self.tally.count(kind);
             }
@@ -236,14 +236,7 @@ mod tests {
         let mut tally = Tally::default();
         (0..accepted).for_each(|_| tally.count(ReadingKind::Accepted));
         (0..rejected).for_each(|_| tally.count(ReadingKind::Rejected));
-        PeriodStats {
-            period: 0,
-            phase: Phase::A,
-            tally,
-            max_late: Micros::ZERO,
-            sum_late: Micros::ZERO,
-            max_shift: Micros::ZERO,
-        }
+        PeriodStats { period: 0, phase: Phase::A, tally, max_late: Micros::ZERO, sum_late: Micros::ZERO }
     }
 
     /// The periods after which the schedule changes, and its new period in ms.

@@ -75,8 +75,8 @@ pub use phases::{
     Audible, PhaseCriterion, PhaseInterval, PhaseRequirements, PhaseSeparation, PhaseTable, PhaseVerification,
     PhaseViolation, PhaseViolations,
 };
-pub use reading::{ReadingKind, Tally, Verdict};
-pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
+pub use reading::{Explanation, ReadingKind, Tally, Verdict};
+pub use ring::{AgreementRing, PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError, VerifiedFor};
 pub use scheduler::{
     BrokenPromise, ImmediateRefiring, Limits, ScheduledFiring, Scheduler, SchedulerStep, UnevenFiring, check_scheduler,

@@ -35,11 +35,16 @@ pub enum ReadingKind {
     /// An echo that few readings support so far and none contradicts, nearer than what is confirmed: slow down for it.
     /// Only from an [`EchoTracker`](crate::EchoTracker).
     Tentative,
+    /// Near-identical to the reading before, though sound of another firing explains both: [`Explanation`] names it.
+    /// Only from a [`Ring`](crate::Ring).
+    Ambiguous,
+    /// No evidence at all: neither an echo nor a witness that the sensor listened.
+    Unanswered,
 }
 
 impl ReadingKind {
     /// Every kind, in the order of the enumeration.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::First,
         Self::Accepted,
         Self::Rejected,
@@ -50,6 +55,8 @@ impl ReadingKind {
         Self::Late,
         Self::Stuck,
         Self::Tentative,
+        Self::Ambiguous,
+        Self::Unanswered,
     ];
 
     /// A short name, as `--json` and Python spell it.
@@ -65,13 +72,41 @@ impl ReadingKind {
             Self::Late => "late",
             Self::Stuck => "stuck",
             Self::Tentative => "tentative",
+            Self::Ambiguous => "ambiguous",
+            Self::Unanswered => "unanswered",
         }
+    }
+
+    /// Returns true if an echo was compared and is not believed: rejected, or ambiguous.
+    pub const fn is_rejected(self) -> bool {
+        matches!(self, Self::Rejected | Self::Ambiguous)
     }
 }
 
 impl fmt::Display for ReadingKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.as_str())
+    }
+}
+
+/// The reason why a reading is [`Ambiguous`](ReadingKind::Ambiguous).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum Explanation {
+    /// Two firings of this sensor, from 0, lie as far apart as the two readings were heard.
+    Sensor(u8),
+    /// A firing that is no longer remembered could have been heard.
+    History,
+}
+
+impl fmt::Display for Explanation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sensor(sensor) => write!(f, "sensor {}", u16::from(*sensor) + 1),
+            Self::History => f.write_str("history"),
+        }
     }
 }
 
@@ -90,6 +125,8 @@ pub struct Verdict {
     /// How many firings of this sensor ago the last reading was accepted: 0 for an accepted one, `None` if none ever
     /// was. Stops at 65,534.
     pub age: Option<u16>,
+    /// What explains an [`Ambiguous`](ReadingKind::Ambiguous) reading; `None` for all other kinds.
+    pub explained_by: Option<Explanation>,
 }
 
 /// How many readings of each kind; `N` is `u8` for one period of a ring, `u32` for long runs. Counts saturate.
@@ -116,10 +153,10 @@ impl<N: Copy + Into<u32> + TryFrom<u32>> Tally<N> {
         self.counts.get(kind as usize).map_or(0, |&count| count.into())
     }
 
-    /// The rejection rate (end of Sec. 3.1): rejected readings of all that were compared, in thousandths; `None` if
-    /// none was compared.
+    /// The rejection rate (end of Sec. 3.1): readings that were compared and do not count, rejected or ambiguous, of
+    /// all that were compared, in thousandths; `None` if none was compared.
     pub fn rejection_permille(&self) -> Option<u16> {
-        let rejected = u64::from(self.of(ReadingKind::Rejected));
+        let rejected = u64::from(self.of(ReadingKind::Rejected)) + u64::from(self.of(ReadingKind::Ambiguous));
         let compared = rejected + u64::from(self.of(ReadingKind::Accepted)) + u64::from(self.of(ReadingKind::Repeated));
         // At most 1000.
         (1000 * rejected).checked_div(compared).map(|permille| permille as u16)
@@ -128,7 +165,9 @@ impl<N: Copy + Into<u32> + TryFrom<u32>> Tally<N> {
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
     use super::*;
+    use std::string::ToString;
 
     #[test]
     fn a_tally_counts_each_kind_apart_and_saturates() {
@@ -141,7 +180,13 @@ mod tests {
         }
         assert_eq!(tally.of(ReadingKind::Clear), 255);
         assert_eq!(tally.of(ReadingKind::Stuck), 1);
-        assert_eq!(tally.rejection_permille(), Some(333));
+        assert_eq!(tally.rejection_permille(), Some(500));
         assert_eq!(Tally::<u32>::default().rejection_permille(), None);
+    }
+
+    #[test]
+    fn explaining_sensors_are_displayed_from_one() {
+        assert_eq!(Explanation::Sensor(255).to_string(), "sensor 256");
+        assert_eq!(Explanation::History.to_string(), "history");
     }
 }

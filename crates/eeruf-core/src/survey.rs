@@ -40,6 +40,10 @@ pub struct SurveyPlan {
     quiet: Micros,
 }
 
+/// How far ahead of its first poll a survey begins at most; what seems further ahead has passed.
+const FURTHEST_BEGINNING: Micros = Micros::from_millis(600_000);
+/// A clock may step back by as much.
+const STEP_BACK: Micros = Micros::from_millis(1000);
 /// Longer times than this, in microseconds, are no survey of ultrasonic sensors: ten seconds.
 const LONGEST: u32 = 10_000_000;
 
@@ -162,6 +166,7 @@ pub enum SurveyEvent {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Listener {
     sensor: u8,
+    /// When it fires; once it has fired, when its window ends.
     due: Instant,
     fired: Option<Instant>,
     t_echo: Option<Micros>,
@@ -190,7 +195,7 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// A survey whose first slot begins at a moment.
+    /// A survey whose first slot begins at `begins`, at most ten minutes ahead of the first poll.
     pub fn new(plan: SurveyPlan, begins: Instant) -> Self {
         let mut survey = Self { plan, slot: 0, begins, listeners: [None; 2] };
         survey.enter_slot();
@@ -206,8 +211,10 @@ impl Survey {
         });
     }
 
-    /// What is to be done now, or was measured; call again until there is nothing.
+    /// Returns what is to be done now, or was measured; call again until there is nothing. A poll that comes late, by
+    /// up to 70 minutes less a slot, delays all that follows; a window that has closed keeps its edge.
     pub fn poll(&mut self, now: Instant) -> Option<SurveyEvent> {
+        self.catch_up(now);
         let next = self.begins + self.plan.slot_length();
         let is_done = self.listeners.iter().flatten().all(|listener| listener.is_logged);
         if is_done && !self.is_over() && now.has_reached(next) {
@@ -220,13 +227,29 @@ impl Survey {
             self.fire(sensor, now, now.since(due));
             return Some(SurveyEvent::Fire { sensor });
         }
-        let (window, slot) = (self.plan.window, self.slot);
+        let slot = self.slot;
         self.listeners.iter_mut().flatten().find_map(|listener| {
-            let fired = listener.fired.filter(|&fired| !listener.is_logged && now.has_reached(fired + window))?;
+            let fired = listener.fired.filter(|_| !listener.is_logged && now.has_reached(listener.due))?;
             listener.is_logged = true;
             let row = SurveyRow { sensor: listener.sensor, fired, slot, t_echo: listener.t_echo };
             Some(SurveyEvent::Row(row))
         })
+    }
+
+    /// A deadline further ahead than any that is planned has passed half a turn of the clock ago or more, or the clock
+    /// has jumped: what is next is due now, and all that follows that much later.
+    fn catch_up(&mut self, now: Instant) {
+        let Some(deadline) = self.next_deadline() else { return };
+        let has_begun = self.slot > 0 || self.listeners.iter().flatten().any(|listener| listener.fired.is_some());
+        let furthest = if has_begun { self.plan.slot_length().saturating_add(STEP_BACK) } else { FURTHEST_BEGINNING };
+        if now.has_reached(deadline) || deadline.since(now) <= furthest {
+            return;
+        }
+        let late = now.since(deadline);
+        self.begins += late;
+        for listener in self.listeners.iter_mut().flatten() {
+            listener.due += late;
+        }
     }
 
     /// A sensor fires; if it is late, all that follows is.
@@ -234,7 +257,7 @@ impl Survey {
         self.begins += late;
         for listener in self.listeners.iter_mut().flatten().filter(|listener| listener.fired.is_none()) {
             if listener.sensor == sensor {
-                listener.fired = Some(now);
+                (listener.fired, listener.due) = (Some(now), now + self.plan.window);
             } else {
                 listener.due += late;
             }
@@ -257,14 +280,10 @@ impl Survey {
         if self.is_over() {
             return None;
         }
-        let window = self.plan.window;
-        let due = |listener: &Listener| match listener.fired {
-            None => Some(listener.due),
-            Some(fired) => (!listener.is_logged).then(|| fired + window),
-        };
+        let pending = self.listeners.iter().flatten().filter(|listener| !listener.is_logged);
         let next = self.begins + self.plan.slot_length();
         // All of a slot lies within 2^31 us after its start.
-        let all = self.listeners.iter().flatten().filter_map(due).chain([next]);
+        let all = pending.map(|listener| listener.due).chain([next]);
         all.min_by_key(|at| at.since(self.begins))
     }
 
@@ -275,152 +294,4 @@ impl Survey {
 }
 
 #[cfg(test)]
-mod tests {
-    extern crate std;
-    use super::*;
-    use std::collections::BTreeMap;
-    use std::vec::Vec;
-
-    #[test]
-    fn every_sensor_fires_alone_and_every_ordered_pair_with_every_lead() {
-        let plan = SurveyPlan::new(5).with_solos(2).with_leads(3, Micros::new(400));
-        let mut seen = BTreeMap::new();
-        for slot in (0..plan.slots()).map(|number| plan.slot(number).unwrap()) {
-            *seen.entry((slot.first, slot.second)).or_insert(0) += 1;
-        }
-        for x in 0..5 {
-            assert_eq!(seen.remove(&(x, None)), Some(2));
-            for y in (0..5).filter(|&y| y != x) {
-                for lead in [0, 400, 800] {
-                    assert_eq!(seen.remove(&(x, Some((y, Micros::new(lead))))), Some(1), "{x} {y} {lead}");
-                }
-            }
-        }
-        assert_eq!((seen.len(), plan.slots(), plan.slot(plan.slots())), (0, 5 * 2 + 20 * 3, None));
-        assert_eq!(plan.duration_us(), 70 * (800 + 36_000 + 57_000));
-        // The first pair comes first, however many slots are before it.
-        let once = SurveyPlan::new(5).with_solos(1);
-        assert_eq!(once.slot(5), Some(SurveySlot { first: 0, second: Some((1, Micros::ZERO)) }));
-        assert_eq!(SurveyPlan::new(0).slot(0), None);
-        assert_eq!(SurveyPlan::new(1).slots(), 3);
-    }
-
-    /// Runs a survey over the wrap of the clock, polled at its deadlines and so much later; each sensor hears an edge
-    /// `1000 + sensor` after it fires and another later.
-    fn run(plan: SurveyPlan, late: impl Fn(usize) -> u32) -> (Vec<(u32, u8)>, Vec<SurveyRow>) {
-        let mut survey = Survey::new(plan, Instant::from_micros(u32::MAX - 50_000));
-        let (mut fired, mut rows) = (Vec::new(), Vec::new());
-        while let Some(due) = survey.next_deadline() {
-            let now = due + Micros::new(late(fired.len()));
-            while let Some(event) = survey.poll(now) {
-                match event {
-                    SurveyEvent::Fire { sensor } => {
-                        fired.push((now.as_micros(), sensor));
-                        survey.echo(sensor, now + Micros::new(1000 + u32::from(sensor)));
-                        survey.echo(sensor, now + Micros::new(5000));
-                        survey.echo(sensor + 1, now);
-                    }
-                    SurveyEvent::Row(row) => rows.push(row),
-                }
-            }
-        }
-        assert!(survey.is_over());
-        assert_eq!(survey.poll(Instant::from_micros(0)), None);
-        (fired, rows)
-    }
-
-    #[test]
-    fn a_survey_fires_as_planned_and_logs_each_firing_once_with_its_first_edge() {
-        let plan = SurveyPlan::new(3).with_leads(2, Micros::new(500)).with_solos(1);
-        let (fired, rows) = run(plan, |_| 0);
-        assert_eq!((fired.len(), rows.len()), (3 + 12 * 2, 3 + 12 * 2));
-        for row in &rows {
-            assert!(fired.contains(&(row.fired.as_micros(), row.sensor)));
-            let (slot, begins) = (plan.slot(row.slot).unwrap(), plan.slot_length().as_micros() * row.slot);
-            let lead = slot.second.filter(|second| second.0 == row.sensor).map_or(0, |second| second.1.as_micros());
-            assert_eq!(row.fired.as_micros(), (u32::MAX - 50_000).wrapping_add(begins + lead), "{row:?}");
-            assert_eq!(row.t_echo, Some(Micros::new(1000 + u32::from(row.sensor))));
-        }
-    }
-
-    #[test]
-    fn who_fires_late_delays_all_that_follow_and_no_slot_gets_shorter() {
-        let plan = SurveyPlan::new(2).with_leads(2, Micros::new(500)).with_solos(1);
-        let (on_time, _) = run(plan, |_| 0);
-        let (late, rows) = run(plan, |fired| if fired == 3 { 7000 } else { 0 });
-        assert_eq!(rows.len(), on_time.len());
-        let between = |fired: &[(u32, u8)]| -> Vec<_> {
-            fired.windows(2).map(|pair| pair[1].0.wrapping_sub(pair[0].0)).collect()
-        };
-        for (late, on_time) in between(&late).into_iter().zip(between(&on_time)) {
-            assert!(late >= on_time, "{late} {on_time}");
-        }
-    }
-
-    #[test]
-    fn a_plan_says_what_it_was_made_with_and_nothing_longer_than_ten_seconds() {
-        let plan = SurveyPlan::new(3).with_solos(1).with_leads(2, Micros::new(500));
-        let plan = plan.with_window(Micros::from_millis(30), Micros::from_millis(5));
-        assert_eq!(
-            (plan.sensors(), plan.window(), plan.slot_length()),
-            (3, Micros::from_millis(30), Micros::new(35_500))
-        );
-        // After each alone come all pairs, sensor by sensor, and then all of them with the next lead.
-        let pairs = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)];
-        for (number, (first, second)) in (3..).zip(pairs.into_iter().cycle()).take(12) {
-            let lead = if number < 9 { Micros::ZERO } else { Micros::new(500) };
-            assert_eq!(plan.slot(number), Some(SurveySlot { first, second: Some((second, lead)) }), "{number}");
-        }
-        let [most, more] = [10_000_000, 10_000_001].map(Micros::new);
-        for time in [more, Micros::MAX] {
-            let plan = SurveyPlan::new(1).with_leads(2, time).with_window(time, Micros::ZERO);
-            assert_eq!((plan.window(), plan.slot_length()), (most, Micros::new(20_000_000)));
-        }
-    }
-
-    #[test]
-    fn however_often_it_is_polled_a_survey_begins_no_slot_early_and_none_before_all_is_logged() {
-        let plan = SurveyPlan::new(2).with_leads(2, Micros::new(400)).with_solos(1);
-        let plan = plan.with_window(Micros::from_millis(3), Micros::ZERO);
-        let mut survey = Survey::new(plan, Instant::from_micros(0));
-        let (mut fired, mut rows) = (Vec::new(), 0);
-        for now in (0..60_000).step_by(100).map(Instant::from_micros) {
-            // One event a poll: the end of a slot comes before its second row is fetched.
-            match survey.poll(now) {
-                Some(SurveyEvent::Fire { sensor }) => fired.push((now.as_micros(), sensor)),
-                Some(SurveyEvent::Row(_)) => rows += 1,
-                None => {}
-            }
-        }
-        assert!(survey.is_over());
-        let slots = (0..plan.slots()).map(|number| plan.slot(number).unwrap());
-        let planned: usize = slots.map(|slot| 1 + usize::from(slot.second.is_some())).sum();
-        assert_eq!((fired.len(), rows), (planned, planned));
-        let begins: Vec<_> = fired.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
-        assert!(begins[0] == 3_400 && begins.iter().all(|&apart| apart <= 400 || apart >= 3_000), "{begins:?}");
-    }
-
-    #[test]
-    fn an_edge_after_the_window_is_no_echo() {
-        let plan = SurveyPlan::new(1).with_window(Micros::new(1000), Micros::new(1000));
-        let (_, rows) = run(plan, |_| 0);
-        assert_eq!(rows.len(), 3);
-        assert!(rows.iter().all(|row| row.t_echo.is_none()), "{rows:?}");
-    }
-
-    #[test]
-    fn a_survey_asks_to_be_polled_when_the_first_window_ends() {
-        let plan = SurveyPlan::new(2).with_leads(2, Micros::new(500)).with_solos(1);
-        let mut survey = Survey::new(plan, Instant::from_micros(0));
-        let mut rows = 0;
-        while let Some(now) = survey.next_deadline() {
-            while let Some(event) = survey.poll(now) {
-                if let SurveyEvent::Row(row) = event {
-                    assert_eq!(now, row.fired + plan.window, "{row:?}");
-                    rows += 1;
-                }
-            }
-        }
-        assert_eq!(rows, 2 + 2 * 2 * 2);
-    }
-}
+mod tests;

@@ -5,6 +5,7 @@ use core::ops::Deref;
 use crate::conditions::Criterion;
 use crate::schedule::VerifiedFor;
 use crate::time::{Micros, longer, shorter};
+use crate::uneven::Uneven;
 use crate::verified::VerifiedSchedule;
 use crate::verify::{Verification, Violation};
 
@@ -29,6 +30,8 @@ pub struct UnevenSchedule<const K: usize> {
     /// least to spare has.
     most: VerifiedFor,
     each: [SensorLimits; K],
+    /// The group that each sensor fires together with, from 1; 0 for none.
+    groups: [u8; K],
 }
 
 impl<const K: usize> UnevenSchedule<K> {
@@ -46,6 +49,27 @@ impl<const K: usize> UnevenSchedule<K> {
     #[inline]
     pub(crate) const fn each(&self) -> &[SensorLimits; K] {
         &self.each
+    }
+
+    const fn name_groups(&mut self, uneven: &Uneven<'_>) {
+        let mut group = 0;
+        while group < uneven.together.len() {
+            let mut sensor = 0;
+            while sensor < self.groups.len() {
+                if uneven.together[group] >> sensor & 1 == 1 {
+                    // Groups are disjoint, so there are at most 32.
+                    self.groups[sensor] = group as u8 + 1;
+                }
+                sensor += 1;
+            }
+            group += 1;
+        }
+    }
+
+    /// Returns true unless the two sensors fire together, and so were declared not to hear each other.
+    pub(crate) fn hears(&self, receiver: u8, emitter: u8) -> bool {
+        let group_of = |sensor: u8| self.groups.get(usize::from(sensor)).copied().unwrap_or(0);
+        receiver == emitter || group_of(receiver) == 0 || group_of(receiver) != group_of(emitter)
     }
 
     pub(crate) const fn most(&self) -> &VerifiedFor {
@@ -94,17 +118,20 @@ impl<const K: usize> Verification<'_, K> {
             }
             x += 1;
         }
-        let min_interval = verified.verified_for().min_interval;
         let separation = t_delta.saturating_add(spare);
-        let most = VerifiedFor { t_delta, min_interval, window, separation };
-        Ok(UnevenSchedule { schedule: verified, most, each })
+        let most = VerifiedFor { t_delta, window, separation, ..verified.verified_for() };
+        let mut schedule = UnevenSchedule { schedule: verified, most, each, groups: [0; K] };
+        if let Some(uneven) = &requirements.uneven {
+            schedule.name_groups(uneven);
+        }
+        Ok(schedule)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{conditions::Requirements, layout::Layout, schedule::Schedule, uneven::Uneven};
+    use crate::{conditions::Requirements, layout::Layout, schedule::Schedule};
 
     #[test]
     fn room_for_more_sensors_changes_nothing() {

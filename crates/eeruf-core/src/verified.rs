@@ -108,7 +108,9 @@ impl<const K: usize> Verification<'_, K> {
             }
             x += 1;
         }
-        let verified_for = VerifiedFor { t_delta, min_interval, window, separation };
+        let periods = if stale_echo { 2 } else { 1 };
+        let audible = Micros::new(periods * schedule.period().as_micros());
+        let verified_for = VerifiedFor { t_delta, min_interval, window, separation, path_change: None, audible };
         Ok(VerifiedSchedule(schedule.with_verified_for(verified_for)))
     }
 }

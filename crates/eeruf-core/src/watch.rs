@@ -103,7 +103,7 @@ impl<const K: usize> SensorWatch<K> {
                         sensor.at_and_echoes &= !ECHOES;
                     }
                     ReadingKind::Clear => sensor.at_and_echoes &= !ECHOES,
-                    ReadingKind::First | ReadingKind::Rejected | ReadingKind::Repeated => {
+                    ReadingKind::First | ReadingKind::Rejected | ReadingKind::Repeated | ReadingKind::Ambiguous => {
                         let echoes = sensor.at_and_echoes & ECHOES;
                         if echoes < u32::from(self.blind_after) {
                             sensor.at_and_echoes += 1;

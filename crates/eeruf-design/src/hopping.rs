@@ -1,8 +1,8 @@
 //! Schedules of many phases for a ring: the shortest period, how long it must be at least, and the file.
 
 use eeruf_core::{
-    Audible, HoppingCode, HoppingSchedule, Layout, MAX_SENSORS, Micros, Phase, PhaseCriterion, PhaseRequirements,
-    PhaseTable, PhaseVerification,
+    Audible, HoppingCode, HoppingListening, HoppingSchedule, Layout, MAX_SENSORS, Micros, Phase, PhaseCriterion,
+    PhaseRequirements, PhaseTable, PhaseVerification,
 };
 use serde::Deserialize;
 
@@ -162,7 +162,7 @@ impl HoppingDesign {
     /// neighbours' interval.
     ///
     /// # Errors
-    /// Phases, step or period out of range, and a stale echo condition, which these codes do not keep.
+    /// Phases, step, window or period out of range, and a stale echo condition, which these codes do not keep.
     pub fn shortest(sensors: usize, phases: u8, requirements: &PhaseRequirements<'_>) -> Result<Self, String> {
         if requirements.stale_echo {
             return Err(
@@ -170,6 +170,10 @@ impl HoppingDesign {
                         step of a congruence"
                     .to_owned(),
             );
+        }
+        let (window, most) = (requirements.audible.window, HoppingListening::MAX_WINDOW);
+        if window > most {
+            return Err(format!("a listening window of {window}; expected at most {most} with many phases"));
         }
         let step = requirements.separation();
         let code = HoppingCode::shortest(sensors, phases, step).map_err(|error| error.to_string())?;

@@ -22,6 +22,8 @@ pub trait EchoRing<const K: usize> {
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
     fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError>;
+    /// When a sensor last fired, by what [`fired`](Self::fired) said of it; `None` for one that is not there.
+    fn last_firing(&self, sensor: u8) -> Option<Instant>;
     /// The echo line of a sensor was high when it was to fire.
     ///
     /// # Errors
@@ -64,6 +66,9 @@ macro_rules! echo_ring {
             }
             fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
                 self.fired(sensor, at)
+            }
+            fn last_firing(&self, sensor: u8) -> Option<Instant> {
+                self.last_firing(sensor)
             }
             fn stuck(&mut self, sensor: u8) -> Result<(), SensorError> {
                 self.stuck(sensor)

@@ -21,7 +21,6 @@ pub(crate) enum Pulse {
 /// One echo line and the state of its sensor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
-    pub(crate) triggered: Instant,
     pub(crate) pulse: Pulse,
     /// Firings in a row without a pulse.
     silent: u8,
@@ -32,17 +31,11 @@ pub(crate) struct Line {
 
 impl Line {
     /// Before the first trigger.
-    pub(crate) const NEW: Self = Self {
-        triggered: Instant::from_micros(0),
-        pulse: Pulse::Idle,
-        silent: 0,
-        flaw: Health::Well,
-        health: Health::Well,
-    };
+    pub(crate) const NEW: Self = Self { pulse: Pulse::Idle, silent: 0, flaw: Health::Well, health: Health::Well };
 
-    /// The width of the pulse that an edge ends, if that is an echo.
-    pub(crate) fn edge(&mut self, edge: Edge, settings: &Settings) -> Option<Micros> {
-        if !edge.at.has_reached(self.triggered) || edge.at.since(self.triggered) < settings.deaf {
+    /// The width of the pulse that an edge ends, if that is an echo of what was `fired` then.
+    pub(crate) fn edge(&mut self, edge: Edge, fired: Instant, settings: &Settings) -> Option<Micros> {
+        if !edge.at.has_reached(fired) || edge.at.since(fired) < settings.deaf {
             return None;
         }
         match (self.pulse, edge.high) {

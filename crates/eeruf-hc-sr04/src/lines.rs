@@ -38,22 +38,10 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
         self.settings.allow(min_refire)
     }
 
-    /// When the echo came, if this edge is the end of one. Of a sensor that is not there, it is the edge itself: the
-    /// ring says so.
-    pub(crate) fn edge(&mut self, edge: Edge) -> Option<Instant> {
-        match self.lines.get_mut(usize::from(edge.sensor)) {
-            Some(line) => line.edge(edge, &self.settings).map(|width| line.triggered + width),
-            None => Some(edge.at),
-        }
-    }
-
-    /// A sensor was triggered later than was said.
-    pub(crate) fn fired(&mut self, sensor: u8, at: Instant) {
-        if let Some(line) = self.lines.get_mut(usize::from(sensor)) {
-            if at.has_reached(line.triggered) {
-                line.triggered = at;
-            }
-        }
+    /// When the echo of what was `fired` then came, if this edge is the end of one.
+    pub(crate) fn edge(&mut self, edge: Edge, fired: Instant) -> Option<Instant> {
+        let line = self.lines.get_mut(usize::from(edge.sensor))?;
+        line.edge(edge, fired, &self.settings).map(|width| fired + width)
     }
 
     pub(crate) fn health(&self, sensor: u8) -> Health {
@@ -63,11 +51,10 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
 
 impl<T: OutputPin, I: InputPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
     /// Triggers a sensor, unless its line is high or cannot be read; whether it did.
-    pub(crate) fn trigger(&mut self, sensor: u8, now: Instant) -> bool {
+    pub(crate) fn trigger(&mut self, sensor: u8) -> bool {
         let x = usize::from(sensor);
         let (Some(line), Some(pins)) = (self.lines.get_mut(x), self.pins.get_mut(x)) else { return true };
         line.end_firing(self.settings.missing_after);
-        line.triggered = now;
         line.pulse = Pulse::Idle;
         match pins.echo.is_high() {
             Ok(false) => {}

@@ -46,7 +46,7 @@ impl<R: EchoRing<K>, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         let event = self.ring.poll_expecting(now, expected_change_us)?;
         if let RingEvent::Fire { sensor, .. } = event {
-            if !self.lines.trigger(sensor, now) {
+            if !self.lines.trigger(sensor) {
                 // It is there: it has just fired.
                 _ = self.ring.stuck(sensor);
             }
@@ -74,20 +74,20 @@ impl<R: EchoRing<K>, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
     pub fn edge(&mut self, edge: Edge) -> Result<(), SensorError> {
-        match self.lines.edge(edge) {
-            Some(at) => self.ring.echo(edge.sensor, at),
-            None => Ok(()),
-        }
+        let at = match self.ring.last_firing(edge.sensor) {
+            Some(fired) => self.lines.edge(edge, fired),
+            // The ring says that it is not there.
+            None => Some(edge.at),
+        };
+        at.map_or(Ok(()), |at| self.ring.echo(edge.sensor, at))
     }
 
-    /// As [`Ring::fired`], where a sensor was triggered later than the poll said: by a clock read after it.
+    /// As [`Ring::fired`], where a sensor was triggered at another instant than the poll said.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
     pub fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
-        self.ring.fired(sensor, at)?;
-        self.lines.fired(sensor, at);
-        Ok(())
+        self.ring.fired(sensor, at)
     }
 
     /// How a sensor was at its last complete firing, as far as its line shows it; [`Health::Missing`] for one that the

@@ -12,8 +12,8 @@
 #![no_std]
 
 use eeruf_core::{
-    Edge, HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros,
-    Reading, Requirements, RingConfig, RingEvent, Schedule, VerifiedSchedule,
+    Edge, Explanation, HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings,
+    Instant, Micros, Reading, Requirements, RingConfig, RingEvent, Schedule, VerifiedSchedule,
 };
 use eeruf_hc_sr04::Health;
 
@@ -192,21 +192,25 @@ impl Record {
             Some(&RingEvent::Fire { sensor, phase, due }) => {
                 Self::new(Topic::Event, sensor, 1, [phase.0.into(), due.as_micros(), 0, 0, 0])
             }
-            Some(&RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age })) => {
+            Some(&RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age, explained_by })) => {
                 let us = |time: Option<Micros>| time.map_or(NONE, Micros::as_micros);
-                let kind = kind as u32 | u32::from(phase.0) << 8;
+                let by = match explained_by {
+                    None => 0xFF,
+                    Some(Explanation::Sensor(sensor)) => u32::from(sensor),
+                    Some(Explanation::History) => 0xFE,
+                };
+                let kind = kind as u32 | u32::from(phase.0) << 8 | by << 16;
                 let age = age.map_or(NONE, u32::from);
                 Self::new(Topic::Event, sensor, 2, [kind, period, us(t_echo), us(previous), age])
             }
             Some(RingEvent::PeriodEnded(stats)) => {
-                // Seven bits for each count, of about eight readings a period.
+                // Five bits for each count, of about eight readings a period.
                 let counts = eeruf_core::ReadingKind::ALL.iter();
-                let counts = counts.fold(0_u64, |sum, &kind| sum << 7 | u64::from(stats.tally.of(kind)));
+                let counts = counts.fold(0_u64, |sum, &kind| (sum << 5) + u64::from(stats.tally.of(kind)));
                 let [low, high] = [counts as u32, (counts >> 32) as u32];
-                // Each of the three is at most 65,535 us.
+                // Each of the two is at most 65,535 us.
                 let late = stats.max_late.as_micros() << 16 | u32::from(stats.phase.0);
-                let sums = stats.sum_late.as_micros() << 16 | stats.max_shift.as_micros();
-                Self::new(Topic::Event, 0, 3, [late, stats.period, sums, low, high])
+                Self::new(Topic::Event, 0, 3, [late, stats.period, stats.sum_late.as_micros(), low, high])
             }
         }
     }
@@ -241,7 +245,7 @@ impl Record {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eeruf_core::{PeriodStats, Phase, ReadingKind, Tally};
+    use eeruf_core::{Explanation, PeriodStats, Phase, ReadingKind, Tally};
 
     #[test]
     fn what_the_host_says_arrives_as_it_was_said() {
@@ -264,6 +268,7 @@ mod tests {
             t_echo: Some(Micros::new(4000)),
             previous: Some(Micros::new(4001)),
             age: Some(0),
+            explained_by: None,
         };
         let record = |reading| Record::event(Some(&RingEvent::Reading(reading)));
         assert_eq!(record(reading), record(reading));
@@ -276,6 +281,8 @@ mod tests {
             Reading { t_echo: None, ..reading },
             Reading { previous: None, ..reading },
             Reading { age: None, ..reading },
+            Reading { explained_by: Some(Explanation::Sensor(0)), ..reading },
+            Reading { explained_by: Some(Explanation::History), ..reading },
         ] {
             assert_ne!(record(other), record(reading), "{other:?}");
         }
@@ -289,7 +296,6 @@ mod tests {
             tally: Tally::default(),
             max_late: Micros::ZERO,
             sum_late: Micros::ZERO,
-            max_shift: Micros::ZERO,
         };
         let record = |stats| Record::event(Some(&RingEvent::PeriodEnded(stats)));
         for kind in ReadingKind::ALL {
@@ -297,11 +303,9 @@ mod tests {
             other.tally.count(kind);
             assert_ne!(record(other), record(stats), "{kind}");
         }
-        for late in [
-            PeriodStats { max_late: Micros::new(1), ..stats },
-            PeriodStats { sum_late: Micros::new(1), ..stats },
-            PeriodStats { max_shift: Micros::new(1), ..stats },
-        ] {
+        for late in
+            [PeriodStats { max_late: Micros::new(1), ..stats }, PeriodStats { sum_late: Micros::new(1), ..stats }]
+        {
             assert_ne!(record(late), record(stats), "{late:?}");
         }
     }

@@ -33,7 +33,7 @@ fn log_of(readings: &Readings) -> FiringLog {
         period: readings.period[k],
         phase: readings.phase[k],
         t_echo_us: (!readings.earliest_us[k].is_nan()).then(|| readings.earliest_us[k] as u32),
-        rejected: Some(readings.kind[k] == ReadingKind::Rejected),
+        rejected: Some(readings.kind[k].is_rejected()),
         weighed: None,
     };
     FiringLog { firings: (0..readings.len()).map(firing).collect(), ..FiringLog::default() }

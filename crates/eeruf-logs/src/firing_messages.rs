@@ -9,7 +9,7 @@ use ::mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReader
 use serde_json::{Value, json};
 
 use crate::error::LogError;
-use crate::firings::{Firing, FiringLog, MAX_SENSORS};
+use crate::firings::{Firing, FiringLog, MAX_SENSORS, was_rejected};
 use crate::weighed::Weighed;
 
 /// The type of the messages.
@@ -134,6 +134,6 @@ fn firing(message: &Value, place: u64) -> Option<Firing> {
         phase: u8::try_from(whole("phase")?).ok()?,
         t_echo_us,
         weighed: Weighed::of_message(message, place)?,
-        rejected: message.get("reading").and_then(Value::as_str).map(|reading| reading == "rejected"),
+        rejected: message.get("reading").and_then(Value::as_str).map(was_rejected),
     })
 }

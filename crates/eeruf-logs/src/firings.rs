@@ -10,9 +10,9 @@
 //!
 //! CSV with these columns in any order; others are ignored. Times are in microseconds of one clock, which the first
 //! line may name; one of 32 bits may wrap. `t_echo_us` is the raw echo time, from firing to the first edge, empty
-//! without echo. `reading` is what the ring made of it (`rejected`, `accepted`, ..) and may be missing. Sensors,
-//! periods and phases count from 0. The log of a hopping ring also says how its tracker weighed each reading, in
-//! columns `given`, `solo`, `steady`, `changes` and `expected_us`: see [`Weighed`]. A log without `fired_us` can be
+//! without echo. `reading` is what the ring made of it (`rejected`, `accepted`, `ambiguous`, ..) and may be missing.
+//! Sensors, periods and phases count from 0. The log of a hopping ring also says how its tracker weighed each reading,
+//! in columns `given`, `solo`, `steady`, `changes` and `expected_us`: see [`Weighed`]. A log without `fired_us` can be
 //! put onto a fixed schedule ([`align`](crate::align())). Rows may come in any order that is at most 2^31 us out. Where
 //! a column `sends` is 0 the sensor only listened from then on, as some can.
 //!
@@ -22,8 +22,10 @@
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
 
+use eeruf_core::ReadingKind;
+
 use crate::error::LogError;
-use crate::weighed::{Columns, Weighed};
+use crate::weighed::{Columns, Weighed, kind_named};
 
 /// One firing of one sensor.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +40,7 @@ pub struct Firing {
     pub phase: u8,
     /// From firing to the first echo, in microseconds; `None` without echo.
     pub t_echo_us: Option<u32>,
-    /// Whether the ring rejected the reading, if the log says what it made of it.
+    /// Whether the ring rejected the reading or found it ambiguous, if the log says what it made of it.
     pub rejected: Option<bool>,
     /// How the tracker of a hopping ring weighed the reading, if the log says so.
     pub weighed: Option<Weighed>,
@@ -69,6 +71,11 @@ impl Firing {
             (None, None) => "",
         }
     }
+}
+
+/// Returns true if a reading that logs spell so was compared and is not believed.
+pub(crate) fn was_rejected(made: &str) -> bool {
+    kind_named(made).is_some_and(ReadingKind::is_rejected)
 }
 
 /// The most sensors of a ring.
@@ -159,7 +166,7 @@ impl FiringLog {
                 period: text(period).parse().map_err(|_| bad(period, "a number from 0"))?,
                 phase: text(phase).parse().map_err(|_| bad(phase, "0 to 255"))?,
                 t_echo_us,
-                rejected: Some(made).filter(|made| !made.is_empty()).map(|made| made == "rejected"),
+                rejected: Some(made).filter(|made| !made.is_empty()).map(was_rejected),
             });
         }
         if firings.is_empty() {

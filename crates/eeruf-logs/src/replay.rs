@@ -62,7 +62,7 @@ pub fn replay(log: &FiringLog, settings: TrackerSettings) -> Result<Vec<Verdict>
         weighed.push((firing.weighed.as_ref().ok_or(missing)?, place));
     }
     weighed.sort_by_key(|(weighed, _)| weighed.given);
-    let nothing = Verdict { kind: ReadingKind::Late, t_echo: None, previous: None, age: None };
+    let nothing = Verdict { kind: ReadingKind::Late, t_echo: None, previous: None, age: None, explained_by: None };
     let mut verdicts = vec![nothing; log.firings.len()];
     let mut changes = weighed.first().map_or(0, |(weighed, _)| weighed.changes);
     for (weighed, place) in weighed {
@@ -76,7 +76,9 @@ pub fn replay(log: &FiringLog, settings: TrackerSettings) -> Result<Vec<Verdict>
             Some(kind @ (ReadingKind::TooEarly | ReadingKind::Stuck)) => {
                 tracker.skip(sensor, kind, t_echo, weighed.expected_change_us)?
             }
-            Some(kind @ ReadingKind::Late) => Verdict { kind, t_echo, previous: None, age: tracker.age(sensor) },
+            Some(kind @ ReadingKind::Late) => {
+                Verdict { kind, t_echo, previous: None, age: tracker.age(sensor), explained_by: None }
+            }
             _ => {
                 let (solo, steady) = (weighed.solo, weighed.steady);
                 let expected_change_us = weighed.expected_change_us;

@@ -69,7 +69,7 @@ impl Weighed {
     }
 }
 
-fn kind_named(name: &str) -> Option<ReadingKind> {
+pub(crate) fn kind_named(name: &str) -> Option<ReadingKind> {
     ReadingKind::ALL.into_iter().find(|kind| kind.as_str() == name)
 }
 

@@ -19,12 +19,10 @@ use crate::{
 ///     t_delta_us: ``T_delta``: readings that differ by no more are near-identical.
 ///     consecutive: how many readings in a row must agree, 2 to 8.
 ///     echoes: how many echoes of one firing a sensor reports at most, 1 to 8; the earliest that repeats is accepted.
-///     patience: for how many firings an accepted echo that is missing is waited for before a later one is accepted, 0
-///         to 15; for sensors that report several.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
-///     FilterError: fewer than 2 or more than 8 readings to compare, or a patience of more than 15.
+///     FilterError: fewer than 2 or more than 8 readings to compare.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -46,9 +44,6 @@ pub(crate) struct EchoFilter {
     /// How many echoes of one firing count.
     #[pyo3(get)]
     echoes: usize,
-    /// For how many firings an accepted echo that is missing is waited for.
-    #[pyo3(get)]
-    patience: u8,
 }
 
 /// Most echoes of one firing.
@@ -72,30 +67,24 @@ impl Filter {
 #[pymethods]
 impl EchoFilter {
     #[new]
-    #[pyo3(signature = (sensors, t_delta_us, consecutive=None, *, echoes=None, patience=None))]
-    #[pyo3(text_signature = "(sensors, t_delta_us, consecutive=2, *, echoes=1, patience=0)")]
+    #[pyo3(signature = (sensors, t_delta_us, consecutive=None, *, echoes=None))]
+    #[pyo3(text_signature = "(sensors, t_delta_us, consecutive=2, *, echoes=1)")]
     fn new(
         sensors: &Bound<'_, PyAny>,
         t_delta_us: &Bound<'_, PyAny>,
         consecutive: Option<&Bound<'_, PyAny>>,
         echoes: Option<&Bound<'_, PyAny>>,
-        patience: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (sensors, t_delta) = (requirements::sensors(sensors)?, micros("t_delta_us", t_delta_us)?);
         let consecutive = whole_or("consecutive", consecutive, 2, 0..=u8::MAX)?;
         let echoes = whole_or("echoes", echoes, 1, 1..=MAX_ECHOES as u32)? as usize;
-        let patience = whole_or("patience", patience, 0, 0..=u8::MAX)?;
         let filter = if echoes == 1 {
-            eeruf_core::EchoFilter::new(t_delta, consecutive)
-                .and_then(|filter| filter.with_patience(patience))
-                .map(|filter| Filter::One(Box::new(filter)))
+            eeruf_core::EchoFilter::new(t_delta, consecutive).map(|filter| Filter::One(Box::new(filter)))
         } else {
-            eeruf_core::EchoFilter::new(t_delta, consecutive)
-                .and_then(|filter| filter.with_patience(patience))
-                .map(|filter| Filter::Several(Box::new(filter)))
+            eeruf_core::EchoFilter::new(t_delta, consecutive).map(|filter| Filter::Several(Box::new(filter)))
         };
         let filter = filter.map_err(Raise::raise)?;
-        Ok(Self { filter, sensors, t_delta_us: t_delta.as_micros(), consecutive, echoes, patience })
+        Ok(Self { filter, sensors, t_delta_us: t_delta.as_micros(), consecutive, echoes })
     }
 
     /// Take in one firing of a sensor.
@@ -148,10 +137,10 @@ impl EchoFilter {
     ///
     /// Example:
     ///     >>> import eeruf
-    ///     >>> filter = eeruf.EchoFilter(1, 100, echoes=8, patience=4)
-    ///     >>> firings = [9_000, 14_000], [9_000, 14_000], [14_000], [14_000, 9_000]
-    ///     >>> [filter.push_echoes(0, firing).kind for firing in firings]
-    ///     ['first', 'accepted', 'rejected', 'accepted']
+    ///     >>> filter = eeruf.EchoFilter(1, 100, echoes=8)
+    ///     >>> firings = [9_000, 14_000], [14_000, 9_000], [3_000, 9_000]
+    ///     >>> [filter.push_echoes(0, firing).t_echo_us for firing in firings]
+    ///     [9000, 9000, 9000]
     #[pyo3(signature = (sensor, t_echoes_us, expected_change_us=None))]
     #[pyo3(text_signature = "($self, sensor, t_echoes_us, expected_change_us=0)")]
     fn push_echoes(
@@ -237,11 +226,8 @@ impl EchoFilter {
     }
 
     fn __repr__(&self) -> String {
-        let Self { sensors, t_delta_us, consecutive, echoes, patience, .. } = self;
-        format!(
-            "EchoFilter(sensors={sensors}, t_delta_us={t_delta_us}, consecutive={consecutive}, echoes={echoes}, \
-             patience={patience})"
-        )
+        let Self { sensors, t_delta_us, consecutive, echoes, .. } = self;
+        format!("EchoFilter(sensors={sensors}, t_delta_us={t_delta_us}, consecutive={consecutive}, echoes={echoes})")
     }
 }
 

@@ -25,7 +25,7 @@ type Core = eeruf_core::HoppingRing<MAX_SENSORS>;
 ///     schedule: a :class:`HoppingSchedule`.
 ///     settings: a :class:`HoppingSettings`, or the name of one.
 ///     now_us: when the first period begins.
-///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more.
+///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 to 16,711,679.
 ///     blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
 ///     reach_us: after how long no sound is heard any more; by default the window.
 ///     seed: of the draws of new lags, below 2^32.
@@ -33,7 +33,7 @@ type Core = eeruf_core::HoppingRing<MAX_SENSORS>;
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
 ///     HoppingError: a ``T_delta`` that is not below the schedule's step, a period too short for window and code, a
-///         window that ends within the blanking time.
+///         window that is too long or ends within the blanking time.
 ///
 /// Example:
 ///     >>> import eeruf

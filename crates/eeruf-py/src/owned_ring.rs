@@ -47,11 +47,15 @@ either! {
     fn t_delta(&self) -> Micros;
     fn window(&self) -> Micros;
     fn blanking(&self) -> Micros;
+    fn audible(&self) -> Micros;
+    fn path_change_of(&self, sensor: u8) -> Micros;
     fn is_enabled(&self, sensor: u8) -> bool;
     mut fn poll_expecting(&mut self, now: Instant, change: impl FnMut(u8) -> i32) -> Option<RingEvent>;
     mut fn set_t_delta(&mut self, t_delta: Micros) -> Result<(), RingError>;
     mut fn set_window(&mut self, window: Micros) -> Result<(), RingError>;
     mut fn set_blanking(&mut self, blanking: Micros) -> Result<(), RingError>;
+    mut fn set_path_change(&mut self, path_change: Micros) -> Result<(), RingError>;
+    mut fn set_audible(&mut self, audible: Micros) -> Result<(), RingError>;
     mut fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError>;
     mut fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError>;
     mut fn stuck(&mut self, sensor: u8) -> Result<(), SensorError>;
@@ -96,7 +100,7 @@ self_cell::self_cell!(
 
 /// What a ring's schedules must keep.
 enum Promise {
-    /// Nothing: the conventional method, for comparison.
+    /// Nothing: crosstalk that the schedule repeats makes readings ambiguous.
     Nothing,
     /// They reject crosstalk at the ring's `t_delta`.
     TDelta,

@@ -7,7 +7,7 @@ use crate::{
     moments::{expected_changes, instant, until},
     owned_ring::OwnedRing,
     requirements::{RequirementArguments, UnevenArguments},
-    ring_arguments::{begins, config},
+    ring_arguments::{Sound, begins, config},
     ring_events::to_python,
     schedule::Schedule,
 };
@@ -24,7 +24,10 @@ use crate::{
 ///     now_us: when the first period begins.
 ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more. One for all, or a sequence.
 ///     blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
-///     consecutive: how many readings in a row must agree, 2 to 8.
+///     consecutive: the number of consecutive readings that must agree, 2 to 8.
+///     path_change_us: P: by how much, at most, the path of a foreign sound changes from one reading to the next, at
+///         most 65,534; None for ``t_delta_us``. Less makes fewer readings ambiguous where firings are late.
+///     audible_us: R: how long sound is audible, at most 67 s; None for one period.
 ///     refire_us: how soon a sensor may be triggered again, as for :func:`design`. With this, with those below or with
 ///         a sequence above the ring is one of sensors that are not all alike: its schedule must keep what each needs,
 ///         each listens and compares by its own numbers, and ``t_delta_us`` and ``window_us`` say the largest.
@@ -61,9 +64,10 @@ pub(crate) struct Ring(pub(crate) OwnedRing);
 impl Ring {
     #[new]
     #[pyo3(signature = (schedule, t_delta_us, now_us=None, *, window_us, blanking_us=None, consecutive=None,
-        refire_us=None, intervals_us=None, shared_lines=None, together=None))]
+        path_change_us=None, audible_us=None, refire_us=None, intervals_us=None, shared_lines=None, together=None))]
     #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us, blanking_us=0, consecutive=2, \
-            refire_us=None, intervals_us=None, shared_lines=None, together=None)")]
+            path_change_us=None, audible_us=None, refire_us=None, intervals_us=None, shared_lines=None, \
+            together=None)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         schedule: &Bound<'_, PyAny>,
@@ -72,6 +76,8 @@ impl Ring {
         window_us: &Bound<'_, PyAny>,
         blanking_us: Option<&Bound<'_, PyAny>>,
         consecutive: Option<&Bound<'_, PyAny>>,
+        path_change_us: Option<&Bound<'_, PyAny>>,
+        audible_us: Option<&Bound<'_, PyAny>>,
         refire_us: Option<&Bound<'_, PyAny>>,
         intervals_us: Option<&Bound<'_, PyAny>>,
         shared_lines: Option<&Bound<'_, PyAny>>,
@@ -84,14 +90,15 @@ impl Ring {
         };
         let needs = needs.owned(&fires)?;
         let [t_delta, window] = needs.most();
-        let config = config(t_delta, window, blanking_us, consecutive)?;
+        let config = config(t_delta, window, blanking_us, consecutive, &Sound { path_change_us, audible_us })?;
         if needs.is_uneven() {
             return OwnedRing::uneven(fires, needs, config, begins(now_us)?).map(Self);
         }
         OwnedRing::new(fires, config, begins(now_us)?)?.verified().map(Self)
     }
 
-    /// A ring whose schedule need not reject crosstalk: the conventional method, for comparison.
+    /// A ring whose schedule was not verified. Crosstalk that it repeats, as constant waits do, makes readings
+    /// ``"ambiguous"``; none of it is accepted.
     ///
     /// Args:
     ///     schedule: when the sensors fire.
@@ -99,7 +106,10 @@ impl Ring {
     ///     now_us: when the first period begins.
     ///     window_us: how long a sensor listens after it has fired, 1 or more.
     ///     blanking_us: edges sooner than this after firing are no echoes.
-    ///     consecutive: how many readings in a row must agree, 2 to 8.
+    ///     consecutive: the number of consecutive readings that must agree, 2 to 8.
+    ///     path_change_us: P: by how much, at most, the path of a foreign sound changes from one reading to the next,
+    ///         at most 65,534; None for ``t_delta_us``. Less makes fewer readings ambiguous where firings are late.
+    ///     audible_us: R: how long sound is audible, at most 67 s; None for one period.
     ///
     /// Raises:
     ///     ArgumentError: something of the wrong type or out of range.
@@ -111,8 +121,11 @@ impl Ring {
     ///     >>> eeruf.Ring.unverified(constant, 500, window_us=36_000).poll(0)
     ///     Fire(sensor=0, phase=0, due_us=0)
     #[staticmethod]
-    #[pyo3(signature = (schedule, t_delta_us, now_us=None, *, window_us, blanking_us=None, consecutive=None))]
-    #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us, blanking_us=0, consecutive=2)")]
+    #[pyo3(signature = (schedule, t_delta_us, now_us=None, *, window_us, blanking_us=None, consecutive=None,
+        path_change_us=None, audible_us=None))]
+    #[pyo3(text_signature = "(schedule, t_delta_us, now_us=0, *, window_us, blanking_us=0, consecutive=2, \
+            path_change_us=None, audible_us=None)")]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn unverified(
         schedule: &Bound<'_, PyAny>,
         t_delta_us: &Bound<'_, PyAny>,
@@ -120,9 +133,11 @@ impl Ring {
         window_us: &Bound<'_, PyAny>,
         blanking_us: Option<&Bound<'_, PyAny>>,
         consecutive: Option<&Bound<'_, PyAny>>,
+        path_change_us: Option<&Bound<'_, PyAny>>,
+        audible_us: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (t_delta, window) = (micros("t_delta_us", t_delta_us)?, micros("window_us", window_us)?);
-        let config = config(t_delta, window, blanking_us, consecutive)?;
+        let config = config(t_delta, window, blanking_us, consecutive, &Sound { path_change_us, audible_us })?;
         let schedule = instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0;
         OwnedRing::new(schedule, config, begins(now_us)?).map(Self)
     }
@@ -199,8 +214,8 @@ impl Ring {
         Schedule(*self.0.ring().schedule())
     }
 
-    /// Fire by another schedule when the present period ends. Readings before and after it are not compared;
-    /// ``t_delta_us`` and ``window_us`` stay, and so does what each sensor needs where they are not all alike.
+    /// Fire by another schedule when the present period ends. ``t_delta_us`` and ``window_us``
+    /// stay, and so does what each sensor needs where they are not all alike.
     ///
     /// Args:
     ///     schedule: of as many sensors.
@@ -223,8 +238,7 @@ impl Ring {
         self.0.change_to(&instance::<Schedule>("schedule", schedule, "an eeruf.Schedule")?.get().0)
     }
 
-    /// ``T_delta``, in microseconds. It can be changed while the ring runs: where it grows, the next reading of each
-    /// sensor is compared with nothing.
+    /// ``T_delta``, in microseconds. It can be changed while the ring runs.
     #[getter]
     fn t_delta_us(&self) -> u32 {
         self.0.ring().t_delta().as_micros()
@@ -260,7 +274,34 @@ impl Ring {
         self.0.change(|ring| ring.set_blanking(blanking))
     }
 
-    /// How many sensors it has.
+    /// P, by how much the path of a foreign sound may change from one reading to the next, in microseconds. It can be
+    /// changed while the ring runs: as the robot's speed changes, for example.
+    #[getter]
+    fn path_change_us(&self) -> u32 {
+        let ring = self.0.ring();
+        // At most 64 sensors; their own t_delta where it was not said.
+        (0..ring.sensors() as u8).map(|sensor| ring.path_change_of(sensor).as_micros()).max().unwrap_or(0)
+    }
+
+    #[setter]
+    fn set_path_change_us(&mut self, path_change_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let path_change = micros("path_change_us", path_change_us)?;
+        self.0.change(|ring| ring.set_path_change(path_change))
+    }
+
+    /// R, how long sound is audible, in microseconds. It can be changed while the ring runs.
+    #[getter]
+    fn audible_us(&self) -> u32 {
+        self.0.ring().audible().as_micros()
+    }
+
+    #[setter]
+    fn set_audible_us(&mut self, audible_us: &Bound<'_, PyAny>) -> PyResult<()> {
+        let audible = micros("audible_us", audible_us)?;
+        self.0.change(|ring| ring.set_audible(audible))
+    }
+
+    /// The number of sensors.
     #[getter]
     fn sensors(&self) -> usize {
         self.0.ring().sensors()
@@ -289,12 +330,12 @@ impl Ring {
         self.0.change(|ring| ring.echo(sensor, at))
     }
 
-    /// The sensor of the last ``Fire`` has really fired at this time, later than the poll said. Optional: echo times
-    /// count from then, and all later firings move by as much.
+    /// Corrects when a sensor last fired: by what a timer captured, for example. Optional: echo times count from then,
+    /// and if it is later than the poll, all later firings move by as much.
     ///
     /// Args:
     ///     sensor: which one, from 0.
-    ///     at_us: when, 0 or more; a time before the poll is ignored.
+    ///     at_us: when, 0 or more; a time that is not after the sensor's firing before is ignored.
     ///
     /// Raises:
     ///     ArgumentError: no such sensor or time.

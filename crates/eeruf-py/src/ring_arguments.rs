@@ -8,17 +8,28 @@ use crate::{
     moments::instant,
 };
 
+/// What sound may do, as Python says it.
+pub(crate) struct Sound<'a, 'py> {
+    pub(crate) path_change_us: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) audible_us: Option<&'a Bound<'py, PyAny>>,
+}
+
 pub(crate) fn config(
     t_delta: Micros,
     window: Micros,
     blanking_us: Option<&Bound<'_, PyAny>>,
     consecutive: Option<&Bound<'_, PyAny>>,
+    sound: &Sound<'_, '_>,
 ) -> PyResult<RingConfig> {
-    Ok(RingConfig::new()
+    let given = |name, value: Option<&Bound<'_, PyAny>>| value.map(|value| micros(name, value)).transpose();
+    let mut config = RingConfig::new()
         .with_blanking(blanking_us.map_or(Ok(Micros::ZERO), |value| micros("blanking_us", value))?)
         .with_consecutive(whole_or("consecutive", consecutive, 2, 0..=u8::MAX)?)
         .with_t_delta(t_delta)
-        .with_window(window))
+        .with_window(window);
+    config.path_change = given("path_change_us", sound.path_change_us)?;
+    config.audible = given("audible_us", sound.audible_us)?;
+    Ok(config)
 }
 
 /// When a ring begins, by default at 0.

@@ -2,7 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use eeruf_core::{Instant, MAX_SENSORS, Micros, PeriodStats, Phase, ReadingKind, RingEvent, Tally, Verdict};
+use eeruf_core::{
+    Explanation, Instant, MAX_SENSORS, Micros, PeriodStats, Phase, ReadingKind, RingEvent, Tally, Verdict,
+};
 use pyo3::{
     IntoPyObjectExt,
     prelude::*,
@@ -76,8 +78,9 @@ impl Fire {
 ///
 /// Example:
 ///     >>> import eeruf
-///     >>> eeruf.EchoFilter(1, 500).push(0, 9_000)
-///     Reading(sensor=0, kind='first', t_echo_us=9000, previous_us=None, age=None, phase=None, period=None)
+///     >>> reading = eeruf.EchoFilter(1, 500).push(0, 9_000)
+///     >>> reading.sensor, reading.kind, reading.t_echo_us, reading.explained_by
+///     (0, 'first', 9000, None)
 #[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Reading {
@@ -96,6 +99,42 @@ pub(crate) struct Reading {
     phase: Option<u8>,
     /// The period in which the sensor fired, from 0; None from a filter alone.
     period: Option<u32>,
+    /// Why the reading is ambiguous: the sensor, from 0, whose sound explains it and the one before, or ``"history"``
+    /// for a firing that is no longer remembered; None for every other kind.
+    explained_by: Option<ExplainedBy>,
+}
+
+/// An [`Explanation`] as Python sees it.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, IntoPyObject)]
+enum ExplainedBy {
+    Sensor(u8),
+    History(&'static str),
+}
+
+const HISTORY: &str = "history";
+
+impl ExplainedBy {
+    fn of(explanation: Explanation) -> Self {
+        match explanation {
+            Explanation::Sensor(sensor) => Self::Sensor(sensor),
+            Explanation::History => Self::History(HISTORY),
+        }
+    }
+
+    fn to_core(self) -> Explanation {
+        match self {
+            Self::Sensor(sensor) => Explanation::Sensor(sensor),
+            Self::History(_) => Explanation::History,
+        }
+    }
+
+    fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if value.extract::<String>().is_ok_and(|said| said == HISTORY) {
+            return Ok(Self::History(HISTORY));
+        }
+        let refused = |_| wrong("explained_by", shown(value), "0 to 63, \"history\" or None");
+        whole("explained_by", value, SENSORS).map(Self::Sensor).map_err(refused)
+    }
 }
 
 impl Reading {
@@ -106,8 +145,8 @@ impl Reading {
 
     /// From a ring.
     pub(crate) fn of_ring(reading: &eeruf_core::Reading) -> Self {
-        let &eeruf_core::Reading { sensor, phase, period, kind, t_echo, previous, age } = reading;
-        let verdict = Verdict { kind, t_echo, previous, age };
+        let &eeruf_core::Reading { sensor, phase, period, kind, t_echo, previous, age, explained_by } = reading;
+        let verdict = Verdict { kind, t_echo, previous, age, explained_by };
         Self { phase: Some(phase.0), period: Some(period), ..Self::of_filter(sensor, &verdict) }
     }
 
@@ -128,6 +167,7 @@ impl Reading {
             age: verdict.age,
             phase: None,
             period: None,
+            explained_by: verdict.explained_by.map(ExplainedBy::of),
         }
     }
 }
@@ -135,7 +175,10 @@ impl Reading {
 #[pymethods]
 impl Reading {
     #[new]
-    #[pyo3(signature = (sensor, kind, t_echo_us=None, previous_us=None, age=None, phase=None, period=None))]
+    #[pyo3(signature = (
+        sensor, kind, t_echo_us=None, previous_us=None, age=None, phase=None, period=None, explained_by=None
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "one for each field")]
     fn new(
         sensor: &Bound<'_, PyAny>,
         kind: &Bound<'_, PyAny>,
@@ -144,6 +187,7 @@ impl Reading {
         age: Option<&Bound<'_, PyAny>>,
         phase: Option<&Bound<'_, PyAny>>,
         period: Option<&Bound<'_, PyAny>>,
+        explained_by: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         Ok(Self {
             sensor: whole("sensor", sensor, SENSORS)?,
@@ -153,6 +197,7 @@ impl Reading {
             age: whole_or_none("age", age, 0..=u16::MAX)?,
             phase: whole_or_none("phase", phase, 0..=u8::MAX)?,
             period: whole_or_none("period", period, 0..=u32::MAX)?,
+            explained_by: explained_by.map(ExplainedBy::from_python).transpose()?,
         })
     }
 
@@ -163,13 +208,19 @@ impl Reading {
     ///     >>> eeruf.EchoFilter(1, 500).push(0, 9_000).to_dict()["t_echo_us"]
     ///     9000
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["sensor", "kind", "t_echo_us", "previous_us", "age", "phase", "period"])
+        to_dict(slf, &["sensor", "kind", "t_echo_us", "previous_us", "age", "phase", "period", "explained_by"])
     }
 
     fn __repr__(&self) -> String {
         let shown = |value: Option<u32>| value.map_or_else(|| "None".to_owned(), |value| value.to_string());
+        let explained_by = match self.explained_by {
+            Some(ExplainedBy::History(history)) => format!("'{history}'"),
+            Some(ExplainedBy::Sensor(sensor)) => shown(Some(sensor.into())),
+            None => shown(None),
+        };
         format!(
-            "Reading(sensor={}, kind='{}', t_echo_us={}, previous_us={}, age={}, phase={}, period={})",
+            "Reading(sensor={}, kind='{}', t_echo_us={}, previous_us={}, age={}, phase={}, period={}, \
+             explained_by={explained_by})",
             self.sensor,
             self.kind,
             shown(self.t_echo_us),
@@ -181,9 +232,9 @@ impl Reading {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { sensor, kind, t_echo_us, previous_us, age, phase, period } = slf.get();
-        let arguments = (sensor, kind, t_echo_us, previous_us, age, phase, period).into_pyobject(slf.py())?;
-        Ok((slf.get_type().into_any(), arguments))
+        let Self { sensor, kind, t_echo_us, previous_us, age, phase, period, explained_by } = slf.get();
+        let arguments = (sensor, kind, t_echo_us, previous_us, age, phase, period, *explained_by);
+        Ok((slf.get_type().into_any(), arguments.into_pyobject(slf.py())?))
     }
 }
 
@@ -203,14 +254,13 @@ pub(crate) struct PeriodEnded(PeriodStats);
 #[pymethods]
 impl PeriodEnded {
     #[new]
-    #[pyo3(signature = (period, phase=None, max_late_us=None, sum_late_us=None, max_shift_us=None, tally=None))]
-    #[pyo3(text_signature = "(period, phase=0, max_late_us=0, sum_late_us=0, max_shift_us=0, tally={})")]
+    #[pyo3(signature = (period, phase=None, max_late_us=None, sum_late_us=None, tally=None))]
+    #[pyo3(text_signature = "(period, phase=0, max_late_us=0, sum_late_us=0, tally={})")]
     fn new(
         period: &Bound<'_, PyAny>,
         phase: Option<&Bound<'_, PyAny>>,
         max_late_us: Option<&Bound<'_, PyAny>>,
         sum_late_us: Option<&Bound<'_, PyAny>>,
-        max_shift_us: Option<&Bound<'_, PyAny>>,
         tally: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let late = |name, value| Ok::<_, PyErr>(Micros::new(whole_or(name, value, 0, 0..=u32::from(u16::MAX))?));
@@ -220,7 +270,6 @@ impl PeriodEnded {
             tally: tally.map_or_else(|| Ok(Tally::default()), counted)?,
             max_late: late("max_late_us", max_late_us)?,
             sum_late: late("sum_late_us", sum_late_us)?,
-            max_shift: late("max_shift_us", max_shift_us)?,
         }))
     }
 
@@ -249,13 +298,6 @@ impl PeriodEnded {
         self.0.sum_late.as_micros()
     }
 
-    /// By how much, at most, crosstalk may have moved because of lateness from one reading to the next, in
-    /// microseconds, at most 65,535; where that is too much, readings are not compared.
-    #[getter]
-    fn max_shift_us(&self) -> u32 {
-        self.0.max_shift.as_micros()
-    }
-
     /// How many readings of each kind were emitted since the period before ended: a dict by the names in
     /// ``eeruf.KINDS``.
     #[getter]
@@ -276,20 +318,19 @@ impl PeriodEnded {
     ///     >>> ring.poll(ring.next_deadline_us).to_dict()["max_late_us"]
     ///     0
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["period", "phase", "max_late_us", "sum_late_us", "max_shift_us", "tally"])
+        to_dict(slf, &["period", "phase", "max_late_us", "sum_late_us", "tally"])
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let (period, phase, tally) = (self.period(), self.phase(), self.tally(py)?.repr()?);
-        let (late, sum, shift) = (self.max_late_us(), self.sum_late_us(), self.max_shift_us());
-        let late = format!("max_late_us={late}, sum_late_us={sum}, max_shift_us={shift}");
+        let late = format!("max_late_us={}, sum_late_us={}", self.max_late_us(), self.sum_late_us());
         Ok(format!("PeriodEnded(period={period}, phase={phase}, {late}, tally={tally})"))
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let ended = slf.get();
-        let late = (ended.max_late_us(), ended.sum_late_us(), ended.max_shift_us());
-        let fields = (ended.period(), ended.phase(), late.0, late.1, late.2, ended.tally(slf.py())?);
+        let late = (ended.max_late_us(), ended.sum_late_us());
+        let fields = (ended.period(), ended.phase(), late.0, late.1, ended.tally(slf.py())?);
         Ok((slf.get_type().into_any(), fields.into_pyobject(slf.py())?))
     }
 }
@@ -339,5 +380,6 @@ pub(crate) fn to_core(name: &str, event: &Bound<'_, PyAny>) -> PyResult<RingEven
         t_echo: reading.t_echo_us.map(Micros::new),
         previous: reading.previous_us.map(Micros::new),
         age: reading.age,
+        explained_by: reading.explained_by.map(ExplainedBy::to_core),
     }))
 }

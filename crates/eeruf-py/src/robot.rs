@@ -36,7 +36,6 @@ use crate::{
 ///     schedule: what the EERUF methods fire by; None for the paper's table, scaled to the period.
 ///     neighbours: how many adjacent sensors must not fire close together, 1 to 64.
 ///     consecutive: how many readings in a row must agree, 2 to 8.
-///     patience: for how many firings ``multi_echo`` waits for an accepted echo that is missing, 0 to 15.
 ///     odometry: whether the robot hands its ring the changes that its own motion should cause.
 ///     velocity_m_s: (x, y) in the scene's frame, which it keeps for ever, in m/s.
 ///     turn_rad_s: the rate of turn that it keeps, in rad/s.
@@ -124,7 +123,6 @@ impl Robot {
         all.set_item("schedule", self.schedule())?;
         all.set_item("neighbours", self.neighbours())?;
         all.set_item("consecutive", self.consecutive())?;
-        all.set_item("patience", self.patience())?;
         all.set_item("odometry", self.odometry())?;
         match &self.robot.motion {
             Motion::Still => {}
@@ -149,12 +147,12 @@ impl Robot {
     #[pyo3(signature = (
         pose, sensors, spacing_rad=None, radius_m=None, transducer=None, *, gain=None, period_us=None, t_delta_us=None,
         window_us=None, blanking_us=None, min_refire_us=None, start_us=None, schedule=None, neighbours=None,
-        consecutive=None, patience=None, odometry=None, velocity_m_s=None, turn_rad_s=None, waypoints_m=None,
+        consecutive=None, odometry=None, velocity_m_s=None, turn_rad_s=None, waypoints_m=None,
         speed_m_s=None, clock_offset_us=None, clock_drift_ppm=None, body=None
     ))]
     #[pyo3(text_signature = "(pose, sensors, spacing_rad=None, radius_m=None, transducer=\"polaroid_6500\", *, \
             gain=\"constant\", period_us=60000, t_delta_us=500, window_us=36000, blanking_us=None, \
-            min_refire_us=36000, start_us=0, schedule=None, neighbours=4, consecutive=2, patience=0, odometry=False, \
+            min_refire_us=36000, start_us=0, schedule=None, neighbours=4, consecutive=2, odometry=False, \
             velocity_m_s=None, turn_rad_s=None, waypoints_m=None, speed_m_s=None, clock_offset_us=0, \
             clock_drift_ppm=0.0, body=None)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
@@ -174,7 +172,6 @@ impl Robot {
         schedule: Option<&Bound<'_, PyAny>>,
         neighbours: Option<&Bound<'_, PyAny>>,
         consecutive: Option<&Bound<'_, PyAny>>,
-        patience: Option<&Bound<'_, PyAny>>,
         odometry: Option<&Bound<'_, PyAny>>,
         velocity_m_s: Option<&Bound<'_, PyAny>>,
         turn_rad_s: Option<&Bound<'_, PyAny>>,
@@ -226,7 +223,6 @@ impl Robot {
         set("start_us", start_us, &mut robot.start)?;
         robot.neighbours = requirements::neighbours(neighbours)?;
         robot.consecutive = whole_or("consecutive", consecutive, 2, 2..=8)?;
-        robot.patience = whole_or("patience", patience, 0, 0..=15)?;
         robot.odometry = flag("odometry", odometry, false)?;
         robot.motion = motion(velocity_m_s, turn_rad_s, waypoints_m, speed_m_s)?;
         robot.clock = Clock {
@@ -353,12 +349,6 @@ impl Robot {
     #[getter]
     fn consecutive(&self) -> u8 {
         self.robot.consecutive
-    }
-
-    /// For how many firings ``multi_echo`` waits for an accepted echo that is missing.
-    #[getter]
-    fn patience(&self) -> u8 {
-        self.robot.patience
     }
 
     /// Whether the ring knows by how much its own motion should change readings.

@@ -37,8 +37,6 @@ const HEALTH: [&str; 6] = [
 struct Sensor {
     heard_at_s: f64,
     health: u8,
-    /// The last reading's line was stuck.
-    stuck: bool,
     echoes_since_accepted: u32,
     tally: Tally,
     last: Option<(ReadingKind, Option<Micros>)>,
@@ -74,14 +72,8 @@ pub(crate) struct Diagnosis {
 
 impl Diagnosis {
     pub(crate) fn new(parameters: &Parameters, now_s: f64) -> Self {
-        let sensor = |_| Sensor {
-            heard_at_s: now_s,
-            health: 0,
-            stuck: false,
-            echoes_since_accepted: 0,
-            tally: Tally::default(),
-            last: None,
-        };
+        let sensor =
+            |_| Sensor { heard_at_s: now_s, health: 0, echoes_since_accepted: 0, tally: Tally::default(), last: None };
         Self {
             sensors: (0..parameters.sensors).map(sensor).collect(),
             serial: parameters.source == Source::Serial,
@@ -106,11 +98,10 @@ impl Diagnosis {
         let Some(sensor) = self.sensors.get_mut(usize::from(sensor)) else { return };
         sensor.heard_at_s = now_s;
         sensor.tally.count(kind);
-        sensor.stuck = kind == ReadingKind::Stuck;
         sensor.last = Some((kind, t_echo));
         match kind {
             ReadingKind::Accepted | ReadingKind::Clear => sensor.echoes_since_accepted = 0,
-            ReadingKind::First | ReadingKind::Rejected | ReadingKind::Repeated => {
+            ReadingKind::First | ReadingKind::Rejected | ReadingKind::Repeated | ReadingKind::Ambiguous => {
                 sensor.echoes_since_accepted = sensor.echoes_since_accepted.saturating_add(1);
             }
             _ => {}
@@ -220,12 +211,15 @@ impl Diagnosis {
 
     fn sensor(&self, now_s: f64, number: u32, sensor: &Sensor) -> Status {
         let silent_s = now_s - sensor.heard_at_s;
+        let last = sensor.last.map(|(kind, _)| kind);
         let (level, message) = if silent_s > self.silent_after_s {
             (Level::Error, format!("silent: no firing of it for {silent_s:.1} s"))
         } else if sensor.health != 0 {
             (Level::Error, HEALTH.get(usize::from(sensor.health)).copied().unwrap_or("unwell").to_owned())
-        } else if sensor.stuck {
+        } else if last == Some(ReadingKind::Stuck) {
             (Level::Error, HEALTH[2].to_owned())
+        } else if last == Some(ReadingKind::Unanswered) {
+            (Level::Error, "unanswered: its last firing left no sign that it listened".to_owned())
         } else if sensor.echoes_since_accepted >= self.blind_after {
             (Level::Warn, format!("blind: none of its last {} echoes was accepted", sensor.echoes_since_accepted))
         } else {
@@ -236,9 +230,11 @@ impl Diagnosis {
         let values = vec![
             ("accepted", of(ReadingKind::Accepted)),
             ("rejected", of(ReadingKind::Rejected)),
+            ("ambiguous", of(ReadingKind::Ambiguous)),
             ("clear", of(ReadingKind::Clear)),
             ("too early", of(ReadingKind::TooEarly)),
             ("stuck", of(ReadingKind::Stuck)),
+            ("unanswered", of(ReadingKind::Unanswered)),
             ("last reading", last),
             ("last echo time, us", t_echo.map(|t_echo| t_echo.as_micros().to_string()).unwrap_or_default()),
         ];
@@ -316,8 +312,10 @@ mod tests {
     fn a_sensor_is_blind_when_echoes_are_not_accepted_and_silent_when_it_does_not_fire() {
         let mut diagnosis = diagnosis();
         for _ in 0..3 {
-            diagnosis.reading(0.5, 0, ReadingKind::Rejected, Some(Micros::new(9_000)), Micros::ZERO);
             diagnosis.reading(0.5, 1, ReadingKind::NoEcho, None, Micros::ZERO);
+        }
+        for kind in [ReadingKind::First, ReadingKind::Rejected, ReadingKind::Ambiguous] {
+            diagnosis.reading(0.5, 0, kind, Some(Micros::new(9_000)), Micros::ZERO);
         }
         assert_eq!(said(&mut diagnosis, 1.0)[2..], [(Level::Warn, "blind".to_owned()), well()]);
         both(&mut diagnosis, 1.0, ReadingKind::Accepted);
@@ -325,6 +323,9 @@ mod tests {
         diagnosis.reading(2.4, 1, ReadingKind::Stuck, None, Micros::ZERO);
         let (silent, stuck) = ((Level::Error, "silent".to_owned()), (Level::Error, "stuck".to_owned()));
         assert_eq!(said(&mut diagnosis, 2.5), [well(), well(), silent.clone(), stuck]);
+        diagnosis.reading(2.6, 1, ReadingKind::Unanswered, None, Micros::ZERO);
+        let unanswered = (Level::Error, "unanswered".to_owned());
+        assert_eq!(said(&mut diagnosis, 2.7), [well(), well(), silent.clone(), unanswered]);
         assert_eq!(said(&mut diagnosis, 9.0), [silent.clone(), well(), silent.clone(), silent]);
     }
 }

@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
+use eeruf_core::Explanation;
 use eeruf_serial::{Firing, Weighed};
 
 pub(crate) struct FiringLog {
@@ -26,12 +27,17 @@ impl FiringLog {
             (self.begun, self.hops) = (true, firing.weighed.is_some());
             let weighed = if self.hops { ",solo,steady,changes,expected_us" } else { "" };
             writeln!(self.file, "# clock: {clock}, 32 bits")?;
-            writeln!(self.file, "sensor,fired_us,period,phase,t_echo_us,reading,late_us{weighed}")?;
+            writeln!(self.file, "sensor,fired_us,period,phase,t_echo_us,reading,explained_by,late_us{weighed}")?;
         }
-        let Firing { sensor, period, phase, kind, weighed, .. } = firing;
+        let Firing { sensor, period, phase, kind, explained_by, weighed, .. } = firing;
         let echo = firing.t_echo.map(|t_echo| t_echo.as_micros().to_string()).unwrap_or_default();
         let (fired, late) = (firing.fired.as_micros(), firing.late.as_micros());
-        write!(self.file, "{sensor},{fired},{period},{phase},{echo},{kind},{late}")?;
+        let by = match explained_by {
+            None => String::new(),
+            Some(Explanation::Sensor(sensor)) => sensor.to_string(),
+            Some(Explanation::History) => "history".to_owned(),
+        };
+        write!(self.file, "{sensor},{fired},{period},{phase},{echo},{kind},{by},{late}")?;
         match weighed.filter(|_| self.hops) {
             Some(Weighed { solo, steady, changes, expected_change_us }) => {
                 let [solo, steady] = [solo, steady].map(u8::from);
@@ -63,7 +69,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("log.csv");
         let mut log = FiringLog::create(&file).unwrap();
-        for (n, kind) in [ReadingKind::Accepted, ReadingKind::Rejected, ReadingKind::NoEcho].into_iter().enumerate() {
+        let by = [None, None, None, Some(Explanation::Sensor(6)), Some(Explanation::History)];
+        let kinds = [ReadingKind::Accepted, ReadingKind::Rejected, ReadingKind::NoEcho, ReadingKind::Ambiguous];
+        for (n, (kind, explained_by)) in kinds.into_iter().chain([ReadingKind::Ambiguous]).zip(by).enumerate() {
             let firing = Firing {
                 sensor: n as u8,
                 phase: 1,
@@ -73,6 +81,7 @@ mod tests {
                 t_echo: (kind != ReadingKind::NoEcho).then_some(Micros::new(5_872)),
                 late: Micros::ZERO,
                 age: Micros::ZERO,
+                explained_by,
                 weighed: None,
             };
             log.write("board", &firing).unwrap();
@@ -83,9 +92,16 @@ mod tests {
         let rows: Vec<_> =
             read.firings.iter().map(|firing| (firing.fired_us, firing.t_echo_us, firing.rejected)).collect();
         let first = i64::from(u32::MAX) - 10;
-        let expected =
-            [(first, Some(5_872), Some(false)), (first + 10, Some(5_872), Some(true)), (first + 20, None, Some(false))];
+        let expected = [
+            (first, Some(5_872), Some(false)),
+            (first + 10, Some(5_872), Some(true)),
+            (first + 20, None, Some(false)),
+            (first + 30, Some(5_872), Some(true)),
+            (first + 40, Some(5_872), Some(true)),
+        ];
         assert_eq!(rows, expected);
+        let text = std::fs::read_to_string(&file).unwrap();
+        assert!(text.contains(",ambiguous,6,0\n") && text.contains(",ambiguous,history,0\n"), "{text}");
     }
 
     /// A ring of eight among its own sound and that of others; each path is as long as its two sensors say.

@@ -46,7 +46,7 @@ impl Scale {
         Micros::new((f64::from(metres) * 2e6 / self.sound_m_s).round() as u32)
     }
 
-    /// What a reading says; `None` for one that says nothing: rejected, or not yet confirmed.
+    /// What a reading says; `None` for one that says nothing: rejected, ambiguous, unanswered, or not yet confirmed.
     pub(crate) fn distance(&self, kind: ReadingKind, t_echo: Option<Micros>) -> Option<Distance> {
         match (kind, t_echo) {
             (ReadingKind::Accepted, Some(t_echo)) => {
@@ -99,6 +99,8 @@ mod tests {
             (ReadingKind::Late, us(41_000), None, None),
             (ReadingKind::NoEcho, None, None, None),
             (ReadingKind::Stuck, None, None, None),
+            (ReadingKind::Ambiguous, us(10_000), None, None),
+            (ReadingKind::Unanswered, None, None, None),
         ] {
             for (clear_as, expected) in [(ClearAs::Inf, inf), (ClearAs::MaxRange, max_range)] {
                 let scale = scale(clear_as);

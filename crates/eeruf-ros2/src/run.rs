@@ -161,7 +161,18 @@ impl EerufNode {
                     let kind = self.filter.push(sensor, t_echo.map_or(Raw::Nothing, |t_echo| self.raw(t_echo)))?;
                     let fired = eeruf_core::Instant::from_micros(fired_us);
                     let (late, age) = (Micros::ZERO, Micros::ZERO);
-                    let firing = Firing { sensor, phase, kind, fired, period, t_echo, late, age, weighed: None };
+                    let firing = Firing {
+                        sensor,
+                        phase,
+                        kind,
+                        fired,
+                        period,
+                        t_echo,
+                        late,
+                        age,
+                        explained_by: None,
+                        weighed: None,
+                    };
                     // Whose clock it is nobody knows; the message has just come.
                     self.firing(&firing, nanoseconds())?;
                 }

@@ -5,11 +5,11 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use crc::{CRC_16_IBM_3740, Crc, Table};
-use eeruf_core::{Instant, MAX_SENSORS, Micros, ReadingKind, Weighed};
+use eeruf_core::{Explanation, Instant, MAX_SENSORS, Micros, ReadingKind, Weighed};
 
 use crate::encode::{LONGEST_CLOCK, LONGEST_FRAME};
 use crate::firing::Firing;
-use crate::{FIRING, HELLO, NO_ECHO, PERIOD, SOLO, STEADY, VERSION, WEIGHED};
+use crate::{BY_HISTORY, BY_NOTHING, FIRING, HELLO, NO_ECHO, OLDEST_VERSION, PERIOD, SOLO, STEADY, VERSION, WEIGHED};
 
 const CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_3740);
 
@@ -53,7 +53,7 @@ pub struct Received {
 pub enum FrameError {
     /// Damaged or cut: it is no COBS, longer or shorter than any frame, or the check sum does not fit.
     Damaged,
-    /// It is whole and of another version of the protocol.
+    /// It is whole and of a version of the protocol that is not known.
     Version(u8),
     /// It is whole, and this version has no such frame: another kind, or a value that cannot be.
     Content(&'static str),
@@ -64,7 +64,10 @@ impl fmt::Display for FrameError {
         match self {
             Self::Damaged => f.write_str("a damaged frame"),
             Self::Version(version) => {
-                write!(f, "the board speaks version {version} of the serial protocol; expected {VERSION}")
+                write!(
+                    f,
+                    "the board speaks version {version} of the serial protocol; expected {OLDEST_VERSION} to {VERSION}"
+                )
             }
             Self::Content(what) => write!(f, "a frame whose {what} is not one of version {VERSION}"),
         }
@@ -118,13 +121,14 @@ fn decode(encoded: &mut [u8]) -> Result<Received, FrameError> {
     }
     let mut fields = Fields(content);
     let [first] = fields.take()?;
-    if first >> 4 != VERSION {
-        return Err(FrameError::Version(first >> 4));
+    let version = first >> 4;
+    if !(OLDEST_VERSION..=VERSION).contains(&version) {
+        return Err(FrameError::Version(version));
     }
     let sequence = u16::from_le_bytes(fields.take()?);
     let message = match first & 0xF {
         HELLO => hello(fields)?,
-        kind @ (FIRING | WEIGHED) => firing(fields, kind == WEIGHED)?,
+        kind @ (FIRING | WEIGHED) => firing(fields, version, kind == WEIGHED)?,
         PERIOD => period(fields)?,
         _ => return Err(FrameError::Content("kind")),
     };
@@ -142,7 +146,7 @@ fn hello(mut fields: Fields<'_>) -> Result<Message, FrameError> {
     Ok(Message::Hello { sensors, clock: clock.ok_or(FrameError::Content("clock"))?.into() })
 }
 
-fn firing(mut fields: Fields<'_>, is_weighed: bool) -> Result<Message, FrameError> {
+fn firing(mut fields: Fields<'_>, version: u8, is_weighed: bool) -> Result<Message, FrameError> {
     let [sensor, phase, kind] = fields.take()?;
     if usize::from(sensor) >= MAX_SENSORS {
         return Err(FrameError::Content("sensor"));
@@ -156,10 +160,20 @@ fn firing(mut fields: Fields<'_>, is_weighed: bool) -> Result<Message, FrameErro
         t_echo: Some(u32::from_le_bytes(fields.take()?)).filter(|&us| us != NO_ECHO).map(Micros::new),
         late: Micros::new(u16::from_le_bytes(fields.take()?).into()),
         age: Micros::new(u32::from_le_bytes(fields.take()?)),
+        explained_by: if version == OLDEST_VERSION { None } else { explanation(&mut fields)? },
         weighed: if is_weighed { Some(weighed(&mut fields)?) } else { None },
     };
     fields.end()?;
     Ok(Message::Firing(firing))
+}
+
+fn explanation(fields: &mut Fields<'_>) -> Result<Option<Explanation>, FrameError> {
+    match fields.take()? {
+        [BY_NOTHING] => Ok(None),
+        [BY_HISTORY] => Ok(Some(Explanation::History)),
+        [sensor] if usize::from(sensor) < MAX_SENSORS => Ok(Some(Explanation::Sensor(sensor))),
+        _ => Err(FrameError::Content("explanation")),
+    }
 }
 
 fn weighed(fields: &mut Fields<'_>) -> Result<Weighed, FrameError> {

@@ -1,9 +1,9 @@
 //! [`Encoder`]: the bytes of a frame.
 
-use eeruf_core::{MAX_SENSORS, Micros, Weighed};
+use eeruf_core::{Explanation, MAX_SENSORS, Micros, Weighed};
 
 use crate::firing::Firing;
-use crate::{FIRING, HELLO, NO_ECHO, PERIOD, SOLO, STEADY, VERSION, WEIGHED};
+use crate::{BY_HISTORY, BY_NOTHING, FIRING, HELLO, NO_ECHO, PERIOD, SOLO, STEADY, VERSION, WEIGHED};
 
 /// A frame's content at its longest: that of a period's end with 64 sensors, and the check sum.
 const LONGEST_CONTENT: usize = 10 + MAX_SENSORS + 2;
@@ -55,6 +55,11 @@ impl Encoder {
         content.push(&firing.t_echo.map_or(NO_ECHO, Micros::as_micros).to_le_bytes());
         content.push(&short(firing.late).to_le_bytes());
         content.push(&firing.age.as_micros().to_le_bytes());
+        content.push(&[match firing.explained_by {
+            None => BY_NOTHING,
+            Some(Explanation::Sensor(sensor)) => sensor,
+            Some(Explanation::History) => BY_HISTORY,
+        }]);
         if let Some(Weighed { solo, steady, changes, expected_change_us }) = firing.weighed {
             content.push(&[SOLO * u8::from(solo) + STEADY * u8::from(steady), changes]);
             content.push(&expected_change_us.to_le_bytes());

@@ -1,4 +1,4 @@
-use eeruf_core::{Instant, Micros, ReadingKind, Weighed};
+use eeruf_core::{Explanation, Instant, Micros, ReadingKind, Weighed};
 
 /// One firing of one sensor, and what came of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +19,8 @@ pub struct Firing {
     pub late: Micros,
     /// How long after the firing the frame was made.
     pub age: Micros,
+    /// The reason why the reading is ambiguous; `None` for every other kind.
+    pub explained_by: Option<Explanation>,
     /// How the tracker of a hopping ring weighed the reading; `None` for other rings.
     pub weighed: Option<Weighed>,
 }

@@ -43,7 +43,11 @@ pub use firing::Firing;
 pub use recorder::Recorder;
 
 /// The version of the protocol: the upper four bits of each frame's first byte.
-pub const VERSION: u8 = 1;
+pub const VERSION: u8 = 2;
+
+/// The oldest version that `Decoder` reads: its firings lack the byte that explains ambiguous readings.
+#[cfg(feature = "decode")]
+const OLDEST_VERSION: u8 = 1;
 
 /// The kinds of frames: the lower four bits of the first byte.
 const HELLO: u8 = 0;
@@ -54,6 +58,10 @@ const WEIGHED: u8 = 3;
 /// The bits of a weighed firing.
 const SOLO: u8 = 1;
 const STEADY: u8 = 2;
+
+/// The bytes beside the sensors, from 0, that explain a reading.
+const BY_HISTORY: u8 = 0xFE;
+const BY_NOTHING: u8 = 0xFF;
 
 /// An echo time that stands for no echo.
 const NO_ECHO: u32 = u32::MAX;

@@ -1,6 +1,6 @@
 //! [`Recorder`]: from the events of a ring to frames.
 
-use eeruf_core::{HoppingRing, Instant, Micros, RingEvent, Weighed};
+use eeruf_core::{HoppingRing, Instant, MAX_SENSORS, Micros, RingEvent, Weighed};
 
 use crate::encode::{Encoder, Frame};
 use crate::firing::Firing;
@@ -9,7 +9,11 @@ use crate::firing::Firing;
 const GREET_EVERY: u8 = 128;
 
 /// Follows the events of a ring of up to `K` sensors and makes a frame of each reading and of each period's end. Eight
-/// bytes for each sensor.
+/// bytes for each sensor. `K` is 1 to 64, or [`new`](Self::new) does not compile.
+///
+/// ```compile_fail
+/// let recorder = eeruf_serial::Recorder::<65>::new("a timer");
+/// ```
 #[derive(Clone, Debug)]
 pub struct Recorder<const K: usize> {
     encoder: Encoder,
@@ -21,6 +25,7 @@ pub struct Recorder<const K: usize> {
 impl<const K: usize> Recorder<K> {
     /// For a board whose clock is called so: ASCII, of which 16 bytes are sent.
     pub const fn new(clock: &'static str) -> Self {
+        const { assert!(K >= 1 && K <= MAX_SENSORS, "a Recorder has room for 1 to 64 sensors") };
         Self { encoder: Encoder::new(), clock, fired: [(Instant::from_micros(0), Micros::ZERO); K], firings: 0 }
     }
 
@@ -78,6 +83,7 @@ impl<const K: usize> Recorder<K> {
                     t_echo: reading.t_echo,
                     late,
                     age: now.since(fired),
+                    explained_by: reading.explained_by,
                     weighed: weighed(reading.sensor),
                 }))
             }

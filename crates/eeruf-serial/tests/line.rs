@@ -1,7 +1,7 @@
 //! The line between board and host: what is said arrives, and what is damaged on the way is never taken for something
 //! else.
 
-use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
+use eeruf_core::{Explanation, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
 use eeruf_serial::{Decoder, Encoder, Firing, Frame, FrameError, LONGEST_FRAME, Message, Received, Recorder, Weighed};
 use proptest::prelude::*;
 
@@ -15,11 +15,19 @@ fn weighed() -> impl Strategy<Value = Weighed> {
         .prop_map(|(solo, steady, changes, expected_change_us)| Weighed { solo, steady, changes, expected_change_us })
 }
 
+fn explanation() -> impl Strategy<Value = Option<Explanation>> {
+    prop_oneof![
+        Just(None),
+        Just(Some(Explanation::History)),
+        (0..64_u8).prop_map(|sensor| Some(Explanation::Sensor(sensor)))
+    ]
+}
+
 fn firings() -> impl Strategy<Value = Firing> {
     let numbers = (any::<u32>(), any::<u32>(), any::<u16>(), any::<u32>());
-    let weighed = prop::option::of(weighed());
-    (0..64_u8, 0..8_u8, 0..ReadingKind::ALL.len(), prop::option::of(0..u32::MAX), numbers, weighed).prop_map(
-        |(sensor, phase, kind, t_echo, (fired, period, late, age), weighed)| Firing {
+    let why = (explanation(), prop::option::of(weighed()));
+    (0..64_u8, 0..8_u8, 0..ReadingKind::ALL.len(), prop::option::of(0..u32::MAX), numbers, why).prop_map(
+        |(sensor, phase, kind, t_echo, (fired, period, late, age), (explained_by, weighed))| Firing {
             sensor,
             phase,
             kind: ReadingKind::ALL[kind],
@@ -28,6 +36,7 @@ fn firings() -> impl Strategy<Value = Firing> {
             t_echo: t_echo.map(Micros::new),
             late: Micros::new(late.into()),
             age: Micros::new(age),
+            explained_by,
             weighed,
         },
     )
@@ -97,12 +106,13 @@ fn a_minute(numbers: &mut Numbers, frames: usize) -> Vec<Frame> {
     let firing = |n: usize, numbers: &mut Numbers| Firing {
         sensor: (n % 8) as u8,
         phase: (n / 8 % 2) as u8,
-        kind: ReadingKind::ALL[numbers.below(10)],
+        kind: ReadingKind::ALL[numbers.below(12)],
         fired: Instant::from_micros(12_500 * n as u32),
         period: (n / 8) as u32,
         t_echo: (numbers.below(4) > 0).then(|| Micros::new(numbers.below(30_000) as u32)),
         late: Micros::new(numbers.below(300) as u32),
         age: Micros::new(30_000),
+        explained_by: n.is_multiple_of(5).then_some(Explanation::Sensor((n % 7) as u8)),
         weighed: (n / 8 % 2 == 1).then_some(Weighed { solo: false, steady: true, changes: 3, expected_change_us: -70 }),
     };
     (0..frames).map(|n| encoder.firing(&firing(n, numbers))).collect()
@@ -202,6 +212,7 @@ fn a_firing_is_these_bytes_and_a_weighed_one_these() {
         t_echo: Some(Micros::new(5_872)),
         late: Micros::new(40),
         age: Micros::new(40_100),
+        explained_by: None,
         weighed: None,
     };
     let mut encoder = Encoder::new();
@@ -210,12 +221,12 @@ fn a_firing_is_these_bytes_and_a_weighed_one_these() {
         let hex: Vec<_> = encoder.firing(firing).as_bytes().iter().map(|byte| format!("{byte:02x}")).collect();
         hex.join(" ")
     };
-    assert_eq!(hex(&firing), "03 11 01 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 03 36 c9 00");
+    assert_eq!(hex(&firing), "03 21 01 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 04 ff d9 4c 00");
     let weighed = Some(Weighed { solo: false, steady: true, changes: 7, expected_change_us: -120 });
     let weighed = hex(&Firing { weighed, ..firing });
     assert_eq!(
         weighed,
-        "03 13 02 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 09 02 07 88 ff ff ff 8f 42 00"
+        "03 23 02 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 0a ff 02 07 88 ff ff ff 3c 8f 00"
     );
 }
 
@@ -228,28 +239,30 @@ fn what_is_whole_and_of_another_version_or_kind_is_named() {
         received(&bytes[..=length]).pop().unwrap().unwrap_err()
     };
     let firing = |change: fn(&mut [u8])| {
-        let mut content = [0; 24];
-        content[0] = 0x11;
+        let mut content = [0; 25];
+        content[0] = 0x21;
         change(&mut content);
         packed(&content)
     };
-    assert_eq!(packed(&[0x20, 0, 0, 8]), FrameError::Version(2));
-    assert_eq!(packed(&[0x20, 0, 0, 8]).to_string(), "the board speaks version 2 of the serial protocol; expected 1");
-    assert_eq!(packed(&[0x15, 0, 0, 8]), FrameError::Content("kind"));
-    assert_eq!(packed(&[0x10, 0, 0, 0]), FrameError::Content("number of sensors"));
-    assert_eq!(packed(&[0x10, 0, 0, 8, b'\n']), FrameError::Content("clock"));
-    assert_eq!(packed(&[0x12, 0, 0, 8, 0, 0, 0, 0, 0, 0]), FrameError::Content("number of sensors"));
+    assert_eq!((packed(&[0, 0, 0, 8]), packed(&[0x30, 0, 0, 8])), (FrameError::Version(0), FrameError::Version(3)));
+    let refused = "the board speaks version 3 of the serial protocol; expected 1 to 2";
+    assert_eq!(packed(&[0x30, 0, 0, 8]).to_string(), refused);
+    assert_eq!(packed(&[0x25, 0, 0, 8]), FrameError::Content("kind"));
+    assert_eq!(firing(|content| content[24] = 64), FrameError::Content("explanation"));
+    assert_eq!(packed(&[0x20, 0, 0, 0]), FrameError::Content("number of sensors"));
+    assert_eq!(packed(&[0x20, 0, 0, 8, b'\n']), FrameError::Content("clock"));
+    assert_eq!(packed(&[0x22, 0, 0, 8, 0, 0, 0, 0, 0, 0]), FrameError::Content("number of sensors"));
     assert_eq!(firing(|content| content[3] = 64), FrameError::Content("sensor"));
-    assert_eq!(firing(|content| content[5] = 10), FrameError::Content("kind of reading"));
-    assert_eq!(packed(&[0x11, 0, 0, 8]), FrameError::Content("length"));
-    assert_eq!(packed(&[0x11; 26]), FrameError::Content("kind of reading"));
+    assert_eq!(firing(|content| content[5] = 12), FrameError::Content("kind of reading"));
+    assert_eq!(packed(&[0x21, 0, 0, 8]), FrameError::Content("length"));
+    assert_eq!(packed(&[0x21; 26]), FrameError::Content("kind of reading"));
     let weighed = |length: usize, flags: u8| {
         let mut content = vec![0; length];
-        (content[0], content[24]) = (0x13, flags);
+        (content[0], content[25]) = (0x23, flags);
         packed(&content)
     };
-    assert_eq!(weighed(30, 4), FrameError::Content("flags"));
-    assert_eq!((weighed(29, 3), weighed(31, 3)), (FrameError::Content("length"), FrameError::Content("length")));
+    assert_eq!(weighed(31, 4), FrameError::Content("flags"));
+    assert_eq!((weighed(30, 3), weighed(32, 3)), (FrameError::Content("length"), FrameError::Content("length")));
 }
 
 #[test]
@@ -291,4 +304,29 @@ fn a_recorder_says_everything_that_a_ring_reads() {
     }
     assert!(heard.len() > 1_000);
     assert_eq!(heard, expected);
+}
+
+/// The frames that docs/serial.md gave for version 1.
+#[test]
+fn frames_of_version_one_are_still_read() {
+    let bytes = |hex: &str| hex.split(' ').map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect::<Vec<_>>();
+    let plain = "03 11 01 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 03 36 c9 00";
+    let weighed =
+        "03 13 02 07 03 01 01 87 d6 12 02 0c 01 01 03 f0 16 01 02 28 03 a4 9c 01 09 02 07 88 ff ff ff 8f 42 00";
+    let expected = Firing {
+        sensor: 3,
+        phase: 1,
+        kind: ReadingKind::Accepted,
+        fired: Instant::from_micros(1_234_567),
+        period: 12,
+        t_echo: Some(Micros::new(5_872)),
+        late: Micros::new(40),
+        age: Micros::new(40_100),
+        explained_by: None,
+        weighed: None,
+    };
+    let how = Weighed { solo: false, steady: true, changes: 7, expected_change_us: -120 };
+    let of = |sequence, firing| Ok(Received { sequence, message: Message::Firing(firing) });
+    assert_eq!(received(&bytes(plain)), [of(1, expected)]);
+    assert_eq!(received(&bytes(weighed)), [of(2, Firing { weighed: Some(how), ..expected })]);
 }

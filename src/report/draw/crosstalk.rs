@@ -1,6 +1,5 @@
 //! Two periods as they happened: who fired when, who heard what, and whose sound it was (Fig. 3).
 
-use eeruf_core::ReadingKind;
 use eeruf_sim::{Cause, Readings};
 use plotters::style::Color;
 use plotters::style::text_anchor::HPos;
@@ -79,7 +78,7 @@ pub(crate) fn two_periods(readings: &Readings, robot: u16, sensors: usize, windo
         let colour = if foreign { REJECTED } else { ACCEPTED };
         if readings.is_accepted(k) {
             picture.dot(at, 5.0, colour);
-        } else if readings.kind[k] == ReadingKind::Rejected {
+        } else if readings.kind[k].is_rejected() {
             picture.cross(at, 5.0, colour);
         } else {
             picture.dot(at, 3.0, colour);

@@ -52,7 +52,7 @@ pub(crate) fn kinds_over_time(columns: &[Column], t_delta_us: u32) -> Picture {
 fn colour_of(kind: ReadingKind) -> RGBColor {
     match kind {
         ReadingKind::Accepted => ACCEPTED,
-        ReadingKind::Rejected => REJECTED,
+        ReadingKind::Rejected | ReadingKind::Ambiguous => REJECTED,
         ReadingKind::NoEcho | ReadingKind::Clear => SILENT,
         _ => UNCOMPARED,
     }

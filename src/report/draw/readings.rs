@@ -1,6 +1,5 @@
 //! What one sensor read over time, and what of it was believed.
 
-use eeruf_core::ReadingKind;
 use eeruf_sim::Readings;
 use plotters::style::Color;
 use plotters::style::text_anchor::HPos;
@@ -60,7 +59,7 @@ pub(crate) fn readings_over_time(
             if readings.is_accepted(reading) {
                 let wrong = readings.is_wrong(reading, tolerance_us);
                 picture.dot(at, if wrong { 4.0 } else { 3.0 }, if wrong { REJECTED } else { ACCEPTED });
-            } else if readings.kind[reading] == ReadingKind::Rejected {
+            } else if readings.kind[reading].is_rejected() {
                 picture.cross(at, 4.0, INK.mix(0.8));
             } else {
                 picture.dot(at, 2.5, UNCOMPARED);

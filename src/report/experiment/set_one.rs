@@ -41,13 +41,13 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
         "farther",
     ];
     let rows = found.methods.iter().map(|(method, figures)| row(*method, figures));
-    let MultiEcho { consecutive, t_delta, patience } = MultiEcho::TUNED;
+    let MultiEcho { consecutive, t_delta } = MultiEcho::TUNED;
     let mut text = format!(
         "Set I: {}, {} sensors, {} periods of {} each, physics: {}; 10 % / median / 90 % of the alcoves, or the \
          median alone.\n\
          Starved: sensors with under 5 % of their readings accepted, on average; in part: those of them that read\n\
          right in one phase and not in another; blind: those that never had a reading accepted.\n\
-         multi_echo compares {} readings within {} and has a patience of {}, all others two within 500 us and none;\n\
+         multi_echo compares {} readings within {}, all others two within 500 us;\n\
          eeruf_best has a period of {} ({}). Nearer, farther: after how many periods a back wall that steps by 0.25 m\n\
          is read right, median / 90 % of the steps, and how many never are within 64.\n\n",
         alcoves(found),
@@ -57,7 +57,6 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
         found.physics,
         consecutive,
         t_delta,
-        patience,
         best.schedule.period(),
         if best.proven { "proven shortest" } else { "not proven shortest" },
     );

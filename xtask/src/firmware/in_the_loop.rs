@@ -21,7 +21,7 @@ const FAULTS: [(&str, &str, &str); 6] = [
     ("sensor 3 stuck high", "0", "stuck high after 21 periods"),
     ("sensor 3 chattering", "0", "chatters after 2 periods"),
     ("sensor 3 losing interrupts", "0", "loses edges after 6 periods"),
-    ("main loop stalls for 50 ms", "26", "a firing 32"),
+    ("main loop stalls for 50 ms", "2", "a firing 32"),
     ("clock wraps", "0", "nothing to name"),
 ];
 
@@ -103,10 +103,10 @@ mod tests {
 
     #[test]
     fn other_numbers_than_core_has_are_noticed_though_board_and_host_agree() {
-        assert_eq!(unlike(&table("6213", "26")), None);
-        assert!(unlike(&table("6212", "26")).is_some_and(|row| row.contains("6212")));
+        assert_eq!(unlike(&table("6213", "2")), None);
+        assert!(unlike(&table("6212", "2")).is_some_and(|row| row.contains("6212")));
         assert!(unlike(&table("6213", "27")).is_some_and(|row| row.contains("stalls")));
-        let one_missing: String = table("6213", "26").lines().skip(1).map(|line| format!("{line}\n")).collect();
+        let one_missing: String = table("6213", "2").lines().skip(1).map(|line| format!("{line}\n")).collect();
         assert!(unlike(&one_missing).is_some());
         assert_eq!(unlike(""), Some("no row of microbit".to_owned()));
     }

@@ -7,11 +7,12 @@ use crate::measured::{self, Tables};
 use crate::steps::{Trouble, output};
 
 /// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions).
-const INSTRUCTIONS: [(&str, u32); 5] = [("idle_poll", 44), ("fire", 92), ("echo", 67), ("stamp", 60), ("reading", 415)];
+const INSTRUCTIONS: [(&str, u32); 6] =
+    [("idle_poll", 44), ("fire", 113), ("echo", 69), ("stamp", 60), ("reading", 498), ("reading_late", 3311)];
 /// What a hopping ring of twelve costs there, as `docs/hopping.md` has it: it may not grow unnoticed.
 const HOPPING: [(&str, u32); 7] = [
     ("idle_poll", 67),
-    ("fire", 117),
+    ("fire", 119),
     ("echo", 73),
     ("reading", 1192),
     ("reading_moving", 1192),
@@ -21,12 +22,12 @@ const HOPPING: [(&str, u32); 7] = [
 const HOPPING_FLASH: u64 = 7824;
 const HOPPING_RAM: u64 = 952;
 /// What a poll of it takes of the stack there.
-const HOPPING_STACK: u64 = 276;
+const HOPPING_STACK: u64 = 316;
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
-const FLASH: u64 = 4344;
-const RAM: u64 = 12 * 18 + 80;
-const STACK: u64 = 256;
+const FLASH: u64 = 4768;
+const RAM: u64 = 12 * 28 + 80;
+const STACK: u64 = 560;
 
 /// The tables of all boards or of one, and which budgets are exceeded. Only of all boards there is the simulated world.
 pub(super) fn measure(only: Option<&str>) -> Result<(Tables, Vec<String>), Trouble> {

@@ -5,7 +5,7 @@
 
 const uint8_t PINS[] = {2, 3, 4, 5, 6, 7, 8, 9};
 EerufHoppingRing ring;
-EerufSensor sensors[8];
+EerufHopSensor sensors[8];
 EerufHopper hoppers[8];
 EerufHcSr04 modules;
 EerufLine lines[8];

@@ -2,7 +2,6 @@
 //!
 //! Each test compares 200,000 events; with `EERUF_C_EVENTS=10000000` as many as that.
 
-mod corpus;
 mod parts;
 mod serial;
 mod settings;

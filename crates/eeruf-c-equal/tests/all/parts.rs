@@ -1,6 +1,6 @@
 //! The parts that can be used alone: filter, distances, edges, adaptation.
 
-use eeruf_c_equal::core_side::echo;
+use eeruf_c_equal::core_side::{echo, explanation};
 use eeruf_c_equal::{C, Do, Edges, NO_ECHO, Needs, Random, distance_mm, echo_time_us, filter, sound_mm_s};
 use eeruf_core::{
     Adaptation, EchoFilter, Edge, EdgeQueue, Instant, Ladder, Micros, Requirements, Ring, RingConfig, RingEvent,
@@ -25,7 +25,8 @@ fn the_filter_alone_gives_the_same_verdicts() {
             let verdict = rust.push_echoes(0, (t_echo != NO_ECHO).then_some(Micros::new(t_echo)).as_slice(), change);
             let verdict = verdict.unwrap();
             let age = verdict.age.unwrap_or(u16::MAX).into();
-            let expected = [verdict.kind as u32, echo(verdict.t_echo), echo(verdict.previous), age];
+            let by = explanation(verdict.explained_by);
+            let expected = [verdict.kind as u32, echo(verdict.t_echo), echo(verdict.previous), age, by];
             assert_eq!(filter(&mut held, t_delta, consecutive, t_echo, change), expected, "{change}");
         }
     }
@@ -94,7 +95,7 @@ fn adaptation_climbs_and_descends_alike() {
         // Now and then longer than the middle schedules' window would allow, so that changes are refused.
         let config = RingConfig::new().with_window(Micros::new(20_000));
         let mut ring = Ring::new(&rungs[0], config, Instant::from_micros(0)).unwrap();
-        assert_eq!(c.ring(0, [0, 20_000, 0], 2, 0), 0);
+        assert_eq!(c.ring(0, [0, 20_000, 0, 0, 0], 2, 0), 0);
         let mut noise = 0;
         for _ in 0..20_000 {
             if r.once_in(3_000) {

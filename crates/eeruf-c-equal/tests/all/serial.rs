@@ -1,10 +1,10 @@
 //! What C and Rust say over a serial line.
 
-use eeruf_c_equal::core_side::flat;
+use eeruf_c_equal::core_side::{explanation, flat};
 use eeruf_c_equal::{C, Do, Random};
 use eeruf_core::{
-    HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros, Phase, Ring,
-    RingConfig, RingEvent, Schedule, ScheduledFiring, tables::PAPER_12,
+    Explanation, HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros, Phase,
+    ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledFiring, tables::PAPER_12,
 };
 use eeruf_serial::{Frame, Recorder};
 
@@ -21,6 +21,18 @@ fn the_same_events_make_the_same_frames() {
     }
 }
 
+/// Makes two of three readings ambiguous, on both sides.
+fn explain(event: &mut RingEvent, c: &mut C) {
+    let RingEvent::Reading(reading) = event else { return };
+    let by = match reading.period % 3 {
+        0 => return,
+        1 => Explanation::Sensor(reading.sensor ^ 1),
+        _ => Explanation::History,
+    };
+    (reading.kind, reading.explained_by) = (ReadingKind::Ambiguous, Some(by));
+    c.explain(explanation(reading.explained_by) as u8);
+}
+
 /// One ring, its clock late, jumping and wrapping; how many frames it made.
 fn run(seed: u64) -> u64 {
     let (r, mut c) = (Random::new(seed), C::new());
@@ -32,7 +44,7 @@ fn run(seed: u64) -> u64 {
     let times: Vec<u32> = rows.as_flattened().iter().map(|time| time.as_micros()).collect();
     assert_eq!(c.schedule(PAPER_12.period().as_micros(), SENSORS, 2, &times), 0);
     let (t_delta, window, start) = (500, 30_000, r.any() as u32);
-    assert_eq!(c.ring(0, [t_delta, window, 0], 2, start), 0);
+    assert_eq!(c.ring(0, [t_delta, window, 0, 0, 0], 2, start), 0);
     let config = RingConfig::new().with_t_delta(Micros::new(t_delta)).with_window(Micros::new(window));
     let start_at = Instant::from_micros(start);
     let mut ring = Ring::<ScheduledFiring<'_, 12, 2>, 12>::unverified(&schedule, config, start_at).unwrap();
@@ -50,7 +62,8 @@ fn run(seed: u64) -> u64 {
         for _ in 0..20 {
             let event = ring.poll(now);
             assert_eq!(c.poll(world.now, None), event.as_ref().map(flat).ok_or(0), "seed {seed}");
-            let Some(event) = event else { break };
+            let Some(mut event) = event else { break };
+            explain(&mut event, &mut c);
             if let RingEvent::Fire { sensor, .. } = event {
                 world.fired(sensor);
             }
@@ -106,7 +119,8 @@ fn hop(seed: u64) -> u64 {
         for _ in 0..20 {
             let event = ring.poll_expecting(now, change);
             assert_eq!(c.poll(world.now, Some(&changes)), event.as_ref().map(flat).ok_or(0), "seed {seed}");
-            let Some(event) = event else { break };
+            let Some(mut event) = event else { break };
+            explain(&mut event, &mut c);
             if let RingEvent::Fire { sensor, .. } = event {
                 world.fired(sensor);
             }

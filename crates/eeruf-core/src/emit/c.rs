@@ -9,7 +9,7 @@ use crate::schedule::{Phase, Schedule, VerifiedFor};
 use crate::time::Micros;
 
 /// `EERUF_VERSION` of the `eeruf.h` that tables are written for.
-pub(crate) const EERUF_VERSION: u16 = 1;
+pub(crate) const EERUF_VERSION: u16 = 2;
 
 /// A schedule as a C header: see [`Schedule::to_c`].
 #[derive(Clone, Copy, Debug)]
@@ -97,7 +97,8 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
             writeln!(f, "    {},", Plain(gaps))?;
         }
         let verified = schedule.verify(requirements).verified().map(|verified| verified.verified_for());
-        let VerifiedFor { t_delta, min_interval, window, separation } = verified.unwrap_or(VerifiedFor::NOTHING);
+        let VerifiedFor { t_delta, min_interval, window, separation, path_change, audible } =
+            verified.unwrap_or(VerifiedFor::NOTHING);
         let (layout, neighbours) = match requirements.layout {
             Layout::Line(n) => ("LINE", n),
             Layout::Ring(n) => ("RING", n),
@@ -109,6 +110,11 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
         writeln!(f, "}};\nstatic const EerufSchedule {name} EERUF_FLASH = {{")?;
         writeln!(f, "    {EERUF_VERSION}, {sensors}, 2, {name}_order, {name}_gap_us,")?;
         writeln!(f, "    {},", Plain(|| times.into_iter().map(|time| (time.as_micros(), "u"))))?;
+        match path_change {
+            Some(path_change) => write!(f, "    {}u,", path_change.as_micros())?,
+            None => f.write_str("    EERUF_AS_T_DELTA,")?,
+        }
+        writeln!(f, " {}u,", audible.as_micros())?;
         let verified = u8::from(verified.is_ok());
         writeln!(f, "    {verified}, EERUF_LAYOUT_{layout}, {neighbours}, {stale_echo},\n}};")
     }
@@ -139,13 +145,21 @@ mod tests {
     #[test]
     fn the_constant_says_what_it_was_verified_for_or_that_it_was_not() {
         let tab = TABLE_I_D.to_arduino(&REQUIREMENTS, "PAPER").to_string();
-        assert!(tab.contains("EerufSchedule PAPER EERUF_FLASH = {\n    1, 12, 2, PAPER_order, PAPER_gap_us,"), "{tab}");
+        assert!(tab.contains("EerufSchedule PAPER EERUF_FLASH = {\n    2, 12, 2, PAPER_order, PAPER_gap_us,"), "{tab}");
         assert!(
-            tab.contains("100000u, 76000u, 999u, 15000u, 76000u, 2000u,\n    1, EERUF_LAYOUT_LINE, 4, 0,"),
+            tab.contains(
+                "100000u, 76000u, 999u, 15000u, 76000u, 2000u,\n    EERUF_AS_T_DELTA, 100000u,\n    \
+                 1, EERUF_LAYOUT_LINE, 4, 0,"
+            ),
             "{tab}"
         );
         let more = Requirements { t_delta: Micros::new(1000), ..REQUIREMENTS };
         let tab = TABLE_I_D.to_arduino(&more, "PAPER").to_string();
-        assert!(tab.contains("100000u, 76000u, 0u, 0u, 0u, 0u,\n    0, EERUF_LAYOUT_LINE, 4, 0,"), "{tab}");
+        assert!(
+            tab.contains(
+                "100000u, 76000u, 0u, 0u, 0u, 0u,\n    EERUF_AS_T_DELTA, 0u,\n    0, EERUF_LAYOUT_LINE, 4, 0,"
+            ),
+            "{tab}"
+        );
     }
 }

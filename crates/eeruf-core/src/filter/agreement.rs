@@ -1,31 +1,50 @@
-//! [`Agreement`]: how many readings must agree, and for how long a missing echo is waited for.
+//! [`Agreement`]: when two readings are near-identical (Eq. 11), and how many consecutive ones must be.
 
+use super::echoes::NO_ECHO;
 use super::error::FilterError;
+use crate::time::Micros;
 
-/// How many readings in a row confirm a track, and for how many firings it may then coast, in one byte.
+/// The tolerance of Eq. (11), and the number of consecutive readings that confirm an echo.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub(crate) struct Agreement(u8);
+pub(crate) struct Agreement {
+    pub(crate) t_delta: Micros,
+    consecutive: Consecutive,
+}
 
-impl Agreement {
-    /// As much as four bits hold; a track's score has as many.
-    pub(super) const MAX_PATIENCE: u8 = 0b1111;
+/// The number of consecutive readings that must agree, 2 to 8.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(crate) struct Consecutive(u8);
 
-    pub(crate) const fn new(consecutive: u8, patience: u8) -> Result<Self, FilterError> {
+impl Consecutive {
+    pub(crate) const fn new(consecutive: u8) -> Result<Self, FilterError> {
         if consecutive < 2 || consecutive > 8 {
             return Err(FilterError::Consecutive { consecutive });
         }
-        if patience > Self::MAX_PATIENCE {
-            return Err(FilterError::Patience { patience });
-        }
-        Ok(Self(consecutive | patience << 4))
+        Ok(Self(consecutive))
+    }
+
+    pub(super) const fn get(self) -> u8 {
+        self.0
+    }
+}
+
+impl Agreement {
+    pub(crate) const fn new(t_delta: Micros, consecutive: Consecutive) -> Self {
+        Self { t_delta, consecutive }
     }
 
     pub(super) const fn consecutive(self) -> u8 {
-        self.0 & 0b1111
+        self.consecutive.get()
     }
 
-    pub(super) const fn patience(self) -> u8 {
-        self.0 >> 4
+    /// Eq. (11), after taking off the change that is expected. Silence agrees with silence.
+    pub(super) fn near_identical(self, echo: u32, previous: u32, expected_change_us: i32) -> bool {
+        if echo == NO_ECHO || previous == NO_ECHO {
+            return echo == previous;
+        }
+        let change = i64::from(echo) - i64::from(previous) - i64::from(expected_change_us);
+        change.unsigned_abs() <= u64::from(self.t_delta.as_micros())
     }
 }

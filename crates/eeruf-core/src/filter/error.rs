@@ -12,11 +12,6 @@ pub enum FilterError {
         /// How many were asked for.
         consecutive: u8,
     },
-    /// Too much patience.
-    Patience {
-        /// How much was asked for.
-        patience: u8,
-    },
     /// A rate at which no robot's echoes change.
     Rate {
         /// What was asked for, in microseconds per second.
@@ -28,7 +23,6 @@ impl fmt::Display for FilterError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Consecutive { consecutive } => write!(f, "{consecutive} consecutive readings; expected 2 to 8"),
-            Self::Patience { patience } => write!(f, "a patience of {patience} firings; expected 0 to 15"),
             Self::Rate { us_per_s } => write!(f, "echoes that change by {us_per_s} us/s; expected 0 to 400000 us/s"),
         }
     }

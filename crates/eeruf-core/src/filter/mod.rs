@@ -4,9 +4,11 @@
 //! |T_i - T_(i-1)| <= T_delta      (11)
 //! ```
 //!
-//! A true echo does not depend on the waits and passes; crosstalk moves by more than `T_delta` whenever the schedule
-//! meets (13a), (13b), and is rejected. Sensors that report several echoes of one firing hand in all of them, and the
-//! earliest that repeats is accepted: crosstalk that arrives before the true echo then no longer hides it.
+//! A true echo does not depend on the waits and passes; crosstalk moves by more than `T_delta` if firings kept a
+//! schedule that meets (13a), (13b), and is rejected. A [`Ring`](crate::Ring) does not rely on that: it asks of two
+//! readings that agree whether sound of another firing explains both. Sensors that report several echoes of one firing
+//! hand in all of them, and the earliest that repeats is accepted: crosstalk that arrives before the true echo then no
+//! longer hides it.
 //!
 //! The room holds the public filter and the tracker behind it; it uses readings and times, and knows nothing of
 //! schedules.
@@ -15,8 +17,6 @@ mod agreement;
 mod echoes;
 mod error;
 mod rate;
-mod rule;
-mod state;
 #[cfg(test)]
 mod tests;
 mod tracker;
@@ -25,11 +25,10 @@ use crate::reading::Verdict;
 use crate::sensor_error::SensorError;
 use crate::time::Micros;
 
-pub(crate) use agreement::Agreement;
-pub(crate) use echoes::{NO_ECHO, insert};
+pub(crate) use agreement::{Agreement, Consecutive};
+pub(crate) use echoes::{NO_ECHO, insert, shift};
 pub use error::FilterError;
 pub use rate::RateFilter;
-pub(crate) use rule::Rule;
 pub(crate) use tracker::Tracker;
 
 /// Compares the consecutive readings of up to `K` sensors, each with up to `E` echoes a firing.
@@ -48,7 +47,7 @@ pub(crate) use tracker::Tracker;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct EchoFilter<const K: usize, const E: usize = 1> {
     trackers: [Tracker<E>; K],
-    rule: Rule,
+    agreement: Agreement,
 }
 
 impl<const K: usize, const E: usize> EchoFilter<K, E> {
@@ -58,42 +57,10 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// # Errors
     /// [`FilterError::Consecutive`] unless 2 to 8 readings are compared.
     pub const fn new(t_delta: Micros, consecutive: u8) -> Result<Self, FilterError> {
-        match Agreement::new(consecutive, 0) {
-            Ok(agreement) => Ok(Self { trackers: [Tracker::new(0); K], rule: Rule { t_delta, agreement } }),
-            Err(error) => Err(error),
-        }
-    }
-
-    /// A filter that waits for an accepted echo that is missing, as faint echoes are now and then. While it waits, no
-    /// later echo is accepted in its place; when the echo comes back it is accepted again.
-    ///
-    /// Each echo has a track with a score. The score grows by one with each firing that the echo is in, up to
-    /// `patience` (or `consecutive`, if that is more), and shrinks by one with each firing that it is missing from. A
-    /// track is *confirmed* once its score has reached `consecutive`, and until its score is used up; a confirmed track
-    /// whose echo is missing is *coasting*. With a patience of 0, as in the paper, no track coasts.
-    ///
-    /// This is for schedules of two phases, and for sensors that report several echoes; with `E` = 1 it changes
-    /// nothing. The price: an object that has gone is still waited for.
-    ///
-    /// # Errors
-    /// [`FilterError::Patience`] for more than 15.
-    ///
-    /// ```
-    /// use eeruf_core::{EchoFilter, ReadingKind, Micros};
-    /// let mut filter = EchoFilter::<1, 8>::new(Micros::new(100), 2)?.with_patience(4)?;
-    /// let mut push = |echoes: &[u32]| {
-    ///     let echoes: Vec<_> = echoes.iter().map(|&us| Micros::new(us)).collect();
-    ///     filter.push_echoes(0, &echoes, 0).map(|verdict| verdict.kind)
-    /// };
-    /// push(&[9_000, 14_000])?;
-    /// assert_eq!(push(&[9_000, 14_000])?, ReadingKind::Accepted);
-    /// assert_eq!(push(&[14_000])?, ReadingKind::Rejected); // the wall behind is not accepted at once
-    /// assert_eq!(push(&[9_000, 14_000])?, ReadingKind::Accepted);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub const fn with_patience(self, patience: u8) -> Result<Self, FilterError> {
-        match Agreement::new(self.rule.agreement.consecutive(), patience) {
-            Ok(agreement) => Ok(Self { rule: Rule { agreement, ..self.rule }, ..self }),
+        match Consecutive::new(consecutive) {
+            Ok(consecutive) => {
+                Ok(Self { trackers: [Tracker::new(0); K], agreement: Agreement::new(t_delta, consecutive) })
+            }
             Err(error) => Err(error),
         }
     }
@@ -127,7 +94,7 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
             // The longest duration stands for silence.
             insert(&mut earliest, echo.as_micros().min(NO_ECHO - 1));
         }
-        Ok(tracker.push(self.rule, &earliest, expected_change_us))
+        Ok(tracker.push(self.agreement, &earliest, expected_change_us, |_, _| None))
     }
 
     /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.

@@ -155,7 +155,7 @@ impl Line {
             _ if self.age >= NEVER - 1 => self.age,
             _ => self.age + 1,
         };
-        Verdict { kind, t_echo, previous, age: (self.age != NEVER).then_some(self.age) }
+        Verdict { kind, t_echo, previous, age: (self.age != NEVER).then_some(self.age), explained_by: None }
     }
 }
 

@@ -2,7 +2,7 @@
 
 extern crate std;
 use super::*;
-use crate::reading::ReadingKind;
+use crate::reading::{Explanation, ReadingKind};
 use std::string::ToString;
 use std::vec::Vec;
 
@@ -46,7 +46,8 @@ fn the_earliest_echo_that_repeats_is_accepted_whatever_comes_before_it() {
             kind: ReadingKind::Accepted,
             t_echo: Some(Micros::new(9050)),
             previous: Some(Micros::new(9000)),
-            age: Some(0)
+            age: Some(0),
+            explained_by: None,
         }
     );
 }
@@ -68,54 +69,6 @@ fn the_expected_change_is_taken_off_before_comparing() {
     assert_eq!(push(9_000, -1_000), ReadingKind::Accepted);
     assert_eq!(push(8_051, -1_000), ReadingKind::Rejected);
     assert_eq!(push(u32::MAX - 1, i32::MAX), ReadingKind::Rejected);
-}
-
-#[test]
-fn an_accepted_echo_that_fades_is_waited_for_before_a_later_one_is_accepted() {
-    use ReadingKind::*;
-    let mut filter = filter::<4>(100, 2).with_patience(3).unwrap();
-    let mut seen = |firings: &[&[u32]]| kinds(&mut filter, firings);
-    assert_eq!(seen(&[&[5000, 9000], &[5000, 9000], &[5000, 9000]]), [First, Accepted, Accepted]);
-    assert_eq!(seen(&[&[9000], &[5050, 9000], &[9000], &[9000]]), [Rejected, Accepted, Rejected, Rejected]);
-    assert_eq!(seen(&[&[9000], &[9000], &[5000, 9000], &[5000, 9000]]), [Accepted; 4]);
-}
-
-#[test]
-fn silence_is_not_confirmed_while_an_echo_is_waited_for() {
-    use ReadingKind::*;
-    let firings: [&[u32]; 9] = [&[], &[], &[5000], &[5000], &[], &[], &[], &[5000], &[]];
-    let mut patient = filter::<2>(100, 2).with_patience(2).unwrap();
-    let seen = kinds(&mut patient, &firings);
-    assert_eq!(seen, [NoEcho, Clear, First, Accepted, NoEcho, Clear, Clear, First, Clear]);
-    let seen = kinds(&mut filter::<2>(100, 2), &firings);
-    assert_eq!(seen, [NoEcho, Clear, First, Accepted, NoEcho, Clear, Clear, First, NoEcho]);
-}
-
-#[test]
-fn an_echo_heard_in_one_phase_only_is_never_accepted_however_patient_the_filter() {
-    for patience in 0..=15 {
-        let mut filter = filter::<8>(100, 2).with_patience(patience).unwrap();
-        let firings = [[3000, 9000], [7000, 12_000]].into_iter().cycle().take(60).collect::<Vec<_>>();
-        let firings: Vec<&[u32]> = firings.iter().map(|echoes| &echoes[..]).collect();
-        assert!(!kinds(&mut filter, &firings).contains(&ReadingKind::Accepted));
-    }
-}
-
-#[test]
-fn an_echo_that_is_waited_for_moves_as_expected() {
-    let mut filter = filter::<2>(50, 2).with_patience(4).unwrap();
-    let mut push = |us: &[u32]| {
-        let echoes: Vec<_> = us.iter().map(|&us| Micros::new(us)).collect();
-        filter.push_echoes(0, &echoes, -1_000).unwrap().kind
-    };
-    for t_echo in [10_000, 9_000, 8_000] {
-        push(&[t_echo]);
-    }
-    push(&[]);
-    assert_eq!(push(&[6_000]), ReadingKind::Accepted);
-    for _ in 0..20 {
-        push(&[]);
-    }
 }
 
 #[test]
@@ -144,8 +97,6 @@ fn a_forgotten_sensor_starts_again_but_does_not_grow_younger() {
 fn errors_say_what_is_expected() {
     let error = EchoFilter::<1>::new(Micros::new(1), 9).unwrap_err();
     assert_eq!(error.to_string(), "9 consecutive readings; expected 2 to 8");
-    let error = filter::<1>(1, 2).with_patience(16).unwrap_err();
-    assert_eq!(error.to_string(), "a patience of 16 firings; expected 0 to 15");
     let error = filter::<1>(1, 2).push(1, None).unwrap_err();
     assert_eq!(error.to_string(), "sensor 2; expected 1 to 1");
 }
@@ -156,54 +107,55 @@ fn a_sensor_with_one_echo_is_remembered_in_eight_bytes() {
 }
 
 #[test]
-fn an_echo_that_is_waited_for_holds_back_only_what_is_later_and_would_be_accepted() {
-    use ReadingKind::*;
-    // Another is heard twice of three times: not accepted anyway.
-    let mut three = filter::<2>(100, 3).with_patience(5).unwrap();
-    let seen = kinds(&mut three, &[&[1000], &[1000], &[1000], &[2000], &[2000]]);
-    assert_eq!(seen, [First, Repeated, Accepted, Rejected, Repeated]);
-    // The later one of two is missing.
-    let mut two = filter::<2>(100, 2).with_patience(5).unwrap();
-    let seen = kinds(&mut two, &[&[1000, 2000], &[1000, 2000], &[1000], &[1000]]);
-    assert_eq!(seen, [First, Accepted, Accepted, Accepted]);
+fn echoes_of_alternate_firings_are_never_accepted() {
+    let firings = [[3000, 9000], [7000, 12_000]].into_iter().cycle().take(60).collect::<Vec<_>>();
+    let firings: Vec<&[u32]> = firings.iter().map(|echoes| &echoes[..]).collect();
+    assert!(!kinds(&mut filter::<8>(100, 2), &firings).contains(&ReadingKind::Accepted));
 }
 
-#[test]
-fn an_echo_that_is_waited_for_takes_the_place_of_a_later_one_that_is_heard() {
-    use ReadingKind::*;
-    let mut filter = filter::<2>(100, 2).with_patience(5).unwrap();
-    let seen = kinds(&mut filter, &[&[1000], &[1000], &[2000, 3000]]);
-    assert_eq!(seen, [First, Accepted, Rejected]);
-    let verdict = filter.push_echoes(0, &[1000, 2000].map(Micros::new), 0).unwrap();
-    assert_eq!((verdict.kind, verdict.t_echo), (Accepted, Some(Micros::new(1000))));
-}
-
-#[test]
-fn an_echo_that_is_waited_for_stands_behind_the_earlier_ones() {
-    let mut filter = filter::<3>(100, 2).with_patience(5).unwrap();
-    kinds(&mut filter, &[&[500, 1000], &[500, 1000], &[500]]);
-    let verdict = filter.push_echoes(0, &[Micros::new(3000)], 0).unwrap();
-    assert_eq!((verdict.kind, verdict.previous), (ReadingKind::Rejected, Some(Micros::new(500))));
-}
-
-#[test]
-fn an_echo_that_is_waited_for_beyond_the_longest_time_is_no_silence() {
-    let mut filter = filter::<2>(100, 3).with_patience(6).unwrap();
-    let mut push = |us: &[u32], change| {
-        let echoes: Vec<_> = us.iter().map(|&us| Micros::new(us)).collect();
-        filter.push_echoes(0, &echoes, change).unwrap().kind
+/// The kinds of the readings of one sensor, where sound explains all pairs of echoes of at most so long.
+fn kinds_explained<const E: usize>(consecutive: u8, explained_to: u32, firings: &[&[u32]]) -> Vec<ReadingKind> {
+    let agreement = Agreement::new(Micros::new(100), Consecutive::new(consecutive).unwrap());
+    let mut tracker = Tracker::<E>::new(0);
+    let mut push = |us: &[u32]| {
+        let mut echoes = [NO_ECHO; E];
+        us.iter().for_each(|&echo| insert(&mut echoes, echo));
+        let verdict =
+            tracker.push(agreement, &echoes, 0, |_, echo| (echo <= explained_to).then_some(Explanation::Sensor(3)));
+        assert_eq!(verdict.explained_by.is_some(), verdict.kind == ReadingKind::Ambiguous, "{verdict:?}");
+        verdict.kind
     };
-    for _ in 0..3 {
-        push(&[u32::MAX - 10], 0);
-    }
-    let silent = [push(&[], 1000), push(&[], 0), push(&[], 0)];
-    assert_eq!(silent[..2], [ReadingKind::NoEcho; 2]);
+    firings.iter().map(|echoes| push(echoes)).collect()
 }
 
 #[test]
-fn patience_is_for_sensors_that_report_several_echoes() {
-    let firings: Vec<&[u32]> =
-        [&[5000][..], &[5000], &[9000], &[9000], &[], &[], &[5000], &[5000]].into_iter().collect();
-    let patient = &mut filter::<1>(100, 2).with_patience(8).unwrap();
-    assert_eq!(kinds(patient, &firings), kinds(&mut filter::<1>(100, 2), &firings));
+fn explained_echo_is_ambiguous_and_base_of_next_pair() {
+    use ReadingKind::*;
+    let seen = kinds_explained::<1>(2, 5040, &[&[5000], &[5030], &[5060], &[5090], &[], &[]]);
+    assert_eq!(seen, [First, Ambiguous, Accepted, Accepted, NoEcho, Clear]);
+}
+
+#[test]
+fn explained_echo_ends_a_run_of_three() {
+    use ReadingKind::*;
+    let seen = kinds_explained::<1>(3, 5040, &[&[5060], &[5080], &[5030], &[5060], &[5090], &[5090]]);
+    assert_eq!(seen, [First, Repeated, Ambiguous, Repeated, Accepted, Accepted]);
+}
+
+#[test]
+fn explained_echo_does_not_hide_a_later_one() {
+    use ReadingKind::*;
+    let seen = kinds_explained::<4>(2, 5040, &[&[5000, 9000], &[5000, 9000], &[5000], &[5000, 7000]]);
+    assert_eq!(seen, [First, Accepted, Ambiguous, Ambiguous]);
+}
+
+#[test]
+fn a_corrected_firing_shifts_known_echoes() {
+    let agreement = Agreement::new(Micros::new(100), Consecutive::new(2).unwrap());
+    for (later_us, kind) in [(500, ReadingKind::Accepted), (-500, ReadingKind::Rejected)] {
+        let mut tracker = Tracker::<1>::new(0);
+        tracker.push(agreement, &[5500], 0, |_, _| None);
+        tracker.shift(later_us);
+        assert_eq!(tracker.push(agreement, &[5000], 0, |_, _| None).kind, kind);
+    }
 }

@@ -63,6 +63,13 @@ pub enum HoppingError {
         /// The least that it may be.
         least: Micros,
     },
+    /// Sensors would listen for longer than the tracker tells echoes apart.
+    Window {
+        /// The window asked for.
+        window: Micros,
+        /// The longest: [`HoppingListening::MAX_WINDOW`](super::HoppingListening::MAX_WINDOW).
+        most: Micros,
+    },
     /// With this lag a sensor would fire after its period has ended.
     Lag {
         /// The sensor, from 0.
@@ -102,6 +109,7 @@ impl HoppingError {
             Self::TDelta { .. } => "t_delta must be less than the step",
             Self::Votes { .. } => "the tracker's votes must be no more than the phases",
             Self::Period { .. } => "the period must be longer than the code is wide, and no longer than 268 s",
+            Self::Window { .. } => "a listening window is at most 16711.679 ms",
             Self::Lag { .. } => "each sensor must fire inside its period",
             Self::Tracker(_) => "a setting of the tracker is out of its range",
             Self::Ring(_) => "the ring cannot listen like that",
@@ -129,6 +137,9 @@ impl fmt::Display for HoppingError {
                 write!(f, "{votes} votes to confirm an echo; expected at most {phases}, the phases of the code")
             }
             Self::Period { period, least } => write!(f, "a period of {period}; expected {least} to 268435.456 ms"),
+            Self::Window { window, most } => {
+                write!(f, "a listening window of {window}; expected at most {most}")
+            }
             Self::Lag { sensor, lag, most } => {
                 write!(f, "a lag of {lag} for sensor {}; expected at most {most}", sensor + first)
             }

@@ -23,7 +23,7 @@ mod turn;
 mod weighed;
 
 use crate::reading::{ReadingKind, Verdict};
-use crate::ring::{PeriodStats, Reading, Ring, RingConfig, RingEvent};
+use crate::ring::{AgreementRing, PeriodStats, Reading, Ring, RingConfig, RingEvent};
 use crate::sensor_error::SensorError;
 use crate::time::Instant;
 use crate::tracker::{EchoTracker, Firing};
@@ -69,7 +69,7 @@ pub use weighed::Weighed;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HoppingRing<const K: usize, const H: usize = 4> {
-    ring: Ring<Timetable<K>, K>,
+    ring: AgreementRing<Timetable<K>, K>,
     tracker: EchoTracker<K, H>,
     /// By how much, in microseconds, firings may differ in lateness and crosstalk still move by more than `t_delta`.
     tolerated: u16,
@@ -82,7 +82,8 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     /// # Errors
     /// [`HoppingError`] for a tracker's setting out of its range, a `t_delta` that is not below the step of the code,
     /// more votes to confirm an echo than there are phases, a period that is shorter than window and code together or
-    /// than twice the code and a step, or a window that ends within the blanking time.
+    /// than twice the code and a step, a window longer than [`HoppingListening::MAX_WINDOW`] or one that ends within
+    /// the blanking time.
     pub fn new(
         schedule: &HoppingSchedule<K>,
         settings: HoppingSettings,
@@ -106,9 +107,13 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         if schedule.period() < least {
             return Err(HoppingError::Period { period: schedule.period(), least });
         }
+        let most = HoppingListening::MAX_WINDOW;
+        if window > most {
+            return Err(HoppingError::Window { window, most });
+        }
         let timetable = Timetable::new(schedule, settings, listening, seed, now);
         let config = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
-        let ring = Ring::with_scheduler(timetable, config, now)?;
+        let ring = Ring::remembering(timetable, config, now)?;
         // A track may be off by as much as its readings, and a step is at most 65,535 us.
         let tolerated = (code.step().abs_diff(t_delta).as_micros() - 1) / 2;
         Ok(Self { ring, tracker, tolerated: tolerated as u16, changes: 0 })
@@ -191,9 +196,9 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         self.notice_changes();
         let (phase, solo, steady) = self.ring.scheduler().last_firing(sensor, self.tolerated);
         let firing = Firing { phase, solo, steady, expected_change_us: 0 };
-        let Verdict { kind, t_echo, previous, age } = self.weigh(&reading, firing, expected_change_us);
+        let Verdict { kind, t_echo, previous, age, explained_by } = self.weigh(&reading, firing, expected_change_us);
         self.ring.count(kind);
-        Some(RingEvent::Reading(Reading { phase, kind, t_echo, previous, age, ..reading }))
+        Some(RingEvent::Reading(Reading { phase, kind, t_echo, previous, age, explained_by, ..reading }))
     }
 
     /// What the tracker makes of a reading.
@@ -202,14 +207,18 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         let &Reading { sensor, kind, t_echo, .. } = reading;
         let place = usize::from(sensor);
         let weighed = match kind {
-            ReadingKind::Late => return Verdict { kind, t_echo, previous: None, age: self.tracker.age(place) },
+            ReadingKind::Late => {
+                return Verdict { kind, t_echo, previous: None, age: self.tracker.age(place), explained_by: None };
+            }
             ReadingKind::Stuck | ReadingKind::TooEarly => {
                 let skipped = self.tracker.skip(place, kind, t_echo, expected_change_us(sensor));
                 skipped.map(|verdict| (verdict, self.tracker.is_clear(place)))
             }
             _ => self.tracker.weigh(place, t_echo, Firing { expected_change_us: expected_change_us(sensor), ..firing }),
         };
-        let Ok((verdict, is_clear)) = weighed else { return Verdict { kind, t_echo, previous: None, age: None } };
+        let Ok((verdict, is_clear)) = weighed else {
+            return Verdict { kind, t_echo, previous: None, age: None, explained_by: None };
+        };
         let confirmed = matches!(verdict.kind, ReadingKind::Accepted | ReadingKind::Clear);
         // A sensor that is known to have nothing in range is not fooled by what does not fit.
         let fits = confirmed || is_clear;
@@ -239,12 +248,21 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     /// [`SensorError`] for a sensor that is not there.
     pub fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
         let polled = self.ring.last_firing(sensor);
+        if polled.is_some_and(|polled| !at.has_reached(polled)) {
+            // Before the poll that asked for it, which cannot be.
+            return Ok(());
+        }
         self.ring.fired(sensor, at)?;
         let fired = self.ring.last_firing(sensor);
         if let Some(fired) = fired.filter(|_| fired != polled) {
             self.ring.scheduler_mut().fired(fired);
         }
         Ok(())
+    }
+
+    /// When a sensor last fired: see [`Ring::last_firing`].
+    pub fn last_firing(&self, sensor: u8) -> Option<Instant> {
+        self.ring.last_firing(sensor)
     }
 
     /// The echo line of a sensor was high when it was to fire: see [`Ring::stuck`].

@@ -1,7 +1,7 @@
 //! How a hopping ring fires and believes, and how it listens.
 
 use crate::time::Micros;
-use crate::tracker::TrackerSettings;
+use crate::tracker::{LATEST_ECHO, TrackerSettings};
 
 /// How a [`HoppingRing`](super::HoppingRing) fires and believes. Begin with one of [`BALANCED`](Self::BALANCED),
 /// [`QUICK`](Self::QUICK), [`DRIVING`](Self::DRIVING) and [`MAPS`](Self::MAPS); `docs/hopping.md` says which is for
@@ -139,7 +139,7 @@ impl Pace {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct HoppingListening {
-    /// `T_wind`: how long a sensor listens after it has fired.
+    /// `T_wind`: how long a sensor listens after it has fired, at most [`MAX_WINDOW`](Self::MAX_WINDOW).
     pub window: Micros,
     /// Edges sooner than this after firing are ringing of the transducer, not echoes.
     pub blanking: Micros,
@@ -149,6 +149,10 @@ pub struct HoppingListening {
 }
 
 impl HoppingListening {
+    /// The longest window, 16,711,679 us: the tracker keeps echo times in 24 bits, and later echoes would all read
+    /// alike, whatever the phase.
+    pub const MAX_WINDOW: Micros = LATEST_ECHO;
+
     /// This window, no blanking, and sound that is heard for as long as the window.
     pub const fn new(window: Micros) -> Self {
         Self { window, blanking: Micros::ZERO, reach: window }

@@ -243,9 +243,8 @@ impl<const K: usize> Scheduler for Timetable<K> {
     }
 
     fn next_firing(&self) -> Option<(u8, Phase)> {
-        // However much room there is, nobody has this number. To compare with the room spares the look-up its check.
-        let room = const { if K < NOBODY as usize { K } else { NOBODY as usize } };
-        (usize::from(self.next) < room).then_some((self.next, Phase(self.count)))
+        // There is room for at most 64 sensors. To compare with the room spares the look-up its check.
+        (usize::from(self.next) < K).then_some((self.next, Phase(self.count)))
     }
 
     #[inline(always)]
@@ -343,7 +342,7 @@ impl<const K: usize> Scheduler for Timetable<K> {
     }
 
     fn limits(&self) -> Limits<'_> {
-        Limits { longest_window: self.min_refire(), verified_for: None }
+        Limits { longest_window: self.min_refire(), verified_for: None, audible: None }
     }
 
     fn min_refire(&self) -> Micros {

@@ -1,5 +1,6 @@
 //! What can be changed while a ring runs.
 
+use super::history::is_just_ahead;
 use super::listening::Listening;
 use super::{NOBODY, Ring, RingError};
 use crate::schedule::Schedule;
@@ -9,9 +10,11 @@ use crate::time::{Instant, Micros};
 use crate::uneven_schedule::UnevenSchedule;
 use crate::verified::VerifiedSchedule;
 
-impl<'s, const N: usize, const M: usize, const K: usize, const E: usize> Ring<ScheduledFiring<'s, N, M>, K, E> {
-    /// Changes to another schedule when the present period ends (see [`ScheduledFiring::change_schedule`]). Readings
-    /// before and after the change are not compared. `t_delta` and window stay.
+impl<'s, const N: usize, const M: usize, const K: usize, const E: usize, const H: usize>
+    Ring<ScheduledFiring<'s, N, M>, K, E, H>
+{
+    /// Changes to another schedule when the present period ends (see [`ScheduledFiring::change_schedule`]).
+    /// `t_delta`, window and what sound may do stay.
     ///
     /// # Errors
     /// [`RingError::TDelta`] or [`RingError::VerifiedWindow`] if the schedule was verified for less than the ring's
@@ -31,10 +34,10 @@ impl<'s, const N: usize, const M: usize, const K: usize, const E: usize> Ring<Sc
     }
 }
 
-impl<'s, const K: usize, const E: usize> Ring<UnevenFiring<'s, K>, K, E> {
-    /// Changes to another schedule when the present period ends (see [`UnevenFiring::change_schedule`]). Readings
-    /// before and after the change are not compared. What the ring asks for at most stays; each sensor listens and
-    /// compares as the schedules allow it, in the first period after the change by the lesser of both.
+impl<'s, const K: usize, const E: usize, const H: usize> Ring<UnevenFiring<'s, K>, K, E, H> {
+    /// Changes to another schedule when the present period ends (see [`UnevenFiring::change_schedule`]). What
+    /// the ring asks for at most stays; each sensor listens and compares as the schedules allow it, in the first period
+    /// after the change by the lesser of both.
     ///
     /// # Errors
     /// [`RingError`] if the largest `t_delta` or window that the schedule was verified for is less than what the ring
@@ -48,29 +51,25 @@ impl<'s, const K: usize, const E: usize> Ring<UnevenFiring<'s, K>, K, E> {
     }
 }
 
-impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
-    /// Compares with another `t_delta` from now on. Where it grows, the next reading of each sensor is compared with
-    /// nothing, since what lateness allowed until now was for the smaller one.
+impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E, H> {
+    /// Sets `t_delta` for all readings to come.
     ///
     /// # Errors
     /// [`RingError::TDelta`] for more than the schedule was verified for, [`RingError::CoarseTDelta`] for one that is
     /// no shorter than the window. The ring then goes on as before.
     pub fn set_t_delta(&mut self, t_delta: Micros) -> Result<(), RingError> {
-        let grows = t_delta > self.t_delta();
-        self.listening = Listening::checked(t_delta, self.window(), self.blanking(), &self.scheduler)?;
-        if grows {
-            self.uncompare_next();
-        }
+        self.listening = self.listening.changed(t_delta, self.window(), self.blanking(), &self.scheduler)?;
+        self.disturb();
         Ok(())
     }
 
-    /// Listens for another time from now on, also for firings that are under way.
+    /// Sets the listening window, also of firings in progress.
     ///
     /// # Errors
     /// [`RingError`] for more than the schedule allows or was verified for, or for no more than the blanking time or
     /// `t_delta`. The ring then goes on as before.
     pub fn set_window(&mut self, window: Micros) -> Result<(), RingError> {
-        self.listening = Listening::checked(self.t_delta(), window, self.blanking(), &self.scheduler)?;
+        self.listening = self.listening.changed(self.t_delta(), window, self.blanking(), &self.scheduler)?;
         if S::UNEVEN {
             self.find_first_to_close();
         }
@@ -78,13 +77,34 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         Ok(())
     }
 
-    /// Is deaf after firing for another time from now on.
+    /// Sets the blanking time, for which a sensor is deaf after it has fired.
     ///
     /// # Errors
     /// [`RingError::Blanking`] for one that is no shorter than the window, or longer than 65,535 us. The ring then goes
     /// on as before.
     pub fn set_blanking(&mut self, blanking: Micros) -> Result<(), RingError> {
-        self.listening = Listening::checked(self.t_delta(), self.window(), blanking, &self.scheduler)?;
+        self.listening = self.listening.changed(self.t_delta(), self.window(), blanking, &self.scheduler)?;
+        Ok(())
+    }
+
+    /// Sets P, by how much a path of foreign sound may change from one reading to the next (see
+    /// [`RingConfig::path_change`](super::RingConfig::path_change)): as the robot's speed changes, for example.
+    ///
+    /// # Errors
+    /// [`RingError::PathChange`] for more than 65,534 us. The ring then goes on as before.
+    pub fn set_path_change(&mut self, path_change: Micros) -> Result<(), RingError> {
+        self.listening = self.listening.with_path_change(path_change)?;
+        self.disturb();
+        Ok(())
+    }
+
+    /// Sets R, how long sound is audible.
+    ///
+    /// # Errors
+    /// [`RingError::Audible`] for more than 67 s. The ring then goes on as before.
+    pub fn set_audible(&mut self, audible: Micros) -> Result<(), RingError> {
+        self.listening = self.listening.with_audible(audible)?;
+        self.disturb();
         Ok(())
     }
 
@@ -108,6 +128,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if !was_enabled {
             enabled.tracker.forget();
             self.scheduler.set_enabled(sensor, true);
+            self.disturb();
         }
         Ok(())
     }
@@ -126,18 +147,24 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         for sensor in &mut self.sensors {
             sensor.tracker.forget();
         }
+        self.disturb();
     }
 
     /// Starts again with phase a at `now`, or as soon as the last firings allow. Firings under way are dropped,
     /// readings from before are forgotten; ages and the count of periods go on.
     pub fn restart(&mut self, now: Instant) {
         self.scheduler.restart(now);
+        // Sound from before may still be heard, and its firings are no longer known by this clock.
+        self.known_from = now;
         for sensor in &mut self.sensors {
-            sensor.drop_firing();
+            // One that was said to fire a little later still does.
+            if is_just_ahead(sensor.fired(), self.known_from) {
+                self.known_from = sensor.fired();
+            }
+            sensor.drop_firings(now);
         }
         self.oldest = NOBODY;
         self.ready = 0;
-        // Sound from before may still be heard in the first period.
-        self.lateness.begin_anew(&mut self.totals);
+        self.disturb();
     }
 }

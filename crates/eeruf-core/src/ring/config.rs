@@ -23,18 +23,24 @@ pub struct RingConfig<const E: usize = 1> {
     pub window: Option<Micros>,
     /// Edges sooner than this after firing are ringing of the transducer, not echoes.
     pub blanking: Micros,
-    /// How many readings in a row must agree, 2 to 8.
+    /// The number of consecutive readings that must agree, 2 to 8.
     pub consecutive: u8,
-    /// For how many firings an accepted echo that is missing is waited for, 0 to 15; see
-    /// [`EchoFilter::with_patience`](crate::EchoFilter::with_patience).
-    pub patience: u8,
+    /// P: by how much, at most, the length in time of a foreign sound's path changes from one reading to the next.
+    /// Crosstalk that changes by no more is never accepted. `None` for `T_delta`, as in the paper. A robot that moves
+    /// at `v` needs its jitter and `2 v dt / c`; less than `T_delta` makes fewer readings ambiguous where firings are
+    /// late. At most 65,534 us.
+    pub path_change: Option<Micros>,
+    /// R: how long sound is audible after its firing. `None` for what the schedule was verified for, which is its
+    /// period unless more was asked for; with immediate refiring for as long as a sensor listens, or until it may fire
+    /// again. At most 67 s.
+    pub audible: Option<Micros>,
 }
 
 impl RingConfig {
-    /// The `t_delta` and window that the schedule was verified for, one echo, no blanking, two readings compared and no
-    /// patience, as in the paper.
+    /// The `t_delta` and window that the schedule was verified for, one echo, no blanking, and two readings compared,
+    /// as in the paper.
     pub const fn new() -> Self {
-        Self { t_delta: None, window: None, blanking: Micros::ZERO, consecutive: 2, patience: 0 }
+        Self { t_delta: None, window: None, blanking: Micros::ZERO, consecutive: 2, path_change: None, audible: None }
     }
 }
 
@@ -63,22 +69,28 @@ impl<const E: usize> RingConfig<E> {
         Self { blanking, ..self }
     }
 
-    /// With so many readings in a row that must agree, 2 to 8.
+    /// With this number of consecutive readings that must agree, 2 to 8.
     #[must_use]
     pub const fn with_consecutive(self, consecutive: u8) -> Self {
         Self { consecutive, ..self }
     }
 
-    /// With so much patience, 0 to 15 firings.
+    /// With paths of sound that change by at most this from one reading to the next.
     #[must_use]
-    pub const fn with_patience(self, patience: u8) -> Self {
-        Self { patience, ..self }
+    pub const fn with_path_change(self, path_change: Micros) -> Self {
+        Self { path_change: Some(path_change), ..self }
+    }
+
+    /// With sound that is audible for this long.
+    #[must_use]
+    pub const fn with_audible(self, audible: Micros) -> Self {
+        Self { audible: Some(audible), ..self }
     }
 
     /// For sensors that report up to `N` echoes of one firing.
     #[must_use]
     pub const fn with_echoes<const N: usize>(self) -> RingConfig<N> {
-        let Self { t_delta, window, blanking, consecutive, patience } = self;
-        RingConfig { t_delta, window, blanking, consecutive, patience }
+        let Self { t_delta, window, blanking, consecutive, path_change, audible } = self;
+        RingConfig { t_delta, window, blanking, consecutive, path_change, audible }
     }
 }

@@ -2,7 +2,9 @@
 
 use core::fmt;
 
+use super::history::MAX_AUDIBLE;
 use crate::filter::FilterError;
+use crate::schedule::MAX_SENSORS;
 use crate::time::Micros;
 
 /// The longest `t_delta` and blanking time, which a ring keeps in two bytes each.
@@ -41,6 +43,11 @@ pub enum RingError {
         /// How many the ring has.
         capacity: usize,
     },
+    /// The ring has room for more sensors than a schedule may have.
+    Room {
+        /// How many it has room for.
+        capacity: usize,
+    },
     /// The schedule was verified for a smaller `t_delta`.
     TDelta {
         /// The `t_delta` asked for.
@@ -54,6 +61,16 @@ pub enum RingError {
         t_delta: Micros,
         /// The window asked for.
         window: Micros,
+    },
+    /// Sound would be audible for longer than a ring remembers firings.
+    Audible {
+        /// The time asked for.
+        audible: Micros,
+    },
+    /// Paths of sound would change by more than a ring can keep.
+    PathChange {
+        /// The change asked for.
+        path_change: Micros,
     },
     /// The schedule was not verified, so that `t_delta` and the window cannot be taken from it.
     Unverified,
@@ -88,11 +105,18 @@ impl fmt::Display for RingError {
             Self::Sensors { sensors, capacity } => {
                 write!(f, "a scheduler of {sensors} sensors; expected at most the {capacity} of the ring")
             }
+            Self::Room { capacity } => write!(f, "room for {capacity} sensors; expected at most {MAX_SENSORS}"),
             Self::TDelta { t_delta, verified } => {
                 write!(f, "a t_delta of {t_delta}; expected at most {verified}, which the schedule was verified for")
             }
             Self::CoarseTDelta { t_delta, window } => {
                 write!(f, "a t_delta of {t_delta}; expected less than the window of {window}, and at most {LONGEST}")
+            }
+            Self::Audible { audible } => {
+                write!(f, "sound that is audible for {audible}; expected at most {MAX_AUDIBLE}")
+            }
+            Self::PathChange { path_change } => {
+                write!(f, "a path that changes by {path_change}; expected at most 65534 us")
             }
             Self::Unverified => {
                 f.write_str("a schedule that was not verified; expected both t_delta and window in the configuration")

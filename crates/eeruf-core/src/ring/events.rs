@@ -1,6 +1,6 @@
 //! [`RingEvent`]: what a ring hands to its caller.
 
-use crate::reading::{ReadingKind, Tally};
+use crate::reading::{Explanation, ReadingKind, Tally};
 use crate::schedule::Phase;
 use crate::time::{Instant, Micros};
 
@@ -42,6 +42,8 @@ pub struct Reading {
     pub previous: Option<Micros>,
     /// How many firings ago this sensor's last reading was accepted; `None` if none ever was.
     pub age: Option<u16>,
+    /// What explains an [`Ambiguous`](ReadingKind::Ambiguous) reading; `None` for all other kinds.
+    pub explained_by: Option<Explanation>,
 }
 
 /// What happened since the end of the period before.
@@ -58,9 +60,4 @@ pub struct PeriodStats {
     pub max_late: Micros,
     /// The lateness of all its firings together, by which the timetable got longer; at most 65,535 us.
     pub sum_late: Micros,
-    /// By how much, at most, crosstalk may have moved because of lateness, from one reading to the next: the largest
-    /// difference between how much longer than scheduled one sensor and another waited between two firings, in this
-    /// period and the one before. Where it is more than the schedule has to spare, `t_delta` or more, readings are not
-    /// compared. At most 65,535 us.
-    pub max_shift: Micros,
 }

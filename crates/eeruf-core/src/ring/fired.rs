@@ -4,55 +4,40 @@ use super::Ring;
 use super::sensor::LISTENING;
 use crate::scheduler::Scheduler;
 use crate::sensor_error::SensorError;
-use crate::time::{Instant, Micros};
+use crate::time::Instant;
 
-impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
-    /// The sensor of the last [`Fire`](super::RingEvent::Fire) has fired `at` this instant: by what a timer captured,
-    /// for example, or after a pause that its circuit needs. Optional: without it the `now` of the poll counts.
+impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E, H> {
+    /// Corrects when a sensor last fired: by what a timer captured, for example, or after a pause that its circuit
+    /// needs. Optional: without it the `now` of the poll counts.
     ///
-    /// Echo times count from then, the lateness of the firing grows, and all later firings move by as much, so that no
-    /// interval gets shorter. Call it before the next poll. Where another sensor has fired in between, how far
-    /// crosstalk has moved is not known, and nothing is compared until two periods have ended. An instant before the
-    /// poll, which cannot be, and one that comes after the firing's reading are ignored.
+    /// Echo times count from `at`. If it is later than the poll, the lateness of the firing grows, and all later
+    /// firings move by as much, so that no interval gets shorter. Call it before the readings that may hold the
+    /// firing's sound are polled for: an accepted reading cannot be taken back. An instant that is not after the
+    /// sensor's firing before is ignored.
     ///
     /// # Errors
-    /// [`SensorError`] for a sensor that is not there.
+    /// [`SensorError`] if the sensor is out of range.
     pub fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
         let fired = self.sensor_mut(sensor)?;
-        let polled = fired.fired;
-        let later = at.since(polled);
-        if fired.is(LISTENING) && later != Micros::ZERO && at.has_reached(polled) {
-            fired.postpone(later);
-            self.scheduler.postpone(sensor, later);
-            self.lengthen(sensor, later);
+        let polled = fired.fired();
+        if at == polled || !fired.firings.may_correct(at) {
+            return Ok(());
+        }
+        fired.correct(at);
+        if fired.is(LISTENING) {
+            if at.has_reached(polled) {
+                let later = at.since(polled);
+                self.scheduler.postpone(sensor, later);
+                let later = u16::try_from(later.as_micros()).unwrap_or(u16::MAX);
+                self.punctuality.note(later);
+                self.punctuality.add(later, 0);
+            }
             if self.oldest == sensor {
                 self.find_oldest(polled);
                 self.emit_when_oldest_ends();
             }
         }
+        self.disturb();
         Ok(())
-    }
-
-    /// The timetable got longer at the firing of a sensor.
-    fn lengthen(&mut self, sensor: u8, later: Micros) {
-        let later = u16::try_from(later.as_micros()).unwrap_or(u16::MAX);
-        let last = self.lateness.last_firing(sensor);
-        self.lateness.watch(&mut self.totals);
-        if !self.lateness.add(later) {
-            self.uncompare_next();
-        }
-        if let Some(total) = self.totals.get_mut(usize::from(sensor)) {
-            *total = total.saturating_add(later);
-        }
-        let Some((late, stretch)) = last else {
-            self.lateness.lose_track();
-            return self.uncompare_next();
-        };
-        let (late, stretch) = (late.saturating_add(later), stretch.saturating_add(later));
-        self.lateness.note(late);
-        self.lateness.remember(sensor, late, stretch);
-        if !self.lateness.comparable(stretch, self.tolerated()) {
-            self.uncompare_pending();
-        }
     }
 }

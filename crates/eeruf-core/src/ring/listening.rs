@@ -1,19 +1,25 @@
-//! [`Listening`]: for how long a ring listens, and what it takes for the same echo; checked, also while it runs.
+//! [`Listening`]: the listening times and tolerances of a ring; checked, also while it runs.
 
 use super::config::RingConfig;
 use super::error::RingError;
+use super::history::MAX_AUDIBLE;
 use crate::scheduler::{Limits, Scheduler};
 use crate::time::Micros;
 
-/// Window, `t_delta` and blanking time, none of them more than the scheduler allows.
+/// Window, `t_delta` and blanking time, none of them more than the scheduler allows, and what sound may do.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 pub(super) struct Listening {
     window: Micros,
+    audible: Micros,
     t_delta: u16,
     blanking: u16,
+    /// [`AS_T_DELTA`] for the receiver's `t_delta`.
+    path_change: u16,
 }
+
+const AS_T_DELTA: u16 = u16::MAX;
 
 impl Listening {
     pub(super) fn new<const E: usize>(config: &RingConfig<E>, scheduler: &impl Scheduler) -> Result<Self, RingError> {
@@ -21,7 +27,23 @@ impl Listening {
         let t_delta = config.t_delta.or(verified_for.map(|verified_for| verified_for.t_delta));
         let window = config.window.or(verified_for.map(|verified_for| verified_for.window));
         let (Some(t_delta), Some(window)) = (t_delta, window) else { return Err(RingError::Unverified) };
-        Self::checked(t_delta, window, config.blanking, scheduler)
+        let longest = || scheduler.limits().audible.unwrap_or(window.max(scheduler.min_refire())).min(MAX_AUDIBLE);
+        let audible = config.audible.unwrap_or_else(longest);
+        let path_change = config.path_change.or(verified_for.and_then(|verified_for| verified_for.path_change));
+        Self::checked(t_delta, window, config.blanking, scheduler)?.with_sound(path_change, audible)
+    }
+
+    /// With paths that change by so much, or by `t_delta`, and sound that is audible for so long.
+    fn with_sound(self, path_change: Option<Micros>, audible: Micros) -> Result<Self, RingError> {
+        if audible > MAX_AUDIBLE {
+            return Err(RingError::Audible { audible });
+        }
+        let narrow = |change: Micros| u16::try_from(change.as_micros()).ok().filter(|&change| change != AS_T_DELTA);
+        let path_change = match path_change {
+            None => AS_T_DELTA,
+            Some(change) => narrow(change).ok_or(RingError::PathChange { path_change: change })?,
+        };
+        Ok(Self { audible, path_change, ..self })
     }
 
     /// With some of it changed.
@@ -45,7 +67,7 @@ impl Listening {
         let narrow = |time: Micros| u16::try_from(time.as_micros()).ok().filter(|_| time < shortest);
         let blanking = narrow(blanking).ok_or(RingError::Blanking { blanking, window: shortest })?;
         let t_delta = narrow(t_delta).ok_or(RingError::CoarseTDelta { t_delta, window: shortest })?;
-        Ok(Self { window, t_delta, blanking })
+        Ok(Self { window, audible: MAX_AUDIBLE, t_delta, blanking, path_change: AS_T_DELTA })
     }
 
     /// For how long one sensor listens: no longer than the scheduler allows it.
@@ -64,6 +86,68 @@ impl Listening {
             Some(limits) => limits.t_delta.min(self.t_delta()),
             None => self.t_delta(),
         }
+    }
+
+    /// With another `t_delta`, window and blanking time; what sound may do stays.
+    pub(super) fn changed<S: Scheduler>(
+        &self,
+        t_delta: Micros,
+        window: Micros,
+        blanking: Micros,
+        scheduler: &S,
+    ) -> Result<Self, RingError> {
+        let Self { audible, path_change, .. } = *self;
+        Ok(Self { audible, path_change, ..Self::checked(t_delta, window, blanking, scheduler)? })
+    }
+
+    /// R: how long sound is audible.
+    pub(super) const fn audible(&self) -> Micros {
+        self.audible
+    }
+
+    /// With another R.
+    pub(super) fn with_audible(&self, audible: Micros) -> Result<Self, RingError> {
+        self.with_sound(self.asked_path_change(), audible)
+    }
+
+    /// With another P.
+    pub(super) fn with_path_change(&self, path_change: Micros) -> Result<Self, RingError> {
+        self.with_sound(Some(path_change), self.audible)
+    }
+
+    fn asked_path_change(&self) -> Option<Micros> {
+        (self.path_change != AS_T_DELTA).then_some(Micros::new(self.path_change.into()))
+    }
+
+    /// P: by how much a path may change from one reading of a sensor to the next.
+    pub(super) fn path_change_of<S: Scheduler>(&self, scheduler: &S, sensor: u8) -> Micros {
+        match self.asked_path_change() {
+            Some(path_change) => path_change,
+            None => self.t_delta_of(scheduler, sensor),
+        }
+    }
+
+    /// Whether the scheduler's timetable was verified for what sound may do.
+    pub(super) fn is_proven(&self, scheduler: &impl Scheduler) -> bool {
+        let limits = scheduler.limits();
+        let Some(verified_for) = limits.verified_for else { return false };
+        let allowed = verified_for.path_change.unwrap_or(verified_for.t_delta);
+        let change = self.asked_path_change();
+        // Sound that was sent two periods apart differs by the time until a sensor fires again.
+        let two_periods = self.t_delta().saturating_add(change.unwrap_or(self.t_delta()));
+        change.unwrap_or(Micros::ZERO) <= allowed
+            && limits.audible.is_some_and(|audible| self.audible <= audible)
+            && two_periods < scheduler.min_refire()
+    }
+
+    /// By how much the firings of one period may be late together so that crosstalk still moves by more than it must:
+    /// a quarter of what is to spare, as no two readings hear more than four periods.
+    pub(super) fn spare(&self, limits: Limits<'_>) -> u16 {
+        let Some(verified_for) = limits.verified_for else { return 0 };
+        let change = self.asked_path_change().unwrap_or(self.t_delta());
+        let needed = self.t_delta().saturating_add(change).saturating_add(Micros::new(1));
+        let quarter = verified_for.separation.saturating_sub(needed).as_micros() / 4;
+        u16::try_from(quarter).unwrap_or(u16::MAX)
     }
 
     /// Whether another schedule allows it.

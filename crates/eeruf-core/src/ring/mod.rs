@@ -8,30 +8,43 @@ mod config;
 mod error;
 mod events;
 mod fired;
-mod lateness;
+mod history;
 mod listening;
+mod punctuality;
 mod sensor;
 mod steps;
 
-use crate::filter::Agreement;
+use crate::filter::Consecutive;
 use crate::reading::{ReadingKind, Tally};
-use crate::schedule::Schedule;
+use crate::schedule::{MAX_SENSORS, Schedule};
 use crate::scheduler::{ImmediateRefiring, ScheduledFiring, Scheduler, UnevenFiring};
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 use crate::uneven_schedule::UnevenSchedule;
 use crate::verified::VerifiedSchedule;
 
-use lateness::Lateness;
+use history::{Firings, long_before};
 use listening::Listening;
+use punctuality::Punctuality;
 use sensor::{LISTENING, Noted, STUCK, Sensor};
 
 pub use config::RingConfig;
 pub use error::RingError;
 pub use events::{PeriodStats, Reading, RingEvent};
 
-/// A ring of up to `K` sensors: the scheduler `S` says when each fires, and the filter says what each reading is worth.
+/// A ring of up to `K` sensors: the scheduler `S` decides when each fires, and the filter what each reading is worth.
 /// `E` is the number of echoes that a sensor reports of one firing.
+///
+/// A reading is accepted if it is near-identical to the one before (Eq. 11) and no firing explains both as crosstalk;
+/// where one does, the reading is [`Ambiguous`](ReadingKind::Ambiguous). That holds by what was fired, not by what was
+/// planned: late polls, pauses, restarts, changes of schedule and sensors that are disabled or enabled may cost
+/// readings, but no single path of foreign sound that is audible for no longer than [`RingConfig::audible`] and changes
+/// by no more than [`RingConfig::path_change`] is ever accepted. On time a verified schedule has no ambiguous readings.
+/// `docs/theory.md` section 2.1 has the proof and its limits.
+///
+/// `H` is the number of firings that are remembered of each sensor, 4 bytes each. A reading that sound of a forgotten
+/// one might explain is ambiguous too; four suffice if sound is audible for no longer than a period. With `H` = 1
+/// nothing is remembered that could explain a reading, and agreement alone decides: see [`AgreementRing`].
 ///
 /// ```
 /// use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
@@ -56,29 +69,32 @@ pub use events::{PeriodStats, Reading, RingEvent};
 // In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction, of single bytes 31.
 // What comes before the sensors is whole words, or they are built on the stack and copied.
 #[repr(C)]
-pub struct Ring<S, const K: usize, const E: usize = 1> {
+pub struct Ring<S, const K: usize, const E: usize = 1, const H: usize = 4> {
     /// The sensor whose window closes first, or [`NOBODY`].
     oldest: u8,
     /// How many sensors have a reading to emit before their window closes.
     ready: u8,
     /// The last of them to get it, or a sensor that has emitted it since.
     last_ready: u8,
-    agreement: Agreement,
+    consecutive: Consecutive,
     /// When the next reading can be emitted: when an edge came, or when the window of the oldest closes.
     emit_at: Instant,
     listening: Listening,
     period: u32,
     scheduler: S,
-    lateness: Lateness,
-    sensors: [Sensor<E>; K],
-    /// The sum of lateness at each sensor's last firing (see [`Lateness`]); in an array of its own, since a sensor's
-    /// other fields fill their words.
-    totals: [u16; K],
+    punctuality: Punctuality,
+    /// Firings before this are not known: the ring was restarted.
+    known_from: Instant,
+    sensors: [Sensor<E, H>; K],
     tally: Tally<u8>,
 }
 
 /// A [`Ring`] with scheduled firing by a schedule of the paper's kind.
 pub type ScheduledRing<'s, const K: usize, const E: usize = 1> = Ring<ScheduledFiring<'s, K>, K, E>;
+
+/// A [`Ring`] that accepts each reading that agrees with the one before, whoever else's sound explains both: a
+/// baseline. Where crosstalk repeats, as with constant waits, it is accepted.
+pub type AgreementRing<S, const K: usize, const E: usize = 1> = Ring<S, K, E, 1>;
 
 const NOBODY: u8 = u8::MAX;
 
@@ -92,8 +108,8 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s
         Self::unverified(schedule, config, now)
     }
 
-    /// As [`new`](Self::new), by a schedule that nobody has verified: the conventional method with its constant waits,
-    /// for comparison. Crosstalk may be accepted, whatever [`ReadingKind`] says; `config` needs `t_delta` and window.
+    /// As [`new`](Self::new), by a schedule that was not verified; `config` needs `t_delta` and window. Crosstalk is
+    /// not accepted either, but readings that it could explain are ambiguous: with constant waits nearly all.
     ///
     /// # Errors
     /// As for [`Ring::with_scheduler`].
@@ -140,46 +156,68 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ImmediateRefiring<
 }
 
 impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
-    /// Copied from flash: an array made at run time would first be built on the stack.
-    const SENSORS: [Sensor<E>; K] = [Sensor::NEW; K];
+    /// A ring with the caller's own scheduler, which remembers four firings of each sensor. Where its schedule was
+    /// verified, it listens and compares as it was verified for, unless `config` asks for less.
+    ///
+    /// # Errors
+    /// As for [`Ring::remembering`].
+    pub fn with_scheduler(scheduler: S, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
+        Self::remembering(scheduler, config, now)
+    }
+}
 
-    /// A ring with the caller's own scheduler. Where its schedule was verified, it listens and compares as it was
-    /// verified for, unless `config` asks for less.
+impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E, H> {
+    /// Copied from flash: an array made at run time would first be built on the stack.
+    const SENSORS: [Sensor<E, H>; K] = [Sensor::new(Instant::from_micros(0)); K];
+
+    /// As [`with_scheduler`](Ring::with_scheduler), with a memory of `H` firings of each sensor.
     ///
     /// # Errors
     /// [`RingError`] if `config` asks for more than the schedule was verified for, or does not say `t_delta` and window
-    /// where it was not; if the ring is smaller than its scheduler, if a sensor would fire again while it still
-    /// listens, if `t_delta` or blanking time are no shorter than the window or longer than 65,535 us, or if the number
-    /// of consecutive readings is not 2 to 8 or the patience more than 15.
-    pub fn with_scheduler(scheduler: S, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
+    /// where it was not; if `K` is more than [`MAX_SENSORS`] or less than the scheduler's sensors; if a sensor would
+    /// fire again while it still listens, if `t_delta` or blanking time are no shorter than the window or longer than
+    /// 65,535 us, if the number of consecutive readings is not 2 to 8, if a path may change by more than 65,534 us, or
+    /// if sound is audible for longer than 67 s.
+    pub fn remembering(scheduler: S, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
+        if K > MAX_SENSORS {
+            return Err(RingError::Room { capacity: K });
+        }
         if scheduler.sensors() > K {
             return Err(RingError::Sensors { sensors: scheduler.sensors(), capacity: K });
         }
         let listening = Listening::new(&config, &scheduler)?;
-        let agreement = Agreement::new(config.consecutive, config.patience)?;
-        Ok(Self {
+        let consecutive = Consecutive::new(config.consecutive)?;
+        let punctuality = Punctuality::new(listening.is_proven(&scheduler));
+        let mut ring = Self {
             oldest: NOBODY,
             ready: 0,
-            agreement,
+            consecutive,
             last_ready: NOBODY,
             tally: Tally::default(),
-            lateness: Lateness::NEW,
+            punctuality,
             scheduler,
             emit_at: now,
             listening,
             period: 0,
+            known_from: now,
             sensors: Self::SENSORS,
-            totals: [0; K],
-        })
+        };
+        // As if silence had come before: what was fired earlier is for the caller to wait for.
+        let none = Firings::none_before(now);
+        ring.known_from = long_before(now);
+        for sensor in &mut ring.sensors {
+            sensor.firings = none;
+        }
+        Ok(ring)
     }
 
     /// The next event, if there is one at `now`. Call again until there is none, then sleep until
     /// [`next_deadline`](Self::next_deadline).
     ///
     /// Hand in the echo edges you know of before you poll: an edge that comes after the poll that closed its window is
-    /// lost. A late poll loses nothing: firings that are due are postponed, and all later ones with them. Where late
-    /// firings shift crosstalk by more than the schedule has to spare, readings are not compared with the ones before;
-    /// that all firings are late alike shifts nothing. [`PeriodStats`] says how late they were.
+    /// lost. A late poll loses nothing: firings that are due are postponed, and all later ones with them. Where that
+    /// shifts crosstalk so that it could explain a reading, the reading is [`Ambiguous`](ReadingKind::Ambiguous).
+    /// [`PeriodStats`] says how late firings were.
     #[inline]
     pub fn poll(&mut self, now: Instant) -> Option<RingEvent> {
         self.poll_expecting(now, |_| 0)
@@ -292,6 +330,22 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         self.listening.window_of(&self.scheduler, sensor)
     }
 
+    /// P: by how much, at most, the path of foreign sound to a sensor changes from one of its readings to the next.
+    pub fn path_change_of(&self, sensor: u8) -> Micros {
+        self.listening.path_change_of(&self.scheduler, sensor)
+    }
+
+    /// R: how long sound is audible.
+    pub const fn audible(&self) -> Micros {
+        self.listening.audible()
+    }
+
+    /// Returns true while all firings that could be heard in a sensor's last three readings kept a timetable that was
+    /// verified for what the ring asks for, so that crosstalk moves as (13a), (13b) say.
+    pub const fn is_on_time(&self) -> bool {
+        self.punctuality.is_on_time()
+    }
+
     /// How long a sensor is deaf after it has fired.
     pub const fn blanking(&self) -> Micros {
         self.listening.blanking()
@@ -310,7 +364,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     }
 
     #[inline]
-    fn sensor_mut(&mut self, sensor: u8) -> Result<&mut Sensor<E>, SensorError> {
+    fn sensor_mut(&mut self, sensor: u8) -> Result<&mut Sensor<E, H>, SensorError> {
         let sensors = self.scheduler.sensors();
         match self.sensors.get_mut(usize::from(sensor)) {
             Some(found) if usize::from(sensor) < sensors => Ok(found),
@@ -330,12 +384,14 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// The scheduler, and when each sensor last fired, if it ever has.
     pub(crate) fn scheduler_and_firings(&mut self) -> (&mut S, impl Fn(u8) -> Instant + '_) {
         let sensors = &self.sensors;
-        (&mut self.scheduler, |sensor| sensors.get(usize::from(sensor)).map_or(Instant::default(), |of| of.fired))
+        (&mut self.scheduler, |sensor| sensors.get(usize::from(sensor)).map_or(Instant::default(), Sensor::fired))
     }
 
-    /// When a sensor last fired, if it ever has.
-    pub(crate) fn last_firing(&self, sensor: u8) -> Option<Instant> {
-        self.sensors.get(usize::from(sensor)).map(|of| of.fired)
+    /// When a sensor last fired, as [`fired`](Self::fired) corrected it; an instant that nothing is heard from if it
+    /// has not yet. `None` for a sensor that is not there.
+    pub fn last_firing(&self, sensor: u8) -> Option<Instant> {
+        let there = usize::from(sensor) < self.sensors();
+        self.sensors.get(usize::from(sensor)).filter(|_| there).map(Sensor::fired)
     }
 
     /// Counts a reading that was [taken](Self::take_reading).

@@ -1,15 +1,17 @@
 //! What a ring knows of one of its sensors.
 
-use crate::filter::{NO_ECHO, Rule, Tracker, insert};
-use crate::reading::{ReadingKind, Verdict};
+use super::history::Firings;
+use crate::filter::{Agreement, NO_ECHO, Tracker, insert, shift};
+use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::schedule::Phase;
 use crate::time::{Instant, Micros};
 
-/// What is known of one sensor between its firing and its next: 16 bytes where it reports one echo.
+/// The state of one sensor between its firing and its next: 28 bytes where it reports one echo and four firings are
+/// remembered.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub(super) struct Sensor<const E: usize> {
-    pub(super) fired: Instant,
+pub(super) struct Sensor<const E: usize, const H: usize> {
+    pub(super) firings: Firings<H>,
     /// The echoes of the present firing; also, in the first place, the time of an early or late edge.
     echoes: [u32; E],
     pub(super) tracker: Tracker<E>,
@@ -26,8 +28,6 @@ pub(super) const READY: u8 = 1 << 4;
 const OUTSIDE: u8 = 1 << 5;
 /// The driver found the line stuck.
 pub(super) const STUCK: u8 = 1 << 6;
-/// The next reading is not to be compared with the one before it, nor with the one after it.
-pub(super) const UNCOMPARABLE: u8 = 1 << 7;
 
 /// What came of an edge.
 pub(super) enum Noted {
@@ -41,9 +41,17 @@ pub(super) enum Noted {
     Unwanted,
 }
 
-impl<const E: usize> Sensor<E> {
-    pub(super) const NEW: Self =
-        Self { fired: Instant::from_micros(0), echoes: [NO_ECHO; E], tracker: Tracker::new(OUTSIDE) };
+impl<const E: usize, const H: usize> Sensor<E, H> {
+    /// One that has not fired by `now`.
+    pub(super) const fn new(now: Instant) -> Self {
+        Self { firings: Firings::none_before(now), echoes: [NO_ECHO; E], tracker: Tracker::new(OUTSIDE) }
+    }
+
+    /// When it last fired.
+    #[inline]
+    pub(super) const fn fired(&self) -> Instant {
+        self.firings.last()
+    }
 
     pub(super) const fn is(&self, flag: u8) -> bool {
         self.tracker.flags & flag != 0
@@ -61,31 +69,45 @@ impl<const E: usize> Sensor<E> {
         Phase(self.tracker.flags & PHASE)
     }
 
-    /// `compares`: whether its reading will be compared with the one before.
     #[inline]
-    pub(super) fn fire(&mut self, phase: Phase, now: Instant, compares: bool) {
-        let uncomparable = if compares { self.tracker.flags & UNCOMPARABLE } else { 0 };
-        self.tracker.flags = uncomparable | LISTENING | phase.0;
-        self.fired = now;
+    pub(super) fn fire(&mut self, phase: Phase, now: Instant) {
+        self.tracker.flags = LISTENING | phase.0;
+        self.firings.push(now);
     }
 
-    /// It fired this much later: echoes that are in already are nearer.
-    pub(super) fn postpone(&mut self, later: Micros) {
-        self.fired += later;
-        for echo in self.echoes.iter_mut().filter(|echo| **echo != NO_ECHO) {
-            *echo = echo.saturating_sub(later.as_micros());
+    /// Its last firing was at another instant: the echoes that were measured from it change by as much.
+    pub(super) fn correct(&mut self, at: Instant) {
+        let later_us = at.since(self.fired()).as_micros() as i32;
+        self.firings.correct(at);
+        if !self.is(LISTENING) {
+            // Its reading is with the tracker already.
+            self.tracker.shift(later_us);
+        }
+        if !shift(&mut self.echoes, later_us) {
+            // The first edge came before it fired, and may have kept out the echo.
+            self.set(OUTSIDE);
         }
     }
 
-    pub(super) fn drop_firing(&mut self) {
+    /// Forgets firings that are so long ago that no edge is an echo of them.
+    #[inline]
+    pub(super) fn expire(&mut self, now: Instant) {
+        if self.firings.expire(now) && !self.is(LISTENING) {
+            self.set(OUTSIDE);
+        }
+    }
+
+    /// Forgets all firings, `now`.
+    pub(super) fn drop_firings(&mut self, now: Instant) {
+        self.firings = Firings::none_before(now);
         self.echoes = [NO_ECHO; E];
         self.tracker.forget();
         self.tracker.flags = OUTSIDE;
     }
 
     pub(super) fn echo(&mut self, at: Instant, blanking: Micros, window: Micros) -> Noted {
-        let t_echo = at.since(self.fired);
-        if !at.has_reached(self.fired) {
+        let t_echo = at.since(self.fired());
+        if !at.has_reached(self.fired()) {
             // From before it fired, or from a clock that has jumped.
             return Noted::Unwanted;
         }
@@ -135,7 +157,7 @@ impl<const E: usize> Sensor<E> {
         let t_echo = self.held();
         self.clear(READY);
         self.echoes = [NO_ECHO; E];
-        Verdict { kind: ReadingKind::Late, t_echo, previous: None, age: self.tracker.age() }
+        Verdict { kind: ReadingKind::Late, t_echo, previous: None, age: self.tracker.age(), explained_by: None }
     }
 
     /// Ends the firing; what it heard is compared with nothing.
@@ -149,25 +171,24 @@ impl<const E: usize> Sensor<E> {
         };
         self.tracker.flags &= PHASE;
         self.echoes = [NO_ECHO; E];
-        Verdict { kind, t_echo: t_echo.filter(|_| kind != ReadingKind::Stuck), previous: None, age: None }
+        let t_echo = t_echo.filter(|_| kind != ReadingKind::Stuck);
+        Verdict { kind, t_echo, previous: None, age: None, explained_by: None }
     }
 
     /// Ends the firing, and compares its reading with the one before.
-    pub(super) fn compare(&mut self, rule: Rule, expected_change_us: impl FnOnce() -> i32) -> Verdict {
-        let uncomparable = self.is(UNCOMPARABLE);
-        if uncomparable {
-            self.tracker.forget();
-        }
+    pub(super) fn compare(
+        &mut self,
+        agreement: Agreement,
+        expected_change_us: impl FnOnce() -> i32,
+        explanation: impl FnMut(u32, u32) -> Option<Explanation>,
+    ) -> Verdict {
         let verdict = if self.is(STUCK) {
             self.tracker.skip(ReadingKind::Stuck, None)
         } else if self.is(OUTSIDE) {
             self.tracker.skip(ReadingKind::TooEarly, self.held())
         } else {
-            self.tracker.push(rule, &self.echoes, expected_change_us())
+            self.tracker.push(agreement, &self.echoes, expected_change_us(), explanation)
         };
-        if uncomparable {
-            self.tracker.forget();
-        }
         self.tracker.flags &= PHASE;
         self.echoes = [NO_ECHO; E];
         verdict

@@ -1,15 +1,16 @@
 //! What a poll of a [`Ring`] does when something is due: fire, emit a reading, end the period.
 
-use super::lateness::{MOST_TOLERATED, PeriodLateness};
-use super::sensor::{LISTENING, READY, Sensor, UNCOMPARABLE};
+use super::history::{Answer, STEP_BACK, Sounds, is_long_ago, long_before};
+use super::punctuality::PeriodLateness;
+use super::sensor::{LISTENING, READY, Sensor};
 use super::{NOBODY, PeriodStats, Reading, Ring, RingEvent};
-use crate::filter::Rule;
-use crate::reading::Verdict;
+use crate::filter::Agreement;
+use crate::reading::{Explanation, Verdict};
 use crate::schedule::Phase;
-use crate::scheduler::{Limits, Scheduler};
+use crate::scheduler::Scheduler;
 use crate::time::{Instant, Micros};
 
-impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
+impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E, H> {
     /// Something is due. Firing comes first, since it should be on time; but the reading of a sensor is emitted before
     /// the sensor fires again.
     #[inline]
@@ -35,14 +36,14 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             if fired.is(LISTENING | READY) {
                 return Err(Some(sensor));
             }
-            fired.fire(phase, now, S::COMPARES);
+            fired.fire(phase, now);
         }
         self.has_fired(sensor, now);
         self.scheduler.fire(now);
         // Last, since it is rare.
         let late = now.since(due);
-        if late != Micros::ZERO || self.lateness.is_watching() {
-            self.fired_late(sensor, late);
+        if late != Micros::ZERO {
+            self.fired_late(late);
         }
         Ok((sensor, phase, due))
     }
@@ -60,44 +61,24 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     /// Whether the window of a sensor that fires `now` closes before all others: where windows differ, the sensor that
     /// fired first need not be the first to end.
     fn closes_first(&self, sensor: u8, now: Instant) -> bool {
-        let oldest = self.sensor(self.oldest).map(|oldest| oldest.fired + self.window_of(self.oldest));
+        let oldest = self.sensor(self.oldest).map(|oldest| oldest.fired() + self.window_of(self.oldest));
         oldest.is_none_or(|closes| !(now + self.window_of(sensor)).has_reached(closes))
     }
 
-    /// A firing came late, or has a stretch because others did.
     #[inline(never)]
-    fn fired_late(&mut self, sensor: u8, late: Micros) {
+    fn fired_late(&mut self, late: Micros) {
         let late = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
-        if late > 0 {
-            self.lateness.watch(&mut self.totals);
-            self.lateness.note(late);
-            if !self.lateness.add(late) && S::COMPARES {
-                self.uncompare_next();
-            }
-        }
-        let Some(total) = self.totals.get_mut(usize::from(sensor)) else { return };
-        let stretch = self.lateness.stretch(total);
-        let stretch = if S::DELAYS_ALL { stretch } else { late };
-        self.lateness.remember(sensor, late, stretch);
-        if !self.lateness.comparable(stretch, self.tolerated()) && S::COMPARES {
-            self.uncompare_pending();
+        self.punctuality.note(late);
+        if self.punctuality.add(late, self.listening.spare(self.scheduler.limits())) {
+            self.disturb();
         }
     }
 
-    /// By how much two stretches may differ: by so little that crosstalk still moves by more than `t_delta`, and that
-    /// no firing of an emitter is skipped.
-    pub(super) fn tolerated(&self) -> u16 {
-        let Limits { longest_window, verified_for } = self.scheduler.limits();
-        let (mut t_delta, mut longest_window) = (self.listening.t_delta().as_micros(), longest_window);
-        if S::UNEVEN {
-            // The separation is as much more than this as the pair with the least to spare has, whatever is asked for.
-            t_delta = verified_for.map_or(t_delta, |verified_for| verified_for.t_delta.as_micros());
-            longest_window = self.scheduler.min_refire();
-        }
-        let separation = verified_for.map_or(2 * t_delta + 1, |verified_for| verified_for.separation.as_micros());
-        let separation = separation.min(longest_window.as_micros());
-        let tolerated = separation.saturating_sub(t_delta + 1);
-        u16::try_from(tolerated).unwrap_or(MOST_TOLERATED).min(MOST_TOLERATED)
+    /// Firings no longer keep the timetable that was verified, or it is another one.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn disturb(&mut self) {
+        self.punctuality.disturb(self.listening.is_proven(&self.scheduler));
     }
 
     /// Ends the period, if that is due.
@@ -107,14 +88,19 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         if !now.has_reached(due) {
             return None;
         }
-        self.lateness.note(u16::try_from(now.since(due).as_micros()).unwrap_or(u16::MAX));
+        self.punctuality.note(u16::try_from(now.since(due).as_micros()).unwrap_or(u16::MAX));
         let (phase, changed) = self.scheduler.end_period(now);
-        let PeriodLateness { latest, sum, difference, uncomparable } = self.lateness.end_period(&mut self.totals);
+        let PeriodLateness { latest, sum } = self.punctuality.end_period();
         if changed {
-            self.lateness.begin_anew(&mut self.totals);
+            self.disturb();
         }
-        if S::COMPARES && (changed || uncomparable) {
-            self.uncompare_next();
+        if H > 1 {
+            for sensor in &mut self.sensors {
+                sensor.expire(now);
+            }
+            if is_long_ago(self.known_from, now) {
+                self.known_from = long_before(now);
+            }
         }
         if S::UNEVEN {
             // Another schedule may allow other windows, also to firings under way.
@@ -127,33 +113,9 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             tally: core::mem::take(&mut self.tally),
             max_late: Micros::new(latest.into()),
             sum_late: Micros::new(sum.into()),
-            max_shift: Micros::new(difference.into()),
         };
         self.period = self.period.wrapping_add(1);
         Some(RingEvent::PeriodEnded(stats))
-    }
-
-    /// Firings have shifted against each other by something else than lateness that is known. (13a), (13b) say nothing
-    /// about a reading of sound from before compared with one of sound from after. The next reading of each sensor may
-    /// be of either.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn uncompare_next(&mut self) {
-        for sensor in &mut self.sensors {
-            sensor.set(UNCOMPARABLE);
-        }
-    }
-
-    /// Firings have shifted against each other by lateness. Sound of the last firing can be in the
-    /// readings that are pending, its own among them, and in no earlier one.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn uncompare_pending(&mut self) {
-        for sensor in &mut self.sensors {
-            if sensor.is(LISTENING) {
-                sensor.set(UNCOMPARABLE);
-            }
-        }
     }
 
     /// A sensor with an echo in, or one whose window has closed.
@@ -195,7 +157,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     ) -> Option<Reading> {
         let heard = self.sensors.get_mut(usize::from(sensor))?;
         let phase = heard.phase();
-        let (listened, fired) = (heard.is(LISTENING), heard.fired);
+        let (listened, fired) = (heard.is(LISTENING), heard.fired());
         let mut ended_at = fired + self.listening.window_of(&self.scheduler, sensor);
         if heard.is(READY) {
             // Counted when its edge came.
@@ -205,8 +167,18 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         let verdict = if listened && !S::COMPARES {
             heard.end()
         } else if listened {
-            let t_delta = self.listening.t_delta_of(&self.scheduler, sensor);
-            heard.compare(Rule { t_delta, agreement: self.agreement }, || expected_change_us(sensor))
+            // On a copy, since what other sensors fired is looked at meanwhile.
+            let mut compared = *heard;
+            let agreement = Agreement::new(self.listening.t_delta_of(&self.scheduler, sensor), self.consecutive);
+            let verdict = compared.compare(
+                agreement,
+                || expected_change_us(sensor),
+                |first, second| self.explanation(sensor, first, second),
+            );
+            if let Some(heard) = self.sensors.get_mut(usize::from(sensor)) {
+                *heard = compared;
+            }
+            verdict
         } else {
             heard.take_late()
         };
@@ -217,9 +189,40 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
             }
         }
         self.emit_when_oldest_ends();
-        let Verdict { kind, t_echo, previous, age } = verdict;
+        let Verdict { kind, t_echo, previous, age, explained_by } = verdict;
         let period = self.period.wrapping_sub(self.scheduler.periods_since(phase).into());
-        Some(Reading { sensor, phase, period, kind, t_echo, previous, age })
+        Some(Reading { sensor, phase, period, kind, t_echo, previous, age, explained_by })
+    }
+
+    /// The firing whose sound could be both the echo that a sensor heard `first` after the firing before its last one
+    /// and the one that it heard `second` after its last.
+    #[inline(always)]
+    fn explanation(&self, receiver: u8, first: u32, second: u32) -> Option<Explanation> {
+        if H == 1 || self.punctuality.is_on_time() {
+            return None;
+        }
+        self.find_explanation(receiver, first, second)
+    }
+
+    #[inline(never)]
+    fn find_explanation(&self, receiver: u8, first: u32, second: u32) -> Option<Explanation> {
+        let own = self.sensor(receiver)?;
+        let heard = [own.firings.before()? + Micros::new(first), own.fired() + Micros::new(second)];
+        let path_change = self.listening.path_change_of(&self.scheduler, receiver);
+        let sounds = Sounds { heard, audible: self.listening.audible(), path_change };
+        let mut forgotten = sounds.is_audible_from(self.known_from);
+        for (x, sensor) in self.sensors.iter().enumerate().take(self.scheduler.sensors()) {
+            // At most 64 sensors.
+            let x = x as u8;
+            if self.scheduler.hears(receiver, x) {
+                match sounds.ask(&sensor.firings, x == receiver) {
+                    Answer::Explained => return Some(Explanation::Sensor(x)),
+                    Answer::Forgotten => forgotten = true,
+                    Answer::No => {}
+                }
+            }
+        }
+        forgotten.then_some(Explanation::History)
     }
 
     /// Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes.
@@ -227,22 +230,25 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
     pub(super) fn emit_when_oldest_ends(&mut self) {
         if self.ready == 0 {
             if let Some(oldest) = self.sensor(self.oldest) {
-                self.emit_at = oldest.fired + self.window_of(self.oldest);
+                self.emit_at = oldest.fired() + self.window_of(self.oldest);
             }
         }
     }
 
-    /// Finds the next oldest, now that the one that fired at `before` has stopped listening. All others fired later;
-    /// where windows differ, the oldest is the one whose window closes first.
+    /// Finds the next oldest, now that the one that fired at `before` has stopped listening. All others fired later, or
+    /// earlier by no more than the clock has stepped back; where windows differ, the oldest is the one whose window
+    /// closes first.
     pub(super) fn find_oldest(&mut self, before: Instant) {
         if S::UNEVEN {
             return self.find_first_to_close();
         }
+        // 1 us before is not 71 minutes after.
+        let before = Instant::from_micros(before.as_micros().wrapping_sub(STEP_BACK.as_micros()));
         let (mut oldest, mut soonest) = (NOBODY, Micros::MAX);
         for (x, sensor) in self.sensors.iter().enumerate() {
-            if sensor.is(LISTENING) && sensor.fired.since(before) < soonest {
+            if sensor.is(LISTENING) && sensor.fired().since(before) < soonest {
                 // At most 64 sensors.
-                (oldest, soonest) = (x as u8, sensor.fired.since(before));
+                (oldest, soonest) = (x as u8, sensor.fired().since(before));
             }
         }
         self.oldest = oldest;
@@ -252,7 +258,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         let mut first: Option<(u8, Instant)> = None;
         for (x, sensor) in self.sensors.iter().enumerate() {
             // At most 64 sensors.
-            let closes = sensor.fired + self.window_of(x as u8);
+            let closes = sensor.fired() + self.window_of(x as u8);
             if sensor.is(LISTENING) && first.is_none_or(|(_, sooner)| !closes.has_reached(sooner)) {
                 first = Some((x as u8, closes));
             }
@@ -260,7 +266,7 @@ impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
         self.oldest = first.map_or(NOBODY, |(x, _)| x);
     }
 
-    fn sensor(&self, sensor: u8) -> Option<&Sensor<E>> {
+    fn sensor(&self, sensor: u8) -> Option<&Sensor<E, H>> {
         self.sensors.get(usize::from(sensor))
     }
 }

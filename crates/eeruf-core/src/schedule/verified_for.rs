@@ -17,10 +17,20 @@ pub struct VerifiedFor {
     pub window: Micros,
     /// By how much crosstalk moves at least from one reading to the next, `2 t_delta + 1 us` or more.
     pub separation: Micros,
+    /// P: by how much, at most, a path may change from one reading to the next; `None` for as much as `t_delta`.
+    pub path_change: Option<Micros>,
+    /// R: how long sound may be audible.
+    pub audible: Micros,
 }
 
 impl VerifiedFor {
     /// What a schedule was verified for that was not.
-    pub(crate) const NOTHING: Self =
-        Self { t_delta: Micros::ZERO, min_interval: Micros::ZERO, window: Micros::ZERO, separation: Micros::ZERO };
+    pub(crate) const NOTHING: Self = Self {
+        t_delta: Micros::ZERO,
+        min_interval: Micros::ZERO,
+        window: Micros::ZERO,
+        separation: Micros::ZERO,
+        path_change: None,
+        audible: Micros::ZERO,
+    };
 }

@@ -37,13 +37,14 @@ pub struct Limits<'s> {
     pub longest_window: Micros,
     /// What the schedule was verified for, if it was: the ring may ask for less, and not for more.
     pub verified_for: Option<&'s VerifiedFor>,
+    /// How long sound is taken to be audible: what the schedule was verified for, or its period. `None` without a
+    /// common period.
+    pub audible: Option<Micros>,
 }
 
 /// Decides when each sensor of a ring fires: [`ScheduledFiring`](super::ScheduledFiring) or
 /// [`ImmediateRefiring`](super::ImmediateRefiring).
 pub trait Scheduler {
-    /// Whether a late firing delays all that follow by as much, as a common timetable does.
-    const DELAYS_ALL: bool = false;
     /// Whether [`limits_of`](Self::limits_of) says what each sensor may do by itself.
     const UNEVEN: bool = false;
     /// Whether the ring compares each reading with the one before it. Where something else weighs readings, as in a
@@ -98,6 +99,11 @@ pub trait Scheduler {
     /// What it allows as of the next period, if it changes to another schedule then.
     fn next_limits(&self) -> Option<Limits<'_>> {
         None
+    }
+    /// Returns true if `receiver` can hear `emitter`, which is so for all sensors but those that were declared not to
+    /// hear each other because they fire together.
+    fn hears(&self, _receiver: u8, _emitter: u8) -> bool {
+        true
     }
     /// What it allows one sensor, where [`UNEVEN`](Self::UNEVEN): the ring asks for no more than this either.
     fn limits_of(&self, _sensor: u8) -> Option<SensorLimits> {

@@ -194,7 +194,7 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
 
     fn limits(&self) -> Limits<'_> {
         // It fires only what has ended.
-        Limits { longest_window: Micros::MAX, verified_for: None }
+        Limits { longest_window: Micros::MAX, verified_for: None, audible: None }
     }
 
     fn min_refire(&self) -> Micros {

@@ -135,13 +135,15 @@ const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>
 impl<const K: usize, const M: usize> Schedule<K, M> {
     /// What it allows a ring.
     pub(crate) const fn limits(&self) -> Limits<'_> {
-        Limits { longest_window: self.min_refire(), verified_for: self.verified_for() }
+        let audible = match self.verified_for() {
+            Some(verified_for) => verified_for.audible,
+            None => self.period(),
+        };
+        Limits { longest_window: self.min_refire(), verified_for: self.verified_for(), audible: Some(audible) }
     }
 }
 
 impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
-    const DELAYS_ALL: bool = true;
-
     #[inline]
     fn fire(&mut self, now: Instant) {
         self.last_fired = now;

@@ -2,7 +2,7 @@
 
 use super::contract::{Limits, Scheduler};
 use super::scheduled::ScheduledFiring;
-use crate::schedule::Phase;
+use crate::schedule::{Phase, VerifiedFor};
 use crate::time::{Instant, Micros};
 use crate::uneven_schedule::{SensorLimits, UnevenSchedule};
 
@@ -41,18 +41,25 @@ impl<'s, const K: usize> UnevenFiring<'s, K> {
     }
 }
 
+/// What the schedule allows of which this is the most.
+fn of_most(most: &VerifiedFor) -> Limits<'_> {
+    Limits { longest_window: most.window, verified_for: Some(most), audible: Some(most.audible) }
+}
+
 impl<const K: usize> Scheduler for UnevenFiring<'_, K> {
-    const DELAYS_ALL: bool = true;
     const UNEVEN: bool = true;
 
     fn limits(&self) -> Limits<'_> {
-        let most = self.uneven.most();
-        Limits { longest_window: most.window, verified_for: Some(most) }
+        of_most(self.uneven.most())
     }
 
     fn next_limits(&self) -> Option<Limits<'_>> {
-        let most = self.next?.most();
-        Some(Limits { longest_window: most.window, verified_for: Some(most) })
+        Some(of_most(self.next?.most()))
+    }
+
+    fn hears(&self, receiver: u8, emitter: u8) -> bool {
+        // After a change the last firings of the schedule before may still be heard.
+        self.uneven.hears(receiver, emitter) || self.before.hears(receiver, emitter)
     }
 
     #[inline]

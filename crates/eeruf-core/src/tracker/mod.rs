@@ -24,6 +24,9 @@ use sensor::{Heard, SensorTracks};
 pub use settings::TrackerSettings;
 use track::{LATEST, SILENCE};
 
+/// The latest echo that differs from later ones.
+pub(crate) const LATEST_ECHO: Micros = Micros::new(LATEST);
+
 /// What one firing was like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

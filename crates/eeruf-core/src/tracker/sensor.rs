@@ -186,7 +186,7 @@ impl<const H: usize> SensorTracks<H> {
             _ if self.age >= NEVER - 1 => self.age,
             _ => self.age + 1,
         };
-        Verdict { kind, t_echo, previous, age: self.age() }
+        Verdict { kind, t_echo, previous, age: self.age(), explained_by: None }
     }
 
     pub(super) fn age(&self) -> Option<u16> {

@@ -255,8 +255,20 @@ fn a_violation_says_who_when_how_much_and_what_is_expected() {
 
 #[test]
 fn a_reading_is_printed_by_its_name() {
-    let names =
-        ["first", "accepted", "rejected", "repeated", "no_echo", "clear", "too_early", "late", "stuck", "tentative"];
+    let names = [
+        "first",
+        "accepted",
+        "rejected",
+        "repeated",
+        "no_echo",
+        "clear",
+        "too_early",
+        "late",
+        "stuck",
+        "tentative",
+        "ambiguous",
+        "unanswered",
+    ];
     assert_eq!(ReadingKind::ALL.map(ReadingKind::as_str), names);
     assert_eq!(format!("{:>9}|{}", ReadingKind::Clear, ReadingKind::Late), "    clear|late");
 }

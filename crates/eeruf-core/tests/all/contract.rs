@@ -234,7 +234,7 @@ impl Scheduler for Metronome {
     }
 
     fn limits(&self) -> Limits<'_> {
-        Limits { longest_window: self.every, verified_for: None }
+        Limits { longest_window: self.every, verified_for: None, audible: None }
     }
 
     fn min_refire(&self) -> Micros {
@@ -329,7 +329,7 @@ impl Scheduler for Periods {
     }
 
     fn limits(&self) -> Limits<'_> {
-        Limits { longest_window: self.every, verified_for: None }
+        Limits { longest_window: self.every, verified_for: None, audible: None }
     }
 
     fn min_refire(&self) -> Micros {

@@ -342,3 +342,76 @@ fn what_is_proven_of_the_separation_is_what_trying_all_phases_finds() {
     let alone = HoppingSchedule::<1>::spread(HoppingCode::new(1, 2, Micros::new(240)).unwrap(), Micros::new(9_000), 1);
     assert!(alone.unwrap().verify(&requirements).separation().is_none());
 }
+
+/// How a ring with a window of so many microseconds, and a period of half a minute, takes one path as long as that.
+fn accepted_of_one_path(window: u32) -> Result<usize, HoppingError> {
+    let code = HoppingCode::new(2, 5, Micros::new(240)).unwrap();
+    let schedule = HoppingSchedule::<2>::spread(code, Micros::from_millis(30_000), 1).unwrap();
+    let listening = HoppingListening::new(Micros::new(window));
+    let mut ring = HoppingRing::<2>::new(&schedule, HoppingSettings::DRIVING, listening, 1, Instant::from_micros(0))?;
+    let (mut kinds, mut arrivals) = (Vec::new(), Vec::<Instant>::new());
+    while kinds.len() < 60 {
+        let now = ring.next_deadline();
+        arrivals.retain(|&at| {
+            let has_come = now.has_reached(at);
+            if has_come {
+                ring.echo(1, at).unwrap();
+            }
+            !has_come
+        });
+        while let Some(event) = ring.poll(now) {
+            match event {
+                // The widest code is 1 ms: the path is heard in all phases.
+                RingEvent::Fire { sensor: 0, .. } => arrivals.push(now + Micros::new(window - 1_000)),
+                RingEvent::Reading(reading) if reading.sensor == 1 => kinds.push(reading.kind),
+                _ => {}
+            }
+        }
+    }
+    assert!(kinds.iter().all(|&kind| kind != ReadingKind::NoEcho), "{kinds:?}");
+    Ok(accepted_or_tentative(&kinds))
+}
+
+#[test]
+fn windows_too_long_for_the_tracker_are_refused() {
+    // It keeps echo times in 24 bits, and all later ones read alike: 59 of 60 readings of this path were believed with
+    // a window of 20 s.
+    let most = HoppingListening::MAX_WINDOW;
+    assert_eq!(accepted_of_one_path(most.as_micros()), Ok(0));
+    for window in [20_000_000, most.as_micros() + 1] {
+        let error = HoppingError::Window { window: Micros::new(window), most };
+        assert_eq!(accepted_of_one_path(window), Err(error));
+    }
+    let error = HoppingError::Window { window: Micros::from_millis(20_000), most };
+    assert_eq!(error.to_string(), "a listening window of 20000 ms; expected at most 16711.679 ms");
+    assert!(error.as_str().contains("window"), "{}", error.as_str());
+}
+
+#[test]
+fn a_clock_that_steps_back_delays_no_reading() {
+    // Two of eight sensors fire at the same instant in phase 0, and by different clocks where the clock steps back.
+    let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
+    let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
+    let listening = HoppingListening::new(Micros::new(WINDOW));
+    for seed in 0..20 {
+        let (mut random, start) = (Random(seed + 1), Instant::from_micros((seed as u32).wrapping_mul(0xf000_0000)));
+        let settings = if seed % 2 == 0 { HoppingSettings::DRIVING } else { HoppingSettings::BALANCED };
+        let mut ring = HoppingRing::<SENSORS>::new(&schedule, settings, listening, 1, start).unwrap();
+        let (mut fired, mut periods, mut latest) = ([start; SENSORS], 0, Micros::ZERO);
+        while periods < 200 {
+            // Within 3 us after it is due: the next poll may come sooner by the clock.
+            let now = ring.next_deadline() + Micros::new(random.up_to(3));
+            match ring.poll(now) {
+                Some(RingEvent::Fire { sensor, .. }) => fired[usize::from(sensor)] = now,
+                Some(RingEvent::Reading(reading)) => {
+                    let after = now.since(fired[usize::from(reading.sensor)]);
+                    assert!(after >= Micros::new(WINDOW), "{after}");
+                    latest = latest.max(after.saturating_sub(Micros::new(WINDOW)));
+                }
+                Some(RingEvent::PeriodEnded(_)) => periods += 1,
+                None => {}
+            }
+        }
+        assert!(latest <= Micros::new(6), "seed {seed}: a reading comes {latest} after its window has closed");
+    }
+}

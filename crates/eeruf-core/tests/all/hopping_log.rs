@@ -87,6 +87,7 @@ fn a_tracker_does_from_the_log_what_the_rings_own_did() {
                                 t_echo: reading.t_echo,
                                 previous: None,
                                 age: twin.age(place),
+                                explained_by: None,
                             },
                             kind @ (ReadingKind::Stuck | ReadingKind::TooEarly) => {
                                 twin.skip(place, kind, raw[place], change).unwrap()
@@ -106,6 +107,7 @@ fn a_tracker_does_from_the_log_what_the_rings_own_did() {
                             t_echo: reading.t_echo,
                             previous: reading.previous,
                             age: reading.age,
+                            explained_by: reading.explained_by,
                         };
                         assert_eq!(said, says, "seed {seed}, period {periods}: {reading:?}, {weighed:?}");
                         *kinds.entry(format!("{:?}", reading.kind)).or_default() += 1;

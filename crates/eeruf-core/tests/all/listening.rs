@@ -1,7 +1,9 @@
 //! What a ring hears: which edges are the echo of a firing, to the microsecond, and which are none.
 
 use eeruf_core::{
-    Instant, Micros, Reading, ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledRing, SensorError,
+    HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros,
+    Reading, ReadingKind, Ring, RingConfig, RingError, RingEvent, Schedule, ScheduledFiring, ScheduledRing,
+    SensorError,
 };
 
 const BLANKING: u32 = 1_000;
@@ -234,4 +236,28 @@ fn where_sensors_report_two_echoes_each_is_heard_until_the_window_closes() {
     }
     let expected = [(ReadingKind::First, 4_000), (ReadingKind::Accepted, 20_000), (ReadingKind::Accepted, 20_000)];
     assert_eq!(read, expected);
+}
+
+/// Why a ring of two sensors with room for `K` is refused, and a hopping ring, if they are.
+fn refused<const K: usize>() -> [Option<RingError>; 2] {
+    let (schedule, now) = (schedule(), Instant::from_micros(0));
+    let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW));
+    let ring = Ring::<_, K>::with_scheduler(ScheduledFiring::new(&schedule, now), config, now);
+    let code = HoppingCode::new(2, 5, Micros::new(240)).unwrap();
+    let hops = HoppingSchedule::<K>::spread(code, Micros::from_millis(60), 2).unwrap();
+    let listening = HoppingListening::new(Micros::new(WINDOW));
+    let hopping = HoppingRing::<K>::new(&hops, HoppingSettings::BALANCED, listening, 1, now);
+    [
+        ring.err(),
+        hopping.err().map(|error| if let HoppingError::Ring(error) = error { error } else { panic!("{error}") }),
+    ]
+}
+
+#[test]
+fn room_for_more_than_64_sensors_is_refused() {
+    // With 256 a ring never found the sensor whose echo had come: `0..256 as u8` is empty.
+    assert_eq!(refused::<64>(), [None; 2]);
+    assert_eq!(refused::<65>(), [Some(RingError::Room { capacity: 65 }); 2]);
+    assert_eq!(refused::<256>(), [Some(RingError::Room { capacity: 256 }); 2]);
+    assert_eq!(RingError::Room { capacity: 256 }.to_string(), "room for 256 sensors; expected at most 64");
 }

@@ -133,7 +133,7 @@ fn a_ring_that_is_paused_fires_nothing_ends_its_readings_and_goes_on_after_it() 
 }
 
 #[test]
-fn a_larger_t_delta_takes_hold_at_once_and_compares_with_nothing_from_before() {
+fn a_larger_t_delta_takes_hold_at_once() {
     let mut ring = Ring::new(&PAPER_12, RingConfig::new().with_t_delta(Micros::new(100)), at(0)).unwrap();
     let mut watch = SensorWatch::<12>::new(0);
     let moving = |_, period: u32| Some(9_000 + 400 * period);
@@ -154,8 +154,8 @@ fn a_larger_t_delta_takes_hold_at_once_and_compares_with_nothing_from_before() {
             _ => {}
         }
     }
-    assert!(now != at(0) && !kinds.contains(&ReadingKind::Rejected), "{kinds:?}");
-    assert!(kinds[..12].iter().all(|kind| *kind == ReadingKind::First), "{kinds:?}");
+    assert!(now != at(0), "it goes on");
+    // Those of the firings under way, and the first with echoes that begin elsewhere.
     assert!(kinds[26..].iter().all(|kind| *kind == ReadingKind::Accepted), "{kinds:?}");
 }
 
@@ -179,7 +179,16 @@ fn another_window_counts_at_once_for_firings_that_are_under_way() {
 fn the_longest_echo_time_that_is_accepted_is_known_as_an_echo() {
     let mut watch = SensorWatch::<1>::new(3);
     let (period, kind, t_echo) = (0, ReadingKind::Accepted, Some(Micros::MAX));
-    let reading = Reading { sensor: 0, phase: Phase::A, period, kind, t_echo, previous: t_echo, age: Some(0) };
+    let reading = Reading {
+        sensor: 0,
+        phase: Phase::A,
+        period,
+        kind,
+        t_echo,
+        previous: t_echo,
+        age: Some(0),
+        explained_by: None,
+    };
     assert_eq!(watch.observe(&RingEvent::Reading(reading), Instant::from_micros(0)), None);
     let last = watch.last_accepted(0, Instant::from_micros(0)).unwrap();
     assert_eq!(last.map(|last| last.t_echo), Some(Micros::new(u32::MAX - 1)));
@@ -189,7 +198,16 @@ fn the_longest_echo_time_that_is_accepted_is_known_as_an_echo() {
 fn confirmed_silence_ends_a_count_of_rejected_echoes_and_the_count_never_touches_the_time() {
     let reading = |kind| {
         let t_echo = (kind != ReadingKind::Clear).then_some(Micros::new(9_000));
-        RingEvent::Reading(Reading { sensor: 0, phase: Phase(0), period: 0, kind, t_echo, previous: None, age: None })
+        RingEvent::Reading(Reading {
+            sensor: 0,
+            phase: Phase(0),
+            period: 0,
+            kind,
+            t_echo,
+            previous: None,
+            age: None,
+            explained_by: None,
+        })
     };
     let mut watch = SensorWatch::<1>::new(3);
     let mut observe = |kind| watch.observe(&reading(kind), at(0)).is_some();

@@ -4,7 +4,7 @@ use eeruf_core::{Micros, Phase};
 
 use super::firing::{Firing, FiringPeriod, OwnError};
 use super::planned_ring::planned;
-use super::ring_runner::{RingStart, Started};
+use super::ring_runner::{AGREEMENT_ALONE, RingStart, Started};
 use super::schedules::widest_dither;
 use crate::world::Random;
 
@@ -13,7 +13,7 @@ pub(super) fn dithered<'s>(start: &RingStart<'s>) -> Started<'s> {
     let (lags, period) = (start.schedule().t_lag().to_vec(), start.schedule().period());
     let widest = widest_dither(start.robot);
     let dither = Dither { lags, period, widest, random: start.random };
-    planned::<1>(start.robot, Box::new(dither), period.saturating_sub(widest), start.now)
+    planned::<1, AGREEMENT_ALONE>(start.robot, Box::new(dither), period.saturating_sub(widest), start.now)
 }
 
 /// Fires each sensor once per period, at its lag plus a random wait below `widest`.

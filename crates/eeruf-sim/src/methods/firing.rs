@@ -293,7 +293,7 @@ impl Scheduler for PeriodFiring {
     }
 
     fn limits(&self) -> Limits<'_> {
-        Limits { longest_window: self.refire, verified_for: None }
+        Limits { longest_window: self.refire, verified_for: None, audible: None }
     }
 
     fn min_refire(&self) -> Micros {

@@ -13,7 +13,7 @@ use super::dither;
 use super::firing::Firing;
 use super::hopping;
 use super::planned_ring::planned;
-use super::ring_runner::{self, FiringPlan, RingRunner, RingStart, StartError, Started};
+use super::ring_runner::{self, AGREEMENT_ALONE, FiringPlan, REMEMBERED, RingRunner, RingStart, StartError, Started};
 use super::schedules::{self, Made, ScheduleQuery};
 use crate::world::{AnySchedule, Robot};
 
@@ -43,7 +43,7 @@ const DEFAULT: Row = Row {
     name: "",
     eeruf: false,
     schedule: schedules::own,
-    ring: ring_runner::scheduled::<1>,
+    ring: ring_runner::scheduled::<1, REMEMBERED>,
     belief: Belief::Repeated,
     plan: |_, schedule| Ok(FiringPlan { schedule, ladder: vec![], uneven: None }),
     echoes: 1,
@@ -81,19 +81,19 @@ methods! {
     /// All sensors at once, once a period. Every echo is believed.
     Simultaneous = "simultaneous" {
         schedule: schedules::together,
-        ring: ring_runner::scheduled::<1>,
+        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
         belief: Belief::All,
     }
     /// One by one, each listening for the whole window before the next one fires. Every echo is believed.
     Sequential = "sequential" {
         schedule: schedules::one_by_one,
-        ring: ring_runner::scheduled::<1>,
+        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
         belief: Belief::All,
     }
     /// As sequential, but sensors as far apart as the ring's `neighbours` fire together. Every echo is believed.
     FarGroups = "far_groups" {
         schedule: schedules::far_groups,
-        ring: ring_runner::scheduled::<1>,
+        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
         belief: Belief::All,
     }
     /// The conventional lags plus a wait drawn anew for each sensor in each period, from as wide a range as the paper's
@@ -106,19 +106,19 @@ methods! {
     /// Constant lags (Table I-a): neighbours fire `T_p / n` apart, every period alike. Every echo is believed.
     Conventional = "conventional" {
         schedule: schedules::conventional,
-        ring: ring_runner::scheduled::<1>,
+        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
         belief: Belief::All,
     }
     /// As conventional, but consecutive readings are compared: the negative control, the filter without alternation.
     Comparison = "comparison" {
         schedule: schedules::conventional,
-        ring: ring_runner::scheduled::<1>,
+        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
         belief: Belief::Repeated,
     }
     /// As conventional, but the median of a sensor's last readings is believed.
     Median = "median" {
         schedule: schedules::conventional,
-        ring: ring_runner::scheduled::<1>,
+        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
         belief: Belief::Median,
     }
     /// Immediate refiring with alternating waits (Figs. 2a, 2b): those of the paper's table, each longer by the robot's
@@ -135,7 +135,7 @@ methods! {
     Eeruf = "eeruf" {
         eeruf: true,
         schedule: schedules::own,
-        ring: ring_runner::scheduled::<1>,
+        ring: ring_runner::scheduled::<1, REMEMBERED>,
         belief: Belief::Repeated,
         plan: ring_runner::plan_own,
     }
@@ -144,7 +144,7 @@ methods! {
     EerufBest = "eeruf_best" {
         eeruf: true,
         schedule: schedules::best,
-        ring: ring_runner::scheduled::<1>,
+        ring: ring_runner::scheduled::<1, REMEMBERED>,
         belief: Belief::Repeated,
     }
     /// As [`Eeruf`](Self::Eeruf), moving along a ladder of scaled schedules as the rejection rate asks for (end of Sec.
@@ -169,7 +169,7 @@ methods! {
     MultiEcho = "multi_echo" {
         eeruf: true,
         schedule: schedules::own,
-        ring: ring_runner::scheduled::<MAX_ECHOES>,
+        ring: ring_runner::scheduled::<MAX_ECHOES, REMEMBERED>,
         belief: Belief::Repeated,
         plan: ring_runner::plan_own,
         echoes: MAX_ECHOES,
@@ -214,7 +214,11 @@ impl Method {
 
     /// A robot's ring that fires by the caller's own code, ready to run.
     pub(crate) fn start_own<'s>(self, robot: &Robot, firing: Box<dyn Firing>, now: Instant) -> Started<'s> {
-        let planned = if self.echoes() > 1 { planned::<MAX_ECHOES> } else { planned::<1> };
+        let planned = match (self.echoes() > 1, self.is_eeruf()) {
+            (true, _) => planned::<MAX_ECHOES, REMEMBERED>,
+            (false, true) => planned::<1, REMEMBERED>,
+            (false, false) => planned::<1, AGREEMENT_ALONE>,
+        };
         planned(robot, firing, robot.window, now)
     }
 

@@ -7,8 +7,8 @@ use super::ring_runner::{RingRunner, StartError, Started, config_of};
 use crate::world::Robot;
 
 /// A robot's ring that fires as it is planned, no sensor again within `refire` of firing, with up to `E` echoes of a
-/// firing.
-pub(super) fn planned<'s, const E: usize>(
+/// firing and a memory of `H` firings of each sensor.
+pub(super) fn planned<'s, const E: usize, const H: usize>(
     robot: &Robot,
     firing: Box<dyn Firing>,
     refire: Micros,
@@ -18,26 +18,26 @@ pub(super) fn planned<'s, const E: usize>(
     if let Some(error) = scheduler.error() {
         return Err(StartError::Own(error.clone()));
     }
-    let ring = Ring::<_, MAX_SENSORS, E>::with_scheduler(scheduler, config_of(robot).with_echoes::<E>(), now)?;
+    let ring = Ring::<_, MAX_SENSORS, E, H>::remembering(scheduler, config_of(robot).with_echoes::<E>(), now)?;
     Ok(Box::new(PlannedRing::new(ring)))
 }
 
 /// Core's ring with the scheduler of a plan.
-struct PlannedRing<const K: usize, const E: usize> {
-    ring: Ring<PeriodFiring, K, E>,
+struct PlannedRing<const K: usize, const E: usize, const H: usize> {
+    ring: Ring<PeriodFiring, K, E, H>,
     /// The number of the present period, and of that in which each sensor last fired: their phases do not say so.
     period: u32,
     fired_in: Vec<u32>,
 }
 
-impl<const K: usize, const E: usize> PlannedRing<K, E> {
-    fn new(ring: Ring<PeriodFiring, K, E>) -> Self {
+impl<const K: usize, const E: usize, const H: usize> PlannedRing<K, E, H> {
+    fn new(ring: Ring<PeriodFiring, K, E, H>) -> Self {
         let fired_in = vec![0; ring.sensors()];
         Self { ring, period: 0, fired_in }
     }
 }
 
-impl<const K: usize, const E: usize> RingRunner<'_> for PlannedRing<K, E> {
+impl<const K: usize, const E: usize, const H: usize> RingRunner<'_> for PlannedRing<K, E, H> {
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         let mut event = self.ring.poll_expecting(now, expected_change_us)?;
         match &mut event {

@@ -44,8 +44,8 @@ pub(crate) enum ChangeError {
 
 /// How rings with this scheduler change to another schedule.
 trait Changes<'s>: Scheduler + Send + Sized {
-    fn change<const K: usize, const E: usize>(
-        _ring: &mut Ring<Self, K, E>,
+    fn change<const K: usize, const E: usize, const H: usize>(
+        _ring: &mut Ring<Self, K, E, H>,
         _schedule: &'s AnySchedule,
     ) -> Result<(), ChangeError> {
         Err(ChangeError::Fixed)
@@ -53,8 +53,8 @@ trait Changes<'s>: Scheduler + Send + Sized {
 }
 
 impl<'s> Changes<'s> for ScheduledFiring<'s, MAX_SENSORS> {
-    fn change<const K: usize, const E: usize>(
-        ring: &mut Ring<Self, K, E>,
+    fn change<const K: usize, const E: usize, const H: usize>(
+        ring: &mut Ring<Self, K, E, H>,
         schedule: &'s AnySchedule,
     ) -> Result<(), ChangeError> {
         ring.change_to_unverified(schedule).map_err(ChangeError::Ring)
@@ -64,7 +64,7 @@ impl<'s> Changes<'s> for ScheduledFiring<'s, MAX_SENSORS> {
 impl<'s> Changes<'s> for UnevenFiring<'s, MAX_SENSORS> {}
 impl<'s> Changes<'s> for ImmediateRefiring<'s, MAX_SENSORS> {}
 
-impl<'s, S: Changes<'s>, const K: usize, const E: usize> RingRunner<'s> for Ring<S, K, E> {
+impl<'s, S: Changes<'s>, const K: usize, const E: usize, const H: usize> RingRunner<'s> for Ring<S, K, E, H> {
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         self.poll_expecting(now, expected_change_us)
     }
@@ -138,9 +138,9 @@ pub(super) type Started<'s> = Result<Box<dyn RingRunner<'s> + 's>, StartError>;
 
 /// How a robot's ring listens and compares.
 pub(super) fn config_of(robot: &Robot) -> RingConfig {
-    let &Robot { t_delta, window, blanking, consecutive, patience, .. } = robot;
+    let &Robot { t_delta, window, blanking, consecutive, .. } = robot;
     let listens = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
-    listens.with_consecutive(consecutive).with_patience(patience)
+    listens.with_consecutive(consecutive)
 }
 
 impl<'s> RingStart<'s> {
@@ -154,23 +154,30 @@ impl<'s> RingStart<'s> {
         config_of(self.robot)
     }
 
-    /// A ring of `E` echoes with this scheduler, no larger than needed: some of its steps take time for each sensor
-    /// that it has room for.
-    fn run<S: Changes<'s> + 's, const E: usize>(&self, scheduler: S) -> Started<'s> {
+    /// A ring of `E` echoes with this scheduler that remembers `H` firings of each sensor, no larger than needed: some
+    /// of its steps take time for each sensor that it has room for.
+    fn run<S: Changes<'s> + 's, const E: usize, const H: usize>(&self, scheduler: S) -> Started<'s> {
         let (config, now) = (self.config().with_echoes::<E>(), self.now);
         Ok(match self.robot.sensors.len() {
-            ..=8 => Box::new(Ring::<S, 8, E>::with_scheduler(scheduler, config, now)?),
-            9..=24 => Box::new(Ring::<S, 24, E>::with_scheduler(scheduler, config, now)?),
-            _ => Box::new(Ring::<S, MAX_SENSORS, E>::with_scheduler(scheduler, config, now)?),
+            ..=8 => Box::new(Ring::<S, 8, E, H>::remembering(scheduler, config, now)?),
+            9..=24 => Box::new(Ring::<S, 24, E, H>::remembering(scheduler, config, now)?),
+            _ => Box::new(Ring::<S, MAX_SENSORS, E, H>::remembering(scheduler, config, now)?),
         })
     }
 }
 
-/// Scheduled firing, with up to `E` echoes of a firing.
-pub(super) fn scheduled<'s, const E: usize>(start: &RingStart<'s>) -> Started<'s> {
+/// The firings of each sensor that are remembered of methods that accept what nothing foreign explains.
+pub(super) const REMEMBERED: usize = 4;
+/// The same of those that accept whatever agrees.
+pub(super) const AGREEMENT_ALONE: usize = 1;
+/// The same of immediate refiring, in which a sensor may fire many times while another listens once.
+const REFIRED: usize = 16;
+
+/// Scheduled firing, with up to `E` echoes of a firing and a memory of `H` firings of each sensor.
+pub(super) fn scheduled<'s, const E: usize, const H: usize>(start: &RingStart<'s>) -> Started<'s> {
     match &start.plan.uneven {
-        Some(uneven) => start.run::<_, E>(UnevenFiring::new(uneven, start.now)),
-        None => start.run::<_, E>(ScheduledFiring::new(start.schedule(), start.now)),
+        Some(uneven) => start.run::<_, E, H>(UnevenFiring::new(uneven, start.now)),
+        None => start.run::<_, E, H>(ScheduledFiring::new(start.schedule(), start.now)),
     }
 }
 
@@ -182,5 +189,5 @@ pub(super) fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPla
 
 /// Immediate refiring.
 pub(super) fn immediate<'s>(start: &RingStart<'s>) -> Started<'s> {
-    start.run::<_, 1>(ImmediateRefiring::new(start.schedule(), start.robot.min_refire, start.now))
+    start.run::<_, 1, REFIRED>(ImmediateRefiring::new(start.schedule(), start.robot.min_refire, start.now))
 }

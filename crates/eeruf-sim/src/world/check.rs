@@ -114,9 +114,6 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
     if !(2..=8).contains(&robot.consecutive) {
         return fail("consecutive", f64::from(robot.consecutive), "2 to 8");
     }
-    if robot.patience > 15 {
-        return fail("patience", f64::from(robot.patience), "0 to 15");
-    }
     for limits in &robot.limits {
         let window = limits.window;
         if robot.limits.len() != robot.sensors.len() {

@@ -58,9 +58,6 @@ pub struct Robot {
     pub neighbours: u8,
     /// How many consecutive readings must agree, 2 to 8. The default is 2, as in the paper.
     pub consecutive: u8,
-    /// For how many firings an accepted echo that is missing is waited for, 0 to 15
-    /// ([`EchoFilter::with_patience`](eeruf_core::EchoFilter::with_patience)). The default is 0, as in the paper.
-    pub patience: u8,
     /// Window and `T_delta` of each sensor, where they are not all alike, for its own [`schedule`](Self::schedule);
     /// [`window`](Self::window) and [`t_delta`](Self::t_delta) are then the largest, which other methods use for all.
     /// Empty, as by default, where they are alike.
@@ -107,7 +104,6 @@ impl Robot {
             min_refire: Micros::from_millis(36),
             neighbours: 4,
             consecutive: 2,
-            patience: 0,
             limits: vec![],
             together: vec![],
             odometry: false,

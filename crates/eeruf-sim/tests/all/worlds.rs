@@ -68,6 +68,17 @@ fn a_bad_world_gets_one_line_that_names_file_line_field_value_and_what_is_expect
 }
 
 #[test]
+fn patience_of_an_older_file_is_refused_by_name() {
+    for value in ["0", "3", "\"much\""] {
+        assert_eq!(
+            robot_error(&format!("patience = {value}")),
+            "w.toml, line 6: robot 1: patience; expected no such key: a filter that waited for an echo let crosstalk \
+             in one phase starve the wall. Delete the line"
+        );
+    }
+}
+
+#[test]
 fn an_unknown_field_or_word_is_named_with_its_line() {
     let unknown = robot_error("windw_us = 3");
     assert!(
@@ -125,7 +136,7 @@ fn a_world_written_to_a_file_and_read_again_gives_the_same_bit_for_bit() {
             schedule: Some(table_i_d_for(6, Micros::from_millis(60), 4).unwrap()),
             clock: Clock { offset_us: 77, drift_ppm: -31.5 },
             blanking: Micros::new(1234),
-            patience: 3,
+            consecutive: 3,
             body: [None, Some(Body::Disc(0.25)), Some(Body::Box(0.4, 0.3))][number as usize % 3],
             ..Robot::ring(Pose::new(Vector::new(-0.8, 0.1), turned), 6, 0.3 + 0.001 * turned, 0.2, transducer)
         };

@@ -49,6 +49,7 @@ fn main() -> ! {
     let mut ended = Range::new("period_ended");
     // As of period 40 every firing comes late, each by another time.
     let mut fire_late = Range::new("fire_late");
+    let mut reading_late = Range::new("reading_late");
     let mut ended_late = Range::new("period_ended_late");
 
     let mut periods = 0;
@@ -83,7 +84,7 @@ fn main() -> ! {
                     }
                 }
                 Some(RingEvent::Reading(emitted)) => {
-                    reading.note(taken);
+                    if on_time { &mut reading } else { &mut reading_late }.note(taken);
                     if emitted.kind == ReadingKind::Stuck {
                         leave(3);
                     }
@@ -95,7 +96,7 @@ fn main() -> ! {
             }
         }
     }
-    for range in [&idle, &fire, &fire_late, &heard, &stamped, &reading, &ended, &ended_late] {
+    for range in [&idle, &fire, &fire_late, &heard, &stamped, &reading, &reading_late, &ended, &ended_late] {
         range.say();
     }
     leave(0)

@@ -35,28 +35,27 @@ fn main() -> ! {
     let Ok(ring) = Ring::new(&PAPER_12, config, eeruf_board::now()) else { leave(2) };
     let Ok(ring) = HcSr04Ring::new(ring, fake_sensors::pins(), Delay, Settings::default()) else { leave(3) };
     let mut readings = Tally::<u32>::default();
-    let (mut most, mut sum, mut shift) = (0, 0, 0);
+    let (mut most, mut sum) = (0, 0);
     run(ring, &EDGES, |_, event| match event {
         RingEvent::Fire { .. } => {}
         RingEvent::Reading(reading) => readings.count(reading.kind),
         RingEvent::PeriodEnded(stats) => {
             most = stats.max_late.as_micros().max(most);
             sum += stats.max_late.as_micros();
-            shift = stats.max_shift.as_micros().max(shift);
             if stats.period == 199 {
                 say!(
                     "latest_us ",
                     most,
                     " mean_of_latest_us ",
                     sum / 200,
-                    " max_shift_us ",
-                    shift,
                     " edges_lost ",
                     EDGES.lost(),
                     " accepted ",
                     readings.of(ReadingKind::Accepted),
                     " rejected ",
-                    readings.of(ReadingKind::Rejected)
+                    readings.of(ReadingKind::Rejected),
+                    " ambiguous ",
+                    readings.of(ReadingKind::Ambiguous)
                 );
                 leave(0);
             }

@@ -16,8 +16,8 @@ const uint8_t PINS[] = {2, 3, 4, 5, 6, 7, 8, 9};
 #if CONSTANT
 // It claims to be verified, which nothing with one phase can be, so that the same class runs it.
 static const EerufSchedule RING EERUF_FLASH = {
-  1, MODULES, 1, TABLE(_order), TABLE(_gap_us), PERIOD_US, PERIOD_US,
-  T_DELTA_US, 14569u, 60000u, 1000u, 1, EERUF_LAYOUT_RING, 4, 0,
+  EERUF_VERSION, MODULES, 1, TABLE(_order), TABLE(_gap_us), PERIOD_US, PERIOD_US,
+  T_DELTA_US, 14569u, 60000u, 1000u, EERUF_AS_T_DELTA, PERIOD_US, 1, EERUF_LAYOUT_RING, 4, 0,
 };
 #else
 #define RING TABLE()

@@ -136,6 +136,8 @@ proptest! {
         consecutive in 2..=8_u8,
     ) {
         let window = schedule.min_refire();
+        // Else sound that was sent two periods apart could explain it.
+        let t_delta = t_delta.min(Micros::new((window.as_micros() - 1) / 2));
         let config = RingConfig::new().with_t_delta(t_delta).with_window(window).with_consecutive(consecutive);
         let mut ring = Ring::unverified(&schedule, config, Instant::default()).unwrap();
         let mut t_echo = vec![f64::from(window.as_micros()) / 2.0; schedule.sensors()];
@@ -169,8 +171,8 @@ proptest! {
 }
 
 #[test]
-fn with_constant_waits_the_same_crosstalk_is_believed_for_ever() {
-    // The negative control: conventional firing compares, but nothing alternates.
+fn constant_waits_repeat_crosstalk_so_that_it_is_ambiguous() {
+    // The negative control: nothing alternates, so that only what was fired tells crosstalk from a wall.
     let schedule = Schedule::<64>::from_slices(
         Micros::from_millis(60),
         &[Micros::ZERO, Micros::from_millis(15)],
@@ -181,7 +183,7 @@ fn with_constant_waits_the_same_crosstalk_is_believed_for_ever() {
     let path = Micros::from_millis(25);
     let kinds = readings_of_crosstalk(&schedule, config, Instant::default(), (0, 1), path, &[]);
     assert_eq!(kinds[0], ReadingKind::First);
-    assert!(kinds.len() > 8 && kinds[1..].iter().all(|&kind| kind == ReadingKind::Accepted), "{kinds:?}");
+    assert!(kinds.len() > 8 && kinds[1..].iter().all(|&kind| kind == ReadingKind::Ambiguous), "{kinds:?}");
 
     let alternating = Schedule::<64>::from_slices(
         Micros::from_millis(60),

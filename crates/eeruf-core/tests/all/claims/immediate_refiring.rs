@@ -14,7 +14,9 @@
 
 use std::collections::VecDeque;
 
-use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Schedule};
+use eeruf_core::{
+    AgreementRing, ImmediateRefiring, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Schedule,
+};
 use proptest::prelude::*;
 
 const T_DELTA: u32 = 500;
@@ -23,13 +25,14 @@ const WINDOW: u32 = 60_000;
 /// One sensor's waits in phases a and b, in microseconds.
 type Waits = [u32; 2];
 
-/// What y reads, and the verdicts.
+/// The echo times and verdicts of y, by agreement alone, as in the paper.
 fn readings_of_y(t_echo: u32, path: u32, lag_y: u32, x: Waits, y: Waits) -> Vec<(u32, ReadingKind)> {
     let us = |x, y| [Micros::new(x), Micros::new(y)];
     let schedule =
         Schedule::<2>::new(Micros::from_millis(200), us(0, lag_y), [us(x[0], y[0]), us(x[1], y[1])]).unwrap();
     let config = RingConfig::new().with_t_delta(Micros::new(T_DELTA)).with_window(Micros::new(WINDOW));
-    let mut ring = Ring::immediate(&schedule, config, Micros::ZERO, Instant::default()).unwrap();
+    let scheduler = ImmediateRefiring::new(&schedule, Micros::ZERO, Instant::default());
+    let mut ring: AgreementRing<_, 2> = Ring::remembering(scheduler, config, Instant::default()).unwrap();
     let mut heard = VecDeque::new();
     let mut readings = vec![];
     for _ in 0..400 {

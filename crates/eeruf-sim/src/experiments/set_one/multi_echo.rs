@@ -4,27 +4,24 @@ use eeruf_core::Micros;
 
 use crate::world::Robot;
 
-/// What [`Method::MultiEcho`](crate::Method::MultiEcho) compares by. Where several echoes are known, one that fades
-/// must not be taken for gone, or what lies behind it is believed; and with up to eight echoes a firing, pairs of them
-/// agree by accident in proportion to `t_delta`. A robot that stands needs no more than jitter asks for.
+/// The settings by which [`Method::MultiEcho`](crate::Method::MultiEcho) compares. With up to eight echoes a firing,
+/// pairs of them agree by accident in proportion to `t_delta`; a robot that stands needs no more than jitter asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MultiEcho {
     /// How many readings must agree, 2 to 8. As many periods pass before a new echo is believed.
     pub consecutive: u8,
     /// Within what.
     pub t_delta: Micros,
-    /// For how many firings an echo that is missing is waited for, 0 to 15.
-    pub patience: u8,
 }
 
 impl MultiEcho {
     /// The best of the grid that `cargo xtask tune` tries on alcoves below 2,000, by what is wrong and what is lost
     /// together.
-    pub const TUNED: Self = Self { consecutive: 6, t_delta: Micros::new(100), patience: 8 };
+    pub const TUNED: Self = Self { consecutive: 2, t_delta: Micros::new(200) };
 
     /// The robot that reads so.
     pub(super) fn of(self, robot: Robot) -> Robot {
-        let Self { consecutive, t_delta, patience } = self;
-        Robot { consecutive, t_delta, patience, ..robot }
+        let Self { consecutive, t_delta } = self;
+        Robot { consecutive, t_delta, ..robot }
     }
 }

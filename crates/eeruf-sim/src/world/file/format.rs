@@ -201,7 +201,8 @@ pub(super) struct RobotFile {
     pub(super) min_refire_us: Option<u32>,
     pub(super) neighbours: Option<u8>,
     pub(super) consecutive: Option<u8>,
-    pub(super) patience: Option<u8>,
+    /// A key of older files, refused by name.
+    pub(super) patience: Option<serde::de::IgnoredAny>,
     #[serde(default)]
     pub(super) odometry: bool,
 }

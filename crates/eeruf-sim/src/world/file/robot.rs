@@ -26,6 +26,11 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
         GainFile::Linear => GainProfile::Linear,
         GainFile::Stepped => GainProfile::Stepped,
     };
+    if file.patience.is_some() {
+        let gone = ": patience; expected no such key: a filter that waited for an echo let crosstalk in one phase \
+                    starve the wall. Delete the line";
+        return Err(fail("patience", gone.to_owned()));
+    }
     let preset = match file.transducer {
         TransducerFile::Polaroid6500 => Transducer::POLAROID_6500,
         TransducerFile::HcSr04 => Transducer::HC_SR04,
@@ -109,7 +114,6 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
     set(&mut robot.min_refire, file.min_refire_us);
     robot.neighbours = file.neighbours.unwrap_or(robot.neighbours);
     robot.consecutive = file.consecutive.unwrap_or(robot.consecutive);
-    robot.patience = file.patience.unwrap_or(robot.patience);
     robot.odometry = file.odometry;
     Ok(robot)
 }

@@ -199,9 +199,7 @@ fn robot_table(robot: &Robot) -> Table {
         let members = |set: &u64| (0..64_i64).filter(|sensor| set >> sensor & 1 == 1).collect::<Vec<_>>();
         set(&mut table, "together", robot.together.iter().map(members).collect::<Vec<_>>());
     }
-    for (key, number) in
-        [("neighbours", robot.neighbours), ("consecutive", robot.consecutive), ("patience", robot.patience)]
-    {
+    for (key, number) in [("neighbours", robot.neighbours), ("consecutive", robot.consecutive)] {
         set(&mut table, key, i64::from(number));
     }
     set(&mut table, "odometry", robot.odometry);

@@ -1,0 +1,157 @@
+//! [`Sounds`]: whether one path of sound explains two consecutive readings of a sensor.
+//!
+//! Eqs. (11) and (13) on what was fired instead of on what was planned. A receiver fired at `f1` and `f2` and heard
+//! something at `h1 = f1 + e1` and `h2 = f2 + e2`. Sensor x explains both readings if it fired at `a` and `b`, and
+//!
+//! ```text
+//! 0 <= h1 - a <= R,   0 <= h2 - b <= R,   |(h2 - b) - (h1 - a)| <= P
+//! ```
+//!
+//! `h - a` is the length, in time, that a path from x would have; R is how long sound is audible, and P is by how much
+//! a path may change between the two readings. For the receiver itself `a = f1` and `b = f2` do not count: these are
+//! the echoes that it is meant to hear. A single path of sound that changes by at most P is among those tried, whenever
+//! and for whatever reason its emitter fired: `docs/theory.md` section 2.1.
+
+use crate::time::{Instant, Micros};
+
+/// The longest that sound can be said to be audible, about a minute.
+pub(super) const MAX_AUDIBLE: Micros = Micros::new(1 << 26);
+/// Longer ago than any sound is audible: about 18 minutes.
+const LONG_AGO: Micros = Micros::new(1 << 30);
+/// By how much a clock may step back without being taken for one that has gone round: about one second.
+pub(super) const STEP_BACK: Micros = Micros::new(1 << 20);
+
+/// The last `H` firings of one sensor, the latest first. What came before them is forgotten.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(transparent)]
+pub(super) struct Firings<const H: usize>([Instant; H]);
+
+impl<const H: usize> Firings<H> {
+    /// All of them so long before `now` that nothing is heard of them.
+    pub(super) const fn none_before(now: Instant) -> Self {
+        const { assert!(H > 0, "a ring remembers at least the last firing of each sensor") };
+        Self([long_before(now); H])
+    }
+
+    #[inline]
+    pub(super) const fn last(&self) -> Instant {
+        // There is one: `none_before` asserts it.
+        self.0[0]
+    }
+
+    #[inline]
+    pub(super) fn push(&mut self, now: Instant) {
+        let mut at = now;
+        for slot in &mut self.0 {
+            core::mem::swap(slot, &mut at);
+        }
+    }
+
+    /// The last firing was at another instant.
+    #[inline]
+    pub(super) fn correct(&mut self, at: Instant) {
+        if let Some(last) = self.0.first_mut() {
+            *last = at;
+        }
+    }
+
+    /// The firing before the last one, if it is remembered.
+    pub(super) fn before(&self) -> Option<Instant> {
+        self.0.get(1).copied()
+    }
+
+    /// Whether an instant is later than the firing before the last one, as far as that is known.
+    pub(super) fn may_correct(&self, at: Instant) -> bool {
+        self.before().is_none_or(|before| at != before && at.has_reached(before))
+    }
+
+    /// Keeps old firings from coming round with the clock: to be called at least every four minutes. Returns whether
+    /// they are forgotten.
+    #[inline]
+    pub(super) fn expire(&mut self, now: Instant) -> bool {
+        let expired = is_long_ago(self.last(), now);
+        if expired {
+            *self = Self::none_before(now);
+        }
+        expired
+    }
+}
+
+/// Whether an instant is so long before `now` that nothing is heard from then.
+#[inline]
+pub(super) const fn is_long_ago(instant: Instant, now: Instant) -> bool {
+    let age = now.since(instant).as_micros();
+    age > LONG_AGO.as_micros() && !is_just_ahead(instant, now)
+}
+
+/// Whether an instant lies ahead of `now` by no more than a clock may step back.
+#[inline]
+pub(super) const fn is_just_ahead(instant: Instant, now: Instant) -> bool {
+    let ahead = instant.since(now).as_micros();
+    ahead > 0 && ahead <= STEP_BACK.as_micros()
+}
+
+pub(super) const fn long_before(now: Instant) -> Instant {
+    Instant::from_micros(now.as_micros().wrapping_sub(LONG_AGO.as_micros()))
+}
+
+/// The instants at which a sensor heard two consecutive readings, and what sound may do.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sounds {
+    /// When the first was heard, `h1`, and the second, `h2`.
+    pub(super) heard: [Instant; 2],
+    /// `R`: how long sound is audible.
+    pub(super) audible: Micros,
+    /// `P`: by how much a path may change from the first to the second.
+    pub(super) path_change: Micros,
+}
+
+/// What the firings of one sensor say about two readings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Answer {
+    /// They do not explain both.
+    No,
+    /// Two of them do.
+    Explained,
+    /// One that is forgotten could be among those that do.
+    Forgotten,
+}
+
+impl Sounds {
+    /// Whether sound of the sensor that fired so explains both readings; `own`, whether it is the receiver.
+    pub(super) fn ask<const H: usize>(&self, firings: &Firings<H>, own: bool) -> Answer {
+        let [first, second] = self.heard;
+        let audible = self.audible.as_micros();
+        // The time between the two sounds is that between the firings, but for what the path has changed by.
+        let apart = second.since(first).as_micros();
+        for (later, &b) in firings.0.iter().enumerate().skip(usize::from(own)) {
+            // The length that the path would have in the second reading. Before it was sent nothing is heard.
+            let length = second.since(b).as_micros();
+            if length > audible {
+                continue;
+            }
+            // The earlier of two firings is behind the later; both may be one if the readings are as close as that.
+            for (earlier, &a) in firings.0.iter().enumerate().skip(later) {
+                let length_before = first.since(a).as_micros();
+                let change = b.since(a).as_micros().abs_diff(apart);
+                if length_before <= audible && change <= self.path_change.as_micros() && !(own && earlier == 1) {
+                    return Answer::Explained;
+                }
+            }
+        }
+        // All that is forgotten was fired before the oldest that is remembered.
+        match firings.0.last() {
+            Some(&oldest) if self.is_audible_from(oldest) => Answer::Forgotten,
+            _ => Answer::No,
+        }
+    }
+
+    /// Whether sound from before this instant could be in the first reading.
+    pub(super) fn is_audible_from(&self, instant: Instant) -> bool {
+        let [first, _] = self.heard;
+        let age = first.since(instant).as_micros();
+        // An instant after the first reading leaves all before it open.
+        age < self.audible.as_micros() || age > u32::MAX / 2
+    }
+}

@@ -1,0 +1,322 @@
+//! A corpus of rings for ports that cannot call Rust: what happens to each ring, and its events.
+//! `c/micropython/test_corpus.py` reads the file; `EERUF_WRITE=1` writes it.
+//!
+//! Lines: `S` a schedule: period, phases, then the firing times by phase; `V` requirements (`t_delta`, interval,
+//! window, neighbours, layout, stale echo), then separation and window, both 0 if not met; `L` how a ring listens
+//! (`t_delta`, window, blanking, consecutive, path change, audible) and its start. Then echoes `E`, stuck lines `K`,
+//! corrected firings `F`, sensors enabled or not `N`, restarts `R`, another path change `C` or `audible` `A`, and polls
+//! `P` with the deadline after it and the event, if there is one. 2^32 - 1 stands for no echo, and where a ring listens
+//! for the default; as the explanation of a reading 254 stands for history and 255 for none.
+
+use std::fmt::Write;
+
+use eeruf_core::{
+    Explanation, Instant, Layout, Micros, PeriodStats, Phase, Reading, ReadingKind, Requirements, Ring, RingConfig,
+    RingEvent, Schedule, ScheduledFiring,
+};
+
+use crate::common::random::Random;
+
+const K: usize = 16;
+const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../c/tests/corpus.txt");
+/// Rings in the file beside those of [`RARE`]; `EERUF_RINGS` of them for a longer comparison.
+const RINGS: u64 = 40;
+/// Seeds of rings in which a port differs if it gets a border of the rule wrong: of `audible`, of `path_change`, of the
+/// lateness to spare, of the periods for which an irregular firing counts, of a restart, of what is proven.
+const RARE: [u64; 9] = [67, 86, 449, 672, 1043, 1494, 2369, 2505, 2893];
+const STEPS: u32 = 64;
+const NONE: u32 = u32::MAX;
+
+type ScheduledBy<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M>, K>;
+
+/// The file's text.
+struct Text(String);
+
+impl Text {
+    fn add(&mut self, kind: char, numbers: impl IntoIterator<Item = u32>) {
+        self.0.push(kind);
+        for number in numbers {
+            write!(self.0, " {number}").unwrap();
+        }
+        self.0.push('\n');
+    }
+}
+
+impl Random {
+    fn within(&mut self, least: u32, most: u32) -> u32 {
+        least + self.up_to(most - least)
+    }
+
+    fn once_in(&mut self, times: u32) -> bool {
+        self.up_to(times - 1) == 0
+    }
+
+    fn one_of<T: Copy>(&mut self, these: &[T]) -> T {
+        these[self.up_to(these.len() as u32 - 1) as usize]
+    }
+
+    /// A duration of any order of magnitude up to `most`.
+    fn duration(&mut self, most: u32) -> u32 {
+        let bits = self.up_to(32 - most.leading_zeros());
+        most.min(self.next() as u32 & ((1_u64 << bits) - 1) as u32)
+    }
+}
+
+/// An event as numbers.
+fn flat(event: &RingEvent) -> Vec<u32> {
+    let echo = |t_echo: Option<Micros>| t_echo.map_or(NONE, Micros::as_micros);
+    match *event {
+        RingEvent::Fire { sensor, phase: Phase(phase), due } => vec![0, sensor.into(), phase.into(), due.as_micros()],
+        RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age, explained_by }) => {
+            let explained_by = match explained_by {
+                Some(Explanation::Sensor(sensor)) => sensor.into(),
+                Some(Explanation::History) => 254,
+                None => 255,
+            };
+            let verdict = [echo(t_echo), echo(previous), age.unwrap_or(u16::MAX).into(), explained_by];
+            [&[1, sensor.into(), phase.0.into(), period, kind as u32][..], &verdict].concat()
+        }
+        RingEvent::PeriodEnded(PeriodStats { period, phase, tally, max_late, sum_late }) => {
+            let counts = ReadingKind::ALL.map(|kind| tally.of(kind));
+            [&[2, phase.0.into(), period, max_late.as_micros(), sum_late.as_micros()][..], &counts].concat()
+        }
+    }
+}
+
+/// A schedule whose crosstalk mostly moves, and the `t_delta` and window that it was verified for.
+fn schedule(r: &mut Random, text: &mut Text, phases: u32) -> (u32, u32, Vec<Vec<Micros>>) {
+    let sensors = r.within(1, 6);
+    let period = r.within(30_000, 90_000);
+    let wait = r.within(900, 1_400);
+    let rows: Vec<Vec<u32>> = (0..phases)
+        .map(|phase| (0..sensors).map(|x| (x * period / (sensors + 1) + phase * wait * (x + 1)) % period).collect())
+        .collect();
+    text.add('S', [period, phases].into_iter().chain(rows.concat()));
+    (period, sensors, rows.into_iter().map(|row| row.into_iter().map(Micros::new).collect()).collect())
+}
+
+/// Verifies a schedule of two phases; returns it, verified or not, with its `t_delta` and window if it was.
+fn verify(r: &mut Random, text: &mut Text, schedule: Schedule<K>) -> (Schedule<K>, Option<[u32; 2]>) {
+    let (t_delta, neighbours) = (r.within(50, 500), r.up_to(4));
+    let layout = r.up_to(2);
+    let requirements = Requirements {
+        min_interval: Micros::new(r.duration(6_000)),
+        window: Micros::new(r.up_to(1) * r.within(10_000, 90_000)),
+        stale_echo: r.once_in(4),
+        layout: [Layout::Line, Layout::Ring, Layout::Blocks][layout as usize](neighbours as u8),
+        ..Requirements::new(Micros::new(t_delta))
+    };
+    let verified = schedule.verify(&requirements).verified().ok();
+    let numbers =
+        verified.map(|verified| [verified.verified_for().separation, verified.window()].map(Micros::as_micros));
+    let asked = [t_delta, requirements.min_interval.as_micros(), requirements.window.as_micros(), neighbours];
+    let asked = asked.into_iter().chain([layout, requirements.stale_echo.into()]);
+    text.add('V', asked.chain(numbers.unwrap_or_default()));
+    match verified {
+        Some(verified) => (verified.into_schedule(), numbers.map(|[_, window]| [t_delta, window])),
+        None => (schedule, None),
+    }
+}
+
+/// What happens around a ring, and what its sensors hear: something before each, or one path from each to the next.
+struct World {
+    now: u32,
+    late: u32,
+    /// Clocks jump, and firings and sensors are disturbed, this many times less often.
+    calm: u32,
+    own: Vec<u32>,
+    path: u32,
+    /// Only the path sounds.
+    path_only: bool,
+    echoes: Vec<(u32, u8)>,
+}
+
+impl World {
+    fn turn_clock(&mut self, r: &mut Random, deadline: u32) {
+        let ahead = deadline.wrapping_sub(self.now);
+        let ahead = if ahead < 1 << 31 { ahead } else { 0 };
+        let by = match r.up_to(1000 * self.calm - 1) {
+            0 => r.next() as u32,
+            1 => r.duration(10_000_000).wrapping_neg(),
+            2..10 => r.duration(100).wrapping_neg(),
+            10..100 => r.duration(5_000),
+            100..110 => ahead.wrapping_add(r.duration(1_000_000)),
+            110..500 => ahead.wrapping_add(r.duration(self.late)),
+            _ => ahead,
+        };
+        self.now = self.now.wrapping_add(by);
+    }
+
+    fn fired(&mut self, r: &mut Random, sensor: u8, at: u32) {
+        let sensors = self.own.len() as u32;
+        let own = self.own[usize::from(sensor)];
+        if !self.path_only {
+            match r.up_to(9) {
+                0 => {}
+                1 => self.echoes.push((at.wrapping_add(r.duration(90_000)), sensor)),
+                _ => self.echoes.push((at.wrapping_add(own + r.duration(300)), sensor)),
+            }
+        }
+        if self.path_only || r.once_in(3) {
+            let next = (u32::from(sensor) + 1) % sensors;
+            self.echoes.push((at.wrapping_add(self.path + r.duration(100)), next as u8));
+        }
+    }
+
+    fn heard(&mut self) -> Vec<(u32, u8)> {
+        let now = self.now;
+        if self.echoes.len() > 200 {
+            // From a time that the clock has left.
+            self.echoes.clear();
+        }
+        let mut heard = vec![];
+        self.echoes.retain(|&(at, sensor)| {
+            let is_heard = now.wrapping_sub(at) < 1 << 31;
+            if is_heard {
+                heard.push((at, sensor));
+            }
+            !is_heard
+        });
+        heard
+    }
+}
+
+/// Runs a ring, and writes down what happens to it.
+fn run<const M: usize>(r: &mut Random, text: &mut Text, schedule: &Schedule<K, M>, promised: Option<[u32; 2]>) {
+    let [t_delta, window] = promised.unwrap_or_else(|| [r.within(50, 900), schedule.min_refire().as_micros()]);
+    let window = r.one_of(&[window, window - window / 3]);
+    let (blanking, consecutive) = (r.up_to(1) * r.duration(3_000), r.one_of(&[2, 2, 3]));
+    let period = schedule.period().as_micros();
+    let path_change = r.one_of(&[NONE, NONE, 0, 100, t_delta / 2, t_delta + 300, 60_000]);
+    let audible = r.one_of(&[NONE, NONE, window / 2, 2 * period, 4 * period]);
+    let starts = [0, r.duration(300_000).wrapping_neg(), r.next() as u32];
+    let start = r.one_of(&starts);
+    text.add('L', [t_delta, window, blanking, consecutive.into(), path_change, audible, start]);
+    let asked = |us: u32| (us != NONE).then_some(Micros::new(us));
+    let mut config = RingConfig::new().with_blanking(Micros::new(blanking)).with_consecutive(consecutive);
+    (config.t_delta, config.window) = (asked(t_delta), asked(window));
+    (config.path_change, config.audible) = (asked(path_change), asked(audible));
+    let mut ring = ScheduledBy::<M>::unverified(schedule, config, Instant::from_micros(start)).unwrap();
+    let sensors = schedule.sensors() as u8;
+    let paths = [r.within(100, window), r.within(100, 2 * period)];
+    let mut world = World {
+        now: start,
+        late: r.one_of(&[0, 0, 30, 300, 3_000, 100_000]),
+        calm: r.one_of(&[1, 10, 100]),
+        own: (0..sensors).map(|_| r.within(1, window)).collect(),
+        path: r.one_of(&paths),
+        path_only: r.once_in(2),
+        echoes: vec![],
+    };
+    for _ in 0..STEPS {
+        world.turn_clock(r, ring.next_deadline().as_micros());
+        for (at, sensor) in world.heard() {
+            text.add('E', [sensor.into(), at]);
+            ring.echo(sensor, Instant::from_micros(at)).unwrap();
+        }
+        if r.once_in(16 * world.calm) {
+            operate(r, text, &mut ring, world.now);
+        }
+        for _ in 0..20 {
+            let event = ring.poll(Instant::from_micros(world.now));
+            let numbers = [world.now, ring.next_deadline().as_micros()];
+            text.add('P', numbers.into_iter().chain(event.iter().flat_map(flat)));
+            let Some(event) = event else { break };
+            let polls_again = Instant::from_micros(world.now).has_reached(ring.next_deadline()) || r.once_in(8);
+            if let RingEvent::Fire { sensor, .. } = event {
+                let mut fired = world.now;
+                if r.once_in(24 * world.calm) {
+                    text.add('K', [sensor.into()]);
+                    ring.stuck(sensor).unwrap();
+                }
+                if r.once_in(8 * world.calm) {
+                    let by = r.duration(4_000);
+                    fired = if r.once_in(2) { fired.wrapping_add(by) } else { fired.wrapping_sub(by) };
+                    correct(text, &mut ring, sensor, fired);
+                }
+                world.fired(r, sensor, fired);
+            }
+            if !polls_again {
+                break;
+            }
+        }
+    }
+}
+
+fn correct<const M: usize>(text: &mut Text, ring: &mut ScheduledBy<'_, M>, sensor: u8, at: u32) {
+    text.add('F', [sensor.into(), at]);
+    ring.fired(sensor, Instant::from_micros(at)).unwrap();
+}
+
+/// Does something to the ring.
+fn operate<const M: usize>(r: &mut Random, text: &mut Text, ring: &mut ScheduledBy<'_, M>, now: u32) {
+    let sensor = r.up_to(ring.sensors() as u32 - 1) as u8;
+    match r.up_to(9) {
+        0 => {
+            text.add('R', [now]);
+            ring.restart(Instant::from_micros(now));
+        }
+        1 => {
+            let path_change = r.within(0, 1_000);
+            text.add('C', [path_change]);
+            ring.set_path_change(Micros::new(path_change)).unwrap();
+        }
+        2 => {
+            let audible = r.duration(300_000);
+            text.add('A', [audible]);
+            ring.set_audible(Micros::new(audible)).unwrap();
+        }
+        // Of a firing whose reading may be out.
+        3 | 4 => correct(text, ring, sensor, now.wrapping_sub(r.duration(100_000))),
+        what => {
+            let on = what > 6;
+            text.add('N', [sensor.into(), on.into()]);
+            if on { ring.enable(sensor).unwrap() } else { ring.disable(sensor).unwrap() }
+        }
+    }
+}
+
+fn run_phases<const M: usize>(r: &mut Random, text: &mut Text) {
+    let (period, sensors, rows) = schedule(r, text, M as u32);
+    let lags = vec![Micros::ZERO; sensors as usize];
+    let rows: [&[Micros]; M] = std::array::from_fn(|phase| rows[phase].as_slice());
+    run(r, text, &Schedule::<K, M>::from_slices(Micros::new(period), &lags, rows).unwrap(), None);
+}
+
+fn run_two_phases(r: &mut Random, text: &mut Text) {
+    let (period, sensors, rows) = schedule(r, text, 2);
+    let lags = vec![Micros::ZERO; sensors as usize];
+    let plain = Schedule::<K>::from_slices(Micros::new(period), &lags, [&rows[0], &rows[1]]).unwrap();
+    let (schedule, promised) = if r.once_in(5) { (plain, None) } else { verify(r, text, plain) };
+    run(r, text, &schedule, promised);
+}
+
+#[test]
+fn corpus_file_matches_core() {
+    let mut text = Text(String::new());
+    let rings = std::env::var("EERUF_RINGS").map_or(RINGS, |rings| rings.parse().expect("a number of rings"));
+    for seed in (0..rings).chain(RARE) {
+        let mut r = Random(seed);
+        match seed % 8 {
+            6 => run_phases::<1>(&mut r, &mut text),
+            7 => run_phases::<3>(&mut r, &mut text),
+            _ => run_two_phases(&mut r, &mut text),
+        }
+    }
+    let Text(text) = text;
+    if std::env::var_os("EERUF_WRITE").is_some() {
+        std::fs::write(FILE, &text).expect("the corpus can be written");
+    }
+    // Each way to explain a reading, and each kind of a ring that compares two readings.
+    let readings =
+        || text.lines().filter_map(|line| line.strip_prefix("P ")).filter(|line| line.split(' ').count() == 11);
+    let has = |place: usize, value: &str| readings().any(|line| line.split(' ').nth(place) == Some(value));
+    for kind in [0, 1, 2, 3, 4, 5, 6, 7, 8, 10] {
+        assert!(has(6, &kind.to_string()), "no reading of kind {kind}");
+    }
+    for explained_by in ["0", "1", "254", "255"] {
+        assert!(has(10, explained_by), "no reading explained by {explained_by}");
+    }
+    let kept = std::fs::read_to_string(FILE).expect("c/tests/corpus.txt");
+    assert!(kept == text, "c/tests/corpus.txt differs from core; EERUF_WRITE=1 writes it");
+}

@@ -1,0 +1,74 @@
+//! The rule of docs/theory.md section 2.1 by an account of all firings in true time, written from the document.
+
+use eeruf_core::Reading;
+
+/// What one sensor fired and heard.
+#[derive(Clone, Default)]
+struct Sensor {
+    /// All instants at which it fired, in true time.
+    fired: Vec<u64>,
+    /// Its last reading with an echo: the firing and when the echo was heard.
+    last: Option<(u64, u64)>,
+}
+
+/// Every firing there was, and the last reading of each sensor.
+pub(super) struct Model {
+    sensors: Vec<Sensor>,
+}
+
+/// A reading that agrees with the one before, as the model sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Compared {
+    /// Some firings explain both.
+    Explained,
+    /// Nothing foreign explains both.
+    Unexplained,
+}
+
+/// What sound may do, in microseconds.
+#[derive(Clone, Copy)]
+pub(super) struct Sound {
+    pub(super) t_delta: u64,
+    pub(super) path_change: u64,
+    pub(super) audible: u64,
+}
+
+impl Model {
+    pub(super) fn new(sensors: usize) -> Self {
+        Self { sensors: vec![Sensor::default(); sensors] }
+    }
+
+    /// A sensor fired at this instant.
+    pub(super) fn fired(&mut self, sensor: u8, at: u64) {
+        self.sensors[usize::from(sensor)].fired.push(at);
+    }
+
+    /// A sensor has nothing to compare its next reading with.
+    pub(super) fn forget(&mut self, sensor: u8) {
+        self.sensors[usize::from(sensor)].last = None;
+    }
+
+    /// Takes in a reading of the sensor's last firing. `None` if it has no echo, nothing before it, or does not agree.
+    pub(super) fn read(&mut self, reading: &Reading, sound: Sound) -> Option<Compared> {
+        let y = usize::from(reading.sensor);
+        let f2 = *self.sensors[y].fired.last()?;
+        let now = reading.t_echo.map(|echo| (f2, f2 + u64::from(echo.as_micros())));
+        let before = std::mem::replace(&mut self.sensors[y].last, now);
+        let ((f1, h1), (f2, h2)) = (before?, now?);
+        if (h2 - f2).abs_diff(h1 - f1) > sound.t_delta {
+            return None;
+        }
+        let audible = |at: u64, heard: u64| at <= heard && heard - at <= sound.audible;
+        let explains = |x: usize| {
+            self.sensors[x].fired.iter().rev().take_while(|&&a| a + sound.audible >= h1).any(|&a| {
+                let fired = self.sensors[x].fired.iter().rev().take_while(|&&b| b + sound.audible >= h1);
+                audible(a, h1)
+                    && (x != y || a != f1)
+                    && fired
+                        .filter(|&&b| audible(b, h2) && (x != y || b != f2))
+                        .any(|&b| (h2 - b).abs_diff(h1 - a) <= sound.path_change)
+            })
+        };
+        Some(if (0..self.sensors.len()).any(explains) { Compared::Explained } else { Compared::Unexplained })
+    }
+}

@@ -1,0 +1,302 @@
+//! A world in true time around a ring: sound that travels along one path to each sensor, or a wall before each, a clock
+//! that wraps and steps back, polls that come late, and all that can be done to a ring.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use eeruf_core::{Instant, Micros, Reading, ReadingKind, RingEvent, Schedule, ScheduledRing, VerifiedSchedule};
+
+use super::model::{Compared, Model, Sound};
+use crate::common::random::Random;
+
+/// Room in the rings of these tests.
+pub(super) const ROOM: usize = 24;
+/// By how much the clock steps back between two readings that are compared, at most.
+pub(super) const STEPS: u32 = 12;
+
+/// What each sensor hears.
+#[derive(Clone, Copy)]
+pub(super) enum Heard {
+    /// Sound of one emitter along one path of at least so many microseconds.
+    Path { emitter: u8, least: u32 },
+    /// Its own wall after so many microseconds, give or take 15.
+    Wall { t_echo: u32 },
+}
+
+/// How a run goes.
+#[derive(Clone, Copy)]
+pub(super) struct Course {
+    /// Polls come late by up to so many microseconds; every 64th by up to eight times as much.
+    pub(super) late: u32,
+    /// So many microseconds pass at each event.
+    pub(super) handling: u32,
+    /// One of so many events is followed by something that is done to the ring; 0 for never.
+    pub(super) operations: u32,
+    /// One of so many firings comes at another instant than its poll; 0 for never.
+    pub(super) fired: u32,
+    /// One of so many events is followed by a step back of the clock; 0 for never.
+    pub(super) clock_steps: u32,
+}
+
+/// What the readings came to.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Count {
+    /// Readings compared with the one before.
+    pub(super) compared: u64,
+    pub(super) accepted: u64,
+    pub(super) ambiguous: u64,
+    /// Readings that agree and that the model finds unexplained, and how many of these the ring accepted.
+    pub(super) unexplained: u64,
+    pub(super) unexplained_accepted: u64,
+    /// Readings that the ring accepted and the model finds explained.
+    pub(super) explained_accepted: u64,
+}
+
+pub(super) struct World<'s> {
+    pub(super) ring: ScheduledRing<'s, ROOM>,
+    heard: Vec<Heard>,
+    course: Course,
+    sound: Sound,
+    random: Random,
+    model: Model,
+    now: u64,
+    /// How far the ring's clock is behind true time.
+    behind: u64,
+    /// Steps of the clock since each sensor's last reading but one are at most [`STEPS`].
+    arrivals: BinaryHeap<Reverse<(u64, u8)>>,
+    /// Firings whose true instant comes later: when, the sensor, the instant.
+    corrections: Vec<(u64, u8, u64)>,
+    /// Echo time of each sensor's last reading, which a foreign path tries to meet again.
+    last_echo: Vec<Option<u32>>,
+    last_fired: Vec<u64>,
+    stepped_at: u64,
+    counts: Vec<Count>,
+    initial: (Micros, Micros),
+    schedules: &'s [VerifiedSchedule<ROOM>],
+    unverified: &'s Schedule<ROOM>,
+}
+
+impl<'s> World<'s> {
+    pub(super) fn new(
+        ring: ScheduledRing<'s, ROOM>,
+        start: u64,
+        heard: Vec<Heard>,
+        course: Course,
+        sound: Sound,
+        seed: u64,
+        schedules: &'s [VerifiedSchedule<ROOM>],
+    ) -> Self {
+        let sensors = ring.sensors();
+        let initial = (ring.t_delta(), ring.window());
+        let unverified = ring.schedule();
+        Self {
+            ring,
+            heard,
+            course,
+            sound,
+            random: Random(seed),
+            model: Model::new(sensors),
+            now: start,
+            behind: 0,
+            arrivals: BinaryHeap::new(),
+            corrections: vec![],
+            last_echo: vec![None; sensors],
+            last_fired: vec![0; sensors],
+            stepped_at: start,
+            counts: vec![Count::default(); sensors],
+            initial,
+            schedules,
+            unverified,
+        }
+    }
+
+    fn clock(&self, true_time: u64) -> Instant {
+        Instant::from_wide(true_time - self.behind)
+    }
+
+    fn one_in(&mut self, many: u32) -> bool {
+        many > 0 && self.random.up_to(many - 1) == 0
+    }
+
+    /// Runs until so many readings were compared; returns the counts of each sensor.
+    pub(super) fn run(mut self, compared: u64) -> Vec<Count> {
+        let mut events = 0_u64;
+        while self.counts.iter().map(|count| count.compared).sum::<u64>() < compared && events < 40 * compared + 1000 {
+            events += 1;
+            self.step();
+        }
+        self.counts
+    }
+
+    fn step(&mut self) {
+        let ahead = self.ring.next_deadline().since(self.clock(self.now)).as_micros();
+        if ahead <= u32::MAX / 2 {
+            self.now += u64::from(ahead);
+        }
+        let late = if self.one_in(64) { 8 * self.course.late } else { self.course.late };
+        self.now += u64::from(self.random.up_to(late));
+        let now = self.now;
+        self.tell_corrections(|at, _| at <= now);
+        self.deliver();
+        match self.ring.poll(self.clock(self.now)) {
+            Some(RingEvent::Fire { sensor, .. }) => self.fire(sensor),
+            Some(RingEvent::Reading(reading)) => self.read(&reading),
+            Some(RingEvent::PeriodEnded(_)) | None => {}
+        }
+        self.now += u64::from(self.course.handling);
+        if self.one_in(self.course.clock_steps) && self.now - self.stepped_at > 1_000_000 {
+            self.behind += 1 + u64::from(self.random.up_to(STEPS - 1));
+            self.stepped_at = self.now;
+        }
+        if self.one_in(self.course.operations) {
+            self.operate();
+        }
+    }
+
+    /// Hands in the edges that have come by now.
+    fn deliver(&mut self) {
+        while let Some(&Reverse((at, receiver))) = self.arrivals.peek() {
+            if at > self.now {
+                break;
+            }
+            self.arrivals.pop();
+            // A driver knows when its own sensor fired before it hands in an edge of it.
+            self.tell_corrections(|_, sensor| sensor == receiver);
+            self.ring.echo(receiver, self.clock(at)).unwrap();
+        }
+    }
+
+    fn tell_corrections(&mut self, is_due: impl Fn(u64, u8) -> bool) {
+        let (due, later): (Vec<_>, Vec<_>) =
+            self.corrections.iter().copied().partition(|&(at, sensor, _)| is_due(at, sensor));
+        self.corrections = later;
+        for (_, sensor, at) in due {
+            self.ring.fired(sensor, self.clock(at)).unwrap();
+        }
+    }
+
+    fn fire(&mut self, sensor: u8) {
+        let mut at = self.now;
+        if self.one_in(self.course.fired) {
+            // By a timer that fired before the poll, or by a circuit that took its time.
+            let before = u64::from(self.random.up_to(400));
+            let later = u64::from(self.random.up_to(1500));
+            let earliest = self.last_fired[usize::from(sensor)] + 1000;
+            let early = self.random.up_to(1) == 0 && self.now - before > earliest;
+            at = if early { self.now - before } else { self.now + later };
+            // Told at once, or only just before its sound can be in a reading.
+            let known_at = if self.random.up_to(1) == 0 { self.now } else { self.now.max(at + 250) };
+            self.corrections.push((known_at, sensor, at));
+            let now = self.now;
+            self.tell_corrections(|at, _| at <= now);
+        }
+        self.last_fired[usize::from(sensor)] = at;
+        self.model.fired(sensor, at);
+        for receiver in 0..self.heard.len() {
+            match self.heard[receiver] {
+                Heard::Wall { t_echo } if receiver == usize::from(sensor) => {
+                    let heard = at + u64::from(t_echo - 15 + self.random.up_to(30));
+                    self.arrivals.push(Reverse((heard, receiver as u8)));
+                }
+                Heard::Path { emitter, least } if emitter == sensor => {
+                    let heard = at + u64::from(self.length(receiver, least, at));
+                    self.arrivals.push(Reverse((heard, receiver as u8)));
+                }
+                Heard::Wall { .. } | Heard::Path { .. } => {}
+            }
+        }
+    }
+
+    /// The length of a path, which never changes by more than it may: such that the receiver reads what it read before,
+    /// if that can be.
+    fn length(&mut self, receiver: usize, least: u32, at: u64) -> u32 {
+        let most = self.sound.path_change as u32 - 2 * STEPS;
+        let drawn = least + self.random.up_to(most);
+        let Some(last) = self.last_echo[receiver] else { return drawn };
+        let wanted = (self.last_fired[receiver] + u64::from(last)).checked_sub(at);
+        match wanted {
+            Some(wanted) if self.random.up_to(7) > 0 => (wanted.min(u64::from(least + most)) as u32).max(least),
+            _ => drawn,
+        }
+    }
+
+    fn read(&mut self, reading: &Reading) {
+        let y = usize::from(reading.sensor);
+        if reading.kind == ReadingKind::Late {
+            return;
+        }
+        let count = &mut self.counts[y];
+        if reading.kind == ReadingKind::First {
+            // The ring remembers nothing from before.
+            self.model.forget(reading.sensor);
+        }
+        let seen = self.model.read(reading, self.sound);
+        let accepted = reading.kind == ReadingKind::Accepted;
+        count.compared += u64::from(reading.previous.is_some() && reading.t_echo.is_some());
+        count.accepted += u64::from(accepted);
+        count.ambiguous += u64::from(reading.kind == ReadingKind::Ambiguous);
+        match seen {
+            Some(Compared::Explained) => count.explained_accepted += u64::from(accepted),
+            Some(Compared::Unexplained) => {
+                count.unexplained += 1;
+                count.unexplained_accepted += u64::from(accepted);
+            }
+            None => assert!(!accepted, "{reading:?} does not agree with what was read before"),
+        }
+        self.last_echo[y] = reading.t_echo.map(Micros::as_micros);
+    }
+
+    /// Does something to the ring.
+    fn operate(&mut self) {
+        let sensors = self.heard.len() as u32;
+        let sensor = self.random.up_to(sensors - 1) as u8;
+        let now = self.clock(self.now);
+        let (t_delta, window) = self.initial;
+        match self.random.up_to(13) {
+            0 => self.ring.pause(),
+            1 | 2 => self.ring.resume(),
+            3 => self.ring.disable(sensor).unwrap(),
+            4 => self.ring.enable(sensor).unwrap(),
+            5 => {
+                // Soon after a pause, and after disabling, while windows are open.
+                self.ring.pause();
+                self.ring.resume();
+            }
+            6 => {
+                self.ring.disable(sensor).unwrap();
+                self.ring.enable(sensor).unwrap();
+            }
+            7 => {
+                self.ring.restart(now);
+                (0..sensors as u8).for_each(|sensor| self.model.forget(sensor));
+            }
+            8 if !self.schedules.is_empty() => {
+                // As an adaptation does.
+                let which = self.random.up_to(self.schedules.len() as u32 - 1) as usize;
+                let _ = self.ring.change_schedule(&self.schedules[which]);
+            }
+            8 => self.ring.change_to_unverified(self.unverified).unwrap(),
+            9 => {
+                let part = 1 + self.random.up_to(3);
+                let _ = self.ring.set_t_delta(Micros::new(t_delta.as_micros() / part));
+            }
+            10 => {
+                let part = 1 + self.random.up_to(3);
+                let _ = self.ring.set_window(Micros::new(window.as_micros() / part));
+            }
+            11 => {
+                let _ = self.ring.set_blanking(Micros::new(self.random.up_to(2000)));
+            }
+            12 => self.now += u64::from(self.random.up_to(300_000)),
+            _ => {
+                let more = Micros::new(self.sound.path_change as u32 + self.random.up_to(300));
+                self.ring.set_path_change(more).unwrap();
+            }
+        }
+        // A paused ring, or one whose sensors are all disabled, would hear nothing for ever.
+        if self.random.up_to(3) == 0 {
+            self.ring.resume();
+            (0..sensors as u8).for_each(|sensor| self.ring.enable(sensor).unwrap());
+        }
+    }
+}

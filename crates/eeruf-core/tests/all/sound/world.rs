@@ -184,7 +184,7 @@ impl<'s> World<'s> {
             let earliest = self.last_fired[usize::from(sensor)] + 1000;
             let early = self.random.up_to(1) == 0 && self.now - before > earliest;
             at = if early { self.now - before } else { self.now + later };
-            // Told at once, or only just before its sound can be in a reading.
+            // Known at once, or only just before its sound can be in a reading.
             let known_at = if self.random.up_to(1) == 0 { self.now } else { self.now.max(at + 250) };
             self.corrections.push((known_at, sensor, at));
             let now = self.now;

@@ -125,7 +125,7 @@ pub struct Verdict {
     /// How many firings of this sensor ago the last reading was accepted: 0 for an accepted one, `None` if none ever
     /// was. Stops at 65,534.
     pub age: Option<u16>,
-    /// What explains an [`Ambiguous`](ReadingKind::Ambiguous) reading; `None` for all other kinds.
+    /// The explanation of an [`Ambiguous`](ReadingKind::Ambiguous) reading; `None` for all other kinds.
     pub explained_by: Option<Explanation>,
 }
 

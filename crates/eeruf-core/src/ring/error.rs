@@ -45,7 +45,7 @@ pub enum RingError {
     },
     /// The ring has room for more sensors than a schedule may have.
     Room {
-        /// How many it has room for.
+        /// The number of sensors it has room for.
         capacity: usize,
     },
     /// The schedule was verified for a smaller `t_delta`.

@@ -42,7 +42,7 @@ pub struct Reading {
     pub previous: Option<Micros>,
     /// How many firings ago this sensor's last reading was accepted; `None` if none ever was.
     pub age: Option<u16>,
-    /// What explains an [`Ambiguous`](ReadingKind::Ambiguous) reading; `None` for all other kinds.
+    /// The explanation of an [`Ambiguous`](ReadingKind::Ambiguous) reading; `None` for all other kinds.
     pub explained_by: Option<Explanation>,
 }
 

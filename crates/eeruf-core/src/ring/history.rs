@@ -18,7 +18,7 @@ use crate::time::{Instant, Micros};
 pub(super) const MAX_AUDIBLE: Micros = Micros::new(1 << 26);
 /// Longer ago than any sound is audible: about 18 minutes.
 const LONG_AGO: Micros = Micros::new(1 << 30);
-/// By how much a clock may step back without being taken for one that has gone round: about one second.
+/// The largest step back of a clock that is not taken for a wrap: about one second.
 pub(super) const STEP_BACK: Micros = Micros::new(1 << 20);
 
 /// The last `H` firings of one sensor, the latest first. What came before them is forgotten.
@@ -61,7 +61,7 @@ impl<const H: usize> Firings<H> {
         self.0.get(1).copied()
     }
 
-    /// Whether an instant is later than the firing before the last one, as far as that is known.
+    /// Returns true if an instant is later than the firing before the last one, as far as that is known.
     pub(super) fn may_correct(&self, at: Instant) -> bool {
         self.before().is_none_or(|before| at != before && at.has_reached(before))
     }
@@ -78,14 +78,14 @@ impl<const H: usize> Firings<H> {
     }
 }
 
-/// Whether an instant is so long before `now` that nothing is heard from then.
+/// Returns true if an instant is so long before `now` that no sound of it is audible.
 #[inline]
 pub(super) const fn is_long_ago(instant: Instant, now: Instant) -> bool {
     let age = now.since(instant).as_micros();
     age > LONG_AGO.as_micros() && !is_just_ahead(instant, now)
 }
 
-/// Whether an instant lies ahead of `now` by no more than a clock may step back.
+/// Returns true if an instant lies ahead of `now` by no more than a clock may step back.
 #[inline]
 pub(super) const fn is_just_ahead(instant: Instant, now: Instant) -> bool {
     let ahead = instant.since(now).as_micros();
@@ -107,7 +107,7 @@ pub(super) struct Sounds {
     pub(super) path_change: Micros,
 }
 
-/// What the firings of one sensor say about two readings.
+/// The answer of one sensor's firings to whether they explain two readings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Answer {
     /// They do not explain both.
@@ -119,7 +119,7 @@ pub(super) enum Answer {
 }
 
 impl Sounds {
-    /// Whether sound of the sensor that fired so explains both readings; `own`, whether it is the receiver.
+    /// Asks if sound of these firings explains both readings. `own`: they are the receiver's.
     pub(super) fn ask<const H: usize>(&self, firings: &Firings<H>, own: bool) -> Answer {
         let [first, second] = self.heard;
         let audible = self.audible.as_micros();
@@ -147,7 +147,7 @@ impl Sounds {
         }
     }
 
-    /// Whether sound from before this instant could be in the first reading.
+    /// Returns true if sound from before this instant could be in the first reading.
     pub(super) fn is_audible_from(&self, instant: Instant) -> bool {
         let [first, _] = self.heard;
         let age = first.since(instant).as_micros();

@@ -40,7 +40,7 @@ impl Written {
                 (vec![("", text)], claim)
             }),
             CertificateForm::Veripb => certificate::prove_to_veripb(design, budget, go_on).map(|proven| {
-                let bound = design.found.bound.unwrap_or_default();
+                let bound = design.bound.unwrap_or_default();
                 let claim = format!("for VeriPB, that no schedule has a period below {bound}; {} nodes", proven.nodes);
                 (vec![("opb", proven.model), ("pbp", proven.proof)], claim)
             }),
@@ -78,7 +78,7 @@ pub(crate) fn claim_of(text: &str) -> String {
 
 /// What the checker says of the certificate, and whether the search knows more.
 fn claim(text: &str, design: &RingDesign) -> String {
-    let known = design.found.bound.unwrap_or_default();
+    let known = design.bound.unwrap_or_default();
     match check(text) {
         Ok(certified) if certified.claim.bound * certified.claim.problem.tick_us.0 < known.as_micros() => {
             format!("{certified}; a proof of {known} is longer, give it more with --certificate-budget or --time-limit")

@@ -147,7 +147,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     }
     let certified = match (&args.certificate, certificate) {
         (Some(file), Some(written)) => {
-            let t_delta = spec.speed_mm_s.map_or(String::new(), |_| format!(", for a t_delta of {}", design.t_delta));
+            let bounding = design.bounding.t_delta;
+            let t_delta = spec.speed_mm_s.map_or(String::new(), |_| format!(", for a t_delta of {bounding}"));
             written.write(file, &t_delta)?
         }
         _ => Answer::Yes,

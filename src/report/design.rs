@@ -24,13 +24,13 @@ pub(crate) fn describe(
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
     let proof = if found.proven {
-        "proven: no schedule is shorter".to_owned()
+        format!("proven: no schedule in ticks of {} is shorter", spec.tick)
     } else {
         format!("not proven: it may be as short as {}", found.bound.unwrap_or(period))
     };
     table.add_row(["period", &period.to_string(), &proof]);
     if let Some(real) = real {
-        table.add_row(without_ticks(real, period, spec.tick));
+        table.add_row(without_ticks(real, design, spec));
     }
     let best = |proven: Option<bool>| match proven {
         Some(true) => ", and no schedule of this period has more",
@@ -116,14 +116,21 @@ pub(crate) fn describe(
     text
 }
 
-/// What the tick costs.
-fn without_ticks(real: &RealPeriod, period: Micros, tick: Micros) -> [String; 3] {
-    let gain = real.gain_us(period);
+/// The cost of the tick: a period for exact needs, whose proof holds for ticks of any length.
+fn without_ticks(real: &RealPeriod, design: &RingDesign, spec: &RingSpec) -> [String; 3] {
+    let gain = real.gain_us(design.schedule.period());
     let verdict = match (gain > 0.0, real.proven) {
-        (true, true) => format!("proven; ticks of {tick} cost {}", milliseconds(gain)),
-        (true, false) => format!("what these firing orders give; ticks of {tick} cost {} or more", milliseconds(gain)),
+        (true, true) => format!("proven; ticks of {} cost {}", spec.tick, milliseconds(gain)),
+        (true, false) => {
+            format!("what these firing orders give; ticks of {} cost {} or more", spec.tick, milliseconds(gain))
+        }
         (false, true) => "proven: the same needs are met no faster with finer ticks".to_owned(),
         (false, false) => "what these firing orders give; finer ticks may gain something with others".to_owned(),
+    };
+    // A robot that moves needs less at a shorter period.
+    let verdict = match spec.speed_mm_s {
+        Some(1..) => format!("for a t_delta of {}: {verdict}", design.t_delta),
+        _ => verdict,
     };
     ["without ticks".to_owned(), milliseconds(real.us()), verdict]
 }

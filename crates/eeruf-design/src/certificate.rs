@@ -15,7 +15,7 @@ use crate::ticks::claim;
 /// # Errors
 /// The claim is wrong.
 pub fn prove(design: &RingDesign, budget: usize, go_on: impl FnMut(usize) -> bool) -> Result<String, NoProof> {
-    certify(&design.spec.problem(), &design.schedule, design.found.bound, budget, go_on)
+    certify(&design.bounding.problem(), &design.schedule, design.bound, budget, go_on)
 }
 
 /// The same for any schedule, and what is known to be the least period.
@@ -41,5 +41,5 @@ pub fn prove_to_veripb(
     budget: usize,
     go_on: impl FnMut(usize) -> bool,
 ) -> Result<VeriPb, NoProof> {
-    veripb::prove(&claim(&design.spec.problem(), &design.schedule, design.found.bound), budget, go_on)
+    veripb::prove(&claim(&design.bounding.problem(), &design.schedule, design.bound), budget, go_on)
 }

@@ -26,6 +26,10 @@ pub struct RingDesign {
     pub spec: RingSpec,
     /// The shortest period, or the best found.
     pub found: Found<MAX_SENSORS>,
+    /// The ring with the least `t_delta` that any schedule needs at a period of `bound`; the ring itself if it stands.
+    pub bounding: RingSpec,
+    /// The bound on the period of every schedule for `bounding`: what a certificate can state.
+    pub bound: Option<Micros>,
     /// Why it is not shorter, in words.
     pub reason: String,
     /// What is known of the choice among the schedules of that period, if the period is proven and all sensors are
@@ -106,10 +110,6 @@ impl RingDesign {
 impl RingSpec {
     /// Finds the shortest period, and the preferred schedule with it; or why there is none.
     ///
-    /// If `t_delta` must cover motion, it depends on the period, and the period on it: longer periods need a larger
-    /// `t_delta`, which needs longer periods. Starting from a robot that stands, this climbs to the first pair that
-    /// agrees.
-    ///
     /// # Errors
     /// [`SearchError`] for needs that make no sense or are too large to search.
     pub fn shortest(
@@ -117,61 +117,48 @@ impl RingSpec {
         search: &Search,
         control: &mut impl Control,
     ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
-        let mut t_delta = self.t_delta;
-        // The bound and the reason of the first step without a proof. From there on t_delta is that of a schedule that
-        // may be longer than necessary, so what is proven with it is not proven of the ring.
-        let mut unproven: Option<(Option<Micros>, String)> = None;
-        loop {
-            let spec = self.covering(t_delta);
-            let problem = spec.problem();
-            let asked = Search { atlas: if unproven.is_none() { search.atlas } else { "" }, ..*search };
-            let shortest = shortest(&problem, &asked, control)?;
-            let chosen = shortest.schedule();
-            let Shortest { mut found, mut reason, mut preferred, mut to_spare, from_atlas } = shortest;
-            if !found.proven && unproven.is_none() {
-                unproven = Some((found.bound, reason.clone()));
-            } else if let Some((bound, why)) = &unproven {
-                (found.proven, found.bound, reason, preferred) = (false, *bound, why.clone(), None);
-                to_spare = None;
-            }
-            let none = if found.proven { NoSchedule::TooFast } else { NoSchedule::EndedEarly };
-            let Some(schedule) = chosen else {
-                return Ok(Err(none));
-            };
-            let needed = self.t_delta_needed(&schedule);
-            if schedule.verify(&self.covering(needed).problem().requirements).ok() {
-                let t_delta = needed.max(t_delta);
-                let spec = self.covering(t_delta);
-                let mut design = RingDesign {
-                    schedule,
-                    t_delta,
-                    spec,
-                    found,
-                    reason,
-                    preferred,
-                    to_spare,
-                    from_atlas,
-                    what_if: Vec::new(),
-                };
-                if search.what_if {
-                    design.what_if = design.what_if(control)?;
-                }
-                return Ok(Ok(design));
-            }
-            // Past this point a second of silence would not be enough either.
-            if needed > Micros::from_millis(1000) {
-                return Ok(Err(none));
-            }
-            t_delta = needed;
+        let answer = match self.speed_mm_s {
+            None | Some(0) => self.shortest_at_rest(search, control)?,
+            Some(_) => self.shortest_moving(search, control)?,
+        };
+        let mut design = match answer {
+            Ok(design) => design,
+            Err(none) => return Ok(Err(none)),
+        };
+        if search.what_if {
+            design.what_if = design.what_if(control)?;
         }
+        Ok(Ok(design))
     }
 
-    /// What `t_delta` must cover with this schedule: jitter, and `2 v dt / c` for the longest `dt` between two firings.
-    pub fn t_delta_needed(&self, schedule: &AnySchedule) -> Micros {
-        let speed = u64::from(self.speed_mm_s.unwrap_or(0));
-        let change = 2 * speed * u64::from(schedule.max_refire().as_micros());
-        let change = change.div_ceil(u64::from(self.c.mm_per_s()).max(1));
-        self.t_delta.saturating_add(Micros::new(u32::try_from(change).unwrap_or(u32::MAX)))
+    fn shortest_at_rest(
+        &self,
+        search: &Search,
+        control: &mut impl Control,
+    ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
+        let shortest = shortest(&self.problem(), search, control)?;
+        let Some(schedule) = shortest.schedule() else { return Ok(Err(NoSchedule::EndedEarly)) };
+        Ok(Ok(self.design(schedule, shortest, self.clone())))
+    }
+
+    /// The design of a schedule that serves this ring at its own `t_delta`.
+    pub(crate) fn design(&self, schedule: AnySchedule, shortest: Shortest, bounding: Self) -> RingDesign {
+        let Shortest { found, reason, preferred, to_spare, from_atlas } = shortest;
+        let t_delta = self.t_delta_needed(&schedule).max(bounding.t_delta);
+        let spec = self.covering(t_delta);
+        RingDesign {
+            schedule,
+            t_delta,
+            spec,
+            bound: found.bound,
+            bounding,
+            found,
+            reason,
+            preferred,
+            to_spare,
+            from_atlas,
+            what_if: Vec::new(),
+        }
     }
 }
 

@@ -2,10 +2,10 @@
 //! search of `eeruf-check`.
 
 use eeruf_check::MAX_NUMBER;
-use eeruf_check::search::FiringTimes;
+use eeruf_check::search::{Decided, FiringTimes, Search};
 use eeruf_check::shortest::{Shortest, shortest};
 use eeruf_check::spare::most_to_spare;
-use eeruf_core::search::{Control, Found, GridError, PeriodProblem, ProblemError, Progress, SearchError};
+use eeruf_core::search::{Control, Found, GridError, Outcome, PeriodProblem, ProblemError, Progress, SearchError};
 use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_sim::AnySchedule;
 
@@ -68,6 +68,41 @@ pub(crate) fn shortest_uneven(
         nodes: found.nodes,
     };
     Ok((answer, reason(&found, &time)))
+}
+
+/// Decides whether some schedule has this period in ticks, within `budget` nodes, and counts the nodes visited. Short
+/// descents go along `guide`, a schedule with another period.
+///
+/// # Errors
+/// As for core's search.
+pub(crate) fn decide_uneven(
+    problem: &PeriodProblem<'_>,
+    period: u32,
+    guide: Option<&AnySchedule>,
+    budget: u64,
+    control: &mut impl Control,
+) -> Result<(Outcome<AnySchedule>, u64), SearchError> {
+    let ticks = in_ticks(problem);
+    let guide = guide.map(|schedule| claim(problem, schedule, None).fire);
+    let mut search = Search::new(&ticks);
+    let mut go_on = |nodes| control.poll(&Progress::new(nodes, None, Some(period))).is_continue();
+    let mut effort = 8 * search.depth();
+    let outcome = loop {
+        let left = budget.saturating_sub(search.nodes());
+        let mut decided = search.decide(period, effort.min(left), &mut go_on);
+        if let (Decided::Open, Some(guide)) = (&decided, &guide) {
+            let left = budget.saturating_sub(search.nodes());
+            decided = search.find(period, (effort / 2).min(left), effort, guide, &mut go_on);
+        }
+        match decided {
+            Decided::Found(fire) => break Outcome::Found(schedule_of(problem, period, &fire)?),
+            Decided::Refuted => break Outcome::Exhausted,
+            Decided::Stopped => break Outcome::BudgetSpent,
+            Decided::Open if search.nodes() >= budget => break Outcome::BudgetSpent,
+            Decided::Open => effort *= 2,
+        }
+    };
+    Ok((outcome, search.nodes()))
 }
 
 /// A schedule from firing times in ticks.

@@ -8,7 +8,8 @@
 //! | `each`, `uneven` | one number for all sensors or one for each; what sensors need that are not alike |
 //! | `ring` | the ring file, turned into what a schedule must meet |
 //! | `shortest`, `find_uneven` | the shortest period for that |
-//! | `find`, `what_if_uneven` | the same for a ring that may move, and what would make it shorter |
+//! | `find`, `what_if_uneven` | the design of a ring, and what would make it shorter |
+//! | `moving` | the shortest period of a ring that moves |
 //! | `found` | the answer as it is printed in JSON |
 //! | `hopping` | schedules of many phases: the file, and the shortest period |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
@@ -37,6 +38,7 @@ mod found;
 mod hopping;
 mod layout;
 mod limits;
+mod moving;
 mod reals;
 mod ring;
 mod shortest;

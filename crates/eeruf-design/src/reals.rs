@@ -1,4 +1,6 @@
-//! What the tick costs: the shortest period over the reals.
+//! The cost of the tick: the shortest period over the reals, for the needs in exact microseconds.
+//!
+//! A schedule in ticks of any length keeps these needs, so no tick, however fine, beats a period proven here.
 
 use eeruf_check::reals::shortest_over_reals;
 use eeruf_core::search::PeriodProblem;
@@ -8,7 +10,7 @@ use eeruf_sim::AnySchedule;
 use crate::find::RingDesign;
 use crate::ticks::in_ticks;
 
-/// The shortest period with real firing times in place of whole ticks, all needs being what they are in ticks.
+/// The shortest period with real firing times in place of whole ticks, for the needs in exact microseconds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RealPeriod {
     /// The period in microseconds as a fraction in lowest terms: numerator and denominator.
@@ -35,34 +37,34 @@ impl RealPeriod {
     }
 }
 
-/// How many nodes the question may cost without a wish of the caller's: about as long for many sensors as for 24.
+/// The default budget in nodes: about the time that 20,000 nodes take for 24 sensors.
 #[must_use]
 pub fn real_budget(sensors: usize) -> usize {
     20_000 * 24 * 24 / sensors.max(24).pow(2)
 }
 
 impl RingDesign {
-    /// The shortest period over the reals, beginning with the orders of this design; `None` if the design is not proven
-    /// itself, or numbers become too large.
+    /// Finds the shortest period over the reals, beginning with the orders of this design; `None` if the design is not
+    /// proven itself, or numbers become too large. Where `t_delta` must cover motion it stays as the design has it.
     pub fn over_reals(&self, budget: usize, go_on: impl FnMut(usize) -> bool) -> Option<RealPeriod> {
         self.found.proven.then(|| over_reals(&self.spec.problem(), &self.schedule, budget, go_on))?
     }
 }
 
-/// The same for any schedule that is the shortest in ticks.
+/// Finds the shortest period over the reals, beginning with the orders of any schedule that meets the problem.
 pub fn over_reals(
     problem: &PeriodProblem<'_>,
     schedule: &AnySchedule,
     budget: usize,
     go_on: impl FnMut(usize) -> bool,
 ) -> Option<RealPeriod> {
-    let tick_us = problem.tick.as_micros().max(1);
+    // A need rounded up to ticks would hide what finer ticks gain.
+    let exact = PeriodProblem { tick: Micros::new(1), ..*problem };
     let fire = [Phase::A, Phase::B].map(|phase| {
-        let time = |sensor| schedule.t_fire(phase, sensor).unwrap_or_default().as_micros() / tick_us;
-        (0..problem.sensors).map(time).collect()
+        (0..problem.sensors).map(|sensor| schedule.t_fire(phase, sensor).unwrap_or_default().as_micros()).collect()
     });
-    let found = shortest_over_reals(&in_ticks(problem), &fire, budget, go_on)?;
-    let (numerator, denominator) = (u64::from(found.period) * u64::from(tick_us), u64::from(found.denominator));
+    let found = shortest_over_reals(&in_ticks(&exact), &fire, budget, go_on)?;
+    let (numerator, denominator) = (u64::from(found.period), u64::from(found.denominator));
     let divisor = greatest_common_divisor(numerator, denominator);
     let period_us = (numerator / divisor, denominator / divisor);
     Some(RealPeriod { period_us, proven: found.proven, certificate: found.certificate })

@@ -10,7 +10,7 @@ use crate::find_uneven::{ToSpare, prefer_uneven, shortest_uneven};
 /// How many nodes the choice among the shortest schedules may cost.
 const PREFERENCE_BUDGET: u64 = 100_000;
 /// How many nodes the choice among the shortest schedules of an uneven ring may cost.
-const SPARE_BUDGET: u64 = 30_000;
+pub(crate) const SPARE_BUDGET: u64 = 30_000;
 
 /// How far to search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -65,6 +65,13 @@ impl OwnedUneven {
         Self { t_delta, ..self.clone() }
     }
 
+    /// The same where each sensor is triggered again no sooner than `least`, or than it asks for.
+    pub(crate) fn refiring_after(&self, least: Micros) -> Self {
+        let later = |x: usize, window: &Micros| self.refire.get(x).map_or(*window, |refire| *refire).max(least);
+        let refire = self.window.iter().enumerate().map(|(x, window)| later(x, window)).collect();
+        Self { refire, ..self.clone() }
+    }
+
     /// What of it a schedule of many phases would not keep, by its key, where all listen for the longest `window`.
     pub(crate) fn not_in_many_phases(&self, window: Micros) -> Option<&'static str> {
         let later = self.refire.iter().any(|&refire| refire > window);

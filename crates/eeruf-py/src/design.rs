@@ -58,8 +58,8 @@ const FEW_SENSORS: usize = 12;
 ///         ``[(0, 4, 9000)]``; 0 for none.
 ///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
 ///     together: groups of sensors that fire at the same instants, declared not to hear each other.
-///     over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period with firing
-///         times that are no whole ticks, the needs being what they are in ticks, and in ``Found.real_proven`` whether
+///     over_reals: whether to say what the tick costs: in ``Found.real_period_us`` the shortest period in
+///         ticks of any length, for the needs in exact microseconds, and in ``Found.real_proven`` whether
 ///         none is shorter. Only where the period in ticks is proven.
 ///     phases: at least so many, 2 to 67: a schedule for a :class:`HoppingRing`, as ``eeruf design --phases`` finds it.
 ///         Then times are whole microseconds, of lists the largest counts, and nothing below ``stale_echo`` may be
@@ -85,7 +85,7 @@ const FEW_SENSORS: usize = 12;
 ///     (66000, True)
 ///     >>> found = eeruf.design(12, 999, 15_000, 45_000, over_reals=True)
 ///     >>> found.value_us, found.real_period_us, found.real_proven
-///     (70000, (69500, 1), True)
+///     (70000, (138999, 2), True)
 ///     >>> windows = [36_000, 36_000, 12_000, 12_000]
 ///     >>> found = eeruf.design(4, [999, 999, 1500, 1500], 15_000, windows, shared_lines=[(0, 2)])
 ///     >>> found.value_us, found.proven

@@ -1,12 +1,12 @@
 use eeruf_core::{Criterion, Layout, Micros, Requirements, Uneven, UnevenSchedule, uneven_schedule};
 
-// 12 sensors, T_p = 33.4 ms; 3 adjacent sensors of a ring at least 6.993 ms apart, and what each sensor and pair needs.
+// 12 sensors, T_p = 33.3 ms; 3 adjacent sensors of a ring at least 6.993 ms apart, and what each sensor and pair needs.
 pub const RING: UnevenSchedule<12> = uneven_schedule! {
-    period_us: 33_400,
-    t_fire_a_us: [14_200, 25_100, 1_200, 14_800, 23_000, 6_500, 14_800, 24_300, 1_000, 14_800, 23_000, 1_200],
-    t_fire_b_us: [9_500, 26_400, 1_200, 18_200, 10_000, 26_400, 0, 17_700, 9_500, 26_000, 1_300, 17_800],
+    period_us: 33_300,
+    t_fire_a_us: [3_600, 18_400, 25_800, 5_900, 33_200, 16_100, 23_500, 8_100, 31_200, 0, 23_400, 11_000],
+    t_fire_b_us: [0, 17_200, 25_800, 8_300, 15_700, 28_500, 7_700, 15_100, 22_500, 5_300, 12_700, 25_100],
     meets: Requirements {
-        t_delta: Micros::new(882),
+        t_delta: Micros::new(845),
         criterion: Criterion::Exact,
         min_interval: Micros::new(6_993),
         layout: Layout::Ring(3),
@@ -14,18 +14,18 @@ pub const RING: UnevenSchedule<12> = uneven_schedule! {
         stale_echo: false,
         uneven: Some(Uneven {
             t_delta: &[
-                Micros::new(632),
-                Micros::new(632),
-                Micros::new(632),
-                Micros::new(632),
-                Micros::new(882),
-                Micros::new(882),
-                Micros::new(882),
-                Micros::new(882),
-                Micros::new(882),
-                Micros::new(882),
-                Micros::new(882),
-                Micros::new(882),
+                Micros::new(595),
+                Micros::new(595),
+                Micros::new(595),
+                Micros::new(595),
+                Micros::new(845),
+                Micros::new(845),
+                Micros::new(845),
+                Micros::new(845),
+                Micros::new(845),
+                Micros::new(845),
+                Micros::new(845),
+                Micros::new(845),
             ],
             window: &[
                 Micros::new(26_224),

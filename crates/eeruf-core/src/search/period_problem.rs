@@ -1,6 +1,6 @@
 //! The user's question, in microseconds: what a ring needs, and the best schedule that meets it.
 
-use super::common::Control;
+use super::common::{Control, Outcome};
 use super::design::{self, Explanation, Firing, InTime, Problem, Shortest};
 use super::error::SearchError;
 use super::found::Found;
@@ -111,6 +111,28 @@ impl PeriodProblem<'_> {
         let (grid, rows) = self.grid()?;
         let ticks = grid.exactly("the period", period)?;
         Ok(Explanation::of(&self.problem(grid, &rows).checked()?, ticks))
+    }
+
+    /// Decides whether some schedule has this period, within `budget` nodes, and counts the nodes visited.
+    ///
+    /// # Errors
+    /// As for [`shortest`](Self::shortest), and if the period is not a whole number of ticks.
+    pub fn decide<const K: usize>(
+        &self,
+        period: Micros,
+        budget: u64,
+        memory: &mut [i32],
+        control: &mut impl Control,
+    ) -> Result<(Outcome<Schedule<K>>, u64), SearchError> {
+        let (grid, rows) = self.grid()?;
+        let ticks = grid.exactly("the period", period)?;
+        let decided = design::decide(&self.problem(grid, &rows), ticks, budget, memory, control)?;
+        let outcome = match decided.outcome {
+            Outcome::Found(firing) => Outcome::Found(schedule_of(grid, ticks, &firing)?),
+            Outcome::Exhausted => Outcome::Exhausted,
+            Outcome::BudgetSpent => Outcome::BudgetSpent,
+        };
+        Ok((outcome, decided.nodes))
     }
 
     /// Of all schedules with the period found, the one with the largest `t_delta`; of these, the one with the largest

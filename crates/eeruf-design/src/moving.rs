@@ -1,0 +1,299 @@
+//! The shortest period of a ring that moves, whose `t_delta` depends on the schedule.
+//!
+//! From one firing of a sensor to its next, `dt` later, a good reading changes by up to `2 v dt / c`, and the longest
+//! `dt` of a schedule is `T_p + max |d|`. So a longer period asks for a larger separation, and a schedule for one period
+//! need not serve at a longer one. What can be refuted at once is a *region* of periods and of `max |d|`:
+//!
+//! - every schedule in it needs the `t_delta` of its shortest period and its smallest `max |d|` at least;
+//! - every schedule in it, run at the longest period, leaves each sensor the longest period less the largest `max |d|`
+//!   between two firings.
+//!
+//! The second is a refire time, so the searches for rings that stand decide a region. Separations above a `max |d|` are a
+//! bound on it, which gives the least `t_delta` of a period.
+
+use eeruf_core::search::{Control, Found, Outcome, PeriodProblem, SearchError, design};
+use eeruf_core::{MAX_SENSORS, Micros};
+use eeruf_sim::AnySchedule;
+
+use crate::find::{NoSchedule, RingDesign};
+use crate::find_uneven::{ToSpare, decide_uneven, prefer_uneven};
+use crate::ring::RingSpec;
+use crate::shortest::{SPARE_BUDGET, Search, Shortest, shortest};
+use crate::ticks::in_ticks;
+
+/// A `t_delta` from which on not even a second of silence between two firings would be enough.
+const TOO_MUCH: Micros = Micros::from_millis(1000);
+
+/// Periods and values of `max |d|` of schedules, in ticks: the least and the most of each.
+#[derive(Clone, Copy, Debug)]
+struct Region {
+    periods: (u32, u32),
+    changes: (u32, u32),
+}
+
+/// The search for one ring.
+struct Moving<'s> {
+    spec: &'s RingSpec,
+    search: Search,
+    nodes: u64,
+}
+
+impl RingSpec {
+    /// Returns what `t_delta` must cover with this schedule: jitter, and `2 v dt / c` for the longest `dt` between two
+    /// firings.
+    pub fn t_delta_needed(&self, schedule: &AnySchedule) -> Micros {
+        self.t_delta_over(u64::from(schedule.max_refire().as_micros()))
+    }
+
+    /// The `t_delta` that covers jitter and the motion of so many microseconds.
+    fn t_delta_over(&self, us: u64) -> Micros {
+        let change = 2 * u64::from(self.speed_mm_s.unwrap_or(0)) * us;
+        let change = change.div_ceil(u64::from(self.c.mm_per_s()).max(1));
+        self.t_delta.saturating_add(Micros::new(u32::try_from(change).unwrap_or(u32::MAX)))
+    }
+
+    /// The shortest period for a ring that moves.
+    pub(crate) fn shortest_moving(
+        &self,
+        search: &Search,
+        control: &mut impl Control,
+    ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
+        Moving { spec: self, search: *search, nodes: 0 }.shortest(control)
+    }
+
+    /// Whether the schedule keeps all needs, with the `t_delta` that its own longest time between two firings asks for.
+    fn serves(&self, schedule: &AnySchedule) -> bool {
+        schedule.verify(&self.covering(self.t_delta_needed(schedule)).problem().requirements).ok()
+    }
+
+    /// The same ring where no sensor fires again before `least`.
+    fn refiring_after(&self, least: Micros) -> Self {
+        match &self.uneven {
+            Some(uneven) => Self { uneven: Some(uneven.refiring_after(least)), ..self.clone() },
+            None => Self { window: self.window.max(least), ..self.clone() },
+        }
+    }
+}
+
+impl Moving<'_> {
+    fn shortest(mut self, control: &mut impl Control) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
+        let spec = self.spec;
+        // No schedule is shorter than one for the least t_delta of any period, nor than one for the least t_delta of
+        // that period, and so on.
+        let mut bounding = spec.covering(self.least_t_delta(0));
+        let mut lower = self.standing(&bounding, self.search.atlas, control)?;
+        while let Some(period) = lower.found.value.filter(|_| lower.found.proven) {
+            let t_delta = self.least_t_delta(self.ticks(period));
+            if t_delta > TOO_MUCH {
+                return Ok(Err(NoSchedule::TooFast));
+            }
+            let next = spec.covering(t_delta);
+            let same = in_ticks(&next.problem()) == in_ticks(&bounding.problem());
+            bounding = next;
+            if same {
+                break;
+            }
+            lower = self.standing(&bounding, self.search.atlas, control)?;
+        }
+        if let Some(schedule) = lower.schedule().filter(|schedule| spec.serves(schedule)) {
+            lower.found.nodes = self.nodes;
+            return Ok(Ok(spec.design(schedule, lower, bounding)));
+        }
+        // The preferred schedule may fire less evenly than the first that was found.
+        if let Some(schedule) = lower.found.schedule.filter(|schedule| spec.serves(schedule)) {
+            lower.found.nodes = self.nodes;
+            return Ok(Ok(spec.design(schedule, Shortest { preferred: None, to_spare: None, ..lower }, bounding)));
+        }
+        let bound = lower.found.bound;
+        let upper = self.climb(&lower, control)?;
+        let (best, bound, reason) = if lower.found.proven {
+            let least = bound.map_or(1, |bound| self.ticks(bound));
+            self.between(least, upper, &lower.reason, control)?
+        } else {
+            (upper, bound, lower.reason.clone())
+        };
+        let Some(schedule) = best else { return Ok(Err(NoSchedule::EndedEarly)) };
+        let value = Some(schedule.period());
+        let proven = bound == value;
+        let needs = spec.covering(spec.t_delta_needed(&schedule).max(bounding.t_delta));
+        let (schedule, to_spare) =
+            if proven { self.with_most_to_spare(schedule, &needs, control)? } else { (schedule, None) };
+        let found = Found { schedule: Some(schedule), value, bound, proven, nodes: self.nodes };
+        let shortest = Shortest { found, reason, preferred: None, to_spare, from_atlas: false };
+        let design = spec.design(schedule, shortest, bounding);
+        Ok(Ok(RingDesign { bound: lower.found.bound, t_delta: needs.t_delta, spec: needs, ..design }))
+    }
+
+    /// Of the schedules of an uneven ring with the period of this one and no larger `t_delta`, the one with most to
+    /// spare.
+    fn with_most_to_spare(
+        &self,
+        schedule: AnySchedule,
+        needs: &RingSpec,
+        control: &mut impl Control,
+    ) -> Result<(AnySchedule, Option<ToSpare>), SearchError> {
+        if needs.uneven.is_none() {
+            return Ok((schedule, None));
+        }
+        let (preferred, spare) = prefer_uneven(&needs.problem(), &schedule, SPARE_BUDGET, control)?;
+        if self.spec.t_delta_needed(&preferred) <= needs.t_delta {
+            return Ok((preferred, Some(spare)));
+        }
+        // It fires less evenly. Of those that fire as evenly as this one, only the best found is known.
+        let capped = needs.refiring_after(schedule.min_refire());
+        let (preferred, spare) = prefer_uneven(&capped.problem(), &schedule, SPARE_BUDGET, control)?;
+        Ok((preferred, Some(ToSpare { proven: [false; 3], ..spare })))
+    }
+
+    fn ticks(&self, time: Micros) -> u32 {
+        time.as_micros() / self.spec.tick.as_micros().max(1)
+    }
+
+    fn time(&self, ticks: u32) -> Micros {
+        Micros::new(ticks.saturating_mul(self.spec.tick.as_micros()))
+    }
+
+    /// The `t_delta` of a schedule with this period and `max |d|`.
+    fn t_delta_at(&self, period: u32, change: u32) -> Micros {
+        self.spec.t_delta_over((u64::from(period) + u64::from(change)) * u64::from(self.spec.tick.as_micros()))
+    }
+
+    /// The least `max |d|` of any schedule with this `t_delta`: all `|d|` lie a separation apart.
+    fn least_change(&self, t_delta: Micros) -> u32 {
+        let ticks = in_ticks(&self.spec.covering(t_delta).problem());
+        let is_first =
+            |sensor: usize| ticks.together.iter().all(|group| group[0] == sensor || !group.contains(&sensor));
+        // A group needs the largest separation of its sensors; one of them bounds that from below.
+        let separations = || (0..ticks.sensors()).filter(|&x| is_first(x)).map(|x| ticks.separation[x]);
+        let least = separations().min().unwrap_or(0);
+        let apart = separations().fold(0, u32::saturating_add) - least;
+        apart + if ticks.stale_echo { least.div_ceil(2) } else { 0 }
+    }
+
+    /// The least `t_delta` that any schedule with this period needs.
+    fn least_t_delta(&self, period: u32) -> Micros {
+        let mut t_delta = self.t_delta_at(period, 0);
+        while t_delta <= TOO_MUCH {
+            let further = self.t_delta_at(period, self.least_change(t_delta));
+            if further == t_delta {
+                break;
+            }
+            t_delta = further;
+        }
+        t_delta
+    }
+
+    fn left(&self) -> u64 {
+        self.search.budget.saturating_sub(self.nodes).max(1)
+    }
+
+    /// The shortest period for a `t_delta` that does not depend on the schedule.
+    fn standing(
+        &mut self,
+        spec: &RingSpec,
+        atlas: &'static str,
+        control: &mut impl Control,
+    ) -> Result<Shortest, SearchError> {
+        let shortest = shortest(&spec.problem(), &Search { budget: self.left(), atlas, ..self.search }, control)?;
+        self.nodes += shortest.found.nodes;
+        Ok(shortest)
+    }
+
+    /// A schedule that serves: each next one is for the `t_delta` that the last one needs.
+    fn climb(&mut self, lower: &Shortest, control: &mut impl Control) -> Result<Option<AnySchedule>, SearchError> {
+        let mut reached = lower.schedule();
+        while let Some(schedule) = reached {
+            if self.spec.serves(&schedule) {
+                break;
+            }
+            let t_delta = self.spec.t_delta_needed(&schedule);
+            if t_delta > TOO_MUCH {
+                return Ok(None);
+            }
+            reached = self.standing(&self.spec.covering(t_delta), "", control)?.schedule();
+        }
+        Ok(reached)
+    }
+
+    /// Looks for schedules with periods from `least` to that of `best`: the shortest, the bound below which there is
+    /// none, and why.
+    fn between(
+        &mut self,
+        least: u32,
+        mut best: Option<AnySchedule>,
+        lower_reason: &str,
+        control: &mut impl Control,
+    ) -> Result<(Option<AnySchedule>, Option<Micros>, String), SearchError> {
+        let window = in_ticks(&self.spec.problem()).window.into_iter().min().unwrap_or(0);
+        // Without any schedule so far, one that is twice as long as the bound would do.
+        let mut end = best.map_or(least.saturating_mul(2), |schedule| self.ticks(schedule.period()));
+        // The region with the shortest periods is at the top.
+        let mut open = vec![Region { periods: (least, u32::MAX), changes: (0, u32::MAX) }];
+        while let Some(Region { periods: (first, last), changes: (low, high) }) = open.pop() {
+            let last = last.min(end - 1);
+            let high = high.min(last.saturating_sub(window));
+            if first > last || low > high {
+                continue;
+            }
+            let needs = self.spec.covering(self.t_delta_at(first, low).max(self.least_t_delta(first)));
+            let capped = needs.refiring_after(self.time(last - high));
+            let decided = self.decide(&capped.problem(), last, best.as_ref(), control)?;
+            let schedule = match decided {
+                Outcome::Exhausted => continue,
+                Outcome::BudgetSpent => {
+                    let bound = Some(self.time(first));
+                    let why = "the search, which ended early: a t_delta that depends on the schedule has to be searched \
+                               for each of them, and a larger budget may settle that";
+                    return Ok((best, bound, why.to_owned()));
+                }
+                Outcome::Found(schedule) => schedule,
+            };
+            if self.spec.serves(&schedule) {
+                (best, end) = (Some(schedule), last);
+                open.push(Region { periods: (first, last), changes: (low, high) });
+            } else if first < last {
+                let middle = first + (last - first) / 2;
+                open.push(Region { periods: (middle + 1, last), changes: (low, high) });
+                open.push(Region { periods: (first, middle), changes: (low, high) });
+            } else {
+                // In a region with one value the schedule would have served.
+                let middle = low + (high - low) / 2;
+                open.push(Region { periods: (first, last), changes: (middle + 1, high) });
+                open.push(Region { periods: (first, last), changes: (low, middle) });
+            }
+        }
+        let bound = Some(self.time(end));
+        let why = if end == least {
+            lower_reason.to_owned()
+        } else {
+            format!(
+                "motion: each schedule of {} and less leaves a sensor so long between two firings that good readings \
+                 change by more than it can tell apart (every order was searched)",
+                self.time(end.saturating_sub(1))
+            )
+        };
+        Ok((best, bound, why))
+    }
+
+    /// Decides whether a schedule with this period meets the needs.
+    fn decide(
+        &mut self,
+        problem: &PeriodProblem<'_>,
+        period: u32,
+        guide: Option<&AnySchedule>,
+        control: &mut impl Control,
+    ) -> Result<Outcome<AnySchedule>, SearchError> {
+        let budget = self.search.budget.saturating_sub(self.nodes);
+        if budget == 0 {
+            return Ok(Outcome::BudgetSpent);
+        }
+        let (outcome, nodes) = if problem.requirements.uneven.is_some() {
+            decide_uneven(problem, period, guide, budget, control)?
+        } else {
+            let mut memory = vec![0; design::memory_words(problem.sensors)];
+            problem.decide::<MAX_SENSORS>(self.time(period), budget, &mut memory, control)?
+        };
+        self.nodes += nodes;
+        Ok(outcome)
+    }
+}

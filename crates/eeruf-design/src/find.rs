@@ -12,6 +12,8 @@ use crate::found::FoundJson;
 use crate::ring::RingSpec;
 use crate::shortest::{Search, Shortest, shortest};
 
+/// How often more separation is tried where firings cannot be moved apart.
+const HANDLING_STEPS: u32 = 8;
 /// How many nodes it may cost to find out what one need, relaxed, would bring.
 const WHAT_IF_BUDGET: u64 = 20_000;
 
@@ -51,6 +53,8 @@ pub enum NoSchedule {
     TooFast,
     /// The budget or the caller ended the search before its proof, and what it had found is too slow for the speed.
     EndedEarly,
+    /// No way that was tried keeps firings of the shortest period apart by `handling_us`.
+    Handling,
 }
 
 impl fmt::Display for NoSchedule {
@@ -63,6 +67,11 @@ impl fmt::Display for NoSchedule {
             Self::EndedEarly => {
                 "no schedule yet: the search ended before its proof, and what it had found is too slow for this speed; \
                  expected a larger budget or time limit"
+            }
+            Self::Handling => {
+                "no schedule: none of the ways that were tried to keep all firings apart by handling_us meets the rest, \
+                 in the shortest period without it; expected a shorter handling_us or a larger t_delta_us, which leaves \
+                 more room"
             }
         })
     }
@@ -117,18 +126,68 @@ impl RingSpec {
         search: &Search,
         control: &mut impl Control,
     ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
-        let answer = match self.speed_mm_s {
-            None | Some(0) => self.shortest_at_rest(search, control)?,
-            Some(_) => self.shortest_moving(search, control)?,
-        };
-        let mut design = match answer {
+        let mut design = match self.shortest_at_once(search, control)? {
             Ok(design) => design,
             Err(none) => return Ok(Err(none)),
         };
+        if self.handling > Micros::ZERO {
+            design = match self.one_by_one(design, search, control)? {
+                Ok(design) => design,
+                Err(none) => return Ok(Err(none)),
+            };
+        }
         if search.what_if {
             design.what_if = design.what_if(control)?;
         }
         Ok(Ok(design))
+    }
+
+    /// As [`shortest`](Self::shortest), for a controller that fires any number of sensors at once.
+    fn shortest_at_once(
+        &self,
+        search: &Search,
+        control: &mut impl Control,
+    ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
+        match self.speed_mm_s {
+            None | Some(0) => self.shortest_at_rest(search, control),
+            Some(_) => self.shortest_moving(search, control),
+        }
+    }
+
+    /// The design for a controller that fires one sensor after the other: firings are moved apart. Where the shortest
+    /// period has no room for that, the next ones are taken that have more separation.
+    fn one_by_one(
+        &self,
+        at_once: RingDesign,
+        search: &Search,
+        control: &mut impl Control,
+    ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
+        let (bound, step) = (at_once.bound, Micros::new(self.handling.as_micros().div_ceil(2)));
+        let mut design = at_once;
+        let mut wider = self.clone();
+        for _ in 0..HANDLING_STEPS {
+            if let Some(apart) = self.moved_apart(&design.schedule) {
+                let t_delta = self.t_delta_needed(&apart).max(design.bounding.t_delta);
+                (design.spec, design.t_delta) = (self.covering(t_delta), t_delta);
+                // Chosen for what it had to spare before.
+                if apart != design.schedule {
+                    (design.schedule, design.preferred, design.to_spare) = (apart, None, None);
+                }
+                return Ok(Ok(design));
+            }
+            wider = wider.covering(wider.t_delta.saturating_add(step));
+            design = match wider.shortest_at_once(&Search { atlas: "", ..*search }, control)? {
+                Ok(design) => design,
+                Err(none) => return Ok(Err(none)),
+            };
+            (design.bound, design.found.bound, design.found.proven) = (bound, bound, false);
+            design.bounding = self.clone();
+            design.reason = format!(
+                "handling: firings are to be {} apart, and no shorter period with room for it was found",
+                self.handling
+            );
+        }
+        Ok(Err(NoSchedule::Handling))
     }
 
     fn shortest_at_rest(

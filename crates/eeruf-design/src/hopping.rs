@@ -208,6 +208,9 @@ impl RingSpec {
     /// As there, and what sensors or pairs need of their own, but for their `t_delta` and windows, of which the largest
     /// counts.
     pub fn hopping(&self, phases: u8, criterion: PhaseCriterion) -> Result<HoppingDesign, String> {
+        if self.handling != Micros::ZERO {
+            return Err("handling_us in a ring file for many phases; expected it for two phases only".to_owned());
+        }
         if let Some(key) = self.uneven.as_ref().and_then(|uneven| uneven.not_in_many_phases(self.window)) {
             return Err(format!(
                 "{key}; expected no such key with many phases: their schedules keep one interval between neighbours \

@@ -10,6 +10,7 @@
 //! | `shortest`, `find_uneven` | the shortest period for that |
 //! | `find`, `what_if_uneven` | the design of a ring, and what would make it shorter |
 //! | `moving` | the shortest period of a ring that moves |
+//! | `handling` | firings apart by what the controller needs for one |
 //! | `found` | the answer as it is printed in JSON |
 //! | `hopping` | schedules of many phases: the file, and the shortest period |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
@@ -35,6 +36,7 @@ mod each;
 mod find;
 mod find_uneven;
 mod found;
+mod handling;
 mod hopping;
 mod layout;
 mod limits;

@@ -38,6 +38,8 @@ pub struct RingFile {
     window_us: Option<Each<u32>>,
     max_range_m: Option<Each<f64>>,
     retrigger_us: Option<Each<u32>>,
+    /// How long the controller needs for one firing; no two are closer.
+    handling_us: Option<u32>,
     temperature_c: Option<f64>,
     /// Pairs of sensors with an interval of their own.
     #[serde(default)]
@@ -71,6 +73,8 @@ pub struct RingSpec {
     pub t_delta: Micros,
     /// How fast the robot moves, in mm/s, if `t_delta` must cover that too.
     pub speed_mm_s: Option<u32>,
+    /// How long the controller needs for one firing: it gives two that are closer than this one after the other.
+    pub handling: Micros,
     /// What single sensors and pairs need, where they are not all alike.
     pub uneven: Option<OwnedUneven>,
 }
@@ -175,6 +179,7 @@ impl RingFile {
             c,
             t_delta: largest_t_delta,
             speed_mm_s,
+            handling: Micros::new(self.handling_us.unwrap_or(0)),
             uneven,
         };
         OwnedUneven::can_fire_together(&spec.problem().requirements, sensors)?;

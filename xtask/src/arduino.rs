@@ -3,6 +3,7 @@
 
 mod build;
 mod newping;
+mod own_walls;
 mod survey;
 mod tables;
 mod world;
@@ -11,6 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use build::Board;
 pub(crate) use newping::newping;
 
 use crate::c::need;
@@ -75,6 +77,7 @@ pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
     steps.step("tables of the Arduino library", || tables::check(plan.write));
     steps.step("tables of the examples", crate::examples::tables);
     steps.step("Arduino library", || pack().and_then(|library| examples(&library, plan.short)));
+    steps.step("ready tables before walls", || own_walls::run(&Path::new(TARGET).join("Eeruf"), plan.short));
 }
 
 /// The library as one installs it: its files and those of `c/`.
@@ -101,7 +104,7 @@ fn pack() -> Result<PathBuf, Trouble> {
 fn examples(library: &Path, short: bool) -> Result<(), Trouble> {
     need("avr-g++", "gcc-avr avr-libc binutils-avr arduino-core-avr")?;
     need("gcc", "gcc")?;
-    let core = build::core()?;
+    let core = build::core(Board::Uno)?;
     let world = world::build()?;
     println!("| sketch | flash | data + bss | stack | firings/s | accepted/s | wrong of accepted |");
     println!("|---|---:|---:|---:|---:|---:|---:|");

@@ -1,7 +1,8 @@
 // See EerufArduino.h.
 #include "EerufArduino.h"
 
-static const uint32_t SOON_US = 300;
+// How long before a firing no reading is judged any more: that takes longer the more modules could explain it.
+static const uint32_t SOON_US = 200, SOON_PER_MODULE_US = 40;
 
 #if defined(__AVR__) && defined(portModeRegister)
 // A quarter of the time of digitalRead, and less flash than the core's functions together.
@@ -40,17 +41,15 @@ static void setOutput(uint8_t pin, bool output) {
 }
 #endif
 
-static void setPin(uint8_t pin, bool high, bool output) {
-    drive(pin, high);
-    setOutput(pin, output);
-}
-
 void EerufPin::release(uint8_t trigger, uint8_t echo) {
-    setPin(trigger, false, trigger != echo);
+    drive(trigger, false);
+    setOutput(trigger, trigger != echo);
 }
 
 void EerufPin::trigger(uint8_t trigger, uint8_t echo) {
-    setPin(trigger, true, true);
+    // In this order: an input that is driven high has its pull-up on, and reads as an edge of the echo line.
+    setOutput(trigger, true);
+    drive(trigger, true);
     delayMicroseconds(10);
     release(trigger, echo);
 }
@@ -99,13 +98,14 @@ void EerufModules::fire(uint8_t sensor) {
 bool EerufModules::read() {
     EerufEvent event;
     if (status_ != EERUF_OK) return false;
-    // A firing that is due within 0.3 ms is waited for, while lines are sampled: where modules fire late, by differing
-    // times, more is ambiguous. The clock is read before: then no window closes on an edge that came in time.
+    // A firing that is due soon is waited for, while lines are sampled: where modules fire late, by differing times, more
+    // is ambiguous. The clock is read before: then no window closes on an edge that came in time.
+    const uint32_t soon = SOON_US + SOON_PER_MODULE_US * count_;
     uint32_t now;
     do {
         now = ::micros();
         collect_(*this);
-    } while (eeruf_ring_due(&ring_) - now - 1 < SOON_US);
+    } while (eeruf_ring_due(&ring_) - now - 1 < soon);
     if (eeruf_ring_poll(&ring_, now, &event) != EERUF_EVENT) return false;
     if (event.kind == EERUF_EVENT_FIRE) {
         fire(event.sensor);

@@ -66,6 +66,8 @@ public:
     // Calls this with each event and the clock that it was polled at, also with those that read() does not return for.
     void tell(void (*listener)(EerufModules &modules, const EerufEvent &event, uint32_t now)) { onEvent_ = listener; }
 
+    uint8_t count() const { return count_; }
+    uint8_t echoPin(uint8_t sensor) const { return echoes_[sensor]; }
     // What begin() came to: EERUF_OK or EERUF_ERR_..
     int8_t status() const { return status_; }
     // All that eeruf.h can do.

@@ -196,16 +196,16 @@ static const EerufSchedule EERUF_HC_SR04_16 EERUF_FLASH = {
 // 24 sensors, T_p = 94.5 ms;
 // t_delta = 576 us, 4 adjacent sensors of a ring at least 14.569 ms apart, listening for 60 ms.
 static const uint8_t EERUF_HC_SR04_24_order[] EERUF_FLASH = {
-    3, 7, 21, 11, 15, 1, 5, 19, 9, 13, 23, 17, 6, 10, 22, 14, 18, 2, 12, 16, 8, 4, 20, 0, /* phase a */
-    15, 11, 19, 3, 7, 23, 13, 9, 21, 1, 5, 17, 0, 4, 8, 12, 16, 20, 2, 6, 10, 18, 22, 14, /* phase b */
+    3, 21, 7, 11, 15, 1, 19, 5, 9, 13, 23, 17, 6, 10, 22, 18, 14, 2, 12, 16, 8, 4, 20, 0, /* phase a */
+    15, 11, 19, 3, 23, 7, 13, 9, 21, 1, 5, 17, 4, 8, 0, 16, 20, 12, 2, 6, 18, 10, 22, 14, /* phase b */
 };
 static const uint32_t EERUF_HC_SR04_24_gap_us[] EERUF_FLASH = {
-    0u, 4500u, 0u, 1500u, 3000u, 10500u, 4500u, 0u, 1500u, 6000u, 7500u, 4500u, 1500u, 13500u, 1500u, 3000u, 0u, 4500u, 15000u, 1500u, 1500u, 1500u, 0u, 1500u, 6000u,
-    9000u, 1500u, 1500u, 1500u, 0u, 0u, 16500u, 3000u, 0u, 1500u, 0u, 6000u, 13500u, 0u, 0u, 6000u, 0u, 0u, 13500u, 1500u, 4500u, 0u, 0u, 1500u, 13500u,
+    3000u, 4500u, 110u, 1390u, 3000u, 10500u, 4500u, 110u, 1390u, 6000u, 7500u, 4500u, 1500u, 13500u, 1500u, 2890u, 110u, 4500u, 15000u, 1500u, 1500u, 1390u, 110u, 1500u, 3000u,
+    12000u, 1500u, 1500u, 1390u, 110u, 110u, 16390u, 3000u, 110u, 1390u, 110u, 5890u, 13500u, 110u, 110u, 5780u, 110u, 110u, 13280u, 1500u, 4280u, 110u, 110u, 1500u, 10500u,
 };
 static const EerufSchedule EERUF_HC_SR04_24 EERUF_FLASH = {
     2, 24, 2, EERUF_HC_SR04_24_order, EERUF_HC_SR04_24_gap_us,
-    94500u, 60000u, 576u, 14569u, 60000u, 1500u,
+    94500u, 60220u, 576u, 14569u, 60000u, 1390u,
     EERUF_AS_T_DELTA, 94500u,
     1, EERUF_LAYOUT_RING, 4, 0,
 };

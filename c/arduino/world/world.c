@@ -1,16 +1,16 @@
-/* A small world around a simulated Arduino Uno: HC-SR04 modules on its pins, in a room where they hear each other.
+/* A small world around a simulated Arduino: HC-SR04 modules on its pins, in a room where they hear each other.
  *
- *   world [--pulses] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..
+ *   world [--pulses] [--mega] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..
  *
  * ECHO_TIMES has a line for each way that sound takes: emitter, receiver, microseconds; `crates/eeruf-sim`'s example
- * echo_times writes it. Pins are the Uno's numbers; the same pin twice is a module with one pin. What the sketch says
- * on its serial line goes to standard output; then come lines that begin with `world`: firings of each module, triggers
- * that came while its line was high, how deep the stack ever was in bytes, and which share of the time, in millionths,
- * passed in interrupts. With --pulses there is also a line for each pulse that sound has ended: the module from 1, and
- * whose sound it was: `own`, `earlier` for its own from an earlier firing, `foreign`.
+ * echo_times writes it. Pins are the Uno's numbers, or with --mega those of a Mega 2560; the same pin twice is a module
+ * with one pin. What the sketch says on its serial line goes to standard output; then come lines that begin with `world`:
+ * firings of each module, triggers that came while its line was high, how deep the stack ever was in bytes, and which
+ * share of the time, in millionths, passed in interrupts. With --pulses there is also a line for each pulse that sound
+ * has ended: the module from 1, and whose sound it was: `own`, `earlier` for its own from an earlier firing, `foreign`.
  *
  * A module whose trigger falls sends its sound 450 us later and raises its line, until the first sound reaches it, its
- * own or another's, or until 38 ms are over. It is deaf for the first 150 us. Time is the Uno's own, to the cycle. */
+ * own or another's, or until 38 ms are over. It is deaf for the first 150 us. Time is the board's own, to the cycle. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,7 @@
 #include <simavr/sim_elf.h>
 #include <simavr/sim_time.h>
 
-#define MODULES 20
+#define MODULES 24
 #define WAYS 4096
 
 static avr_t *avr;
@@ -40,17 +40,31 @@ static struct Module {
 static int says_pulses;
 static int module_count;
 
-/* The Uno's pins: 0 to 7 are D0 to D7, 8 to 13 are B0 to B5, 14 to 19 (A0 to A5) are C0 to C5. */
+/* The pins of a board from 0 on, each by its port and bit; the last are A0 to A5 of an Uno, A0 to A15 of a Mega. */
+struct Board {
+    const char *controller, *ports, *pins;
+};
+static const struct Board uno = {"atmega328p", "BCD", "D0D1D2D3D4D5D6D7B0B1B2B3B4B5C0C1C2C3C4C5"};
+static const struct Board mega = {
+    "atmega2560", "ABCDEFGHJKL",
+    "E0E1E4E5G5E3H3H4H5H6B4B5B6B7J1J0H1H0D3D2D1D0A0A1A2A3A4A5A6A7C7C6C5C4C3C2C1C0D7G2G1G0L7L6L5L4L3L2L1L0B3B2B1B0"
+    "F0F1F2F3F4F5F6F7K0K1K2K3K4K5K6K7"};
+static const struct Board *board = &uno;
+
 static char port_of(int pin) {
-    return pin < 8 ? 'D' : pin < 14 ? 'B' : 'C';
+    return board->pins[2 * pin];
 }
 static int bit_of(int pin) {
-    return pin < 8 ? pin : pin < 14 ? pin - 8 : pin - 14;
+    return board->pins[2 * pin + 1] - '0';
 }
 
-static uint8_t ports[3], directions[3];
+static int is_pin(int pin) {
+    return pin >= 0 && (size_t)pin < strlen(board->pins) / 2;
+}
+
+static uint8_t ports['L' - 'A' + 1], directions['L' - 'A' + 1];
 static int index_of(char port) {
-    return port - 'B';
+    return port - 'A';
 }
 
 /* Whether the Uno itself holds a pin high. */
@@ -59,8 +73,32 @@ static int is_driven_high(int pin) {
     return (ports[port] & directions[port]) >> bit_of(pin) & 1;
 }
 
+/* simavr 1.6 does not know that pins of the Mega's ports J and K interrupt when they change: PCINT1 and PCINT2. */
+#define PCICR 0x68
+#define PCIFR 0x3b
+#define PCMSK0 0x6b
+static avr_int_vector_t pin_changes[3];
+
+static void register_pin_changes(void) {
+    int group;
+    for (group = 1; group < 3 && board == &mega; group++) {
+        pin_changes[group].vector = (uint8_t)(9 + group);
+        pin_changes[group].enable = (avr_regbit_t)AVR_IO_REGBIT(PCICR, group);
+        pin_changes[group].raised = (avr_regbit_t)AVR_IO_REGBIT(PCIFR, group);
+        avr_register_vector(avr, &pin_changes[group]);
+    }
+}
+
+static void note_change(int pin) {
+    const int group = port_of(pin) == 'J' ? 1 : port_of(pin) == 'K' ? 2 : 0;
+    const int place = group == 1 ? bit_of(pin) + 1 : bit_of(pin);
+    if (board == &mega && group != 0 && avr->data[PCMSK0 + group] >> place & 1)
+        avr_raise_interrupt(avr, &pin_changes[group]);
+}
+
 static void set_line(struct Module *module, int high) {
     module->line_high = high;
+    note_change(module->echo);
     avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(port_of(module->echo)), bit_of(module->echo)),
                   (uint32_t)high);
 }
@@ -129,6 +167,8 @@ static void look_at_triggers(void) {
     for (i = 0; i < module_count; i++) {
         struct Module *module = &modules[i];
         const int high = is_driven_high(module->trigger);
+        if (high == (module->triggered == 1)) continue;
+        note_change(module->trigger);
         if (high && !module->triggered) {
             module->fired = avr->cycle;
             module->triggered = 1;
@@ -204,31 +244,37 @@ int main(int argc, char **argv) {
     const char *port;
     int i;
     memset(&firmware, 0, sizeof firmware);
-    if (argc > 1 && strcmp(argv[1], "--pulses") == 0) {
-        says_pulses = 1;
-        argc--;
-        argv++;
+    for (; argc > 1 && argv[1][0] == '-'; argc--, argv++) {
+        if (strcmp(argv[1], "--pulses") == 0) says_pulses = 1;
+        else if (strcmp(argv[1], "--mega") == 0) board = &mega;
+        else break;
     }
     if (argc < 5 || (module_count = atoi(argv[4])) < 1 || module_count > MODULES || argc != 5 + 2 * module_count) {
-        fprintf(stderr, "usage: world [--pulses] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..\n");
+        fprintf(stderr, "usage: world [--pulses] [--mega] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. "
+                        "ECHO_PIN..\n");
         return 2;
     }
     for (i = 0; i < module_count; i++) {
         modules[i].trigger = atoi(argv[5 + i]);
         modules[i].echo = atoi(argv[5 + module_count + i]);
+        if (!is_pin(modules[i].trigger) || !is_pin(modules[i].echo)) {
+            fprintf(stderr, "pins %d and %d of module %d: expected pins of an %s\n", modules[i].trigger, modules[i].echo,
+                    i + 1, board->controller);
+            return 2;
+        }
     }
     if (!read_ways(argv[3]) || elf_read_firmware(argv[1], &firmware) != 0) {
         fprintf(stderr, "%s or %s cannot be read\n", argv[1], argv[3]);
         return 2;
     }
-    avr = avr_make_mcu_by_name("atmega328p");
+    avr = avr_make_mcu_by_name(board->controller);
     if (avr == NULL) return 2;
     avr_init(avr);
     avr->frequency = 16000000;
     avr->log = LOG_ERROR;
     avr_load_firmware(avr, &firmware);
     avr->frequency = 16000000;
-    for (port = "BCD"; *port != 0; port++) {
+    for (port = board->ports; *port != 0; port++) {
         void *number = (void *)(intptr_t)index_of(*port);
         const uint32_t io = AVR_IOCTL_IOPORT_GETIRQ(*port);
         avr_irq_register_notify(avr_io_getirq(avr, io, IOPORT_IRQ_REG_PORT), on_port, number);
@@ -237,6 +283,7 @@ int main(int argc, char **argv) {
     avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
     avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_serial, NULL);
     avr_irq_register_notify(avr_get_interrupt_irq(avr, AVR_INT_ANY) + AVR_INT_IRQ_RUNNING, on_interrupt, NULL);
+    register_pin_changes();
     for (i = 0; i < module_count; i++) set_line(&modules[i], 0);
     end = (avr_cycle_count_t)(atof(argv[2]) * 16e6);
     while (avr->cycle < end) {

@@ -1,4 +1,4 @@
-//! Sketches, compiled as the Arduino IDE does for an Uno.
+//! Sketches, compiled as the Arduino IDE does for an Uno or a Mega.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,25 +9,40 @@ use crate::steps::{Trouble, output, run};
 
 /// Debian's `arduino-core-avr`.
 const CORE: &str = "/usr/share/arduino/hardware/arduino/avr/cores/arduino";
-const VARIANT: &str = "/usr/share/arduino/hardware/arduino/avr/variants/standard";
+const VARIANTS: &str = "/usr/share/arduino/hardware/arduino/avr/variants";
 
 /// The options of the core's platform.txt, and what its sources want of this compiler.
-const COMMON: [&str; 12] = [
+const COMMON: [&str; 10] = [
     "-c",
     "-g",
     "-Os",
     "-ffunction-sections",
     "-fdata-sections",
     "-flto",
-    "-mmcu=atmega328p",
     "-DF_CPU=16000000L",
     "-DARDUINO=10819",
-    "-DARDUINO_AVR_UNO",
     "-DARDUINO_ARCH_AVR",
     "-DDECIMAL_DIG=10",
 ];
 const C: [&str; 2] = ["-std=gnu11", "-fno-fat-lto-objects"];
 const CXX: [&str; 4] = ["-std=gnu++11", "-fpermissive", "-fno-exceptions", "-fno-threadsafe-statics"];
+
+/// What sketches are built for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Board {
+    Uno,
+    Mega,
+}
+
+impl Board {
+    /// The name of the controller, of the folder with the board's pins, and what the core calls it.
+    const fn names(self) -> [&'static str; 3] {
+        match self {
+            Self::Uno => ["-mmcu=atmega328p", "standard", "-DARDUINO_AVR_UNO"],
+            Self::Mega => ["-mmcu=atmega2560", "mega", "-DARDUINO_AVR_MEGA2560"],
+        }
+    }
+}
 
 pub(super) struct Sketch {
     pub(super) elf: PathBuf,
@@ -35,14 +50,18 @@ pub(super) struct Sketch {
     pub(super) ram: u64,
 }
 
-fn compile(source: &Path, object: &Path, more: &[&str]) -> Result<(), Trouble> {
+fn compile(board: Board, source: &Path, object: &Path, more: &[&str]) -> Result<(), Trouble> {
+    let [controller, variant, name] = board.names();
     let is_c = source.extension().is_some_and(|extension| extension == "c");
     let (compiler, language) = if is_c { ("avr-gcc", &C[..]) } else { ("avr-g++", &CXX[..]) };
     run(Command::new(compiler)
         .args(COMMON)
         .args(language)
+        .args([controller, name])
         .args(more)
-        .args(["-I", CORE, "-I", VARIANT, "-o"])
+        .args(["-I", CORE, "-I"])
+        .arg(Path::new(VARIANTS).join(variant))
+        .arg("-o")
         .arg(object)
         .arg(source))
 }
@@ -65,11 +84,11 @@ fn name(path: &Path) -> String {
 }
 
 /// The core as an archive, built once.
-pub(super) fn core() -> Result<PathBuf, Trouble> {
+pub(super) fn core(board: Board) -> Result<PathBuf, Trouble> {
     if !Path::new(CORE).exists() {
         return Err(Trouble::Skipped(format!("no {CORE}; install arduino-core-avr")));
     }
-    let folder = Path::new(TARGET).join("core");
+    let folder = Path::new(TARGET).join(format!("core-{}", board.names()[1]));
     fs::create_dir_all(&folder).map_err(failed("target"))?;
     let archive = folder.join("core.a");
     if archive.exists() {
@@ -78,7 +97,7 @@ pub(super) fn core() -> Result<PathBuf, Trouble> {
     let mut objects = vec![];
     for source in sources(Path::new(CORE))? {
         let object = folder.join(name(&source) + ".o");
-        compile(&source, &object, &["-w"])?;
+        compile(board, &source, &object, &["-w"])?;
         objects.push(object);
     }
     run(Command::new("avr-gcc-ar").arg("rcs").arg(&archive).args(objects))?;
@@ -88,35 +107,39 @@ pub(super) fn core() -> Result<PathBuf, Trouble> {
 /// An example of the packed library.
 pub(super) fn example(library: &Path, core: &Path, name: &str) -> Result<Sketch, Trouble> {
     let ino = library.join("examples").join(name).join(format!("{name}.ino"));
-    sketch(name, &ino, &library.join("src"), core, true, &[])
+    let text = fs::read_to_string(&ino).map_err(failed(&ino.display().to_string()))?;
+    sketch(&Source { name, text: &text, board: Board::Uno, ours: true, defines: &[] }, &library.join("src"), core)
 }
 
-/// A sketch with the sources of a library, which is warned about if it is `ours`.
-pub(super) fn sketch(
-    example: &str,
-    ino: &Path,
-    library: &Path,
-    core: &Path,
-    ours: bool,
-    defines: &[&str],
-) -> Result<Sketch, Trouble> {
+/// What is built.
+pub(super) struct Source<'a> {
+    pub(super) name: &'a str,
+    pub(super) text: &'a str,
+    pub(super) board: Board,
+    /// Whether it is warned about.
+    pub(super) ours: bool,
+    pub(super) defines: &'a [&'a str],
+}
+
+/// A sketch with the sources of a library.
+pub(super) fn sketch(source: &Source<'_>, library: &Path, core: &Path) -> Result<Sketch, Trouble> {
+    let &Source { name: example, text, board, ours, defines } = source;
     let folder = Path::new(TARGET).join(example);
     fs::create_dir_all(&folder).map_err(failed("target"))?;
     let include = library.to_string_lossy();
     let warnings: &[&str] = if ours { &["-Wall", "-Wextra", "-Werror"] } else { &["-w"] };
     // As the IDE: a sketch is C++ that includes Arduino.h.
-    let text = fs::read_to_string(ino).map_err(failed(&ino.display().to_string()))?;
     let cpp = folder.join(format!("{example}.cpp"));
     fs::write(&cpp, format!("#include <Arduino.h>\n{text}")).map_err(failed("target"))?;
     let mut objects = vec![];
     for source in sources(library)?.into_iter().chain([cpp]) {
         let object = folder.join(name(&source) + ".o");
-        compile(&source, &object, &[warnings, defines, &["-I", &include]].concat())?;
+        compile(board, &source, &object, &[warnings, defines, &["-I", &include]].concat())?;
         objects.push(object);
     }
     let elf = folder.join(format!("{example}.elf"));
     run(Command::new("avr-gcc")
-        .args(["-w", "-Os", "-g", "-flto", "-fuse-linker-plugin", "-Wl,--gc-sections", "-mmcu=atmega328p", "-o"])
+        .args(["-w", "-Os", "-g", "-flto", "-fuse-linker-plugin", "-Wl,--gc-sections", board.names()[0], "-o"])
         .arg(&elf)
         .args(objects)
         .arg(core)

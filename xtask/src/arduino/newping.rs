@@ -5,7 +5,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{ALL, Example, TARGET, build, failed, pack, world};
+use super::build::{self, Board, Source};
+use super::{ALL, Example, failed, pack, world};
 use crate::c::need;
 use crate::steps::{Steps, Trouble};
 
@@ -61,7 +62,7 @@ fn sources(folder: &Path) -> Result<(PathBuf, String), Trouble> {
 fn compare(folder: &Path) -> Result<(), Trouble> {
     let (newping, version) = sources(folder)?;
     need("avr-g++", "gcc-avr avr-libc binutils-avr arduino-core-avr")?;
-    let (library, core, world) = (pack()?, build::core()?, world::build()?);
+    let (library, core, world) = (pack()?, build::core(Board::Uno)?, world::build()?);
     println!("NewPing {version}, {SECONDS} s each");
     println!(
         "| ring | method | flash | data + bss | stack | in interrupts | firings/s | readings/s | right/s | wrong \
@@ -71,13 +72,13 @@ fn compare(folder: &Path) -> Result<(), Trouble> {
     for modules in [8, 12] {
         for row in &ROWS {
             let name = format!("{}{modules}", row.sketch);
-            let ino = Path::new(TARGET).join(format!("{name}.ino"));
-            fs::write(&ino, row.text).map_err(failed("target"))?;
-            let source = if row.sketch == "NewPing" { newping.clone() } else { library.join("src") };
+            let library = if row.sketch == "NewPing" { newping.clone() } else { library.join("src") };
             let modules_define = format!("-DMODULES={modules}");
             let defines: Vec<&str> = row.defines.iter().copied().chain([&*modules_define]).collect();
             // What is not ours is compiled without our warnings.
-            let sketch = build::sketch(&name, &ino, &source, &core, row.sketch != "NewPing", &defines)?;
+            let ours = row.sketch != "NewPing";
+            let source = Source { name: &name, text: row.text, board: Board::Uno, ours, defines: &defines };
+            let sketch = build::sketch(&source, &library, &core)?;
             let (pins, _) = ALL.split_at(modules);
             let example = Example { name: row.name, modules, triggers: pins, echoes: pins, short: false };
             let heard = world::run(&world, &sketch.elf, &example, SECONDS, true)?;

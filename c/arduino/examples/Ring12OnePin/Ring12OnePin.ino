@@ -1,13 +1,14 @@
 // Twelve HC-SR04 modules around a robot, each with trigger and echo on one pin of the Uno (2 to 13).
 // Prints the module's number and the distance in millimetres of each echo that counts.
 #include <EerufTables.h>
+#include <EerufInterrupts.h>
 
 const uint8_t PINS[] = {2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
 EerufSonar<12> sonar(EERUF_HC_SR04_12, PINS);
 
 void setup() {
   Serial.begin(115200);
-  sonar.begin();
+  if (!sonar.begin() || !eerufInterrupts(sonar)) Serial.println(F("wrong table or pins"));
 }
 
 void loop() {

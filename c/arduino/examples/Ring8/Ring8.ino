@@ -1,6 +1,7 @@
 // Eight HC-SR04 modules around a robot with two pins each: triggers on 2 to 9, echoes on 10 to 13 and A0 to A3.
 // Says what becomes of each firing, and which modules do not answer.
 #include <EerufTables.h>
+#include <EerufInterrupts.h>
 
 const uint8_t TRIGGERS[] = {2, 3, 4, 5, 6, 7, 8, 9};
 const uint8_t ECHOES[] = {10, 11, 12, 13, A0, A1, A2, A3};
@@ -12,6 +13,7 @@ void setup() {
     Serial.print(F("table refused: "));
     Serial.println(sonar.status());
   }
+  if (!eerufInterrupts(sonar)) Serial.println(F("an echo pin has no interrupt"));
 }
 
 void loop() {

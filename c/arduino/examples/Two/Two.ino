@@ -1,6 +1,6 @@
 // Two HC-SR04 modules side by side: triggers on 4 and 5, echoes on 2 and 3, whose interrupts time the echoes to some
-// microseconds while loop() does other things for 0.3 ms. Longer it should not: modules that fire later than the table
-// allows for are compared with nothing.
+// microseconds while loop() does other things for 0.3 ms. The longer that takes the later modules fire, and the more
+// readings the other module's sound could explain.
 #include <EerufTables.h>
 
 const uint8_t TRIGGERS[] = {4, 5};

@@ -15,7 +15,7 @@ SIZE_IS(EerufSensor, 12 + 4 * EERUF_FIRINGS);
 SIZE_IS(EerufLine, 6);
 SIZE_IS(EerufSchedule, 44);
 #if EERUF_HOPPING
-SIZE_IS(EerufRing, 70);
+SIZE_IS(EerufRing, 71);
 SIZE_IS(EerufHopSensor, 16);
 SIZE_IS(EerufHopper, 57);
 #endif
@@ -419,6 +419,7 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter) {
 #define CAN_EMIT 0x10u     /* it has a reading that can be emitted before its window closes */
 #define OUTSIDE 0x20u      /* its only edges so far came outside the window */
 #define STUCK 0x40u        /* its line was high when it was to fire */
+#define UNANSWERED 0x80u   /* nothing has shown yet that it listens: silence says nothing */
 
 /* Rings that hop in time fire otherwise than by a table. What is linked for all takes `hops` as a constant, so that
    nothing of the one kind is linked where only the other is polled; HOPS asks the ring. */
@@ -775,7 +776,7 @@ static void find_oldest(EerufRing *ring, uint32_t before) {
 
 static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late_us, bool hops) {
     EerufSensor *fired = sensor_of(ring, sensor);
-    fired->flags = (uint8_t)(LISTENING | ring->phase);
+    fired->flags = (uint8_t)(LISTENING | ring->phase | ring->unanswered);
 #if EERUF_FIRINGS > 1
     if (!hops) {
         uint8_t place;
@@ -808,6 +809,10 @@ static void compare(EerufRing *ring, EerufSensor *sensor, int32_t change_us, Eer
         reading->kind = EERUF_READING_STUCK;
     } else if (flags & OUTSIDE) {
         reading->kind = EERUF_READING_TOO_EARLY;
+    } else if ((flags & UNANSWERED) && reading->t_echo_us == EERUF_NO_ECHO) {
+        reading->kind = EERUF_READING_UNANSWERED;
+        forget(filter);
+        reading->previous_us = EERUF_NO_ECHO;
     } else {
         const uint32_t echo_us = reading->t_echo_us;
         const bool agreed = agrees(filter, ring->t_delta_us, echo_us, change_us);
@@ -821,8 +826,9 @@ static void compare(EerufRing *ring, EerufSensor *sensor, int32_t change_us, Eer
 }
 
 /* The kind of a reading that the tracker weighs. */
-static uint8_t kind_of_hop(uint8_t flags) {
+static uint8_t kind_of_hop(uint8_t flags, bool silent) {
     if (flags & STUCK) return EERUF_READING_STUCK;
+    if ((flags & UNANSWERED) && silent) return EERUF_READING_UNANSWERED;
     return flags & OUTSIDE ? EERUF_READING_TOO_EARLY : EERUF_READING_FIRST;
 }
 
@@ -836,7 +842,7 @@ static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, E
     reading->explained_by = EERUF_BY_NOTHING;
     sensor->echo_us = EERUF_NO_ECHO;
     if (flags & LISTENING) {
-        if (hops) reading->kind = kind_of_hop(flags);
+        if (hops) reading->kind = kind_of_hop(flags, reading->t_echo_us == EERUF_NO_ECHO);
         else compare(ring, sensor, change_us == NULL ? 0 : change_us[x], reading);
         sensor->flags = phase;
         if (ring->oldest == x) find_oldest(ring, sensor->fired_us[0]);
@@ -1041,13 +1047,48 @@ uint32_t eeruf_ring_fired_at(const EerufRing *ring, uint8_t sensor) {
     return has_sensor(ring, sensor) == EERUF_OK ? sensor_of(ring, sensor)->fired_us[0] : 0;
 }
 
-static void note_stuck(EerufSensor *sensor) {
-    if (sensor->flags & LISTENING) sensor->flags |= STUCK;
+static void note(EerufSensor *sensor, uint8_t flag) {
+    if (sensor->flags & LISTENING) sensor->flags |= flag;
 }
 
 EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor) {
     const EerufStatus status = has_sensor(ring, sensor);
-    if (status == EERUF_OK) note_stuck(sensor_of(ring, sensor));
+    if (status == EERUF_OK) note(sensor_of(ring, sensor), STUCK);
+    return status;
+}
+
+EerufStatus eeruf_ring_expect_answers(EerufRing *ring) {
+    const EerufStatus status = is_ready(ring);
+    if (status == EERUF_OK) ring->unanswered = UNANSWERED;
+    return status;
+}
+
+static void note_answer(EerufSensor *sensor) {
+    sensor->flags = (uint8_t)(sensor->flags & ~UNANSWERED);
+}
+
+EerufStatus eeruf_ring_answered(EerufRing *ring, uint8_t sensor) {
+    const EerufStatus status = has_sensor(ring, sensor);
+    if (status == EERUF_OK) note_answer(sensor_of(ring, sensor));
+    return status;
+}
+
+EerufStatus eeruf_ring_unanswered(EerufRing *ring, uint8_t sensor) {
+    const EerufStatus status = has_sensor(ring, sensor);
+    if (status == EERUF_OK) note(sensor_of(ring, sensor), UNANSWERED);
+    return status;
+}
+
+static void forget_readings(EerufRing *ring, uint8_t sensor) {
+    forget(&sensor_of(ring, sensor)->filter);
+#if EERUF_HOPPING
+    if (HOPS(ring)) ring->hook(ring, sensor, 0);
+#endif
+}
+
+EerufStatus eeruf_ring_forget(EerufRing *ring, uint8_t sensor) {
+    const EerufStatus status = has_sensor(ring, sensor);
+    if (status == EERUF_OK) forget_readings(ring, sensor);
     return status;
 }
 
@@ -1417,7 +1458,8 @@ EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufL
     modules->lines = lines;
     modules->settings = settings;
     modules->ready = READY;
-    return EERUF_OK;
+    /* A line that does not rise is no free space. */
+    return eeruf_ring_expect_answers(ring);
 }
 
 /* The health by the last firing, before the next trigger. */
@@ -1444,13 +1486,23 @@ static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint8_t he
     uint8_t ended;
     if (status != EERUF_OK) return status;
     line = &modules->lines[sensor];
+    if ((line->state & PULSE) == ROSE) {
+        if (health == EERUF_HEALTH_STUCK_HIGH &&
+            sensor_of(modules->ring, sensor)->fired_us[0] - line->rose_us <= modules->settings->longest_hold_us) {
+            /* It has heard nothing of an earlier trigger yet: nothing is in range. */
+            note_answer(sensor_of(modules->ring, sensor));
+            return EERUF_DO_NOT_TRIGGER;
+        }
+        /* A pulse that began and never ended: an edge got lost, and what counted as silence may have been an echo. */
+        if (health == EERUF_HEALTH_WELL) forget_readings(modules->ring, sensor);
+    }
     ended = end_firing(line, modules->settings->missing_after);
     if (health == EERUF_HEALTH_WELL) {
         line->state = (uint8_t)((uint8_t)(ended << HEALTH_AT) | AWAITED);
         return EERUF_OK;
     }
     line->state = (uint8_t)((uint8_t)(health << HEALTH_AT) | IDLE);
-    note_stuck(sensor_of(modules->ring, sensor));
+    note(sensor_of(modules->ring, sensor), STUCK);
     return EERUF_DO_NOT_TRIGGER;
 }
 
@@ -1484,6 +1536,7 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor,
         if (high) {
             set_bits(line, PULSE, ROSE);
             line->rose_us = at_us;
+            note_answer(sensor_of(modules->ring, sensor));
         } else if ((line->state & FLAW) == 0) {
             set_bits(line, FLAW, LOST_EDGE);
         }
@@ -1491,6 +1544,7 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor,
         width_us = at_us - line->rose_us;
         if (width_us < modules->settings->shortest_us) {
             line->state = (uint8_t)((line->state & ~(PULSE | FLAW)) | AWAITED | CHATTERED);
+            note(sensor_of(modules->ring, sensor), UNANSWERED);
             return EERUF_OK;
         }
         set_bits(line, PULSE, OVER);
@@ -2035,11 +2089,16 @@ static void fire_hop(EerufRing *ring, uint8_t sensor, uint32_t now_us) {
     hop_late(hopping, hopper, late_us, late_us);
 }
 
-static void postpone_hop(EerufRing *ring, uint8_t sensor, uint32_t by_us) {
+/* The hook of a hopping ring: a firing came later by so much, or, for 0, what is known of the sensor is forgotten. */
+static void correct_hop(EerufRing *ring, uint8_t sensor, uint32_t by_us) {
     EerufHoppingRing *hopping = hopping_of(ring);
     EerufHopper *hopper = &hopping->hoppers[sensor];
     const uint32_t late_us = add32(hopper->late_us, by_us);
     uint8_t at;
+    if (by_us == 0) {
+        forget_tracks(hopper);
+        return;
+    }
     /* It was noted to be less late: all that this period has had so far are noted again, since steady lateness is
        none. It is one of them, or the last of the period before. */
     if (!(hopper->flags & SOLO)) {
@@ -2147,7 +2206,7 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
 
     memset(hopping, 0, sizeof *hopping);
     set_up(&hopping->ring, NULL, sensors, config->sensors, sizeof *sensors, now_us);
-    hopping->ring.hook = postpone_hop;
+    hopping->ring.hook = correct_hop;
     status = listen(&hopping->ring, config->tracker.t_delta_us, config->window_us, config->blanking_us);
     if (status != EERUF_OK) return status;
     hopping->hoppers = hoppers;
@@ -2211,8 +2270,10 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
             weigh(hopping, event->sensor, was_steady(hopping, hopper), change, reading);
         end_weighing(&sensor_of(&hopping->ring, event->sensor)->filter, reading);
     }
-    /* Nor does silence or another lag help a sensor whose line is stuck: it costs the others nothing. */
-    if (reading->kind != EERUF_READING_LATE && reading->kind != EERUF_READING_STUCK) {
+    /* Nor does silence or another lag help a sensor whose line is stuck, or that does not answer: it costs the others
+       nothing. */
+    if (reading->kind != EERUF_READING_LATE && reading->kind != EERUF_READING_STUCK &&
+        reading->kind != EERUF_READING_UNANSWERED) {
         confirmed = reading->kind == EERUF_READING_ACCEPTED || reading->kind == EERUF_READING_CLEAR;
         served = confirmed || reading->kind == EERUF_READING_TENTATIVE;
         believed = believed_of(hopper);

@@ -261,7 +261,7 @@ typedef struct EerufEvent {
     } u;
 } EerufEvent;
 
-/* A ring: 70 bytes on an AVR. Initialise it with eeruf_ring_init; not for the caller otherwise. */
+/* A ring: 71 bytes on an AVR. Initialise it with eeruf_ring_init; not for the caller otherwise. */
 typedef struct EerufRing {
     uint16_t ready;
     const EerufSchedule *schedule, *next_schedule;
@@ -269,7 +269,7 @@ typedef struct EerufRing {
     void (*hook)(struct EerufRing *ring, uint8_t sensor, uint32_t us);
     uint32_t due_us, last_fired_us, emit_at_us, window_us, period, audible_us, known_from_us;
     uint16_t t_delta_us, blanking_us, path_change_us, latest_us, sum_late_us;
-    uint8_t count, phase, following, next, paused, oldest, pending, consecutive, watched, stride;
+    uint8_t count, phase, following, next, paused, oldest, pending, consecutive, watched, stride, unanswered;
     uint8_t tally[EERUF_READING_KINDS];
 } EerufRing;
 
@@ -307,6 +307,14 @@ EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t sensor, uint32_t at_us);
 uint32_t eeruf_ring_fired_at(const EerufRing *ring, uint8_t sensor);
 /* The echo line of a sensor was high when it was to be fired: its reading is EERUF_READING_STUCK. */
 EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor);
+
+/* From the next firing on silence needs a witness: a firing without an echo is EERUF_READING_UNANSWERED, never free
+   space, unless eeruf_ring_answered says that its sensor listened. EerufHcSr04 does all of this by its lines. */
+EerufStatus eeruf_ring_expect_answers(EerufRing *ring);
+EerufStatus eeruf_ring_answered(EerufRing *ring, uint8_t sensor);
+EerufStatus eeruf_ring_unanswered(EerufRing *ring, uint8_t sensor); /* takes it back: that was a disturbance */
+/* What is known of a sensor's echo is not what it seemed: its next reading is compared with nothing. Ages go on. */
+EerufStatus eeruf_ring_forget(EerufRing *ring, uint8_t sensor);
 
 EerufStatus eeruf_ring_enable(EerufRing *ring, uint8_t sensor, bool enabled); /* from its next turn on */
 bool eeruf_ring_is_enabled(const EerufRing *ring, uint8_t sensor);
@@ -395,10 +403,11 @@ typedef struct EerufHcSr04Settings {
     uint16_t deaf_us;          /* edges sooner after the trigger are the trigger itself, seen through the cable */
     uint16_t shortest_us;      /* shorter pulses are no echoes */
     uint32_t longest_us;       /* pulses as long as this are the module's own time-out: no echo */
+    uint32_t longest_hold_us;  /* a line that rose and is high no longer than this listens still: clones hold 200 ms */
     uint32_t min_retrigger_us; /* the data sheet advises 60 ms */
     uint8_t missing_after;     /* firings in a row without a pulse, after which a module counts as missing */
 } EerufHcSr04Settings;
-#define EERUF_HC_SR04 {EERUF_VERSION, 100, 100, 36000, 60000, 3}
+#define EERUF_HC_SR04 {EERUF_VERSION, 100, 100, 36000, 250000, 60000, 3}
 
 /* One echo line: 6 bytes on an AVR. Not for the caller. */
 typedef struct EerufLine {
@@ -420,7 +429,8 @@ typedef struct EerufHcSr04 {
 EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufLine *lines, size_t lines_size,
                                EerufRing *ring, const EerufHcSr04Settings *settings);
 /* For each EERUF_EVENT_FIRE, before the next poll: whether the echo line is high. EERUF_OK: now raise the trigger for
-   10 us. EERUF_DO_NOT_TRIGGER: leave it alone. With one pin for both, read it before it is an output. */
+   10 us. EERUF_DO_NOT_TRIGGER: leave it alone; the line is stuck, or the module has heard nothing yet and holds it. With
+   one pin for both, read it before it is an output. */
 EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, bool line_is_high);
 /* A pin could not be read before the trigger (then nothing is triggered), or written at it. */
 EerufStatus eeruf_hc_sr04_cannot_read(EerufHcSr04 *modules, uint8_t sensor);

@@ -130,7 +130,7 @@ class _Sensor:
         self.forget_firings(long_ago_us)
         self.echo_us = None
         self.outside = True  # its only edges so far came outside the window
-        self.listening = self.can_emit = self.stuck = False
+        self.listening = self.can_emit = self.stuck = self.unanswered = False
         self.forget()
 
 
@@ -171,6 +171,7 @@ class Ring:
         self.schedule = schedule
         self.t_delta_us, self.window_us, self.blanking_us = t_delta_us, window_us, blanking_us
         self.consecutive = consecutive
+        self.expects_answers = False  # whether silence counts only where `answered` says that the sensor listened
         self._known_from = (now_us - self._long_ago) & self._mask  # firings before are not known
         self._sensors = [_Sensor(self._known_from) for _ in range(schedule.sensors)]
         self._oldest, self._pending, self._emit_at = NOBODY, 0, now_us
@@ -369,6 +370,7 @@ class Ring:
         late_us = min((now_us - self._due) & self._mask, 0xFFFF)
         sensor.listening, sensor.phase = True, self._phase
         sensor.can_emit = sensor.outside = sensor.stuck = False
+        sensor.unanswered = self.expects_answers
         firings = sensor.firings
         for i in range(_REMEMBERED - 1, 0, -1):
             firings[i] = firings[i - 1]
@@ -392,6 +394,9 @@ class Ring:
             kind, echo = STUCK, None
         elif sensor.outside:
             kind = TOO_EARLY
+        elif sensor.unanswered and echo is None:
+            sensor.forget()
+            kind, previous = UNANSWERED, None
         else:
             if echo is None or previous is None:
                 near = echo is None and previous is None
@@ -521,6 +526,16 @@ class Ring:
         if self._sensors[x].listening:
             self._sensors[x].stuck = True
 
+    def answered(self, x, answered=True):
+        """A sensor has shown that it listens, or what looked like that was a disturbance. While `expects_answers` is true,
+        a firing without either echo or answer is UNANSWERED, never free space."""
+        if self._sensors[x].listening:
+            self._sensors[x].unanswered = not answered
+
+    def forget(self, x):
+        """What is known of a sensor's echo is not what it seemed: its next reading is compared with nothing."""
+        self._sensors[x].forget()
+
     def enable(self, x, enabled=True):
         """Lets a sensor fire, or not, from its next turn on."""
         sensor = self._sensors[x]
@@ -552,6 +567,7 @@ class HcSr04Ring:
     be handed in. A reading is what `Ring.poll` says; `read` samples the lines, so call it often."""
 
     DEAF_US, SHORTEST_US, LONGEST_US = 100, 100, 36000
+    LONGEST_HOLD_US = 250000  # a line that rose and is high no longer than this listens still: clones hold 200 ms
     SOON_US = 1000  # what is due so soon is waited for: modules that fire late by differing times compare less
 
     def __init__(self, schedule, pins, echoes=None, machine=None, time=None, **ring):
@@ -578,6 +594,8 @@ class HcSr04Ring:
             bits += 1
         ring.setdefault("clock_bits", bits)
         self.ring = Ring(schedule, time.ticks_us(), **ring)
+        # A line that does not rise is no free space.
+        self.ring.expects_answers = True
         self._rose = [None] * len(pins)
         self._awaits = [False] * len(pins)
 
@@ -592,6 +610,7 @@ class HcSr04Ring:
             if rose is None:
                 if high and self._time.ticks_diff(now, fired) >= self.DEAF_US:
                     self._rose[x] = now
+                    self.ring.answered(x)
             elif not high:
                 width = self._time.ticks_diff(now, rose)
                 self._rose[x] = None
@@ -599,11 +618,21 @@ class HcSr04Ring:
                     self._awaits[x] = False
                     if width < self.LONGEST_US:
                         self.ring.echo(x, self._time.ticks_add(fired, width))
+                else:
+                    self.ring.answered(x, False)
 
     def _trigger(self, x):
-        pin = self._triggers[x]
+        pin, rose, high = self._triggers[x], self._rose[x], self._echoes[x].value()
+        if high and rose is not None:
+            if self._time.ticks_diff(self.ring._sensors[x].firings[0], rose) <= self.LONGEST_HOLD_US:
+                # It has heard nothing of an earlier trigger yet: nothing is in range.
+                self.ring.answered(x)
+                return
+        elif rose is not None:
+            # Its pulse never ended: what counted as silence may have been an echo.
+            self.ring.forget(x)
         self._rose[x], self._awaits[x] = None, False
-        if self._echoes[x].value():
+        if high:
             self.ring.stuck(x)
             return
         if self._one_pin:

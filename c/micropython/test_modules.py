@@ -1,7 +1,7 @@
 """HcSr04Ring on simulated modules, whose clock has 30 bits and wraps, as on most boards."""
 
 from eeruf import (
-    ACCEPTED, AGE, AMBIGUOUS, EXPLAINED_BY, FIRST, HISTORY, KIND, REJECTED, SENSOR, STUCK, T_ECHO,
+    ACCEPTED, AGE, AMBIGUOUS, CLEAR, EXPLAINED_BY, FIRST, HISTORY, KIND, REJECTED, SENSOR, STUCK, T_ECHO, UNANSWERED,
     HcSr04Ring, Ring, Schedule,
 )  # fmt: skip
 
@@ -31,7 +31,7 @@ class Clock:
 class Machine:
     """`machine`: each pin a module that answers after 450 us with a pulse as long as its echo took."""
 
-    def __init__(self, clock, echo_us, high):
+    def __init__(self, clock, echo_us, high, cut=()):
         machine = self
 
         class Pin:
@@ -49,7 +49,7 @@ class Machine:
                 if level is None:
                     if self.number in high:
                         return 1
-                    if self.fired is None:
+                    if self.fired is None or self.number in cut:
                         return 0
                     return int(450 <= clock.now - self.fired < 450 + echo_us[self.number])
                 if self.mode != self.OUT:
@@ -81,6 +81,21 @@ def run(start, high):
                 raise AssertionError("sensor %d reads %d us too far or too near" % (x, off))
         stuck[x] += reading[KIND] == STUCK
     return machine.firings, accepted, stuck
+
+
+def silence():
+    """A cut wire is no free space; a module that holds its line for 38 ms has nothing in range."""
+    clock = Clock(0)
+    machine = Machine(clock, {4: 1200, 5: 1200, 6: 38000}, (), cut=(5,))
+    schedule = Schedule(62000, [[2000, 22000, 42000], [0, 22000, 43000]]).verify(387, 14569, 60000, 3)
+    ring = HcSr04Ring(schedule, [4, 5, 6], machine=machine, time=clock)
+    kinds = [[], [], []]
+    while clock.now < 2000000:
+        reading = ring.read()
+        if reading is not None:
+            kinds[reading[SENSOR]].append(reading[KIND])
+    if set(kinds[1]) != {UNANSWERED} or set(kinds[2][1:]) != {CLEAR} or set(kinds[0][1:]) != {ACCEPTED}:
+        raise AssertionError("silence: %r" % kinds)
 
 
 def border():
@@ -149,6 +164,7 @@ def room():
 
 def main():
     border()
+    silence()
     ambiguous()
     room()
     for start in (0, PERIOD - 1000000):

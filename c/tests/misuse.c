@@ -370,6 +370,87 @@ static void hopping_rings(void) {
 }
 #endif
 
+/* Modules whose driver is not called, or whose lines show nothing, are not told as free space; what one edge of two
+   shows is not confirmed. */
+static void silence_needs_a_witness(void) {
+    EerufHcSr04Settings settings = EERUF_HC_SR04;
+    EerufConfig config = EERUF_CONFIG;
+    EerufHcSr04 four;
+    EerufLine lines[SENSORS];
+    unsigned kinds[SENSORS][EERUF_READING_KINDS], periods = 0;
+    uint32_t now = 0;
+    memset(kinds, 0, sizeof kinds);
+    settings.min_retrigger_us = 54000;
+    EXPECT(eeruf_ring_init(&ring, sizeof ring, sensors, sizeof sensors, &schedule, &config, now), EERUF_OK);
+    EXPECT(eeruf_hc_sr04_init(&four, sizeof four, lines, sizeof lines, &ring, &settings), EERUF_OK);
+    while (periods < 20) {
+        now = eeruf_ring_deadline(&ring);
+        if (eeruf_ring_poll(&ring, now, &event) != EERUF_EVENT) continue;
+        if (event.kind == EERUF_EVENT_PERIOD) periods++;
+        if (event.kind == EERUF_EVENT_READING) kinds[event.sensor][event.u.reading.kind]++;
+        /* Nobody calls it for sensor 0; sensor 1 does not answer; of sensor 2 falling edges get lost; 3 is well. */
+        if (event.kind != EERUF_EVENT_FIRE || event.sensor == 0) continue;
+        EXPECT(eeruf_hc_sr04_fire(&four, event.sensor, false), EERUF_OK);
+        if (event.sensor >= 2) EXPECT(eeruf_hc_sr04_edge(&four, event.sensor, true, now + 450), EERUF_OK);
+        if (event.sensor == 3) EXPECT(eeruf_hc_sr04_edge(&four, event.sensor, false, now + 38450), EERUF_OK);
+    }
+    EXPECT(kinds[0][EERUF_READING_UNANSWERED] + kinds[1][EERUF_READING_UNANSWERED], 2 * 20);
+    EXPECT(kinds[2][EERUF_READING_NO_ECHO], 19); /* the last is pending */
+    EXPECT(kinds[3][EERUF_READING_CLEAR], 18);
+    EXPECT(eeruf_hc_sr04_health(&four, 1), EERUF_HEALTH_MISSING);
+    EXPECT(eeruf_hc_sr04_health(&four, 2), EERUF_HEALTH_LOSES_EDGES);
+    EXPECT(eeruf_ring_expect_answers(NULL), EERUF_ERR_NULL);
+    EXPECT(eeruf_ring_answered(&ring, SENSORS), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_ring_unanswered(&not_ready, 0), EERUF_ERR_NOT_READY);
+    EXPECT(eeruf_ring_forget(&ring, SENSORS), EERUF_ERR_SENSOR);
+}
+
+/* Clones hold their line far longer than it takes to the next firing: they listen still, and are clear and well. Longer
+   than that the line is stuck. */
+static void a_line_that_is_held_listens_still(void) {
+    static const uint32_t HOLDS_MS[] = {38, 66, 130, 200, 1000};
+    EerufHcSr04Settings settings = EERUF_HC_SR04;
+    EerufConfig config = EERUF_CONFIG;
+    unsigned run;
+    settings.min_retrigger_us = 54000;
+    for (run = 0; run < sizeof HOLDS_MS / sizeof HOLDS_MS[0]; run++) {
+        EerufHcSr04 four;
+        EerufLine lines[SENSORS];
+        unsigned kinds[EERUF_READING_KINDS], readings = 0, well = 0;
+        uint32_t falls_us = 0, next;
+        bool high = false;
+        memset(kinds, 0, sizeof kinds);
+        EXPECT(eeruf_ring_init(&ring, sizeof ring, sensors, sizeof sensors, &schedule, &config, 0), EERUF_OK);
+        EXPECT(eeruf_hc_sr04_init(&four, sizeof four, lines, sizeof lines, &ring, &settings), EERUF_OK);
+        while (readings < 100) {
+            next = eeruf_ring_deadline(&ring);
+            if (high && falls_us <= next) {
+                next = falls_us;
+                high = false;
+                EXPECT(eeruf_hc_sr04_edge(&four, 3, false, falls_us), EERUF_OK);
+            }
+            if (eeruf_ring_poll(&ring, next, &event) != EERUF_EVENT || event.sensor != 3) continue;
+            if (event.kind == EERUF_EVENT_READING) {
+                readings++;
+                kinds[event.u.reading.kind]++;
+            }
+            if (event.kind != EERUF_EVENT_FIRE) continue;
+            if (eeruf_hc_sr04_fire(&four, 3, high) == EERUF_OK) {
+                high = true;
+                falls_us = next + 450 + 1000 * HOLDS_MS[run];
+                EXPECT(eeruf_hc_sr04_edge(&four, 3, true, next + 450), EERUF_OK);
+            }
+            if (eeruf_hc_sr04_health(&four, 3) == EERUF_HEALTH_WELL) well++;
+        }
+        if (HOLDS_MS[run] < 250) {
+            EXPECT(kinds[EERUF_READING_CLEAR], 99);
+            EXPECT(well >= 100, 1);
+        } else {
+            EXPECT(kinds[EERUF_READING_STUCK] > 60, 1);
+        }
+    }
+}
+
 int main(void) {
     EXPECT(eeruf_version(), EERUF_VERSION);
     EXPECT(strcmp(eeruf_reading_name(EERUF_READING_CLEAR), "clear"), 0);
@@ -382,6 +463,8 @@ int main(void) {
     rings();
     filters_and_edges();
     modules();
+    silence_needs_a_witness();
+    a_line_that_is_held_listens_still();
     adaptations();
 #if EERUF_HOPPING
     hopping_rings();

@@ -1,13 +1,15 @@
 /* A small world around a simulated Arduino: HC-SR04 modules on its pins, in a room where they hear each other.
  *
- *   world [--pulses] [--mega] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..
+ *   world [--pulses] [--mega] [--cut MODULE] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..
  *
  * ECHO_TIMES has a line for each way that sound takes: emitter, receiver, microseconds; `crates/eeruf-sim`'s example
  * echo_times writes it. Pins are the Uno's numbers, or with --mega those of a Mega 2560; the same pin twice is a module
- * with one pin. What the sketch says on its serial line goes to standard output; then come lines that begin with `world`:
- * firings of each module, triggers that came while its line was high, how deep the stack ever was in bytes, and which
+ * with one pin. What the sketch says on its serial line goes to standard output; then come lines that begin with
+ * `world`: firings of each module, triggers that came while its line was high, how deep the stack ever was in bytes, and which
  * share of the time, in millionths, passed in interrupts. With --pulses there is also a line for each pulse that sound
  * has ended: the module from 1, and whose sound it was: `own`, `earlier` for its own from an earlier firing, `foreign`.
+ *
+ * With --cut the trigger of a module, counted from 1, is not connected.
  *
  * A module whose trigger falls sends its sound 450 us later and raises its line, until the first sound reaches it, its
  * own or another's, or until 38 ms are over. It is deaf for the first 150 us. Time is the board's own, to the cycle. */
@@ -38,6 +40,7 @@ static struct Module {
     unsigned firings, ignored;
 } modules[MODULES];
 static int says_pulses;
+static int cut = -1; /* the module whose trigger wire is cut, if one is */
 static int module_count;
 
 /* The pins of a board from 0 on, each by its port and bit; the last are A0 to A5 of an Uno, A0 to A15 of a Mega. */
@@ -176,6 +179,7 @@ static void look_at_triggers(void) {
             module->triggered = 0;
             /* Too short for a module. Data sheets ask for 10 us, of which delayMicroseconds(10) may take a little off. */
             if (avr->cycle - module->fired < avr_usec_to_cycles(avr, 9)) continue;
+            if (i == cut) continue;
             if (module->line_high) {
                 module->ignored++;
                 continue;
@@ -247,10 +251,12 @@ int main(int argc, char **argv) {
     for (; argc > 1 && argv[1][0] == '-'; argc--, argv++) {
         if (strcmp(argv[1], "--pulses") == 0) says_pulses = 1;
         else if (strcmp(argv[1], "--mega") == 0) board = &mega;
+        else if (strcmp(argv[1], "--cut") == 0 && argc > 2) cut = atoi(argv[2]) - 1, argc--, argv++;
         else break;
     }
     if (argc < 5 || (module_count = atoi(argv[4])) < 1 || module_count > MODULES || argc != 5 + 2 * module_count) {
-        fprintf(stderr, "usage: world [--pulses] [--mega] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. "
+        fprintf(stderr, "usage: world [--pulses] [--mega] [--cut MODULE] SKETCH.elf SECONDS ECHO_TIMES MODULES "
+                        "TRIGGER_PIN.. "
                         "ECHO_PIN..\n");
         return 2;
     }
@@ -258,8 +264,8 @@ int main(int argc, char **argv) {
         modules[i].trigger = atoi(argv[5 + i]);
         modules[i].echo = atoi(argv[5 + module_count + i]);
         if (!is_pin(modules[i].trigger) || !is_pin(modules[i].echo)) {
-            fprintf(stderr, "pins %d and %d of module %d: expected pins of an %s\n", modules[i].trigger, modules[i].echo,
-                    i + 1, board->controller);
+            fprintf(stderr, "pins %d and %d of module %d: expected pins of an %s\n", modules[i].trigger,
+                    modules[i].echo, i + 1, board->controller);
             return 2;
         }
     }

@@ -105,6 +105,10 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
     assert_eq!(status, 0, "{r}");
     let mut world = World::new(r.clone(), K as u8, window);
     world.now = start;
+    if r.once_in(2) {
+        ring.expect_answers();
+        same::<()>(&mut c, Do::ExpectAnswers, 0, 0, Ok(()));
+    }
     let moves = r.once_in(3);
     let mut count = 0;
     for step in 0..4_000 {
@@ -159,6 +163,15 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
                     world.fired(sensor);
                     if world.random.once_in(60) {
                         same(&mut c, Do::Stuck, sensor, 0, ring.stuck(sensor));
+                    }
+                    if world.random.once_in(2) {
+                        same(&mut c, Do::Answered, sensor, 0, ring.answered(sensor));
+                        if world.random.once_in(4) {
+                            same(&mut c, Do::Unanswered, sensor, 0, ring.unanswered(sensor));
+                        }
+                    }
+                    if world.random.once_in(40) {
+                        same(&mut c, Do::Forget, sensor, 0, ring.forget(sensor));
                     }
                     if world.random.once_in(15) {
                         let at = world.now.wrapping_add(world.random.duration(2_000));

@@ -49,6 +49,10 @@ pub enum Do {
     SetPathChange,
     SetAudible,
     FiredAt,
+    ExpectAnswers,
+    Answered,
+    Unanswered,
+    Forget,
     Solo,
 }
 

@@ -198,6 +198,10 @@ where
     assert_eq!(status, 0, "{r}");
     let mut world = World::new(r.clone(), sensors, ring.window().as_micros());
     world.now = start;
+    if r.once_in(2) {
+        ring.expect_answers();
+        same::<()>(&mut c, Do::ExpectAnswers, 0, 0, Ok(()));
+    }
     let moves = r.once_in(3);
     let acts = r.one_of(&[10, 100, 1_000]);
     let mut count = 0;
@@ -226,6 +230,15 @@ where
                 world.fired(sensor);
                 if world.random.once_in(40) {
                     same(&mut c, Do::Stuck, sensor, 0, ring.stuck(sensor));
+                }
+                if world.random.once_in(2) {
+                    same(&mut c, Do::Answered, sensor, 0, ring.answered(sensor));
+                    if world.random.once_in(4) {
+                        same(&mut c, Do::Unanswered, sensor, 0, ring.unanswered(sensor));
+                    }
+                }
+                if world.random.once_in(40) {
+                    same(&mut c, Do::Forget, sensor, 0, ring.forget(sensor));
                 }
                 if world.random.once_in(15) {
                     let early = world.random.once_in(2);

@@ -38,7 +38,8 @@ pub enum ReadingKind {
     /// Near-identical to the reading before, though sound of another firing explains both: [`Explanation`] names it.
     /// Only from a [`Ring`](crate::Ring).
     Ambiguous,
-    /// No evidence at all: neither an echo nor a witness that the sensor listened.
+    /// No evidence at all: neither an echo nor a witness that the sensor listened
+    /// ([`Ring::expect_answers`](crate::Ring::expect_answers)). Never free space.
     Unanswered,
 }
 

@@ -69,9 +69,9 @@ impl fmt::Display for NoSchedule {
                  expected a larger budget or time limit"
             }
             Self::Handling => {
-                "no schedule: none of the ways that were tried to keep all firings apart by handling_us meets the rest, \
-                 in the shortest period without it; expected a shorter handling_us or a larger t_delta_us, which leaves \
-                 more room"
+                "no schedule: none of the ways that were tried to keep all firings apart by handling_us meets the \
+                 rest, in the shortest period without it; expected a shorter handling_us or a larger t_delta_us, \
+                 which leaves more room"
             }
         })
     }

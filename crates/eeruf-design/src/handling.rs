@@ -1,9 +1,9 @@
 //! Firings that wait for each other: a controller needs some time for each, and gives it to one after the other.
 //!
 //! A schedule may let sensors fire at the same instant that do not hear each other. The controller fires them one by
-//! one, so that all but the first come late, by more the more there are; each time differently, since others coincide in
-//! the other phase. What was proven of the planned times does not hold of the real ones, and readings become ambiguous.
-//! So firings are moved apart by as much as one takes, within what the schedule has to spare.
+//! one, so that all but the first come late, by more the more there are; each time differently, since others coincide
+//! in the other phase. What was proven of the planned times does not hold of the real ones, and readings become
+//! ambiguous. So firings are moved apart by as much as one takes, within what the schedule has to spare.
 
 use eeruf_core::{MAX_SENSORS, Micros, Phase};
 use eeruf_sim::{AnySchedule, Random};
@@ -15,9 +15,9 @@ const TRIES: u32 = 5_000;
 const SEED: u64 = 1;
 
 impl RingSpec {
-    /// Returns the schedule with all firings apart by what the controller needs for one: of the ways that were tried the
-    /// one that keeps most separation; none if none of them keeps what the ring needs. Those that fire together by demand
-    /// still do.
+    /// Returns the schedule with all firings apart by what the controller needs for one: of the ways that were tried
+    /// the one that keeps most separation; none if none of them keeps what the ring needs. Those that fire together by
+    /// demand still do.
     pub(crate) fn moved_apart(&self, schedule: &AnySchedule) -> Option<AnySchedule> {
         if self.handling == Micros::ZERO {
             return Some(*schedule);
@@ -49,8 +49,8 @@ impl RingSpec {
         ways.max_by_key(|way| way.verify(&requirements).max_t_delta())
     }
 
-    /// The schedule of these firing times, if it meets the ring's needs and no firing comes sooner after another one. All
-    /// are moved into the middle of the period: what is to be done at its end makes no firing late.
+    /// The schedule of these firing times, if it meets the ring's needs and no firing comes sooner after another one.
+    /// All are moved into the middle of the period: what is to be done at its end makes no firing late.
     fn is_met_apart(&self, t_fire: &[[Micros; MAX_SENSORS]; 2], period: Micros) -> Option<AnySchedule> {
         let times = t_fire.each_ref().map(|times| times.get(..self.sensors).unwrap_or_default());
         let first = times.map(|times| times.iter().copied().min().unwrap_or_default());

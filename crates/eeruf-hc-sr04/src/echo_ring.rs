@@ -29,6 +29,23 @@ pub trait EchoRing<const K: usize> {
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
     fn stuck(&mut self, sensor: u8) -> Result<(), SensorError>;
+    /// Asks silence for a witness, from the next firing on.
+    fn expect_answers(&mut self);
+    /// A sensor has shown that it listens.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    fn answered(&mut self, sensor: u8) -> Result<(), SensorError>;
+    /// What looked like an answer was a disturbance.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    fn unanswered(&mut self, sensor: u8) -> Result<(), SensorError>;
+    /// The last reading of a sensor was not what it seemed.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    fn forget(&mut self, sensor: u8) -> Result<(), SensorError>;
     /// Stops a sensor from firing.
     ///
     /// # Errors
@@ -72,6 +89,18 @@ macro_rules! echo_ring {
             }
             fn stuck(&mut self, sensor: u8) -> Result<(), SensorError> {
                 self.stuck(sensor)
+            }
+            fn expect_answers(&mut self) {
+                self.expect_answers();
+            }
+            fn answered(&mut self, sensor: u8) -> Result<(), SensorError> {
+                self.answered(sensor)
+            }
+            fn unanswered(&mut self, sensor: u8) -> Result<(), SensorError> {
+                self.unanswered(sensor)
+            }
+            fn forget(&mut self, sensor: u8) -> Result<(), SensorError> {
+                self.forget(sensor)
             }
             fn disable(&mut self, sensor: u8) -> Result<(), SensorError> {
                 self.disable(sensor)

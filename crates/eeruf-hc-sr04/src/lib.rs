@@ -8,6 +8,8 @@
 //! - pulses too short for an echo, and further pulses of a line that chatters;
 //! - a line stuck high: the sensor is not triggered, and its reading is
 //!   [`ReadingKind::Stuck`](eeruf_core::ReadingKind::Stuck);
+//! - a line that never rises after its trigger: the reading is
+//!   [`ReadingKind::Unanswered`](eeruf_core::ReadingKind::Unanswered), never free space;
 //! - a sensor that is not there, or edges that get lost on the way: [`HcSr04Ring::health`] says so;
 //! - a schedule that would trigger a sensor again too soon: it is refused when the ring is set up.
 //!

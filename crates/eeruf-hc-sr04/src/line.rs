@@ -18,6 +18,19 @@ pub(crate) enum Pulse {
     Over,
 }
 
+/// What an edge says of a firing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shown {
+    /// Nothing that is not known.
+    Nothing,
+    /// The line rose: the sensor listens.
+    Answer,
+    /// The pulse was too short for an echo: it does not after all.
+    Disturbance,
+    /// The echo is in, this long after the sound was sent.
+    Echo(Micros),
+}
+
 /// One echo line and the state of its sensor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
@@ -33,44 +46,50 @@ impl Line {
     /// Before the first trigger.
     pub(crate) const NEW: Self = Self { pulse: Pulse::Idle, silent: 0, flaw: Health::Well, health: Health::Well };
 
-    /// The width of the pulse that an edge ends, if that is an echo of what was `fired` then.
-    pub(crate) fn edge(&mut self, edge: Edge, fired: Instant, settings: &Settings) -> Option<Micros> {
+    /// What an edge says of what was `fired` then.
+    pub(crate) fn edge(&mut self, edge: Edge, fired: Instant, settings: &Settings) -> Shown {
         if !edge.at.has_reached(fired) || edge.at.since(fired) < settings.deaf {
-            return None;
+            return Shown::Nothing;
         }
         match (self.pulse, edge.high) {
             (Pulse::Awaited, true) => {
                 self.pulse = Pulse::Rose(edge.at);
                 self.silent = 0;
-                None
+                Shown::Answer
             }
             (Pulse::Rose(rose), false) => {
                 let width = edge.at.since(rose);
                 if width < settings.shortest {
                     self.pulse = Pulse::Awaited;
                     self.flaw = Health::Chatters;
-                    return None;
+                    return Shown::Disturbance;
                 }
                 self.pulse = Pulse::Over;
-                (width < settings.longest).then_some(width)
+                if width < settings.longest { Shown::Echo(width) } else { Shown::Nothing }
             }
             (Pulse::Over, true) => {
                 self.flaw = Health::Chatters;
-                None
+                Shown::Nothing
             }
             (Pulse::Awaited, false) => {
                 if self.flaw == Health::Well {
                     self.flaw = Health::LosesEdges;
                 }
                 self.silent = 0;
-                None
+                Shown::Nothing
             }
-            _ => None,
+            _ => Shown::Nothing,
         }
     }
 
-    /// Sets the health by the last firing, before the next trigger.
-    pub(crate) fn end_firing(&mut self, missing_after: u8) {
+    /// Whether a line that is high rose after its trigger and no longer ago than a healthy sensor holds it.
+    pub(crate) fn listens_still(&self, now: Instant, longest_hold: Micros) -> bool {
+        matches!(self.pulse, Pulse::Rose(rose) if now.since(rose) <= longest_hold)
+    }
+
+    /// Sets the health by the last firing, before the next trigger. Returns whether its line rose and never fell: an
+    /// edge got lost, and what counted as silence may have been an echo.
+    pub(crate) fn end_firing(&mut self, missing_after: u8) -> bool {
         match self.pulse {
             Pulse::Awaited if self.flaw == Health::Well => {
                 self.silent = self.silent.saturating_add(1);
@@ -86,5 +105,6 @@ impl Line {
             Pulse::Idle => {}
         }
         self.flaw = Health::Well;
+        matches!(self.pulse, Pulse::Rose(_))
     }
 }

@@ -6,7 +6,7 @@ use embedded_hal::digital::{InputPin, OutputPin};
 
 use crate::error::SetupError;
 use crate::health::Health;
-use crate::line::{Line, Pulse};
+use crate::line::{Line, Pulse, Shown};
 use crate::settings::Settings;
 
 /// The two pins of one sensor.
@@ -38,10 +38,10 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
         self.settings.allow(min_refire)
     }
 
-    /// When the echo of what was `fired` then came, if this edge is the end of one.
-    pub(crate) fn edge(&mut self, edge: Edge, fired: Instant) -> Option<Instant> {
-        let line = self.lines.get_mut(usize::from(edge.sensor))?;
-        line.edge(edge, fired, &self.settings).map(|width| fired + width)
+    /// What this edge says of what was `fired` then.
+    pub(crate) fn edge(&mut self, edge: Edge, fired: Instant) -> Shown {
+        let line = self.lines.get_mut(usize::from(edge.sensor));
+        line.map_or(Shown::Nothing, |line| line.edge(edge, fired, &self.settings))
     }
 
     pub(crate) fn health(&self, sensor: u8) -> Health {
@@ -50,21 +50,27 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
 }
 
 impl<T: OutputPin, I: InputPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
-    /// Triggers a sensor, unless its line is high or cannot be read; whether it did.
-    pub(crate) fn trigger(&mut self, sensor: u8) -> bool {
+    /// Triggers a sensor, unless its line is high or cannot be read.
+    pub(crate) fn trigger(&mut self, sensor: u8, now: Instant) -> Trigger {
         let x = usize::from(sensor);
-        let (Some(line), Some(pins)) = (self.lines.get_mut(x), self.pins.get_mut(x)) else { return true };
-        line.end_firing(self.settings.missing_after);
+        let (Some(line), Some(pins)) = (self.lines.get_mut(x), self.pins.get_mut(x)) else {
+            return Trigger::Given { lost_an_edge: false };
+        };
+        let level = pins.echo.is_high();
+        if matches!(level, Ok(true)) && line.listens_still(now, self.settings.longest_hold) {
+            return Trigger::ListensStill;
+        }
+        let lost_an_edge = line.end_firing(self.settings.missing_after);
         line.pulse = Pulse::Idle;
-        match pins.echo.is_high() {
+        match level {
             Ok(false) => {}
             Ok(true) => {
                 line.health = Health::StuckHigh;
-                return false;
+                return Trigger::Withheld;
             }
             Err(_) => {
                 line.health = Health::PinError;
-                return false;
+                return Trigger::Withheld;
             }
         }
         line.pulse = Pulse::Awaited;
@@ -74,6 +80,20 @@ impl<T: OutputPin, I: InputPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
         if pins.trigger.set_low().is_err() || rose.is_err() {
             line.health = Health::PinError;
         }
-        true
+        Trigger::Given { lost_an_edge }
     }
+}
+
+/// What came of a trigger.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Trigger {
+    /// It was given.
+    Given {
+        /// Whether the pulse of the firing before began and never ended: what counted as silence may have been an echo.
+        lost_an_edge: bool,
+    },
+    /// It was not: the line is stuck, or cannot be read.
+    Withheld,
+    /// Nor was it, but the sensor has heard nothing of an earlier one yet and holds its line: nothing is in range.
+    ListensStill,
 }

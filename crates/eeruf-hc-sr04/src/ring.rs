@@ -10,7 +10,8 @@ use embedded_hal::digital::{InputPin, OutputPin};
 use crate::echo_ring::EchoRing;
 use crate::error::SetupError;
 use crate::health::Health;
-use crate::lines::{Lines, Pins};
+use crate::line::Shown;
+use crate::lines::{Lines, Pins, Trigger};
 use crate::settings::Settings;
 
 /// A ring whose firings are triggers on pins and whose echoes are pulses on lines: a [`Ring`], or a
@@ -29,8 +30,10 @@ impl<R: EchoRing<K>, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr
     ///
     /// # Errors
     /// [`SetupError::Retrigger`] if the ring fires a sensor again sooner than it may be triggered.
-    pub fn new(ring: R, pins: [Pins<T, I>; K], delay: D, settings: Settings) -> Result<Self, SetupError> {
+    pub fn new(mut ring: R, pins: [Pins<T, I>; K], delay: D, settings: Settings) -> Result<Self, SetupError> {
         settings.allow(ring.min_refire())?;
+        // A line that does not rise is no free space.
+        ring.expect_answers();
         Ok(Self { ring, lines: Lines::new(pins, delay, settings) })
     }
 
@@ -46,10 +49,13 @@ impl<R: EchoRing<K>, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr
     pub fn poll_expecting(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         let event = self.ring.poll_expecting(now, expected_change_us)?;
         if let RingEvent::Fire { sensor, .. } = event {
-            if !self.lines.trigger(sensor) {
-                // It is there: it has just fired.
-                _ = self.ring.stuck(sensor);
-            }
+            // It is there: it has just fired.
+            _ = match self.lines.trigger(sensor, now) {
+                Trigger::Given { lost_an_edge: false } => Ok(()),
+                Trigger::Given { lost_an_edge: true } => self.ring.forget(sensor),
+                Trigger::Withheld => self.ring.stuck(sensor),
+                Trigger::ListensStill => self.ring.answered(sensor),
+            };
         }
         Some(event)
     }
@@ -74,12 +80,16 @@ impl<R: EchoRing<K>, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
     pub fn edge(&mut self, edge: Edge) -> Result<(), SensorError> {
-        let at = match self.ring.last_firing(edge.sensor) {
-            Some(fired) => self.lines.edge(edge, fired),
+        let Some(fired) = self.ring.last_firing(edge.sensor) else {
             // The ring says that it is not there.
-            None => Some(edge.at),
+            return self.ring.echo(edge.sensor, edge.at);
         };
-        at.map_or(Ok(()), |at| self.ring.echo(edge.sensor, at))
+        match self.lines.edge(edge, fired) {
+            Shown::Nothing => Ok(()),
+            Shown::Answer => self.ring.answered(edge.sensor),
+            Shown::Disturbance => self.ring.unanswered(edge.sensor),
+            Shown::Echo(t_echo) => self.ring.echo(edge.sensor, fired + t_echo),
+        }
     }
 
     /// As [`Ring::fired`], where a sensor was triggered at another instant than the poll said.

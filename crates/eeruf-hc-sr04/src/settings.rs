@@ -16,6 +16,9 @@ pub struct Settings {
     pub shortest: Micros,
     /// Pulses as long as this are the sensor's own time-out: no echo.
     pub longest: Micros,
+    /// How long a healthy sensor holds its line at most where nothing is in range; many clones do for 130 to 200 ms. A
+    /// line that rose after its trigger and is high for no longer is still listening, not stuck.
+    pub longest_hold: Micros,
     /// No sensor may be triggered again sooner; the data sheet advises 60 ms.
     pub min_retrigger: Micros,
     /// After so many firings in a row without a pulse a sensor counts as missing.
@@ -37,6 +40,7 @@ impl Default for Settings {
             deaf: Micros::new(100),
             shortest: Micros::new(100),
             longest: Micros::from_millis(36),
+            longest_hold: Micros::from_millis(250),
             min_retrigger: Micros::from_millis(60),
             missing_after: 3,
         }

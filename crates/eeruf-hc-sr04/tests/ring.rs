@@ -118,7 +118,32 @@ fn a_missing_sensor_is_named_after_three_firings_without_a_pulse() {
     assert_eq!(run(3, false, [&echo(5_000), none, &echo(20_000)]).1[1], Health::Well);
     let (tallies, health) = run(10, false, [&echo(5_000), none, &echo(20_000)]);
     others_are_well(&tallies, &health);
-    assert_eq!((tallies[1].of(ReadingKind::Clear), health[1]), (9, Health::Missing));
+    assert_eq!((tallies[1].of(ReadingKind::Unanswered), health[1]), (10, Health::Missing));
+}
+
+#[test]
+fn no_line_that_shows_nothing_is_told_as_free_space() {
+    let faults: [(&str, Line<'_>, ReadingKind); 6] = [
+        ("a cut wire", &|_| vec![], ReadingKind::Unanswered),
+        ("a lost rise", &|_| vec![(12_450, false)], ReadingKind::Unanswered),
+        ("a lost fall", &|_| vec![(450, true)], ReadingKind::NoEcho),
+        ("a glitch", &|_| vec![(3_000, true), (3_005, false)], ReadingKind::Unanswered),
+        ("glitches", &|_| vec![(300, true), (360, false), (9_000, true), (9_080, false)], ReadingKind::Unanswered),
+        // The line answers in every other firing only: nothing is confirmed by one.
+        (
+            "a loose wire",
+            &|n| if n % 2 == 0 { vec![] } else { vec![(450, true), (38_450, false)] },
+            ReadingKind::NoEcho,
+        ),
+    ];
+    for (fault, line, kind) in faults {
+        let (tallies, health) = run(20, false, [&echo(5_000), line, &echo(20_000)]);
+        let of = |kind| tallies[1].of(kind);
+        assert_eq!(of(ReadingKind::Clear), 0, "{fault}");
+        assert!(of(kind) >= 9 && of(ReadingKind::Accepted) == 0, "{fault}: {:?}", tallies[1]);
+        assert_eq!(tallies[0].of(ReadingKind::Accepted), 19, "{fault}");
+        assert_eq!(health[0], Health::Well, "{fault}");
+    }
 }
 
 #[test]
@@ -134,11 +159,12 @@ fn a_line_whose_edges_get_lost_is_named_and_no_width_is_made_of_what_is_left() {
     let rises_lost = |_| vec![(12_450, false)];
     let (tallies, health) = run(10, false, [&echo(5_000), &rises_lost, &echo(20_000)]);
     others_are_well(&tallies, &health);
-    assert_eq!((tallies[1].of(ReadingKind::Clear), health[1]), (9, Health::LosesEdges));
+    assert_eq!((tallies[1].of(ReadingKind::Unanswered), health[1]), (10, Health::LosesEdges));
     let falls_lost = |_| vec![(450, true)];
     let (tallies, health) = run(10, false, [&echo(5_000), &falls_lost, &echo(20_000)]);
     others_are_well(&tallies, &health);
-    assert_eq!((tallies[1].of(ReadingKind::Clear), health[1]), (9, Health::LosesEdges));
+    // Each may have had an echo.
+    assert_eq!((tallies[1].of(ReadingKind::NoEcho), health[1]), (10, Health::LosesEdges));
 }
 
 #[test]

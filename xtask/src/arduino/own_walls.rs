@@ -44,7 +44,7 @@ pub(super) fn run(library: &Path, short: bool) -> Result<(), Trouble> {
         for scattered in [false, true] {
             let shares = accepted(&world, &sketch.elf, board, pins, seconds, scattered)?;
             let (all, (worst, module)) = shares;
-            let _ = write!(row, " {:.1} %, {:.1} % |", all, worst);
+            let _ = write!(row, " {all:.1} %, {worst:.1} % |");
             if worst < f64::from(LEAST.0) || all < f64::from(LEAST.1) {
                 return Err(Trouble::Failed(format!(
                     "{name}: {all:.1} % of the firings before walls were accepted, {worst:.1} % of module {module}'s; \
@@ -55,7 +55,34 @@ pub(super) fn run(library: &Path, short: bool) -> Result<(), Trouble> {
         }
         println!("{row}");
     }
-    Ok(())
+    a_cut_wire_is_no_free_space(library, &world)
+}
+
+/// Of Ring8 one module is not connected, and one has nothing before it: the sketch says so of each.
+fn a_cut_wire_is_no_free_space(library: &Path, world: &Path) -> Result<(), Trouble> {
+    const CUT: usize = 3;
+    const FREE: usize = 5;
+    let sketch = build::example(library, &build::core(Board::Uno)?, "Ring8")?;
+    let ways = Path::new(TARGET).join("cut.txt");
+    let walls = (0..8).filter(|&module| module + 1 != FREE).map(|module| format!("{module} {module} {EQUAL_US}\n"));
+    fs::write(&ways, walls.collect::<String>()).map_err(failed("target"))?;
+    let (triggers, echoes) = ALL.split_at(8);
+    let pins = triggers.iter().chain(echoes).map(ToString::to_string);
+    let said = output(
+        Command::new(world).args(["--cut", &CUT.to_string()]).arg(&sketch.elf).arg("3").arg(&ways).arg("8").args(pins),
+    )
+    .ok_or_else(|| Trouble::Failed("Ring8 with a cut wire did not run".to_owned()))?;
+    let count = |line: &str| said.lines().filter(|said| said.trim() == line).count();
+    let clear = [CUT, FREE].map(|module| count(&format!("{module} clear")));
+    let silent = count(&format!("{CUT} does not answer"));
+    println!(
+        "module {CUT}, cut: {silent} times no answer, {} clear; module {FREE}, free: {} clear",
+        clear[0], clear[1]
+    );
+    if clear[0] == 0 && silent > 30 && clear[1] > 30 {
+        return Ok(());
+    }
+    Err(Trouble::Failed("a cut wire reads as free space, or free space does not".to_owned()))
 }
 
 /// The sketch for as many modules as there are pins.

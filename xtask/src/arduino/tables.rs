@@ -37,7 +37,8 @@ fn ring(modules: u32, retrigger_us: u32) -> String {
     let handling = if modules >= MANY { HANDLING } else { "" };
     format!(
         "sensors = {modules}\nlayout = \"ring\"\nneighbours = {neighbours}\nmax_range_m = 4.0\n\
-         crosstalk_range_m = 2.5\njitter_us = 200\nspeed_m_s = 0.5\ntick_us = 500\nretrigger_us = {retrigger_us}\n{handling}"
+         crosstalk_range_m = 2.5\njitter_us = 200\nspeed_m_s = 0.5\ntick_us = 500\n\
+         retrigger_us = {retrigger_us}\n{handling}"
     )
 }
 

@@ -210,7 +210,7 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
             ReadingKind::Late => {
                 return Verdict { kind, t_echo, previous: None, age: self.tracker.age(place), explained_by: None };
             }
-            ReadingKind::Stuck | ReadingKind::TooEarly => {
+            ReadingKind::Stuck | ReadingKind::TooEarly | ReadingKind::Unanswered => {
                 let skipped = self.tracker.skip(place, kind, t_echo, expected_change_us(sensor));
                 skipped.map(|verdict| (verdict, self.tracker.is_clear(place)))
             }
@@ -222,8 +222,9 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
         let confirmed = matches!(verdict.kind, ReadingKind::Accepted | ReadingKind::Clear);
         // A sensor that is known to have nothing in range is not fooled by what does not fit.
         let fits = confirmed || is_clear;
-        // Nor does silence or another lag help one whose line is stuck: it costs the others nothing.
-        if verdict.kind != ReadingKind::Stuck {
+        // Nor does silence or another lag help one whose line is stuck, or that does not answer: it costs the others
+        // nothing.
+        if !matches!(verdict.kind, ReadingKind::Stuck | ReadingKind::Unanswered) {
             self.ring.scheduler_mut().heard(sensor, confirmed || verdict.kind == ReadingKind::Tentative, fits);
         }
         verdict
@@ -271,6 +272,37 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     /// [`SensorError`] for a sensor that is not there.
     pub fn stuck(&mut self, sensor: u8) -> Result<(), SensorError> {
         self.ring.stuck(sensor)
+    }
+
+    /// Asks silence for a witness, from the next firing on: see [`Ring::expect_answers`].
+    pub fn expect_answers(&mut self) {
+        self.ring.expect_answers();
+    }
+
+    /// Reports that a sensor has shown that it listens: see [`Ring::answered`].
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn answered(&mut self, sensor: u8) -> Result<(), SensorError> {
+        self.ring.answered(sensor)
+    }
+
+    /// Takes that back: see [`Ring::unanswered`].
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn unanswered(&mut self, sensor: u8) -> Result<(), SensorError> {
+        self.ring.unanswered(sensor)
+    }
+
+    /// Forgets the tracks of a sensor: see [`Ring::forget`].
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn forget(&mut self, sensor: u8) -> Result<(), SensorError> {
+        self.ring.forget(sensor)?;
+        self.tracker.forget(sensor.into());
+        Ok(())
     }
 
     /// Stops a sensor from firing: see [`Ring::disable`].

@@ -26,7 +26,7 @@ use crate::verified::VerifiedSchedule;
 use history::{Firings, long_before};
 use listening::Listening;
 use punctuality::Punctuality;
-use sensor::{LISTENING, Noted, STUCK, Sensor};
+use sensor::{LISTENING, Noted, STUCK, Sensor, UNANSWERED};
 
 pub use config::RingConfig;
 pub use error::RingError;
@@ -299,6 +299,44 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
         if stuck.is(LISTENING) {
             stuck.set(STUCK);
         }
+        Ok(())
+    }
+
+    /// Asks silence for a witness, from the next firing on: a firing without an echo is then
+    /// [`ReadingKind::Unanswered`], which is never free space, unless [`answered`](Self::answered) says that its sensor
+    /// listened. For drivers whose sensors show it, such as by a line that rises.
+    pub fn expect_answers(&mut self) {
+        self.listening.expect_answers();
+    }
+
+    /// Reports that a sensor has shown that it listens for the echo of its last firing.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn answered(&mut self, sensor: u8) -> Result<(), SensorError> {
+        self.sensor_mut(sensor)?.clear(UNANSWERED);
+        Ok(())
+    }
+
+    /// Takes back [`answered`](Self::answered): what looked like an answer was a disturbance.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn unanswered(&mut self, sensor: u8) -> Result<(), SensorError> {
+        let unanswered = self.sensor_mut(sensor)?;
+        if unanswered.is(LISTENING) {
+            unanswered.set(UNANSWERED);
+        }
+        Ok(())
+    }
+
+    /// Forgets the readings of a sensor, so that its next one is compared with nothing: for a driver that learns that
+    /// the last one was not what it seemed. The age goes on.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn forget(&mut self, sensor: u8) -> Result<(), SensorError> {
+        self.sensor_mut(sensor)?.tracker.forget();
         Ok(())
     }
 

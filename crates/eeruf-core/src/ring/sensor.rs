@@ -28,6 +28,8 @@ pub(super) const READY: u8 = 1 << 4;
 const OUTSIDE: u8 = 1 << 5;
 /// The driver found the line stuck.
 pub(super) const STUCK: u8 = 1 << 6;
+/// Nothing has shown yet that it listens: silence says nothing.
+pub(super) const UNANSWERED: u8 = 1 << 7;
 
 /// What came of an edge.
 pub(super) enum Noted {
@@ -61,7 +63,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.tracker.flags |= flag;
     }
 
-    fn clear(&mut self, flag: u8) {
+    pub(super) fn clear(&mut self, flag: u8) {
         self.tracker.flags &= !flag;
     }
 
@@ -70,8 +72,8 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
     }
 
     #[inline]
-    pub(super) fn fire(&mut self, phase: Phase, now: Instant) {
-        self.tracker.flags = LISTENING | phase.0;
+    pub(super) fn fire(&mut self, phase: Phase, now: Instant, expects_answer: bool) {
+        self.tracker.flags = if expects_answer { UNANSWERED } else { 0 } | LISTENING | phase.0;
         self.firings.push(now);
     }
 
@@ -167,6 +169,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
             _ if self.is(STUCK) => ReadingKind::Stuck,
             _ if self.is(OUTSIDE) => ReadingKind::TooEarly,
             Some(_) => ReadingKind::First,
+            None if self.is(UNANSWERED) => ReadingKind::Unanswered,
             None => ReadingKind::NoEcho,
         };
         self.tracker.flags &= PHASE;
@@ -186,6 +189,8 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
             self.tracker.skip(ReadingKind::Stuck, None)
         } else if self.is(OUTSIDE) {
             self.tracker.skip(ReadingKind::TooEarly, self.held())
+        } else if self.is(UNANSWERED) && self.held().is_none() {
+            self.tracker.skip(ReadingKind::Unanswered, None)
         } else {
             self.tracker.push(agreement, &self.echoes, expected_change_us(), explanation)
         };

@@ -1079,6 +1079,14 @@ EerufStatus eeruf_ring_unanswered(EerufRing *ring, uint8_t sensor) {
     return status;
 }
 
+EerufStatus eeruf_ring_measured(EerufRing *ring, uint8_t sensor, uint32_t t_echo_us) {
+    const EerufStatus status = has_sensor(ring, sensor);
+    if (status != EERUF_OK) return status;
+    if (t_echo_us == EERUF_NO_ECHO) note_answer(sensor_of(ring, sensor));
+    else hear(ring, sensor, sensor_of(ring, sensor)->fired_us[0] + t_echo_us);
+    return EERUF_OK;
+}
+
 static void forget_readings(EerufRing *ring, uint8_t sensor) {
     forget(&sensor_of(ring, sensor)->filter);
 #if EERUF_HOPPING

@@ -313,6 +313,9 @@ EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor);
 EerufStatus eeruf_ring_expect_answers(EerufRing *ring);
 EerufStatus eeruf_ring_answered(EerufRing *ring, uint8_t sensor);
 EerufStatus eeruf_ring_unanswered(EerufRing *ring, uint8_t sensor); /* takes it back: that was a disturbance */
+/* What hardware or a protocol measured of a sensor's last firing, before its window closes: the echo time, or
+   EERUF_NO_ECHO if it listened and heard nothing. */
+EerufStatus eeruf_ring_measured(EerufRing *ring, uint8_t sensor, uint32_t t_echo_us);
 /* What is known of a sensor's echo is not what it seemed: its next reading is compared with nothing. Ages go on. */
 EerufStatus eeruf_ring_forget(EerufRing *ring, uint8_t sensor);
 

@@ -532,6 +532,14 @@ class Ring:
         if self._sensors[x].listening:
             self._sensors[x].unanswered = not answered
 
+    def measured(self, x, t_echo_us):
+        """What hardware or a protocol measured of a sensor's last firing, before its window closes: the echo time, or None if
+        it listened and heard nothing."""
+        if t_echo_us is None:
+            self.answered(x)
+        else:
+            self.echo(x, (self._sensors[x].firings[0] + t_echo_us) & self._mask)
+
     def forget(self, x):
         """What is known of a sensor's echo is not what it seemed: its next reading is compared with nothing."""
         self._sensors[x].forget()

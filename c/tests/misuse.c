@@ -403,6 +403,8 @@ static void silence_needs_a_witness(void) {
     EXPECT(eeruf_ring_answered(&ring, SENSORS), EERUF_ERR_SENSOR);
     EXPECT(eeruf_ring_unanswered(&not_ready, 0), EERUF_ERR_NOT_READY);
     EXPECT(eeruf_ring_forget(&ring, SENSORS), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_ring_measured(&ring, SENSORS, 1000), EERUF_ERR_SENSOR);
+    EXPECT(eeruf_ring_measured(&ring, 0, EERUF_NO_ECHO), EERUF_OK);
 }
 
 /* Clones hold their line far longer than it takes to the next firing: they listen still, and are clear and well. Longer

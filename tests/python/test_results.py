@@ -32,7 +32,7 @@ def some_of_each() -> dict[str, Any]:
             tables.TABLE_I_D,
             *events,
             eeruf.Blind(3, 20),
-            eeruf.LastAccepted(9_000, 256),
+            eeruf.State("unknown", None, 256, "ambiguous", "history"),
             nav.Vfh().steer(nav.Himm(), (0, 0), (5, 0)),
             sim.Simulation(ROOM).robots[0],
             sim.FiredReading(eeruf.EchoFilter(1, 500).push(0, 9_000), (9_000, 11_000), 0.5),

@@ -168,14 +168,11 @@ def test_a_sensor_that_hears_echoes_none_of_which_is_accepted_is_told_once(hops:
     run(ring, lambda event: period_ended(event) and event.period == 20, t_echo_us, see)
     assert [blind for blind, _ in told] == [eeruf.Blind(5, 6)]
     now_us = ring.next_deadline_us
-    assert watch.last_accepted(2, now_us) is watch.last_accepted(5, now_us) is None
-    last = watch.last_accepted(3, now_us)
-    assert last is not None
-    assert last.t_echo_us == 9_000
+    assert [watch.state(sensor, now_us).kind for sensor in (2, 5)] == ["clear", "unknown"]
+    last = watch.state(3, now_us)
+    assert (last.kind, last.t_echo_us) == ("obstacle", 9_000)
     assert last.age_us < 130_000
-    older = watch.last_accepted(3, now_us + 1_000_000)
-    assert older is not None
-    assert older.age_us == pytest.approx(last.age_us + 1_000_000, abs=256)
+    assert watch.state(3, now_us + 1_000_000).age_us == last.age_us + 1_000_000
 
 
 def test_a_watch_refuses_what_is_no_event_and_no_sensor() -> None:
@@ -184,7 +181,26 @@ def test_a_watch_refuses_what_is_no_event_and_no_sensor() -> None:
     with pytest.raises(eeruf.ArgumentError, match=r"event = 'event'; expected an eeruf\.Fire, Reading or PeriodEnded"):
         watch.observe(anything, 0)
     with pytest.raises(eeruf.ArgumentError, match="sensor = 4; expected a whole number from 0 to 3"):
-        watch.last_accepted(4, 0)
+        watch.state(4, 0)
+
+
+def test_a_ring_knows_what_stands_before_each_sensor_and_silence_needs_a_witness() -> None:
+    ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
+    ring.expect_answers()
+    ended = 0
+    while ended < 4:
+        now_us = ring.next_deadline_us
+        while (event := ring.poll(now_us)) is not None:
+            if isinstance(event, eeruf.Fire) and event.sensor != 2:
+                # One is not connected, one measures nothing, the others a wall.
+                ring.measured(event.sensor, None if event.sensor == 5 else 9_000)
+            ended += isinstance(event, eeruf.PeriodEnded)
+    kinds = [ring.state(sensor).kind for sensor in range(12)]
+    assert kinds == [{2: "unanswered", 5: "clear"}.get(sensor, "obstacle") for sensor in range(12)]
+    ring.forget(0)
+    ring.answered(1, False)
+    with pytest.raises(eeruf.ArgumentError, match="sensor = 12; expected a whole number from 0 to 11"):
+        ring.state(12)
 
 
 def test_a_noisy_ring_slows_down_and_a_calm_one_speeds_up() -> None:

@@ -170,6 +170,11 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
                             same(&mut c, Do::Unanswered, sensor, 0, ring.unanswered(sensor));
                         }
                     }
+                    if world.random.once_in(8) {
+                        let echo = (!world.random.once_in(3)).then(|| world.random.duration(30_000));
+                        let measured = ring.measured(sensor, echo.map(Micros::new));
+                        same(&mut c, Do::Measured, sensor, echo.unwrap_or(crate::NO_ECHO), measured);
+                    }
                     if world.random.once_in(40) {
                         same(&mut c, Do::Forget, sensor, 0, ring.forget(sensor));
                     }

@@ -53,6 +53,7 @@ pub enum Do {
     Answered,
     Unanswered,
     Forget,
+    Measured,
     Solo,
 }
 

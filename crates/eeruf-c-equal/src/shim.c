@@ -155,6 +155,7 @@ int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     case 23: return eeruf_ring_answered(ring, sensor);
     case 24: return eeruf_ring_unanswered(ring, sensor);
     case 25: return eeruf_ring_forget(ring, sensor);
+    case 26: return eeruf_ring_measured(ring, sensor, value);
     default: return eeruf_hopping_solo(handle->hopping);
     }
 }

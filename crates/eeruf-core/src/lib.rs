@@ -12,7 +12,7 @@
 //!   filter; [`EchoFilter`] is the filter alone.
 //! - [`EchoTracker`]: believes an echo that readings from several phases support, for schedules of many phases.
 //! - [`EdgeQueue`]: from the interrupt of an echo line to the main loop.
-//! - [`SensorWatch`]: what was last accepted of each sensor, how old it is, and which sensors are blind.
+//! - [`SensorWatch`]: what is known of the space before each sensor now ([`SensorState`]), and which sensors are blind.
 //! - [`Adaptation`]: moves along a ladder of schedules as the rejection rate asks for.
 //! - [`Survey`]: a measuring run, after which it is known which sensors hear each other.
 //! - [`SpeedOfSound`]: distances from echo times.
@@ -90,7 +90,7 @@ pub use uneven::{Uneven, UnevenError};
 pub use uneven_schedule::{SensorLimits, UnevenSchedule};
 pub use verified::VerifiedSchedule;
 pub use verify::{Verification, Violation, ViolationKind, Violations};
-pub use watch::{Blind, LastAccepted, SensorWatch};
+pub use watch::{Blind, Doubt, SensorState, SensorWatch};
 
 /// What is proven, and why: `docs/theory.md`, for reading here.
 ///

@@ -1,19 +1,18 @@
-//! [`SensorWatch`]: what was last accepted of each sensor and how long ago, and which sensors are blind.
+//! [`SensorWatch`]: what is known of the space before each sensor, for how long, and which sensors are blind.
 
-use crate::filter::NO_ECHO;
-use crate::reading::ReadingKind;
-use crate::ring::RingEvent;
+use crate::reading::{Explanation, ReadingKind};
+use crate::ring::{Reading, RingEvent};
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 
-/// Watches the events of a ring of up to `K` sensors: what was last accepted of each, how old it is, and which sensors
-/// hear echoes none of which is accepted. Eight bytes for each sensor; a ring without it costs nothing.
+/// Watches the events of a ring of up to `K` sensors: what is known of the space before each of them now, and which
+/// sensors hear echoes none of which is accepted. 16 bytes for each sensor; a ring without it costs nothing.
 ///
 /// ```
-/// use eeruf_core::{Instant, Micros, Ring, RingConfig, RingEvent, SensorWatch, tables::PAPER_12};
-/// let mut ring = Ring::new(&PAPER_12, RingConfig::new(), Instant::from_micros(0))?;
-/// let mut watch = SensorWatch::<12>::new(20);
+/// use eeruf_core::{Instant, Micros, Ring, RingConfig, RingEvent, SensorState, SensorWatch, tables::PAPER_12};
 /// let mut now = Instant::from_micros(0);
+/// let mut ring = Ring::new(&PAPER_12, RingConfig::new(), now)?;
+/// let mut watch = SensorWatch::<12>::new(20, now);
 /// for _ in 0..100 {
 ///     now = ring.next_deadline();
 ///     while let Some(event) = ring.poll(now) {
@@ -25,9 +24,11 @@ use crate::time::{Instant, Micros};
 ///         }
 ///     }
 /// }
-/// let last = watch.last_accepted(3, now)?.expect("something stands there");
-/// assert_eq!(last.t_echo, Micros::from_millis(9));
-/// assert!(last.age < Micros::from_millis(130));
+/// match watch.state(3, now)? {
+///     SensorState::Obstacle { t_echo, age } => assert!(t_echo == Micros::from_millis(9) && age < Micros::from_millis(130)),
+///     SensorState::Clear { .. } => { /* nothing is in range: drive on */ }
+///     _ => { /* not known: slow down */ }
+/// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -37,15 +38,57 @@ pub struct SensorWatch<const K: usize> {
     blind_after: u8,
 }
 
-/// The last accepted echo of a sensor.
+/// What is known of the space before a sensor. Times stop at 2,147,483,648 us (36 minutes), which stands for all longer
+/// ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct LastAccepted {
-    /// Its echo time.
-    pub t_echo: Micros,
-    /// How long ago it was accepted, to 256 us; at most 2,147,483,648 us (36 minutes), which stands for all longer
-    /// times.
-    pub age: Micros,
+pub enum SensorState {
+    /// Something stands there: an accepted echo, or a tentative one of a hopping ring. One reading that does not confirm
+    /// it leaves it, so that age grows; two in a row do not.
+    Obstacle {
+        /// Its echo time.
+        t_echo: Micros,
+        /// How long ago it was last confirmed.
+        age: Micros,
+    },
+    /// Nothing is in range, by silence that is confirmed. Any echo ends it.
+    Clear {
+        /// How long ago that was last confirmed.
+        age: Micros,
+    },
+    /// Something is closer than the sensor can measure.
+    TooClose {
+        /// How long ago it was last seen.
+        age: Micros,
+    },
+    /// The sensor does not answer, or its line is stuck.
+    Unanswered {
+        /// For how long.
+        since: Micros,
+    },
+    /// Nothing is known.
+    Unknown {
+        /// For how long.
+        since: Micros,
+        /// The last reason.
+        why: Doubt,
+    },
+}
+
+/// Why nothing is known of the space before a sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Doubt {
+    /// It has not fired yet.
+    NoFiring,
+    /// One echo, or one silence, that is not confirmed yet.
+    Unsure,
+    /// The last two echoes differ.
+    Rejected,
+    /// The last two echoes agree, and sound of another firing explains both.
+    Ambiguous(Explanation),
 }
 
 /// A sensor that hears echoes, and none was accepted for so many firings.
@@ -61,81 +104,118 @@ pub struct Blind {
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Watched {
-    /// The last accepted echo time.
-    t_echo: u32,
-    /// When it was accepted, in steps of 256 us of the clock, in the upper 24 bits; in the lower 8 the echoes since.
-    at_and_echoes: u32,
+    known: Known,
+    /// When that was last confirmed, or since when nothing is known or answered.
+    at: Instant,
+    /// Whether the last reading did not confirm it.
+    doubted: bool,
+    /// Firings with an echo since something was last accepted or clear.
+    echoes: u8,
 }
 
-const STEP_BITS: u32 = 8;
-const ECHOES: u32 = (1 << STEP_BITS) - 1;
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+enum Known {
+    Obstacle(Micros),
+    Clear,
+    TooClose,
+    Unanswered,
+    Nothing(Doubt),
+}
+
 /// Half a turn of the clock.
-const LONGEST: u32 = 1 << 31;
+const LONGEST: Micros = Micros::new(1 << 31);
 
 impl<const K: usize> SensorWatch<K> {
-    /// Nothing was accepted yet. A sensor counts as blind when nothing was accepted for `blind_after` firings with an
+    /// Nothing is known yet, `now`. A sensor counts as blind when nothing was accepted for `blind_after` firings with an
     /// echo, 1 to 255; with 0 no sensor does.
-    pub const fn new(blind_after: u8) -> Self {
-        Self { sensors: [Watched { t_echo: NO_ECHO, at_and_echoes: 0 }; K], blind_after }
+    pub const fn new(blind_after: u8, now: Instant) -> Self {
+        let nothing = Watched { known: Known::Nothing(Doubt::NoFiring), at: now, doubted: false, echoes: 0 };
+        Self { sensors: [nothing; K], blind_after }
     }
 
     /// Takes in an event that a poll at `now` returned. Returns a sensor that has just become blind; it is returned
     /// once, and again only after something was accepted or confirmed clear.
     ///
-    /// Observe every event, or at least the ends of periods, since ages are kept within what the clock can tell there.
+    /// Observe every event, or at least readings and the ends of periods, since ages are kept within what the clock can
+    /// tell there.
     pub fn observe(&mut self, event: &RingEvent, now: Instant) -> Option<Blind> {
         match event {
             RingEvent::Fire { .. } => None,
             RingEvent::PeriodEnded(_) => {
                 for sensor in &mut self.sensors {
-                    if sensor.age(now).as_micros() > LONGEST {
-                        sensor.set_at(Instant::from_micros(now.as_micros().wrapping_sub(LONGEST)));
+                    if now.since(sensor.at) > LONGEST {
+                        sensor.at = Instant::from_micros(now.as_micros().wrapping_sub(LONGEST.as_micros()));
                     }
                 }
                 None
             }
             RingEvent::Reading(reading) => {
                 let sensor = self.sensors.get_mut(usize::from(reading.sensor))?;
-                match reading.kind {
-                    ReadingKind::Accepted => {
-                        sensor.t_echo = reading.t_echo?.as_micros().min(NO_ECHO - 1);
-                        sensor.set_at(now);
-                        sensor.at_and_echoes &= !ECHOES;
-                    }
-                    ReadingKind::Clear => sensor.at_and_echoes &= !ECHOES,
-                    ReadingKind::First | ReadingKind::Rejected | ReadingKind::Repeated | ReadingKind::Ambiguous => {
-                        let echoes = sensor.at_and_echoes & ECHOES;
-                        if echoes < u32::from(self.blind_after) {
-                            sensor.at_and_echoes += 1;
-                            let (sensor, firings) = (reading.sensor, self.blind_after);
-                            return (echoes + 1 == u32::from(firings)).then_some(Blind { sensor, firings });
-                        }
-                    }
-                    _ => {}
-                }
-                None
+                sensor.read(reading, now);
+                let blind = sensor.counts(reading.kind, self.blind_after);
+                blind.then_some(Blind { sensor: reading.sensor, firings: self.blind_after })
             }
         }
     }
 
-    /// What was last accepted of a sensor, however long ago; `None` if nothing ever was.
+    /// What is known of the space before a sensor, `now`.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
-    pub fn last_accepted(&self, sensor: u8, now: Instant) -> Result<Option<LastAccepted>, SensorError> {
+    pub fn state(&self, sensor: u8, now: Instant) -> Result<SensorState, SensorError> {
         let watched = self.sensors.get(usize::from(sensor)).ok_or(SensorError::new(sensor, K))?;
-        let age = watched.age(now).min(Micros::new(LONGEST));
-        Ok((watched.t_echo != NO_ECHO).then_some(LastAccepted { t_echo: Micros::new(watched.t_echo), age }))
+        let age = now.since(watched.at).min(LONGEST);
+        Ok(match watched.known {
+            Known::Obstacle(t_echo) => SensorState::Obstacle { t_echo, age },
+            Known::Clear => SensorState::Clear { age },
+            Known::TooClose => SensorState::TooClose { age },
+            Known::Unanswered => SensorState::Unanswered { since: age },
+            Known::Nothing(why) => SensorState::Unknown { since: age, why },
+        })
     }
 }
 
 impl Watched {
-    fn set_at(&mut self, at: Instant) {
-        self.at_and_echoes = (at.as_micros() & !ECHOES) | (self.at_and_echoes & ECHOES);
+    fn read(&mut self, reading: &Reading, now: Instant) {
+        let doubt = match reading.kind {
+            ReadingKind::Accepted | ReadingKind::Tentative => {
+                return self.confirm(Known::Obstacle(reading.t_echo.unwrap_or_default()), now);
+            }
+            ReadingKind::Clear => return self.confirm(Known::Clear, now),
+            ReadingKind::TooEarly => return self.confirm(Known::TooClose, now),
+            ReadingKind::Stuck | ReadingKind::Unanswered if self.known == Known::Unanswered => return,
+            ReadingKind::Stuck | ReadingKind::Unanswered => return self.confirm(Known::Unanswered, now),
+            // Of a firing that has had its reading.
+            ReadingKind::Late => return,
+            ReadingKind::First | ReadingKind::NoEcho | ReadingKind::Repeated => Doubt::Unsure,
+            ReadingKind::Rejected => Doubt::Rejected,
+            ReadingKind::Ambiguous => Doubt::Ambiguous(reading.explained_by.unwrap_or(Explanation::History)),
+        };
+        match self.known {
+            // One echo may be missed, or another's heard. What is clear is so no longer with the first echo.
+            Known::Obstacle(_) if !self.doubted => self.doubted = true,
+            Known::Nothing(_) => self.known = Known::Nothing(doubt),
+            _ => self.confirm(Known::Nothing(doubt), now),
+        }
     }
 
-    fn age(&self, now: Instant) -> Micros {
-        let now = Instant::from_micros(now.as_micros() & !ECHOES);
-        now.since(Instant::from_micros(self.at_and_echoes & !ECHOES))
+    fn confirm(&mut self, known: Known, now: Instant) {
+        (self.known, self.at, self.doubted) = (known, now, false);
+    }
+
+    /// Counts echoes in vain; whether they have just become as many as make a sensor blind.
+    fn counts(&mut self, kind: ReadingKind, blind_after: u8) -> bool {
+        match kind {
+            ReadingKind::Accepted | ReadingKind::Clear => self.echoes = 0,
+            ReadingKind::First | ReadingKind::Rejected | ReadingKind::Repeated | ReadingKind::Ambiguous
+                if self.echoes < blind_after =>
+            {
+                self.echoes += 1;
+                return self.echoes == blind_after;
+            }
+            _ => {}
+        }
+        false
     }
 }

@@ -205,7 +205,7 @@ mod everything_public_has_a_format {
         formats::<(EchoFilter<12>, EchoFilter<12, 8>, FilterError, ReadingKind, Tally, Verdict)>();
         formats::<(Edge, DurationError, Instant, Micros, SpeedOfSound, SensorError)>();
         formats::<(PeriodStats, Reading, RingConfig, RingConfig<8>, RingError, RingEvent)>();
-        formats::<(ScheduledRing<'_, 12>, ScheduledRing<'_, 12, 8>, SensorWatch<12>, Blind, LastAccepted)>();
+        formats::<(ScheduledRing<'_, 12>, ScheduledRing<'_, 12, 8>, SensorWatch<12>, Blind, SensorState)>();
         formats::<(Phase, Schedule<12>, ScheduleError, VerifiedFor, VerifiedSchedule<12>)>();
         formats::<(BrokenPromise, ImmediateRefiring<'_, 12>, Limits<'_>, ScheduledFiring<'_, 12>, SchedulerStep)>();
         formats::<(Verification<'_, 12>, Violation, ViolationKind, Violations<'_, 12>)>();

@@ -93,7 +93,7 @@ mod _eeruf {
         scene::Scene,
         schedule::Schedule,
         search::{WaitSearch, WaitTables},
-        sensor_watch::{Blind, LastAccepted, SensorWatch},
+        sensor_watch::{Blind, SensorWatch, State},
         simulate::simulate,
         simulation::Simulation,
         surroundings::{Material, Noise},

@@ -2,7 +2,7 @@
 
 use eeruf_core::{
     Instant, MAX_SENSORS, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, ScheduledRing, SensorError,
-    UnevenFiring, UnevenSchedule,
+    SensorWatch, UnevenFiring, UnevenSchedule,
 };
 use eeruf_sim::AnySchedule;
 use elsa::sync::FrozenVec;
@@ -59,6 +59,11 @@ either! {
     mut fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError>;
     mut fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError>;
     mut fn stuck(&mut self, sensor: u8) -> Result<(), SensorError>;
+    mut fn expect_answers(&mut self) -> ();
+    mut fn answered(&mut self, sensor: u8) -> Result<(), SensorError>;
+    mut fn unanswered(&mut self, sensor: u8) -> Result<(), SensorError>;
+    mut fn measured(&mut self, sensor: u8, t_echo: Option<Micros>) -> Result<(), SensorError>;
+    mut fn forget(&mut self, sensor: u8) -> Result<(), SensorError>;
     mut fn disable(&mut self, sensor: u8) -> Result<(), SensorError>;
     mut fn enable(&mut self, sensor: u8) -> Result<(), SensorError>;
     mut fn pause(&mut self) -> ();
@@ -114,6 +119,10 @@ pub(crate) struct OwnedRing {
     promise: Promise,
     /// What it fires by from the end of the present period on.
     next: Box<AnySchedule>,
+    /// What its events say of each sensor.
+    pub(crate) watch: SensorWatch<MAX_SENSORS>,
+    /// When it was polled last, or began.
+    pub(crate) now: Instant,
 }
 
 /// Whether a schedule rejects crosstalk.
@@ -136,7 +145,8 @@ impl OwnedRing {
             Borrowed::Even(schedule) => ScheduledRing::unverified(schedule, config, now).map(AnyRing::Even),
             Borrowed::Uneven(schedule) => Ring::uneven(schedule, config, now).map(AnyRing::Uneven),
         });
-        Ok(Self { ring: ring.map_err(Raise::raise)?, promise, next: Box::new(schedule) })
+        let watch = SensorWatch::new(0, now);
+        Ok(Self { ring: ring.map_err(Raise::raise)?, promise, next: Box::new(schedule), watch, now })
     }
 
     /// With a schedule that need not reject crosstalk.
@@ -173,6 +183,16 @@ impl OwnedRing {
 
     pub(crate) fn with<T>(&mut self, call: impl FnOnce(&mut AnyRing<'_>) -> T) -> T {
         self.ring.with_dependent_mut(|_, ring| call(ring))
+    }
+
+    /// The next event, if there is one.
+    pub(crate) fn poll(&mut self, now: Instant, change: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+        let event = self.with(|ring| ring.poll_expecting(now, change));
+        self.now = now;
+        if let Some(event) = &event {
+            _ = self.watch.observe(event, now);
+        }
+        event
     }
 
     pub(crate) fn change<E: Raise>(&mut self, change: impl FnOnce(&mut AnyRing<'_>) -> Result<(), E>) -> PyResult<()> {

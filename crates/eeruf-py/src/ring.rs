@@ -3,13 +3,14 @@
 use pyo3::prelude::*;
 
 use crate::{
-    arguments::{instance, micros},
+    arguments::{flag, instance, micros},
     moments::{expected_changes, instant, until},
     owned_ring::OwnedRing,
     requirements::{RequirementArguments, UnevenArguments},
     ring_arguments::{Sound, begins, config},
     ring_events::to_python,
     schedule::Schedule,
+    sensor_watch::State,
 };
 
 /// Scheduler and filter together, as the firmware runs them: the caller passes the time and gets back what to do.
@@ -173,7 +174,7 @@ impl Ring {
         let (py, now) = (now_us.py(), instant("now_us", now_us)?);
         let changes = expected_changes(expected_change_us, self.0.ring().sensors())?;
         let change = |sensor: u8| changes.get(usize::from(sensor)).copied().unwrap_or(0);
-        let event = self.0.with(|ring| ring.poll_expecting(now, change));
+        let event = self.0.poll(now, change);
         event.map(|event| to_python(py, &event)).transpose()
     }
 
@@ -377,6 +378,109 @@ impl Ring {
     fn stuck(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
         let sensor = self.0.sensor(sensor)?;
         self.0.change(|ring| ring.stuck(sensor))
+    }
+
+    /// What is known of the space before a sensor, at the time of the last poll.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///
+    /// Returns:
+    ///     A ``State``: an obstacle, clear, too close, unanswered or unknown, for how long, and why.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> ring.state(3)
+    ///     State(kind='unknown', t_echo_us=None, age_us=0, why='no_firing', explained_by=None)
+    #[pyo3(signature = (sensor))]
+    fn state(&self, sensor: &Bound<'_, PyAny>) -> PyResult<State> {
+        Ok(State::of(&self.0.watch, self.0.sensor(sensor)?, self.0.now))
+    }
+
+    /// Hand in what hardware or a protocol measured of a sensor's last firing, before its window closes.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///     t_echo_us: the echo time in microseconds, or None if it listened and heard nothing.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor or time.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> [ring.poll(24_000).sensor for _ in range(3)]  # one of each group of four
+    ///     [0, 4, 8]
+    ///     >>> ring.measured(4, 9_000)
+    ///     >>> ring.poll(40_000).t_echo_us
+    ///     9000
+    #[pyo3(signature = (sensor, t_echo_us))]
+    fn measured(&mut self, sensor: &Bound<'_, PyAny>, t_echo_us: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let (sensor, t_echo) = (self.0.sensor(sensor)?, t_echo_us.map(|us| micros("t_echo_us", us)).transpose()?);
+        self.0.change(|ring| ring.measured(sensor, t_echo))
+    }
+
+    /// Ask silence for a witness, from the next firing on: a firing without an echo is then ``"unanswered"``, which is
+    /// never free space, unless :meth:`answered` or :meth:`measured` says that the sensor listened.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> ring.expect_answers()
+    ///     >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
+    ///     ...     pass
+    ///     >>> event.kind, ring.state(event.sensor).kind
+    ///     ('unanswered', 'unanswered')
+    #[expect(clippy::redundant_closure_for_method_calls, reason = "the method is of rings of one lifetime")]
+    fn expect_answers(&mut self) {
+        self.0.with(|ring| ring.expect_answers());
+    }
+
+    /// A sensor has shown that it listens for the echo of its last firing, such as by a line that rises.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///     answered: False takes that back: it was a disturbance.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> ring.expect_answers()
+    ///     >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
+    ///     ...     if isinstance(event, eeruf.Fire):
+    ///     ...         ring.answered(event.sensor)
+    ///     >>> event.kind
+    ///     'no_echo'
+    #[pyo3(signature = (sensor, answered=None), text_signature = "(sensor, answered=True)")]
+    fn answered(&mut self, sensor: &Bound<'_, PyAny>, answered: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let (sensor, answered) = (self.0.sensor(sensor)?, flag("answered", answered, true)?);
+        self.0.change(|ring| if answered { ring.answered(sensor) } else { ring.unanswered(sensor) })
+    }
+
+    /// Forget what is known of a sensor's echo, so that its next reading is compared with nothing: the last one was not
+    /// what it seemed.
+    ///
+    /// Args:
+    ///     sensor: which one, from 0.
+    ///
+    /// Raises:
+    ///     ArgumentError: no such sensor.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> ring = eeruf.Ring(eeruf.tables.TABLE_I_D, t_delta_us=500, window_us=36_000)
+    ///     >>> ring.forget(3)
+    #[pyo3(signature = (sensor))]
+    fn forget(&mut self, sensor: &Bound<'_, PyAny>) -> PyResult<()> {
+        let sensor = self.0.sensor(sensor)?;
+        self.0.change(|ring| ring.forget(sensor))
     }
 
     /// Stop a sensor from firing. The reading of a firing that is under way is still emitted.

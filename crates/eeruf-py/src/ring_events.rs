@@ -106,7 +106,7 @@ pub(crate) struct Reading {
 
 /// An [`Explanation`] as Python sees it.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, IntoPyObject)]
-enum ExplainedBy {
+pub(crate) enum ExplainedBy {
     Sensor(u8),
     History(&'static str),
 }
@@ -114,7 +114,7 @@ enum ExplainedBy {
 const HISTORY: &str = "history";
 
 impl ExplainedBy {
-    fn of(explanation: Explanation) -> Self {
+    pub(crate) fn of(explanation: Explanation) -> Self {
         match explanation {
             Explanation::Sensor(sensor) => Self::Sensor(sensor),
             Explanation::History => Self::History(HISTORY),
@@ -128,7 +128,15 @@ impl ExplainedBy {
         }
     }
 
-    fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Self> {
+    /// As Python writes it.
+    pub(crate) fn shown(self) -> String {
+        match self {
+            Self::History(history) => format!("'{history}'"),
+            Self::Sensor(sensor) => sensor.to_string(),
+        }
+    }
+
+    pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Self> {
         if value.extract::<String>().is_ok_and(|said| said == HISTORY) {
             return Ok(Self::History(HISTORY));
         }
@@ -213,11 +221,7 @@ impl Reading {
 
     fn __repr__(&self) -> String {
         let shown = |value: Option<u32>| value.map_or_else(|| "None".to_owned(), |value| value.to_string());
-        let explained_by = match self.explained_by {
-            Some(ExplainedBy::History(history)) => format!("'{history}'"),
-            Some(ExplainedBy::Sensor(sensor)) => shown(Some(sensor.into())),
-            None => shown(None),
-        };
+        let explained_by = self.explained_by.map_or_else(|| shown(None), ExplainedBy::shown);
         format!(
             "Reading(sensor={}, kind='{}', t_echo_us={}, previous_us={}, age={}, phase={}, period={}, \
              explained_by={explained_by})",

@@ -1,25 +1,27 @@
-//! `SensorWatch`: which sensors are blind, and what was last accepted of each.
+//! `SensorWatch`: what is known of the space before each sensor, and which sensors are blind.
 
-use eeruf_core::{MAX_SENSORS, Micros};
+use eeruf_core::{Doubt, Instant, MAX_SENSORS, Micros, SensorState};
 use pyo3::{
     prelude::*,
     types::{PyDict, PyTuple},
 };
 
 use crate::{
-    arguments::{whole, whole_or},
+    arguments::{choice, whole, whole_or, whole_or_none},
     fields::to_dict,
     moments::instant,
-    ring_events::to_core,
+    ring_arguments::begins,
+    ring_events::{ExplainedBy, to_core},
 };
 
-/// Watches the events of a ring, a hopping one too: what was last accepted of each sensor, how old it is, and which
-/// sensors hear echoes none of which is accepted.
+/// Watches the events of a ring, a hopping one too: what is known of the space before each sensor now, and which sensors
+/// hear echoes none of which is accepted.
 ///
 /// Args:
 ///     sensors: how many, 1 to 64.
 ///     blind_after: a sensor counts as blind when nothing was accepted for so many firings with an echo, 1 to 255;
 ///         0: never.
+///     now_us: the present, 0 or more.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
@@ -38,8 +40,8 @@ use crate::{
 ///     ...             blind.append(found)
 ///     >>> blind
 ///     [Blind(sensor=5, firings=4)]
-///     >>> watch.last_accepted(4, now_us).t_echo_us, watch.last_accepted(5, now_us)
-///     (9000, None)
+///     >>> watch.state(4, now_us).t_echo_us, watch.state(5, now_us).kind
+///     (9000, 'unknown')
 #[pyclass(module = "eeruf")]
 pub(crate) struct SensorWatch {
     watch: eeruf_core::SensorWatch<MAX_SENSORS>,
@@ -49,11 +51,15 @@ pub(crate) struct SensorWatch {
 #[pymethods]
 impl SensorWatch {
     #[new]
-    #[pyo3(signature = (sensors, blind_after=None), text_signature = "(sensors, blind_after=20)")]
-    fn new(sensors: &Bound<'_, PyAny>, blind_after: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+    #[pyo3(signature = (sensors, blind_after=None, now_us=None), text_signature = "(sensors, blind_after=20, now_us=0)")]
+    fn new(
+        sensors: &Bound<'_, PyAny>,
+        blind_after: Option<&Bound<'_, PyAny>>,
+        now_us: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
         let sensors = whole("sensors", sensors, 1..=MAX_SENSORS as u8)?;
         let blind_after = whole_or("blind_after", blind_after, 20, 0..=u8::MAX)?;
-        Ok(Self { watch: eeruf_core::SensorWatch::new(blind_after), sensors })
+        Ok(Self { watch: eeruf_core::SensorWatch::new(blind_after, begins(now_us)?), sensors })
     }
 
     /// How many sensors it watches.
@@ -87,14 +93,11 @@ impl SensorWatch {
         Ok(blind.map(|blind| Blind { sensor: blind.sensor, firings: blind.firings }))
     }
 
-    /// What was last accepted of a sensor, however long ago.
+    /// What is known of the space before a sensor.
     ///
     /// Args:
     ///     sensor: which one, from 0.
     ///     now_us: the present, 0 or more.
-    ///
-    /// Returns:
-    ///     A ``LastAccepted``, or None if no echo ever was.
     ///
     /// Raises:
     ///     ArgumentError: no such sensor or time.
@@ -103,14 +106,12 @@ impl SensorWatch {
     ///     >>> import eeruf
     ///     >>> watch = eeruf.SensorWatch(sensors=12)
     ///     >>> watch.observe(eeruf.Reading(3, "accepted", 9_000, 9_100), now_us=102_400)
-    ///     >>> watch.last_accepted(3, now_us=153_600)
-    ///     LastAccepted(t_echo_us=9000, age_us=51200)
+    ///     >>> watch.state(3, now_us=153_600)
+    ///     State(kind='obstacle', t_echo_us=9000, age_us=51200, why=None, explained_by=None)
     #[pyo3(signature = (sensor, now_us))]
-    fn last_accepted(&self, sensor: &Bound<'_, PyAny>, now_us: &Bound<'_, PyAny>) -> PyResult<Option<LastAccepted>> {
+    fn state(&self, sensor: &Bound<'_, PyAny>, now_us: &Bound<'_, PyAny>) -> PyResult<State> {
         let (sensor, now) = (whole("sensor", sensor, 0..=self.sensors - 1)?, instant("now_us", now_us)?);
-        // There are as many as it has room for.
-        let last = self.watch.last_accepted(sensor, now).ok().flatten();
-        Ok(last.map(|last| LastAccepted { t_echo_us: last.t_echo.as_micros(), age_us: last.age.as_micros() }))
+        Ok(State::of(&self.watch, sensor, now))
     }
 
     fn __repr__(&self) -> String {
@@ -162,47 +163,106 @@ impl Blind {
     }
 }
 
-/// The last accepted echo of a sensor.
+/// What is known of the space before a sensor.
 ///
 /// Example:
 ///     >>> import eeruf
-///     >>> eeruf.LastAccepted(t_echo_us=9_000, age_us=51_200).to_dict()
-///     {'t_echo_us': 9000, 'age_us': 51200}
+///     >>> eeruf.State("clear", age_us=51_200).to_dict()
+///     {'kind': 'clear', 't_echo_us': None, 'age_us': 51200, 'why': None, 'explained_by': None}
 #[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
-pub(crate) struct LastAccepted {
-    /// Its echo time, in microseconds.
-    t_echo_us: u32,
-    /// How long ago it was accepted, in microseconds, to 256; at most 2^31 (36 minutes), which stands for all longer
-    /// times.
+pub(crate) struct State {
+    /// ``"obstacle"``: something stands there; ``"clear"``: nothing is in range; ``"too_close"``: closer than the sensor
+    /// can measure; ``"unanswered"``: it does not answer, or its line is stuck; ``"unknown"``.
+    kind: &'static str,
+    /// The echo time of an obstacle, in microseconds; None for all else.
+    t_echo_us: Option<u32>,
+    /// How long ago that was last confirmed, or since when nothing is known or answered, in microseconds; at most 2^31
+    /// (36 minutes), which stands for all longer times.
     age_us: u32,
+    /// Why nothing is known: ``"no_firing"``, ``"unsure"`` (one echo, or one silence), ``"rejected"`` or ``"ambiguous"``;
+    /// None for all else.
+    why: Option<&'static str>,
+    /// The sensor whose sound explains an ambiguous echo, or ``"history"``; None for all else.
+    explained_by: Option<ExplainedBy>,
+}
+
+const KINDS: [&str; 5] = ["obstacle", "clear", "too_close", "unanswered", "unknown"];
+const WHYS: [&str; 4] = ["no_firing", "unsure", "rejected", "ambiguous"];
+
+impl State {
+    /// For a sensor that is there.
+    pub(crate) fn of(watch: &eeruf_core::SensorWatch<MAX_SENSORS>, sensor: u8, now: Instant) -> Self {
+        let [obstacle, clear, too_close, unanswered, unknown] = KINDS;
+        let known =
+            |kind, age: Micros| Self { kind, t_echo_us: None, age_us: age.as_micros(), why: None, explained_by: None };
+        match watch.state(sensor, now) {
+            Ok(SensorState::Obstacle { t_echo, age }) => {
+                Self { t_echo_us: Some(t_echo.as_micros()), ..known(obstacle, age) }
+            }
+            Ok(SensorState::Clear { age }) => known(clear, age),
+            Ok(SensorState::TooClose { age }) => known(too_close, age),
+            Ok(SensorState::Unanswered { since }) => known(unanswered, since),
+            Ok(SensorState::Unknown { since, why }) => {
+                let (why, by) = match why {
+                    Doubt::NoFiring => (0, None),
+                    Doubt::Rejected => (2, None),
+                    Doubt::Ambiguous(by) => (3, Some(ExplainedBy::of(by))),
+                    _ => (1, None),
+                };
+                Self { why: WHYS.get(why).copied(), explained_by: by, ..known(unknown, since) }
+            }
+            _ => known(unknown, Micros::ZERO),
+        }
+    }
 }
 
 #[pymethods]
-impl LastAccepted {
+impl State {
     #[new]
-    #[pyo3(signature = (t_echo_us, age_us))]
-    fn new(t_echo_us: &Bound<'_, PyAny>, age_us: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let micros = |name, value| crate::arguments::micros(name, value).map(Micros::as_micros);
-        Ok(Self { t_echo_us: micros("t_echo_us", t_echo_us)?, age_us: micros("age_us", age_us)? })
+    #[pyo3(signature = (kind, t_echo_us=None, age_us=None, why=None, explained_by=None))]
+    #[pyo3(text_signature = "(kind, t_echo_us=None, age_us=0, why=None, explained_by=None)")]
+    fn new(
+        kind: &Bound<'_, PyAny>,
+        t_echo_us: Option<&Bound<'_, PyAny>>,
+        age_us: Option<&Bound<'_, PyAny>>,
+        why: Option<&Bound<'_, PyAny>>,
+        explained_by: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            kind: choice("kind", Some(kind), &KINDS.map(|kind| (kind, kind)))?,
+            t_echo_us: whole_or_none("t_echo_us", t_echo_us, 0..=u32::MAX - 1)?,
+            age_us: whole_or("age_us", age_us, 0, 0..=1 << 31)?,
+            why: why.map(|why| choice("why", Some(why), &WHYS.map(|why| (why, why)))).transpose()?,
+            explained_by: explained_by.map(ExplainedBy::from_python).transpose()?,
+        })
     }
 
     fn __repr__(&self) -> String {
-        format!("LastAccepted(t_echo_us={}, age_us={})", self.t_echo_us, self.age_us)
+        let or_none = |text: Option<String>| text.unwrap_or_else(|| "None".to_owned());
+        format!(
+            "State(kind='{}', t_echo_us={}, age_us={}, why={}, explained_by={})",
+            self.kind,
+            or_none(self.t_echo_us.map(|us| us.to_string())),
+            self.age_us,
+            or_none(self.why.map(|why| format!("'{why}'"))),
+            or_none(self.explained_by.map(ExplainedBy::shown))
+        )
     }
 
     /// Its fields by their names: a dict of plain values.
     ///
     /// Example:
     ///     >>> import eeruf
-    ///     >>> eeruf.LastAccepted(9_000, 0).to_dict()
-    ///     {'t_echo_us': 9000, 'age_us': 0}
+    ///     >>> eeruf.State("unanswered", age_us=1_000).to_dict()["kind"]
+    ///     'unanswered'
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["t_echo_us", "age_us"])
+        to_dict(slf, &["kind", "t_echo_us", "age_us", "why", "explained_by"])
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Self { t_echo_us, age_us } = slf.get();
-        Ok((slf.get_type().into_any(), (t_echo_us, age_us).into_pyobject(slf.py())?))
+        let Self { kind, t_echo_us, age_us, why, explained_by } = slf.get();
+        let arguments = (*kind, *t_echo_us, *age_us, *why, *explained_by);
+        Ok((slf.get_type().into_any(), arguments.into_pyobject(slf.py())?))
     }
 }

@@ -25,7 +25,7 @@ mod weighed;
 use crate::reading::{ReadingKind, Verdict};
 use crate::ring::{AgreementRing, PeriodStats, Reading, Ring, RingConfig, RingEvent};
 use crate::sensor_error::SensorError;
-use crate::time::Instant;
+use crate::time::{Instant, Micros};
 use crate::tracker::{EchoTracker, Firing};
 
 use timetable::Timetable;
@@ -293,6 +293,14 @@ impl<const K: usize, const H: usize> HoppingRing<K, H> {
     /// [`SensorError`] for a sensor that is not there.
     pub fn unanswered(&mut self, sensor: u8) -> Result<(), SensorError> {
         self.ring.unanswered(sensor)
+    }
+
+    /// Hands in what was measured of a sensor's last firing: see [`Ring::measured`].
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn measured(&mut self, sensor: u8, t_echo: Option<Micros>) -> Result<(), SensorError> {
+        self.ring.measured(sensor, t_echo)
     }
 
     /// Forgets the tracks of a sensor: see [`Ring::forget`].

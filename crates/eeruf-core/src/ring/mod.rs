@@ -330,6 +330,19 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
         Ok(())
     }
 
+    /// Hands in what hardware or a protocol measured of a sensor's last firing, before its window closes: the echo time,
+    /// or that it listened and heard nothing.
+    ///
+    /// # Errors
+    /// [`SensorError`] for a sensor that is not there.
+    pub fn measured(&mut self, sensor: u8, t_echo: Option<Micros>) -> Result<(), SensorError> {
+        let fired = self.sensor_mut(sensor)?.fired();
+        match t_echo {
+            Some(t_echo) => self.echo(sensor, fired + t_echo),
+            None => self.answered(sensor),
+        }
+    }
+
     /// Forgets the readings of a sensor, so that its next one is compared with nothing: for a driver that learns that
     /// the last one was not what it seemed. The age goes on.
     ///

@@ -1,9 +1,9 @@
-//! What firmware asks for while a ring runs: the last accepted echo and its age, blind sensors, pauses.
+//! What firmware asks for while a ring runs: what is known of each sensor's space and for how long, blind sensors, pauses.
 
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{
-    Blind, Instant, LastAccepted, Micros, Phase, Reading, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing,
-    SensorError, SensorWatch,
+    Blind, Doubt, Explanation, Instant, Micros, Phase, Reading, ReadingKind, Ring, RingConfig, RingEvent,
+    ScheduledRing, SensorError, SensorState, SensorWatch,
 };
 
 fn at(us: u32) -> Instant {
@@ -42,31 +42,78 @@ fn run(
 }
 
 #[test]
-fn the_last_accepted_echo_stays_known_and_its_age_grows_with_time_through_a_wrap_of_the_clock() {
+fn what_is_known_is_as_old_as_what_confirmed_it_last_through_a_wrap_of_the_clock() {
     let start = u32::MAX - 3_000_000;
-    let (mut ring, mut watch) = (ring(start), SensorWatch::<12>::new(0));
-    assert_eq!(watch.last_accepted(4, at(start)), Ok(None));
-    assert_eq!(watch.last_accepted(12, at(start)), Err(SensorError { sensor: 12, sensors: 12 }));
-    // An echo until period 20, and then silence: confirmed clear, which is no echo.
-    let (now, blind) = run(&mut ring, &mut watch, 60, |_, period| (period < 20).then_some(9_000 + period));
+    let (mut ring, mut watch) = (ring(start), SensorWatch::<12>::new(0, at(start)));
+    let nothing = SensorState::Unknown { since: Micros::ZERO, why: Doubt::NoFiring };
+    assert_eq!(watch.state(4, at(start)), Ok(nothing));
+    assert_eq!(watch.state(12, at(start)), Err(SensorError { sensor: 12, sensors: 12 }));
+    // An echo until period 20, and then silence: confirmed clear.
+    let (now, blind) = run(&mut ring, &mut watch, 20, |_, period| Some(9_000 + period));
     assert_eq!(blind, []);
     for sensor in 0..12 {
-        let LastAccepted { t_echo, age } = watch.last_accepted(sensor, now).unwrap().unwrap();
-        assert_eq!(t_echo, Micros::new(9_019));
-        assert!((4_000_000..4_100_000).contains(&age.as_micros()), "{age}");
+        let Ok(SensorState::Obstacle { t_echo, age }) = watch.state(sensor, now) else { panic!("sensor {sensor}") };
+        assert!((9_018..=9_019).contains(&t_echo.as_micros()) && age < Micros::from_millis(130), "{t_echo} {age}");
     }
-    // Silence for longer than a turn of the clock, which is 72 minutes, counts as half a turn.
+    let (now, _) = run(&mut ring, &mut watch, 5, |_, _| None);
+    assert!(matches!(watch.state(0, now), Ok(SensorState::Clear { age }) if age < Micros::from_millis(130)));
+    // A sensor that no longer fires: its state gets older, and after a turn of the clock it is half a turn old.
+    ring.disable(0).unwrap();
     let (now, _) = run(&mut ring, &mut watch, 50_000, |_, _| None);
-    let last = watch.last_accepted(0, now).unwrap().unwrap();
-    assert_eq!((last.t_echo, last.age), (Micros::new(9_019), Micros::new(1 << 31)));
-    let (now, _) = run(&mut ring, &mut watch, 3, |_, _| Some(5_000));
-    let last = watch.last_accepted(0, now).unwrap().unwrap();
-    assert!(last.t_echo == Micros::new(5_000) && last.age < Micros::from_millis(100), "{last:?}");
+    assert_eq!(watch.state(0, now), Ok(SensorState::Clear { age: Micros::new(1 << 31) }));
+    assert_eq!(size_of::<SensorWatch<12>>(), 12 * 16 + 4, "as its documentation says");
+}
+
+#[test]
+fn each_reading_says_what_is_known_of_the_space_before_its_sensor() {
+    use ReadingKind::*;
+    let mut watch = SensorWatch::<1>::new(0, at(0));
+    let ms = Micros::from_millis;
+    let obstacle = |age| SensorState::Obstacle { t_echo: Micros::new(9_000), age };
+    let unknown = |since, why| SensorState::Unknown { since, why };
+    let steps = [
+        (First, unknown(Micros::ZERO, Doubt::Unsure)),
+        (Rejected, unknown(ms(100), Doubt::Rejected)),
+        (Accepted, obstacle(Micros::ZERO)),
+        // One reading that confirms nothing leaves it, two do not.
+        (Rejected, obstacle(ms(100))),
+        (Accepted, obstacle(Micros::ZERO)),
+        (NoEcho, obstacle(ms(100))),
+        (Clear, SensorState::Clear { age: Micros::ZERO }),
+        // The first echo ends what was clear.
+        (First, unknown(Micros::ZERO, Doubt::Unsure)),
+        (Tentative, obstacle(Micros::ZERO)),
+        (Late, obstacle(ms(100))),
+        (Ambiguous, obstacle(ms(200))),
+        (Ambiguous, unknown(Micros::ZERO, Doubt::Ambiguous(Explanation::Sensor(3)))),
+        (TooEarly, SensorState::TooClose { age: Micros::ZERO }),
+        (Unanswered, SensorState::Unanswered { since: Micros::ZERO }),
+        (Stuck, SensorState::Unanswered { since: ms(100) }),
+        (NoEcho, unknown(Micros::ZERO, Doubt::Unsure)),
+        (Clear, SensorState::Clear { age: Micros::ZERO }),
+        (Unanswered, SensorState::Unanswered { since: Micros::ZERO }),
+    ];
+    // The first is not the last firing's: what is unknown is so since the beginning.
+    for (step, (kind, expected)) in (0..).zip(steps) {
+        let now = at(100_000 * step);
+        let reading = Reading {
+            sensor: 0,
+            phase: Phase::A,
+            period: step,
+            kind,
+            t_echo: Some(Micros::new(9_000)),
+            previous: None,
+            age: None,
+            explained_by: (kind == Ambiguous).then_some(Explanation::Sensor(3)),
+        };
+        watch.observe(&RingEvent::Reading(reading), now);
+        assert_eq!(watch.state(0, now), Ok(expected), "after reading {step}, {kind}");
+    }
 }
 
 #[test]
 fn a_sensor_is_blind_when_nothing_is_accepted_for_so_many_firings_with_an_echo_and_is_named_once() {
-    let (mut ring, mut watch) = (ring(0), SensorWatch::<12>::new(20));
+    let (mut ring, mut watch) = (ring(0), SensorWatch::<12>::new(20, at(0)));
     // Sensor 4 hears something else each time, sensor 5 now and then nothing, all others a wall.
     let echo = |sensor, period| match sensor {
         3 => Some(5_000 + 2_000 * (period % 10)),
@@ -78,7 +125,7 @@ fn a_sensor_is_blind_when_nothing_is_accepted_for_so_many_firings_with_an_echo_a
     let named: Vec<_> = blind.iter().map(|(_, blind)| (blind.sensor, blind.firings)).collect();
     assert_eq!(named, [(3, 20), (4, 20)]);
     assert!((19..=21).contains(&blind[0].0) && (21..=24).contains(&blind[1].0), "{blind:?}");
-    assert_eq!(watch.last_accepted(3, now), Ok(None));
+    assert!(matches!(watch.state(3, now), Ok(SensorState::Unknown { .. })));
     // Once something was accepted it may be named again.
     let (_, blind) = run(&mut ring, &mut watch, 5, |_, _| Some(9_000));
     assert_eq!(blind, []);
@@ -89,7 +136,7 @@ fn a_sensor_is_blind_when_nothing_is_accepted_for_so_many_firings_with_an_echo_a
 #[test]
 fn a_ring_that_is_paused_fires_nothing_ends_its_readings_and_goes_on_after_it() {
     let mut ring = ring(0);
-    let mut watch = SensorWatch::<12>::new(0);
+    let mut watch = SensorWatch::<12>::new(0, at(0));
     run(&mut ring, &mut watch, 10, |_, _| Some(9_000));
     // In the middle of a period, with readings pending.
     let mut fired = 0;
@@ -135,10 +182,10 @@ fn a_ring_that_is_paused_fires_nothing_ends_its_readings_and_goes_on_after_it() 
 #[test]
 fn a_larger_t_delta_takes_hold_at_once() {
     let mut ring = Ring::new(&PAPER_12, RingConfig::new().with_t_delta(Micros::new(100)), at(0)).unwrap();
-    let mut watch = SensorWatch::<12>::new(0);
+    let mut watch = SensorWatch::<12>::new(0, at(0));
     let moving = |_, period: u32| Some(9_000 + 400 * period);
     run(&mut ring, &mut watch, 10, moving);
-    assert_eq!(watch.last_accepted(0, at(0)), Ok(None));
+    assert!(matches!(watch.state(0, at(0)), Ok(SensorState::Unknown { .. })));
     ring.set_t_delta(Micros::new(500)).unwrap();
     let mut kinds = vec![];
     let mut now = at(0);
@@ -176,26 +223,7 @@ fn another_window_counts_at_once_for_firings_that_are_under_way() {
 }
 
 #[test]
-fn the_longest_echo_time_that_is_accepted_is_known_as_an_echo() {
-    let mut watch = SensorWatch::<1>::new(3);
-    let (period, kind, t_echo) = (0, ReadingKind::Accepted, Some(Micros::MAX));
-    let reading = Reading {
-        sensor: 0,
-        phase: Phase::A,
-        period,
-        kind,
-        t_echo,
-        previous: t_echo,
-        age: Some(0),
-        explained_by: None,
-    };
-    assert_eq!(watch.observe(&RingEvent::Reading(reading), Instant::from_micros(0)), None);
-    let last = watch.last_accepted(0, Instant::from_micros(0)).unwrap();
-    assert_eq!(last.map(|last| last.t_echo), Some(Micros::new(u32::MAX - 1)));
-}
-
-#[test]
-fn confirmed_silence_ends_a_count_of_rejected_echoes_and_the_count_never_touches_the_time() {
+fn confirmed_silence_ends_a_count_of_rejected_echoes() {
     let reading = |kind| {
         let t_echo = (kind != ReadingKind::Clear).then_some(Micros::new(9_000));
         RingEvent::Reading(Reading {
@@ -209,17 +237,14 @@ fn confirmed_silence_ends_a_count_of_rejected_echoes_and_the_count_never_touches
             explained_by: None,
         })
     };
-    let mut watch = SensorWatch::<1>::new(3);
+    let mut watch = SensorWatch::<1>::new(3, at(0));
     let mut observe = |kind| watch.observe(&reading(kind), at(0)).is_some();
     let seen = [ReadingKind::Rejected, ReadingKind::Rejected, ReadingKind::Clear].map(&mut observe);
     assert_eq!(seen, [false; 3]);
     assert_eq!([ReadingKind::Rejected; 4].map(observe), [false, false, true, false]);
     // As many as can be counted, and more.
-    let mut watch = SensorWatch::<1>::new(255);
-    watch.observe(&reading(ReadingKind::Accepted), at(1_000_000));
-    let age = |watch: &SensorWatch<1>| watch.last_accepted(0, at(2_000_000)).unwrap().unwrap().age;
-    let before = age(&watch);
+    let mut watch = SensorWatch::<1>::new(255, at(0));
     let blind: Vec<_> =
         (0..600).filter(|_| watch.observe(&reading(ReadingKind::Rejected), at(1_500_000)).is_some()).collect();
-    assert_eq!((blind, age(&watch)), (vec![254], before));
+    assert_eq!(blind, [254]);
 }

@@ -8,11 +8,12 @@ mod corpus;
 mod corpus_reader;
 mod facts;
 mod image_source;
+mod kept;
 mod open;
 mod own;
 mod panels;
 mod physics;
-mod plain;
+
 mod properties;
 mod random;
 mod set_one;

@@ -110,4 +110,7 @@ fn set_one_stops_when_it_is_told_to_and_refuses_to_do_nothing() {
         |seeds, methods: &[Method]| set_one(&asked(seeds, 80, methods, None), &|_| true).unwrap_err().to_string();
     assert_eq!(error(0, &METHODS), "0 seeds; expected at least one");
     assert_eq!(error(1, &[]), "no methods; expected at least one");
+    let beyond = SetOneOptions { first: u64::MAX - 1, ..asked(3, 80, &METHODS, None) };
+    let expected = "3 seeds from 18446744073709551614 on; expected a last one of at most 18446744073709551614";
+    assert_eq!(set_one(&beyond, &|_| true).unwrap_err().to_string(), expected);
 }

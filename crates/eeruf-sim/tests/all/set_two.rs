@@ -171,4 +171,7 @@ fn set_two_stops_when_it_is_told_to_and_refuses_to_do_nothing() {
     let error = |asked: &SetTwoOptions| set_two(asked, &|_| true).unwrap_err().to_string();
     assert_eq!(error(&options(0, &[Method::Eeruf])), "0 seeds; expected at least one");
     assert_eq!(error(&options(1, &[])), "no methods; expected at least one");
+    let beyond = SetTwoOptions { first: u64::MAX - 1, ..options(3, &[Method::Eeruf]) };
+    let expected = "3 seeds from 18446744073709551614 on; expected a last one of at most 18446744073709551614";
+    assert_eq!(error(&beyond), expected);
 }

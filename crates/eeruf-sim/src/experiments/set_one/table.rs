@@ -7,7 +7,7 @@ use super::figures::Figures;
 use super::options::SetOneOptions;
 use super::step::{self, Steps};
 use crate::experiments::by_name::by_name;
-use crate::experiments::error::ExperimentError;
+use crate::experiments::error::{ExperimentError, numbers};
 use crate::experiments::progress::Progress;
 use crate::{
     acoustics::Physics,
@@ -44,7 +44,8 @@ pub struct SetOne {
 /// `false` the run stops. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`ExperimentError`] for no geometries or no methods, for a ring that cannot be, and if it was stopped.
+/// [`ExperimentError`] for no geometries, more than there are numbers for, or no methods, for a ring that cannot be,
+/// and if it was stopped.
 ///
 /// ```
 /// use eeruf_sim::{Method, experiments::set_one::{SetOneOptions, set_one}};
@@ -56,15 +57,12 @@ pub struct SetOne {
 /// ```
 pub fn set_one(asked: &SetOneOptions, keep_going: &(dyn Fn(f64) -> bool + Sync)) -> Result<SetOne, ExperimentError> {
     let &SetOneOptions { first, seeds, readings, ref methods, physics, sensors, period, .. } = asked;
-    if seeds == 0 {
-        return Err(ExperimentError::NoSeeds);
-    }
+    let geometries: Vec<u64> = numbers(first, seeds)?.collect();
     if methods.is_empty() {
         return Err(ExperimentError::NoMethods);
     }
     let periods = readings.div_ceil(sensors.max(1) as u32);
     let progress = Progress::new(seeds.saturating_mul(methods.len() as u64), keep_going);
-    let geometries: Vec<u64> = (first..first.saturating_add(seeds)).collect();
     let runs = sweep(&geometries, |&number| {
         let mut runs = Vec::with_capacity(methods.len());
         for &method in methods {

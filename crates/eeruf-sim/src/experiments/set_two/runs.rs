@@ -8,7 +8,7 @@ use super::options::SetTwoOptions;
 use super::pilot::Pilot;
 use super::run::Run;
 use crate::experiments::by_name::by_name;
-use crate::experiments::error::ExperimentError;
+use crate::experiments::error::{ExperimentError, numbers};
 use crate::experiments::progress::Progress;
 use crate::{
     acoustics::Physics,
@@ -58,7 +58,7 @@ pub struct SetTwo {
 /// number of threads.
 ///
 /// # Errors
-/// [`ExperimentError`] for no courses or no methods, and if it was stopped.
+/// [`ExperimentError`] for no courses, more than there are numbers for, or no methods, and if it was stopped.
 ///
 /// ```
 /// use eeruf_sim::{Method, experiments::set_two::{SetTwoOptions, set_two}};
@@ -68,17 +68,12 @@ pub struct SetTwo {
 /// # Ok::<(), eeruf_sim::experiments::ExperimentError>(())
 /// ```
 pub fn set_two(options: &SetTwoOptions, keep_going: &(dyn Fn(f64) -> bool + Sync)) -> Result<SetTwo, ExperimentError> {
-    if options.seeds == 0 {
-        return Err(ExperimentError::NoSeeds);
-    }
+    let courses = numbers(options.first, options.seeds)?;
     if options.methods.is_empty() {
         return Err(ExperimentError::NoMethods);
     }
-    let jobs: Vec<(Method, u64)> = options
-        .methods
-        .iter()
-        .flat_map(|&method| (options.first..options.first + options.seeds).map(move |number| (method, number)))
-        .collect();
+    let jobs: Vec<(Method, u64)> =
+        options.methods.iter().flat_map(|&method| courses.clone().map(move |number| (method, number))).collect();
     let progress = Progress::new(jobs.len() as u64, keep_going);
     let runs = sweep(&jobs, |&(method, number)| {
         let run = run_course(options, method, number, &progress)?;

@@ -136,7 +136,8 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
         return fail("body", f64::NAN, "measures above 0 and up to 100 m");
     }
     if let Some(contact) = scene.contact(&robot.outline(), &robot.pose) {
-        return Err(WorldError::Contact { robot: index, contact });
+        let disc_m = robot.body.is_none().then(|| robot.radius_m());
+        return Err(WorldError::Contact { robot: index, contact, disc_m });
     }
     // Sensors may stand out of a body; without one they are within the disc that was just looked at.
     for (sensor, pose) in robot.sensors.iter().enumerate().filter(|_| robot.body.is_some()) {

@@ -62,6 +62,8 @@ pub enum WorldError {
         robot: usize,
         /// What it touches.
         contact: Contact,
+        /// The radius in metres of the disc that it takes up, if it has no body.
+        disc_m: Option<f64>,
     },
     /// A sensor that starts inside something.
     SensorContact {
@@ -148,14 +150,21 @@ impl fmt::Display for WorldError {
                 window.as_micros(),
                 min_refire.as_micros()
             ),
-            Self::Contact { robot, contact } => {
+            Self::Contact { robot, contact, disc_m } => {
                 let robot = robot + first;
                 match contact {
                     Contact::Wall(wall) => write!(f, "robot {robot} touches wall {wall}")?,
                     Contact::Pole(pole) => write!(f, "robot {robot} touches pole {pole}")?,
                     Contact::Solid => write!(f, "robot {robot} is inside a wall or outside the room")?,
                 }
-                write!(f, "; expected it to stand free at its pose")
+                write!(f, "; expected it to stand free at its pose")?;
+                disc_m.map_or(Ok(()), |radius_m| {
+                    write!(
+                        f,
+                        ". It has no body, so it takes up a disc of {radius_m:.3} m, which holds all its sensors: give \
+                         its own outline, such as body = {{ box_m = [0.4, 0.3] }} in a file"
+                    )
+                })
             }
             Self::Overlap { robots: (one, other), apart_m, least_m } => write!(
                 f,

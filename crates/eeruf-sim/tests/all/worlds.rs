@@ -34,7 +34,10 @@ fn a_bad_world_gets_one_line_that_names_file_line_field_value_and_what_is_expect
     let crossing = format!("{WALL}[[wall]]\npoints_m = [[2, 0], [4, 0]]\n{ROBOT}");
     assert_eq!(error(&crossing), "w.toml, line 4: walls 0 and 1 cross at (3.0000, 0.0000); end one of them there");
     let touching = format!("{WALL}{ROBOT}").replace("x_m = 0", "x_m = 2.9");
-    assert_eq!(error(&touching), "w.toml, line 4: robot 1 touches wall 0; expected it to stand free at its pose");
+    let expected = "w.toml, line 4: robot 1 touches wall 0; expected it to stand free at its pose. It has no body, so \
+                    it takes up a disc of ";
+    assert!(error(&touching).starts_with(expected), "{}", error(&touching));
+    assert!(error(&touching).ends_with("give its own outline, such as body = { box_m = [0.4, 0.3] } in a file"));
     let nan = format!("{WALL}{ROBOT}").replace("y_m = 0", "y_m = nan");
     assert_eq!(error(&nan), "w.toml, line 4: robot 1: pose is NaN; expected a number within 100000 m");
     let none = format!("{WALL}{ROBOT}").replace("sensors = 8", "sensors = 0");

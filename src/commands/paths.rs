@@ -1,9 +1,8 @@
-//! `eeruf paths`: every critical path of a ring, the ways along which one sensor hears another.
+//! `eeruf paths`: every critical path of a ring, by which one sensor hears another.
 
 use std::path::PathBuf;
 
-use eeruf_sim::MAX_ORDER;
-use eeruf_sim::{CrosstalkMatrix, CrosstalkQuery, Limits, Tracer, World};
+use eeruf_sim::{MAX_ORDER, World};
 
 use super::answer::Answer;
 use crate::console::{print_line, tell};
@@ -13,9 +12,10 @@ use crate::report::bounces::{by_way_of, wall_numbers};
 use crate::report::json::to_json;
 use crate::report::paths::PathsJson;
 
-/// List every critical path of the first robot's ring: along which ways each sensor hears which other.
+/// List every critical path of the first robot's ring: all paths between its sensors.
 ///
-/// A path counts if its sound is loud enough to be heard. Sensors are printed from 1; walls and poles from 0, as in
+/// A path counts if its sound is loud enough to be heard, under the scene's own physics and with other robots' bodies,
+/// as in a simulation. Sensors are printed from 1; walls and poles from 0, as in
 /// files.
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -51,14 +51,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 fn critical_paths(world: &World, max_order: u32) -> Result<PathsJson, eeruf_sim::PathsError> {
     let mut out = PathsJson::default();
     let Some(robot) = world.robots().first() else { return Ok(out) };
-    let (scene, transducer) = (world.scene(), &robot.transducer);
-    let ring: Vec<_> = world.sensors(0, 0.0).collect();
-    let floor = transducer.detection_floor(scene.air());
-    let mut matrix = CrosstalkMatrix::new();
-    let query = CrosstalkQuery { scene, sensors: &ring, transducer, limits: Limits::order(max_order), floor };
-    let mut tracer = Tracer::new();
-    tracer.follow(&world.physics());
-    matrix.compute(&mut tracer, &query)?;
+    let matrix = world.ring_paths(0, max_order)?;
     for path in matrix.paths().iter().filter(|path| path.emitter != path.receiver) {
         out.emitter.push(path.emitter);
         out.receiver.push(path.receiver);
@@ -67,7 +60,7 @@ fn critical_paths(world: &World, max_order: u32) -> Result<PathsJson, eeruf_sim:
         out.departure_rad.push(path.departure_rad);
         out.arrival_rad.push(path.arrival_rad);
         out.amplitude.push(path.amplitude);
-        out.level_db.push(transducer.level_db(path.amplitude, path.length_m, scene.air()));
+        out.level_db.push(robot.transducer.level_db(path.amplitude, path.length_m, world.scene().air()));
         let bounces = matrix.bounces(path);
         out.walls.push(wall_numbers(bounces));
         out.by_way_of.push(by_way_of(bounces));

@@ -20,7 +20,7 @@ def corpus(name: str) -> Any:
 
 @pytest.mark.parametrize("case", corpus("critical-paths.json")["cases"], ids=lambda case: str(case["id"]))
 def test_every_path_of_the_corpus_is_found(case: dict[str, Any]) -> None:
-    scene = sim.Scene(case["walls"], open=case["open"], two_sided=case.get("two_sided"))
+    scene = sim.Scene(case["walls"], open=case["open"], two_sided=case.get("two_sided"), physics="plain")
     paths = scene.paths(case["source"], case["receivers"], case["max_order"])
     found: list[set[tuple[int, ...]]] = [set() for _ in case["receivers"]]
     for receiver, order, length_m, walls in zip(paths.receiver, paths.order, paths.length_m, paths.walls):
@@ -41,7 +41,13 @@ def rust() -> Any:
 
 @pytest.mark.parametrize("case", corpus("critical-paths.json")["cases"], ids=lambda case: str(case["id"]))
 def test_paths_are_those_of_rust_to_the_last_bit(case: dict[str, Any]) -> None:
-    scene = sim.Scene(case["walls"], open=case["open"], two_sided=case.get("two_sided"), poles=case.get("poles"))
+    scene = sim.Scene(
+        case["walls"],
+        open=case["open"],
+        two_sided=case.get("two_sided"),
+        poles=case.get("poles"),
+        physics="plain",
+    )
     paths = scene.paths(case["source"], case["receivers"], case["max_order"])
     expected = rust()[case["id"]]
     assert len(expected["length_m"]) > 0
@@ -96,7 +102,7 @@ def test_the_shortest_periods_of_the_corpus_come_out_proven(case: dict[str, Any]
 
 def test_points_run_from_source_to_receiver() -> None:
     case = corpus("critical-paths.json")["cases"][0]
-    paths = sim.Scene(case["walls"]).paths(case["source"], case["receivers"], 3)
+    paths = sim.Scene(case["walls"], physics="plain").paths(case["source"], case["receivers"], 3)
     for path in range(len(paths)):
         points = paths.points(path)
         assert points.shape == (int(paths.order[path]) + 2, 2)

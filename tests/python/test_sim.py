@@ -273,6 +273,18 @@ def test_a_pickled_scene_brings_the_schedule_that_its_file_names(tmp_path: Path)
     assert same(readings, sim.simulate(pickle.loads(pickled), periods=50))
 
 
+def test_paths_are_those_of_the_simulation() -> None:
+    """A pillar of 0.6 m between a source and a wall: no path runs through it, unless the physics says so."""
+    pillar = [(2.0, 0.0, 0.6)]
+    walls = [[4, -5, 4, 5]]
+    solid = sim.Scene(walls, two_sided=[0], poles=pillar)
+    transparent = sim.Scene(walls, two_sided=[0], poles=pillar, physics="plain")
+    assert (0,) not in solid.paths((0, 0), (0, 0.1), 1).walls
+    assert (0,) in transparent.paths((0, 0), (0, 0.1), 1).walls
+    with pytest.raises(eeruf.PathsError, match="inside pole 0"):
+        solid.paths((2, 0), (0, 0), 1)
+
+
 def test_paths_pickle() -> None:
     paths = sim.Scene(ALCOVE).paths((0.0, 0.2), [(0.1, 0.2), (0.2, 0.3)], 4, max_length_m=6.0)
     copy = pickle.loads(pickle.dumps(paths))

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use eeruf_sim::{Bounce, Limits, Point, Stop, Tracer};
+use eeruf_sim::{Bounce, Limits, Physics, Point, Stop, Tracer, Transducer};
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
@@ -22,7 +22,7 @@ use crate::{
 ///
 /// Example:
 ///     >>> from eeruf import sim
-///     >>> paths = sim.Scene([[5, 2, -5, 2]]).paths((0, 0), [(3, 0)], max_order=1)
+///     >>> paths = sim.Scene([[5, 2, -5, 2]], physics="plain").paths((0, 0), [(3, 0)], max_order=1)
 ///     >>> len(paths), paths.walls
 ///     (2, [(), (0,)])
 #[pyclass(frozen, module = "eeruf.sim")]
@@ -43,10 +43,12 @@ const FEW: usize = 32;
 const LOW_ORDER: u32 = 6;
 
 impl Paths {
-    /// Finds all paths within limits, in the background where that may take long.
+    /// Finds all paths within limits under a physics, in the background where that may take long. Frequency and burst
+    /// are those of the first robot's transducers, of a Polaroid 6500 where there is no robot.
     pub(crate) fn find(
         scene: &Bound<'_, PyAny>,
         contents: Arc<Contents>,
+        physics: Physics,
         source: Point,
         receivers: Vec<Point>,
         limits: Limits,
@@ -56,7 +58,11 @@ impl Paths {
         let standing = contents.scene();
         let few = standing.walls().len() + standing.poles().len() <= FEW && receivers.len() <= FEW;
         let find = move |stop: Stop| {
-            let (mut paths, mut tracer) = (eeruf_sim::Paths::default(), Tracer::new());
+            let robot = contents.world().and_then(|world| world.robots().first());
+            let module = robot.map_or(Transducer::POLAROID_6500, |robot| robot.transducer);
+            let (mut paths, mut tracer) = (eeruf_sim::Paths::default(), Tracer::at(module.frequency_hz));
+            tracer.follow(&physics);
+            tracer.burst_cycles = module.cycles;
             tracer.stop = stop;
             tracer.trace(contents.scene(), source, &receivers, limits, &mut paths).map_err(Raise::raise)?;
             Ok(Self { paths, source, receivers, contents, scene, limits, columns: Columns::default() })
@@ -155,7 +161,8 @@ impl Paths {
     ///
     /// Example:
     ///     >>> from eeruf import sim
-    ///     >>> sim.Scene([[5, 2, -5, 2]]).paths((0, 0), (3, 0), max_order=1).points(1).tolist()
+    ///     >>> wall = sim.Scene([[5, 2, -5, 2]], physics="plain")
+    ///     >>> wall.paths((0, 0), (3, 0), max_order=1).points(1).tolist()
     ///     [[0.0, 0.0], [1.5, 2.0], [3.0, 0.0]]
     #[pyo3(signature = (path))]
     fn points<'py>(&self, path: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {

@@ -367,7 +367,11 @@ impl Scene {
         self.scene().air().temperature_c
     }
 
-    /// Every specular path from a source to some receivers, exactly, without the interpreter lock. Ctrl-C ends it.
+    /// Every path from a source to some receivers, exactly, without the interpreter lock. Ctrl-C ends it.
+    ///
+    /// The paths are those that :func:`simulate` knows: under the scene's ``physics`` nothing runs through a thick
+    /// pole, edges diffract, and narrow walls return less. With ``physics="plain"`` they are the specular ones alone.
+    /// Amplitudes are for the first robot's transducers, or for a Polaroid 6500 where there is no robot.
     ///
     /// Args:
     ///     source: (x, y) in metres.
@@ -381,11 +385,12 @@ impl Scene {
     ///
     /// Raises:
     ///     ArgumentError: something of the wrong type, shape or range.
-    ///     PathsError: a point that is not finite or far from all walls, too high an order, or too many paths to keep.
+    ///     PathsError: a point that is not finite, far from all walls or inside something solid, too high an order, or
+    ///         too many paths to keep.
     ///
     /// Example:
     ///     >>> from eeruf import sim
-    ///     >>> wall = sim.Scene([[5, 2, -5, 2]])
+    ///     >>> wall = sim.Scene([[5, 2, -5, 2]], physics="plain")
     ///     >>> paths = wall.paths(source=(0, 0), receivers=[(3, 0)], max_order=1)
     ///     >>> paths.order.tolist(), paths.length_m.tolist()
     ///     ([0, 1], [3.0, 5.0])
@@ -406,7 +411,7 @@ impl Scene {
         let max_length_m =
             max_length_m.map_or(Ok(f64::INFINITY), |most| number("max_length_m", most, 0.0..=f64::INFINITY))?;
         let (contents, limits) = (Arc::clone(&slf.get().contents), Limits { max_order, max_length_m });
-        Paths::find(slf.as_any(), contents, from, receivers, limits, progress)
+        Paths::find(slf.as_any(), contents, slf.get().physics, from, receivers, limits, progress)
     }
 
     fn __repr__(&self) -> String {

@@ -10,6 +10,7 @@ mod lock_step;
 mod open;
 mod options;
 mod receiver;
+mod ring_paths;
 mod simulate;
 mod steered;
 

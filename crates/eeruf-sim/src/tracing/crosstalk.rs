@@ -217,4 +217,9 @@ impl CrosstalkMatrix {
     pub fn bounces(&self, path: &CriticalPath) -> &[Bounce] {
         self.bounces.get(path.bounces[0] as usize..path.bounces[1] as usize).unwrap_or(&[])
     }
+
+    /// All bounces of all paths, to be numbered otherwise.
+    pub(crate) fn bounces_mut(&mut self) -> &mut [Bounce] {
+        &mut self.bounces
+    }
 }

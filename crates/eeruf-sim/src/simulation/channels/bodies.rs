@@ -10,15 +10,15 @@ use crate::{
 
 /// Where bodies come among a scene's walls and poles. Whoever is left out, each side and each disc keeps its number:
 /// those of the scene first, then the sides and the discs of all robots in order.
-pub(super) struct Bodies {
+pub(in crate::simulation) struct Bodies {
     /// For each robot, its first side and its disc.
     first: Vec<[u32; 2]>,
     any: bool,
 }
 
 /// A scene with bodies in it.
-pub(super) struct Furnished {
-    pub(super) scene: Scene,
+pub(in crate::simulation) struct Furnished {
+    pub(in crate::simulation) scene: Scene,
     /// How many walls and poles the world's own scene has.
     own: [usize; 2],
     /// The numbers of the walls and poles that are bodies.
@@ -27,7 +27,7 @@ pub(super) struct Furnished {
 }
 
 impl Bodies {
-    pub(super) fn new(world: &World) -> Self {
+    pub(in crate::simulation) fn new(world: &World) -> Self {
         let scene = world.scene();
         let mut next = [scene.walls().len() as u32, scene.poles().len() as u32];
         let mut first = Vec::new();
@@ -43,12 +43,12 @@ impl Bodies {
     }
 
     /// Whether there are any.
-    pub(super) fn any(&self) -> bool {
+    pub(in crate::simulation) fn any(&self) -> bool {
         self.any
     }
 
     /// The world's scene with the bodies of all robots but these; none if nothing is to be added.
-    pub(super) fn scene(
+    pub(in crate::simulation) fn scene(
         &self,
         world: &World,
         poses: &[Pose],
@@ -90,7 +90,7 @@ impl Bodies {
 
 impl Furnished {
     /// Gives bounces the numbers that they have in every scene of the world.
-    pub(super) fn number(&self, bounces: &mut [Bounce]) {
+    pub(in crate::simulation) fn number(&self, bounces: &mut [Bounce]) {
         for bounce in bounces {
             let (own, numbers, index) = match bounce {
                 Bounce::Wall(wall) => (self.own[0], &self.walls, wall),

@@ -19,7 +19,7 @@ use crate::{
     tracing::{CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, PathsError, Tracer, reception_along},
     world::{Robot, World, offset},
 };
-use bodies::Bodies;
+pub(super) use bodies::Bodies;
 use hearing_range::HearingRange;
 use path_numbers::PathNumbers;
 

@@ -1,0 +1,55 @@
+//! Who hears whom on one robot's ring, in the very physics that a simulation of its world begins with.
+
+use super::channels::Bodies;
+use crate::{
+    geometry::Pose,
+    tracing::{CrosstalkMatrix, CrosstalkQuery, Limits, PathsError, Tracer},
+    world::World,
+};
+
+impl World {
+    /// The paths between a robot's sensors at the start, with the world's physics and the bodies of the other robots.
+    ///
+    /// `max_order` takes the place of the world's own; paths over poles have the world's
+    /// [`pole_order`](Self::pole_order) at most. Empty for a robot that does not exist.
+    ///
+    /// # Errors
+    /// As [`Tracer::trace`].
+    ///
+    /// ```
+    /// use eeruf_sim::*;
+    /// // A pillar of 0.6 m between a robot and a wall: nothing comes back from behind it.
+    /// let straight_through = |physics| -> Result<usize, Box<dyn std::error::Error>> {
+    ///     let wall = Wall::new(4.0, -5.0, 4.0, 5.0).with_faces(Faces::Both);
+    ///     let scene = Scene::new(vec![wall], vec![Pole::new(2.0, 0.0, 0.6)], Air::default())?;
+    ///     let robot = Robot::ring(Pose::identity(), 2, 0.1, 0.2, Transducer::POLAROID_6500);
+    ///     let heard = World::new(scene, vec![robot], Noise::default())?.with_physics(physics)?.ring_paths(0, 1)?;
+    ///     Ok(heard.paths().iter().filter(|path| heard.bounces(path) == [Bounce::Wall(0)]).count())
+    /// };
+    /// assert_eq!(straight_through(Physics::DEFAULT)?, 0);
+    /// assert!(straight_through(Physics::PLAIN)? > 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn ring_paths(&self, robot: usize, max_order: u32) -> Result<CrosstalkMatrix, PathsError> {
+        let mut matrix = CrosstalkMatrix::new();
+        let Some(transducer) = self.robots().get(robot).map(|robot| &robot.transducer) else { return Ok(matrix) };
+        let sensors: Vec<Pose> = self.sensors(robot, 0.0).collect();
+        let poses: Vec<Pose> = self.robots().iter().map(|robot| robot.motion.at(&robot.pose, 0.0).pose).collect();
+        let bodies = Bodies::new(self);
+        let own = self.robots().get(robot).and_then(|of| of.body).map(|_| robot);
+        let furnished = if bodies.any() { bodies.scene(self, &poses, &sensors, [own; 2])? } else { None };
+        let scene = furnished.as_ref().map_or(self.scene(), |furnished| &furnished.scene);
+        let mut tracer = Tracer::new();
+        tracer.follow(&self.physics());
+        // A body shades whatever the physics.
+        tracer.pole_shadows |= furnished.is_some();
+        tracer.pole_order = self.pole_order().min(max_order);
+        let floor = transducer.detection_floor(scene.air());
+        let limits = Limits::order(max_order);
+        matrix.compute(&mut tracer, &CrosstalkQuery { scene, sensors: &sensors, transducer, limits, floor })?;
+        if let Some(furnished) = &furnished {
+            furnished.number(matrix.bounces_mut());
+        }
+        Ok(matrix)
+    }
+}

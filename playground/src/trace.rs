@@ -36,7 +36,7 @@ pub(crate) fn trace(world: &World) -> Result<Traced, String> {
     let limits = Limits::order(world.max_order());
     let mut matrix = CrosstalkMatrix::new();
     matrix
-        .compute(&mut Tracer::new(), &CrosstalkQuery { scene, sensors: &ring, transducer, limits, floor })
+        .compute(&mut Tracer::new(), &CrosstalkQuery::new(scene, &ring, transducer, limits, floor))
         .map_err(|error| error.to_string())?;
     let position = |sensor: u32| Some(Point::from(ring.get(sensor as usize)?.translation.vector));
     let paths = matrix.paths().iter().filter_map(|path| {

@@ -52,6 +52,7 @@ _Method = Literal[
 ]
 _Cause = Literal["nothing", "own", "stale", "crosstalk", "external"]
 _Transducer = Literal["polaroid_6500", "hc_sr04"]
+_Beam = Literal["cut_at_90", "continuous"]
 _Gain = Literal["constant", "square_root", "linear", "stepped"]
 _Physics = Literal["plain", "default"] | dict[str, bool | float | str]
 _Body = float | tuple[float, float] | list[tuple[float, float]]
@@ -879,6 +880,8 @@ class Robot:
         clock_offset_us: _Int = 0,
         clock_drift_ppm: float = 0.0,
         body: _Body | None = None,
+        beam: _Beam = "cut_at_90",
+        coupling_db: float | None = None,
     ) -> Robot: ...
     def replace(self, **changes: object) -> Robot: ...
     @property
@@ -895,6 +898,10 @@ class Robot:
     def transducer(self) -> _Transducer: ...
     @property
     def gain(self) -> _Gain: ...
+    @property
+    def beam(self) -> _Beam: ...
+    @property
+    def coupling_db(self) -> float | None: ...
     @property
     def body(self) -> _Body | None: ...
     @property

@@ -62,7 +62,7 @@ pub(crate) fn true_paths(world: &World) -> Result<Vec<TruePath>, PathsError> {
     let limits = Limits::order(world.max_order());
     let mut tracer = Tracer::new();
     tracer.follow(&world.physics());
-    matrix.compute(&mut tracer, &CrosstalkQuery { scene, sensors: &ring, transducer, limits, floor: 0.5 * floor })?;
+    matrix.compute(&mut tracer, &CrosstalkQuery::new(scene, &ring, transducer, limits, 0.5 * floor))?;
     let c = scene.air().speed_of_sound();
     let path = |path: &eeruf_sim::CriticalPath| TruePath {
         sender: path.emitter as u8,

@@ -28,6 +28,7 @@ EVERYTHING = sim.Scene(
     physics={"preset": "default", "narrow_panels": False, "fading_time_s": 0.4},
     robots=[
         sim.Robot((0, 0, 0.3), 6, 0.4, 0.1, "hc_sr04", gain="linear", blanking_us=300, odometry=True,
+                  beam="continuous", coupling_db=-45.0,
                   velocity_m_s=(0.05, 0.01), turn_rad_s=0.2, clock_offset_us=5, clock_drift_ppm=-20.0, body=0.15),
         sim.Robot((-1.2, -1.2, 0.9), [(0.05, 0.05, 0.7), (0.05, -0.05, -0.7)], schedule=SCHEDULE, start_us=777,
                   waypoints_m=[(-1.3, -1.0), (-1.2, -1.2)], speed_m_s=0.1, neighbours=2, min_refire_us=20_000,
@@ -76,6 +77,8 @@ def test_all_that_a_scene_was_made_of_can_be_read() -> None:
     assert (moving.velocity_m_s, moving.turn_rad_s, moving.waypoints_m) == ((0.05, 0.01), 0.2, None)
     assert (driving.waypoints_m, driving.speed_m_s) == ([(-1.3, -1.0), (-1.2, -1.2)], 0.1)
     assert (driving.sensors, driving.spacing_rad, driving.sensor_poses[1]) == (2, None, (0.05, -0.05, -0.7))
+    assert (moving.beam, moving.coupling_db) == ("continuous", -45.0)
+    assert (driving.beam, driving.coupling_db) == ("cut_at_90", None)
     assert (moving.gain, moving.blanking_us, moving.odometry, driving.start_us) == ("linear", 300, True, 777)
 
 

@@ -1,7 +1,7 @@
 //! `sim.Robot`: a robot with its ring.
 
 use eeruf_core::Micros;
-use eeruf_sim::{Clock, GainProfile, Motion, Point, Transducer};
+use eeruf_sim::{Beam, Clock, GainProfile, Motion, Point, Transducer};
 use pyo3::{
     prelude::*,
     types::{PyDict, PyTuple},
@@ -25,6 +25,10 @@ use crate::{
 ///     transducer: ``"polaroid_6500"`` or ``"hc_sr04"``.
 ///     gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"``, ``"linear"`` or
 ///         ``"stepped"``.
+///     beam: the pattern near 90 degrees off a sensor's axis: ``"cut_at_90"``, an endless baffle with nothing behind, or
+///         ``"continuous"``, a baffle that ends.
+///     coupling_db: the level of the sound that the mounting carries straight from sensor to sensor, relative to two
+///         that face each other as far apart, -200 to 0; None for what the patterns say.
 ///     body: its outline, which others' sound is reflected and shaded by: the radius of a disc, (length, width) of a
 ///         box, or 3 to 8 corners (x, y) of a convex polygon, counter-clockwise, all in metres; None for none.
 ///     period_us: ``T_p`` of the methods that bring no schedule of their own; the schedule's if there is one.
@@ -86,8 +90,8 @@ const GAINS: [(&str, GainProfile); 4] = [
 impl Robot {
     /// One that a file describes.
     pub(crate) fn of(robot: &eeruf_sim::Robot) -> Self {
-        let gain = robot.transducer.gain;
-        let named = TRANSDUCERS.iter().find(|(_, preset)| Transducer { gain, ..*preset } == robot.transducer);
+        let Transducer { gain, beam, .. } = robot.transducer;
+        let named = TRANSDUCERS.iter().find(|(_, preset)| Transducer { gain, beam, ..*preset } == robot.transducer);
         Self {
             pose: from_pose(&robot.pose),
             sensor_poses: robot.sensors.iter().map(from_pose).collect(),
@@ -113,6 +117,8 @@ impl Robot {
         }
         all.set_item("transducer", self.transducer)?;
         all.set_item("gain", self.gain())?;
+        all.set_item("beam", self.beam())?;
+        all.set_item("coupling_db", self.coupling_db())?;
         all.set_item("body", self.body(py)?)?;
         all.set_item("period_us", self.period_us())?;
         all.set_item("t_delta_us", self.t_delta_us())?;
@@ -148,13 +154,13 @@ impl Robot {
         pose, sensors, spacing_rad=None, radius_m=None, transducer=None, *, gain=None, period_us=None, t_delta_us=None,
         window_us=None, blanking_us=None, min_refire_us=None, start_us=None, schedule=None, neighbours=None,
         consecutive=None, odometry=None, velocity_m_s=None, turn_rad_s=None, waypoints_m=None,
-        speed_m_s=None, clock_offset_us=None, clock_drift_ppm=None, body=None
+        speed_m_s=None, clock_offset_us=None, clock_drift_ppm=None, body=None, beam=None, coupling_db=None
     ))]
     #[pyo3(text_signature = "(pose, sensors, spacing_rad=None, radius_m=None, transducer=\"polaroid_6500\", *, \
             gain=\"constant\", period_us=60000, t_delta_us=500, window_us=36000, blanking_us=None, \
             min_refire_us=36000, start_us=0, schedule=None, neighbours=4, consecutive=2, odometry=False, \
             velocity_m_s=None, turn_rad_s=None, waypoints_m=None, speed_m_s=None, clock_offset_us=0, \
-            clock_drift_ppm=0.0, body=None)")]
+            clock_drift_ppm=0.0, body=None, beam=\"cut_at_90\", coupling_db=None)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         pose: &Bound<'_, PyAny>,
@@ -180,11 +186,14 @@ impl Robot {
         clock_offset_us: Option<&Bound<'_, PyAny>>,
         clock_drift_ppm: Option<&Bound<'_, PyAny>>,
         body: Option<&Bound<'_, PyAny>>,
+        beam: Option<&Bound<'_, PyAny>>,
+        coupling_db: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let pose = pose_of("pose", pose)?;
         let (name, transducer) =
             choice("transducer", transducer, &TRANSDUCERS.map(|(name, kind)| (name, (name, kind))))?;
-        let transducer = Transducer { gain: choice("gain", gain, &GAINS)?, ..transducer };
+        let (gain, beam) = (choice("gain", gain, &GAINS)?, choice("beam", beam, &Beam::NAMES)?);
+        let transducer = Transducer { gain, beam, ..transducer };
         let spacing_rad = spacing_rad.map(|angle| number("spacing_rad", angle, -10.0..=10.0)).transpose()?;
         let radius_m = radius_m.map(|radius| number("radius_m", radius, 0.0..=1e3)).transpose()?;
         let (mut robot, sensor_poses) =
@@ -230,6 +239,7 @@ impl Robot {
             drift_ppm: clock_drift_ppm.map_or(Ok(0.0), |drift| number("clock_drift_ppm", drift, -1e3..=1e3))?,
         };
         robot.body = body.map(outline).transpose()?;
+        robot.coupling_db = coupling_db.map(|level| number("coupling_db", level, -200.0..=0.0)).transpose()?;
         let given = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
         robot.schedule = given.transpose()?.map(|schedule| schedule.get().0);
         if let (Some(schedule), None) = (robot.schedule, period_us) {
@@ -289,6 +299,19 @@ impl Robot {
     #[getter]
     fn gain(&self) -> &'static str {
         GAINS.iter().find(|(_, gain)| *gain == self.robot.transducer.gain).map_or("constant", |(name, _)| name)
+    }
+
+    /// The pattern near 90 degrees off a sensor's axis.
+    #[getter]
+    fn beam(&self) -> &'static str {
+        self.robot.transducer.beam.name()
+    }
+
+    /// The level of the sound that the mounting carries straight from sensor to sensor, in dB; None for what the
+    /// patterns say.
+    #[getter]
+    fn coupling_db(&self) -> Option<f64> {
+        self.robot.coupling_db
     }
 
     /// Its outline: the radius of a disc, (length, width) of a box, or the corners of a polygon; None without.

@@ -30,7 +30,7 @@ fn main() {
     let limits = Limits::order(world.max_order());
     let mut matrix = CrosstalkMatrix::new();
     matrix
-        .compute(&mut Tracer::new(), &CrosstalkQuery { scene, sensors: &sensors, transducer, limits, floor })
+        .compute(&mut Tracer::new(), &CrosstalkQuery::new(scene, &sensors, transducer, limits, floor))
         .expect("limits that suffice");
     for path in matrix.paths() {
         let us = path.length_m / scene.air().speed_of_sound() * 1e6;

@@ -70,7 +70,7 @@ fn heard(world: &World) -> Result<BTreeMap<Key, f64>, PathsError> {
     let (floor, limits) = (transducer.detection_floor(scene.air()), Limits::order(world.max_order()));
     let (mut matrix, mut tracer) = (CrosstalkMatrix::new(), Tracer::new());
     tracer.follow(&world.physics());
-    matrix.compute(&mut tracer, &CrosstalkQuery { scene, sensors: &sensors, transducer, limits, floor })?;
+    matrix.compute(&mut tracer, &CrosstalkQuery::new(scene, &sensors, transducer, limits, floor))?;
     let key = |path: &CriticalPath| (path.emitter, path.receiver, matrix.bounces(path).to_vec());
     Ok(matrix.paths().iter().map(|path| (key(path), path.amplitude)).collect())
 }

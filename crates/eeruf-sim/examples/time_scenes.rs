@@ -40,7 +40,7 @@ fn matrix_ms(poles: usize) -> (f64, usize) {
     let floor = transducer.detection_floor(scene.air());
     let (mut matrix, mut tracer) = (CrosstalkMatrix::new(), Tracer::new());
     let (sensors, limits) = (&ring[..], Limits::order(4));
-    let query = CrosstalkQuery { scene: &scene, sensors, transducer: &transducer, limits, floor };
+    let query = CrosstalkQuery::new(&scene, sensors, &transducer, limits, floor);
     let ms = quickest_ms(|| matrix.compute(&mut tracer, black_box(&query)).expect("in the room"));
     (ms, matrix.paths().len())
 }
@@ -59,7 +59,7 @@ fn hall_ms() -> (f64, usize) {
     let floor = transducer.detection_floor(scene.air());
     let (mut matrix, mut tracer) = (CrosstalkMatrix::new(), Tracer::new());
     let (sensors, limits) = (&ring[..], Limits { max_order: 6, max_length_m: 24.0 });
-    let query = CrosstalkQuery { scene: &scene, sensors, transducer: &transducer, limits, floor };
+    let query = CrosstalkQuery::new(&scene, sensors, &transducer, limits, floor);
     let ms = quickest_ms(|| matrix.compute(&mut tracer, black_box(&query)).expect("in the hall"));
     (ms / 24.0, matrix.paths().len())
 }

@@ -51,7 +51,7 @@
 //! let mut matrix = CrosstalkMatrix::new();
 //! let floor = transducer.detection_floor(scene.air());
 //! let (sensors, transducer, limits) = (&ring[..], &transducer, Limits::order(4));
-//! matrix.compute(&mut Tracer::new(), &CrosstalkQuery { scene: &scene, sensors, transducer, limits, floor })?;
+//! matrix.compute(&mut Tracer::new(), &CrosstalkQuery::new(&scene, sensors, transducer, limits, floor))?;
 //! let echo = &matrix.between(0, 0)[0];
 //! assert!((echo.length_m - 2.4).abs() < 1e-12); // the wall ahead
 //! assert!(!matrix.between(0, 1).is_empty()); // the neighbour hears it too
@@ -72,7 +72,7 @@ pub mod tracing;
 pub mod world;
 
 pub use acoustics::{
-    GainProfile, Physics, Piston, Transducer, UnknownPhysics, edge_diffraction, pole_wave_correction,
+    Beam, GainProfile, Physics, Piston, Transducer, UnknownPhysics, edge_diffraction, pole_wave_correction,
     rigid_cylinder_form,
 };
 pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice};

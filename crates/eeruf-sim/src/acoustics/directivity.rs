@@ -1,27 +1,56 @@
 //! The pattern of a round transducer in a baffle: how much of the sound leaves, or is heard, at an angle off its axis.
 
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI};
+
+use super::panel::fresnel;
 
 /// The first zero of `J1`: where the main lobe ends.
 const FIRST_NULL: f64 = 3.831_705_970_207_512;
+
+/// The pattern near 90 degrees off the axis, and beyond.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Beam {
+    /// An endless baffle: its pattern up to 90 degrees, nothing behind. Two sensors on one plate do not hear each other
+    /// straight along it, and hear each other fully if they are turned in by any angle.
+    #[default]
+    CutAt90,
+    /// A baffle that ends with the piston: half of the wave at 90 degrees, and the shadow of a half plane behind. The
+    /// pattern is continuous at all angles.
+    Continuous,
+}
+
+impl Beam {
+    /// The beams by their names in files.
+    pub const NAMES: [(&'static str, Self); 2] = [("cut_at_90", Self::CutAt90), ("continuous", Self::Continuous)];
+
+    /// The name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::CutAt90 => "cut_at_90",
+            Self::Continuous => "continuous",
+        }
+    }
+}
 
 /// A baffled circular piston with a floor under its nulls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piston {
     /// Wave number times radius.
     pub ka: f64,
-    /// The least amplitude within the half circle in front. Nulls are an artefact of a single frequency; a short burst
+    /// The least amplitude of the endless baffle's pattern. Nulls are an artefact of a single frequency; a short burst
     /// has none.
     pub floor: f64,
+    /// The pattern near 90 degrees and beyond.
+    pub beam: Beam,
 }
 
 impl Piston {
     /// -28 dB (a choice).
     pub const DEFAULT_FLOOR: f64 = 0.039_810_717_055_349_72;
 
-    /// A piston of radius `radius_m` at wave number `wave_number` (rad/m), with the default floor.
+    /// A piston of radius `radius_m` at wave number `wave_number` (rad/m), with the default floor and beam.
     pub fn new(wave_number: f64, radius_m: f64) -> Self {
-        Self { ka: wave_number * radius_m, floor: Self::DEFAULT_FLOOR }
+        Self { ka: wave_number * radius_m, floor: Self::DEFAULT_FLOOR, beam: Beam::default() }
     }
 
     /// Amplitude at an angle off the axis, 1 on it:
@@ -30,20 +59,49 @@ impl Piston {
     /// D = |2 J1(x) / x|,   x = k a sin(theta)
     /// ```
     ///
-    /// but not below the floor, and 0 from 90 degrees on, behind the baffle.
+    /// but not below the floor; behind 90 degrees as the [`beam`](Self::beam) says. A continuous beam multiplies the
+    /// pattern, which beyond 90 degrees stays what it is there, by what a half plane's edge at the piston's rim leaves,
+    /// relative to the axis:
+    ///
+    /// ```text
+    /// B = (1 - |F(x)|) / (1 - |F(sqrt(ka))|) in front,  |F(-x)| / (1 - |F(sqrt(ka))|) behind,
+    /// x = sqrt(2 ka) cos(pi / 4 + theta / 2),  |F(x)| = |integral of exp(i t^2) from x to infinity| / sqrt(pi)
+    /// ```
+    ///
+    /// Sommerfeld's shadow at grazing incidence (Born and Wolf, Principles of Optics, Sec. 11.5) with the edge wave's
+    /// ripple in front left out, which a round rim and a short burst smear.
     ///
     /// ```
-    /// use eeruf_sim::Piston;
-    /// let polaroid = Piston { ka: 17.364439394387222, floor: 0.0 };
+    /// use eeruf_sim::{Beam, Piston};
+    /// let polaroid = Piston { ka: 17.364439394387222, floor: 0.0, beam: Beam::CutAt90 };
     /// assert!((polaroid.pattern(7.5f64.to_radians()) - 0.48150582532629144).abs() < 1e-9);
     /// assert_eq!(polaroid.pattern(2.0), 0.0);
+    /// let behind = Piston { beam: Beam::Continuous, ..polaroid }.pattern(2.0);
+    /// assert!(behind > 0.0 && behind < polaroid.pattern(1.57));
     /// ```
     pub fn pattern(&self, off_axis_rad: f64) -> f64 {
         let off = crate::geometry::wrap_angle(off_axis_rad).abs();
-        if off >= FRAC_PI_2 {
-            return 0.0;
+        match self.beam {
+            Beam::CutAt90 if off >= FRAC_PI_2 => 0.0,
+            Beam::CutAt90 => self.endless(off),
+            Beam::Continuous => self.endless(off.min(FRAC_PI_2)) * self.rim(off),
         }
+    }
+
+    /// The pattern in an endless baffle, up to 90 degrees.
+    fn endless(&self, off: f64) -> f64 {
         self.lobe(self.ka * libm::sin(off)).max(self.floor)
+    }
+
+    /// What the end of the baffle leaves at an angle of 0 to pi, 1 on the axis.
+    fn rim(&self, off: f64) -> f64 {
+        let edge_wave = |x: f64| {
+            let [c, s] = fresnel(x.abs() * (2.0 / PI).sqrt());
+            libm::hypot(0.5 - c, 0.5 - s) * FRAC_1_SQRT_2
+        };
+        let x = (2.0 * self.ka).sqrt() * libm::cos(FRAC_PI_4 + 0.5 * off);
+        let left = if x >= 0.0 { 1.0 - edge_wave(x) } else { edge_wave(x) };
+        left / (1.0 - edge_wave(self.ka.sqrt()))
     }
 
     fn lobe(&self, x: f64) -> f64 {
@@ -82,23 +140,46 @@ mod tests {
 
     #[test]
     fn polaroid_and_hc_sr04_have_the_lobes_of_the_data_sheets() {
-        let degrees = |ka: f64, db: f64| Piston { ka, floor: 0.0 }.angle_at_db(db).unwrap().to_degrees();
+        let degrees =
+            |ka: f64, db: f64| Piston { ka, floor: 0.0, beam: Beam::CutAt90 }.angle_at_db(db).unwrap().to_degrees();
         assert!((degrees(17.364, -3.0) - 5.33).abs() < 0.01);
         assert!((degrees(17.364, -6.0) - 7.32).abs() < 0.01);
         assert!((degrees(17.364, -20.0) - 11.36).abs() < 0.01);
         assert!((degrees(5.858, -3.0) - 16.0).abs() < 0.05);
-        let side_lobe =
-            (1275..2500).map(|k| Piston { ka: 17.364, floor: 0.0 }.pattern(f64::from(k).to_radians() / 100.0));
+        let side_lobe = (1275..2500)
+            .map(|k| Piston { ka: 17.364, floor: 0.0, beam: Beam::CutAt90 }.pattern(f64::from(k).to_radians() / 100.0));
         assert!((20.0 * libm::log10(side_lobe.fold(0.0, f64::max)) + 17.57).abs() < 0.01);
     }
 
     #[test]
     fn the_floor_fills_the_nulls_in_front_and_nothing_behind() {
-        let piston = Piston { ka: 17.364, floor: Piston::DEFAULT_FLOOR };
+        let piston = Piston { ka: 17.364, floor: Piston::DEFAULT_FLOOR, beam: Beam::CutAt90 };
         let null = libm::asin(FIRST_NULL / 17.364);
         assert_eq!(piston.pattern(null), Piston::DEFAULT_FLOOR);
-        assert_eq!(piston.pattern(core::f64::consts::PI), 0.0);
+        assert_eq!(piston.pattern(PI), 0.0);
         assert_eq!(piston.angle_at_db(1.0), None);
-        assert_eq!(Piston { ka: 0.5, floor: 0.0 }.angle_at_db(-20.0), None);
+        assert_eq!(Piston { ka: 0.5, floor: 0.0, beam: Beam::CutAt90 }.angle_at_db(-20.0), None);
+    }
+
+    #[test]
+    fn continuous_beam_has_no_step_and_keeps_the_main_lobe() {
+        for ka in [5.858, 17.364] {
+            let [cut, continuous] =
+                [Beam::CutAt90, Beam::Continuous].map(|beam| Piston { ka, floor: Piston::DEFAULT_FLOOR, beam });
+            assert_eq!(continuous.pattern(0.0), 1.0);
+            // No step anywhere: a hundredth of a degree changes little of the amplitude.
+            let at = |k: u32| continuous.pattern((0.01 * f64::from(k)).to_radians());
+            for k in 0..18_000 {
+                assert!((at(k + 1) - at(k)).abs() < 2e-2 * at(k).max(Piston::DEFAULT_FLOOR), "{ka} {k}");
+            }
+            // Half of the wave, at the edge of the shadow; nothing to speak of changes in the main lobe.
+            let db = |off: f64| 20.0 * libm::log10(continuous.pattern(off) / cut.pattern(off));
+            let half = db(FRAC_PI_2 - 1e-9);
+            assert!((-6.1..-4.8).contains(&half), "{half}");
+            let lobe = cut.angle_at_db(-3.0).unwrap();
+            assert!((0..=100).all(|k| db(0.01 * f64::from(k) * lobe).abs() < 0.3));
+            // Ever less behind.
+            assert!((9_000..18_000).all(|k| at(k + 1) < at(k)));
+        }
     }
 }

@@ -10,7 +10,7 @@ mod spreading;
 mod transducer;
 
 pub use diffraction::{edge_diffraction, pole_wave_correction, rigid_cylinder_form};
-pub use directivity::Piston;
+pub use directivity::{Beam, Piston};
 pub(crate) use panel::{LOUDEST_PANEL, panel_share};
 pub use physics::{Physics, UnknownPhysics};
 pub(crate) use reflection::reflected;

@@ -1,7 +1,7 @@
 //! Transducers and their ranging modules: frequency, size, burst, blanking, range, gain over time and what is just
 //! heard.
 
-use super::directivity::Piston;
+use super::directivity::{Beam, Piston};
 use crate::scene::Air;
 
 /// How a receiver's gain grows while it listens. The step table of the Polaroid 6500 is not public, so the shape is a
@@ -53,6 +53,8 @@ pub struct Transducer {
     pub radius_m: f64,
     /// Least amplitude of the pattern in front, see [`Piston::floor`].
     pub pattern_floor: f64,
+    /// The pattern near 90 degrees and beyond.
+    pub beam: Beam,
     /// Length of the burst in cycles.
     pub cycles: u32,
     /// Deaf time after firing, in seconds.
@@ -71,6 +73,7 @@ impl Transducer {
         bandwidth_hz: 49_400.0 / 16.0,
         radius_m: 19.2e-3,
         pattern_floor: Piston::DEFAULT_FLOOR,
+        beam: Beam::CutAt90,
         cycles: 16,
         blanking_s: 2.38e-3,
         max_range_m: 10.7,
@@ -83,6 +86,7 @@ impl Transducer {
         bandwidth_hz: 40_000.0 / 8.0,
         radius_m: 8.0e-3,
         pattern_floor: Piston::DEFAULT_FLOOR,
+        beam: Beam::CutAt90,
         cycles: 8,
         blanking_s: 0.117e-3,
         max_range_m: 4.0,
@@ -96,7 +100,7 @@ impl Transducer {
 
     /// Its pattern in this air.
     pub fn piston(&self, air: Air) -> Piston {
-        Piston { floor: self.pattern_floor, ..Piston::new(self.wave_number(air), self.radius_m) }
+        Piston { floor: self.pattern_floor, beam: self.beam, ..Piston::new(self.wave_number(air), self.radius_m) }
     }
 
     /// Whether it hears the sound of another kind: whether their bands overlap. Whoever sends is heard in turn.

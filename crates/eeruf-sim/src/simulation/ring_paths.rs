@@ -32,11 +32,11 @@ impl World {
     /// ```
     pub fn ring_paths(&self, robot: usize, max_order: u32) -> Result<CrosstalkMatrix, PathsError> {
         let mut matrix = CrosstalkMatrix::new();
-        let Some(transducer) = self.robots().get(robot).map(|robot| &robot.transducer) else { return Ok(matrix) };
+        let Some(of) = self.robots().get(robot) else { return Ok(matrix) };
         let sensors: Vec<Pose> = self.sensors(robot, 0.0).collect();
         let poses: Vec<Pose> = self.robots().iter().map(|robot| robot.motion.at(&robot.pose, 0.0).pose).collect();
         let bodies = Bodies::new(self);
-        let own = self.robots().get(robot).and_then(|of| of.body).map(|_| robot);
+        let own = of.body.map(|_| robot);
         let furnished = if bodies.any() { bodies.scene(self, &poses, &sensors, [own; 2])? } else { None };
         let scene = furnished.as_ref().map_or(self.scene(), |furnished| &furnished.scene);
         let mut tracer = Tracer::new();
@@ -44,9 +44,10 @@ impl World {
         // A body shades whatever the physics.
         tracer.pole_shadows |= furnished.is_some();
         tracer.pole_order = self.pole_order().min(max_order);
-        let floor = transducer.detection_floor(scene.air());
+        let floor = of.transducer.detection_floor(scene.air());
         let limits = Limits::order(max_order);
-        matrix.compute(&mut tracer, &CrosstalkQuery { scene, sensors: &sensors, transducer, limits, floor })?;
+        let query = CrosstalkQuery::new(scene, &sensors, &of.transducer, limits, floor);
+        matrix.compute(&mut tracer, &CrosstalkQuery { coupling: of.coupling(), ..query })?;
         if let Some(furnished) = &furnished {
             furnished.number(matrix.bounces_mut());
         }

@@ -52,6 +52,22 @@ pub struct CrosstalkQuery<'a> {
     pub limits: Limits,
     /// What is heard: the [received level](Transducer::received) at or above this.
     pub floor: f64,
+    /// The amplitude of straight paths between two different sensors, at least, relative to two that face each other as
+    /// far apart: what their mounting carries. 0 if the patterns alone decide.
+    pub coupling: f64,
+}
+
+impl<'a> CrosstalkQuery<'a> {
+    /// A question without direct coupling.
+    pub const fn new(
+        scene: &'a Scene,
+        sensors: &'a [Pose],
+        transducer: &'a Transducer,
+        limits: Limits,
+        floor: f64,
+    ) -> Self {
+        Self { scene, sensors, transducer, limits, floor, coupling: 0.0 }
+    }
 }
 
 /// All paths between the sensors of a ring, by emitter, receiver and length.
@@ -66,6 +82,7 @@ pub struct CrosstalkMatrix {
     // Kept between computations only for their memory.
     positions: Vec<Point>,
     found: Paths,
+    straight: Paths,
     audibility: Option<Audibility>,
 }
 
@@ -120,7 +137,7 @@ impl CrosstalkMatrix {
         sending: &Transducer,
         query: &CrosstalkQuery<'_>,
     ) -> Result<(), PathsError> {
-        let CrosstalkQuery { scene, sensors, transducer, limits, floor } = *query;
+        let CrosstalkQuery { scene, sensors, transducer, limits, floor, coupling } = *query;
         let air = scene.air();
         let departing = sending.piston(air);
         // What arrives is of the emitter's frequency.
@@ -145,32 +162,51 @@ impl CrosstalkMatrix {
             // The wave correction may add a little to what a pole returns.
             let audibility = if tracer.pole_waves { None } else { Some(&*audibility) };
             let source = Point::from(pose.translation.vector);
-            if let Err(error) =
-                tracer.trace_audible(audibility, scene, source, &self.positions, limits, emitter > 0, &mut self.found)
-            {
+            // What the mounting carries may be louder than the patterns say.
+            self.straight.clear();
+            let coupled = Limits { max_order: 0, ..limits };
+            let traced = if coupling > 0.0 {
+                tracer.trace_audible(None, scene, source, &self.positions, coupled, false, &mut self.straight)
+            } else {
+                Ok(())
+            };
+            let traced = traced.and_then(|()| {
+                let again = emitter > 0;
+                tracer.trace_audible(audibility, scene, source, &self.positions, limits, again, &mut self.found)
+            });
+            if let Err(error) = traced {
                 self.paths.clear();
                 self.starts.clear();
                 return Err(error);
             }
-            let found = &self.found;
             let mut next = 0;
             for (receiver, listener) in sensors.iter().enumerate() {
                 self.starts.push(self.paths.len() as u32);
-                let range = next..found.of(receiver as u32).end;
+                let range = next..self.found.of(receiver as u32).end;
                 next = range.end;
-                if range.is_empty() {
+                let straight = self.straight.of(receiver as u32);
+                if range.is_empty() && straight.is_empty() {
                     continue;
                 }
                 let listens_rad = listener.rotation.angle();
-                for k in range {
+                let straight = straight.map(|k| (&self.straight, k, coupling));
+                let others = range.map(|k| (&self.found, k, 0.0));
+                for (found, k, least) in straight.chain(others) {
                     let bare = found.amplitude[k];
                     // The patterns only take away, and cost more than anything else here.
                     if transducer.received(bare, found.length_m[k], air) < floor {
                         continue;
                     }
-                    let amplitude = bare
+                    // Straight paths were found on their own.
+                    if coupling > 0.0 && least == 0.0 && found.order[k] == 0 {
+                        continue;
+                    }
+                    let mut amplitude = bare
                         * departing.pattern(found.departure_rad[k] - heading_rad)
                         * arriving.pattern(found.arrival_rad[k] - listens_rad);
+                    if amplitude < bare * least {
+                        amplitude = bare * least;
+                    }
                     if transducer.received(amplitude, found.length_m[k], air) < floor {
                         continue;
                     }

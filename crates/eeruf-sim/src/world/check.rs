@@ -98,6 +98,9 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
             return fail(field, value, "a positive number");
         }
     }
+    if let Some(coupling_db) = robot.coupling_db.filter(|db| !(-200.0..=0.0).contains(db)) {
+        return fail("coupling_db", coupling_db, "-200 to 0");
+    }
     for (field, value) in
         [("period_us", robot.period), ("window_us", robot.window), ("min_refire_us", robot.min_refire)]
     {

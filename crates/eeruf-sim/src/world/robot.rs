@@ -30,6 +30,10 @@ pub struct Robot {
     /// own sensors neither see it nor are shaded by it, but that nothing leaves or reaches them from behind. The
     /// default is none: the robot is transparent, and stands free by the disc of [`radius_m`](Self::radius_m).
     pub body: Option<Body>,
+    /// The level in dB of the sound that its mounting carries straight from one of its sensors to another, relative to
+    /// two that face each other as far apart; the patterns of the transducers where they are louder. `None`, the
+    /// default, for the patterns alone: a mounting that carries nothing.
+    pub coupling_db: Option<f64>,
     /// Where the robot is at the start.
     pub pose: Pose,
     /// How it moves from there.
@@ -92,6 +96,7 @@ impl Robot {
             sensors,
             transducer,
             body: None,
+            coupling_db: None,
             pose,
             motion: Motion::Still,
             clock: Clock::default(),
@@ -128,6 +133,11 @@ impl Robot {
             ..Requirements::new(self.t_delta)
         };
         schedule.verify(&requirements).verified_uneven().map(Some)
+    }
+
+    /// The amplitude that [`coupling_db`](Self::coupling_db) means; 0 for none.
+    pub(crate) fn coupling(&self) -> f64 {
+        self.coupling_db.map_or(0.0, |db| libm::exp10(db / 20.0))
     }
 
     /// The radius in metres of the smallest disc about the robot's middle that holds all its sensors.

@@ -1,7 +1,7 @@
 //! The shared corpus `tests/data/critical-paths.json`: every scene and closed form, path for path.
 
 use eeruf_sim::{
-    Air, Bounce, Limits, Material, Paths, Piston, Point, Scene, Tracer, Vector, Wall, alhazen, reception,
+    Air, Beam, Bounce, Limits, Material, Paths, Piston, Point, Scene, Tracer, Vector, Wall, alhazen, reception,
     reception_along, rigid_cylinder_form,
 };
 use serde_json::Value;
@@ -111,7 +111,7 @@ fn amplitudes_and_directions_of_the_corpus_are_met() {
         let walls = bare.walls().iter().map(|wall| wall.with_material(reflecting)).collect();
         let scene = Scene::new(walls, vec![], Air::default()).unwrap();
         assert!((scene.air().absorption_db_per_m(49_400.0) - number("alpha_db_per_m")).abs() < 1e-6);
-        let piston = Piston { ka: number("ka"), floor: 0.0 };
+        let piston = Piston { ka: number("ka"), floor: 0.0, beam: Beam::CutAt90 };
         let source_axis = number("source_axis_deg").to_radians();
         let limits = Limits::order(case["max_order"].as_u64().unwrap() as u32);
         let mut found = Paths::default();
@@ -179,10 +179,13 @@ fn physics_values_of_the_corpus_are_met() {
                 air.absorption_db_per_m(number("f_hz"))
             }
             "speed_of_sound_343.2*sqrt(T/293.15)" => Air::at(number("temp_c")).speed_of_sound(),
-            "piston_2J1x/x_abs" => Piston { ka: number("ka"), floor: 0.0 }.pattern(number("theta_deg").to_radians()),
-            "piston_angle_at_db_deg" => {
-                Piston { ka: number("ka"), floor: 0.0 }.angle_at_db(number("db")).unwrap().to_degrees()
+            "piston_2J1x/x_abs" => {
+                Piston { ka: number("ka"), floor: 0.0, beam: Beam::CutAt90 }.pattern(number("theta_deg").to_radians())
             }
+            "piston_angle_at_db_deg" => Piston { ka: number("ka"), floor: 0.0, beam: Beam::CutAt90 }
+                .angle_at_db(number("db"))
+                .unwrap()
+                .to_degrees(),
             "rigid_cylinder_form" => rigid_cylinder_form(number("ka"), number("phi_rad")),
             other => panic!("a physics value that is not tested: {other}"),
         };

@@ -10,7 +10,7 @@ fn matrix(scene: &Scene, sensors: &[Pose]) -> CrosstalkMatrix {
     let transducer = Transducer::POLAROID_6500;
     let mut matrix = CrosstalkMatrix::new();
     let floor = transducer.detection_floor(scene.air());
-    let query = CrosstalkQuery { scene, sensors, transducer: &transducer, limits: Limits::order(2), floor };
+    let query = CrosstalkQuery::new(scene, sensors, &transducer, Limits::order(2), floor);
     matrix.compute(&mut Tracer::new(), &query).unwrap();
     matrix
 }
@@ -26,7 +26,7 @@ fn over_floor_db(distance_m: f64, away: usize) -> f64 {
     let floor = transducer.detection_floor(scene.air());
     let mut all = CrosstalkMatrix::new();
     let limits = Limits::order(2);
-    let query = CrosstalkQuery { scene: &scene, sensors: &ring, transducer: &transducer, limits, floor: 0.0 };
+    let query = CrosstalkQuery::new(&scene, &ring, &transducer, limits, 0.0);
     all.compute(&mut Tracer::new(), &query).unwrap();
     let direct = all.between(0, away).iter().filter(|path| path.is_direct() && path.order == 1);
     20.0 * (direct.map(|path| path.amplitude).fold(0.0, f64::max) / floor).log10()
@@ -68,7 +68,7 @@ fn heard_up_to_deg(distance_m: f64, gain: GainProfile) -> i32 {
     let heard = |deg: &i32| {
         let sensors = [Pose::rotation(f64::from(*deg).to_radians())];
         let limits = Limits::order(1);
-        let query = CrosstalkQuery { scene: &scene, sensors: &sensors, transducer: &transducer, limits, floor };
+        let query = CrosstalkQuery::new(&scene, &sensors, &transducer, limits, floor);
         let mut matrix = CrosstalkMatrix::new();
         matrix.compute(&mut Tracer::new(), &query).unwrap();
         !matrix.paths().is_empty()

@@ -48,7 +48,7 @@ fn a_matrix_of_24_sensors_among_walls_and_poles_is_what_it_was() {
     let floor = transducer.detection_floor(scene.air());
     let (sensors, limits) = (&ring[..], Limits::order(3));
     let mut matrix = CrosstalkMatrix::new();
-    let query = CrosstalkQuery { scene: &scene, sensors, transducer: &transducer, limits, floor };
+    let query = CrosstalkQuery::new(&scene, sensors, &transducer, limits, floor);
     matrix.compute(&mut Tracer::new(), &query).unwrap();
     let over_poles = matrix
         .paths()

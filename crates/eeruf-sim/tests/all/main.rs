@@ -3,6 +3,7 @@
 #![expect(clippy::disallowed_methods, reason = "a judge may compute by itself")]
 
 mod amplitudes;
+mod bumper;
 mod corpus;
 #[path = "../common/corpus.rs"]
 mod corpus_reader;

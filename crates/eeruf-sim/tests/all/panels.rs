@@ -265,7 +265,7 @@ fn nothing_that_is_heard_over_panels_is_lost() {
             let floor = times * transducer.detection_floor(scene.air());
             let (mut matrix, mut tracer, limits) = (CrosstalkMatrix::new(), Tracer::new(), Limits::order(3));
             tracer.follow(&physics);
-            let query = CrosstalkQuery { scene: &scene, sensors: &ring, transducer: &transducer, limits, floor };
+            let query = CrosstalkQuery::new(&scene, &ring, &transducer, limits, floor);
             matrix.compute(&mut tracer, &query).unwrap();
             for (emitter, source) in ring.iter().enumerate() {
                 let mut all = Paths::default();

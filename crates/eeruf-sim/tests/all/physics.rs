@@ -53,7 +53,8 @@ fn a_path_between_two_kinds_has_the_senders_pattern_at_its_start_and_the_listene
     let (sending, hearing) = (Transducer { frequency_hz: 48_000.0, ..Transducer::HC_SR04 }, Transducer::POLAROID_6500);
     let (emitter, listener) = (Pose::rotation(0.1), Pose::new(Vector::new(1.5, 0.0), PI - 0.05));
     let limits = Limits::order(0);
-    let query = CrosstalkQuery { scene: &scene, sensors: &[listener], transducer: &hearing, limits, floor: 0.0 };
+    let listeners = [listener];
+    let query = CrosstalkQuery::new(&scene, &listeners, &hearing, limits, 0.0);
     let (mut matrix, mut tracer) = (CrosstalkMatrix::new(), Tracer::new());
     matrix.compute_between(&[emitter], &sending, &mut tracer, &query).unwrap();
     let k = sending.wave_number(Air::default());

@@ -221,11 +221,13 @@ impl<'w> Channels<'w> {
         traced
     }
 
-    /// Sensors of one kind, and of robots without a body or of one robot with one, together.
+    /// Sensors of one kind together, those of robots with a body or a mounting that carries sound each on their own.
     fn alike(&self, sensors: &[usize]) -> Vec<Vec<usize>> {
         let mut groups: Vec<Vec<usize>> = Vec::new();
         let same = |a: usize, b: usize| {
-            self.robot_of(a).transducer == self.robot_of(b).transducer && self.embodied(a) == self.embodied(b)
+            self.robot_of(a).transducer == self.robot_of(b).transducer
+                && self.embodied(a) == self.embodied(b)
+                && self.coupled(a) == self.coupled(b)
         };
         for &sensor in sensors {
             match groups.iter_mut().find(|group| same(group[0], sensor)) {
@@ -239,6 +241,11 @@ impl<'w> Channels<'w> {
     /// The sensor's robot, if it has a body.
     fn embodied(&self, sensor: usize) -> Option<usize> {
         self.robot_of(sensor).body.map(|_| usize::from(self.ids[sensor].robot))
+    }
+
+    /// The sensor's robot, if its mounting carries sound from sensor to sensor.
+    fn coupled(&self, sensor: usize) -> Option<usize> {
+        self.robot_of(sensor).coupling_db.map(|_| usize::from(self.ids[sensor].robot))
     }
 
     /// Where all sensors are, and how fast they go.
@@ -288,7 +295,10 @@ impl<'w> Channels<'w> {
             self.tracer.pole_shadows |= furnished.is_some();
             // The receiver's gain depends on when the receiver fired, so it cannot be applied here.
             let flat = Transducer { gain: GainProfile::Constant, ..*transducer };
-            let query = CrosstalkQuery { scene, sensors: &sensors, transducer: &flat, limits, floor: range.faintest };
+            let on_one = self.coupled(first).filter(|&robot| self.coupled(listeners[0]) == Some(robot));
+            let coupling = on_one.map_or(0.0, |robot| self.world_robots[robot].coupling());
+            let query = CrosstalkQuery::new(scene, &sensors, &flat, limits, range.faintest);
+            let query = CrosstalkQuery { coupling, ..query };
             self.matrix.compute_between(&sources, sending, &mut self.tracer, &query)?;
             let matrix = core::mem::take(&mut self.matrix);
             for path in matrix.paths() {

@@ -3,6 +3,7 @@
 use super::reach::Reach;
 use super::{FAR, at_cos};
 use crate::{
+    acoustics::Beam,
     geometry::{Point, Vector, cross},
     scene::Pole,
 };
@@ -13,12 +14,18 @@ pub(crate) struct Aim<'a> {
     pub(super) envelope: &'a [f64],
     pub(super) reach: &'a Reach,
     pub(super) axis: Vector,
+    pub(super) beam: Beam,
 }
 
 impl Aim<'_> {
-    /// The axis. Nothing leaves at right angles to it, or further behind.
+    /// The axis.
     pub(crate) fn axis(&self) -> Vector {
         self.axis
+    }
+
+    /// Returns true if nothing leaves at right angles to the axis, or further behind.
+    pub(crate) fn is_cut(&self) -> bool {
+        self.beam == Beam::CutAt90
     }
 
     /// The longest path after which anything is heard, in metres.

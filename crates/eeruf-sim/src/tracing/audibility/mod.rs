@@ -99,14 +99,14 @@ impl Audibility {
 
     /// What the source sends where.
     pub(crate) fn of_source(&self) -> Aim<'_> {
-        Aim { envelope: &self.departing, reach: &self.reach, axis: self.source }
+        Aim { envelope: &self.departing, reach: &self.reach, axis: self.source, beam: self.pistons[0].beam }
     }
 
     /// What a receiver hears from where: sound comes the same way as it would go. None where everything counts as
     /// heard.
     pub(crate) fn of_receiver(&self, receiver: usize) -> Option<Aim<'_>> {
         let axis = *self.receivers.get(receiver).filter(|_| self.floor > 0.0)?;
-        Some(Aim { envelope: &self.arriving, reach: &self.reach, axis })
+        Some(Aim { envelope: &self.arriving, reach: &self.reach, axis, beam: self.pistons[1].beam })
     }
 
     /// Where the source heads, in radians.

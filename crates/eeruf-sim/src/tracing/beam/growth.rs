@@ -33,7 +33,7 @@ impl Growth<'_> {
 
     /// The part of a cone from the source into which sound leaves.
     pub(super) fn ensonified(&self, left: Vector, right: Vector) -> Option<(Vector, Vector)> {
-        let Some(forward) = self.aim.map(|aim| aim.axis()) else { return Some((left, right)) };
+        let Some(forward) = self.aim.filter(Aim::is_cut).map(|aim| aim.axis()) else { return Some((left, right)) };
         let ahead = |limit: Vector| limit.dot(&forward) > -SAME_DIRECTION * (limit.x.abs() + limit.y.abs());
         match (ahead(left), ahead(right)) {
             (true, true) => Some((left, right)),

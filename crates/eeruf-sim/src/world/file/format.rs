@@ -187,6 +187,9 @@ pub(super) struct RobotFile {
     pub(super) transducer: TransducerFile,
     #[serde(default)]
     pub(super) gain: GainFile,
+    #[serde(default)]
+    pub(super) beam: BeamFile,
+    pub(super) coupling_db: Option<f64>,
     pub(super) body: Option<BodyFile>,
     pub(super) motion: Option<MotionFile>,
     pub(super) clock: Option<ClockFile>,
@@ -241,6 +244,15 @@ pub(super) enum GainFile {
     SquareRoot,
     Linear,
     Stepped,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+pub(super) enum BeamFile {
+    #[default]
+    #[serde(rename = "cut_at_90")]
+    CutAt90,
+    #[serde(rename = "continuous")]
+    Continuous,
 }
 
 #[derive(Deserialize)]

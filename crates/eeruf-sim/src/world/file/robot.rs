@@ -6,11 +6,11 @@ use eeruf_core::{MAX_SENSORS, Micros, SensorLimits};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::format::{EachFile, GainFile, MotionFile, RobotFile, TransducerFile, radians};
+use super::format::{BeamFile, EachFile, GainFile, MotionFile, RobotFile, TransducerFile, radians};
 use super::schedule_file::ScheduleFile;
 use super::source::{Source, WorldFileError};
 use crate::{
-    acoustics::{GainProfile, Transducer},
+    acoustics::{Beam, GainProfile, Transducer},
     geometry::{Point, Vector},
     world::{clock::Clock, motion::Motion, robot::AnySchedule, robot::Robot},
 };
@@ -26,6 +26,10 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
         GainFile::Linear => GainProfile::Linear,
         GainFile::Stepped => GainProfile::Stepped,
     };
+    let beam = match file.beam {
+        BeamFile::CutAt90 => Beam::CutAt90,
+        BeamFile::Continuous => Beam::Continuous,
+    };
     if file.patience.is_some() {
         let gone = ": patience; expected no such key: a filter that waited for an echo let crosstalk in one phase \
                     starve the wall. Delete the line";
@@ -35,7 +39,7 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
         TransducerFile::Polaroid6500 => Transducer::POLAROID_6500,
         TransducerFile::HcSr04 => Transducer::HC_SR04,
     };
-    let transducer = Transducer { gain, ..preset };
+    let transducer = Transducer { gain, beam, ..preset };
     let pose = file.pose.pose();
     let mut robot = match (&file.ring, &file.sensors) {
         (Some(ring), None) => {
@@ -74,6 +78,7 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
     if let Some(body) = &file.body {
         robot.body = Some(body.body().map_err(|message| fail("body", format!(": body: {message}")))?);
     }
+    robot.coupling_db = file.coupling_db;
     if let Some(clock) = &file.clock {
         robot.clock = Clock { offset_us: clock.offset_us, drift_ppm: clock.drift_ppm };
     }

@@ -131,8 +131,8 @@ fn robot_table(robot: &Robot) -> Table {
     set(&mut table, "pose", pose_table(&robot.pose));
     let sensors: Vec<Value> = robot.sensors.iter().map(|sensor| Value::Table(pose_table(sensor))).collect();
     set(&mut table, "sensors", sensors);
-    let gain = robot.transducer.gain;
-    let hc_sr04 = Transducer { gain, ..Transducer::HC_SR04 };
+    let Transducer { gain, beam, .. } = robot.transducer;
+    let hc_sr04 = Transducer { gain, beam, ..Transducer::HC_SR04 };
     set(&mut table, "transducer", if robot.transducer == hc_sr04 { "hc_sr04" } else { "polaroid_6500" });
     let gain = match gain {
         GainProfile::Constant => "constant",
@@ -141,6 +141,10 @@ fn robot_table(robot: &Robot) -> Table {
         GainProfile::Stepped => "stepped",
     };
     set(&mut table, "gain", gain);
+    set(&mut table, "beam", beam.name());
+    if let Some(coupling_db) = robot.coupling_db {
+        set(&mut table, "coupling_db", coupling_db);
+    }
     if let Some(body) = &robot.body {
         let mut outline = Table::new();
         match body {

@@ -23,10 +23,10 @@ use crate::{
 ///     spacing_rad: the angle from one sensor to the next on the arc, in radians.
 ///     radius_m: the radius of the arc, in metres.
 ///     transducer: ``"polaroid_6500"`` or ``"hc_sr04"``.
-///     gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"``, ``"linear"`` or
-///         ``"stepped"``.
-///     beam: the pattern near 90 degrees off a sensor's axis: ``"cut_at_90"``, an endless baffle with nothing behind, or
-///         ``"continuous"``, a baffle that ends.
+///     gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"``, ``"linear"``,
+///         ``"stepped"`` or ``"polaroid_6500"``, the steps of that module's control circuit.
+///     beam: the pattern near 90 degrees off a sensor's axis: ``"cut_at_90"``, an endless baffle with nothing behind,
+///         or ``"continuous"``, a baffle that ends.
 ///     coupling_db: the level of the sound that the mounting carries straight from sensor to sensor, relative to two
 ///         that face each other as far apart, -200 to 0; None for what the patterns say.
 ///     body: its outline, which others' sound is reflected and shaded by: the radius of a disc, (length, width) of a
@@ -80,12 +80,6 @@ pub(crate) struct Robot {
 
 const TRANSDUCERS: [(&str, Transducer); 2] =
     [("polaroid_6500", Transducer::POLAROID_6500), ("hc_sr04", Transducer::HC_SR04)];
-const GAINS: [(&str, GainProfile); 4] = [
-    ("constant", GainProfile::Constant),
-    ("square_root", GainProfile::SquareRoot),
-    ("linear", GainProfile::Linear),
-    ("stepped", GainProfile::Stepped),
-];
 
 impl Robot {
     /// One that a file describes.
@@ -192,7 +186,7 @@ impl Robot {
         let pose = pose_of("pose", pose)?;
         let (name, transducer) =
             choice("transducer", transducer, &TRANSDUCERS.map(|(name, kind)| (name, (name, kind))))?;
-        let (gain, beam) = (choice("gain", gain, &GAINS)?, choice("beam", beam, &Beam::NAMES)?);
+        let (gain, beam) = (choice("gain", gain, &GainProfile::NAMES)?, choice("beam", beam, &Beam::NAMES)?);
         let transducer = Transducer { gain, beam, ..transducer };
         let spacing_rad = spacing_rad.map(|angle| number("spacing_rad", angle, -10.0..=10.0)).transpose()?;
         let radius_m = radius_m.map(|radius| number("radius_m", radius, 0.0..=1e3)).transpose()?;
@@ -298,7 +292,7 @@ impl Robot {
     /// How the receiver's gain grows while it listens.
     #[getter]
     fn gain(&self) -> &'static str {
-        GAINS.iter().find(|(_, gain)| *gain == self.robot.transducer.gain).map_or("constant", |(name, _)| name)
+        self.robot.transducer.gain.name()
     }
 
     /// The pattern near 90 degrees off a sensor's axis.

@@ -4,8 +4,7 @@
 use super::directivity::{Beam, Piston};
 use crate::scene::Air;
 
-/// How a receiver's gain grows while it listens. The step table of the Polaroid 6500 is not public, so the shape is a
-/// parameter.
+/// The growth of a receiver's gain while it listens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum GainProfile {
     /// The same all the time.
@@ -17,19 +16,56 @@ pub enum GainProfile {
     Linear,
     /// As [`Linear`](Self::Linear), but in twelve equal steps, as ranging modules switch it (how many is a choice).
     Stepped,
+    /// The twelve steps of the Polaroid 6500 module, by the clock of its control circuit, the TL851 (Texas Instruments,
+    /// SLSS004, March 1988): whatever range it is used for, a step ends 2.38, 5.12, 7.87, .. 38.04 ms after firing.
+    /// Each step adds 1.15 dB. That is a choice: the TL852's relative gain is published as a drawing only (SLSS003,
+    /// Fig. 2), and regions of constant depth leave 1.1 to 1.2 dB a step; see `docs/physics.md`.
+    Polaroid6500,
 }
 
 /// In how many steps [`GainProfile::Stepped`] grows.
 const GAIN_STEPS: f64 = 12.0;
 
+/// The clock of the TL851 in Hz, a ceramic resonator, and at how many of its cycles after firing the gain steps up:
+/// 1,000, then 1,152 for each step, and 2,304 for each of the last three.
+const TL851_HZ: f64 = 420e3;
+const TL851_STEPS: [u32; 11] = [1000, 2152, 3304, 4456, 5608, 6760, 7912, 9064, 11_368, 13_672, 15_976];
+/// What a step of [`GainProfile::Polaroid6500`] adds, in dB.
+const STEP_DB: f64 = 1.15;
+
 impl GainProfile {
-    /// Gain at a time after firing, relative to the gain at `full_s`, from which on it stays 1.
+    /// The profiles by their names in files.
+    pub const NAMES: [(&'static str, Self); 5] = [
+        ("constant", Self::Constant),
+        ("square_root", Self::SquareRoot),
+        ("linear", Self::Linear),
+        ("stepped", Self::Stepped),
+        ("polaroid_6500", Self::Polaroid6500),
+    ];
+
+    /// The name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Constant => "constant",
+            Self::SquareRoot => "square_root",
+            Self::Linear => "linear",
+            Self::Stepped => "stepped",
+            Self::Polaroid6500 => "polaroid_6500",
+        }
+    }
+
+    /// Gain at a time after firing, relative to the gain at `full_s`, from which on it stays 1. The Polaroid's own
+    /// steps are at 1 after 38 ms, whatever `full_s` is.
     ///
     /// ```
     /// use eeruf_sim::GainProfile;
     /// assert_eq!(GainProfile::Linear.gain(0.01, 0.04), 0.25);
     /// assert_eq!(GainProfile::SquareRoot.gain(0.01, 0.04), 0.5);
     /// assert_eq!([0.0, 0.0033, 0.0034].map(|t| 12.0 * GainProfile::Stepped.gain(t, 0.04)), [1.0, 1.0, 2.0]);
+    /// let polaroid_db = |t: f64| 20.0 * GainProfile::Polaroid6500.gain(t, 0.04).log10();
+    /// for (t, expected) in [(2.3e-3, -12.65), (2.4e-3, -11.5), (38.0e-3, -1.15), (38.1e-3, 0.0)] {
+    ///     assert!((polaroid_db(t) - expected).abs() < 1e-9);
+    /// }
     /// ```
     pub fn gain(self, time_s: f64, full_s: f64) -> f64 {
         let share = (time_s / full_s).clamp(0.0, 1.0);
@@ -38,6 +74,10 @@ impl GainProfile {
             Self::SquareRoot => share.sqrt(),
             Self::Linear => share,
             Self::Stepped => ((GAIN_STEPS * share).floor() + 1.0).min(GAIN_STEPS) / GAIN_STEPS,
+            Self::Polaroid6500 => {
+                let to_come = TL851_STEPS.iter().filter(|&&cycles| f64::from(cycles) > time_s * TL851_HZ).count();
+                libm::exp10(-STEP_DB * to_come as f64 / 20.0)
+            }
         }
     }
 }
@@ -67,7 +107,8 @@ pub struct Transducer {
 
 impl Transducer {
     /// Polaroid 600 series electrostatic transducer with the 6500 module. As wide as its burst: `f / cycles`, where the
-    /// spectrum of so many cycles has fallen by 3.9 dB (a choice).
+    /// spectrum of so many cycles has fallen by 3.9 dB (a choice). Its gain is constant, which the module's is not;
+    /// [`GainProfile::Polaroid6500`] is nearer to it.
     pub const POLAROID_6500: Self = Self {
         frequency_hz: 49_400.0,
         bandwidth_hz: 49_400.0 / 16.0,
@@ -80,7 +121,8 @@ impl Transducer {
         gain: GainProfile::Constant,
     };
 
-    /// HC-SR04 module. Its time-out without an echo is 38 ms. As wide as its burst, too.
+    /// HC-SR04 module. Its time-out without an echo is 38 ms. As wide as its burst, too. Its gain is constant, as the
+    /// module's is: amplifiers of fixed gain before a comparator; see `docs/physics.md`.
     pub const HC_SR04: Self = Self {
         frequency_hz: 40_000.0,
         bandwidth_hz: 40_000.0 / 8.0,

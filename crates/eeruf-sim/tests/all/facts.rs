@@ -85,6 +85,8 @@ fn walls_from_a_metre_on_are_heard_as_far_off_the_axis_as_is_reported_and_at_hal
     assert!(heard_up_to_deg(0.5, GainProfile::Constant) >= 85);
     let grows = [0.5, 1.0].map(|distance_m| heard_up_to_deg(distance_m, GainProfile::SquareRoot));
     assert!(grows.iter().all(|deg| (8..=30).contains(deg)), "{grows:?}");
+    let polaroid = [0.5, 1.0, 2.0, 4.0].map(|distance_m| heard_up_to_deg(distance_m, GainProfile::Polaroid6500));
+    assert_eq!(polaroid, [29, 20, 10, 10]);
 }
 
 fn refused(walls: Vec<Wall>, poles: Vec<Pole>) -> String {

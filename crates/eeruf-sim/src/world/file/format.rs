@@ -244,6 +244,8 @@ pub(super) enum GainFile {
     SquareRoot,
     Linear,
     Stepped,
+    #[serde(rename = "polaroid_6500")]
+    Polaroid6500,
 }
 
 #[derive(Clone, Copy, Default, Deserialize)]

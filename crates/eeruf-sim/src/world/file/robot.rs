@@ -25,6 +25,7 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
         GainFile::SquareRoot => GainProfile::SquareRoot,
         GainFile::Linear => GainProfile::Linear,
         GainFile::Stepped => GainProfile::Stepped,
+        GainFile::Polaroid6500 => GainProfile::Polaroid6500,
     };
     let beam = match file.beam {
         BeamFile::CutAt90 => Beam::CutAt90,

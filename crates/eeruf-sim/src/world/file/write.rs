@@ -5,7 +5,7 @@ use toml::{Table, Value};
 
 use super::schedule_file::ScheduleFile;
 use crate::{
-    acoustics::{GainProfile, Physics, Transducer},
+    acoustics::{Physics, Transducer},
     geometry::Pose,
     scene::{Body, Faces, Material, Scene},
     world::{motion::Motion, noise::Noise, robot::Robot},
@@ -134,13 +134,7 @@ fn robot_table(robot: &Robot) -> Table {
     let Transducer { gain, beam, .. } = robot.transducer;
     let hc_sr04 = Transducer { gain, beam, ..Transducer::HC_SR04 };
     set(&mut table, "transducer", if robot.transducer == hc_sr04 { "hc_sr04" } else { "polaroid_6500" });
-    let gain = match gain {
-        GainProfile::Constant => "constant",
-        GainProfile::SquareRoot => "square_root",
-        GainProfile::Linear => "linear",
-        GainProfile::Stepped => "stepped",
-    };
-    set(&mut table, "gain", gain);
+    set(&mut table, "gain", gain.name());
     set(&mut table, "beam", beam.name());
     if let Some(coupling_db) = robot.coupling_db {
         set(&mut table, "coupling_db", coupling_db);

@@ -18,18 +18,15 @@ pub(crate) fn by_way_of(bounces: &[Bounce]) -> String {
             Bounce::Wall(wall) => _ = write!(text, "wall {wall}"),
             Bounce::Pole(pole) => _ = write!(text, "pole {pole}"),
             Bounce::Edge(edge) => _ = write!(text, "edge {edge}"),
+            Bounce::Floor => text += "floor",
+            Bounce::Ceiling => text += "ceiling",
         }
         walls = matches!(bounce, Bounce::Wall(_));
     }
     text
 }
 
-/// The bounces of a path as numbers: walls from 0; pole p as -1 - p; edge e as 2^32 + e.
+/// The bounces of a path as numbers, see [`Bounce::number`].
 pub(crate) fn wall_numbers(bounces: &[Bounce]) -> Vec<i64> {
-    let number = |bounce: &Bounce| match *bounce {
-        Bounce::Wall(wall) => i64::from(wall),
-        Bounce::Pole(pole) => -1 - i64::from(pole),
-        Bounce::Edge(edge) => (1 << 32) + i64::from(edge),
-    };
-    bounces.iter().map(number).collect()
+    bounces.iter().map(|bounce| bounce.number()).collect()
 }

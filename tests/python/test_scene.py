@@ -26,9 +26,10 @@ EVERYTHING = sim.Scene(
     seed=2**64 - 1,
     max_order=4,
     physics={"preset": "default", "narrow_panels": False, "fading_time_s": 0.4},
+    height={"ceiling_m": 2.2, "floor": sim.Material(0.8, 0.0001)},
     robots=[
         sim.Robot((0, 0, 0.3), 6, 0.4, 0.1, "hc_sr04", gain="linear", blanking_us=300, odometry=True,
-                  beam="continuous", coupling_db=-45.0,
+                  beam="continuous", coupling_db=-45.0, height_m=0.2,
                   velocity_m_s=(0.05, 0.01), turn_rad_s=0.2, clock_offset_us=5, clock_drift_ppm=-20.0, body=0.15),
         sim.Robot((-1.2, -1.2, 0.9), [(0.05, 0.05, 0.7), (0.05, -0.05, -0.7)], schedule=SCHEDULE, start_us=777,
                   waypoints_m=[(-1.3, -1.0), (-1.2, -1.2)], speed_m_s=0.1, neighbours=2, min_refire_us=20_000,
@@ -78,6 +79,8 @@ def test_all_that_a_scene_was_made_of_can_be_read() -> None:
     assert (driving.waypoints_m, driving.speed_m_s) == ([(-1.3, -1.0), (-1.2, -1.2)], 0.1)
     assert (driving.sensors, driving.spacing_rad, driving.sensor_poses[1]) == (2, None, (0.05, -0.05, -0.7))
     assert (moving.beam, moving.coupling_db) == ("continuous", -45.0)
+    assert EVERYTHING.height == {"ceiling_m": 2.2, "floor": sim.Material(0.8, 0.0001), "ceiling": sim.Material(0.9)}
+    assert (moving.height_m, driving.height_m) == ([0.2] * 6, [0.3, 0.3])
     assert (driving.beam, driving.coupling_db) == ("cut_at_90", None)
     assert (moving.gain, moving.blanking_us, moving.odometry, driving.start_us) == ("linear", 300, True, 777)
 

@@ -285,6 +285,23 @@ def test_paths_are_those_of_the_simulation() -> None:
         solid.paths((2, 0), (0, 0), 1)
 
 
+def test_paths_of_a_room_name_floor_and_ceiling() -> None:
+    room = sim.Scene(np.zeros((0, 4)), height={"ceiling_m": 3.0}, physics="plain")
+    paths = room.paths((0, 0, 1.0), [(2.0, 0, 1.0)], 2)
+    floor, ceiling = 2**33, 2**33 + 1
+    assert paths.walls == [(), (floor,), (ceiling,), (floor, ceiling), (ceiling, floor)]
+    assert paths.length_m == pytest.approx(np.hypot(2.0, [0.0, 2.0, 4.0, 6.0, 6.0]))
+    assert paths.departure_elevation_rad[1] == paths.arrival_elevation_rad[1] == pytest.approx(-np.pi / 4)
+    copy = pickle.loads(pickle.dumps(paths))
+    assert copy.walls == paths.walls
+    assert np.array_equal(copy.arrival_elevation_rad, paths.arrival_elevation_rad)
+    assert len(room.paths((0, 0), (2, 0), 0)) == 1
+    with pytest.raises(eeruf.ArgumentError, match="since the scene is flat"):
+        sim.Scene(ALCOVE).paths((0.0, 0.2, 0.3), (0.1, 0.2), 1)
+    with pytest.raises(eeruf.PathsError, match=r"a sensor is 3\.5 m high"):
+        room.paths((0, 0, 3.5), (2, 0), 1)
+
+
 def test_paths_pickle() -> None:
     paths = sim.Scene(ALCOVE).paths((0.0, 0.2), [(0.1, 0.2), (0.2, 0.3)], 4, max_length_m=6.0)
     copy = pickle.loads(pickle.dumps(paths))

@@ -150,6 +150,21 @@ pub(crate) fn matrix<'py>(
     }
 }
 
+/// Points, and their heights if each has one: an array of shape (2,), (3,), (n, 2) or (n, 3), in metres.
+pub(crate) fn points_in_space(
+    name: &str,
+    value: &Bound<'_, PyAny>,
+) -> PyResult<(Vec<eeruf_sim::Point>, Option<Vec<f64>>)> {
+    let numpy = value.py().import("numpy")?;
+    let expected = "an array of floats of shape (n, 2), or (n, 3) in a scene with height, in metres";
+    let array = numpy.call_method1("atleast_2d", (value,)).map_err(|_| wrong(name, shown(value), expected))?;
+    let columns = array.getattr("shape")?.get_item(1)?.extract::<usize>()?;
+    let matrix = matrix(name, &array, if columns == 3 { 3 } else { 2 })?;
+    let rows = matrix.as_array();
+    let points = rows.rows().into_iter().map(|row| eeruf_sim::Point::new(row[0], row[1])).collect();
+    Ok((points, (columns == 3).then(|| rows.rows().into_iter().map(|row| row[2]).collect())))
+}
+
 /// A point or several: an array of shape (2,) or (n, 2), in metres.
 pub(crate) fn points(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<eeruf_sim::Point>> {
     let numpy = value.py().import("numpy")?;

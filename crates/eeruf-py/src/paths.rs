@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use eeruf_sim::{Bounce, Limits, Physics, Point, Stop, Tracer, Transducer};
+use eeruf_sim::{Bounce, Heights, Limits, Physics, Point, Stop, Tracer, Transducer};
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
@@ -28,13 +28,20 @@ use crate::{
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Paths {
     paths: eeruf_sim::Paths,
-    source: Point,
-    receivers: Vec<Point>,
+    ends: Ends,
     contents: Arc<Contents>,
     /// The `Scene` that was asked.
     scene: Py<PyAny>,
     limits: Limits,
-    columns: Columns<6>,
+    columns: Columns<8>,
+}
+
+/// A source and receivers, with their heights, which only a scene that is not flat asks for.
+pub(crate) struct Ends {
+    pub(crate) source: Point,
+    pub(crate) source_m: f64,
+    pub(crate) receivers: Vec<Point>,
+    pub(crate) receivers_m: Vec<f64>,
 }
 
 /// Up to so many walls and receivers, and so many bounces, paths are found sooner than a thread would start, and before
@@ -49,14 +56,13 @@ impl Paths {
         scene: &Bound<'_, PyAny>,
         contents: Arc<Contents>,
         physics: Physics,
-        source: Point,
-        receivers: Vec<Point>,
+        ends: Ends,
         limits: Limits,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (py, scene, max_order) = (scene.py(), scene.clone().unbind(), limits.max_order);
         let standing = contents.scene();
-        let few = standing.walls().len() + standing.poles().len() <= FEW && receivers.len() <= FEW;
+        let few = standing.walls().len() + standing.poles().len() <= FEW && ends.receivers.len() <= FEW;
         let find = move |stop: Stop| {
             let robot = contents.world().and_then(|world| world.robots().first());
             let module = robot.map_or(Transducer::POLAROID_6500, |robot| robot.transducer);
@@ -64,8 +70,11 @@ impl Paths {
             tracer.follow(&physics);
             tracer.burst_cycles = module.cycles;
             tracer.stop = stop;
-            tracer.trace(contents.scene(), source, &receivers, limits, &mut paths).map_err(Raise::raise)?;
-            Ok(Self { paths, source, receivers, contents, scene, limits, columns: Columns::default() })
+            let Ends { source, source_m, receivers, receivers_m } = &ends;
+            let heights = Heights { source_m: *source_m, receivers_m };
+            let traced = tracer.trace_at(contents.scene(), *source, receivers, heights, limits, &mut paths);
+            traced.map_err(Raise::raise)?;
+            Ok(Self { paths, ends, contents, scene, limits, columns: Columns::default() })
         };
         if few && max_order <= LOW_ORDER && progress.is_none() {
             return py.detach(|| find(Stop::default()));
@@ -77,25 +86,9 @@ impl Paths {
     }
 }
 
-/// The number of the first edge, beyond all walls.
-const EDGES: i64 = 1 << 32;
-
-/// A wall by its index, a pole by -1 minus its index, an edge by 2^32 plus its index.
+/// The number of each bounce, see [`Bounce::number`].
 pub(crate) fn coded(bounces: &[Bounce]) -> impl ExactSizeIterator<Item = i64> {
-    bounces.iter().map(|bounce| match *bounce {
-        Bounce::Wall(wall) => i64::from(wall),
-        Bounce::Pole(pole) => -1 - i64::from(pole),
-        Bounce::Edge(edge) => EDGES + i64::from(edge),
-    })
-}
-
-/// What [`coded`] meant.
-pub(crate) fn bounce(code: i64) -> Bounce {
-    match code {
-        ..0 => Bounce::Pole((-1 - code) as u32),
-        0..EDGES => Bounce::Wall(code as u32),
-        EDGES.. => Bounce::Edge((code - EDGES) as u32),
-    }
+    bounces.iter().map(|bounce| bounce.number())
 }
 
 #[pymethods]
@@ -140,21 +133,34 @@ impl Paths {
         self.columns.get(py, 5, self.paths.amplitude.iter().copied())
     }
 
+    /// The elevation at which the path leaves the source, in radians, upwards positive; 0 in a flat scene: float64.
+    #[getter]
+    fn departure_elevation_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 6, (0..self.paths.len()).map(|path| self.paths.elevations_rad(path)[0]))
+    }
+
+    /// The elevation at which the receiver looks to see it, in radians, upwards positive; 0 in a flat scene: float64.
+    #[getter]
+    fn arrival_elevation_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 7, (0..self.paths.len()).map(|path| self.paths.elevations_rad(path)[1]))
+    }
+
     /// For each path its bounces from source to receiver, a list of tuples: a wall by its index, a pole by -1 minus its
-    /// index, an edge by 2^32 plus its index.
+    /// index, an edge by 2^32 plus its index, the floor by 2^33 and the ceiling by one more. Those at floor and ceiling
+    /// stand last, in their own order.
     #[getter]
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let sequences = (0..self.paths.len()).map(|path| PyTuple::new(py, coded(self.paths.bounces(path))));
         PyList::new(py, sequences.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// The corners of a path, from source to receiver.
+    /// The corners of a path in the plan, from source to receiver, those at floor and ceiling left out.
     ///
     /// Args:
     ///     path: which one, from 0.
     ///
     /// Returns:
-    ///     Array of shape (order + 2, 2), in metres.
+    ///     Array of shape (n, 2), in metres; n is ``order + 2`` in a flat scene.
     ///
     /// Raises:
     ///     ArgumentError: no such path.
@@ -171,10 +177,10 @@ impl Paths {
             return Err(wrong("path", shown(path), "no index where there are no paths"));
         };
         let path = whole("path", path, 0..=last as u64)? as usize;
-        let receiver = self.paths.receiver.get(path).and_then(|&receiver| self.receivers.get(receiver as usize));
-        let receiver = receiver.copied().unwrap_or(self.source);
+        let receiver = self.paths.receiver.get(path).and_then(|&receiver| self.ends.receivers.get(receiver as usize));
+        let receiver = receiver.copied().unwrap_or(self.ends.source);
         let scene = self.contents.scene();
-        let corners = scene.bounce_points(self.source, receiver, self.paths.bounces(path)).unwrap_or_default();
+        let corners = scene.bounce_points(self.ends.source, receiver, self.paths.bounces(path)).unwrap_or_default();
         let flat: Vec<f64> = corners.iter().flat_map(|corner| [corner.x, corner.y]).collect();
         PyArray1::from_vec(py, flat).reshape([corners.len(), 2])
     }
@@ -182,8 +188,11 @@ impl Paths {
     /// Found again: that is exact, and mostly faster than carrying all of them.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let (py, this) = (slf.py(), slf.get());
-        let receivers: Vec<(f64, f64)> = this.receivers.iter().map(|at| (at.x, at.y)).collect();
-        let arguments = ((this.source.x, this.source.y), receivers, this.limits.max_order, this.limits.max_length_m);
+        let in_room = this.contents.scene().room().is_some();
+        let place = |at: &Point, height_m: f64| if in_room { vec![at.x, at.y, height_m] } else { vec![at.x, at.y] };
+        let Ends { source, source_m, receivers, receivers_m } = &this.ends;
+        let each: Vec<_> = receivers.iter().zip(receivers_m).map(|(at, &height_m)| place(at, height_m)).collect();
+        let arguments = (place(source, *source_m), each, this.limits.max_order, this.limits.max_length_m);
         Ok((this.scene.bind(py).getattr("paths")?, arguments.into_pyobject(py)?))
     }
 
@@ -191,9 +200,9 @@ impl Paths {
         format!(
             "<Paths: {} from ({}, {}) to {} receivers>",
             self.paths.len(),
-            self.source.x,
-            self.source.y,
-            self.receivers.len()
+            self.ends.source.x,
+            self.ends.source.y,
+            self.ends.receivers.len()
         )
     }
 }

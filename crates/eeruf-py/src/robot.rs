@@ -29,6 +29,7 @@ use crate::{
 ///         or ``"continuous"``, a baffle that ends.
 ///     coupling_db: the level of the sound that the mounting carries straight from sensor to sensor, relative to two
 ///         that face each other as far apart, -200 to 0; None for what the patterns say.
+///     height_m: of its sensors above the floor, one for all or one each, in metres; for scenes that are not flat.
 ///     body: its outline, which others' sound is reflected and shaded by: the radius of a disc, (length, width) of a
 ///         box, or 3 to 8 corners (x, y) of a convex polygon, counter-clockwise, all in metres; None for none.
 ///     period_us: ``T_p`` of the methods that bring no schedule of their own; the schedule's if there is one.
@@ -113,6 +114,14 @@ impl Robot {
         all.set_item("gain", self.gain())?;
         all.set_item("beam", self.beam())?;
         all.set_item("coupling_db", self.coupling_db())?;
+        // One for all stays one for all when the sensors are replaced.
+        match &self.robot.heights_m[..] {
+            [] => {}
+            [first, others @ ..] if others.iter().all(|height_m| height_m == first) => {
+                all.set_item("height_m", first)?;
+            }
+            each => all.set_item("height_m", each)?,
+        }
         all.set_item("body", self.body(py)?)?;
         all.set_item("period_us", self.period_us())?;
         all.set_item("t_delta_us", self.t_delta_us())?;
@@ -141,6 +150,19 @@ impl Robot {
     }
 }
 
+/// One height for all sensors, or one for each, in metres.
+fn heights(value: Option<&Bound<'_, PyAny>>, sensors: usize) -> PyResult<Vec<f64>> {
+    let Some(value) = value else { return Ok(vec![]) };
+    if value.extract::<f64>().is_ok() {
+        return Ok(vec![number("height_m", value, 0.0..=1e3)?; sensors]);
+    }
+    let each = items("height_m", value, "a height in metres, or one for each sensor")?;
+    if each.len() != sensors {
+        return Err(wrong("number of height_m", each.len(), format_args!("{sensors}, one for each sensor")));
+    }
+    each.iter().map(|height_m| number("height_m", height_m, 0.0..=1e3)).collect()
+}
+
 #[pymethods]
 impl Robot {
     #[new]
@@ -148,13 +170,14 @@ impl Robot {
         pose, sensors, spacing_rad=None, radius_m=None, transducer=None, *, gain=None, period_us=None, t_delta_us=None,
         window_us=None, blanking_us=None, min_refire_us=None, start_us=None, schedule=None, neighbours=None,
         consecutive=None, odometry=None, velocity_m_s=None, turn_rad_s=None, waypoints_m=None,
-        speed_m_s=None, clock_offset_us=None, clock_drift_ppm=None, body=None, beam=None, coupling_db=None
+        speed_m_s=None, clock_offset_us=None, clock_drift_ppm=None, body=None, beam=None, coupling_db=None,
+        height_m=None
     ))]
     #[pyo3(text_signature = "(pose, sensors, spacing_rad=None, radius_m=None, transducer=\"polaroid_6500\", *, \
             gain=\"constant\", period_us=60000, t_delta_us=500, window_us=36000, blanking_us=None, \
             min_refire_us=36000, start_us=0, schedule=None, neighbours=4, consecutive=2, odometry=False, \
             velocity_m_s=None, turn_rad_s=None, waypoints_m=None, speed_m_s=None, clock_offset_us=0, \
-            clock_drift_ppm=0.0, body=None, beam=\"cut_at_90\", coupling_db=None)")]
+            clock_drift_ppm=0.0, body=None, beam=\"cut_at_90\", coupling_db=None, height_m=0.3)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         pose: &Bound<'_, PyAny>,
@@ -182,6 +205,7 @@ impl Robot {
         body: Option<&Bound<'_, PyAny>>,
         beam: Option<&Bound<'_, PyAny>>,
         coupling_db: Option<&Bound<'_, PyAny>>,
+        height_m: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let pose = pose_of("pose", pose)?;
         let (name, transducer) =
@@ -233,6 +257,8 @@ impl Robot {
             drift_ppm: clock_drift_ppm.map_or(Ok(0.0), |drift| number("clock_drift_ppm", drift, -1e3..=1e3))?,
         };
         robot.body = body.map(outline).transpose()?;
+        let heights_m = heights(height_m, robot.sensors.len())?;
+        let mut robot = robot.with_heights(heights_m);
         robot.coupling_db = coupling_db.map(|level| number("coupling_db", level, -200.0..=0.0)).transpose()?;
         let given = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
         robot.schedule = given.transpose()?.map(|schedule| schedule.get().0);
@@ -306,6 +332,12 @@ impl Robot {
     #[getter]
     fn coupling_db(&self) -> Option<f64> {
         self.robot.coupling_db
+    }
+
+    /// The height of its sensors above the floor in metres, one each.
+    #[getter]
+    fn height_m(&self) -> Vec<f64> {
+        (0..self.robot.sensors.len()).map(|sensor| self.robot.height_m(sensor)).collect()
     }
 
     /// Its outline: the radius of a disc, (length, width) of a box, or the corners of a polygon; None without.

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use eeruf_sim::{Air, Faces, Limits, Pole, Wall, World, WorldParts, world::DEFAULT_ORDER, world_file};
+use eeruf_sim::{
+    Air, DEFAULT_HEIGHT_M, Faces, Limits, Pole, Wall, World, WorldParts, world::DEFAULT_ORDER, world_file,
+};
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
     prelude::*,
@@ -11,11 +13,11 @@ use pyo3::{
 };
 
 use crate::{
-    arguments::{self, instance, matrix, number, points, shown, whole, whole_or, wrong},
+    arguments::{self, instance, matrix, number, points_in_space, shown, whole, whole_or, wrong},
     contents::Contents,
     drawing,
     errors::{Raise, SceneError},
-    paths::Paths,
+    paths::{Ends, Paths},
     robot::Robot,
     surroundings::{self, Material, Noise},
 };
@@ -42,6 +44,8 @@ use crate::{
 ///     max_order: how many bounces :func:`simulate` follows; 6 unless it is given.
 ///     physics: ``"plain"``, ``"default"``, or a dict of what differs from a ``preset``: ``shadows``, ``edges``,
 ///         ``narrow_panels``, ``range_walk`` (each True or False), ``fading_time_s``; see ``docs/physics.md``.
+///     height: ``"flat"``, all sound in one plane; ``"room"``, between a floor and a ceiling at 2.6 m; or a dict of
+///         what differs from that room: ``ceiling_m``, and ``floor`` and ``ceiling`` as in ``materials``.
 ///
 /// Raises:
 ///     ArgumentError: an array of the wrong shape, an index of no wall, something of the wrong type or out of range.
@@ -117,6 +121,7 @@ impl Scene {
         all.set_item("seed", self.seed)?;
         all.set_item("max_order", self.max_order)?;
         all.set_item("physics", self.physics(py)?)?;
+        all.set_item("height", self.height(py)?)?;
         Ok(all)
     }
 }
@@ -136,11 +141,12 @@ impl Scene {
     #[new]
     #[pyo3(signature = (
         walls, open=None, two_sided=None, poles=None, *, materials=None, pole_materials=None, temperature_c=None,
-        humidity_percent=None, pressure_kpa=None, robots=None, noise=None, seed=None, max_order=None, physics=None
+        humidity_percent=None, pressure_kpa=None, robots=None, noise=None, seed=None, max_order=None, physics=None,
+        height=None
     ))]
     #[pyo3(text_signature = "(walls, open=None, two_sided=None, poles=None, *, materials=None, pole_materials=None, \
             temperature_c=20.0, humidity_percent=50.0, pressure_kpa=101.325, robots=(), noise=True, seed=1, \
-            max_order=6, physics=\"default\")")]
+            max_order=6, physics=\"default\", height=\"flat\")")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         py: Python<'_>,
@@ -158,6 +164,7 @@ impl Scene {
         seed: Option<&Bound<'_, PyAny>>,
         max_order: Option<&Bound<'_, PyAny>>,
         physics: Option<&Bound<'_, PyAny>>,
+        height: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let rows = matrix("walls", walls, 4)?;
         let mut built_walls: Vec<_> =
@@ -198,7 +205,9 @@ impl Scene {
         let seed = whole_or("seed", seed, 1, 0..=u64::MAX)?;
         let max_order = whole_or("max_order", max_order, DEFAULT_ORDER, 0..=u32::MAX)?;
         let physics = surroundings::physics(physics)?;
-        let scene = py.detach(|| eeruf_sim::Scene::new(built_walls, built_poles, air)).map_err(Raise::raise)?;
+        let room = surroundings::height(height)?;
+        let build = || eeruf_sim::Scene::new(built_walls, built_poles, air).and_then(|scene| scene.with_room(room));
+        let scene = py.detach(build).map_err(Raise::raise)?;
         Self::of(WorldParts { scene, robots: vec![], noise, physics, max_order, seed }, robots)
     }
 
@@ -349,6 +358,12 @@ impl Scene {
         surroundings::shown_physics(py, &self.physics)
     }
 
+    /// Floor and ceiling: ``"flat"`` without, ``"room"`` for the default, or a dict.
+    #[getter]
+    fn height<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        surroundings::shown_height(py, self.scene().room())
+    }
+
     /// The humidity of the air, in percent.
     #[getter]
     fn humidity_percent(&self) -> f64 {
@@ -374,9 +389,10 @@ impl Scene {
     /// Amplitudes are for the first robot's transducers, or for a Polaroid 6500 where there is no robot.
     ///
     /// Args:
-    ///     source: (x, y) in metres.
-    ///     receivers: array of shape (n, 2), or one point, in metres.
-    ///     max_order: the most bounces, 0 to 1000; those at poles count.
+    ///     source: (x, y) in metres, or (x, y, height) in a scene that is not flat; 0.3 m high unless it says so.
+    ///     receivers: array of shape (n, 2) or (n, 3), or one point, likewise.
+    ///     max_order: the most bounces, 0 to 1000; those at poles, floor and ceiling count. Of the last two a path has
+    ///         4 at most.
     ///     max_length_m: the longest path, in metres, above 0; None for any length.
     ///     progress: True for a bar (tqdm if it is installed), or a callable that takes None and a text now and then.
     ///
@@ -404,14 +420,21 @@ impl Scene {
         max_length_m: Option<&Bound<'_, PyAny>>,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Paths> {
-        let at = points("source", source)?;
+        let (at, source_m) = points_in_space("source", source)?;
         let [from] = at[..] else { return Err(wrong("source", shown(source), "one point (x, y) in metres")) };
-        let receivers = points("receivers", receivers)?;
+        let (receivers, receivers_m) = points_in_space("receivers", receivers)?;
+        if slf.get().scene().room().is_none() && (source_m.is_some() || receivers_m.is_some()) {
+            let name = if source_m.is_some() { "source" } else { "receivers" };
+            return Err(wrong(name, "(x, y, height)", "(x, y), since the scene is flat; give it height=\"room\""));
+        }
+        let source_m = source_m.and_then(|heights_m| heights_m.first().copied()).unwrap_or(DEFAULT_HEIGHT_M);
+        let receivers_m = receivers_m.unwrap_or_else(|| vec![DEFAULT_HEIGHT_M; receivers.len()]);
+        let ends = Ends { source: from, source_m, receivers, receivers_m };
         let max_order = whole("max_order", max_order, 0..=u32::MAX)?;
         let max_length_m =
             max_length_m.map_or(Ok(f64::INFINITY), |most| number("max_length_m", most, 0.0..=f64::INFINITY))?;
         let (contents, limits) = (Arc::clone(&slf.get().contents), Limits { max_order, max_length_m });
-        Paths::find(slf.as_any(), contents, slf.get().physics, from, receivers, limits, progress)
+        Paths::find(slf.as_any(), contents, slf.get().physics, ends, limits, progress)
     }
 
     fn __repr__(&self) -> String {

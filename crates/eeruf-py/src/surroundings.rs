@@ -1,6 +1,6 @@
 //! `sim.Material` and `sim.Noise`: what surfaces return and how noisy it is.
 
-use eeruf_sim::Physics;
+use eeruf_sim::{Physics, Room};
 use pyo3::{
     prelude::*,
     types::{PyDict, PyString, PyTuple},
@@ -208,6 +208,46 @@ pub(crate) fn physics(value: Option<&Bound<'_, PyAny>>) -> PyResult<Physics> {
         }
     }
     Ok(physics)
+}
+
+const HEIGHT: &str = "\"flat\", \"room\", or a dict with ceiling_m, floor or ceiling";
+
+/// Floor and ceiling; none for a flat scene.
+pub(crate) fn height(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Room>> {
+    let refused = |value: &Bound<'_, PyAny>| wrong("height", shown(value), HEIGHT);
+    let Some(value) = value else { return Ok(None) };
+    let Ok(changes) = value.cast::<PyDict>() else {
+        return match value.extract::<String>().as_deref() {
+            Ok("flat") => Ok(None),
+            Ok("room") => Ok(Some(Room::DEFAULT)),
+            _ => Err(refused(value)),
+        };
+    };
+    let mut room = Room::DEFAULT;
+    for (name, change) in changes {
+        match name.extract::<String>().as_deref() {
+            Ok("ceiling_m") => room.ceiling_m = number("ceiling_m", &change, 0.0..=1e3)?,
+            Ok("floor") => room.floor = one("floor", &change)?,
+            Ok("ceiling") => room.ceiling = one("ceiling", &change)?,
+            _ => return Err(refused(value)),
+        }
+    }
+    Ok(Some(room))
+}
+
+/// The argument that gives this room.
+pub(crate) fn shown_height<'py>(py: Python<'py>, room: Option<&Room>) -> PyResult<Bound<'py, PyAny>> {
+    let all = PyDict::new(py);
+    match room {
+        None => return Ok(PyString::new(py, "flat").into_any()),
+        Some(room) if *room == Room::DEFAULT => return Ok(PyString::new(py, "room").into_any()),
+        Some(room) => {
+            all.set_item("ceiling_m", room.ceiling_m)?;
+            all.set_item("floor", Material::of(room.floor))?;
+            all.set_item("ceiling", Material::of(room.ceiling))?;
+        }
+    }
+    Ok(all.into_any())
 }
 
 /// The argument that gives these effects.

@@ -10,7 +10,6 @@ use pyo3::{prelude::*, types::PyDict};
 use crate::{
     arguments::{instance, native, number, whole, wrong},
     methods::method as method_named,
-    paths::bounce,
     readings::{CAUSES, Readings},
 };
 
@@ -60,7 +59,7 @@ fn heard_paths(columns: &Bound<'_, PyDict>) -> PyResult<Vec<HeardPath>> {
         length_m: length_m[path],
         departure_rad: angles.0[path],
         arrival_rad: angles.1[path],
-        bounces: walls[path].iter().map(|&code| bounce(code)).collect(),
+        bounces: walls[path].iter().map(|&number| eeruf_sim::Bounce::numbered(number)).collect(),
     };
     Ok((0..walls.len()).map(path).collect())
 }

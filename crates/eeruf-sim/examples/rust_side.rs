@@ -13,8 +13,8 @@ use eeruf_core::{
     search::{PeriodProblem, design},
 };
 use eeruf_sim::{
-    Air, Bounce, Filter, Filtered, FiredReading, Method, Noise, Options, Own, OwnError, Pose, Robot, Scene, Simulation,
-    Stop, Transducer, Wall, World,
+    Air, Filter, Filtered, FiredReading, Method, Noise, Options, Own, OwnError, Pose, Robot, Scene, Simulation, Stop,
+    Transducer, Wall, World,
 };
 use serde_json::{Map, Value, json};
 
@@ -40,13 +40,8 @@ fn paths() -> Value {
         let scene = corpus::scene(case);
         let source = corpus::point(&case["source"]);
         let found = scene.paths(source, &corpus::receivers(case), order, f64::INFINITY).expect("a scene of the corpus");
-        let code = |bounce: &Bounce| match *bounce {
-            Bounce::Wall(wall) => i64::from(wall),
-            Bounce::Pole(pole) => -1 - i64::from(pole),
-            Bounce::Edge(edge) => (1 << 32) + i64::from(edge),
-        };
         let walls: Vec<Vec<i64>> =
-            (0..found.len()).map(|path| found.bounces(path).iter().map(code).collect()).collect();
+            (0..found.len()).map(|path| found.bounces(path).iter().map(|bounce| bounce.number()).collect()).collect();
         let columns = json!({
             "receiver": found.receiver,
             "length_m": found.length_m,

@@ -86,7 +86,8 @@ pub use results::{
     Age, Attribution, Cause, DEFAULT_TOLERANCE_US, HeardPath, NO_PATH, Readings, SensorId, Summary, quantile,
 };
 pub use scene::{
-    Air, Body, Bounce, Contact, Edge, Faces, Material, Outline, OutlineError, Pole, Scene, SceneError, Wall,
+    Air, Body, Bounce, Contact, DEFAULT_HEIGHT_M, Edge, Faces, Material, Outline, OutlineError, Pole, Room, Scene,
+    SceneError, Wall,
 };
 pub use simulation::{
     Echo, Filter, Filtered, FiredReading, LockStep, Options, Own, Simulation, SimulationError, simulate,
@@ -94,8 +95,8 @@ pub use simulation::{
 };
 pub use threads::{Stop, sweep};
 pub use tracing::{
-    CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, MAX_ORDER, Paths, PathsError, Reception, Tracer,
-    paths_of_many, reception, reception_along,
+    CriticalPath, CrosstalkMatrix, CrosstalkQuery, Heights, Limits, MAX_ORDER, Paths, PathsError, Reception, Tracer,
+    VERTICAL_ORDER, paths_of_many, reception, reception_along,
 };
 pub use world::{
     AnySchedule, Clock, Motion, Noise, Random, Robot, ScheduleFile, World, WorldError, WorldFileError, WorldParts,

@@ -38,14 +38,14 @@ pub(crate) fn reflected(
     for bounce in back.by_ref() {
         match *bounce {
             Bounce::Wall(wall) => direction = follow(direction, wall),
-            Bounce::Pole(_) | Bounce::Edge(_) => break,
+            Bounce::Pole(_) | Bounce::Edge(_) | Bounce::Floor | Bounce::Ceiling => break,
         }
     }
     direction = unit(departure);
     for bounce in bounces.iter().take(back.len()) {
         match *bounce {
             Bounce::Wall(wall) => direction = follow(direction, wall),
-            Bounce::Pole(_) | Bounce::Edge(_) => break,
+            Bounce::Pole(_) | Bounce::Edge(_) | Bounce::Floor | Bounce::Ceiling => break,
         }
     }
     let poles = bounces.iter().filter(|bounce| matches!(bounce, Bounce::Pole(_)));
@@ -58,6 +58,6 @@ fn surface(scene: &Scene, bounce: Bounce) -> &Material {
     match bounce {
         Bounce::Wall(wall) => &scene.walls()[wall as usize].material,
         Bounce::Pole(pole) => &scene.poles()[pole as usize].material,
-        Bounce::Edge(_) => &Material::PERFECT,
+        Bounce::Edge(_) | Bounce::Floor | Bounce::Ceiling => &Material::PERFECT,
     }
 }

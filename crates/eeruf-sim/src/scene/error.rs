@@ -3,6 +3,8 @@
 
 use core::fmt;
 
+use super::room::MAX_CEILING_M;
+
 /// The most walls a scene may have: a choice of memory.
 pub const MAX_WALLS: usize = 10_000_000;
 /// No coordinate may be farther from the origin, in metres: a choice; an `f64` still resolves 1e-11 m there.
@@ -78,6 +80,16 @@ pub enum SceneError {
         /// The range that is expected.
         expected: &'static str,
     },
+    /// A ceiling that is too low or too high.
+    Ceiling {
+        /// Its height in metres.
+        ceiling_m: f64,
+    },
+    /// A material of floor or ceiling that makes no sense.
+    RoomMaterial {
+        /// Which of the two.
+        surface: &'static str,
+    },
     /// The walls meet in a way that the mesh cannot hold, such as many crossing within a nanometre.
     Tangled {
         /// How many pieces of wall were refused.
@@ -119,6 +131,10 @@ impl fmt::Display for SceneError {
             }
             Self::SamePole { poles: [a, b] } => write!(f, "poles {a} and {b} have the same axis"),
             Self::Air { quantity, value, expected } => write!(f, "air {quantity} is {value}; expected {expected}"),
+            Self::Ceiling { ceiling_m } => {
+                write!(f, "the ceiling is at {ceiling_m} m; expected a height above 0 and up to {MAX_CEILING_M} m")
+            }
+            Self::RoomMaterial { surface } => write!(f, "the material of the {surface} {OUT_OF_RANGE}"),
             Self::Tangled { pieces } => {
                 write!(f, "{pieces} pieces of wall cross within a nanometre of others; simplify the walls there")
             }

@@ -9,6 +9,7 @@ mod error;
 mod material;
 mod mesh;
 mod pole;
+mod room;
 #[allow(clippy::module_inception, reason = "the scene itself")]
 mod scene;
 mod wall;
@@ -23,5 +24,6 @@ pub use mesh::edges::Edge;
 pub(crate) use mesh::extents::{End, Surface};
 pub(crate) use mesh::{Beyond, Exit, Gate, Mesh, NONE};
 pub use pole::Pole;
+pub use room::{DEFAULT_HEIGHT_M, Room};
 pub use scene::Scene;
 pub use wall::{Faces, Wall};

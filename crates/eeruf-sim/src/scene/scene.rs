@@ -8,6 +8,7 @@ use super::mesh::edges::{Edge, edges_of};
 use super::mesh::extents::Extents;
 use super::mesh::joints::{join_walls, wall_box};
 use super::pole::Pole;
+use super::room::Room;
 use super::wall::Wall;
 use crate::geometry::{Mirror, Point, TOUCH_M};
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
@@ -19,6 +20,7 @@ pub struct Scene {
     walls: Vec<Wall>,
     poles: Vec<Pole>,
     air: Air,
+    room: Option<Room>,
     pub(crate) mesh: Mesh,
     pub(crate) mirrors: Vec<Mirror>,
     pub(crate) wall_boxes: Bvh,
@@ -67,6 +69,7 @@ impl Scene {
             walls,
             poles,
             air,
+            room: None,
             mesh,
             mirrors,
             wall_boxes,
@@ -75,6 +78,21 @@ impl Scene {
             extents: OnceLock::new(),
             rough,
         })
+    }
+
+    /// The same scene between floor and ceiling, or flat without them: all sound in one plane, as
+    /// [`Scene::new`] makes it.
+    ///
+    /// # Errors
+    /// [`SceneError::Ceiling`] or [`SceneError::RoomMaterial`] for a room that makes no sense.
+    pub fn with_room(self, room: Option<Room>) -> Result<Self, SceneError> {
+        room.as_ref().map_or(Ok(()), Room::check)?;
+        Ok(Self { room, ..self })
+    }
+
+    /// Floor and ceiling; none if the scene is flat.
+    pub fn room(&self) -> Option<&Room> {
+        self.room.as_ref()
     }
 
     /// The walls, in the order given.

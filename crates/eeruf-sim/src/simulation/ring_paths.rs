@@ -47,7 +47,9 @@ impl World {
         let floor = of.transducer.detection_floor(scene.air());
         let limits = Limits::order(max_order);
         let query = CrosstalkQuery::new(scene, &sensors, &of.transducer, limits, floor);
-        matrix.compute(&mut tracer, &CrosstalkQuery { coupling: of.coupling(), ..query })?;
+        let heights_m: Vec<f64> = (0..sensors.len()).map(|sensor| of.height_m(sensor)).collect();
+        let query = CrosstalkQuery { coupling: of.coupling(), heights_m: [&heights_m; 2], ..query };
+        matrix.compute(&mut tracer, &query)?;
         if let Some(furnished) = &furnished {
             furnished.number(matrix.bounces_mut());
         }

@@ -6,8 +6,8 @@ use crate::{
 };
 
 impl Scene {
-    /// The corners of a path: source, every bounce, receiver. `bounces` are those of a path between the two that was
-    /// found in this scene; for others the answer is none or meaningless.
+    /// The corners of a path in the plan: source, every bounce but those at floor and ceiling, receiver. `bounces` are
+    /// those of a path between the two that was found in this scene; for others the answer is none or meaningless.
     ///
     /// ```
     /// use eeruf_sim::{Air, Point, Scene, Wall};
@@ -19,16 +19,17 @@ impl Scene {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn bounce_points(&self, source: Point, receiver: Point, bounces: &[Bounce]) -> Option<Vec<Point>> {
+        let bounces = Bounce::in_plan(bounces);
         let mirrors = |bounces: &[Bounce]| -> Option<Vec<&Mirror>> {
             let walls = bounces.iter().map(|bounce| match *bounce {
                 Bounce::Wall(wall) => self.mirrors.get(wall as usize),
-                Bounce::Pole(_) | Bounce::Edge(_) => None,
+                _ => None,
             });
             walls.collect()
         };
         let pole = |bounce: &Bounce| match *bounce {
             Bounce::Pole(pole) => self.poles().get(pole as usize).map(|pole| (pole.centre, pole.radius_m)),
-            Bounce::Wall(_) | Bounce::Edge(_) => None,
+            _ => None,
         };
         let mut corners = vec![source];
         if let [Bounce::Edge(edge)] = *bounces {

@@ -4,7 +4,7 @@ use super::audibility::Audibility;
 use super::error::PathsError;
 use super::limits::Limits;
 use super::paths::Paths;
-use super::tracer::Tracer;
+use super::tracer::{Heights, Tracer};
 use crate::{
     acoustics::Transducer,
     geometry::{Point, Pose, Vector},
@@ -29,6 +29,9 @@ pub struct CriticalPath {
     pub departure_rad: f64,
     /// Where the receiver looks to see it, in the scene's frame.
     pub arrival_rad: f64,
+    /// The elevations in radians, upwards positive, at which it leaves and at which the receiver looks; 0 in a flat
+    /// scene.
+    pub elevations_rad: [f64; 2],
     bounces: [u32; 2],
 }
 
@@ -55,10 +58,13 @@ pub struct CrosstalkQuery<'a> {
     /// The amplitude of straight paths between two different sensors, at least, relative to two that face each other as
     /// far apart: what their mounting carries. 0 if the patterns alone decide.
     pub coupling: f64,
+    /// The emitters' and the sensors' heights above the floor, in metres, where the scene has a
+    /// [room](Scene::room); [`DEFAULT_HEIGHT_M`](crate::DEFAULT_HEIGHT_M) for those that have none.
+    pub heights_m: [&'a [f64]; 2],
 }
 
 impl<'a> CrosstalkQuery<'a> {
-    /// A question without direct coupling.
+    /// A question without direct coupling, all at the same height.
     pub const fn new(
         scene: &'a Scene,
         sensors: &'a [Pose],
@@ -66,7 +72,7 @@ impl<'a> CrosstalkQuery<'a> {
         limits: Limits,
         floor: f64,
     ) -> Self {
-        Self { scene, sensors, transducer, limits, floor, coupling: 0.0 }
+        Self { scene, sensors, transducer, limits, floor, coupling: 0.0, heights_m: [&[]; 2] }
     }
 }
 
@@ -137,7 +143,7 @@ impl CrosstalkMatrix {
         sending: &Transducer,
         query: &CrosstalkQuery<'_>,
     ) -> Result<(), PathsError> {
-        let CrosstalkQuery { scene, sensors, transducer, limits, floor, coupling } = *query;
+        let CrosstalkQuery { scene, sensors, transducer, limits, floor, coupling, heights_m } = *query;
         let air = scene.air();
         let departing = sending.piston(air);
         // What arrives is of the emitter's frequency.
@@ -150,9 +156,10 @@ impl CrosstalkMatrix {
         self.positions.extend(sensors.iter().map(|sensor| Point::from(sensor.translation.vector)));
         tracer.frequency_hz = sending.frequency_hz;
         tracer.burst_cycles = sending.cycles;
+        let in_room = scene.room().is_some();
         let audibility = match &mut self.audibility {
-            Some(audibility) if audibility.is_for([&departing, &arriving]) => audibility,
-            audibility => audibility.insert(Audibility::new([departing, arriving])),
+            Some(audibility) if audibility.is_for([&departing, &arriving], in_room) => audibility,
+            audibility => audibility.insert(Audibility::new([departing, arriving], in_room)),
         };
         // What is certainly too faint is so however loud a panel makes it.
         audibility.set_floor(floor / tracer.loudest(), tracer.loss_per_m(air));
@@ -164,15 +171,26 @@ impl CrosstalkMatrix {
             let source = Point::from(pose.translation.vector);
             // What the mounting carries may be louder than the patterns say.
             self.straight.clear();
+            let source_m = heights_m[0].get(emitter).copied().unwrap_or(Heights::DEFAULT.source_m);
+            let heights = Heights { source_m, receivers_m: heights_m[1] };
             let coupled = Limits { max_order: 0, ..limits };
             let traced = if coupling > 0.0 {
-                tracer.trace_audible(None, scene, source, &self.positions, coupled, false, &mut self.straight)
+                tracer.trace_audible(None, scene, source, &self.positions, heights, coupled, false, &mut self.straight)
             } else {
                 Ok(())
             };
             let traced = traced.and_then(|()| {
                 let again = emitter > 0;
-                tracer.trace_audible(audibility, scene, source, &self.positions, limits, again, &mut self.found)
+                tracer.trace_audible(
+                    audibility,
+                    scene,
+                    source,
+                    &self.positions,
+                    heights,
+                    limits,
+                    again,
+                    &mut self.found,
+                )
             });
             if let Err(error) = traced {
                 self.paths.clear();
@@ -201,9 +219,12 @@ impl CrosstalkMatrix {
                     if coupling > 0.0 && least == 0.0 && found.order[k] == 0 {
                         continue;
                     }
+                    let elevations_rad = found.elevations_rad(k);
+                    let [departs, arrives] = [found.departure_rad[k] - heading_rad, found.arrival_rad[k] - listens_rad];
+                    let off = |azimuth: f64, elevation: f64| if in_room { raised(azimuth, elevation) } else { azimuth };
                     let mut amplitude = bare
-                        * departing.pattern(found.departure_rad[k] - heading_rad)
-                        * arriving.pattern(found.arrival_rad[k] - listens_rad);
+                        * departing.pattern(off(departs, elevations_rad[0]))
+                        * arriving.pattern(off(arrives, elevations_rad[1]));
                     if amplitude < bare * least {
                         amplitude = bare * least;
                     }
@@ -220,6 +241,7 @@ impl CrosstalkMatrix {
                         order: found.order[k],
                         departure_rad: found.departure_rad[k],
                         arrival_rad: found.arrival_rad[k],
+                        elevations_rad,
                         bounces: [start, self.bounces.len() as u32],
                     });
                 }
@@ -258,4 +280,9 @@ impl CrosstalkMatrix {
     pub(crate) fn bounces_mut(&mut self) -> &mut [Bounce] {
         &mut self.bounces
     }
+}
+
+/// The angle off a level axis of a direction with an azimuth from it and an elevation.
+fn raised(azimuth_rad: f64, elevation_rad: f64) -> f64 {
+    libm::acos((libm::cos(azimuth_rad) * libm::cos(elevation_rad)).clamp(-1.0, 1.0))
 }

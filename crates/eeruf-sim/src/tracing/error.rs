@@ -33,6 +33,13 @@ pub enum PathsError {
         /// What it is inside of.
         what: Contact,
     },
+    /// A source or a receiver is not between floor and ceiling.
+    Height {
+        /// Its height in metres.
+        height_m: f64,
+        /// The ceiling's, in metres.
+        ceiling_m: f64,
+    },
     /// The order asked for is above [`MAX_ORDER`].
     Order {
         /// What was asked for.
@@ -74,6 +81,12 @@ impl fmt::Display for PathsError {
                     Contact::Solid => f.write_str("a wall or outside the room")?,
                 }
                 f.write_str("; expected it in the open")
+            }
+            Self::Height { height_m, ceiling_m } => {
+                write!(
+                    f,
+                    "a sensor is {height_m} m high; expected more than 0 and less than the ceiling's {ceiling_m} m"
+                )
             }
             Self::Order { max_order } => {
                 write!(f, "paths up to order {max_order}; expected at most {MAX_ORDER}")

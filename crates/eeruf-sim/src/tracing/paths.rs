@@ -9,7 +9,7 @@ pub struct Paths {
     pub receiver: Vec<u32>,
     /// Length in metres.
     pub length_m: Vec<f64>,
-    /// How many bounces, those at poles included.
+    /// The number of bounces, those at poles, floor and ceiling included.
     pub order: Vec<u32>,
     /// Direction in which the path leaves the source, in (-pi, pi].
     pub departure_rad: Vec<f64>,
@@ -17,6 +17,8 @@ pub struct Paths {
     pub arrival_rad: Vec<f64>,
     /// Amplitude relative to 1 m in free air, with the transducers' patterns left out.
     pub amplitude: Vec<f64>,
+    /// Elevations at departure and arrival; empty in a flat scene.
+    pub(super) elevations_rad: Vec<[f64; 2]>,
     /// Where each path's bounces end.
     pub(super) ends: Vec<u32>,
     pub(super) bounces: Vec<Bounce>,
@@ -38,6 +40,20 @@ impl Paths {
         let end_of = |path: usize| self.ends.get(path).map_or(0, |end| *end as usize);
         let start = if path == 0 { 0 } else { end_of(path - 1) };
         self.bounces.get(start..end_of(path)).unwrap_or(&[])
+    }
+
+    /// The elevations in radians, upwards positive, at which a path leaves the source and at which the receiver looks
+    /// to see it; 0 in a flat scene.
+    pub fn elevations_rad(&self, path: usize) -> [f64; 2] {
+        self.elevations_rad.get(path).copied().unwrap_or_default()
+    }
+
+    #[inline]
+    pub(super) fn push(&mut self, receiver: u32, order: u32, [departure_rad, arrival_rad]: [f64; 2]) {
+        self.receiver.push(receiver);
+        self.order.push(order);
+        self.departure_rad.push(departure_rad);
+        self.arrival_rad.push(arrival_rad);
     }
 
     /// The indices of one receiver's paths.
@@ -63,6 +79,7 @@ impl Paths {
         self.departure_rad.clear();
         self.arrival_rad.clear();
         self.amplitude.clear();
+        self.elevations_rad.clear();
         self.ends.clear();
         self.bounces.clear();
     }

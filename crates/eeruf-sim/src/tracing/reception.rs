@@ -34,7 +34,20 @@ pub fn reception(image: Point, receiver: Point, velocity: Vector, speed_of_sound
 /// For a path over a pole the image moves a little with the receiver; the error is of the order of the pole's radius
 /// times the receiver's speed over that of sound.
 pub fn reception_along(length_m: f64, arrival_rad: f64, velocity: Vector, speed_of_sound: f64) -> Option<Reception> {
-    let approach = velocity.x * libm::cos(arrival_rad) + velocity.y * libm::sin(arrival_rad);
+    reception_at(length_m, [arrival_rad, 0.0], velocity, speed_of_sound)
+}
+
+/// The same of a path that comes at an azimuth and an elevation.
+pub(crate) fn reception_at(
+    length_m: f64,
+    [azimuth_rad, elevation_rad]: [f64; 2],
+    velocity: Vector,
+    speed_of_sound: f64,
+) -> Option<Reception> {
+    let mut approach = velocity.x * libm::cos(azimuth_rad) + velocity.y * libm::sin(azimuth_rad);
+    if elevation_rad != 0.0 {
+        approach *= libm::cos(elevation_rad);
+    }
     solve(length_m * length_m, -length_m * approach, velocity.norm_squared(), speed_of_sound)
 }
 

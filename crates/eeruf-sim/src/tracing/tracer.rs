@@ -5,16 +5,35 @@ use super::beam::{BeamTree, Growth};
 use super::edges::{EdgeQuery, EdgeSearch};
 use super::error::PathsError;
 use super::limits::{DEFAULT_FREQUENCY_HZ, Limits, MAX_BEAMS, MAX_ORDER};
-use super::panels::share_of_walls;
 use super::paths::Paths;
-use super::poles::{PolePath, PoleQuery, PoleSearch, is_shaded};
-use super::ranking::{Found, FoundPath, Rank, Ranking};
+use super::poles::{PoleQuery, PoleSearch};
+use super::ranking::{Found, Ranking};
+use super::write::InRoom;
 use crate::{
-    acoustics::{LOUDEST_PANEL, Physics, Transducer, pole_wave_correction, reflected},
-    geometry::{Point, opposite, wrap_angle},
-    scene::{Air, Bounce, Contact, Scene},
+    acoustics::{LOUDEST_PANEL, Physics, Transducer},
+    geometry::Point,
+    scene::{Air, Contact, DEFAULT_HEIGHT_M, Scene},
     threads::Stop,
 };
+
+/// The heights of a source and of receivers above the floor, in metres; what a flat scene does not ask for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heights<'a> {
+    /// The source's.
+    pub source_m: f64,
+    /// The receivers', one each; [`DEFAULT_HEIGHT_M`] for those that have none.
+    pub receivers_m: &'a [f64],
+}
+
+impl Heights<'_> {
+    /// All at [`DEFAULT_HEIGHT_M`].
+    pub const DEFAULT: Self = Self { source_m: DEFAULT_HEIGHT_M, receivers_m: &[] };
+
+    /// The height of a receiver.
+    pub(super) fn receiver_m(&self, receiver: usize) -> f64 {
+        self.receivers_m.get(receiver).copied().unwrap_or(DEFAULT_HEIGHT_M)
+    }
+}
 
 /// Finds paths; holds the buffers, so that asking again does not allocate. Keep one per thread.
 #[derive(Debug)]
@@ -42,10 +61,11 @@ pub struct Tracer {
     pub stop: Stop,
     /// What the air takes, for the air and the frequency asked for last.
     loss: Option<(Air, f64, f64)>,
-    tree: BeamTree,
-    poles: PoleSearch,
-    around: EdgeSearch,
-    ranking: Ranking,
+    pub(super) tree: BeamTree,
+    pub(super) poles: PoleSearch,
+    pub(super) around: EdgeSearch,
+    pub(super) ranking: Ranking,
+    pub(super) in_room: InRoom,
 }
 
 impl Default for Tracer {
@@ -76,6 +96,7 @@ impl Tracer {
             poles: PoleSearch::default(),
             around: EdgeSearch::default(),
             ranking: Ranking::default(),
+            in_room: InRoom::default(),
         }
     }
 
@@ -93,9 +114,10 @@ impl Tracer {
 
     /// Writes every specular path from the source to each receiver into `paths`.
     ///
-    /// A path may bounce at walls, at walls with one pole anywhere among them, or at two poles in turn. One through the
-    /// apex of a convex right-angle corner is found once. A receiver on top of the source does not hear the direct path
-    /// of no length.
+    /// A path may bounce at walls, at walls with one pole anywhere among them, or at two poles in turn. In a scene with
+    /// [floor and ceiling](Scene::room) all are [`DEFAULT_HEIGHT_M`] high; see [`trace_at`](Self::trace_at). One
+    /// through the apex of a convex right-angle corner is found once. A receiver on top of the source does not hear the
+    /// direct path of no length.
     ///
     /// # Errors
     /// A position that is not a number or far outside, an order or a length out of range, a tree that outgrows
@@ -108,7 +130,25 @@ impl Tracer {
         limits: Limits,
         paths: &mut Paths,
     ) -> Result<(), PathsError> {
-        self.trace_audible(None, scene, source, receivers, limits, false, paths)
+        self.trace_at(scene, source, receivers, Heights::DEFAULT, limits, paths)
+    }
+
+    /// As [`trace`](Self::trace), at heights of their own. In a room each path of the plan is heard straight and over
+    /// floor and ceiling, which together count as up to [`VERTICAL_ORDER`](super::VERTICAL_ORDER) bounces of
+    /// `limits.max_order`; where the scene is flat, heights do not matter.
+    ///
+    /// # Errors
+    /// As [`trace`](Self::trace), and for a height that is not between floor and ceiling.
+    pub fn trace_at(
+        &mut self,
+        scene: &Scene,
+        source: Point,
+        receivers: &[Point],
+        heights: Heights<'_>,
+        limits: Limits,
+        paths: &mut Paths,
+    ) -> Result<(), PathsError> {
+        self.trace_audible(None, scene, source, receivers, heights, limits, false, paths)
     }
 
     /// As [`trace`](Self::trace), without paths that are certainly too faint. `again` says that all is as it was when
@@ -120,11 +160,13 @@ impl Tracer {
         scene: &Scene,
         source: Point,
         receivers: &[Point],
+        heights: Heights<'_>,
         limits: Limits,
         again: bool,
         paths: &mut Paths,
     ) -> Result<(), PathsError> {
         paths.clear();
+        check_heights(scene, receivers.len(), heights)?;
         let at_poles = Limits { max_order: limits.max_order.min(self.pole_order), ..limits };
         self.grow(audibility, scene, source, receivers, limits, at_poles)?;
         if let Some(audibility) = audibility {
@@ -147,7 +189,13 @@ impl Tracer {
         }
         let found = Found { tree: &self.tree, poles: &self.poles, edges: &self.around };
         self.ranking.rank(found, receivers.len());
-        self.write(scene, source, receivers, paths);
+        match scene.room() {
+            None => self.write(scene, source, receivers, paths),
+            Some(room) => {
+                let most = [limits, at_poles];
+                self.write_in_room(audibility, scene, room, source, receivers, heights, most, paths);
+            }
+        }
         Ok(())
     }
 
@@ -217,87 +265,6 @@ impl Tracer {
             }
         }
     }
-
-    fn write(&mut self, scene: &Scene, source: Point, receivers: &[Point], paths: &mut Paths) {
-        let loss_per_m = self.loss_per_m(scene.air());
-        let wave_number = core::f64::consts::TAU * self.frequency_hz / scene.air().speed_of_sound();
-        paths.reserve(self.ranking.ranks().len());
-        let found = Found { tree: &self.tree, poles: &self.poles, edges: &self.around };
-        let wavelength_m = core::f64::consts::TAU / wave_number;
-        let shades = self.pole_shadows && !scene.poles().is_empty();
-        for &Rank { length_m, index } in self.ranking.ranks() {
-            let start = paths.bounces.len();
-            let receiver = found.push_bounces(index, &mut paths.bounces);
-            let mut share = 1.0;
-            if shades || self.narrow_panels {
-                let bounces = &paths.bounces[start..];
-                let corners = scene.bounce_points(source, receivers[receiver as usize], bounces);
-                if shades && corners.as_ref().is_some_and(|corners| is_shaded(scene, corners, bounces, wavelength_m)) {
-                    paths.bounces.truncate(start);
-                    continue;
-                }
-                if self.narrow_panels {
-                    share = corners.map_or(1.0, |corners| share_of_walls(scene, &corners, bounces, wavelength_m));
-                }
-            }
-            let amplitude;
-            match found.get(index) {
-                FoundPath::Walls(image) => {
-                    let ahead = receivers[image.receiver as usize] - image.image;
-                    let there = libm::atan2(ahead.y, ahead.x);
-                    let departure = if image.order.is_multiple_of(2) { there - image.turn } else { image.turn - there };
-                    let angles = [wrap_angle(departure), opposite(there)];
-                    let reflection_gain = if scene.rough {
-                        reflected(scene, &paths.bounces[start..], angles, [1.0; 2], wave_number)
-                    } else {
-                        image.reflection_gain
-                    };
-                    amplitude = reflection_gain / image.length_m;
-                    paths.receiver.push(image.receiver);
-                    paths.order.push(image.order);
-                    paths.departure_rad.push(angles[0]);
-                    paths.arrival_rad.push(angles[1]);
-                }
-                FoundPath::Pole(path) => {
-                    let angles = [path.departure_rad, path.arrival_rad];
-                    let reflection_gain =
-                        reflected(scene, &paths.bounces[start..], angles, path.cos_incidence, wave_number);
-                    amplitude = reflection_gain
-                        * path.spread
-                        * self.pole_waves(path, &paths.bounces[start..], scene, wave_number);
-                    paths.receiver.push(path.receiver);
-                    paths.order.push(path.order);
-                    paths.departure_rad.push(angles[0]);
-                    paths.arrival_rad.push(angles[1]);
-                }
-                FoundPath::Edge(path) => {
-                    amplitude = path.spread;
-                    paths.receiver.push(path.receiver);
-                    paths.order.push(1);
-                    paths.departure_rad.push(path.departure_rad);
-                    paths.arrival_rad.push(path.arrival_rad);
-                }
-            }
-            paths.length_m.push(length_m);
-            paths.amplitude.push(share * amplitude * libm::exp(loss_per_m * length_m));
-            paths.ends.push(paths.bounces.len() as u32);
-        }
-    }
-
-    /// The wave correction of a path's poles, if it is asked for.
-    fn pole_waves(&self, path: &PolePath, bounces: &[Bounce], scene: &Scene, wave_number: f64) -> f64 {
-        if !self.pole_waves {
-            return 1.0;
-        }
-        let poles = bounces.iter().filter_map(|bounce| match *bounce {
-            Bounce::Pole(pole) => scene.poles().get(pole as usize),
-            Bounce::Wall(_) | Bounce::Edge(_) => None,
-        });
-        let corrections = poles
-            .zip(path.cos_incidence)
-            .map(|(pole, cos)| pole_wave_correction(wave_number * pole.radius_m, libm::acos(cos.min(1.0))));
-        corrections.product()
-    }
 }
 
 fn check(scene: &Scene, source: Point, receivers: &[Point], limits: Limits) -> Result<(), PathsError> {
@@ -328,4 +295,14 @@ fn check_free(scene: &Scene, at: Point) -> Result<(), PathsError> {
         None => return Ok(()),
     };
     Err(PathsError::Inside { at: [at.x, at.y], what })
+}
+
+/// Checks that source and receivers are between floor and ceiling, where there are any.
+fn check_heights(scene: &Scene, receivers: usize, heights: Heights<'_>) -> Result<(), PathsError> {
+    let Some(room) = scene.room() else { return Ok(()) };
+    let all = core::iter::once(heights.source_m).chain((0..receivers).map(|receiver| heights.receiver_m(receiver)));
+    match all.into_iter().find(|&height_m| !room.holds(height_m)) {
+        Some(height_m) => Err(PathsError::Height { height_m, ceiling_m: room.ceiling_m }),
+        None => Ok(()),
+    }
 }

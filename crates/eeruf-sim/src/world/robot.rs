@@ -10,7 +10,7 @@ use super::ring::ring_of;
 use crate::{
     acoustics::Transducer,
     geometry::{Pose, Vector},
-    scene::Body,
+    scene::{Body, DEFAULT_HEIGHT_M},
 };
 
 /// The most robots in one world: a choice, beyond any use, so that more is a mistake in the input.
@@ -34,6 +34,9 @@ pub struct Robot {
     /// two that face each other as far apart; the patterns of the transducers where they are louder. `None`, the
     /// default, for the patterns alone: a mounting that carries nothing.
     pub coupling_db: Option<f64>,
+    /// The heights of its sensors above the floor in metres, one each, where the scene has a [room](crate::Room).
+    /// Empty, as by default, for [`DEFAULT_HEIGHT_M`].
+    pub heights_m: Vec<f64>,
     /// Where the robot is at the start.
     pub pose: Pose,
     /// How it moves from there.
@@ -97,6 +100,7 @@ impl Robot {
             transducer,
             body: None,
             coupling_db: None,
+            heights_m: vec![],
             pose,
             motion: Motion::Still,
             clock: Clock::default(),
@@ -133,6 +137,19 @@ impl Robot {
             ..Requirements::new(self.t_delta)
         };
         schedule.verify(&requirements).verified_uneven().map(Some)
+    }
+
+    /// The same robot with its sensors at these heights in metres, one each; where all are at [`DEFAULT_HEIGHT_M`],
+    /// none are kept, so that equal robots are equal.
+    #[must_use]
+    pub fn with_heights(self, heights_m: Vec<f64>) -> Self {
+        let usual = heights_m.len() == self.sensors.len() && heights_m.iter().all(|&it| it == DEFAULT_HEIGHT_M);
+        Self { heights_m: if usual { vec![] } else { heights_m }, ..self }
+    }
+
+    /// The height of a sensor above the floor, in metres.
+    pub fn height_m(&self, sensor: usize) -> f64 {
+        self.heights_m.get(sensor).copied().unwrap_or(DEFAULT_HEIGHT_M)
     }
 
     /// The amplitude that [`coupling_db`](Self::coupling_db) means; 0 for none.

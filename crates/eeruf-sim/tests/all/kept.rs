@@ -104,6 +104,7 @@ fn exactly(readings: &Readings) -> (usize, u64) {
                 Bounce::Wall(wall) => u64::from(wall),
                 Bounce::Pole(pole) => 1 << 32 | u64::from(pole),
                 Bounce::Edge(edge) => 2 << 32 | u64::from(edge),
+                Bounce::Floor | Bounce::Ceiling => unreachable!("a flat world"),
             });
             ends.into_iter().chain(bounces)
         });

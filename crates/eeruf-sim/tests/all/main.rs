@@ -17,6 +17,7 @@ mod physics;
 
 mod properties;
 mod random;
+mod room;
 mod set_one;
 mod set_two;
 mod simulation;

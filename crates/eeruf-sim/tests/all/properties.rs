@@ -218,7 +218,7 @@ fn every_path_obeys_the_law_of_reflection_at_each_bounce() {
                         assert!((-1e-9..=wall.length_m() + 1e-9).contains(&along.dot(&off)));
                         Vector::new(-along.y, along.x)
                     }
-                    Bounce::Edge(_) => unreachable!("edges are silent here"),
+                    Bounce::Edge(_) | Bounce::Floor | Bounce::Ceiling => unreachable!("walls and poles alone"),
                     Bounce::Pole(pole) => {
                         let pole = scene.poles()[pole as usize];
                         let normal = (around[1] - pole.centre) / pole.radius_m;

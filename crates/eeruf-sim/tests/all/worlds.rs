@@ -134,7 +134,11 @@ fn a_world_written_to_a_file_and_read_again_gives_the_same_bit_for_bit() {
         room[1].faces = Faces::Open;
         let pole = Pole { material: Material::SOFT, ..Pole::new(0.9, 1.1, 0.05) };
         let air = Air { temperature_c: 3.5, humidity_percent: 61.0, pressure_kpa: 99.5 };
-        let transducer = Transducer { gain: GainProfile::SquareRoot, ..Transducer::HC_SR04 };
+        let gain = [GainProfile::SquareRoot, GainProfile::Polaroid6500][number as usize % 2];
+        let beam = [Beam::Continuous, Beam::CutAt90][number as usize % 2];
+        let transducer = Transducer { gain, beam, ..Transducer::HC_SR04 };
+        let low = Room { ceiling_m: 2.1, floor: rough, ceiling: Material::SOFT };
+        let height = [None, Some(Room::DEFAULT), Some(low)][number as usize % 3];
         let standing = Robot {
             schedule: Some(table_i_d_for(6, Micros::from_millis(60), 4).unwrap()),
             clock: Clock { offset_us: 77, drift_ppm: -31.5 },
@@ -147,11 +151,13 @@ fn a_world_written_to_a_file_and_read_again_gives_the_same_bit_for_bit() {
         let moving = Robot {
             motion: Motion::Constant { velocity: Vector::new(0.05, -0.02), turn_rad_s: 0.1 * turned },
             odometry: true,
+            coupling_db: (number % 2 == 0).then_some(-41.5),
+            heights_m: vec![0.25, 1.1],
             body: (number % 2 == 1).then_some(Body::Polygon(outline)),
             ..Robot::with_sensors(Pose::new(Vector::new(0.6, -0.4), -turned), poses, transducer)
         };
         let noise = Noise { fading_db_rms: 2.0, jitter_us_rms: 20.0, bursts_per_s: 4.0, burst_db: 12.0 };
-        let scene = Scene::new(room, vec![pole], air).unwrap();
+        let scene = Scene::new(room, vec![pole], air).and_then(|scene| scene.with_room(height)).unwrap();
         let world = World::new(scene, vec![standing, moving], noise)
             .unwrap()
             .with_seed(u64::MAX - u64::from(number))

@@ -83,7 +83,8 @@ impl Bodies {
         let own = [scene.walls().len(), scene.poles().len()];
         // What touches nothing makes a scene.
         let robot = bodies.first().map_or(0, |body| body.0);
-        let scene = Scene::new(walls, poles, scene.air()).map_err(|_| PathsError::Body { robot })?;
+        let built = Scene::new(walls, poles, scene.air()).and_then(|built| built.with_room(scene.room().copied()));
+        let scene = built.map_err(|_| PathsError::Body { robot })?;
         Ok(Some(Furnished { scene, own, walls: wall_numbers, poles: pole_numbers }))
     }
 }
@@ -96,7 +97,7 @@ impl Furnished {
                 Bounce::Wall(wall) => (self.own[0], &self.walls, wall),
                 Bounce::Pole(pole) => (self.own[1], &self.poles, pole),
                 // Those of bodies follow the scene's own, and are numbered as in this very scene.
-                Bounce::Edge(_) => continue,
+                Bounce::Edge(_) | Bounce::Floor | Bounce::Ceiling => continue,
             };
             if let Some(number) = (*index as usize).checked_sub(own).and_then(|body| numbers.get(body)) {
                 *index = *number;

@@ -14,9 +14,9 @@ use crate::{
     acoustics::{GainProfile, Transducer},
     geometry::{Pose, Vector},
     results::{HeardPath, SensorId},
-    scene::Bounce,
+    scene::{Bounce, Scene},
     threads::Stop,
-    tracing::{CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, PathsError, Tracer, reception_along},
+    tracing::{CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, PathsError, Tracer, reception_at},
     world::{Robot, World, offset},
 };
 pub(super) use bodies::Bodies;
@@ -298,7 +298,8 @@ impl<'w> Channels<'w> {
             let on_one = self.coupled(first).filter(|&robot| self.coupled(listeners[0]) == Some(robot));
             let coupling = on_one.map_or(0.0, |robot| self.world_robots[robot].coupling());
             let query = CrosstalkQuery::new(scene, &sensors, &flat, limits, range.faintest);
-            let query = CrosstalkQuery { coupling, ..query };
+            let heights_m = [emitters, &listeners].map(|sensors| self.heights_of(scene, sensors));
+            let query = CrosstalkQuery { coupling, heights_m: heights_m.each_ref().map(Vec::as_slice), ..query };
             self.matrix.compute_between(&sources, sending, &mut self.tracer, &query)?;
             let matrix = core::mem::take(&mut self.matrix);
             for path in matrix.paths() {
@@ -315,6 +316,12 @@ impl<'w> Channels<'w> {
             self.matrix = matrix;
         }
         Ok(())
+    }
+
+    /// The heights of sensors, where they matter.
+    fn heights_of(&self, scene: &Scene, sensors: &[usize]) -> Vec<f64> {
+        let height_m = |&sensor: &usize| self.robot_of(sensor).height_m(usize::from(self.ids[sensor].sensor));
+        if scene.room().is_some() { sensors.iter().map(height_m).collect() } else { Vec::new() }
     }
 
     fn poses_of(&self, sensors: &[usize]) -> Vec<Pose> {
@@ -337,7 +344,7 @@ impl<'w> Channels<'w> {
         let receiver = ends[1];
         let velocity = self.velocities[receiver];
         let c = self.world.scene().air().speed_of_sound();
-        let met = reception_along(path.length_m, path.arrival_rad, velocity, c)?;
+        let met = reception_at(path.length_m, [path.arrival_rad, path.elevations_rad[1]], velocity, c)?;
         let level_over_threshold_db = 20.0 * libm::log10(path.amplitude / range.floor);
         let path = self.paths.number(ends.map(|end| self.ids[end]), path, &self.bounces);
         Some(Channel {

@@ -72,6 +72,8 @@ fn key_of(ends: [SensorId; 2], bounces: &[Bounce]) -> u64 {
             Bounce::Wall(wall) => (0, wall),
             Bounce::Pole(pole) => (1, pole),
             Bounce::Edge(edge) => (2, edge),
+            Bounce::Floor => (3, 0),
+            Bounce::Ceiling => (4, 0),
         };
         key.of(kind << 32 | u64::from(index))
     });

@@ -11,7 +11,7 @@ mod reach;
 mod tests;
 
 use crate::{
-    acoustics::Piston,
+    acoustics::{Beam, Piston},
     geometry::{Point, Vector},
     scene::Pole,
 };
@@ -34,6 +34,8 @@ const REACH_M: f64 = 32.0;
 pub(crate) struct Audibility {
     /// The emitter's and the receivers' patterns.
     pistons: [Piston; 2],
+    /// Whether paths rise and fall, so that they may point less far off an axis than they seem to in the plan.
+    in_room: bool,
     /// The highest squares of the two patterns from an angle on.
     departing: Vec<f64>,
     arriving: Vec<f64>,
@@ -52,13 +54,14 @@ pub(crate) struct Audibility {
 }
 
 impl Audibility {
-    /// For an emitter and receivers with these patterns.
-    pub(crate) fn new([departing, arriving]: [Piston; 2]) -> Self {
+    /// For an emitter and receivers with these patterns, in a flat scene or in a room.
+    pub(crate) fn new([departing, arriving]: [Piston; 2], in_room: bool) -> Self {
         let ahead = Vector::x();
         Self {
             pistons: [departing, arriving],
-            departing: envelope(&departing),
-            arriving: envelope(&arriving),
+            in_room,
+            departing: envelope(&departing, in_room),
+            arriving: envelope(&arriving, in_room),
             floor: 0.0,
             loss_per_m: 0.0,
             faint: Vec::new(),
@@ -69,8 +72,8 @@ impl Audibility {
         }
     }
 
-    pub(crate) fn is_for(&self, [departing, arriving]: [&Piston; 2]) -> bool {
-        self.pistons == [*departing, *arriving]
+    pub(crate) fn is_for(&self, [departing, arriving]: [&Piston; 2], in_room: bool) -> bool {
+        self.pistons == [*departing, *arriving] && self.in_room == in_room
     }
 
     /// Sets the amplitude that is just heard, and the natural logarithm of what the air leaves of one per metre.
@@ -151,6 +154,26 @@ impl Audibility {
         sent >= least && sent * self.heard(towards.dot(axis) / length_m) >= least
     }
 
+    /// Returns true if a path of a room may be heard that leaves and arrives at these angles in the plan and at an
+    /// elevation of this cosine, if floor and ceiling leave `vertical` of it.
+    #[inline]
+    pub(crate) fn may_hear_in_room(
+        &self,
+        receiver: usize,
+        [departure_rad, arrival_rad]: [f64; 2],
+        cos_elevation: f64,
+        vertical: f64,
+        length_m: f64,
+    ) -> bool {
+        let Some(axis) = self.receivers.get(receiver) else { return true };
+        let towards = |angle: f64| Vector::new(libm::cos(angle), libm::sin(angle)) * cos_elevation;
+        let (sent, least) = (
+            self.sent(towards(departure_rad).dot(&self.source)) * vertical * vertical,
+            self.faint(length_m) * length_m * length_m,
+        );
+        sent >= least && sent * self.heard(towards(arrival_rad).dot(axis)) >= least
+    }
+
     /// Whether a path around an edge may be heard that is no louder than `most` but for the patterns; `out` leads from
     /// the source to the edge, `home` from the receiver.
     #[inline]
@@ -197,7 +220,9 @@ impl Audibility {
 
 /// The highest squares of a pattern from an angle on. Each entry stands for all angles up to the next one's, so that an
 /// angle between two steps takes the value of the lower one, where the envelope is no less.
-fn envelope(piston: &Piston) -> Vec<f64> {
+///
+/// In a room sound may leave behind a sensor's plane by less than the plan shows, up to right beside it.
+fn envelope(piston: &Piston, in_room: bool) -> Vec<f64> {
     let mut envelope = vec![0.0; STEPS + 1];
     let mut highest: f64 = 0.0;
     // From behind to the front.
@@ -207,6 +232,12 @@ fn envelope(piston: &Piston) -> Vec<f64> {
         let straight = piston.pattern(angle);
         highest = highest.max(shifted * shifted).max(straight * straight);
         envelope[step] = highest;
+    }
+    if in_room && piston.beam != Beam::CutAt90 {
+        let (front, behind) =
+            envelope.split_at_mut(libm::ceil(STEPS as f64 * core::f64::consts::FRAC_1_SQRT_2) as usize);
+        let beside = front.last().copied().unwrap_or_default();
+        behind.fill(beside);
     }
     envelope
 }

@@ -56,7 +56,7 @@ impl EdgeSearch {
                     // Both sides of a corner may be seen beside their reflections.
                     match joined[first..].iter_mut().find(|path| path.edge == near.edge) {
                         Some(path) => path.spread = (path.spread + spread).min(MOST * LOUDEST_PANEL / near.length_m),
-                        None => joined.push(EdgePath { spread, ..near }),
+                        None => joined.push(EdgePath { spread, unbounded: None, ..near }),
                     }
                 }
             }

@@ -19,10 +19,25 @@ pub(crate) struct EdgePath {
     pub(crate) length_m: f64,
     pub(crate) departure_rad: f64,
     pub(crate) arrival_rad: f64,
-    /// What diffraction and spreading leave of the amplitude.
+    /// What diffraction and spreading leave of the amplitude, at the wave number of the question.
     pub(crate) spread: f64,
+    /// The same without a bound, and that wave number; none of two ways that are heard as one.
+    unbounded: Option<[f64; 2]>,
     /// The edge itself, by which doubles are recognised.
     pub(crate) at: Point,
+}
+
+impl EdgePath {
+    /// What is left of the amplitude at another wave number: Keller's coefficient falls with its square root.
+    pub(crate) fn spread_at(&self, wave_number: f64) -> f64 {
+        match self.unbounded {
+            Some([unbounded, at]) if wave_number != at => {
+                let (spread, most) = (unbounded * (at / wave_number).sqrt(), MOST / self.length_m);
+                if spread < most { spread } else { most }
+            }
+            _ => self.spread,
+        }
+    }
 }
 
 /// Finds them; holds the buffers.
@@ -114,6 +129,7 @@ impl EdgeSearch {
                     arrival_rad: libm::atan2(home.y, home.x),
                     // The series is no number where two of its poles meet.
                     spread: if spread < most { spread } else { most },
+                    unbounded: Some([spread, wave_number]),
                     at: edge.at,
                 });
             }

@@ -6,7 +6,7 @@ use toml::Spanned;
 use crate::{
     acoustics::{Physics, UnknownPhysics},
     geometry::{Pose, Vector},
-    scene::{Air, Body, Material, Outline},
+    scene::{Air, Body, Material, Outline, Room},
     world::{noise::Noise, world::DEFAULT_ORDER},
 };
 
@@ -20,6 +20,7 @@ pub(super) struct WorldFile {
     pub(super) air: Option<Spanned<AirFile>>,
     pub(super) noise: Option<Spanned<NoiseFile>>,
     pub(super) physics: Option<Spanned<PhysicsFile>>,
+    pub(super) height: Option<Spanned<HeightFile>>,
     #[serde(default, rename = "wall")]
     pub(super) walls: Vec<Spanned<WallFile>>,
     #[serde(default, rename = "pole")]
@@ -104,6 +105,55 @@ impl PhysicsFile {
     }
 }
 
+/// A preset's name, or a table with what differs from that of a room.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected \"flat\", \"room\" or a table with ceiling_m, floor and ceiling")]
+pub(super) enum HeightFile {
+    Preset(HeightPreset),
+    Table(HeightTable),
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum HeightPreset {
+    Flat,
+    Room,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct HeightTable {
+    ceiling_m: Option<f64>,
+    floor: Option<SurfaceFile>,
+    ceiling: Option<SurfaceFile>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SurfaceFile {
+    material: Option<MaterialFile>,
+    reflection: Option<f64>,
+    roughness_m: Option<f64>,
+}
+
+impl HeightFile {
+    /// Floor and ceiling; none for a flat scene.
+    pub(super) fn room(&self) -> Option<Room> {
+        let surface = |default: Material, file: &Option<SurfaceFile>| {
+            file.as_ref().map_or(default, |file| material(default, file.material, file.reflection, file.roughness_m))
+        };
+        match self {
+            Self::Preset(HeightPreset::Flat) => None,
+            Self::Preset(HeightPreset::Room) => Some(Room::DEFAULT),
+            Self::Table(table) => Some(Room {
+                ceiling_m: table.ceiling_m.unwrap_or(Room::DEFAULT.ceiling_m),
+                floor: surface(Room::DEFAULT.floor, &table.floor),
+                ceiling: surface(Room::DEFAULT.ceiling, &table.ceiling),
+            }),
+        }
+    }
+}
+
 /// One of three outlines.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -177,6 +227,14 @@ pub(super) enum EachFile {
     Of(Vec<u32>),
 }
 
+/// A height for all sensors, or one for each.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a height in metres, or a list of one for each sensor")]
+pub(super) enum HeightsFile {
+    All(f64),
+    Of(Vec<f64>),
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RobotFile {
@@ -190,6 +248,7 @@ pub(super) struct RobotFile {
     #[serde(default)]
     pub(super) beam: BeamFile,
     pub(super) coupling_db: Option<f64>,
+    pub(super) height_m: Option<HeightsFile>,
     pub(super) body: Option<BodyFile>,
     pub(super) motion: Option<MotionFile>,
     pub(super) clock: Option<ClockFile>,

@@ -6,7 +6,7 @@ use eeruf_core::{MAX_SENSORS, Micros, SensorLimits};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::format::{BeamFile, EachFile, GainFile, MotionFile, RobotFile, TransducerFile, radians};
+use super::format::{BeamFile, EachFile, GainFile, HeightsFile, MotionFile, RobotFile, TransducerFile, radians};
 use super::schedule_file::ScheduleFile;
 use super::source::{Source, WorldFileError};
 use crate::{
@@ -80,6 +80,12 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
         robot.body = Some(body.body().map_err(|message| fail("body", format!(": body: {message}")))?);
     }
     robot.coupling_db = file.coupling_db;
+    let heights_m = match &file.height_m {
+        None => vec![],
+        Some(HeightsFile::All(height_m)) => vec![*height_m; robot.sensors.len()],
+        Some(HeightsFile::Of(list)) => list.clone(),
+    };
+    robot = robot.with_heights(heights_m);
     if let Some(clock) = &file.clock {
         robot.clock = Clock { offset_us: clock.offset_us, drift_ppm: clock.drift_ppm };
     }

@@ -36,7 +36,9 @@ pub(super) fn scene(source: &Source, file: &WorldFile) -> Result<Scene, WorldFil
         Pole { material, ..Pole::new(pole.at_m[0], pole.at_m[1], pole.radius_m) }
     });
     let air = file.air.as_ref().map_or(Air::default(), |air| air.get_ref().air());
-    Scene::new(walls, poles.collect(), air).map_err(|error| {
+    let room = file.height.as_ref().and_then(|height| height.get_ref().room());
+    let scene = Scene::new(walls, poles.collect(), air).and_then(|scene| scene.with_room(room));
+    scene.map_err(|error| {
         let wall = |wall: usize| entries.get(wall).and_then(|&entry| file.walls.get(entry)).map(Spanned::span);
         let pole = |pole: usize| file.poles.get(pole).map(Spanned::span);
         let (part, field) = match error {
@@ -48,6 +50,8 @@ pub(super) fn scene(source: &Source, file: &WorldFile) -> Result<Scene, WorldFil
             SceneError::Pole { pole: index, .. } | SceneError::SamePole { poles: [_, index] } => (pole(index), "at_m"),
             SceneError::PoleMaterial { pole: index } => (pole(index), "reflection"),
             SceneError::Air { quantity, .. } => (file.air.as_ref().map(Spanned::span), quantity),
+            SceneError::Ceiling { .. } => (file.height.as_ref().map(Spanned::span), "ceiling_m"),
+            SceneError::RoomMaterial { surface } => (file.height.as_ref().map(Spanned::span), surface),
             _ => (None, ""),
         };
         source.error(part, field, error)

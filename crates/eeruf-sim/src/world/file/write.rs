@@ -7,7 +7,7 @@ use super::schedule_file::ScheduleFile;
 use crate::{
     acoustics::{Physics, Transducer},
     geometry::Pose,
-    scene::{Body, Faces, Material, Scene},
+    scene::{Body, Faces, Material, Room, Scene},
     world::{motion::Motion, noise::Noise, robot::Robot},
 };
 
@@ -48,6 +48,20 @@ pub fn world_file(
             set(&mut effects, "range_walk", physics.range_walk);
             set(&mut effects, "fading_time_s", physics.fading_time_s);
             set(&mut file, "physics", effects);
+        }
+    }
+    match scene.room() {
+        None => set(&mut file, "height", "flat"),
+        Some(room) if *room == Room::DEFAULT => set(&mut file, "height", "room"),
+        Some(room) => {
+            let mut height = Table::new();
+            set(&mut height, "ceiling_m", room.ceiling_m);
+            for (name, material) in [("floor", &room.floor), ("ceiling", &room.ceiling)] {
+                let mut table = Table::new();
+                surface(&mut table, material);
+                set(&mut height, name, table);
+            }
+            set(&mut file, "height", height);
         }
     }
     let walls = scene.walls().iter().map(|wall| {
@@ -138,6 +152,9 @@ fn robot_table(robot: &Robot) -> Table {
     set(&mut table, "beam", beam.name());
     if let Some(coupling_db) = robot.coupling_db {
         set(&mut table, "coupling_db", coupling_db);
+    }
+    if !robot.heights_m.is_empty() {
+        set(&mut table, "height_m", robot.heights_m.clone());
     }
     if let Some(body) = &robot.body {
         let mut outline = Table::new();

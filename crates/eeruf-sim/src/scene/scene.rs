@@ -27,6 +27,8 @@ pub struct Scene {
     /// Which triangles each pole's disc overlaps: (triangle, pole).
     pub(crate) pole_triangles: Vec<(u32, u32)>,
     edges: Vec<Edge>,
+    /// The triangles that each edge is a corner of; found when first asked for.
+    edge_triangles: OnceLock<Vec<Box<[u32]>>>,
     /// How far walls go on; found when first asked for.
     extents: OnceLock<Extents>,
     /// Whether any surface is rough.
@@ -75,6 +77,7 @@ impl Scene {
             wall_boxes,
             pole_triangles,
             edges,
+            edge_triangles: OnceLock::new(),
             extents: OnceLock::new(),
             rough,
         })
@@ -109,6 +112,19 @@ impl Scene {
     /// [`Physics::edges`](crate::Physics::edges) says so. Those of solid regions, seen from within, are among them.
     pub fn edges(&self) -> &[Edge] {
         &self.edges
+    }
+
+    /// The triangles that an edge is a corner of.
+    pub(crate) fn triangles_at(&self, edge: usize) -> &[u32] {
+        let of_all = self.edge_triangles.get_or_init(|| {
+            let mut triangles = Vec::new();
+            let each = self.edges.iter().map(|edge| {
+                self.mesh.containing(edge.at, &mut triangles);
+                triangles.as_slice().into()
+            });
+            each.collect()
+        });
+        of_all.get(edge).map_or(&[], |triangles| triangles)
     }
 
     /// How far walls go on, for [`Physics::narrow_panels`](crate::Physics::narrow_panels).

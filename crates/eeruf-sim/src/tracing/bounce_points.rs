@@ -60,6 +60,46 @@ impl Scene {
     }
 }
 
+/// Corners of paths, kept for their memory.
+#[derive(Debug, Default)]
+pub(super) struct Corners {
+    images: Vec<Point>,
+    corners: Vec<Point>,
+}
+
+impl Corners {
+    /// The corners of a path that was found in a scene; see [`Scene::bounce_points`].
+    pub(super) fn of(&mut self, scene: &Scene, source: Point, receiver: Point, bounces: &[Bounce]) -> Option<&[Point]> {
+        self.corners.clear();
+        if !bounces.iter().all(|bounce| matches!(bounce, Bounce::Wall(_))) {
+            self.corners.extend(scene.bounce_points(source, receiver, bounces)?);
+            return Some(&self.corners);
+        }
+        let mirror = |bounce: &Bounce| match *bounce {
+            Bounce::Wall(wall) => scene.mirrors.get(wall as usize),
+            _ => None,
+        };
+        self.images.clear();
+        let mut at = source;
+        for bounce in bounces {
+            let mirror = mirror(bounce)?;
+            at = mirror.image(at, mirror.distance(at));
+            self.images.push(at);
+        }
+        self.corners.push(receiver);
+        let mut at = receiver;
+        for (bounce, &target) in bounces.iter().zip(&self.images).rev() {
+            let mirror = mirror(bounce)?;
+            let (here, there) = (mirror.distance(at), mirror.distance(target));
+            at += (target - at) * (here / (here - there));
+            self.corners.push(at);
+        }
+        self.corners.push(source);
+        self.corners.reverse();
+        Some(&self.corners)
+    }
+}
+
 /// The parts of a path in which walls are only mirrors, from one of its ends or poles or edges, which make the sound
 /// spread anew, to the next: the first and the last corner of each.
 pub(super) fn parts(bounces: &[Bounce]) -> impl Iterator<Item = (usize, usize)> + '_ {

@@ -2,6 +2,7 @@
 
 use super::audibility::Audibility;
 use super::beam::{BeamTree, Growth};
+use super::bounce_points::Corners;
 use super::edges::{EdgeQuery, EdgeSearch};
 use super::error::PathsError;
 use super::limits::{DEFAULT_FREQUENCY_HZ, Limits, MAX_BEAMS, MAX_ORDER};
@@ -66,6 +67,7 @@ pub struct Tracer {
     pub(super) around: EdgeSearch,
     pub(super) ranking: Ranking,
     pub(super) in_room: InRoom,
+    pub(super) corners: Corners,
 }
 
 impl Default for Tracer {
@@ -97,6 +99,7 @@ impl Tracer {
             around: EdgeSearch::default(),
             ranking: Ranking::default(),
             in_room: InRoom::default(),
+            corners: Corners::default(),
         }
     }
 

@@ -56,19 +56,21 @@ impl Tracer {
         let found = Found { tree: &self.tree, poles: &self.poles, edges: &self.around };
         let wavelength_m = TAU / wave_number;
         let shades = self.pole_shadows && !scene.poles().is_empty();
+        let mut corners = core::mem::take(&mut self.corners);
         for &Rank { length_m, index } in self.ranking.ranks() {
             let start = paths.bounces.len();
             let receiver = found.push_bounces(index, &mut paths.bounces);
             let mut share = 1.0;
-            if shades || self.narrow_panels {
+            let narrow = self.narrow_panels && ends(scene, &paths.bounces[start..]);
+            if shades || narrow {
                 let bounces = &paths.bounces[start..];
-                let corners = scene.bounce_points(source, receivers[receiver as usize], bounces);
-                if shades && corners.as_ref().is_some_and(|corners| is_shaded(scene, corners, bounces, wavelength_m)) {
+                let corners = corners.of(scene, source, receivers[receiver as usize], bounces);
+                if shades && corners.is_some_and(|corners| is_shaded(scene, corners, bounces, wavelength_m)) {
                     paths.bounces.truncate(start);
                     continue;
                 }
-                if self.narrow_panels {
-                    share = corners.map_or(1.0, |corners| share_of_walls(scene, &corners, bounces, wavelength_m));
+                if narrow {
+                    share = corners.map_or(1.0, |corners| share_of_walls(scene, corners, bounces, wavelength_m));
                 }
             }
             let path = found.get(index);
@@ -79,6 +81,7 @@ impl Tracer {
             paths.amplitude.push(share * amplitude * libm::exp(loss_per_m * length_m));
             paths.ends.push(paths.bounces.len() as u32);
         }
+        self.corners = corners;
     }
 
     /// Writes the paths of a room.
@@ -106,6 +109,7 @@ impl Tracer {
         let found = Found { tree: &self.tree, poles: &self.poles, edges: &self.around };
         let shades = self.pole_shadows && !scene.poles().is_empty();
         let mut rises_to = f64::NAN;
+        let mut turns = core::mem::take(&mut self.corners);
         for &Rank { length_m: plan_m, index } in self.ranking.ranks() {
             let path = found.get(index);
             let course = course(&path, receivers);
@@ -117,7 +121,8 @@ impl Tracer {
             }
             let most = if matches!(path, FoundPath::Pole(_)) { at_poles } else { limits };
             let start = bounces.len();
-            let mut corners = None;
+            let mut narrow = false;
+            let mut corners: Option<Option<&[Point]>> = None;
             for &way in ways.iter().take_while(|way| course.order + way.order <= most.max_order) {
                 let length_m = libm::hypot(plan_m, way.rise_m);
                 let (cos, sin) = (plan_m / length_m, way.rise_m.abs() / length_m);
@@ -134,17 +139,18 @@ impl Tracer {
                 }
                 if corners.is_none() {
                     found.push_bounces(index, bounces);
-                    let needed = shades || self.narrow_panels;
                     let here = &bounces[start..];
-                    corners = Some(needed.then(|| scene.bounce_points(source, receivers[receiver], here)).flatten());
+                    narrow = self.narrow_panels && ends(scene, here);
+                    let needed = shades || narrow;
+                    corners = Some(if needed { turns.of(scene, source, receivers[receiver], here) } else { None });
                 }
                 let here = &bounces[start..];
                 let mut share = 1.0;
-                if let Some(corners) = corners.as_ref().and_then(Option::as_ref) {
+                if let Some(corners) = corners.flatten() {
                     if shades && is_shaded(scene, corners, here, TAU / horizontal) {
                         continue;
                     }
-                    if self.narrow_panels {
+                    if narrow {
                         share = share_of_walls(scene, corners, here, TAU / horizontal);
                     }
                 }
@@ -192,6 +198,7 @@ impl Tracer {
             paths.ends.push(paths.bounces.len() as u32);
         }
         self.in_room = in_room;
+        self.corners = turns;
     }
 
     /// What spreading, walls, poles and edges leave of the amplitude in the plan.
@@ -236,6 +243,12 @@ impl Tracer {
             .map(|(pole, cos)| pole_wave_correction(wave_number * pole.radius_m, libm::acos(cos.min(1.0))));
         corrections.product()
     }
+}
+
+/// Returns true if a path meets a wall that ends somewhere.
+#[inline]
+fn ends(scene: &Scene, bounces: &[Bounce]) -> bool {
+    bounces.iter().any(|bounce| matches!(*bounce, Bounce::Wall(wall) if scene.extents().ends(wall)))
 }
 
 #[inline]

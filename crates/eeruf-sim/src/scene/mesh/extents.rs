@@ -53,12 +53,19 @@ pub(crate) struct Extents {
     stretches: Vec<Stretch>,
     /// Those that end at an edge, each once.
     pub(crate) surfaces: Vec<Surface>,
+    /// For each edge where its surfaces begin among the next, with one more start at the end.
+    starts: Vec<u32>,
+    /// The surfaces that end at each edge, in their order.
+    at_edges: Vec<u32>,
+    /// Whether a wall's surface ends anywhere, on either side.
+    ends: Vec<bool>,
 }
 
 impl Extents {
     /// Follows each piece of wall both ways on each side. Openings are not there.
     pub(crate) fn new(vertices: &[Point], pieces: &[Piece], walls: &[Wall], edges: &[Edge]) -> Self {
         let corners = Corners::new(vertices, pieces, walls);
+        let edges_in_all = edges.len();
         let mut edges = edges.iter().enumerate().peekable();
         // Edges are in the order of their vertices.
         let edge_at: Vec<_> =
@@ -87,7 +94,37 @@ impl Extents {
                 }
             }
         }
+        extents.index(edges_in_all, walls.len());
         extents
+    }
+
+    /// Lists the surfaces by their edges, and the walls that end.
+    fn index(&mut self, edges: usize, walls: usize) {
+        let mut of_edges = vec![Vec::new(); edges];
+        for (number, surface) in (0..).zip(&self.surfaces) {
+            for edge in surface.ends.iter().flatten().filter_map(|end| end.edge) {
+                of_edges[edge as usize].push(number);
+            }
+        }
+        self.starts.push(0);
+        for surfaces in &of_edges {
+            self.at_edges.extend_from_slice(surfaces);
+            self.starts.push(self.at_edges.len() as u32);
+        }
+        self.ends.resize(walls, false);
+        for stretch in &self.stretches {
+            self.ends[stretch.wall] |= stretch.sides.iter().flatten().any(Option::is_some);
+        }
+    }
+
+    /// The numbers of the surfaces that end at an edge.
+    pub(crate) fn at_edge(&self, edge: usize) -> &[u32] {
+        &self.at_edges[self.starts[edge] as usize..self.starts[edge + 1] as usize]
+    }
+
+    /// Returns true if a wall's surface ends somewhere, on either side.
+    pub(crate) fn ends(&self, wall: u32) -> bool {
+        self.ends.get(wall as usize).is_some_and(|ends| *ends)
     }
 
     /// The ends of the surface around a point of a wall, so far from the wall's start, on its left or its right.

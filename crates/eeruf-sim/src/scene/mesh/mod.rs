@@ -204,6 +204,11 @@ impl Mesh {
     pub(crate) fn sees(&self, from: Point, to: Point, [starts, goals]: &mut [Vec<u32>; 2]) -> bool {
         self.containing(from, starts);
         self.containing(to, goals);
+        self.sees_between(from, starts, to, goals)
+    }
+
+    /// The same of points whose triangles are known, see [`containing`](Self::containing).
+    pub(crate) fn sees_between(&self, from: Point, starts: &[u32], to: Point, goals: &[u32]) -> bool {
         if starts.iter().any(|triangle| goals.contains(triangle)) {
             return true;
         }

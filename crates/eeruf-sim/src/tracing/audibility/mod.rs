@@ -47,8 +47,7 @@ pub(crate) struct Audibility {
     faint: Vec<f64>,
     /// How far sound is heard that leaves with a share of its strength.
     reach: Reach,
-    /// Where the source heads, as an angle and as a direction.
-    source_rad: f64,
+    /// Where the source heads.
     source: Vector,
     receivers: Vec<Vector>,
 }
@@ -66,7 +65,6 @@ impl Audibility {
             loss_per_m: 0.0,
             faint: Vec::new(),
             reach: Reach::default(),
-            source_rad: 0.0,
             source: ahead,
             receivers: Vec::new(),
         }
@@ -94,7 +92,6 @@ impl Audibility {
 
     /// Sets where source and receivers head.
     pub(crate) fn aim(&mut self, source_rad: f64, receivers: impl Iterator<Item = Vector>) {
-        self.source_rad = source_rad;
         self.source = Vector::new(libm::cos(source_rad), libm::sin(source_rad));
         self.receivers.clear();
         self.receivers.extend(receivers);
@@ -110,11 +107,6 @@ impl Audibility {
     pub(crate) fn of_receiver(&self, receiver: usize) -> Option<Aim<'_>> {
         let axis = *self.receivers.get(receiver).filter(|_| self.floor > 0.0)?;
         Some(Aim { envelope: &self.arriving, reach: &self.reach, axis, beam: self.pistons[1].beam })
-    }
-
-    /// Where the source heads, in radians.
-    pub(crate) fn source_rad(&self) -> f64 {
-        self.source_rad
     }
 
     /// The square of the emitter's pattern at most, by the cosine of the angle off its axis.
@@ -172,6 +164,17 @@ impl Audibility {
             self.faint(length_m) * length_m * length_m,
         );
         sent >= least && sent * self.heard(towards(arrival_rad).dot(axis)) >= least
+    }
+
+    /// Returns true if sound that leaves in the direction `out` may be heard after `least_m` or more, if it is no louder
+    /// than `most` over its length but for the patterns.
+    #[inline]
+    pub(crate) fn may_ensonify(&self, most: f64, out: Vector, least_m: f64) -> bool {
+        if !(self.floor > 0.0 && least_m > 0.0) {
+            return true;
+        }
+        let cos = out.dot(&self.source) / out.norm();
+        self.sent(cos) * most * most >= self.faint(least_m) * least_m * least_m
     }
 
     /// Whether a path around an edge may be heard that is no louder than `most` but for the patterns; `out` leads from

@@ -57,6 +57,8 @@ pub(crate) struct VisibleImage {
     pub(crate) parent: u32,
     /// The last wall.
     pub(crate) wall: u32,
+    /// Where the source heads in the image's world, if that matters.
+    pub(super) axis: Vector,
 }
 
 /// A cone that passes a triangle in which a pole stands.

@@ -4,7 +4,7 @@ use super::tree::BeamTree;
 use super::{Beam, VisibleImage};
 use crate::tracing::audibility::Audibility;
 use crate::{
-    geometry::{Point, Vector},
+    geometry::Point,
     scene::{Bounce, NONE},
 };
 
@@ -22,18 +22,10 @@ impl BeamTree {
 
     /// Forgets what is certainly too faint.
     pub(crate) fn drop_faint(&mut self, audibility: &Audibility, receivers: &[Point]) {
-        // Images of one beam follow each other.
-        let (mut turn, mut order, mut axis) = (f64::NAN, 0, Vector::zeros());
         self.visible_images.retain(|image| {
-            if turn != image.turn || order != image.order % 2 {
-                (turn, order) = (image.turn, image.order % 2);
-                // Where the source heads, as seen in the image's world.
-                let heading = if order == 0 { audibility.source_rad() + turn } else { turn - audibility.source_rad() };
-                axis = Vector::new(libm::cos(heading), libm::sin(heading));
-            }
             let Some(at) = receivers.get(image.receiver as usize) else { return true };
             let ahead = at - image.image;
-            let departure_cos = ahead.dot(&axis) / image.length_m;
+            let departure_cos = ahead.dot(&image.axis) / image.length_m;
             audibility.may_hear_image(
                 departure_cos,
                 image.receiver as usize,

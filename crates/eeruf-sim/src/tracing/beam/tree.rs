@@ -291,6 +291,7 @@ impl BeamTree {
             order: beam.order,
             parent: beam.parent,
             wall,
+            axis: beam.axis,
         });
     }
 }

@@ -15,17 +15,27 @@ impl EdgeSearch {
     pub(super) fn join(&mut self, query: &EdgeQuery<'_>, burst_m: f64) {
         let EdgeQuery { scene, receivers, .. } = *query;
         self.places.clear();
-        self.places.resize(scene.edges().len() * receivers.len(), NONE);
+        self.places.resize(self.wanted.len() * receivers.len(), NONE);
         for (place, path) in self.found.iter().enumerate() {
-            self.places[path.edge as usize * receivers.len() + path.receiver as usize] = place as u32;
+            let row = self.chosen[path.edge as usize] as usize;
+            self.places[row * receivers.len() + path.receiver as usize] = place as u32;
         }
         let mut gone = vec![false; self.found.len()];
         let mut joined: Vec<EdgePath> = Vec::new();
+        let extents = scene.extents();
+        self.surfaces.clear();
+        self.surfaces.extend(self.wanted.iter().flat_map(|&edge| extents.at_edge(edge as usize)));
+        self.surfaces.sort_unstable();
+        self.surfaces.dedup();
         for receiver in 0..receivers.len() {
             let first = joined.len();
-            for surface in &scene.extents().surfaces {
+            for surface in self.surfaces.iter().map(|&surface| &extents.surfaces[surface as usize]) {
                 let place = |end: Option<End>| {
-                    let place = self.places[end?.edge? as usize * receivers.len() + receiver];
+                    let row = self.chosen[end?.edge? as usize];
+                    if row == NONE {
+                        return None;
+                    }
+                    let place = self.places[row as usize * receivers.len() + receiver];
                     (place != NONE).then_some(place as usize)
                 };
                 let places = surface.ends.map(place);

@@ -5,9 +5,9 @@ mod join;
 use super::audibility::Audibility;
 use super::limits::Limits;
 use crate::{
-    acoustics::edge_diffraction,
-    geometry::{Point, TOUCH_M},
-    scene::Scene,
+    acoustics::{LOUDEST_PANEL, edge_diffraction},
+    geometry::{Point, TOUCH_M, Vector},
+    scene::{NONE, Scene},
     threads::Stop,
 };
 
@@ -45,8 +45,15 @@ impl EdgePath {
 pub(crate) struct EdgeSearch {
     pub(crate) found: Vec<EdgePath>,
     triangles: [Vec<u32>; 2],
-    /// Kept between questions for its memory.
+    /// The triangles of each receiver, found when they are asked for.
+    homes: Vec<Vec<u32>>,
+    /// The edges that are looked at, in order.
+    wanted: Vec<u32>,
+    // Kept between questions for their memory.
     places: Vec<u32>,
+    surfaces: Vec<u32>,
+    /// For each edge its place among those that are looked at, or [`NONE`].
+    chosen: Vec<u32>,
 }
 
 /// What is asked for.
@@ -72,6 +79,7 @@ impl EdgeSearch {
     /// Finds all paths around an edge to these receivers, but for those that are certainly too faint. Returns whether
     /// these are all: whether the work was not stopped.
     pub(crate) fn search(&mut self, query: &EdgeQuery<'_>, stop: &Stop) -> bool {
+        self.choose(query);
         let Some(joined_m) = query.joined_m else { return self.search_each(query, stop) };
         // Whether two are one must not depend on which of them may be heard alone.
         let limits = Limits { max_length_m: query.limits.max_length_m + joined_m, ..query.limits };
@@ -89,14 +97,67 @@ impl EdgeSearch {
         true
     }
 
+    /// Chooses the edges around which somebody may be heard at all, and those that share a surface with one, since two
+    /// ends of a surface may be heard as one.
+    fn choose(&mut self, query: &EdgeQuery<'_>) {
+        let EdgeQuery { scene, audibility, source, receivers, .. } = *query;
+        let edges = scene.edges();
+        self.homes.resize(receivers.len(), Vec::new());
+        self.homes.iter_mut().for_each(Vec::clear);
+        self.wanted.clear();
+        let Some(audibility) = audibility else {
+            self.wanted.extend(0..edges.len() as u32);
+            self.chosen.clear();
+            self.chosen.extend_from_slice(&self.wanted);
+            return;
+        };
+        let count = receivers.len().max(1) as f64;
+        let middle = Point::from(receivers.iter().fold(Vector::zeros(), |sum, at| sum + at.coords) / count);
+        let spread_m = receivers.iter().map(|at| (at - middle).norm()).fold(0.0, f64::max);
+        self.chosen.clear();
+        self.chosen.resize(edges.len(), NONE);
+        for (index, edge) in edges.iter().enumerate() {
+            let out = edge.at - source;
+            let least_m = out.norm() + ((edge.at - middle).norm() - spread_m).max(0.0);
+            if !audibility.may_ensonify(MOST * LOUDEST_PANEL, out, least_m) {
+                continue;
+            }
+            self.chosen[index] = 0;
+            if query.joined_m.is_some() {
+                let extents = scene.extents();
+                let surfaces = extents.at_edge(index).iter().map(|&surface| &extents.surfaces[surface as usize]);
+                for other in surfaces.flat_map(|surface| surface.ends).flatten().filter_map(|end| end.edge) {
+                    self.chosen[other as usize] = 0;
+                }
+            }
+        }
+        for (edge, place) in (0..).zip(&mut self.chosen).filter(|(_, place)| **place != NONE) {
+            *place = self.wanted.len() as u32;
+            self.wanted.push(edge);
+        }
+    }
+
+    /// Returns true if a receiver sees an edge.
+    fn is_seen_by(&mut self, scene: &Scene, edge: usize, receiver: usize, at: Point) -> bool {
+        let home = &mut self.homes[receiver];
+        if home.is_empty() {
+            scene.mesh.containing(at, home);
+        }
+        scene.mesh.sees_between(at, home, scene.edges()[edge].at, scene.triangles_at(edge))
+    }
+
     fn search_each(&mut self, query: &EdgeQuery<'_>, stop: &Stop) -> bool {
         let EdgeQuery { scene, audibility, source, receivers, limits, wave_number, .. } = *query;
         self.found.clear();
         if limits.max_order == 0 {
             return true;
         }
-        for (index, edge) in scene.edges().iter().enumerate() {
+        scene.mesh.containing(source, &mut self.triangles[0]);
+        let wanted = core::mem::take(&mut self.wanted);
+        for index in wanted.iter().map(|&edge| edge as usize) {
+            let edge = &scene.edges()[index];
             if stop.is_stopped() {
+                self.wanted = wanted;
                 return false;
             }
             let out = edge.at - source;
@@ -113,10 +174,12 @@ impl EdgeSearch {
                 if length_m > limits.max_length_m || !audibility.is_none_or(heard) {
                     continue;
                 }
-                if !*in_sight.get_or_insert_with(|| scene.mesh.sees(source, edge.at, &mut self.triangles)) {
+                let starts = &self.triangles[0];
+                let sees = || scene.mesh.sees_between(source, starts, edge.at, scene.triangles_at(index));
+                if !*in_sight.get_or_insert_with(sees) {
                     break;
                 }
-                if !scene.mesh.sees(at, edge.at, &mut self.triangles) {
+                if !self.is_seen_by(scene, index, receiver, at) {
                     continue;
                 }
                 let bent = edge_diffraction(wave_number, edge.outside_rad, from_rad, to_rad).abs();
@@ -134,6 +197,7 @@ impl EdgeSearch {
                 });
             }
         }
+        self.wanted = wanted;
         true
     }
 }

@@ -47,7 +47,7 @@ impl<'w> LockStep<'w> {
     /// As [`simulate`](crate::simulate()), for robots that move.
     pub fn fire(&mut self, sensor: usize, at_ns: u64) -> Result<(), PathsError> {
         let Some(receiver) = self.receivers.get_mut(sensor) else { return Ok(()) };
-        self.channels.prepare(sensor, at_ns, &Planned(self.world))?;
+        self.channels.prepare(sensor, at_ns, &Planned(self.world), None)?;
         receiver.fire(at_ns, &self.hearing);
         let firing = [sensor as u64, receiver.firings.into()];
         // Another robot's sensors are silent here, and have no receivers.

@@ -2,7 +2,7 @@
 
 use super::audibility::Audibility;
 use super::error::PathsError;
-use super::limits::Limits;
+use super::limits::{Limits, Matters};
 use super::paths::Paths;
 use super::tracer::{Heights, Tracer};
 use crate::{
@@ -104,7 +104,7 @@ impl CrosstalkMatrix {
     /// # Errors
     /// As [`Tracer::trace`]; the matrix is empty then.
     pub fn compute(&mut self, tracer: &mut Tracer, query: &CrosstalkQuery<'_>) -> Result<(), PathsError> {
-        self.fill(tracer, query.sensors, query.transducer, query)
+        self.fill(tracer, query.sensors, query.transducer, query, None)
     }
 
     /// As [`compute`](Self::compute), but traces one emitter only, which is number 0 and need not be among the sensors:
@@ -118,7 +118,7 @@ impl CrosstalkMatrix {
         tracer: &mut Tracer,
         query: &CrosstalkQuery<'_>,
     ) -> Result<(), PathsError> {
-        self.fill(tracer, core::slice::from_ref(emitter), query.transducer, query)
+        self.fill(tracer, core::slice::from_ref(emitter), query.transducer, query, None)
     }
 
     /// As [`compute`](Self::compute), but what the query's sensors hear of other sensors, of a kind of their own: the
@@ -133,7 +133,19 @@ impl CrosstalkMatrix {
         tracer: &mut Tracer,
         query: &CrosstalkQuery<'_>,
     ) -> Result<(), PathsError> {
-        self.fill(tracer, emitters, sending, query)
+        self.fill(tracer, emitters, sending, query, None)
+    }
+
+    /// The same without paths that do not matter.
+    pub(crate) fn compute_what_matters(
+        &mut self,
+        emitters: &[Pose],
+        sending: &Transducer,
+        tracer: &mut Tracer,
+        query: &CrosstalkQuery<'_>,
+        matters: Option<Matters<'_>>,
+    ) -> Result<(), PathsError> {
+        self.fill(tracer, emitters, sending, query, matters)
     }
 
     fn fill(
@@ -142,6 +154,7 @@ impl CrosstalkMatrix {
         emitters: &[Pose],
         sending: &Transducer,
         query: &CrosstalkQuery<'_>,
+        matters: Option<Matters<'_>>,
     ) -> Result<(), PathsError> {
         let CrosstalkQuery { scene, sensors, transducer, limits, floor, coupling, heights_m } = *query;
         let air = scene.air();
@@ -175,7 +188,17 @@ impl CrosstalkMatrix {
             let heights = Heights { source_m, receivers_m: heights_m[1] };
             let coupled = Limits { max_order: 0, ..limits };
             let traced = if coupling > 0.0 {
-                tracer.trace_audible(None, scene, source, &self.positions, heights, coupled, false, &mut self.straight)
+                tracer.trace_audible(
+                    None,
+                    matters,
+                    scene,
+                    source,
+                    &self.positions,
+                    heights,
+                    coupled,
+                    false,
+                    &mut self.straight,
+                )
             } else {
                 Ok(())
             };
@@ -183,6 +206,7 @@ impl CrosstalkMatrix {
                 let again = emitter > 0;
                 tracer.trace_audible(
                     audibility,
+                    matters,
                     scene,
                     source,
                     &self.positions,

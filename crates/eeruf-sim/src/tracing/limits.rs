@@ -7,6 +7,10 @@ pub const MAX_BEAMS: usize = 1 << 22;
 /// The frequency that amplitudes are given for unless another is asked for: Polaroid's 49.4 kHz.
 pub const DEFAULT_FREQUENCY_HZ: f64 = 49_400.0;
 
+/// Returns true if sound may matter to a receiver, by its number, after a path of this length in metres. Paths that do
+/// not are found, and not weighed.
+pub(crate) type Matters<'a> = &'a dyn Fn(usize, f64) -> bool;
+
 /// How far to follow the sound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {

@@ -20,6 +20,7 @@ mod write;
 
 pub use crosstalk::{CriticalPath, CrosstalkMatrix, CrosstalkQuery};
 pub use error::PathsError;
+pub(crate) use limits::Matters;
 pub use limits::{DEFAULT_FREQUENCY_HZ, Limits, MAX_BEAMS, MAX_ORDER};
 pub use paths::Paths;
 pub(crate) use reception::reception_at;

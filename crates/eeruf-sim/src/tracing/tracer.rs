@@ -5,7 +5,7 @@ use super::beam::{BeamTree, Growth};
 use super::bounce_points::Corners;
 use super::edges::{EdgeQuery, EdgeSearch};
 use super::error::PathsError;
-use super::limits::{DEFAULT_FREQUENCY_HZ, Limits, MAX_BEAMS, MAX_ORDER};
+use super::limits::{DEFAULT_FREQUENCY_HZ, Limits, MAX_BEAMS, MAX_ORDER, Matters};
 use super::paths::Paths;
 use super::poles::{PoleQuery, PoleSearch};
 use super::ranking::{Found, Ranking};
@@ -151,15 +151,16 @@ impl Tracer {
         limits: Limits,
         paths: &mut Paths,
     ) -> Result<(), PathsError> {
-        self.trace_audible(None, scene, source, receivers, heights, limits, false, paths)
+        self.trace_audible(None, None, scene, source, receivers, heights, limits, false, paths)
     }
 
-    /// As [`trace`](Self::trace), without paths that are certainly too faint. `again` says that all is as it was when
+    /// As [`trace`](Self::trace), without paths that are certainly too faint or do not matter. `again` says that all is as it was when
     /// this was called before, but for the source.
     #[expect(clippy::too_many_arguments, reason = "one question")]
     pub(crate) fn trace_audible(
         &mut self,
         audibility: Option<&Audibility>,
+        matters: Option<Matters<'_>>,
         scene: &Scene,
         source: Point,
         receivers: &[Point],
@@ -173,7 +174,9 @@ impl Tracer {
         let at_poles = Limits { max_order: limits.max_order.min(self.pole_order), ..limits };
         self.grow(audibility, scene, source, receivers, limits, at_poles)?;
         if let Some(audibility) = audibility {
-            self.tree.drop_faint(audibility, receivers);
+            // In a room the plan does not know a path's length.
+            let by_length = matters.filter(|_| scene.room().is_none());
+            self.tree.drop_faint(audibility, by_length, receivers);
         }
         let (tree, budget, stop) = (&self.tree, MAX_BEAMS, &self.stop);
         let query = PoleQuery { scene, tree, source, limits: at_poles, audibility, again, budget, stop };
@@ -193,10 +196,10 @@ impl Tracer {
         let found = Found { tree: &self.tree, poles: &self.poles, edges: &self.around };
         self.ranking.rank(found, receivers.len());
         match scene.room() {
-            None => self.write(scene, source, receivers, paths),
+            None => self.write(scene, source, receivers, matters, paths),
             Some(room) => {
                 let most = [limits, at_poles];
-                self.write_in_room(audibility, scene, room, source, receivers, heights, most, paths);
+                self.write_in_room(audibility, matters, scene, room, source, receivers, heights, most, paths);
             }
         }
         Ok(())

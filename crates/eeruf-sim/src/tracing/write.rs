@@ -2,7 +2,7 @@
 //! plan once for each way between the heights.
 
 use super::audibility::Audibility;
-use super::limits::Limits;
+use super::limits::{Limits, Matters};
 use super::panels::share_of_walls;
 use super::paths::Paths;
 use super::poles::{PolePath, is_shaded};
@@ -49,7 +49,14 @@ pub(super) struct InRoom {
 
 impl Tracer {
     /// Writes the paths of a flat scene.
-    pub(super) fn write(&mut self, scene: &Scene, source: Point, receivers: &[Point], paths: &mut Paths) {
+    pub(super) fn write(
+        &mut self,
+        scene: &Scene,
+        source: Point,
+        receivers: &[Point],
+        matters: Option<Matters<'_>>,
+        paths: &mut Paths,
+    ) {
         let loss_per_m = self.loss_per_m(scene.air());
         let wave_number = TAU * self.frequency_hz / scene.air().speed_of_sound();
         paths.reserve(self.ranking.ranks().len());
@@ -58,6 +65,9 @@ impl Tracer {
         let shades = self.pole_shadows && !scene.poles().is_empty();
         let mut corners = core::mem::take(&mut self.corners);
         for &Rank { length_m, index } in self.ranking.ranks() {
+            if matters.is_some_and(|matters| !matters(found.get(index).receiver() as usize, length_m)) {
+                continue;
+            }
             let start = paths.bounces.len();
             let receiver = found.push_bounces(index, &mut paths.bounces);
             let mut share = 1.0;
@@ -92,6 +102,7 @@ impl Tracer {
     pub(super) fn write_in_room(
         &mut self,
         audibility: Option<&Audibility>,
+        matters: Option<Matters<'_>>,
         scene: &Scene,
         room: &Room,
         source: Point,
@@ -127,7 +138,7 @@ impl Tracer {
                 let length_m = libm::hypot(plan_m, way.rise_m);
                 let (cos, sin) = (plan_m / length_m, way.rise_m.abs() / length_m);
                 let horizontal = wave_number * cos;
-                if length_m > most.max_length_m {
+                if length_m > most.max_length_m || matters.is_some_and(|matters| !matters(receiver, length_m)) {
                     continue;
                 }
                 let vertical = way.reflected(room, wave_number, sin);

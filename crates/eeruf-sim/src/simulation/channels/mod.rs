@@ -16,7 +16,7 @@ use crate::{
     results::{HeardPath, SensorId},
     scene::{Bounce, Scene},
     threads::Stop,
-    tracing::{CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, PathsError, Tracer, reception_at},
+    tracing::{CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, Matters, PathsError, Tracer, reception_at},
     world::{Robot, World, offset},
 };
 pub(super) use bodies::Bodies;
@@ -37,6 +37,9 @@ pub(crate) struct Channel {
     /// Level above the detection floor, the receiver's gain left out.
     pub(crate) level_over_threshold_db: f32,
 }
+
+/// Returns true if sound may matter that reaches a sensor at about a time, give or take a slack, in true nanoseconds.
+pub(crate) type Arrives<'a> = &'a dyn Fn(usize, u64, u64) -> bool;
 
 /// A world in which sound travels, borrowed or shared.
 #[derive(Clone)]
@@ -132,9 +135,16 @@ impl<'w> Channels<'w> {
         self.first[robot]
     }
 
-    /// Makes sure that the channels from this emitter are those at a time, in true nanoseconds.
-    pub(crate) fn prepare(&mut self, emitter: usize, now: u64, kinematics: &impl Kinematics) -> Result<(), PathsError> {
-        if self.moves { self.compute_from(emitter, now, kinematics) } else { Ok(()) }
+    /// Makes sure that the channels from this emitter are those at a time, in true nanoseconds. Where they are computed
+    /// now, those that do not matter are left out.
+    pub(crate) fn prepare(
+        &mut self,
+        emitter: usize,
+        now: u64,
+        kinematics: &impl Kinematics,
+        matters: Option<Arrives<'_>>,
+    ) -> Result<(), PathsError> {
+        if self.moves { self.compute_from(emitter, now, kinematics, matters) } else { Ok(()) }
     }
 
     /// The channels from an emitter that was prepared.
@@ -200,7 +210,7 @@ impl<'w> Channels<'w> {
         let mut by_emitter: Vec<Vec<Channel>> = vec![Vec::new(); self.ids.len()];
         let everyone: Vec<usize> = (0..self.ids.len()).collect();
         for senders in self.alike(&everyone) {
-            self.trace(&senders, &everyone, |emitter, channel| by_emitter[emitter].push(channel))?;
+            self.trace(&senders, &everyone, None, |emitter, channel| by_emitter[emitter].push(channel))?;
         }
         for channels in by_emitter {
             self.starts.push(self.channels.len());
@@ -210,13 +220,20 @@ impl<'w> Channels<'w> {
         Ok(())
     }
 
-    fn compute_from(&mut self, emitter: usize, now: u64, kinematics: &impl Kinematics) -> Result<(), PathsError> {
+    fn compute_from(
+        &mut self,
+        emitter: usize,
+        now: u64,
+        kinematics: &impl Kinematics,
+        matters: Option<Arrives<'_>>,
+    ) -> Result<(), PathsError> {
         self.set_poses(now, kinematics);
         let listening: Vec<usize> =
             (0..self.ids.len()).filter(|&sensor| self.listens[usize::from(self.ids[sensor].robot)]).collect();
         let mut channels = core::mem::take(&mut self.channels);
         channels.clear();
-        let traced = self.trace(&[emitter], &listening, |_, channel| channels.push(channel));
+        let traced = self
+            .trace(&[emitter], &listening, matters.map(|matters| (now, matters)), |_, channel| channels.push(channel));
         self.channels = channels;
         traced
     }
@@ -269,6 +286,7 @@ impl<'w> Channels<'w> {
         &mut self,
         emitters: &[usize],
         receivers: &[usize],
+        matters: Option<(u64, Arrives<'_>)>,
         mut found: impl FnMut(usize, Channel),
     ) -> Result<(), PathsError> {
         let Some(&first) = emitters.first() else { return Ok(()) };
@@ -300,7 +318,19 @@ impl<'w> Channels<'w> {
             let query = CrosstalkQuery::new(scene, &sensors, &flat, limits, range.faintest);
             let heights_m = [emitters, &listeners].map(|sensors| self.heights_of(scene, sensors));
             let query = CrosstalkQuery { coupling, heights_m: heights_m.each_ref().map(Vec::as_slice), ..query };
-            self.matrix.compute_between(&sources, sending, &mut self.tracer, &query)?;
+            let (velocities, c) = (&self.velocities, world.scene().air().speed_of_sound());
+            let by_length = matters.map(|(now, arrives)| {
+                let listeners = &listeners;
+                move |listener: usize, length_m: f64| {
+                    let Some(&sensor) = listeners.get(listener) else { return true };
+                    let (speed, time_s) = (velocities[sensor].norm(), length_m / c);
+                    // A receiver that moves is reached so much earlier or later at most.
+                    let slack_s = time_s * speed / (c - speed);
+                    !(slack_s >= 0.0) || arrives(sensor, now + (time_s * 1e9) as u64, (slack_s * 1e9) as u64 + 2)
+                }
+            });
+            let by_length = by_length.as_ref().map(|by_length| by_length as Matters<'_>);
+            self.matrix.compute_what_matters(&sources, sending, &mut self.tracer, &query, by_length)?;
             let matrix = core::mem::take(&mut self.matrix);
             for path in matrix.paths() {
                 let ends = [emitters[path.emitter as usize], listeners[path.receiver as usize]];

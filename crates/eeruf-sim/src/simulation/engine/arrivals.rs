@@ -48,6 +48,16 @@ impl Propagation {
         }
     }
 
+    /// Returns true if chance depends on paths by their keys, and not on when each was met.
+    pub(crate) fn is_keyed(&self) -> bool {
+        self.knot_ns > 0
+    }
+
+    /// The slack of an arrival whose time is known to another slack, in nanoseconds.
+    pub(crate) fn slack(&self, more: u64) -> u64 {
+        self.slack.saturating_add(more)
+    }
+
     /// Sends out the sound of a firing at `now`; `emitter` and the number of its `firing` say which. Each arrival that
     /// may matter to its receiver is handed to `arrive` with the receiver's number; receivers that are not there are
     /// left out.

@@ -10,7 +10,7 @@ use super::arrivals::{Bursts, Propagation};
 use super::own::Own;
 use super::recorder::Recorder;
 use super::running_ring::{Plan, RunningRing, expected_change_us, plans, start_all};
-use crate::simulation::channels::{Channels, Place};
+use crate::simulation::channels::{Arrives, Channels, Place};
 use crate::simulation::error::SimulationError;
 use crate::simulation::kinematics::Kinematics;
 use crate::simulation::options::Options;
@@ -303,7 +303,14 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         }
         self.fired_before[emitter] = self.fired[emitter];
         self.fired[emitter] = Some(self.kinematics.moment(index, now));
-        self.channels.prepare(emitter, now, &self.kinematics)?;
+        // What will not be heard need not be weighed, unless chance depends on which paths were met.
+        let (receivers, propagation) = (&self.receivers, &self.propagation);
+        let arrives = |number: usize, at: u64, slack: u64| {
+            let receiver = receivers.get(number);
+            number == emitter || receiver.is_some_and(|receiver| receiver.cares(at, propagation.slack(slack)))
+        };
+        let arrives: Option<Arrives<'_>> = if propagation.is_keyed() { Some(&arrives) } else { None };
+        self.channels.prepare(emitter, now, &self.kinematics, arrives)?;
         let hearing = rings[index].hearing_of(emitter);
         self.references[emitter] = self.channels.reference(emitter, &hearing);
         let receiver = &mut self.receivers[emitter];

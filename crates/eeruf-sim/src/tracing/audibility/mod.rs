@@ -166,8 +166,8 @@ impl Audibility {
         sent >= least && sent * self.heard(towards(arrival_rad).dot(axis)) >= least
     }
 
-    /// Returns true if sound that leaves in the direction `out` may be heard after `least_m` or more, if it is no louder
-    /// than `most` over its length but for the patterns.
+    /// Returns true if sound that leaves in the direction `out` may be heard after `least_m` or more, if it is no
+    /// louder than `most` over its length but for the patterns.
     #[inline]
     pub(crate) fn may_ensonify(&self, most: f64, out: Vector, least_m: f64) -> bool {
         if !(self.floor > 0.0 && least_m > 0.0) {

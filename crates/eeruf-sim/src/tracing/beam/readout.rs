@@ -3,6 +3,7 @@
 use super::tree::BeamTree;
 use super::{Beam, VisibleImage};
 use crate::tracing::audibility::Audibility;
+use crate::tracing::limits::Matters;
 use crate::{
     geometry::Point,
     scene::{Bounce, NONE},
@@ -20,9 +21,12 @@ impl BeamTree {
         push_chain(&self.beams, beam, bounces);
     }
 
-    /// Forgets what is certainly too faint.
-    pub(crate) fn drop_faint(&mut self, audibility: &Audibility, receivers: &[Point]) {
+    /// Forgets what is certainly too faint or does not matter.
+    pub(crate) fn drop_faint(&mut self, audibility: &Audibility, matters: Option<Matters<'_>>, receivers: &[Point]) {
         self.visible_images.retain(|image| {
+            if matters.is_some_and(|matters| !matters(image.receiver as usize, image.length_m)) {
+                return false;
+            }
             let Some(at) = receivers.get(image.receiver as usize) else { return true };
             let ahead = at - image.image;
             let departure_cos = ahead.dot(&image.axis) / image.length_m;

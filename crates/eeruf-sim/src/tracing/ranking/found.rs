@@ -22,6 +22,17 @@ pub(in crate::tracing) enum FoundPath<'a> {
     Edge(&'a EdgePath),
 }
 
+impl FoundPath<'_> {
+    /// The number of its receiver.
+    pub(in crate::tracing) fn receiver(&self) -> u32 {
+        match self {
+            Self::Walls(image) => image.receiver,
+            Self::Pole(path) => path.receiver,
+            Self::Edge(path) => path.receiver,
+        }
+    }
+}
+
 impl<'a> Found<'a> {
     /// The path with a number.
     pub(in crate::tracing) fn get(self, index: u32) -> FoundPath<'a> {

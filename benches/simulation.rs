@@ -9,20 +9,26 @@ use eeruf_sim::{Method, Motion, Options, Physics, Robot, Vector, World, simulate
 /// Long enough that finding the paths once does not count.
 const LONG: u32 = 20_000;
 
-/// Speeds are measured under `plain`, so that they can be compared with those of earlier versions.
-fn plain(world: Result<World, eeruf_sim::WorldError>) -> World {
-    world.and_then(|world| world.with_physics(Physics::PLAIN)).expect("the robot stands in free space")
+/// What everybody gets first, then what earlier versions can be compared with.
+const PHYSICS: [(&str, Physics); 2] = [("default", Physics::DEFAULT), ("plain", Physics::PLAIN)];
+
+fn under(physics: Physics, world: Result<World, eeruf_sim::WorldError>) -> World {
+    world.and_then(|world| world.with_physics(physics)).expect("the robot stands in free space")
 }
 
 fn still(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("still");
     group.sample_size(10);
-    let world = plain(Alcove::random(1).world());
-    for method in [Method::Conventional, Method::Eeruf, Method::Adaptive, Method::MultiEcho] {
-        let options = Options::periods(LONG);
-        let readings = simulate(&world, method, &options).expect("Set I fits every method").len();
-        group.throughput(Throughput::Elements(readings as u64));
-        group.bench_function(method.as_str(), |bencher| bencher.iter(|| simulate(&world, method, &options)));
+    for (name, physics) in PHYSICS {
+        let world = under(physics, Alcove::random(1).world());
+        for method in [Method::Conventional, Method::Eeruf, Method::Adaptive, Method::MultiEcho] {
+            let options = Options::periods(LONG);
+            let readings = simulate(&world, method, &options).expect("Set I fits every method").len();
+            group.throughput(Throughput::Elements(readings as u64));
+            group.bench_function(format!("{method}, {name}"), |bencher| {
+                bencher.iter(|| simulate(&world, method, &options));
+            });
+        }
     }
     group.finish();
 }
@@ -30,12 +36,14 @@ fn still(criterion: &mut Criterion) {
 fn set_one(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("set one, 8000 readings with paths");
     group.throughput(Throughput::Elements(8000));
-    group.bench_function("eeruf", |bencher| {
-        bencher.iter(|| {
-            let world = plain(Alcove::random(1).world());
-            simulate(&world, Method::Eeruf, &Options::periods(1000))
+    for (name, physics) in PHYSICS {
+        group.bench_function(format!("eeruf, {name}"), |bencher| {
+            bencher.iter(|| {
+                let world = under(physics, Alcove::random(1).world());
+                simulate(&world, Method::Eeruf, &Options::periods(1000))
+            });
         });
-    });
+    }
     group.finish();
 }
 
@@ -45,29 +53,27 @@ fn moving(criterion: &mut Criterion) {
     let alcove = Alcove::random(1);
     let motion = Motion::Constant { velocity: Vector::new(0.0, 0.01), turn_rad_s: 0.0 };
     let robot = Robot { motion, ..alcove.robot() };
-    let scene = alcove.scene().expect("every random alcove has walls");
-    let world = plain(World::new(scene, vec![robot], eeruf_sim::Noise::default()));
     group.throughput(Throughput::Elements(800));
-    group.bench_function("eeruf", |bencher| {
-        bencher.iter(|| simulate(&world, Method::Eeruf, &Options::periods(100)));
-    });
+    for (name, physics) in PHYSICS {
+        let scene = alcove.scene().expect("every random alcove has walls");
+        let world = under(physics, World::new(scene, vec![robot.clone()], eeruf_sim::Noise::default()));
+        group.bench_function(format!("eeruf, {name}"), |bencher| {
+            bencher.iter(|| simulate(&world, Method::Eeruf, &Options::periods(100)));
+        });
+    }
     group.finish();
 }
 
 /// Robots driven through courses. Elements are simulated milliseconds, so that thousands a second are times real time.
 fn set_two(criterion: &mut Criterion) {
     let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
-    for (title, second_robot) in [("alone", None), ("beside a second robot", Some(SECOND_BEHIND))] {
-        let mut group = criterion.benchmark_group(format!("set two {title}, simulated ms"));
+    let rooms = [("alone", None), ("beside a second robot", Some(SECOND_BEHIND))];
+    for ((name, physics), (title, second_robot)) in PHYSICS.into_iter().flat_map(|of| rooms.map(|room| (of, room))) {
+        let mut group = criterion.benchmark_group(format!("set two {title}, {name}, simulated ms"));
         group.sample_size(10);
         for method in [Method::Sequential, Method::Conventional, Method::Eeruf, Method::MultiEcho] {
-            let options = SetTwoOptions {
-                seeds: 5,
-                methods: vec![method],
-                second_robot,
-                physics: Physics::PLAIN,
-                ..SetTwoOptions::default()
-            };
+            let options =
+                SetTwoOptions { seeds: 5, methods: vec![method], second_robot, physics, ..SetTwoOptions::default() };
             let drive = || one_core.install(|| driven::set_two(&options, &|_| true).expect("the courses have room"));
             let simulated_s: f64 = drive().runs.iter().flatten().map(|run| run.time_s).sum();
             group.throughput(Throughput::Elements((simulated_s * 1e3) as u64));

@@ -1,5 +1,6 @@
-//! How long the scenes take that are expensive to follow sound in: a ring's matrix among walls and poles, a hall of
-//! pillars, a world that moves, and Set II. The same file, built against another commit, prints that commit's times.
+//! How long the scenes take that are expensive to follow sound in: a ring's matrix among walls and poles, halls of
+//! pillars, a world that moves, and Set II, under `default` and under `plain`. The same file, built against another
+//! commit, prints that commit's times.
 //!
 //!     cargo run --release -p eeruf-sim --example time_scenes -- [SCENE [RUNS]]
 //!
@@ -45,19 +46,24 @@ fn matrix_ms(poles: usize) -> (f64, usize) {
     (ms, matrix.paths().len())
 }
 
-/// A hall with 256 square pillars, 1,028 walls: the matrix of a ring of 24 at order 3, per source.
-fn hall_ms() -> (f64, usize) {
-    let mut walls: Vec<_> = Wall::polyline(&[[0.0, 0.0], [48.0, 0.0], [48.0, 48.0], [0.0, 48.0], [0.0, 0.0]]).collect();
-    for pillar in 0..256 {
-        let (x, y) = (1.5 + 3.0 * f64::from(pillar % 16), 1.5 + 3.0 * f64::from(pillar / 16));
+/// A hall with so many rows of square pillars, 1,028 walls with 16: the matrix of a ring of 24 at order 6, per source.
+fn hall_ms(rows: u32, physics: Physics) -> (f64, usize) {
+    let size_m = 3.0 * f64::from(rows);
+    let corners = [[0.0, 0.0], [size_m, 0.0], [size_m, size_m], [0.0, size_m], [0.0, 0.0]];
+    let mut walls: Vec<_> = Wall::polyline(&corners).collect();
+    for pillar in 0..rows * rows {
+        let (x, y) = (1.5 + 3.0 * f64::from(pillar % rows), 1.5 + 3.0 * f64::from(pillar / rows));
         let (a, b) = (0.2, 0.2 + 0.01 * f64::from(pillar % 7));
         walls.extend(Wall::polyline(&[[x - a, y - b], [x - a, y + b], [x + a, y + b], [x + a, y - b], [x - a, y - b]]));
     }
     let scene = Scene::new(walls, vec![], Air::default()).expect("a hall");
-    let ring: Vec<_> = ring_of(&Pose::new(Vector::new(24.1, 24.05), 0.1), 24, 0.3, 0.0, TAU / 24.0).collect();
+    let ring: Vec<_> =
+        ring_of(&Pose::new(Vector::new(0.5 * size_m + 0.1, 0.5 * size_m + 0.05), 0.1), 24, 0.3, 0.0, TAU / 24.0)
+            .collect();
     let transducer = Transducer::POLAROID_6500;
     let floor = transducer.detection_floor(scene.air());
     let (mut matrix, mut tracer) = (CrosstalkMatrix::new(), Tracer::new());
+    tracer.follow(&physics);
     let (sensors, limits) = (&ring[..], Limits { max_order: 6, max_length_m: 24.0 });
     let query = CrosstalkQuery::new(&scene, sensors, &transducer, limits, floor);
     let ms = quickest_ms(|| matrix.compute(&mut tracer, black_box(&query)).expect("in the hall"));
@@ -65,12 +71,13 @@ fn hall_ms() -> (f64, usize) {
 }
 
 /// Set I's first alcove with a robot that creeps on: 100 periods.
-fn moving_ms() -> (f64, usize) {
+fn moving_ms(physics: Physics, room: Option<Room>) -> (f64, usize) {
     let alcove = Alcove::random(1);
     let motion = Motion::Constant { velocity: Vector::new(0.0, 0.01), turn_rad_s: 0.0 };
     let robot = Robot { motion, ..alcove.robot() };
-    let world = World::new(alcove.scene().expect("walls"), vec![robot], Noise::default())
-        .and_then(|world| world.with_physics(Physics::PLAIN))
+    let scene = alcove.scene().and_then(|scene| scene.with_room(room)).expect("walls");
+    let world = World::new(scene, vec![robot], Noise::default())
+        .and_then(|world| world.with_physics(physics))
         .expect("free space");
     let mut readings = 0;
     let run = || simulate(&world, Method::Eeruf, &Options::periods(100)).expect("the scene is large enough").len();
@@ -79,9 +86,8 @@ fn moving_ms() -> (f64, usize) {
 }
 
 /// Two courses of Set II on one core.
-fn set_two_ms() -> (f64, usize) {
-    let options =
-        SetTwoOptions { seeds: 2, methods: vec![Method::Eeruf], physics: Physics::PLAIN, ..SetTwoOptions::default() };
+fn set_two_ms(physics: Physics) -> (f64, usize) {
+    let options = SetTwoOptions { seeds: 2, methods: vec![Method::Eeruf], physics, ..SetTwoOptions::default() };
     let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
     let mut finished = 0;
     let drive = || set_two(&options, &|_| true).expect("the courses have room").methods[0].1.finished;
@@ -100,7 +106,11 @@ fn main() {
     time("matrix of 24, order 4, no pole", &|| matrix_ms(0), "paths");
     time("matrix of 24, order 4, one pole", &|| matrix_ms(1), "paths");
     time("matrix of 24, order 4, four poles", &|| matrix_ms(4), "paths");
-    time("hall of 1,028 walls, order 6, a source", &hall_ms, "paths");
-    time("moving, 100 periods of 8", &moving_ms, "readings");
-    time("Set II, 2 courses", &set_two_ms, "finished");
+    for (name, physics) in [("default", Physics::DEFAULT), ("plain", Physics::PLAIN)] {
+        time(&format!("hall of 1,028 walls, a source, {name}"), &|| hall_ms(16, physics), "paths");
+        time(&format!("hall of 4,100 walls, a source, {name}"), &|| hall_ms(32, physics), "paths");
+        time(&format!("moving, 100 periods of 8, {name}"), &|| moving_ms(physics, None), "readings");
+        time(&format!("moving, in a room, {name}"), &|| moving_ms(physics, Some(Room::DEFAULT)), "readings");
+        time(&format!("Set II, 2 courses, {name}"), &|| set_two_ms(physics), "finished");
+    }
 }

@@ -154,8 +154,8 @@ impl Tracer {
         self.trace_audible(None, None, scene, source, receivers, heights, limits, false, paths)
     }
 
-    /// As [`trace`](Self::trace), without paths that are certainly too faint or do not matter. `again` says that all is as it was when
-    /// this was called before, but for the source.
+    /// As [`trace`](Self::trace), without paths that are certainly too faint or do not matter. `again` says that all is
+    /// as it was when this was called before, but for the source.
     #[expect(clippy::too_many_arguments, reason = "one question")]
     pub(crate) fn trace_audible(
         &mut self,

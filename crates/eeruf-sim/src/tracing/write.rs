@@ -132,7 +132,7 @@ impl Tracer {
             }
             let most = if matches!(path, FoundPath::Pole(_)) { at_poles } else { limits };
             let start = bounces.len();
-            let mut narrow = false;
+            let (mut narrow, mut plan_cosines) = (false, None);
             let mut corners: Option<Option<&[Point]>> = None;
             for &way in ways.iter().take_while(|way| course.order + way.order <= most.max_order) {
                 let length_m = libm::hypot(plan_m, way.rise_m);
@@ -143,7 +143,8 @@ impl Tracer {
                 }
                 let vertical = way.reflected(room, wave_number, sin);
                 let heard = |audibility: &Audibility| {
-                    audibility.may_hear_in_room(receiver, course.angles, cos, vertical, length_m)
+                    let plan = *plan_cosines.get_or_insert_with(|| audibility.cosines(receiver, course.angles));
+                    audibility.may_hear_in_room(plan, cos, vertical, length_m)
                 };
                 if !audibility.is_none_or(heard) {
                     continue;

@@ -146,24 +146,24 @@ impl Audibility {
         sent >= least && sent * self.heard(towards.dot(axis) / length_m) >= least
     }
 
-    /// Returns true if a path of a room may be heard that leaves and arrives at these angles in the plan and at an
-    /// elevation of this cosine, if floor and ceiling leave `vertical` of it.
+    /// The cosines, in the plan, of a path's angles off the source's and a receiver's axis.
     #[inline]
-    pub(crate) fn may_hear_in_room(
-        &self,
-        receiver: usize,
-        [departure_rad, arrival_rad]: [f64; 2],
-        cos_elevation: f64,
-        vertical: f64,
-        length_m: f64,
-    ) -> bool {
-        let Some(axis) = self.receivers.get(receiver) else { return true };
-        let towards = |angle: f64| Vector::new(libm::cos(angle), libm::sin(angle)) * cos_elevation;
-        let (sent, least) = (
-            self.sent(towards(departure_rad).dot(&self.source)) * vertical * vertical,
-            self.faint(length_m) * length_m * length_m,
-        );
-        sent >= least && sent * self.heard(towards(arrival_rad).dot(axis)) >= least
+    pub(crate) fn cosines(&self, receiver: usize, [departure_rad, arrival_rad]: [f64; 2]) -> [f64; 2] {
+        let towards = |angle: f64| Vector::new(libm::cos(angle), libm::sin(angle));
+        let axis = self.receivers.get(receiver).copied().unwrap_or_default();
+        [towards(departure_rad).dot(&self.source), towards(arrival_rad).dot(&axis)]
+    }
+
+    /// Returns true if a path of a room may be heard whose plan has these [cosines](Self::cosines) and whose elevation
+    /// has this one, if floor and ceiling leave `vertical` of it.
+    #[inline]
+    pub(crate) fn may_hear_in_room(&self, plan: [f64; 2], cos_elevation: f64, vertical: f64, length_m: f64) -> bool {
+        if self.receivers.is_empty() {
+            return true;
+        }
+        let least = self.faint(length_m) * length_m * length_m;
+        let sent = self.sent(plan[0] * cos_elevation) * vertical * vertical;
+        sent >= least && sent * self.heard(plan[1] * cos_elevation) >= least
     }
 
     /// Returns true if sound that leaves in the direction `out` may be heard after `least_m` or more, if it is no

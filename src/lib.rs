@@ -25,8 +25,8 @@ use crate::files::error::InputError;
 pub use crate::files::mcap::Recording;
 
 /// Runs the program with these arguments, of which the first is its own name, and gives its exit code: 0 for yes, 1 for
-/// no (not verified, infeasible), 2 for bad input, which is named in one line on standard error,
-/// 74 if the output cannot be written.
+/// no (not verified, infeasible), 2 for bad input, which is named in one line on standard error, 3 if a search ended
+/// before its answer, 74 if the output cannot be written.
 ///
 /// It takes the process for its own: Ctrl-C ends what it does, and so does a pipe whose reader went away.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
@@ -43,6 +43,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     match cli.verb.run() {
         Ok(Answer::Yes) => 0,
         Ok(Answer::No) => 1,
+        Ok(Answer::NotDecided) => 3,
         Err(error) => failed(&error),
     }
 }

@@ -5,4 +5,6 @@ pub(crate) enum Answer {
     Yes,
     /// Not verified, or infeasible: exit code 1.
     No,
+    /// Budget or time ended the search before its answer: exit code 3.
+    NotDecided,
 }

@@ -1,6 +1,7 @@
 //! Errors in the arguments, in the style of all others: `thing: value; expected X`, then the next command.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -14,6 +15,14 @@ pub(crate) fn settings(words: &[String]) -> Settings {
     let is_color = |when: &str| is_after_color(when) || has(&format!("--color={when}"));
     let colour = if is_color("always") { Some(true) } else { is_color("never").then_some(false) };
     Settings { wide: has("--wide"), colour, ..Settings::default() }
+}
+
+/// Parses a time in seconds that may have a fraction.
+pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| *seconds > 0.0);
+    seconds
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .ok_or_else(|| "expected seconds above 0".to_owned())
 }
 
 /// Parses the name of a picture: SVG or PNG by its ending, SVG without one.

@@ -10,7 +10,7 @@ use eeruf_design::atlas::ATLAS;
 use eeruf_design::{FoundJson, RealPeriod, RingDesign, RingSpec, Search, real_budget};
 
 use super::answer::Answer;
-use super::arguments::picture;
+use super::arguments::{picture, seconds};
 use super::certificate::{self, CertificateForm, Written};
 use crate::console::{print, print_line, tell};
 use crate::files::error::InputError;
@@ -77,17 +77,10 @@ pub(crate) struct Args {
     /// Search even where the atlas knows the shortest period
     #[arg(long)]
     no_atlas: bool,
-    /// How long to search at most before giving the best schedule so far, in seconds; as long again for the certificate
+    /// How long the command may take, in seconds, before it gives the best schedule so far; the certificate then has
+    /// what time is left, and states the bound that follows without a search if there is none
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
-}
-
-/// A time that may have a fraction.
-fn seconds(text: &str) -> Result<Duration, String> {
-    let seconds = text.parse().ok().filter(|seconds: &f64| *seconds > 0.0);
-    seconds
-        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
-        .ok_or_else(|| "expected seconds above 0".to_owned())
 }
 
 impl Args {
@@ -136,7 +129,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         }
     };
     let seconds = began.elapsed().as_secs_f64();
-    watch.begin_again();
+    watch.forget_interrupt();
     let prove = |_| Written::new(args.certificate_form, &design, args.certificate_budget, &mut watch);
     let certificate = args.certificate.as_ref().map(prove);
     let real = over_reals(args, &design, &mut watch);
@@ -189,7 +182,7 @@ fn over_reals(args: &Args, design: &RingDesign, watch: &mut Watch) -> Option<Rea
     }
     let budget =
         if args.certificate_over_reals.is_some() { args.certificate_budget } else { real_budget(design.spec.sensors) };
-    watch.begin_again();
+    watch.forget_interrupt();
     design.over_reals(budget, |nodes| watch.go_on(|| format!("over the reals: {nodes} nodes")))
 }
 

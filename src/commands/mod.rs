@@ -39,7 +39,7 @@ Commands by what they are for:
   Real rings  survey, replay, diagnose
   Setting up  examples, completions, man, licenses
 
-Exit codes: 0 fine; 1 the answer is no; 2 bad input; 74 the output cannot be written.";
+Exit codes: 0 fine; 1 the answer is no; 2 bad input; 3 not decided; 74 the output cannot be written.";
 
 /// Fire all ultrasonic sensors of a robot five to ten times faster than one by one, without believing each other's
 /// echoes.
@@ -104,7 +104,7 @@ pub(crate) enum Verb {
     Verify(verify::Args),
     #[command(after_help = help!(
         "search rings/table-i-waits.toml --best interval",
-        "0 a table; 1 none; 2 bad input"
+        "0 a table; 1 none; 2 bad input; 3 not decided"
     ))]
     Search(search::Args),
     #[command(after_help = help!("study scenes/alcove.toml --method sequential,eeruf", "0 simulated; 2 bad input"))]

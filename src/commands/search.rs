@@ -1,27 +1,28 @@
 //! `eeruf search`: the paper's problem, waits on a grid.
 
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use eeruf_core::MAX_SENSORS;
 use eeruf_core::search::wait::{Budget, COUNT_WORDS, Objective, memory_words};
-use eeruf_core::search::{Found, Outcome, Progress, SearchError, WaitSearch};
+use eeruf_core::search::{Found, FrontTable, Outcome, Progress, SearchError, WaitSearch};
 use eeruf_design::FoundJson;
 
 use super::answer::Answer;
+use super::arguments::seconds;
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::files::waits::{WaitSpec, read_waits};
 use crate::report::json::to_json;
-use crate::report::search::{CountJson, describe};
+use crate::report::search::{CountJson, FrontJson, NOT_DECIDED, describe, describe_front};
 use crate::report::watch::Watch;
 
 /// Find tables of waits as the paper does: lags are given, waits lie on a grid.
 ///
 /// The file gives sensors, period_us, wait_max_us, tick_us, t_delta_us, and if need be t_lag_us, min_interval_us,
 /// neighbours, layout and criterion. Without an option it prints one table. Exit code 0 if there is a table, 1 if it is
-/// proven that there is none, 2 for bad input.
+/// proven that there is none, 2 for bad input, 3 if the budget or the time limit ended the search before either.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The ring
@@ -30,31 +31,42 @@ pub(crate) struct Args {
     /// Count all tables
     #[arg(long, conflicts_with = "best")]
     count: bool,
-    /// Find the table with the largest smallest interval, or with the largest T_delta
+    /// Find the table with the largest smallest interval, or with the largest T_delta; pareto: all tables of which no
+    /// other has more of one without less of the other
     #[arg(long, value_enum, value_name = "WHAT")]
     best: Option<Best>,
     /// How many nodes to search at most
     #[arg(long, default_value_t = u64::MAX, hide_default_value = true, value_name = "NODES")]
     budget: u64,
+    /// How long the command may take, in seconds
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    time_limit: Option<Duration>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
 }
 
 /// How many nodes it may cost to find out which requirement cannot be met.
-const REASON_BUDGET: u64 = 1_000_000;
+const REASON_BUDGET: u64 = 2_000_000;
 /// After how many nodes each it is looked whether to go on.
 const WATCHED_EVERY: u32 = 1 << 12;
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Best {
     Interval,
     TDelta,
+    Pareto,
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let spec = read_waits(&args.file)?;
-    let found = if args.count { count(args, &spec) } else { find(args, &spec) };
+    let mut watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
+    let found = match args.best {
+        _ if args.count => count(args, &spec, &mut watch),
+        Some(Best::Pareto) => front(args, &spec, &mut watch),
+        best => find(args, &spec, best, &mut watch),
+    };
+    drop(watch);
     let (answer, text) = found.map_err(|error| InputError::new(&args.file, None, error))?;
     if args.json {
         print_line(text)?;
@@ -64,42 +76,59 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(answer)
 }
 
+/// The answer of a search that has found a table or not, and has ended before its proof or not.
+fn answer(found: bool, proven: bool) -> Answer {
+    match (found, proven) {
+        (true, _) => Answer::Yes,
+        (false, true) => Answer::No,
+        (false, false) => Answer::NotDecided,
+    }
+}
+
+/// Why there is no table, in a line.
+fn why_none(search: &WaitSearch, memory: &mut [u32], watch: &mut Watch) -> Result<String, SearchError> {
+    let mut watcher = |progress: &Progress| watch.control_flow(|| nodes_so_far(progress));
+    let mut budget = Budget::nodes_at_most(REASON_BUDGET).watched(WATCHED_EVERY, &mut watcher);
+    Ok(format!("{}\n", search.why_none(memory, &mut budget)?))
+}
+
 /// Counts the tables, and says how many.
-fn count(args: &Args, spec: &WaitSpec) -> Result<(Answer, String), SearchError> {
+fn count(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, String), SearchError> {
     let search = WaitSearch::new(&spec.problem())?;
     let began = Instant::now();
-    let mut watch = Watch::new();
     let mut watcher = |progress: &Progress| watch.control_flow(|| nodes_so_far(progress));
     let mut budget = Budget::nodes_at_most(args.budget).watched(WATCHED_EVERY, &mut watcher);
     let count = search.count(None, &mut vec![0; COUNT_WORDS], &mut budget)?;
     let exact = count.outcome == Outcome::Exhausted;
-    let none = exact && count.count == 0;
-    let text = if args.json {
-        to_json(&CountJson { count: count.count, at_least: !exact })
-    } else {
-        let at_least = if exact { "" } else { "at least " };
-        let seconds = began.elapsed().as_secs_f64();
-        let mut text = format!("{at_least}{} tables ({} nodes in {seconds:.3} s)\n", count.count, count.nodes);
-        if none {
-            let why = search.why_none(REASON_BUDGET, &mut vec![0; memory_words(spec.problem().sensors)])?;
-            text += &format!("{why}\n");
-        }
-        text
-    };
-    Ok((if none { Answer::No } else { Answer::Yes }, text))
+    let answer = answer(count.count > 0, exact);
+    if args.json {
+        return Ok((answer, to_json(&CountJson { count: count.count, at_least: !exact })));
+    }
+    let at_least = if exact { "" } else { "at least " };
+    let seconds = began.elapsed().as_secs_f64();
+    let mut text = format!("{at_least}{} tables ({} nodes in {seconds:.3} s)\n", count.count, count.nodes);
+    match answer {
+        Answer::No => text += &why_none(&search, &mut vec![0; memory_words(spec.problem().sensors)], watch)?,
+        Answer::NotDecided => text += NOT_DECIDED,
+        Answer::Yes => {}
+    }
+    Ok((answer, text))
 }
 
 /// Finds one table, or the best, and prints it.
-fn find(args: &Args, spec: &WaitSpec) -> Result<(Answer, String), SearchError> {
+fn find(args: &Args, spec: &WaitSpec, best: Option<Best>, watch: &mut Watch) -> Result<(Answer, String), SearchError> {
     let search = WaitSearch::new(&spec.problem())?;
     let began = Instant::now();
-    let mut watch = Watch::new();
     let mut watcher = |progress: &Progress| watch.control_flow(|| nodes_so_far(progress));
     let mut budget = Budget::nodes_at_most(args.budget).watched(WATCHED_EVERY, &mut watcher);
     let mut memory = vec![0; memory_words(spec.problem().sensors)];
-    let found: Found<MAX_SENSORS> = match args.best {
-        Some(Best::Interval) => search.best(Objective::Interval, &mut memory, &mut budget)?,
-        Some(Best::TDelta) => search.best(Objective::Separation, &mut memory, &mut budget)?,
+    let objective = match best {
+        Some(Best::Interval) => Some((Objective::Interval, "smallest interval ")),
+        Some(Best::TDelta) => Some((Objective::Separation, "t_delta ")),
+        Some(Best::Pareto) | None => None,
+    };
+    let found: Found<MAX_SENSORS> = match objective {
+        Some((objective, _)) => search.best(objective, &mut memory, &mut budget)?,
         None => {
             let (outcome, schedule) = search.first(&mut memory, &mut budget)?;
             let (proven, nodes) = (outcome != Outcome::BudgetSpent, budget.nodes());
@@ -107,22 +136,42 @@ fn find(args: &Args, spec: &WaitSpec) -> Result<(Answer, String), SearchError> {
         }
     };
     let seconds = began.elapsed().as_secs_f64();
-    let none = found.schedule.is_none() && found.proven;
-    let text = if args.json {
-        to_json(&FoundJson::new(&found, seconds))
-    } else {
-        let what = match args.best {
-            Some(Best::Interval) => "smallest interval ",
-            Some(Best::TDelta) => "t_delta ",
-            None => "a table",
-        };
-        let mut text = format!("{}\n", describe(what, &found, seconds));
-        if none {
-            text += &format!("{}\n", search.why_none(REASON_BUDGET, &mut memory)?);
+    let answer = answer(found.schedule.is_some(), found.proven);
+    if args.json {
+        return Ok((answer, to_json(&FoundJson::new(&found, seconds))));
+    }
+    let mut text = format!("{}\n", describe(objective.map_or("a table", |(_, what)| what), &found, seconds));
+    if matches!(answer, Answer::No) {
+        text += &why_none(&search, &mut memory, watch)?;
+    }
+    Ok((answer, text))
+}
+
+/// Walks the Pareto front of interval and `t_delta`, and prints its tables.
+fn front(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, String), SearchError> {
+    let search = WaitSearch::new(&spec.problem())?;
+    let began = Instant::now();
+    let mut watcher = |progress: &Progress| watch.control_flow(|| nodes_so_far(progress));
+    let mut budget = Budget::nodes_at_most(args.budget).watched(WATCHED_EVERY, &mut watcher);
+    let mut memory = vec![0; memory_words(spec.problem().sensors)];
+    let mut walk = search.pareto(&mut memory)?;
+    let mut tables: Vec<FrontTable<MAX_SENSORS>> = Vec::new();
+    let complete = loop {
+        match walk.find_next(&mut budget)? {
+            Outcome::Found(table) => tables.push(table),
+            outcome => break outcome == Outcome::Exhausted,
         }
-        text
     };
-    Ok((if none { Answer::No } else { Answer::Yes }, text))
+    let (nodes, seconds) = (budget.nodes(), began.elapsed().as_secs_f64());
+    let answer = answer(!tables.is_empty(), complete);
+    if args.json {
+        return Ok((answer, to_json(&FrontJson::new(&tables, complete, nodes, seconds))));
+    }
+    let mut text = describe_front(&tables, complete, nodes, seconds);
+    if matches!(answer, Answer::No) {
+        text += &why_none(&search, &mut memory, watch)?;
+    }
+    Ok((answer, text))
 }
 
 fn nodes_so_far(progress: &Progress) -> String {

@@ -1,8 +1,16 @@
 //! What `search` found, as text and as JSON.
 
-use eeruf_core::MAX_SENSORS;
-use eeruf_core::search::Found;
+use std::fmt::Write as _;
+
+use comfy_table::{Table, presets};
+use eeruf_core::search::{Found, FrontTable};
+use eeruf_core::{MAX_SENSORS, Micros};
+use eeruf_sim::ScheduleFile;
 use serde::Serialize;
+
+/// The line for a search that ended before its answer, in text.
+pub(crate) const NOT_DECIDED: &str = "not decided: the search ended before it found a table or excluded all; expected \
+                                      a larger --budget or --time-limit\n";
 
 /// What `--count` prints.
 #[derive(Serialize)]
@@ -13,12 +21,39 @@ pub(crate) struct CountJson {
     pub(crate) at_least: bool,
 }
 
+/// What `--best pareto` prints.
+#[derive(Serialize)]
+pub(crate) struct FrontJson {
+    tables: Vec<FrontTableJson>,
+    /// Whether no table of the front is missing.
+    proven: bool,
+    nodes: u64,
+    seconds: f64,
+}
+
+#[derive(Serialize)]
+struct FrontTableJson {
+    schedule: ScheduleFile,
+    min_interval_us: u32,
+    t_delta_us: Option<u32>,
+}
+
+impl FrontJson {
+    pub(crate) fn new(tables: &[FrontTable<MAX_SENSORS>], proven: bool, nodes: u64, seconds: f64) -> Self {
+        let row = |table: &FrontTable<MAX_SENSORS>| FrontTableJson {
+            schedule: ScheduleFile::from(&table.schedule),
+            min_interval_us: table.min_interval.as_micros(),
+            t_delta_us: table.t_delta.map(Micros::as_micros),
+        };
+        Self { tables: tables.iter().map(row).collect(), proven, nodes, seconds }
+    }
+}
+
 /// One table, or that there is none. `what` names the table or the value that was to be largest.
 pub(crate) fn describe(what: &str, found: &Found<MAX_SENSORS>, seconds: f64) -> String {
-    let cost = format!("{} nodes in {seconds:.3} s", found.nodes);
+    let cost = cost(found.nodes, seconds);
     let Some(schedule) = &found.schedule else {
-        let verdict = if found.proven { "there is no such table: all were searched" } else { "no table found yet" };
-        return format!("{verdict} ({cost})");
+        return if found.proven { format!("{NONE} ({cost})") } else { format!("{NOT_DECIDED}({cost})") };
     };
     let value = found.value.map_or_else(String::new, |value| value.to_string());
     let proof = match (found.value, found.bound) {
@@ -27,4 +62,34 @@ pub(crate) fn describe(what: &str, found: &Found<MAX_SENSORS>, seconds: f64) -> 
         _ => String::new(),
     };
     format!("{what}{value}{proof} ({cost})\n\n{}", schedule.to_toml())
+}
+
+/// The Pareto front: its values as a table, then the tables of waits.
+pub(crate) fn describe_front(tables: &[FrontTable<MAX_SENSORS>], complete: bool, nodes: u64, seconds: f64) -> String {
+    let cost = cost(nodes, seconds);
+    if tables.is_empty() {
+        return if complete { format!("{NONE} ({cost})\n") } else { format!("{NOT_DECIDED}({cost})\n") };
+    }
+    let rest = if complete { "and no others" } else { "the search ended before the others" };
+    let mut values = Table::new();
+    values.load_style(presets::NOTHING);
+    values.add_row(["smallest interval", "t_delta"]);
+    let t_delta = |table: &FrontTable<MAX_SENSORS>| table.t_delta.map_or("none".to_owned(), |time| time.to_string());
+    for table in tables {
+        values.add_row([table.min_interval.to_string(), t_delta(table)]);
+    }
+    let count = if tables.len() == 1 { "1 table".to_owned() } else { format!("{} tables", tables.len()) };
+    let front = "of which no other has more of one without less of the other";
+    let mut text = format!("{count} {front}, {rest} ({cost})\n\n{values}\n");
+    for table in tables {
+        let (interval, t_delta) = (table.min_interval, t_delta(table));
+        _ = write!(text, "\n# smallest interval {interval}, t_delta {t_delta}\n{}", table.schedule.to_toml());
+    }
+    text
+}
+
+const NONE: &str = "there is no such table: all were searched";
+
+fn cost(nodes: u64, seconds: f64) -> String {
+    format!("{nodes} nodes in {seconds:.3} s")
 }

@@ -41,9 +41,8 @@ impl Watch {
         Self { began: Instant::now(), limit, bar: None, interrupted: interrupted() }
     }
 
-    /// Begins with another task: it has as much time, and a Ctrl-C that ended the task before is forgotten.
-    pub(crate) fn begin_again(&mut self) {
-        self.began = Instant::now();
+    /// Forgets a Ctrl-C that ended one task before the next one begins. The time limit is that of all tasks.
+    pub(crate) fn forget_interrupt(&self) {
         self.interrupted.store(false, Ordering::Relaxed);
     }
 

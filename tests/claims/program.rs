@@ -272,6 +272,41 @@ fn the_search_for_waits_counts_proves_and_finds() {
     }
 }
 
+#[test]
+fn search_that_ends_early_is_not_decided() {
+    let file = "rings/table-i-waits.toml";
+    for option in [&[][..], &["--count"], &["--best", "t-delta"], &["--best", "pareto"]] {
+        let ended = eeruf(&[&["search", file, "--budget", "3"], option].concat());
+        assert_eq!(ended.code, Some(3), "{option:?}: {}{}", ended.out, ended.err);
+        assert!(ended.out.contains("not decided: the search ended before"), "{option:?}: {}", ended.out);
+        let late = eeruf(&[&["search", file, "--time-limit", "1e-9"], option].concat());
+        // What needs fewer nodes than lie between two looks at the clock is found all the same.
+        assert!(matches!(late.code, Some(0 | 3)), "{option:?}: {}{}", late.out, late.err);
+    }
+    let bad = eeruf(&["search", file, "--time-limit", "0"]);
+    assert_eq!(bad.code, Some(2), "{}", bad.err);
+}
+
+#[test]
+fn pareto_front_of_tables_is_what_the_two_bests_span() {
+    let waits = "sensors = 4\nperiod_us = 40000\nwait_max_us = 9000\ntick_us = 500\nt_delta_us = 99\n";
+    let (_folder, file) = Scratch::new("waits.toml", waits);
+    let file = file.to_str().unwrap();
+    let front = json(&["search", file, "--best", "pareto", "--json"]);
+    let tables = front["tables"].as_array().unwrap();
+    assert_eq!((&front["proven"], tables.len() > 1), (&true.into(), true), "{front}");
+    let best = |what: &str| json(&["search", file, "--best", what, "--json"])["value_us"].clone();
+    let (first, last) = (&tables[0], &tables[tables.len() - 1]);
+    assert_eq!((&first["min_interval_us"], &last["t_delta_us"]), (&best("interval"), &best("t-delta")));
+    for pair in tables.windows(2) {
+        let value = |at: usize, key: &str| pair[at][key].as_u64().unwrap();
+        assert!(value(0, "min_interval_us") > value(1, "min_interval_us"), "{front}");
+        assert!(value(0, "t_delta_us") < value(1, "t_delta_us"), "{front}");
+    }
+    let said = eeruf(&["search", file, "--best", "pareto"]).out;
+    assert!(said.contains("and no others") && said.matches("t_wait_a_us").count() == tables.len(), "{said}");
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_ends_a_long_design_with_the_best_schedule_so_far() {

@@ -50,8 +50,8 @@ const FEW_SENSORS: usize = 12;
 ///         a text.
 ///     certificate: whether to prove the answer to :func:`check_certificate`, in ``Found.certificate``: that no period
 ///         is shorter, or none below ``bound_us``, or below a lower bound that a million nodes suffice for.
-///     time_limit_s: how long to search at most before giving the best schedule so far, above 0; as long again for the
-///         certificate. No limit by default.
+///     time_limit_s: how long the call may take before it gives the best schedule so far, above 0; the certificate has
+///         what time is left. No limit by default.
 ///     refire_us: how soon a sensor may be triggered again, where that is later than its window. One for all, or a
 ///         sequence.
 ///     intervals_us: pairs of sensors with the least time between their firings, whatever the layout says:
@@ -178,8 +178,7 @@ pub(crate) fn design<'py>(
         let shortest =
             shortest(&needs, &Search { budget, what_if: false, atlas }, &mut control).map_err(Raise::raise)?;
         let found = search::Found { schedule: shortest.schedule(), ..shortest.found };
-        let proving = Instant::now();
-        let mut still = |what: &str, nodes| proving.elapsed() < limit && go_on(&|| format!("{what}: {nodes} nodes"));
+        let mut still = |what: &str, nodes| began.elapsed() < limit && go_on(&|| format!("{what}: {nodes} nodes"));
         let proof = certificate.then(|| certify(&needs, &found, |nodes| still("certificate", nodes))).transpose()?;
         let schedule = found.schedule.filter(|_| over_reals && found.proven);
         let real = schedule.and_then(|schedule| {

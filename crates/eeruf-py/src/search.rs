@@ -5,7 +5,7 @@ use std::time::Instant;
 use eeruf_core::{
     Criterion, MAX_SENSORS, Micros,
     search::{
-        self, Outcome, Progress, SearchError, WaitProblem,
+        self, FrontTable, Outcome, Progress, SearchError, WaitProblem,
         wait::{self, Budget, Enumeration, Objective},
     },
 };
@@ -207,6 +207,34 @@ impl WaitSearch {
         let best = |memory: &mut [u32], budget: &mut Budget<'_>| self.search.best(objective, memory, budget);
         let found: search::Found<MAX_SENSORS> = self.run(py, budget, best, words)?;
         Ok(Found::of(&found, began, None))
+    }
+
+    /// The tables of which no other has a larger smallest interval without a smaller ``T_delta``, both at least what is
+    /// asked for: from the largest interval to the largest ``T_delta``. Ctrl-C ends the search.
+    ///
+    /// Returns:
+    ///     Triples of table, smallest interval and ``T_delta``, in microseconds; ``T_delta`` is None if two readings of
+    ///     the table are alike.
+    ///
+    /// Raises:
+    ///     SearchError: too large to search.
+    ///
+    /// Example:
+    ///     >>> import eeruf
+    ///     >>> search = eeruf.WaitSearch(4, 40_000, 9_000, 1000, t_delta_us=99)
+    ///     >>> [(interval_us, t_delta_us) for _, interval_us, t_delta_us in search.pareto()]
+    ///     [(9000, 499), (8000, 999), (7000, 1499)]
+    fn pareto(&self, py: Python<'_>) -> PyResult<Vec<(Schedule, u32, Option<u32>)>> {
+        let words = wait::memory_words(self.sensors);
+        let front = |memory: &mut [u32], budget: &mut Budget<'_>| {
+            let mut walk = self.search.pareto(memory)?;
+            let mut tables = Vec::new();
+            while let Outcome::Found(FrontTable { schedule, min_interval, t_delta }) = walk.find_next(budget)? {
+                tables.push((Schedule(schedule), min_interval.as_micros(), t_delta.map(Micros::as_micros)));
+            }
+            Ok(tables)
+        };
+        self.run(py, u64::MAX, front, words)
     }
 }
 

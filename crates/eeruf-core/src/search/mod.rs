@@ -27,4 +27,4 @@ pub use common::{Control, Outcome, ProblemError, Progress};
 pub use error::{GridError, SearchError};
 pub use found::Found;
 pub use period_problem::{PeriodProblem, Preferred, ShortestPeriod};
-pub use wait_problem::{Infeasible, WaitProblem, WaitSearch};
+pub use wait_problem::{FrontTable, Infeasible, WaitFront, WaitProblem, WaitSearch};

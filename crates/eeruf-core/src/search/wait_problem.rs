@@ -6,7 +6,7 @@ use super::common::Outcome;
 use super::error::SearchError;
 use super::found::Found;
 use super::grid::Grid;
-use super::wait::{Best, Budget, Count, Enumeration, Objective, Problem, Search};
+use super::wait::{Best, Budget, Count, Enumeration, Objective, Pareto, ParetoPoint, Problem, Search};
 use crate::conditions::Criterion;
 use crate::layout::Layout;
 use crate::schedule::{MAX_SENSORS, Schedule};
@@ -187,17 +187,16 @@ impl WaitSearch {
         Ok((outcome, schedule))
     }
 
-    /// Which of the two needs, separation or interval, cannot be met, if there is no table: what is found with one of
-    /// them at a time, within `budget` nodes each.
+    /// Names the need, separation or interval, that cannot be met, if there is no table: one of them at a time is
+    /// searched, within the budget for both.
     ///
     /// # Errors
     /// As for [`first`](Self::first).
-    pub fn why_none(&self, budget: u64, memory: &mut [u32]) -> Result<Infeasible, SearchError> {
+    pub fn why_none(&self, memory: &mut [u32], budget: &mut Budget<'_>) -> Result<Infeasible, SearchError> {
         let search = self.ticks()?;
         let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-        let mut without = |separation, interval| {
-            search.with(separation, interval).first(memory, &mut Budget::nodes_at_most(budget), &mut a, &mut b)
-        };
+        let mut without =
+            |separation, interval| search.with(separation, interval).first(memory, budget, &mut a, &mut b);
         if without(self.separation, 0)? == Outcome::Exhausted {
             let (separation, wait_max) = (self.grid.time(self.separation), self.grid.time(self.wait_max));
             return Ok(Infeasible::Separation { sensors: self.sensors, separation, wait_max });
@@ -243,6 +242,15 @@ impl WaitSearch {
         Ok(Found { schedule, value: value.and_then(time), bound, proven: best.proven(), nodes })
     }
 
+    /// The Pareto front: the tables of which no other has a larger smallest interval without a smaller `t_delta`, both
+    /// at least those of the problem.
+    ///
+    /// # Errors
+    /// None after [`WaitSearch::new`].
+    pub fn pareto<'s, 'm>(&'s self, memory: &'m mut [u32]) -> Result<WaitFront<'s, 'm>, SearchError> {
+        Ok(WaitFront { search: self, front: self.ticks()?.pareto(memory) })
+    }
+
     /// All tables, one after the other: each [`Enumeration::next_into`] gives the waits of one in ticks, for
     /// [`schedule`](Self::schedule) to make a schedule of.
     ///
@@ -265,6 +273,45 @@ impl WaitSearch {
             wait_a.get(..waits(wait_a)).unwrap_or(&[]),
             wait_b.get(..waits(wait_b)).unwrap_or(&[]),
         )
+    }
+}
+
+/// A walk along the Pareto front of interval and `t_delta`, from the largest interval to the largest `t_delta`.
+#[derive(Debug)]
+pub struct WaitFront<'s, 'm> {
+    search: &'s WaitSearch,
+    front: Pareto<'s, 'm>,
+}
+
+/// A table of the Pareto front.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrontTable<const K: usize> {
+    /// The table.
+    pub schedule: Schedule<K>,
+    /// The smallest interval between neighbours; no table with at least this `t_delta` has a larger one.
+    pub min_interval: Micros,
+    /// `T_delta`; no table with at least this interval has a larger one. `None` if two readings of the table are alike.
+    pub t_delta: Option<Micros>,
+}
+
+impl WaitFront<'_, '_> {
+    /// Finds the next table; `Exhausted` after the last, `BudgetSpent` if the budget ended before it was proven.
+    ///
+    /// # Errors
+    /// As for [`WaitSearch::first`].
+    pub fn find_next<const K: usize>(
+        &mut self,
+        budget: &mut Budget<'_>,
+    ) -> Result<Outcome<FrontTable<K>>, SearchError> {
+        let (mut a, mut b) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
+        let (outcome, point) = self.front.next_into(budget, &mut a, &mut b)?;
+        let Some(ParetoPoint { interval, separation }) = point else {
+            return Ok(if outcome == Outcome::Exhausted { Outcome::Exhausted } else { Outcome::BudgetSpent });
+        };
+        let schedule = self.search.schedule(&a, &b)?;
+        let grid = self.search.grid;
+        let table = FrontTable { schedule, min_interval: grid.time(interval), t_delta: grid.t_delta(separation) };
+        Ok(Outcome::Found(table))
     }
 }
 

@@ -3,10 +3,10 @@
 use super::{Budget, Objective, Search};
 use crate::search::common::{Outcome, ProblemError};
 
-impl Search<'_> {
+impl<'p> Search<'p> {
     /// The tables of which no other is better in one of interval and separation without being worse in the other, from
     /// the greatest interval to the greatest separation; both at least those of the problem.
-    pub fn pareto<'m>(&self, memory: &'m mut [u32]) -> Pareto<'_, 'm> {
+    pub fn pareto<'m>(&self, memory: &'m mut [u32]) -> Pareto<'p, 'm> {
         Pareto { search: *self, separation: Some(self.problem().separation), memory }
     }
 }

@@ -1,10 +1,10 @@
 //! Certificates: none that passes is wrong. Trying all firing times judges those that are small enough.
 
-#[path = "../../crates/eeruf-check/tests/common/mod.rs"]
+#[path = "../../crates/eeruf-design/tests/common/mod.rs"]
 #[allow(unreachable_pub)]
 mod judge;
 
-use eeruf_check::prove::prove;
+use eeruf_design::engine::prove::{NoProof, prove};
 
 use crate::one_line;
 
@@ -23,8 +23,9 @@ pub fn check(bytes: &[u8]) {
         }
     };
     one_line(&certified.to_string());
-    let claim = certified.claim;
-    assert_eq!(eeruf_check::read_claim(text).as_ref(), Ok(&claim));
+    let certified = certified.claim;
+    assert_eq!(eeruf_check::read_claim(text).as_ref(), Ok(&certified));
+    let claim = judge::claim_of(&certified);
     let sensors = claim.problem.sensors() as u32;
     let small = claim.bound.checked_pow(2 * sensors).is_some_and(|schedules| schedules <= MOST);
     // Times that are no whole ticks are not tried.
@@ -38,10 +39,10 @@ pub fn check(bytes: &[u8]) {
         }
     }
     if small {
-        // The same rules find a proof of what they let pass, or at least no schedule that refutes it.
+        // The engine finds a proof of what the checker lets pass, or at least no schedule that refutes it.
         match prove(&claim, 2_000) {
-            Ok(text) => assert_eq!(eeruf_check::check(&text).map(|again| again.claim), Ok(claim)),
-            Err(error) => assert!(!matches!(error, eeruf_check::prove::NoProof::Feasible(_)), "{error:?}: {text}"),
+            Ok(text) => assert_eq!(eeruf_check::check(&text).map(|again| again.claim), Ok(certified)),
+            Err(error) => assert!(!matches!(error, NoProof::Feasible(_)), "{error:?}: {text}"),
         }
     }
 }

@@ -1,7 +1,11 @@
 //! `veripb FILE STEM [NODES]` writes STEM.opb and STEM.pbp for the claim of a certificate: the model of the period one
 //! tick below its bound, and the proof that no schedule has it.
 
-use eeruf_check::{read_claim, veripb};
+#[path = "../../eeruf-design/tests/common/mod.rs"]
+mod common;
+
+use eeruf_check::read_claim;
+use eeruf_design::engine::veripb;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -12,7 +16,7 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     let budget = arguments.get(2).and_then(|nodes| nodes.parse().ok()).unwrap_or(1_000_000);
-    match veripb::prove(&claim, budget, |_| true) {
+    match veripb::prove(&common::claim_of(&claim), budget, |_| true) {
         Ok(proven) => {
             println!("{} nodes, {} and {} bytes", proven.nodes, proven.model.len(), proven.proof.len());
             let files = [("opb", proven.model), ("pbp", proven.proof)];

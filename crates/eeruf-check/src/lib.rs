@@ -1,9 +1,8 @@
 //! Checks a certificate that the period of a firing schedule is the shortest one.
 //!
 //! A certificate holds the problem, a schedule, and a tree of case distinctions that refutes every shorter period.
-//! docs/certificate.md in the repository has the format and the proof of each rule. This crate depends on nothing and
-//! shares nothing with the search that finds schedules; [`prove`] writes certificates with the same rules, and what it
-//! writes is trusted no more than any other text.
+//! docs/certificate.md in the repository has the format and the proof of each rule. This crate depends on nothing, does
+//! nothing else, and shares nothing with the programs that find schedules and write certificates.
 //!
 //! | file | content |
 //! |---|---|
@@ -13,43 +12,29 @@
 //! | `rules` | what follows from it |
 //! | `symmetry` | what the root may assume |
 //! | `tree` | the case distinctions |
-//! | `prove` | the proof of a claim |
-//! | `reals`, `orders`, `linear` | the shortest period over the reals: what the tick costs |
-//! | `search`, `shortest` | the shortest period of an uneven ring, by the same rules |
-//! | `spare` | of the schedules with one period, the one with most to spare |
-//! | `veripb` | the same claim as a model and a proof for VeriPB, a checker that others wrote |
 #![forbid(unsafe_code)]
 
 mod bounds;
 mod error;
-mod linear;
-mod orders;
 mod problem;
-pub mod prove;
 mod read;
-pub mod reals;
 mod rules;
 mod schedule;
-pub mod search;
-pub mod shortest;
-pub mod spare;
 mod state;
 mod symmetry;
 mod text;
 mod tree;
-pub mod veripb;
 
 use core::fmt;
 
 pub use error::CheckError;
-pub use orders::Orders;
 pub use problem::{MAX_NUMBER, MAX_SENSORS, Problem};
 pub use read::Claim;
 
-/// What a certificate that passed says.
+/// The content of a certificate that passed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Certified {
-    /// What is true.
+    /// The claim, which is true.
     pub claim: Claim,
     /// The nodes of the tree, leaves included.
     pub nodes: usize,

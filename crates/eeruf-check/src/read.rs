@@ -17,9 +17,6 @@ pub struct Claim {
     pub bound: u32,
 }
 
-/// The first line of every certificate.
-pub(crate) const FIRST_LINE: &str = "eeruf-certificate 1";
-
 pub(crate) fn claim(lines: &mut Lines<'_>) -> Result<Claim, CheckError> {
     lines.number("eeruf-certificate", 1, 1)?;
     let tick = lines.list("tick_us", 2, 1, MAX_NUMBER)?;
@@ -76,22 +73,4 @@ fn gaps(lines: &mut Lines<'_>, sensors: usize) -> Result<Vec<(usize, usize, u32,
         gaps.push((x, y, numbers[2], numbers[3]));
     }
     Ok(gaps)
-}
-
-/// Writes the head of a certificate.
-pub(crate) fn write(claim: &Claim) -> String {
-    let problem = &claim.problem;
-    let row = |numbers: &[u32]| numbers.iter().map(|number| format!(" {number}")).collect::<String>();
-    let mut text = format!("{FIRST_LINE}\ntick_us {} {}\n", problem.tick_us.0, problem.tick_us.1);
-    text += &format!("sensors {}\n", problem.sensors());
-    text += &format!("separation{}\nwindow{}\n", row(&problem.separation), row(&problem.window));
-    text += &format!("stale_echo {}\nover_reals {}\n", u32::from(problem.stale_echo), u32::from(problem.over_reals));
-    for group in &problem.together {
-        text += &format!("together{}\n", group.iter().map(|sensor| format!(" {sensor}")).collect::<String>());
-    }
-    for (x, y, after_x, after_y) in &problem.gaps {
-        text += &format!("gap {x} {y} {after_x} {after_y}\n");
-    }
-    text += &format!("period {}\nfire_a{}\nfire_b{}\n", claim.period, row(&claim.fire[0]), row(&claim.fire[1]));
-    text + &format!("no_period_below {}\n", claim.bound)
 }

@@ -125,15 +125,3 @@ fn read(lines: &mut Lines<'_>, merged: &Merged) -> Result<Branching, CheckError>
         _ => Branching::Split(ones[0], numbers[1]),
     })
 }
-
-impl Branching {
-    /// The line of a certificate, with sensors in place of those of the merged problem.
-    pub(crate) fn line(&self, sensors: &[usize]) -> String {
-        match *self {
-            Self::Order(phase, x, y) => format!("{} {} {}\n", ["a", "b"][phase], sensors[x], sensors[y]),
-            Self::Sign(x) => format!("sign {}\n", sensors[x]),
-            Self::Rank(x, y) => format!("rank {} {}\n", sensors[x], sensors[y]),
-            Self::Split(x, at) => format!("split {} {at}\n", sensors[x]),
-        }
-    }
-}

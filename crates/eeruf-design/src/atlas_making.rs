@@ -1,12 +1,12 @@
 //! Makes a row of the atlas: the search, and its certificate.
 
-use eeruf_check::prove::NoProof;
 use eeruf_core::search::{SearchError, design};
 use eeruf_core::{MAX_SENSORS, Micros, Phase};
 use sha2::{Digest, Sha256};
 
 use crate::atlas::{Ring, Row};
 use crate::certificate::certify;
+use crate::engine::prove::NoProof;
 
 /// How many nodes the search of a ring may cost, the choice among its shortest schedules, and the proof of its
 /// certificate; with more than 16 sensors fewer, since each costs more.

@@ -1,11 +1,11 @@
-//! The certificate of a design, proven by `eeruf-check`: of the search it uses only the schedule and the bound.
+//! The certificate of a design: of the search it uses only the schedule and the bound.
 
-use eeruf_check::prove::{NoProof, prove_what_can_be};
-use eeruf_check::veripb::{self, VeriPb};
 use eeruf_core::Micros;
 use eeruf_core::search::PeriodProblem;
 use eeruf_sim::AnySchedule;
 
+use crate::engine::prove::{NoProof, prove_what_can_be};
+use crate::engine::veripb::{self, VeriPb};
 use crate::find::RingDesign;
 use crate::ticks::claim;
 

@@ -1,14 +1,14 @@
 //! The shortest period of sensors that are not all alike, and the schedule to prefer of those that have it, by the
-//! search of `eeruf-check`.
+//! engine.
 
-use eeruf_check::MAX_NUMBER;
-use eeruf_check::search::{Decided, FiringTimes, Search};
-use eeruf_check::shortest::{Shortest, shortest};
-use eeruf_check::spare::most_to_spare;
 use eeruf_core::search::{Control, Found, GridError, Outcome, PeriodProblem, ProblemError, Progress, SearchError};
 use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_sim::AnySchedule;
 
+use crate::engine::MAX_NUMBER;
+use crate::engine::search::{Decided, FiringTimes, Search};
+use crate::engine::shortest::{Shortest, SoFar, shortest};
+use crate::engine::spare::most_to_spare;
 use crate::ticks::{claim, in_ticks};
 
 /// What a schedule of an uneven ring keeps beyond what is needed, by the same for all sensors.
@@ -48,7 +48,7 @@ pub(crate) fn shortest_uneven(
     }
     problem.requirements.layout.check(problem.sensors)?;
     let ticks = in_ticks(problem);
-    let mut go_on = |so_far: &eeruf_check::shortest::SoFar| {
+    let mut go_on = |so_far: &SoFar| {
         control.poll(&Progress::new(so_far.nodes, Some(so_far.best), Some(so_far.bound))).is_continue()
     };
     let too_long = || {

@@ -11,6 +11,7 @@
 //! | `find`, `what_if_uneven` | the design of a ring, and what would make it shorter |
 //! | `moving` | the shortest period of a ring that moves |
 //! | `handling` | firings apart by what the controller needs for one |
+//! | [`engine`] | search, proof and preference for rings whose sensors differ |
 //! | `found` | the answer as it is printed in JSON |
 //! | `hopping` | schedules of many phases: the file, and the shortest period |
 //! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
@@ -33,6 +34,7 @@ pub mod atlas;
 pub mod atlas_making;
 pub mod certificate;
 mod each;
+pub mod engine;
 mod find;
 mod find_uneven;
 mod found;

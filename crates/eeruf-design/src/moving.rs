@@ -1,15 +1,15 @@
 //! The shortest period of a ring that moves, whose `t_delta` depends on the schedule.
 //!
 //! From one firing of a sensor to its next, `dt` later, a good reading changes by up to `2 v dt / c`, and the longest
-//! `dt` of a schedule is `T_p + max |d|`. So a longer period asks for a larger separation, and a schedule for one period
-//! need not serve at a longer one. What can be refuted at once is a *region* of periods and of `max |d|`:
+//! `dt` of a schedule is `T_p + max |d|`. So a longer period asks for a larger separation, and a schedule for one
+//! period need not serve at a longer one. A refutation covers a *region* of periods and of `max |d|`:
 //!
 //! - every schedule in it needs the `t_delta` of its shortest period and its smallest `max |d|` at least;
 //! - every schedule in it, run at the longest period, leaves each sensor the longest period less the largest `max |d|`
 //!   between two firings.
 //!
-//! The second is a refire time, so the searches for rings that stand decide a region. Separations above a `max |d|` are a
-//! bound on it, which gives the least `t_delta` of a period.
+//! The second is a refire time, so the searches for rings that stand decide a region. All `|d|` lie a separation
+//! apart, which bounds `max |d|` from below and so gives the least `t_delta` of a period.
 
 use eeruf_core::search::{Control, Found, Outcome, PeriodProblem, SearchError, design};
 use eeruf_core::{MAX_SENSORS, Micros};
@@ -242,8 +242,8 @@ impl Moving<'_> {
                 Outcome::Exhausted => continue,
                 Outcome::BudgetSpent => {
                     let bound = Some(self.time(first));
-                    let why = "the search, which ended early: a t_delta that depends on the schedule has to be searched \
-                               for each of them, and a larger budget may settle that";
+                    let why = "the search, which ended early: the t_delta depends on the schedule, and which of them \
+                               serve is not decided; a larger budget may settle that";
                     return Ok((best, bound, why.to_owned()));
                 }
                 Outcome::Found(schedule) => schedule,

@@ -2,11 +2,11 @@
 //!
 //! A schedule in ticks of any length keeps these needs, so no tick, however fine, beats a period proven here.
 
-use eeruf_check::reals::shortest_over_reals;
 use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Micros, Phase};
 use eeruf_sim::AnySchedule;
 
+use crate::engine::reals::shortest_over_reals;
 use crate::find::RingDesign;
 use crate::ticks::in_ticks;
 

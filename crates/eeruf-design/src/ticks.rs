@@ -1,9 +1,10 @@
 //! A problem and a schedule in the whole ticks of a certificate, of sensors that are alike or not.
 
-use eeruf_check::{Claim, Problem};
 use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Micros, Phase};
 use eeruf_sim::AnySchedule;
+
+use crate::engine::{Claim, Problem};
 
 /// The problem in whole ticks: the separation of a sensor is the smallest number of ticks above twice its `t_delta`,
 /// windows and gaps are the smallest that are as long.

@@ -1,20 +1,16 @@
-//! Looks for schedules of uneven rings, with the checker's own rules: a depth-first search that a certificate would
-//! only have to write down, and short descents that look for a schedule with *Luby restarts* (Luby, Sinclair and
-//! Zuckerman 1993).
-//!
-//! Nothing here needs to be trusted: a schedule is checked longhand, and of a refuted period there is a certificate.
+//! Searches for schedules of one period: a depth-first search, whose tree a certificate writes down, and short descents
+//! with *Luby restarts* (Luby, Sinclair and Zuckerman 1993).
 
-use crate::problem::{Merged, Problem};
-use crate::schedule;
-use crate::state::{State, event};
-use crate::symmetry;
-use crate::text::Lines;
-use crate::tree::Branching;
+use crate::engine::branching::{Branching, choose};
+use crate::engine::problem::{Merged, Problem};
+use crate::engine::schedule;
+use crate::engine::state::{State, event};
+use crate::engine::symmetry::Assumptions;
 
 /// Firing times in phases a and b, in ticks, sensor by sensor.
 pub type FiringTimes = [Vec<u32>; 2];
 
-/// What came of looking for a schedule with a period.
+/// The outcome of a search for a schedule with a period.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Decided {
     /// Firing times that serve.
@@ -32,9 +28,8 @@ pub enum Decided {
 pub struct Search<'p> {
     problem: &'p Problem,
     merged: Merged,
-    /// What the root may assume, as the lines of a certificate.
-    assumptions: String,
-    /// How many nodes lie between two questions whether to go on.
+    assumptions: Assumptions,
+    /// The number of nodes between two questions whether to go on.
     between: u64,
     /// Nodes visited so far.
     nodes: u64,
@@ -59,17 +54,21 @@ fn luby(i: u64) -> u64 {
     if i == (1 << power) - 1 { 1 << (power - 1) } else { luby(i - ((1 << (power - 1)) - 1)) }
 }
 
+/// The number of nodes between two questions whether to go on: few enough to ask every few milliseconds, as a node
+/// costs about the cube of the number of sensors.
+pub(crate) fn nodes_between(sensors: usize) -> usize {
+    (64 * 8 * 8 * 8 / sensors.max(1).pow(3)).clamp(1, 64)
+}
+
 impl<'p> Search<'p> {
-    /// The search of whole ticks for this problem, which is as a certificate states it.
+    /// The search of whole ticks for this problem.
     #[must_use]
     pub fn new(problem: &'p Problem) -> Self {
-        let sensors = problem.sensors().max(1) as u64;
         Self {
             problem,
             merged: problem.merged(),
-            assumptions: symmetry::assumptions(problem),
-            // A node costs about the cube of the number of sensors: few enough to ask every few milliseconds.
-            between: (64 * 8 * 8 * 8 / sensors.pow(3)).clamp(1, 64),
+            assumptions: Assumptions::of(problem),
+            between: nodes_between(problem.sensors()) as u64,
             nodes: 0,
         }
     }
@@ -80,14 +79,14 @@ impl<'p> Search<'p> {
         self.nodes
     }
 
-    /// How many branchings decide every order, sign and rank: as many nodes as a descent to a schedule may take.
+    /// The number of branchings that decide every order, sign and rank: as many nodes as a descent may take.
     #[must_use]
     pub fn depth(&self) -> u64 {
         let count = self.merged.count();
         (2 * self.merged.pairs.len() + count * (count + 1) / 2) as u64
     }
 
-    /// Whether some firing times have this period, by at most `budget` nodes of a full search.
+    /// Decides whether some firing times have this period, by at most `budget` nodes of a full search.
     pub fn decide(&mut self, period: u32, budget: u64, go_on: &mut dyn FnMut(u64) -> bool) -> Decided {
         let root = self.root(period);
         self.walk(period, root, budget, &mut Choice { random: None, guide: None }, go_on)
@@ -110,7 +109,8 @@ impl<'p> Search<'p> {
             descent += 1;
             let seed = 1 + u64::from(random.below(u32::MAX));
             // The first along the guide, then every other one.
-            let guide = (descent % 2 == 1).then(|| self.firsts().map(|x| [guide[0][x], guide[1][x]]).collect());
+            let firsts = self.merged.firsts();
+            let guide = (descent % 2 == 1).then(|| firsts.iter().map(|&x| [guide[0][x], guide[1][x]]).collect());
             let mut choice = Choice { random: Some(Random(seed)), guide };
             let before = self.nodes;
             let least = (unit * luby(descent)).min(budget - spent);
@@ -123,14 +123,8 @@ impl<'p> Search<'p> {
         Decided::Open
     }
 
-    /// The first sensor of each group, or the sensor itself.
-    fn firsts(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.merged.count()).map(|one| self.merged.of_sensor.iter().position(|of| *of == one).unwrap_or(0))
-    }
-
     fn root(&self, period: u32) -> Option<State> {
-        let mut lines = Lines::new(&self.assumptions);
-        symmetry::root(&mut lines, self.problem, &self.merged, period + 1).ok()?.ok()
+        self.assumptions.root(&self.merged, period + 1).ok()
     }
 
     fn walk(
@@ -180,12 +174,12 @@ impl<'p> Search<'p> {
         let times = |time: &dyn Fn(usize, usize) -> i32| -> FiringTimes {
             [0, 1].map(|phase| self.merged.of_sensor.iter().map(|&one| time(one, phase).max(0) as u32).collect())
         };
-        let serve = |times: &FiringTimes| schedule::check(self.problem, period, times).is_ok();
+        let serve = |times: &FiringTimes| schedule::keeps(self.problem, period, times);
         Some(times(&earliest)).filter(serve).or_else(|| Some(times(&latest)).filter(serve))
     }
 }
 
-/// Which case comes first. It matters only for how soon a schedule is found.
+/// The case to take first. It matters only for how soon a schedule is found.
 struct Choice {
     random: Option<Random>,
     /// The times of a schedule with a longer period, for each sensor of the merged problem.
@@ -217,32 +211,6 @@ impl Choice {
         let (first, second) = (first.max(0) as u32 + 1, second.max(0) as u32 + 1);
         usize::from(random.below(first + second) >= first)
     }
-}
-
-/// What to branch on, if anything is left: firing orders first, sensor by sensor, all of phase a, then all of phase b;
-/// then signs, ranks and values of d.
-pub(crate) fn choose(state: &State, merged: &Merged) -> Option<Branching> {
-    let count = merged.count();
-    for y in 0..count {
-        for (phase, x) in (0..2).flat_map(|phase| (0..y).map(move |x| (phase, x))) {
-            let order = Branching::Order(phase, x, y);
-            if merged.gap[x][y] > 0 && !order.is_decided(state, merged) {
-                return Some(order);
-            }
-        }
-    }
-    if let Some(x) = (0..count).find(|&x| !Branching::Sign(x).is_decided(state, merged)) {
-        return Some(Branching::Sign(x));
-    }
-    let width = |x: usize| state.high(x) - state.low[x];
-    let pairs = (0..count).flat_map(|y| (0..y).map(move |x| (x, y)));
-    let open = pairs.filter(|&(x, y)| !Branching::Rank(x, y).is_decided(state, merged));
-    if let Some((x, y)) = open.min_by_key(|&(x, y)| width(x) + width(y)) {
-        return Some(Branching::Rank(x, y));
-    }
-    let widest = (0..count).max_by_key(|&x| width(x))?;
-    let middle = Branching::Split(widest, ((state.low[widest] + state.high(widest)) / 4) as u32);
-    (!middle.is_decided(state, merged)).then_some(middle)
 }
 
 #[cfg(test)]

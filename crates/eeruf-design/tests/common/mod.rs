@@ -1,7 +1,15 @@
 //! Random problems and a brute force that knows only the definition.
 #![allow(dead_code)]
 
-use eeruf_check::{Claim, Problem};
+use eeruf_design::engine::{Claim, Problem};
+
+/// The claim of a certificate as the checker read it.
+pub(crate) fn claim_of(certified: &eeruf_check::Claim) -> Claim {
+    let eeruf_check::Claim { problem, period, fire, bound } = certified.clone();
+    let eeruf_check::Problem { tick_us, separation, window, stale_echo, over_reals, together, gaps } = problem;
+    let problem = Problem { tick_us, separation, window, stale_echo, over_reals, together, gaps };
+    Claim { problem, period, fire, bound }
+}
 
 /// A small generator of pseudo-random numbers, the same on every machine (xorshift64*).
 pub(crate) struct Random(pub(crate) u64);

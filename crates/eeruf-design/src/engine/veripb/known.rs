@@ -4,8 +4,8 @@
 use super::literals::{Literal, Truth, Variable, before, below};
 use super::model::Model;
 use super::proof::{Proof, Why};
-use crate::bounds::{Bounds, Refuted};
-use crate::state::{State, event};
+use crate::engine::bounds::{Bounds, Refuted};
+use crate::engine::state::{State, event};
 
 /// An upper bound on the difference of two events, `t_to - t_from <= most`, and why it holds.
 #[derive(Clone, Copy, Debug)]
@@ -342,8 +342,8 @@ impl Known {
 }
 
 /// The literals of a branching's first case; the second is its opposite.
-pub(crate) fn first_case(model: &Model<'_>, branching: crate::tree::Branching) -> Truth {
-    use crate::tree::Branching;
+pub(crate) fn first_case(model: &Model<'_>, branching: crate::engine::branching::Branching) -> Truth {
+    use crate::engine::branching::Branching;
     match branching {
         Branching::Order(phase, x, y) => Truth::If(before(phase, x, y)),
         Branching::Sign(x) => model.d_from(x, 0),

@@ -1,16 +1,15 @@
-//! Writes certificates: a depth-first search for a tree of branchings, with the checker's own rules.
+//! Writes certificates: a depth-first search for a tree of branchings that refutes every shorter period.
 //!
-//! Nothing here needs to be trusted: what it writes goes through [`check`](crate::check) like any other certificate.
+//! Nothing here needs to be trusted: two checkers that share nothing with it read what it writes.
 
 use core::fmt;
 
-use crate::orders::Orders;
-use crate::read::{self, Claim};
-use crate::search::choose;
-use crate::state::{State, event};
-use crate::symmetry;
-use crate::text::Lines;
-use crate::tree::Branching;
+use crate::engine::branching::{Branching, choose};
+use crate::engine::orders::Orders;
+use crate::engine::problem::Claim;
+use crate::engine::search::nodes_between;
+use crate::engine::state::{State, event};
+use crate::engine::symmetry::Assumptions;
 
 /// Why there is no certificate.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -81,12 +80,6 @@ pub fn prove(claim: &Claim, budget: usize) -> Result<String, NoProof> {
     prove_while(claim, budget, |_| true)
 }
 
-/// How many nodes lie between two questions whether to go on: few enough to ask every few milliseconds. A node costs
-/// about the cube of the number of sensors.
-pub(crate) fn nodes_between(sensors: usize) -> usize {
-    (64 * 8 * 8 * 8 / sensors.pow(3)).clamp(1, 64)
-}
-
 /// The same as [`prove`], as long as `go_on` says so: it is asked now and then, with the number of nodes so far.
 ///
 /// # Errors
@@ -104,15 +97,12 @@ pub(crate) fn prove_but(
     mut go_on: impl FnMut(usize) -> bool,
     mut are_excluded: impl FnMut(&Orders) -> bool,
 ) -> Result<String, NoProof> {
-    let mut text = read::write(claim);
-    read::claim(&mut Lines::new(&text)).map_err(|error| NoProof::Claim(error.to_string()))?;
+    claim.check().map_err(NoProof::Claim)?;
     let merged = claim.problem.merged();
-    let assumptions = symmetry::assumptions(&claim.problem);
-    text += &assumptions;
-    let root = symmetry::root(&mut Lines::new(&assumptions), &claim.problem, &merged, claim.bound);
-    let root = root.map_err(|error| NoProof::Claim(error.to_string()))?;
-    let firsts: Vec<usize> =
-        (0..merged.count()).map(|one| merged.of_sensor.iter().position(|of| *of == one).unwrap_or(0)).collect();
+    let assumptions = Assumptions::of(&claim.problem);
+    let mut text = claim.head() + &assumptions.lines();
+    let root = assumptions.root(&merged, claim.bound);
+    let firsts = merged.firsts();
     let between = nodes_between(claim.problem.sensors());
     let mut nodes = 1;
     let mut open: Vec<(State, Branching, usize)> = Vec::new();

@@ -5,7 +5,7 @@
 use core::fmt::Write as _;
 
 use super::literals::{Literal, Truth, Variable, before, below, clause, inequality};
-use crate::problem::Merged;
+use crate::engine::problem::Merged;
 
 /// The number of an inequality, in the order of the file.
 pub(crate) type Id = usize;
@@ -118,7 +118,7 @@ impl<'m> Model<'m> {
 
     /// Firing times lie in the period, the window is kept, and `d` counts its variables.
     fn firing_times(&mut self, x: usize) {
-        let event = |phase| crate::state::event(x, phase);
+        let event = |phase| crate::engine::state::event(x, phase);
         for phase in 0..2 {
             let id = self.add(inequality(&self.time(1, phase, x), 0));
             self.always.push((event(phase), 0, 0, id));
@@ -170,7 +170,7 @@ impl<'m> Model<'m> {
                 let id = self.add(self.difference(i, j, &[unless], gap));
                 self.order[x * self.merged.count() + y][phase] = id;
                 let id = self.add(self.difference((1 - phase, y), j, &[], gap - self.period));
-                let (from, to) = (crate::state::event(y, 1 - phase), crate::state::event(x, phase));
+                let (from, to) = (crate::engine::state::event(y, 1 - phase), crate::engine::state::event(x, phase));
                 self.always.push((from, to, self.period - gap, id));
             }
         }

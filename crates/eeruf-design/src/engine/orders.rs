@@ -1,14 +1,14 @@
 //! Orders of firings, with which all that is required of a schedule is linear.
 
-use crate::problem::Merged;
-use crate::state::{State, event};
+use crate::engine::problem::Merged;
+use crate::engine::state::{State, event};
 
-/// What decides all alternatives of a schedule. Sensors are those of the merged problem.
+/// The decisions that leave a schedule no alternatives. Sensors are those of the merged problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Orders {
     /// For each phase numbers that ascend as those with a gap fire.
     pub(crate) firing: [Vec<i64>; 2],
-    /// Whether d is negative.
+    /// True where d is negative.
     pub(crate) negative: Vec<bool>,
     /// Those with smaller |d| first.
     pub(crate) ranks: Vec<usize>,

@@ -4,10 +4,9 @@
 use super::known::Known;
 use super::literals::{Truth, Variable, before, below};
 use super::proof::{Proof, exchanged, permuted, reversed};
-use crate::bounds::Refuted;
-use crate::problem::{Merged, Problem};
-use crate::symmetry::assumptions;
-use crate::text::Lines;
+use crate::engine::bounds::Refuted;
+use crate::engine::problem::{Merged, Problem};
+use crate::engine::symmetry::{Assumptions, POSITIVE};
 
 /// Sensors of which the first has the largest `|d|`.
 type Family = Vec<usize>;
@@ -15,25 +14,15 @@ type Family = Vec<usize>;
 /// Adds all assumptions to the proof, then to what is known.
 pub(crate) fn assume(proof: &mut Proof<'_>, known: &mut Known, problem: &Problem) -> Result<(), Refuted> {
     let merged = proof.model.merged;
-    let text = assumptions(problem);
-    let mut lines = Lines::new(&text);
+    let assumptions = Assumptions::of(problem);
+    let one = |sensor: usize| merged.of_sensor[sensor];
     let mut families: Vec<Family> = Vec::new();
-    let mut generators = Vec::new();
-    let (mut sign, mut reverse) = (None, None);
-    // Only lines that `assumptions` writes, so all can be read.
-    while let Ok((word, numbers)) = lines.next() {
-        let numbers: Vec<usize> = numbers.iter().map(|&number| number as usize).collect();
-        match word {
-            "permutation" => generators.push(of_ones(&numbers, merged)),
-            "greatest" => {
-                families.push(greatest(proof, merged.of_sensor[numbers[0]], &core::mem::take(&mut generators)));
-            }
-            "exchange" => sign = Some(merged.of_sensor[numbers[0]]),
-            "reverse" => reverse = Some((merged.of_sensor[numbers[0]], merged.of_sensor[numbers[1]])),
-            _ => break,
-        }
+    for family in &assumptions.families {
+        let generators: Vec<Vec<usize>> = family.generators.iter().map(|image| of_ones(image, merged)).collect();
+        families.push(greatest(proof, one(family.greatest), &generators));
     }
-    let positive = sign.map_or(Truth::Always, |x| proof.model.d_from(x, 0));
+    let reverse = assumptions.reverse.map(|(x, y)| (one(x), one(y)));
+    let positive = proof.model.d_from(one(POSITIVE), 0);
     if let Truth::If(positive) = positive {
         proof.strengthen(&[positive], exchanged);
     }

@@ -3,11 +3,12 @@
 
 mod common;
 
-use common::{Random, feasible, random_problem};
-use eeruf_check::prove::{NoProof, prove};
-use eeruf_check::shortest::{self, Shortest};
-use eeruf_check::spare::most_to_spare;
-use eeruf_check::{Claim, Problem, check};
+use common::{Random, claim_of, feasible, random_problem};
+use eeruf_check::check;
+use eeruf_design::engine::prove::{NoProof, prove};
+use eeruf_design::engine::shortest::{self, Shortest};
+use eeruf_design::engine::spare::most_to_spare;
+use eeruf_design::engine::{Claim, Problem};
 
 /// The shortest period, with a schedule, by trying all firing times.
 fn shortest(problem: &Problem, most: u32) -> Option<(u32, [Vec<u32>; 2])> {
@@ -19,7 +20,7 @@ fn agree(seed: u64, problem: &Problem, most: u32) -> usize {
     let claim = |bound| Claim { problem: problem.clone(), period, fire: fire.clone(), bound };
     let text = prove(&claim(period), 100_000).unwrap_or_else(|error| panic!("seed {seed}: {error}: {problem:?}"));
     let certified = check(&text).unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
-    assert_eq!(certified.claim, claim(period));
+    assert_eq!(claim_of(&certified.claim), claim(period));
     // One tick longer has a schedule as well, and no proof may say otherwise.
     let longer = Claim { period: period + 1, bound: period + 1, ..claim(period) };
     let Err(NoProof::Feasible(fire)) = prove(&longer, 100_000) else {

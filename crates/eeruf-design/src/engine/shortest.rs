@@ -1,8 +1,8 @@
 //! The shortest period of a problem, even or uneven: found by bisection with short descents, and proven by a full
 //! search of the period one tick shorter.
 
-use crate::problem::Problem;
-use crate::search::{Decided, FiringTimes, Search};
+use crate::engine::problem::Problem;
+use crate::engine::search::{Decided, FiringTimes, Search};
 
 /// The shortest period found, in ticks.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,11 +15,11 @@ pub struct Shortest {
     pub bound: u32,
     /// Nodes visited.
     pub nodes: u64,
-    /// Whether no case had to be distinguished to know that every shorter period is impossible.
+    /// True if every shorter period is refuted without distinguishing cases.
     pub without_cases: bool,
 }
 
-/// How far a search has come: nodes, the shortest period so far, and the bound below which there is none.
+/// The progress of a search: nodes, the shortest period so far, and the bound below which there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SoFar {
     /// Nodes visited.
@@ -33,12 +33,12 @@ pub struct SoFar {
 /// The shortest period, within `budget` nodes and as long as `go_on` says so: it is asked every few milliseconds.
 ///
 /// There is always a schedule, firing one by one, unless sensors that fire together must keep a gap or the period is
-/// beyond [`MAX_NUMBER`](crate::MAX_NUMBER) ticks: then `None`. The answer depends on problem and budget alone.
+/// beyond [`MAX_NUMBER`](crate::engine::MAX_NUMBER) ticks: then `None`. The answer depends on problem and budget alone.
 #[must_use]
 pub fn shortest(problem: &Problem, budget: u64, go_on: &mut dyn FnMut(&SoFar) -> bool) -> Option<Shortest> {
     let fire = one_by_one(problem)?;
     let mut found = Shortest { period: period_of(problem, &fire), fire, bound: 1, nodes: 0, without_cases: false };
-    if found.period > crate::MAX_NUMBER || crate::schedule::check(problem, found.period, &found.fire).is_err() {
+    if found.period > crate::engine::MAX_NUMBER || !crate::engine::schedule::keeps(problem, found.period, &found.fire) {
         return None;
     }
     if let Some((coarse, ticks)) = in_coarse_ticks(problem) {

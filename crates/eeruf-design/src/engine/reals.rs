@@ -1,4 +1,4 @@
-//! The shortest period over the reals: what the tick costs.
+//! The shortest period over the reals: the cost of the tick.
 //!
 //! With the firing orders, the signs of d and the order of |d| decided, all that is required is linear in the firing
 //! times and the period, so the shortest period of these orders is a fraction that `linear` finds
@@ -6,13 +6,13 @@
 //! branch of other orders. If their shortest period is shorter, it is taken next. If it is not, they are excluded too,
 //! but not by a rule of certificates.
 
-use crate::linear::{Row, least_of_first};
-use crate::orders::Orders;
-use crate::problem::{Merged, Problem};
-use crate::prove::{NoProof, prove_but};
-use crate::read::Claim;
-use crate::search::{Decided, Search};
-use crate::state::event;
+use crate::engine::linear::{Row, least_of_first};
+use crate::engine::orders::Orders;
+use crate::engine::problem::Claim;
+use crate::engine::problem::{Merged, Problem};
+use crate::engine::prove::{NoProof, prove_but};
+use crate::engine::search::{Decided, Search};
+use crate::engine::state::event;
 
 /// The shortest period over the reals of some orders, and whether no orders have a shorter one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,16 +23,16 @@ pub struct OverReals {
     pub period: u32,
     /// The firing times.
     pub fire: [Vec<u32>; 2],
-    /// Whether no real period is shorter.
+    /// True if no real period is shorter.
     pub proven: bool,
     /// The certificate of that; there is none where orders had to be excluded by their linear program, which no
     /// certificate can state.
     pub certificate: Option<String>,
 }
 
-/// How many exchanges the least period of some orders may take: a few for each row is usual.
+/// The number of exchanges that the least period of some orders may take: a few for each row is usual.
 const PIVOTS: usize = 20_000;
-/// How many descents may look for a schedule with a period that some orders only approach.
+/// The number of descents that may look for a schedule with a period that some orders only approach.
 const ATTEMPTS: u64 = 256;
 
 /// The shortest period over the reals, beginning with the orders of a schedule in whole ticks. Separations, windows and

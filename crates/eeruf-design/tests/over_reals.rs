@@ -3,9 +3,10 @@
 mod common;
 
 use common::{Random, random_problem};
-use eeruf_check::reals::shortest_over_reals;
-use eeruf_check::shortest::shortest;
-use eeruf_check::{Problem, check};
+use eeruf_check::check;
+use eeruf_design::engine::Problem;
+use eeruf_design::engine::reals::shortest_over_reals;
+use eeruf_design::engine::shortest::shortest;
 
 /// The problem in ticks of a part of those it has.
 fn finer(problem: &Problem, parts: u32) -> Problem {

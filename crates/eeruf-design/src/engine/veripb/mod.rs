@@ -8,13 +8,12 @@ mod model;
 mod proof;
 mod symmetry;
 
-use crate::bounds::Refuted;
-use crate::problem::Problem;
-use crate::prove::{NoProof, nodes_between};
-use crate::read::{self, Claim};
-use crate::search::choose;
-use crate::state::event;
-use crate::text::Lines;
+use crate::engine::bounds::Refuted;
+use crate::engine::branching::choose;
+use crate::engine::problem::{Claim, Problem};
+use crate::engine::prove::NoProof;
+use crate::engine::search::nodes_between;
+use crate::engine::state::event;
 use known::{Known, first_case};
 use literals::Truth;
 use model::Model;
@@ -53,7 +52,7 @@ struct Open {
 ///
 /// See [`NoProof`]. There is nothing to prove below the bound 2, and no proof over the reals.
 pub fn prove(claim: &Claim, budget: usize, mut go_on: impl FnMut(usize) -> bool) -> Result<VeriPb, NoProof> {
-    read::claim(&mut Lines::new(&read::write(claim))).map_err(|error| NoProof::Claim(error.to_string()))?;
+    claim.check().map_err(NoProof::Claim)?;
     if claim.problem.over_reals {
         return Err(NoProof::Claim("over the reals; expected whole ticks".to_owned()));
     }

@@ -5,9 +5,9 @@ mod common;
 mod pseudo_boolean;
 
 use common::{Random, feasible, random_problem, table};
-use eeruf_check::prove::NoProof;
-use eeruf_check::veripb::{VeriPb, model, prove};
-use eeruf_check::{Claim, Problem};
+use eeruf_design::engine::prove::NoProof;
+use eeruf_design::engine::veripb::{VeriPb, model, prove};
+use eeruf_design::engine::{Claim, Problem};
 use pseudo_boolean::{check, read_model};
 use std::collections::HashMap;
 

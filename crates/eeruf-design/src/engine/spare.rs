@@ -1,9 +1,9 @@
 //! Of the schedules with one period, the one with most to spare: larger separations, then larger gaps, then longer
 //! windows, each by the same for all sensors.
 
-use crate::problem::Problem;
-use crate::schedule;
-use crate::search::{Decided, FiringTimes, Search};
+use crate::engine::problem::Problem;
+use crate::engine::schedule;
+use crate::engine::search::{Decided, FiringTimes, Search};
 
 /// A schedule that keeps more than the problem asks for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -13,7 +13,7 @@ pub struct Spare {
     /// By how many ticks every separation, then every gap, then every window may grow, in this order: none grows at the
     /// cost of an earlier one.
     pub more: [u32; 3],
-    /// Whether no schedule of this period has more.
+    /// True if no schedule of this period has more, of each.
     pub proven: [bool; 3],
     /// Nodes visited.
     pub nodes: u64,
@@ -50,7 +50,7 @@ pub fn most_to_spare(
     spare
 }
 
-/// Lets one need grow as far as it can, up to `most`. Whether it is proven that it can grow no further.
+/// Lets one need grow as far as it can, up to `most`. Returns true if it is proven that it can grow no further.
 fn grow(
     problem: &Problem,
     period: u32,
@@ -71,7 +71,7 @@ fn grow(
     loop {
         // What these times keep anyway.
         while spare.more[need] < most
-            && schedule::check(&harder(problem, with(spare.more, need, 1)), period, &spare.fire).is_ok()
+            && schedule::keeps(&harder(problem, with(spare.more, need, 1)), period, &spare.fire)
         {
             spare.more[need] += 1;
         }

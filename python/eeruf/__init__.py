@@ -59,8 +59,10 @@ from eeruf._eeruf import (
     WaitTables,
     __version__,
     check_certificate,
+    curve,
     design,
     example,
+    fit,
 )
 
 # Checkers take it for true, as the one of typing, which would cost more to import than all of eeruf.
@@ -108,10 +110,12 @@ __all__ = [
     "WaitTables",
     "__version__",
     "check_certificate",
+    "curve",
     "design",
     "diagnose",
     "example",
     "experiments",
+    "fit",
     "logs",
     "nav",
     "plot",

@@ -341,6 +341,38 @@ def design(
     phases: _Int,
     margin_us: _Int | None = None,
 ) -> HoppingFound: ...
+def fit(
+    period_us: _Int,
+    sensors: _Int,
+    t_delta_us: _Each,
+    min_interval_us: _Int,
+    window_us: _Each,
+    tick_us: _Int = 1000,
+    neighbours: _Int = 4,
+    layout: _Layout = "line",
+    stale_echo: bool = False,
+    budget: _Int | None = None,
+    refire_us: _Each | None = None,
+    intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
+    shared_lines: Iterable[Sequence[_Int]] | None = None,
+    together: Iterable[Sequence[_Int]] | None = None,
+) -> tuple[bool | None, Found]: ...
+def curve(
+    need: Literal["t_delta", "range", "interval"],
+    sensors: _Int,
+    t_delta_us: _Each,
+    min_interval_us: _Int,
+    window_us: _Each,
+    tick_us: _Int = 1000,
+    neighbours: _Int = 4,
+    layout: _Layout = "line",
+    stale_echo: bool = False,
+    budget: _Int | None = None,
+    refire_us: _Each | None = None,
+    intervals_us: Iterable[tuple[_Int, _Int, _Int]] | None = None,
+    shared_lines: Iterable[Sequence[_Int]] | None = None,
+    together: Iterable[Sequence[_Int]] | None = None,
+) -> list[tuple[int, int | None, int | None, bool]]: ...
 def check_certificate(text: str) -> int: ...
 def example(name: str) -> str: ...
 def _run_program(words: Sequence[str]) -> int: ...

@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Micros, PhaseCriterion};
 use eeruf_design::atlas::ATLAS;
-use eeruf_design::{FoundJson, RealPeriod, RingDesign, RingSpec, Search, real_budget};
+use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
 
 use super::answer::Answer;
 use super::arguments::{picture, seconds};
@@ -20,6 +20,7 @@ use crate::report::design::describe;
 use crate::report::draw;
 use crate::report::json::to_json;
 use crate::report::phases::{DesignJson, describe_design};
+use crate::report::questions::{CurveJson, describe_curve, describe_fit, fit_json};
 use crate::report::watch::Watch;
 
 /// Find the schedule with the shortest period for a ring of sensors, and prove that none is shorter.
@@ -71,9 +72,18 @@ pub(crate) struct Args {
     /// use, instead of 2 T_delta + 1
     #[arg(long, value_name = "N", requires = "phases")]
     margin_us: Option<u32>,
-    /// How many nodes to search at most before giving the best schedule so far
-    #[arg(long, default_value_t = 50_000_000, value_name = "NODES")]
-    budget: u64,
+    /// How many nodes to search at most before giving the best schedule so far; 50 million by default, 20,000 for each
+    /// point of a curve
+    #[arg(long, value_name = "NODES")]
+    budget: Option<u64>,
+    /// Find what fits into a period of so many microseconds instead of the shortest: whether the ring's needs do, and
+    /// the largest T_delta. Exit code 1 if they do not, 3 if that was not decided
+    #[arg(long, value_name = "US", conflicts_with_all = ["certificate", "certificate_over_reals", "phases", "curve"])]
+    period: Option<u32>,
+    /// Print the shortest period for 20 values of one need, from a tenth of the ring's own to twice as much
+    #[arg(long, value_enum, value_name = "NEED",
+          conflicts_with_all = ["certificate", "certificate_over_reals", "phases", "emit", "svg"])]
+    curve: Option<CurveOf>,
     /// Search even where the atlas knows the shortest period
     #[arg(long)]
     no_atlas: bool,
@@ -87,6 +97,28 @@ impl Args {
     /// What to print instead of a description.
     fn form(&self) -> Option<Form> {
         if self.json { Some(Form::Json) } else { self.emit }
+    }
+}
+
+/// The need that a curve varies.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum CurveOf {
+    /// What readings of one wall may differ by on a robot that stands
+    #[value(name = "t_delta", alias = "t-delta")]
+    TDelta,
+    /// How far sensors see
+    Range,
+    /// The least time between the firings of neighbours
+    Interval,
+}
+
+impl CurveOf {
+    fn need(self) -> Need {
+        match self {
+            Self::TDelta => Need::TDelta,
+            Self::Range => Need::Range,
+            Self::Interval => Need::Interval,
+        }
     }
 }
 
@@ -104,12 +136,21 @@ enum Form {
     Json,
 }
 
+/// How many nodes a search may cost by default.
+const BUDGET: u64 = 50_000_000;
+
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let spec = read_ring(&args.file)?;
     if let Some(phases) = args.phases {
         return many_phases(args, &spec, phases);
     }
     let bad = |error: SearchError| InputError::new(&args.file, None, error);
+    if let Some(period) = args.period {
+        return fit(args, &spec, Micros::new(period));
+    }
+    if let Some(curve) = args.curve {
+        return curve_of(args, &spec, curve.need());
+    }
     let began = Instant::now();
     let mut watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
     let mut control = |progress: &Progress| {
@@ -120,7 +161,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         watch.control_flow(how_far)
     };
     let atlas = if args.no_atlas { "" } else { ATLAS };
-    let search = Search { budget: args.budget, what_if: args.form().is_none(), atlas };
+    let search = Search { budget: args.budget.unwrap_or(BUDGET), what_if: args.form().is_none(), atlas };
     let design = match spec.shortest(&search, &mut control).map_err(bad)? {
         Ok(design) => design,
         Err(none) => {
@@ -172,6 +213,57 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         None => tell(describe(&args.file.display().to_string(), &spec, &design, real.as_ref(), seconds))?,
     }
     Ok(certified)
+}
+
+/// Answers `--period`.
+fn fit(args: &Args, spec: &RingSpec, period: Micros) -> Result<Answer, InputError> {
+    let began = Instant::now();
+    let mut watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
+    let mut control = |progress: &Progress| watch.control_flow(|| format!("{} nodes", progress.nodes));
+    let fit = spec
+        .fit(period, args.budget.unwrap_or(BUDGET), &mut control)
+        .map_err(|error| InputError::new(&args.file, None, error))?;
+    drop(watch);
+    let seconds = began.elapsed().as_secs_f64();
+    let requirements = fit.spec.problem().requirements;
+    let answer = match fit.fits {
+        Some(true) => Answer::Yes,
+        Some(false) => Answer::No,
+        None => Answer::NotDecided,
+    };
+    // Firmware gets only what meets the needs.
+    let schedule = fit.schedule.filter(|_| fit.fits == Some(true));
+    if let (Some(file), Some(schedule)) = (&args.svg, &schedule) {
+        draw::timing_diagram(schedule, &requirements).save(file)?;
+    }
+    match (args.form(), &schedule) {
+        (Some(Form::Json), _) => print_line(to_json(&fit_json(&fit, seconds)))?,
+        (Some(Form::Toml), Some(schedule)) => print(schedule.to_toml())?,
+        (Some(Form::Rust), Some(schedule)) => print(schedule.to_rust(&requirements))?,
+        (Some(Form::C), Some(schedule)) => print(schedule.to_c(&requirements))?,
+        (Some(Form::Arduino), Some(schedule)) => print(schedule.to_arduino(&requirements, "RING"))?,
+        (Some(_), None) => tell(format!("{}: no schedule of {period} that meets all needs\n", args.file.display()))?,
+        (None, _) => tell(describe_fit(&args.file.display().to_string(), spec, period, &fit, seconds))?,
+    }
+    Ok(answer)
+}
+
+/// Answers `--curve`.
+fn curve_of(args: &Args, spec: &RingSpec, need: Need) -> Result<Answer, InputError> {
+    let began = Instant::now();
+    let mut watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
+    let mut control = |progress: &Progress| watch.control_flow(|| format!("{} nodes of a point", progress.nodes));
+    let atlas = if args.no_atlas { "" } else { ATLAS };
+    let search = Search { budget: args.budget.unwrap_or(CURVE_BUDGET), what_if: false, atlas };
+    let points = spec.curve(need, &search, &mut control).map_err(|error| InputError::new(&args.file, None, error))?;
+    drop(watch);
+    let seconds = began.elapsed().as_secs_f64();
+    if args.json {
+        print_line(to_json(&CurveJson::new(need, &points, seconds)))?;
+    } else {
+        tell(describe_curve(&args.file.display().to_string(), spec, need, &points, seconds))?;
+    }
+    Ok(Answer::Yes)
 }
 
 /// What the tick costs, where it is printed or certified.

@@ -94,7 +94,7 @@ macro_rules! help {
 pub(crate) enum Verb {
     #[command(after_help = help!(
         "design rings/paper-12.toml --emit rust",
-        "0 a schedule; 1 none meets the needs; 2 bad input"
+        "0 a schedule; 1 none meets the needs; 2 bad input; 3 not decided (--period)"
     ))]
     Design(design::Args),
     #[command(after_help = help!(

@@ -11,6 +11,7 @@ pub(crate) mod json;
 pub(crate) mod paths;
 pub(crate) mod percent;
 pub(crate) mod phases;
+pub(crate) mod questions;
 pub(crate) mod replay;
 pub(crate) mod search;
 pub(crate) mod study;

@@ -307,6 +307,33 @@ fn pareto_front_of_tables_is_what_the_two_bests_span() {
     assert!(said.contains("and no others") && said.matches("t_wait_a_us").count() == tables.len(), "{said}");
 }
 
+#[test]
+fn period_that_is_given_says_what_fits() {
+    let file = "rings/paper-12.toml";
+    for (period, code, t_delta) in [("64000", 1, 499), ("65000", 0, 999), ("100000", 0, 2999)] {
+        let asked = eeruf(&["design", file, "--period", period, "--json"]);
+        let found: serde_json::Value = serde_json::from_str(&asked.out).unwrap();
+        assert_eq!((asked.code, &found["fits"]), (Some(code), &(code == 0).into()), "{}", asked.out);
+        assert_eq!((&found["value_us"], &found["proven"]), (&t_delta.into(), &true.into()), "{}", asked.out);
+    }
+    let toml = eeruf(&["design", file, "--period", "100000", "--emit", "toml"]).out;
+    assert!(toml.contains("period_us = 100_000"), "{toml}");
+    let none = eeruf(&["design", file, "--period", "64000", "--emit", "toml"]);
+    assert_eq!((none.code, none.out.contains("no schedule of 64 ms")), (Some(1), true), "{}", none.out);
+    let off = eeruf(&["design", file, "--period", "64500"]);
+    assert_eq!(off.code, Some(2), "{}", off.out);
+}
+
+#[test]
+fn curve_prints_twenty_periods_with_the_rings_own_among_them() {
+    let curve = json(&["design", "rings/paper-12.toml", "--curve", "interval", "--json"]);
+    let points = curve["points"].as_array().unwrap();
+    assert_eq!((&curve["need"], points.len()), (&"interval".into(), 20));
+    assert_eq!((&points[9]["value_us"], &points[9]["period_us"]), (&15_000.into(), &65_000.into()));
+    let said = eeruf(&["design", "rings/paper-12.toml", "--curve", "t_delta"]).out;
+    assert_eq!(said.matches("the ring's own").count(), 1, "{said}");
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_ends_a_long_design_with_the_best_schedule_so_far() {

@@ -59,9 +59,9 @@ def test_what_compares_equal_pickles_and_prints_so_that_it_can_be_pasted() -> No
 
 def test_what_the_tick_costs_is_a_fraction_that_is_proven_and_survives_a_pickle() -> None:
     found = eeruf.design(12, 999, 15_000, 45_000, over_reals=True)
-    assert (found.value_us, found.real_period_us, found.real_proven) == (70_000, (138_999, 2), True)
+    assert (found.value_us, found.real_period_us, found.real_proven) == (70_000, (69_499, 1), True)
     assert pickle.loads(pickle.dumps(found)) == found
-    assert found.to_dict()["real_period_us"] == [138_999, 2]
+    assert found.to_dict()["real_period_us"] == [69_499, 1]
     without = eeruf.design(12, 999, 15_000, 45_000)
     assert (without.real_period_us, without.real_proven) == (None, None)
     assert without.schedule == found.schedule
@@ -97,6 +97,41 @@ def test_a_time_limit_ends_a_search_with_schedule_bound_and_certificate() -> Non
         eeruf.check_certificate(found.certificate)
     with pytest.raises(eeruf.ArgumentError, match="time_limit_s = 0"):
         eeruf.design(8, 999, 15_000, 30_000, time_limit_s=0)
+
+
+def test_a_period_that_is_given_says_what_fits() -> None:
+    for period_us, expected in [(64_000, (False, 499)), (65_000, (True, 999)), (100_000, (True, 2_999))]:
+        fits, found = eeruf.fit(period_us, 12, 999, 15_000, 30_000)
+        assert (fits, found.value_us) == expected
+        assert found.schedule is not None
+        assert found.schedule.verify(expected[1], 15_000, window_us=30_000).ok
+    uneven = eeruf.design(3, [999, 499, 499], 10_000, [20_000, 9_000, 9_000])
+    assert uneven.value_us is not None
+    assert eeruf.fit(uneven.value_us, 3, [999, 499, 499], 10_000, [20_000, 9_000, 9_000])[0] is True
+    assert eeruf.fit(uneven.value_us - 1000, 3, [999, 499, 499], 10_000, [20_000, 9_000, 9_000])[0] is False
+    with pytest.raises(eeruf.SearchError, match="expected a whole number of ticks"):
+        eeruf.fit(64_500, 12, 999, 15_000, 30_000)
+
+
+def test_a_curve_has_the_shortest_period_of_each_of_twenty_needs() -> None:
+    curve = eeruf.curve("range", 8, 999, 15_000, 36_000, layout="ring")
+    assert [value_us for value_us, *_ in curve] == [3_600 * tenths for tenths in range(1, 21)]
+    for window_us, period_us, bound_us, proven in curve[4::5]:
+        assert proven
+        found = eeruf.design(8, 999, 15_000, window_us, layout="ring")
+        assert period_us == bound_us == found.value_us
+    with pytest.raises(eeruf.ArgumentError, match=r"need = 'speed'; expected"):
+        eeruf.curve("speed", 8, 999, 15_000, 36_000)  # type: ignore[arg-type]
+
+
+def test_the_front_of_tables_spans_the_two_bests() -> None:
+    search = eeruf.WaitSearch(4, 40_000, 9_000, 1000, t_delta_us=99)
+    front = search.pareto()
+    assert front[0][1] == search.best("interval").value_us
+    assert front[-1][2] == search.best("t_delta").value_us
+    for table, interval_us, t_delta_us in front:
+        assert t_delta_us is not None
+        assert table.verify(t_delta_us, interval_us, criterion="paper").ok
 
 
 def test_the_papers_table_leaves_neighbours_17_ms_and_separates_by_2_ms() -> None:

@@ -14,8 +14,11 @@ pub struct FoundJson {
     pub value_us: Option<u32>,
     /// No schedule is better than this.
     pub bound_us: Option<u32>,
-    /// Whether no better schedule exists.
+    /// True if no better schedule exists.
     pub proven: bool,
+    /// True if a schedule of the given period meets all needs, false if none does; only `design --period` says it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fits: Option<bool>,
     /// Nodes visited.
     pub nodes: u64,
     /// How long it took.
@@ -49,6 +52,7 @@ impl FoundJson {
             value_us: found.value.map(Micros::as_micros),
             bound_us: found.bound.map(Micros::as_micros),
             proven: found.proven,
+            fits: None,
             nodes: found.nodes,
             seconds,
             reason: None,

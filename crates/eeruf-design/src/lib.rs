@@ -11,6 +11,7 @@
 //! | `find`, `what_if_uneven` | the design of a ring, and what would make it shorter |
 //! | `moving` | the shortest period of a ring that moves |
 //! | `handling` | firings apart by what the controller needs for one |
+//! | `questions` | what fits into a given period, and the curve of a need |
 //! | [`engine`] | search, proof and preference for rings whose sensors differ |
 //! | `found` | the answer as it is printed in JSON |
 //! | `hopping` | schedules of many phases: the file, and the shortest period |
@@ -43,6 +44,7 @@ mod hopping;
 mod layout;
 mod limits;
 mod moving;
+mod questions;
 mod reals;
 mod ring;
 mod shortest;
@@ -58,6 +60,7 @@ pub use found::FoundJson;
 pub use hopping::{HoppingDesign, PhaseFile, PhaseSchedule};
 pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};
+pub use questions::{CURVE_BUDGET, CURVE_POINTS, CurvePoint, Fit, Need};
 pub use reals::{RealPeriod, over_reals, real_budget};
 pub use ring::{RingFile, RingSpec};
 pub use shortest::{Search, Shortest, shortest};

@@ -32,7 +32,7 @@ struct Region {
 }
 
 /// The search for one ring.
-struct Moving<'s> {
+pub(crate) struct Moving<'s> {
     spec: &'s RingSpec,
     search: Search,
     nodes: u64,
@@ -58,24 +58,48 @@ impl RingSpec {
         search: &Search,
         control: &mut impl Control,
     ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
-        Moving { spec: self, search: *search, nodes: 0 }.shortest(control)
+        Moving::new(self, *search).shortest(control)
     }
 
-    /// Whether the schedule keeps all needs, with the `t_delta` that its own longest time between two firings asks for.
-    fn serves(&self, schedule: &AnySchedule) -> bool {
+    /// Returns true if the schedule keeps all needs, with the `t_delta` that its own longest time between two firings
+    /// asks for.
+    pub(crate) fn serves(&self, schedule: &AnySchedule) -> bool {
         schedule.verify(&self.covering(self.t_delta_needed(schedule)).problem().requirements).ok()
     }
 
     /// The same ring where no sensor fires again before `least`.
     fn refiring_after(&self, least: Micros) -> Self {
         match &self.uneven {
-            Some(uneven) => Self { uneven: Some(uneven.refiring_after(least)), ..self.clone() },
+            Some(uneven) => {
+                let requirements = self.problem().requirements;
+                let refire = (0..self.sensors).map(|x| requirements.refire_of(x).max(least)).collect();
+                Self { uneven: Some(uneven.with_refire(refire)), ..self.clone() }
+            }
             None => Self { window: self.window.max(least), ..self.clone() },
         }
     }
 }
 
-impl Moving<'_> {
+impl<'s> Moving<'s> {
+    pub(crate) fn new(spec: &'s RingSpec, search: Search) -> Self {
+        Self { spec, search, nodes: 0 }
+    }
+
+    /// The nodes visited so far.
+    pub(crate) fn nodes(&self) -> u64 {
+        self.nodes
+    }
+
+    /// Decides whether some schedule with this period, in ticks, serves.
+    pub(crate) fn at(&mut self, period: u32, control: &mut impl Control) -> Result<Outcome<AnySchedule>, SearchError> {
+        let end = period.saturating_add(1);
+        Ok(match self.between(period, end, None, "", control)? {
+            (Some(schedule), ..) => Outcome::Found(schedule),
+            (None, Some(bound), _) if bound == self.time(end) => Outcome::Exhausted,
+            (None, ..) => Outcome::BudgetSpent,
+        })
+    }
+
     fn shortest(mut self, control: &mut impl Control) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
         let spec = self.spec;
         // No schedule is shorter than one for the least t_delta of any period, nor than one for the least t_delta of
@@ -108,7 +132,9 @@ impl Moving<'_> {
         let upper = self.climb(&lower, control)?;
         let (best, bound, reason) = if lower.found.proven {
             let least = bound.map_or(1, |bound| self.ticks(bound));
-            self.between(least, upper, &lower.reason, control)?
+            // Without any schedule so far, one that is twice as long as the bound would do.
+            let end = upper.map_or(least.saturating_mul(2), |schedule| self.ticks(schedule.period()));
+            self.between(least, end, upper, &lower.reason, control)?
         } else {
             (upper, bound, lower.reason.clone())
         };
@@ -126,7 +152,7 @@ impl Moving<'_> {
 
     /// Of the schedules of an uneven ring with the period of this one and no larger `t_delta`, the one with most to
     /// spare.
-    fn with_most_to_spare(
+    pub(crate) fn with_most_to_spare(
         &self,
         schedule: AnySchedule,
         needs: &RingSpec,
@@ -215,18 +241,17 @@ impl Moving<'_> {
         Ok(reached)
     }
 
-    /// Looks for schedules with periods from `least` to that of `best`: the shortest, the bound below which there is
-    /// none, and why.
+    /// Looks for schedules with periods from `least` to below `end`, that of `best` if there is one: the shortest, the
+    /// bound below which there is none, and why.
     fn between(
         &mut self,
         least: u32,
+        mut end: u32,
         mut best: Option<AnySchedule>,
         lower_reason: &str,
         control: &mut impl Control,
     ) -> Result<(Option<AnySchedule>, Option<Micros>, String), SearchError> {
         let window = in_ticks(&self.spec.problem()).window.into_iter().min().unwrap_or(0);
-        // Without any schedule so far, one that is twice as long as the bound would do.
-        let mut end = best.map_or(least.saturating_mul(2), |schedule| self.ticks(schedule.period()));
         // The region with the shortest periods is at the top.
         let mut open = vec![Region { periods: (least, u32::MAX), changes: (0, u32::MAX) }];
         while let Some(Region { periods: (first, last), changes: (low, high) }) = open.pop() {

@@ -65,9 +65,14 @@ pub struct RingSpec {
     pub min_interval: Micros,
     /// `T_wind`: how long a sensor listens; the longest where sensors have their own.
     pub window: Micros,
-    /// Whether a sensor's own echo from the period before must be rejected too.
+    /// The range to see as an echo time, without what only keeps a sensor from being triggered again; the longest where
+    /// sensors have their own.
+    pub listening: Micros,
+    /// How soon sensors that are all alike may be triggered again; zero where they have their own.
+    pub retrigger: Micros,
+    /// True if a sensor's own echo from the period before must be rejected too.
     pub stale_echo: bool,
-    /// How fast sound is.
+    /// The speed of sound.
     pub c: SpeedOfSound,
     /// What `t_delta` must cover on a robot that stands; the largest where sensors have their own.
     pub t_delta: Micros,
@@ -167,6 +172,7 @@ impl RingFile {
             return Err("a listening window of 0 us; expected window_us or max_range_m above zero".to_owned());
         }
         let (intervals, lines, together) = (&self.intervals_us, &self.shared_lines, &self.together);
+        let (listening, retrigger) = (largest(&window), if is_uneven { Micros::ZERO } else { largest(&refire) });
         let uneven = || OwnedUneven::new(sensors, [t_delta, window, refire], intervals, lines, together);
         let uneven = is_uneven.then(uneven).transpose()?;
         let spec = RingSpec {
@@ -175,6 +181,8 @@ impl RingFile {
             layout: self.layout.owned(self.neighbours, self.sensors)?,
             min_interval,
             window: largest_window,
+            listening,
+            retrigger,
             stale_echo: self.stale_echo,
             c,
             t_delta: largest_t_delta,

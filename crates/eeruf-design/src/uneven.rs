@@ -65,10 +65,8 @@ impl OwnedUneven {
         Self { t_delta, ..self.clone() }
     }
 
-    /// The same where each sensor is triggered again no sooner than `least`, or than it asks for.
-    pub(crate) fn refiring_after(&self, least: Micros) -> Self {
-        let later = |x: usize, window: &Micros| self.refire.get(x).map_or(*window, |refire| *refire).max(least);
-        let refire = self.window.iter().enumerate().map(|(x, window)| later(x, window)).collect();
+    /// The same with other refire times.
+    pub(crate) fn with_refire(&self, refire: Vec<Micros>) -> Self {
         Self { refire, ..self.clone() }
     }
 
@@ -88,6 +86,16 @@ impl OwnedUneven {
     pub(crate) fn with_intervals(&self, other: impl Fn(Micros) -> Micros) -> Self {
         let intervals = self.intervals.iter().map(|&(x, y, interval)| (x, y, other(interval))).collect();
         Self { intervals, ..self.clone() }
+    }
+
+    /// The same with other tolerances.
+    pub(crate) fn with_t_deltas(&self, other: impl Fn(Micros) -> Micros) -> Self {
+        Self { t_delta: self.t_delta.iter().map(|t_delta| other(*t_delta)).collect(), ..self.clone() }
+    }
+
+    /// The same with other windows; sensors are triggered again as soon as before.
+    pub(crate) fn with_windows(&self, other: impl Fn(Micros) -> Micros) -> Self {
+        Self { window: self.window.iter().map(|window| other(*window)).collect(), ..self.clone() }
     }
 
     /// The same without shared lines, if there are any.

@@ -85,7 +85,7 @@ const FEW_SENSORS: usize = 12;
 ///     (66000, True)
 ///     >>> found = eeruf.design(12, 999, 15_000, 45_000, over_reals=True)
 ///     >>> found.value_us, found.real_period_us, found.real_proven
-///     (70000, (138999, 2), True)
+///     (70000, (69499, 1), True)
 ///     >>> windows = [36_000, 36_000, 12_000, 12_000]
 ///     >>> found = eeruf.design(4, [999, 999, 1500, 1500], 15_000, windows, shared_lines=[(0, 2)])
 ///     >>> found.value_us, found.proven

@@ -36,6 +36,7 @@ mod owned_ring;
 mod paths;
 mod pose;
 mod program;
+mod questions;
 mod reading_blocks;
 mod readings;
 mod report;
@@ -83,6 +84,7 @@ mod _eeruf {
         own::FiredReading,
         paths::Paths,
         program::{example, run_program},
+        questions::{curve, fit},
         reading_blocks::{ReadingBlocks, simulate_blocks},
         readings::Readings,
         report::{Report, Violation},

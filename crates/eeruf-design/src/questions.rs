@@ -1,0 +1,182 @@
+//! Questions beside the shortest period: what fits into a given one, and what each need costs.
+
+use eeruf_core::search::{Control, GridError, Outcome, ProblemError, SearchError, design};
+use eeruf_core::{MAX_SENSORS, Micros};
+use eeruf_sim::AnySchedule;
+
+use crate::engine::MAX_NUMBER;
+use crate::find::NoSchedule;
+use crate::moving::Moving;
+use crate::ring::RingSpec;
+use crate::shortest::Search;
+
+/// The answer to which `t_delta` fits into a period.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// A schedule of that period: one that meets the ring's needs, or else the one with the largest `t_delta`.
+    pub schedule: Option<AnySchedule>,
+    /// The ring with the `t_delta` that the schedule needs.
+    pub spec: RingSpec,
+    /// The largest `t_delta` found; of the sensor with the largest, where sensors have their own and each grows by the
+    /// same.
+    pub t_delta: Option<Micros>,
+    /// No schedule of that period has a larger `t_delta`; `None` if none meets the other needs, or if it is unknown.
+    pub bound: Option<Micros>,
+    /// Some: whether the ring's needs are met by a schedule of that period. `None` if that is not decided.
+    pub fits: Option<bool>,
+    /// True if no schedule of that period has a larger `t_delta`.
+    pub proven: bool,
+    /// Nodes visited.
+    pub nodes: u64,
+}
+
+/// A need that a curve varies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// `t_delta`, without what motion adds.
+    TDelta,
+    /// How long sensors listen.
+    Range,
+    /// The least time between the firings of neighbours.
+    Interval,
+}
+
+/// A point of a curve: the shortest period for one value of a need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CurvePoint {
+    /// The need in tenths of the ring's own.
+    pub tenths: u32,
+    /// Its value; the largest where sensors have their own.
+    pub value: Micros,
+    /// The shortest period found; `None` if there is no schedule, as for a robot that is too fast.
+    pub period: Option<Micros>,
+    /// No schedule has a shorter period than this.
+    pub bound: Option<Micros>,
+    /// True if no schedule is shorter, or if there is none.
+    pub proven: bool,
+}
+
+/// The number of points of a curve: from a tenth of the ring's own need to twice as much.
+pub const CURVE_POINTS: u32 = 20;
+/// The nodes that each point of a curve may cost by default.
+pub const CURVE_BUDGET: u64 = 20_000;
+
+impl RingSpec {
+    /// Finds what fits into a period: whether the ring's needs do, and the largest `t_delta`.
+    ///
+    /// # Errors
+    /// [`SearchError`] for a period that is no whole number of ticks, and as for [`shortest`](Self::shortest).
+    pub fn fit(&self, period: Micros, budget: u64, control: &mut impl Control) -> Result<Fit, SearchError> {
+        let tick = self.tick.as_micros();
+        if tick == 0 {
+            return Err(GridError::NoTick.into());
+        }
+        if !period.as_micros().is_multiple_of(tick) {
+            return Err(GridError::OffGrid { what: "the period", time: period, tick: self.tick }.into());
+        }
+        let ticks = period.as_micros() / tick;
+        if ticks == 0 || ticks > MAX_NUMBER {
+            return Err(SearchError::Problem(ProblemError::Period { period: ticks, most: MAX_NUMBER }));
+        }
+        let search = Search { budget, what_if: false, atlas: "" };
+        let mut fit =
+            Fit { schedule: None, spec: self.clone(), t_delta: None, bound: None, fits: None, proven: false, nodes: 0 };
+        if self.uneven.is_none() {
+            let mut memory = vec![0; design::memory_words(self.sensors)];
+            let found = self.problem().largest_t_delta::<MAX_SENSORS>(period, budget, &mut memory, control)?;
+            (fit.schedule, fit.t_delta, fit.bound) = (found.schedule, found.value, found.bound);
+            (fit.proven, fit.nodes) = (found.proven, found.nodes);
+            let too_small = found.bound.is_none_or(|bound| bound < self.t_delta);
+            fit.fits = match found.schedule {
+                Some(schedule) if self.serves(&schedule) => Some(true),
+                // Not even what a robot at rest needs.
+                _ if found.proven && too_small => Some(false),
+                _ => None,
+            };
+        }
+        if fit.fits.is_none() {
+            let mut moving = Moving::new(self, search);
+            match moving.at(ticks, control)? {
+                Outcome::Found(schedule) => (fit.schedule, fit.fits) = (Some(schedule), Some(true)),
+                Outcome::Exhausted => fit.fits = Some(false),
+                Outcome::BudgetSpent => {}
+            }
+            fit.nodes += moving.nodes();
+        }
+        if let Some(schedule) = fit.schedule {
+            let needs = self.covering(self.t_delta_needed(&schedule));
+            fit.spec = needs.clone();
+            if self.uneven.is_some() {
+                let (schedule, spare) = Moving::new(self, search).with_most_to_spare(schedule, &needs, control)?;
+                let t_delta = spare.map(|spare| needs.t_delta.saturating_add(spare.t_delta));
+                (fit.schedule, fit.t_delta) = (Some(schedule), t_delta);
+                if spare.is_some_and(|spare| spare.proven[0]) {
+                    (fit.bound, fit.proven) = (t_delta, true);
+                }
+            }
+        }
+        Ok(fit)
+    }
+
+    /// Finds the shortest period for 20 values of a need, from a tenth of the ring's own to twice as much; each within
+    /// `search.budget` nodes.
+    ///
+    /// # Errors
+    /// As for [`shortest`](Self::shortest).
+    pub fn curve(
+        &self,
+        need: Need,
+        search: &Search,
+        control: &mut impl Control,
+    ) -> Result<Vec<CurvePoint>, SearchError> {
+        let search = Search { what_if: false, ..*search };
+        let mut points: Vec<CurvePoint> = Vec::new();
+        for tenths in 1..=CURVE_POINTS {
+            let (spec, value) = self.with(need, tenths);
+            let mut point = CurvePoint { tenths, value, period: None, bound: None, proven: false };
+            match spec.shortest(&search, control)? {
+                Ok(design) => {
+                    let found = design.found;
+                    (point.period, point.bound, point.proven) = (found.value, found.bound, found.proven);
+                }
+                Err(none) => point.proven = none == NoSchedule::TooFast,
+            }
+            // What more of a need takes is no shorter.
+            let before = points.last().and_then(|last| last.bound);
+            point.bound = point.bound.max(before);
+            point.proven |= point.period.is_some() && point.period == point.bound;
+            points.push(point);
+        }
+        Ok(points)
+    }
+
+    /// The ring with some tenths of one need, and the need's value.
+    fn with(&self, need: Need, tenths: u32) -> (Self, Micros) {
+        let part = |time: Micros| {
+            let us = u64::from(time.as_micros()) * u64::from(tenths);
+            Micros::new(u32::try_from(us.div_ceil(10)).unwrap_or(u32::MAX))
+        };
+        let mut spec = self.clone();
+        let value = match need {
+            Need::TDelta => {
+                spec.t_delta = part(self.t_delta);
+                spec.t_delta
+            }
+            Need::Interval => {
+                spec.min_interval = part(self.min_interval);
+                spec.min_interval
+            }
+            Need::Range => {
+                spec.listening = part(self.listening);
+                spec.window = spec.listening.max(self.retrigger);
+                spec.listening
+            }
+        };
+        spec.uneven = self.uneven.as_ref().map(|uneven| match need {
+            Need::TDelta => uneven.with_t_deltas(part),
+            Need::Interval => uneven.with_intervals(part),
+            Need::Range => uneven.with_windows(part),
+        });
+        (spec, value)
+    }
+}

@@ -1,0 +1,228 @@
+//! `fit` and `curve`: what fits into a period, and the shortest period as one need varies.
+
+use std::time::Instant;
+
+use eeruf_core::{
+    Micros, SpeedOfSound,
+    search::{Found as CoreFound, Progress},
+};
+use eeruf_design::{CURVE_BUDGET, CurvePoint, LayoutKey, LayoutName, Need, OwnedUneven, RingSpec, Search};
+use pyo3::{prelude::*, types::PyList};
+
+use crate::{
+    arguments::{choice, flag, micros, shown, whole, whole_or, wrong},
+    errors::{ArgumentError, Raise},
+    found::Found,
+    requirements::{self, UnevenArguments, each},
+    watch::{Watch, control_flow},
+};
+
+/// The arguments that both questions share.
+struct Arguments<'a, 'py> {
+    sensors: &'a Bound<'py, PyAny>,
+    t_delta_us: &'a Bound<'py, PyAny>,
+    min_interval_us: &'a Bound<'py, PyAny>,
+    window_us: &'a Bound<'py, PyAny>,
+    tick_us: Option<&'a Bound<'py, PyAny>>,
+    neighbours: Option<&'a Bound<'py, PyAny>>,
+    layout: Option<&'a Bound<'py, PyAny>>,
+    stale_echo: Option<&'a Bound<'py, PyAny>>,
+    uneven: UnevenArguments<'a, 'py>,
+}
+
+impl Arguments<'_, '_> {
+    fn spec(&self) -> PyResult<RingSpec> {
+        let sensors = requirements::sensors(self.sensors)?;
+        let neighbours = requirements::neighbours(self.neighbours)?;
+        let layout = layout(self.layout)?.owned(neighbours, sensors).map_err(ArgumentError::new_err)?;
+        let (t_delta, t_deltas) = each("t_delta_us", self.t_delta_us, 0)?;
+        let (window, windows) = each("window_us", self.window_us, 1)?;
+        let spec = RingSpec {
+            sensors,
+            tick: Micros::new(whole_or("tick_us", self.tick_us, 1000, 1..=u32::MAX)?),
+            layout,
+            min_interval: micros("min_interval_us", self.min_interval_us)?,
+            window,
+            listening: window,
+            retrigger: Micros::ZERO,
+            stale_echo: flag("stale_echo", self.stale_echo, false)?,
+            c: SpeedOfSound::at_celsius_tenths(200),
+            t_delta,
+            speed_mm_s: None,
+            uneven: self.uneven.owned(sensors, t_deltas, windows)?,
+        };
+        OwnedUneven::can_fire_together(&spec.problem().requirements, sensors).map_err(ArgumentError::new_err)?;
+        Ok(spec)
+    }
+}
+
+/// The layout as ring files have it.
+fn layout(layout: Option<&Bound<'_, PyAny>>) -> PyResult<LayoutKey> {
+    let Some(layout) = layout else { return Ok(LayoutKey::Unsaid) };
+    if layout.extract::<String>().is_ok() {
+        let names = [("line", LayoutName::Line), ("ring", LayoutName::Ring), ("blocks", LayoutName::Blocks)];
+        return choice("layout", Some(layout), &names).map(LayoutKey::Named);
+    }
+    let pairs =
+        layout.try_iter().and_then(|items| PyList::new(layout.py(), items.collect::<PyResult<Vec<_>>>()?)?.extract());
+    let expected = "\"line\", \"ring\", \"blocks\", or pairs of neighbours such as [(0, 1), (1, 2)]";
+    pairs.map(LayoutKey::Pairs).map_err(|_| wrong("layout", shown(layout), expected))
+}
+
+/// Find what fits into a period: whether the needs do, and the largest ``T_delta``. Ctrl-C ends it.
+///
+/// Args:
+///     period_us: the period, in whole ticks.
+///     sensors: how many, 1 to 64.
+///     t_delta_us: as in :func:`design`, as are the arguments below but ``budget``.
+///     min_interval_us: the least time between the firings of two neighbours.
+///     window_us: how long a sensor listens; one for all, or a sequence.
+///     tick_us: the grid of firing times and period, 1 or more.
+///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
+///     layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours.
+///     stale_echo: whether a sensor's own echo from the period before must be rejected too.
+///     budget: how many nodes to visit at most, 1 or more; 50 million by default.
+///     refire_us: how soon a sensor may be triggered again, where that is later than its window.
+///     intervals_us: pairs of sensors with the least time between their firings.
+///     shared_lines: groups of sensors on one echo line.
+///     together: groups of sensors that fire at the same instants.
+///
+/// Returns:
+///     Whether a schedule of this period meets all needs, None if that was not decided; and a :class:`Found` with the
+///     largest ``T_delta`` of this period in ``value_us``: of the sensor with the largest, where sensors have their own
+///     and each grows by the same. Its schedule is one that meets the needs, or else the one with that ``T_delta``.
+///
+/// Raises:
+///     ArgumentError: something of the wrong type or out of range.
+///     SearchError: needs that make no sense, or a period that is no whole number of ticks.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> fits, found = eeruf.fit(100_000, 12, 999, 15_000, 30_000)
+///     >>> fits, found.value_us, found.proven
+///     (True, 2999, True)
+#[pyfunction]
+#[pyo3(signature = (
+    period_us, sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None,
+    stale_echo=None, budget=None, refire_us=None, intervals_us=None, shared_lines=None, together=None
+))]
+#[pyo3(text_signature = "(period_us, sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, \
+        layout=\"line\", stale_echo=False, budget=None, refire_us=None, intervals_us=None, shared_lines=None, \
+        together=None)")]
+#[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+pub(crate) fn fit(
+    py: Python<'_>,
+    period_us: &Bound<'_, PyAny>,
+    sensors: &Bound<'_, PyAny>,
+    t_delta_us: &Bound<'_, PyAny>,
+    min_interval_us: &Bound<'_, PyAny>,
+    window_us: &Bound<'_, PyAny>,
+    tick_us: Option<&Bound<'_, PyAny>>,
+    neighbours: Option<&Bound<'_, PyAny>>,
+    layout: Option<&Bound<'_, PyAny>>,
+    stale_echo: Option<&Bound<'_, PyAny>>,
+    budget: Option<&Bound<'_, PyAny>>,
+    refire_us: Option<&Bound<'_, PyAny>>,
+    intervals_us: Option<&Bound<'_, PyAny>>,
+    shared_lines: Option<&Bound<'_, PyAny>>,
+    together: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(Option<bool>, Found)> {
+    let period = Micros::new(whole("period_us", period_us, 1..=u32::MAX)?);
+    let budget = whole_or("budget", budget, 50_000_000, 1..=u64::MAX)?;
+    let uneven = UnevenArguments { refire_us, intervals_us, shared_lines, together };
+    let arguments =
+        Arguments { sensors, t_delta_us, min_interval_us, window_us, tick_us, neighbours, layout, stale_echo, uneven };
+    let spec = arguments.spec()?;
+    let began = Instant::now();
+    let mut watch = Watch::new(None)?;
+    let fit = py.detach(|| {
+        let mut control = |_: &Progress| control_flow(watch.go_on(None, String::new));
+        spec.fit(period, budget, &mut control).map_err(Raise::raise)
+    });
+    let fit = watch.outcome(fit)?;
+    let found = CoreFound {
+        schedule: fit.schedule,
+        value: fit.t_delta,
+        bound: fit.bound,
+        proven: fit.proven,
+        nodes: fit.nodes,
+    };
+    Ok((fit.fits, Found::of(&found, began, None)))
+}
+
+/// Find the shortest period for 20 values of one need, from a tenth of the one given to twice as much. Ctrl-C ends it.
+///
+/// Args:
+///     need: ``"t_delta"``, ``"range"`` (the window) or ``"interval"``.
+///     sensors: how many, 1 to 64.
+///     t_delta_us: as in :func:`design`, as are the arguments below but ``budget``. Where sensors or pairs have
+///         their own needs, all vary by the same factor.
+///     min_interval_us: the least time between the firings of two neighbours.
+///     window_us: how long a sensor listens; one for all, or a sequence.
+///     tick_us: the grid of firing times and period, 1 or more.
+///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
+///     layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours.
+///     stale_echo: whether a sensor's own echo from the period before must be rejected too.
+///     budget: how many nodes each point may cost, 1 or more; 20,000 by default.
+///     refire_us: how soon a sensor may be triggered again, where that is later than its window.
+///     intervals_us: pairs of sensors with the least time between their firings.
+///     shared_lines: groups of sensors on one echo line.
+///     together: groups of sensors that fire at the same instants.
+///
+/// Returns:
+///     Tuples of the need's value, the shortest period found, the bound below which there is none, all in microseconds,
+///     and whether the period is proven the shortest.
+///
+/// Raises:
+///     ArgumentError: something of the wrong type or out of range.
+///     SearchError: needs that make no sense, or too large a grid.
+///
+/// Example:
+///     >>> import eeruf
+///     >>> curve = eeruf.curve("interval", 12, 999, 15_000, 30_000)
+///     >>> len(curve), curve[9]
+///     (20, (15000, 65000, 65000, True))
+#[pyfunction]
+#[pyo3(signature = (
+    need, sensors, t_delta_us, min_interval_us, window_us, tick_us=None, neighbours=None, layout=None, stale_echo=None,
+    budget=None, refire_us=None, intervals_us=None, shared_lines=None, together=None
+))]
+#[pyo3(text_signature = "(need, sensors, t_delta_us, min_interval_us, window_us, tick_us=1000, neighbours=4, \
+        layout=\"line\", stale_echo=False, budget=None, refire_us=None, intervals_us=None, shared_lines=None, \
+        together=None)")]
+#[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+#[expect(clippy::type_complexity, reason = "a tuple for each point, as Python has it")]
+pub(crate) fn curve(
+    py: Python<'_>,
+    need: &Bound<'_, PyAny>,
+    sensors: &Bound<'_, PyAny>,
+    t_delta_us: &Bound<'_, PyAny>,
+    min_interval_us: &Bound<'_, PyAny>,
+    window_us: &Bound<'_, PyAny>,
+    tick_us: Option<&Bound<'_, PyAny>>,
+    neighbours: Option<&Bound<'_, PyAny>>,
+    layout: Option<&Bound<'_, PyAny>>,
+    stale_echo: Option<&Bound<'_, PyAny>>,
+    budget: Option<&Bound<'_, PyAny>>,
+    refire_us: Option<&Bound<'_, PyAny>>,
+    intervals_us: Option<&Bound<'_, PyAny>>,
+    shared_lines: Option<&Bound<'_, PyAny>>,
+    together: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Vec<(u32, Option<u32>, Option<u32>, bool)>> {
+    let needs = [("t_delta", Need::TDelta), ("range", Need::Range), ("interval", Need::Interval)];
+    let need = choice("need", Some(need), &needs)?;
+    let budget = whole_or("budget", budget, CURVE_BUDGET, 1..=u64::MAX)?;
+    let uneven = UnevenArguments { refire_us, intervals_us, shared_lines, together };
+    let arguments =
+        Arguments { sensors, t_delta_us, min_interval_us, window_us, tick_us, neighbours, layout, stale_echo, uneven };
+    let spec = arguments.spec()?;
+    let mut watch = Watch::new(None)?;
+    let points = py.detach(|| {
+        let mut control = |_: &Progress| control_flow(watch.go_on(None, String::new));
+        let search = Search { budget, ..Search::default() };
+        spec.curve(need, &search, &mut control).map_err(Raise::raise)
+    });
+    let us = |time: Option<Micros>| time.map(Micros::as_micros);
+    let point = |point: CurvePoint| (point.value.as_micros(), us(point.period), us(point.bound), point.proven);
+    Ok(watch.outcome(points)?.into_iter().map(point).collect())
+}

@@ -115,6 +115,15 @@ impl RingSpec {
                 }
             }
         }
+        if self.handling > Micros::ZERO && fit.fits == Some(true) {
+            fit.schedule = fit.schedule.and_then(|schedule| self.moved_apart(&schedule));
+            fit.t_delta = fit.schedule.and_then(|apart| apart.verify(&self.problem().requirements).max_t_delta());
+            // That of the ways which were tried.
+            fit.proven = false;
+            if fit.schedule.is_none() {
+                fit.fits = None;
+            }
+        }
         Ok(fit)
     }
 

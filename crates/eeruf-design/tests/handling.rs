@@ -90,3 +90,16 @@ fn many_phases_refuse_it_by_name() {
     let refused = spec.hopping(5, eeruf_core::PhaseCriterion::Margin(Micros::new(90))).expect_err("refused");
     assert!(refused.starts_with("handling_us"), "{refused}");
 }
+
+#[test]
+fn what_fits_into_a_period_keeps_firings_apart_too() {
+    let spec = RingSpec::from_text(&ring(8, "handling_us = 110")).expect("a ring");
+    let fit = spec.fit(Micros::from_millis(67), 1_000_000, &mut ()).expect("a search");
+    assert_eq!(fit.fits, Some(true));
+    let schedule = fit.schedule.expect("a schedule");
+    for phase in [Phase::A, Phase::B] {
+        let mut times: Vec<_> = (0..8).map(|x| schedule.t_fire(phase, x).expect("a sensor").as_micros()).collect();
+        times.sort_unstable();
+        assert!(times.windows(2).all(|pair| pair[1] - pair[0] >= 110), "{times:?}");
+    }
+}

@@ -49,6 +49,7 @@ impl Arguments<'_, '_> {
             c: SpeedOfSound::at_celsius_tenths(200),
             t_delta,
             speed_mm_s: None,
+            handling: Micros::ZERO,
             uneven: self.uneven.owned(sensors, t_deltas, windows)?,
         };
         OwnedUneven::can_fire_together(&spec.problem().requirements, sensors).map_err(ArgumentError::new_err)?;

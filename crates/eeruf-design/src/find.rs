@@ -28,7 +28,8 @@ pub struct RingDesign {
     pub spec: RingSpec,
     /// The shortest period, or the best found.
     pub found: Found<MAX_SENSORS>,
-    /// The ring with the least `t_delta` that any schedule needs at a period of `bound`; the ring itself if it stands.
+    /// The ring with a `t_delta` for which `bound` holds: the least that any schedule needs at that period, or the
+    /// design's own; the ring itself if it stands.
     pub bounding: RingSpec,
     /// The bound on the period of every schedule for `bounding`: what a certificate can state.
     pub bound: Option<Micros>,

@@ -105,6 +105,9 @@ impl<'s> Moving<'s> {
         // No schedule is shorter than one for the least t_delta of any period, nor than one for the least t_delta of
         // that period, and so on.
         let mut bounding = spec.covering(self.least_t_delta(0));
+        if bounding.t_delta > TOO_MUCH {
+            return Ok(Err(NoSchedule::TooFast));
+        }
         let mut lower = self.standing(&bounding, self.search.atlas, control)?;
         while let Some(period) = lower.found.value.filter(|_| lower.found.proven) {
             let t_delta = self.least_t_delta(self.ticks(period));
@@ -142,12 +145,28 @@ impl<'s> Moving<'s> {
         let value = Some(schedule.period());
         let proven = bound == value;
         let needs = spec.covering(spec.t_delta_needed(&schedule).max(bounding.t_delta));
-        let (schedule, to_spare) =
-            if proven { self.with_most_to_spare(schedule, &needs, control)? } else { (schedule, None) };
+        let (mut schedule, mut preferred, mut to_spare) = (schedule, None, None);
+        let mut certifiable = (bounding, lower.found.bound);
+        if proven {
+            // Most are the shortest for their own t_delta too. That can be certified, and of those that are as short
+            // the preferred one is known.
+            let own = self.standing(&needs, "", control)?;
+            if own.found.proven && own.found.value == value {
+                certifiable = (needs.clone(), value);
+                let as_even = |other: &AnySchedule| spec.t_delta_needed(other) <= needs.t_delta;
+                if let Some(other) = own.schedule().filter(as_even) {
+                    (schedule, preferred, to_spare) = (other, own.preferred, own.to_spare);
+                }
+            }
+            if to_spare.is_none() {
+                (schedule, to_spare) = self.with_most_to_spare(schedule, &needs, control)?;
+            }
+        }
+        let (bounding, certified) = certifiable;
         let found = Found { schedule: Some(schedule), value, bound, proven, nodes: self.nodes };
-        let shortest = Shortest { found, reason, preferred: None, to_spare, from_atlas: false };
+        let shortest = Shortest { found, reason, preferred, to_spare, from_atlas: false };
         let design = spec.design(schedule, shortest, bounding);
-        Ok(Ok(RingDesign { bound: lower.found.bound, t_delta: needs.t_delta, spec: needs, ..design }))
+        Ok(Ok(RingDesign { bound: certified, t_delta: needs.t_delta, spec: needs, ..design }))
     }
 
     /// Of the schedules of an uneven ring with the period of this one and no larger `t_delta`, the one with most to

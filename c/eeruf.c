@@ -523,7 +523,7 @@ static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, const EerufSensor 
             /* Both may be one firing if the readings are as close as that. */
             for (fired = sensor->fired_us; fired <= before; fired++) {
                 if (fired == own->fired_us || heard - *fired > audible) continue;
-                if (apart(*fired - *before, between) <= change) return x;
+                if (*fired - *before - between + change <= 2 * change) return x;
             }
         } while (++before < sensor->fired_us + EERUF_FIRINGS);
         sensor++;

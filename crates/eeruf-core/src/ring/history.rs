@@ -122,20 +122,19 @@ impl Sounds {
     /// Asks if sound of these firings explains both readings. `own`: they are the receiver's.
     pub(super) fn ask<const H: usize>(&self, firings: &Firings<H>, own: bool) -> Answer {
         let [first, second] = self.heard;
-        let audible = self.audible.as_micros();
-        // The time between the two sounds is that between the firings, but for what the path has changed by.
-        let apart = second.since(first).as_micros();
-        for (later, &b) in firings.0.iter().enumerate().skip(usize::from(own)) {
-            // The length that the path would have in the second reading. Before it was sent nothing is heard.
-            let length = second.since(b).as_micros();
-            if length > audible {
+        let (audible, path_change) = (self.audible.as_micros(), self.path_change.as_micros());
+        for (earlier, &a) in firings.0.iter().enumerate() {
+            // The length that the path would have in the first reading. Before it was sent nothing is heard.
+            let length_before = first.since(a).as_micros();
+            if length_before > audible || (own && earlier == 1) {
                 continue;
             }
-            // The earlier of two firings is behind the later; both may be one if the readings are as close as that.
-            for (earlier, &a) in firings.0.iter().enumerate().skip(later) {
-                let length_before = first.since(a).as_micros();
-                let change = b.since(a).as_micros().abs_diff(apart);
-                if length_before <= audible && change <= self.path_change.as_micros() && !(own && earlier == 1) {
+            // The later of two firings is before the earlier here; both may be one if the readings are as close as that.
+            for &b in firings.0.iter().take(earlier + 1).skip(usize::from(own)) {
+                let length = second.since(b).as_micros();
+                // Both are below a minute, and the change below 66 ms: neither sum nor difference wraps twice.
+                let changed = length.wrapping_sub(length_before).wrapping_add(path_change);
+                if length <= audible && changed <= 2 * path_change {
                     return Answer::Explained;
                 }
             }

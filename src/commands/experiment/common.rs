@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use eeruf_core::search::Progress;
-use eeruf_sim::Physics;
 use eeruf_sim::experiments::FIRST;
+use eeruf_sim::{GainProfile, Physics, Room};
 
 use crate::files::error::InputError;
 use crate::report::draw::Picture;
@@ -28,6 +28,12 @@ pub(crate) struct Common {
     /// Which effects there are: default or plain (see docs/physics.md)
     #[arg(long, value_name = "PRESET", default_value = "default")]
     pub(crate) physics: Physics,
+    /// Whether rings hear floor and ceiling: flat, or a room 2.6 m high with sensors at 0.3 m
+    #[arg(long, value_name = "HEIGHT", default_value = "flat")]
+    height: Height,
+    /// How the receivers' gain grows: constant, square_root, linear, stepped or polaroid_6500
+    #[arg(long, value_name = "GAIN", default_value = "constant", value_parser = gain)]
+    pub(crate) gain: GainProfile,
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
@@ -39,7 +45,24 @@ pub(crate) struct Common {
     png: Option<PathBuf>,
 }
 
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Height {
+    Flat,
+    Room,
+}
+
+fn gain(name: &str) -> Result<GainProfile, String> {
+    let names = GainProfile::NAMES.map(|(name, _)| name).join(", ");
+    let found = GainProfile::NAMES.iter().find(|(known, _)| *known == name);
+    found.map(|(_, gain)| *gain).ok_or_else(|| format!("expected one of {names}"))
+}
+
 impl Common {
+    /// Floor and ceiling, if rings hear them.
+    pub(crate) fn room(&self) -> Option<Room> {
+        matches!(self.height, Height::Room).then_some(Room::DEFAULT)
+    }
+
     /// Draws a picture in each form that was asked for; the folders are made if need be.
     pub(crate) fn draw(&self, name: &str, picture: impl Fn() -> Picture) -> Result<(), InputError> {
         for (folder, ending) in [(&self.svg, "svg"), (&self.png, "png")] {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use eeruf_core::Micros;
 use eeruf_sim::best_schedule_for;
 use eeruf_sim::experiments::set_one::{Alcove, SENSORS, SetOneOptions, set_one, world_of};
-use eeruf_sim::{GainProfile, Method, Options, Robot, simulate};
+use eeruf_sim::{GainProfile, Method, Options, Robot, Transducer, simulate};
 
 use super::common::{BUDGET, Common, bad, designing, watched};
 use crate::commands::hopping::Hopping;
@@ -54,6 +54,8 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     let mut options = SetOneOptions {
         first: args.common.first,
         physics: args.common.physics,
+        room: args.common.room(),
+        transducer: Transducer { gain: args.common.gain, ..Transducer::POLAROID_6500 },
         methods: chosen(&args.methods),
         hopping: args.hopping.settings(),
         sensors: args.sensors.into(),

@@ -102,6 +102,8 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         seeds: args.common.seeds.unwrap_or(SEEDS),
         first: args.common.first,
         physics: args.common.physics,
+        room: args.common.room(),
+        gain: args.common.gain,
         bodies: args.bodies,
         hopping: args.hopping.settings(),
         second_robot: args.second_robot.map(Corner::position),

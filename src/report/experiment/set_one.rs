@@ -43,7 +43,7 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
     let rows = found.methods.iter().map(|(method, figures)| row(*method, figures));
     let MultiEcho { consecutive, t_delta } = MultiEcho::TUNED;
     let mut text = format!(
-        "Set I: {}, {} sensors, {} periods of {} each, physics: {}; 10 % / median / 90 % of the alcoves, or the \
+        "Set I: {}, {} sensors, {} periods of {} each, physics: {}{}; 10 % / median / 90 % of the alcoves, or the \
          median alone.\n\
          Starved: sensors with under 5 % of their readings accepted, on average; in part: those of them that read\n\
          right in one phase and not in another; blind: those that never had a reading accepted.\n\
@@ -55,6 +55,7 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
         found.periods,
         Micros::new(found.period_us),
         found.physics,
+        found.conditions,
         consecutive,
         t_delta,
         best.schedule.period(),
@@ -124,12 +125,14 @@ fn row(method: Method, figures: &Figures) -> Vec<String> {
 pub(crate) fn describe_variations(found: &[(&str, SetOne)]) -> String {
     let Some((_, one)) = found.first() else { return String::new() };
     let mut text = format!(
-        "Set I, {}, {} periods of {} each, physics: {}, one setting changed at a time: wrong, % of all / good lost %,\n\
+        "Set I, {}, {} periods of {} each, physics: {}{}, one setting changed at a time: wrong, % of all / \
+         good lost %,\n\
          medians with 95 % intervals, and starved sensors on average.\n\n",
         alcoves(one),
         one.periods,
         Micros::new(one.period_us),
         one.physics,
+        one.conditions,
     );
     let mut header = vec!["setting".to_owned()];
     header.extend(one.methods.iter().map(|(method, _)| method.to_string()));

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use eeruf_sim::experiments::Conditions;
 use eeruf_sim::experiments::set_two::{Figures, MULTI_ECHO_CONSECUTIVE, SetTwo, SetTwoOptions, SpeedStep};
 use eeruf_sim::{Method, Physics};
 use serde::Serialize;
@@ -53,7 +54,7 @@ pub(crate) fn describe(found: &SetTwo) -> String {
         "accepted/s",
     ];
     let mut text = format!(
-        "Set II: {} at up to {} m/s{}{}, pilot: {}, physics: {}. Finished with 95 % intervals (Wilson's);\n\
+        "Set II: {} at up to {} m/s{}{}, pilot: {}, physics: {}{}. Finished with 95 % intervals (Wilson's);\n\
          phantoms and the nearest pole are means over the courses; {FILTERS}.\n\n",
         courses(found.first, found.seeds),
         found.speed_m_s,
@@ -61,6 +62,7 @@ pub(crate) fn describe(found: &SetTwo) -> String {
         bodies(found.bodies),
         found.pilot,
         found.physics,
+        found.conditions,
     );
     let rows = found.methods.iter().map(|(method, figures)| row(*method, figures));
     _ = writeln!(text, "{}", markdown(&header, rows));
@@ -91,6 +93,8 @@ pub(crate) struct Sweep {
     first: u64,
     pilot: &'static str,
     physics: Physics,
+    #[serde(flatten)]
+    conditions: Conditions,
     bodies: bool,
     seeds: u64,
     second_robot_m: Option<[f64; 2]>,
@@ -109,7 +113,8 @@ impl Sweep {
         let borne_m_s = options.methods.iter().enumerate().map(|(index, method)| (*method, sustained(index))).collect();
         let second_robot_m = options.second_robot.map(|at| [at.x, at.y]);
         let SetTwoOptions { first, seeds, pilots, physics, bodies, .. } = *options;
-        Self { first, pilot: pilots.as_str(), physics, bodies, seeds, second_robot_m, steps, borne_m_s }
+        let conditions = Conditions::of(options.room.as_ref(), options.gain);
+        Self { first, pilot: pilots.as_str(), physics, conditions, bodies, seeds, second_robot_m, steps, borne_m_s }
     }
 
     pub(crate) fn describe(&self) -> String {
@@ -127,7 +132,8 @@ impl Sweep {
             row
         });
         let mut text = format!(
-            "Set II: {} at several top speeds{}{}, pilot: {}, physics: {}: finished % with 95 % intervals (Wilson's),\n\
+            "Set II: {} at several top speeds{}{}, pilot: {}, physics: {}{}: finished % with 95 % intervals \
+             (Wilson's),\n\
              mean speed in m/s. Sustained is the highest speed at which {:.0} % of the courses are finished; \
              {FILTERS}.\n\n",
             courses(self.first, self.seeds),
@@ -135,6 +141,7 @@ impl Sweep {
             bodies(self.bodies),
             self.pilot,
             self.physics,
+            self.conditions,
             100.0 * SUSTAINED
         );
         _ = writeln!(text, "{}", markdown(&header, rows));
@@ -167,13 +174,14 @@ impl<'a> SideBySide<'a> {
             row
         });
         let mut text = format!(
-            "Set II with several pilots: {} at up to {} m/s{}{}, physics: {}. Finished with 95 % intervals (Wilson's), \
-             and the\nmean speed; {FILTERS}.\n\n",
+            "Set II with several pilots: {} at up to {} m/s{}{}, physics: {}{}. Finished with 95 % intervals \
+             (Wilson's), and the\nmean speed; {FILTERS}.\n\n",
             courses(one.first, one.seeds),
             one.speed_m_s,
             beside(one.second_robot_m),
             bodies(one.bodies),
             one.physics,
+            one.conditions,
         );
         _ = writeln!(text, "{}", markdown(&header, rows));
         text

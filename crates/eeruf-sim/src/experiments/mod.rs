@@ -2,12 +2,14 @@
 //! It uses all other rooms, and none uses it.
 
 mod by_name;
+mod conditions;
 mod error;
 mod progress;
 pub mod set_one;
 pub mod set_two;
 mod spread;
 
+pub use conditions::Conditions;
 pub use error::ExperimentError;
 pub use spread::Spread;
 

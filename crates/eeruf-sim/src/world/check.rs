@@ -49,6 +49,21 @@ fn check_bodies_apart(index: [usize; 2], robots: [&Robot; 2]) -> Result<(), Worl
     Ok(())
 }
 
+/// Whether a robot's sensors are between floor and ceiling, if there are any.
+pub(super) fn check_heights(scene: &Scene, index: usize, robot: &Robot) -> Result<(), WorldError> {
+    let fail = |value, expected| Err(WorldError::Field { robot: index, field: "height_m", value, expected });
+    if !robot.heights_m.is_empty() && robot.heights_m.len() != robot.sensors.len() {
+        return fail(robot.heights_m.len() as f64, "one for all, or one for each sensor");
+    }
+    for sensor in 0..robot.sensors.len() {
+        let height_m = robot.height_m(sensor);
+        if !(height_m > 0.0 && height_m.is_finite() && scene.room().is_none_or(|room| room.holds(height_m))) {
+            return fail(height_m, "more than 0, and less than the ceiling");
+        }
+    }
+    Ok(())
+}
+
 /// Finds the first thing wrong with a robot.
 pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), WorldError> {
     if robot.sensors.is_empty() || robot.sensors.len() > MAX_SENSORS {
@@ -117,15 +132,7 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
     if !(2..=8).contains(&robot.consecutive) {
         return fail("consecutive", f64::from(robot.consecutive), "2 to 8");
     }
-    if !robot.heights_m.is_empty() && robot.heights_m.len() != robot.sensors.len() {
-        return fail("height_m", robot.heights_m.len() as f64, "one for all, or one for each sensor");
-    }
-    for sensor in 0..robot.sensors.len() {
-        let height_m = robot.height_m(sensor);
-        if !(height_m > 0.0 && height_m.is_finite() && scene.room().is_none_or(|room| room.holds(height_m))) {
-            return fail("height_m", height_m, "more than 0, and less than the ceiling");
-        }
-    }
+    check_heights(scene, index, robot)?;
     for limits in &robot.limits {
         let window = limits.window;
         if robot.limits.len() != robot.sensors.len() {

@@ -1,11 +1,16 @@
 //! A world: a scene with robots in it, how noisy it is, and the seed that decides all that is random. Checked once, so
 //! that a simulation has nothing left to refuse but what a method asks for.
 
-use super::check::{check, check_apart};
+use super::check::{check, check_apart, check_heights};
 use super::error::WorldError;
 use super::noise::Noise;
 use super::robot::{MAX_ROBOTS, Robot};
-use crate::{acoustics::Physics, geometry::Pose, scene::Scene, tracing::MAX_ORDER};
+use crate::{
+    acoustics::Physics,
+    geometry::Pose,
+    scene::{Room, Scene},
+    tracing::MAX_ORDER,
+};
 
 /// The highest order that a world follows sound to, unless another is asked for: the order at which Set I is
 /// evaluated.
@@ -94,6 +99,16 @@ impl World {
             return Err(WorldError::Physics { field: "fading_time_s", value, expected });
         }
         Ok(Self { physics, ..self })
+    }
+
+    /// The same world between floor and ceiling, or flat without them.
+    ///
+    /// # Errors
+    /// [`WorldError`] for a room that makes no sense, or a sensor that is not between floor and ceiling.
+    pub fn with_room(self, room: Option<Room>) -> Result<Self, WorldError> {
+        let scene = self.scene.with_room(room)?;
+        self.robots.iter().enumerate().try_for_each(|(index, robot)| check_heights(&scene, index, robot))?;
+        Ok(Self { scene, ..self })
     }
 
     /// The same world with another seed.

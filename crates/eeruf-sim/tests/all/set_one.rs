@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use eeruf_sim::{
-    BestSchedule, Method, Physics, best_schedule_for,
+    BestSchedule, GainProfile, Method, Physics, Room, Transducer, best_schedule_for,
     experiments::{
         ExperimentError,
         set_one::{Alcove, Figures, READINGS, SetOne, SetOneOptions, set_one},
@@ -113,4 +113,20 @@ fn set_one_stops_when_it_is_told_to_and_refuses_to_do_nothing() {
     let beyond = SetOneOptions { first: u64::MAX - 1, ..asked(3, 80, &METHODS, None) };
     let expected = "3 seeds from 18446744073709551614 on; expected a last one of at most 18446744073709551614";
     assert_eq!(set_one(&beyond, &|_| true).unwrap_err().to_string(), expected);
+}
+
+#[test]
+fn rooms_and_gains_are_named_in_the_result_and_change_it() {
+    let run = |room, gain| {
+        let transducer = Transducer { gain, ..Transducer::POLAROID_6500 };
+        let options = SetOneOptions { room, transducer, ..asked(4, 800, &[Method::Conventional], None) };
+        set_one(&options, &|_| true).unwrap()
+    };
+    let usual = run(None, GainProfile::Constant);
+    let other = run(Some(Room::DEFAULT), GainProfile::Polaroid6500);
+    assert_eq!(usual.conditions.to_string(), "");
+    assert_eq!(other.conditions.to_string(), ", height: room, gain: polaroid_6500");
+    let (usual_json, other_json) = (serde_json::to_value(&usual).unwrap(), serde_json::to_value(&other).unwrap());
+    assert_eq!((&other_json["height"], &other_json["gain"]), (&"room".into(), &"polaroid_6500".into()));
+    assert!(usual_json.get("height").is_none() && usual_json["methods"] != other_json["methods"]);
 }

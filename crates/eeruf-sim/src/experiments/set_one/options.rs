@@ -8,6 +8,7 @@ use crate::{
     acoustics::{Physics, Transducer},
     experiments::FIRST,
     methods::{BestSchedule, Method},
+    scene::Room,
     world::Noise,
 };
 
@@ -35,6 +36,8 @@ pub struct SetOneOptions {
     pub hopping: HoppingSettings,
     /// Which effects the alcoves have. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
+    /// Floor and ceiling of the alcoves. The default is none: they are flat.
+    pub room: Option<Room>,
     /// How many sensors the ring has, 1 to 24. The default is 8.
     pub sensors: usize,
     /// Its period. The default is 60 ms.
@@ -58,6 +61,7 @@ impl Default for SetOneOptions {
             best: None,
             hopping: HoppingSettings::BALANCED,
             physics: Physics::DEFAULT,
+            room: None,
             sensors: SENSORS,
             period: Micros::from_millis(60),
             transducer: Transducer::POLAROID_6500,

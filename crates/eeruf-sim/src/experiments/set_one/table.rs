@@ -7,6 +7,7 @@ use super::figures::Figures;
 use super::options::SetOneOptions;
 use super::step::{self, Steps};
 use crate::experiments::by_name::by_name;
+use crate::experiments::conditions::Conditions;
 use crate::experiments::error::{ExperimentError, numbers};
 use crate::experiments::progress::Progress;
 use crate::{
@@ -27,6 +28,9 @@ pub struct SetOne {
     pub seeds: u64,
     /// Which effects the alcoves had.
     pub physics: Physics,
+    /// Their height and the ring's gain.
+    #[serde(flatten)]
+    pub conditions: Conditions,
     /// How many sensors the ring had.
     pub sensors: usize,
     /// The period, in microseconds.
@@ -80,7 +84,8 @@ pub fn set_one(asked: &SetOneOptions, keep_going: &(dyn Fn(f64) -> bool + Sync))
         Figures::of(&summaries, &steps)
     };
     let methods = methods.iter().enumerate().map(|(column, &method)| (method, of(column))).collect();
-    Ok(SetOne { first, seeds, physics, sensors, period_us: period.as_micros(), periods, methods })
+    let conditions = Conditions::of(asked.room.as_ref(), asked.transducer.gain);
+    Ok(SetOne { first, seeds, physics, conditions, sensors, period_us: period.as_micros(), periods, methods })
 }
 
 /// An alcove and the robot before it, as a method has it in Set I; its seed there is the alcove's number.
@@ -94,7 +99,7 @@ pub fn world_of(asked: &SetOneOptions, alcove: &Alcove, method: Method) -> Resul
         Method::MultiEcho => asked.multi_echo.of(plain),
         _ => plain,
     };
-    World::new(alcove.scene()?, vec![robot], asked.noise)?.with_physics(asked.physics)
+    World::new(alcove.scene()?.with_room(asked.room)?, vec![robot], asked.noise)?.with_physics(asked.physics)
 }
 
 /// One alcove under one method: as it is, and with its back wall going to and fro.

@@ -5,11 +5,12 @@ use eeruf_core::{HoppingSettings, Micros};
 use super::odometry::OdometryNoise;
 use super::pilots::Pilots;
 use crate::{
-    acoustics::Physics,
+    acoustics::{GainProfile, Physics},
     experiments::FIRST,
     geometry::Point,
     methods::{BestSchedule, Method},
     navigation::LabMate,
+    scene::Room,
 };
 
 /// What is asked of Set II.
@@ -37,6 +38,10 @@ pub struct SetTwoOptions {
     pub t_delta: Micros,
     /// Which effects the lab has. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
+    /// Floor and ceiling of the lab. The default is none: it is flat.
+    pub room: Option<Room>,
+    /// The gain of the robot's receivers. The default is [`GainProfile::Constant`].
+    pub gain: GainProfile,
     /// Whether robots have bodies: the platform its square, with the ring on its edge, the other robot the disc that
     /// its ring is on, which is then an obstacle to sound and to the platform. The default is without, as pilots were
     /// tuned.
@@ -70,6 +75,8 @@ impl Default for SetTwoOptions {
             odometry: true,
             t_delta: Micros::new(150),
             physics: Physics::DEFAULT,
+            room: None,
+            gain: GainProfile::Constant,
             bodies: false,
             odometry_noise: OdometryNoise::default(),
             pilots: Pilots::Own,

@@ -8,10 +8,11 @@ use super::options::SetTwoOptions;
 use super::pilot::Pilot;
 use super::run::Run;
 use crate::experiments::by_name::by_name;
+use crate::experiments::conditions::Conditions;
 use crate::experiments::error::{ExperimentError, numbers};
 use crate::experiments::progress::Progress;
 use crate::{
-    acoustics::Physics,
+    acoustics::{Physics, Transducer},
     methods::Method,
     navigation::LabMate,
     results::Readings,
@@ -37,6 +38,9 @@ pub struct SetTwo {
     pub pilot: &'static str,
     /// Which effects the lab had.
     pub physics: Physics,
+    /// Its height and the robot's gain.
+    #[serde(flatten)]
+    pub conditions: Conditions,
     /// Whether robots had bodies.
     pub bodies: bool,
     /// How many courses.
@@ -92,7 +96,8 @@ pub fn set_two(options: &SetTwoOptions, keep_going: &(dyn Fn(f64) -> bool + Sync
     let SetTwoOptions { first, seeds, second_robot, pilots, physics, bodies, .. } = *options;
     let second_robot_m = second_robot.map(|at| [at.x, at.y]);
     let (pilot, speed_m_s) = (pilots.as_str(), options.labmate.speed_max_m_s);
-    Ok(SetTwo { first, pilot, physics, bodies, seeds, second_robot_m, speed_m_s, methods, runs: by_method })
+    let conditions = Conditions::of(options.room.as_ref(), options.gain);
+    Ok(SetTwo { first, pilot, physics, conditions, bodies, seeds, second_robot_m, speed_m_s, methods, runs: by_method })
 }
 
 /// One course by one method.
@@ -133,8 +138,9 @@ pub fn drive(
     let course = Course::random(number);
     let consecutive = if method == Method::MultiEcho { MULTI_ECHO_CONSECUTIVE } else { 2 };
     let robot = if options.bodies { course.robot_with_body(&options.labmate) } else { course.robot() };
-    let robot = Robot { odometry: options.odometry, t_delta: options.t_delta, consecutive, ..robot };
-    let world = course.world(robot, options.second_robot)?.with_physics(options.physics)?;
+    let transducer = Transducer { gain: options.gain, ..robot.transducer };
+    let robot = Robot { odometry: options.odometry, t_delta: options.t_delta, consecutive, transducer, ..robot };
+    let world = course.world(robot, options.second_robot)?.with_room(options.room)?.with_physics(options.physics)?;
     let mut piloting = options.pilots.of(method);
     piloting.vfh.speed_max_m_s = options.labmate.speed_max_m_s;
     let mut pilot = Pilot::new(&world, number, options, piloting, TIME_S);

@@ -1,0 +1,35 @@
+//! What an experiment's rings hear besides what its physics says: floor and ceiling, and the module's own gain.
+
+use core::fmt;
+
+use serde::Serialize;
+
+use crate::acoustics::GainProfile;
+use crate::scene::Room;
+
+/// Height and gain of an experiment, where they are not the usual ones: flat, and constant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Conditions {
+    /// `"room"` between floor and ceiling.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub height: Option<&'static str>,
+    /// The gain's name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gain: Option<&'static str>,
+}
+
+impl Conditions {
+    /// Those of a room, or of none, and of a gain.
+    pub fn of(room: Option<&Room>, gain: GainProfile) -> Self {
+        let gain = Some(gain).filter(|gain| *gain != GainProfile::Constant);
+        Self { height: room.map(|_| "room"), gain: gain.map(GainProfile::name) }
+    }
+}
+
+/// What follows the name of the physics in a title; nothing where both are usual.
+impl fmt::Display for Conditions {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.height.map_or(Ok(()), |height| write!(f, ", height: {height}"))?;
+        self.gain.map_or(Ok(()), |gain| write!(f, ", gain: {gain}"))
+    }
+}

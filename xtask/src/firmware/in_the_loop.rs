@@ -18,7 +18,8 @@ const READ: [&str; 5] = ["8000", "all", "6213", "1779", "8000"];
 /// Faults, how many readings of other sensors are then of another kind, and how the report begins that names the fault.
 const FAULTS: [(&str, &str, &str); 6] = [
     ("sensor 3 missing", "0", "missing after 4 periods"),
-    ("sensor 3 stuck high", "0", "stuck high after 21 periods"),
+    // A line that rose after its trigger counts as held for 250 ms.
+    ("sensor 3 stuck high", "0", "stuck high after 23 periods"),
     ("sensor 3 chattering", "0", "chatters after 2 periods"),
     ("sensor 3 losing interrupts", "0", "loses edges after 6 periods"),
     ("main loop stalls for 50 ms", "2", "a firing 32"),

@@ -25,7 +25,7 @@ const HOPPING_RAM: u64 = 952;
 const HOPPING_STACK: u64 = 316;
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
-const FLASH: u64 = 4768;
+const FLASH: u64 = 4772;
 const RAM: u64 = 12 * 28 + 80;
 const STACK: u64 = 560;
 

@@ -3,6 +3,7 @@
 use super::config::RingConfig;
 use super::error::RingError;
 use super::history::MAX_AUDIBLE;
+use super::sensor::UNANSWERED;
 use crate::scheduler::{Limits, Scheduler};
 use crate::time::Micros;
 
@@ -17,8 +18,8 @@ pub(super) struct Listening {
     blanking: u16,
     /// [`AS_T_DELTA`] for the receiver's `t_delta`.
     path_change: u16,
-    /// Whether silence counts only where a sensor has shown that it listens.
-    answers: bool,
+    /// The flag with which firings begin where silence counts only if the sensor has shown that it listens; else 0.
+    unanswered: u8,
 }
 
 const AS_T_DELTA: u16 = u16::MAX;
@@ -69,7 +70,7 @@ impl Listening {
         let narrow = |time: Micros| u16::try_from(time.as_micros()).ok().filter(|_| time < shortest);
         let blanking = narrow(blanking).ok_or(RingError::Blanking { blanking, window: shortest })?;
         let t_delta = narrow(t_delta).ok_or(RingError::CoarseTDelta { t_delta, window: shortest })?;
-        Ok(Self { window, audible: MAX_AUDIBLE, t_delta, blanking, path_change: AS_T_DELTA, answers: false })
+        Ok(Self { window, audible: MAX_AUDIBLE, t_delta, blanking, path_change: AS_T_DELTA, unanswered: 0 })
     }
 
     /// For how long one sensor listens: no longer than the scheduler allows it.
@@ -98,19 +99,19 @@ impl Listening {
         blanking: Micros,
         scheduler: &S,
     ) -> Result<Self, RingError> {
-        let Self { audible, path_change, answers, .. } = *self;
-        Ok(Self { audible, path_change, answers, ..Self::checked(t_delta, window, blanking, scheduler)? })
+        let Self { audible, path_change, unanswered, .. } = *self;
+        Ok(Self { audible, path_change, unanswered, ..Self::checked(t_delta, window, blanking, scheduler)? })
     }
 
     /// Silence needs a witness from now on.
     pub(super) fn expect_answers(&mut self) {
-        self.answers = true;
+        self.unanswered = UNANSWERED;
     }
 
-    /// Whether it does.
+    /// [`UNANSWERED`] if it does.
     #[inline]
-    pub(super) const fn expects_answers(&self) -> bool {
-        self.answers
+    pub(super) const fn unanswered(&self) -> u8 {
+        self.unanswered
     }
 
     /// R: how long sound is audible.

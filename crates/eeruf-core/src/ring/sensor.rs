@@ -72,8 +72,8 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
     }
 
     #[inline]
-    pub(super) fn fire(&mut self, phase: Phase, now: Instant, expects_answer: bool) {
-        self.tracker.flags = if expects_answer { UNANSWERED } else { 0 } | LISTENING | phase.0;
+    pub(super) fn fire(&mut self, phase: Phase, now: Instant, unanswered: u8) {
+        self.tracker.flags = LISTENING | unanswered | phase.0;
         self.firings.push(now);
     }
 

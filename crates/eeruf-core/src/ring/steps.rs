@@ -36,7 +36,7 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
             if fired.is(LISTENING | READY) {
                 return Err(Some(sensor));
             }
-            fired.fire(phase, now, self.listening.expects_answers());
+            fired.fire(phase, now, self.listening.unanswered());
         }
         self.has_fired(sensor, now);
         self.scheduler.fire(now);

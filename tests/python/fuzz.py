@@ -389,6 +389,11 @@ def disturb(c: Chance, live: Any, now: int) -> None:
     tried(c.random.choice([live.disable, live.enable, live.stuck, live.is_enabled]), c.mostly(1))
     tried(live.wait_us, c.anything())
     c.random.choice([live.pause, live.resume, live.resume, lambda: tried(live.restart, c.mostly(now))])()
+    if isinstance(live, ANY.Ring):
+        tried(live.measured, c.mostly(1), c.random.choice([None, c.mostly(9_000)]))
+        tried(live.answered, c.mostly(1), c.mostly(False))
+        tried(c.random.choice([live.state, live.forget]), c.mostly(1))
+        c.random.choice([live.expect_answers, lambda: None])()
 
 
 def tracker(c: Chance) -> None:

@@ -76,9 +76,10 @@ if __name__ == "__main__":
         tmp_path,
     )
     assert done.stdout == "[False, False]\n0\n", done.stderr
-    # A scene's own method with arguments that do not pickle: only threads take it.
+    # A scene's own method with arguments that do not pickle: only threads take it. Straight, by the wall, and around
+    # its two ends.
     paths = functools.partial(ROOM.paths, (0, 0), max_order=1, progress=lambda share, text: None)
-    assert [len(found) for found in eeruf.sweep(paths, [[(1, 0)], [(1, 0), (2, 0)]])] == [2, 4]
+    assert [len(found) for found in eeruf.sweep(paths, [[(1, 0)], [(1, 0), (2, 0)]])] == [4, 8]
 
 
 def test_errors_and_progress_come_as_they_happen_not_in_the_order_of_the_cases() -> None:

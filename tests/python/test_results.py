@@ -55,7 +55,7 @@ RESULTS = some_of_each()
 
 def test_there_is_a_result_of_every_kind() -> None:
     assert set(RESULTS) == set(
-        """Found HoppingFound Report Violation Schedule Fire Reading PeriodEnded Blind LastAccepted Steering RobotState FiredReading
+        """Found HoppingFound Report Violation Schedule Fire Reading PeriodEnded Blind State Steering RobotState FiredReading
         Summary SetOne
         SetOneFigures Spread Latency SetTwo SetTwoFigures Run SpeedSweep SpeedStep""".split()
     )

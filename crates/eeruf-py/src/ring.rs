@@ -458,7 +458,7 @@ impl Ring {
     ///     ...         ring.answered(event.sensor)
     ///     >>> event.kind
     ///     'no_echo'
-    #[pyo3(signature = (sensor, answered=None), text_signature = "(sensor, answered=True)")]
+    #[pyo3(signature = (sensor, answered=None), text_signature = "($self, sensor, answered=True)")]
     fn answered(&mut self, sensor: &Bound<'_, PyAny>, answered: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let (sensor, answered) = (self.0.sensor(sensor)?, flag("answered", answered, true)?);
         self.0.change(|ring| if answered { ring.answered(sensor) } else { ring.unanswered(sensor) })

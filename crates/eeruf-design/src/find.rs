@@ -163,7 +163,9 @@ impl RingSpec {
         search: &Search,
         control: &mut impl Control,
     ) -> Result<Result<RingDesign, NoSchedule>, SearchError> {
-        let (bound, step) = (at_once.bound, Micros::new(self.handling.as_micros().div_ceil(2)));
+        // What is proven without handling holds with it.
+        let (bound, bounding) = (at_once.bound, at_once.bounding.clone());
+        let step = Micros::new(self.handling.as_micros().div_ceil(2));
         let mut design = at_once;
         let mut wider = self.clone();
         for _ in 0..HANDLING_STEPS {
@@ -182,7 +184,7 @@ impl RingSpec {
                 Err(none) => return Ok(Err(none)),
             };
             (design.bound, design.found.bound, design.found.proven) = (bound, bound, false);
-            design.bounding = self.clone();
+            design.bounding = bounding.clone();
             design.reason = format!(
                 "handling: firings are to be {} apart, and no shorter period with room for it was found",
                 self.handling

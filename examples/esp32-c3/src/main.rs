@@ -10,7 +10,9 @@ use core::convert::Infallible;
 use core::fmt;
 
 use critical_section::Mutex;
-use eeruf_core::{Edge, EdgeQueue, Instant, Micros, Ring, RingConfig, RingEvent, SensorWatch, SpeedOfSound};
+use eeruf_core::{
+    Edge, EdgeQueue, Instant, Micros, Ring, RingConfig, RingEvent, SensorState, SensorWatch, SpeedOfSound,
+};
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
 use embedded_hal::digital::{ErrorType, InputPin};
 use esp_backtrace as _;
@@ -70,7 +72,8 @@ impl InputPin for Line {
     }
 }
 
-/// The distances that were accepted within the last second, in millimetres; `-` where there is none.
+/// The distances of what stood before each sensor within the last second, in millimetres; `free` where nothing is in
+/// range, `x` where a module does not answer, `-` where nothing is known.
 struct Distances<'w> {
     watch: &'w SensorWatch<SENSORS>,
     now: Instant,
@@ -79,8 +82,12 @@ struct Distances<'w> {
 impl fmt::Display for Distances<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for sensor in 0..SENSORS as u8 {
-            match self.watch.last_accepted(sensor, self.now) {
-                Ok(Some(last)) if last.age < SECOND => write!(f, "{:6}", SOUND.distance_mm(last.t_echo))?,
+            match self.watch.state(sensor, self.now) {
+                Ok(SensorState::Obstacle { t_echo, age }) if age < SECOND => {
+                    write!(f, "{:6}", SOUND.distance_mm(t_echo))?;
+                }
+                Ok(SensorState::Clear { age }) if age < SECOND => f.write_str("  free")?,
+                Ok(SensorState::Unanswered { .. }) => f.write_str("     x")?,
                 _ => f.write_str("     -")?,
             }
         }
@@ -112,7 +119,7 @@ fn main() -> ! {
     let config = RingConfig::new().with_window(Micros::from_millis(40));
     let ring = Ring::new(&RING, config, now()).expect("the table was verified for such a window");
     let mut ring = HcSr04Ring::new(ring, pins, Delay::new(), Settings::default()).expect("the table lets modules rest");
-    let mut watch = SensorWatch::<SENSORS>::new(0);
+    let mut watch = SensorWatch::<SENSORS>::new(0, now());
     let (mut said, mut latest) = (now(), Micros::ZERO);
     loop {
         while let Some(event) = ring.poll_with_edges(&EDGES, now()) {

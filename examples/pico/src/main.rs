@@ -7,7 +7,9 @@ mod ring;
 
 use core::fmt;
 
-use eeruf_core::{Edge, EdgeQueue, Instant, Micros, Ring, RingConfig, RingEvent, SensorWatch, SpeedOfSound};
+use eeruf_core::{
+    Edge, EdgeQueue, Instant, Micros, Ring, RingConfig, RingEvent, SensorState, SensorWatch, SpeedOfSound,
+};
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
 use embassy_executor::{InterruptExecutor, Spawner};
 use embassy_futures::select::select;
@@ -72,7 +74,8 @@ async fn usb(driver: Driver<'static, USB>) {
     embassy_usb_logger::run!(1024, log::LevelFilter::Info, driver);
 }
 
-/// The distances that were accepted within the last second, in millimetres; `-` where there is none.
+/// The distances of what stood before each sensor within the last second, in millimetres; `free` where nothing is in
+/// range, `x` where a module does not answer, `-` where nothing is known.
 struct Distances<'w> {
     watch: &'w SensorWatch<SENSORS>,
     now: Instant,
@@ -81,8 +84,12 @@ struct Distances<'w> {
 impl fmt::Display for Distances<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for sensor in 0..SENSORS as u8 {
-            match self.watch.last_accepted(sensor, self.now) {
-                Ok(Some(last)) if last.age < SECOND => write!(f, "{:6}", SOUND.distance_mm(last.t_echo))?,
+            match self.watch.state(sensor, self.now) {
+                Ok(SensorState::Obstacle { t_echo, age }) if age < SECOND => {
+                    write!(f, "{:6}", SOUND.distance_mm(t_echo))?;
+                }
+                Ok(SensorState::Clear { age }) if age < SECOND => f.write_str("  free")?,
+                Ok(SensorState::Unanswered { .. }) => f.write_str("     x")?,
                 _ => f.write_str("     -")?,
             }
         }
@@ -138,7 +145,7 @@ async fn main(spawner: Spawner) {
     let config = RingConfig::new().with_window(Micros::from_millis(40));
     let ring = Ring::new(&RING, config, now()).expect("the table was verified for such a window");
     let mut ring = HcSr04Ring::new(ring, pins, Delay, Settings::default()).expect("the table lets modules rest");
-    let mut watch = SensorWatch::<SENSORS>::new(0);
+    let mut watch = SensorWatch::<SENSORS>::new(0, now());
     let (mut said, mut latest) = (now(), Micros::ZERO);
     loop {
         while let Some(event) = ring.poll_with_edges(&EDGES, now()) {

@@ -25,7 +25,9 @@ use crate::time::{Instant, Micros};
 ///     }
 /// }
 /// match watch.state(3, now)? {
-///     SensorState::Obstacle { t_echo, age } => assert!(t_echo == Micros::from_millis(9) && age < Micros::from_millis(130)),
+///     SensorState::Obstacle { t_echo, age } => {
+///         assert!(t_echo == Micros::from_millis(9) && age < Micros::from_millis(130));
+///     }
 ///     SensorState::Clear { .. } => { /* nothing is in range: drive on */ }
 ///     _ => { /* not known: slow down */ }
 /// }
@@ -44,8 +46,8 @@ pub struct SensorWatch<const K: usize> {
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SensorState {
-    /// Something stands there: an accepted echo, or a tentative one of a hopping ring. One reading that does not confirm
-    /// it leaves it, so that age grows; two in a row do not.
+    /// Something stands there: an accepted echo, or a tentative one of a hopping ring. One reading that does not
+    /// confirm it leaves it, so that age grows; two in a row do not.
     Obstacle {
         /// Its echo time.
         t_echo: Micros,
@@ -127,8 +129,8 @@ enum Known {
 const LONGEST: Micros = Micros::new(1 << 31);
 
 impl<const K: usize> SensorWatch<K> {
-    /// Nothing is known yet, `now`. A sensor counts as blind when nothing was accepted for `blind_after` firings with an
-    /// echo, 1 to 255; with 0 no sensor does.
+    /// Nothing is known yet, `now`. A sensor counts as blind when nothing was accepted for `blind_after` firings with
+    /// an echo, 1 to 255; with 0 no sensor does.
     pub const fn new(blind_after: u8, now: Instant) -> Self {
         let nothing = Watched { known: Known::Nothing(Doubt::NoFiring), at: now, doubted: false, echoes: 0 };
         Self { sensors: [nothing; K], blind_after }

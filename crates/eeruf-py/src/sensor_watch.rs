@@ -14,8 +14,8 @@ use crate::{
     ring_events::{ExplainedBy, to_core},
 };
 
-/// Watches the events of a ring, a hopping one too: what is known of the space before each sensor now, and which sensors
-/// hear echoes none of which is accepted.
+/// Watches the events of a ring, a hopping one too: what is known of the space before each sensor now, and which
+/// sensors hear echoes none of which is accepted.
 ///
 /// Args:
 ///     sensors: how many, 1 to 64.
@@ -51,7 +51,8 @@ pub(crate) struct SensorWatch {
 #[pymethods]
 impl SensorWatch {
     #[new]
-    #[pyo3(signature = (sensors, blind_after=None, now_us=None), text_signature = "(sensors, blind_after=20, now_us=0)")]
+    #[pyo3(signature = (sensors, blind_after=None, now_us=None))]
+    #[pyo3(text_signature = "(sensors, blind_after=20, now_us=0)")]
     fn new(
         sensors: &Bound<'_, PyAny>,
         blind_after: Option<&Bound<'_, PyAny>>,
@@ -172,16 +173,16 @@ impl Blind {
 #[pyclass(frozen, eq, hash, get_all, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct State {
-    /// ``"obstacle"``: something stands there; ``"clear"``: nothing is in range; ``"too_close"``: closer than the sensor
-    /// can measure; ``"unanswered"``: it does not answer, or its line is stuck; ``"unknown"``.
+    /// ``"obstacle"``: something stands there; ``"clear"``: nothing is in range; ``"too_close"``: closer than the
+    /// sensor can measure; ``"unanswered"``: it does not answer, or its line is stuck; ``"unknown"``.
     kind: &'static str,
     /// The echo time of an obstacle, in microseconds; None for all else.
     t_echo_us: Option<u32>,
     /// How long ago that was last confirmed, or since when nothing is known or answered, in microseconds; at most 2^31
     /// (36 minutes), which stands for all longer times.
     age_us: u32,
-    /// Why nothing is known: ``"no_firing"``, ``"unsure"`` (one echo, or one silence), ``"rejected"`` or ``"ambiguous"``;
-    /// None for all else.
+    /// Why nothing is known: ``"no_firing"``, ``"unsure"`` (one echo, or one silence), ``"rejected"`` or
+    /// ``"ambiguous"``; None for all else.
     why: Option<&'static str>,
     /// The sensor whose sound explains an ambiguous echo, or ``"history"``; None for all else.
     explained_by: Option<ExplainedBy>,

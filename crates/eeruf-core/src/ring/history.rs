@@ -129,7 +129,7 @@ impl Sounds {
             if length_before > audible || (own && earlier == 1) {
                 continue;
             }
-            // The later of two firings is before the earlier here; both may be one if the readings are as close as that.
+            // The later of two firings is before the earlier here; both may be one if the readings are so close.
             for &b in firings.0.iter().take(earlier + 1).skip(usize::from(own)) {
                 let length = second.since(b).as_micros();
                 // Both are below a minute, and the change below 66 ms: neither sum nor difference wraps twice.

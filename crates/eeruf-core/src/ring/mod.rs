@@ -330,8 +330,8 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
         Ok(())
     }
 
-    /// Hands in what hardware or a protocol measured of a sensor's last firing, before its window closes: the echo time,
-    /// or that it listened and heard nothing.
+    /// Hands in what hardware or a protocol measured of a sensor's last firing, before its window closes: the echo
+    /// time, or that it listened and heard nothing.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.

@@ -42,7 +42,7 @@ pub struct Tracer {
     /// The frequency that absorption and roughness are taken at, in Hz.
     pub frequency_hz: f64,
     /// Whether poles return what a rigid cylinder does at this frequency instead of what geometric optics says; see
-    /// [`pole_wave_correction`]. Off by default.
+    /// [`pole_wave_correction`](crate::pole_wave_correction). Off by default.
     pub pole_waves: bool,
     /// Whether poles shade what lies behind them where they are thicker than the first Fresnel zone, and sensors within
     /// something solid are refused; see [`Physics::shadows`](crate::Physics::shadows). Off by default.

@@ -31,7 +31,8 @@ use crate::report::watch::Watch;
 ///
 /// The ring file says how many sensors there are (sensors, layout, neighbours) and what they need: t_delta_us,
 /// min_interval_us, window_us; or jitter_us and speed_m_s, crosstalk_range_m, max_range_m and retrigger_us,
-/// temperature_c. t_delta_us, jitter_us, window_us, max_range_m and retrigger_us may be lists with a number for each
+/// temperature_c; and handling_us, for which the controller fires nothing else.
+/// t_delta_us, jitter_us, window_us, max_range_m and retrigger_us may be lists with a number for each
 /// sensor; intervals_us = [[x, y, us], ..] gives pairs an interval of their own, shared_lines = [[x, y], ..] names
 /// sensors on one echo line, together = [[x, y], ..] those that fire at the same instants. Sensors count from 0 in it.
 /// Among all schedules with that period it prefers a larger T_delta, then a larger smallest interval, then evener

@@ -40,7 +40,7 @@ pub struct SensorWatch<const K: usize> {
     blind_after: u8,
 }
 
-/// What is known of the space before a sensor. Times stop at 2,147,483,648 us (36 minutes), which stands for all longer
+/// The state of the space before a sensor. Times stop at 2,147,483,648 us (36 minutes), which stands for all longer
 /// ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -51,17 +51,17 @@ pub enum SensorState {
     Obstacle {
         /// Its echo time.
         t_echo: Micros,
-        /// How long ago it was last confirmed.
+        /// Time since it was last confirmed.
         age: Micros,
     },
     /// Nothing is in range, by silence that is confirmed. Any echo ends it.
     Clear {
-        /// How long ago that was last confirmed.
+        /// Time since that was last confirmed.
         age: Micros,
     },
     /// Something is closer than the sensor can measure.
     TooClose {
-        /// How long ago it was last seen.
+        /// Time since it was last seen.
         age: Micros,
     },
     /// The sensor does not answer, or its line is stuck.
@@ -107,9 +107,9 @@ pub struct Blind {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Watched {
     known: Known,
-    /// When that was last confirmed, or since when nothing is known or answered.
+    /// The instant that last confirmed it, or since which nothing is known or answered.
     at: Instant,
-    /// Whether the last reading did not confirm it.
+    /// True if the last reading did not confirm it.
     doubted: bool,
     /// Firings with an echo since something was last accepted or clear.
     echoes: u8,
@@ -161,7 +161,7 @@ impl<const K: usize> SensorWatch<K> {
         }
     }
 
-    /// What is known of the space before a sensor, `now`.
+    /// Returns the state of the space before a sensor, `now`.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
@@ -206,7 +206,7 @@ impl Watched {
         (self.known, self.at, self.doubted) = (known, now, false);
     }
 
-    /// Counts echoes in vain; whether they have just become as many as make a sensor blind.
+    /// Counts echoes in vain. Returns true if they have just become as many as make a sensor blind.
     fn counts(&mut self, kind: ReadingKind, blind_after: u8) -> bool {
         match kind {
             ReadingKind::Accepted | ReadingKind::Clear => self.echoes = 0,

@@ -12,7 +12,7 @@ use crate::found::FoundJson;
 use crate::ring::RingSpec;
 use crate::shortest::{Search, Shortest, shortest};
 
-/// How often more separation is tried where firings cannot be moved apart.
+/// The number of larger separations that are tried where firings cannot be moved apart.
 const HANDLING_STEPS: u32 = 8;
 /// How many nodes it may cost to find out what one need, relaxed, would bring.
 const WHAT_IF_BUDGET: u64 = 20_000;

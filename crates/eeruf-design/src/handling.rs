@@ -10,7 +10,7 @@ use eeruf_sim::{AnySchedule, Random};
 
 use crate::ring::RingSpec;
 
-/// How many ways to move firings apart are tried.
+/// The number of ways to move firings apart that are tried.
 const TRIES: u32 = 5_000;
 const SEED: u64 = 1;
 

@@ -38,7 +38,7 @@ pub struct RingFile {
     window_us: Option<Each<u32>>,
     max_range_m: Option<Each<f64>>,
     retrigger_us: Option<Each<u32>>,
-    /// How long the controller needs for one firing; no two are closer.
+    /// The time that the controller needs for one firing; no two are closer.
     handling_us: Option<u32>,
     temperature_c: Option<f64>,
     /// Pairs of sensors with an interval of their own.
@@ -78,7 +78,7 @@ pub struct RingSpec {
     pub t_delta: Micros,
     /// How fast the robot moves, in mm/s, if `t_delta` must cover that too.
     pub speed_mm_s: Option<u32>,
-    /// How long the controller needs for one firing: it gives two that are closer than this one after the other.
+    /// The time that the controller needs for one firing: it gives two that are closer than this one after the other.
     pub handling: Micros,
     /// What single sensors and pairs need, where they are not all alike.
     pub uneven: Option<OwnedUneven>,

@@ -36,7 +36,7 @@ pub trait EchoRing<const K: usize> {
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
     fn answered(&mut self, sensor: u8) -> Result<(), SensorError>;
-    /// What looked like an answer was a disturbance.
+    /// Takes an answer back: it was a disturbance.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.

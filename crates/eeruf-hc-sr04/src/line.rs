@@ -18,7 +18,7 @@ pub(crate) enum Pulse {
     Over,
 }
 
-/// What an edge says of a firing.
+/// The meaning of an edge for a firing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shown {
     /// Nothing that is not known.
@@ -46,7 +46,7 @@ impl Line {
     /// Before the first trigger.
     pub(crate) const NEW: Self = Self { pulse: Pulse::Idle, silent: 0, flaw: Health::Well, health: Health::Well };
 
-    /// What an edge says of what was `fired` then.
+    /// Returns the meaning of an edge for the firing at `fired`.
     pub(crate) fn edge(&mut self, edge: Edge, fired: Instant, settings: &Settings) -> Shown {
         if !edge.at.has_reached(fired) || edge.at.since(fired) < settings.deaf {
             return Shown::Nothing;
@@ -82,7 +82,7 @@ impl Line {
         }
     }
 
-    /// Whether a line that is high rose after its trigger and no longer ago than a healthy sensor holds it.
+    /// Returns true if a line that is high rose after its trigger, no longer ago than a healthy sensor holds it.
     pub(crate) fn listens_still(&self, now: Instant, longest_hold: Micros) -> bool {
         matches!(self.pulse, Pulse::Rose(rose) if now.since(rose) <= longest_hold)
     }

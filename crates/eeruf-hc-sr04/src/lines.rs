@@ -38,7 +38,7 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
         self.settings.allow(min_refire)
     }
 
-    /// What this edge says of what was `fired` then.
+    /// Returns the meaning of this edge for the firing at `fired`.
     pub(crate) fn edge(&mut self, edge: Edge, fired: Instant) -> Shown {
         let line = self.lines.get_mut(usize::from(edge.sensor));
         line.map_or(Shown::Nothing, |line| line.edge(edge, fired, &self.settings))
@@ -84,12 +84,12 @@ impl<T: OutputPin, I: InputPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
     }
 }
 
-/// What came of a trigger.
+/// The outcome of a trigger.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Trigger {
     /// It was given.
     Given {
-        /// Whether the pulse of the firing before began and never ended: what counted as silence may have been an echo.
+        /// True if the pulse of the firing before began and never ended: that silence may have been an echo.
         lost_an_edge: bool,
     },
     /// It was not: the line is stuck, or cannot be read.

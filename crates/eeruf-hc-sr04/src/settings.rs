@@ -16,7 +16,7 @@ pub struct Settings {
     pub shortest: Micros,
     /// Pulses as long as this are the sensor's own time-out: no echo.
     pub longest: Micros,
-    /// How long a healthy sensor holds its line at most where nothing is in range; many clones do for 130 to 200 ms. A
+    /// The longest that a healthy sensor holds its line where nothing is in range; many clones do for 130 to 200 ms. A
     /// line that rose after its trigger and is high for no longer is still listening, not stuck.
     pub longest_hold: Micros,
     /// No sensor may be triggered again sooner; the data sheet advises 60 ms.

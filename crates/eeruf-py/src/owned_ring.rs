@@ -119,9 +119,9 @@ pub(crate) struct OwnedRing {
     promise: Promise,
     /// What it fires by from the end of the present period on.
     next: Box<AnySchedule>,
-    /// What its events say of each sensor.
+    /// The state of each sensor by its events.
     pub(crate) watch: SensorWatch<MAX_SENSORS>,
-    /// When it was polled last, or began.
+    /// The instant of the last poll, or of the beginning.
     pub(crate) now: Instant,
 }
 

@@ -380,7 +380,7 @@ impl Ring {
         self.0.change(|ring| ring.stuck(sensor))
     }
 
-    /// What is known of the space before a sensor, at the time of the last poll.
+    /// The state of the space before a sensor, at the time of the last poll.
     ///
     /// Args:
     ///     sensor: which one, from 0.

@@ -94,7 +94,7 @@ impl SensorWatch {
         Ok(blind.map(|blind| Blind { sensor: blind.sensor, firings: blind.firings }))
     }
 
-    /// What is known of the space before a sensor.
+    /// The state of the space before a sensor.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -164,7 +164,7 @@ impl Blind {
     }
 }
 
-/// What is known of the space before a sensor.
+/// The state of the space before a sensor.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -178,7 +178,7 @@ pub(crate) struct State {
     kind: &'static str,
     /// The echo time of an obstacle, in microseconds; None for all else.
     t_echo_us: Option<u32>,
-    /// How long ago that was last confirmed, or since when nothing is known or answered, in microseconds; at most 2^31
+    /// Microseconds since that was last confirmed, or for which nothing has been known or answered; at most 2^31
     /// (36 minutes), which stands for all longer times.
     age_us: u32,
     /// Why nothing is known: ``"no_firing"``, ``"unsure"`` (one echo, or one silence), ``"rejected"`` or

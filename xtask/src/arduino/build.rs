@@ -27,7 +27,7 @@ const COMMON: [&str; 10] = [
 const C: [&str; 2] = ["-std=gnu11", "-fno-fat-lto-objects"];
 const CXX: [&str; 4] = ["-std=gnu++11", "-fpermissive", "-fno-exceptions", "-fno-threadsafe-statics"];
 
-/// What sketches are built for.
+/// The board that a sketch is built for.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Board {
     Uno,
@@ -111,12 +111,12 @@ pub(super) fn example(library: &Path, core: &Path, name: &str) -> Result<Sketch,
     sketch(&Source { name, text: &text, board: Board::Uno, ours: true, defines: &[] }, &library.join("src"), core)
 }
 
-/// What is built.
+/// A sketch and how it is built.
 pub(super) struct Source<'a> {
     pub(super) name: &'a str,
     pub(super) text: &'a str,
     pub(super) board: Board,
-    /// Whether it is warned about.
+    /// True for our own code, which is compiled with all warnings.
     pub(super) ours: bool,
     pub(super) defines: &'a [&'a str],
 }

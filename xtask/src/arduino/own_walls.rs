@@ -22,7 +22,7 @@ const ON_MEGA: [u8; 24] =
 /// in microseconds.
 const EQUAL_US: u32 = 12_000;
 const SCATTERED_US: std::ops::Range<u32> = 1_500..23_000;
-/// What each module and all together must have accepted of their firings, in percent.
+/// The least share of accepted firings, in percent: of each module, and of all together.
 const LEAST: (u32, u32) = (85, 95);
 
 pub(super) fn run(library: &Path, short: bool) -> Result<(), Trouble> {

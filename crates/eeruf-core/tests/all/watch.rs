@@ -1,4 +1,4 @@
-//! What firmware asks for while a ring runs: what is known of each sensor's space, blind sensors, pauses.
+//! Questions of firmware while a ring runs: the state before each sensor, blind sensors, pauses.
 
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{

@@ -413,8 +413,8 @@ EerufStatus eeruf_filter_forget(EerufFilter *filter) {
 
 /* ---- The ring ---- */
 
-/* The flags of a sensor, beside the phase in which it fired. */
-#define PHASE 0x07u
+/* The flags of a sensor, beside the period in which it fired, modulo 8. */
+#define PERIOD 0x07u
 #define LISTENING 0x08u    /* it has fired, and its reading is pending */
 #define CAN_EMIT 0x10u     /* it has a reading that can be emitted before its window closes */
 #define OUTSIDE 0x20u      /* its only edges so far came outside the window */
@@ -531,11 +531,11 @@ static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, const EerufSensor 
     }
 }
 
+#endif
+
 static bool is_long_ago(uint32_t instant, uint32_t now_us) {
     return now_us - instant - LONG_AGO - 1u < 0u - STEP_BACK - LONG_AGO - 1u;
 }
-
-#endif
 
 /* All firings so long ago that nothing is heard of them. */
 static OUT_OF_LINE void forget_firings(EerufSensor *sensor, uint8_t firings, uint32_t now_us) {
@@ -543,26 +543,23 @@ static OUT_OF_LINE void forget_firings(EerufSensor *sensor, uint8_t firings, uin
 }
 
 static void end_late_period(EerufRing *ring, EerufPeriod *ended, uint32_t now_us, bool hops) {
+    uint8_t x;
     ended->max_late_us = ring->latest_us;
     ended->sum_late_us = ring->sum_late_us;
     ring->latest_us = ring->sum_late_us = 0;
-#if EERUF_FIRINGS > 1
-    if (!hops) {
-        EerufSensor *sensor = ring->sensors;
-        uint8_t left;
-        if (ring->watched != 0 && ring->watched != ALWAYS) ring->watched--;
-        /* Old firings must not come round with the clock. */
-        for (left = ring->count; left > 0; left--, sensor++) {
-            if (is_long_ago(sensor->fired_us[0], now_us)) {
-                forget_firings(sensor, EERUF_FIRINGS, now_us);
-                /* No edge is an echo of them. */
-                if (!(sensor->flags & LISTENING)) sensor->flags |= OUTSIDE;
-            }
+    /* Old firings must not come round with the clock. */
+    for (x = 0; x < ring->count; x++) {
+        EerufSensor *sensor = sensor_of(ring, x);
+        if (is_long_ago(sensor->fired_us[0], now_us)) {
+            forget_firings(sensor, hops ? 1 : EERUF_FIRINGS, now_us);
+            /* No edge is an echo of them. */
+            if (!(sensor->flags & LISTENING)) sensor->flags |= OUTSIDE;
         }
-        if (is_long_ago(ring->known_from_us, now_us)) ring->known_from_us = now_us - LONG_AGO;
     }
-#else
-    (void)now_us, (void)hops;
+#if EERUF_FIRINGS > 1
+    if (hops) return;
+    if (ring->watched != 0 && ring->watched != ALWAYS) ring->watched--;
+    if (is_long_ago(ring->known_from_us, now_us)) ring->known_from_us = now_us - LONG_AGO;
 #endif
 }
 
@@ -708,7 +705,9 @@ static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors,
     if (sensors_size < count_of_sensors * sizeof *sensors) return EERUF_ERR_MEMORY;
     t_delta_us = config->t_delta_us;
     window_us = config->window_us;
-    if (!is_verified(schedule) && (verified || t_delta_us == 0 || window_us == 0)) return EERUF_ERR_UNVERIFIED;
+    if (!is_verified(schedule) && (verified || t_delta_us == 0)) return EERUF_ERR_UNVERIFIED;
+    if (config->consecutive < 2 || config->consecutive > 8) return EERUF_ERR_CONSECUTIVE;
+    if (!is_verified(schedule) && window_us == 0) return EERUF_ERR_UNVERIFIED;
     if (t_delta_us == 0) t_delta_us = READ32(schedule->t_delta_us);
     if (window_us == 0) window_us = READ32(schedule->window_us);
     /* What a table was verified for it allows. */
@@ -728,7 +727,6 @@ static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors,
     ring->audible_us = shorter(ring->audible_us, MAX_AUDIBLE);
     disturb(ring);
     if (ring->watched == WATCHED) ring->watched = 0; /* nothing has been fired yet */
-    if (config->consecutive < 2 || config->consecutive > 8) return EERUF_ERR_CONSECUTIVE;
     ring->consecutive = config->consecutive;
     begin_table(ring, now_us);
     ring->ready = READY;
@@ -776,7 +774,7 @@ static void find_oldest(EerufRing *ring, uint32_t before) {
 
 static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late_us, bool hops) {
     EerufSensor *fired = sensor_of(ring, sensor);
-    fired->flags = (uint8_t)(LISTENING | ring->phase | ring->unanswered);
+    fired->flags = (uint8_t)(LISTENING | (ring->period & PERIOD) | ring->unanswered);
 #if EERUF_FIRINGS > 1
     if (!hops) {
         uint8_t place;
@@ -832,11 +830,17 @@ static uint8_t kind_of_hop(uint8_t flags, bool silent) {
     return flags & OUTSIDE ? EERUF_READING_TOO_EARLY : EERUF_READING_FIRST;
 }
 
+/* The phase of a table's period this many periods ago. */
+static uint8_t phase_before(const EerufRing *ring, uint8_t ago) {
+    const uint8_t phases = READ8(ring->schedule->phases);
+    ago = (uint8_t)(ago % phases);
+    return (uint8_t)(ring->phase >= ago ? ring->phase - ago : ring->phase + phases - ago);
+}
+
 static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, EerufEvent *event, bool hops) {
     EerufSensor *sensor = sensor_of(ring, x);
-    const uint8_t flags = sensor->flags, phase = flags & PHASE;
+    const uint8_t flags = sensor->flags, ago = (uint8_t)(ring->period - flags) & PERIOD;
     EerufReading *reading = &event->u.reading;
-    uint8_t ago;
     if (flags & CAN_EMIT) ring->pending--; /* counted when its edge came */
     reading->t_echo_us = flags & STUCK ? EERUF_NO_ECHO : sensor->echo_us;
     reading->explained_by = EERUF_BY_NOTHING;
@@ -844,7 +848,7 @@ static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, E
     if (flags & LISTENING) {
         if (hops) reading->kind = kind_of_hop(flags, reading->t_echo_us == EERUF_NO_ECHO);
         else compare(ring, sensor, change_us == NULL ? 0 : change_us[x], reading);
-        sensor->flags = phase;
+        sensor->flags = flags & PERIOD;
         if (ring->oldest == x) find_oldest(ring, sensor->fired_us[0]);
     } else {
         reading->previous_us = EERUF_NO_ECHO;
@@ -854,11 +858,8 @@ static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, E
     }
     emit_when_oldest_ends(ring);
     if (!hops) count(ring, reading->kind);
-    ago = (uint8_t)(ring->phase - phase);
-    if (hops) ago &= 7u;
-    else if (ring->phase < phase) ago = (uint8_t)(ago + READ8(ring->schedule->phases));
     event->kind = EERUF_EVENT_READING;
-    event->phase = phase;
+    if (!hops) event->phase = phase_before(ring, ago);
     event->period -= ago;
 }
 
@@ -2132,7 +2133,6 @@ static void end_hopping_period(EerufRing *ring, uint32_t now_us) {
     hopping->least_late[0] = UINT16_MAX;
     hopping->most_late[0] = 0;
     if (left_out) break_off(hopping);
-    hopping->ring.phase = (hopping->ring.phase + 1u) & 7u;
     next_phase(hopping);
     plan(hopping);
 }

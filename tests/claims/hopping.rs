@@ -212,7 +212,7 @@ fn compile_and_run(folder: &Scratch, text: &str, compiler: &[&str]) {
 fn an_emitted_code_drives_a_hopping_ring() {
     let (settings, listening) = (hopping_8::SETTINGS, hopping_8::LISTENING);
     assert_eq!((settings, listening), (HoppingSettings::BALANCED, HoppingListening::new(Micros::from_millis(36))));
-    let mut ring = HoppingRing::<8>::new(&hopping_8::RING, settings, listening, 1, Instant::default()).unwrap();
+    let mut ring = HoppingRing::<8>::hopping(&hopping_8::RING, settings, listening, 1, Instant::default()).unwrap();
     let mut accepted = 0;
     for _ in 0..500 {
         let now = ring.next_deadline();

@@ -93,7 +93,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
             Some(lags) => HoppingSchedule::<K>::new(code, Micros::new(period), lags)?,
             None => HoppingSchedule::spread(code, Micros::new(period), s.neighbours)?,
         };
-        HoppingRing::<K>::new(&schedule, s, listening, random_seed, Instant::from_micros(start))
+        HoppingRing::<K>::hopping(&schedule, s, listening, random_seed, Instant::from_micros(start))
     });
     let mut ring = match rust {
         Ok(ring) => ring,
@@ -184,17 +184,18 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
                     }
                 }
                 RingEvent::Reading(reading) => {
-                    let confirmed = echo(ring.tracker().confirmed(reading.sensor.into()));
+                    let confirmed = echo(ring.judge().confirmed(reading.sensor.into()));
                     assert_eq!(c.confirmed_us(reading.sensor), confirmed, "{}", at());
-                    let how = ring.weighed(reading.sensor, 0).map(|of| u32::from(of.solo) | u32::from(of.steady) << 1);
-                    let weighed = (how.unwrap_or(0), u32::from(ring.changes()));
+                    let how =
+                        ring.plan().weighed(reading.sensor, 0).map(|of| u32::from(of.solo) | u32::from(of.steady) << 1);
+                    let weighed = (how.unwrap_or(0), u32::from(ring.plan().changes()));
                     assert_eq!(c.weighed(reading.sensor), weighed, "{}", at());
                 }
                 RingEvent::PeriodEnded(_) => {
                     for sensor in 0..K as u8 {
-                        assert_eq!(Some(Micros::new(c.lag_us(sensor))), ring.firing().t_lag(sensor.into()));
+                        assert_eq!(Some(Micros::new(c.lag_us(sensor))), ring.plan().t_lag(sensor.into()));
                     }
-                    let solo = ring.firing().solo().map_or(255, i32::from);
+                    let solo = ring.plan().solo().map_or(255, i32::from);
                     assert_eq!(c.call(Do::Solo, 0, 0) & 255, solo, "{}", at());
                 }
             }

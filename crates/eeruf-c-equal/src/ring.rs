@@ -3,7 +3,8 @@
 use crate::core_side::{flat, status_of, status_of_violation};
 use crate::{C, Do, Needs, Random};
 use eeruf_core::{
-    Instant, Layout, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule, ScheduledFiring,
+    EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule,
+    ScheduledFiring,
 };
 
 use crate::world::{World, same};
@@ -104,7 +105,7 @@ fn change(c: &mut C, what: Do, value: u32, rust: Result<(), RingError>) {
     assert_eq!(c.call(what, 0, value), rust.map_or_else(|error| status_of(&error), |()| 0), "{what:?} {value}");
 }
 
-type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M>, K>;
+type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M>, EchoFilter<K>, K>;
 
 /// What a caller may do now and then.
 fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, schedules: &'s [Schedule<K, M>], now: u32) {

@@ -53,7 +53,7 @@ fn run(paths: &[Path], step: u32, settings: HoppingSettings, late: u32, seed: u6
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(PERIOD), 4).expect("room for the code");
     let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
     let (mut random, start) = (Random(seed), Instant::from_micros(0));
-    let mut ring = HoppingRing::<SENSORS>::new(&schedule, settings, listening, seed as u32, start)
+    let mut ring = HoppingRing::<SENSORS>::hopping(&schedule, settings, listening, seed as u32, start)
         .expect("settings that agree with the code");
     let own: [Option<u32>; SENSORS] =
         std::array::from_fn(|x| paths.iter().find(|path| path.from == path.to && path.to == x as u8).map(|p| p.length));

@@ -8,7 +8,7 @@
 //! - [`Schedule`]: when each sensor fires. [`Requirements`] and [`Schedule::verify`]: Eqs. (13a), (13b), the smallest
 //!   interval between neighbours, and the listening window.
 //! - [`VerifiedSchedule`]: a schedule that meets them. [`schedule!`] makes one while the firmware is compiled.
-//! - [`Ring`]: what firmware runs. It combines a [`Scheduler`] ([`ScheduledFiring`] or [`ImmediateRefiring`]) with the
+//! - [`Ring`]: what firmware runs. It combines a [`Plan`] ([`ScheduledFiring`] or [`ImmediateRefiring`]) with the
 //!   filter; [`EchoFilter`] is the filter alone.
 //! - [`EchoTracker`]: believes an echo that readings from several phases support, for schedules of many phases.
 //! - [`EdgeQueue`]: from the interrupt of an echo line to the main loop.
@@ -37,13 +37,14 @@ pub mod emit;
 mod filter;
 mod hopping;
 mod interop;
+mod judge;
 mod layout;
 mod needs;
 mod phases;
+mod plan;
 mod reading;
 mod ring;
 mod schedule;
-mod scheduler;
 #[cfg(feature = "search")]
 pub mod search;
 mod sensor_error;
@@ -66,21 +67,20 @@ pub use conditions::{Criterion, Interval, Requirements, Separation};
 pub use edges::{Edge, EdgeQueue};
 pub use filter::{EchoFilter, FilterError, RateFilter};
 pub use hopping::{
-    HoppingCode, HoppingError, HoppingFiring, HoppingHeader, HoppingListening, HoppingRing, HoppingRust,
-    HoppingSchedule, HoppingSettings, HoppingTab, HoppingToml, Weighed,
+    HoppingCode, HoppingError, HoppingHeader, HoppingListening, HoppingPlan, HoppingRing, HoppingRust, HoppingSchedule,
+    HoppingSettings, HoppingTab, HoppingToml, Weighed,
 };
 pub use interop::DurationError;
+pub use judge::{Agreement, Heard, Judge};
 pub use layout::{Layout, LayoutError, neighbour_rows};
 pub use phases::{
     Audible, PhaseCriterion, PhaseInterval, PhaseRequirements, PhaseSeparation, PhaseTable, PhaseVerification,
     PhaseViolation, PhaseViolations,
 };
+pub use plan::{BrokenPromise, ImmediateRefiring, Limits, Plan, PlanStep, ScheduledFiring, UnevenFiring, check_plan};
 pub use reading::{Explanation, ReadingKind, Tally, Verdict};
 pub use ring::{AgreementRing, PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError, VerifiedFor};
-pub use scheduler::{
-    BrokenPromise, ImmediateRefiring, Limits, ScheduledFiring, Scheduler, SchedulerStep, UnevenFiring, check_scheduler,
-};
 pub use sensor_error::SensorError;
 pub use sound::SpeedOfSound;
 pub use survey::{Survey, SurveyEvent, SurveyPlan, SurveyRow, SurveySlot};

@@ -43,7 +43,6 @@
 //! ```
 #![no_std]
 
-mod echo_ring;
 mod error;
 mod health;
 mod line;
@@ -51,7 +50,6 @@ mod lines;
 mod ring;
 mod settings;
 
-pub use echo_ring::EchoRing;
 pub use error::SetupError;
 pub use health::Health;
 pub use lines::Pins;

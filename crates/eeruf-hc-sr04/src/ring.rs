@@ -1,28 +1,29 @@
 //! [`HcSr04Ring`]: the driver of a ring. It triggers the sensors that the ring fires, and hands it the echoes.
 
 use eeruf_core::{
-    Edge, EdgeQueue, Instant, Micros, Ring, RingError, RingEvent, ScheduledFiring, Scheduler, SensorError,
-    UnevenFiring, UnevenSchedule, VerifiedSchedule,
+    EchoFilter, Edge, EdgeQueue, Instant, Judge, Micros, Plan, Ring, RingError, RingEvent, ScheduledFiring,
+    SensorError, UnevenFiring, UnevenSchedule, VerifiedSchedule,
 };
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
 
-use crate::echo_ring::EchoRing;
 use crate::error::SetupError;
 use crate::health::Health;
 use crate::line::Shown;
 use crate::lines::{Lines, Pins, Trigger};
 use crate::settings::Settings;
 
-/// A ring whose firings are triggers on pins and whose echoes are pulses on lines: a [`Ring`], or a
-/// [`HoppingRing`](eeruf_core::HoppingRing) where no sensor may stay blind.
+/// A ring whose firings are triggers on pins and whose echoes are pulses on lines: a [`Ring`] of any plan and judge,
+/// such as a [`HoppingRing`](eeruf_core::HoppingRing) where no sensor may stay blind.
 #[derive(Debug)]
 pub struct HcSr04Ring<R, T, I, D, const K: usize> {
     ring: R,
     lines: Lines<T, I, D, K>,
 }
 
-impl<R: EchoRing<K>, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr04Ring<R, T, I, D, K> {
+impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, const H: usize>
+    HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K>
+{
     /// Puts a ring on its pins. Its window should exceed the longest echo by a millisecond, because the line rises only
     /// about half a millisecond after the trigger. The window of a hopping ring must also be as long as the sensors
     /// rest, [`Settings::min_retrigger`](crate::Settings::min_retrigger): it may fire a sensor again once its window
@@ -30,8 +31,13 @@ impl<R: EchoRing<K>, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr
     ///
     /// # Errors
     /// [`SetupError::Retrigger`] if the ring fires a sensor again sooner than it may be triggered.
-    pub fn new(mut ring: R, pins: [Pins<T, I>; K], delay: D, settings: Settings) -> Result<Self, SetupError> {
-        settings.allow(ring.min_refire())?;
+    pub fn new(
+        mut ring: Ring<P, J, K, 1, H>,
+        pins: [Pins<T, I>; K],
+        delay: D,
+        settings: Settings,
+    ) -> Result<Self, SetupError> {
+        settings.allow(ring.plan().min_refire())?;
         // A line that does not rise is no free space.
         ring.expect_answers();
         Ok(Self { ring, lines: Lines::new(pins, delay, settings) })
@@ -107,7 +113,7 @@ impl<R: EchoRing<K>, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr
     }
 
     /// The ring.
-    pub const fn ring(&self) -> &R {
+    pub const fn ring(&self) -> &Ring<P, J, K, 1, H> {
         &self.ring
     }
 
@@ -143,7 +149,7 @@ impl<R: EchoRing<K>, T: OutputPin, I: InputPin, D: DelayNs, const K: usize> HcSr
     }
 }
 
-impl<S: Scheduler, T, I, D, const K: usize> HcSr04Ring<Ring<S, K>, T, I, D, K> {
+impl<P: Plan, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring<P, EchoFilter<K>, K, 1, H>, T, I, D, K> {
     /// As [`Ring::set_t_delta`].
     ///
     /// # Errors
@@ -151,7 +157,9 @@ impl<S: Scheduler, T, I, D, const K: usize> HcSr04Ring<Ring<S, K>, T, I, D, K> {
     pub fn set_t_delta(&mut self, t_delta: Micros) -> Result<(), RingError> {
         self.ring.set_t_delta(t_delta)
     }
+}
 
+impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K> {
     /// As [`Ring::set_window`].
     ///
     /// # Errors
@@ -169,7 +177,9 @@ impl<S: Scheduler, T, I, D, const K: usize> HcSr04Ring<Ring<S, K>, T, I, D, K> {
     }
 }
 
-impl<'s, T, I, D, const K: usize, const M: usize> HcSr04Ring<Ring<ScheduledFiring<'s, K, M>, K>, T, I, D, K> {
+impl<'s, J: Judge, T, I, D, const K: usize, const M: usize, const H: usize>
+    HcSr04Ring<Ring<ScheduledFiring<'s, K, M>, J, K, 1, H>, T, I, D, K>
+{
     /// As [`Ring::change_schedule`].
     ///
     /// # Errors
@@ -181,7 +191,9 @@ impl<'s, T, I, D, const K: usize, const M: usize> HcSr04Ring<Ring<ScheduledFirin
     }
 }
 
-impl<'s, T, I, D, const K: usize> HcSr04Ring<Ring<UnevenFiring<'s, K>, K>, T, I, D, K> {
+impl<'s, J: Judge, T, I, D, const K: usize, const H: usize>
+    HcSr04Ring<Ring<UnevenFiring<'s, K>, J, K, 1, H>, T, I, D, K>
+{
     /// As [`Ring::change_schedule`] of a ring of sensors that are not all alike.
     ///
     /// # Errors

@@ -16,7 +16,7 @@ fn ring() -> HoppingRing<K> {
     let code = HoppingCode::new(K, 5, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::spread(code, Micros::from_millis(60), 3).unwrap();
     let settings = HoppingSettings::BALANCED.with_shift_after(0);
-    HoppingRing::new(&schedule, settings, HoppingListening::new(WINDOW), 1, Instant::default()).unwrap()
+    HoppingRing::hopping(&schedule, settings, HoppingListening::new(WINDOW), 1, Instant::default()).unwrap()
 }
 
 /// Mocks that are triggered so often, with lines that are low, or of which one is always high.

@@ -3,8 +3,8 @@
 use core::convert::Infallible;
 
 use eeruf_core::{
-    Edge, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Uneven, UnevenFiring,
-    UnevenSchedule, uneven_schedule,
+    EchoFilter, Edge, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Uneven,
+    UnevenFiring, UnevenSchedule, uneven_schedule,
 };
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings, SetupError};
 use embedded_hal_mock::eh1::delay::NoopDelay;
@@ -54,7 +54,7 @@ impl embedded_hal::digital::InputPin for Pin {
     }
 }
 
-type Driver = HcSr04Ring<Ring<UnevenFiring<'static, 2>, 2>, Pin, Pin, NoopDelay, 2>;
+type Driver = HcSr04Ring<Ring<UnevenFiring<'static, 2>, EchoFilter<2>, 2>, Pin, Pin, NoopDelay, 2>;
 
 fn driver(min_retrigger_ms: u32) -> Result<Driver, SetupError> {
     let mut settings = Settings::default();

@@ -4,8 +4,8 @@ use core::convert::Infallible;
 
 use eeruf_core::tables::{PAPER_12, TABLE_I_D};
 use eeruf_core::{
-    Adaptation, Edge, Instant, Ladder, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Scheduler,
-    SensorError, SpeedOfSound, Tally,
+    Adaptation, EchoFilter, Edge, Instant, Ladder, Micros, Plan, ReadingKind, Requirements, Ring, RingConfig,
+    RingEvent, SensorError, SpeedOfSound, Tally,
 };
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings, SetupError};
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
@@ -20,9 +20,9 @@ fn fired(event: Option<RingEvent>) -> Option<u8> {
 }
 
 /// A driver on pins that nobody looks at.
-fn on_no_pins<S: Scheduler, const N: usize>(
-    ring: Ring<S, N>,
-) -> Result<HcSr04Ring<Ring<S, N>, NoPin, NoPin, NoopDelay, N>, SetupError> {
+fn on_no_pins<P: Plan, const N: usize>(
+    ring: Ring<P, EchoFilter<N>, N>,
+) -> Result<HcSr04Ring<Ring<P, EchoFilter<N>, N>, NoPin, NoPin, NoopDelay, N>, SetupError> {
     HcSr04Ring::new(ring, std::array::from_fn(|_| Pins { trigger: NoPin, echo: NoPin }), NoopDelay, Settings::default())
 }
 

@@ -5,7 +5,7 @@
 
 use core::convert::Infallible;
 
-use eeruf_core::{Edge, Instant, Micros, Ring, RingEvent, ScheduledRing, Scheduler};
+use eeruf_core::{Edge, Instant, Micros, Plan, Ring, RingEvent, ScheduledRing};
 use eeruf_hil::{CONFIG, SCHEDULE, SENSORS};
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
@@ -75,8 +75,8 @@ impl Control {
             _ => None,
         };
         loop {
-            let scheduler = self.ring.ring().scheduler();
-            let would_fire = scheduler.next_firing().is_some() && now.has_reached(scheduler.deadline());
+            let plan = self.ring.ring().plan();
+            let would_fire = plan.next_firing().is_some() && now.has_reached(plan.deadline());
             if would_fire && fires.is_none() {
                 // The board's ring must emit a reading before it fires; here that reading is emitted already.
                 return Ok(());

@@ -2,15 +2,15 @@
 
 use core::fmt;
 
-use eeruf_core::{Edge, Instant, Micros, Reading, ReadingKind, Ring, RingEvent};
-use eeruf_hc_sr04::{EchoRing, Health};
+use eeruf_core::{Edge, Instant, Judge, Micros, Plan, Reading, ReadingKind, Ring, RingEvent};
+use eeruf_hc_sr04::Health;
 use eeruf_hil::{CONFIG, Orders, SCHEDULE, SENSORS, Topic, hopping_ring};
 use eeruf_sim::{Readings, World};
 
 use crate::control::Control;
 use crate::emulator::Emulator;
 use crate::lines::{FAULTY, LineFault, Lines};
-use crate::reference::{Read, Reference, Session};
+use crate::reference::{AnyRing, Read, Reference, Session};
 
 /// For how many periods each run of the tables lasts.
 pub(crate) const PERIODS: u32 = 1000;
@@ -120,13 +120,13 @@ pub(crate) fn run_hopping(world: &World, fault: Fault, periods: u32, emulator: &
     run_ring(world, fault, periods, Pace::Free, emulator, make, false)
 }
 
-fn run_ring<R: EchoRing<SENSORS>>(
+fn run_ring<P: Plan, J: Judge, const H: usize>(
     world: &World,
     fault: Fault,
     periods: u32,
     pace: Pace,
     emulator: &[String],
-    make: impl Fn(Instant) -> Result<R, String>,
+    make: impl Fn(Instant) -> Result<AnyRing<P, J, H>, String>,
     has_control: bool,
 ) -> Result<Run, String> {
     let orders = fault.orders(periods);

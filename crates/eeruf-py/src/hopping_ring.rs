@@ -91,7 +91,7 @@ impl HoppingRing {
         let seed = whole_or("seed", seed, 1, 0..=u32::MAX)?;
         let settings = HoppingSettings::of("settings", settings)?;
         let schedule = instance::<HoppingSchedule>("schedule", schedule, "an eeruf.HoppingSchedule")?.get().clone();
-        let ring = Core::new(&schedule.0, settings, listening, seed, now).map_err(Raise::raise)?;
+        let ring = Core::hopping(&schedule.0, settings, listening, seed, now).map_err(Raise::raise)?;
         Ok(Self { ring: Box::new(ring), schedule, settings: HoppingSettings(settings) })
     }
 
@@ -171,14 +171,14 @@ impl HoppingRing {
     /// The lag of each sensor as it is now, in microseconds.
     #[getter]
     fn t_lag_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let lags = (0..self.ring.sensors()).filter_map(|sensor| self.ring.firing().t_lag(sensor));
+        let lags = (0..self.ring.sensors()).filter_map(|sensor| self.ring.plan().t_lag(sensor));
         PyTuple::new(py, lags.map(Micros::as_micros).collect::<Vec<_>>())
     }
 
     /// The sensor that the present period belongs to alone, from 0; None if it belongs to all.
     #[getter]
     fn solo(&self) -> Option<u8> {
-        self.ring.firing().solo()
+        self.ring.plan().solo()
     }
 
     /// The confirmed echo time of a sensor.
@@ -200,7 +200,7 @@ impl HoppingRing {
     ///     True
     #[pyo3(signature = (sensor))]
     fn confirmed_us(&self, sensor: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
-        Ok(self.ring.tracker().confirmed(self.sensor(sensor)?.into()).map(Micros::as_micros))
+        Ok(self.ring.judge().confirmed(self.sensor(sensor)?.into()).map(Micros::as_micros))
     }
 
     /// Whether it is confirmed that nothing is in a sensor's range.
@@ -219,7 +219,7 @@ impl HoppingRing {
     ///     False
     #[pyo3(signature = (sensor))]
     fn is_clear(&self, sensor: &Bound<'_, PyAny>) -> PyResult<bool> {
-        Ok(self.ring.tracker().is_clear(self.sensor(sensor)?.into()))
+        Ok(self.ring.judge().is_clear(self.sensor(sensor)?.into()))
     }
 
     /// An edge on the echo line of a sensor. Edges may come in any order, at any time, wanted or not.

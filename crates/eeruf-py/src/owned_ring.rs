@@ -1,8 +1,8 @@
 //! A ring with the schedules that it borrows, so that it can change from one to another.
 
 use eeruf_core::{
-    Instant, MAX_SENSORS, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, ScheduledRing, SensorError,
-    SensorWatch, UnevenFiring, UnevenSchedule,
+    EchoFilter, Instant, MAX_SENSORS, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, ScheduledRing,
+    SensorError, SensorWatch, UnevenFiring, UnevenSchedule,
 };
 use eeruf_sim::AnySchedule;
 use elsa::sync::FrozenVec;
@@ -17,7 +17,7 @@ use crate::{
 /// A ring of sensors that are alike, or of some that are not.
 pub(crate) enum AnyRing<'s> {
     Even(ScheduledRing<'s, MAX_SENSORS>),
-    Uneven(Ring<UnevenFiring<'s, MAX_SENSORS>, MAX_SENSORS>),
+    Uneven(Ring<UnevenFiring<'s, MAX_SENSORS>, EchoFilter<MAX_SENSORS>, MAX_SENSORS>),
 }
 
 /// Hands calls on to the ring, whichever it is.

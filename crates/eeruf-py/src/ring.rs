@@ -13,7 +13,7 @@ use crate::{
     sensor_watch::State,
 };
 
-/// Scheduler and filter together, as the firmware runs them: the caller passes the time and gets back what to do.
+/// Plan and filter together, as the firmware runs them: the caller passes the time and gets back what to do.
 ///
 /// Moments are microseconds on a clock that wraps at 2^32, as on a small microcontroller; larger numbers are taken
 /// modulo that.

@@ -109,7 +109,7 @@ mod tests {
         let code = HoppingCode::new(8, 2, Micros::new(240)).unwrap();
         let schedule = HoppingSchedule::<8>::spread(code, Micros::from_millis(60), 4).unwrap();
         let listening = HoppingListening::new(Micros::from_millis(36));
-        HoppingRing::new(&schedule, HoppingSettings::BALANCED, listening, 1, Instant::from_micros(0)).unwrap()
+        HoppingRing::hopping(&schedule, HoppingSettings::BALANCED, listening, 1, Instant::from_micros(0)).unwrap()
     }
 
     #[test]

@@ -53,7 +53,7 @@ impl<const K: usize> Recorder<K> {
         health: impl Fn(u8) -> u8,
         edges_lost: u8,
     ) -> Option<Frame> {
-        let weighed = |sensor| ring.weighed(sensor, expected_change_us(sensor));
+        let weighed = |sensor| ring.plan().weighed(sensor, expected_change_us(sensor));
         self.weighed_event(event, now, weighed, health, edges_lost)
     }
 

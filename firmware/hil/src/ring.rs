@@ -2,8 +2,8 @@
 
 use eeruf_board::fake_sensors::Delay;
 use eeruf_board::say::leave;
-use eeruf_core::{EdgeQueue, Instant, Micros, RingEvent};
-use eeruf_hc_sr04::{EchoRing, HcSr04Ring, Health, Pins, Settings};
+use eeruf_core::{EdgeQueue, Instant, Judge, Micros, Plan, Ring, RingEvent};
+use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings};
 use eeruf_hil::{Record, SENSORS};
 
 use crate::host::Host;
@@ -21,8 +21,8 @@ pub(crate) fn echo_interrupt() {
 
 /// Makes a ring and runs it for as many periods as the host orders. `on_event` is called with each event, the instant
 /// of its poll, how the sensors are, and how many edges got lost.
-pub(crate) fn run<R: EchoRing<SENSORS>, E>(
-    make: impl FnOnce(Instant) -> Result<R, E>,
+pub(crate) fn run<P: Plan, J: Judge, const H: usize, E>(
+    make: impl FnOnce(Instant) -> Result<Ring<P, J, SENSORS, 1, H>, E>,
     mut on_event: impl FnMut(&RingEvent, Instant, &dyn Fn(u8) -> Health, u8),
 ) -> ! {
     let (host, orders) = Host::open();

@@ -55,10 +55,10 @@ pub const HOPPING_12: HoppingSchedule<12> = hopping_schedule! {
 /// The hopping ring of all that is measured.
 ///
 /// # Errors
-/// As [`HoppingRing::new`].
+/// As [`HoppingRing::hopping`].
 #[inline(always)]
 pub fn hopping<const K: usize>(schedule: &HoppingSchedule<K>, now: Instant) -> Result<HoppingRing<K>, HoppingError> {
-    HoppingRing::new(schedule, HoppingSettings::BALANCED, HoppingListening::new(Micros::from_millis(36)), 1, now)
+    HoppingRing::hopping(schedule, HoppingSettings::BALANCED, HoppingListening::new(Micros::from_millis(36)), 1, now)
 }
 
 /// The fewest and the most instructions that one kind of call took.

@@ -26,7 +26,7 @@ pub const RING: HoppingSchedule<8> = hopping_schedule! {
     },
 };
 
-// For `HoppingRing::new`; QUICK, DRIVING and MAPS are other sets of settings.
+// For `HoppingRing::hopping`; QUICK, DRIVING and MAPS are other sets of settings.
 pub const SETTINGS: HoppingSettings = HoppingSettings::BALANCED
     .with_tracker(
         TrackerSettings::BALANCED

@@ -8,11 +8,11 @@ use crate::steps::{Trouble, output};
 
 /// What a ring of twelve may cost on the Cortex-M0: (name in the measured lines, most instructions).
 const INSTRUCTIONS: [(&str, u32); 6] =
-    [("idle_poll", 44), ("fire", 113), ("echo", 69), ("stamp", 60), ("reading", 498), ("reading_late", 3311)];
+    [("idle_poll", 44), ("fire", 116), ("echo", 69), ("stamp", 60), ("reading", 553), ("reading_late", 3311)];
 /// What a hopping ring of twelve costs there, as `docs/hopping.md` has it: it may not grow unnoticed.
 const HOPPING: [(&str, u32); 7] = [
     ("idle_poll", 67),
-    ("fire", 119),
+    ("fire", 139),
     ("echo", 73),
     ("reading", 1192),
     ("reading_moving", 1192),
@@ -20,14 +20,14 @@ const HOPPING: [(&str, u32); 7] = [
     ("new_lags", 19_397),
 ];
 const HOPPING_FLASH: u64 = 7824;
-const HOPPING_RAM: u64 = 952;
+const HOPPING_RAM: u64 = 904;
 /// What a poll of it takes of the stack there.
 const HOPPING_STACK: u64 = 316;
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
-const FLASH: u64 = 4772;
-const RAM: u64 = 12 * 28 + 80;
-const STACK: u64 = 560;
+const FLASH: u64 = 4960;
+const RAM: u64 = 12 * 32 + 88;
+const STACK: u64 = 616;
 
 /// The tables of all boards or of one, and which budgets are exceeded. Only of all boards there is the simulated world.
 pub(super) fn measure(only: Option<&str>) -> Result<(Tables, Vec<String>), Trouble> {

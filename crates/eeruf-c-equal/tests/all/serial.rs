@@ -47,7 +47,7 @@ fn run(seed: u64) -> u64 {
     assert_eq!(c.ring(0, [t_delta, window, 0, 0, 0], 2, start), 0);
     let config = RingConfig::new().with_t_delta(Micros::new(t_delta)).with_window(Micros::new(window));
     let start_at = Instant::from_micros(start);
-    let mut ring = Ring::<ScheduledFiring<'_, 12, 2>, 12>::unverified(&schedule, config, start_at).unwrap();
+    let mut ring = Ring::<ScheduledFiring<'_, 12, 2>, _, 12>::unverified(&schedule, config, start_at).unwrap();
     // Of the name 16 letters are sent.
     let mut recorder = Recorder::<12>::new("board of sixteen letters");
     let mut world = World::new(r, SENSORS, window);
@@ -93,7 +93,7 @@ fn hop(seed: u64) -> u64 {
     let code = HoppingCode::new(8, 5, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<8>::spread(code, Micros::from_millis(60), settings.neighbours).unwrap();
     let listening = HoppingListening::new(Micros::from_millis(36));
-    let mut ring = HoppingRing::<8>::new(&schedule, settings, listening, 1, Instant::from_micros(start)).unwrap();
+    let mut ring = HoppingRing::<8>::hopping(&schedule, settings, listening, 1, Instant::from_micros(start)).unwrap();
     let t = settings.tracker;
     let reach = listening.reach.as_micros();
     let mut numbers = vec![240, 60_000, 36_000, 0, reach, settings.shift_interval.as_micros(), 1];

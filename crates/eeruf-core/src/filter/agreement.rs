@@ -1,4 +1,4 @@
-//! [`Agreement`]: when two readings are near-identical (Eq. 11), and how many consecutive ones must be.
+//! [`Tolerance`]: when two readings are near-identical (Eq. 11), and how many consecutive ones must be.
 
 use super::echoes::NO_ECHO;
 use super::error::FilterError;
@@ -7,9 +7,9 @@ use crate::time::Micros;
 /// The tolerance of Eq. (11), and the number of consecutive readings that confirm an echo.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub(crate) struct Agreement {
+pub(crate) struct Tolerance {
     pub(crate) t_delta: Micros,
-    consecutive: Consecutive,
+    pub(super) consecutive: Consecutive,
 }
 
 /// The number of consecutive readings that must agree, 2 to 8.
@@ -30,7 +30,7 @@ impl Consecutive {
     }
 }
 
-impl Agreement {
+impl Tolerance {
     pub(crate) const fn new(t_delta: Micros, consecutive: Consecutive) -> Self {
         Self { t_delta, consecutive }
     }
@@ -40,11 +40,11 @@ impl Agreement {
     }
 
     /// Eq. (11), after taking off the change that is expected. Silence agrees with silence.
-    pub(super) fn near_identical(self, echo: u32, previous: u32, expected_change_us: i32) -> bool {
+    pub(super) fn near_identical(self, echo: Micros, previous: Micros, expected_change_us: i32) -> bool {
         if echo == NO_ECHO || previous == NO_ECHO {
             return echo == previous;
         }
-        let change = i64::from(echo) - i64::from(previous) - i64::from(expected_change_us);
+        let change = i64::from(echo.as_micros()) - i64::from(previous.as_micros()) - i64::from(expected_change_us);
         change.unsigned_abs() <= u64::from(self.t_delta.as_micros())
     }
 }

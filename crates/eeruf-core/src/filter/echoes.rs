@@ -1,12 +1,21 @@
-//! The echoes of one firing as a sorted array of numbers.
+//! The echoes of one firing as a sorted array.
 
 use crate::time::Micros;
 
 /// Stands for "no echo" inside this crate: longer than any listening window.
-pub(crate) const NO_ECHO: u32 = u32::MAX;
+pub(crate) const NO_ECHO: Micros = Micros::MAX;
+
+/// The latest echo time that is not taken for silence.
+pub(super) const LATEST: Micros = Micros::new(u32::MAX - 1);
+
+/// The echoes of a sorted array, without what stands for none.
+pub(crate) fn heard<const E: usize>(echoes: &[Micros; E]) -> &[Micros] {
+    let heard = echoes.iter().take_while(|&&echo| echo != NO_ECHO).count();
+    echoes.get(..heard).unwrap_or_default()
+}
 
 /// Puts one more echo into a sorted array, dropping the latest if it is full. What is no echo sorts last.
-pub(crate) fn insert<const E: usize>(echoes: &mut [u32; E], mut echo: u32) {
+pub(crate) fn insert<const E: usize>(echoes: &mut [Micros; E], mut echo: Micros) {
     for held in echoes {
         if echo < *held {
             core::mem::swap(held, &mut echo);
@@ -14,20 +23,20 @@ pub(crate) fn insert<const E: usize>(echoes: &mut [u32; E], mut echo: u32) {
     }
 }
 
-/// The echo time that a number stands for.
-pub(super) fn echo_time(echo: u32) -> Option<Micros> {
-    (echo != NO_ECHO).then_some(Micros::new(echo))
+/// The echo time that an entry stands for.
+pub(super) fn echo_time(echo: Micros) -> Option<Micros> {
+    (echo != NO_ECHO).then_some(echo)
 }
 
 /// Measures echo times from a firing that was this much later; negative for earlier. Returns false if the first of them
 /// came before it; it then counts as having come with it.
-pub(crate) fn shift<const E: usize>(echoes: &mut [u32; E], later_us: i32) -> bool {
+pub(crate) fn shift<const E: usize>(echoes: &mut [Micros; E], later_us: i32) -> bool {
     let mut all_after = true;
     for echo in echoes.iter_mut().filter(|echo| **echo != NO_ECHO) {
-        let since = i64::from(*echo) - i64::from(later_us);
+        let since = i64::from(echo.as_micros()) - i64::from(later_us);
         all_after &= since >= 0;
         // Within the range by the bounds.
-        *echo = since.clamp(0, i64::from(NO_ECHO - 1)) as u32;
+        *echo = Micros::new(since.clamp(0, i64::from(NO_ECHO.as_micros() - 1)) as u32);
     }
     all_after
 }

@@ -21,15 +21,17 @@ mod rate;
 mod tests;
 mod tracker;
 
-use crate::reading::Verdict;
+use crate::judge::{Heard, Judge};
+use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::sensor_error::SensorError;
 use crate::time::Micros;
 
-pub(crate) use agreement::{Agreement, Consecutive};
-pub(crate) use echoes::{NO_ECHO, insert, shift};
+pub(crate) use agreement::{Consecutive, Tolerance};
+use echoes::LATEST;
+pub(crate) use echoes::{NO_ECHO, heard, insert, shift};
 pub use error::FilterError;
 pub use rate::RateFilter;
-pub(crate) use tracker::Tracker;
+use tracker::Tracker;
 
 /// Compares the consecutive readings of up to `K` sensors, each with up to `E` echoes a firing.
 ///
@@ -47,7 +49,7 @@ pub(crate) use tracker::Tracker;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct EchoFilter<const K: usize, const E: usize = 1> {
     trackers: [Tracker<E>; K],
-    agreement: Agreement,
+    tolerance: Tolerance,
 }
 
 impl<const K: usize, const E: usize> EchoFilter<K, E> {
@@ -58,12 +60,18 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// [`FilterError::Consecutive`] unless 2 to 8 readings are compared.
     pub const fn new(t_delta: Micros, consecutive: u8) -> Result<Self, FilterError> {
         match Consecutive::new(consecutive) {
-            Ok(consecutive) => {
-                Ok(Self { trackers: [Tracker::new(0); K], agreement: Agreement::new(t_delta, consecutive) })
-            }
+            Ok(consecutive) => Ok(Self::of(Tolerance::new(t_delta, consecutive))),
             Err(error) => Err(error),
         }
     }
+
+    #[inline]
+    pub(crate) const fn of(tolerance: Tolerance) -> Self {
+        Self { trackers: Self::NOTHING_KNOWN, tolerance }
+    }
+
+    /// Copied from flash: an array made at run time would first be built on the stack.
+    const NOTHING_KNOWN: [Tracker<E>; K] = [Tracker::NEW; K];
 
     /// Takes in one firing of a sensor (from 0): the time of its echo, or `None` without echo.
     ///
@@ -92,9 +100,9 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
         let mut earliest = [NO_ECHO; E];
         for echo in echoes {
             // The longest duration stands for silence.
-            insert(&mut earliest, echo.as_micros().min(NO_ECHO - 1));
+            insert(&mut earliest, (*echo).min(LATEST));
         }
-        Ok(tracker.push(self.agreement, &earliest, expected_change_us, |_, _| None))
+        Ok(tracker.push(self.tolerance, heard(&earliest), expected_change_us, |_, _| None))
     }
 
     /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
@@ -104,5 +112,55 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     pub fn forget(&mut self, sensor: u8) -> Result<(), SensorError> {
         self.trackers.get_mut(usize::from(sensor)).ok_or(SensorError::new(sensor, K))?.forget();
         Ok(())
+    }
+}
+
+impl<const K: usize, const E: usize> Judge for EchoFilter<K, E> {
+    fn t_delta(&self) -> Micros {
+        self.tolerance.t_delta
+    }
+
+    #[inline(always)]
+    fn judge(&mut self, heard: &Heard<'_>, explanation: impl FnMut(Micros, Micros) -> Option<Explanation>) -> Verdict {
+        let &Heard { sensor, echoes, firing, t_delta, .. } = heard;
+        let tolerance = Tolerance { t_delta, ..self.tolerance };
+        match self.trackers.get_mut(usize::from(sensor)) {
+            Some(tracker) => tracker.push(tolerance, echoes, firing.expected_change_us, explanation),
+            None => heard.unjudged(None),
+        }
+    }
+
+    fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict {
+        match self.trackers.get_mut(usize::from(heard.sensor)) {
+            Some(tracker) => tracker.skip(kind, heard.echoes.first().copied()),
+            None => heard.unjudged(Some(kind)),
+        }
+    }
+
+    fn age(&self, sensor: u8) -> Option<u16> {
+        self.trackers.get(usize::from(sensor))?.age()
+    }
+
+    fn is_clear(&self, sensor: u8) -> bool {
+        let tracker = self.trackers.get(usize::from(sensor));
+        tracker.is_some_and(|tracker| tracker.is_clear(self.tolerance.consecutive))
+    }
+
+    fn forget(&mut self, sensor: u8) {
+        if let Some(tracker) = self.trackers.get_mut(usize::from(sensor)) {
+            tracker.forget();
+        }
+    }
+
+    fn restart(&mut self) {
+        for tracker in &mut self.trackers {
+            tracker.forget();
+        }
+    }
+
+    fn fired_later(&mut self, sensor: u8, later_us: i32) {
+        if let Some(tracker) = self.trackers.get_mut(usize::from(sensor)) {
+            tracker.shift(later_us);
+        }
     }
 }

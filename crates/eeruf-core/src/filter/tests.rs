@@ -56,9 +56,9 @@ fn the_earliest_echo_that_repeats_is_accepted_whatever_comes_before_it() {
 fn more_echoes_than_fit_leave_the_earliest() {
     let mut held = [NO_ECHO; 3];
     for echo in [7, 3, 9, 1, 8] {
-        insert(&mut held, echo);
+        insert(&mut held, Micros::new(echo));
     }
-    assert_eq!(held, [1, 3, 7]);
+    assert_eq!(held, [1, 3, 7].map(Micros::new));
 }
 
 #[test]
@@ -115,13 +115,14 @@ fn echoes_of_alternate_firings_are_never_accepted() {
 
 /// The kinds of the readings of one sensor, where sound explains all pairs of echoes of at most so long.
 fn kinds_explained<const E: usize>(consecutive: u8, explained_to: u32, firings: &[&[u32]]) -> Vec<ReadingKind> {
-    let agreement = Agreement::new(Micros::new(100), Consecutive::new(consecutive).unwrap());
-    let mut tracker = Tracker::<E>::new(0);
+    let agreement = Tolerance::new(Micros::new(100), Consecutive::new(consecutive).unwrap());
+    let mut tracker = Tracker::<E>::NEW;
+    let explained_to = Micros::new(explained_to);
     let mut push = |us: &[u32]| {
         let mut echoes = [NO_ECHO; E];
-        us.iter().for_each(|&echo| insert(&mut echoes, echo));
-        let verdict =
-            tracker.push(agreement, &echoes, 0, |_, echo| (echo <= explained_to).then_some(Explanation::Sensor(3)));
+        us.iter().for_each(|&echo| insert(&mut echoes, Micros::new(echo)));
+        let verdict = tracker
+            .push(agreement, heard(&echoes), 0, |_, echo| (echo <= explained_to).then_some(Explanation::Sensor(3)));
         assert_eq!(verdict.explained_by.is_some(), verdict.kind == ReadingKind::Ambiguous, "{verdict:?}");
         verdict.kind
     };
@@ -151,11 +152,11 @@ fn explained_echo_does_not_hide_a_later_one() {
 
 #[test]
 fn a_corrected_firing_shifts_known_echoes() {
-    let agreement = Agreement::new(Micros::new(100), Consecutive::new(2).unwrap());
+    let agreement = Tolerance::new(Micros::new(100), Consecutive::new(2).unwrap());
     for (later_us, kind) in [(500, ReadingKind::Accepted), (-500, ReadingKind::Rejected)] {
-        let mut tracker = Tracker::<1>::new(0);
-        tracker.push(agreement, &[5500], 0, |_, _| None);
+        let mut tracker = Tracker::<1>::NEW;
+        tracker.push(agreement, &[Micros::new(5500)], 0, |_, _| None);
         tracker.shift(later_us);
-        assert_eq!(tracker.push(agreement, &[5000], 0, |_, _| None).kind, kind);
+        assert_eq!(tracker.push(agreement, &[Micros::new(5000)], 0, |_, _| None).kind, kind);
     }
 }

@@ -1,6 +1,6 @@
 //! [`Tracker`]: compares the echoes of one firing with those of the firing before, and classifies the reading.
 
-use super::agreement::Agreement;
+use super::agreement::{Consecutive, Tolerance};
 use super::echoes::{NO_ECHO, echo_time, shift};
 use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::time::Micros;
@@ -13,19 +13,15 @@ const NEVER: u16 = u16::MAX;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct Tracker<const E: usize> {
     /// The echoes of the firing before, earliest first; [`NO_ECHO`] stands for silence where its run is not zero.
-    known: [u32; E],
+    known: [Micros; E],
     /// The number of consecutive readings that each of them was in, at most as many as must agree; 0 for no echo.
     runs: [u8; E],
-    /// For the owner: the ring keeps its flags in this byte, which would otherwise be padding.
-    pub(crate) flags: u8,
     /// Firings since the last accepted reading.
     age: u16,
 }
 
 impl<const E: usize> Tracker<E> {
-    pub(crate) const fn new(flags: u8) -> Self {
-        Self { known: [NO_ECHO; E], runs: [0; E], flags, age: NEVER }
-    }
+    pub(crate) const NEW: Self = Self { known: [NO_ECHO; E], runs: [0; E], age: NEVER };
 
     pub(crate) fn forget(&mut self) {
         self.known = [NO_ECHO; E];
@@ -50,27 +46,31 @@ impl<const E: usize> Tracker<E> {
     /// count, and its echo starts a new run.
     pub(crate) fn push(
         &mut self,
-        agreement: Agreement,
-        echoes: &[u32; E],
+        tolerance: Tolerance,
+        echoes: &[Micros],
         expected_change_us: i32,
-        mut explanation: impl FnMut(u32, u32) -> Option<Explanation>,
+        mut explanation: impl FnMut(Micros, Micros) -> Option<Explanation>,
     ) -> Verdict {
-        let before = core::mem::replace(&mut self.known, *echoes);
+        let mut latest = [NO_ECHO; E];
+        for (slot, &echo) in latest.iter_mut().zip(echoes) {
+            *slot = echo;
+        }
+        let before = core::mem::replace(&mut self.known, latest);
         let runs = core::mem::replace(&mut self.runs, [0; E]);
-        let earliest = echoes.first().copied().unwrap_or(NO_ECHO);
+        let earliest = latest.first().copied().unwrap_or(NO_ECHO);
         let earliest_before = before.first().copied().and_then(echo_time);
-        let most = agreement.consecutive();
+        let most = tolerance.consecutive();
 
         // Silence counts as an echo of its own, later than all others.
         let silent = earliest == NO_ECHO;
-        let heard = echoes.iter().copied().enumerate().take_while(|&(place, echo)| echo != NO_ECHO || place == 0);
+        let heard = latest.iter().copied().enumerate().take_while(|&(place, echo)| echo != NO_ECHO || place == 0);
         // The earliest that is confirmed, or else the earliest that repeats.
         let mut best = (1, earliest, earliest_before);
         let mut ambiguous = None;
         for ((_, echo), now) in heard.zip(&mut self.runs) {
             *now = 1;
             for (&previous, run) in before.iter().zip(runs).take_while(|&(_, run)| run != 0) {
-                if !agreement.near_identical(echo, previous, expected_change_us) {
+                if !tolerance.near_identical(echo, previous, expected_change_us) {
                     continue;
                 }
                 if echo != NO_ECHO {
@@ -112,6 +112,11 @@ impl<const E: usize> Tracker<E> {
             _ => self.age + 1,
         };
         Verdict { kind, t_echo, previous, age: self.age(), explained_by }
+    }
+
+    /// Returns true if as many firings in a row as must agree heard nothing.
+    pub(crate) fn is_clear(&self, consecutive: Consecutive) -> bool {
+        self.known.first() == Some(&NO_ECHO) && self.runs.first() == Some(&consecutive.get())
     }
 
     pub(crate) fn age(&self) -> Option<u16> {

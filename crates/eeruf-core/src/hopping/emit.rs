@@ -85,7 +85,7 @@ impl<const K: usize> fmt::Display for HoppingRust<'_, K> {
         writeln!(f, "        stale_echo: {stale_echo},")?;
         writeln!(f, "    }},\n}};\n")?;
         let HoppingSettings { tracker, neighbours, .. } = settings(requirements);
-        writeln!(f, "// For `HoppingRing::new`; QUICK, DRIVING and MAPS are other sets of settings.")?;
+        writeln!(f, "// For `HoppingRing::hopping`; QUICK, DRIVING and MAPS are other sets of settings.")?;
         writeln!(f, "pub const SETTINGS: HoppingSettings = HoppingSettings::BALANCED")?;
         write!(f, "    .with_tracker(\n        TrackerSettings::BALANCED")?;
         let TrackerSettings { t_delta, near, tentative_within, .. } = tracker;

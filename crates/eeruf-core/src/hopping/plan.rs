@@ -1,167 +1,426 @@
-//! What the next period of a hopping ring is made of: who fires, whether one sensor has it alone, and new lags.
+//! [`HoppingPlan`]: when the sensors of a hopping ring fire. What a period is made of is decided in `planning`.
 
-use super::schedule::longest_lag;
-use super::timetable::{CATCHES_UP, Timetable};
+use super::code::HoppingCode;
+use super::error::HoppingError;
+use super::lateness::Lateness;
+use super::random::SmallRandom;
+use super::schedule::HoppingSchedule;
+use super::settings::{HoppingListening, HoppingSettings, Pace};
 use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
+use super::weighed::Weighed;
+use crate::plan::{Limits, Plan};
+use crate::reading::ReadingKind;
+use crate::schedule::Phase;
 use crate::time::{Instant, Micros};
+use crate::tracker::Firing;
 
-/// A whole solo period, and the most that is saved up.
-const ONE: u16 = 256;
-const MOST: u16 = 2 * ONE;
-/// How many lags are drawn in search of one that keeps the neighbours' interval.
-const DRAWS: u8 = 8;
+/// A firing that is later than this moves all that follow. Up to this the timetable stands, so that lateness does not
+/// add up; intervals can be shorter than planned by as much.
+pub(super) const CATCHES_UP: Micros = Micros::new(1000);
 
-impl<const K: usize> Timetable<K> {
-    /// Decides who fires in the period that has begun. `fired` says when a sensor that has fired last did.
-    pub(super) fn plan(&mut self, fired: impl Fn(u8) -> Instant) {
-        self.since_solo = self.since_solo.saturating_add(1);
-        self.earned = (self.earned + u16::from(self.pace.solo_rate)).min(MOST);
-        let may_be_solo = self.earned >= ONE && self.since_solo >= self.pace.solo_spacing;
-        match if may_be_solo { self.longest_unserved() } else { None } {
-            Some(sensor) => self.plan_solo(sensor, fired(sensor)),
-            None => self.plan_all(fired),
+/// No sensor has this number.
+const NOBODY: u8 = u8::MAX;
+
+/// Fires each sensor at its lag plus the wait of the phase, and in a *solo period* one sensor alone.
+///
+/// Crosstalk moves by at least the step of the code from phase to phase while lags stand. When lags change, the first
+/// period after the change is *unsettled*: its readings may hold sound from before. A solo period lasts long enough
+/// that all sound from before it has died when its sensor fires, and that sensor's own when the next period begins.
+///
+/// A period that begins is planned by when sensors last fired: the ring knows that, and it would take four bytes a
+/// sensor to know it here too.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+// In this order: a Cortex-M0 reaches only the first 31 bytes of a structure, and the first 31 of its words, in one
+// instruction. What a firing needs comes first.
+#[repr(C)]
+pub struct HoppingPlan<const K: usize> {
+    /// Who fires next, or [`NOBODY`].
+    next: u8,
+    /// How many of this period have fired, and how many fire in it.
+    place: u8,
+    pub(super) planned: u8,
+    pub(super) phase: u8,
+    /// What is noted of each sensor that fires in it: [`FIRED`], [`SOLO`] and [`SETTLED`].
+    pub(super) kind: u8,
+    /// Lags have changed or the timetable broke off, and nobody has taken note.
+    pub(super) changed: bool,
+    /// How often somebody has, modulo 256.
+    changes: u8,
+    pub(super) since_shift: u8,
+    pub(super) since_solo: u8,
+    paused: bool,
+    /// What has been earned of solo periods, in 1/256.
+    pub(super) earned: u16,
+    pub(super) start: Instant,
+    /// When the next firing or the end of the period is due: it is asked for several times a poll.
+    due: Instant,
+    /// When any sensor last fired.
+    last_fired: Instant,
+    lateness: Lateness,
+    pub(super) code: HoppingCode,
+    /// How long the period lasts.
+    pub(super) length: Micros,
+    /// After how long its sensor fires in a solo period.
+    pub(super) solo_at: Micros,
+    pub(super) period: Micros,
+    pub(super) random: SmallRandom,
+    pub(super) window: Micros,
+    /// From a firing until its sensor no longer listens, and nothing of it is heard in a window that opens then.
+    pub(super) dies: Micros,
+    pub(super) pace: Pace,
+    /// By how much, in microseconds, firings may differ in lateness and crosstalk still move by more than `t_delta`.
+    tolerated: u16,
+    pub(super) turns: [Turn; K],
+}
+
+impl<const K: usize> HoppingPlan<K> {
+    /// A plan whose first period begins at `now`. Of `settings.tracker` it needs what decides how far crosstalk must
+    /// move; the seed is for the draws of new lags.
+    ///
+    /// # Errors
+    /// [`HoppingError`] for a `t_delta` that is not below the step of the code, more votes to confirm an echo than
+    /// there are phases, a period that is shorter than window and code together or than twice the code and a step, or a
+    /// window longer than [`HoppingListening::MAX_WINDOW`].
+    pub fn new(
+        schedule: &HoppingSchedule<K>,
+        settings: HoppingSettings,
+        listening: HoppingListening,
+        seed: u32,
+        now: Instant,
+    ) -> Result<Self, HoppingError> {
+        let code = schedule.code();
+        let t_delta = settings.tracker.t_delta;
+        if code.step() <= t_delta {
+            return Err(HoppingError::TDelta { t_delta, step: code.step() });
         }
-        self.obey_pause();
+        let votes = settings.tracker.votes;
+        if votes > code.phases() {
+            return Err(HoppingError::Votes { votes, phases: code.phases() });
+        }
+        // The sensor must have stopped listening, and a path must not read the same with two ages.
+        let least = listening.window.saturating_add(code.longest_drop()).max(code.two_ages());
+        if schedule.period() < least {
+            return Err(HoppingError::Period { period: schedule.period(), least });
+        }
+        let most = HoppingListening::MAX_WINDOW;
+        if listening.window > most {
+            return Err(HoppingError::Window { window: listening.window, most });
+        }
+        let HoppingListening { window, blanking, reach } = listening;
+        let mut plan = Self {
+            next: NOBODY,
+            place: 0,
+            planned: 0,
+            phase: 0,
+            kind: FIRED,
+            changed: false,
+            changes: 0,
+            since_shift: 0,
+            since_solo: 0,
+            paused: false,
+            earned: 0,
+            start: now,
+            due: now,
+            last_fired: now,
+            lateness: Lateness::NEW,
+            code: *schedule.code(),
+            length: schedule.period(),
+            solo_at: Micros::ZERO,
+            period: schedule.period(),
+            random: SmallRandom::new(seed),
+            window,
+            dies: reach.saturating_sub(blanking).max(window).saturating_add(Micros::new(1)),
+            pace: Pace::of(&settings),
+            // A track may be off by as much as its readings, and a step is at most 65,535 us.
+            tolerated: (schedule.code().step().abs_diff(settings.tracker.t_delta).as_micros().saturating_sub(1) / 2)
+                as u16,
+            turns: core::array::from_fn(|sensor| Turn::new(schedule.t_lag(sensor).unwrap_or(Micros::ZERO))),
+        };
+        // No sensor has fired.
+        plan.plan(|_| now);
+        Ok(plan)
     }
 
-    fn plan_all(&mut self, fired: impl Fn(u8) -> Instant) {
-        self.since_shift = self.since_shift.saturating_add(1);
-        if self.pace.shift_after > 0 && self.since_shift >= self.pace.shift_spacing {
-            self.shift_all();
+    /// The lag of a sensor as it is now; `None` for one that is out of range.
+    pub fn t_lag(&self, sensor: usize) -> Option<Micros> {
+        self.turns.get(sensor).filter(|_| sensor < self.code.sensors()).map(|turn| turn.lag)
+    }
+
+    /// The phase of the present period, from 0.
+    pub const fn phase(&self) -> Phase {
+        Phase(self.phase)
+    }
+
+    /// The sensor that the present period belongs to, if it is a solo period.
+    pub fn solo(&self) -> Option<u8> {
+        self.turns.first().filter(|_| self.is_solo()).map(|turn| turn.order)
+    }
+
+    /// How often firing times have changed against each other otherwise than by the phase, such as by new lags, modulo
+    /// 256: each time [`EchoTracker::firing_changed`](crate::EchoTracker::firing_changed) was called.
+    pub const fn changes(&self) -> u8 {
+        self.changes
+    }
+
+    /// For the log of a reading that was just emitted: how it was weighed, with the change that the poll expected of
+    /// its sensor, 0 for a robot that stands; `None` for a sensor that is out of range. With that, its phase and its
+    /// echo time an [`EchoTracker`](crate::EchoTracker) does again what the ring's did.
+    pub fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
+        if usize::from(sensor) >= self.sensors() {
+            return None;
         }
-        // Right after a change there is sound from before.
-        self.kind = if self.since_shift > 0 { FIRED | SETTLED } else { FIRED };
-        // At most 64 sensors.
-        for sensor in 0..self.code.sensors() as u8 {
-            let Some(turn) = self.turns.get(usize::from(sensor)) else { break };
-            if !turn.is(DISABLED) && self.offset(sensor) >= self.rests_for(turn, fired(sensor)) {
-                self.insert(sensor);
+        let Firing { solo, steady, .. } = self.last_firing(sensor, 0);
+        Some(Weighed { solo, steady, changes: self.changes, expected_change_us })
+    }
+
+    /// For how long after the start of the period something may still be heard, of whoever fired last.
+    pub(super) fn rings_for(&self) -> Micros {
+        let silent = self.last_fired + self.dies;
+        if self.start.has_reached(silent) { Micros::ZERO } else { silent.since(self.start) }
+    }
+
+    /// Whether the present period belongs to one sensor.
+    #[inline(always)]
+    const fn is_solo(&self) -> bool {
+        self.kind & SOLO != 0
+    }
+
+    /// When a sensor fires in this period, after its start, unless it is a solo period.
+    #[inline(always)]
+    pub(super) fn offset(&self, sensor: u8) -> Micros {
+        let Some(turn) = self.turns.get(usize::from(sensor)) else { return Micros::MAX };
+        // The step is at most 65,535 us, the lag less than a period of at most 2^28 us.
+        Micros::new(turn.lag.as_micros() + u32::from(turn.place) * self.code.step().as_micros())
+    }
+
+    /// Who fires next, and when; or when the period ends.
+    pub(super) fn find_due(&mut self) {
+        if self.is_solo() && self.place < self.planned {
+            self.next = self.order(self.place);
+            self.due = self.start + self.solo_at;
+        } else {
+            self.find_next();
+        }
+    }
+
+    /// The same unless a solo firing is still to come.
+    #[inline(always)]
+    fn find_next(&mut self) {
+        let turn = self.turns.get(usize::from(self.place)).filter(|_| self.place < self.planned);
+        self.next = turn.map_or(NOBODY, |turn| turn.order);
+        self.due = self.start + turn.map_or(self.length, |turn| self.offset(turn.order));
+    }
+
+    /// Another period: nobody fires until it is planned.
+    fn clear_period(&mut self) {
+        self.place = 0;
+        self.planned = 0;
+        self.kind = FIRED;
+        self.length = self.period;
+        self.find_due();
+    }
+
+    /// Lets nobody fire for what is left of the period, if the ring is paused.
+    pub(super) fn obey_pause(&mut self) {
+        if self.paused {
+            self.planned = self.place;
+        }
+        self.find_due();
+    }
+
+    /// The firing of a sensor came late.
+    #[cold]
+    #[inline(never)]
+    fn fired_late(&mut self, sensor: u8, late: Micros) {
+        if late > CATCHES_UP {
+            self.break_off();
+        }
+        // Nothing else fires in a solo period, so that it may move freely.
+        if late > CATCHES_UP || self.is_solo() {
+            self.start += late;
+            self.find_due();
+        }
+        if !self.is_solo() {
+            let late = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
+            self.lateness.note(late);
+            if let Some(turn) = self.turns.get_mut(usize::from(sensor)) {
+                turn.late = late;
             }
         }
     }
 
-    /// The sensor with nothing accepted for longest, if that is long enough.
-    fn longest_unserved(&self) -> Option<u8> {
-        let mut longest = (self.pace.solo_after.saturating_sub(1), None);
-        for (sensor, turn) in self.turns.iter().enumerate().take(self.code.sensors()) {
-            if turn.unserved > longest.0 && !turn.is(DISABLED) {
-                longest = (turn.unserved, Some(sensor as u8));
-            }
+    /// A firing was later than was noted when it was polled for: all that this period has had so far are noted again,
+    /// since firings that are late alike are steady. It is one of them, or the last of the period before.
+    #[cold]
+    #[inline(never)]
+    fn note_anew(&mut self, late: u16) {
+        self.lateness.begin_anew();
+        for place in 0..self.place {
+            let fired = self.turns.get(usize::from(self.order(place)));
+            self.lateness.note(fired.map_or(late, |turn| turn.late));
         }
-        longest.1
+        self.lateness.note(late);
     }
 
-    /// Gives the period to one sensor, which fires when all else is silent.
-    fn plan_solo(&mut self, sensor: u8, fired: Instant) {
-        let silent = self.rings_for();
-        // The last firing may have been late past the period's end. A clock that has jumped says nothing about it.
-        let at = if silent <= self.dies.saturating_add(CATCHES_UP) { silent } else { Micros::ZERO };
-        // Its own last firing is among those that it waits for, but its window may be longer.
-        let at = at.max(self.turns.get(usize::from(sensor)).map_or(Micros::MAX, |turn| self.rests_for(turn, fired)));
-        self.earned -= ONE;
-        self.since_solo = 0;
-        (self.kind, self.solo_at) = (FIRED | SOLO | SETTLED, at);
-        self.length = self.length.max(at.saturating_add(self.dies));
-        if let Some(first) = self.turns.first_mut() {
-            first.order = sensor;
-            self.planned = 1;
+    /// Nothing that is heard across this moment moves as the code says.
+    fn break_off(&mut self) {
+        self.lateness.break_off();
+        self.changed = true;
+    }
+}
+
+impl<const K: usize> Plan for HoppingPlan<K> {
+    fn deadline(&self) -> Instant {
+        self.due
+    }
+
+    fn next_firing(&self) -> Option<(u8, Phase)> {
+        // There is room for at most 64 sensors. To compare with the room spares the look-up its check.
+        (usize::from(self.next) < K).then_some((self.next, self.phase()))
+    }
+
+    #[inline(always)]
+    fn fire(&mut self, now: Instant) {
+        let (sensor, late) = (self.next, now.since(self.due));
+        let Some(turn) = self.turns.get_mut(usize::from(sensor)) else { return };
+        turn.fire(self.phase, self.kind);
+        self.last_fired = now;
+        if late == Micros::ZERO && !self.is_solo() {
+            self.lateness.note_punctual();
         }
-    }
-
-    /// How long after the start of the period a sensor that has last `fired` then must not fire yet, since it still
-    /// listens.
-    fn rests_for(&self, turn: &Turn, fired: Instant) -> Micros {
-        let rested = fired + self.window;
-        let rests = if self.start.has_reached(rested) { Micros::ZERO } else { rested.since(self.start) };
-        // It may have fired late past the period's end. A clock that has jumped says nothing about when that was.
-        let is_known = turn.is(FIRED) && rests <= self.window.saturating_add(CATCHES_UP);
-        if is_known { rests } else { Micros::ZERO }
-    }
-
-    /// Insertion by firing time; sensors that fire together keep their order.
-    fn insert(&mut self, sensor: u8) {
-        let offset = self.offset(sensor);
-        let mut at = self.planned;
-        while at > 0 {
-            let before = self.order(at - 1);
-            if self.offset(before) <= offset {
-                break;
-            }
-            self.set_order(at, before);
-            at -= 1;
-        }
-        self.set_order(at, sensor);
-        self.planned += 1;
-    }
-
-    /// Takes a sensor out of those that fire from this place on.
-    pub(super) fn leave_out(&mut self, sensor: u8, place: u8) {
-        let Some(at) = (place..self.planned).find(|&at| self.order(at) == sensor) else { return };
-        self.planned -= 1;
-        for at in at..self.planned {
-            self.set_order(at, self.order(at + 1));
+        self.place += 1;
+        // There is no second firing in a solo period.
+        self.find_next();
+        // Last, since it is rare: what is known here need not be saved for afterwards.
+        if late != Micros::ZERO {
+            self.fired_late(sensor, late);
         }
     }
 
-    /// Who fires at a place of the period's order.
-    pub(super) fn order(&self, place: u8) -> u8 {
-        self.turns.get(usize::from(place)).map_or(u8::MAX, |turn| turn.order)
-    }
-
-    fn set_order(&mut self, place: u8, sensor: u8) {
-        if let Some(turn) = self.turns.get_mut(usize::from(place)) {
-            turn.order = sensor;
+    fn postpone(&mut self, sensor: u8, by: Micros) {
+        let Some(turn) = self.turns.get_mut(usize::from(sensor)) else { return };
+        let is_solo = turn.is(SOLO);
+        let late = Micros::new(turn.late.into()).saturating_add(by);
+        if !is_solo {
+            let late = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
+            turn.late = late;
+            self.note_anew(late);
+        }
+        if late > CATCHES_UP {
+            self.break_off();
+        }
+        if late > CATCHES_UP || is_solo {
+            self.start += by;
+            self.find_due();
         }
     }
 
-    /// New lags for all sensors whose readings do not fit.
-    fn shift_all(&mut self) {
-        let mut shifted = false;
-        for sensor in 0..self.code.sensors() {
-            let misfits = self.turns.get(sensor).map_or(0, |turn| turn.misfits);
-            if misfits >= self.pace.shift_after {
-                shifted |= self.shift(sensor);
-            }
+    fn end_period(&mut self, now: Instant) -> (Phase, bool) {
+        let phase = self.phase();
+        let end = self.due;
+        let left_out = now.since(end) > self.period;
+        self.start = if left_out { now } else { end };
+        self.lateness.end_period();
+        if left_out {
+            self.break_off();
         }
-        if shifted {
-            self.since_shift = 0;
-            self.changed = true;
-            // What is pending was fired with the lags of before.
-            for turn in &mut self.turns {
-                turn.set(SETTLED, false);
-            }
+        let code = self.code;
+        self.phase = if self.phase + 1 < code.phases() { self.phase + 1 } else { 0 };
+        for (sensor, turn) in (0..).zip(self.turns.iter_mut().take(code.sensors())) {
+            turn.place = if self.phase == 0 { 0 } else { code.next_place(sensor, turn.place) };
+        }
+        self.clear_period();
+        (phase, left_out)
+    }
+
+    fn begin_period(&mut self, fired: impl Fn(u8) -> Instant) {
+        self.plan(fired);
+    }
+
+    #[inline(always)]
+    fn take_change(&mut self) -> bool {
+        let changed = core::mem::take(&mut self.changed);
+        self.changes = self.changes.wrapping_add(changed.into());
+        changed
+    }
+
+    fn judged(&mut self, sensor: u8, kind: ReadingKind, is_clear: impl FnOnce() -> bool) {
+        let confirmed = matches!(kind, ReadingKind::Accepted | ReadingKind::Clear);
+        // Neither silence nor another lag helps a sensor whose line is stuck, or that does not answer: it costs the
+        // others nothing.
+        if matches!(kind, ReadingKind::Stuck | ReadingKind::Unanswered) {
+            return;
+        }
+        if let Some(turn) = self.turns.get_mut(usize::from(sensor)) {
+            // A sensor that is known to have nothing in range is not fooled by what does not fit.
+            turn.heard(confirmed || kind == ReadingKind::Tentative, confirmed || is_clear());
         }
     }
 
-    /// Draws a new lag for a sensor.
-    fn shift(&mut self, sensor: usize) -> bool {
-        for _ in 0..DRAWS {
-            let lag = Micros::new(self.random.up_to(longest_lag(&self.code, self.period).as_micros()));
-            if self.keeps_interval(sensor, lag) {
-                if let Some(turn) = self.turns.get_mut(sensor) {
-                    (turn.lag, turn.misfits) = (lag, 0);
-                }
-                return true;
-            }
+    fn fired(&mut self, _sensor: u8, at: Instant) {
+        if !self.last_fired.has_reached(at) {
+            self.last_fired = at;
         }
+    }
+
+    fn may_fire_ahead(&self) -> bool {
         false
     }
 
-    /// Whether a sensor with this lag keeps the interval from its neighbours, in every phase and across the period's
-    /// end.
-    fn keeps_interval(&self, sensor: usize, lag: Micros) -> bool {
-        let interval = self.pace.shift_interval;
-        if interval == Micros::ZERO {
-            return true;
+    fn ended(&mut self, _sensor: u8, _at: Instant) {}
+
+    fn sensors(&self) -> usize {
+        self.code.sensors()
+    }
+
+    fn set_enabled(&mut self, sensor: u8, enabled: bool) {
+        if let Some(turn) = self.turns.get_mut(usize::from(sensor)) {
+            turn.set(DISABLED, !enabled);
         }
-        // Waits differ by no more than the width of the code.
-        let least = interval.saturating_add(self.code.width());
-        let n = usize::from(self.pace.neighbours);
-        let neighbours = self.turns.iter().enumerate().take(self.code.sensors());
-        let mut neighbours = neighbours.filter(|&(other, _)| other != sensor && other.abs_diff(sensor) < n);
-        neighbours.all(|(_, turn)| {
-            let apart = turn.lag.abs_diff(lag);
-            apart >= least && self.period.saturating_sub(apart) >= least
-        })
+        if !enabled {
+            self.leave_out(sensor, self.place);
+            self.find_due();
+        }
+    }
+
+    fn set_paused(&mut self, paused: bool) {
+        self.paused = paused;
+        self.obey_pause();
+    }
+
+    fn is_enabled(&self, sensor: u8) -> bool {
+        let turn = self.turns.get(usize::from(sensor)).filter(|_| usize::from(sensor) < self.sensors());
+        turn.is_some_and(|turn| !turn.is(DISABLED))
+    }
+
+    fn restart(&mut self, now: Instant) {
+        for turn in &mut self.turns {
+            turn.set(SETTLED, false);
+        }
+        self.start = now;
+        self.break_off();
+        self.clear_period();
+    }
+
+    fn last_firing(&self, sensor: u8, _periods_ago: u8) -> Firing {
+        let Some(turn) = self.turns.get(usize::from(sensor)) else { return Firing::new(Phase(0)) };
+        let steady = turn.is(SETTLED) && self.lateness.is_steady(turn.late, self.tolerated);
+        Firing { phase: Phase(turn.phase), solo: turn.is(SOLO), steady, expected_change_us: 0 }
+    }
+
+    fn limits(&self) -> Limits<'_> {
+        Limits { longest_window: self.min_refire(), verified_for: None, audible: None }
+    }
+
+    fn min_refire(&self) -> Micros {
+        // No sensor is planned to fire sooner.
+        self.window
+    }
+
+    fn horizon(&self) -> Micros {
+        // Longer than the longest solo period.
+        let dies = self.dies.saturating_add(self.dies);
+        self.period.saturating_add(self.period).saturating_add(dies)
     }
 }

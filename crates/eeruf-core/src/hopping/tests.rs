@@ -5,8 +5,8 @@ extern crate std;
 mod planning;
 
 use super::*;
-use crate::schedule::Phase;
-use crate::scheduler::{Limits, Scheduler, check_scheduler};
+use crate::plan::{Plan, check_plan};
+use crate::ring::RingEvent;
 use crate::time::Micros;
 use std::string::ToString;
 use std::vec::Vec;
@@ -20,7 +20,7 @@ fn schedule() -> HoppingSchedule<8> {
 
 fn ring(settings: HoppingSettings) -> HoppingRing<8> {
     let listening = HoppingListening { blanking: Micros::new(2380), ..HoppingListening::new(WINDOW) };
-    HoppingRing::new(&schedule(), settings, listening, 7, Instant::from_micros(0)).unwrap()
+    HoppingRing::hopping(&schedule(), settings, listening, 7, Instant::from_micros(0)).unwrap()
 }
 
 /// The firings of some periods, on time, as (instant in microseconds, sensor, whether alone); `hears` says after how
@@ -32,7 +32,7 @@ fn fire(ring: &mut HoppingRing<8>, periods: u32, hears: impl Fn(u8, usize) -> Op
         while let Some(event) = ring.poll(now) {
             match event {
                 RingEvent::Fire { sensor, .. } => {
-                    fired.push((now.as_micros(), sensor, ring.firing().solo().is_some()));
+                    fired.push((now.as_micros(), sensor, ring.plan().solo().is_some()));
                     if let Some(echo) = hears(sensor, fired.len()) {
                         ring.echo(sensor, now + Micros::new(echo)).unwrap();
                     }
@@ -56,11 +56,11 @@ fn a_paused_ring_keeps_silent_and_believes_nothing_from_before_when_it_goes_on()
     let mut ring = ring(HoppingSettings::BALANCED);
     let wall = |_, _| Some(9_000);
     fire(&mut ring, 40, wall);
-    assert!((0..8).all(|sensor| ring.tracker().confirmed(sensor).is_some()));
+    assert!((0..8).all(|sensor| ring.judge().confirmed(sensor).is_some()));
     ring.pause();
     assert_eq!(fire(&mut ring, 5, wall), []);
     ring.resume();
-    assert!((0..8).all(|sensor| ring.tracker().confirmed(sensor).is_none()));
+    assert!((0..8).all(|sensor| ring.judge().confirmed(sensor).is_none()));
     assert!(!fire(&mut ring, 2, wall).is_empty());
 }
 
@@ -144,9 +144,9 @@ fn no_sensor_fires_again_while_it_listens_and_neighbours_keep_the_interval_asked
     let interval = Micros::from_millis(8);
     let settings = HoppingSettings { shift_interval: interval, shift_spacing: 2, ..HoppingSettings::BALANCED };
     let mut hopping = ring(settings);
-    let before: Vec<_> = (0..8).map(|sensor| hopping.firing().t_lag(sensor)).collect();
+    let before: Vec<_> = (0..8).map(|sensor| hopping.plan().t_lag(sensor)).collect();
     let fired = fire(&mut hopping, 500, |_, firing| Some(3000 + (firing as u32 * 7919) % 30_000));
-    let after: Vec<_> = (0..8).map(|sensor| hopping.firing().t_lag(sensor)).collect();
+    let after: Vec<_> = (0..8).map(|sensor| hopping.plan().t_lag(sensor)).collect();
     assert!(before.iter().zip(&after).filter(|(before, after)| before != after).count() > 4);
     for (place, &(at, sensor, _)) in fired.iter().enumerate() {
         for &(next, other, _) in fired[place + 1..].iter().take(8) {
@@ -164,90 +164,8 @@ fn the_same_seed_and_echoes_give_the_same_firings() {
     assert_eq!(run(), run());
 }
 
-/// Firing for sensors that never hear what fits: they get solo periods and new lags. It knows when each last fired, as
-/// a ring does.
-struct Fooled(Timetable<8>, [Instant; 8]);
-
-impl Fooled {
-    fn plan(&mut self) {
-        self.0.plan(|sensor| self.1[usize::from(sensor)]);
-    }
-}
-
-impl Scheduler for Fooled {
-    fn deadline(&self) -> Instant {
-        self.0.deadline()
-    }
-
-    fn next_firing(&self) -> Option<(u8, Phase)> {
-        self.0.next_firing()
-    }
-
-    fn fire(&mut self, now: Instant) {
-        if let Some((sensor, _)) = self.0.next_firing() {
-            self.1[usize::from(sensor)] = now;
-        }
-        self.0.fire(now);
-    }
-
-    fn postpone(&mut self, sensor: u8, by: Micros) {
-        self.0.postpone(sensor, by);
-        let fired = &mut self.1[usize::from(sensor)];
-        *fired += by;
-        self.0.fired(*fired);
-    }
-
-    fn end_period(&mut self, now: Instant) -> (Phase, bool) {
-        let ended = self.0.end_period(now);
-        self.plan();
-        ended
-    }
-
-    fn ended(&mut self, sensor: u8, at: Instant) {
-        self.0.ended(sensor, at);
-        self.0.heard(sensor, false, false);
-    }
-
-    fn sensors(&self) -> usize {
-        self.0.sensors()
-    }
-
-    fn set_enabled(&mut self, sensor: u8, enabled: bool) {
-        self.0.set_enabled(sensor, enabled);
-    }
-
-    fn set_paused(&mut self, paused: bool) {
-        self.0.set_paused(paused);
-    }
-
-    fn is_enabled(&self, sensor: u8) -> bool {
-        self.0.is_enabled(sensor)
-    }
-
-    fn restart(&mut self, now: Instant) {
-        self.0.restart(now);
-        self.plan();
-    }
-
-    fn periods_since(&self, phase: Phase) -> u8 {
-        self.0.periods_since(phase)
-    }
-
-    fn limits(&self) -> Limits<'_> {
-        self.0.limits()
-    }
-
-    fn min_refire(&self) -> Micros {
-        self.0.min_refire()
-    }
-
-    fn horizon(&self) -> Micros {
-        self.0.horizon()
-    }
-}
-
 #[test]
-fn hopping_keeps_what_every_scheduler_promises() {
+fn hopping_keeps_what_every_plan_promises() {
     for seed in 0..40 {
         let reach = if seed % 2 == 0 { WINDOW } else { Micros::from_millis(90) };
         let listening = HoppingListening { blanking: Micros::new(2380), reach, ..HoppingListening::new(WINDOW) };
@@ -255,9 +173,9 @@ fn hopping_keeps_what_every_scheduler_promises() {
         for settings in [HoppingSettings::BALANCED, hurried] {
             // The clock wraps on the way.
             let now = Instant::from_micros(u32::MAX - 500_000);
-            let mut fooled = Fooled(Timetable::new(&schedule(), settings, listening, seed, now), [now; 8]);
-            check_scheduler(&mut fooled, now, 2_000, seed).unwrap();
-            assert!(fooled.0.t_lag(3) != schedule().t_lag(3), "no lag was drawn");
+            let mut plan = HoppingPlan::new(&schedule(), settings, listening, seed, now).unwrap();
+            check_plan(&mut plan, now, 2_000, seed).unwrap();
+            assert!(plan.t_lag(3) != schedule().t_lag(3), "no lag was drawn");
         }
     }
 }
@@ -308,7 +226,7 @@ fn each_error_names_what_is_wrong_and_what_is_expected() {
     assert_eq!(text(late), "a lag of 58 ms for sensor 1; expected at most 57.599 ms");
     let short = HoppingSchedule::<8>::spread(code, Micros::from_millis(38), 4).unwrap();
     let listening = HoppingListening::new(WINDOW);
-    let new = |schedule, settings| HoppingRing::<8>::new(schedule, settings, listening, 1, Instant::from_micros(0));
+    let new = |schedule, settings| HoppingRing::<8>::hopping(schedule, settings, listening, 1, Instant::from_micros(0));
     let error = new(&short, HoppingSettings::BALANCED).unwrap_err();
     assert_eq!(text(error), "a period of 38 ms; expected 38.4 ms to 268435.456 ms");
     let few = HoppingSchedule::<8>::spread(HoppingCode::new(2, 2, step).unwrap(), PERIOD, 2).unwrap();

@@ -3,15 +3,17 @@
 use super::history::is_just_ahead;
 use super::listening::Listening;
 use super::{NOBODY, Ring, RingError};
+use crate::filter::EchoFilter;
+use crate::judge::Judge;
+use crate::plan::{Plan, ScheduledFiring, UnevenFiring};
 use crate::schedule::Schedule;
-use crate::scheduler::{ScheduledFiring, Scheduler, UnevenFiring};
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 use crate::uneven_schedule::UnevenSchedule;
 use crate::verified::VerifiedSchedule;
 
-impl<'s, const N: usize, const M: usize, const K: usize, const E: usize, const H: usize>
-    Ring<ScheduledFiring<'s, N, M>, K, E, H>
+impl<'s, const N: usize, const M: usize, J: Judge, const K: usize, const E: usize, const H: usize>
+    Ring<ScheduledFiring<'s, N, M>, J, K, E, H>
 {
     /// Changes to another schedule when the present period ends (see [`ScheduledFiring::change_schedule`]).
     /// `t_delta`, window and what sound may do stay.
@@ -29,12 +31,12 @@ impl<'s, const N: usize, const M: usize, const K: usize, const E: usize, const H
     /// [`RingError::Window`] if a sensor would fire again while it still listens.
     pub fn change_to_unverified(&mut self, schedule: &'s Schedule<N, M>) -> Result<(), RingError> {
         self.listening.is_allowed(schedule.limits())?;
-        self.scheduler.change_schedule(schedule);
+        self.plan.change_schedule(schedule);
         Ok(())
     }
 }
 
-impl<'s, const K: usize, const E: usize, const H: usize> Ring<UnevenFiring<'s, K>, K, E, H> {
+impl<'s, J: Judge, const K: usize, const E: usize, const H: usize> Ring<UnevenFiring<'s, K>, J, K, E, H> {
     /// Changes to another schedule when the present period ends (see [`UnevenFiring::change_schedule`]). What
     /// the ring asks for at most stays; each sensor listens and compares as the schedules allow it, in the first period
     /// after the change by the lesser of both.
@@ -46,31 +48,33 @@ impl<'s, const K: usize, const E: usize, const H: usize> Ring<UnevenFiring<'s, K
         // As if it began with that schedule.
         let begun = UnevenFiring::new(schedule, Instant::from_micros(0));
         Listening::checked(self.t_delta(), self.window(), self.blanking(), &begun)?;
-        self.scheduler.change_schedule(schedule);
+        self.plan.change_schedule(schedule);
         Ok(())
     }
 }
 
-impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E, H> {
+impl<P: Plan, const K: usize, const E: usize, const H: usize> Ring<P, EchoFilter<K, E>, K, E, H> {
     /// Sets `t_delta` for all readings to come.
     ///
     /// # Errors
     /// [`RingError::TDelta`] for more than the schedule was verified for, [`RingError::CoarseTDelta`] for one that is
     /// no shorter than the window. The ring then goes on as before.
     pub fn set_t_delta(&mut self, t_delta: Micros) -> Result<(), RingError> {
-        self.listening = self.listening.changed(t_delta, self.window(), self.blanking(), &self.scheduler)?;
+        self.listening = self.listening.changed(t_delta, self.window(), self.blanking(), &self.plan)?;
         self.disturb();
         Ok(())
     }
+}
 
+impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, J, K, E, H> {
     /// Sets the listening window, also of firings in progress.
     ///
     /// # Errors
     /// [`RingError`] for more than the schedule allows or was verified for, or for no more than the blanking time or
     /// `t_delta`. The ring then goes on as before.
     pub fn set_window(&mut self, window: Micros) -> Result<(), RingError> {
-        self.listening = self.listening.changed(self.t_delta(), window, self.blanking(), &self.scheduler)?;
-        if S::UNEVEN {
+        self.listening = self.listening.changed(self.t_delta(), window, self.blanking(), &self.plan)?;
+        if self.windows_differ() {
             self.find_first_to_close();
         }
         self.emit_when_oldest_ends();
@@ -83,7 +87,7 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     /// [`RingError::Blanking`] for one that is no shorter than the window, or longer than 65,535 us. The ring then goes
     /// on as before.
     pub fn set_blanking(&mut self, blanking: Micros) -> Result<(), RingError> {
-        self.listening = self.listening.changed(self.t_delta(), self.window(), blanking, &self.scheduler)?;
+        self.listening = self.listening.changed(self.t_delta(), self.window(), blanking, &self.plan)?;
         Ok(())
     }
 
@@ -114,7 +118,7 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     /// [`SensorError`] for a sensor that is not there.
     pub fn disable(&mut self, sensor: u8) -> Result<(), SensorError> {
         self.sensor_mut(sensor)?;
-        self.scheduler.set_enabled(sensor, false);
+        self.plan.set_enabled(sensor, false);
         Ok(())
     }
 
@@ -123,11 +127,11 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
     pub fn enable(&mut self, sensor: u8) -> Result<(), SensorError> {
-        let was_enabled = self.scheduler.is_enabled(sensor);
-        let enabled = self.sensor_mut(sensor)?;
+        let was_enabled = self.plan.is_enabled(sensor);
+        self.sensor_mut(sensor)?;
         if !was_enabled {
-            enabled.tracker.forget();
-            self.scheduler.set_enabled(sensor, true);
+            self.judge.forget(sensor);
+            self.plan.set_enabled(sensor, true);
             self.disturb();
         }
         Ok(())
@@ -137,15 +141,16 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     /// on, so that a deadline still comes once a period. For a longer sleep do not poll, and [`restart`](Self::restart)
     /// after it.
     pub fn pause(&mut self) {
-        self.scheduler.set_paused(true);
+        self.plan.set_paused(true);
     }
 
     /// Lets sensors fire again: as of the next period with scheduled firing, with immediate refiring at once. Readings
     /// from before are forgotten.
     pub fn resume(&mut self) {
-        self.scheduler.set_paused(false);
-        for sensor in &mut self.sensors {
-            sensor.tracker.forget();
+        self.plan.set_paused(false);
+        // At most 64 sensors.
+        for sensor in 0..self.sensors() as u8 {
+            self.judge.forget(sensor);
         }
         self.disturb();
     }
@@ -153,7 +158,7 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     /// Starts again with phase a at `now`, or as soon as the last firings allow. Firings under way are dropped,
     /// readings from before are forgotten; ages and the count of periods go on.
     pub fn restart(&mut self, now: Instant) {
-        self.scheduler.restart(now);
+        self.plan.restart(now);
         // Sound from before may still be heard, and its firings are no longer known by this clock.
         self.known_from = now;
         for sensor in &mut self.sensors {
@@ -163,8 +168,10 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
             }
             sensor.drop_firings(now);
         }
+        self.judge.restart();
         self.oldest = NOBODY;
         self.ready = 0;
         self.disturb();
+        self.begin_period();
     }
 }

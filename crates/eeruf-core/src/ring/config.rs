@@ -1,5 +1,8 @@
 //! [`RingConfig`]: how a ring listens and compares.
 
+use super::RingError;
+use crate::filter::{Consecutive, Tolerance};
+use crate::plan::Plan;
 use crate::time::Micros;
 
 /// How a [`Ring`](super::Ring) listens and compares; `E` is the number of echoes that a sensor reports of one firing.
@@ -51,6 +54,13 @@ impl Default for RingConfig {
 }
 
 impl<const E: usize> RingConfig<E> {
+    /// How readings are compared, by what the plan's schedule was verified for.
+    pub(super) fn tolerance(&self, plan: &impl Plan) -> Result<Tolerance, RingError> {
+        let verified_for = plan.limits().verified_for;
+        let t_delta = self.t_delta.or(verified_for.map(|verified_for| verified_for.t_delta));
+        Ok(Tolerance::new(t_delta.ok_or(RingError::Unverified)?, Consecutive::new(self.consecutive)?))
+    }
+
     /// With this `t_delta`: at most what the schedule was verified for.
     #[must_use]
     pub const fn with_t_delta(self, t_delta: Micros) -> Self {

@@ -36,7 +36,7 @@ pub enum RingError {
         /// The window asked for.
         window: Micros,
     },
-    /// The scheduler fires more sensors than the ring has.
+    /// The plan fires more sensors than the ring has.
     Sensors {
         /// How many it fires.
         sensors: usize,
@@ -103,7 +103,7 @@ impl fmt::Display for RingError {
                 )
             }
             Self::Sensors { sensors, capacity } => {
-                write!(f, "a scheduler of {sensors} sensors; expected at most the {capacity} of the ring")
+                write!(f, "a plan of {sensors} sensors; expected at most the {capacity} of the ring")
             }
             Self::Room { capacity } => write!(f, "room for {capacity} sensors; expected at most {MAX_SENSORS}"),
             Self::TDelta { t_delta, verified } => {

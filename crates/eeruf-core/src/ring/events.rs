@@ -32,7 +32,7 @@ pub struct Reading {
     pub sensor: u8,
     /// The phase in which it fired.
     pub phase: Phase,
-    /// The period in which it fired, counted from 0.
+    /// The period in which it fired, counted from 0; right if that was fewer than eight periods ago.
     pub period: u32,
     /// What came of the firing.
     pub kind: ReadingKind,

@@ -2,11 +2,12 @@
 
 use super::Ring;
 use super::sensor::LISTENING;
-use crate::scheduler::Scheduler;
+use crate::judge::Judge;
+use crate::plan::Plan;
 use crate::sensor_error::SensorError;
 use crate::time::Instant;
 
-impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E, H> {
+impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, J, K, E, H> {
     /// Corrects when a sensor last fired: by what a timer captured, for example, or after a pause that its circuit
     /// needs. Optional: without it the `now` of the poll counts.
     ///
@@ -18,16 +19,23 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     /// # Errors
     /// [`SensorError`] if the sensor is out of range.
     pub fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
+        let may_fire_ahead = self.plan.may_fire_ahead();
         let fired = self.sensor_mut(sensor)?;
         let polled = fired.fired();
-        if at == polled || !fired.firings.may_correct(at) {
+        let may_be = fired.firings.may_correct(at) && (may_fire_ahead || at.has_reached(polled));
+        if at == polled || !may_be {
             return Ok(());
         }
-        fired.correct(at);
-        if fired.is(LISTENING) {
+        let (later_us, listens) = (fired.correct(at), fired.is(LISTENING));
+        if !listens {
+            // Its reading is with the judge already.
+            self.judge.fired_later(sensor, later_us);
+        }
+        self.plan.fired(sensor, at);
+        if listens {
             if at.has_reached(polled) {
                 let later = at.since(polled);
-                self.scheduler.postpone(sensor, later);
+                self.plan.postpone(sensor, later);
                 let later = u16::try_from(later.as_micros()).unwrap_or(u16::MAX);
                 self.punctuality.note(later);
                 self.punctuality.add(later, 0);

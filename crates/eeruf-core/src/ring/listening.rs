@@ -4,10 +4,10 @@ use super::config::RingConfig;
 use super::error::RingError;
 use super::history::MAX_AUDIBLE;
 use super::sensor::UNANSWERED;
-use crate::scheduler::{Limits, Scheduler};
+use crate::plan::{Limits, Plan};
 use crate::time::Micros;
 
-/// Window, `t_delta` and blanking time, none of them more than the scheduler allows, and what sound may do.
+/// Window, `t_delta` and blanking time, none of them more than the plan allows, and what sound may do.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
@@ -25,15 +25,18 @@ pub(super) struct Listening {
 const AS_T_DELTA: u16 = u16::MAX;
 
 impl Listening {
-    pub(super) fn new<const E: usize>(config: &RingConfig<E>, scheduler: &impl Scheduler) -> Result<Self, RingError> {
-        let verified_for = scheduler.limits().verified_for;
-        let t_delta = config.t_delta.or(verified_for.map(|verified_for| verified_for.t_delta));
+    pub(super) fn new<const E: usize>(
+        config: &RingConfig<E>,
+        t_delta: Micros,
+        plan: &impl Plan,
+    ) -> Result<Self, RingError> {
+        let verified_for = plan.limits().verified_for;
         let window = config.window.or(verified_for.map(|verified_for| verified_for.window));
-        let (Some(t_delta), Some(window)) = (t_delta, window) else { return Err(RingError::Unverified) };
-        let longest = || scheduler.limits().audible.unwrap_or(window.max(scheduler.min_refire())).min(MAX_AUDIBLE);
+        let window = window.ok_or(RingError::Unverified)?;
+        let longest = || plan.limits().audible.unwrap_or(window.max(plan.min_refire())).min(MAX_AUDIBLE);
         let audible = config.audible.unwrap_or_else(longest);
         let path_change = config.path_change.or(verified_for.and_then(|verified_for| verified_for.path_change));
-        Self::checked(t_delta, window, config.blanking, scheduler)?.with_sound(path_change, audible)
+        Self::checked(t_delta, window, config.blanking, plan)?.with_sound(path_change, audible)
     }
 
     /// With paths that change by so much, or by `t_delta`, and sound that is audible for so long.
@@ -50,57 +53,53 @@ impl Listening {
     }
 
     /// With some of it changed.
-    pub(super) fn checked<S: Scheduler>(
+    pub(super) fn checked<P: Plan>(
         t_delta: Micros,
         window: Micros,
         blanking: Micros,
-        scheduler: &S,
+        plan: &P,
     ) -> Result<Self, RingError> {
-        allowed(t_delta, window, scheduler.limits())?;
-        if let Some(next) = scheduler.next_limits() {
+        allowed(t_delta, window, plan.limits())?;
+        if let Some(next) = plan.next_limits() {
             allowed(t_delta, window, next)?;
         }
-        let mut shortest = window;
-        if S::UNEVEN {
-            // At most 64 sensors.
-            let sensors = 0..scheduler.sensors() as u8;
-            shortest =
-                sensors.filter_map(|x| scheduler.limits_of(x)).map(|limits| limits.window).fold(window, Micros::min);
-        }
+        // At most 64 sensors.
+        let limits = (0..plan.sensors() as u8).filter_map(|x| plan.limits_of(x));
+        let shortest = limits.map(|limits| limits.window).fold(window, Micros::min);
         let narrow = |time: Micros| u16::try_from(time.as_micros()).ok().filter(|_| time < shortest);
         let blanking = narrow(blanking).ok_or(RingError::Blanking { blanking, window: shortest })?;
         let t_delta = narrow(t_delta).ok_or(RingError::CoarseTDelta { t_delta, window: shortest })?;
         Ok(Self { window, audible: MAX_AUDIBLE, t_delta, blanking, path_change: AS_T_DELTA, unanswered: 0 })
     }
 
-    /// For how long one sensor listens: no longer than the scheduler allows it.
+    /// For how long one sensor listens: no longer than the plan allows it.
     #[inline]
-    pub(super) fn window_of<S: Scheduler>(&self, scheduler: &S, sensor: u8) -> Micros {
-        match if S::UNEVEN { scheduler.limits_of(sensor) } else { None } {
+    pub(super) fn window_of<P: Plan>(&self, plan: &P, sensor: u8) -> Micros {
+        match plan.limits_of(sensor) {
             Some(limits) => limits.window.min(self.window),
             None => self.window,
         }
     }
 
-    /// What counts as the same echo for one sensor: no more than the scheduler allows it.
+    /// What counts as the same echo for one sensor: no more than the plan allows it.
     #[inline]
-    pub(super) fn t_delta_of<S: Scheduler>(&self, scheduler: &S, sensor: u8) -> Micros {
-        match if S::UNEVEN { scheduler.limits_of(sensor) } else { None } {
+    pub(super) fn t_delta_of<P: Plan>(&self, plan: &P, sensor: u8) -> Micros {
+        match plan.limits_of(sensor) {
             Some(limits) => limits.t_delta.min(self.t_delta()),
             None => self.t_delta(),
         }
     }
 
     /// With another `t_delta`, window and blanking time; what sound may do stays.
-    pub(super) fn changed<S: Scheduler>(
+    pub(super) fn changed<P: Plan>(
         &self,
         t_delta: Micros,
         window: Micros,
         blanking: Micros,
-        scheduler: &S,
+        plan: &P,
     ) -> Result<Self, RingError> {
         let Self { audible, path_change, unanswered, .. } = *self;
-        Ok(Self { audible, path_change, unanswered, ..Self::checked(t_delta, window, blanking, scheduler)? })
+        Ok(Self { audible, path_change, unanswered, ..Self::checked(t_delta, window, blanking, plan)? })
     }
 
     /// Silence needs a witness from now on.
@@ -134,16 +133,16 @@ impl Listening {
     }
 
     /// P: by how much a path may change from one reading of a sensor to the next.
-    pub(super) fn path_change_of<S: Scheduler>(&self, scheduler: &S, sensor: u8) -> Micros {
+    pub(super) fn path_change_of<P: Plan>(&self, plan: &P, sensor: u8) -> Micros {
         match self.asked_path_change() {
             Some(path_change) => path_change,
-            None => self.t_delta_of(scheduler, sensor),
+            None => self.t_delta_of(plan, sensor),
         }
     }
 
-    /// Whether the scheduler's timetable was verified for what sound may do.
-    pub(super) fn is_proven(&self, scheduler: &impl Scheduler) -> bool {
-        let limits = scheduler.limits();
+    /// Whether the plan's timetable was verified for what sound may do.
+    pub(super) fn is_proven(&self, plan: &impl Plan) -> bool {
+        let limits = plan.limits();
         let Some(verified_for) = limits.verified_for else { return false };
         let allowed = verified_for.path_change.unwrap_or(verified_for.t_delta);
         let change = self.asked_path_change();
@@ -151,7 +150,7 @@ impl Listening {
         let two_periods = self.t_delta().saturating_add(change.unwrap_or(self.t_delta()));
         change.unwrap_or(Micros::ZERO) <= allowed
             && limits.audible.is_some_and(|audible| self.audible <= audible)
-            && two_periods < scheduler.min_refire()
+            && two_periods < plan.min_refire()
     }
 
     /// By how much the firings of one period may be late together so that crosstalk still moves by more than it must:

@@ -1,7 +1,7 @@
-//! [`Ring`]: scheduler and filter together, with what real sensors need: blanking, windows, stuck lines, late polls.
+//! [`Ring`]: plan and filter together, with what real sensors need: blanking, windows, stuck lines, late polls.
 //!
 //! The caller polls, fires the sensors it is asked to fire, hands in the instants of echo edges, and sleeps until the
-//! next deadline. Nothing here blocks, allocates, panics or reads a clock. The room uses the scheduler and the filter.
+//! next deadline. Nothing here blocks, allocates, panics or reads a clock. The room uses the plan and the filter.
 
 mod changes;
 mod config;
@@ -14,10 +14,11 @@ mod punctuality;
 mod sensor;
 mod steps;
 
-use crate::filter::Consecutive;
+use crate::filter::EchoFilter;
+use crate::judge::{Agreement, Judge};
+use crate::plan::{ImmediateRefiring, Plan, ScheduledFiring, UnevenFiring};
 use crate::reading::{ReadingKind, Tally};
 use crate::schedule::{MAX_SENSORS, Schedule};
-use crate::scheduler::{ImmediateRefiring, ScheduledFiring, Scheduler, UnevenFiring};
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 use crate::uneven_schedule::UnevenSchedule;
@@ -32,19 +33,18 @@ pub use config::RingConfig;
 pub use error::RingError;
 pub use events::{PeriodStats, Reading, RingEvent};
 
-/// A ring of up to `K` sensors: the scheduler `S` decides when each fires, and the filter what each reading is worth.
-/// `E` is the number of echoes that a sensor reports of one firing.
+/// A ring of up to `K` sensors: the [`Plan`] `P` decides when each fires, and the [`Judge`] `J` what each reading is
+/// worth. `E` is the number of echoes that a sensor reports of one firing.
 ///
-/// A reading is accepted if it is near-identical to the one before (Eq. 11) and no firing explains both as crosstalk;
-/// where one does, the reading is [`Ambiguous`](ReadingKind::Ambiguous). That holds by what was fired, not by what was
-/// planned: late polls, pauses, restarts, changes of schedule and sensors that are disabled or enabled may cost
-/// readings, but no single path of foreign sound that is audible for no longer than [`RingConfig::audible`] and changes
-/// by no more than [`RingConfig::path_change`] is ever accepted. On time a verified schedule has no ambiguous readings.
-/// `docs/theory.md` section 2.1 has the proof and its limits.
+/// With an [`EchoFilter`] a reading is accepted if it is near-identical to the one before (Eq. 11) and no firing
+/// explains both as crosstalk; where one does, the reading is [`Ambiguous`](ReadingKind::Ambiguous). That holds by what
+/// was fired, not by what was planned: late polls, pauses, restarts, changes of schedule and sensors that are disabled
+/// or enabled may cost readings, but no single path of foreign sound that is audible for no longer than
+/// [`RingConfig::audible`] and changes by no more than [`RingConfig::path_change`] is ever accepted. On time a verified
+/// schedule has no ambiguous readings. `docs/theory.md` section 2.1 has the proof and its limits.
 ///
 /// `H` is the number of firings that are remembered of each sensor, 4 bytes each. A reading that sound of a forgotten
-/// one might explain is ambiguous too; four suffice if sound is audible for no longer than a period. With `H` = 1
-/// nothing is remembered that could explain a reading, and agreement alone decides: see [`AgreementRing`].
+/// one might explain is ambiguous too; four suffice if sound is audible for no longer than a period.
 ///
 /// ```
 /// use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
@@ -69,41 +69,41 @@ pub use events::{PeriodStats, Reading, RingEvent};
 // In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction, of single bytes 31.
 // What comes before the sensors is whole words, or they are built on the stack and copied.
 #[repr(C)]
-pub struct Ring<S, const K: usize, const E: usize = 1, const H: usize = 4> {
+pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     /// The sensor whose window closes first, or [`NOBODY`].
     oldest: u8,
     /// How many sensors have a reading to emit before their window closes.
     ready: u8,
     /// The last of them to get it, or a sensor that has emitted it since.
     last_ready: u8,
-    consecutive: Consecutive,
     /// When the next reading can be emitted: when an edge came, or when the window of the oldest closes.
     emit_at: Instant,
     listening: Listening,
     period: u32,
-    scheduler: S,
+    plan: P,
     punctuality: Punctuality,
     /// Firings before this are not known: the ring was restarted.
     known_from: Instant,
     sensors: [Sensor<E, H>; K],
+    judge: J,
     tally: Tally<u8>,
 }
 
 /// A [`Ring`] with scheduled firing by a schedule of the paper's kind.
-pub type ScheduledRing<'s, const K: usize, const E: usize = 1> = Ring<ScheduledFiring<'s, K>, K, E>;
+pub type ScheduledRing<'s, const K: usize, const E: usize = 1> = Ring<ScheduledFiring<'s, K>, EchoFilter<K, E>, K, E>;
 
 /// A [`Ring`] that accepts each reading that agrees with the one before, whoever else's sound explains both: a
 /// baseline. Where crosstalk repeats, as with constant waits, it is accepted.
-pub type AgreementRing<S, const K: usize, const E: usize = 1> = Ring<S, K, E, 1>;
+pub type AgreementRing<P, const K: usize, const E: usize = 1> = Ring<P, Agreement<EchoFilter<K, E>>, K, E, 1>;
 
 const NOBODY: u8 = u8::MAX;
 
-impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s, K, M>, K, E> {
+impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s, K, M>, EchoFilter<K, E>, K, E> {
     /// A ring with scheduled firing that begins at `now`. It listens and compares as the schedule was verified for,
     /// unless `config` asks for less.
     ///
     /// # Errors
-    /// As for [`Ring::with_scheduler`].
+    /// As for [`Ring::with_plan`].
     pub fn new(schedule: &'s VerifiedSchedule<K, M>, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
         Self::unverified(schedule, config, now)
     }
@@ -112,90 +112,119 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s
     /// not accepted either, but readings that it could explain are ambiguous: with constant waits nearly all.
     ///
     /// # Errors
-    /// As for [`Ring::with_scheduler`].
+    /// As for [`Ring::with_plan`].
     pub fn unverified(schedule: &'s Schedule<K, M>, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
-        Self::with_scheduler(ScheduledFiring::new(schedule, now), config, now)
-    }
-
-    /// The schedule of the present period.
-    pub const fn schedule(&self) -> &'s Schedule<K, M> {
-        self.scheduler.schedule()
+        Self::with_plan(ScheduledFiring::new(schedule, now), config, now)
     }
 }
 
-impl<'s, const K: usize, const E: usize> Ring<UnevenFiring<'s, K>, K, E> {
+impl<'s, const K: usize, const M: usize, J, const E: usize, const H: usize>
+    Ring<ScheduledFiring<'s, K, M>, J, K, E, H>
+{
+    /// The schedule of the present period.
+    pub const fn schedule(&self) -> &'s Schedule<K, M> {
+        self.plan.schedule()
+    }
+}
+
+impl<'s, const K: usize, const E: usize> Ring<UnevenFiring<'s, K>, EchoFilter<K, E>, K, E> {
     /// A ring of sensors that are not all alike, with scheduled firing that begins at `now`. Each sensor listens and
     /// compares as it was verified for, unless `config` asks for less: what it says is the most for all.
     ///
     /// # Errors
-    /// As for [`Ring::with_scheduler`].
+    /// As for [`Ring::with_plan`].
     pub fn uneven(schedule: &'s UnevenSchedule<K>, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
-        Self::with_scheduler(UnevenFiring::new(schedule, now), config, now)
-    }
-
-    /// The schedule of the present period.
-    pub const fn schedule(&self) -> &'s UnevenSchedule<K> {
-        self.scheduler.schedule()
+        Self::with_plan(UnevenFiring::new(schedule, now), config, now)
     }
 }
 
-impl<'s, const K: usize, const M: usize, const E: usize> Ring<ImmediateRefiring<'s, K, M>, K, E> {
+impl<'s, const K: usize, J, const E: usize, const H: usize> Ring<UnevenFiring<'s, K>, J, K, E, H> {
+    /// The schedule of the present period.
+    pub const fn schedule(&self) -> &'s UnevenSchedule<K> {
+        self.plan.schedule()
+    }
+}
+
+impl<'s, const K: usize, const M: usize, const E: usize> Ring<ImmediateRefiring<'s, K, M>, EchoFilter<K, E>, K, E> {
     /// A ring with immediate refiring that begins at `now`; no sensor fires again sooner than `min_refire`. `config`
     /// needs `t_delta` and window, since nothing can be verified without a common period.
     ///
     /// # Errors
-    /// As for [`Ring::with_scheduler`].
+    /// As for [`Ring::with_plan`].
     pub fn immediate(
         schedule: &'s Schedule<K, M>,
         config: RingConfig<E>,
         min_refire: Micros,
         now: Instant,
     ) -> Result<Self, RingError> {
-        Self::with_scheduler(ImmediateRefiring::new(schedule, min_refire, now), config, now)
+        Self::with_plan(ImmediateRefiring::new(schedule, min_refire, now), config, now)
     }
 }
 
-impl<S: Scheduler, const K: usize, const E: usize> Ring<S, K, E> {
-    /// A ring with the caller's own scheduler, which remembers four firings of each sensor. Where its schedule was
-    /// verified, it listens and compares as it was verified for, unless `config` asks for less.
+impl<P: Plan, const K: usize, const E: usize> Ring<P, EchoFilter<K, E>, K, E> {
+    /// A ring with the caller's own plan, which remembers four firings of each sensor. Where its schedule was verified,
+    /// it listens and compares as it was verified for, unless `config` asks for less.
     ///
     /// # Errors
     /// As for [`Ring::remembering`].
-    pub fn with_scheduler(scheduler: S, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
-        Self::remembering(scheduler, config, now)
+    pub fn with_plan(plan: P, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
+        Self::remembering(plan, config, now)
     }
 }
 
-impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E, H> {
+impl<P: Plan, const K: usize, const E: usize, const H: usize> Ring<P, EchoFilter<K, E>, K, E, H> {
+    /// As [`with_plan`](Ring::with_plan), with a memory of `H` firings of each sensor.
+    ///
+    /// # Errors
+    /// As for [`Ring::judged_by`]; also if the number of consecutive readings is not 2 to 8, or if neither `config` nor
+    /// the schedule says `t_delta`.
+    pub fn remembering(plan: P, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
+        let tolerance = config.tolerance(&plan)?;
+        Self::judged_by(plan, EchoFilter::of(tolerance), config, now)
+    }
+}
+
+impl<P: Plan, const K: usize, const E: usize> AgreementRing<P, K, E> {
+    /// A ring that accepts what agrees, for baselines.
+    ///
+    /// # Errors
+    /// As for [`Ring::remembering`].
+    pub fn agreement_alone(plan: P, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
+        let tolerance = config.tolerance(&plan)?;
+        Self::judged_by(plan, Agreement(EchoFilter::of(tolerance)), config, now)
+    }
+}
+
+impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, J, K, E, H> {
     /// Copied from flash: an array made at run time would first be built on the stack.
     const SENSORS: [Sensor<E, H>; K] = [Sensor::new(Instant::from_micros(0)); K];
 
-    /// As [`with_scheduler`](Ring::with_scheduler), with a memory of `H` firings of each sensor.
+    /// A ring with the caller's own plan and judge, which remembers `H` firings of each sensor. How readings are
+    /// compared is the judge's: of `config` only how the ring listens counts.
     ///
     /// # Errors
-    /// [`RingError`] if `config` asks for more than the schedule was verified for, or does not say `t_delta` and window
-    /// where it was not; if `K` is more than [`MAX_SENSORS`] or less than the scheduler's sensors; if a sensor would
+    /// [`RingError`] if judge or `config` ask for more than the schedule was verified for, or `config` does not say the
+    /// window where it was not; if `K` is more than [`MAX_SENSORS`] or less than the plan's sensors; if a sensor would
     /// fire again while it still listens, if `t_delta` or blanking time are no shorter than the window or longer than
-    /// 65,535 us, if the number of consecutive readings is not 2 to 8, if a path may change by more than 65,534 us, or
-    /// if sound is audible for longer than 67 s.
-    pub fn remembering(scheduler: S, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
+    /// 65,535 us, if a path may change by more than 65,534 us, or if sound is audible for longer than 67 s.
+    #[inline(always)]
+    pub fn judged_by(plan: P, judge: J, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
         if K > MAX_SENSORS {
             return Err(RingError::Room { capacity: K });
         }
-        if scheduler.sensors() > K {
-            return Err(RingError::Sensors { sensors: scheduler.sensors(), capacity: K });
+        if plan.sensors() > K {
+            return Err(RingError::Sensors { sensors: plan.sensors(), capacity: K });
         }
-        let listening = Listening::new(&config, &scheduler)?;
-        let consecutive = Consecutive::new(config.consecutive)?;
-        let punctuality = Punctuality::new(listening.is_proven(&scheduler));
+        let listening = Listening::new(&config, judge.t_delta(), &plan)?;
+        let punctuality = Punctuality::new(listening.is_proven(&plan));
         let mut ring = Self {
             oldest: NOBODY,
             ready: 0,
-            consecutive,
             last_ready: NOBODY,
             tally: Tally::default(),
             punctuality,
-            scheduler,
+            plan,
+            judge,
             emit_at: now,
             listening,
             period: 0,
@@ -240,19 +269,19 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
 
     /// Whether there may be an event.
     #[inline(always)]
-    pub(crate) fn is_due(&self, now: Instant) -> bool {
-        now.has_reached(self.scheduler.deadline()) || (self.has_pending() && now.has_reached(self.emit_at))
+    fn is_due(&self, now: Instant) -> bool {
+        now.has_reached(self.plan.deadline()) || (self.has_pending() && now.has_reached(self.emit_at))
     }
 
     /// Whether the clock must have jumped, since what is next is too far ahead.
     #[inline(always)]
-    pub(crate) fn has_jumped(&self, now: Instant) -> bool {
-        self.scheduler.deadline().since(now) > self.scheduler.horizon()
+    fn has_jumped(&self, now: Instant) -> bool {
+        self.plan.deadline().since(now) > self.plan.horizon()
     }
 
     /// When to poll next. In the past if an event is pending.
     pub fn next_deadline(&self) -> Instant {
-        let due = self.scheduler.deadline();
+        let due = self.plan.deadline();
         if self.has_pending() && !self.emit_at.has_reached(due) { self.emit_at } else { due }
     }
 
@@ -269,7 +298,7 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     /// [`SensorError`] for a sensor that is not there.
     #[inline]
     pub fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError> {
-        let window = self.listening.window_of(&self.scheduler, sensor);
+        let window = self.listening.window_of(&self.plan, sensor);
         let Some(heard) = self.sensors.get_mut(usize::from(sensor)) else {
             return self.no_such(sensor);
         };
@@ -349,13 +378,14 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
     pub fn forget(&mut self, sensor: u8) -> Result<(), SensorError> {
-        self.sensor_mut(sensor)?.tracker.forget();
+        self.sensor_mut(sensor)?;
+        self.judge.forget(sensor);
         Ok(())
     }
 
     /// Whether a sensor fires.
     pub fn is_enabled(&self, sensor: u8) -> bool {
-        self.scheduler.is_enabled(sensor)
+        self.plan.is_enabled(sensor)
     }
 
     /// `T_delta`: consecutive readings that differ by no more are near-identical. Where sensors have their own, the
@@ -366,7 +396,7 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
 
     /// `T_delta` of one sensor.
     pub fn t_delta_of(&self, sensor: u8) -> Micros {
-        self.listening.t_delta_of(&self.scheduler, sensor)
+        self.listening.t_delta_of(&self.plan, sensor)
     }
 
     /// `T_wind`: how long a sensor listens after it has fired. Where sensors have their own, the longest: see
@@ -378,12 +408,12 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     /// `T_wind` of one sensor.
     #[inline]
     pub fn window_of(&self, sensor: u8) -> Micros {
-        self.listening.window_of(&self.scheduler, sensor)
+        self.listening.window_of(&self.plan, sensor)
     }
 
     /// P: by how much, at most, the path of foreign sound to a sensor changes from one of its readings to the next.
     pub fn path_change_of(&self, sensor: u8) -> Micros {
-        self.listening.path_change_of(&self.scheduler, sensor)
+        self.listening.path_change_of(&self.plan, sensor)
     }
 
     /// R: how long sound is audible.
@@ -404,7 +434,7 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
 
     /// The number of sensors.
     pub fn sensors(&self) -> usize {
-        self.scheduler.sensors()
+        self.plan.sensors()
     }
 
     /// The error is made out of line, since it is rare and takes more instructions than all else.
@@ -416,26 +446,27 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
 
     #[inline]
     fn sensor_mut(&mut self, sensor: u8) -> Result<&mut Sensor<E, H>, SensorError> {
-        let sensors = self.scheduler.sensors();
+        let sensors = self.plan.sensors();
         match self.sensors.get_mut(usize::from(sensor)) {
             Some(found) if usize::from(sensor) < sensors => Ok(found),
             _ => Err(SensorError::new(sensor, sensors)),
         }
     }
 
-    /// The scheduler.
-    pub const fn scheduler(&self) -> &S {
-        &self.scheduler
+    /// When sensors fire.
+    pub const fn plan(&self) -> &P {
+        &self.plan
     }
 
-    pub(crate) const fn scheduler_mut(&mut self) -> &mut S {
-        &mut self.scheduler
+    /// What readings are worth.
+    pub const fn judge(&self) -> &J {
+        &self.judge
     }
 
-    /// The scheduler, and when each sensor last fired, if it ever has.
-    pub(crate) fn scheduler_and_firings(&mut self) -> (&mut S, impl Fn(u8) -> Instant + '_) {
-        let sensors = &self.sensors;
-        (&mut self.scheduler, |sensor| sensors.get(usize::from(sensor)).map_or(Instant::default(), Sensor::fired))
+    /// Returns true if sensors listen for unlike times, so that the one that fired first need not be the first to end.
+    #[inline]
+    fn windows_differ(&self) -> bool {
+        self.plan.limits_of(0).is_some()
     }
 
     /// When a sensor last fired, as [`fired`](Self::fired) corrected it; an instant that nothing is heard from if it
@@ -443,11 +474,6 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     pub fn last_firing(&self, sensor: u8) -> Option<Instant> {
         let there = usize::from(sensor) < self.sensors();
         self.sensors.get(usize::from(sensor)).filter(|_| there).map(Sensor::fired)
-    }
-
-    /// Counts a reading that was [taken](Self::take_reading).
-    pub(crate) fn count(&mut self, kind: ReadingKind) {
-        self.tally.count(kind);
     }
 
     /// The clock has jumped.

@@ -1,24 +1,23 @@
 //! What a ring knows of one of its sensors.
 
 use super::history::Firings;
-use crate::filter::{Agreement, NO_ECHO, Tracker, insert, shift};
-use crate::reading::{Explanation, ReadingKind, Verdict};
-use crate::schedule::Phase;
+use crate::filter::{NO_ECHO, insert, shift};
+use crate::reading::ReadingKind;
 use crate::time::{Instant, Micros};
 
-/// The state of one sensor between its firing and its next: 28 bytes where it reports one echo and four firings are
-/// remembered.
+/// The state of one sensor between its firing and its next: 24 bytes where it reports one echo and four firings are
+/// remembered. What its readings are worth, the judge knows.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Sensor<const E: usize, const H: usize> {
     pub(super) firings: Firings<H>,
     /// The echoes of the present firing; also, in the first place, the time of an early or late edge.
-    echoes: [u32; E],
-    pub(super) tracker: Tracker<E>,
+    echoes: [Micros; E],
+    flags: u8,
 }
 
-// The flags of a sensor, beside the phase in which it fired.
-const PHASE: u8 = 0b111;
+// The flags of a sensor, beside the period in which it fired, modulo 8.
+const PERIOD: u8 = 0b111;
 /// It has fired, and its reading is pending.
 pub(super) const LISTENING: u8 = 1 << 3;
 /// It has a reading that can be emitted before its window closes.
@@ -46,7 +45,7 @@ pub(super) enum Noted {
 impl<const E: usize, const H: usize> Sensor<E, H> {
     /// One that has not fired by `now`.
     pub(super) const fn new(now: Instant) -> Self {
-        Self { firings: Firings::none_before(now), echoes: [NO_ECHO; E], tracker: Tracker::new(OUTSIDE) }
+        Self { firings: Firings::none_before(now), echoes: [NO_ECHO; E], flags: OUTSIDE }
     }
 
     /// When it last fired.
@@ -56,39 +55,38 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
     }
 
     pub(super) const fn is(&self, flag: u8) -> bool {
-        self.tracker.flags & flag != 0
+        self.flags & flag != 0
     }
 
     pub(super) fn set(&mut self, flag: u8) {
-        self.tracker.flags |= flag;
+        self.flags |= flag;
     }
 
     pub(super) fn clear(&mut self, flag: u8) {
-        self.tracker.flags &= !flag;
+        self.flags &= !flag;
     }
 
-    pub(super) const fn phase(&self) -> Phase {
-        Phase(self.tracker.flags & PHASE)
+    /// How many periods ago it fired, if fewer than eight.
+    pub(super) const fn periods_ago(&self, period: u32) -> u8 {
+        (period as u8).wrapping_sub(self.flags) & PERIOD
     }
 
     #[inline]
-    pub(super) fn fire(&mut self, phase: Phase, now: Instant, unanswered: u8) {
-        self.tracker.flags = LISTENING | unanswered | phase.0;
+    pub(super) fn fire(&mut self, period: u32, now: Instant, unanswered: u8) {
+        self.flags = LISTENING | unanswered | (period as u8 & PERIOD);
         self.firings.push(now);
     }
 
-    /// Its last firing was at another instant: the echoes that were measured from it change by as much.
-    pub(super) fn correct(&mut self, at: Instant) {
+    /// Its last firing was at another instant: the echoes that were measured from it change by as much. Returns by how
+    /// many microseconds it was later.
+    pub(super) fn correct(&mut self, at: Instant) -> i32 {
         let later_us = at.since(self.fired()).as_micros() as i32;
         self.firings.correct(at);
-        if !self.is(LISTENING) {
-            // Its reading is with the tracker already.
-            self.tracker.shift(later_us);
-        }
         if !shift(&mut self.echoes, later_us) {
             // The first edge came before it fired, and may have kept out the echo.
             self.set(OUTSIDE);
         }
+        later_us
     }
 
     /// Forgets firings that are so long ago that no edge is an echo of them.
@@ -103,8 +101,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
     pub(super) fn drop_firings(&mut self, now: Instant) {
         self.firings = Firings::none_before(now);
         self.echoes = [NO_ECHO; E];
-        self.tracker.forget();
-        self.tracker.flags = OUTSIDE;
+        self.flags = OUTSIDE;
     }
 
     pub(super) fn echo(&mut self, at: Instant, blanking: Micros, window: Micros) -> Noted {
@@ -135,7 +132,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
             self.clear(OUTSIDE);
             self.echoes = [NO_ECHO; E];
         }
-        insert(&mut self.echoes, t_echo.as_micros());
+        insert(&mut self.echoes, t_echo);
         if E > 1 || self.is(READY) {
             return Noted::Stored;
         }
@@ -145,57 +142,42 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
 
     fn hold(&mut self, t_echo: Micros) {
         if let Some(echo) = self.echoes.first_mut() {
-            *echo = t_echo.as_micros();
+            *echo = t_echo;
         }
     }
 
     /// The first edge held, of whatever kind.
     pub(super) fn held(&self) -> Option<Micros> {
-        self.echoes.first().filter(|&&echo| echo != NO_ECHO).map(|&echo| Micros::new(echo))
+        self.echoes.first().copied().filter(|&echo| echo != NO_ECHO)
     }
 
-    /// The reading that a late edge makes.
-    pub(super) fn take_late(&mut self) -> Verdict {
-        let t_echo = self.held();
-        self.clear(READY);
-        self.echoes = [NO_ECHO; E];
-        Verdict { kind: ReadingKind::Late, t_echo, previous: None, age: self.tracker.age(), explained_by: None }
-    }
-
-    /// Ends the firing; what it heard is compared with nothing.
-    pub(super) fn end(&mut self) -> Verdict {
-        let t_echo = self.held();
-        let kind = match t_echo {
-            _ if self.is(STUCK) => ReadingKind::Stuck,
-            _ if self.is(OUTSIDE) => ReadingKind::TooEarly,
-            Some(_) => ReadingKind::First,
-            None if self.is(UNANSWERED) => ReadingKind::Unanswered,
-            None => ReadingKind::NoEcho,
-        };
-        self.tracker.flags &= PHASE;
-        self.echoes = [NO_ECHO; E];
-        let t_echo = t_echo.filter(|_| kind != ReadingKind::Stuck);
-        Verdict { kind, t_echo, previous: None, age: None, explained_by: None }
-    }
-
-    /// Ends the firing, and compares its reading with the one before.
-    pub(super) fn compare(
-        &mut self,
-        agreement: Agreement,
-        expected_change_us: impl FnOnce() -> i32,
-        explanation: impl FnMut(u32, u32) -> Option<Explanation>,
-    ) -> Verdict {
-        let verdict = if self.is(STUCK) {
-            self.tracker.skip(ReadingKind::Stuck, None)
+    /// Ends the firing; of one that has ended already, takes the late edge.
+    #[inline]
+    pub(super) fn end(&mut self) -> Ended<E> {
+        let echoes = core::mem::replace(&mut self.echoes, [NO_ECHO; E]);
+        let is_silent = echoes.first().is_none_or(|&echo| echo == NO_ECHO);
+        let unusable = if self.is(STUCK) {
+            Some(ReadingKind::Stuck)
         } else if self.is(OUTSIDE) {
-            self.tracker.skip(ReadingKind::TooEarly, self.held())
-        } else if self.is(UNANSWERED) && self.held().is_none() {
-            self.tracker.skip(ReadingKind::Unanswered, None)
+            Some(ReadingKind::TooEarly)
+        } else if self.is(UNANSWERED) && is_silent {
+            Some(ReadingKind::Unanswered)
         } else {
-            self.tracker.push(agreement, &self.echoes, expected_change_us(), explanation)
+            None
         };
-        self.tracker.flags &= PHASE;
-        self.echoes = [NO_ECHO; E];
-        verdict
+        let (listened, was_ready) = (self.is(LISTENING), self.is(READY));
+        let echoes = if self.is(STUCK) { [NO_ECHO; E] } else { echoes };
+        // After a late edge no other is waited for.
+        self.flags &= if listened { PERIOD } else { PERIOD | OUTSIDE };
+        Ended { listened, was_ready, unusable, echoes }
     }
+}
+
+/// A firing that has ended.
+pub(super) struct Ended<const E: usize> {
+    pub(super) listened: bool,
+    pub(super) was_ready: bool,
+    /// Why it says nothing about the echo time, if it does not.
+    pub(super) unusable: Option<ReadingKind>,
+    pub(super) echoes: [Micros; E],
 }

@@ -1,22 +1,23 @@
 //! What a poll of a [`Ring`] does when something is due: fire, emit a reading, end the period.
 
 use super::history::{Answer, STEP_BACK, Sounds, is_long_ago, long_before};
+use super::listening::Listening;
 use super::punctuality::PeriodLateness;
-use super::sensor::{LISTENING, READY, Sensor};
+use super::sensor::{Ended, LISTENING, READY, Sensor};
 use super::{NOBODY, PeriodStats, Reading, Ring, RingEvent};
-use crate::filter::Agreement;
-use crate::reading::{Explanation, Verdict};
-use crate::schedule::Phase;
-use crate::scheduler::Scheduler;
+use crate::filter::heard;
+use crate::judge::{Heard, Judge};
+use crate::plan::Plan;
+use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::time::{Instant, Micros};
 
-impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E, H> {
+impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, J, K, E, H> {
     /// Something is due. Firing comes first, since it should be on time; but the reading of a sensor is emitted before
     /// the sensor fires again.
     #[inline]
     pub(super) fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         let first = match self.fire_due(now) {
-            Ok((sensor, phase, due)) => return Some(RingEvent::Fire { sensor, phase, due }),
+            Ok(fires) => return Some(fires),
             Err(first) => first,
         };
         match first.or_else(|| self.next_pending(now)) {
@@ -25,32 +26,41 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
         }
     }
 
-    /// Fires the sensor that is due; returns its phase and when it was due. `Err` if none is to fire, with the sensor
-    /// that has a reading to emit before it fires.
+    /// Fires the sensor that is due. `Err` if none is to fire, with the sensor that has a reading to emit before it
+    /// fires.
     #[inline(always)]
-    pub(crate) fn fire_due(&mut self, now: Instant) -> Result<(u8, Phase, Instant), Option<u8>> {
-        let due = self.scheduler.deadline();
-        let fires = if now.has_reached(due) { self.scheduler.next_firing() } else { None };
+    fn fire_due(&mut self, now: Instant) -> Result<RingEvent, Option<u8>> {
+        let due = self.plan.deadline();
+        let fires = if now.has_reached(due) { self.plan.next_firing() } else { None };
         let Some((sensor, phase)) = fires else { return Err(None) };
         if let Some(fired) = self.sensors.get_mut(usize::from(sensor)) {
             if fired.is(LISTENING | READY) {
                 return Err(Some(sensor));
             }
-            fired.fire(phase, now, self.listening.unanswered());
+            fired.fire(self.period, now, self.listening.unanswered());
         }
         self.has_fired(sensor, now);
-        self.scheduler.fire(now);
+        self.plan.fire(now);
+        self.take_change();
         // Last, since it is rare.
         let late = now.since(due);
         if late != Micros::ZERO {
             self.fired_late(late);
         }
-        Ok((sensor, phase, due))
+        Ok(RingEvent::Fire { sensor, phase, due })
+    }
+
+    /// Lets the judge know where firing times have changed.
+    #[inline(always)]
+    fn take_change(&mut self) {
+        if self.plan.take_change() {
+            self.judge.firing_changed();
+        }
     }
 
     #[inline]
     fn has_fired(&mut self, sensor: u8, now: Instant) {
-        if self.oldest == NOBODY || (S::UNEVEN && self.closes_first(sensor, now)) {
+        if self.oldest == NOBODY || (self.windows_differ() && self.closes_first(sensor, now)) {
             self.oldest = sensor;
             if self.ready == 0 {
                 self.emit_at = now + self.window_of(sensor);
@@ -69,7 +79,7 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     fn fired_late(&mut self, late: Micros) {
         let late = u16::try_from(late.as_micros()).unwrap_or(u16::MAX);
         self.punctuality.note(late);
-        if self.punctuality.add(late, self.listening.spare(self.scheduler.limits())) {
+        if self.punctuality.add(late, self.listening.spare(self.plan.limits())) {
             self.disturb();
         }
     }
@@ -78,31 +88,37 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     #[cold]
     #[inline(never)]
     pub(super) fn disturb(&mut self) {
-        self.punctuality.disturb(self.listening.is_proven(&self.scheduler));
+        self.punctuality.disturb(self.listening.is_proven(&self.plan));
+    }
+
+    /// Lets the plan decide on the period that has begun.
+    pub(super) fn begin_period(&mut self) {
+        let sensors = &self.sensors;
+        self.plan.begin_period(|sensor| sensors.get(usize::from(sensor)).map_or(Instant::default(), Sensor::fired));
     }
 
     /// Ends the period, if that is due.
     #[inline(never)]
-    pub(crate) fn end_period(&mut self, now: Instant) -> Option<RingEvent> {
-        let due = self.scheduler.deadline();
+    fn end_period(&mut self, now: Instant) -> Option<RingEvent> {
+        let due = self.plan.deadline();
         if !now.has_reached(due) {
             return None;
         }
         self.punctuality.note(u16::try_from(now.since(due).as_micros()).unwrap_or(u16::MAX));
-        let (phase, changed) = self.scheduler.end_period(now);
+        let (phase, changed) = self.plan.end_period(now);
         let PeriodLateness { latest, sum } = self.punctuality.end_period();
         if changed {
             self.disturb();
         }
-        if H > 1 {
-            for sensor in &mut self.sensors {
-                sensor.expire(now);
-            }
-            if is_long_ago(self.known_from, now) {
-                self.known_from = long_before(now);
-            }
+        for sensor in &mut self.sensors {
+            sensor.expire(now);
         }
-        if S::UNEVEN {
+        if is_long_ago(self.known_from, now) {
+            self.known_from = long_before(now);
+        }
+        self.begin_period();
+        self.take_change();
+        if self.windows_differ() {
             // Another schedule may allow other windows, also to firings under way.
             self.find_first_to_close();
             self.emit_when_oldest_ends();
@@ -119,7 +135,7 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     }
 
     /// A sensor with an echo in, or one whose window has closed.
-    pub(crate) fn next_pending(&self, now: Instant) -> Option<u8> {
+    fn next_pending(&self, now: Instant) -> Option<u8> {
         if self.ready > 0 {
             return self.first_ready();
         }
@@ -141,88 +157,51 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
         (0..K as u8).find(|&x| is_ready(x))
     }
 
+    /// Emits the reading of a sensor, which ends its firing.
     #[inline(never)]
-    fn emit_reading(&mut self, sensor: u8, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
-        let reading = self.take_reading(sensor, expected_change_us)?;
-        self.tally.count(reading.kind);
-        Some(RingEvent::Reading(reading))
-    }
-
-    /// The reading of a sensor, which ends its firing. It is yet to be counted.
-    #[inline(always)]
-    pub(crate) fn take_reading(
-        &mut self,
-        sensor: u8,
-        mut expected_change_us: impl FnMut(u8) -> i32,
-    ) -> Option<Reading> {
-        let heard = self.sensors.get_mut(usize::from(sensor))?;
-        let phase = heard.phase();
-        let (listened, fired) = (heard.is(LISTENING), heard.fired());
-        let mut ended_at = fired + self.listening.window_of(&self.scheduler, sensor);
-        if heard.is(READY) {
+    fn emit_reading(&mut self, sensor: u8, mut expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
+        let own = self.sensors.get_mut(usize::from(sensor))?;
+        let (fired, periods_ago) = (own.fired(), own.periods_ago(self.period));
+        let Ended { listened, was_ready, unusable, echoes } = own.end();
+        let mut ended_at = fired + self.listening.window_of(&self.plan, sensor);
+        let echoes = heard(&echoes);
+        if was_ready {
+            ended_at = fired + echoes.first().copied().unwrap_or_default();
             // Counted when its edge came.
             self.ready = self.ready.wrapping_sub(1);
-            ended_at = fired + heard.held().unwrap_or_default();
         }
-        let verdict = if listened && !S::COMPARES {
-            heard.end()
-        } else if listened {
-            // On a copy, since what other sensors fired is looked at meanwhile.
-            let mut compared = *heard;
-            let agreement = Agreement::new(self.listening.t_delta_of(&self.scheduler, sensor), self.consecutive);
-            let verdict = compared.compare(
-                agreement,
-                || expected_change_us(sensor),
-                |first, second| self.explanation(sensor, first, second),
-            );
-            if let Some(heard) = self.sensors.get_mut(usize::from(sensor)) {
-                *heard = compared;
-            }
-            verdict
-        } else {
-            heard.take_late()
-        };
-        if listened {
-            self.scheduler.ended(sensor, ended_at);
+        self.take_change();
+        let mut firing = self.plan.last_firing(sensor, periods_ago);
+        let Verdict { kind, t_echo, previous, age, explained_by } = if listened {
+            firing.expected_change_us = expected_change_us(sensor);
+            let t_delta = self.listening.t_delta_of(&self.plan, sensor);
+            let heard = Heard { sensor, fired, echoes, firing, t_delta };
+            let verdict = match unusable {
+                Some(kind) => self.judge.skip(&heard, kind),
+                None => self.judge.judge(&heard, |first, second| {
+                    if self.punctuality.is_on_time() {
+                        return None;
+                    }
+                    let (sensors, plan, listening) = (&self.sensors, &self.plan, &self.listening);
+                    let memory = Memory { sensors, plan, listening, known_from: self.known_from };
+                    memory.explanation(sensor, first, second)
+                }),
+            };
+            self.plan.judged(sensor, verdict.kind, || self.judge.is_clear(sensor));
+            self.plan.ended(sensor, ended_at);
             if self.oldest == sensor {
                 self.find_oldest(fired);
             }
-        }
+            verdict
+        } else {
+            let (t_echo, age) = (echoes.first().copied(), self.judge.age(sensor));
+            Verdict { kind: ReadingKind::Late, t_echo, previous: None, age, explained_by: None }
+        };
         self.emit_when_oldest_ends();
-        let Verdict { kind, t_echo, previous, age, explained_by } = verdict;
-        let period = self.period.wrapping_sub(self.scheduler.periods_since(phase).into());
-        Some(Reading { sensor, phase, period, kind, t_echo, previous, age, explained_by })
-    }
-
-    /// The firing whose sound could be both the echo that a sensor heard `first` after the firing before its last one
-    /// and the one that it heard `second` after its last.
-    #[inline(always)]
-    fn explanation(&self, receiver: u8, first: u32, second: u32) -> Option<Explanation> {
-        if H == 1 || self.punctuality.is_on_time() {
-            return None;
-        }
-        self.find_explanation(receiver, first, second)
-    }
-
-    #[inline(never)]
-    fn find_explanation(&self, receiver: u8, first: u32, second: u32) -> Option<Explanation> {
-        let own = self.sensor(receiver)?;
-        let heard = [own.firings.before()? + Micros::new(first), own.fired() + Micros::new(second)];
-        let path_change = self.listening.path_change_of(&self.scheduler, receiver);
-        let sounds = Sounds { heard, audible: self.listening.audible(), path_change };
-        let mut forgotten = sounds.is_audible_from(self.known_from);
-        for (x, sensor) in self.sensors.iter().enumerate().take(self.scheduler.sensors()) {
-            // At most 64 sensors.
-            let x = x as u8;
-            if self.scheduler.hears(receiver, x) {
-                match sounds.ask(&sensor.firings, x == receiver) {
-                    Answer::Explained => return Some(Explanation::Sensor(x)),
-                    Answer::Forgotten => forgotten = true,
-                    Answer::No => {}
-                }
-            }
-        }
-        forgotten.then_some(Explanation::History)
+        self.tally.count(kind);
+        let period = self.period.wrapping_sub(periods_ago.into());
+        let phase = firing.phase;
+        Some(RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age, explained_by }))
     }
 
     /// Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes.
@@ -239,7 +218,7 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
     /// earlier by no more than the clock has stepped back; where windows differ, the oldest is the one whose window
     /// closes first.
     pub(super) fn find_oldest(&mut self, before: Instant) {
-        if S::UNEVEN {
+        if self.windows_differ() {
             return self.find_first_to_close();
         }
         // 1 us before is not 71 minutes after.
@@ -268,5 +247,38 @@ impl<S: Scheduler, const K: usize, const E: usize, const H: usize> Ring<S, K, E,
 
     fn sensor(&self, sensor: u8) -> Option<&Sensor<E, H>> {
         self.sensors.get(usize::from(sensor))
+    }
+}
+
+/// What is known of who fired when.
+struct Memory<'r, P, const E: usize, const H: usize> {
+    sensors: &'r [Sensor<E, H>],
+    plan: &'r P,
+    listening: &'r Listening,
+    known_from: Instant,
+}
+
+impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
+    /// The firing whose sound could be both the echo that a sensor heard `first` after the firing before its last one
+    /// and the one that it heard `second` after its last.
+    #[inline(never)]
+    fn explanation(&self, receiver: u8, first: Micros, second: Micros) -> Option<Explanation> {
+        let own = self.sensors.get(usize::from(receiver))?;
+        let heard = [own.firings.before()? + first, own.fired() + second];
+        let path_change = self.listening.path_change_of(self.plan, receiver);
+        let sounds = Sounds { heard, audible: self.listening.audible(), path_change };
+        let mut forgotten = sounds.is_audible_from(self.known_from);
+        for (x, sensor) in self.sensors.iter().enumerate().take(self.plan.sensors()) {
+            // At most 64 sensors.
+            let x = x as u8;
+            if self.plan.hears(receiver, x) {
+                match sounds.ask(&sensor.firings, x == receiver) {
+                    Answer::Explained => return Some(Explanation::Sensor(x)),
+                    Answer::Forgotten => forgotten = true,
+                    Answer::No => {}
+                }
+            }
+        }
+        forgotten.then_some(Explanation::History)
     }
 }

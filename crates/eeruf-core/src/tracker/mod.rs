@@ -15,14 +15,15 @@ mod settings;
 mod tests;
 mod track;
 
-use crate::reading::{ReadingKind, Verdict};
+use crate::judge::{self, Judge};
+use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::schedule::Phase;
 use crate::time::Micros;
 
 pub use error::TrackerError;
 use sensor::{Heard, SensorTracks};
 pub use settings::TrackerSettings;
-use track::{LATEST, SILENCE};
+use track::LATEST;
 
 /// The latest echo that differs from later ones.
 pub(crate) const LATEST_ECHO: Micros = Micros::new(LATEST);
@@ -103,23 +104,11 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
     /// # Errors
     /// [`TrackerError::Sensor`] for a sensor that is not there.
     pub fn push(&mut self, sensor: usize, t_echo: Option<Micros>, firing: Firing) -> Result<Verdict, TrackerError> {
-        self.weigh(sensor, t_echo, firing).map(|(verdict, _)| verdict)
-    }
-
-    /// As [`push`](Self::push); also whether it is [clear](Self::is_clear) now.
-    #[inline(always)]
-    pub(crate) fn weigh(
-        &mut self,
-        sensor: usize,
-        t_echo: Option<Micros>,
-        firing: Firing,
-    ) -> Result<(Verdict, bool), TrackerError> {
-        let Some(tracks) = self.sensors.get_mut(sensor) else {
-            return Err(TrackerError::Sensor { sensor, sensors: K });
-        };
-        let Firing { phase: Phase(phase), solo, steady, expected_change_us } = firing;
-        let t_echo = t_echo.map_or(SILENCE, |t_echo| t_echo.as_micros().min(LATEST));
-        Ok(tracks.push(Heard { t_echo, phase, solo, steady, change_us: expected_change_us }, &self.settings))
+        let settings = &self.settings;
+        match self.sensors.get_mut(sensor) {
+            Some(tracks) => Ok(tracks.push(Heard::new(t_echo, firing), settings)),
+            None => Err(TrackerError::Sensor { sensor, sensors: K }),
+        }
     }
 
     /// A firing that says nothing about the echo time, such as one with an echo within the blanking time: nothing is
@@ -168,5 +157,48 @@ impl<const K: usize, const H: usize> EchoTracker<K, H> {
         for tracks in &mut self.sensors {
             tracks.firing_changed();
         }
+    }
+}
+
+impl<const K: usize, const H: usize> Judge for EchoTracker<K, H> {
+    fn t_delta(&self) -> Micros {
+        self.settings.t_delta
+    }
+
+    #[inline(always)]
+    fn judge(&mut self, heard: &judge::Heard<'_>, _: impl FnMut(Micros, Micros) -> Option<Explanation>) -> Verdict {
+        match self.sensors.get_mut(usize::from(heard.sensor)) {
+            Some(tracks) => tracks.push(Heard::new(heard.echoes.first().copied(), heard.firing), &self.settings),
+            None => heard.unjudged(None),
+        }
+    }
+
+    fn skip(&mut self, heard: &judge::Heard<'_>, kind: ReadingKind) -> Verdict {
+        let change_us = heard.firing.expected_change_us;
+        match self.sensors.get_mut(usize::from(heard.sensor)) {
+            Some(tracks) => tracks.skip(kind, heard.echoes.first().copied(), change_us),
+            None => heard.unjudged(Some(kind)),
+        }
+    }
+
+    fn age(&self, sensor: u8) -> Option<u16> {
+        self.age(sensor.into())
+    }
+
+    fn is_clear(&self, sensor: u8) -> bool {
+        self.is_clear(sensor.into())
+    }
+
+    fn forget(&mut self, sensor: u8) {
+        self.forget(sensor.into());
+    }
+
+    /// Tracks that are confirmed stay so: see [`EchoTracker::firing_changed`].
+    fn restart(&mut self) {
+        self.firing_changed();
+    }
+
+    fn firing_changed(&mut self) {
+        self.firing_changed();
     }
 }

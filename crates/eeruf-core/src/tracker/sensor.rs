@@ -1,8 +1,10 @@
 //! [`SensorTracks`]: the tracks of one sensor, and what a reading does to them.
 
+use super::Firing;
 use super::settings::TrackerSettings;
-use super::track::{SILENCE, Track, bit};
+use super::track::{LATEST, SILENCE, Track, bit};
 use crate::reading::{ReadingKind, Verdict};
+use crate::schedule::Phase;
 use crate::time::Micros;
 
 /// No track is confirmed: later than [`SILENCE`], and no reading is near it.
@@ -20,6 +22,15 @@ pub(super) struct Heard {
     pub(super) solo: bool,
     pub(super) steady: bool,
     pub(super) change_us: i32,
+}
+
+impl Heard {
+    #[inline(always)]
+    pub(super) fn new(t_echo: Option<Micros>, firing: Firing) -> Self {
+        let Firing { phase: Phase(phase), solo, steady, expected_change_us } = firing;
+        let t_echo = t_echo.map_or(SILENCE, |t_echo| t_echo.as_micros().min(LATEST));
+        Self { t_echo, phase, solo, steady, change_us: expected_change_us }
+    }
 }
 
 /// The hypotheses about one sensor.
@@ -79,8 +90,8 @@ impl<const H: usize> SensorTracks<H> {
         *surplus = (i32::from(*surplus) + more_us / 32).clamp(-WHOLE, WHOLE) as i8;
     }
 
-    /// Takes in a reading; also whether it is confirmed now that nothing is in range.
-    pub(super) fn push(&mut self, heard: Heard, settings: &TrackerSettings) -> (Verdict, bool) {
+    /// Takes in a reading.
+    pub(super) fn push(&mut self, heard: Heard, settings: &TrackerSettings) -> Verdict {
         let Heard { t_echo, phase, solo, steady, change_us } = heard;
         let phase = bit(phase);
         self.shift(change_us);
@@ -130,7 +141,7 @@ impl<const H: usize> SensorTracks<H> {
             (false, false) if previous == NOTHING => ReadingKind::First,
             (false, false) => ReadingKind::Rejected,
         };
-        (self.verdict(kind, duration(t_echo), duration(previous)), confirmed == SILENCE)
+        self.verdict(kind, duration(t_echo), duration(previous))
     }
 
     /// A firing that says nothing about the echo time.

@@ -163,8 +163,8 @@ fn agreement_alone_accepts_what_constant_waits_repeat() {
     let constant = eeruf_core::Schedule::<12>::from_firing(Micros::from_millis(60), [lags, lags]).unwrap();
     let config = config().with_t_delta(Micros::new(500));
     let begin = Instant::from_micros(0);
-    let scheduler = ScheduledFiring::new(&constant, begin);
-    let mut alone: AgreementRing<_, 12> = Ring::remembering(scheduler, config, begin).unwrap();
+    let plan = ScheduledFiring::new(&constant, begin);
+    let mut alone: AgreementRing<_, 12> = AgreementRing::agreement_alone(plan, config, begin).unwrap();
     let mut asked = Ring::unverified(&constant, config, begin).unwrap();
     let mut kinds = [vec![], vec![]];
     while kinds[1].len() < 100 {

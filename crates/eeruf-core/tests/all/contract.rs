@@ -1,8 +1,8 @@
-//! The contract of `Scheduler`: what core's own schedulers keep, and that the check finds what is broken.
+//! The contract of `Plan`: what core's own plans keep, and that the check finds what is broken.
 
 use eeruf_core::tables::{TABLE_I_A, TABLE_I_D};
 use eeruf_core::{
-    BrokenPromise, ImmediateRefiring, Instant, Limits, Micros, Phase, ScheduledFiring, Scheduler, check_scheduler,
+    BrokenPromise, Firing, ImmediateRefiring, Instant, Limits, Micros, Phase, Plan, ScheduledFiring, check_plan,
 };
 
 const START: Instant = Instant::from_micros(u32::MAX - 500_000);
@@ -10,8 +10,8 @@ const START: Instant = Instant::from_micros(u32::MAX - 500_000);
 #[test]
 fn scheduled_firing_keeps_the_contract_whatever_is_done_to_it() {
     for seed in 0..40 {
-        check_scheduler(&mut ScheduledFiring::new(&TABLE_I_D, START), START, 2_000, seed).unwrap();
-        check_scheduler(&mut ScheduledFiring::new(&TABLE_I_A, START), START, 2_000, seed).unwrap();
+        check_plan(&mut ScheduledFiring::new(&TABLE_I_D, START), START, 2_000, seed).unwrap();
+        check_plan(&mut ScheduledFiring::new(&TABLE_I_A, START), START, 2_000, seed).unwrap();
     }
 }
 
@@ -20,12 +20,12 @@ fn immediate_refiring_keeps_the_contract_whatever_is_done_to_it() {
     for seed in 0..40 {
         for min_refire in [0, 30, 300] {
             let mut refiring = ImmediateRefiring::new(&TABLE_I_D, Micros::from_millis(min_refire), START);
-            check_scheduler(&mut refiring, START, 2_000, seed).unwrap();
+            check_plan(&mut refiring, START, 2_000, seed).unwrap();
         }
     }
 }
 
-/// What is wrong with a scheduler that is right otherwise.
+/// What is wrong with a plan that is right otherwise.
 #[derive(Clone, Copy, PartialEq)]
 enum Fault {
     FiresTheDisabled,
@@ -47,7 +47,7 @@ struct Faulty {
     disabled: [bool; 12],
 }
 
-impl Scheduler for Faulty {
+impl Plan for Faulty {
     fn deadline(&self) -> Instant {
         match self.fault {
             Fault::DeadlineFarAhead => self.inner.deadline() + Micros::from_millis(400),
@@ -117,8 +117,8 @@ impl Scheduler for Faulty {
         }
     }
 
-    fn periods_since(&self, phase: Phase) -> u8 {
-        self.inner.periods_since(phase)
+    fn last_firing(&self, sensor: u8, periods_ago: u8) -> Firing {
+        self.inner.last_firing(sensor, periods_ago)
     }
 
     fn limits(&self) -> Limits<'_> {
@@ -139,7 +139,7 @@ fn found(fault: Fault) -> Option<BrokenPromise> {
     (0..40).find_map(|seed| {
         let inner = ScheduledFiring::new(&TABLE_I_D, START);
         let mut faulty = Faulty { inner, fault, disabled: [false; 12] };
-        check_scheduler(&mut faulty, START, 2_000, seed).err()
+        check_plan(&mut faulty, START, 2_000, seed).err()
     })
 }
 
@@ -179,7 +179,7 @@ impl Metronome {
     }
 }
 
-impl Scheduler for Metronome {
+impl Plan for Metronome {
     fn deadline(&self) -> Instant {
         self.due
     }
@@ -229,8 +229,8 @@ impl Scheduler for Metronome {
         self.called(6, now.as_micros());
     }
 
-    fn periods_since(&self, _phase: Phase) -> u8 {
-        0
+    fn last_firing(&self, _sensor: u8, _periods_ago: u8) -> Firing {
+        Firing::new(Phase::A)
     }
 
     fn limits(&self) -> Limits<'_> {
@@ -250,8 +250,8 @@ impl Scheduler for Metronome {
 fn the_check_allows_exactly_what_is_promised() {
     let every = Micros::from_millis(50);
     for seed in 0..20 {
-        check_scheduler(&mut Metronome::new(every, every), START, 500, seed).unwrap();
-        let far = check_scheduler(&mut Metronome::new(every, Micros::new(49_999)), START, 500, seed);
+        check_plan(&mut Metronome::new(every, every), START, 500, seed).unwrap();
+        let far = check_plan(&mut Metronome::new(every, Micros::new(49_999)), START, 500, seed);
         assert_eq!(far, Err(BrokenPromise::Horizon { ahead: every }));
     }
 }
@@ -260,7 +260,7 @@ fn the_check_allows_exactly_what_is_promised() {
 fn the_check_makes_the_same_calls_every_time() {
     let calls = |seed| {
         let mut metronome = Metronome::new(Micros::from_millis(50), Micros::from_millis(50));
-        check_scheduler(&mut metronome, START, 2_000, seed).unwrap();
+        check_plan(&mut metronome, START, 2_000, seed).unwrap();
         metronome.calls
     };
     // What somebody's test found with a seed it finds again.
@@ -287,7 +287,7 @@ impl Periods {
     }
 }
 
-impl Scheduler for Periods {
+impl Plan for Periods {
     fn deadline(&self) -> Instant {
         self.due
     }
@@ -324,8 +324,8 @@ impl Scheduler for Periods {
 
     fn restart(&mut self, _now: Instant) {}
 
-    fn periods_since(&self, _phase: Phase) -> u8 {
-        0
+    fn last_firing(&self, _sensor: u8, _periods_ago: u8) -> Firing {
+        Firing::new(Phase::A)
     }
 
     fn limits(&self) -> Limits<'_> {
@@ -343,7 +343,7 @@ impl Scheduler for Periods {
 
 #[test]
 fn the_check_takes_fewer_steps_at_once_than_four_a_sensor_and_eight_for_coming_to_rest() {
-    let steps = |at_once| check_scheduler(&mut Periods::new(at_once, Micros::from_millis(50)), START, 1, 0);
+    let steps = |at_once| check_plan(&mut Periods::new(at_once, Micros::from_millis(50)), START, 1, 0);
     assert_eq!(steps(4 * 3 + 7), Ok(()));
     assert_eq!(steps(4 * 3 + 8), Err(BrokenPromise::Endless));
 }
@@ -354,7 +354,7 @@ fn the_check_calls_a_sensor_silent_after_more_than_four_horizons_and_not_at_four
     // A run in which all polls are on time and nothing else is done: the sensors wait since the first one's end.
     let after = |polls, seed| {
         let mut periods = Periods::new(1, every);
-        let result = check_scheduler(&mut periods, START, polls, seed);
+        let result = check_plan(&mut periods, START, polls, seed);
         (periods.due.since(START).as_micros(), result)
     };
     let seed = (0..1000).find(|&seed| after(5, seed).0 == 6 * 50_000).unwrap();

@@ -11,8 +11,8 @@
 use std::fmt::Write;
 
 use eeruf_core::{
-    Explanation, Instant, Layout, Micros, PeriodStats, Phase, Reading, ReadingKind, Requirements, Ring, RingConfig,
-    RingEvent, Schedule, ScheduledFiring,
+    EchoFilter, Explanation, Instant, Layout, Micros, PeriodStats, Phase, Reading, ReadingKind, Requirements, Ring,
+    RingConfig, RingEvent, Schedule, ScheduledFiring,
 };
 
 use crate::common::random::Random;
@@ -27,7 +27,7 @@ const RARE: [u64; 9] = [67, 86, 449, 672, 1043, 1494, 2369, 2505, 2893];
 const STEPS: u32 = 64;
 const NONE: u32 = u32::MAX;
 
-type ScheduledBy<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M>, K>;
+type ScheduledBy<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M>, EchoFilter<K>, K>;
 
 /// The file's text.
 struct Text(String);

@@ -43,7 +43,7 @@ fn readings(
     let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
     let mut random = Random(seed);
     let start = Instant::from_micros(0);
-    let mut ring = HoppingRing::<SENSORS>::new(&schedule, settings, listening, seed as u32, start).unwrap();
+    let mut ring = HoppingRing::<SENSORS>::hopping(&schedule, settings, listening, seed as u32, start).unwrap();
     let (mut kinds, mut arrivals, mut ended) = (Vec::new(), Vec::<(u32, u8)>::new(), 0);
     while ended < periods {
         let stall = if random.up_to(39) == 0 { random.up_to(late.stall) } else { 0 };
@@ -155,7 +155,7 @@ fn a_reading_has_the_phase_and_period_of_its_firing_and_a_period_counts_the_read
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
     let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
     let start = Instant::from_micros(0);
-    let mut ring = HoppingRing::<SENSORS>::new(&schedule, HoppingSettings::BALANCED, listening, 1, start).unwrap();
+    let mut ring = HoppingRing::<SENSORS>::hopping(&schedule, HoppingSettings::BALANCED, listening, 1, start).unwrap();
     let (mut fired, mut given, mut late) = ([None; SENSORS], Tally::<u8>::default(), 0);
     let (mut periods, mut phases, mut edges) = (0, Vec::new(), Vec::<(Instant, u8)>::new());
     while periods < 60 {
@@ -202,7 +202,7 @@ fn a_period_counts_late_edges_of_both_kinds_before_and_after_the_window_was_clos
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
     let start = Instant::from_micros(0);
     let listening = HoppingListening::new(Micros::new(WINDOW));
-    let mut ring = HoppingRing::<SENSORS>::new(&schedule, HoppingSettings::BALANCED, listening, 1, start).unwrap();
+    let mut ring = HoppingRing::<SENSORS>::hopping(&schedule, HoppingSettings::BALANCED, listening, 1, start).unwrap();
     let (mut late, mut given, mut periods) = (0, 0, 0);
     while periods < 20 {
         let now = ring.next_deadline();
@@ -243,7 +243,7 @@ fn a_sensor_rests_for_its_window_also_after_a_firing_that_was_late_past_the_peri
     for seed in 0..60 {
         let mut random = Random(seed);
         let start = Instant::from_micros(0);
-        let mut ring = HoppingRing::<SENSORS>::new(&schedule, settings, listening, seed as u32, start).unwrap();
+        let mut ring = HoppingRing::<SENSORS>::hopping(&schedule, settings, listening, seed as u32, start).unwrap();
         let (mut fired, mut periods, mut last_fired) = ([None; SENSORS], 0, None);
         while periods < 400 {
             let now = ring.next_deadline() + Micros::new(random.up_to(999));
@@ -256,7 +256,7 @@ fn a_sensor_rests_for_its_window_also_after_a_firing_that_was_late_past_the_peri
                         let last: &mut Option<Instant> = &mut fired[usize::from(sensor)];
                         let rested = last.replace(at).map(|last| at.since(last));
                         assert!(rested.is_none_or(|rested| rested >= Micros::new(WINDOW)), "{sensor}: {rested:?}");
-                        if ring.firing().solo().is_some() {
+                        if ring.plan().solo().is_some() {
                             let silent = last_fired.map(|last| at.since(last));
                             assert!(silent.is_none_or(|silent| silent >= Micros::new(WINDOW)), "{sensor}: {silent:?}");
                         }
@@ -348,7 +348,8 @@ fn accepted_of_one_path(window: u32) -> Result<usize, HoppingError> {
     let code = HoppingCode::new(2, 5, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<2>::spread(code, Micros::from_millis(30_000), 1).unwrap();
     let listening = HoppingListening::new(Micros::new(window));
-    let mut ring = HoppingRing::<2>::new(&schedule, HoppingSettings::DRIVING, listening, 1, Instant::from_micros(0))?;
+    let mut ring =
+        HoppingRing::<2>::hopping(&schedule, HoppingSettings::DRIVING, listening, 1, Instant::from_micros(0))?;
     let (mut kinds, mut arrivals) = (Vec::new(), Vec::<Instant>::new());
     while kinds.len() < 60 {
         let now = ring.next_deadline();
@@ -396,7 +397,7 @@ fn a_clock_that_steps_back_delays_no_reading() {
     for seed in 0..20 {
         let (mut random, start) = (Random(seed + 1), Instant::from_micros((seed as u32).wrapping_mul(0xf000_0000)));
         let settings = if seed % 2 == 0 { HoppingSettings::DRIVING } else { HoppingSettings::BALANCED };
-        let mut ring = HoppingRing::<SENSORS>::new(&schedule, settings, listening, 1, start).unwrap();
+        let mut ring = HoppingRing::<SENSORS>::hopping(&schedule, settings, listening, 1, start).unwrap();
         let (mut fired, mut periods, mut latest) = ([start; SENSORS], 0, Micros::ZERO);
         while periods < 200 {
             // Within 3 us after it is due: the next poll may come sooner by the clock.

@@ -2,7 +2,7 @@
 //! poll, and periods that are left out. What is heard across a move supports nothing.
 
 use eeruf_core::{
-    HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros, RingEvent,
+    HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros, Plan as _, RingEvent,
 };
 
 const PERIOD: u32 = 60_000;
@@ -21,7 +21,7 @@ fn ring<const K: usize>(sensors: usize) -> HoppingRing<K> {
     let schedule = HoppingSchedule::new(code, Micros::new(PERIOD), lags).unwrap();
     let listening = HoppingListening::new(Micros::new(WINDOW));
     // Without solo periods and new lags.
-    HoppingRing::new(&schedule, HoppingSettings::DRIVING, listening, 1, at(0)).unwrap()
+    HoppingRing::hopping(&schedule, HoppingSettings::DRIVING, listening, 1, at(0)).unwrap()
 }
 
 /// Polls for the sensor that is to fire next.
@@ -53,7 +53,7 @@ fn a_firing_up_to_a_millisecond_late_moves_nothing_and_a_later_one_all_that_foll
         ring.fired(0, at(poll + trigger)).unwrap();
         assert_eq!(ring.next_deadline(), at(APART + moves), "{poll} + {trigger}");
         assert_eq!(fires(&mut ring, at(APART + moves)), 1);
-        assert_eq!(ring.changes(), u8::from(moves > 0), "{poll} + {trigger}");
+        assert_eq!(ring.plan().changes(), u8::from(moves > 0), "{poll} + {trigger}");
         assert_eq!(ring.next_deadline(), at(2 * APART + moves), "{poll} + {trigger}");
     }
 }
@@ -78,7 +78,7 @@ fn steady(ring: &mut HoppingRing<8>, periods: u32, late: impl Fn(u8) -> (u32, u3
                 if reading.period - first >= periods {
                     return steady;
                 }
-                let weighed = ring.weighed(reading.sensor, 0).unwrap();
+                let weighed = ring.plan().weighed(reading.sensor, 0).unwrap();
                 steady.push((reading.period - first, reading.sensor, weighed.steady));
             }
             RingEvent::PeriodEnded(_) => {}
@@ -110,12 +110,12 @@ fn what_is_heard_soon_after_a_restart_counts_for_nothing() {
     let mut ring = ring(8);
     let before = steady(&mut ring, 6, |_| (0, 0));
     assert!(before.iter().all(|&(_, _, steady)| steady), "{before:?}");
-    let (now, changes) = (ring.next_deadline(), ring.changes());
+    let (now, changes) = (ring.next_deadline(), ring.plan().changes());
     ring.restart(now);
     let after = steady(&mut ring, 6, |_| (0, 0));
     assert!(after.iter().all(|&(period, _, steady)| period != 0 || !steady), "{after:?}");
     assert!(after.iter().all(|&(period, _, steady)| period < 3 || steady), "{after:?}");
-    assert_eq!(ring.changes(), changes + 1);
+    assert_eq!(ring.plan().changes(), changes + 1);
 }
 
 #[test]
@@ -128,7 +128,7 @@ fn a_period_is_left_out_when_its_end_is_polled_for_more_than_a_period_late() {
         ring.pause();
         assert_eq!(ring.next_deadline(), at(PERIOD));
         assert!(matches!(ring.poll(at(PERIOD + late)), Some(RingEvent::PeriodEnded(_))));
-        assert_eq!((ring.next_deadline(), ring.changes()), (at(next_end), changes), "{late} us late");
+        assert_eq!((ring.next_deadline(), ring.plan().changes()), (at(next_end), changes), "{late} us late");
     }
 }
 
@@ -136,10 +136,10 @@ fn a_period_is_left_out_when_its_end_is_polled_for_more_than_a_period_late() {
 fn a_ring_with_more_room_than_sensors_has_its_sensors_alone() {
     fn check<const K: usize>() {
         let mut ring = ring::<K>(5);
-        let known = |sensor: u8| (ring.firing().t_lag(sensor.into()), ring.is_enabled(sensor));
+        let known = |sensor: u8| (ring.plan().t_lag(sensor.into()), ring.is_enabled(sensor));
         assert_eq!(known(4), (Some(Micros::new(4 * APART)), true));
         assert_eq!((known(5), known(6), known(200)), ((None, false), (None, false), (None, false)));
-        assert_eq!(ring.firing().min_refire(), Micros::new(WINDOW));
+        assert_eq!(ring.plan().min_refire(), Micros::new(WINDOW));
         let mut fired = Vec::new();
         while fired.len() < 20 {
             let now = ring.next_deadline();

@@ -18,7 +18,7 @@ fn ring(settings: HoppingSettings, seed: u32) -> HoppingRing<SENSORS> {
     let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
     let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
     let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
-    HoppingRing::new(&schedule, settings, listening, seed, Instant::from_micros(0)).unwrap()
+    HoppingRing::hopping(&schedule, settings, listening, seed, Instant::from_micros(0)).unwrap()
 }
 
 /// What odometry expects of a sensor: half of them see a wall that the robot leaves.
@@ -75,8 +75,8 @@ fn a_tracker_does_from_the_log_what_the_rings_own_did() {
                     RingEvent::Reading(reading) => {
                         let place = usize::from(reading.sensor);
                         let change = expected_change_us(reading.sensor);
-                        let weighed = ring.weighed(reading.sensor, change).unwrap();
-                        assert_eq!((weighed.changes, weighed.expected_change_us), (ring.changes(), change));
+                        let weighed = ring.plan().weighed(reading.sensor, change).unwrap();
+                        assert_eq!((weighed.changes, weighed.expected_change_us), (ring.plan().changes(), change));
                         if core::mem::replace(&mut known, weighed.changes) != weighed.changes {
                             twin.firing_changed();
                             changes += 1;
@@ -133,7 +133,7 @@ fn a_tracker_does_from_the_log_what_the_rings_own_did() {
         assert!(kinds.contains_key(kind), "no reading was {kind}: {kinds:?}");
     }
     assert!(solo > 20 && unsteady > 20 && changes > 20, "{solo} {unsteady} {changes}");
-    assert!(ring(HoppingSettings::BALANCED, 1).weighed(SENSORS as u8, 0).is_none());
+    assert!(ring(HoppingSettings::BALANCED, 1).plan().weighed(SENSORS as u8, 0).is_none());
 }
 
 #[test]
@@ -149,7 +149,11 @@ fn a_firing_that_was_late_by_what_the_caller_says_makes_its_reading_unsteady() {
                         ring.fired(sensor, now + Micros::new(late)).unwrap();
                     }
                     RingEvent::Reading(reading) if periods == 2 && reading.sensor == 5 => {
-                        assert_eq!(ring.weighed(5, 0).map(|weighed| weighed.steady), Some(steady), "{late} us late");
+                        assert_eq!(
+                            ring.plan().weighed(5, 0).map(|weighed| weighed.steady),
+                            Some(steady),
+                            "{late} us late"
+                        );
                         readings += 1;
                     }
                     RingEvent::PeriodEnded(_) => periods += 1,

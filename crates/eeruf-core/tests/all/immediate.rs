@@ -2,7 +2,7 @@
 //! `contract`.
 
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{ImmediateRefiring, Instant, Micros, Phase, Schedule, Scheduler, SchedulerStep};
+use eeruf_core::{ImmediateRefiring, Instant, Micros, Phase, Plan, PlanStep, Schedule};
 
 fn ms(ms: u32) -> Micros {
     Micros::from_millis(ms)
@@ -22,7 +22,7 @@ fn firings(refiring: &mut ImmediateRefiring<'_, 2>, until: Instant) -> Vec<(u8, 
     let mut fired = vec![];
     while until.has_reached(refiring.deadline()) {
         let now = refiring.deadline();
-        if let Some(SchedulerStep::Fire { sensor, .. }) = refiring.poll(now) {
+        if let Some(PlanStep::Fire { sensor, .. }) = refiring.poll(now) {
             refiring.ended(sensor, now + ms(5));
             fired.push((sensor, now));
         }
@@ -34,7 +34,7 @@ fn firings(refiring: &mut ImmediateRefiring<'_, 2>, until: Instant) -> Vec<(u8, 
 fn a_sensor_that_fired_later_than_it_was_polled_waits_for_its_refire_time_from_then() {
     let schedule = schedule();
     let mut refiring = ImmediateRefiring::new(&schedule, ms(40), at(0));
-    assert!(matches!(refiring.poll(at(10)), Some(SchedulerStep::Fire { sensor: 0, .. })));
+    assert!(matches!(refiring.poll(at(10)), Some(PlanStep::Fire { sensor: 0, .. })));
     refiring.postpone(0, ms(3));
     refiring.ended(0, at(20));
     assert_eq!((refiring.deadline(), refiring.next_firing()), (at(10 + 3 + 40), Some((0, Phase::B))));
@@ -45,9 +45,9 @@ fn the_end_of_a_period_does_not_change_when_a_sensor_that_listens_fires_again() 
     let schedule = schedule();
     let mut refiring = ImmediateRefiring::new(&schedule, ms(120), at(0));
     for now in [10, 55] {
-        assert!(matches!(refiring.poll(at(now)), Some(SchedulerStep::Fire { .. })));
+        assert!(matches!(refiring.poll(at(now)), Some(PlanStep::Fire { .. })));
     }
-    assert!(matches!(refiring.poll(at(100)), Some(SchedulerStep::PeriodEnded { phase: Phase::A, .. })));
+    assert!(matches!(refiring.poll(at(100)), Some(PlanStep::PeriodEnded { phase: Phase::A, .. })));
     refiring.ended(0, at(101));
     assert_eq!((refiring.deadline(), refiring.next_firing()), (at(10 + 120), Some((0, Phase::B))));
 }
@@ -83,8 +83,22 @@ fn no_sensor_beyond_the_last_is_enabled() {
 }
 
 #[test]
-fn it_has_no_common_phases_and_the_refire_time_that_it_was_given() {
-    let refiring = ImmediateRefiring::new(&TABLE_I_D, ms(40), at(0));
-    assert_eq!([Phase::A, Phase::B].map(|phase| refiring.periods_since(phase)), [0; 2]);
+fn each_sensor_has_its_own_phase_and_the_given_refire_time() {
+    let mut refiring = ImmediateRefiring::new(&TABLE_I_D, ms(40), at(0));
     assert_eq!(refiring.min_refire(), ms(40));
+    for phase in [Phase::A, Phase::B, Phase::A] {
+        while refiring.next_firing().is_none() {
+            refiring.end_period(refiring.deadline());
+        }
+        let due = refiring.deadline();
+        let (sensor, fires_in) = refiring.next_firing().unwrap();
+        refiring.fire(due);
+        assert_eq!((fires_in, refiring.last_firing(sensor, 0).phase), (phase, phase));
+        refiring.ended(sensor, due + ms(12));
+        assert_eq!(refiring.last_firing(sensor, 0).phase, phase);
+        // The others are silent meanwhile.
+        for other in (0..12).filter(|&other| other != sensor) {
+            refiring.set_enabled(other, false);
+        }
+    }
 }

@@ -2,11 +2,11 @@
 //! `sound`.
 
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{Instant, Micros, PeriodStats, ReadingKind, Ring, RingConfig, RingEvent, Schedule};
+use eeruf_core::{Instant, Micros, PeriodStats, ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledRing};
 
 type Table = Schedule<12>;
 
-fn ring(table: &Table, t_delta: u32) -> Ring<eeruf_core::ScheduledFiring<'_, 12>, 12> {
+fn ring(table: &Table, t_delta: u32) -> ScheduledRing<'_, 12> {
     let window = table.min_refire();
     let config = RingConfig::new().with_t_delta(Micros::new(t_delta)).with_window(window);
     Ring::unverified(table, config, Instant::from_micros(0)).unwrap()

@@ -148,7 +148,7 @@ fn nor_is_one_that_the_ring_has_room_for_but_does_not_have() {
     let waits: [&[Micros]; 2] = [&[ms(10), ms(55)], &[ms(20), ms(60)]];
     let schedule = Schedule::<4>::from_slices(ms(100), &[Micros::ZERO; 2], waits).unwrap();
     let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW));
-    let mut ring = Ring::<_, 4>::unverified(&schedule, config, Instant::from_micros(0)).unwrap();
+    let mut ring = Ring::<_, _, 4>::unverified(&schedule, config, Instant::from_micros(0)).unwrap();
     for sensor in [2, 3, 4, 255] {
         let now = ring.next_deadline();
         let expected: Result<(), SensorError> = Err(SensorError { sensor, sensors: 2 });
@@ -214,7 +214,7 @@ fn of_echoes_that_are_in_at_one_poll_that_of_the_sensor_which_fired_first_is_emi
 fn where_sensors_report_two_echoes_each_is_heard_until_the_window_closes() {
     let schedule = schedule();
     let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW)).with_echoes::<2>();
-    let mut ring = Ring::<_, 2, 2>::unverified(&schedule, config, Instant::from_micros(0)).unwrap();
+    let mut ring = Ring::<_, _, 2, 2>::unverified(&schedule, config, Instant::from_micros(0)).unwrap();
     // Another first echo each time, and the same second one.
     let mut first = [4_000, 6_000, 8_000].into_iter();
     let (mut fired, mut read) = (Instant::from_micros(0), vec![]);
@@ -242,11 +242,11 @@ fn where_sensors_report_two_echoes_each_is_heard_until_the_window_closes() {
 fn refused<const K: usize>() -> [Option<RingError>; 2] {
     let (schedule, now) = (schedule(), Instant::from_micros(0));
     let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW));
-    let ring = Ring::<_, K>::with_scheduler(ScheduledFiring::new(&schedule, now), config, now);
+    let ring = Ring::<_, _, K>::with_plan(ScheduledFiring::new(&schedule, now), config, now);
     let code = HoppingCode::new(2, 5, Micros::new(240)).unwrap();
     let hops = HoppingSchedule::<K>::spread(code, Micros::from_millis(60), 2).unwrap();
     let listening = HoppingListening::new(Micros::new(WINDOW));
-    let hopping = HoppingRing::<K>::new(&hops, HoppingSettings::BALANCED, listening, 1, now);
+    let hopping = HoppingRing::<K>::hopping(&hops, HoppingSettings::BALANCED, listening, 1, now);
     [
         ring.err(),
         hopping.err().map(|error| if let HoppingError::Ring(error) = error { error } else { panic!("{error}") }),

@@ -29,6 +29,7 @@ mod period_small;
 mod period_ticks;
 mod period_variants;
 mod phases;
+mod plans_and_judges;
 mod promises;
 mod rate;
 mod sound;

@@ -1,12 +1,12 @@
-//! What a ring and its schedulers promise, where it was once broken: intervals through restarts and changes, firing
+//! What a ring and its plans promise, where it was once broken: intervals through restarts and changes, firing
 //! after long silences, sizes and settings that do not fit.
 
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 
 use eeruf_core::tables::{PAPER_12, TABLE_I_A, TABLE_I_D};
 use eeruf_core::{
-    EchoFilter, ImmediateRefiring, Instant, Layout, Micros, Phase, ReadingKind, Requirements, Ring, RingConfig,
-    RingError, RingEvent, Schedule, ScheduledFiring, ScheduledRing, Scheduler, SchedulerStep, VerifiedSchedule,
+    EchoFilter, ImmediateRefiring, Instant, Layout, Micros, Phase, Plan, PlanStep, ReadingKind, Requirements, Ring,
+    RingConfig, RingError, RingEvent, Schedule, ScheduledFiring, ScheduledRing, VerifiedSchedule,
 };
 
 fn ms(ms: u32) -> Micros {
@@ -85,10 +85,10 @@ fn a_schedule_that_was_not_verified_keeps_its_own_intervals_through_a_restart() 
 }
 
 /// How long scheduled firing alone, polled every 10 ms from `now` on, takes to fire.
-fn time_to_fire(scheduler: &mut ScheduledFiring<'_, 12>, mut now: Instant) -> Micros {
+fn time_to_fire(plan: &mut ScheduledFiring<'_, 12>, mut now: Instant) -> Micros {
     let start = now;
     loop {
-        if let Some(SchedulerStep::Fire { .. }) = scheduler.poll(now) {
+        if let Some(PlanStep::Fire { .. }) = plan.poll(now) {
             return now.since(start);
         }
         now += ms(1);
@@ -98,42 +98,42 @@ fn time_to_fire(scheduler: &mut ScheduledFiring<'_, 12>, mut now: Instant) -> Mi
 
 #[test]
 fn scheduled_firing_alone_goes_on_after_a_pause_of_forty_minutes() {
-    let mut scheduler = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
-    time_to_fire(&mut scheduler, Instant::from_micros(0));
+    let mut plan = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
+    time_to_fire(&mut plan, Instant::from_micros(0));
     let forty_minutes = Instant::from_micros(0) + ms(40 * 60 * 1000);
-    assert!(time_to_fire(&mut scheduler, forty_minutes) <= ms(200));
+    assert!(time_to_fire(&mut plan, forty_minutes) <= ms(200));
 }
 
 #[test]
 fn forty_minutes_without_sensors_do_not_delay_a_change_of_schedule() {
-    let mut scheduler = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
-    time_to_fire(&mut scheduler, Instant::from_micros(0));
-    (0..12).for_each(|sensor| scheduler.set_enabled(sensor, false));
+    let mut plan = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
+    time_to_fire(&mut plan, Instant::from_micros(0));
+    (0..12).for_each(|sensor| plan.set_enabled(sensor, false));
     let mut now = Instant::from_micros(0);
     while now.as_micros() < 40 * 60 * 1_000_000 {
-        now = scheduler.deadline();
-        assert!(matches!(scheduler.poll(now), Some(SchedulerStep::PeriodEnded { .. })));
+        now = plan.deadline();
+        assert!(matches!(plan.poll(now), Some(PlanStep::PeriodEnded { .. })));
     }
-    (0..12).for_each(|sensor| scheduler.set_enabled(sensor, true));
-    scheduler.change_schedule(&TABLE_I_A);
-    assert!(time_to_fire(&mut scheduler, now) <= ms(400));
+    (0..12).for_each(|sensor| plan.set_enabled(sensor, true));
+    plan.change_schedule(&TABLE_I_A);
+    assert!(time_to_fire(&mut plan, now) <= ms(400));
 }
 
 #[test]
 fn forty_minutes_without_sensors_do_not_delay_a_restart() {
-    let mut scheduler = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
-    time_to_fire(&mut scheduler, Instant::from_micros(0));
-    scheduler.set_paused(true);
+    let mut plan = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
+    time_to_fire(&mut plan, Instant::from_micros(0));
+    plan.set_paused(true);
     let mut now = Instant::from_micros(0);
     while now.as_micros() < 40 * 60 * 1_000_000 {
-        now = scheduler.deadline();
-        assert!(matches!(scheduler.poll(now), Some(SchedulerStep::PeriodEnded { .. })));
+        now = plan.deadline();
+        assert!(matches!(plan.poll(now), Some(PlanStep::PeriodEnded { .. })));
     }
-    scheduler.set_paused(false);
-    scheduler.restart(now);
+    plan.set_paused(false);
+    plan.restart(now);
     // Whoever sleeps until then wakes soon.
-    assert!(scheduler.deadline().since(now) <= ms(200));
-    assert!(time_to_fire(&mut scheduler, now) <= ms(200));
+    assert!(plan.deadline().since(now) <= ms(200));
+    assert!(time_to_fire(&mut plan, now) <= ms(200));
 }
 
 #[test]
@@ -196,19 +196,19 @@ fn a_reading_is_of_the_period_and_phase_in_which_its_sensor_fired() {
 
 #[test]
 fn a_ring_smaller_than_its_scheduler_is_refused() {
-    let scheduler = ScheduledFiring::new(&TABLE_I_D, Instant::default());
-    let error = Ring::<_, 8, 1>::with_scheduler(scheduler, CONFIG, Instant::default());
-    assert_eq!(error.unwrap_err().to_string(), "a scheduler of 12 sensors; expected at most the 8 of the ring");
+    let plan = ScheduledFiring::new(&TABLE_I_D, Instant::default());
+    let error = Ring::<_, _, 8, 1>::with_plan(plan, CONFIG, Instant::default());
+    assert_eq!(error.unwrap_err().to_string(), "a plan of 12 sensors; expected at most the 8 of the ring");
 }
 
 #[test]
 fn a_schedule_with_room_for_300_sensors_fires_those_that_it_has() {
     let times = [ms(0), ms(15), ms(30)];
     let schedule = Schedule::<300>::from_slices(ms(60), &[Micros::ZERO; 3], [&times, &times]).unwrap();
-    let mut scheduler = ScheduledFiring::new(&schedule, Instant::default());
+    let mut plan = ScheduledFiring::new(&schedule, Instant::default());
     let mut fired = vec![];
     for _ in 0..12 {
-        if let Some(SchedulerStep::Fire { sensor, .. }) = scheduler.poll(scheduler.deadline()) {
+        if let Some(PlanStep::Fire { sensor, .. }) = plan.poll(plan.deadline()) {
             fired.push(sensor);
         }
     }
@@ -290,15 +290,15 @@ fn a_schedule_that_was_not_verified_needs_t_delta_and_window_said() {
 #[test]
 fn immediate_refiring_holds_back_for_any_refire_time_that_the_clock_can_tell() {
     for min_refire in [ms(100_000), Micros::MAX] {
-        let mut scheduler = ImmediateRefiring::new(&TABLE_I_D, min_refire, Instant::default());
+        let mut plan = ImmediateRefiring::new(&TABLE_I_D, min_refire, Instant::default());
         let mut last = [None; 12];
         let mut now = Instant::default();
         for _ in 0..20_000 {
-            now = scheduler.deadline();
-            if let Some(SchedulerStep::Fire { sensor, .. }) = scheduler.poll(now) {
+            now = plan.deadline();
+            if let Some(PlanStep::Fire { sensor, .. }) = plan.poll(now) {
                 let last = last[usize::from(sensor)].replace(now);
                 assert!(last.is_none_or(|last| now.since(last) >= ms(100_000)), "{min_refire}");
-                scheduler.ended(sensor, now + ms(10));
+                plan.ended(sensor, now + ms(10));
             }
         }
         assert!(last.iter().all(Option::is_some) && now != Instant::default());

@@ -2,7 +2,7 @@
 
 use eeruf_core::{
     EchoFilter, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule,
-    Uneven, UnevenFiring, UnevenSchedule, check_scheduler, tables::TABLE_I_D,
+    Uneven, UnevenFiring, UnevenSchedule, check_plan, tables::TABLE_I_D,
 };
 
 use crate::common::random::Random;
@@ -40,7 +40,7 @@ fn each_sensor_listens_and_compares_as_it_was_verified_for() {
     let schedule = corners();
     let filter = |sensor| EchoFilter::<1>::new(schedule.limits_of(sensor).unwrap().t_delta, 2).unwrap();
     let mut filters: [EchoFilter<1>; 4] = core::array::from_fn(filter);
-    let mut ring: Ring<_, 4> = Ring::uneven(&schedule, RingConfig::new(), Instant::from_micros(0)).unwrap();
+    let mut ring: Ring<_, _, 4> = Ring::uneven(&schedule, RingConfig::new(), Instant::from_micros(0)).unwrap();
     let mut random = Random(3);
     // When each fired, and the echo that it is to hear.
     let mut firings: [Option<(Instant, Option<u32>)>; 4] = [None; 4];
@@ -113,8 +113,8 @@ fn where_all_are_alike_an_uneven_ring_does_what_a_ring_does() {
     let each = Uneven { window: &windows, ..Uneven::NONE };
     let uneven = TABLE_I_D.verify(&Requirements { uneven: Some(each), ..alike }).verified_uneven().unwrap();
     let begin = Instant::from_micros(u32::MAX - 3_000_000);
-    let mut one: Ring<_, 12> = Ring::new(&even, RingConfig::new(), begin).unwrap();
-    let mut other: Ring<_, 12> = Ring::uneven(&uneven, RingConfig::new(), begin).unwrap();
+    let mut one: Ring<_, _, 12> = Ring::new(&even, RingConfig::new(), begin).unwrap();
+    let mut other: Ring<_, _, 12> = Ring::uneven(&uneven, RingConfig::new(), begin).unwrap();
     let mut random = Random(11);
     for poll in 0..20_000 {
         assert_eq!(one.next_deadline(), other.next_deadline());
@@ -149,7 +149,7 @@ fn a_ring_takes_less_than_was_verified_and_not_more() {
     let schedule = corners();
     let at = Instant::from_micros(0);
     let ring = |config| {
-        Ring::<_, 4>::uneven(&schedule, config, at).map(|ring| {
+        Ring::<_, _, 4>::uneven(&schedule, config, at).map(|ring| {
             (0..4).map(|x| (ring.window_of(x).as_micros() / 1000, ring.t_delta_of(x).as_micros())).collect::<Vec<_>>()
         })
     };
@@ -171,7 +171,7 @@ fn uneven_firing_keeps_what_every_scheduler_promises() {
     let schedule = corners();
     for seed in 0..20_u32 {
         let now = Instant::from_micros(seed.wrapping_mul(400_000_000));
-        check_scheduler(&mut UnevenFiring::new(&schedule, now), now, 20_000, seed).unwrap();
+        check_plan(&mut UnevenFiring::new(&schedule, now), now, 20_000, seed).unwrap();
     }
 }
 
@@ -180,7 +180,7 @@ fn an_uneven_ring_is_on_time_while_its_closest_pair_can_spare_it() {
     // Sensors 1 and 2 are 5 ms apart and compare by 2.4 ms, twice; a quarter of the 199 us left over, each period.
     let schedule = corners();
     for (late, on_time) in [(49, true), (50, false)] {
-        let mut ring: Ring<_, 4> = Ring::uneven(&schedule, RingConfig::new(), Instant::from_micros(0)).unwrap();
+        let mut ring: Ring<_, _, 4> = Ring::uneven(&schedule, RingConfig::new(), Instant::from_micros(0)).unwrap();
         let (mut kinds, mut periods, mut was_on_time) = (Vec::new(), 0, true);
         while periods < 6 {
             // The first firing of the fifth period comes late.
@@ -225,7 +225,8 @@ fn between_two_uneven_schedules_nothing_fires_or_listens_sooner_or_longer_than_b
     let limits = |of: usize, sensor: usize| schedules[of].limits_of(sensor).unwrap();
     // No more than either allows, so that it can change between them.
     let config = RingConfig::new().with_window(Micros::from_millis(50)).with_t_delta(Micros::new(1_900));
-    let mut ring: Ring<_, 4> = Ring::uneven(&schedules[0], config, Instant::from_micros(u32::MAX - 500_000)).unwrap();
+    let mut ring: Ring<_, _, 4> =
+        Ring::uneven(&schedules[0], config, Instant::from_micros(u32::MAX - 500_000)).unwrap();
     let mut random = Random(5);
     // The schedules of the present period and the one before, when each sensor fired and by which, and until when it
     // listened.
@@ -284,7 +285,7 @@ fn between_two_uneven_schedules_nothing_fires_or_listens_sooner_or_longer_than_b
 fn a_change_to_an_uneven_schedule_that_allows_less_is_refused_and_the_ring_goes_on() {
     let schedules = [corners(), farther()];
     let at = Instant::from_micros(0);
-    let mut ring: Ring<_, 4> = Ring::uneven(&schedules[1], RingConfig::new(), at).unwrap();
+    let mut ring: Ring<_, _, 4> = Ring::uneven(&schedules[1], RingConfig::new(), at).unwrap();
     let (window, verified) = (Micros::from_millis(70), Micros::from_millis(50));
     assert_eq!(ring.change_schedule(&schedules[0]), Err(RingError::VerifiedWindow { window, verified }));
     ring.set_window(verified).unwrap();

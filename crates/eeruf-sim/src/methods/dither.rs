@@ -42,7 +42,7 @@ impl Firing for Dither {
 mod tests {
     use super::*;
     use crate::methods::firing::PeriodFiring;
-    use eeruf_core::{Instant, check_scheduler};
+    use eeruf_core::{Instant, check_plan};
 
     #[test]
     fn dither_keeps_the_contract_whatever_is_done_to_it() {
@@ -52,7 +52,7 @@ mod tests {
             let now = Instant::from_micros(u32::MAX - 500_000);
             let dither = Dither { lags, period: ms(60), widest: ms(14), random: Random::new(seed.into()) };
             let mut firing = PeriodFiring::new(Box::new(dither), 4, ms(46), now);
-            check_scheduler(&mut firing, now, 2_000, seed).unwrap();
+            check_plan(&mut firing, now, 2_000, seed).unwrap();
             assert_eq!(firing.error(), None);
         }
     }

@@ -1,9 +1,9 @@
 //! [`Firing`]: when the sensors of a ring fire, planned period by period, by a method or by the caller's own code; and
-//! the scheduler that makes core's ring of it.
+//! the plan that makes core's ring of it.
 
 use core::fmt;
 
-use eeruf_core::{Instant, Limits, MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Micros, Phase, Scheduler};
+use eeruf_core::{Instant, Limits, MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Micros, Phase, Plan};
 
 /// When the sensors of one robot's ring fire. Hand it to a simulation with [`Own`](crate::Own); dither is one as well.
 ///
@@ -130,6 +130,8 @@ pub(crate) struct PeriodFiring {
     due: Vec<(Micros, u8)>,
     length: Micros,
     phase: Phase,
+    /// The phase of each sensor's last firing.
+    fired_in: [Phase; MAX_SENSORS],
     /// The next of them.
     next: usize,
     start: Instant,
@@ -157,6 +159,7 @@ impl PeriodFiring {
             next: 0,
             start: now,
             before_us: vec![None; sensors],
+            fired_in: [Phase::A; MAX_SENSORS],
             enabled: [true; MAX_SENSORS],
             paused: false,
             last_fired: None,
@@ -231,7 +234,7 @@ impl PeriodFiring {
     }
 }
 
-impl Scheduler for PeriodFiring {
+impl Plan for PeriodFiring {
     fn next_firing(&self) -> Option<(u8, Phase)> {
         self.due.get(self.next).map(|&(_, sensor)| (sensor, self.phase))
     }
@@ -239,6 +242,10 @@ impl Scheduler for PeriodFiring {
     fn fire(&mut self, now: Instant) {
         self.start += now.since(self.deadline());
         self.last_fired = Some(now);
+        let next = self.next_firing().map_or(MAX_SENSORS, |(sensor, _)| sensor.into());
+        if let Some(fired_in) = self.fired_in.get_mut(next) {
+            *fired_in = self.phase;
+        }
         self.next += 1;
         self.skip_disabled();
     }
@@ -288,8 +295,8 @@ impl Scheduler for PeriodFiring {
         self.begin_period(soon.unwrap_or(now));
     }
 
-    fn periods_since(&self, _phase: Phase) -> u8 {
-        0
+    fn last_firing(&self, sensor: u8, _periods_ago: u8) -> eeruf_core::Firing {
+        eeruf_core::Firing::new(self.fired_in.get(usize::from(sensor)).copied().unwrap_or(self.phase))
     }
 
     fn limits(&self) -> Limits<'_> {

@@ -13,7 +13,7 @@ use super::dither;
 use super::firing::Firing;
 use super::hopping;
 use super::planned_ring::planned;
-use super::ring_runner::{self, AGREEMENT_ALONE, FiringPlan, REMEMBERED, RingRunner, RingStart, StartError, Started};
+use super::ring_runner::{self, AGREEMENT_ALONE, ASKS, FiringPlan, RingRunner, RingStart, StartError, Started};
 use super::schedules::{self, Made, ScheduleQuery};
 use crate::world::{AnySchedule, Robot};
 
@@ -43,7 +43,7 @@ const DEFAULT: Row = Row {
     name: "",
     eeruf: false,
     schedule: schedules::own,
-    ring: ring_runner::scheduled::<1, REMEMBERED>,
+    ring: ring_runner::scheduled::<1, ASKS>,
     belief: Belief::Repeated,
     plan: |_, schedule| Ok(FiringPlan { schedule, ladder: vec![], uneven: None }),
     echoes: 1,
@@ -135,7 +135,7 @@ methods! {
     Eeruf = "eeruf" {
         eeruf: true,
         schedule: schedules::own,
-        ring: ring_runner::scheduled::<1, REMEMBERED>,
+        ring: ring_runner::scheduled::<1, ASKS>,
         belief: Belief::Repeated,
         plan: ring_runner::plan_own,
     }
@@ -144,7 +144,7 @@ methods! {
     EerufBest = "eeruf_best" {
         eeruf: true,
         schedule: schedules::best,
-        ring: ring_runner::scheduled::<1, REMEMBERED>,
+        ring: ring_runner::scheduled::<1, ASKS>,
         belief: Belief::Repeated,
     }
     /// As [`Eeruf`](Self::Eeruf), moving along a ladder of scaled schedules as the rejection rate asks for (end of Sec.
@@ -169,7 +169,7 @@ methods! {
     MultiEcho = "multi_echo" {
         eeruf: true,
         schedule: schedules::own,
-        ring: ring_runner::scheduled::<MAX_ECHOES, REMEMBERED>,
+        ring: ring_runner::scheduled::<MAX_ECHOES, ASKS>,
         belief: Belief::Repeated,
         plan: ring_runner::plan_own,
         echoes: MAX_ECHOES,
@@ -215,8 +215,8 @@ impl Method {
     /// A robot's ring that fires by the caller's own code, ready to run.
     pub(crate) fn start_own<'s>(self, robot: &Robot, firing: Box<dyn Firing>, now: Instant) -> Started<'s> {
         let planned = match (self.echoes() > 1, self.is_eeruf()) {
-            (true, _) => planned::<MAX_ECHOES, REMEMBERED>,
-            (false, true) => planned::<1, REMEMBERED>,
+            (true, _) => planned::<MAX_ECHOES, ASKS>,
+            (false, true) => planned::<1, ASKS>,
             (false, false) => planned::<1, AGREEMENT_ALONE>,
         };
         planned(robot, firing, robot.window, now)

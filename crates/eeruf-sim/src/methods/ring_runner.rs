@@ -1,12 +1,13 @@
-//! Core's own [`Ring`] of whatever scheduler and number of echoes behind one trait: the same code as on the target,
+//! Core's own [`Ring`] of whatever plan and number of echoes behind one trait: the same code as on the target,
 //! under simulated time.
 
 use eeruf_core::{
-    HoppingError, HoppingSettings, ImmediateRefiring, Instant, LadderError, MAX_SENSORS, Ring, RingConfig, RingError,
-    RingEvent, ScheduledFiring, Scheduler, UnevenFiring, UnevenSchedule, VerifiedSchedule, Violation, Weighed,
+    AgreementRing, HoppingError, HoppingPlan, HoppingSettings, ImmediateRefiring, Instant, Judge, LadderError,
+    MAX_SENSORS, Plan, Ring, RingConfig, RingError, RingEvent, ScheduledFiring, UnevenFiring, UnevenSchedule,
+    VerifiedSchedule, Violation, Weighed,
 };
 
-use super::firing::OwnError;
+use super::firing::{OwnError, PeriodFiring};
 use crate::world::{AnySchedule, Random, Robot};
 
 /// A ring of any kind, which can change to schedules that live as long as `'s`.
@@ -42,29 +43,52 @@ pub(crate) enum ChangeError {
     Ring(RingError),
 }
 
-/// How rings with this scheduler change to another schedule.
-trait Changes<'s>: Scheduler + Send + Sized {
-    fn change<const K: usize, const E: usize, const H: usize>(
-        _ring: &mut Ring<Self, K, E, H>,
+/// What the simulator asks of a plan beyond what a ring asks.
+pub(super) trait SimulatedPlan<'s>: Plan + Send + Sized {
+    /// Changes a ring to another schedule.
+    fn change<J: Judge, const K: usize, const E: usize, const H: usize>(
+        _ring: &mut Ring<Self, J, K, E, H>,
         _schedule: &'s AnySchedule,
     ) -> Result<(), ChangeError> {
         Err(ChangeError::Fixed)
     }
+    /// See [`RingRunner::weighed`].
+    fn weighed(&self, _sensor: u8, _expected_change_us: i32) -> Option<Weighed> {
+        None
+    }
+    /// See [`RingRunner::error`].
+    fn error(&self) -> Option<&OwnError> {
+        None
+    }
 }
 
-impl<'s> Changes<'s> for ScheduledFiring<'s, MAX_SENSORS> {
-    fn change<const K: usize, const E: usize, const H: usize>(
-        ring: &mut Ring<Self, K, E, H>,
+impl<'s> SimulatedPlan<'s> for ScheduledFiring<'s, MAX_SENSORS> {
+    fn change<J: Judge, const K: usize, const E: usize, const H: usize>(
+        ring: &mut Ring<Self, J, K, E, H>,
         schedule: &'s AnySchedule,
     ) -> Result<(), ChangeError> {
         ring.change_to_unverified(schedule).map_err(ChangeError::Ring)
     }
 }
 
-impl<'s> Changes<'s> for UnevenFiring<'s, MAX_SENSORS> {}
-impl<'s> Changes<'s> for ImmediateRefiring<'s, MAX_SENSORS> {}
+impl<const K: usize> SimulatedPlan<'_> for HoppingPlan<K> {
+    fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
+        HoppingPlan::weighed(self, sensor, expected_change_us)
+    }
+}
 
-impl<'s, S: Changes<'s>, const K: usize, const E: usize, const H: usize> RingRunner<'s> for Ring<S, K, E, H> {
+impl SimulatedPlan<'_> for PeriodFiring {
+    fn error(&self) -> Option<&OwnError> {
+        PeriodFiring::error(self)
+    }
+}
+
+impl<'s> SimulatedPlan<'s> for UnevenFiring<'s, MAX_SENSORS> {}
+impl<'s> SimulatedPlan<'s> for ImmediateRefiring<'s, MAX_SENSORS> {}
+
+impl<'s, P: SimulatedPlan<'s>, J: Judge + Send, const K: usize, const E: usize, const H: usize> RingRunner<'s>
+    for Ring<P, J, K, E, H>
+{
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         self.poll_expecting(now, expected_change_us)
     }
@@ -78,8 +102,16 @@ impl<'s, S: Changes<'s>, const K: usize, const E: usize, const H: usize> RingRun
         _ = Ring::echo(self, sensor, at);
     }
 
+    fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
+        self.plan().weighed(sensor, expected_change_us)
+    }
+
     fn change_schedule(&mut self, schedule: &'s AnySchedule) -> Result<(), ChangeError> {
-        S::change(self, schedule)
+        P::change(self, schedule)
+    }
+
+    fn error(&self) -> Option<&OwnError> {
+        self.plan().error()
     }
 }
 
@@ -154,30 +186,49 @@ impl<'s> RingStart<'s> {
         config_of(self.robot)
     }
 
-    /// A ring of `E` echoes with this scheduler that remembers `H` firings of each sensor, no larger than needed: some
-    /// of its steps take time for each sensor that it has room for.
-    fn run<S: Changes<'s> + 's, const E: usize, const H: usize>(&self, scheduler: S) -> Started<'s> {
-        let (config, now) = (self.config().with_echoes::<E>(), self.now);
-        Ok(match self.robot.sensors.len() {
-            ..=8 => Box::new(Ring::<S, 8, E, H>::remembering(scheduler, config, now)?),
-            9..=24 => Box::new(Ring::<S, 24, E, H>::remembering(scheduler, config, now)?),
-            _ => Box::new(Ring::<S, MAX_SENSORS, E, H>::remembering(scheduler, config, now)?),
-        })
+    /// A ring of `E` echoes by this plan that remembers `H` firings of each sensor, no larger than needed: some of its
+    /// steps take time for each sensor that it has room for. Its judge `ASKS` what explains a reading, or agreement
+    /// alone counts.
+    fn run<P: SimulatedPlan<'s> + 's, const E: usize, const H: usize, const ASKS: bool>(&self, plan: P) -> Started<'s> {
+        match self.robot.sensors.len() {
+            ..=8 => ring::<P, 8, E, H, ASKS>(plan, self.config(), self.now),
+            9..=24 => ring::<P, 24, E, H, ASKS>(plan, self.config(), self.now),
+            _ => ring::<P, MAX_SENSORS, E, H, ASKS>(plan, self.config(), self.now),
+        }
     }
 }
 
-/// The firings of each sensor that are remembered of methods that accept what nothing foreign explains.
+/// The judge of methods that accept what nothing foreign explains asks.
+pub(super) const ASKS: bool = true;
+/// That of methods that accept whatever agrees does not.
+pub(super) const AGREEMENT_ALONE: bool = false;
+/// The firings of each sensor that are remembered for whoever asks.
 pub(super) const REMEMBERED: usize = 4;
-/// The same of those that accept whatever agrees.
-pub(super) const AGREEMENT_ALONE: usize = 1;
 /// The same of immediate refiring, in which a sensor may fire many times while another listens once.
 const REFIRED: usize = 16;
 
-/// Scheduled firing, with up to `E` echoes of a firing and a memory of `H` firings of each sensor.
-pub(super) fn scheduled<'s, const E: usize, const H: usize>(start: &RingStart<'s>) -> Started<'s> {
+/// A ring with room for `K` sensors: see [`RingStart::run`].
+pub(super) fn ring<'s, P, const K: usize, const E: usize, const H: usize, const ASKS: bool>(
+    plan: P,
+    config: RingConfig,
+    now: Instant,
+) -> Started<'s>
+where
+    P: SimulatedPlan<'s> + 's,
+{
+    let config = config.with_echoes::<E>();
+    Ok(if ASKS {
+        Box::new(Ring::<P, _, K, E, H>::remembering(plan, config, now)?)
+    } else {
+        Box::new(AgreementRing::<P, K, E>::agreement_alone(plan, config, now)?)
+    })
+}
+
+/// Scheduled firing, with up to `E` echoes of a firing.
+pub(super) fn scheduled<'s, const E: usize, const ASKS: bool>(start: &RingStart<'s>) -> Started<'s> {
     match &start.plan.uneven {
-        Some(uneven) => start.run::<_, E, H>(UnevenFiring::new(uneven, start.now)),
-        None => start.run::<_, E, H>(ScheduledFiring::new(start.schedule(), start.now)),
+        Some(uneven) => start.run::<_, E, REMEMBERED, ASKS>(UnevenFiring::new(uneven, start.now)),
+        None => start.run::<_, E, REMEMBERED, ASKS>(ScheduledFiring::new(start.schedule(), start.now)),
     }
 }
 
@@ -189,5 +240,5 @@ pub(super) fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPla
 
 /// Immediate refiring.
 pub(super) fn immediate<'s>(start: &RingStart<'s>) -> Started<'s> {
-    start.run::<_, 1, REFIRED>(ImmediateRefiring::new(start.schedule(), start.robot.min_refire, start.now))
+    start.run::<_, 1, REFIRED, ASKS>(ImmediateRefiring::new(start.schedule(), start.robot.min_refire, start.now))
 }

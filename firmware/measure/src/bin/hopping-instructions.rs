@@ -58,7 +58,7 @@ fn main() -> ! {
         let change_us = if periods & 1 == 0 { 100 } else { -100 };
         let change_us = black_box([if moves { change_us } else { 0 }; 12]);
         loop {
-            let lags: [Option<Micros>; 12] = core::array::from_fn(|sensor| ring.firing().t_lag(sensor));
+            let lags: [Option<Micros>; 12] = core::array::from_fn(|sensor| ring.plan().t_lag(sensor));
             let (taken, event) = counts(|| poll(ring, now, &change_us));
             match event {
                 None => {
@@ -79,7 +79,7 @@ fn main() -> ! {
                 }
                 Some(RingEvent::Reading(_)) => if moves { &mut reading_moving } else { &mut reading }.note(taken),
                 Some(RingEvent::PeriodEnded(_)) => {
-                    let changed = (0..12).any(|sensor| lags.get(sensor) != Some(&ring.firing().t_lag(sensor)));
+                    let changed = (0..12).any(|sensor| lags.get(sensor) != Some(&ring.plan().t_lag(sensor)));
                     if changed { &mut new_lags } else { &mut ended }.note(taken);
                     periods += 1;
                 }

@@ -1,4 +1,4 @@
-//! As `instructions`, for the scheduler alone and the filter alone: each is usable without the other.
+//! As `instructions`, for the plan alone and the filter alone: each is usable without the other.
 #![no_std]
 #![no_main]
 
@@ -6,15 +6,15 @@ use core::hint::black_box;
 
 use eeruf_board::say::leave;
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{EchoFilter, Instant, Micros, ScheduledFiring, Scheduler, SchedulerStep, Verdict};
+use eeruf_core::{EchoFilter, Instant, Micros, Plan, PlanStep, ScheduledFiring, Verdict};
 use eeruf_measure::{Range, T_DELTA, counts};
 
 eeruf_board::no_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
 
 #[inline(never)]
-fn fire(scheduler: &mut ScheduledFiring<'static, 12>, now: Instant) -> Option<SchedulerStep> {
-    scheduler.poll(now)
+fn fire(plan: &mut ScheduledFiring<'static, 12>, now: Instant) -> Option<PlanStep> {
+    plan.poll(now)
 }
 
 #[inline(never)]
@@ -27,12 +27,12 @@ fn main() -> ! {
     eeruf_board::start();
     let mut firing = Range::new("scheduler_fire");
     let mut pushing = Range::new("filter_push");
-    let mut scheduler = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
+    let mut plan = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
     let Ok(mut filter) = EchoFilter::<12>::new(T_DELTA, 2) else { leave(2) };
     for round in 0..480_u32 {
-        let now = scheduler.deadline();
-        let (taken, step) = counts(|| fire(&mut scheduler, now));
-        if let Some(SchedulerStep::Fire { .. }) = step {
+        let now = plan.deadline();
+        let (taken, step) = counts(|| fire(&mut plan, now));
+        if let Some(PlanStep::Fire { .. }) = step {
             firing.note(taken);
         }
         let t_echo = black_box((round % 7 != 0).then_some(Micros::new(5_000 + 600 * (round / 50))));

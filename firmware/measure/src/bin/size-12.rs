@@ -1,4 +1,4 @@
-//! Scheduler and filter for 12 sensors.
+//! Plan and filter for 12 sensors.
 #![no_std]
 #![no_main]
 

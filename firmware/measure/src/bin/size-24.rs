@@ -1,4 +1,4 @@
-//! Scheduler and filter for 24 sensors.
+//! Plan and filter for 24 sensors.
 #![no_std]
 #![no_main]
 

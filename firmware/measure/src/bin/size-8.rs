@@ -1,4 +1,4 @@
-//! Scheduler and filter for 8 sensors.
+//! Plan and filter for 8 sensors.
 #![no_std]
 #![no_main]
 

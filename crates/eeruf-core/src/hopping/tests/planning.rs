@@ -1,25 +1,34 @@
 //! Whose period it is, and whether lags change, as planned.
 
 use super::*;
+use crate::reading::ReadingKind;
 
 const HURRIED: HoppingSettings =
     HoppingSettings { solo_after: 1, solo_spacing: 1, shift_after: 0, ..HoppingSettings::BALANCED };
 
+/// A plan, and when each sensor last fired, which a ring knows.
+struct Fooled(HoppingPlan<8>, [Instant; 8]);
+
 fn fooled(settings: HoppingSettings) -> Fooled {
     let now = Instant::from_micros(0);
-    Fooled(Timetable::new(&schedule(), settings, HoppingListening::new(WINDOW), 1, now), [now; 8])
+    Fooled(HoppingPlan::new(&schedule(), settings, HoppingListening::new(WINDOW), 1, now).unwrap(), [now; 8])
 }
 
 /// A period in which all fire on time; `hears` says of a sensor whether its reading is accepted and whether it fits.
 /// Returns whose it is alone.
 fn period(fooled: &mut Fooled, hears: impl Fn(u8) -> (bool, bool)) -> Option<u8> {
-    let solo = fooled.0.solo();
-    while let Some((sensor, _)) = fooled.next_firing() {
-        fooled.fire(fooled.deadline());
-        let (accepted, fits) = hears(sensor);
-        fooled.0.heard(sensor, accepted, fits);
+    let Fooled(plan, fired) = fooled;
+    let solo = plan.solo();
+    while let Some((sensor, _)) = plan.next_firing() {
+        let now = plan.deadline();
+        plan.fire(now);
+        fired[usize::from(sensor)] = now;
+        let (accepted, is_clear) = hears(sensor);
+        let kind = if accepted { ReadingKind::Accepted } else { ReadingKind::Rejected };
+        plan.judged(sensor, kind, || is_clear);
     }
-    fooled.end_period(fooled.deadline());
+    plan.end_period(plan.deadline());
+    plan.begin_period(|sensor| fired[usize::from(sensor)]);
     solo
 }
 
@@ -70,8 +79,7 @@ fn what_is_heard_in_the_period_after_lags_have_changed_is_unsettled_and_in_no_ot
         // The plan of the next period may have unsettled what was fired in this one.
         if lags(&fooled) == now {
             for sensor in 0..8 {
-                let (_, _, steady) = fooled.0.last_firing(sensor, u16::MAX);
-                assert_eq!(steady, now == before, "period {number}, sensor {sensor}");
+                assert_eq!(fooled.0.last_firing(sensor, 0).steady, now == before, "period {number}, sensor {sensor}");
             }
         }
         before = now;

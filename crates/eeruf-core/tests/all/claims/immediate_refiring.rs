@@ -14,9 +14,7 @@
 
 use std::collections::VecDeque;
 
-use eeruf_core::{
-    AgreementRing, ImmediateRefiring, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Schedule,
-};
+use eeruf_core::{AgreementRing, ImmediateRefiring, Instant, Micros, ReadingKind, RingConfig, RingEvent, Schedule};
 use proptest::prelude::*;
 
 const T_DELTA: u32 = 500;
@@ -31,8 +29,8 @@ fn readings_of_y(t_echo: u32, path: u32, lag_y: u32, x: Waits, y: Waits) -> Vec<
     let schedule =
         Schedule::<2>::new(Micros::from_millis(200), us(0, lag_y), [us(x[0], y[0]), us(x[1], y[1])]).unwrap();
     let config = RingConfig::new().with_t_delta(Micros::new(T_DELTA)).with_window(Micros::new(WINDOW));
-    let scheduler = ImmediateRefiring::new(&schedule, Micros::ZERO, Instant::default());
-    let mut ring: AgreementRing<_, 2> = Ring::remembering(scheduler, config, Instant::default()).unwrap();
+    let plan = ImmediateRefiring::new(&schedule, Micros::ZERO, Instant::default());
+    let mut ring: AgreementRing<_, 2> = AgreementRing::agreement_alone(plan, config, Instant::default()).unwrap();
     let mut heard = VecDeque::new();
     let mut readings = vec![];
     for _ in 0..400 {

@@ -5,7 +5,7 @@
 
 use eeruf_core::tables::{TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{
-    ImmediateRefiring, Instant, Layout, Micros, Ring, RingConfig, RingEvent, Schedule, Scheduler, SensorError,
+    ImmediateRefiring, Instant, Judge, Layout, Micros, Plan, Ring, RingConfig, RingEvent, Schedule, SensorError,
 };
 use proptest::prelude::*;
 
@@ -163,7 +163,7 @@ proptest! {
         } else {
             let refiring = ImmediateRefiring::new(&TABLE_I_D, Micros::from_millis(40), Instant::default());
             survives_jumps(
-                Ring::<_, 12, 1>::with_scheduler(refiring, config(), Instant::default()).unwrap(),
+                Ring::<_, _, 12, 1>::with_plan(refiring, config(), Instant::default()).unwrap(),
                 &jumps,
             )?;
         }
@@ -175,7 +175,7 @@ fn known(sensor: u8, result: Result<(), SensorError>) {
     assert_eq!(result, if sensor < 12 { Ok(()) } else { Err(SensorError { sensor, sensors: 12 }) });
 }
 
-fn survives_jumps<S: Scheduler>(mut ring: Ring<S, 12>, jumps: &[u32]) -> Result<(), TestCaseError> {
+fn survives_jumps<P: Plan, J: Judge>(mut ring: Ring<P, J, 12>, jumps: &[u32]) -> Result<(), TestCaseError> {
     for &jump in jumps {
         let mut now = Instant::from_micros(jump);
         let mut fired = 0;

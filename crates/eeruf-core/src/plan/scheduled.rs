@@ -1,9 +1,10 @@
 //! [`ScheduledFiring`]: every sensor fires once per period, by the table of a schedule (Sec. 3.1, Fig. 3).
 
-use super::contract::{Limits, Scheduler};
+use super::contract::{Limits, Plan};
 use crate::schedule::{MAX_SENSORS, Phase, Schedule};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros, longer};
+use crate::tracker::Firing;
 
 /// Scheduled firing: every sensor fires once per period, at the time the [`Schedule`] gives for the phase.
 ///
@@ -11,12 +12,12 @@ use crate::time::{Instant, Micros, longer};
 /// no two firings ever come closer than in the schedule, however late the caller is.
 ///
 /// ```
-/// use eeruf_core::{Instant, Micros, Phase, ScheduledFiring, Scheduler, SchedulerStep, tables::TABLE_I_D};
-/// let mut scheduler = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
-/// let first = scheduler.deadline();
+/// use eeruf_core::{Instant, Micros, Phase, ScheduledFiring, Plan, PlanStep, tables::TABLE_I_D};
+/// let mut plan = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
+/// let first = plan.deadline();
 /// assert_eq!(first, Instant::from_micros(24_000));
-/// assert_eq!(scheduler.poll(Instant::from_micros(23_999)), None);
-/// assert_eq!(scheduler.poll(first), Some(SchedulerStep::Fire { sensor: 0, phase: Phase::A, late: Micros::ZERO }));
+/// assert_eq!(plan.poll(Instant::from_micros(23_999)), None);
+/// assert_eq!(plan.poll(first), Some(PlanStep::Fire { sensor: 0, phase: Phase::A, late: Micros::ZERO }));
 /// ```
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -143,7 +144,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     }
 }
 
-impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
+impl<const K: usize, const M: usize> Plan for ScheduledFiring<'_, K, M> {
     #[inline]
     fn fire(&mut self, now: Instant) {
         self.last_fired = now;
@@ -229,9 +230,10 @@ impl<const K: usize, const M: usize> Scheduler for ScheduledFiring<'_, K, M> {
         self.begin_period(0, if soon { settled } else { now });
     }
 
-    fn periods_since(&self, phase: Phase) -> u8 {
-        // At most `MAX_PHASES` phases.
-        if self.phase >= phase.0 { self.phase - phase.0 } else { (self.phase + M as u8).saturating_sub(phase.0) }
+    fn last_firing(&self, _sensor: u8, periods_ago: u8) -> Firing {
+        // At most `MAX_PHASES` phases, which is how many periods the ring looks back.
+        let before = periods_ago % M as u8;
+        Firing::new(Phase(if self.phase >= before { self.phase - before } else { self.phase + M as u8 - before }))
     }
 
     fn limits(&self) -> Limits<'_> {

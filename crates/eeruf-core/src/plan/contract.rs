@@ -1,15 +1,17 @@
-//! [`Scheduler`]: what a ring asks of whatever decides when to fire.
+//! [`Plan`]: what a ring asks of whatever decides when to fire.
 //!
-//! A scheduler never reads a clock. The caller passes `now` and gets the next deadline back.
+//! A plan never reads a clock. The caller passes `now` and gets the next deadline back.
 
+use crate::reading::ReadingKind;
 use crate::schedule::{Phase, VerifiedFor};
 use crate::time::{Instant, Micros};
+use crate::tracker::Firing;
 use crate::uneven_schedule::SensorLimits;
 
-/// What a scheduler wants done.
+/// What a plan wants done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum SchedulerStep {
+pub enum PlanStep {
     /// Fire this sensor, now.
     Fire {
         /// The sensor, from 0.
@@ -29,7 +31,7 @@ pub enum SchedulerStep {
     },
 }
 
-/// What a scheduler allows the ring that it fires.
+/// What a plan allows the ring that it fires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limits<'s> {
@@ -42,31 +44,28 @@ pub struct Limits<'s> {
     pub audible: Option<Micros>,
 }
 
-/// Decides when each sensor of a ring fires: [`ScheduledFiring`](super::ScheduledFiring) or
-/// [`ImmediateRefiring`](super::ImmediateRefiring).
-pub trait Scheduler {
-    /// Whether [`limits_of`](Self::limits_of) says what each sensor may do by itself.
-    const UNEVEN: bool = false;
-    /// Whether the ring compares each reading with the one before it. Where something else weighs readings, as in a
-    /// [`HoppingRing`](crate::HoppingRing), every echo is [`First`](crate::ReadingKind::First).
-    const COMPARES: bool = true;
-    /// The next step, if one is due. Call again until there is none.
+/// Decides when each sensor of a ring fires: [`ScheduledFiring`](super::ScheduledFiring),
+/// [`ImmediateRefiring`](super::ImmediateRefiring), [`HoppingPlan`](crate::HoppingPlan), or one of the caller's own.
+pub trait Plan {
+    /// The next step of a plan that is run without a ring, if one is due. Call again until there is none.
     #[inline]
-    fn poll(&mut self, now: Instant) -> Option<SchedulerStep> {
+    fn poll(&mut self, now: Instant) -> Option<PlanStep> {
         let due = self.deadline();
         if !now.has_reached(due) {
             if due.since(now) > self.horizon() {
                 // The clock has jumped, or nobody polled for half a turn of it.
                 self.restart(now);
+                self.begin_period(|_| now);
             }
             return None;
         }
         let Some((sensor, phase)) = self.next_firing() else {
             let (phase, changed) = self.end_period(now);
-            return Some(SchedulerStep::PeriodEnded { phase, changed });
+            self.begin_period(|_| now);
+            return Some(PlanStep::PeriodEnded { phase, changed });
         };
         self.fire(now);
-        Some(SchedulerStep::Fire { sensor, phase, late: now.since(due) })
+        Some(PlanStep::Fire { sensor, phase, late: now.since(due) })
     }
     /// When the next step is due.
     fn deadline(&self) -> Instant;
@@ -80,6 +79,23 @@ pub trait Scheduler {
     /// Ends the period, `now`. Returns its phase, and whether the next one does not follow on it as the schedule says:
     /// because another schedule begins, or because periods were left out. To be called when that is due.
     fn end_period(&mut self, now: Instant) -> (Phase, bool);
+    /// Decides on the period that has begun, after [`end_period`](Self::end_period) and [`restart`](Self::restart), for
+    /// plans that decide a period at a time; `fired` says when a sensor that has fired last did.
+    fn begin_period(&mut self, _fired: impl Fn(u8) -> Instant) {}
+    /// Returns true if, since the last call, firing times have changed against each other otherwise than by the phase:
+    /// a judge that compares phases must know.
+    fn take_change(&mut self) -> bool {
+        false
+    }
+    /// Takes in what became of a sensor's reading, for plans that fire by it; `is_clear` asks the judge if it believes
+    /// that nothing is in the sensor's range.
+    fn judged(&mut self, _sensor: u8, _kind: ReadingKind, _is_clear: impl FnOnce() -> bool) {}
+    /// A sensor turns out to have fired `at` this instant.
+    fn fired(&mut self, _sensor: u8, _at: Instant) {}
+    /// Returns true if a sensor can have fired before [`fire`](Self::fire) was called for it, as a timer may.
+    fn may_fire_ahead(&self) -> bool {
+        true
+    }
     /// A sensor has stopped listening: its echo came in, or its window closed, `at` this instant.
     fn ended(&mut self, sensor: u8, at: Instant);
     /// How many sensors it fires.
@@ -92,8 +108,8 @@ pub trait Scheduler {
     fn is_enabled(&self, sensor: u8) -> bool;
     /// Starts again with phase a, no sooner than `now`.
     fn restart(&mut self, now: Instant);
-    /// How many periods ago the last period with this phase was, 0 for the present one; 0 without common phases.
-    fn periods_since(&self, phase: Phase) -> u8;
+    /// What the last firing of a sensor was like, `periods_ago` periods before the present one.
+    fn last_firing(&self, sensor: u8, periods_ago: u8) -> Firing;
     /// What it allows in the present period.
     fn limits(&self) -> Limits<'_>;
     /// What it allows as of the next period, if it changes to another schedule then.
@@ -105,7 +121,8 @@ pub trait Scheduler {
     fn hears(&self, _receiver: u8, _emitter: u8) -> bool {
         true
     }
-    /// What it allows one sensor, where [`UNEVEN`](Self::UNEVEN): the ring asks for no more than this either.
+    /// What it allows one sensor, where sensors are not all alike; the ring asks for no more than this either. `None`
+    /// for every sensor where they are.
     fn limits_of(&self, _sensor: u8) -> Option<SensorLimits> {
         None
     }

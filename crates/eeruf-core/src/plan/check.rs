@@ -1,12 +1,13 @@
-//! [`check_scheduler`]: runs a scheduler and holds it against the contract of [`Scheduler`].
+//! [`check_plan`]: runs a plan and holds it against the contract of [`Plan`].
 
 use core::fmt;
 
-use super::contract::Scheduler;
+use super::contract::Plan;
+use crate::reading::ReadingKind;
 use crate::schedule::MAX_SENSORS;
 use crate::time::{Instant, Micros};
 
-/// A promise of [`Scheduler`] that a scheduler broke.
+/// A promise of [`Plan`] that a plan broke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -67,29 +68,24 @@ impl fmt::Display for BrokenPromise {
 
 impl core::error::Error for BrokenPromise {}
 
-/// Runs a scheduler for `polls` polls from `now` on, as a ring would and worse: late polls, firings that come late,
-/// sensors that are disabled and enabled, restarts. For the tests of those who write a [`Scheduler`] of their own; the
-/// same calls every time, seeded by `seed`.
+/// Runs a plan for `polls` polls from `now` on, as a ring would and worse: late polls, firings that come late,
+/// sensors that are disabled and enabled, restarts, and readings that are never accepted. For the tests of those who
+/// write a [`Plan`] of their own; the same calls every time, seeded by `seed`.
 ///
 /// ```
-/// use eeruf_core::{Instant, ScheduledFiring, check_scheduler, tables::TABLE_I_D};
+/// use eeruf_core::{Instant, ScheduledFiring, check_plan, tables::TABLE_I_D};
 /// let now = Instant::from_micros(0);
-/// check_scheduler(&mut ScheduledFiring::new(&TABLE_I_D, now), now, 10_000, 1)?;
+/// check_plan(&mut ScheduledFiring::new(&TABLE_I_D, now), now, 10_000, 1)?;
 /// # Ok::<(), eeruf_core::BrokenPromise>(())
 /// ```
 ///
 /// # Errors
 /// The first [`BrokenPromise`].
-pub fn check_scheduler<S: Scheduler>(
-    scheduler: &mut S,
-    now: Instant,
-    polls: u32,
-    seed: u32,
-) -> Result<(), BrokenPromise> {
+pub fn check_plan<P: Plan>(plan: &mut P, now: Instant, polls: u32, seed: u32) -> Result<(), BrokenPromise> {
     let mut check = Check { now, seen: [Seen::default(); MAX_SENSORS], random: seed };
     for poll in 0..polls {
-        check.poll(scheduler)?;
-        check.act_at_random(scheduler, poll)?;
+        check.poll(plan)?;
+        check.act_at_random(plan, poll)?;
     }
     Ok(())
 }
@@ -119,54 +115,57 @@ impl Check {
     }
 
     /// Goes to the deadline, or later, and takes all steps that are due.
-    fn poll<S: Scheduler>(&mut self, scheduler: &mut S) -> Result<(), BrokenPromise> {
-        let deadline = scheduler.deadline();
+    fn poll<P: Plan>(&mut self, plan: &mut P) -> Result<(), BrokenPromise> {
+        let deadline = plan.deadline();
         if !self.now.has_reached(deadline) {
             let ahead = deadline.since(self.now);
-            if ahead > scheduler.horizon() {
+            if ahead > plan.horizon() {
                 return Err(BrokenPromise::Horizon { ahead });
             }
-            self.end_until(scheduler, deadline);
+            self.end_until(plan, deadline);
             self.now = deadline;
         }
         if self.below(4) == 0 {
             let late = self.below(3_000);
             self.now += Micros::new(late);
         }
-        let most = 4 * scheduler.sensors() + 8;
+        let most = 4 * plan.sensors() + 8;
         for _ in 0..most {
             let until = self.now;
-            self.end_until(scheduler, until);
-            if !self.now.has_reached(scheduler.deadline()) {
-                return self.nobody_is_silent(scheduler);
+            self.end_until(plan, until);
+            if !self.now.has_reached(plan.deadline()) {
+                return self.nobody_is_silent(plan);
             }
-            match scheduler.next_firing() {
-                Some((sensor, _)) => self.fire(scheduler, sensor)?,
-                None => _ = scheduler.end_period(self.now),
+            match plan.next_firing() {
+                Some((sensor, _)) => self.fire(plan, sensor)?,
+                None => {
+                    _ = plan.end_period(self.now);
+                    self.begin_period(plan);
+                }
             }
         }
         Err(BrokenPromise::Endless)
     }
 
-    fn fire<S: Scheduler>(&mut self, scheduler: &mut S, sensor: u8) -> Result<(), BrokenPromise> {
-        let longest = scheduler.limits_of(sensor).map_or(scheduler.limits().longest_window, |limits| limits.window);
-        let window = longest.min(scheduler.horizon());
+    fn fire<P: Plan>(&mut self, plan: &mut P, sensor: u8) -> Result<(), BrokenPromise> {
+        let longest = plan.limits_of(sensor).map_or(plan.limits().longest_window, |limits| limits.window);
+        let window = longest.min(plan.horizon());
         let (listens, comes_late) = (self.below(window.as_micros().saturating_add(1)), self.below(8) == 0);
         let later = Micros::new(if comes_late { self.below(500) } else { 0 });
-        let there = usize::from(sensor) < scheduler.sensors();
+        let there = usize::from(sensor) < plan.sensors();
         let seen = match self.seen.get_mut(usize::from(sensor)) {
             Some(seen) if there && !seen.disabled && seen.ends.is_none() => seen,
             _ => return Err(BrokenPromise::WrongSensor { sensor }),
         };
         if let Some(fired) = seen.fired {
             let after = self.now.since(fired);
-            if after < scheduler.min_refire() {
+            if after < plan.min_refire() {
                 return Err(BrokenPromise::MinRefire { sensor, after });
             }
         }
-        scheduler.fire(self.now);
+        plan.fire(self.now);
         if comes_late {
-            scheduler.postpone(sensor, later);
+            plan.postpone(sensor, later);
             self.now += later;
         }
         *seen = Seen {
@@ -178,21 +177,27 @@ impl Check {
         Ok(())
     }
 
+    fn begin_period<P: Plan>(&self, plan: &mut P) {
+        let fired = |sensor: u8| self.seen.get(usize::from(sensor)).and_then(|seen| seen.fired);
+        plan.begin_period(|sensor| fired(sensor).unwrap_or(self.now));
+    }
+
     /// Ends the listening of those whose time is up.
-    fn end_until<S: Scheduler>(&mut self, scheduler: &mut S, until: Instant) {
+    fn end_until<P: Plan>(&mut self, plan: &mut P, until: Instant) {
         for (x, seen) in self.seen.iter_mut().enumerate() {
             if let Some(at) = seen.ends {
                 if until.has_reached(at) {
                     seen.ends = None;
-                    scheduler.ended(x as u8, at);
+                    plan.judged(x as u8, ReadingKind::Rejected, || false);
+                    plan.ended(x as u8, at);
                 }
             }
         }
     }
 
-    fn nobody_is_silent<S: Scheduler>(&mut self, scheduler: &S) -> Result<(), BrokenPromise> {
-        let longest = Micros::new(scheduler.horizon().as_micros().saturating_mul(4));
-        for (x, seen) in self.seen.iter_mut().enumerate().take(scheduler.sensors()) {
+    fn nobody_is_silent<P: Plan>(&mut self, plan: &P) -> Result<(), BrokenPromise> {
+        let longest = Micros::new(plan.horizon().as_micros().saturating_mul(4));
+        for (x, seen) in self.seen.iter_mut().enumerate().take(plan.sensors()) {
             let since = *seen.waits_since.get_or_insert(self.now);
             if !seen.disabled && self.now.since(since) > longest {
                 return Err(BrokenPromise::Silent { sensor: x as u8 });
@@ -202,16 +207,17 @@ impl Check {
     }
 
     /// Disables, enables or restarts now and then.
-    fn act_at_random<S: Scheduler>(&mut self, scheduler: &mut S, poll: u32) -> Result<(), BrokenPromise> {
+    fn act_at_random<P: Plan>(&mut self, plan: &mut P, poll: u32) -> Result<(), BrokenPromise> {
         if self.below(20) > 0 {
             return Ok(());
         }
         // At most 64 sensors.
-        let sensor = self.below(scheduler.sensors() as u32) as u8;
+        let sensor = self.below(plan.sensors() as u32) as u8;
         let now = self.now;
         match (self.below(8), self.seen.get_mut(usize::from(sensor))) {
             (0, _) if poll % 3 == 0 => {
-                scheduler.restart(now);
+                plan.restart(now);
+                self.begin_period(plan);
                 for seen in &mut self.seen {
                     (seen.ends, seen.waits_since) = (None, Some(now));
                 }
@@ -219,16 +225,16 @@ impl Check {
             (choice, Some(seen)) => {
                 seen.disabled = choice % 2 == 0;
                 seen.waits_since = Some(now);
-                scheduler.set_enabled(sensor, !seen.disabled);
+                plan.set_enabled(sensor, !seen.disabled);
             }
             (_, None) => {}
         }
-        let beyond = scheduler.sensors() as u8;
-        if scheduler.is_enabled(beyond) {
+        let beyond = plan.sensors() as u8;
+        if plan.is_enabled(beyond) {
             return Err(BrokenPromise::Enabled { sensor: beyond });
         }
         match self.seen.get(usize::from(sensor)) {
-            Some(seen) if scheduler.is_enabled(sensor) == seen.disabled => Err(BrokenPromise::Enabled { sensor }),
+            Some(seen) if plan.is_enabled(sensor) == seen.disabled => Err(BrokenPromise::Enabled { sensor }),
             _ => Ok(()),
         }
     }

@@ -1,4 +1,4 @@
-//! When to fire: the trait [`Scheduler`], *scheduled firing* and *immediate refiring*.
+//! When to fire: the trait [`Plan`], *scheduled firing* and *immediate refiring*.
 //!
 //! The room uses [`time`](crate::time), [`schedule`](crate::schedule) and sets of sensors; it knows nothing of echoes.
 
@@ -8,8 +8,8 @@ mod immediate;
 mod scheduled;
 mod uneven;
 
-pub use check::{BrokenPromise, check_scheduler};
-pub use contract::{Limits, Scheduler, SchedulerStep};
+pub use check::{BrokenPromise, check_plan};
+pub use contract::{Limits, Plan, PlanStep};
 pub use immediate::ImmediateRefiring;
 pub use scheduled::ScheduledFiring;
 pub use uneven::UnevenFiring;

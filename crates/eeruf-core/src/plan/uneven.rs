@@ -1,9 +1,10 @@
 //! [`UnevenFiring`]: scheduled firing for sensors that are not all alike.
 
-use super::contract::{Limits, Scheduler};
+use super::contract::{Limits, Plan};
 use super::scheduled::ScheduledFiring;
 use crate::schedule::{Phase, VerifiedFor};
 use crate::time::{Instant, Micros};
+use crate::tracker::Firing;
 use crate::uneven_schedule::{SensorLimits, UnevenSchedule};
 
 /// Scheduled firing by an [`UnevenSchedule`]: as [`ScheduledFiring`], and each sensor may listen and compare as it was
@@ -46,9 +47,7 @@ fn of_most(most: &VerifiedFor) -> Limits<'_> {
     Limits { longest_window: most.window, verified_for: Some(most), audible: Some(most.audible) }
 }
 
-impl<const K: usize> Scheduler for UnevenFiring<'_, K> {
-    const UNEVEN: bool = true;
-
+impl<const K: usize> Plan for UnevenFiring<'_, K> {
     fn limits(&self) -> Limits<'_> {
         of_most(self.uneven.most())
     }
@@ -118,8 +117,8 @@ impl<const K: usize> Scheduler for UnevenFiring<'_, K> {
         self.firing.restart(now);
     }
 
-    fn periods_since(&self, phase: Phase) -> u8 {
-        self.firing.periods_since(phase)
+    fn last_firing(&self, sensor: u8, periods_ago: u8) -> Firing {
+        self.firing.last_firing(sensor, periods_ago)
     }
 
     fn min_refire(&self) -> Micros {

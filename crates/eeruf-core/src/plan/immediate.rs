@@ -12,10 +12,11 @@
 //!
 //! In (8) the filter takes it for a true echo. In (10a), (10b) consecutive readings differ, and it does not.
 
-use super::contract::{Limits, Scheduler};
+use super::contract::{Limits, Plan};
 use crate::schedule::{MAX_PERIOD, Phase, Schedule};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
+use crate::tracker::Firing;
 
 /// Immediate refiring: a sensor fires again `T_wait` after it has stopped listening; the first time after `T_lag +
 /// T_wait`.
@@ -43,7 +44,7 @@ struct Turn {
 
 impl<'s, const K: usize, const M: usize> ImmediateRefiring<'s, K, M> {
     /// Begins at `now`. The lags and waits are those of `schedule`; its period only says how often
-    /// [`SchedulerStep::PeriodEnded`](crate::SchedulerStep::PeriodEnded) comes. No sensor fires again sooner than
+    /// [`PlanStep::PeriodEnded`](crate::PlanStep::PeriodEnded) comes. No sensor fires again sooner than
     /// `min_refire` after it has fired; more than [`MAX_PERIOD`](crate::MAX_PERIOD) counts as that.
     pub fn new(schedule: &'s Schedule<K, M>, min_refire: Micros, now: Instant) -> Self {
         let sensors = [Turn { at: now, phase: 0 }; K];
@@ -87,11 +88,16 @@ impl<'s, const K: usize, const M: usize> ImmediateRefiring<'s, K, M> {
     }
 }
 
+fn previous_phase<const M: usize>(phase: u8) -> u8 {
+    // At most `MAX_PHASES`.
+    if phase == 0 { (M - 1) as u8 } else { phase - 1 }
+}
+
 fn next_phase<const M: usize>(phase: u8) -> u8 {
     if usize::from(phase) + 1 < M { phase + 1 } else { 0 }
 }
 
-impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
+impl<const K: usize, const M: usize> Plan for ImmediateRefiring<'_, K, M> {
     fn next_firing(&self) -> Option<(u8, Phase)> {
         let (sensor, due) = self.first()?;
         let turn = self.sensors.get(usize::from(sensor))?;
@@ -188,8 +194,11 @@ impl<const K: usize, const M: usize> Scheduler for ImmediateRefiring<'_, K, M> {
         self.listening = SensorSet::NONE;
     }
 
-    fn periods_since(&self, _phase: Phase) -> u8 {
-        0
+    fn last_firing(&self, sensor: u8, _periods_ago: u8) -> Firing {
+        let Some(turn) = self.sensors.get(usize::from(sensor)) else { return Firing::new(Phase::A) };
+        // Once it has ended, its next firing's phase is known already.
+        let ended = !self.listening.contains(sensor);
+        Firing::new(Phase(if ended { previous_phase::<M>(turn.phase) } else { turn.phase }))
     }
 
     fn limits(&self) -> Limits<'_> {

@@ -1,0 +1,105 @@
+//! [`Judge`]: what a ring asks of whatever decides what a reading is worth.
+
+use crate::reading::{Explanation, ReadingKind, Verdict};
+use crate::time::{Instant, Micros};
+use crate::tracker::Firing;
+
+/// What one firing brought, as a ring tells it to its judge.
+#[derive(Clone, Copy, Debug)]
+pub struct Heard<'r> {
+    /// The sensor, from 0.
+    pub sensor: u8,
+    /// When it fired.
+    pub fired: Instant,
+    /// The echo times, earliest first; none for silence.
+    pub echoes: &'r [Micros],
+    /// What the firing was like, by the plan, and the change that odometry expects.
+    pub firing: Firing,
+    /// What counts as near-identical for this sensor now: the ring's `T_delta`, or less where the plan allows the
+    /// sensor less.
+    pub t_delta: Micros,
+}
+
+impl Heard<'_> {
+    /// The verdict of a judge that knows nothing of the sensor.
+    pub(crate) fn unjudged(&self, kind: Option<ReadingKind>) -> Verdict {
+        let t_echo = self.echoes.first().copied();
+        let kind = kind.unwrap_or(if t_echo.is_some() { ReadingKind::First } else { ReadingKind::NoEcho });
+        Verdict { kind, t_echo, previous: None, age: None, explained_by: None }
+    }
+}
+
+/// Decides what the readings of a [`Ring`](crate::Ring) are worth: [`EchoFilter`](crate::EchoFilter),
+/// [`EchoTracker`](crate::EchoTracker), [`Agreement`], or one of the caller's own.
+///
+/// The ring hands in sensors that it has room for. A judge that has room for fewer accepts nothing of the others.
+pub trait Judge {
+    /// `T_delta`: what counts as near-identical.
+    fn t_delta(&self) -> Micros;
+    /// Judges a firing. `explanation` is asked about two echo times, of the sensor's firing before and of this one: it
+    /// names the firing whose sound could be both, if there is one. A judge that accepts what is explained accepts
+    /// crosstalk.
+    fn judge(&mut self, heard: &Heard<'_>, explanation: impl FnMut(Micros, Micros) -> Option<Explanation>) -> Verdict;
+    /// Takes in a firing that says nothing about the echo time: stuck, too early or unanswered. `echoes` holds the
+    /// early edge, if there was one.
+    fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict;
+    /// Firings of a sensor since its last accepted reading; `None` if none ever was.
+    fn age(&self, sensor: u8) -> Option<u16>;
+    /// Returns true if it believes now that nothing is in a sensor's range: what its last reading heard is none of its
+    /// own.
+    fn is_clear(&self, sensor: u8) -> bool;
+    /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
+    fn forget(&mut self, sensor: u8);
+    /// The ring begins anew: sound from before may still be heard, and what a sensor hears next is compared with
+    /// nothing. Ages go on.
+    fn restart(&mut self);
+    /// A sensor's last firing, which is judged already, was this much later than it seemed; negative for earlier.
+    fn fired_later(&mut self, _sensor: u8, _later_us: i32) {}
+    /// Firing times have changed against each other otherwise than by the phase: see
+    /// [`EchoTracker::firing_changed`](crate::EchoTracker::firing_changed).
+    fn firing_changed(&mut self) {}
+}
+
+/// A judge that does not ask what explains a reading: agreement alone, for baselines. Where crosstalk repeats, as with
+/// constant waits, it is accepted.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Agreement<J>(pub J);
+
+impl<J: Judge> Judge for Agreement<J> {
+    fn t_delta(&self) -> Micros {
+        self.0.t_delta()
+    }
+
+    fn judge(&mut self, heard: &Heard<'_>, _: impl FnMut(Micros, Micros) -> Option<Explanation>) -> Verdict {
+        self.0.judge(heard, |_, _| None)
+    }
+
+    fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict {
+        self.0.skip(heard, kind)
+    }
+
+    fn age(&self, sensor: u8) -> Option<u16> {
+        self.0.age(sensor)
+    }
+
+    fn is_clear(&self, sensor: u8) -> bool {
+        self.0.is_clear(sensor)
+    }
+
+    fn forget(&mut self, sensor: u8) {
+        self.0.forget(sensor);
+    }
+
+    fn restart(&mut self) {
+        self.0.restart();
+    }
+
+    fn fired_later(&mut self, sensor: u8, later_us: i32) {
+        self.0.fired_later(sensor, later_us);
+    }
+
+    fn firing_changed(&mut self) {
+        self.0.firing_changed();
+    }
+}

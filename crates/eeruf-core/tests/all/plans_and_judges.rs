@@ -1,0 +1,131 @@
+//! Any plan goes with any judge, also with one of the caller's own.
+
+use eeruf_core::{
+    Agreement, EchoFilter, EchoTracker, Explanation, Heard, HoppingCode, HoppingListening, HoppingPlan,
+    HoppingSchedule, HoppingSettings, ImmediateRefiring, Instant, Judge, Micros, Plan, ReadingKind, Ring, RingConfig,
+    RingEvent, ScheduledFiring, TrackerSettings, Verdict, tables::TABLE_I_D,
+};
+
+const SENSORS: usize = 8;
+const BEGIN: Instant = Instant::from_micros(0);
+const CONFIG: RingConfig = RingConfig::new().with_window(Micros::from_millis(30));
+
+/// Believes every third echo of a sensor, for no reason, and says that all others are clear.
+#[derive(Default)]
+struct EveryThird {
+    readings: [u8; SENSORS],
+    restarts: u32,
+}
+
+impl Judge for EveryThird {
+    fn t_delta(&self) -> Micros {
+        Micros::new(200)
+    }
+
+    fn judge(
+        &mut self,
+        heard: &Heard<'_>,
+        mut explanation: impl FnMut(Micros, Micros) -> Option<Explanation>,
+    ) -> Verdict {
+        let readings = &mut self.readings[usize::from(heard.sensor)];
+        *readings += 1;
+        let t_echo = heard.echoes.first().copied();
+        let kind = if *readings % 3 == 0 { ReadingKind::Accepted } else { ReadingKind::Repeated };
+        // Its own firings do not explain an echo that stays.
+        let explained_by = t_echo.and_then(|t_echo| explanation(t_echo, t_echo));
+        Verdict { kind, t_echo, previous: None, age: None, explained_by }
+    }
+
+    fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict {
+        Verdict { kind, t_echo: heard.echoes.first().copied(), previous: None, age: None, explained_by: None }
+    }
+
+    fn age(&self, _sensor: u8) -> Option<u16> {
+        None
+    }
+
+    fn is_clear(&self, _sensor: u8) -> bool {
+        true
+    }
+
+    fn forget(&mut self, sensor: u8) {
+        self.readings[usize::from(sensor)] = 0;
+    }
+
+    fn restart(&mut self) {
+        self.restarts += 1;
+        self.readings = [0; SENSORS];
+    }
+}
+
+fn hopping() -> HoppingPlan<SENSORS> {
+    let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
+    let schedule = HoppingSchedule::spread(code, Micros::from_millis(60), 4).unwrap();
+    let listening = HoppingListening::new(Micros::from_millis(30));
+    HoppingPlan::new(&schedule, HoppingSettings::BALANCED, listening, 1, BEGIN).unwrap()
+}
+
+/// The share of readings accepted in two seconds, each sensor before its own wall.
+fn accepted<P: Plan, J: Judge>(plan: P, judge: J) -> f64 {
+    let mut ring = Ring::<P, J, 12>::judged_by(plan, judge, CONFIG, BEGIN).unwrap();
+    let (mut readings, mut accepted) = (0, 0);
+    loop {
+        let now = ring.next_deadline();
+        if now.since(BEGIN) > Micros::from_millis(2000) {
+            return f64::from(accepted) / f64::from(readings);
+        }
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor, .. } => {
+                    ring.echo(sensor, now + Micros::new(5_000 + 1_000 * u32::from(sensor))).unwrap();
+                }
+                RingEvent::Reading(reading) => {
+                    readings += 1;
+                    accepted += u32::from(reading.kind == ReadingKind::Accepted);
+                }
+                RingEvent::PeriodEnded(_) => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn own_walls_are_accepted_by_any_plan_with_any_judge() {
+    let filter = || EchoFilter::<12>::new(Micros::new(200), 2).unwrap();
+    let tracker = || EchoTracker::<12>::new(TrackerSettings::BALANCED.with_votes(2)).unwrap();
+    let scheduled = || ScheduledFiring::new(&TABLE_I_D, BEGIN);
+    let immediate = || ImmediateRefiring::new(&TABLE_I_D, Micros::from_millis(40), BEGIN);
+    let shares = [
+        ("scheduled, filter", accepted(scheduled(), filter())),
+        ("scheduled, tracker", accepted(scheduled(), tracker())),
+        ("scheduled, agreement", accepted(scheduled(), Agreement(filter()))),
+        ("immediate, tracker", accepted(immediate(), tracker())),
+        ("immediate, agreement", accepted(immediate(), Agreement(filter()))),
+        ("hopping, filter", accepted(hopping(), filter())),
+        ("hopping, tracker", accepted(hopping(), tracker())),
+        ("hopping, agreement", accepted(hopping(), Agreement(filter()))),
+    ];
+    for (name, share) in shares {
+        assert!(share > 0.85, "{name}: {share}");
+    }
+}
+
+#[test]
+fn a_judge_of_ones_own_decides_and_its_plan_learns_of_it() {
+    let share = accepted(hopping(), EveryThird::default());
+    assert!((0.2..0.34).contains(&share), "{share}");
+}
+
+#[test]
+fn a_judge_is_asked_to_restart_with_the_ring() {
+    let mut ring = Ring::<_, _, 12>::judged_by(hopping(), EveryThird::default(), CONFIG, BEGIN).unwrap();
+    ring.restart(BEGIN + Micros::from_millis(200));
+    assert_eq!(ring.judge().restarts, 1);
+}
+
+#[test]
+fn a_judge_whose_t_delta_is_no_shorter_than_the_window_is_refused() {
+    let coarse = EchoFilter::<12>::new(Micros::from_millis(30), 2).unwrap();
+    let ring = Ring::<_, _, 12>::judged_by(ScheduledFiring::new(&TABLE_I_D, BEGIN), coarse, CONFIG, BEGIN);
+    assert!(ring.is_err());
+}

@@ -1240,12 +1240,17 @@ def _readings_from_columns(
 def _read_log(
     path: str | PathLike[str],
     time: str | None,
-    time_unit: str,
+    time_unit: str | None,
     ranges: Iterable[str],
-    range_unit: str,
+    range_unit: str | None,
     sensor: str | None,
     speed_of_sound: float,
     no_echo_m: float,
+    no_echo: Iterable[str],
+    columns: Iterable[str],
+    topics: Iterable[str],
+    fields: Iterable[tuple[str, str, str]],
+    judged: bool,  # noqa: FBT001
 ) -> dict[str, Any]: ...
 def _read_firings(path: str | PathLike[str]) -> dict[str, Any]: ...
 def _replay(

@@ -110,9 +110,12 @@ class _Columns:
 class Ranges(_Columns):
     """The ranges of a log: arrays of equal length, in the order in which they were recorded.
 
-    ``sensor`` counts through ``names`` (also ``topics`` and ``frames``), ``at_ns`` is the header's time in nanoseconds, and 0 where
-    there is none. ``range_m`` is ``inf`` without an echo and ``-inf`` for too close, as in REP 117. ``variance`` is NaN where the
-    message has none. ``damage`` says what could not be read, ``skipped`` which topics were left out, and why.
+    ``sensor`` counts through ``names`` (also ``topics`` and ``frames``), ``at_ns`` is the header's time in nanoseconds, and -1
+    where there is none. ``range_m`` is ``inf`` without an echo and ``-inf`` for too close, as in REP 117. ``variance`` is NaN where the
+    message has none. ``damage`` says what could not be read, ``skipped`` which topics were left out, and why. ``form`` is the form
+    of the file, ``guesses`` are triples of what was guessed, the guess, and the options of ``eeruf logs`` that override it;
+    ``warnings`` name values that seem wrong. ``firing`` is how the sensors fire, by the times: ``at once``, ``in turn``,
+    ``constant lags``, ``alternating``, ``hopping``, ``flow`` or ``unknown``; ``proves`` says what agreement proves for it.
 
     Example:
         >>> import eeruf, pathlib, tempfile
@@ -134,6 +137,11 @@ class Ranges(_Columns):
     frames: list[str]
     damage: list[str]
     skipped: list[tuple[str, str]]
+    form: str
+    guesses: list[tuple[str, str, str]]
+    warnings: list[str]
+    firing: str
+    proves: str
 
     _columns = ("sensor", "at_ns", "range_m", "min_range_m", "max_range_m", "variance")
 
@@ -318,29 +326,40 @@ def read_log(
     path: str | os.PathLike[str],
     *,
     time: str | None = None,
-    time_unit: Literal["s", "ms", "us", "ns"] = "s",
+    time_unit: Literal["s", "ms", "us", "ns"] | None = None,
     ranges: Iterable[str] = (),
-    range_unit: Literal["m", "cm", "mm", "in", "us"] = "m",
+    range_unit: Literal["m", "cm", "mm", "in", "us"] | None = None,
     sensor: str | None = None,
     speed_of_sound: float = 343.2,
     no_echo_m: float = 5.0,
+    no_echo: Iterable[str] = (),
+    columns: Iterable[str] = (),
+    topics: Iterable[str] = (),
+    fields: Iterable[tuple[str, str, str]] = (),
+    judged: bool = False,
 ) -> Ranges:
-    """Read the ranges of an MCAP file, a ROS 2 bag (its folder), a ROS 1 bag or a CSV file.
+    """Read the ranges of an MCAP file, a ROS 2 bag (its folder), a ROS 1 bag, a table, lines of name and value, or JSON.
 
-    Of a damaged file what can be read is, and ``damage`` says what cannot. All but ``path`` is for CSV.
+    Whatever is not given is guessed, and ``guesses`` lists it. Of a damaged file what can be read is, and ``damage`` says what
+    cannot. ``topics``, ``fields`` and ``judged`` are for bags, all other arguments for text.
 
     Args:
         path: the log.
         time: the column with the time.
         time_unit: its unit.
-        ranges: the columns with ranges; if none is given, each column whose first value is a number.
+        ranges: the columns with ranges; if none is given, each column of numbers whose name does not say otherwise.
         range_unit: their unit; ``us`` are microseconds from firing to echo.
         sensor: the column that says whose reading a row is.
         speed_of_sound: in m/s, for ranges in ``us``.
         no_echo_m: from this range on there was no echo.
+        no_echo: values that mean no echo, as they stand in the log; by default ``0``, numbers below 0, and a repeated ceiling.
+        columns: the names of the columns in their order, in place of a header; ``-`` leaves one out.
+        topics: the topics to read, whatever their type.
+        fields: triples of topic, field and unit, as ``("/sonars", "distance_mm[]", "mm")``.
+        judged: also read what a filter made of another topic, ``TOPIC/accepted`` and ``TOPIC/confirmed``.
 
     Raises:
-        LogError: the log cannot be read.
+        LogError: the log cannot be read, or holds no sensor.
         ArgumentError: an argument is wrong.
 
     Example:
@@ -352,7 +371,7 @@ def read_log(
         (['left', 'right'], [1.2, 1.21, inf, 2.5])
 
     """
-    found = _eeruf._read_log(path, time, time_unit, ranges, range_unit, sensor, speed_of_sound, no_echo_m)
+    found = _eeruf._read_log(path, time, time_unit, ranges, range_unit, sensor, speed_of_sound, no_echo_m, no_echo, columns, topics, fields, judged)
     return Ranges(**found)
 
 

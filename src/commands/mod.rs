@@ -14,6 +14,8 @@ mod examples;
 mod experiment;
 mod hopping;
 mod licenses;
+mod log_args;
+mod logs;
 mod man;
 mod methods;
 mod paths;
@@ -36,7 +38,7 @@ const GROUPS: &str = "\
 Commands by what they are for:
   Schedules   design, verify, search, atlas
   Simulation  study, paths, scene, experiment, dataset
-  Real rings  survey, replay, diagnose
+  Real rings  survey, logs, replay, diagnose
   Setting up  examples, completions, man, licenses
 
 Exit codes: 0 fine; 1 the answer is no; 2 bad input; 3 not decided; 74 the output cannot be written.";
@@ -113,7 +115,12 @@ pub(crate) enum Verb {
     Paths(paths::Args),
     #[command(after_help = help!("scene map.yaml > scene.toml", "0 printed; 2 bad input"))]
     Scene(scene::Args),
-    #[command(after_help = help!("replay log.csv --t-delta-us 500", "0 replayed; 2 bad input or a damaged log"))]
+    #[command(after_help = help!("logs log.csv", "0 sensors found; 1 none; 2 bad input or a damaged log"))]
+    Logs(logs::Args),
+    #[command(after_help = help!(
+        "replay log.csv --t-delta-us 500",
+        "0 replayed; 1 no sensors; 2 bad input or a damaged log"
+    ))]
     Replay(replay::Args),
     #[command(after_help = help!(
         "diagnose firings.csv --schedule schedule.toml",
@@ -153,6 +160,7 @@ impl Verb {
             Self::Study(args) => study::run(args),
             Self::Paths(args) => paths::run(args),
             Self::Scene(args) => scene::run(args),
+            Self::Logs(args) => logs::run(args),
             Self::Replay(args) => replay::run(args),
             Self::Diagnose(args) => diagnose::run(args),
             Self::Survey(args) => survey::run(args),

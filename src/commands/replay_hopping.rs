@@ -42,7 +42,15 @@ pub(crate) fn replay_hopping(
     let total = counts.iter().fold(Counts::default(), Counts::plus);
     if json {
         let (damage, as_logged) = (log.damage.iter().cloned().collect(), (known > 0).then_some(same));
-        print_line(to_json(&Replay { total, sensors: counts, as_logged, damage, skipped: vec![] }))?;
+        print_line(to_json(&Replay {
+            total,
+            sensors: counts,
+            as_logged,
+            damage,
+            skipped: vec![],
+            warnings: vec![],
+            firing: None,
+        }))?;
     } else {
         let table = hopping_table(file, settings.t_delta.as_micros(), &counts, &total, (known, same));
         tell(format!("{table}\n"))?;
@@ -77,7 +85,7 @@ fn write(
         let topic = format!("/{frame}");
         let reading = Reading {
             sensor: firing.sensor.into(),
-            at_ns: at_ns(firing),
+            at_ns: Some(at_ns(firing)),
             radiation: 0,
             field_of_view_rad: 0.26,
             min_range_m: 0.0,

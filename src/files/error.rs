@@ -27,6 +27,11 @@ impl InputError {
         Self { file: file.to_owned(), line, message, code: BAD_INPUT, is_silent: false }
     }
 
+    /// An input that can be read and does not hold what is asked of it: exit code 1.
+    pub(crate) fn answer_is_no(file: &Path, message: impl fmt::Display) -> Self {
+        Self { code: 1, ..Self::new(file, None, message) }
+    }
+
     /// A failure to read a file.
     pub(crate) fn reading(file: &Path, error: &io::Error) -> Self {
         let advice = match error.kind() {

@@ -282,9 +282,10 @@ fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(
         let robot = &world.robots()[usize::from(id.robot)];
         let c = stage.scene(run.fired_s[k]).air().speed_of_sound();
         let metres = |us: f64| if us.is_nan() { f64::INFINITY } else { 0.5e-6 * us * c };
+        let fired_ns = at_ns(run.fired_s[k]);
         let reading = Reading {
             sensor: usize::from(id.sensor),
-            at_ns: at_ns(run.fired_s[k]),
+            at_ns: Some(fired_ns),
             radiation: 0,
             field_of_view_rad: 0.26,
             min_range_m: metres(f64::from(robot.blanking.as_micros())),
@@ -295,7 +296,7 @@ fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(
         let (frame, topic) = (sensor_frame(id), format!("/{}/{}", run.method, sensor_frame(id)));
         out.range(&topic, &frame, &reading)?;
         if id.robot == 0 {
-            out.firing(&format!("/{}/firings", run.method), CLOCK, reading.at_ns, &firing(run, k))?;
+            out.firing(&format!("/{}/firings", run.method), CLOCK, fired_ns, &firing(run, k))?;
         }
         if run.is_accepted(k) {
             let range_m = if run.kind[k] == ReadingKind::Clear { f64::INFINITY } else { metres(run.t_echo_us[k]) };
@@ -310,9 +311,9 @@ fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(
                 (false, false) => [0.93, 0.78, 0.42, 0.8],
             };
             let points: Vec<_> = points.iter().map(point).collect();
-            let entity = entity(&frame, reading.at_ns, SHOWN_NS, &[line(&points, colour, 1.5)], &[]);
+            let entity = entity(&frame, fired_ns, SHOWN_NS, &[line(&points, colour, 1.5)], &[]);
             let message = json!({"deletions": [], "entities": [entity]}).to_string();
-            out.json(&format!("/{}/paths", run.method), "foxglove.SceneUpdate", reading.at_ns, &message)?;
+            out.json(&format!("/{}/paths", run.method), "foxglove.SceneUpdate", fired_ns, &message)?;
         }
     }
     Ok(())

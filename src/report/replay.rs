@@ -23,6 +23,8 @@ pub(crate) struct Counted {
     pub(crate) between_ns: Option<(u64, u64)>,
     /// Readings whose time is before that of the reading before.
     pub(crate) backwards: u64,
+    /// Pauses after which nothing is compared with what came before.
+    pub(crate) gaps: u64,
 }
 
 /// What `--json` prints.
@@ -39,6 +41,19 @@ pub(crate) struct Replay {
     /// Topics that were left out, and why.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) skipped: Vec<String>,
+    /// What was read and seems wrong.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) warnings: Vec<String>,
+    /// How the sensors fire.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) firing: Option<Firing>,
+}
+
+/// How the sensors of a log fire, and what agreement proves for it.
+#[derive(Serialize)]
+pub(crate) struct Firing {
+    pub(crate) pattern: &'static str,
+    pub(crate) proves: String,
 }
 
 /// How often each kind occurred.
@@ -69,6 +84,9 @@ pub(crate) struct Counts {
     /// Readings whose time is before that of the reading before.
     #[serde(skip_serializing_if = "is_zero")]
     backwards: u64,
+    /// Pauses after which nothing is compared with what came before.
+    #[serde(skip_serializing_if = "is_zero")]
+    gaps: u64,
     /// From the first reading to the latest, where the log says when.
     #[serde(skip_serializing_if = "Option::is_none")]
     duration_s: Option<f64>,
@@ -94,7 +112,8 @@ impl Counts {
             too_early: of(ReadingKind::TooEarly),
             invalid: counted.invalid,
             backwards: counted.backwards,
-            duration_s: counted.between_ns.filter(|&(_, to)| to > 0).map(|(from, to)| (to - from) as f64 * 1e-9),
+            gaps: counted.gaps,
+            duration_s: counted.between_ns.map(|(from, to)| (to - from) as f64 * 1e-9),
         }
     }
 
@@ -121,6 +140,7 @@ impl Counts {
             too_early: self.too_early + other.too_early,
             invalid: self.invalid + other.invalid,
             backwards: self.backwards + other.backwards,
+            gaps: self.gaps + other.gaps,
             duration_s: None,
         }
     }
@@ -213,6 +233,9 @@ pub(crate) fn table(file: &Path, t_delta_us: u32, counts: &[Counts], total: &Cou
     let mut text = format!("{}: t_delta {t_delta_us} us, {} sensors\n{table}", file.display(), counts.len());
     if total.backwards > 0 {
         text += &format!("\n{} readings have an earlier time than the one before.", total.backwards);
+    }
+    if total.gaps > 0 {
+        text += &format!("\n{} gaps in the times: readings after them are not compared with those before.", total.gaps);
     }
     text
 }

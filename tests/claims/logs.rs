@@ -16,8 +16,8 @@ fn replay_writes_what_it_accepts_beside_what_was_recorded_by_rep_117() {
     let counts = serde_json::json!({"accepted": 2, "rejected": 1, "first": 2, "no_echo": 1, "clear": 1});
     assert_eq!(total, counts);
     let mut written = vec![];
-    let report = read_log(&out, &Options::default(), |sensors, reading| {
-        written.push((sensors[reading.sensor].topic.clone(), reading.at_ns, reading.echo()));
+    let report = read_log(&out, &Options { judged: true, ..Options::default() }, |sensors, reading| {
+        written.push((sensors[reading.sensor].topic.clone(), reading.at_ns.unwrap(), reading.echo()));
     });
     assert_eq!(report.unwrap().damage, []);
     let of = |topic: &str| -> Vec<_> {
@@ -30,7 +30,8 @@ fn replay_writes_what_it_accepts_beside_what_was_recorded_by_rep_117() {
         of("left/accepted"),
         [(second(11), range(1.0)), (second(13), range(2.001)), (second(15), Echo::Nothing)]
     );
-    let without = eeruf(&["replay", log, "--t-delta-us", "100", "--range", "left", "--out", path]);
+    let (_folder, log) = Scratch::new("log.csv", "left\n1.0\n1.5\n");
+    let without = eeruf(&["replay", log.to_str().unwrap(), "--t-delta-us", "100", "--out", path]);
     assert_eq!((without.code, without.out.as_str()), (Some(2), ""));
     assert!(without.err.ends_with("a reading without a time; --out needs --time COLUMN for CSV\n"), "{}", without.err);
 }
@@ -101,7 +102,7 @@ fn study_writes_ranges_poses_scene_and_paths_that_another_reader_reads() {
 
     // Ours: each method has 8 sensors, and accepts no more than it reads.
     let mut counts = std::collections::BTreeMap::<String, u32>::new();
-    let report = read_log(&file, &Options::default(), |sensors, reading| {
+    let report = read_log(&file, &Options { judged: true, ..Options::default() }, |sensors, reading| {
         *counts.entry(sensors[reading.sensor].topic.clone()).or_default() += 1;
     });
     assert_eq!(report.unwrap().damage, []);
@@ -188,7 +189,7 @@ fn experiments_write_their_first_alcove_and_course_as_mcap() {
         let outcome = eeruf(&[arguments, &["--mcap", path, "--physics", "plain"]].concat());
         assert_eq!((outcome.code, outcome.out.as_str(), outcome.err.as_str()), (Some(0), "", ""));
         let mut readings = 0;
-        let report = read_log(&file, &Options::default(), |sensors, reading| {
+        let report = read_log(&file, &Options { judged: true, ..Options::default() }, |sensors, reading| {
             readings += u32::from(!sensors[reading.sensor].topic.ends_with("/accepted"));
         });
         assert_eq!(report.unwrap().damage, []);
@@ -322,7 +323,7 @@ fn the_replay_of_a_hopping_rings_log_makes_of_each_firing_what_the_run_made_of_i
         let outcome = eeruf(&["replay", log, "--hopping", "balanced", "--out", out.to_str().unwrap()]);
         assert!(outcome.out.ends_with("readings are what the ring made of them.\n"), "{}", outcome.out);
         let mut written = [0_u64; 3];
-        let report = read_log(&out, &Options::default(), |sensors, reading| {
+        let report = read_log(&out, &Options { judged: true, ..Options::default() }, |sensors, reading| {
             let topic = &sensors[reading.sensor].topic;
             written[if topic.ends_with("/accepted") { 1 } else { 2 * usize::from(topic.ends_with("/confirmed")) }] += 1;
         });
@@ -372,8 +373,8 @@ fn a_wall_that_comes_nearer_too_fast_for_two_readings_is_accepted_with_a_rate() 
     // Slower robots have no such echoes: 420 us in the 200 ms of three readings, and t_delta.
     let slow = replay(&["--time", "t", "--max-speed", "0.36"]);
     assert_eq!(slow["accepted"], 0);
-    let common = ["replay", log.to_str().unwrap(), "--t-delta-us", "300", "--range", "ahead", "--max-speed", "1"];
-    let without = eeruf(&common);
+    let (_folder, log) = Scratch::new("log.csv", "ahead\n1.0\n1.5\n");
+    let without = eeruf(&["replay", log.to_str().unwrap(), "--t-delta-us", "300", "--max-speed", "1"]);
     assert!(
         without.err.ends_with("a reading without a time; --max-speed needs --time COLUMN for CSV\n"),
         "{}",

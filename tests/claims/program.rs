@@ -100,7 +100,7 @@ fn a_replay_draws_what_it_counts() {
         "{}",
         outcome.out
     );
-    assert!(!outcome.out.contains("note"), "{}", outcome.out);
+    assert!(!outcome.out.contains("| note"), "{}", outcome.out);
     let svg = std::fs::read_to_string(picture).unwrap();
     assert!(svg.starts_with("<svg") && svg.contains("left") && svg.contains("3 firings"));
 }

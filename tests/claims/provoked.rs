@@ -185,7 +185,7 @@ const REFUSED_RUNS: [(&[&str], &str); 56] = [
     (&["verify", "none.toml"], "none.toml: No such file"),
     (&["design", "latin.toml"], "latin.toml: stream did not contain valid UTF-8"),
     (&["design", "wrong.toml"], "wrong.toml, line 1: "),
-    (&["replay", "empty.csv", "--t-delta-us", "500"], "no readings; expected a header and rows"),
+    (&["replay", "empty.csv", "--t-delta-us", "500"], "the file is empty; expected lines with readings"),
     (&["diagnose", "none.csv"], "none.csv: No such file"),
 ];
 

@@ -46,7 +46,7 @@ fn a_recording_has_each_reading_once_and_poses_where_the_robot_was_steered() {
     assert_eq!(logged, heard.iter().map(|&(_, sensor, echo)| (sensor, us(echo))).collect::<Vec<_>>());
     assert!(logged.len() > 300 && log.damage.is_none());
     let mut ranges = BTreeMap::<bool, usize>::new();
-    let report = read_log(&file, &ReadOptions::default(), |sensors, reading| {
+    let report = read_log(&file, &ReadOptions { judged: true, ..ReadOptions::default() }, |sensors, reading| {
         *ranges.entry(sensors[reading.sensor].topic.ends_with("/accepted")).or_default() += 1;
     });
     assert_eq!((report.unwrap().damage, ranges[&false]), (vec![], logged.len()));
@@ -169,7 +169,9 @@ fn a_scene_that_is_exchanged_is_drawn_from_then_on_and_sound_that_was_on_its_way
     }
     assert!(paths.len() > 200 && crossed >= 1, "{crossed} of {}", paths.len());
     let mut ranges = vec![];
-    let read = |_: &[eeruf_logs::Sensor], reading: &eeruf_logs::Reading| ranges.push((reading.at_ns, reading.range_m));
+    let read = |_: &[eeruf_logs::Sensor], reading: &eeruf_logs::Reading| {
+        ranges.push((reading.at_ns.unwrap(), reading.range_m));
+    };
     read_log(&file, &ReadOptions::default(), read).unwrap();
     for (at_ns, range_m) in ranges {
         let fired_s = (at_ns - START_NS) as f64 * 1e-9;

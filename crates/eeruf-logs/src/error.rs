@@ -55,6 +55,8 @@ pub struct Damage {
     pub file: PathBuf,
     /// Where in the file, in bytes from its start, if that is known.
     pub at: Option<u64>,
+    /// The line of a text, from 1.
+    pub line: Option<u64>,
     /// What is wrong, and what is lost by it.
     pub message: String,
 }
@@ -62,6 +64,9 @@ pub struct Damage {
 impl fmt::Display for Damage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.file.display())?;
+        if let Some(line) = self.line {
+            write!(f, ", line {line}")?;
+        }
         if let Some(at) = self.at {
             write!(f, ", byte {at}")?;
         }

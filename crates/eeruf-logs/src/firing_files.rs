@@ -1,12 +1,21 @@
 //! Files of firings, whatever their format.
 
 use std::fs::File;
-use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 
 use crate::error::LogError;
 use crate::firing_messages;
 use crate::firings::FiringLog;
+use crate::form::{self, Form};
+
+/// The error for a log of ranges where one of firings is expected.
+fn not_firings(file: &Path, form: &str) -> LogError {
+    let message = format!(
+        "{form}, which holds ranges and no firings; expected CSV with sensor, fired_us, period, phase and t_echo_us, \
+         or MCAP with eeruf.Firing; `eeruf logs` and `eeruf replay` read ranges"
+    );
+    LogError::new(file, message)
+}
 
 impl FiringLog {
     /// Reads a log, CSV or MCAP, as its first bytes say.
@@ -15,12 +24,27 @@ impl FiringLog {
     /// A file that cannot be read, columns that are missing, or a value that is none, with its line; MCAP in which
     /// there is no firing, or there are those of several rings.
     pub fn read(file: &Path) -> Result<Self, LogError> {
-        let mut opened = BufReader::new(File::open(file).map_err(|error| LogError::new(file, error))?);
-        let first = opened.fill_buf().map_err(|error| LogError::new(file, error))?;
-        if first.starts_with(&crate::mcap::MAGIC) {
-            drop(opened);
-            return firing_messages::read(file);
+        if file.is_dir() {
+            return Err(not_firings(file, "a folder"));
         }
-        Self::read_from(opened, file)
+        let failed = |error| LogError::new(file, error);
+        match Form::of_file(file)? {
+            Form::Mcap => firing_messages::read(file),
+            Form::Text => Self::read_from(File::open(file).map_err(failed)?, file),
+            Form::Packed(packing) => {
+                let input = packing.unpack(File::open(file).map_err(failed)?).map_err(failed)?;
+                let (unpacked, error) = form::to_file(input, "csv").map_err(failed)?;
+                if let Some(error) = error {
+                    return Err(LogError::new(file, format!("it cannot be unpacked: {error}")));
+                }
+                match Form::of_file(unpacked.path())? {
+                    Form::Mcap => firing_messages::read(unpacked.path()),
+                    Form::Text => Self::read_from(File::open(unpacked.path()).map_err(failed)?, file),
+                    other => Err(not_firings(file, other.name())),
+                }
+            }
+            Form::Foreign(foreign) => Err(foreign.refuse(file)),
+            other @ (Form::Ros1 | Form::Sqlite) => Err(not_firings(file, other.name())),
+        }
     }
 }

@@ -1,10 +1,14 @@
-//! `sensor_msgs/Range` and `sensor_msgs/LaserScan` as bytes: CDR, as ROS 2 has them, and the format of ROS 1.
+//! Messages with ranges as bytes: CDR, as ROS 2 has them, and the format of ROS 1.
 //!
 //! `Range` has had a `variance` since ROS 2 Iron. The schema in the file says whether a message has one; files without
 //! a schema leave it to the message's length.
 
+use std::rc::Rc;
+
 use crate::bytes::{Bytes, Order};
+use crate::options::{Options, RangeUnit};
 use crate::reading::Reading;
+use crate::schema::{Header, Schema};
 
 /// How the messages of a topic are encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,18 +18,38 @@ pub(crate) enum Encoding {
     Ros1,
 }
 
-/// Which messages they are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The kind of messages.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Range {
         /// Whether the schema has a variance, if there is a schema.
         variance: Option<bool>,
     },
-    LaserScan,
+    /// With at most as many beams.
+    LaserScan(usize),
+    /// Numbers at a path, by the schema.
+    Numbers(Rc<Numbers>),
+    /// `PointCloud`: each point is a sensor, at its distance from the frame's origin.
+    Points(Rc<Schema>),
+    /// `PointCloud2`: the same.
+    Points2,
+}
+
+/// Ranges at a path of messages.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Numbers {
+    schema: Schema,
+    path: Vec<String>,
+    /// Unless the user says it, the field's name does, or the first values.
+    pub(crate) unit: Option<RangeUnit>,
+    /// One number, no array.
+    pub(crate) is_single: bool,
 }
 
 /// A ring of sonars has no more beams than this; lidars have.
 pub(crate) const MAX_BEAMS: usize = 64;
+/// Unless the user says that a topic is one.
+const MOST_BEAMS: usize = 4096;
 
 /// Why a message could not be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,35 +60,148 @@ pub(crate) enum Undecoded {
     Beams,
 }
 
+/// Returns true if a name says that something measures by ultrasound.
+fn is_sonar(name: &str) -> bool {
+    let name = name.to_lowercase();
+    ["sonar", "ultraso", "hcsr04", "hc_sr04", "srf0", "maxbotix"].iter().any(|word| name.contains(word))
+}
+
 impl Kind {
-    /// By the name of a type, as `sensor_msgs/Range` or `sensor_msgs/msg/Range`, and the text of its schema.
-    pub(crate) fn of(type_name: &str, schema: Option<&str>) -> Option<Self> {
-        match type_name.strip_prefix("sensor_msgs/")?.trim_start_matches("msg/") {
-            "Range" => Some(Self::Range { variance: schema.and_then(has_variance) }),
-            "LaserScan" => Some(Self::LaserScan),
-            _ => None,
+    /// By the name of a type, as `sensor_msgs/Range` or `sensor_msgs/msg/Range`, the text of its schema, and what the
+    /// user says of the topic; else why its messages hold no readings, and the option that reads them, if there is one.
+    pub(crate) fn of(topic: &str, type_name: &str, schema: Option<&str>, options: &Options) -> Result<Self, String> {
+        if let Some(field) = options.fields.iter().find(|field| field.topic == topic) {
+            let text = schema.ok_or_else(|| format!("{type_name} without a schema; --field needs one"))?;
+            let parsed = Schema::parse(text).ok_or_else(|| format!("{type_name}, whose schema cannot be read"))?;
+            let paths = parsed.number_paths();
+            let same = |path: &&String| path.replace("[]", "") == field.path.replace("[]", "");
+            let Some(path) = paths.iter().find(same).cloned() else {
+                return Err(format!("no field `{}` of {type_name}; expected one of: {}", field.path, paths.join(", ")));
+            };
+            return Ok(Self::numbers(parsed, &path, Some(field.unit)));
+        }
+        let is_asked = options.topics.iter().any(|asked| asked == topic);
+        let takes_all = options.topics.is_empty() && options.fields.is_empty();
+        if !is_asked && !takes_all {
+            return Err(format!("{type_name}, which --topic and --field do not name"));
+        }
+        let plain = type_name.replace("/msg/", "/");
+        match plain.as_str() {
+            "sensor_msgs/Range" => return Ok(Self::Range { variance: schema.and_then(has_variance) }),
+            "sensor_msgs/LaserScan" => {
+                return Ok(Self::LaserScan(if is_asked || is_sonar(topic) { MOST_BEAMS } else { MAX_BEAMS }));
+            }
+            "sensor_msgs/PointCloud" | "sensor_msgs/PointCloud2" if !is_asked => {
+                return Err(format!(
+                    "{type_name}: points, no ranges; --topic {topic} reads each point as a sensor, at its distance \
+                     from the frame's origin"
+                ));
+            }
+            "sensor_msgs/PointCloud2" => return Ok(Self::Points2),
+            _ => {}
+        }
+        let parsed = schema.and_then(Schema::parse);
+        if plain == "sensor_msgs/PointCloud" {
+            let parsed = parsed.ok_or_else(|| format!("{type_name} without a schema"))?;
+            return Ok(Self::Points(Rc::new(parsed)));
+        }
+        let refused = || format!("{type_name}; expected sensor_msgs Range or LaserScan");
+        let parsed = parsed.ok_or_else(refused)?;
+        let paths = parsed.number_paths();
+        let is_candidate = |path: &&String| {
+            let last = path.rsplit('.').next().unwrap_or_default().trim_end_matches("[]").to_lowercase();
+            let of = |words: &[&str]| words.iter().any(|word| last.starts_with(word));
+            let is_limit = ["min", "max", "count", "type"].iter().any(|word| last.contains(word));
+            !is_limit
+                && (of(&["range", "distance", "sonar", "ultraso", "echo"])
+                    || ["data", "values"].contains(&last.as_str()))
+        };
+        // An array before a single number; `data` last.
+        let best =
+            paths.iter().filter(is_candidate).max_by_key(|path| (path.contains("[]"), !path.starts_with("data")));
+        match best {
+            Some(path) if is_asked || is_sonar(topic) || is_sonar(type_name) || is_sonar(path) => {
+                Ok(Self::numbers(parsed.clone(), path, None))
+            }
+            _ if paths.is_empty() || type_name.starts_with("tf2_msgs") => Err(refused()),
+            Some(path) => Err(format!("{}; --field {topic} {path} m reads numbers of it", refused())),
+            None if is_asked => {
+                Err(format!("{type_name} has no field of ranges; --field names one of: {}", paths.join(", ")))
+            }
+            None => Err(refused()),
+        }
+    }
+
+    fn numbers(schema: Schema, path: &str, unit: Option<RangeUnit>) -> Self {
+        let parts = path.split('.').map(|name| name.trim_end_matches("[]").to_owned()).collect();
+        let unit = unit
+            .or_else(|| crate::text::range_unit(path.rsplit('.').next().unwrap_or_default().trim_end_matches("[]")));
+        Self::Numbers(Rc::new(Numbers { schema, path: parts, unit, is_single: !path.contains("[]") }))
+    }
+
+    /// Returns true if a sensor of it is a place in its messages.
+    pub(crate) fn has_places(&self) -> bool {
+        match self {
+            Self::Range { .. } => false,
+            Self::Numbers(numbers) => !numbers.is_single,
+            _ => true,
         }
     }
 
     /// Decodes a message into readings, whose `sensor` is the beam; the answer is its frame.
-    pub(crate) fn decode<'a>(
-        self,
+    pub(crate) fn decode(
+        &self,
         encoding: Encoding,
-        message: &'a [u8],
+        message: &[u8],
         recorded_ns: u64,
         readings: &mut Vec<Reading>,
-    ) -> Result<&'a [u8], Undecoded> {
+    ) -> Result<Vec<u8>, Undecoded> {
         let mut fields = match encoding {
             Encoding::Cdr => Fields::cdr(message),
-            Encoding::Ros1 => Some(Fields { bytes: Bytes::new(message, Order::Little), cdr: false }),
+            Encoding::Ros1 => Some(Fields { bytes: Bytes::new(message, Order::Little), cdr: None }),
         }
         .ok_or(Undecoded::Length)?;
         let decoded = match self {
-            Self::Range { variance } => fields.range(variance, recorded_ns, readings),
-            Self::LaserScan => fields.laser_scan(recorded_ns, readings)?,
+            Self::Range { variance } => fields.range(*variance, recorded_ns, readings).map(<[u8]>::to_vec),
+            Self::LaserScan(most) => fields.laser_scan(*most, recorded_ns, readings)?.map(<[u8]>::to_vec),
+            Self::Numbers(numbers) => {
+                let found = numbers.schema.numbers(&numbers.path, fields.bytes, fields.cdr);
+                found.and_then(|(header, values)| push_all(&header, values, recorded_ns, readings))
+            }
+            Self::Points(schema) => {
+                let axis = |axis: &str| {
+                    let path = ["points".to_owned(), axis.to_owned()];
+                    schema.numbers(&path, fields.bytes, fields.cdr)
+                };
+                (|| {
+                    let ((header, x), (_, y), (_, z)) = (axis("x")?, axis("y")?, axis("z")?);
+                    let far = x.iter().zip(&y).zip(&z).map(|((x, y), z)| x.hypot(*y).hypot(*z)).collect();
+                    push_all(&header, far, recorded_ns, readings)
+                })()
+            }
+            Self::Points2 => fields.points2(recorded_ns, readings),
         };
         decoded.ok_or(Undecoded::Length)
     }
+}
+
+/// Numbers as readings, in the order of their places.
+fn push_all(header: &Header, values: Vec<f64>, recorded_ns: u64, readings: &mut Vec<Reading>) -> Option<Vec<u8>> {
+    if values.len() > MOST_BEAMS {
+        return None;
+    }
+    let at_ns = Some(if header.stamp_ns == 0 { recorded_ns } else { header.stamp_ns });
+    readings.extend(values.into_iter().enumerate().map(|(sensor, range_m)| Reading {
+        sensor,
+        at_ns,
+        radiation: 0,
+        field_of_view_rad: 0.0,
+        min_range_m: 0.0,
+        max_range_m: 0.0,
+        range_m,
+        variance: None,
+    }));
+    Some(header.frame.clone().into_bytes())
 }
 
 /// Whether a schema has a variance; `None` where it does not even have a range, so that it is no schema of `Range`.
@@ -80,8 +217,9 @@ fn has_variance(schema: &str) -> Option<bool> {
 /// The fields of a message, one after the other.
 struct Fields<'a> {
     bytes: Bytes<'a>,
-    /// CDR aligns numbers and ends texts by a zero; ROS 1 does neither, and its headers have a number.
-    cdr: bool,
+    /// CDR aligns numbers, at most to this size, and ends texts by a zero; ROS 1 does neither, and its headers have a
+    /// number.
+    cdr: Option<usize>,
 }
 
 impl<'a> Fields<'a> {
@@ -94,11 +232,12 @@ impl<'a> Fields<'a> {
             (0, 1 | 7) => Order::Little,
             _ => return None,
         };
-        Some(Self { bytes: Bytes::new(body, order), cdr: true })
+        let most = if header[1] < 6 { 8 } else { 4 };
+        Some(Self { bytes: Bytes::new(body, order), cdr: Some(most) })
     }
 
     fn align(&mut self) -> Option<()> {
-        if self.cdr { self.bytes.align(4) } else { Some(()) }
+        if self.cdr.is_some() { self.bytes.align(4) } else { Some(()) }
     }
 
     fn u32(&mut self) -> Option<u32> {
@@ -113,14 +252,14 @@ impl<'a> Fields<'a> {
 
     /// The stamp in nanoseconds, and the frame.
     fn header(&mut self, recorded_ns: u64) -> Option<(u64, &'a [u8])> {
-        if !self.cdr {
-            self.bytes.u32()?; // A running number.
+        if self.cdr.is_none() {
+            self.bytes.u32()?; // A sequence number.
         }
         let (seconds, nanoseconds) = (self.u32()?, self.u32()?);
         let stamp = u64::from(seconds) * 1_000_000_000 + u64::from(nanoseconds);
         self.align()?;
         let frame = self.bytes.counted()?;
-        let frame = if self.cdr { frame.strip_suffix(&[0]).unwrap_or(frame) } else { frame };
+        let frame = if self.cdr.is_some() { frame.strip_suffix(&[0]).unwrap_or(frame) } else { frame };
         Some((if stamp == 0 { recorded_ns } else { stamp }, frame))
     }
 
@@ -136,7 +275,7 @@ impl<'a> Fields<'a> {
         };
         readings.push(Reading {
             sensor: 0,
-            at_ns,
+            at_ns: Some(at_ns),
             radiation,
             field_of_view_rad,
             min_range_m: min.into(),
@@ -147,7 +286,12 @@ impl<'a> Fields<'a> {
         Some(frame)
     }
 
-    fn laser_scan(&mut self, recorded_ns: u64, readings: &mut Vec<Reading>) -> Result<Option<&'a [u8]>, Undecoded> {
+    fn laser_scan(
+        &mut self,
+        most: usize,
+        recorded_ns: u64,
+        readings: &mut Vec<Reading>,
+    ) -> Result<Option<&'a [u8]>, Undecoded> {
         let Some((at_ns, frame)) = self.header(recorded_ns) else { return Ok(None) };
         let Some(numbers) = self.numbers::<7>() else { return Ok(None) };
         let [_, _, angle_increment, time_increment, _, min, max] = numbers;
@@ -156,7 +300,7 @@ impl<'a> Fields<'a> {
         if self.bytes.left() < beams.saturating_mul(4).saturating_add(4) {
             return Ok(None);
         }
-        if beams > MAX_BEAMS {
+        if beams > most {
             return Err(Undecoded::Beams);
         }
         for beam in 0..beams {
@@ -164,7 +308,7 @@ impl<'a> Fields<'a> {
             let after_ns = f64::from(time_increment.max(0.0)) * beam as f64 * 1e9;
             readings.push(Reading {
                 sensor: beam,
-                at_ns: at_ns.saturating_add(after_ns as u64),
+                at_ns: Some(at_ns.saturating_add(after_ns as u64)),
                 radiation: 0,
                 field_of_view_rad: angle_increment.abs(),
                 min_range_m: min.into(),
@@ -174,6 +318,43 @@ impl<'a> Fields<'a> {
             });
         }
         Ok(Some(frame))
+    }
+
+    /// `PointCloud2`: how far its points are from the origin.
+    fn points2(&mut self, recorded_ns: u64, readings: &mut Vec<Reading>) -> Option<Vec<u8>> {
+        let (stamp_ns, frame) = self.header(recorded_ns)?;
+        let (height, width, count) = (self.u32()? as usize, self.u32()? as usize, self.u32()?);
+        let mut axes = [None; 3];
+        for _ in 0..count {
+            self.align()?;
+            let name = self.bytes.text()?;
+            let (offset, of) = (self.u32()? as usize, self.bytes.u8()?);
+            self.u32()?; // Values of each point.
+            if let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == name.trim_end_matches('\0')) {
+                axes[axis] = Some((offset, of));
+            }
+        }
+        let order = if self.bytes.u8()? == 0 { Order::Little } else { Order::Big };
+        let (step, _row) = (self.u32()? as usize, self.u32()?);
+        self.align()?;
+        let data = self.bytes.counted()?;
+        let points = height.checked_mul(width)?;
+        if points > MOST_BEAMS || data.len() < points.checked_mul(step)? {
+            return None;
+        }
+        let at = |point: usize, axis: Option<(usize, u8)>| -> Option<f64> {
+            let (offset, of) = axis?;
+            let mut bytes = Bytes::new(data.get(point * step + offset..)?, order);
+            match of {
+                7 => bytes.f32().map(f64::from),
+                8 => bytes.u64().map(f64::from_bits),
+                _ => None,
+            }
+        };
+        let far = |point| Some(at(point, axes[0])?.hypot(at(point, axes[1])?).hypot(at(point, axes[2]).unwrap_or(0.0)));
+        let far = (0..points).map(far).collect::<Option<Vec<_>>>()?;
+        let header = Header { stamp_ns, frame: String::from_utf8_lossy(frame).into_owned() };
+        push_all(&header, far, recorded_ns, readings)
     }
 
     fn numbers<const N: usize>(&mut self) -> Option<[f32; N]> {

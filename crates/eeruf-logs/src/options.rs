@@ -1,34 +1,64 @@
-//! What has to be said about a log besides where it is.
+//! Options of reading a log.
 
-/// How to read a log. Only CSV needs anything.
+/// How to read a log. Whatever is not given is guessed, and listed in [`Report::guesses`](crate::Report::guesses).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// What the columns of a CSV file are.
+    /// The columns of a text.
     pub table: Table,
     /// In m/s, for values that are echo times.
     pub speed_of_sound: f64,
-    /// From this range on, in metres, a value of a CSV file means that there was no echo.
+    /// From this range on, in metres, a value of a text means that there was no echo.
     pub no_echo_m: f64,
+    /// Values that mean no echo, in the log's unit, or words. If empty: zero, values below zero, and a ceiling that the
+    /// log repeats.
+    pub no_echo: Vec<String>,
+    /// The topics of a bag to read, whatever their type, as far as it can be read. If empty, all that hold ranges.
+    pub topics: Vec<String>,
+    /// Fields of messages that hold ranges.
+    pub fields: Vec<FieldChoice>,
+    /// Reads what a filter made of other topics too: `TOPIC/accepted` and `TOPIC/confirmed` beside `TOPIC`.
+    pub judged: bool,
 }
 
 impl Default for Options {
-    /// Columns as their values have them, in metres; 343.2 m/s; no echo from 5 m on.
+    /// Guesses everything; 343.2 m/s; no echo from 5 m on.
     fn default() -> Self {
-        Self { table: Table::default(), speed_of_sound: 343.2, no_echo_m: 5.0 }
+        Self {
+            table: Table::default(),
+            speed_of_sound: 343.2,
+            no_echo_m: 5.0,
+            no_echo: Vec::new(),
+            topics: Vec::new(),
+            fields: Vec::new(),
+            judged: false,
+        }
     }
 }
 
-/// What the columns of a CSV file are, by their names in its header.
+/// A field of a topic's messages that holds ranges.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FieldChoice {
+    /// The topic.
+    pub topic: String,
+    /// The path to the field, such as `distance_mm[]` or `sonars[].range`.
+    pub path: String,
+    /// The unit of its values.
+    pub unit: RangeUnit,
+}
+
+/// The columns of a text, by their names.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
-    /// The columns with ranges. If empty, each column whose first value is a number, other than the time's.
+    /// The names of the columns in their order, in place of a header; `-` leaves one out. If empty, the header's.
+    pub columns: Vec<String>,
+    /// The columns with ranges. If empty, each column of numbers whose name does not say otherwise.
     pub ranges: Vec<String>,
     /// The unit of the ranges.
-    pub range_unit: RangeUnit,
+    pub range_unit: Option<RangeUnit>,
     /// The column with the time of each row.
     pub time: Option<String>,
     /// The unit of the time.
-    pub time_unit: TimeUnit,
+    pub time_unit: Option<TimeUnit>,
     /// The column that says whose reading a row is; then there is one column with ranges.
     pub sensor: Option<String>,
 }
@@ -87,6 +117,15 @@ impl RangeUnit {
 }
 
 impl TimeUnit {
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::S => "seconds",
+            Self::Ms => "milliseconds",
+            Self::Us => "microseconds",
+            Self::Ns => "nanoseconds",
+        }
+    }
+
     /// Nanoseconds in one of it.
     pub(crate) const fn nanoseconds(self) -> f64 {
         match self {

@@ -27,8 +27,8 @@ impl Sensor {
 pub struct Reading {
     /// The sensor, as an index into [`Report::sensors`](crate::Report::sensors).
     pub sensor: usize,
-    /// When, in nanoseconds: the header's stamp, or when the message was recorded if the stamp is zero; 0 if unknown.
-    pub at_ns: u64,
+    /// The time in nanoseconds: the header's stamp, or when the message was recorded if the stamp is zero.
+    pub at_ns: Option<u64>,
     /// `radiation_type`: 0 is ultrasound, 1 infrared.
     pub radiation: u8,
     /// `field_of_view`, in radians.

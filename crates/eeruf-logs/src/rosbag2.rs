@@ -6,6 +6,7 @@ use rusqlite::{Connection, OpenFlags};
 use saphyr::{LoadableYamlNode, Yaml};
 
 use crate::error::LogError;
+use crate::form::{self, Form};
 use crate::message::Encoding;
 use crate::sink::{Sink, Topic};
 use crate::unzstd::{LARGEST_MESSAGE, Unzstd};
@@ -48,10 +49,7 @@ pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
         let read = match file.extension().and_then(|ending| ending.to_str()) {
             Some("mcap") => crate::mcap::read(&file, found.packed, sink),
             Some("db3") => read_sqlite(&file, found.packed, sink),
-            _ => Err(LogError::new(
-                &file,
-                "a file of unknown kind, or compressed as a whole; expected .mcap or .db3, after `zstd -d`",
-            )),
+            _ => read_packed(&file, sink),
         };
         if let Err(error) = read {
             sink.damage(error.file(), None, error.message());
@@ -59,6 +57,25 @@ pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
     }
     if sink.report.damage.len() == damage {
         sink.counted(&metadata, found.messages, found_before);
+    }
+    Ok(())
+}
+
+/// Reads a file of a bag that is compressed as a whole.
+fn read_packed(file: &Path, sink: &mut Sink<'_>) -> Result<(), LogError> {
+    let failed = |error| LogError::new(file, error);
+    let Form::Packed(packing) = Form::of_file(file)? else {
+        return Err(LogError::new(file, "a file of unknown kind; expected .mcap or .db3, also packed by zstd"));
+    };
+    let input = packing.unpack(std::fs::File::open(file).map_err(failed)?).map_err(failed)?;
+    let (unpacked, error) = form::to_file(input, "bag").map_err(failed)?;
+    match Form::of_file(unpacked.path())? {
+        Form::Mcap => crate::mcap::read(unpacked.path(), false, sink)?,
+        Form::Sqlite => read_sqlite(unpacked.path(), false, sink)?,
+        other => return Err(LogError::new(file, format!("{} within; expected MCAP or SQLite", other.name()))),
+    }
+    if let Some(error) = error {
+        sink.damage(file, None, format!("it cannot be unpacked to its end: {error}; what comes before was read"));
     }
     Ok(())
 }
@@ -84,7 +101,7 @@ fn bag_files(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let file = entry.map_err(failed)?.path();
-        if file.extension().is_some_and(|ending| ending == "mcap" || ending == "db3") {
+        if file.extension().is_some_and(|ending| ending == "mcap" || ending == "db3" || ending == "zstd") {
             files.push(file);
         }
     }

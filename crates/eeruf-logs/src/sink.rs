@@ -1,15 +1,20 @@
 //! Where readers of files hand in messages: finds out which sensor each reading is of, counts, and notes what is lost.
 
+use std::collections::HashSet;
 use std::fmt;
 use std::path::Path;
 
 use crate::error::Damage;
 use crate::message::{Encoding, Kind, MAX_BEAMS, Undecoded};
-use crate::reading::{Reading, Sensor};
+use crate::options::{Options, RangeUnit};
+use crate::pattern::{FiringPattern, Stamps};
+use crate::reading::{Echo, Reading, Sensor};
 
 /// What a log holds, and what of it could not be read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Report {
+    /// The form of the file.
+    pub form: String,
     /// The sensors, in the order in which they were first met.
     pub sensors: Vec<Sensor>,
     /// How many messages with readings there were (rows, of a CSV file).
@@ -18,6 +23,23 @@ pub struct Report {
     pub damage: Vec<Damage>,
     /// Topics without readings, with their types, and how many topics had none at all.
     pub skipped: Vec<Skipped>,
+    /// What the log does not say, and is guessed.
+    pub guesses: Vec<Guess>,
+    /// What is read and seems to be wrong.
+    pub warnings: Vec<String>,
+    /// How the sensors fire, by the times of the readings.
+    pub firing: FiringPattern,
+}
+
+/// A guess about a log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Guess {
+    /// What is guessed.
+    pub what: String,
+    /// The guess, and what it is made by.
+    pub value: String,
+    /// The options that override it.
+    pub option: String,
 }
 
 /// A topic whose messages, or some of them, hold no readings.
@@ -51,6 +73,12 @@ pub(crate) struct Topic {
     next: usize,
     undecoded: u64,
     beams: u64,
+    infrared: u64,
+    /// The topic of which this one is what a filter made.
+    judged: Option<(String, u64)>,
+    /// The unit of numbers, once it is known.
+    unit: Option<RangeUnit>,
+    is_asked: bool,
 }
 
 struct Frame {
@@ -67,11 +95,33 @@ pub(crate) struct Sink<'a> {
     each: &'a mut dyn FnMut(&[Sensor], &Reading),
     buffer: Vec<Reading>,
     more_damage: u64,
+    options: &'a Options,
+    /// Topics with readings.
+    topics: HashSet<String>,
+    /// Topics of which one warning is enough.
+    warned: HashSet<String>,
+    stamps: Stamps,
+    /// All readings of a row, or of a message, have its time.
+    pub(crate) one_time_a_row: bool,
+    /// Readings have times of their own.
+    has_own_times: bool,
 }
 
 impl<'a> Sink<'a> {
-    pub(crate) fn new(each: &'a mut dyn FnMut(&[Sensor], &Reading)) -> Self {
-        Self { report: Report::default(), found: 0, each, buffer: Vec::new(), more_damage: 0 }
+    pub(crate) fn new(options: &'a Options, each: &'a mut dyn FnMut(&[Sensor], &Reading)) -> Self {
+        Self {
+            report: Report::default(),
+            found: 0,
+            each,
+            buffer: Vec::new(),
+            more_damage: 0,
+            options,
+            topics: HashSet::new(),
+            warned: HashSet::new(),
+            stamps: Stamps::default(),
+            one_time_a_row: false,
+            has_own_times: false,
+        }
     }
 
     /// A topic by its name, the name of its type, the text of its schema if there is one, and its encoding.
@@ -82,7 +132,7 @@ impl<'a> Sink<'a> {
         schema: Option<&str>,
         encoding: Option<Encoding>,
     ) -> Topic {
-        let kind = Kind::of(type_name, schema);
+        let kind = Kind::of(name, type_name, schema, self.options);
         let mut skip = |why: String| {
             let skipped = Skipped { topic: name.to_owned(), why, messages: 0 };
             if !self.report.skipped.contains(&skipped) {
@@ -90,22 +140,46 @@ impl<'a> Sink<'a> {
             }
         };
         let decoding = match (kind, encoding) {
-            (Some(kind), Some(encoding)) => Some((encoding, kind)),
-            (Some(_), None) => {
+            (Ok(kind), Some(encoding)) => Some((encoding, kind)),
+            (Ok(_), None) => {
                 skip(format!("{type_name} in an encoding that is neither cdr nor ros1"));
                 None
             }
-            (None, _) => {
-                skip(format!("{type_name}; expected sensor_msgs Range or LaserScan"));
+            (Err(why), _) => {
+                skip(why);
                 None
             }
         };
-        Topic { name: name.to_owned(), decoding, frames: Vec::new(), next: 0, undecoded: 0, beams: 0 }
+        if decoding.is_some() {
+            self.topics.insert(name.to_owned());
+        }
+        let is_asked =
+            self.options.topics.iter().chain(self.options.fields.iter().map(|field| &field.topic)).any(|t| t == name);
+        let base = ["/accepted", "/confirmed"].iter().find_map(|end| name.strip_suffix(end));
+        let judged = base.filter(|_| !self.options.judged && !is_asked).map(|base| (base.to_owned(), 0));
+        Topic {
+            name: name.to_owned(),
+            decoding,
+            frames: Vec::new(),
+            next: 0,
+            undecoded: 0,
+            beams: 0,
+            infrared: 0,
+            judged,
+            unit: None,
+            is_asked,
+        }
     }
 
     /// A message on a topic, recorded at this time.
     pub(crate) fn message(&mut self, topic: &mut Topic, recorded_ns: u64, message: &[u8]) {
-        let Some((encoding, kind)) = topic.decoding else { return };
+        let Some((encoding, kind)) = topic.decoding.clone() else { return };
+        if let Some((base, left_out)) = &mut topic.judged
+            && self.topics.contains(base)
+        {
+            *left_out += 1;
+            return;
+        }
         self.buffer.clear();
         let frame = match kind.decode(encoding, message, recorded_ns, &mut self.buffer) {
             Ok(frame) => frame,
@@ -118,8 +192,25 @@ impl<'a> Sink<'a> {
                 return;
             }
         };
+        match kind {
+            Kind::Range { .. } => {
+                let infrared = self.buffer.first().is_some_and(|reading| reading.radiation == 1);
+                if infrared && !topic.is_asked {
+                    topic.infrared += 1;
+                    return;
+                }
+                self.doubt(&topic.name);
+            }
+            Kind::Numbers(ref numbers) => self.scale(topic, numbers.unit),
+            Kind::Points(_) | Kind::Points2 => self.scale(topic, Some(RangeUnit::M)),
+            Kind::LaserScan(_) => {}
+        }
+        let is_shared =
+            self.buffer.len() > 1 && self.buffer.iter().all(|reading| reading.at_ns == self.buffer[0].at_ns);
+        self.one_time_a_row |= is_shared;
+        self.has_own_times |= !is_shared;
         self.report.messages += 1;
-        let at = topic.frame(frame);
+        let at = topic.frame(&frame);
         let frame = &mut topic.frames[at];
         for reading in &mut self.buffer {
             let beam = reading.sensor;
@@ -128,7 +219,7 @@ impl<'a> Sink<'a> {
                 let sensor = Sensor {
                     topic: topic.name.clone(),
                     frame: String::from_utf8_lossy(&frame.id).into_owned(),
-                    beam: (kind == Kind::LaserScan).then_some(number as u16),
+                    beam: kind.has_places().then_some(number as u16),
                 };
                 // The same sensor may be in several files of a bag.
                 let known = self.report.sensors.iter().position(|known| *known == sensor);
@@ -138,12 +229,57 @@ impl<'a> Sink<'a> {
                 }
             }
             reading.sensor = frame.sensors[beam];
+            self.stamps.push(reading.sensor, reading.at_ns, finite(reading));
             (self.each)(&self.report.sensors, reading);
+        }
+    }
+
+    /// Warns of ranges that no ultrasonic sensor has: centimetres in place of metres.
+    fn doubt(&mut self, topic: &str) {
+        /// The farthest that a sensor in air sees is about 11 m.
+        const FARTHEST_M: f64 = 25.0;
+        let Some(reading) = self.buffer.first() else { return };
+        let (most, range) = (reading.max_range_m, reading.range_m);
+        if (most > FARTHEST_M || (range > FARTHEST_M && range.is_finite())) && !self.warned.contains(topic) {
+            self.warned.insert(topic.to_owned());
+            self.report.warnings.push(format!(
+                "{topic}: a range of {range} m of at most {most} m; expected less than {FARTHEST_M} m from an \
+                 ultrasonic sensor; if the driver writes centimetres, `--field {topic} range cm` reads them"
+            ));
+        }
+    }
+
+    /// Turns numbers of the buffer into metres, and zero, negative and far ones into no echo.
+    fn scale(&mut self, topic: &mut Topic, known: Option<RangeUnit>) {
+        let most =
+            self.buffer.iter().map(|reading| reading.range_m).filter(|range| range.is_finite()).fold(0.0, f64::max);
+        if topic.unit.is_none() && (known.is_some() || most > 0.0) {
+            let by_values = match most {
+                _ if most <= 20.0 => RangeUnit::M,
+                _ if most <= 1100.0 => RangeUnit::Cm,
+                _ => RangeUnit::Mm,
+            };
+            let unit = known.unwrap_or(by_values);
+            topic.unit = Some(unit);
+            let why = if known.is_some() { String::new() } else { format!(", by values of up to {}", most as f32) };
+            let (what, value) = (format!("range unit of {}", topic.name), format!("{}{why}", unit.name()));
+            self.report.guesses.push(Guess { what, value, option: "--field".to_owned() });
+        }
+        let metres = topic.unit.unwrap_or(RangeUnit::M).metres(self.options.speed_of_sound);
+        for reading in &mut self.buffer {
+            let range_m = reading.range_m * metres;
+            reading.max_range_m = self.options.no_echo_m;
+            reading.range_m = if range_m.is_nan() || (range_m > 0.0 && range_m < self.options.no_echo_m) {
+                range_m
+            } else {
+                f64::INFINITY
+            };
         }
     }
 
     /// A reading that came in no message.
     pub(crate) fn reading(&mut self, reading: &Reading) {
+        self.stamps.push(reading.sensor, reading.at_ns, finite(reading));
         (self.each)(&self.report.sensors, reading);
     }
 
@@ -151,7 +287,18 @@ impl<'a> Sink<'a> {
     pub(crate) fn close(&mut self, topic: &Topic) {
         let lost = [
             (topic.undecoded, "a length that does not fit their type".to_owned()),
-            (topic.beams, format!("more than {MAX_BEAMS} beams: a lidar, no ring of sonars")),
+            (
+                topic.beams,
+                format!(
+                    "more than {MAX_BEAMS} beams: a lidar, no ring of sonars; --topic {} reads them all the same",
+                    topic.name
+                ),
+            ),
+            (topic.infrared, format!("infrared light, no sound; --topic {} reads them", topic.name)),
+            (
+                topic.judged.as_ref().map_or(0, |judged| judged.1),
+                "what a filter made of another topic; --topic reads it".to_owned(),
+            ),
         ];
         for (messages, why) in lost.into_iter().filter(|(messages, _)| *messages > 0) {
             self.report.skipped.push(Skipped { topic: topic.name.clone(), why, messages });
@@ -166,11 +313,20 @@ impl<'a> Sink<'a> {
         }
     }
 
+    /// A line of a text cannot be read.
+    pub(crate) fn damaged_line(&mut self, file: &Path, line: u64, message: impl fmt::Display) {
+        let listed = self.report.damage.len();
+        self.damage(file, None, message);
+        if let Some(damage) = self.report.damage.get_mut(listed) {
+            damage.line = Some(line);
+        }
+    }
+
     /// A part of a file cannot be read.
     pub(crate) fn damage(&mut self, file: &Path, at: Option<u64>, message: impl fmt::Display) {
         if self.report.damage.len() < LISTED {
             let message = message.to_string().replace('\n', "; ");
-            self.report.damage.push(Damage { file: file.to_owned(), at, message });
+            self.report.damage.push(Damage { file: file.to_owned(), at, line: None, message });
         } else {
             self.more_damage += 1;
         }
@@ -179,9 +335,17 @@ impl<'a> Sink<'a> {
     pub(crate) fn finish(mut self, file: &Path) -> Report {
         if self.more_damage > 0 {
             let message = format!("{} more places that cannot be read", self.more_damage);
-            self.report.damage.push(Damage { file: file.to_owned(), at: None, message });
+            self.report.damage.push(Damage { file: file.to_owned(), at: None, line: None, message });
         }
+        self.report.firing = self.stamps.pattern(self.report.sensors.len(), self.one_time_a_row && !self.has_own_times);
         self.report
+    }
+}
+
+fn finite(reading: &Reading) -> Option<f64> {
+    match reading.echo() {
+        Echo::At(range_m) => Some(range_m),
+        _ => None,
     }
 }
 

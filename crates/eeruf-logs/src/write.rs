@@ -64,7 +64,7 @@ impl McapWriter {
         LogError::new(&self.file, error)
     }
 
-    /// Writes a reading onto a topic. A frame is at most 4 GB long.
+    /// Writes a reading onto a topic, at time 0 if it has none. A frame is at most 4 GB long.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -72,7 +72,7 @@ impl McapWriter {
         let mut message = std::mem::take(&mut self.message);
         encode(frame, reading, &mut message);
         let schema = ("sensor_msgs/msg/Range", "ros2msg", RANGE);
-        let written = self.write(topic, schema, "cdr", reading.at_ns, &message);
+        let written = self.write(topic, schema, "cdr", reading.at_ns.unwrap_or(0), &message);
         self.message = message;
         written
     }
@@ -143,7 +143,8 @@ fn encode(frame: &str, reading: &Reading, message: &mut Vec<u8>) {
     };
     message.clear();
     message.extend([0, 1, 0, 0]);
-    let (seconds, nanoseconds) = (reading.at_ns / 1_000_000_000, reading.at_ns % 1_000_000_000);
+    let at_ns = reading.at_ns.unwrap_or(0);
+    let (seconds, nanoseconds) = (at_ns / 1_000_000_000, at_ns % 1_000_000_000);
     message.extend((seconds as u32).to_le_bytes());
     message.extend((nanoseconds as u32).to_le_bytes());
     message.extend((frame.len() as u32 + 1).to_le_bytes());

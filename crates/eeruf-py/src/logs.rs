@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use eeruf_logs::{
-    Diagnosis, Fault, Firing, FiringLog, FoundPath, Options, PathSettings, RangeUnit, Settings, Table, TimeUnit,
+    Diagnosis, Fault, FieldChoice, Firing, FiringLog, FoundPath, Options, PathSettings, RangeUnit, Settings, Table,
+    TimeUnit,
 };
 use numpy::PyReadonlyArray1;
 use pyo3::{create_exception, prelude::*, types::PyDict};
@@ -48,6 +49,18 @@ fn above_zero(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
     number.ok_or_else(|| wrong(name, shown(value), "a number above 0"))
 }
 
+/// Triples of topic, path and unit.
+fn field_choices(fields: &Bound<'_, PyAny>, units: &[(&str, RangeUnit)]) -> PyResult<Vec<FieldChoice>> {
+    let expected = "triples of topic, field and unit, as (\"/sonars\", \"distance_mm[]\", \"mm\")";
+    let field = |field: &Bound<'_, PyAny>| {
+        let found: Option<(String, String, String)> = field.extract().ok();
+        let (topic, path, unit) = found.ok_or_else(|| wrong("fields", shown(field), expected))?;
+        let unit = units.iter().find(|known| known.0 == unit).ok_or_else(|| wrong("fields", shown(field), expected))?.1;
+        Ok(FieldChoice { topic, path, unit })
+    };
+    items("fields", fields, expected)?.iter().map(field).collect()
+}
+
 /// The ranges of a log, as columns, with sensors, damage and what was left out.
 #[pyfunction]
 #[pyo3(name = "_read_log")]
@@ -56,12 +69,17 @@ pub(crate) fn read_log<'py>(
     py: Python<'py>,
     path: &Bound<'py, PyAny>,
     time: Option<&Bound<'py, PyAny>>,
-    time_unit: &Bound<'py, PyAny>,
+    time_unit: Option<&Bound<'py, PyAny>>,
     ranges: &Bound<'py, PyAny>,
-    range_unit: &Bound<'py, PyAny>,
+    range_unit: Option<&Bound<'py, PyAny>>,
     sensor: Option<&Bound<'py, PyAny>>,
     speed_of_sound: &Bound<'py, PyAny>,
     no_echo_m: &Bound<'py, PyAny>,
+    no_echo: &Bound<'py, PyAny>,
+    columns: &Bound<'py, PyAny>,
+    topics: &Bound<'py, PyAny>,
+    fields: &Bound<'py, PyAny>,
+    judged: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let times = [("s", TimeUnit::S), ("ms", TimeUnit::Ms), ("us", TimeUnit::Us), ("ns", TimeUnit::Ns)];
     let units = [
@@ -73,28 +91,40 @@ pub(crate) fn read_log<'py>(
     ];
     let path = log_file(path)?;
     let expected = "the names of columns";
-    let ranges = items("ranges", ranges, expected)?;
-    let ranges = ranges.iter().map(|name| text("ranges", name, expected));
+    let texts = |name: &str, values: &Bound<'py, PyAny>, expected: &'static str| {
+        items(name, values, expected)?.iter().map(|value| text(name, value, expected)).collect::<PyResult<Vec<_>>>()
+    };
     let options = Options {
         table: Table {
-            ranges: ranges.collect::<PyResult<_>>()?,
-            range_unit: choice("range_unit", Some(range_unit), &units)?,
+            columns: texts("columns", columns, expected)?,
+            ranges: texts("ranges", ranges, expected)?,
+            range_unit: range_unit.map(|unit| choice("range_unit", Some(unit), &units)).transpose()?,
             time: column_name("time", time)?,
-            time_unit: choice("time_unit", Some(time_unit), &times)?,
+            time_unit: time_unit.map(|unit| choice("time_unit", Some(unit), &times)).transpose()?,
             sensor: column_name("sensor", sensor)?,
         },
         speed_of_sound: above_zero("speed_of_sound", speed_of_sound)?,
         no_echo_m: above_zero("no_echo_m", no_echo_m)?,
+        no_echo: texts("no_echo", no_echo, "values that mean no echo, as texts")?,
+        topics: texts("topics", topics, "the names of topics")?,
+        fields: field_choices(fields, &units)?,
+        judged,
     };
     let (readings, report) = in_background(py, None, move |_| {
         let mut readings = Vec::new();
         let report = eeruf_logs::read_log(&path, &options, |_, reading| readings.push(*reading)).map_err(raise)?;
+        if report.sensors.is_empty() {
+            let found: Vec<_> = report.skipped.iter().map(|topic| format!("{}: {}", topic.topic, topic.why)).collect();
+            let message =
+                format!("{}: {}: no sensors; expected ranges; found {}", path.display(), report.form, found.join("; "));
+            return Err(LogError::new_err(message));
+        }
         Ok((readings, report))
     })?;
     let out = PyDict::new(py);
     let column = |of: fn(&eeruf_logs::Reading) -> f64| read_only(py, readings.iter().map(of));
     out.set_item("sensor", read_only(py, readings.iter().map(|reading| reading.sensor as i64))?)?;
-    out.set_item("at_ns", read_only(py, readings.iter().map(|reading| reading.at_ns as i64))?)?;
+    out.set_item("at_ns", read_only(py, readings.iter().map(|reading| reading.at_ns.map_or(-1, u64::cast_signed)))?)?;
     out.set_item("range_m", column(|reading| reading.range_m)?)?;
     out.set_item("min_range_m", column(|reading| reading.min_range_m)?)?;
     out.set_item("max_range_m", column(|reading| reading.max_range_m)?)?;
@@ -105,6 +135,12 @@ pub(crate) fn read_log<'py>(
     out.set_item("damage", report.damage.iter().map(ToString::to_string).collect::<Vec<_>>())?;
     let skipped = report.skipped.iter().map(|topic| (topic.topic.clone(), topic.why.clone()));
     out.set_item("skipped", skipped.collect::<Vec<_>>())?;
+    out.set_item("form", &report.form)?;
+    let guess = |guess: &eeruf_logs::Guess| (guess.what.clone(), guess.value.clone(), guess.option.clone());
+    out.set_item("guesses", report.guesses.iter().map(guess).collect::<Vec<_>>())?;
+    out.set_item("warnings", report.warnings)?;
+    out.set_item("firing", report.firing.pattern.as_str())?;
+    out.set_item("proves", report.firing.proves(None))?;
     Ok(out)
 }
 

@@ -99,7 +99,7 @@ fn a_wrong_length_in_mcap_takes_no_more_than_its_chunk() {
     let mut out = McapWriter::create(&file).unwrap();
     let reading = Reading {
         sensor: 0,
-        at_ns: 1,
+        at_ns: Some(1),
         radiation: 0,
         field_of_view_rad: 0.25,
         min_range_m: 0.25,
@@ -109,7 +109,7 @@ fn a_wrong_length_in_mcap_takes_no_more_than_its_chunk() {
     };
     let messages = 60_000;
     for number in 0..messages {
-        out.range("/sonar", "s", &Reading { at_ns: number, ..reading }).unwrap();
+        out.range("/sonar", "s", &Reading { at_ns: Some(number), ..reading }).unwrap();
     }
     out.finish().unwrap();
     let whole = std::fs::read(&file).unwrap();

@@ -4,6 +4,8 @@ mod bags;
 mod csv;
 mod damage;
 mod diagnose;
+mod forms;
+mod mutated;
 mod survey;
 mod written;
 

@@ -6,7 +6,7 @@ use crate::read;
 
 const READING: Reading = Reading {
     sensor: 0,
-    at_ns: 1_700_000_000_123_456_789,
+    at_ns: Some(1_700_000_000_123_456_789),
     radiation: 0,
     field_of_view_rad: 0.25,
     min_range_m: 0.25,

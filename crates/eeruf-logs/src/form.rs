@@ -1,0 +1,227 @@
+//! The form of a file by its first bytes: what is read, what is unpacked first, and what another tool has to turn
+//! into a form that is read.
+
+use std::fs::File;
+use std::io::{self, Read, Write as _};
+use std::path::Path;
+
+use crate::error::LogError;
+
+/// A form that is recognised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    Mcap,
+    Ros1,
+    Sqlite,
+    Text,
+    Packed(Packing),
+    Foreign(Foreign),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Packing {
+    Gzip,
+    Bzip2,
+    Xz,
+    Zstd,
+}
+
+/// A form that is named and not read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Foreign {
+    ULog,
+    DataFlash,
+    Telemetry,
+    Zip,
+    Parquet,
+    Hdf5,
+    Binary,
+}
+
+impl Form {
+    /// By the first bytes of a file, else by the ending of its name.
+    pub(crate) fn of(first: &[u8], file: &Path) -> Self {
+        let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+        let starts = |magic: &[u8]| first.starts_with(magic);
+        let is_frame = |at: usize| matches!(first.get(at), Some(0xfe | 0xfd));
+        if starts(&crate::mcap::MAGIC) {
+            Self::Mcap
+        } else if starts(crate::ros1::MAGIC) {
+            Self::Ros1
+        } else if starts(crate::rosbag2::SQLITE_MAGIC) {
+            Self::Sqlite
+        } else if starts(&[0x1f, 0x8b]) {
+            Self::Packed(Packing::Gzip)
+        } else if starts(b"BZh") {
+            Self::Packed(Packing::Bzip2)
+        } else if starts(&[0xfd, b'7', b'z', b'X', b'Z', 0]) {
+            Self::Packed(Packing::Xz)
+        } else if starts(&[0x28, 0xb5, 0x2f, 0xfd]) {
+            Self::Packed(Packing::Zstd)
+        } else if starts(b"ULog\x01\x12\x35") || ending == "ulg" {
+            Self::Foreign(Foreign::ULog)
+        } else if starts(&[0xa3, 0x95]) || ending == "bin" {
+            Self::Foreign(Foreign::DataFlash)
+        } else if ending == "tlog" || is_frame(0) && is_binary(first) && ending != "bag" {
+            Self::Foreign(Foreign::Telemetry)
+        } else if starts(b"PK\x03\x04") {
+            Self::Foreign(Foreign::Zip)
+        } else if starts(b"PAR1") {
+            Self::Foreign(Foreign::Parquet)
+        } else if starts(b"\x89HDF") {
+            Self::Foreign(Foreign::Hdf5)
+        } else {
+            match ending.as_str() {
+                "mcap" => Self::Mcap,
+                "bag" => Self::Ros1,
+                "db3" => Self::Sqlite,
+                _ if is_binary(first) => Self::Foreign(Foreign::Binary),
+                _ => Self::Text,
+            }
+        }
+    }
+
+    /// Reads the first bytes of a file.
+    pub(crate) fn of_file(file: &Path) -> Result<Self, LogError> {
+        let failed = |error| LogError::new(file, error);
+        let mut first = Vec::new();
+        File::open(file).map_err(failed)?.take(512).read_to_end(&mut first).map_err(failed)?;
+        Ok(Self::of(&first, file))
+    }
+
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Mcap => "MCAP",
+            Self::Ros1 => "a ROS 1 bag",
+            Self::Sqlite => "a ROS 2 bag's SQLite file",
+            Self::Text => "text",
+            Self::Packed(packing) => packing.name(),
+            Self::Foreign(foreign) => foreign.name(),
+        }
+    }
+}
+
+/// Text of no encoding has many bytes below the space. UTF-16 has zeroes at every other place.
+fn is_binary(first: &[u8]) -> bool {
+    if matches!(first, [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) {
+        return false;
+    }
+    let zeroes = |odd: usize| first.iter().skip(odd).step_by(2).filter(|&&byte| byte == 0).count() * 2;
+    if first.len() >= 4
+        && (zeroes(0) + 2 >= first.len() && zeroes(1) == 0 || zeroes(1) + 2 >= first.len() && zeroes(0) == 0)
+    {
+        return false;
+    }
+    let control = first.iter().filter(|&&byte| byte < 0x20 && !b"\t\n\r\x0b\x0c\x1b".contains(&byte)).count();
+    control * 10 > first.len()
+}
+
+impl Packing {
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Gzip => "gzip",
+            Self::Bzip2 => "bzip2",
+            Self::Xz => "xz",
+            Self::Zstd => "zstd",
+        }
+    }
+
+    /// Unpacks as it is read.
+    pub(crate) fn unpack<'a>(self, input: impl Read + 'a) -> io::Result<Box<dyn Read + 'a>> {
+        Ok(match self {
+            Self::Gzip => Box::new(flate2::read::MultiGzDecoder::new(input)),
+            Self::Bzip2 => Box::new(bzip2::read::MultiBzDecoder::new(input)),
+            Self::Xz => Box::new(lzma_rust2::XzReader::new(input, true)),
+            Self::Zstd => Box::new(zstd::stream::read::Decoder::new(input)?),
+        })
+    }
+}
+
+/// Gives what was unpacked before an error, and keeps the error.
+pub(crate) struct UntilError<'a, R> {
+    input: R,
+    error: &'a mut Option<io::Error>,
+}
+
+impl<'a, R: Read> UntilError<'a, R> {
+    pub(crate) fn new(input: R, error: &'a mut Option<io::Error>) -> Self {
+        Self { input, error }
+    }
+}
+
+impl<R: Read> Read for UntilError<'_, R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        if self.error.is_some() {
+            return Ok(0);
+        }
+        match self.input.read(into) {
+            Err(error) if error.kind() != io::ErrorKind::Interrupted => {
+                *self.error = Some(error);
+                Ok(0)
+            }
+            other => other,
+        }
+    }
+}
+
+/// The largest bag that is unpacked to a temporary file.
+const LARGEST_BAG: u64 = 1 << 36;
+
+/// Unpacks a bag into a file that is deleted when dropped; says what could not be unpacked.
+pub(crate) fn to_file(input: impl Read, ending: &str) -> io::Result<(tempfile::NamedTempFile, Option<io::Error>)> {
+    let mut file = tempfile::Builder::new().prefix("eeruf-").suffix(&format!(".{ending}")).tempfile()?;
+    let mut error = None;
+    io::copy(&mut UntilError::new(input, &mut error).take(LARGEST_BAG), &mut file)?;
+    file.flush()?;
+    Ok((file, error))
+}
+
+impl Foreign {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::ULog => "a ULog file of PX4",
+            Self::DataFlash => "a DataFlash log of ArduPilot",
+            Self::Telemetry => "MAVLink telemetry",
+            Self::Zip => "a zip archive or a spreadsheet",
+            Self::Parquet => "a Parquet file",
+            Self::Hdf5 => "an HDF5 file",
+            Self::Binary => "binary data of an unknown form",
+        }
+    }
+
+    /// Says what the file is, and how to turn it into what is read: lines of Python, parted by semicolons.
+    pub(crate) fn refuse(self, file: &Path) -> LogError {
+        let path = file.display().to_string().replace(['\\', '"'], "_");
+        let rows = |kind: &str, head: &str, row: &str| {
+            format!(
+                "in Python, after `pip install pymavlink`: from pymavlink import mavutil; m = \
+                 mavutil.mavlink_connection(\"{path}\"); open(\"log.csv\", \"w\").writelines([\"{head}\\n\"] + \
+                 [f\"{row}\\n\" for x in iter(lambda: m.recv_match(type=\"{kind}\"), None)])"
+            )
+        };
+        let frame = |read: &str| {
+            format!(
+                "in Python, after `pip install pandas`: import pandas; pandas.{read}(\"{path}\").to_csv(\"log.csv\", \
+                 index=False)"
+            )
+        };
+        let how = match self {
+            Self::ULog => format!(
+                "in Python, after `pip install pyulog pandas`: import pyulog, pandas; d = [pandas.DataFrame(d.data)\
+                 .assign(sensor=d.multi_id) for d in pyulog.ULog(\"{path}\").data_list if d.name == \
+                 \"distance_sensor\"]; pandas.concat(d)[[\"timestamp\", \"sensor\", \"current_distance\"]]\
+                 .to_csv(\"log.csv\", index=False)"
+            ),
+            Self::DataFlash => rows("RFND", "time_us,sensor,distance_m", "{x.TimeUS},{x.Instance},{x.Dist}"),
+            Self::Telemetry => {
+                rows("DISTANCE_SENSOR", "time_s,sensor,distance_cm", "{x._timestamp},{x.id},{x.current_distance}")
+            }
+            Self::Zip => frame("read_excel"),
+            Self::Parquet => frame("read_parquet"),
+            Self::Hdf5 => frame("read_hdf"),
+            Self::Binary => "MCAP, a ROS 1 or ROS 2 bag, or text, also packed by gzip, bzip2, xz or zstd".to_owned(),
+        };
+        let then = if self == Self::Binary { "" } else { "; then `eeruf logs log.csv`" };
+        LogError::new(file, format!("{}, which eeruf does not read; expected {how}{then}", self.name()))
+    }
+}

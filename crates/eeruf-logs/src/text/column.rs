@@ -1,0 +1,97 @@
+//! A column of a text, and what its first values are.
+
+use std::collections::BTreeMap;
+
+use crate::options::RangeUnit;
+
+use super::recognise::Role;
+use super::value::{self, Value};
+
+/// A column: its name and role, and its first values counted by kind.
+#[derive(Clone, Debug)]
+pub(super) struct Column {
+    pub(super) name: String,
+    pub(super) role: Role,
+    /// Each value in the first lines is a number.
+    pub(super) is_numeric: bool,
+    pub(super) unit: RangeUnit,
+    /// The longest value so far.
+    pub(super) longest: usize,
+    pub(super) shortest: usize,
+    pub(super) numbers: Vec<f64>,
+    pub(super) no_echoes: usize,
+    pub(super) empties: usize,
+    pub(super) texts: usize,
+    pub(super) calendars: usize,
+    pub(super) distinct: BTreeMap<String, usize>,
+    pub(super) has_unit_in_cells: Option<RangeUnit>,
+    pub(super) units: usize,
+}
+
+impl Column {
+    pub(super) fn new(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            role: Role::Other,
+            is_numeric: false,
+            unit: RangeUnit::M,
+            longest: 0,
+            shortest: usize::MAX,
+            numbers: vec![],
+            no_echoes: 0,
+            empties: 0,
+            texts: 0,
+            calendars: 0,
+            distinct: BTreeMap::new(),
+            has_unit_in_cells: None,
+            units: 0,
+        }
+    }
+
+    pub(super) fn note(&mut self, text: &str, decimal_comma: bool) {
+        self.longest = self.longest.max(text.len());
+        self.shortest = self.shortest.min(text.len());
+        if text.is_empty() {
+            self.empties += 1;
+            return;
+        }
+        if self.distinct.len() <= 1024 {
+            *self.distinct.entry(text.to_owned()).or_default() += 1;
+        }
+        match value::range(text, decimal_comma) {
+            Some((Value::Number(number), unit)) => {
+                self.numbers.push(number);
+                self.has_unit_in_cells = self.has_unit_in_cells.or(unit);
+                self.units += usize::from(unit.is_some());
+            }
+            Some(_) => self.no_echoes += 1,
+            None if value::calendar_ns(text).is_some() => self.calendars += 1,
+            None => self.texts += 1,
+        }
+    }
+
+    pub(super) fn is_range(&self) -> bool {
+        let numbers = self.numbers.len() + self.no_echoes;
+        numbers > 0 && self.texts + self.calendars <= numbers
+    }
+
+    /// Returns true if numbers of the column have a unit, so that one without it is cut.
+    pub(super) fn needs_unit(&self) -> bool {
+        self.units * 10 >= self.numbers.len() * 8 && self.units > 0
+    }
+
+    pub(super) fn is_rising(&self) -> bool {
+        let others = self.no_echoes + self.empties + self.texts + self.calendars;
+        // A damaged line is no reason.
+        let rises = self.numbers.windows(2).filter(|two| two[0] < two[1]).count();
+        let rows = self.numbers.len();
+        rows >= 3 && others * 10 <= rows && (rows - 1 - rises) * 10 < rows
+    }
+
+    pub(super) fn steps(&self) -> Vec<f64> {
+        let mut steps: Vec<f64> =
+            self.numbers.windows(2).map(|two| two[1] - two[0]).filter(|&step| step > 0.0).collect();
+        steps.sort_by(f64::total_cmp);
+        steps
+    }
+}

@@ -1,0 +1,221 @@
+//! Lines of a text, whatever ends them and in whatever encoding, and the objects of a JSON document.
+
+use std::collections::VecDeque;
+use std::io::{self, BufRead, BufReader, Read};
+
+use crate::bytes::Order;
+
+/// A longer line is lost.
+const LONGEST_LINE: usize = 1 << 16;
+/// A longer object is lost.
+const LONGEST_OBJECT: usize = 1 << 20;
+
+/// A line or an object.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Line {
+    /// From 1.
+    pub(crate) number: u64,
+    pub(crate) text: String,
+    /// Returns false for a last line that nothing ends, which may be cut.
+    pub(crate) is_ended: bool,
+    pub(crate) is_too_long: bool,
+}
+
+pub(crate) enum Source<'a> {
+    Lines(Lines<'a>),
+    Objects(Objects<'a>),
+}
+
+impl<'a> Source<'a> {
+    pub(crate) fn new(input: Box<dyn Read + 'a>) -> io::Result<Self> {
+        let mut input = BufReader::with_capacity(1 << 16, input);
+        let first = input.fill_buf()?;
+        let (skip, utf16) = match first {
+            [0xff, 0xfe, ..] => (2, Some(Order::Little)),
+            [0xfe, 0xff, ..] => (2, Some(Order::Big)),
+            [0xef, 0xbb, 0xbf, ..] => (3, None),
+            // Text of the first kind has its zeroes at odd places.
+            [one, 0, two, 0, ..] if *one != 0 && *two != 0 => (0, Some(Order::Little)),
+            [0, one, 0, two, ..] if *one != 0 && *two != 0 => (0, Some(Order::Big)),
+            _ => (0, None),
+        };
+        input.consume(skip);
+        let mut input: BufReader<Box<dyn Read + 'a>> = match utf16 {
+            None => BufReader::new(Box::new(input)),
+            Some(order) => BufReader::new(Box::new(Utf16 { input, order, out: VecDeque::new(), high: None })),
+        };
+        let start = String::from_utf8_lossy(input.fill_buf()?).into_owned();
+        let mut start = start.trim_start().chars();
+        let is_document = match start.next() {
+            Some('[') => matches!(start.as_str().trim_start().chars().next(), Some('{' | '[')),
+            // An object on one line is one of JSON lines.
+            Some('{') => !start.as_str().lines().next().unwrap_or_default().contains('}'),
+            _ => false,
+        };
+        Ok(if is_document {
+            Self::Objects(Objects { input, number: 1 })
+        } else {
+            Self::Lines(Lines { input, number: 0, pending: VecDeque::new() })
+        })
+    }
+
+    pub(crate) fn next(&mut self) -> io::Result<Option<Line>> {
+        match self {
+            Self::Lines(lines) => lines.next(),
+            Self::Objects(objects) => objects.next(),
+        }
+    }
+}
+
+/// Transcodes UTF-16 to UTF-8.
+struct Utf16<R> {
+    input: R,
+    order: Order,
+    out: VecDeque<u8>,
+    high: Option<u16>,
+}
+
+impl<R: Read> Read for Utf16<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        while self.out.is_empty() {
+            let mut pairs = Vec::new();
+            (&mut self.input).take(1 << 13).read_to_end(&mut pairs)?;
+            if pairs.is_empty() && self.high.is_none() {
+                return Ok(0);
+            }
+            let unit = |pair: &[u8]| match (self.order, pair) {
+                (Order::Little, &[low, high]) => u16::from_le_bytes([low, high]),
+                (Order::Big, &[high, low]) => u16::from_be_bytes([high, low]),
+                _ => 0xfffd,
+            };
+            let is_end = pairs.is_empty();
+            let mut units: Vec<u16> = self.high.take().into_iter().chain(pairs.chunks(2).map(unit)).collect();
+            if !is_end && units.last().is_some_and(|last| (0xd800..0xdc00).contains(last)) {
+                self.high = units.pop();
+            }
+            let text: String = char::decode_utf16(units).map(|letter| letter.unwrap_or('\u{fffd}')).collect();
+            self.out.extend(text.bytes());
+        }
+        self.out.read(into)
+    }
+}
+
+/// Lines that end by `\n`, `\r\n` or `\r`.
+pub(crate) struct Lines<'a> {
+    input: BufReader<Box<dyn Read + 'a>>,
+    number: u64,
+    pending: VecDeque<Line>,
+}
+
+impl Lines<'_> {
+    fn next(&mut self) -> io::Result<Option<Line>> {
+        if let Some(line) = self.pending.pop_front() {
+            return Ok(Some(line));
+        }
+        let mut bytes = Vec::new();
+        (&mut self.input).take(LONGEST_LINE as u64).read_until(b'\n', &mut bytes)?;
+        if bytes.is_empty() {
+            return Ok(None);
+        }
+        self.number += 1;
+        let mut is_too_long = false;
+        if bytes.len() == LONGEST_LINE && bytes.last() != Some(&b'\n') && !bytes.contains(&b'\r') {
+            is_too_long = true;
+            while !self.input.fill_buf()?.is_empty() {
+                let part = self.input.fill_buf()?;
+                let end = part.iter().position(|&byte| byte == b'\n');
+                let used = end.map_or(part.len(), |end| end + 1);
+                self.input.consume(used);
+                if end.is_some() {
+                    break;
+                }
+            }
+            bytes.clear();
+            bytes.push(b'\n');
+        }
+        let is_ended = bytes.last() == Some(&b'\n');
+        let text = String::from_utf8_lossy(&bytes);
+        let text = text.strip_suffix('\n').unwrap_or(&text);
+        let text = text.trim_end_matches('\r');
+        let mut parts = text.split('\r').peekable();
+        let first = parts.next().unwrap_or_default().to_owned();
+        let is_last = parts.peek().is_none();
+        let line = Line { number: self.number, text: first, is_ended: is_ended || !is_last, is_too_long };
+        while let Some(part) = parts.next() {
+            self.number += 1;
+            let is_ended = is_ended || parts.peek().is_some();
+            self.pending.push_back(Line { number: self.number, text: part.to_owned(), is_ended, is_too_long: false });
+        }
+        Ok(Some(line))
+    }
+}
+
+/// The objects of a JSON document: elements of its arrays, or objects one after the other. Arrays within an array are
+/// such elements too.
+pub(crate) struct Objects<'a> {
+    input: BufReader<Box<dyn Read + 'a>>,
+    number: u64,
+}
+
+impl Objects<'_> {
+    fn next(&mut self) -> io::Result<Option<Line>> {
+        // Brackets that are open since the record began.
+        let (mut record, mut open, mut is_text, mut is_escaped): (Vec<u8>, Vec<u8>, _, _) =
+            (vec![], vec![], false, false);
+        let (mut begin, mut is_element, mut is_too_long, mut before) = (self.number, false, false, 0);
+        loop {
+            let Some(&byte) = self.input.fill_buf()?.first() else {
+                if record.is_empty() {
+                    return Ok(None);
+                }
+                let text = String::from_utf8_lossy(&record).into_owned();
+                return Ok(Some(Line { number: begin, text, is_ended: false, is_too_long }));
+            };
+            self.input.consume(1);
+            self.number += u64::from(byte == b'\n');
+            let is_new = !is_text && matches!(byte, b'{' | b'[') && before == b'[' && !is_element;
+            let opens = !is_text && byte == b'{' && record.is_empty();
+            if is_new || opens {
+                record.clear();
+                open.clear();
+                (begin, is_element) = (self.number, before == b'[' || before == b',');
+            }
+            if !byte.is_ascii_whitespace() {
+                before = byte;
+            }
+            if record.is_empty() && !is_new && !opens {
+                // Between records; an array after a comma is one.
+                if !(byte == b'[' && self.is_inner()?) {
+                    continue;
+                }
+                (begin, is_element) = (self.number, true);
+            }
+            if record.len() < LONGEST_OBJECT {
+                record.push(byte);
+            } else {
+                is_too_long = true;
+            }
+            match byte {
+                _ if is_escaped => is_escaped = false,
+                b'\\' if is_text => is_escaped = true,
+                b'"' => is_text = !is_text,
+                b'\n' if is_text => is_text = false,
+                b'{' | b'[' if !is_text => open.push(byte),
+                b'}' | b']' if !is_text => {
+                    open.pop();
+                    if open.is_empty() {
+                        let text = String::from_utf8_lossy(&record).into_owned();
+                        return Ok(Some(Line { number: begin, text, is_ended: true, is_too_long }));
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Returns true if a number follows, so that the array holds values and no records.
+    fn is_inner(&mut self) -> io::Result<bool> {
+        let next = self.input.fill_buf()?.iter().find(|byte| !byte.is_ascii_whitespace());
+        Ok(next.is_some_and(|byte| byte.is_ascii_digit() || b"-\"n".contains(byte)))
+    }
+}

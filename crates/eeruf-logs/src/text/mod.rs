@@ -1,0 +1,58 @@
+//! Reads readings from text of every shape: tables, lines of pairs, JSON, with or without header, whole or damaged.
+//!
+//! A line that is damaged gives no reading: one with a cell that is neither a number nor a word for no echo, with more
+//! or fewer cells than the others, or one that ends without a line break and is shorter than it may be.
+
+mod column;
+mod guesses;
+mod lines;
+mod names;
+mod recognise;
+mod rows;
+mod shape;
+mod value;
+
+use std::io::Read;
+use std::path::Path;
+
+use crate::error::LogError;
+use crate::options::Options;
+use crate::sink::Sink;
+
+use lines::Source;
+
+/// The unit of ranges that a name says.
+pub(crate) fn range_unit(name: &str) -> Option<crate::options::RangeUnit> {
+    names::range_unit(name).map(|unit| unit.0)
+}
+
+/// As many lines, and as many bytes, are looked at before the first reading.
+const SAMPLE: (usize, usize) = (1000, 1 << 18);
+
+/// Reads a text; `file` stands in errors.
+pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut Sink<'_>) -> Result<(), LogError> {
+    let failed = |error| LogError::new(file, error);
+    let mut source = Source::new(Box::new(input)).map_err(failed)?;
+    let (mut sample, mut bytes) = (vec![], 0);
+    while sample.len() < SAMPLE.0 && bytes < SAMPLE.1 {
+        let Some(line) = source.next().map_err(failed)? else { break };
+        bytes += line.text.len();
+        sample.push(line);
+    }
+    if sample.iter().all(|line| line.text.trim().is_empty()) && sample.len() < SAMPLE.0 {
+        return Err(LogError::new(file, "the file is empty; expected lines with readings"));
+    }
+    let plan = recognise::recognise(file, &sample, matches!(source, Source::Objects(_)), options)?;
+    sink.report.form.clone_from(&plan.form);
+    sink.report.guesses.extend(plan.guesses.iter().cloned());
+    sink.report.skipped.extend(plan.skipped.iter().cloned());
+    let mut rows = rows::Rows::new(file, plan, options, sink);
+    for line in sample {
+        rows.line(&line);
+    }
+    while let Some(line) = source.next().map_err(failed)? {
+        rows.line(&line);
+    }
+    rows.end();
+    Ok(())
+}

@@ -1,0 +1,313 @@
+//! What the name of a column says about its values.
+
+use crate::options::{RangeUnit, TimeUnit};
+
+use super::value;
+
+/// What a column is by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Meaning {
+    Range,
+    Time,
+    /// The sensor whose reading the row is.
+    Sensor,
+    /// A limit of the sensor.
+    Least,
+    Most,
+    /// A quantity that is no range.
+    Other,
+    /// Nothing is known.
+    Vague,
+}
+
+const TIMES: [&str; 21] = [
+    "time",
+    "timestamp",
+    "stamp",
+    "millis",
+    "micros",
+    "nanos",
+    "clock",
+    "date",
+    "datetime",
+    "elapsed",
+    "uptime",
+    "epoch",
+    "utc",
+    "zeit",
+    "uhrzeit",
+    "datum",
+    "seconds",
+    "secs",
+    "nsecs",
+    "nanosec",
+    "nsec",
+];
+const WHOLE_TIMES: [&str; 12] =
+    ["t", "ts", "ms", "us", "ns", "s", "sec", "msec", "usec", "milliseconds", "microseconds", "nanoseconds"];
+const ECHOES: [&str; 5] = ["echo", "flight", "pulse", "duration", "travel"];
+const RANGES: [&str; 14] = [
+    "range",
+    "ranges",
+    "distance",
+    "distances",
+    "dist",
+    "sonar",
+    "sonars",
+    "ultrasonic",
+    "ultrasound",
+    "ultrasonics",
+    "hcsr",
+    "ping",
+    "abstand",
+    "entfernung",
+];
+const SENSORS: [&str; 14] = [
+    "sensor",
+    "id",
+    "name",
+    "channel",
+    "ch",
+    "frame",
+    "topic",
+    "sonar",
+    "sensor_id",
+    "sensorid",
+    "frame_id",
+    "source",
+    "instance",
+    "device",
+];
+const OTHERS: [&str; 90] = [
+    "battery",
+    "bat",
+    "voltage",
+    "volt",
+    "volts",
+    "current",
+    "temp",
+    "temperature",
+    "humidity",
+    "hum",
+    "pressure",
+    "seq",
+    "sequence",
+    "index",
+    "idx",
+    "count",
+    "counter",
+    "row",
+    "line",
+    "mode",
+    "state",
+    "status",
+    "flag",
+    "flags",
+    "ir",
+    "infrared",
+    "laser",
+    "lidar",
+    "speed",
+    "velocity",
+    "vel",
+    "accel",
+    "acc",
+    "gyro",
+    "yaw",
+    "pitch",
+    "roll",
+    "heading",
+    "angle",
+    "theta",
+    "odom",
+    "odometry",
+    "x",
+    "y",
+    "z",
+    "lat",
+    "lon",
+    "alt",
+    "altitude",
+    "encoder",
+    "pwm",
+    "motor",
+    "rssi",
+    "snr",
+    "variance",
+    "covariance",
+    "std",
+    "intensity",
+    "intensities",
+    "radiation",
+    "fov",
+    "period",
+    "phase",
+    "reading",
+    "rate",
+    "size",
+    "stride",
+    "offset",
+    "checksum",
+    "crc",
+    "gain",
+    "strength",
+    "quality",
+    "confidence",
+    "amplitude",
+    "threshold",
+    "event",
+    "error",
+    "err",
+    "message",
+    "msg",
+    "rpm",
+    "light",
+    "ldr",
+    "pir",
+    "button",
+    "led",
+    "given",
+    "solo",
+    "steady",
+];
+
+/// The words of a name, in lower case: `frontLeft_cm2` is `front`, `left`, `cm`, `2`.
+fn words(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut before = ' ';
+    for letter in name.chars() {
+        let is_border = (letter.is_uppercase() && before.is_lowercase())
+            || (letter.is_ascii_digit() != before.is_ascii_digit() && before != ' ');
+        if is_border && words.last().is_some_and(|word| !word.is_empty()) {
+            words.push(String::new());
+        }
+        if letter.is_alphanumeric() {
+            words.last_mut().expect("there is one").extend(letter.to_lowercase());
+        } else if words.last().is_some_and(|word| !word.is_empty()) {
+            words.push(String::new());
+        }
+        before = letter;
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+pub(crate) fn meaning(name: &str) -> Meaning {
+    let words = words(name);
+    let has = |of: &[&str]| words.iter().any(|word| of.contains(&word.as_str()));
+    let whole = name.trim().trim_start_matches('%').to_lowercase();
+    let is_echo = has(&ECHOES) || whole == "time_of_flight";
+    if has(&["field"]) && has(&["view"]) || has(&["angle", "increment"]) {
+        return Meaning::Other;
+    }
+    if has(&RANGES) && has(&["min", "minimum"]) {
+        return Meaning::Least;
+    }
+    if has(&RANGES) && has(&["max", "maximum"]) {
+        return Meaning::Most;
+    }
+    let without_units: Vec<_> = words.iter().filter(|word| !is_unit(word)).map(String::as_str).collect();
+    let is_time = has(&TIMES) || WHOLE_TIMES.contains(&whole.as_str()) || matches!(without_units[..], ["t" | "ts"]);
+    if has(&["fired"]) || (is_time && !is_echo) {
+        return Meaning::Time;
+    }
+    if has(&OTHERS) || whole == "changes" || whole == "expected_us" || whole == "sends" {
+        return Meaning::Other;
+    }
+    if SENSORS.contains(&whole.as_str()) || has(&["frame"]) && has(&["id"]) {
+        return Meaning::Sensor;
+    }
+    if has(&RANGES) || is_echo {
+        return Meaning::Range;
+    }
+    Meaning::Vague
+}
+
+fn is_unit(word: &str) -> bool {
+    value::unit(word).is_some() || time_word(word).is_some()
+}
+
+/// The unit of ranges in a name, and whether the name says it without doubt: `us` is also ultrasound.
+pub(crate) fn range_unit(name: &str) -> Option<(RangeUnit, bool)> {
+    let words = words(name);
+    let last = words.last()?;
+    if let Some(unit) = value::unit(last).filter(|_| words.len() > 1 || last == "cm" || last == "mm") {
+        return Some((unit, unit != RangeUnit::Us || words.iter().any(|word| ECHOES.contains(&word.as_str()))));
+    }
+    // A number after it, as in `cm2`.
+    let unit = words.iter().rev().nth(1).and_then(|word| value::unit(word));
+    if let Some(unit @ (RangeUnit::Cm | RangeUnit::Mm)) = unit {
+        return Some((unit, true));
+    }
+    words.iter().any(|word| ECHOES.contains(&word.as_str())).then_some((RangeUnit::Us, false))
+}
+
+fn time_word(word: &str) -> Option<TimeUnit> {
+    Some(match word {
+        "ms" | "millis" | "msec" | "milliseconds" => TimeUnit::Ms,
+        "us" | "micros" | "usec" | "microseconds" | "µs" => TimeUnit::Us,
+        "ns" | "nanos" | "nsec" | "nsecs" | "nanosec" | "nanoseconds" => TimeUnit::Ns,
+        "s" | "sec" | "secs" | "seconds" => TimeUnit::S,
+        _ => return None,
+    })
+}
+
+/// The unit of times in a name.
+pub(crate) fn time_unit(name: &str) -> Option<TimeUnit> {
+    words(name).iter().rev().find_map(|word| time_word(word))
+}
+
+/// How much a column's time is to be preferred: the stamp of a message's header, then any other.
+pub(crate) fn preference(name: &str) -> u8 {
+    let words = words(name);
+    let has = |word: &str| words.iter().any(|own| own == word);
+    u8::from(has("header")) * 2 + u8::from(has("stamp"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meaning_follows_the_words_of_a_name() {
+        for (name, expected) in [
+            ("t", Meaning::Time),
+            ("t_ms", Meaning::Time),
+            ("millis", Meaning::Time),
+            ("%time", Meaning::Time),
+            ("field.header.stamp", Meaning::Time),
+            ("fired_us", Meaning::Time),
+            ("echo_time_us", Meaning::Range),
+            ("t_echo_us", Meaning::Range),
+            ("left", Meaning::Vague),
+            ("frontLeft", Meaning::Vague),
+            ("US1", Meaning::Vague),
+            ("field.range", Meaning::Range),
+            ("field.min_range", Meaning::Least),
+            ("field.max_range", Meaning::Most),
+            ("field.field_of_view", Meaning::Other),
+            ("field.header.seq", Meaning::Other),
+            ("field.header.frame_id", Meaning::Sensor),
+            ("battery_v", Meaning::Other),
+            ("ir_distance", Meaning::Other),
+            ("sensor", Meaning::Sensor),
+            ("Sensor 1", Meaning::Vague),
+            ("distance_cm", Meaning::Range),
+        ] {
+            assert_eq!(meaning(name), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn unit_stands_at_the_end_of_a_name() {
+        let unit = |name| range_unit(name).map(|unit| unit.0);
+        assert_eq!(unit("left_cm"), Some(RangeUnit::Cm));
+        assert_eq!(unit("Left [mm]"), Some(RangeUnit::Mm));
+        assert_eq!(unit("distanceCm"), Some(RangeUnit::Cm));
+        assert_eq!(unit("pulse"), Some(RangeUnit::Us));
+        assert_eq!(range_unit("left_us"), Some((RangeUnit::Us, false)));
+        assert_eq!(unit("US1"), None);
+        assert_eq!(unit("left"), None);
+        assert_eq!(time_unit("time_ms"), Some(TimeUnit::Ms));
+    }
+}

@@ -1,0 +1,518 @@
+//! Recognises a text log from its first lines: its shape, header, units, no-echo values and times.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::path::Path;
+
+use crate::error::LogError;
+use crate::options::{Options, RangeUnit, TimeUnit};
+use crate::sink::{Guess, Skipped};
+
+use super::column::Column;
+use super::lines::Line;
+use super::names::{self, Meaning};
+use super::shape::{self, Separator, Shape};
+use super::value;
+
+/// The sensors of one log.
+pub(super) const MOST_SENSORS: usize = 4096;
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    /// A sensor's ranges.
+    Range,
+    Time,
+    Sensor,
+    Least,
+    Most,
+    Other,
+    /// Without a value so far.
+    Empty,
+}
+
+/// Numbers that mean that there was no echo.
+#[derive(Clone, Debug, Default)]
+pub(super) struct NoEcho {
+    pub(super) zero: bool,
+    pub(super) negative: bool,
+    pub(super) numbers: Vec<f64>,
+    pub(super) words: Vec<String>,
+}
+
+pub(super) struct Plan {
+    pub(super) shape: Shape,
+    pub(super) has_prefix: bool,
+    pub(super) decimal_comma: bool,
+    pub(super) columns: Vec<Column>,
+    pub(super) by_name: HashMap<String, usize>,
+    pub(super) header: Option<Vec<String>>,
+    /// Lines before this one are no rows.
+    pub(super) rows_from: u64,
+    pub(super) time: Vec<(usize, TimeUnit)>,
+    pub(super) sensor: Option<usize>,
+    /// Sensors that a column names, as often as is needed to trust them.
+    pub(super) known: BTreeSet<String>,
+    pub(super) no_echo: NoEcho,
+    pub(super) is_first_cut: bool,
+    /// The names that nearly each line of pairs has.
+    pub(super) usual_names: Option<Vec<String>>,
+    pub(super) form: String,
+    pub(super) guesses: Vec<Guess>,
+    pub(super) skipped: Vec<Skipped>,
+}
+
+pub(super) fn is_comment(text: &str) -> bool {
+    let text = text.trim_start();
+    text.is_empty() || text.starts_with('#') || text.starts_with("//") || text.to_lowercase().starts_with("sep=")
+}
+
+pub(super) fn guess(what: &str, value: impl Into<String>, option: &str) -> Guess {
+    Guess { what: what.to_owned(), value: value.into(), option: option.to_owned() }
+}
+
+/// Lines without comments, with what a serial monitor puts before them taken off.
+struct Stripped<'a> {
+    lines: Vec<(u64, &'a str)>,
+    has_prefix: bool,
+}
+
+fn strip(sample: &[Line]) -> Stripped<'_> {
+    let lines: Vec<_> =
+        sample.iter().filter(|line| !is_comment(&line.text)).map(|line| (line.number, line.text.trim())).collect();
+    let with = lines.iter().filter(|(_, text)| value::prefix(text).is_some_and(|(_, rest)| !rest.is_empty())).count();
+    let first = lines.first().map_or("", |line| line.1);
+    let is_header = value::prefix(first).is_none()
+        && names::meaning(first.split([' ', '\t', ',', ';']).next().unwrap_or_default()) == Meaning::Time;
+    let has_prefix = with > 0 && with * 10 >= lines.len() * 6 && !is_header;
+    let strip =
+        |(number, text): (u64, _)| (number, value::prefix(text).filter(|_| has_prefix).map_or(text, |found| found.1));
+    Stripped { lines: lines.into_iter().map(strip).collect(), has_prefix }
+}
+
+/// Recognises a log by its first lines.
+pub(super) fn recognise(file: &Path, sample: &[Line], is_document: bool, options: &Options) -> Result<Plan, LogError> {
+    let Stripped { lines, has_prefix } = strip(sample);
+    let (shape, decimal_comma) = if is_document { (Shape::Json, false) } else { shape_of(&lines) };
+    let mut plan = Plan {
+        shape,
+        has_prefix,
+        decimal_comma,
+        columns: vec![],
+        by_name: HashMap::new(),
+        header: None,
+        rows_from: 0,
+        time: vec![],
+        sensor: None,
+        known: BTreeSet::new(),
+        no_echo: NoEcho::default(),
+        is_first_cut: false,
+        usual_names: None,
+        form: String::new(),
+        guesses: vec![],
+        skipped: vec![],
+    };
+    let units = match shape {
+        Shape::Separated(separator) => plan.table(file, sample, &lines, separator, options)?,
+        Shape::Keyed | Shape::Json => {
+            plan.named(&lines);
+            vec![]
+        }
+    };
+    plan.form = match shape {
+        Shape::Json if is_document => "JSON, a document".to_owned(),
+        Shape::Json => "JSON, an object a line".to_owned(),
+        Shape::Keyed => "text, pairs of name and value".to_owned(),
+        Shape::Separated(Separator::None) => "text, one value a line".to_owned(),
+        Shape::Separated(separator) => format!("a table, columns parted by {}", separator.name()),
+    };
+    if has_prefix {
+        plan.guesses.push(guess("time", "before each line, as a serial monitor or a logger writes it", "--time"));
+    }
+    plan.roles(file, options)?;
+    plan.range_units(&units, options);
+    plan.no_echoes(options);
+    plan.times(options);
+    plan.by_name = plan.columns.iter().enumerate().map(|(index, column)| (column.name.clone(), index)).collect();
+    Ok(plan)
+}
+
+/// The shape that fits most lines best, and whether numbers have a decimal comma.
+fn shape_of(lines: &[(u64, &str)]) -> (Shape, bool) {
+    let total = lines.len().max(1);
+    let json = lines.iter().filter(|(_, text)| text.starts_with('{') && shape::json(text).is_some()).count();
+    if json * 2 >= total {
+        return (Shape::Json, false);
+    }
+    let pairs: Vec<_> = lines.iter().filter_map(|(_, text)| shape::keyed(text)).collect();
+    let has_comma = |texts: &mut dyn Iterator<Item = &str>| {
+        let (mut comma, mut point) = (false, false);
+        for text in texts {
+            let number = value::with_unit(text, true).is_some();
+            comma |= number && text.contains(',');
+            point |= number && text.contains('.');
+        }
+        comma && !point
+    };
+    let is_value = |(_, text): &(String, String)| value::range(text, true).is_some_and(|_| !text.is_empty());
+    let valued = pairs.iter().filter(|pairs| pairs.iter().any(is_value)).count();
+    if valued * 2 >= total {
+        let comma = has_comma(&mut pairs.iter().flatten().map(|(_, text)| text.as_str()));
+        return (Shape::Keyed, comma);
+    }
+    let mut best = (0.0, Separator::None, false);
+    // A comma in each line is a decimal mark only below a header of one name.
+    let is_decimal = |text: &str| text.split_once(',').is_none_or(|(whole, rest)| whole.len() < 3 || rest.len() < 3);
+    let has_one_name = lines.iter().take(5).any(|(_, text)| text.contains(char::is_alphabetic) && !text.contains(','))
+        && lines.iter().all(|(_, text)| is_decimal(text));
+    for separator in Separator::ALL.into_iter().chain([Separator::None]) {
+        let rows: Vec<_> = lines.iter().filter_map(|(_, text)| shape::separated(text, separator)).collect();
+        let width = usual(rows.iter().map(Vec::len));
+        if width < 2 && separator != Separator::None {
+            continue;
+        }
+        let usual: Vec<_> = rows.iter().filter(|row| row.len() == width).collect();
+        let cells = || usual.iter().flat_map(|row| row.iter().map(String::as_str));
+        let comma = has_comma(&mut cells()) && (separator != Separator::None || has_one_name);
+        let is_clean = |text: &&str| value::range(text, comma).is_some() || value::calendar_ns(text).is_some();
+        let is_word = |text: &&str| !text.contains([',', ';', '\t', '|', ':', '=']);
+        let clean = cells().filter(is_clean).count() as f64;
+        let words = cells().filter(|text| !is_clean(text) && is_word(text)).count() as f64;
+        let share = usual.len() as f64 / total as f64;
+        let score = share * (clean + 0.5 * words) / cells().count().max(1) as f64;
+        // A table that some lines do not fit is one all the same.
+        if score > best.0 + 1e-9 {
+            best = (score, separator, comma);
+        }
+    }
+    (Shape::Separated(best.1), best.2)
+}
+
+/// The number that comes most often.
+fn usual(numbers: impl Iterator<Item = usize>) -> usize {
+    let mut counts = BTreeMap::new();
+    numbers.for_each(|number| *counts.entry(number).or_insert(0) += 1);
+    counts.into_iter().max_by_key(|&(number, count)| (count, number)).map_or(0, |(number, _)| number)
+}
+
+impl Plan {
+    /// Finds header, names and rows of a table; the answer is the units of a row of units.
+    fn table(
+        &mut self,
+        file: &Path,
+        sample: &[Line],
+        lines: &[(u64, &str)],
+        separator: Separator,
+        options: &Options,
+    ) -> Result<Vec<Option<RangeUnit>>, LogError> {
+        let comma = self.decimal_comma;
+        let rows: Vec<_> =
+            lines.iter().filter_map(|&(number, text)| Some((number, shape::separated(text, separator)?))).collect();
+        let is_number = |text: &String| value::with_unit(text, comma).is_some() || value::calendar_ns(text).is_some();
+        let has_number = |row: &[String]| row.iter().any(is_number);
+        let width = usual(rows.iter().filter(|(_, row)| has_number(row)).map(|(_, row)| row.len()));
+        let first = rows.iter().position(|(_, row)| row.len() == width && has_number(row)).unwrap_or(rows.len());
+        let is_header = |row: &[String]| {
+            !has_number(row) && row.iter().any(|text| text.contains(char::is_alphabetic) && !value::is_no_echo(text))
+        };
+        let is_units = |row: &[String]| {
+            let is_unit =
+                |text: &String| text.is_empty() || value::unit(text).is_some() || names::time_unit(text).is_some();
+            row.iter().all(is_unit)
+        };
+        let before = &rows[..first];
+        let mut header =
+            before.iter().rposition(|(_, row)| is_header(row) && (row.len() == width || width <= row.len() + 1));
+        let mut units = vec![];
+        if let Some(at) = header
+            && at > 0
+            && is_units(&before[at].1)
+            && is_header(&before[at - 1].1)
+        {
+            units = before[at].1.iter().map(|text| value::unit(text)).collect();
+            header = Some(at - 1);
+        }
+        let mut names: Option<Vec<String>> = header.map(|at| before[at].1.clone());
+        let first_number = rows.get(first).map_or(u64::MAX, |row| row.0);
+        if names.is_none() {
+            // A comment may name the columns.
+            let comments = sample.iter().rev().filter(|line| line.number < first_number);
+            let mut comments = comments.filter_map(|line| line.text.trim().strip_prefix('#'));
+            names = comments.find_map(|text| {
+                let row = shape::separated(text.trim(), separator)?;
+                (row.len() == width && width > 1 && is_header(&row)).then_some(row)
+            });
+        }
+        self.rows_from = match header {
+            Some(at) => rows[at].0 + 1 + u64::from(!units.is_empty()),
+            None => {
+                let text = |line: &Line| line.text.contains(|letter: char| letter.is_ascii_digit());
+                sample.iter().find(|line| text(line) && !is_comment(&line.text)).map_or(0, |line| line.number)
+            }
+        };
+        self.header = header.map(|at| before[at].1.clone());
+        let ignored = lines.iter().filter(|line| line.0 + 1 < self.rows_from).count();
+        if ignored > 0 {
+            let why = format!("{ignored} lines before the readings, without any");
+            self.skipped.push(Skipped { topic: "the beginning".to_owned(), why, messages: 0 });
+        }
+        if !options.table.columns.is_empty() {
+            if options.table.columns.len() != width {
+                let given = options.table.columns.len();
+                let message = format!("--columns: {given} names; expected {width}, as many as the rows have columns");
+                return Err(LogError::new(file, message));
+            }
+            names = Some(options.table.columns.clone());
+        } else {
+            let said = match (&names, header) {
+                (Some(names), Some(_)) => names.join(", "),
+                (Some(names), None) => format!("{}, from a comment", names.join(", ")),
+                (None, _) => format!("none; {width} columns, named by their places"),
+            };
+            self.guesses.push(guess("header", said, "--columns"));
+        }
+        let mut names = names.unwrap_or_default();
+        names.truncate(width.max(1));
+        (names.len()..width).for_each(|n| names.push(format!("column {}", n + 1)));
+        self.columns = names.iter().map(|name| Column::new(name)).collect();
+        if matches!(separator, Separator::None) {
+        } else {
+            self.guesses.push(guess("separator", separator.name(), "--columns"));
+        }
+        if comma {
+            self.guesses.push(guess("decimal mark", "comma", "--columns"));
+        }
+        let mut firsts = vec![];
+        let is_row = |(number, row): &&(u64, Vec<String>)| {
+            *number >= self.rows_from && row.len() == width && self.header.as_ref() != Some(row)
+        };
+        for (number, row) in rows.iter().filter(is_row) {
+            firsts.push((*number, row.first().map_or(0, String::len)));
+            self.columns.iter_mut().zip(row).for_each(|(column, text)| column.note(text, comma));
+        }
+        // A log of a serial line begins in the middle of a line.
+        if let [(number, first), rest @ ..] = &firsts[..] {
+            let is_shorter = rest.iter().all(|(_, other)| first < other) && rest.len() >= 3;
+            self.is_first_cut = self.header.is_none() && *number == 1 && is_shorter;
+        }
+        Ok(units)
+    }
+
+    /// Finds the columns of lines that name their values.
+    fn named(&mut self, lines: &[(u64, &str)]) {
+        let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+        let mut order = vec![];
+        let split = |text: &str| if self.shape == Shape::Json { shape::json(text) } else { shape::keyed(text) };
+        let rows: Vec<_> = lines.iter().filter_map(|(_, text)| split(text)).collect();
+        for (pairs, (_, text)) in lines.iter().filter_map(|line| Some((split(line.1)?, line))) {
+            let begin = order.len();
+            for (name, _) in pairs {
+                let count = counts.entry(name.clone()).or_default();
+                *count += 1;
+                if *count == 1 {
+                    order.push(name);
+                }
+            }
+            // Objects give their names by the alphabet.
+            let place =
+                |name: &String| text.find(&format!("\"{}\"", name.split(['.', '[']).next().unwrap_or_default()));
+            order[begin..].sort_by_key(place);
+        }
+        if self.shape == Shape::Keyed {
+            let mut lists: BTreeMap<Vec<&String>, usize> = BTreeMap::new();
+            rows.iter().for_each(|row| *lists.entry(row.iter().map(|pair| &pair.0).collect()).or_default() += 1);
+            let most =
+                lists.into_iter().max_by_key(|&(_, count)| count).filter(|&(_, count)| count * 10 >= rows.len() * 8);
+            self.usual_names = most.map(|(names, _)| names.into_iter().cloned().collect());
+        }
+        // A name that a damaged line makes up comes once.
+        let most = counts.values().max().copied().unwrap_or(0);
+        let is_kept = |name: &String| self.shape == Shape::Json || most < 4 || counts[name] > 1;
+        let kept = order.into_iter().filter(is_kept).take(MOST_SENSORS);
+        self.columns = kept.map(|name| Column::new(&name)).collect();
+        let by_name: HashMap<_, _> =
+            self.columns.iter().enumerate().map(|(index, column)| (column.name.clone(), index)).collect();
+        for (name, text) in rows.iter().flatten() {
+            if let Some(&index) = by_name.get(name) {
+                self.columns[index].note(text, self.decimal_comma);
+            }
+        }
+    }
+
+    fn place(&self, file: &Path, name: &String) -> Result<usize, LogError> {
+        let names = || self.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>().join(", ");
+        let found = self.columns.iter().position(|column| column.name == *name);
+        found.ok_or_else(|| LogError::new(file, format!("no column `{name}`; expected one of: {}", names())))
+    }
+
+    fn roles(&mut self, file: &Path, options: &Options) -> Result<(), LogError> {
+        let table = &options.table;
+        let ranges = table.ranges.iter().map(|name| self.place(file, name)).collect::<Result<Vec<_>, _>>()?;
+        let time = table.time.as_ref().map(|name| self.place(file, name)).transpose()?;
+        let sensor = table.sensor.as_ref().map(|name| self.place(file, name)).transpose()?;
+        let has_time = self.has_prefix
+            || time.is_some()
+            || self.columns.iter().any(|column| names::meaning(&column.name) == Meaning::Time);
+        let has_header =
+            self.header.is_some() || !table.columns.is_empty() || !matches!(self.shape, Shape::Separated(_));
+        for index in 0..self.columns.len() {
+            let column = &self.columns[index];
+            let is_place = column.name.is_empty() || column.name.starts_with("Unnamed") || !has_header;
+            let meaning = if is_place { Meaning::Vague } else { names::meaning(&column.name) };
+            let role = if time == Some(index) {
+                Role::Time
+            } else if sensor == Some(index) {
+                Role::Sensor
+            } else if ranges.contains(&index) {
+                Role::Range
+            } else if column.name == "-" || (!ranges.is_empty() && meaning == Meaning::Vague) {
+                Role::Other
+            } else {
+                match meaning {
+                    Meaning::Time => Role::Time,
+                    Meaning::Sensor => Role::Sensor,
+                    Meaning::Least => Role::Least,
+                    Meaning::Most => Role::Most,
+                    Meaning::Other => Role::Other,
+                    Meaning::Range if !ranges.is_empty() => Role::Other,
+                    Meaning::Range | Meaning::Vague if column.empties > 0 && column.distinct.is_empty() => Role::Empty,
+                    Meaning::Vague if column.calendars > 0 && column.texts + column.numbers.len() == 0 => Role::Time,
+                    Meaning::Vague if is_place && self.is_counter(index) => Role::Other,
+                    Meaning::Vague if is_place && self.is_clock(index) => Role::Time,
+                    // The beginning of the header is cut off.
+                    Meaning::Vague if !has_time && self.is_clock(index) && self.is_even(index) => Role::Time,
+                    _ if column.is_range() => Role::Range,
+                    Meaning::Vague if !has_header && column.texts > 0 => Role::Sensor,
+                    _ => Role::Other,
+                }
+            };
+            let column = &mut self.columns[index];
+            column.is_numeric = column.texts + column.calendars == 0 && !column.numbers.is_empty();
+            column.role = role;
+        }
+        self.time_columns(time);
+        self.sensor_column(file, sensor, &ranges)?;
+        let other = |column: &&Column| column.role == Role::Other && column.is_numeric && ranges.is_empty();
+        let skipped = self.columns.iter().filter(other).map(|column| Skipped {
+            topic: column.name.clone(),
+            why: "a column that is no range, by its name or its values; --range reads it".to_owned(),
+            messages: 0,
+        });
+        self.skipped.extend(skipped);
+        Ok(())
+    }
+
+    /// A column that counts rows.
+    fn is_counter(&self, index: usize) -> bool {
+        let column = &self.columns[index];
+        column.is_rising() && column.steps().iter().all(|&step| (step - 1.0).abs() < 1e-9) && column.numbers[0] < 2.0
+    }
+
+    /// A column without a name that rises evenly, to numbers that no range has, is a time.
+    fn is_clock(&self, index: usize) -> bool {
+        let column = &self.columns[index];
+        if index != 0 || self.columns.len() < 2 || !column.is_rising() {
+            return false;
+        }
+        let steps = column.steps();
+        let Some(median) = steps.get(steps.len() / 2) else { return false };
+        let is_even = steps.iter().filter(|&step| *step <= 3.0 * median).count() * 10 >= 9 * steps.len();
+        is_even && (column.numbers[column.numbers.len() / 2] >= 500.0 || column.numbers.len() >= 8)
+    }
+
+    /// A column that rises by the same step in 30 rows and more.
+    fn is_even(&self, index: usize) -> bool {
+        let steps = self.columns[index].steps();
+        let Some(median) = steps.get(steps.len() / 2) else { return false };
+        let same = steps.iter().filter(|&step| (step / median - 1.0).abs() < 0.1).count();
+        steps.len() >= 29 && same * 10 >= 9 * steps.len()
+    }
+
+    /// Chooses one time, or two columns that are one: seconds and nanoseconds, a date and a time of day.
+    fn time_columns(&mut self, asked: Option<usize>) {
+        let times: Vec<_> = (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Time).collect();
+        let is_time = |index: &usize| !self.columns[*index].numbers.is_empty() || self.columns[*index].calendars > 0;
+        let usable: Vec<_> = times.iter().copied().filter(is_time).collect();
+        let chosen: Vec<usize> = if let Some(asked) = asked {
+            vec![asked]
+        } else if self.has_prefix {
+            vec![]
+        } else {
+            let stem = |index: usize| {
+                let name = self.columns[index].name.to_lowercase();
+                name.trim_end_matches(|letter: char| letter != '.' && letter != '_').to_owned()
+            };
+            let unit = |index: usize| names::time_unit(&self.columns[index].name);
+            let pair = usable.iter().find_map(|&one| {
+                let other = usable.iter().copied().find(|&other| {
+                    let is_calendar = |index: usize| self.columns[index].calendars > 0;
+                    let of = |index: usize| self.columns[index].distinct.keys().next().cloned().unwrap_or_default();
+                    let fits =
+                        unit(one) == Some(TimeUnit::S) && unit(other) == Some(TimeUnit::Ns) && stem(one) == stem(other);
+                    let is_date =
+                        is_calendar(one) && is_calendar(other) && !of(one).contains(':') && of(other).contains(':');
+                    fits || (is_date && one != other)
+                })?;
+                Some(vec![one, other])
+            });
+            let best = usable
+                .iter()
+                .copied()
+                .max_by_key(|&index| (names::preference(&self.columns[index].name), std::cmp::Reverse(index)));
+            pair.unwrap_or_else(|| best.into_iter().collect())
+        };
+        for index in times {
+            if !chosen.contains(&index) {
+                self.columns[index].role = Role::Other;
+            }
+        }
+        self.time = chosen.into_iter().map(|index| (index, TimeUnit::S)).collect();
+    }
+
+    fn sensor_column(&mut self, file: &Path, asked: Option<usize>, asked_ranges: &[usize]) -> Result<(), LogError> {
+        let of = |role: &Role| -> Vec<usize> {
+            (0..self.columns.len()).filter(|&index| self.columns[index].role == *role).collect()
+        };
+        let (ranges, named) = (of(&Role::Range), of(&Role::Sensor));
+        let is_label = |index: &usize| {
+            let column = &self.columns[*index];
+            column.numbers.iter().all(|number| number.fract() == 0.0) && (1..=64).contains(&column.distinct.len())
+        };
+        let chosen = asked.or_else(|| {
+            let rows = |index: usize| self.columns[index].distinct.values().sum::<usize>();
+            let repeats = |index: &usize| {
+                rows(*index) >= 2 * self.columns[*index].distinct.len().min(rows(*index)) || rows(*index) < 8
+            };
+            let labels = named.iter().copied().filter(is_label).filter(repeats);
+            labels.max_by_key(|&index| self.columns[index].distinct.len()).filter(|_| ranges.len() == 1)
+        });
+        if asked.is_some() && ranges.len() != 1 {
+            let message = format!("{} columns with ranges; with a column of sensors expected is one", ranges.len());
+            return Err(LogError::new(file, message));
+        }
+        let is_alone = ranges.is_empty() && of(&Role::Empty).is_empty() && asked_ranges.is_empty();
+        for index in named {
+            if chosen != Some(index) {
+                let is_range = is_alone && self.columns[index].is_range();
+                self.columns[index].role = if is_range { Role::Range } else { Role::Other };
+            }
+        }
+        self.sensor = chosen;
+        if let Some(index) = chosen {
+            let column = &self.columns[index];
+            let rows: usize = column.distinct.values().sum();
+            let is_known = |(_, count): &(&String, &usize)| **count > 1 || rows < 3 * column.distinct.len();
+            self.known = column.distinct.iter().filter(is_known).map(|(name, _)| name.clone()).collect();
+        }
+        let names: Vec<_> = match chosen {
+            Some(_) => self.known.iter().cloned().collect(),
+            None => self
+                .columns
+                .iter()
+                .filter(|column| column.role == Role::Range)
+                .map(|column| column.name.clone())
+                .collect(),
+        };
+        let by = chosen.map_or(String::new(), |index| format!(", by column `{}`", self.columns[index].name));
+        self.guesses.push(guess("sensors", format!("{}: {}{by}", names.len(), names.join(", ")), "--range, --sensor"));
+        Ok(())
+    }
+}

@@ -1,0 +1,380 @@
+//! Readings from the lines of a log whose shape is known.
+
+use std::collections::{BTreeSet, HashMap};
+use std::path::Path;
+
+use crate::options::{Options, TimeUnit};
+use crate::reading::{Reading, Sensor};
+use crate::sink::{Sink, Skipped};
+
+use super::column::Column;
+use super::lines::Line;
+use super::recognise::{MOST_SENSORS, Plan, Role, is_comment};
+use super::shape::{self, Shape};
+use super::value::{self, Value};
+
+pub(super) struct Rows<'a, 's, 'e> {
+    file: &'a Path,
+    options: &'a Options,
+    plan: Plan,
+    sink: &'s mut Sink<'e>,
+    /// The sensor of each column.
+    sensors: Vec<Option<usize>>,
+    by_label: HashMap<String, usize>,
+    /// Labels of sensors that were met once.
+    once: BTreeSet<String>,
+    is_first: bool,
+    others: u64,
+    unknown: BTreeSet<String>,
+    /// Midnights since the log began.
+    midnights: u64,
+    latest_ns: u64,
+}
+
+/// The cells of a line, each with its column.
+type Cells = Vec<(usize, String)>;
+
+/// Why a line gives no reading.
+enum Unread {
+    /// It has none.
+    Other,
+    Damaged(String),
+}
+
+const DAY_NS: u64 = 86_400_000_000_000;
+
+impl<'a, 's, 'e> Rows<'a, 's, 'e> {
+    pub(super) fn new(file: &'a Path, plan: Plan, options: &'a Options, sink: &'s mut Sink<'e>) -> Self {
+        let mut rows = Self {
+            file,
+            options,
+            sensors: vec![None; plan.columns.len()],
+            is_first: plan.is_first_cut,
+            plan,
+            sink,
+            by_label: HashMap::new(),
+            once: BTreeSet::new(),
+            others: 0,
+            unknown: BTreeSet::new(),
+            midnights: 0,
+            latest_ns: 0,
+        };
+        if rows.plan.sensor.is_none() {
+            for index in 0..rows.plan.columns.len() {
+                if rows.plan.columns[index].role == Role::Range {
+                    rows.sensors[index] = Some(rows.add(&rows.plan.columns[index].name.clone()));
+                }
+            }
+        }
+        rows.sink.one_time_a_row = rows.plan.sensor.is_none();
+        rows
+    }
+
+    fn add(&mut self, name: &str) -> usize {
+        self.sink.report.sensors.push(Sensor { topic: name.to_owned(), frame: String::new(), beam: None });
+        self.sink.report.sensors.len() - 1
+    }
+
+    /// Reads one line.
+    pub(super) fn line(&mut self, line: &Line) {
+        if is_comment(&line.text) && !line.is_too_long || line.number < self.plan.rows_from {
+            return;
+        }
+        match self.cells(line).and_then(|(time, cells)| self.row(line, time, &cells)) {
+            Ok(()) => {}
+            Err(Unread::Other) => self.others += 1,
+            Err(Unread::Damaged(why)) => {
+                self.sink.damaged_line(self.file, line.number, format!("{why}; the line is left out"));
+            }
+        }
+    }
+
+    /// The time before a line, and its cells by column.
+    fn cells(&mut self, line: &Line) -> Result<(Option<u64>, Cells), Unread> {
+        let damaged = |why: String| Unread::Damaged(why);
+        if line.is_too_long {
+            return Err(damaged("more than 65536 bytes without a line break".to_owned()));
+        }
+        let text = line.text.trim_matches([' ', '\u{feff}']);
+        let is_bad = |letter: char| letter == '\u{fffd}' || (letter.is_control() && letter != '\t' && letter != '\n');
+        if text.contains(is_bad) {
+            return Err(damaged("bytes that are no text".to_owned()));
+        }
+        let (time, text) = if self.plan.has_prefix {
+            match value::prefix(text) {
+                Some((time, rest)) => (Some(time), rest),
+                None if self.is_header(text) => return Err(Unread::Other),
+                None => return Err(damaged(format!("`{}` has no time before it", short(text)))),
+            }
+        } else {
+            (None, text)
+        };
+        if std::mem::take(&mut self.is_first) {
+            return Err(damaged(format!("`{}` is shorter than the others: its beginning may be cut off", short(text))));
+        }
+        let pairs = match self.plan.shape {
+            Shape::Separated(separator) => {
+                let cells = shape::separated(text, separator);
+                let mut cells = cells.ok_or_else(|| damaged("a quotation mark that is not closed".to_owned()))?;
+                if self.plan.header.as_ref() == Some(&cells) {
+                    return Err(Unread::Other);
+                }
+                let width = self.plan.columns.len();
+                while cells.len() > width && cells.last().is_some_and(String::is_empty) {
+                    cells.pop();
+                }
+                if cells.len() != width {
+                    let message = format!("`{}` has {} cells; expected {width}", short(text), cells.len());
+                    return Err(damaged(message));
+                }
+                self.whole(line, &cells)?;
+                cells.into_iter().enumerate().collect()
+            }
+            Shape::Json => {
+                let pairs = shape::json(text).ok_or_else(|| {
+                    let is_text = !text.contains(['{', '}', '[', ']', ':']);
+                    if is_text { Unread::Other } else { damaged(format!("`{}` is no JSON object", short(text))) }
+                })?;
+                self.by_name(pairs)
+            }
+            Shape::Keyed => {
+                let Some(pairs) = shape::keyed(text) else {
+                    let has_digit = text.contains(|letter: char| letter.is_ascii_digit());
+                    return Err(if has_digit || !line.is_ended {
+                        damaged(format!("`{}`; expected pairs of name and value", short(text)))
+                    } else {
+                        Unread::Other
+                    });
+                };
+                if let Some((name, _)) = pairs.iter().find(|(name, _)| !self.plan.by_name.contains_key(name)) {
+                    return Err(damaged(format!("the name `{}`, which no other line has", short(name))));
+                }
+                if let Some(usual) = &self.plan.usual_names
+                    && !pairs.iter().map(|(name, _)| name).eq(usual)
+                {
+                    let message = format!("`{}`; expected {}, as the other lines have", short(text), usual.join(", "));
+                    return Err(damaged(message));
+                }
+                let cells = self.by_name(pairs);
+                let last: Vec<_> = cells.iter().map(|(_, text)| text.clone()).collect();
+                if let Some(&(index, _)) = cells.last() {
+                    self.ends_whole(line, index, last.last().map_or("", String::as_str))?;
+                }
+                cells
+            }
+        };
+        Ok((time, pairs))
+    }
+
+    fn is_header(&self, text: &str) -> bool {
+        let Shape::Separated(separator) = self.plan.shape else { return false };
+        shape::separated(text, separator) == self.plan.header
+    }
+
+    fn by_name(&mut self, pairs: Vec<(String, String)>) -> Cells {
+        let mut cells = vec![];
+        for (name, text) in pairs {
+            match self.plan.by_name.get(&name) {
+                Some(&index) => cells.push((index, text)),
+                None if self.unknown.len() < 16 => _ = self.unknown.insert(name),
+                None => {}
+            }
+        }
+        cells
+    }
+
+    fn whole(&mut self, line: &Line, cells: &[String]) -> Result<(), Unread> {
+        self.ends_whole(line, cells.len() - 1, &cells[cells.len() - 1])
+    }
+
+    /// Refuses a last line that no line break ends and whose last value is shorter than others were: it may be cut.
+    fn ends_whole(&mut self, line: &Line, index: usize, last: &str) -> Result<(), Unread> {
+        let column = &mut self.plan.columns[index];
+        if !line.is_ended && last.len() < column.longest {
+            let message = format!("`{}` ends without a line break and may be cut", short(&line.text));
+            return Err(Unread::Damaged(message));
+        }
+        column.longest = column.longest.max(last.len());
+        Ok(())
+    }
+
+    fn row(&mut self, line: &Line, before: Option<u64>, cells: &[(usize, String)]) -> Result<(), Unread> {
+        let text = |index: usize| cells.iter().find(|cell| cell.0 == index).map(|cell| cell.1.as_str());
+        let mut at_ns = before;
+        for &(index, unit) in &self.plan.time {
+            if let Some(own) = text(index).filter(|text| !text.is_empty()) {
+                let ns = time_ns(own, unit, self.plan.decimal_comma).ok_or_else(|| {
+                    let name = &self.plan.columns[index].name;
+                    Unread::Damaged(format!("column {name}: `{}`; expected a time of zero or more", short(own)))
+                })?;
+                at_ns = Some(at_ns.filter(|_| before.is_none()).unwrap_or(0).saturating_add(ns));
+            }
+        }
+        let limit = |role: Role| -> Option<f64> {
+            let (index, column) = self.plan.columns.iter().enumerate().find(|(_, column)| column.role == role)?;
+            let number = value::number(text(index)?, self.plan.decimal_comma)?;
+            Some(number * column.unit.metres(self.options.speed_of_sound))
+        };
+        let (least, most) = (limit(Role::Least), limit(Role::Most).filter(|&most| most > 0.0));
+        let label = match self.plan.sensor {
+            Some(index) => Some(text(index).filter(|label| !label.is_empty()).ok_or(Unread::Other)?.to_owned()),
+            None => None,
+        };
+        let mut found = vec![];
+        let mut begun = vec![];
+        for (index, own) in cells {
+            let column = &self.plan.columns[*index];
+            match column.role {
+                Role::Range => {}
+                Role::Empty if own.is_empty() => continue,
+                Role::Empty => {
+                    if value::range(own, self.plan.decimal_comma).is_none() {
+                        continue;
+                    }
+                    begun.push(*index);
+                }
+                Role::Other if column.is_numeric && value::range(own, self.plan.decimal_comma).is_none() => {
+                    let message = format!("column {}: `{}`; expected a number, as before", column.name, short(own));
+                    return Err(Unread::Damaged(message));
+                }
+                _ => continue,
+            }
+            found.push((*index, self.range_m(own, column)?));
+        }
+        if found.is_empty() {
+            return Err(Unread::Other);
+        }
+        for index in begun {
+            let name = self.plan.columns[index].name.clone();
+            self.plan.columns[index].role = Role::Range;
+            self.sensors[index] = Some(self.add(&name));
+            let why =
+                format!("a sensor whose first value is in line {}; the empty cells before do not count", line.number);
+            self.sink.report.skipped.push(Skipped { topic: name, why, messages: 0 });
+        }
+        let at_ns = at_ns.map(|ns| self.after_midnight(ns));
+        let sensor_of_row = label.map(|label| self.labelled(label)).transpose()?;
+        self.sink.report.messages += 1;
+        for (index, range_m) in found {
+            let Some(sensor) = sensor_of_row.or(self.sensors[index]) else { continue };
+            let reading = Reading {
+                sensor,
+                at_ns,
+                radiation: 0,
+                field_of_view_rad: 0.0,
+                min_range_m: least.unwrap_or(0.0),
+                max_range_m: most.unwrap_or(self.options.no_echo_m),
+                range_m,
+                variance: None,
+            };
+            self.sink.reading(&reading);
+        }
+        Ok(())
+    }
+
+    /// Times of day begin again at midnight.
+    fn after_midnight(&mut self, ns: u64) -> u64 {
+        if ns >= DAY_NS {
+            return ns;
+        }
+        let at = ns + self.midnights * DAY_NS;
+        let falls_by = self.latest_ns.saturating_sub(at);
+        if self.plan.has_prefix && falls_by > DAY_NS / 2 {
+            self.midnights += 1;
+        }
+        self.latest_ns = ns + self.midnights * DAY_NS;
+        self.latest_ns
+    }
+
+    /// The sensor with this label; one that the first lines do not have is believed when it comes again.
+    fn labelled(&mut self, label: String) -> Result<usize, Unread> {
+        if let Some(&sensor) = self.by_label.get(&label) {
+            return Ok(sensor);
+        }
+        if !self.plan.known.contains(&label) && (self.once.len() >= 1024 || self.once.insert(label.clone())) {
+            return Err(Unread::Damaged(format!("the sensor `{}`, which comes here first", short(&label))));
+        }
+        if self.by_label.len() >= MOST_SENSORS {
+            return Err(Unread::Damaged(format!("the sensor `{}`; expected at most {MOST_SENSORS}", short(&label))));
+        }
+        let sensor = self.add(&label);
+        self.by_label.insert(label, sensor);
+        Ok(sensor)
+    }
+
+    /// The range in metres; infinite without echo.
+    fn range_m(&self, text: &str, column: &Column) -> Result<f64, Unread> {
+        let (name, unit) = (&column.name, column.unit);
+        let no_echo = &self.plan.no_echo;
+        if no_echo.words.iter().any(|word| text.eq_ignore_ascii_case(word)) {
+            return Ok(f64::INFINITY);
+        }
+        let (number, own_unit) = match value::range(text, self.plan.decimal_comma) {
+            Some((Value::Number(number), unit)) => (number, unit),
+            Some((Value::NoEcho, _)) => return Ok(f64::INFINITY),
+            Some((Value::TooClose, _)) => return Ok(f64::NEG_INFINITY),
+            None => {
+                let message = format!("column {name}: `{}`; expected a range in {}", short(text), unit.name());
+                return Err(Unread::Damaged(message));
+            }
+        };
+        if own_unit.is_none() && column.needs_unit() {
+            return Err(Unread::Damaged(format!("column {name}: `{}` has no unit, as the others have", short(text))));
+        }
+        if no_echo.numbers.contains(&number) || (no_echo.zero && number == 0.0) || (no_echo.negative && number < 0.0) {
+            return Ok(f64::INFINITY);
+        }
+        let asked = self.options.table.range_unit;
+        let range_m = number * asked.or(own_unit).unwrap_or(unit).metres(self.options.speed_of_sound);
+        Ok(if range_m < 0.0 {
+            f64::NEG_INFINITY
+        } else if range_m >= self.options.no_echo_m {
+            f64::INFINITY
+        } else {
+            range_m
+        })
+    }
+
+    /// Tells what was left out.
+    pub(super) fn end(self) {
+        let skipped = &mut self.sink.report.skipped;
+        if self.others > 0 {
+            let why = format!("{} lines without readings", self.others);
+            skipped.push(Skipped { topic: "the text".to_owned(), why, messages: 0 });
+        }
+        if !self.unknown.is_empty() {
+            let names = self.unknown.into_iter().collect::<Vec<_>>().join(", ");
+            let why = "names that the first lines do not have".to_owned();
+            skipped.push(Skipped { topic: names, why, messages: 0 });
+        }
+        if self.sink.report.sensors.is_empty() {
+            let names: Vec<_> = self.plan.columns.iter().map(|column| column.name.as_str()).collect();
+            let why = match &names[..] {
+                [] => "no line that holds a number".to_owned(),
+                names => format!("columns {}, none of them a range", names.join(", ")),
+            };
+            skipped.push(Skipped { topic: self.plan.form, why, messages: 0 });
+        }
+    }
+}
+
+/// At most 40 letters of a text.
+fn short(text: &str) -> String {
+    match text.char_indices().nth(40) {
+        Some((end, _)) => format!("{}..", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+fn time_ns(text: &str, unit: TimeUnit, decimal_comma: bool) -> Option<u64> {
+    let scale = unit.nanoseconds();
+    // Whole nanoseconds since 1970 do not fit into a float.
+    if let Ok(whole) = text.parse::<u64>() {
+        return whole.checked_mul(scale as u64);
+    }
+    match value::number(text, decimal_comma) {
+        Some(time) if time >= 0.0 && time * scale < 1.8e19 => Some((time * scale).round() as u64),
+        Some(_) => None,
+        None => value::calendar_ns(text),
+    }
+}

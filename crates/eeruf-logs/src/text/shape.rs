@@ -1,0 +1,188 @@
+//! The shapes of a line, and its cells.
+
+use serde_json::Value as Json;
+
+use super::value;
+
+/// How a line parts into cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    Separated(Separator),
+    /// `left: 40, right: 80`.
+    Keyed,
+    Json,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Separator {
+    Comma,
+    Semicolon,
+    Tab,
+    Bar,
+    Spaces,
+    /// One cell a line.
+    None,
+}
+
+impl Separator {
+    pub(crate) const ALL: [Self; 5] = [Self::Semicolon, Self::Tab, Self::Comma, Self::Bar, Self::Spaces];
+
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Comma => "comma",
+            Self::Semicolon => "semicolon",
+            Self::Tab => "tab",
+            Self::Bar => "vertical bar",
+            Self::Spaces => "spaces",
+            Self::None => "one value a line",
+        }
+    }
+
+    const fn letter(self) -> Option<char> {
+        Some(match self {
+            Self::Comma => ',',
+            Self::Semicolon => ';',
+            Self::Tab => '\t',
+            Self::Bar => '|',
+            Self::Spaces | Self::None => return None,
+        })
+    }
+}
+
+/// The brackets around a line, as Python prints a list.
+fn without_brackets(line: &str) -> &str {
+    let pairs = [('[', ']'), ('(', ')')];
+    let inner = pairs.iter().find_map(|&(open, close)| line.strip_prefix(open)?.strip_suffix(close));
+    inner.unwrap_or(line)
+}
+
+/// The cells of a line, without quotes and spaces around them; nothing if a quote is not closed.
+pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>> {
+    let line = without_brackets(line.trim_matches([' ', '\u{feff}']));
+    let Some(letter) = separator.letter() else {
+        return Some(match separator {
+            Separator::Spaces => line.split_whitespace().map(str::to_owned).collect(),
+            _ => vec![line.trim().to_owned()],
+        });
+    };
+    if !line.contains('"') {
+        return Some(line.split(letter).map(|cell| cell.trim().to_owned()).collect());
+    }
+    let (mut cells, mut cell, mut is_quoted) = (vec![], String::new(), false);
+    let mut letters = line.chars().peekable();
+    while let Some(own) = letters.next() {
+        match own {
+            '"' if is_quoted && letters.peek() == Some(&'"') => cell.extend(letters.next()),
+            '"' => is_quoted = !is_quoted,
+            _ if own == letter && !is_quoted => cells.push(std::mem::take(&mut cell).trim().to_owned()),
+            _ => cell.push(own),
+        }
+    }
+    cells.push(cell.trim().to_owned());
+    (!is_quoted).then_some(cells)
+}
+
+/// The pairs of a line of `name: value` or `name=value`; nothing if it holds anything else.
+pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
+    const BETWEEN: [char; 6] = [',', ';', '|', '\t', ' ', '&'];
+    let (mut rest, mut pairs) = (line, vec![]);
+    while let Some(at) = rest.find([':', '=']) {
+        let key = rest[..at].trim_matches(BETWEEN);
+        if key.is_empty() || key.chars().count() > 40 || !key.chars().any(char::is_alphabetic) {
+            return None;
+        }
+        let after = rest[at + 1..].trim_start_matches([' ', '\t', '=', '>']);
+        let phrase = ["out of range", "no echo", "time out"]
+            .iter()
+            .find(|phrase| after.get(..phrase.len()).is_some_and(|start| start.eq_ignore_ascii_case(phrase)));
+        let mut end = match phrase {
+            Some(phrase) => phrase.len(),
+            None => after.find([',', ';', '|', '\t', ' ', '&', ')', ']']).unwrap_or(after.len()),
+        };
+        // A decimal comma.
+        if after[end..].starts_with(',') && after[..end].bytes().all(|byte| byte.is_ascii_digit()) {
+            let digits = after[end + 1..].bytes().take_while(u8::is_ascii_digit).count();
+            let next = after[end + 1 + digits..].chars().next();
+            if digits > 0 && end > 0 && next.is_none_or(|letter| BETWEEN.contains(&letter)) {
+                end += 1 + digits;
+            }
+        }
+        let mut text = after[..end].to_owned();
+        rest = &after[end..];
+        // A unit after a space.
+        let spaced = rest.trim_start_matches(' ');
+        let word = &spaced[..spaced.find(|letter: char| !letter.is_alphabetic()).unwrap_or(spaced.len())];
+        let follows = spaced[word.len()..].trim_start().chars().next();
+        let is_key = follows.is_some_and(|letter| letter == ':' || letter == '=');
+        if !is_key && value::number(&text, true).is_some() && value::unit(word).is_some() {
+            text = format!("{text} {word}");
+            rest = &spaced[word.len()..];
+        }
+        pairs.push((key.to_owned(), text));
+    }
+    (!pairs.is_empty() && !rest.contains(char::is_alphanumeric)).then_some(pairs)
+}
+
+/// The values of a JSON object by their paths, or of an array by their places; nothing if it is neither.
+pub(crate) fn json(text: &str) -> Option<Vec<(String, String)>> {
+    let found: Json = serde_json::from_str(text.trim()).ok()?;
+    let mut pairs = vec![];
+    match found {
+        Json::Object(_) => flatten("", &found, &mut pairs),
+        Json::Array(cells) => (1..).zip(&cells).for_each(|(n, cell)| flatten(&format!("column {n}"), cell, &mut pairs)),
+        _ => return None,
+    }
+    Some(pairs)
+}
+
+fn flatten(path: &str, value: &Json, pairs: &mut Vec<(String, String)>) {
+    /// More belong to no ring.
+    const MOST: usize = 4096;
+    if pairs.len() >= MOST {
+        return;
+    }
+    match value {
+        Json::Object(fields) => {
+            for (name, value) in fields {
+                flatten(&if path.is_empty() { name.clone() } else { format!("{path}.{name}") }, value, pairs);
+            }
+        }
+        Json::Array(cells) => {
+            for (n, cell) in cells.iter().enumerate() {
+                flatten(&format!("{path}[{n}]"), cell, pairs);
+            }
+        }
+        Json::Null => pairs.push((path.to_owned(), "null".to_owned())),
+        Json::String(text) => pairs.push((path.to_owned(), text.trim().to_owned())),
+        other => pairs.push((path.to_owned(), other.to_string())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keyed_lines_give_pairs_and_nothing_else_does() {
+        let pairs = |line: &str| {
+            keyed(line).map(|pairs| pairs.iter().map(|(key, text)| format!("{key}|{text}")).collect::<Vec<_>>())
+        };
+        let some = |expected: &[&str]| Some(expected.iter().map(|&pair| pair.to_owned()).collect::<Vec<_>>());
+        assert_eq!(pairs("left: 40 right: 80"), some(&["left|40", "right|80"]));
+        assert_eq!(pairs("left:40,right:80"), some(&["left|40", "right|80"]));
+        assert_eq!(pairs("Sensor 1: 40 cm, Sensor 2: 80cm"), some(&["Sensor 1|40 cm", "Sensor 2|80cm"]));
+        assert_eq!(pairs("Ping: out of range"), some(&["Ping|out of range"]));
+        assert_eq!(pairs("a=40,5 b=80,1"), some(&["a|40,5", "b|80,1"]));
+        assert_eq!(pairs("left: "), some(&["left|"]));
+        for line in ["40,80", "12:00:01", "left: 40 of many", "hello"] {
+            assert_eq!(pairs(line), None, "{line}");
+        }
+    }
+
+    #[test]
+    fn separated_lines_keep_what_is_quoted() {
+        assert_eq!(separated("\"40,5\", 80 ", Separator::Comma).unwrap(), ["40,5", "80"]);
+        assert_eq!(separated("[40, 80]", Separator::Comma).unwrap(), ["40", "80"]);
+        assert_eq!(separated("\"40,5, 80", Separator::Comma), None);
+    }
+}

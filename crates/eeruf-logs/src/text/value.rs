@@ -1,0 +1,241 @@
+//! The text of a cell: a number with a unit, a word for no echo, or a time.
+
+use crate::options::RangeUnit;
+
+/// A cell of a column of ranges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Value {
+    Number(f64),
+    NoEcho,
+    TooClose,
+}
+
+const NO_ECHO: [&str; 26] = [
+    "",
+    "none",
+    "null",
+    "nil",
+    "nan",
+    "-nan",
+    "na",
+    "n/a",
+    "inf",
+    "+inf",
+    "infinity",
+    "+infinity",
+    "-",
+    "--",
+    "---",
+    "no echo",
+    "noecho",
+    "no_echo",
+    "timeout",
+    "time out",
+    "out of range",
+    "out_of_range",
+    "oor",
+    "err",
+    "error",
+    "undefined",
+];
+
+/// Returns true for a word that logs write where no echo came.
+pub(crate) fn is_no_echo(text: &str) -> bool {
+    text.len() <= 12 && NO_ECHO.contains(&text.to_ascii_lowercase().as_str())
+}
+
+/// A finite decimal number, and nothing else: `0x10`, `1_000` and `1e999` are none.
+pub(crate) fn number(text: &str, decimal_comma: bool) -> Option<f64> {
+    let bytes = text.as_bytes();
+    if !bytes.iter().any(u8::is_ascii_digit) {
+        return None;
+    }
+    let is_part = |byte: &u8| byte.is_ascii_digit() || b"+-.eE".contains(byte) || (decimal_comma && *byte == b',');
+    if !bytes.iter().all(is_part) {
+        return None;
+    }
+    let parsed: f64 = if decimal_comma { text.replace(',', ".").parse() } else { text.parse() }.ok()?;
+    parsed.is_finite().then_some(parsed)
+}
+
+/// The number before a unit, as `40cm` or `40 cm`, and the unit if there is one.
+pub(crate) fn with_unit(text: &str, decimal_comma: bool) -> Option<(f64, Option<RangeUnit>)> {
+    if let Some(number) = number(text, decimal_comma) {
+        return Some((number, None));
+    }
+    let end = text.rfind(|letter: char| letter.is_ascii_digit() || letter == '.')? + 1;
+    let unit = unit(text[end..].trim())?;
+    number(text[..end].trim_end(), decimal_comma).map(|number| (number, Some(unit)))
+}
+
+/// The unit of ranges that a word names.
+pub(crate) fn unit(word: &str) -> Option<RangeUnit> {
+    let word = word.trim_matches(['(', ')', '[', ']', '.']).to_lowercase();
+    Some(match word.as_str() {
+        "m" | "meter" | "meters" | "metre" | "metres" => RangeUnit::M,
+        "cm" | "cms" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => RangeUnit::Cm,
+        "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => RangeUnit::Mm,
+        "in" | "inch" | "inches" | "\"" => RangeUnit::In,
+        "us" | "µs" | "μs" | "usec" | "microseconds" | "microsecond" => RangeUnit::Us,
+        _ => return None,
+    })
+}
+
+/// What a cell of ranges says; nothing for what is neither a number nor a word for no echo.
+pub(crate) fn range(text: &str, decimal_comma: bool) -> Option<(Value, Option<RangeUnit>)> {
+    if is_no_echo(text) {
+        return Some((Value::NoEcho, None));
+    }
+    if ["-inf", "-infinity"].iter().any(|word| text.eq_ignore_ascii_case(word)) {
+        return Some((Value::TooClose, None));
+    }
+    with_unit(text, decimal_comma).map(|(number, unit)| (Value::Number(number), unit))
+}
+
+/// Nanoseconds of a date, a time of day, or both.
+pub(crate) fn calendar_ns(text: &str) -> Option<u64> {
+    let text = text.trim();
+    if let Some(ns) = time_of_day_ns(text) {
+        return Some(ns);
+    }
+    let (date, time) = match text.find(['T', ' ', '_']) {
+        Some(at) => (&text[..at], text[at + 1..].trim()),
+        None => (text, ""),
+    };
+    let days = days(date)?;
+    let (time, zone_s) = zone(time)?;
+    let ns = if time.is_empty() { 0 } else { time_of_day_ns(time)? };
+    let s = days.checked_mul(86_400)?.checked_sub(zone_s)?;
+    u64::try_from(s).ok()?.checked_mul(1_000_000_000)?.checked_add(ns)
+}
+
+/// A time without its zone, and the zone's distance from UTC in seconds.
+fn zone(time: &str) -> Option<(&str, i64)> {
+    if let Some(time) = time.strip_suffix(['Z', 'z']) {
+        return Some((time, 0));
+    }
+    let Some(at) = time.rfind(['+', '-']) else { return Some((time, 0)) };
+    let digits: String = time[at + 1..].chars().filter(|&letter| letter != ':').collect();
+    let number: i64 = digits.parse().ok()?;
+    let seconds = match digits.len() {
+        2 => number * 3600,
+        4 => (number / 100) * 3600 + (number % 100) * 60,
+        _ => return None,
+    };
+    Some((&time[..at], if time.as_bytes()[at] == b'-' { -seconds } else { seconds }))
+}
+
+/// Days from 1970 to `2024-01-31`, `2024/01/31` or `31.01.2024`.
+fn days(date: &str) -> Option<i64> {
+    let parts = |by: char| -> Option<[u32; 3]> {
+        let mut parts = date.split(by).map(|part| part.parse::<u32>().ok());
+        let three = [parts.next()??, parts.next()??, parts.next()??];
+        parts.next().is_none().then_some(three)
+    };
+    let [year, month, day] = parts('-').or_else(|| parts('/')).or_else(|| parts('.').map(|[d, m, y]| [y, m, d]))?;
+    if !(1970..=2200).contains(&year) || !(1..=12).contains(&month) || !(1..=31).contains(&day) {
+        return None;
+    }
+    // Years that begin in March, so that a leap day is the last.
+    let (y, m) = (i64::from(year) - i64::from(month <= 2), i64::from((month + 9) % 12));
+    let of_year = (153 * m + 2) / 5 + i64::from(day) - 1;
+    Some(365 * y + y / 4 - y / 100 + y / 400 + of_year - 719_468)
+}
+
+/// `12:00:01.100`, `12:00:01,100` or `12:00:01`.
+fn time_of_day_ns(text: &str) -> Option<u64> {
+    let mut parts = text.split(':');
+    let (hours, minutes, seconds) = (parts.next()?, parts.next()?, parts.next()?);
+    let whole = |part: &str, below: u64| {
+        let is_whole = (1..=2).contains(&part.len()) && part.bytes().all(|byte| byte.is_ascii_digit());
+        part.parse::<u64>().ok().filter(|&number| is_whole && number < below)
+    };
+    let (seconds, fraction) = seconds.split_once(['.', ',']).unwrap_or((seconds, ""));
+    if parts.next().is_some() || fraction.len() > 9 || !fraction.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    let ns = format!("{fraction:0<9}").parse::<u64>().ok()?;
+    let s = whole(hours, 24)? * 3600 + whole(minutes, 60)? * 60 + whole(seconds, 61)?;
+    Some(s * 1_000_000_000 + ns)
+}
+
+/// A time before the readings of a line, as serial monitors, loggers and `dmesg` write it, and the rest of the line.
+pub(crate) fn prefix(line: &str) -> Option<(u64, &str)> {
+    let line = line.trim_start();
+    let (time, rest) = if let Some(inner) = line.strip_prefix('[') {
+        let (inner, rest) = inner.split_once(']')?;
+        let is_level = !inner.is_empty() && inner.trim().bytes().all(|byte| byte.is_ascii_alphabetic());
+        if is_level && ["INFO", "DEBUG", "WARN", "ERROR"].contains(&inner.trim()) {
+            return prefix(rest);
+        }
+        let inner = inner.trim();
+        let seconds = number(inner, false).filter(|&s| inner.contains('.') && (0.0..1e10).contains(&s));
+        (calendar_ns(inner).or(seconds.map(|s| (s * 1e9).round() as u64))?, rest)
+    } else {
+        let is_end = |letter: char| letter.is_whitespace() || letter == '>';
+        let first = line.find(is_end)?;
+        let second = line[first..].trim_start();
+        let second = line.len() - second.len() + second.find(is_end).unwrap_or(second.len());
+        let both =
+            line.get(..second).and_then(|text| Some((calendar_ns(text.trim_end_matches(':'))?, &line[second..])));
+        match both {
+            Some(found) => found,
+            None => (calendar_ns(line[..first].trim_end_matches([':', '-']))?, &line[first..]),
+        }
+    };
+    let rest = rest.trim_start();
+    let rest = ["->", ">", ":", "- "].iter().find_map(|arrow| rest.strip_prefix(arrow)).unwrap_or(rest).trim_start();
+    let levels = ["INFO ", "DEBUG ", "WARNING ", "WARN "];
+    let rest = levels.iter().find_map(|level| rest.strip_prefix(level)).unwrap_or(rest).trim_start();
+    Some((time, rest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_of_every_spelling_are_nanoseconds() {
+        let s = 1_704_196_801_000_000_000;
+        for text in [
+            "2024-01-02T12:00:01Z",
+            "2024-01-02 12:00:01",
+            "2024/01/02 12:00:01.000",
+            "02.01.2024 12:00:01",
+            "2024-01-02T13:00:01+01:00",
+            "2024-01-02 12:00:01,000",
+        ] {
+            assert_eq!(calendar_ns(text), Some(s), "{text}");
+        }
+        assert_eq!(calendar_ns("12:00:01.1"), Some(43_201_100_000_000));
+        for text in ["40", "40.5", "12:00", "2024-13-02", "25:00:00", "left", "", "1-2-3"] {
+            assert_eq!(calendar_ns(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn prefix_ends_where_readings_begin() {
+        for line in [
+            "12:00:01.100 -> 40,80",
+            "[12:00:01.100] 40,80",
+            "12:00:01.100: 40,80",
+            "12:00:01.100 > 40,80",
+            "12:00:01.100\t40,80",
+        ] {
+            assert_eq!(prefix(line), Some((43_201_100_000_000, "40,80")), "{line}");
+        }
+        assert_eq!(prefix("[  12.5] left: 4"), Some((12_500_000_000, "left: 4")));
+        assert_eq!(prefix("2024-01-02 12:00:01,000 INFO a=1"), Some((1_704_196_801_000_000_000, "a=1")));
+        assert_eq!(prefix("left: 40 right: 80"), None);
+        assert_eq!(prefix("12:00:01.100,40,80"), None);
+    }
+
+    #[test]
+    fn number_is_plain_and_finite() {
+        assert_eq!(number("40,5", true), Some(40.5));
+        assert_eq!(with_unit("40 cm", false), Some((40.0, Some(RangeUnit::Cm))));
+        for text in ["4x", "0x10", "1e999", "1.2.3", "40,5", "--", "", "4\u{fffd}", "+-4"] {
+            assert_eq!(number(text, false), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! Logs in the forms that people have, each with its right answer.
+
+use std::io::Write as _;
+use std::path::Path;
+
+use eeruf_logs::{Echo, FieldChoice, Options, Pattern, RangeUnit, Report, Table, read_log, read_text};
+
+/// What a log says: each sensor's name and its ranges in metres, `-` for no echo, `<` for too close, `!` for no number;
+/// and how many seconds lie between its first two readings.
+fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
+    let mut readings = vec![];
+    let report = read_text(bytes, Path::new("log"), options, |_, reading| readings.push(*reading)).unwrap();
+    let text = |sensor: usize| {
+        let own = readings.iter().filter(|reading| reading.sensor == sensor).map(|reading| match reading.echo() {
+            Echo::At(range_m) => format!(" {}", (range_m * 1000.0).round() / 1000.0),
+            Echo::Nothing => " -".to_owned(),
+            Echo::TooClose => " <".to_owned(),
+            Echo::Invalid => " !".to_owned(),
+        });
+        report.names()[sensor].clone() + ":" + &own.collect::<String>()
+    };
+    let sensors: Vec<_> = (0..report.sensors.len()).map(text).collect();
+    let mut first = readings.iter().filter(|reading| reading.sensor == 0).filter_map(|reading| reading.at_ns);
+    let step = first.next().zip(first.next()).map(|(one, two)| (two as f64 - one as f64) * 1e-9);
+    (sensors.join("; "), step, report)
+}
+
+/// Name, text, sensors, and seconds between the first two readings.
+type Form = (&'static str, &'static str, &'static str, Option<f64>);
+
+const FORMS: [Form; 44] = [
+    ("comma", "left,right\n40,80\n41,81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("semicolon", "left;right\n40;80\n41;81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("tab", "left\tright\n40\t80\n41\t81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("bar", "left|right\n40|80\n41|81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("spaces", "left right\n 40  80\n 41  81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("CRLF", "left,right\r\n40,80\r\n41,81\r\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("CR", "left,right\r40,80\r41,81\r", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("BOM", "\u{feff}left,right\n40,80\n41,81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("decimal comma", "left;right\n40,5;80,1\n41,5;81,1\n", "left: 0.405 0.415; right: 0.801 0.811", None),
+    ("decimal comma in quotes", "l,r\n\"40,5\",\"80,1\"\n\"41,5\",\"81,1\"\n", "l: 0.405 0.415; r: 0.801 0.811", None),
+    ("decimal comma, one name", "left\n40,5\n41,5\n", "left: 0.405 0.415", None),
+    ("comments", "# ring 1\nleft,right\n# wall\n40,80\n\n41,81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("header in a comment", "# left,right\n40,80\n41,81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("Excel's first line", "sep=;\nleft;right\n40;80\n41;81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("greeting", "Starting sonar\nleft,right\n40,80\n41,81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("row of units", "t,left,right\ns,cm,mm\n0.0,40,800\n0.1,41,810\n", "left: 0.4 0.41; right: 0.8 0.81", Some(0.1)),
+    ("header again", "left,right\n40,80\nleft,right\n41,81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("no header", "40,80\n41,81\n40,80\n", "column 1: 0.4 0.41 0.4; column 2: 0.8 0.81 0.8", None),
+    ("comma at the end", "left,right\n40,80,\n41,81,\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("unit in the header", "left_mm,right_mm\n400,800\n410,810\n", "left_mm: 0.4 0.41; right_mm: 0.8 0.81", None),
+    ("unit in brackets", "left [in]\n10\n20\n", "left [in]: 0.254 0.508", None),
+    ("unit in the cell", "left,right\n40cm,80 cm\n41cm,81 cm\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    ("metres by magnitude", "left,right\n0.40,2.80\n0.41,2.81\n", "left: 0.4 0.41; right: 2.8 2.81", None),
+    ("millimetres by magnitude", "left,right\n400,2800\n410,2810\n", "left: 0.4 0.41; right: 2.8 2.81", None),
+    ("echo times by name", "echo_us\n10000\n20000\n", "echo_us: 1.716 3.432", None),
+    ("echo times by magnitude", "a\n11655\n23310\n", "a: 2 4", None),
+    ("zero is no echo", "left\n0\n40\n0\n41\n", "left: - 0.4 - 0.41", None),
+    ("words for no echo", "left\nNone\n40\nnan\ninf\nN/A\n--\n41\n", "left: - 0.4 - - - - 0.41", None),
+    ("far is no echo", "left\n40\n999\n65535\n40\n", "left: 0.4 - - 0.4", None),
+    ("ceiling is no echo", "left\n40\n400\n41\n400\n400\n40\n", "left: 0.4 - 0.41 - - 0.4", None),
+    ("too close by REP 117", "left\n0.4\n-inf\n0.5\n", "left: 0.4 < 0.5", None),
+    ("millis", "millis,left\n1000,40\n1060,41\n", "left: 0.4 0.41", Some(0.06)),
+    ("micros", "micros,left\n1000000,40\n1060000,41\n", "left: 0.4 0.41", Some(0.06)),
+    ("seconds since 1970", "timestamp,left\n1700000000.0,40\n1700000000.06,41\n", "left: 0.4 0.41", Some(0.06)),
+    ("ISO 8601", "time,left\n2024-01-02T12:00:00.00Z,40\n2024-01-02T12:00:00.06Z,41\n", "left: 0.4 0.41", Some(0.06)),
+    ("date and time", "date,time,a\n2024-01-02,12:00:00.10,40\n2024-01-02,12:00:00.16,41\n", "a: 0.4 0.41", Some(0.06)),
+    ("counter and battery", "seq,battery,left\n1,11.9,40\n2,11.8,41\n3,11.8,42\n", "left: 0.4 0.41 0.42", None),
+    ("sensor in a column", "t,sensor,cm\n0.0,a,40\n0.1,b,80\n0.2,a,41\n", "a: 0.4 0.41; b: 0.8", Some(0.2)),
+    (
+        "rostopic echo -p",
+        "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.radiation_type,\
+      field.field_of_view,field.min_range,field.max_range,field.range\n1700000000000000000,1,1700000000000000000,us1,0,\
+      0.5,0.02,4.0,1.25\n1700000000100000000,2,1700000000100000000,us1,0,0.5,0.02,4.0,4.0\n",
+        "us1: 1.25 -",
+        Some(0.1),
+    ),
+    (
+        "serial monitor",
+        "12:00:01.100 -> 40,80\n12:00:01.160 -> 41,81\n12:00:01.220 -> 40,80\n",
+        "column 1: 0.4 0.41 0.4; column 2: 0.8 0.81 0.8",
+        Some(0.06),
+    ),
+    (
+        "name and value",
+        "left: 40 cm\nright: 80 cm\nleft: 41 cm\nright: out of range\n",
+        "left: 0.4 0.41; right: 0.8 -",
+        None,
+    ),
+    ("serial plotter", "left:40,right:80\nleft:41,right:81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
+    (
+        "JSON lines",
+        "{\"t\":0.1,\"front\":40,\"back\":null}\n{\"t\":0.2,\"front\":41,\"back\":81}\n",
+        "front: 0.4 0.41; back: - 0.81",
+        Some(0.1),
+    ),
+    (
+        "JSON document",
+        "[\n {\"t\": 0.1, \"us\": {\"left\": 40}},\n {\"t\": 0.2, \"us\": {\"left\": 41}}\n]\n",
+        "us.left: 0.4 0.41",
+        Some(0.1),
+    ),
+];
+
+#[test]
+fn each_form_gives_its_right_answer() {
+    for (name, text, sensors, step) in FORMS {
+        let (found, seconds, report) = said(text.as_bytes(), &Options::default());
+        assert_eq!(found, sensors, "{name}: {:#?}", report.guesses);
+        assert_eq!(report.damage, [], "{name}");
+        let is_near = step.zip(seconds).is_none_or(|(step, seconds)| (step - seconds).abs() < 1e-6);
+        assert!(is_near && step.is_some() == seconds.is_some(), "{name}: {seconds:?} {:#?}", report.guesses);
+        assert!(!report.form.is_empty() && report.guesses.iter().all(|guess| guess.option.starts_with("--")), "{name}");
+    }
+}
+
+#[test]
+fn more_json_documents_give_the_same_records() {
+    let expected = "left: 0.4 0.41; right: 0.8 -";
+    for text in [
+        "[{\"left\":40,\"right\":80},{\"left\":41,\"right\":null}]",
+        "{\n\"ring\": \"a {[\",\n\"readings\": [{\"left\":40,\"right\":80},\n{\"left\":41,\"right\":null}]}",
+        "{\"left\":40,\n\"right\":80}\n{\"left\":41,\n\"right\":null}\n",
+        "{\"left\":40,\"right\":80}\n{\"left\":41,\"right\":null}\n",
+    ] {
+        assert_eq!(said(text.as_bytes(), &Options::default()).0, expected, "{text}");
+    }
+    let arrays = "column 1: 0.4 0.41; column 2: 0.8 -";
+    for text in ["[[40,80],[41,null]]", "[40,80]\n[41,None]\n"] {
+        assert_eq!(said(text.as_bytes(), &Options::default()).0, arrays, "{text}");
+    }
+}
+
+#[test]
+fn utf_16_and_packed_text_read_as_plain() {
+    let text = "t,left,right\n0.0,40,80\n0.1,41,81\n";
+    let expected = "left: 0.4 0.41; right: 0.8 0.81";
+    for (bom, order) in [(true, true), (false, true), (true, false), (false, false)] {
+        let start = if bom { "\u{feff}" } else { "" };
+        let units = format!("{start}{text}").encode_utf16().collect::<Vec<_>>();
+        let bytes: Vec<u8> =
+            units.iter().flat_map(|unit| if order { unit.to_le_bytes() } else { unit.to_be_bytes() }).collect();
+        assert_eq!(said(&bytes, &Options::default()).0, expected, "{bom} {order}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut gzip = flate2::write::GzEncoder::new(vec![], flate2::Compression::default());
+    gzip.write_all(text.as_bytes()).unwrap();
+    let mut bzip2 = bzip2::write::BzEncoder::new(vec![], bzip2::Compression::default());
+    bzip2.write_all(text.as_bytes()).unwrap();
+    let zstd = zstd::encode_all(text.as_bytes(), 1).unwrap();
+    for (name, bytes) in [("a.csv.gz", gzip.finish().unwrap()), ("b.bz2", bzip2.finish().unwrap()), ("c.zst", zstd)] {
+        let file = folder.path().join(name);
+        std::fs::write(&file, &bytes).unwrap();
+        let mut readings = 0;
+        let report = read_log(&file, &Options::default(), |_, _| readings += 1).unwrap();
+        assert_eq!((readings, report.names().join(" ").as_str(), report.damage.len()), (4, "left right", 0), "{name}");
+        assert!(report.form.contains("packed by"), "{}", report.form);
+        // Half a file says so.
+        std::fs::write(&file, &bytes[..bytes.len() - 6]).unwrap();
+        let report = read_log(&file, &Options::default(), |_, _| {}).unwrap();
+        assert!(!report.damage.is_empty(), "{name}");
+    }
+    let bag = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bags/ros1-none.bag")).unwrap();
+    let file = folder.path().join("drive.bag.zst");
+    std::fs::write(&file, zstd::encode_all(&*bag, 1).unwrap()).unwrap();
+    assert_eq!(read_log(&file, &Options::default(), |_, _| {}).unwrap().sensors.len(), 6);
+}
+
+#[test]
+fn options_override_guesses() {
+    let text = "a,b,c\n0,40,7\n1,41,7\n";
+    let with = |change: &dyn Fn(&mut Options)| {
+        let mut options = Options::default();
+        change(&mut options);
+        said(text.as_bytes(), &options).0
+    };
+    assert_eq!(with(&|options| options.table.ranges = vec!["b".to_owned()]), "b: 0.4 0.41");
+    assert_eq!(
+        with(&|options| options.table.columns = ["t", "near", "-"].map(str::to_owned).to_vec()),
+        "near: 0.4 0.41"
+    );
+    let only = |options: &mut Options| options.table.ranges = vec!["a".to_owned()];
+    let no_echo = |options: &mut Options| {
+        only(options);
+        options.no_echo = vec!["1".to_owned()];
+        options.table.range_unit = Some(RangeUnit::M);
+    };
+    assert_eq!(with(&no_echo), "a: 0 -");
+    let table = Table { columns: vec!["t".to_owned()], ..Table::default() };
+    let refused = read_text(text.as_bytes(), Path::new("log"), &Options { table, ..Options::default() }, |_, _| {});
+    assert_eq!(refused.unwrap_err().message(), "--columns: 1 names; expected 3, as many as the rows have columns");
+}
+
+#[test]
+fn log_without_sensors_says_what_it_holds() {
+    for (text, expected) in [
+        ("hello\nworld\n", "none of them a range"),
+        ("t,battery\n1,12.1\n2,12.0\n", "columns t, battery, none of them a range"),
+        ("{\"event\":\"start\"}\n", "columns event, none of them a range"),
+    ] {
+        let (_, _, report) = said(text.as_bytes(), &Options::default());
+        assert!(report.sensors.is_empty());
+        let said = report.skipped.last().unwrap().why.clone();
+        assert!(said.contains(expected), "{text}: {said}");
+    }
+}
+
+#[test]
+fn foreign_forms_are_named_with_their_way_out() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes, form, way) in [
+        ("a.ulg", &b"ULog\x01\x12\x35\x01"[..], "ULog", "pyulog"),
+        ("a.bin", b"\xa3\x95\x80\x80", "DataFlash", "pymavlink"),
+        ("a.tlog", b"\0\x05\x12\x34\x56\x78\x9a\xbc\xfe\x09", "MAVLink", "pymavlink"),
+        ("a.xlsx", b"PK\x03\x04", "spreadsheet", "read_excel"),
+        ("a.dat", b"\x01\x02\x03\0\0\0\x07\x08", "binary", "MCAP"),
+    ] {
+        let file = folder.path().join(name);
+        std::fs::write(&file, bytes).unwrap();
+        let error = read_log(&file, &Options::default(), |_, _| {}).unwrap_err().to_string();
+        assert!(error.contains(form) && error.contains(way) && !error.contains('\n'), "{error}");
+        let error = eeruf_logs::FiringLog::read(&file).unwrap_err().to_string();
+        assert!(error.contains(form), "{error}");
+    }
+}
+
+/// A bag of the field cases.
+fn bag(name: &str, options: &Options) -> (Report, Vec<Echo>) {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/field-cases").join(name);
+    let mut echoes = vec![];
+    let report = read_log(&file, options, |_, reading| echoes.push(reading.echo())).unwrap();
+    (report, echoes)
+}
+
+#[test]
+fn points_arrays_and_long_scans_are_read_where_asked() {
+    let topic = |topic: &str| Options { topics: vec![topic.to_owned()], ..Options::default() };
+    let field = |topic: &str, path: &str, unit| Options {
+        fields: vec![FieldChoice { topic: topic.to_owned(), path: path.to_owned(), unit }],
+        ..Options::default()
+    };
+    let (points, _) = bag("pointcloud.bag", &Options::default());
+    assert!(points.sensors.is_empty() && points.skipped[0].why.contains("--topic /RosAria/sonar"), "{points:?}");
+    let (points, echoes) = bag("pointcloud.bag", &topic("/RosAria/sonar"));
+    assert!(points.sensors.len() > 1 && !echoes.is_empty() && points.damage.is_empty(), "{points:?}");
+    let (array, echoes) = bag("multiarray.bag", &Options::default());
+    assert_eq!((array.sensors.len(), array.firing.pattern), (6, Pattern::Unknown));
+    let mm = field("/ultrasonic", "data[]", RangeUnit::Mm);
+    let (other, smaller) = bag("multiarray.bag", &mm);
+    let range = |echo: &Echo| if let Echo::At(range_m) = echo { *range_m } else { f64::NAN };
+    assert!((range(&smaller[0]) - range(&echoes[0]) * 1e-3).abs() < 1e-9 && other.sensors.len() == 6);
+    let (wrong, _) = bag("multiarray.bag", &field("/ultrasonic", "ranges[]", RangeUnit::M));
+    assert!(wrong.skipped[0].why.contains("no field `ranges[]`") && wrong.skipped[0].why.contains("data[]"));
+    assert_eq!(bag("scan73.bag", &Options::default()).0.sensors.len(), 73);
+    let (far, _) = bag("cmranges.bag", &Options::default());
+    assert!(far.warnings[0].contains("--field /us range cm"), "{:?}", far.warnings);
+    let (near, echoes) = bag("cmranges.bag", &field("/us", "range", RangeUnit::Cm));
+    assert!(near.warnings.is_empty() && (range(&echoes[0]) - 0.8).abs() < 1e-6, "{:?}", echoes[0]);
+}

@@ -1,0 +1,126 @@
+//! Damaged text: nothing is read from a damaged line, and nothing fails.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use eeruf_logs::{Options, read_text};
+
+/// Pseudo-random numbers, the same on every machine.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, limit: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) % limit.max(1) as u64) as usize
+    }
+}
+
+/// Logs of 40 rows whose values have three digits each, so that a part of one is none of them.
+fn logs() -> Vec<String> {
+    let value = |row: usize, sensor: usize| 200 + (row * 37 + sensor * 101) % 250;
+    let rows = |line: &dyn Fn(usize) -> String| (0..40).map(|row| line(row) + "\n").collect::<String>();
+    vec![
+        "left,right\n".to_owned() + &rows(&|row| format!("{},{}", value(row, 0), value(row, 1))),
+        rows(&|row| format!("{};{};{}", value(row, 0), value(row, 1), value(row, 2))),
+        "t\tleft\tright\n".to_owned()
+            + &rows(&|row| format!("{}\t{}\t{}", 1000 + 60 * row, value(row, 0), value(row, 1))),
+        rows(&|row| format!("left: {} cm, right: {} cm", value(row, 0), value(row, 1))),
+        rows(&|row| format!("{{\"left\":{},\"right\":{}}}", value(row, 0), value(row, 1))),
+        rows(&|row| format!("12:00:{:02}.100 -> {},{}", row, value(row, 0), value(row, 1))),
+        "time,sensor,cm\n".to_owned()
+            + &rows(&|row| format!("{},{},{}", 1000 + row, ["a", "b"][row % 2], value(row, 0))),
+    ]
+}
+
+/// The sensors' names and ranges in centimetres; infinite ones are no echoes.
+fn read(bytes: &[u8]) -> Vec<(String, f64)> {
+    let mut readings = vec![];
+    let report = read_text(bytes, Path::new("log"), &Options::default(), |sensors, reading| {
+        readings.push((sensors[reading.sensor].topic.clone(), reading.range_m));
+    });
+    match report {
+        Ok(report) => {
+            let lines = bytes.iter().filter(|&&byte| byte == b'\n' || byte == b'\r').count() as u64 + 1;
+            assert!(report.messages <= lines && report.damage.len() <= 101);
+            assert!(report.damage.iter().all(|damage| !damage.message.contains('\n')));
+        }
+        Err(error) => assert!(!error.to_string().contains('\n')),
+    }
+    readings
+}
+
+#[test]
+fn nothing_is_read_from_a_damaged_line() {
+    let mut random = Random(47);
+    let logs = logs();
+    let (mut lost, mut kept) = (0, 0);
+    for round in 0..12_000 {
+        let whole = &logs[round % logs.len()];
+        let before = read(whole.as_bytes());
+        let ranges: HashSet<u64> = before.iter().map(|(_, range)| range.to_bits()).collect();
+        let mut bytes = whole.clone().into_bytes();
+        let at = random.below(bytes.len());
+        match random.below(6) {
+            // The end, and the beginning. Of a single row nothing says how long its values are.
+            0 => bytes.truncate(at.max(150)),
+            1 => _ = bytes.drain(..random.below(40.min(at + 1))),
+            // What is no digit.
+            2 => bytes[at] = b"x?#\0\xff~"[random.below(6)],
+            // A separator, or a line break.
+            3 => {
+                let places: Vec<_> = (0..bytes.len()).filter(|&at| b",;\t\n:".contains(&bytes[at])).collect();
+                bytes.remove(places[random.below(places.len())]);
+            }
+            4 => {
+                let junk = [&b"boot: ready\n"[..], b"\n\n\n", b"\xff\xfe\xfd\n", b"Guru Meditation Error\n"];
+                let start = bytes[..at].iter().rposition(|&byte| byte == b'\n').map_or(0, |place| place + 1);
+                _ = bytes.splice(start..start, junk[random.below(4)].iter().copied());
+            }
+            // A line that ends early.
+            _ => {
+                let end = bytes[at..].iter().position(|&byte| byte == b'\n').map_or(bytes.len(), |end| at + end);
+                let start = bytes[..at].iter().rposition(|&byte| byte == b'\n').map_or(0, |place| place + 1);
+                // Between the digits of the last value nothing shows it.
+                let last = end.saturating_sub(4).max(start);
+                _ = bytes.drain(at.min(last)..end);
+            }
+        }
+        let after = read(&bytes);
+        for (name, range) in &after {
+            let is_known = ranges.contains(&range.to_bits()) || range.is_infinite();
+            let text = String::from_utf8_lossy(&bytes);
+            assert!(is_known, "round {round}: {name} {range} from\n{text}");
+        }
+        lost += usize::from(after.len() < before.len());
+        kept += usize::from(after.len() + 8 > before.len());
+    }
+    assert!(lost > 3000 && kept > 6000, "{lost} {kept}");
+}
+
+#[test]
+fn random_bytes_neither_fail_nor_hang() {
+    let mut random = Random(20_000);
+    let logs = logs();
+    let mut readings = 0;
+    for round in 0..8000 {
+        let mut bytes = logs[round % logs.len()].clone().into_bytes();
+        for _ in 0..=random.below(12) {
+            let at = random.below(bytes.len());
+            match random.below(4) {
+                0 => bytes[at] = random.below(256) as u8,
+                1 => bytes.insert(at, b"{}[]\",;:=\r\n\0-.eE#"[random.below(17)]),
+                2 => _ = bytes.drain(at..(at + random.below(200)).min(bytes.len())),
+                _ => {
+                    let part = bytes[at..(at + random.below(100)).min(bytes.len())].to_vec();
+                    let to = random.below(bytes.len());
+                    _ = bytes.splice(to..to, part);
+                }
+            }
+            if bytes.is_empty() {
+                bytes.push(b'\n');
+            }
+        }
+        readings += read(&bytes).len();
+    }
+    assert!(readings > 100_000, "{readings}");
+}

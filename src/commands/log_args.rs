@@ -1,0 +1,162 @@
+//! The options of commands that read logs of ranges.
+
+use std::path::Path;
+
+use eeruf_logs::{Damage, FieldChoice, Options, RangeUnit, Report, Table, TimeUnit};
+
+use crate::console::warning;
+use crate::files::error::InputError;
+
+/// How to read a log. What is not given is guessed, and `eeruf logs` lists each guess.
+#[derive(clap::Args)]
+#[command(next_help_heading = "The log")]
+pub(crate) struct LogArgs {
+    /// In m/s, to turn ranges back into echo times
+    #[arg(long, default_value_t = 343.2, value_name = "C", value_parser = positive)]
+    pub(crate) speed_of_sound: f64,
+    /// Text: the range in metres from which on a value means that there was no echo
+    #[arg(long, default_value_t = 5.0, value_name = "M", value_parser = positive)]
+    no_echo_m: f64,
+    /// Text: a value that means no echo, a number in the log's unit or a word; may be given several times. By default
+    /// 0, numbers below 0, and a greatest number that repeats
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    no_echo: Vec<String>,
+    /// Text: the names of the columns in their order, parted by commas, in place of a header; `-` leaves one out
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    columns: Vec<String>,
+    /// Text: the column with the time
+    #[arg(long, value_name = "COLUMN")]
+    time: Option<String>,
+    /// Text: the unit of the time
+    #[arg(long, value_name = "UNIT")]
+    time_unit: Option<TimeName>,
+    /// Text: a column with ranges; may be given several times
+    #[arg(long, value_name = "COLUMN")]
+    range: Vec<String>,
+    /// Text: the unit of the ranges; us are microseconds from firing to echo
+    #[arg(long, value_name = "UNIT")]
+    range_unit: Option<RangeName>,
+    /// Text: the column that says whose reading a row is; needs one column with ranges
+    #[arg(long, value_name = "COLUMN")]
+    sensor: Option<String>,
+    /// Bags: read this topic only, whatever its type; may be given several times
+    #[arg(long, value_name = "TOPIC")]
+    topic: Vec<String>,
+    /// Bags: read numbers of a field as ranges in a unit, as `--field /sonars distance_mm[] mm`
+    #[arg(long, num_args = 3, value_names = ["TOPIC", "FIELD", "UNIT"])]
+    field: Vec<String>,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum TimeName {
+    S,
+    Ms,
+    Us,
+    Ns,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum RangeName {
+    M,
+    Cm,
+    Mm,
+    In,
+    Us,
+}
+
+impl From<RangeName> for RangeUnit {
+    fn from(name: RangeName) -> Self {
+        match name {
+            RangeName::M => Self::M,
+            RangeName::Cm => Self::Cm,
+            RangeName::Mm => Self::Mm,
+            RangeName::In => Self::In,
+            RangeName::Us => Self::Us,
+        }
+    }
+}
+
+impl From<TimeName> for TimeUnit {
+    fn from(name: TimeName) -> Self {
+        match name {
+            TimeName::S => Self::S,
+            TimeName::Ms => Self::Ms,
+            TimeName::Us => Self::Us,
+            TimeName::Ns => Self::Ns,
+        }
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(value),
+        _ => Err("expected a number above zero".to_owned()),
+    }
+}
+
+impl LogArgs {
+    /// The options as the reader takes them; `file` stands in errors.
+    pub(crate) fn options(&self, file: &Path) -> Result<Options, InputError> {
+        let field = |parts: &[String]| -> Result<FieldChoice, InputError> {
+            let unit = <RangeName as clap::ValueEnum>::from_str(&parts[2], true).map_err(|_| {
+                let message = format!("--field {}: unit `{}`; expected m, cm, mm, in or us", parts[0], parts[2]);
+                InputError::new(file, None, message)
+            })?;
+            Ok(FieldChoice { topic: parts[0].clone(), path: parts[1].clone(), unit: unit.into() })
+        };
+        let table = Table {
+            columns: self.columns.clone(),
+            ranges: self.range.clone(),
+            range_unit: self.range_unit.map(RangeUnit::from),
+            time: self.time.clone(),
+            time_unit: self.time_unit.map(TimeUnit::from),
+            sensor: self.sensor.clone(),
+        };
+        Ok(Options {
+            table,
+            speed_of_sound: self.speed_of_sound,
+            no_echo_m: self.no_echo_m,
+            no_echo: self.no_echo.clone(),
+            topics: self.topic.clone(),
+            fields: self.field.chunks(3).map(field).collect::<Result<_, InputError>>()?,
+            judged: false,
+        })
+    }
+}
+
+/// Warns of what was read and seems wrong, and fails with what could not be read, or with what was found where no
+/// sensor is.
+pub(crate) fn tell_damage(file: &Path, report: &Report) -> Result<(), InputError> {
+    report.warnings.iter().for_each(warning);
+    let at = |damage: &Damage| {
+        damage.at.map_or_else(|| damage.message.clone(), |at| format!("at byte {at}: {}", damage.message))
+    };
+    let damage = match &report.damage[..] {
+        [] => None,
+        [first] => Some((first, at(first))),
+        [first, rest @ ..] => {
+            Some((first, format!("{}; and {} more places that cannot be read", at(first), rest.len())))
+        }
+    };
+    if let Some((first, message)) = damage {
+        return Err(InputError::new(&first.file, first.line, message));
+    }
+    if report.sensors.is_empty() {
+        let found = match &left_out(report)[..] {
+            [] => "nothing".to_owned(),
+            found => found.join("; "),
+        };
+        let message = format!("{}: no sensors; expected ranges; found {found}", report.form);
+        return Err(InputError::answer_is_no(file, message));
+    }
+    Ok(())
+}
+
+/// What was left out of a log, and why.
+pub(crate) fn left_out(report: &Report) -> Vec<String> {
+    let said = report.skipped.iter().map(|topic| match topic.messages {
+        0 => format!("{}: {}", topic.topic, topic.why),
+        messages => format!("{}: {messages} messages with {}", topic.topic, topic.why),
+    });
+    said.collect()
+}

@@ -1,0 +1,167 @@
+//! `eeruf logs`: what a log holds.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use eeruf_logs::{Reading, Report, read_log};
+use serde::Serialize;
+
+use super::answer::Answer;
+use super::log_args::{LogArgs, left_out, tell_damage};
+use crate::console::{print_line, tell};
+use crate::files::error::InputError;
+use crate::files::kind::expect_log;
+use crate::report::json::to_json;
+use crate::report::table::markdown;
+
+/// Say what a log holds: its form, its sensors, how they fire, and each guess with the option that overrides it.
+///
+/// Reads MCAP, ROS 1 and ROS 2 bags, tables with any separator, lines of pairs of name and value, JSON, and each of
+/// them packed by gzip, bzip2, xz or zstd. `replay` reads the same, and Python's `read_log`.
+///
+/// The exit code is 1 if no sensor is found.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The log
+    #[arg(value_name = "LOG")]
+    file: PathBuf,
+    #[command(flatten)]
+    log: LogArgs,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Found {
+    form: String,
+    sensors: Vec<Sensor>,
+    guesses: Vec<Guess>,
+    firing: Firing,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    warnings: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    damage: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    skipped: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Sensor {
+    name: String,
+    readings: u64,
+    echoes: u64,
+    no_echo: u64,
+    too_close: u64,
+    invalid: u64,
+    least_m: Option<f64>,
+    most_m: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Guess {
+    what: String,
+    value: String,
+    option: String,
+}
+
+#[derive(Serialize)]
+struct Firing {
+    pattern: &'static str,
+    period_us: Option<u64>,
+    gap_us: Option<u64>,
+    least_change_us: Option<u64>,
+    why: String,
+    proves: String,
+}
+
+impl Sensor {
+    fn count(&mut self, reading: &Reading) {
+        self.readings += 1;
+        match reading.echo() {
+            eeruf_logs::Echo::At(range_m) => {
+                self.echoes += 1;
+                self.least_m = Some(self.least_m.map_or(range_m, |least| least.min(range_m)));
+                self.most_m = Some(self.most_m.map_or(range_m, |most| most.max(range_m)));
+            }
+            eeruf_logs::Echo::Nothing => self.no_echo += 1,
+            eeruf_logs::Echo::TooClose => self.too_close += 1,
+            eeruf_logs::Echo::Invalid => self.invalid += 1,
+        }
+    }
+}
+
+pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
+    expect_log(&args.file)?;
+    let mut sensors: Vec<Sensor> = vec![];
+    let report = read_log(&args.file, &args.log.options(&args.file)?, |known, reading| {
+        while sensors.len() < known.len() {
+            sensors.push(Sensor {
+                name: String::new(),
+                readings: 0,
+                echoes: 0,
+                no_echo: 0,
+                too_close: 0,
+                invalid: 0,
+                least_m: None,
+                most_m: None,
+            });
+        }
+        sensors[reading.sensor].count(reading);
+    })?;
+    sensors.iter_mut().zip(report.names()).for_each(|(sensor, name)| sensor.name = name);
+    let found = found(&report, sensors);
+    if args.json {
+        print_line(to_json(&found))?;
+    } else if !report.sensors.is_empty() {
+        tell(describe(&args.file.display().to_string(), &found))?;
+    }
+    tell_damage(&args.file, &report)?;
+    Ok(Answer::Yes)
+}
+
+fn found(report: &Report, sensors: Vec<Sensor>) -> Found {
+    let guess = |guess: &eeruf_logs::Guess| Guess {
+        what: guess.what.clone(),
+        value: guess.value.clone(),
+        option: guess.option.clone(),
+    };
+    let firing = &report.firing;
+    Found {
+        form: report.form.clone(),
+        sensors,
+        guesses: report.guesses.iter().map(guess).collect(),
+        firing: Firing {
+            pattern: firing.pattern.as_str(),
+            period_us: firing.period_us,
+            gap_us: firing.gap_us,
+            least_change_us: firing.least_change_us,
+            why: firing.why.clone(),
+            proves: firing.proves(None),
+        },
+        warnings: report.warnings.clone(),
+        damage: report.damage.iter().map(ToString::to_string).collect(),
+        skipped: left_out(report),
+    }
+}
+
+fn describe(file: &str, found: &Found) -> String {
+    let count = found.sensors.len();
+    let mut text = format!("{file}: {}, {count} sensor{}\n", found.form, if count == 1 { "" } else { "s" });
+    let metres = |range: Option<f64>| range.map_or("-".to_owned(), |range| format!("{range:.3}"));
+    let rows = found.sensors.iter().map(|sensor| {
+        let counts = [sensor.readings, sensor.echoes, sensor.no_echo].map(|count| count.to_string());
+        let ranges = [metres(sensor.least_m), metres(sensor.most_m)];
+        [&[sensor.name.clone()][..], &counts, &ranges].concat()
+    });
+    let header = ["sensor", "readings", "echoes", "no echo", "nearest m", "farthest m"];
+    _ = write!(text, "{}", markdown(&header, rows));
+    for Guess { what, value, option } in &found.guesses {
+        _ = write!(text, "\nguessed {what}: {value} ({option})");
+    }
+    _ = write!(text, "\nfiring: {}: {}", found.firing.pattern, found.firing.proves);
+    for skipped in &found.skipped {
+        _ = write!(text, "\nleft out {skipped}");
+    }
+    text + "\n"
+}

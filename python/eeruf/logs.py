@@ -368,7 +368,7 @@ def read_log(
         >>> size = file.write_text(chr(10).join(["t,left,right", "0.00,1.20,", "0.06,1.21,2.50"]))
         >>> log = eeruf.read_log(file, time="t")
         >>> log.names, log.range_m.tolist()
-        (['left', 'right'], [1.2, 1.21, inf, 2.5])
+        (['left', 'right'], [1.2, inf, 1.21, 2.5])
 
     """
     found = _eeruf._read_log(path, time, time_unit, ranges, range_unit, sensor, speed_of_sound, no_echo_m, no_echo, columns, topics, fields, judged)

@@ -120,3 +120,23 @@ def test_the_replay_of_a_hopping_rings_log_is_the_run(tmp_path: Path) -> None:
     (tmp_path / "plain.csv").write_text("sensor,fired_us,period,phase,t_echo_us\n0,0,0,0,7000\n")
     with pytest.raises(eeruf.logs.LogError, match="does not say how it was weighed"):
         eeruf.replay(tmp_path / "plain.csv")
+
+
+CASES = Path(__file__).parents[1] / "data" / "field-cases"
+
+
+def test_arguments_override_guesses_which_are_listed() -> None:
+    log = eeruf.read_log(CASES / "semicolon-decimal-comma.csv")
+    assert log.names == ["left", "right"] and log.firing == "unknown" and "no times" in log.proves
+    assert {what for what, _, _ in log.guesses} >= {"separator", "decimal mark", "range unit", "no echo", "time"}
+    assert set(log.at_ns.tolist()) == {-1}
+    np.testing.assert_allclose(log.range_m[:2], [0.405, 0.801])
+    millimetres = eeruf.read_log(CASES / "multiarray.bag", fields=[("/ultrasonic", "data[]", "mm")])
+    np.testing.assert_allclose(millimetres.range_m * 1000, eeruf.read_log(CASES / "multiarray.bag").range_m)
+    zero = eeruf.read_log(CASES / "zero-is-no-echo.csv", no_echo=["80"], columns=["left", "right"])
+    assert zero.range_m[:2].tolist() == [0.0, np.inf]
+    with pytest.raises(eeruf.LogError, match="no sensors; expected ranges; found /RosAria/sonar"):
+        eeruf.read_log(CASES / "pointcloud.bag")
+    assert len(eeruf.read_log(CASES / "pointcloud.bag", topics=["/RosAria/sonar"]).names) > 1
+    with pytest.raises(eeruf.ArgumentError, match="fields = .*; expected triples"):
+        eeruf.read_log(CASES / "multiarray.bag", fields=[("/ultrasonic", "data[]", "km")])

@@ -415,7 +415,13 @@ impl Plan {
         let steps = column.steps();
         let Some(median) = steps.get(steps.len() / 2) else { return false };
         let is_even = steps.iter().filter(|&step| *step <= 3.0 * median).count() * 10 >= 9 * steps.len();
-        is_even && (column.numbers[column.numbers.len() / 2] >= 500.0 || column.numbers.len() >= 8)
+        let middle = column.numbers[column.numbers.len() / 2];
+        // Seconds among centimetres.
+        let is_small = middle.fract() != 0.0
+            && self.columns[1..]
+                .iter()
+                .all(|other| other.numbers.iter().filter(|&&number| number > 0.0).all(|&number| number > 5.0 * middle));
+        is_even && (middle >= 500.0 || column.numbers.len() >= 8 || is_small)
     }
 
     /// A column that rises by the same step in 30 rows and more.

@@ -28,7 +28,7 @@ fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
 /// Name, text, sensors, and seconds between the first two readings.
 type Form = (&'static str, &'static str, &'static str, Option<f64>);
 
-const FORMS: [Form; 44] = [
+const FORMS: [Form; 46] = [
     ("comma", "left,right\n40,80\n41,81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("semicolon", "left;right\n40;80\n41;81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
     ("tab", "left\tright\n40\t80\n41\t81\n", "left: 0.4 0.41; right: 0.8 0.81", None),
@@ -81,6 +81,13 @@ const FORMS: [Form; 44] = [
         "column 1: 0.4 0.41 0.4; column 2: 0.8 0.81 0.8",
         Some(0.06),
     ),
+    (
+        "seconds, no header",
+        "0.1 40 80\n0.2 41 81\n0.3 40 80\n",
+        "column 2: 0.4 0.41 0.4; column 3: 0.8 0.81 0.8",
+        Some(0.1),
+    ),
+    ("ROS console", "[INFO] [17.100]: left: 0.40\n[INFO] [17.200]: left: 0.41\n", "left: 0.4 0.41", Some(0.1)),
     (
         "name and value",
         "left: 40 cm\nright: 80 cm\nleft: 41 cm\nright: out of range\n",

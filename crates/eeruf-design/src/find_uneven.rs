@@ -90,9 +90,9 @@ pub(crate) fn decide_uneven(
     let outcome = loop {
         let left = budget.saturating_sub(search.nodes());
         let mut decided = search.decide(period, effort.min(left), &mut go_on);
-        if let (Decided::Open, Some(guide)) = (&decided, &guide) {
+        if decided == Decided::Open {
             let left = budget.saturating_sub(search.nodes());
-            decided = search.find(period, (effort / 2).min(left), effort, guide, &mut go_on);
+            decided = search.find(period, (effort / 2).min(left), effort, guide.as_ref(), &mut go_on);
         }
         match decided {
             Decided::Found(fire) => break Outcome::Found(schedule_of(problem, period, &fire)?),

@@ -3,6 +3,8 @@
 //! A bound is one integer: `2 v` says "at most v", `2 v - 1` says "less than v". So comparing integers compares bounds,
 //! and whole ticks and real times are treated alike: in whole ticks no bound is odd.
 
+use crate::engine::problem::MAX_SENSORS;
+
 /// What a bound is made of: `t_j - t_i <= v` is stored as `2 v`, `t_j - t_i < v` as `2 v - 1`.
 pub(crate) type Bound = i32;
 
@@ -15,14 +17,27 @@ pub(crate) fn sum(v: Bound, w: Bound) -> Bound {
     v + w + (v & w & 1)
 }
 
-/// The closed matrix of bounds: `at(i, j)` is the least upper bound on `t_j - t_i` that follows.
+/// The closed matrix of bounds: `at(i, j)` is the least upper bound on `t_j - t_i` that follows. A log of the rows as
+/// they were takes it back to an earlier mark.
 #[derive(Clone, Debug)]
 pub(crate) struct Bounds {
     events: usize,
     matrix: Vec<Bound>,
     /// Room for two rows.
     onward: Vec<Bound>,
+    /// Rows as they were before they changed: the bounds, then the row's number.
+    log: Vec<Bound>,
+    /// The step in which each row was logged last: once a step is enough.
+    saved: Vec<u32>,
+    step: u32,
+    /// The number of changes of the matrix so far, those taken back among them.
+    version: u64,
+    /// The rows that changed since they were last taken, as bits.
+    changed: [u64; CHANGED],
 }
+
+/// Words for a bit a row.
+const CHANGED: usize = (2 * MAX_SENSORS + 1).div_ceil(64);
 
 impl Bounds {
     /// Every difference of two of `events` times is at most `widest`.
@@ -31,15 +46,63 @@ impl Bounds {
         for i in 0..events {
             matrix[i * events + i] = 0;
         }
-        Self { events, matrix, onward: vec![0; 2 * events] }
+        let changed = core::array::from_fn(|word| {
+            (0..64).filter(|bit| 64 * word + bit < events).fold(0, |set, bit| set | 1 << bit)
+        });
+        let (onward, saved) = (vec![0; 2 * events], vec![0; events]);
+        Self { events, matrix, onward, log: Vec::new(), saved, step: 1, version: 1, changed }
     }
 
     /// The upper bound on `t_j - t_i`.
+    #[inline]
     pub(crate) fn at(&self, i: usize, j: usize) -> Bound {
         self.matrix[i * self.events + j]
     }
 
+    /// A number that no two different matrices of this search have.
+    pub(crate) fn version(&self) -> u64 {
+        self.version
+    }
+
+    /// A row that changed since it was last taken. At first all have.
+    pub(crate) fn take_changed(&mut self) -> Option<usize> {
+        let (word, bits) = self.changed.iter_mut().enumerate().find(|(_, bits)| **bits != 0)?;
+        let row = 64 * word + bits.trailing_zeros() as usize;
+        *bits &= *bits - 1;
+        Some(row)
+    }
+
+    /// Begins a step, and returns the mark that [`undo`](Self::undo) goes back to.
+    pub(crate) fn mark(&mut self) -> usize {
+        self.begin_step();
+        self.log.len()
+    }
+
+    fn begin_step(&mut self) {
+        self.step = self.step.wrapping_add(1);
+        if self.step == 0 {
+            self.saved.fill(0);
+            self.step = 1;
+        }
+    }
+
+    /// Goes back to the mark. Later marks are void.
+    pub(crate) fn undo(&mut self, mark: usize) {
+        let n = self.events;
+        while self.log.len() > mark {
+            let end = self.log.len() - 1;
+            let row = self.log[end] as usize;
+            self.matrix[row * n..(row + 1) * n].copy_from_slice(&self.log[end - n..end]);
+            self.log.truncate(end - n);
+        }
+        self.begin_step();
+        self.version += 1;
+        // Marks are where all has been concluded.
+        self.changed = [0; CHANGED];
+    }
+
     /// Learns that `t_j - t_i` is at most `bound`, and closes the matrix again. Returns true if it was news.
+    #[inline]
     pub(crate) fn learn(&mut self, i: usize, j: usize, bound: Bound) -> Result<bool, Refuted> {
         if bound >= self.at(i, j) {
             return Ok(false);
@@ -48,23 +111,34 @@ impl Bounds {
         if sum(bound, self.at(j, i)) < 0 {
             return Err(Refuted);
         }
+        self.close(i, j, bound);
+        Ok(true)
+    }
+
+    fn close(&mut self, i: usize, j: usize, bound: Bound) {
         let n = self.events;
-        let Self { matrix, onward, .. } = self;
+        let Self { matrix, onward, log, saved, step, version, changed, .. } = self;
+        *version += 1;
         // `sum` with an odd number: the other is rounded up to an even one.
         let (even, odd) = onward.split_at_mut(n);
         even.copy_from_slice(&matrix[j * n..(j + 1) * n]);
         for (odd, even) in odd.iter_mut().zip(even.iter()) {
             *odd = even + (even & 1);
         }
-        for row in matrix.chunks_exact_mut(n) {
+        for (number, (row, saved)) in matrix.chunks_exact_mut(n).zip(saved).enumerate() {
             let through = sum(row[i], bound);
             if through < row[j] {
+                changed[number / 64] |= 1 << (number % 64);
+                if *saved != *step {
+                    *saved = *step;
+                    log.extend_from_slice(row);
+                    log.push(number as Bound);
+                }
                 let onward = if through & 1 == 0 { &*even } else { &*odd };
                 for (old, onward) in row.iter_mut().zip(onward) {
                     *old = (*old).min(through + onward);
                 }
             }
         }
-        Ok(true)
     }
 }

@@ -4,9 +4,11 @@
 //! |---|---|
 //! | `problem` | the problem in ticks, a claim about its period; groups that fire together as one sensor |
 //! | `bounds`, `state` | the difference-bound matrix; the knowledge at a node |
-//! | `rules` | propagation |
+//! | `rules` | propagation; for searches more than a certificate's rules |
+//! | `counting`, `construct` | a bound by counting; schedules without a search |
 //! | `branching`, `symmetry` | case distinctions; assumptions at the root |
 //! | `schedule` | a schedule, checked longhand |
+//! | `descent` | the branchings of short descents, which look for schedules |
 //! | `search`, `shortest`, `spare` | one period, the shortest, the schedule with most to spare |
 //! | `prove` | certificates |
 //! | `orders`, `linear`, `reals` | the shortest period over the reals |
@@ -23,9 +25,16 @@
 //! - The checker says which line is wrong and why; the engine asks only whether a schedule keeps the needs.
 //! - The checker replays branchings; the engine chooses them, and in a search takes the times at the bounds for a
 //!   schedule as soon as they serve.
+//! - The checker copies what is known at each node; the engine has one matrix and a log that takes it back.
+//! - In a search the engine concludes more: `State::goes_further` adds Hall intervals, the grid of ranks and the chain
+//!   of |d|. A certificate is written without them, so a mistake there comes out when one is
+//!   written.
 
 mod bounds;
 mod branching;
+mod construct;
+mod counting;
+mod descent;
 mod linear;
 mod orders;
 mod problem;

@@ -127,6 +127,8 @@ pub(crate) struct Merged {
     pub(crate) pairs: Vec<(usize, usize)>,
     /// Those with which each has a gap.
     pub(crate) neighbours: Vec<Vec<usize>>,
+    /// The least distance of any two |d|, as a bound.
+    pub(crate) least_apart: i32,
 }
 
 impl Problem {
@@ -134,6 +136,40 @@ impl Problem {
     #[must_use]
     pub fn sensors(&self) -> usize {
         self.separation.len()
+    }
+
+    /// All its times, in ticks.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = u32> + '_ {
+        let gaps = self.gaps.iter().flat_map(|&(.., after_x, after_y)| [after_x, after_y]);
+        self.separation.iter().chain(&self.window).copied().chain(gaps)
+    }
+
+    /// The same problem where the smallest separation is that of two: of any two sensors the larger counts, so that of
+    /// a single one with a smaller separation never does, but for its own stale echoes.
+    pub(crate) fn with_separations_that_count(&self) -> Self {
+        let merged = self.merged();
+        let raised = |of: &usize, own: u32| {
+            let is_alone = merged.separation.iter().filter(|&&other| 2 * other < merged.least_apart).count() == 1;
+            let is_least = 2 * merged.separation[*of] < merged.least_apart;
+            if is_alone && is_least && !self.stale_echo { merged.least_apart as u32 / 2 } else { own }
+        };
+        let separation = merged.of_sensor.iter().zip(&self.separation).map(|(of, &own)| raised(of, own)).collect();
+        Self { separation, ..self.clone() }
+    }
+
+    /// The even ring that asks for no more: all sensors have the smallest separation that counts, the smallest gap and
+    /// the smallest window. `None` if that is the problem itself.
+    pub(crate) fn evened(&self) -> Option<Self> {
+        let counts = self.with_separations_that_count();
+        let least = |times: &[u32]| times.iter().copied().min().unwrap_or(1);
+        let gap = counts.gaps.iter().map(|&(.., after_x, after_y)| after_x.min(after_y)).min().unwrap_or(1);
+        let even = Self {
+            separation: vec![least(&counts.separation); self.sensors()],
+            window: vec![least(&counts.window); self.sensors()],
+            gaps: counts.gaps.iter().map(|&(x, y, ..)| (x, y, gap, gap)).collect(),
+            ..counts.clone()
+        };
+        (even != counts).then_some(even)
     }
 
     pub(crate) fn merged(&self) -> Merged {
@@ -165,7 +201,11 @@ impl Problem {
         let pairs = pairs.filter(|&(x, y)| gap[x][y] > 0).collect();
         let neighbours = gap.iter().map(|row| (0..count).filter(|&y| row[y] > 0).collect()).collect();
         let (stale_echo, over_reals) = (self.stale_echo, self.over_reals);
-        Merged { of_sensor, separation, window, stale_echo, over_reals, gap, pairs, neighbours }
+        // Of two sensors the larger separation counts, so the smallest of all never does.
+        let mut ascending = separation.clone();
+        ascending.sort_unstable();
+        let least_apart = 2 * ascending.get(1).or(ascending.first()).copied().unwrap_or(0);
+        Merged { of_sensor, separation, window, stale_echo, over_reals, gap, pairs, neighbours, least_apart }
     }
 }
 

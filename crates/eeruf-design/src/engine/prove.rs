@@ -8,7 +8,7 @@ use crate::engine::branching::{Branching, choose};
 use crate::engine::orders::Orders;
 use crate::engine::problem::Claim;
 use crate::engine::search::nodes_between;
-use crate::engine::state::{State, event};
+use crate::engine::state::{Mark, event};
 use crate::engine::symmetry::Assumptions;
 
 /// Why there is no certificate.
@@ -101,36 +101,36 @@ pub(crate) fn prove_but(
     let merged = claim.problem.merged();
     let assumptions = Assumptions::of(&claim.problem);
     let mut text = claim.head() + &assumptions.lines();
-    let root = assumptions.root(&merged, claim.bound);
+    let Ok(mut state) = assumptions.root(&merged, claim.bound) else { return Ok(text + "end\n") };
     let firsts = merged.firsts();
     let between = nodes_between(claim.problem.sensors());
     let mut nodes = 1;
-    let mut open: Vec<(State, Branching, usize)> = Vec::new();
-    let mut reached = root;
+    let mut open: Vec<(Mark, Branching)> = Vec::new();
+    let mut holds = true;
     loop {
-        if let Ok(state) = reached {
-            if let Some(branching) = choose(&state, &merged) {
+        let (branching, case) = match if holds { choose(&state, &merged) } else { None } {
+            Some(branching) => {
                 text += &branching.line(&firsts);
-                open.push((state, branching, 0));
-            } else if merged.over_reals {
-                let orders = Orders::at(&state);
-                if !are_excluded(&orders) {
+                open.push((state.mark(), branching));
+                (branching, 0)
+            }
+            None => {
+                if holds && !merged.over_reals {
+                    return Err(NoProof::Feasible([0, 1].map(|phase| {
+                        let times = merged.of_sensor.iter().map(|&one| -state.bounds.at(event(one, phase), 0) / 2);
+                        times.map(|time| time as u32).collect()
+                    })));
+                }
+                let orders = if holds { Some(Orders::at(&state)) } else { None };
+                if let Some(orders) = orders.filter(|orders| !are_excluded(orders)) {
                     return Err(NoProof::Open(orders));
                 }
-            } else {
-                return Err(NoProof::Feasible([0, 1].map(|phase| {
-                    let times = merged.of_sensor.iter().map(|&one| -state.bounds.at(event(one, phase), 0) / 2);
-                    times.map(|time| time as u32).collect()
-                })));
+                // The second case of the deepest branching that has not come to it.
+                let Some((mark, branching)) = open.pop() else { return Ok(text + "end\n") };
+                state.drop_mark(mark);
+                (branching, 1)
             }
-        }
-        let Some((mut state, branching, case)) = open.pop() else {
-            return Ok(text + "end\n");
         };
-        if case == 0 {
-            let next = (state.clone(), branching, 1);
-            open.push(next);
-        }
         nodes += 1;
         if nodes > budget {
             return Err(NoProof::Budget(budget));
@@ -138,6 +138,6 @@ pub(crate) fn prove_but(
         if nodes.is_multiple_of(between) && !go_on(nodes) {
             return Err(NoProof::Stopped);
         }
-        reached = branching.assume(case, &mut state, &merged).map(|()| state);
+        holds = branching.assume(case, &mut state, &merged).is_ok();
     }
 }

@@ -107,7 +107,7 @@ impl OverReals {
         let fine = in_parts(problem, self.denominator)?;
         let mut search = Search::new(&fine);
         let effort = ATTEMPTS * search.depth();
-        match search.find(self.period, effort, 0, &self.fire, &mut |_| true) {
+        match search.find(self.period, effort, 0, Some(&self.fire), &mut |_| true) {
             Decided::Found(fire) => Some(Self { fire, ..self }),
             _ => None,
         }

@@ -5,30 +5,47 @@
 //! state: a certificate's tree is refuted where the checker's own copy of the rules refutes it.
 
 use crate::engine::bounds::{Bound, Refuted, sum};
-use crate::engine::problem::Merged;
-use crate::engine::state::{State, event};
+use crate::engine::counting::members;
+use crate::engine::problem::{MAX_SENSORS, Merged};
+use crate::engine::state::{State, event, firing};
 
 /// Applies all rules until none tells anything new.
 pub(crate) fn propagate(state: &mut State, merged: &Merged) -> Result<(), Refuted> {
     loop {
         // The cheap rules first: most refutations need no other.
-        let cheap = orders(state, merged)? | signs(state)? | ranks(state, merged)?;
-        spacing(state, merged)?;
-        if !cheap && !precedence(state, merged)? {
-            return Ok(());
+        let mut news = orders(state, merged)? | signs(state)?;
+        if !state.has_seen_sizes() {
+            let of_sizes = ranks(state, merged)? | spacing(state, merged)?;
+            let of_sizes = of_sizes || state.goes_further && grid(state, merged)?;
+            if !of_sizes {
+                state.see_sizes();
+            }
+            news |= of_sizes;
+        }
+        if state.goes_further {
+            news |= chain(state, merged)?;
+        }
+        if !news {
+            let version = state.bounds.version();
+            if state.seen.precedence == version {
+                return Ok(());
+            }
+            if !precedence(state, merged)? {
+                state.seen.precedence = version;
+                return Ok(());
+            }
         }
     }
 }
 
-/// Rule 2: if y cannot come `gap` after x, then x comes after y.
+/// Rule 2: if y cannot come `gap` after x, then x comes after y. Only rows of the matrix that changed can say so anew.
 fn orders(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     let mut news = false;
-    for &(x, y) in &merged.pairs {
-        for phase in 0..2 {
-            for (x, y) in [(x, y), (y, x)] {
-                if state.bounds.at(event(x, phase), event(y, phase)) < 2 * merged.gap[x][y] {
-                    news |= state.learn_order(merged, y, x, phase)?;
-                }
+    while let Some(changed) = state.bounds.take_changed() {
+        let Some((x, phase)) = firing(changed) else { continue };
+        for &y in &merged.neighbours[x] {
+            if state.bounds.at(event(x, phase), event(y, phase)) < 2 * merged.gap[x][y] {
+                news |= state.learn_order(merged, y, x, phase)?;
             }
         }
     }
@@ -63,58 +80,99 @@ fn signs(state: &mut State) -> Result<bool, Refuted> {
 fn ranks(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     let count = merged.count();
     let mut news = false;
-    let high: Vec<Bound> = (0..count).map(|x| state.high(x)).collect();
+    let mut high = [0; MAX_SENSORS];
+    for (x, high) in high[..count].iter_mut().enumerate() {
+        *high = state.high(x);
+    }
     for y in 0..count {
+        let mut below = state.below[y];
         for x in 0..count {
-            if x != y && high[x] < state.low[y] + merged.apart(x, y) {
-                news |= state.learn_below(x, y);
+            if high[x] < state.low[y] + merged.apart(x, y) {
+                below |= u64::from(x != y) << x;
             }
-            if state.is_below(x, y) {
-                let further = state.below[x] & !state.below[y];
-                state.below[y] |= further;
-                news |= further != 0;
+            if below >> x & 1 == 1 {
+                below |= state.below[x];
             }
         }
+        news |= below != state.below[y];
+        state.below[y] = below;
         if state.is_below(y, y) {
             return Err(Refuted);
         }
     }
-    let mut above = vec![0_u64; count];
+    let mut above = [0_u64; MAX_SENSORS];
     for y in 0..count {
         members(state.below[y]).for_each(|x| above[x] |= 1 << y);
     }
-    let mut values = Vec::with_capacity(count);
+    let (mut by_low, mut by_high) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
+    // As they are now: those that rise below would no longer be in order.
+    let mut low = [0; MAX_SENSORS];
+    low[..count].copy_from_slice(&state.low);
+    let by_low = ascending(&mut by_low, count, |x| -low[x]);
+    let by_high = ascending(&mut by_high, count, |x| high[x]);
     for y in 0..count {
-        values.clear();
-        values.extend(members(state.below[y]).map(|x| (-state.low[x], merged.separation[x])));
-        if let Some(bound) = beyond(&mut values, merged.separation[y]) {
+        let below = by_low.iter().filter(|&&x| state.below[y] >> x & 1 == 1);
+        let below = below.map(|&x| (-low[usize::from(x)], merged.separation[usize::from(x)]));
+        if let Some(bound) = beyond(below, merged.separation[y]) {
             news |= state.learn_low(y, -bound)?;
         }
-        values.clear();
-        values.extend(members(above[y]).map(|x| (high[x], merged.separation[x])));
-        if let Some(bound) = beyond(&mut values, merged.separation[y]) {
+        let above = by_high.iter().filter(|&&x| above[y] >> x & 1 == 1);
+        let above = above.map(|&x| (high[usize::from(x)], merged.separation[usize::from(x)]));
+        if let Some(bound) = beyond(above, merged.separation[y]) {
             news |= state.learn_high(y, bound)?;
         }
     }
     Ok(news)
 }
 
-/// The numbers in a set of bits, in ascending order.
-fn members(mut set: u64) -> impl Iterator<Item = usize> {
-    core::iter::from_fn(move || {
-        let least = set.trailing_zeros() as usize;
-        set &= set.wrapping_sub(1);
-        (least < 64).then_some(least)
-    })
+/// The numbers below `count`, sorted by `key`: by insertion, as they are few.
+fn ascending(numbers: &mut [u8; MAX_SENSORS], count: usize, key: impl Fn(usize) -> Bound) -> &[u8] {
+    for i in 0..count {
+        let (own, mut at) = (key(i), i);
+        while at > 0 && key(usize::from(numbers[at - 1])) > own {
+            numbers[at] = numbers[at - 1];
+            at -= 1;
+        }
+        numbers[at] = i as u8;
+    }
+    &numbers[..count]
 }
 
-/// A bound below all `values`, each a value's upper bound and its separation: below any set of them by the width that
-/// the set needs, together with a value of separation `own`.
-fn beyond(values: &mut [(Bound, i32)], own: i32) -> Option<Bound> {
-    values.sort_unstable();
+/// Where one |d| is known to come next below another, and both signs are known, each pair of differences of the four
+/// times bounds the other. Whole ticks alone.
+fn chain(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
+    let mut news = false;
+    // The later and the earlier firing, while the sign is known.
+    let signed = |state: &State, x: usize| {
+        let (a, b) = (event(x, 0), event(x, 1));
+        if state.most(x, true) <= 0 { Some((a, b)) } else { (state.most(x, false) <= 0).then_some((b, a)) }
+    };
+    for y in 0..merged.count() {
+        let Some((late_y, early_y)) = signed(state, y) else { continue };
+        let further = members(state.below[y]).fold(0, |further, z| further | state.below[z]);
+        for x in members(state.below[y] & !further) {
+            let Some((late_x, early_x)) = signed(state, x) else { continue };
+            let apart = merged.apart(x, y);
+            for (from, to, least) in [
+                (late_y, early_y, (late_x, early_x)),
+                (early_x, late_x, (early_y, late_y)),
+                (late_y, late_x, (early_y, early_x)),
+                (early_x, early_y, (late_x, late_y)),
+            ] {
+                let bound = state.bounds.at(least.0, least.1) - apart;
+                news |= state.bounds.learn(from, to, bound)?;
+            }
+        }
+    }
+    Ok(news)
+}
+
+/// A bound below all `values`, each a value's upper bound and its separation, in ascending order: below any set of them
+/// by the width that the set needs, together with a value of separation `own`.
+fn beyond(values: impl Iterator<Item = (Bound, i32)>, own: i32) -> Option<Bound> {
     let (mut width, mut narrowest) = (own, own);
     let mut least: Option<Bound> = None;
-    for &(bound, separation) in values.iter() {
+    for (bound, separation) in values {
         width += separation;
         narrowest = narrowest.min(separation);
         let bound = bound - 2 * (width - narrowest);
@@ -124,28 +182,82 @@ fn beyond(values: &mut [(Bound, i32)], own: i32) -> Option<Bound> {
 }
 
 /// Rule 5, Hall's condition: those whose |d| lies within an interval must have room there.
-fn spacing(state: &State, merged: &Merged) -> Result<(), Refuted> {
+///
+/// With `goes_further`: where they leave no room for another, it is above all of them if it may not lie below the
+/// interval, and below all of them if it may not lie above it (*Hall intervals*, Puget 1998).
+fn spacing(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     let count = merged.count();
-    let mut values: Vec<(Bound, Bound, i32)> =
-        (0..count).map(|x| (state.high(x), state.low[x], merged.separation[x])).collect();
-    values.sort_unstable();
+    let mut news = false;
+    let mut highs = [0; MAX_SENSORS];
+    for (x, high) in highs[..count].iter_mut().enumerate() {
+        *high = state.high(x);
+    }
+    let mut by_high = [0; MAX_SENSORS];
+    let by_high = ascending(&mut by_high, count, |x| highs[x]);
+    let smallest = merged.least_apart / 2;
     for first in 0..count {
-        let start = values[first].1;
-        if values[..first].iter().any(|&(_, low, _)| low == start) {
+        let start = state.low[first];
+        if state.low[..first].contains(&start) {
             continue;
         }
-        let (mut width, mut narrowest) = (0, i32::MAX);
-        for &(high, low, separation) in &values {
-            if low >= start {
-                width += separation;
-                narrowest = narrowest.min(separation);
-                if start + 2 * (width - narrowest) > high {
-                    return Err(Refuted);
+        let (mut within, mut width, mut narrowest) = (0_u64, 0, i32::MAX);
+        for (rank, &x) in by_high.iter().enumerate() {
+            let x = usize::from(x);
+            if state.low[x] < start {
+                continue;
+            }
+            within |= 1 << x;
+            width += merged.separation[x];
+            narrowest = narrowest.min(merged.separation[x]);
+            let high = highs[x];
+            if start + 2 * (width - narrowest) > high {
+                return Err(Refuted);
+            }
+            let is_full = |own: i32| start + 2 * (width + own - narrowest.min(own)) > high;
+            if !state.goes_further || !is_full(smallest) {
+                continue;
+            }
+            // Only the last of equal ends sees the whole set.
+            if by_high.get(rank + 1).is_some_and(|&next| highs[usize::from(next)] == high) {
+                continue;
+            }
+            for y in (0..count).filter(|&y| within >> y & 1 == 0 && is_full(merged.separation[y])) {
+                if state.low[y] >= start {
+                    news |= within & !state.below[y] != 0;
+                    state.below[y] |= within;
+                } else if highs[y] <= high {
+                    members(within).for_each(|x| news |= state.learn_below(y, x));
                 }
             }
         }
     }
-    Ok(())
+    Ok(news)
+}
+
+/// The K values |d| lie a least separation D apart from `low` to `high`. So the one of rank r is within
+/// `low + D r` and that plus what is to spare, and no value lies between these ranges.
+fn grid(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
+    let count = merged.count();
+    let step = merged.least_apart;
+    let least = state.low.iter().copied().min().unwrap_or(0);
+    let most = (0..count).map(|x| state.high(x)).max().unwrap_or(0);
+    let spare = most - least - step * (count as Bound - 1);
+    if spare >= step - 2 {
+        return Ok(false);
+    }
+    let mut news = false;
+    for x in 0..count {
+        let over = (state.low[x] - least) % step;
+        if over > spare {
+            news |= state.learn_low(x, state.low[x] + step - over)?;
+        }
+        let high = state.high(x);
+        let over = (high - least) % step;
+        if over > spare {
+            news |= state.learn_high(x, high - over + spare)?;
+        }
+    }
+    Ok(news)
 }
 
 /// The events whose difference, second less first, is `d_x`, or `-d_x` if `negative`.

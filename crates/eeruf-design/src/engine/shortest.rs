@@ -1,7 +1,10 @@
 //! The shortest period of a problem, even or uneven: found by bisection with short descents, and proven by a full
 //! search of the period one tick shorter.
 
-use crate::engine::problem::Problem;
+use crate::engine::construct::{Times, constructed};
+use crate::engine::counting::least_period;
+use crate::engine::problem::{MAX_NUMBER, Problem};
+use crate::engine::schedule;
 use crate::engine::search::{Decided, FiringTimes, Search};
 
 /// The shortest period found, in ticks.
@@ -36,135 +39,269 @@ pub struct SoFar {
 /// beyond [`MAX_NUMBER`](crate::engine::MAX_NUMBER) ticks: then `None`. The answer depends on problem and budget alone.
 #[must_use]
 pub fn shortest(problem: &Problem, budget: u64, go_on: &mut dyn FnMut(&SoFar) -> bool) -> Option<Shortest> {
-    let fire = one_by_one(problem)?;
-    let mut found = Shortest { period: period_of(problem, &fire), fire, bound: 1, nodes: 0, without_cases: false };
-    if found.period > crate::engine::MAX_NUMBER || !crate::engine::schedule::keeps(problem, found.period, &found.fire) {
-        return None;
-    }
-    if let Some((coarse, ticks)) = in_coarse_ticks(problem) {
-        // What coarse ticks find serves in fine ones too. Where fine ones gain anything it is little.
-        let fire = one_by_one(&coarse)?;
-        let start = Shortest { period: period_of(&coarse, &fire), fire, ..found };
-        let mut run = Run { search: Search::new(&coarse), problem: &coarse, found: start, budget: budget / 2 };
-        run.search(&mut |so_far| go_on(&SoFar { nodes: so_far.nodes, best: so_far.best * ticks, bound: 1 }));
-        let nodes = run.found.nodes;
-        let fire: FiringTimes = run.found.fire.map(|times| times.into_iter().map(|time| time * ticks).collect());
-        found = Shortest { period: period_of(problem, &fire), fire, bound: 1, nodes, without_cases: false };
-    }
-    let nodes = found.nodes;
-    let mut run = Run { search: Search::new(problem), problem, found, budget: budget.saturating_sub(nodes) };
-    run.search(&mut |so_far| go_on(&SoFar { nodes: nodes + so_far.nodes, ..*so_far }));
-    run.found.nodes += nodes;
-    Some(run.found)
+    let mut run = Run::new(problem, true)?;
+    run.limit = budget;
+    // Stopped or not, what was found counts.
+    _ = run.search(go_on);
+    let nodes = run.nodes();
+    Some(Shortest { nodes, without_cases: run.found.period == run.bound_of_rules, ..run.found })
 }
+
+/// The nodes of the first round for each sensor.
+const EFFORT: u64 = 16;
 
 /// The search for one problem.
-struct Run<'p> {
-    search: Search<'p>,
-    problem: &'p Problem,
+struct Run {
+    search: Search,
     found: Shortest,
-    budget: u64,
+    /// The search ends at so many nodes.
+    limit: u64,
+    /// True if the schedule found came from a search, so that it is worth following.
+    is_guide: bool,
+    /// The problem in coarser ticks, and their length.
+    coarse: Option<(Box<Run>, u32)>,
+    /// The even ring that asks for no more.
+    even: Option<Box<Run>>,
+    /// Nodes of runs that ended.
+    ended: u64,
+    /// The bound that follows without distinguishing cases.
+    bound_of_rules: u32,
 }
 
-impl Run<'_> {
-    /// Bisects, then proves.
-    fn search(&mut self, go_on: &mut dyn FnMut(&SoFar) -> bool) {
-        self.found.bound = one_after_the_other(self.problem).clamp(1, self.found.period);
-        self.bound_by_rules(go_on);
-        let effort = 8 * self.search.depth();
-        // Periods from here on have not been looked at in vain.
-        let mut low = self.found.bound;
-        while low < self.found.period && self.search.nodes() < self.budget {
-            let middle = low + (self.found.period - low) / 2;
-            match self.find(middle, effort, go_on) {
-                Decided::Found(_) => {}
-                Decided::Stopped => return self.end(),
-                Decided::Open | Decided::Refuted => low = middle + 1,
-            }
+/// The caller wanted no more.
+struct Stopped;
+
+/// Asks the caller whether to go on, with the nodes so far and what is found.
+type Ask<'a> = &'a mut dyn FnMut(u64, &Shortest) -> bool;
+
+impl Run {
+    /// Begins with a constructed schedule, and with what counting and the rules alone say. `None` if sensors that fire
+    /// together must keep a gap, or where numbers are too large.
+    fn new(problem: &Problem, is_first: bool) -> Option<Self> {
+        if problem.numbers().any(|number| number > MAX_NUMBER) {
+            return None;
         }
-        let mut effort = effort;
-        while self.found.bound < self.found.period && self.search.nodes() < self.budget {
-            effort *= 2;
-            let left = self.budget - self.search.nodes();
-            match self.decide(self.found.period - 1, effort.min(left), go_on) {
-                Decided::Refuted => self.found.bound = self.found.period,
-                Decided::Found(fire) => self.improve(fire),
-                Decided::Stopped => return self.end(),
-                Decided::Open => {}
-            }
-            // Ever shorter periods, as long as that succeeds.
-            let mut step = 1;
-            while self.found.bound < self.found.period {
-                let shorter = self.found.period.saturating_sub(step).max(self.found.bound);
-                match self.find(shorter, effort / 2, go_on) {
-                    Decided::Found(_) => step *= 2,
-                    Decided::Refuted => {
-                        self.found.bound = shorter + 1;
-                        break;
-                    }
-                    Decided::Open => break,
-                    Decided::Stopped => return self.end(),
-                }
-            }
+        let search = Search::new(problem);
+        let fire = constructed_times(problem)?;
+        let period = period_of(problem, &fire);
+        if period > MAX_NUMBER || !schedule::keeps(problem, period, &fire) {
+            return None;
         }
-        self.end();
+        let bound = least_period(search.merged()).max(one_after_the_other(problem)).clamp(1, period);
+        let found = Shortest { period, fire, bound, nodes: 0, without_cases: false };
+        let (limit, is_guide, ended) = (u64::MAX, false, 0);
+        let mut run = Self { search, found, limit, is_guide, coarse: None, even: None, ended, bound_of_rules: bound };
+        run.bound_by_rules();
+        if run.is_open() {
+            let even = if is_first { problem.evened() } else { None };
+            run.even = even.and_then(|even| Self::new(&even, false)).map(Box::new);
+            let coarse = in_coarse_ticks(problem);
+            run.coarse = coarse.and_then(|(coarse, ticks)| Some((Box::new(Self::new(&coarse, is_first)?), ticks)));
+        }
+        Some(run)
     }
 
-    fn end(&mut self) {
-        self.found.nodes = self.search.nodes();
+    /// Finds and proves, in rounds with growing efforts, as far as budget and caller let it.
+    fn search(&mut self, go_on: &mut dyn FnMut(&SoFar) -> bool) -> Result<(), Stopped> {
+        let mut ask = |nodes: u64, found: &Shortest| go_on(&SoFar { nodes, best: found.period, bound: found.bound });
+        let mut effort = EFFORT * self.sensors();
+        // A bound between two coarse ticks may be met, and then coarse ticks cannot meet it.
+        if let Some((_, ticks)) = &self.coarse
+            && !self.found.bound.is_multiple_of(*ticks)
+        {
+            self.finds(self.found.bound, 4 * effort, &mut ask)?;
+        }
+        while self.is_open() {
+            self.round(effort, &mut ask)?;
+            effort += effort / 2;
+        }
+        Ok(())
+    }
+
+    /// One round: what is open of the coarse ticks and of the even ring, then of the problem itself.
+    fn round(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
+        if let Some((mut coarse, ticks)) = self.coarse.take() {
+            let before = self.nodes();
+            // At most half of all nodes go into this.
+            coarse.limit = (self.limit / 2).saturating_sub(before);
+            let found = self.found.clone();
+            let best = coarse.found.period;
+            let round = coarse.round(effort, &mut |nodes, _| ask(before + nodes, &found));
+            // What coarse ticks find serves in fine ones too. Where fine ones gain anything it is little.
+            if coarse.found.period < best {
+                let times = |times: &Vec<u32>| times.iter().map(|time| time * ticks).collect();
+                self.offer(coarse.found.fire.each_ref().map(times), coarse.is_guide);
+            }
+            if coarse.is_open() {
+                self.coarse = Some((coarse, ticks));
+                return round;
+            }
+            self.ended += coarse.nodes();
+            round?;
+        }
+        if let Some(mut even) = self.even.take() {
+            let before = self.nodes();
+            even.limit = self.limit.saturating_sub(before) / 2;
+            let found = self.found.clone();
+            let best = even.found.period;
+            let round = even.round(effort, &mut |nodes, _| ask(before + nodes, &found));
+            self.found.bound = self.found.bound.max(even.found.bound.min(self.found.period));
+            if even.found.period < best {
+                for image in images(self.search.problem(), &even.found.fire) {
+                    self.offer(image, true);
+                }
+            }
+            // Periods that the even ring has are not refuted by it.
+            if even.is_open() && even.found.period > self.found.bound {
+                self.even = Some(even);
+            } else {
+                self.ended += even.nodes();
+            }
+            round?;
+        }
+        if self.is_guide { self.bisect(effort, ask) } else { self.gallop(effort, ask) }
+    }
+
+    /// Takes these times if they serve at a shorter period.
+    fn offer(&mut self, fire: FiringTimes, is_guide: bool) {
+        let period = period_of(self.search.problem(), &fire);
+        if period < self.found.period || is_guide && !self.is_guide && period == self.found.period {
+            self.improve(fire);
+            self.is_guide = is_guide;
+        }
+    }
+
+    /// The nodes of this search and of those that help it.
+    fn nodes(&self) -> u64 {
+        let coarse = self.coarse.as_ref().map_or(0, |(coarse, _)| coarse.nodes());
+        self.ended + self.search.nodes() + coarse + self.even.as_ref().map_or(0, |even| even.nodes())
+    }
+
+    fn sensors(&self) -> u64 {
+        self.search.merged().count() as u64
+    }
+
+    fn is_open(&self) -> bool {
+        self.found.bound < self.found.period && self.nodes() < self.limit
+    }
+
+    /// Starts at the bound, as bounds are often met, and goes up in growing steps until something is found: a far
+    /// longer period is not far easier to find.
+    fn gallop(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
+        let mut step = ((self.found.period - self.found.bound + 1) >> 8).max(1);
+        let mut period = self.found.bound;
+        for effort in [4 * effort, effort, effort, effort, effort, effort] {
+            if period >= self.found.period || !self.is_open() || self.finds(period, effort, ask)? {
+                return Ok(());
+            }
+            period = period.max(self.found.bound - 1) + step;
+            step *= 2;
+        }
+        if self.is_open() { self.decide(self.found.period - 1, effort, ask).map(drop) } else { Ok(()) }
+    }
+
+    /// The period just below the best decides all: either it has a schedule, or nothing better is there. This tries to
+    /// refute it, and to find something better by bisection.
+    fn bisect(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
+        self.decide(self.found.period - 1, 8 * effort, ask)?;
+        // The shortest period leaves the least to guess, so it comes first; then bisection.
+        let (mut unknown, mut period) = (self.found.bound - 1, self.found.bound);
+        while unknown + 1 < self.found.period && self.is_open() {
+            if !self.finds(period, effort, ask)? {
+                unknown = period;
+            }
+            period = unknown + (self.found.period - unknown) / 2;
+        }
+        Ok(())
     }
 
     /// The highest bound that follows without distinguishing cases: longer periods are no harder, so by bisection.
-    fn bound_by_rules(&mut self, go_on: &mut dyn FnMut(&SoFar) -> bool) {
-        let mut open = self.found.period;
+    fn bound_by_rules(&mut self) {
+        let (mut open, mut middle) = (self.found.period, self.found.bound);
+        // Most often counting has said as much.
         while self.found.bound < open {
-            let middle = self.found.bound + (open - self.found.bound) / 2;
-            match self.decide(middle, 1, go_on) {
-                Decided::Refuted => self.found.bound = middle + 1,
-                _ => open = middle,
+            if self.search.is_refuted(middle) {
+                self.found.bound = middle + 1;
+            } else {
+                open = middle;
             }
+            middle = self.found.bound + (open - self.found.bound) / 2;
         }
-        self.found.without_cases = self.found.bound == self.found.period;
+        self.bound_of_rules = self.found.bound;
     }
 
-    fn decide(&mut self, period: u32, budget: u64, go_on: &mut dyn FnMut(&SoFar) -> bool) -> Decided {
-        let (best, bound) = (self.found.period, self.found.bound);
-        self.search.decide(period, budget, &mut |nodes| go_on(&SoFar { nodes, best, bound }))
+    /// Searches all of a period. Returns true if that is decided.
+    fn decide(&mut self, period: u32, effort: u64, ask: Ask<'_>) -> Result<bool, Stopped> {
+        let (before, effort) = (self.nodes() - self.search.nodes(), self.affordable(effort));
+        let Self { search, found, .. } = self;
+        let nodes = search.nodes();
+        let decided = search.decide(period, effort, &mut |nodes| ask(before + nodes, found));
+        if decided == Decided::Refuted && search.nodes() == nodes {
+            self.bound_of_rules = self.bound_of_rules.max(period + 1);
+        }
+        self.take(period, decided)
     }
 
-    fn find(&mut self, period: u32, budget: u64, go_on: &mut dyn FnMut(&SoFar) -> bool) -> Decided {
-        let (best, bound) = (self.found.period, self.found.bound);
-        let (seed, guide) = (self.search.nodes(), self.found.fire.clone());
-        let mut ask = |nodes: u64| go_on(&SoFar { nodes, best, bound });
-        let decided = self.search.find(period, budget, seed, &guide, &mut ask);
-        if let Decided::Found(fire) = &decided {
-            self.improve(fire.clone());
+    /// Returns true if a schedule with this period, or a shorter one, is found soon.
+    fn finds(&mut self, period: u32, effort: u64, ask: Ask<'_>) -> Result<bool, Stopped> {
+        let (before, effort) = (self.nodes() - self.search.nodes(), self.affordable(effort));
+        let Self { search, found, .. } = self;
+        let guide = self.is_guide.then_some(&found.fire);
+        let decided = search.find(period, effort, effort << 20, guide, &mut |nodes| ask(before + nodes, found));
+        // Once a schedule is worth following, only the bound is worth raising: refuting longer periods costs more.
+        let is_worth_it = !self.is_guide || period == self.found.bound;
+        if !self.take(period, decided)? && self.is_open() && is_worth_it {
+            self.decide(period, effort, ask)?;
         }
-        decided
+        Ok(self.found.period <= period)
+    }
+
+    fn affordable(&self, effort: u64) -> u64 {
+        effort.min(self.limit.saturating_sub(self.nodes()))
+    }
+
+    /// Takes the outcome for a period. Returns true if it is decided.
+    fn take(&mut self, period: u32, decided: Decided) -> Result<bool, Stopped> {
+        match decided {
+            Decided::Found(fire) => {
+                self.improve(fire);
+                self.is_guide = true;
+            }
+            Decided::Refuted => self.found.bound = self.found.bound.max(period + 1),
+            Decided::Open => return Ok(false),
+            Decided::Stopped => return Err(Stopped),
+        }
+        Ok(true)
     }
 
     /// Takes the times at the shortest period at which they serve.
     fn improve(&mut self, fire: FiringTimes) {
-        self.found.period = period_of(self.problem, &fire).max(self.found.bound);
+        self.found.period = period_of(self.search.problem(), &fire).max(self.found.bound);
         self.found.fire = fire;
-        self.found.without_cases = self.found.bound == self.found.period;
     }
 }
 
-/// Firing one by one, sensors that fire together as one: `b` a largest gap after the other, `a` as far again behind as
-/// the separation asks for. `None` if sensors that fire together must keep a gap.
-fn one_by_one(problem: &Problem) -> Option<FiringTimes> {
+/// The times that come of these by turning, reflecting and exchanging the phases, the first as they are: where sensors
+/// differ, some serve at a shorter period than others.
+fn images(problem: &Problem, [a, b]: &FiringTimes) -> Vec<FiringTimes> {
+    let sensors = problem.sensors();
+    let turned = (0..sensors).map(|by| (0..sensors).map(|x| (x + by) % sensors).collect::<Vec<_>>());
+    let reflected = (0..sensors).map(|about| (0..sensors).map(|x| (about + sensors - x) % sensors).collect());
+    let images = turned.chain(reflected).map(|image| [a, b].map(|times| image.iter().map(|&x| times[x]).collect()));
+    let images = images.flat_map(|[a, b]: FiringTimes| [[a.clone(), b.clone()], [b, a]]);
+    images.filter(|fire| schedule::keeps(problem, period_of(problem, fire), fire)).collect()
+}
+
+/// The constructed schedule. `None` if sensors that fire together must keep a gap.
+fn constructed_times(problem: &Problem) -> Option<FiringTimes> {
     let merged = problem.merged();
     if problem.gaps.iter().any(|&(x, y, ..)| merged.of_sensor[x] == merged.of_sensor[y]) {
         return None;
     }
-    let gap = merged.gap.iter().flatten().copied().max().unwrap_or(0) as u32;
-    let separation = merged.separation.iter().copied().max().unwrap_or(0) as u32;
-    let least = if problem.stale_echo { separation.div_ceil(2) } else { 0 };
-    let b = |one: usize| one as u32 * gap;
-    let a = |one: usize| b(one) + least + one as u32 * separation;
-    let of = |time: &dyn Fn(usize) -> u32| merged.of_sensor.iter().map(|&one| time(one)).collect();
-    Some([of(&a), of(&b)])
+    let of = |times: &Times| {
+        [0, 1].map(|phase: usize| merged.of_sensor.iter().map(|&one| times[one][phase] as u32).collect())
+    };
+    Some(of(&constructed(&merged, |times| period_of(problem, &of(times)))))
 }
 
 /// The least period of sensors of which each has a gap to each other, the best of a few such sets.
@@ -215,9 +352,7 @@ fn in_coarse_ticks(problem: &Problem) -> Option<(Problem, u32)> {
         }
         a
     };
-    let gaps = problem.gaps.iter().flat_map(|&(.., after_x, after_y)| [after_x, after_y]);
-    let times = problem.separation.iter().chain(&problem.window).copied().chain(gaps);
-    let ticks = times.fold(0, divisor);
+    let ticks = problem.numbers().fold(0, divisor);
     if ticks < 2 {
         return None;
     }

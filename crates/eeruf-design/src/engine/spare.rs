@@ -86,12 +86,12 @@ fn grow(
         let mut ask = |nodes| go_on(before + nodes);
         // A full search where it is one tick: only that proves anything.
         let decided = if by == 1 {
-            match search.find(period, (effort / 2).min(left), left, &spare.fire, &mut ask) {
+            match search.find(period, (effort / 2).min(left), left, Some(&spare.fire), &mut ask) {
                 Decided::Open => search.decide(period, effort.min(left), &mut ask),
                 decided => decided,
             }
         } else {
-            search.find(period, (effort / 2).min(left), left, &spare.fire, &mut ask)
+            search.find(period, (effort / 2).min(left), left, Some(&spare.fire), &mut ask)
         };
         let nodes = search.nodes();
         spare.nodes += nodes;

@@ -13,11 +13,38 @@ pub(crate) struct State {
     pub(crate) below: Vec<u64>,
     /// Two of which the first fires before the second in phase a or in phase b, or in both.
     pub(crate) reverse: Option<(usize, usize)>,
+    /// True if more is concluded than the rules of a certificate do.
+    pub(crate) goes_further: bool,
+    /// What `low` and `below` were at each mark.
+    trail: Vec<(Bound, u64)>,
+    /// What the rules were last applied to in vain.
+    pub(crate) seen: Seen,
+}
+
+/// The premises from which a rule had nothing to conclude: while they are the same, it has nothing now.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Seen {
+    /// The matrix of the rule of precedence.
+    pub(crate) precedence: u64,
+    /// The bounds on |d| and their order, of the rules of ranks and spacing.
+    sizes: Vec<(Bound, Bound, u64)>,
+}
+
+/// A point to which [`State::undo`] goes back.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mark {
+    log: usize,
+    trail: usize,
 }
 
 /// The event "x fires" in phase a (0) or b (1); event 0 is the start of both phases.
 pub(crate) fn event(x: usize, phase: usize) -> usize {
     1 + 2 * x + phase
+}
+
+/// The firing whose event this is: sensor and phase. `None` for the start of the phases.
+pub(crate) fn firing(event: usize) -> Option<(usize, usize)> {
+    event.checked_sub(1).map(|event| (event / 2, event % 2))
 }
 
 /// The smallest step by which a bound can be exceeded: a whole tick, or anything at all.
@@ -54,7 +81,51 @@ impl State {
         // Half a separation, in whole ticks rounded up: 2 * (D / 2) = D.
         let half = |x: usize| merged.separation[x] + if merged.over_reals { 0 } else { merged.separation[x] & 1 };
         let low = (0..count).map(|x| if merged.stale_echo { half(x) } else { 0 }).collect();
-        Ok(Self { bounds, low, below: vec![0; count], reverse: None })
+        Ok(Self::of(bounds, low))
+    }
+
+    /// These bounds, and nothing else known.
+    pub(crate) fn of(bounds: Bounds, low: Vec<Bound>) -> Self {
+        let below = vec![0; low.len()];
+        Self { bounds, low, below, reverse: None, goes_further: false, trail: Vec::new(), seen: Seen::default() }
+    }
+
+    /// Keeps what is known, for [`undo`](Self::undo).
+    pub(crate) fn mark(&mut self) -> Mark {
+        let mark = Mark { log: self.bounds.mark(), trail: self.trail.len() };
+        self.trail.extend(self.low.iter().copied().zip(self.below.iter().copied()));
+        mark
+    }
+
+    /// Goes back to what was known at the mark, which stays. Later marks are void.
+    pub(crate) fn undo(&mut self, mark: Mark) {
+        self.bounds.undo(mark.log);
+        let count = self.low.len();
+        for (x, &(low, below)) in self.trail[mark.trail..mark.trail + count].iter().enumerate() {
+            (self.low[x], self.below[x]) = (low, below);
+        }
+        self.trail.truncate(mark.trail + count);
+    }
+
+    /// Goes back to what was known at the mark, and forgets it.
+    pub(crate) fn drop_mark(&mut self, mark: Mark) {
+        self.undo(mark);
+        self.trail.truncate(mark.trail);
+    }
+
+    /// Returns true if the bounds on |d| and their order are those from which nothing followed.
+    pub(crate) fn has_seen_sizes(&self) -> bool {
+        let seen = &self.seen.sizes;
+        seen.len() == self.low.len()
+            && seen.iter().enumerate().all(|(x, seen)| *seen == (self.high(x), self.low[x], self.below[x]))
+    }
+
+    /// Keeps the bounds on |d| and their order: nothing follows from them.
+    pub(crate) fn see_sizes(&mut self) {
+        let mut sizes = core::mem::take(&mut self.seen.sizes);
+        sizes.clear();
+        sizes.extend((0..self.low.len()).map(|x| (self.high(x), self.low[x], self.below[x])));
+        self.seen.sizes = sizes;
     }
 
     /// The upper bound on `d_x`, or on `-d_x` if `negative`.

@@ -40,11 +40,13 @@ impl Assumptions {
         let mut candidates: Vec<Vec<usize>> = (1..sensors).map(turned).collect();
         candidates.extend((0..sensors).map(reflected));
         candidates.extend((0..sensors).flat_map(|y| (0..y).map(move |x| exchanged(x, y))));
+        let table = gaps(problem);
+        candidates.retain(|image| is_symmetry(problem, image, &table));
         let mut families: Vec<Family> = Vec::new();
         for greatest in 0..sensors {
             let mut generators: Vec<Vec<usize>> = Vec::new();
             let mut found = vec![greatest];
-            for image in candidates.iter().filter(|image| is_symmetry(problem, image, &families)) {
+            for image in candidates.iter().filter(|image| leaves(image, &families)) {
                 generators.push(image.clone());
                 let wider = orbit(greatest, &generators);
                 if wider == found {
@@ -97,22 +99,33 @@ impl Assumptions {
     }
 }
 
-/// Returns true if the permutation `image` takes the problem to itself, and leaves what was assumed earlier as it is.
-fn is_symmetry(problem: &Problem, image: &[usize], earlier: &[Family]) -> bool {
+/// The gaps of each pair of sensors, row by row.
+fn gaps(problem: &Problem) -> Vec<(u32, u32)> {
     let sensors = problem.sensors();
-    let alike = |x: usize| {
-        problem.separation[x] == problem.separation[image[x]] && problem.window[x] == problem.window[image[x]]
-    };
     let mut table = vec![(0, 0); sensors * sensors];
     for &(x, y, after_x, after_y) in &problem.gaps {
         table[x * sensors + y] = (after_x, after_y);
         table[y * sensors + x] = (after_y, after_x);
     }
+    table
+}
+
+/// Returns true if the permutation `image` takes the problem, with this table of gaps, to itself.
+fn is_symmetry(problem: &Problem, image: &[usize], table: &[(u32, u32)]) -> bool {
+    let sensors = problem.sensors();
+    let alike = |x: usize| {
+        problem.separation[x] == problem.separation[image[x]] && problem.window[x] == problem.window[image[x]]
+    };
     let same_gap = |x: usize, y: usize| table[x * sensors + y] == table[image[x] * sensors + image[y]];
     let taken = |set: &[usize]| sorted(set.iter().map(|&sensor| image[sensor]));
     (0..sensors).all(|x| alike(x) && (0..sensors).all(|y| same_gap(x, y)))
         && problem.together.iter().all(|group| problem.together.contains(&taken(group)))
-        && earlier.iter().all(|known| image[known.greatest] == known.greatest && taken(&known.orbit) == known.orbit)
+}
+
+/// Returns true if the permutation `image` leaves what was assumed earlier as it is.
+fn leaves(image: &[usize], earlier: &[Family]) -> bool {
+    let taken = |set: &[usize]| sorted(set.iter().map(|&sensor| image[sensor]));
+    earlier.iter().all(|known| image[known.greatest] == known.greatest && taken(&known.orbit) == known.orbit)
 }
 
 fn sorted(sensors: impl Iterator<Item = usize>) -> Vec<usize> {

@@ -34,7 +34,7 @@ impl Known {
         let model = proof.model;
         let count = model.merged.count();
         let bounds = Bounds::new(1 + 2 * count, 2 * (model.period - 1));
-        let state = State { bounds, low: vec![0; count], below: vec![0; count], reverse: None };
+        let state = State::of(bounds, vec![0; count]);
         let d = model.reach.iter().map(|reach| (-reach, *reach)).collect();
         let size = model.reach.iter().map(|reach| (0, *reach)).collect();
         let mut known = Self { state, edges: Vec::new(), d, size };

@@ -1,0 +1,228 @@
+//! Bounds on the period by counting (docs/theory.md, section 5), of the even ring that asks for no more.
+//!
+//! Where sensors differ, a ring whose sensors all have the smallest separation, gap and window asks for less, so a bound
+//! on its period is one on theirs. Write I for that gap, D for the separation, R for the window, and `own = min(I, R)`
+//! for the time that a firing keeps free of the sensor's own next one.
+//!
+//! - **Clique.** w sensors of which each has a gap to each other fire 2 w times in two periods. Between consecutive ones
+//!   of these firings pass at least I, or R where both are of the same sensor, which happens only where one phase ends
+//!   and the next begins, twice in two periods: `T >= (w - 1) I + own`.
+//! - **Density.** At any time at most alpha of the intervals `[t, t + I)` that begin with a firing are open. Each sensor
+//!   keeps at least `I + own` open in two periods: `2 alpha T >= K (I + own)`. Here alpha is the size of the largest set
+//!   without gaps, or a number of cliques that cover all sensors, which is no smaller.
+//! - **Classes.** How few |d| fit where clique and gap leave little to spare: [`Classes`].
+
+use crate::engine::problem::Merged;
+
+/// An even ring that asks for no more than a problem.
+#[derive(Clone, Debug)]
+struct Even {
+    count: usize,
+    /// Row x has bit y if there is a gap between x and y.
+    rows: Vec<u64>,
+    separation: i32,
+    interval: i32,
+    window: i32,
+    /// The smallest |d| allowed.
+    least: i32,
+}
+
+/// The numbers in a set of bits, in ascending order.
+pub(crate) fn members(mut set: u64) -> impl Iterator<Item = usize> {
+    core::iter::from_fn(move || {
+        let least = set.trailing_zeros() as usize;
+        set &= set.wrapping_sub(1);
+        (least < 64).then_some(least)
+    })
+}
+
+/// A period below which there is no schedule, by counting.
+pub(crate) fn least_period(merged: &Merged) -> u32 {
+    capacity(merged).max(of_even(merged))
+}
+
+/// **Capacity.** The |d| of those with a window of R at least lie apart, so that the largest of them is at least their
+/// width, and that sensor fires twice within T - |d|.
+fn capacity(merged: &Merged) -> u32 {
+    let mut by_window: Vec<usize> = (0..merged.count()).collect();
+    by_window.sort_unstable_by_key(|&x| -merged.window[x]);
+    let (mut width, mut narrowest, mut best) = (0, i32::MAX, 1);
+    for x in by_window {
+        width += merged.separation[x];
+        narrowest = narrowest.min(merged.separation[x]);
+        let least = if merged.stale_echo { (narrowest + 1) / 2 } else { 0 };
+        best = best.max(merged.window[x] + least + width - narrowest);
+    }
+    best as u32
+}
+
+/// The bound of the even ring that asks for no more.
+fn of_even(merged: &Merged) -> u32 {
+    let count = merged.count();
+    let gaps = merged.gap.iter().flatten().copied().filter(|&gap| gap > 0);
+    let (Some(interval), Some(window)) = (gaps.min(), merged.window.iter().copied().min()) else { return 1 };
+    let mut separations = merged.separation.clone();
+    separations.sort_unstable();
+    let even = Even {
+        count,
+        rows: merged.neighbours.iter().map(|row| row.iter().fold(0, |set, y| set | 1 << y)).collect(),
+        // Of two sensors the larger counts, so the smallest of all never does.
+        separation: separations.get(1).or(separations.first()).copied().unwrap_or(0),
+        interval,
+        window,
+        least: if merged.stale_echo { (separations.first().copied().unwrap_or(0) + 1) / 2 } else { 0 },
+    };
+    let own = interval.min(window).max(1);
+    let (clique, cover) = even.cliques();
+    let at_once = even.ring().map_or(cover, |n| count / n) as i64;
+    let density = (count as i64 * i64::from(interval + interval.min(window))).div_euclid(2 * at_once.max(1));
+    let exact = density * 2 * at_once.max(1) == count as i64 * i64::from(interval + interval.min(window));
+    let bounds = [
+        (clique as i32 - 1).saturating_mul(interval).saturating_add(own),
+        density as i32 + i32::from(!exact),
+        Classes::of(&even).map_or(1, |classes| classes.period(&even)),
+    ];
+    bounds.into_iter().max().unwrap_or(1).max(1) as u32
+}
+
+impl Even {
+    fn all(&self) -> u64 {
+        u64::MAX >> (64 - self.count)
+    }
+
+    /// A large clique among the sensors `from`, with sensor `first`: greedily, upwards.
+    fn grow(&self, first: usize, from: u64) -> u64 {
+        let mut clique = 1_u64 << first;
+        let mut common = self.rows[first] & from;
+        while let Some(x) = members(common).next() {
+            clique |= 1 << x;
+            common &= self.rows[x];
+        }
+        clique
+    }
+
+    /// The size of a large clique, and a number of cliques that cover all sensors.
+    fn cliques(&self) -> (usize, usize) {
+        let size = |x: usize, from: u64| self.grow(x, from).count_ones() as usize;
+        let largest = (0..self.count).map(|x| size(x, u64::MAX << x).max(size(x, u64::MAX))).max();
+        let (mut left, mut cover) = (self.all(), 0);
+        while let Some(x) = members(left).next() {
+            left &= !self.grow(x, left);
+            cover += 1;
+        }
+        (largest.unwrap_or(1), cover)
+    }
+
+    /// A number of disjoint cliques of the largest size.
+    fn disjoint(&self, size: usize) -> usize {
+        let (mut left, mut disjoint) = (self.all(), 0);
+        for x in 0..self.count {
+            let clique = if left >> x & 1 == 1 { self.grow(x, left) } else { 0 };
+            if clique.count_ones() as usize == size {
+                left &= !clique;
+                disjoint += 1;
+            }
+        }
+        disjoint.max(1)
+    }
+
+    /// n, if the sensors stand on a closed ring where each has a gap to the next n - 1 on both sides.
+    fn ring(&self) -> Option<usize> {
+        let n = (self.rows[0] >> 1).trailing_ones() as usize + 1;
+        let turned = |x: usize| members(self.rows[x]).fold(0, |set, y| set | 1 << ((y + 1) % self.count));
+        (n > 1 && (0..self.count).all(|x| self.rows[(x + 1) % self.count] == turned(x))).then_some(n)
+    }
+}
+
+/// Sensors of which each has a gap to each other, how many such sets there are, and how they hang together; the proofs
+/// are in docs/theory.md, section 5.3 and 5.4.
+struct Classes {
+    n: i32,
+    cliques: i32,
+    line: bool,
+    /// A ring of a multiple of n sensors.
+    ring: bool,
+}
+
+/// The places tried before giving up on a permutation, which then says nothing.
+const STEPS: u32 = 1 << 15;
+
+impl Classes {
+    fn of(even: &Even) -> Option<Self> {
+        let (k, first) = (even.count, even.rows[0]);
+        // Sensors 1 to n - 1 have a gap to sensor 0, and more only round the end of a ring.
+        let n = (first >> 1).trailing_ones() as usize + 1;
+        let row = |x: usize| (0..k).filter(|&y| x != y && x.abs_diff(y) < n).fold(0, |row, y| row | 1 << y);
+        let line = (0..k).all(|x| even.rows[x] == row(x));
+        let around = k >= 2 * n && k % n == 0 && first.count_ones() as usize == 2 * (n - 1);
+        let ring = around && even.ring().is_some();
+        let (n, cliques) = if line || ring {
+            (n, k / n)
+        } else {
+            let (size, _) = even.cliques();
+            (size, even.disjoint(size))
+        };
+        let counts = n >= 2 && even.window >= even.interval;
+        counts.then_some(Self { n: n as i32, cliques: cliques as i32, line, ring })
+    }
+
+    /// A period below which there is no schedule; it may be smaller than other bounds.
+    fn period(&self, even: &Even) -> i32 {
+        let Some(mut yes) = even.interval.checked_mul(self.n + 1) else { return 0 };
+        let mut no = yes - even.interval - 1;
+        while no + 1 < yes {
+            let middle = no + (yes - no) / 2;
+            if self.excludes(even, middle) { no = middle } else { yes = middle }
+        }
+        yes
+    }
+
+    /// Returns true if too few |d| fit into the classes at this period, at least n I.
+    fn excludes(&self, even: &Even, period: i32) -> bool {
+        let (n, cliques, separation) = (self.n, self.cliques, even.separation);
+        let spare = period - n * even.interval;
+        let alike = cliques == 1 || (self.line || self.ring) && 2 * spare < even.interval;
+        let (mut sum, mut rooms) = (0, Vec::new());
+        for class in 0..n {
+            let passed = if self.ring && alike && class > 0 { separation } else { 0 };
+            let middle = class * even.interval;
+            let (low, high) = ((middle - spare + passed).max(even.least), period - even.window);
+            let high = high.min(middle + spare);
+            let values = if low <= high { (high - low) / separation + 1 } else { 0 };
+            sum += values.min(n * cliques);
+            rooms.push(values / cliques);
+        }
+        let opposite = self.ring && alike && cliques == 2 && 2 * spare < n * separation;
+        sum < n * cliques || opposite || alike && !permutes(&mut rooms)
+    }
+}
+
+/// Returns true if some permutation of the places moves no more of them by each distance than there is room for, or if
+/// that takes too long to find out.
+fn permutes(room: &mut [i32]) -> bool {
+    let n = room.len();
+    let all = u64::MAX >> (64 - n);
+    // Where each place goes, and where it may still be tried to go.
+    let (mut to, mut open) = (vec![0; n], vec![all; n]);
+    let (mut free, mut from) = (all, 0);
+    for _ in 0..STEPS {
+        if from == n {
+            return true;
+        }
+        if let Some(p) = members(open[from] & free).find(|p| room[p.abs_diff(from)] > 0) {
+            room[p.abs_diff(from)] -= 1;
+            free &= !(1 << p);
+            open[from] &= u64::MAX << p << 1;
+            (to[from], from) = (p, from + 1);
+            continue;
+        }
+        open[from] = all;
+        if from == 0 {
+            return false;
+        }
+        from -= 1;
+        room[to[from].abs_diff(from)] += 1;
+        free |= 1 << to[from];
+    }
+    true
+}

@@ -58,7 +58,7 @@ fn twins_of_the_table_are_proven_and_certified() {
         }
     }
     println!("{nodes} nodes together");
-    assert!(nodes < 400_000, "{nodes} nodes, there were 300,190");
+    assert!(nodes < 250_000, "{nodes} nodes, there were 172,347");
 }
 
 #[test]

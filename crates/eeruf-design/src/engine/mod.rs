@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `problem` | the problem in ticks, a claim about its period; groups that fire together as one sensor |
 //! | `bounds`, `state` | the difference-bound matrix; the knowledge at a node |
-//! | `rules` | propagation; for searches more than a certificate's rules |
+//! | `rules` | propagation; in searches by more than a certificate's rules |
 //! | `counting`, `construct` | a bound by counting; schedules without a search |
 //! | `branching`, `symmetry` | case distinctions; assumptions at the root |
 //! | `schedule` | a schedule, checked longhand |
@@ -26,9 +26,8 @@
 //! - The checker replays branchings; the engine chooses them, and in a search takes the times at the bounds for a
 //!   schedule as soon as they serve.
 //! - The checker copies what is known at each node; the engine has one matrix and a log that takes it back.
-//! - In a search the engine concludes more: `State::goes_further` adds Hall intervals, the grid of ranks and the chain
-//!   of |d|. A certificate is written without them, so a mistake there comes out when one is
-//!   written.
+//! - In a search the engine concludes more: with `State::goes_further` from Hall intervals. A certificate is written
+//!   without, so a mistake there comes out when one is written.
 
 mod bounds;
 mod branching;

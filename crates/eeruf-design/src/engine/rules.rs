@@ -16,14 +16,10 @@ pub(crate) fn propagate(state: &mut State, merged: &Merged) -> Result<(), Refute
         let mut news = orders(state, merged)? | signs(state)?;
         if !state.has_seen_sizes() {
             let of_sizes = ranks(state, merged)? | spacing(state, merged)?;
-            let of_sizes = of_sizes || state.goes_further && grid(state, merged)?;
             if !of_sizes {
                 state.see_sizes();
             }
             news |= of_sizes;
-        }
-        if state.goes_further {
-            news |= chain(state, merged)?;
         }
         if !news {
             let version = state.bounds.version();
@@ -138,35 +134,6 @@ fn ascending(numbers: &mut [u8; MAX_SENSORS], count: usize, key: impl Fn(usize) 
     &numbers[..count]
 }
 
-/// Where one |d| is known to come next below another, and both signs are known, each pair of differences of the four
-/// times bounds the other. Whole ticks alone.
-fn chain(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
-    let mut news = false;
-    // The later and the earlier firing, while the sign is known.
-    let signed = |state: &State, x: usize| {
-        let (a, b) = (event(x, 0), event(x, 1));
-        if state.most(x, true) <= 0 { Some((a, b)) } else { (state.most(x, false) <= 0).then_some((b, a)) }
-    };
-    for y in 0..merged.count() {
-        let Some((late_y, early_y)) = signed(state, y) else { continue };
-        let further = members(state.below[y]).fold(0, |further, z| further | state.below[z]);
-        for x in members(state.below[y] & !further) {
-            let Some((late_x, early_x)) = signed(state, x) else { continue };
-            let apart = merged.apart(x, y);
-            for (from, to, least) in [
-                (late_y, early_y, (late_x, early_x)),
-                (early_x, late_x, (early_y, late_y)),
-                (late_y, late_x, (early_y, early_x)),
-                (early_x, early_y, (late_x, late_y)),
-            ] {
-                let bound = state.bounds.at(least.0, least.1) - apart;
-                news |= state.bounds.learn(from, to, bound)?;
-            }
-        }
-    }
-    Ok(news)
-}
-
 /// A bound below all `values`, each a value's upper bound and its separation, in ascending order: below any set of them
 /// by the width that the set needs, together with a value of separation `own`.
 fn beyond(values: impl Iterator<Item = (Bound, i32)>, own: i32) -> Option<Bound> {
@@ -229,32 +196,6 @@ fn spacing(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
                     members(within).for_each(|x| news |= state.learn_below(y, x));
                 }
             }
-        }
-    }
-    Ok(news)
-}
-
-/// The K values |d| lie a least separation D apart from `low` to `high`. So the one of rank r is within
-/// `low + D r` and that plus what is to spare, and no value lies between these ranges.
-fn grid(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
-    let count = merged.count();
-    let step = merged.least_apart;
-    let least = state.low.iter().copied().min().unwrap_or(0);
-    let most = (0..count).map(|x| state.high(x)).max().unwrap_or(0);
-    let spare = most - least - step * (count as Bound - 1);
-    if spare >= step - 2 {
-        return Ok(false);
-    }
-    let mut news = false;
-    for x in 0..count {
-        let over = (state.low[x] - least) % step;
-        if over > spare {
-            news |= state.learn_low(x, state.low[x] + step - over)?;
-        }
-        let high = state.high(x);
-        let over = (high - least) % step;
-        if over > spare {
-            news |= state.learn_high(x, high - over + spare)?;
         }
     }
     Ok(news)

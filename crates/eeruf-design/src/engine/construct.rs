@@ -1,8 +1,8 @@
 //! A schedule without any search: an upper bound from the first moment on.
 //!
-//! Sensors get colours, those with a gap between them unlike ones. Phase b fires colour after colour, W apart or as much
-//! later as gaps ask for. Phase a does so in the same order, or with every g colours in reverse; each sensor takes the
-//! soonest time from its colour's turn on that keeps its gaps to those before it, and whose `|d|` is apart from all
+//! Sensors get colours, those with a gap between them unlike ones. Phase b fires colour after colour, W apart or as
+//! much later as gaps ask for. Phase a does so in the same order, or with every g colours in reverse; each sensor takes
+//! the soonest time from its colour's turn on that keeps its gaps to those before it, and whose `|d|` is apart from all
 //! before. In the same order, colour by colour, d is a separation times the rank; in reverse the `|d|` lie around
 //! several multiples of W, which takes less where the windows allow such `|d|`. All of these are tried.
 

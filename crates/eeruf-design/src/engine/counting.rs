@@ -1,15 +1,15 @@
 //! Bounds on the period by counting (docs/theory.md, section 5), of the even ring that asks for no more.
 //!
-//! Where sensors differ, a ring whose sensors all have the smallest separation, gap and window asks for less, so a bound
-//! on its period is one on theirs. Write I for that gap, D for the separation, R for the window, and `own = min(I, R)`
-//! for the time that a firing keeps free of the sensor's own next one.
+//! Where sensors differ, a ring whose sensors all have the smallest separation, gap and window asks for less, so a
+//! bound on its period is one on theirs. Write I for that gap, D for the separation, R for the window, and
+//! `own = min(I, R)` for the time that a firing keeps free of the sensor's own next one.
 //!
-//! - **Clique.** w sensors of which each has a gap to each other fire 2 w times in two periods. Between consecutive ones
-//!   of these firings pass at least I, or R where both are of the same sensor, which happens only where one phase ends
-//!   and the next begins, twice in two periods: `T >= (w - 1) I + own`.
-//! - **Density.** At any time at most alpha of the intervals `[t, t + I)` that begin with a firing are open. Each sensor
-//!   keeps at least `I + own` open in two periods: `2 alpha T >= K (I + own)`. Here alpha is the size of the largest set
-//!   without gaps, or a number of cliques that cover all sensors, which is no smaller.
+//! - **Clique.** w sensors of which each has a gap to each other fire 2 w times in two periods. Between consecutive
+//!   ones of these firings pass at least I, or R where both are of the same sensor, which happens only where one phase
+//!   ends and the next begins, twice in two periods: `T >= (w - 1) I + own`.
+//! - **Density.** At any time at most alpha of the intervals `[t, t + I)` that begin with a firing are open. Each
+//!   sensor keeps at least `I + own` open in two periods: `2 alpha T >= K (I + own)`. Here alpha is the size of the
+//!   largest set without gaps, or a number of cliques that cover all sensors, which is no smaller.
 //! - **Classes.** How few |d| fit where clique and gap leave little to spare: [`Classes`].
 
 use crate::engine::problem::Merged;

@@ -1,7 +1,7 @@
 //! What a short descent branches on: the largest |d|, firing orders, then the ranks of the other |d|, downwards.
 //!
-//! The case that comes first matters only for how soon a schedule is found: it is drawn from a fixed seed, copied from a
-//! schedule for another period or from the sensors next to it, or the one that leaves the others most room.
+//! The case that comes first matters only for how soon a schedule is found: it is drawn from a fixed seed, copied from
+//! a schedule for another period or from the sensors next to it, or the one that leaves the others most room.
 
 use crate::engine::bounds::Refuted;
 use crate::engine::branching::Branching;
@@ -177,7 +177,8 @@ impl Choice {
         None
     }
 
-    /// Whether x fires before y by the guide, or by the order of the sensors one clique further along, if that is known.
+    /// True if x fires before y by the guide, or by the order of the sensors one clique further along; `None` where
+    /// neither says.
     fn pattern(&self, state: &State, merged: &Merged, x: usize, y: usize, phase: usize) -> Option<bool> {
         if let Some(guide) = &self.guide {
             return Some(guide[x][phase] < guide[y][phase]);

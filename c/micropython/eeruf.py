@@ -114,7 +114,7 @@ class Schedule:
 class _Sensor:
     def __init__(self, long_ago_us):
         self.firings = [long_ago_us] * _REMEMBERED  # the latest first
-        self.phase = self.score = 0
+        self.phase = self.period = self.score = 0
         self.age = NEVER
         self.enabled = True
         self.drop(long_ago_us)
@@ -368,7 +368,7 @@ class Ring:
     def _fire(self, x, now_us):
         sensor = self._sensors[x]
         late_us = min((now_us - self._due) & self._mask, 0xFFFF)
-        sensor.listening, sensor.phase = True, self._phase
+        sensor.listening, sensor.phase, sensor.period = True, self._phase, self._period
         sensor.can_emit = sensor.outside = sensor.stuck = False
         sensor.unanswered = self.expects_answers
         firings = sensor.firings
@@ -438,9 +438,7 @@ class Ring:
             sensor.can_emit, sensor.echo_us = False, None
         self._emit_when_oldest_ends()
         self._count(kind)
-        ago = (self._phase - sensor.phase) % self.schedule.phases
-        period = (self._period - ago) & 0xFFFFFFFF
-        return (READING, x, sensor.phase, period, kind, echo, previous, sensor.age, explained_by)
+        return (READING, x, sensor.phase, sensor.period, kind, echo, previous, sensor.age, explained_by)
 
     def _count(self, kind):
         self._tally[kind] = min(self._tally[kind] + 1, 255)
@@ -448,7 +446,7 @@ class Ring:
     def _end_period(self, now_us):
         self._latest = max(self._latest, min((now_us - self._due) & self._mask, 0xFFFF))
         phase, period = self._phase, self._period
-        self._period += 1
+        self._period = (self._period + 1) & 0xFFFFFFFF
         changed = self._end_schedule_period(now_us)
         late = self._end_late_period(now_us)
         if changed:

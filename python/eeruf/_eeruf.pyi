@@ -914,7 +914,7 @@ class Robot:
         clock_offset_us: _Int = 0,
         clock_drift_ppm: float = 0.0,
         body: _Body | None = None,
-        beam: _Beam = "cut_at_90",
+        beam: _Beam | None = None,
         coupling_db: float | None = None,
         height_m: float | Iterable[float] = 0.3,
     ) -> Robot: ...

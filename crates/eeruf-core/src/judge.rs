@@ -29,17 +29,39 @@ impl Heard<'_> {
     }
 }
 
+/// What a ring knows of the sounds that a sensor may have heard.
+pub trait Sounds {
+    /// The firing whose sound could be both the echo that the sensor heard `first` after the firing before its last one
+    /// and the one that it heard `second` after its last, by a path that changes by no more than P in between.
+    fn explain(&self, first: Micros, second: Micros) -> Option<Explanation>;
+    /// The same of the echoes of its last three firings, earliest first, by a path that changes at a constant rate: its
+    /// length in the second is within P of the line between the others.
+    fn explain_line(&self, echoes: [Micros; 3]) -> Option<Explanation>;
+}
+
+/// No sound explains anything.
+pub(crate) struct NoSounds;
+
+impl Sounds for NoSounds {
+    fn explain(&self, _first: Micros, _second: Micros) -> Option<Explanation> {
+        None
+    }
+
+    fn explain_line(&self, _echoes: [Micros; 3]) -> Option<Explanation> {
+        None
+    }
+}
+
 /// Decides what the readings of a [`Ring`](crate::Ring) are worth: [`EchoFilter`](crate::EchoFilter),
-/// [`EchoTracker`](crate::EchoTracker), [`Agreement`], or one of the caller's own.
+/// [`EchoTracker`](crate::EchoTracker), [`RateFilter`](crate::RateFilter), [`Agreement`], or one of the caller's own.
 ///
 /// The ring hands in sensors that it has room for. A judge that has room for fewer accepts nothing of the others.
 pub trait Judge {
     /// `T_delta`: what counts as near-identical.
     fn t_delta(&self) -> Micros;
-    /// Judges a firing. `explanation` is asked about two echo times, of the sensor's firing before and of this one: it
-    /// names the firing whose sound could be both, if there is one. A judge that accepts what is explained accepts
+    /// Judges a firing. `sounds` say what explains readings that agree: a judge that accepts them all the same accepts
     /// crosstalk.
-    fn judge(&mut self, heard: &Heard<'_>, explanation: impl FnMut(Micros, Micros) -> Option<Explanation>) -> Verdict;
+    fn judge(&mut self, heard: &Heard<'_>, sounds: &impl Sounds) -> Verdict;
     /// Takes in a firing that says nothing about the echo time: stuck, too early or unanswered. `echoes` holds the
     /// early edge, if there was one.
     fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict;
@@ -71,8 +93,8 @@ impl<J: Judge> Judge for Agreement<J> {
         self.0.t_delta()
     }
 
-    fn judge(&mut self, heard: &Heard<'_>, _: impl FnMut(Micros, Micros) -> Option<Explanation>) -> Verdict {
-        self.0.judge(heard, |_, _| None)
+    fn judge(&mut self, heard: &Heard<'_>, _: &impl Sounds) -> Verdict {
+        self.0.judge(heard, &NoSounds)
     }
 
     fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict {

@@ -71,7 +71,7 @@ pub use hopping::{
     HoppingSettings, HoppingTab, HoppingToml, Weighed,
 };
 pub use interop::DurationError;
-pub use judge::{Agreement, Heard, Judge};
+pub use judge::{Agreement, Heard, Judge, Sounds};
 pub use layout::{Layout, LayoutError, neighbour_rows};
 pub use phases::{
     Audible, PhaseCriterion, PhaseInterval, PhaseRequirements, PhaseSeparation, PhaseTable, PhaseVerification,

@@ -26,7 +26,8 @@ use crate::{
 ///     gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"``, ``"linear"``,
 ///         ``"stepped"`` or ``"polaroid_6500"``, the steps of that module's control circuit.
 ///     beam: the pattern near 90 degrees off a sensor's axis: ``"cut_at_90"``, an endless baffle with nothing behind,
-///         or ``"continuous"``, a baffle that ends.
+///         or ``"continuous"``, a baffle that ends; None for the transducer's own, ``"cut_at_90"`` of the Polaroid 6500 and
+///         ``"continuous"`` of the HC-SR04.
 ///     coupling_db: the level of the sound that the mounting carries straight from sensor to sensor, relative to two
 ///         that face each other as far apart, -200 to 0; None for what the patterns say.
 ///     height_m: of its sensors above the floor, one for all or one each, in metres; for scenes that are not flat.
@@ -177,7 +178,7 @@ impl Robot {
             gain=\"constant\", period_us=60000, t_delta_us=500, window_us=36000, blanking_us=None, \
             min_refire_us=36000, start_us=0, schedule=None, neighbours=4, consecutive=2, odometry=False, \
             velocity_m_s=None, turn_rad_s=None, waypoints_m=None, speed_m_s=None, clock_offset_us=0, \
-            clock_drift_ppm=0.0, body=None, beam=\"cut_at_90\", coupling_db=None, height_m=0.3)")]
+            clock_drift_ppm=0.0, body=None, beam=None, coupling_db=None, height_m=0.3)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         pose: &Bound<'_, PyAny>,
@@ -210,7 +211,8 @@ impl Robot {
         let pose = pose_of("pose", pose)?;
         let (name, transducer) =
             choice("transducer", transducer, &TRANSDUCERS.map(|(name, kind)| (name, (name, kind))))?;
-        let (gain, beam) = (choice("gain", gain, &GainProfile::NAMES)?, choice("beam", beam, &Beam::NAMES)?);
+        let gain = choice("gain", gain, &GainProfile::NAMES)?;
+        let beam = beam.map_or(Ok(transducer.beam), |beam| choice("beam", Some(beam), &Beam::NAMES))?;
         let transducer = Transducer { gain, beam, ..transducer };
         let spacing_rad = spacing_rad.map(|angle| number("spacing_rad", angle, -10.0..=10.0)).transpose()?;
         let radius_m = radius_m.map(|radius| number("radius_m", radius, 0.0..=1e3)).transpose()?;

@@ -21,8 +21,8 @@ mod rate;
 mod tests;
 mod tracker;
 
-use crate::judge::{Heard, Judge};
-use crate::reading::{Explanation, ReadingKind, Verdict};
+use crate::judge::{Heard, Judge, Sounds};
+use crate::reading::{ReadingKind, Verdict};
 use crate::sensor_error::SensorError;
 use crate::time::Micros;
 
@@ -121,11 +121,12 @@ impl<const K: usize, const E: usize> Judge for EchoFilter<K, E> {
     }
 
     #[inline(always)]
-    fn judge(&mut self, heard: &Heard<'_>, explanation: impl FnMut(Micros, Micros) -> Option<Explanation>) -> Verdict {
+    fn judge(&mut self, heard: &Heard<'_>, sounds: &impl Sounds) -> Verdict {
         let &Heard { sensor, echoes, firing, t_delta, .. } = heard;
         let tolerance = Tolerance { t_delta, ..self.tolerance };
         match self.trackers.get_mut(usize::from(sensor)) {
-            Some(tracker) => tracker.push(tolerance, echoes, firing.expected_change_us, explanation),
+            Some(tracker) => tracker
+                .push(tolerance, echoes, firing.expected_change_us, |first, second| sounds.explain(first, second)),
             None => heard.unjudged(None),
         }
     }

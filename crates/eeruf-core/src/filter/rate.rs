@@ -1,7 +1,8 @@
 //! [`RateFilter`]: three consecutive readings on a line, for a robot that moves and has no odometry.
 
 use super::error::FilterError;
-use crate::reading::{ReadingKind, Verdict};
+use crate::judge::{Heard, Judge, NoSounds, Sounds};
+use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 
@@ -10,9 +11,9 @@ use crate::time::{Instant, Micros};
 /// up to a limit, without odometry; crosstalk that the schedule moves by more than `t_delta` between two readings is as
 /// far from the line as it moves: `docs/theory.md` section 2.2.
 ///
-/// It is for readings of two phases, beside a [`Ring`](crate::Ring), which does not know of it: hand in the raw echo
-/// time of each reading with the instant of its firing, and [`forget`](Self::forget) the sensor before a reading of the
-/// kind [`First`](ReadingKind::First), which the ring can compare with nothing. It takes 20 bytes a sensor.
+/// It is for readings of two phases, as the judge of a [`Ring`](crate::Ring), which should remember five firings of each
+/// sensor then, or alone: hand in the echo time of each reading with the instant of its firing. It takes 20 bytes a
+/// sensor.
 ///
 /// ```
 /// use eeruf_core::{Instant, Micros, RateFilter, ReadingKind};
@@ -45,7 +46,7 @@ struct Line {
     /// The last two firings, the later one first.
     fired: [Instant; 2],
     echoes: [u32; 2],
-    /// How many of them had an echo, or that the last one had none.
+    /// How many of them had an echo, or that the last one or the last two had none.
     known: Known,
     /// Firings since the last accepted reading.
     age: u16,
@@ -56,6 +57,7 @@ struct Line {
 enum Known {
     Nothing,
     Silence,
+    Clear,
     One,
     Two,
 }
@@ -94,44 +96,9 @@ impl<const K: usize> RateFilter<K> {
     /// # Errors
     /// [`SensorError`] for a sensor that is not there.
     pub fn push(&mut self, sensor: u8, fired: Instant, t_echo: Option<Micros>) -> Result<Verdict, SensorError> {
-        let (t_delta, us_per_s) = (self.t_delta.as_micros(), self.us_per_s);
-        let Some(line) = self.sensors.get_mut(usize::from(sensor)) else {
-            return Err(SensorError::new(sensor, K));
-        };
-        let Some(echo) = t_echo.map(Micros::as_micros).filter(|&echo| echo <= LONGEST) else {
-            let kind = if line.known == Known::Silence { ReadingKind::Clear } else { ReadingKind::NoEcho };
-            let previous = line.previous();
-            line.known = Known::Silence;
-            return Ok(line.verdict(kind, None, previous));
-        };
-        let [since, before] = [fired.since(line.fired[0]), line.fired[0].since(line.fired[1])].map(Micros::as_micros);
-        if line.known != Known::Nothing && !(1..=LONGEST).contains(&since) {
-            // A gap, or a clock that went back.
-            line.known = Known::Nothing;
-        }
-        let previous = line.previous();
-        let [last, first] = line.echoes;
-        let may_change = |echo: u32, from: u32, within: u32| {
-            let most = u64::from(within) * u64::from(us_per_s) / 1_000_000 + u64::from(t_delta);
-            u64::from(echo.abs_diff(from)) <= most
-        };
-        let kind = match line.known {
-            Known::Nothing | Known::Silence => ReadingKind::First,
-            Known::Two
-                if is_on_line([first, last, echo], [before, since], t_delta)
-                    && may_change(echo, first, before + since) =>
-            {
-                ReadingKind::Accepted
-            }
-            _ if may_change(echo, last, since) => ReadingKind::Repeated,
-            _ => ReadingKind::Rejected,
-        };
-        line.known = match line.known {
-            Known::Nothing | Known::Silence => Known::One,
-            Known::One | Known::Two => Known::Two,
-        };
-        (line.fired, line.echoes) = ([fired, line.fired[0]], [echo, last]);
-        Ok(line.verdict(kind, t_echo, previous))
+        let limits = Limits { t_delta: self.t_delta, us_per_s: self.us_per_s };
+        let line = self.sensors.get_mut(usize::from(sensor)).ok_or(SensorError::new(sensor, K))?;
+        Ok(line.push(fired, t_echo, limits, &NoSounds))
     }
 
     /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
@@ -149,13 +116,117 @@ impl Line {
         matches!(self.known, Known::One | Known::Two).then_some(Micros::new(self.echoes[0]))
     }
 
-    fn verdict(&mut self, kind: ReadingKind, t_echo: Option<Micros>, previous: Option<Micros>) -> Verdict {
+    fn age(&self) -> Option<u16> {
+        (self.age != NEVER).then_some(self.age)
+    }
+
+    fn push(&mut self, fired: Instant, t_echo: Option<Micros>, limits: Limits, sounds: &impl Sounds) -> Verdict {
+        let Limits { t_delta, us_per_s } = limits;
+        let t_delta = t_delta.as_micros();
+        let Some(echo) = t_echo.map(Micros::as_micros).filter(|&echo| echo <= LONGEST) else {
+            let previous = self.previous();
+            let again = matches!(self.known, Known::Silence | Known::Clear);
+            self.known = if again { Known::Clear } else { Known::Silence };
+            let kind = if again { ReadingKind::Clear } else { ReadingKind::NoEcho };
+            return self.verdict(kind, None, previous, None);
+        };
+        let [since, before] = [fired.since(self.fired[0]), self.fired[0].since(self.fired[1])].map(Micros::as_micros);
+        if self.known != Known::Nothing && !(1..=LONGEST).contains(&since) {
+            // A gap, or a clock that went back.
+            self.known = Known::Nothing;
+        }
+        let previous = self.previous();
+        let [last, first] = self.echoes;
+        let may_change = |echo: u32, from: u32, within: u32| {
+            let most = u64::from(within) * u64::from(us_per_s) / 1_000_000 + u64::from(t_delta);
+            u64::from(echo.abs_diff(from)) <= most
+        };
+        let mut explained_by = None;
+        let kind = match self.known {
+            Known::Nothing | Known::Silence | Known::Clear => ReadingKind::First,
+            Known::Two
+                if is_on_line([first, last, echo], [before, since], t_delta)
+                    && may_change(echo, first, before + since) =>
+            {
+                explained_by = sounds.explain_line([first, last, echo].map(Micros::new));
+                if explained_by.is_some() { ReadingKind::Ambiguous } else { ReadingKind::Accepted }
+            }
+            _ if may_change(echo, last, since) => ReadingKind::Repeated,
+            _ => ReadingKind::Rejected,
+        };
+        self.known = match self.known {
+            Known::Nothing | Known::Silence | Known::Clear => Known::One,
+            Known::One | Known::Two => Known::Two,
+        };
+        (self.fired, self.echoes) = ([fired, self.fired[0]], [echo, last]);
+        self.verdict(kind, t_echo, previous, explained_by)
+    }
+
+    fn verdict(
+        &mut self,
+        kind: ReadingKind,
+        t_echo: Option<Micros>,
+        previous: Option<Micros>,
+        explained_by: Option<Explanation>,
+    ) -> Verdict {
         self.age = match kind {
             ReadingKind::Accepted => 0,
             _ if self.age >= NEVER - 1 => self.age,
             _ => self.age + 1,
         };
-        Verdict { kind, t_echo, previous, age: (self.age != NEVER).then_some(self.age), explained_by: None }
+        Verdict { kind, t_echo, previous, age: self.age(), explained_by }
+    }
+}
+
+/// By how much echoes may be off the line, and how fast they may change.
+#[derive(Clone, Copy)]
+struct Limits {
+    t_delta: Micros,
+    us_per_s: u32,
+}
+
+impl<const K: usize> Judge for RateFilter<K> {
+    fn t_delta(&self) -> Micros {
+        self.t_delta
+    }
+
+    fn judge(&mut self, heard: &Heard<'_>, sounds: &impl Sounds) -> Verdict {
+        let limits = Limits { t_delta: heard.t_delta, us_per_s: self.us_per_s };
+        match self.sensors.get_mut(usize::from(heard.sensor)) {
+            Some(line) => line.push(heard.fired, heard.echoes.first().copied(), limits, sounds),
+            None => heard.unjudged(None),
+        }
+    }
+
+    fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict {
+        let Some(line) = self.sensors.get_mut(usize::from(heard.sensor)) else { return heard.unjudged(Some(kind)) };
+        line.known = Known::Nothing;
+        line.verdict(kind, heard.echoes.first().copied(), None, None)
+    }
+
+    fn age(&self, sensor: u8) -> Option<u16> {
+        self.sensors.get(usize::from(sensor))?.age()
+    }
+
+    fn is_clear(&self, sensor: u8) -> bool {
+        self.sensors.get(usize::from(sensor)).is_some_and(|line| line.known == Known::Clear)
+    }
+
+    fn forget(&mut self, sensor: u8) {
+        if let Some(line) = self.sensors.get_mut(usize::from(sensor)) {
+            line.known = Known::Nothing;
+        }
+    }
+
+    fn restart(&mut self) {
+        for line in &mut self.sensors {
+            line.known = Known::Nothing;
+        }
+    }
+
+    fn fired_later(&mut self, sensor: u8, _later_us: i32) {
+        // Rare, and three readings later all is as before.
+        Judge::forget(self, sensor);
     }
 }
 

@@ -1,4 +1,4 @@
-//! [`Sounds`]: whether one path of sound explains two consecutive readings of a sensor.
+//! [`Pair`] and [`Line`]: whether one path of sound explains two or three consecutive readings of a sensor.
 //!
 //! Eqs. (11) and (13) on what was fired instead of on what was planned. A receiver fired at `f1` and `f2` and heard
 //! something at `h1 = f1 + e1` and `h2 = f2 + e2`. Sensor x explains both readings if it fired at `a` and `b`, and
@@ -58,7 +58,12 @@ impl<const H: usize> Firings<H> {
 
     /// The firing before the last one, if it is remembered.
     pub(super) fn before(&self) -> Option<Instant> {
-        self.0.get(1).copied()
+        self.nth_last(1)
+    }
+
+    /// A firing, if it is remembered: 0 for the last one.
+    pub(super) fn nth_last(&self, number: usize) -> Option<Instant> {
+        self.0.get(number).copied()
     }
 
     /// Returns true if an instant is later than the firing before the last one, as far as that is known.
@@ -98,7 +103,7 @@ pub(super) const fn long_before(now: Instant) -> Instant {
 
 /// The instants at which a sensor heard two consecutive readings, and what sound may do.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sounds {
+pub(super) struct Pair {
     /// When the first was heard, `h1`, and the second, `h2`.
     pub(super) heard: [Instant; 2],
     /// `R`: how long sound is audible.
@@ -118,7 +123,7 @@ pub(super) enum Answer {
     Forgotten,
 }
 
-impl Sounds {
+impl Pair {
     /// Asks if sound of these firings explains both readings. `own`: they are the receiver's.
     pub(super) fn ask<const H: usize>(&self, firings: &Firings<H>, own: bool) -> Answer {
         let [first, second] = self.heard;
@@ -139,6 +144,11 @@ impl Sounds {
                 }
             }
         }
+        self.or_forgotten(firings)
+    }
+
+    /// The answer of firings that do not explain both readings.
+    fn or_forgotten<const H: usize>(&self, firings: &Firings<H>) -> Answer {
         // All that is forgotten was fired before the oldest that is remembered.
         match firings.0.last() {
             Some(&oldest) if self.is_audible_from(oldest) => Answer::Forgotten,
@@ -152,5 +162,42 @@ impl Sounds {
         let age = first.since(instant).as_micros();
         // An instant after the first reading leaves all before it open.
         age < self.audible.as_micros() || age > u32::MAX / 2
+    }
+
+    /// The firings whose sound could be heard at an instant, but for one: where they stand, when they were, and the
+    /// length of the path.
+    fn heard_at<const H: usize>(
+        &self,
+        firings: &Firings<H>,
+        at: Instant,
+        but: Option<usize>,
+    ) -> impl Iterator<Item = (usize, Instant, i64)> {
+        let sent = firings.0.into_iter().enumerate().filter(move |&(place, _)| Some(place) != but);
+        let audible = self.audible;
+        let paths = sent.map(move |(place, sent)| (place, sent, at.since(sent)));
+        paths
+            .filter(move |&(_, _, length)| length <= audible)
+            .map(|(place, sent, length)| (place, sent, i64::from(length.as_micros())))
+    }
+
+    /// Asks if sound of these firings explains three readings, `third` after the two, by a path that changes at a
+    /// constant rate. `own`: they are the receiver's.
+    pub(super) fn ask_line<const H: usize>(&self, third: Instant, firings: &Firings<H>, own: bool) -> Answer {
+        let [first, second] = self.heard;
+        let path_change = i64::from(self.path_change.as_micros());
+        let own = |place| own.then_some(place);
+        for (earliest, a, length_a) in self.heard_at(firings, first, own(2)) {
+            for (middle, b, length_b) in self.heard_at(firings, second, own(1)).filter(|&(b, ..)| b <= earliest) {
+                for (_, c, length_c) in self.heard_at(firings, third, own(0)).filter(|&(c, ..)| c <= middle) {
+                    // Below four minutes each, lengths below a minute.
+                    let [before, since] = [b.since(a), c.since(b)].map(|time| i64::from(time.as_micros()));
+                    let off = (length_b - length_a) * since - (length_c - length_b) * before;
+                    if off.abs() <= path_change * (before + since) {
+                        return Answer::Explained;
+                    }
+                }
+            }
+        }
+        self.or_forgotten(firings)
     }
 }

@@ -1,12 +1,12 @@
 //! What a poll of a [`Ring`] does when something is due: fire, emit a reading, end the period.
 
-use super::history::{Answer, STEP_BACK, Sounds, is_long_ago, long_before};
+use super::history::{Answer, Firings, Pair, STEP_BACK, is_long_ago, long_before};
 use super::listening::Listening;
 use super::punctuality::PeriodLateness;
 use super::sensor::{Ended, LISTENING, READY, Sensor};
 use super::{NOBODY, PeriodStats, Reading, Ring, RingEvent};
 use crate::filter::heard;
-use crate::judge::{Heard, Judge};
+use crate::judge::{Heard, Judge, Sounds};
 use crate::plan::Plan;
 use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::time::{Instant, Micros};
@@ -178,14 +178,13 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             let heard = Heard { sensor, fired, echoes, firing, t_delta };
             let verdict = match unusable {
                 Some(kind) => self.judge.skip(&heard, kind),
-                None => self.judge.judge(&heard, |first, second| {
-                    if self.punctuality.is_on_time() {
-                        return None;
-                    }
+                None => {
                     let (sensors, plan, listening) = (&self.sensors, &self.plan, &self.listening);
-                    let memory = Memory { sensors, plan, listening, known_from: self.known_from };
-                    memory.explanation(sensor, first, second)
-                }),
+                    let on_time = self.punctuality.is_on_time();
+                    let known_from = self.known_from;
+                    self.judge
+                        .judge(&heard, &Memory { receiver: sensor, sensors, plan, listening, known_from, on_time })
+                }
             };
             self.plan.judged(sensor, verdict.kind, || self.judge.is_clear(sensor));
             self.plan.ended(sensor, ended_at);
@@ -250,29 +249,63 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 }
 
-/// What is known of who fired when.
+/// What is known of who fired when, for the reading of one sensor.
 struct Memory<'r, P, const E: usize, const H: usize> {
+    receiver: u8,
     sensors: &'r [Sensor<E, H>],
     plan: &'r P,
     listening: &'r Listening,
     known_from: Instant,
+    /// Nothing explains what agrees, as is proven.
+    on_time: bool,
+}
+
+impl<P: Plan, const E: usize, const H: usize> Sounds for Memory<'_, P, E, H> {
+    #[inline(always)]
+    fn explain(&self, first: Micros, second: Micros) -> Option<Explanation> {
+        if self.on_time { None } else { self.explain_pair(first, second) }
+    }
+
+    #[inline(always)]
+    fn explain_line(&self, echoes: [Micros; 3]) -> Option<Explanation> {
+        if self.on_time { None } else { self.explain_three(echoes) }
+    }
 }
 
 impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
-    /// The firing whose sound could be both the echo that a sensor heard `first` after the firing before its last one
-    /// and the one that it heard `second` after its last.
     #[inline(never)]
-    fn explanation(&self, receiver: u8, first: Micros, second: Micros) -> Option<Explanation> {
-        let own = self.sensors.get(usize::from(receiver))?;
-        let heard = [own.firings.before()? + first, own.fired() + second];
-        let path_change = self.listening.path_change_of(self.plan, receiver);
-        let sounds = Sounds { heard, audible: self.listening.audible(), path_change };
-        let mut forgotten = sounds.is_audible_from(self.known_from);
+    fn explain_pair(&self, first: Micros, second: Micros) -> Option<Explanation> {
+        let own = self.sensors.get(usize::from(self.receiver))?;
+        let pair = self.pair([own.firings.before()? + first, own.fired() + second]);
+        self.ask(&pair, |firings, own| pair.ask(firings, own))
+    }
+
+    #[inline(never)]
+    fn explain_three(&self, [first, second, third]: [Micros; 3]) -> Option<Explanation> {
+        let own = &self.sensors.get(usize::from(self.receiver))?.firings;
+        let (Some(fired), Some(fired_before)) = (own.before(), own.nth_last(2)) else {
+            // The ring remembers too little to know.
+            return Some(Explanation::History);
+        };
+        let pair = self.pair([fired_before + first, fired + second]);
+        let third = own.last() + third;
+        self.ask(&pair, |firings, own| pair.ask_line(third, firings, own))
+    }
+
+    fn pair(&self, heard: [Instant; 2]) -> Pair {
+        let path_change = self.listening.path_change_of(self.plan, self.receiver);
+        Pair { heard, audible: self.listening.audible(), path_change }
+    }
+
+    /// Asks all sensors that the receiver can hear, itself among them.
+    #[inline(always)]
+    fn ask(&self, pair: &Pair, answer: impl Fn(&Firings<H>, bool) -> Answer) -> Option<Explanation> {
+        let mut forgotten = pair.is_audible_from(self.known_from);
         for (x, sensor) in self.sensors.iter().enumerate().take(self.plan.sensors()) {
             // At most 64 sensors.
             let x = x as u8;
-            if self.plan.hears(receiver, x) {
-                match sounds.ask(&sensor.firings, x == receiver) {
+            if self.plan.hears(self.receiver, x) {
+                match answer(&sensor.firings, x == self.receiver) {
                     Answer::Explained => return Some(Explanation::Sensor(x)),
                     Answer::Forgotten => forgotten = true,
                     Answer::No => {}

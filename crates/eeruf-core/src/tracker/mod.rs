@@ -15,8 +15,8 @@ mod settings;
 mod tests;
 mod track;
 
-use crate::judge::{self, Judge};
-use crate::reading::{Explanation, ReadingKind, Verdict};
+use crate::judge::{self, Judge, Sounds};
+use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::Phase;
 use crate::time::Micros;
 
@@ -166,7 +166,7 @@ impl<const K: usize, const H: usize> Judge for EchoTracker<K, H> {
     }
 
     #[inline(always)]
-    fn judge(&mut self, heard: &judge::Heard<'_>, _: impl FnMut(Micros, Micros) -> Option<Explanation>) -> Verdict {
+    fn judge(&mut self, heard: &judge::Heard<'_>, _: &impl Sounds) -> Verdict {
         match self.sensors.get_mut(usize::from(heard.sensor)) {
             Some(tracks) => tracks.push(Heard::new(heard.echoes.first().copied(), heard.firing), &self.settings),
             None => heard.unjudged(None),

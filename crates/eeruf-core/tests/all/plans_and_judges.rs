@@ -1,9 +1,9 @@
 //! Any plan goes with any judge, also with one of the caller's own.
 
 use eeruf_core::{
-    Agreement, EchoFilter, EchoTracker, Explanation, Heard, HoppingCode, HoppingListening, HoppingPlan,
-    HoppingSchedule, HoppingSettings, ImmediateRefiring, Instant, Judge, Micros, Plan, ReadingKind, Ring, RingConfig,
-    RingEvent, ScheduledFiring, TrackerSettings, Verdict, tables::TABLE_I_D,
+    Agreement, EchoFilter, EchoTracker, Heard, HoppingCode, HoppingListening, HoppingPlan, HoppingSchedule,
+    HoppingSettings, ImmediateRefiring, Instant, Judge, Micros, Plan, ReadingKind, Ring, RingConfig, RingEvent,
+    ScheduledFiring, Sounds, TrackerSettings, Verdict, tables::TABLE_I_D,
 };
 
 const SENSORS: usize = 8;
@@ -22,17 +22,13 @@ impl Judge for EveryThird {
         Micros::new(200)
     }
 
-    fn judge(
-        &mut self,
-        heard: &Heard<'_>,
-        mut explanation: impl FnMut(Micros, Micros) -> Option<Explanation>,
-    ) -> Verdict {
+    fn judge(&mut self, heard: &Heard<'_>, sounds: &impl Sounds) -> Verdict {
         let readings = &mut self.readings[usize::from(heard.sensor)];
         *readings += 1;
         let t_echo = heard.echoes.first().copied();
         let kind = if *readings % 3 == 0 { ReadingKind::Accepted } else { ReadingKind::Repeated };
         // Its own firings do not explain an echo that stays.
-        let explained_by = t_echo.and_then(|t_echo| explanation(t_echo, t_echo));
+        let explained_by = t_echo.and_then(|t_echo| sounds.explain(t_echo, t_echo));
         Verdict { kind, t_echo, previous: None, age: None, explained_by }
     }
 

@@ -2,7 +2,10 @@
 //! nearer or go away.
 
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{Instant, Layout, Micros, Phase, RateFilter, ReadingKind, Requirements, Schedule};
+use eeruf_core::{
+    Agreement, Instant, Judge, Layout, Micros, Phase, RateFilter, ReadingKind, Requirements, Ring, RingConfig,
+    RingEvent, Schedule, ScheduledFiring,
+};
 
 use crate::common::random::Random;
 
@@ -160,4 +163,66 @@ fn the_age_of_what_was_once_accepted_stays_below_never() {
     assert_eq!(kinds[2].unwrap().kind, ReadingKind::Accepted);
     let ages: Vec<_> = (0..70_000).map(|_| filter.push(0, Instant::from_micros(0), None).unwrap().age).collect();
     assert_eq!((ages[0], ages[65_000], ages[69_999]), (Some(1), Some(65_001), Some(65_534)));
+}
+
+/// The readings of sensor 7, and those of them accepted, in 60 seconds of firings each up to `late` us late. It hears
+/// one path of sound, from `emitter`, whose length begins at `length` us and grows by `rate` us/s.
+fn heard_of_one_path<J: Judge>(judge: J, emitter: u8, late: u32, length: u32, rate: i64, seed: u32) -> (u32, u32) {
+    let config = RingConfig::new().with_window(Micros::from_millis(30)).with_audible(Micros::from_millis(100));
+    let begin = Instant::from_micros(0);
+    let plan = ScheduledFiring::new(&TABLE_I_D, begin);
+    let mut ring = Ring::<_, J, 12, 1, 5>::judged_by(plan, judge, config, begin).unwrap();
+    let mut random = Random(u64::from(seed));
+    let mut arrivals: Vec<Instant> = Vec::new();
+    let (mut readings, mut accepted) = (0, 0);
+    loop {
+        let due = ring.next_deadline();
+        if due.has_reached(Instant::from_micros(60_000_000)) {
+            return (readings, accepted);
+        }
+        let now = due + Micros::new(random.up_to(late));
+        arrivals.retain(|&arrival| {
+            let is_in = now.has_reached(arrival);
+            if is_in {
+                ring.echo(7, arrival).unwrap();
+            }
+            !is_in
+        });
+        while let Some(event) = ring.poll(now) {
+            match event {
+                RingEvent::Fire { sensor, .. } if sensor == emitter => {
+                    let longer = rate * i64::from(now.as_micros()) / 1_000_000;
+                    arrivals.push(now + Micros::new((i64::from(length) + longer) as u32));
+                }
+                RingEvent::Reading(reading) if reading.sensor == 7 => {
+                    readings += 1;
+                    accepted += u32::from(reading.kind == ReadingKind::Accepted);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ring_with_a_rate_accepts_no_path_of_anyone_else_however_late_firings_are() {
+    let filter = || RateFilter::<12>::new(Micros::new(999), 20_000).unwrap();
+    let (mut alone, mut readings) = (0, 0);
+    for (seed, late) in (0..110).zip([0, 500, 1_000, 3_000, 10_000].into_iter().cycle()) {
+        let emitter = [0, 1, 2, 3, 4, 5, 6, 8, 9, 10, 11][seed as usize % 11];
+        let (length, rate) = (20_000 + 400 * seed, i64::from(seed % 7) * 90 - 270);
+        let (heard, accepted) = heard_of_one_path(filter(), emitter, late, length, rate, seed);
+        assert_eq!(accepted, 0, "{emitter} late by up to {late} us, {length} us and {rate} us/s");
+        readings += heard;
+        alone += heard_of_one_path(Agreement(filter()), emitter, late, length, rate, seed).1;
+    }
+    assert!(readings > 20_000 && alone > 20, "{readings} readings, {alone} accepted by agreement alone");
+}
+
+#[test]
+fn a_ring_with_a_rate_accepts_a_wall_that_comes_nearer() {
+    let filter = RateFilter::<12>::new(Micros::new(400), 20_000).unwrap();
+    // At half a metre a second its echo comes 2.9 ms sooner each second.
+    let (readings, accepted) = heard_of_one_path(filter, 7, 0, 22_000, -300, 1);
+    assert!(readings > 500 && accepted > readings * 9 / 10, "{accepted} of {readings}");
 }

@@ -128,7 +128,8 @@ impl Transducer {
         bandwidth_hz: 40_000.0 / 8.0,
         radius_m: 8.0e-3,
         pattern_floor: Piston::DEFAULT_FLOOR,
-        beam: Beam::CutAt90,
+        // Its cans stand free on a board.
+        beam: Beam::Continuous,
         cycles: 8,
         blanking_s: 0.117e-3,
         max_range_m: 4.0,

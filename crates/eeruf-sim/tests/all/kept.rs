@@ -164,7 +164,7 @@ fn still_readings_of_every_gain_keep_every_bit() {
     let gains = [GainProfile::Constant, GainProfile::SquareRoot, GainProfile::Linear, GainProfile::Stepped];
     let found = gains.map(|gain| {
         let pose = Pose::new(Vector::new(4.0, 3.0), 0.3);
-        let module = Transducer { gain, ..Transducer::HC_SR04 };
+        let module = Transducer { gain, beam: Beam::CutAt90, ..Transducer::HC_SR04 };
         let robot = Robot { window: Micros::from_millis(24), ..Robot::ring(pose, 12, TAU / 12.0, 0.15, module) };
         let world = World::new(furnished(), vec![robot], Noise::default()).and_then(|world| world.with_max_order(4));
         exactly(&simulate(&world.unwrap(), Method::Conventional, &Options::periods(20)).unwrap())

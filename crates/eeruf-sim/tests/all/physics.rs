@@ -50,7 +50,8 @@ fn unlike_transducers_hear_each_other_if_their_bands_overlap() {
 #[test]
 fn a_path_between_two_kinds_has_the_senders_pattern_at_its_start_and_the_listeners_at_its_end() {
     let scene = Scene::new(vec![], vec![], Air::default()).unwrap();
-    let (sending, hearing) = (Transducer { frequency_hz: 48_000.0, ..Transducer::HC_SR04 }, Transducer::POLAROID_6500);
+    let sending = Transducer { frequency_hz: 48_000.0, beam: Beam::CutAt90, ..Transducer::HC_SR04 };
+    let hearing = Transducer::POLAROID_6500;
     let (emitter, listener) = (Pose::rotation(0.1), Pose::new(Vector::new(1.5, 0.0), PI - 0.05));
     let limits = Limits::order(0);
     let listeners = [listener];

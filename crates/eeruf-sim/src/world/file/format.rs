@@ -245,8 +245,7 @@ pub(super) struct RobotFile {
     pub(super) transducer: TransducerFile,
     #[serde(default)]
     pub(super) gain: GainFile,
-    #[serde(default)]
-    pub(super) beam: BeamFile,
+    pub(super) beam: Option<BeamFile>,
     pub(super) coupling_db: Option<f64>,
     pub(super) height_m: Option<HeightsFile>,
     pub(super) body: Option<BodyFile>,
@@ -307,9 +306,8 @@ pub(super) enum GainFile {
     Polaroid6500,
 }
 
-#[derive(Clone, Copy, Default, Deserialize)]
+#[derive(Clone, Copy, Deserialize)]
 pub(super) enum BeamFile {
-    #[default]
     #[serde(rename = "cut_at_90")]
     CutAt90,
     #[serde(rename = "continuous")]

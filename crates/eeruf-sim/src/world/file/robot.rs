@@ -27,10 +27,6 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
         GainFile::Stepped => GainProfile::Stepped,
         GainFile::Polaroid6500 => GainProfile::Polaroid6500,
     };
-    let beam = match file.beam {
-        BeamFile::CutAt90 => Beam::CutAt90,
-        BeamFile::Continuous => Beam::Continuous,
-    };
     if file.patience.is_some() {
         let gone = ": patience; expected no such key: a filter that waited for an echo let crosstalk in one phase \
                     starve the wall. Delete the line";
@@ -39,6 +35,11 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
     let preset = match file.transducer {
         TransducerFile::Polaroid6500 => Transducer::POLAROID_6500,
         TransducerFile::HcSr04 => Transducer::HC_SR04,
+    };
+    let beam = match file.beam {
+        Some(BeamFile::CutAt90) => Beam::CutAt90,
+        Some(BeamFile::Continuous) => Beam::Continuous,
+        None => preset.beam,
     };
     let transducer = Transducer { gain, beam, ..preset };
     let pose = file.pose.pose();

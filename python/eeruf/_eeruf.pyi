@@ -1250,7 +1250,7 @@ def _read_log(
     columns: Iterable[str],
     topics: Iterable[str],
     fields: Iterable[tuple[str, str, str]],
-    judged: bool,  # noqa: FBT001
+    judged: bool,
 ) -> dict[str, Any]: ...
 def _read_firings(path: str | PathLike[str]) -> dict[str, Any]: ...
 def _replay(

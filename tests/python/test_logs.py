@@ -138,5 +138,5 @@ def test_arguments_override_guesses_which_are_listed() -> None:
     with pytest.raises(eeruf.LogError, match="no sensors; expected ranges; found /RosAria/sonar"):
         eeruf.read_log(CASES / "pointcloud.bag")
     assert len(eeruf.read_log(CASES / "pointcloud.bag", topics=["/RosAria/sonar"]).names) > 1
-    with pytest.raises(eeruf.ArgumentError, match="fields = .*; expected triples"):
+    with pytest.raises(eeruf.ArgumentError, match=r"fields = .*; expected triples"):
         eeruf.read_log(CASES / "multiarray.bag", fields=[("/ultrasonic", "data[]", "km")])

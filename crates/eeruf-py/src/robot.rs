@@ -26,8 +26,8 @@ use crate::{
 ///     gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"``, ``"linear"``,
 ///         ``"stepped"`` or ``"polaroid_6500"``, the steps of that module's control circuit.
 ///     beam: the pattern near 90 degrees off a sensor's axis: ``"cut_at_90"``, an endless baffle with nothing behind,
-///         or ``"continuous"``, a baffle that ends; None for the transducer's own, ``"cut_at_90"`` of the Polaroid 6500 and
-///         ``"continuous"`` of the HC-SR04.
+///         or ``"continuous"``, a baffle that ends; None for the transducer's own, ``"cut_at_90"`` of the
+///         Polaroid 6500 and ``"continuous"`` of the HC-SR04.
 ///     coupling_db: the level of the sound that the mounting carries straight from sensor to sensor, relative to two
 ///         that face each other as far apart, -200 to 0; None for what the patterns say.
 ///     height_m: of its sensors above the floor, one for all or one each, in metres; for scenes that are not flat.

@@ -11,9 +11,9 @@ use crate::time::{Instant, Micros};
 /// up to a limit, without odometry; crosstalk that the schedule moves by more than `t_delta` between two readings is as
 /// far from the line as it moves: `docs/theory.md` section 2.2.
 ///
-/// It is for readings of two phases, as the judge of a [`Ring`](crate::Ring), which should remember five firings of each
-/// sensor then, or alone: hand in the echo time of each reading with the instant of its firing. It takes 20 bytes a
-/// sensor.
+/// It is for readings of two phases, as the judge of a [`Ring`](crate::Ring), which should remember five firings of
+/// each sensor then, or alone: hand in the echo time of each reading with the instant of its firing. It takes 20 bytes
+/// a sensor.
 ///
 /// ```
 /// use eeruf_core::{Instant, Micros, RateFilter, ReadingKind};

@@ -36,7 +36,7 @@ pub struct SoFar {
 /// The shortest period, within `budget` nodes and as long as `go_on` says so: it is asked every few milliseconds.
 ///
 /// There is always a schedule, firing one by one, unless sensors that fire together must keep a gap or the period is
-/// beyond [`MAX_NUMBER`](crate::engine::MAX_NUMBER) ticks: then `None`. The answer depends on problem and budget alone.
+/// beyond [`MAX_NUMBER`] ticks: then `None`. The answer depends on problem and budget alone.
 #[must_use]
 pub fn shortest(problem: &Problem, budget: u64, go_on: &mut dyn FnMut(&SoFar) -> bool) -> Option<Shortest> {
     let mut run = Run::new(problem, true)?;

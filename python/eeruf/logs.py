@@ -371,7 +371,21 @@ def read_log(
         (['left', 'right'], [1.2, inf, 1.21, 2.5])
 
     """
-    found = _eeruf._read_log(path, time, time_unit, ranges, range_unit, sensor, speed_of_sound, no_echo_m, no_echo, columns, topics, fields, judged)
+    found = _eeruf._read_log(
+        path,
+        time,
+        time_unit,
+        ranges,
+        range_unit,
+        sensor,
+        speed_of_sound,
+        no_echo_m,
+        no_echo,
+        columns,
+        topics,
+        fields,
+        judged,
+    )
     return Ranges(**found)
 
 

@@ -272,8 +272,8 @@ def test_each_sensor_of_an_uneven_ring_listens_as_long_as_it_may_also_by_another
         assert ring.schedule == schedule
         accepted = {event.sensor for event in events if isinstance(event, eeruf.Reading) and event.kind == "accepted"}
         assert accepted == {0, 1}
-    # Three quarters of it leave a far one less time than it listens.
-    with pytest.raises(eeruf.RingError, match=r"sensor 0 fires again 33\.75 ms after phase a"):
+    # Three quarters of it leave a sensor less time than it listens.
+    with pytest.raises(eeruf.RingError, match=r"sensor \d fires again [\d.]+ ms after phase [ab]; it listens for"):
         ring.change_schedule(found.schedule.scaled(3, 4))
     with pytest.raises(eeruf.ArgumentError, match="one of 12 sensors; expected one of 4 sensors"):
         ring.change_schedule(tables.TABLE_I_D)

@@ -119,7 +119,7 @@ def test_a_simulation_writes_itself_into_mcap_as_it_is_steered(tmp_path: Path) -
     order = np.argsort(fired, kind="stable")
     assert firings.damage is None
     assert np.array_equal(firings.t_echo_us, np.floor(echoes[order]), equal_nan=True)
-    ranges = eeruf.read_log(file)
+    ranges = eeruf.read_log(file, judged=True)
     accepted = [ranges.topics[sensor].endswith("/accepted") for sensor in ranges.sensor]
     assert sum(accepted) == sum(int(step.is_accepted.sum()) for step in steps)
     assert len(ranges) == len(fired) + sum(accepted)

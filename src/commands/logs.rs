@@ -17,7 +17,7 @@ use crate::report::table::markdown;
 /// Say what a log holds: its form, its sensors, how they fire, and each guess with the option that overrides it.
 ///
 /// Reads MCAP, ROS 1 and ROS 2 bags, tables with any separator, lines of pairs of name and value, JSON, and each of
-/// them packed by gzip, bzip2, xz or zstd. `replay` reads the same, and Python's `read_log`.
+/// them packed by gzip, bzip2 or zstd. `replay` reads the same, and Python's `read_log`.
 ///
 /// The exit code is 1 if no sensor is found.
 #[derive(clap::Args)]

@@ -22,7 +22,6 @@ pub(crate) enum Form {
 pub(crate) enum Packing {
     Gzip,
     Bzip2,
-    Xz,
     Zstd,
 }
 
@@ -32,6 +31,7 @@ pub(crate) enum Foreign {
     ULog,
     DataFlash,
     Telemetry,
+    Xz,
     Zip,
     Parquet,
     Hdf5,
@@ -55,7 +55,7 @@ impl Form {
         } else if starts(b"BZh") {
             Self::Packed(Packing::Bzip2)
         } else if starts(&[0xfd, b'7', b'z', b'X', b'Z', 0]) {
-            Self::Packed(Packing::Xz)
+            Self::Foreign(Foreign::Xz)
         } else if starts(&[0x28, 0xb5, 0x2f, 0xfd]) {
             Self::Packed(Packing::Zstd)
         } else if starts(b"ULog\x01\x12\x35") || ending == "ulg" {
@@ -121,7 +121,6 @@ impl Packing {
         match self {
             Self::Gzip => "gzip",
             Self::Bzip2 => "bzip2",
-            Self::Xz => "xz",
             Self::Zstd => "zstd",
         }
     }
@@ -131,7 +130,6 @@ impl Packing {
         Ok(match self {
             Self::Gzip => Box::new(flate2::read::MultiGzDecoder::new(input)),
             Self::Bzip2 => Box::new(bzip2::read::MultiBzDecoder::new(input)),
-            Self::Xz => Box::new(lzma_rust2::XzReader::new(input, true)),
             Self::Zstd => Box::new(zstd::stream::read::Decoder::new(input)?),
         })
     }
@@ -182,6 +180,7 @@ impl Foreign {
             Self::ULog => "a ULog file of PX4",
             Self::DataFlash => "a DataFlash log of ArduPilot",
             Self::Telemetry => "MAVLink telemetry",
+            Self::Xz => "packed by xz",
             Self::Zip => "a zip archive or a spreadsheet",
             Self::Parquet => "a Parquet file",
             Self::Hdf5 => "an HDF5 file",
@@ -216,12 +215,13 @@ impl Foreign {
             Self::Telemetry => {
                 rows("DISTANCE_SENSOR", "time_s,sensor,distance_cm", "{x._timestamp},{x.id},{x.current_distance}")
             }
+            Self::Xz => format!("`xz --decompress {path}`"),
             Self::Zip => frame("read_excel"),
             Self::Parquet => frame("read_parquet"),
             Self::Hdf5 => frame("read_hdf"),
-            Self::Binary => "MCAP, a ROS 1 or ROS 2 bag, or text, also packed by gzip, bzip2, xz or zstd".to_owned(),
+            Self::Binary => "MCAP, a ROS 1 or ROS 2 bag, or text, also packed by gzip, bzip2 or zstd".to_owned(),
         };
-        let then = if self == Self::Binary { "" } else { "; then `eeruf logs log.csv`" };
+        let then = if matches!(self, Self::Binary | Self::Xz) { "" } else { "; then `eeruf logs log.csv`" };
         LogError::new(file, format!("{}, which eeruf does not read; expected {how}{then}", self.name()))
     }
 }

@@ -7,7 +7,7 @@
 //! | ROS 2 bag (a folder) | the same, from its MCAP or `SQLite` files; messages packed by zstd too |
 //! | ROS 1 bag | the same, format 2.0; chunks of bz2, lz4 or neither |
 //! | text | tables with any separator, with or without header; pairs of name and value; JSON |
-//! | any of these packed | as a whole, by gzip, bzip2, xz or zstd |
+//! | any of these packed | as a whole, by gzip, bzip2 or zstd |
 //!
 //! `Range` has had a `variance` since ROS 2 Iron: the schema in the file says whether it is there, else the message's
 //! length. A `LaserScan` counts as a ring of sonars if it has at most 64 beams, or if its topic is asked for; each beam

@@ -217,6 +217,7 @@ fn foreign_forms_are_named_with_their_way_out() {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes, form, way) in [
         ("a.ulg", &b"ULog\x01\x12\x35\x01"[..], "ULog", "pyulog"),
+        ("a.csv.xz", b"\xfd7zXZ\0\0\x04", "packed by xz", "xz --decompress"),
         ("a.bin", b"\xa3\x95\x80\x80", "DataFlash", "pymavlink"),
         ("a.tlog", b"\0\x05\x12\x34\x56\x78\x9a\xbc\xfe\x09", "MAVLink", "pymavlink"),
         ("a.xlsx", b"PK\x03\x04", "spreadsheet", "read_excel"),

@@ -1,8 +1,32 @@
 //! [`Judge`]: what a ring asks of whatever decides what a reading is worth.
 
 use crate::reading::{Explanation, ReadingKind, Verdict};
+use crate::schedule::Phase;
 use crate::time::{Instant, Micros};
-use crate::tracker::Firing;
+
+/// A firing as a plan tells it to a judge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Firing {
+    /// The phase of the schedule in which the sensor fired.
+    pub phase: Phase,
+    /// Whether no other sensor's sound could be heard.
+    pub solo: bool,
+    /// Whether firings were punctual enough that crosstalk moved as the schedule says. An echo of a firing that was
+    /// not supports nothing.
+    pub steady: bool,
+    /// By how many microseconds a good reading should have changed since this sensor's firing before, if it comes from
+    /// straight ahead: `-2 d / c` for a sensor carried forward by `d`. What part of it there really is the tracker
+    /// learns for each sensor, from none to twice: walls seen at a slant change otherwise.
+    pub expected_change_us: i32,
+}
+
+impl Firing {
+    /// An ordinary, punctual firing in this phase, of a robot that stands.
+    pub const fn new(phase: Phase) -> Self {
+        Self { phase, solo: false, steady: true, expected_change_us: 0 }
+    }
+}
 
 /// What one firing brought, as a ring tells it to its judge.
 #[derive(Clone, Copy, Debug)]

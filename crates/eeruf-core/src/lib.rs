@@ -71,7 +71,7 @@ pub use hopping::{
     HoppingSettings, HoppingTab, HoppingToml, Weighed,
 };
 pub use interop::DurationError;
-pub use judge::{Agreement, Heard, Judge, Sounds};
+pub use judge::{Agreement, Firing, Heard, Judge, Sounds};
 pub use layout::{Layout, LayoutError, neighbour_rows};
 pub use phases::{
     Audible, PhaseCriterion, PhaseInterval, PhaseRequirements, PhaseSeparation, PhaseTable, PhaseVerification,
@@ -85,7 +85,7 @@ pub use sensor_error::SensorError;
 pub use sound::SpeedOfSound;
 pub use survey::{Survey, SurveyEvent, SurveyPlan, SurveyRow, SurveySlot};
 pub use time::{Instant, Micros};
-pub use tracker::{EchoTracker, Firing, TrackerError, TrackerSettings};
+pub use tracker::{EchoTracker, TrackerError, TrackerSettings};
 pub use uneven::{Uneven, UnevenError};
 pub use uneven_schedule::{SensorLimits, UnevenSchedule};
 pub use verified::VerifiedSchedule;

@@ -8,11 +8,11 @@ use super::schedule::HoppingSchedule;
 use super::settings::{HoppingListening, HoppingSettings, Pace};
 use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
 use super::weighed::Weighed;
+use crate::judge::Firing;
 use crate::plan::{Limits, Plan};
 use crate::reading::ReadingKind;
 use crate::schedule::Phase;
 use crate::time::{Instant, Micros};
-use crate::tracker::Firing;
 
 /// A firing that is later than this moves all that follow. Up to this the timetable stands, so that lateness does not
 /// add up; intervals can be shorter than planned by as much.

@@ -2,10 +2,10 @@
 //!
 //! A plan never reads a clock. The caller passes `now` and gets the next deadline back.
 
+use crate::judge::Firing;
 use crate::reading::ReadingKind;
 use crate::schedule::{Phase, VerifiedFor};
 use crate::time::{Instant, Micros};
-use crate::tracker::Firing;
 use crate::uneven_schedule::SensorLimits;
 
 /// What a plan wants done.

@@ -13,10 +13,10 @@
 //! In (8) the filter takes it for a true echo. In (10a), (10b) consecutive readings differ, and it does not.
 
 use super::contract::{Limits, Plan};
+use crate::judge::Firing;
 use crate::schedule::{MAX_PERIOD, Phase, Schedule};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};
-use crate::tracker::Firing;
 
 /// Immediate refiring: a sensor fires again `T_wait` after it has stopped listening; the first time after `T_lag +
 /// T_wait`.

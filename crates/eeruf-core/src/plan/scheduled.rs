@@ -1,10 +1,10 @@
 //! [`ScheduledFiring`]: every sensor fires once per period, by the table of a schedule (Sec. 3.1, Fig. 3).
 
 use super::contract::{Limits, Plan};
+use crate::judge::Firing;
 use crate::schedule::{MAX_SENSORS, Phase, Schedule};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros, longer};
-use crate::tracker::Firing;
 
 /// Scheduled firing: every sensor fires once per period, at the time the [`Schedule`] gives for the phase.
 ///

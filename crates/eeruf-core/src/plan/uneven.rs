@@ -2,9 +2,9 @@
 
 use super::contract::{Limits, Plan};
 use super::scheduled::ScheduledFiring;
+use crate::judge::Firing;
 use crate::schedule::{Phase, VerifiedFor};
 use crate::time::{Instant, Micros};
-use crate::tracker::Firing;
 use crate::uneven_schedule::{SensorLimits, UnevenSchedule};
 
 /// Scheduled firing by an [`UnevenSchedule`]: as [`ScheduledFiring`], and each sensor may listen and compare as it was

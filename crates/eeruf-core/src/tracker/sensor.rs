@@ -1,8 +1,8 @@
 //! [`SensorTracks`]: the tracks of one sensor, and what a reading does to them.
 
-use super::Firing;
 use super::settings::TrackerSettings;
 use super::track::{LATEST, SILENCE, Track, bit};
+use crate::judge::Firing;
 use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::Phase;
 use crate::time::Micros;

@@ -2,6 +2,7 @@
 
 extern crate std;
 use super::*;
+use crate::schedule::Phase;
 use std::string::ToString;
 use std::vec::Vec;
 

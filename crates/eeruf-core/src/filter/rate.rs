@@ -178,7 +178,7 @@ impl Line {
     }
 }
 
-/// By how much echoes may be off the line, and how fast they may change.
+/// The most that echoes may be off the line, and the fastest that they may change.
 #[derive(Clone, Copy)]
 struct Limits {
     t_delta: Micros,

@@ -35,7 +35,7 @@ const NOBODY: u8 = u8::MAX;
 // instruction. What a firing needs comes first.
 #[repr(C)]
 pub struct HoppingPlan<const K: usize> {
-    /// Who fires next, or [`NOBODY`].
+    /// The sensor that fires next, or [`NOBODY`].
     next: u8,
     /// How many of this period have fired, and how many fire in it.
     place: u8,
@@ -45,7 +45,7 @@ pub struct HoppingPlan<const K: usize> {
     pub(super) kind: u8,
     /// Lags have changed or the timetable broke off, and nobody has taken note.
     pub(super) changed: bool,
-    /// How often somebody has, modulo 256.
+    /// The number of times that somebody has, modulo 256.
     changes: u8,
     pub(super) since_shift: u8,
     pub(super) since_solo: u8,
@@ -59,7 +59,7 @@ pub struct HoppingPlan<const K: usize> {
     last_fired: Instant,
     lateness: Lateness,
     pub(super) code: HoppingCode,
-    /// How long the period lasts.
+    /// The length of the present period.
     pub(super) length: Micros,
     /// After how long its sensor fires in a solo period.
     pub(super) solo_at: Micros,

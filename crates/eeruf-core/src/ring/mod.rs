@@ -1,7 +1,7 @@
-//! [`Ring`]: plan and filter together, with what real sensors need: blanking, windows, stuck lines, late polls.
+//! [`Ring`]: plan and judge together, with what real sensors need: blanking, windows, stuck lines, late polls.
 //!
 //! The caller polls, fires the sensors it is asked to fire, hands in the instants of echo edges, and sleeps until the
-//! next deadline. Nothing here blocks, allocates, panics or reads a clock. The room uses the plan and the filter.
+//! next deadline. Nothing here blocks, allocates, panics or reads a clock. The room uses plans and judges.
 
 mod changes;
 mod config;

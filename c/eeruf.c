@@ -13,9 +13,10 @@
 #ifdef __AVR__
 SIZE_IS(EerufSensor, 12 + 4 * EERUF_FIRINGS);
 SIZE_IS(EerufLine, 6);
-SIZE_IS(EerufSchedule, 44);
+SIZE_IS(EerufSchedule, 46);
+SIZE_IS(EerufLimits, 7);
 #if EERUF_HOPPING
-SIZE_IS(EerufRing, 71);
+SIZE_IS(EerufRing, 73);
 SIZE_IS(EerufHopSensor, 16);
 SIZE_IS(EerufHopper, 57);
 #endif
@@ -194,21 +195,53 @@ static uint32_t moves_by(const EerufSchedule *schedule, uint8_t x, uint8_t y) {
     return x == y ? odd : shorter(even, odd);
 }
 
-/* Whether the schedule meets requirements; also by how much crosstalk moves at least. */
-static EerufStatus meets(const EerufSchedule *schedule, const EerufRequirements *needs, uint32_t *separation_us) {
+/* What one sensor needs. */
+static uint32_t own_t_delta(const EerufLimits *limits, uint8_t sensor, uint32_t t_delta_us) {
+    return limits == NULL ? t_delta_us : READ16(limits[sensor].t_delta_us);
+}
+
+
+/* Whether two sensors fire together, and so are declared not to hear each other. */
+static bool fire_together(const EerufLimits *limits, uint8_t x, uint8_t y) {
+    if (limits == NULL || x == y || READ8(limits[x].group) == 0) return false;
+    return READ8(limits[x].group) == READ8(limits[y].group);
+}
+
+/* Whether the schedule meets requirements; also the largest t_delta and window, and by how much crosstalk moves at
+   least: as much more than that t_delta as the pair with the least to spare has. */
+static EerufStatus meets(const EerufSchedule *schedule, EerufRequirements *needs, uint32_t *separation_us) {
+    const EerufLimits *limits = needs->limits;
     const uint8_t sensors = READ8(schedule->sensors);
-    const uint32_t needed = add32(add32(needs->t_delta_us, needs->t_delta_us), 1);
+    uint32_t t_delta_us = 0, window_us = 0, spare_us = UINT32_MAX;
+    EerufStatus stale = EERUF_OK, last = EERUF_OK;
     uint8_t x, y, phase;
-    *separation_us = UINT32_MAX;
     if (READ8(schedule->phases) != 2) return EERUF_ERR_PHASES;
-    for (x = 0; x < sensors; x++)
-        for (y = 0; y < x; y++) *separation_us = shorter(*separation_us, moves_by(schedule, x, y));
-    if (*separation_us < needed) return EERUF_ERR_CROSSTALK;
-    for (x = 0; x < sensors && needs->stale_echo; x++) {
-        const uint32_t moves = moves_by(schedule, x, x);
-        if (moves < needed) return EERUF_ERR_STALE_ECHO;
-        *separation_us = shorter(*separation_us, moves);
+    for (x = 0; x < sensors; x++) {
+        const uint32_t own_us = own_t_delta(limits, x, needs->t_delta_us);
+        const uint32_t listens_us = limits == NULL ? needs->window_us : READ32(limits[x].window_us);
+        t_delta_us = longer(t_delta_us, own_us);
+        window_us = longer(window_us, listens_us == 0 ? READ32(schedule->min_refire_us) : listens_us);
+        for (phase = 0; phase < 2; phase++)
+            if (refire(schedule, phase, x) < listens_us) last = EERUF_ERR_WINDOW;
+        for (y = 0; y <= x; y++) {
+            const uint32_t moves = moves_by(schedule, x, y);
+            const uint32_t larger_us = longer(own_us, own_t_delta(limits, y, needs->t_delta_us));
+            if (fire_together(limits, x, y)) {
+                for (phase = 0; phase < 2; phase++)
+                    if (last == EERUF_OK && fires_at(schedule, phase, x) != fires_at(schedule, phase, y))
+                        last = EERUF_ERR_TOGETHER;
+                continue;
+            }
+            if (x == y && !needs->stale_echo) continue;
+            if (moves < add32(add32(larger_us, larger_us), 1)) {
+                if (x != y) return EERUF_ERR_CROSSTALK;
+                stale = EERUF_ERR_STALE_ECHO;
+            } else {
+                spare_us = shorter(spare_us, moves - larger_us);
+            }
+        }
     }
+    if (stale != EERUF_OK) return stale;
     for (phase = 0; phase < 2; phase++) {
         for (x = 0; x < sensors; x++) {
             const uint32_t t_x = fires_at(schedule, phase, x);
@@ -220,7 +253,14 @@ static EerufStatus meets(const EerufSchedule *schedule, const EerufRequirements 
             }
         }
     }
-    return needs->window_us > READ32(schedule->min_refire_us) ? EERUF_ERR_WINDOW : EERUF_OK;
+    /* How long the longest that anybody keeps between two firings takes is not said by neighbours alone. */
+    if (limits != NULL) needs->layout = EERUF_LAYOUT_OTHER;
+    for (x = 0; x < sensors && limits != NULL; x++)
+        needs->min_interval_us = longer(needs->min_interval_us, READ32(limits[x].window_us));
+    needs->t_delta_us = t_delta_us;
+    needs->window_us = window_us;
+    *separation_us = add32(t_delta_us, spare_us);
+    return last;
 }
 
 /* For how long sound may be audible where crosstalk moves: its own echo, sent two firings before, reads the same. */
@@ -235,17 +275,20 @@ EerufStatus eeruf_schedule_verify(EerufSchedule *schedule, const EerufRequiremen
     return EERUF_ERR_MEMORY;
 #else
     EerufStatus status;
+    EerufRequirements needs;
     uint32_t separation_us;
     if (schedule == NULL || requirements == NULL) return EERUF_ERR_NULL;
     if (schedule->version != EERUF_VERSION) return schedule->version == 0 ? EERUF_ERR_NOT_READY : EERUF_ERR_VERSION;
     if (requirements->layout > EERUF_LAYOUT_BLOCKS) return EERUF_ERR_RANGE;
-    status = meets(schedule, requirements, &separation_us);
+    needs = *requirements;
+    status = meets(schedule, &needs, &separation_us);
     if (status != EERUF_OK) return status;
-    schedule->t_delta_us = requirements->t_delta_us;
-    schedule->min_interval_us = requirements->min_interval_us;
-    schedule->window_us = requirements->window_us == 0 ? schedule->min_refire_us : requirements->window_us;
+    schedule->t_delta_us = needs.t_delta_us;
+    schedule->min_interval_us = needs.min_interval_us;
+    schedule->window_us = needs.window_us;
+    schedule->limits = needs.limits;
     schedule->separation_us = separation_us;
-    schedule->layout = requirements->layout;
+    schedule->layout = needs.layout;
     schedule->neighbours = requirements->neighbours;
     schedule->stale_echo = requirements->stale_echo;
     schedule->path_change_us = EERUF_AS_T_DELTA;
@@ -295,8 +338,11 @@ EerufStatus eeruf_schedule_check(const EerufSchedule *schedule) {
     promised.layout = READ8(schedule->layout);
     promised.neighbours = READ8(schedule->neighbours);
     promised.stale_echo = READ8(schedule->stale_echo);
+    promised.limits = READ_POINTER(const EerufLimits *, schedule->limits);
     status = meets(schedule, &promised, &separation_us);
     if (status != EERUF_OK) return status;
+    if (promised.t_delta_us != READ32(schedule->t_delta_us)) return EERUF_ERR_TABLE;
+    if (promised.window_us != READ32(schedule->window_us)) return EERUF_ERR_TABLE;
     if (separation_us != READ32(schedule->separation_us)) return EERUF_ERR_TABLE;
     path_change_us = READ32(schedule->path_change_us);
     if (path_change_us != EERUF_AS_T_DELTA && separation_us - promised.t_delta_us <= path_change_us)
@@ -439,6 +485,10 @@ static uint32_t horizon_of_hopping(const EerufRing *ring);
 #define horizon_of_hopping(ring) 0u
 #endif
 
+static uint32_t window_of(const EerufRing *ring, uint8_t sensor);
+static void find_first_to_close(EerufRing *ring);
+static void emit_when_oldest_ends(EerufRing *ring);
+
 static EerufSensor *after(const EerufSensor *sensor, size_t bytes) {
     return (EerufSensor *)(void *)((uint8_t *)(uintptr_t)sensor + bytes);
 }
@@ -465,8 +515,38 @@ static void count(EerufRing *ring, uint8_t kind) {
 #define WATCHED 6u
 #define ALWAYS UINT8_MAX /* nothing is proven of the timetable, so that each reading is asked about */
 
-static uint32_t path_change_of(const EerufRing *ring) {
-    return ring->path_change_us == AS_T_DELTA ? ring->t_delta_us : ring->path_change_us;
+/* What a schedule allows its sensors one by one; null for a hopping ring, or if it was the same before. */
+static OUT_OF_LINE const EerufLimits *limits_of(const EerufSchedule *schedule) {
+    return schedule == NULL ? NULL : READ_POINTER(const EerufLimits *, schedule->limits);
+}
+
+static bool windows_differ(const EerufRing *ring) {
+    return limits_of(ring->schedule) != NULL || limits_of(ring->schedule_before) != NULL;
+}
+
+/* For how long a sensor listens that is to listen for `window_us`: no longer than a schedule allows it. */
+static OUT_OF_LINE uint32_t allowed_window(const EerufSchedule *schedule, uint8_t sensor, uint32_t window_us) {
+    const EerufLimits *limits = limits_of(schedule);
+    uint32_t own_us;
+    if (limits == NULL) return window_us;
+    own_us = READ32(limits[sensor].window_us);
+    return shorter(window_us, own_us == 0 ? READ32(schedule->min_refire_us) : own_us);
+}
+
+/* As the schedule allows it, and the one of the period before, whose last firings may still be listening. */
+static uint32_t window_of(const EerufRing *ring, uint8_t sensor) {
+    return allowed_window(ring->schedule_before, sensor, allowed_window(ring->schedule, sensor, ring->window_us));
+}
+
+/* The same of what counts as the same echo. */
+static uint16_t t_delta_of(const EerufRing *ring, uint8_t sensor) {
+    const uint32_t now_us = own_t_delta(limits_of(ring->schedule), sensor, ring->t_delta_us);
+    const uint32_t before_us = own_t_delta(limits_of(ring->schedule_before), sensor, ring->t_delta_us);
+    return (uint16_t)shorter(ring->t_delta_us, shorter(now_us, before_us));
+}
+
+static uint32_t path_change_of(const EerufRing *ring, uint16_t t_delta_us) {
+    return ring->path_change_us == AS_T_DELTA ? t_delta_us : ring->path_change_us;
 }
 
 /* Something irregular happened, or something else is asked of the schedule: whether it was verified for that. */
@@ -480,7 +560,8 @@ static OUT_OF_LINE void disturb(EerufRing *ring) {
     if (ring->path_change_us != AS_T_DELTA && ring->path_change_us > promised_us) return;
     if (ring->audible_us > READ32(schedule->audible_us)) return;
     /* Sound that was sent two periods apart differs by the time until a sensor fires again. */
-    if (ring->t_delta_us + path_change_of(ring) < READ32(schedule->min_refire_us)) ring->watched = WATCHED;
+    if (ring->t_delta_us + path_change_of(ring, ring->t_delta_us) < READ32(schedule->min_refire_us))
+        ring->watched = WATCHED;
 }
 
 static void note_late(EerufRing *ring, uint16_t late_us) {
@@ -498,17 +579,25 @@ static OUT_OF_LINE void fired_late(EerufRing *ring, uint16_t late_us, bool hops)
     uint32_t needed_us;
     add_late(ring, late_us);
     if (EERUF_FIRINGS == 1 || hops || ring->watched == ALWAYS) return;
-    needed_us = ring->t_delta_us + path_change_of(ring) + 4 * (uint32_t)ring->sum_late_us + 1u;
+    needed_us = ring->t_delta_us + path_change_of(ring, ring->t_delta_us) + 4 * (uint32_t)ring->sum_late_us + 1u;
     if (READ32(ring->schedule->separation_us) < needed_us) ring->watched = WATCHED;
 }
 
 #if EERUF_FIRINGS > 1
+/* Whether a sensor does not hear another, by the schedule and by the one before. */
+static bool is_deaf_to(const EerufRing *ring, uint8_t receiver, uint8_t emitter) {
+    return fire_together(limits_of(ring->schedule), receiver, emitter) &&
+           (ring->schedule_before == NULL || fire_together(limits_of(ring->schedule_before), receiver, emitter));
+}
+
 /* Whose sound could be both the echo that a sensor heard `first_us` after the firing before its last one and the one
    that it heard `second_us` after its last. */
-static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, const EerufSensor *own, uint32_t first_us,
+static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, uint8_t receiver, uint32_t first_us,
                                        uint32_t second_us) {
+    const EerufSensor *own = sensor_of(ring, receiver);
     const uint32_t heard_before = own->fired_us[1] + first_us, heard = own->fired_us[0] + second_us;
-    const uint32_t audible = ring->audible_us, between = heard - heard_before, change = path_change_of(ring);
+    const uint32_t audible = ring->audible_us, between = heard - heard_before;
+    const uint32_t change = path_change_of(ring, t_delta_of(ring, receiver));
     const EerufSensor *sensor = ring->sensors;
     uint32_t length = heard_before - ring->known_from_us;
     uint8_t x = 0, by = EERUF_BY_NOTHING;
@@ -517,7 +606,11 @@ static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, const EerufSensor 
         /* All that is forgotten was fired before this. An instant after the first reading leaves that open. */
         if (length < audible || length >= HALF_TURN) by = EERUF_BY_HISTORY;
         if (x == ring->count) return by;
-        do {
+        if (is_deaf_to(ring, receiver, x)) {
+            length = HALF_TURN - 1;
+            before = sensor->fired_us + EERUF_FIRINGS;
+        }
+        for (; before < sensor->fired_us + EERUF_FIRINGS; before++) {
             length = heard_before - *before;
             if (length > audible || before == own->fired_us + 1) continue;
             /* Both may be one firing if the readings are as close as that. */
@@ -525,7 +618,7 @@ static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, const EerufSensor 
                 if (fired == own->fired_us || heard - *fired > audible) continue;
                 if (*fired - *before - between + change <= 2 * change) return x;
             }
-        } while (++before < sensor->fired_us + EERUF_FIRINGS);
+        }
         sensor++;
         x++;
     }
@@ -604,8 +697,10 @@ static OUT_OF_LINE uint32_t horizon_of_table(const EerufRing *ring) {
 /* Ends the period of a table. Returns whether the next one does not follow on it as the schedule says. */
 static bool end_period_of_table(EerufRing *ring, uint32_t now_us, uint32_t late_us) {
     const uint32_t settling = settling_time(ring->schedule);
+    const bool differed = windows_differ(ring);
     bool changed = late_us > READ32(ring->schedule->period_us);
     uint8_t phase;
+    ring->schedule_before = NULL;
     if (changed) ring->due_us = now_us;
     /* The last firing must not fall half a turn of the clock behind while no sensor is enabled. */
     if (ring->due_us - ring->last_fired_us > settling) ring->last_fired_us = ring->due_us - settling;
@@ -615,6 +710,11 @@ static bool end_period_of_table(EerufRing *ring, uint32_t now_us, uint32_t late_
     }
     phase = (uint8_t)(ring->phase + 1u);
     begin_period(ring, phase < READ8(ring->schedule->phases) ? phase : 0);
+    /* Another schedule may allow other windows, also to firings under way. */
+    if (differed || windows_differ(ring)) {
+        find_first_to_close(ring);
+        emit_when_oldest_ends(ring);
+    }
     return changed;
 }
 
@@ -648,14 +748,28 @@ static EerufStatus allows(const EerufSchedule *schedule, uint32_t t_delta_us, ui
     if (is_verified(schedule)) {
         if (t_delta_us > READ32(schedule->t_delta_us)) return EERUF_ERR_T_DELTA;
         if (window_us > READ32(schedule->window_us)) return EERUF_ERR_VERIFIED_WINDOW;
+        /* No sensor fires again within its own window. */
+        if (limits_of(schedule) != NULL)
+            return window_us >= HALF_TURN ? EERUF_ERR_WINDOW : EERUF_OK;
     }
     return window_us > READ32(schedule->min_refire_us) || window_us >= HALF_TURN ? EERUF_ERR_WINDOW : EERUF_OK;
 }
 
+/* Whether the shortest window that a schedule allows is long enough, for so many sensors. */
+static EerufStatus can_hear(const EerufSchedule *schedule, uint8_t sensors, uint32_t t_delta_us, uint32_t window_us,
+                            uint32_t blanking_us) {
+    uint8_t x;
+    for (x = 0; x < sensors; x++) window_us = allowed_window(schedule, x, window_us);
+    if (blanking_us >= window_us || blanking_us > UINT16_MAX) return EERUF_ERR_BLANKING;
+    return t_delta_us >= window_us || t_delta_us > UINT16_MAX ? EERUF_ERR_COARSE_T_DELTA : EERUF_OK;
+}
+
 /* Listens and compares so from now on, if that is possible. */
 static EerufStatus listen(EerufRing *ring, uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us) {
-    if (blanking_us >= window_us || blanking_us > UINT16_MAX) return EERUF_ERR_BLANKING;
-    if (t_delta_us >= window_us || t_delta_us > UINT16_MAX) return EERUF_ERR_COARSE_T_DELTA;
+    EerufStatus status = can_hear(ring->schedule, ring->count, t_delta_us, window_us, blanking_us);
+    if (status == EERUF_OK)
+        status = can_hear(ring->schedule_before, ring->count, t_delta_us, window_us, blanking_us);
+    if (status != EERUF_OK) return status;
     ring->t_delta_us = (uint16_t)t_delta_us;
     ring->window_us = window_us;
     ring->blanking_us = (uint16_t)blanking_us;
@@ -749,10 +863,26 @@ static bool has_pending(const EerufRing *ring) {
     return (uint8_t)(ring->pending | (ring->oldest ^ NOBODY)) != 0;
 }
 
+/* When the window of a sensor's last firing closes. */
+static OUT_OF_LINE uint32_t closes_at(const EerufRing *ring, uint8_t x) {
+    return sensor_of(ring, x)->fired_us[0] + window_of(ring, x);
+}
+
 /* Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes. */
 static OUT_OF_LINE void emit_when_oldest_ends(EerufRing *ring) {
     if (ring->pending == 0 && ring->oldest != NOBODY)
-        ring->emit_at_us = sensor_of(ring, ring->oldest)->fired_us[0] + ring->window_us;
+        ring->emit_at_us = closes_at(ring, ring->oldest);
+}
+
+/* Where windows differ, the oldest is the one whose window closes first. */
+static OUT_OF_LINE void find_first_to_close(EerufRing *ring) {
+    uint8_t x;
+    ring->oldest = NOBODY;
+    for (x = 0; x < ring->count; x++) {
+        if (!(sensor_of(ring, x)->flags & LISTENING)) continue;
+        if (ring->oldest == NOBODY || !has_reached(closes_at(ring, x), closes_at(ring, ring->oldest)))
+            ring->oldest = x;
+    }
 }
 
 /* Finds the next oldest, now that the one that fired at `before` has stopped listening. All others fired later, or
@@ -761,6 +891,10 @@ static void find_oldest(EerufRing *ring, uint32_t before) {
     const EerufSensor *sensor = ring->sensors;
     uint32_t soonest = UINT32_MAX;
     uint8_t x, oldest = NOBODY;
+    if (windows_differ(ring)) {
+        find_first_to_close(ring);
+        return;
+    }
     before -= STEP_BACK;
     for (x = 0; x < ring->count; x++, sensor = after(sensor, STRIDE(ring))) {
         const uint32_t since = sensor->fired_us[0] - before;
@@ -783,7 +917,8 @@ static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late
 #endif
     fired->fired_us[0] = now_us;
     if (late_us != 0) fired_late(ring, late_us, hops);
-    if (ring->oldest == NOBODY) {
+    if (ring->oldest == NOBODY ||
+        (windows_differ(ring) && !has_reached(closes_at(ring, sensor), closes_at(ring, ring->oldest)))) {
         ring->oldest = sensor;
         emit_when_oldest_ends(ring);
     }
@@ -798,7 +933,8 @@ static void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint16_t late
 }
 
 /* Ends a firing and compares its reading, which has its echo time already, with the one before. */
-static void compare(EerufRing *ring, EerufSensor *sensor, int32_t change_us, EerufReading *reading) {
+static void compare(EerufRing *ring, uint8_t x, int32_t change_us, EerufReading *reading) {
+    EerufSensor *sensor = sensor_of(ring, x);
     EerufFilter *filter = &sensor->filter;
     const uint8_t flags = sensor->flags;
     if (flags & (STUCK | OUTSIDE)) forget(filter);
@@ -813,10 +949,10 @@ static void compare(EerufRing *ring, EerufSensor *sensor, int32_t change_us, Eer
         reading->previous_us = EERUF_NO_ECHO;
     } else {
         const uint32_t echo_us = reading->t_echo_us;
-        const bool agreed = agrees(filter, ring->t_delta_us, echo_us, change_us);
+        const bool agreed = agrees(filter, t_delta_of(ring, x), echo_us, change_us);
 #if EERUF_FIRINGS > 1
         if (agreed && ring->watched != 0 && echo_us != EERUF_NO_ECHO)
-            reading->explained_by = explanation(ring, sensor, filter->known_us, echo_us);
+            reading->explained_by = explanation(ring, x, filter->known_us, echo_us);
 #endif
         reading->kind = push(filter, ring->consecutive, echo_us, agreed, reading->explained_by != EERUF_BY_NOTHING);
     }
@@ -847,7 +983,7 @@ static void emit_reading(EerufRing *ring, uint8_t x, const int32_t *change_us, E
     sensor->echo_us = EERUF_NO_ECHO;
     if (flags & LISTENING) {
         if (hops) reading->kind = kind_of_hop(flags, reading->t_echo_us == EERUF_NO_ECHO);
-        else compare(ring, sensor, change_us == NULL ? 0 : change_us[x], reading);
+        else compare(ring, x, change_us == NULL ? 0 : change_us[x], reading);
         sensor->flags = flags & PERIOD;
         if (ring->oldest == x) find_oldest(ring, sensor->fired_us[0]);
     } else {
@@ -966,7 +1102,7 @@ static void hear(EerufRing *ring, uint8_t x, uint32_t at_us) {
     EerufSensor *sensor = sensor_of(ring, x);
     const uint32_t t_echo_us = at_us - sensor->fired_us[0];
     const uint8_t flags = sensor->flags;
-    const bool inside = t_echo_us <= ring->window_us;
+    const bool inside = t_echo_us <= window_of(ring, x);
     if (t_echo_us >= HALF_TURN) return; /* from before it fired, or from a clock that has jumped */
     if (flags & LISTENING) {
         if (!inside) {
@@ -1151,6 +1287,7 @@ static void change_now(EerufRing *ring, uint8_t unused, uint32_t settling) {
     const uint32_t settled = ring->last_fired_us + longer(settling, min_interval);
     (void)unused;
     if (has_reached(settled, ring->due_us)) ring->due_us = settled;
+    ring->schedule_before = ring->schedule;
     ring->schedule = next;
     ring->next_schedule = NULL;
     ring->hook = NULL;
@@ -1165,6 +1302,8 @@ static EerufStatus change(EerufRing *ring, const EerufSchedule *schedule, bool v
     if (READ8(schedule->sensors) != ring->count) return EERUF_ERR_SENSORS;
     if (READ8(schedule->phases) != READ8(ring->schedule->phases)) return EERUF_ERR_PHASES;
     status = allows(schedule, ring->t_delta_us, ring->window_us);
+    if (status == EERUF_OK)
+        status = can_hear(schedule, ring->count, ring->t_delta_us, ring->window_us, ring->blanking_us);
     if (status != EERUF_OK) return status;
     ring->next_schedule = schedule;
     ring->hook = change_now;
@@ -1199,6 +1338,7 @@ EerufStatus eeruf_ring_set_t_delta(EerufRing *ring, uint32_t t_delta_us) {
 EerufStatus eeruf_ring_set_window(EerufRing *ring, uint32_t window_us) {
     EerufStatus status = is_ready(ring);
     if (status == EERUF_OK) status = relisten(ring, ring->t_delta_us, window_us, ring->blanking_us);
+    if (status == EERUF_OK && windows_differ(ring)) find_first_to_close(ring);
     if (status == EERUF_OK) emit_when_oldest_ends(ring);
     return status;
 }

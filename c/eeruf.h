@@ -34,7 +34,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define EERUF_VERSION 2u /* goes up with each change of a structure or a table */
+#define EERUF_VERSION 3u /* goes up with each change of a structure or a table */
 
 /* Leave out time hopping with -DEERUF_HOPPING=0; the linker leaves it out too if you do not call it. */
 #ifndef EERUF_HOPPING
@@ -100,7 +100,8 @@ enum {
     EERUF_ERR_HOPPING = -27,     /* a hopping ring cannot do this */
     EERUF_ERR_VOTES = -28,       /* more votes to confirm an echo than there are phases: none would be */
     EERUF_ERR_AUDIBLE = -29,     /* sound that is audible for longer than 67,108,864 us */
-    EERUF_ERR_PATH_CHANGE = -30  /* a path of sound that changes by more than 65,534 us */
+    EERUF_ERR_PATH_CHANGE = -30, /* a path of sound that changes by more than 65,534 us */
+    EERUF_ERR_TOGETHER = -31     /* two sensors of one group do not fire together */
 };
 
 /* The library's EERUF_VERSION, to be compared with the header's. */
@@ -117,6 +118,13 @@ enum { EERUF_LAYOUT_LINE = 0, EERUF_LAYOUT_RING = 1, EERUF_LAYOUT_BLOCKS = 2, EE
 
 #define EERUF_AS_T_DELTA UINT32_MAX /* a path of sound changes by as much as the receiver's t_delta */
 
+/* What one sensor may do, where they are not all alike. */
+typedef struct EerufLimits {
+    uint32_t window_us;   /* for how long it listens; in requirements 0 for as long as the schedule allows */
+    uint16_t t_delta_us;  /* what counts as the same echo */
+    uint8_t group;        /* sensors of one group fire together and do not hear each other; 0 for none */
+} EerufLimits;
+
 /* When each sensor fires. `eeruf design --emit c` writes it as a constant in flash; eeruf_schedule_make makes one. */
 typedef struct EerufSchedule {
     uint16_t version;       /* EERUF_VERSION */
@@ -127,7 +135,7 @@ typedef struct EerufSchedule {
     uint32_t period_us;     /* T_p */
     uint32_t min_refire_us; /* the shortest time between two firings of one sensor */
     /* What it was verified for: all zero if it was not. */
-    uint32_t t_delta_us;    /* (13a) and (13b) hold for it */
+    uint32_t t_delta_us;    /* (13a) and (13b) hold for it; the largest, as the window, where sensors have limits */
     uint32_t min_interval_us;
     uint32_t window_us;
     uint32_t separation_us; /* by how much crosstalk moves at least from one reading to the next */
@@ -137,12 +145,16 @@ typedef struct EerufSchedule {
     uint8_t layout;         /* EERUF_LAYOUT_.. */
     uint8_t neighbours;
     uint8_t stale_echo;     /* whether a sensor's own echo from the period before is rejected too */
+    const EerufLimits *limits; /* of each sensor, where they are not all alike; else null */
 } EerufSchedule;
 
 /* What a schedule is to be verified for. */
 typedef struct EerufRequirements {
     uint32_t t_delta_us, min_interval_us, window_us; /* no window: as long as the schedule allows */
     uint8_t layout, neighbours, stale_echo;
+    /* Of each sensor, instead of t_delta and window above, where they are not all alike; else null. Must last as long
+       as the schedule. */
+    const EerufLimits *limits;
 } EerufRequirements;
 
 /* Makes a schedule of firing times `t_fire_us[phase * sensors + sensor]` after the start of each period. The memory
@@ -261,10 +273,10 @@ typedef struct EerufEvent {
     } u;
 } EerufEvent;
 
-/* A ring: 71 bytes on an AVR. Initialise it with eeruf_ring_init; not for the caller otherwise. */
+/* A ring: 73 bytes on an AVR. Initialise it with eeruf_ring_init; not for the caller otherwise. */
 typedef struct EerufRing {
     uint16_t ready;
-    const EerufSchedule *schedule, *next_schedule;
+    const EerufSchedule *schedule, *next_schedule, *schedule_before;
     EerufSensor *sensors;
     void (*hook)(struct EerufRing *ring, uint8_t sensor, uint32_t us);
     uint32_t due_us, last_fired_us, emit_at_us, window_us, period, audible_us, known_from_us;

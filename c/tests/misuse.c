@@ -30,7 +30,7 @@ static EerufStatus make(size_t order_size, size_t gap_size, uint32_t period_us, 
 }
 
 static void schedules(void) {
-    EerufRequirements needs = {999, 9000, 36000, EERUF_LAYOUT_LINE, 4, 0};
+    EerufRequirements needs = {999, 9000, 36000, EERUF_LAYOUT_LINE, 4, 0, NULL};
     EerufSchedule broken;
     EXPECT(eeruf_schedule_make(NULL, order, sizeof order, gaps, sizeof gaps, 60000, 4, 2, TIMES), EERUF_ERR_NULL);
     EXPECT(eeruf_schedule_make(&schedule, NULL, 0, gaps, sizeof gaps, 60000, 4, 2, TIMES), EERUF_ERR_NULL);
@@ -70,6 +70,25 @@ static void schedules(void) {
     needs.layout = EERUF_LAYOUT_LINE;
     EXPECT(eeruf_schedule_verify(&schedule, &needs), EERUF_OK);
     EXPECT(eeruf_schedule_check(&schedule), EERUF_OK);
+    /* Sensors that are not all alike. */
+    {
+        EerufLimits limits[4] = {{36000, 999, 0}, {20000, 400, 0}, {0, 999, 0}, {12000, 999, 0}};
+        EerufSchedule unlike = unverified;
+        EerufRequirements each = needs;
+        each.limits = limits;
+        EXPECT(eeruf_schedule_verify(&unlike, &each), EERUF_OK);
+        EXPECT(unlike.t_delta_us == 999 && unlike.window_us == unlike.min_refire_us, 1);
+        EXPECT(eeruf_schedule_check(&unlike), EERUF_OK);
+        limits[3].t_delta_us = 1000;
+        EXPECT(eeruf_schedule_check(&unlike), EERUF_ERR_CROSSTALK);
+        limits[3].t_delta_us = 998;
+        EXPECT(eeruf_schedule_check(&unlike), EERUF_OK);
+        limits[0].window_us = UINT32_MAX;
+        EXPECT(eeruf_schedule_check(&unlike), EERUF_ERR_WINDOW);
+        limits[0].window_us = 0;
+        limits[0].group = limits[1].group = 1;
+        EXPECT(eeruf_schedule_check(&unlike), EERUF_ERR_TOGETHER);
+    }
     /* Each number of a table is checked. */
     broken = schedule;
     broken.version++;

@@ -17,10 +17,10 @@ static const uint32_t EERUF_HC_SR04_2_gap_us[] EERUF_FLASH = {
     0u, 31000u, 30000u,
 };
 static const EerufSchedule EERUF_HC_SR04_2 EERUF_FLASH = {
-    2, 2, 2, EERUF_HC_SR04_2_order, EERUF_HC_SR04_2_gap_us,
+    3, 2, 2, EERUF_HC_SR04_2_order, EERUF_HC_SR04_2_gap_us,
     61000u, 60000u, 381u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 61000u,
-    1, EERUF_LAYOUT_RING, 2, 0,
+    1, EERUF_LAYOUT_RING, 2, 0, 0,
 };
 
 // 3 sensors, T_p = 62 ms;
@@ -34,10 +34,10 @@ static const uint32_t EERUF_HC_SR04_3_gap_us[] EERUF_FLASH = {
     0u, 22000u, 21000u, 19000u,
 };
 static const EerufSchedule EERUF_HC_SR04_3 EERUF_FLASH = {
-    2, 3, 2, EERUF_HC_SR04_3_order, EERUF_HC_SR04_3_gap_us,
+    3, 3, 2, EERUF_HC_SR04_3_order, EERUF_HC_SR04_3_gap_us,
     62000u, 60000u, 387u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 62000u,
-    1, EERUF_LAYOUT_RING, 3, 0,
+    1, EERUF_LAYOUT_RING, 3, 0, 0,
 };
 
 // 4 sensors, T_p = 63 ms;
@@ -51,10 +51,10 @@ static const uint32_t EERUF_HC_SR04_4_gap_us[] EERUF_FLASH = {
     0u, 15000u, 15000u, 15000u, 18000u,
 };
 static const EerufSchedule EERUF_HC_SR04_4 EERUF_FLASH = {
-    2, 4, 2, EERUF_HC_SR04_4_order, EERUF_HC_SR04_4_gap_us,
+    3, 4, 2, EERUF_HC_SR04_4_order, EERUF_HC_SR04_4_gap_us,
     63000u, 60000u, 393u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 63000u,
-    1, EERUF_LAYOUT_RING, 4, 0,
+    1, EERUF_LAYOUT_RING, 4, 0, 0,
 };
 
 // 5 sensors, T_p = 76.5 ms;
@@ -68,10 +68,10 @@ static const uint32_t EERUF_HC_SR04_5_gap_us[] EERUF_FLASH = {
     0u, 15000u, 15000u, 16000u, 15000u, 15500u,
 };
 static const EerufSchedule EERUF_HC_SR04_5 EERUF_FLASH = {
-    2, 5, 2, EERUF_HC_SR04_5_order, EERUF_HC_SR04_5_gap_us,
+    3, 5, 2, EERUF_HC_SR04_5_order, EERUF_HC_SR04_5_gap_us,
     76500u, 60000u, 471u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 76500u,
-    1, EERUF_LAYOUT_RING, 4, 0,
+    1, EERUF_LAYOUT_RING, 4, 0, 0,
 };
 
 // 6 sensors, T_p = 91.5 ms;
@@ -85,10 +85,10 @@ static const uint32_t EERUF_HC_SR04_6_gap_us[] EERUF_FLASH = {
     0u, 15000u, 15000u, 15000u, 16000u, 16500u, 14000u,
 };
 static const EerufSchedule EERUF_HC_SR04_6 EERUF_FLASH = {
-    2, 6, 2, EERUF_HC_SR04_6_order, EERUF_HC_SR04_6_gap_us,
+    3, 6, 2, EERUF_HC_SR04_6_order, EERUF_HC_SR04_6_gap_us,
     91500u, 60500u, 557u, 14569u, 60000u, 1500u,
     EERUF_AS_T_DELTA, 91500u,
-    1, EERUF_LAYOUT_RING, 4, 0,
+    1, EERUF_LAYOUT_RING, 4, 0, 0,
 };
 
 // 8 sensors, T_p = 67 ms;
@@ -102,10 +102,10 @@ static const uint32_t EERUF_HC_SR04_8_gap_us[] EERUF_FLASH = {
     0u, 0u, 15000u, 0u, 15000u, 0u, 15000u, 0u, 22000u,
 };
 static const EerufSchedule EERUF_HC_SR04_8 EERUF_FLASH = {
-    2, 8, 2, EERUF_HC_SR04_8_order, EERUF_HC_SR04_8_gap_us,
+    3, 8, 2, EERUF_HC_SR04_8_order, EERUF_HC_SR04_8_gap_us,
     67000u, 60000u, 416u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 67000u,
-    1, EERUF_LAYOUT_RING, 4, 0,
+    1, EERUF_LAYOUT_RING, 4, 0, 0,
 };
 
 // 8 sensors, T_p = 100.5 ms;
@@ -119,10 +119,10 @@ static const uint32_t EERUF_HC_SR04_8_SLOWER_gap_us[] EERUF_FLASH = {
     0u, 3000u, 22500u, 3000u, 24000u, 1500u, 24000u, 9000u, 13500u,
 };
 static const EerufSchedule EERUF_HC_SR04_8_SLOWER EERUF_FLASH = {
-    2, 8, 2, EERUF_HC_SR04_8_SLOWER_order, EERUF_HC_SR04_8_SLOWER_gap_us,
+    3, 8, 2, EERUF_HC_SR04_8_SLOWER_order, EERUF_HC_SR04_8_SLOWER_gap_us,
     100500u, 90000u, 524u, 14569u, 90000u, 1500u,
     EERUF_AS_T_DELTA, 100500u,
-    1, EERUF_LAYOUT_RING, 4, 0,
+    1, EERUF_LAYOUT_RING, 4, 0, 0,
 };
 
 // 8 sensors, T_p = 130.5 ms;
@@ -136,10 +136,10 @@ static const uint32_t EERUF_HC_SR04_8_SLOWEST_gap_us[] EERUF_FLASH = {
     0u, 7500u, 30000u, 3000u, 34500u, 1500u, 31500u, 1500u, 21000u,
 };
 static const EerufSchedule EERUF_HC_SR04_8_SLOWEST EERUF_FLASH = {
-    2, 8, 2, EERUF_HC_SR04_8_SLOWEST_order, EERUF_HC_SR04_8_SLOWEST_gap_us,
+    3, 8, 2, EERUF_HC_SR04_8_SLOWEST_order, EERUF_HC_SR04_8_SLOWEST_gap_us,
     130500u, 120000u, 611u, 14569u, 120000u, 1500u,
     EERUF_AS_T_DELTA, 130500u,
-    1, EERUF_LAYOUT_RING, 4, 0,
+    1, EERUF_LAYOUT_RING, 4, 0, 0,
 };
 
 // 10 sensors, T_p = 77.5 ms;
@@ -153,10 +153,10 @@ static const uint32_t EERUF_HC_SR04_10_gap_us[] EERUF_FLASH = {
     1000u, 0u, 15000u, 1000u, 15000u, 1000u, 14000u, 2000u, 13500u, 2500u, 12500u,
 };
 static const EerufSchedule EERUF_HC_SR04_10 EERUF_FLASH = {
-    2, 10, 2, EERUF_HC_SR04_10_order, EERUF_HC_SR04_10_gap_us,
+    3, 10, 2, EERUF_HC_SR04_10_order, EERUF_HC_SR04_10_gap_us,
     77500u, 61000u, 474u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 77500u,
-    1, EERUF_LAYOUT_RING, 4, 0,
+    1, EERUF_LAYOUT_RING, 4, 0, 0,
 };
 
 // 12 sensors, T_p = 71 ms;
@@ -170,10 +170,10 @@ static const uint32_t EERUF_HC_SR04_12_gap_us[] EERUF_FLASH = {
     0u, 0u, 0u, 15000u, 0u, 0u, 15000u, 0u, 0u, 15000u, 0u, 0u, 26000u,
 };
 static const EerufSchedule EERUF_HC_SR04_12 EERUF_FLASH = {
-    2, 12, 2, EERUF_HC_SR04_12_order, EERUF_HC_SR04_12_gap_us,
+    3, 12, 2, EERUF_HC_SR04_12_order, EERUF_HC_SR04_12_gap_us,
     71000u, 60000u, 439u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 71000u,
-    1, EERUF_LAYOUT_RING, 4, 0,
+    1, EERUF_LAYOUT_RING, 4, 0, 0,
 };
 
 // 16 sensors, T_p = 75 ms;
@@ -187,10 +187,10 @@ static const uint32_t EERUF_HC_SR04_16_gap_us[] EERUF_FLASH = {
     0u, 0u, 0u, 0u, 15000u, 0u, 0u, 0u, 15000u, 0u, 0u, 0u, 15000u, 0u, 0u, 0u, 30000u,
 };
 static const EerufSchedule EERUF_HC_SR04_16 EERUF_FLASH = {
-    2, 16, 2, EERUF_HC_SR04_16_order, EERUF_HC_SR04_16_gap_us,
+    3, 16, 2, EERUF_HC_SR04_16_order, EERUF_HC_SR04_16_gap_us,
     75000u, 60000u, 463u, 14569u, 60000u, 1000u,
     EERUF_AS_T_DELTA, 75000u,
-    1, EERUF_LAYOUT_RING, 4, 0,
+    1, EERUF_LAYOUT_RING, 4, 0, 0,
 };
 
 // 24 sensors, T_p = 94.5 ms;
@@ -204,8 +204,8 @@ static const uint32_t EERUF_HC_SR04_24_gap_us[] EERUF_FLASH = {
     12000u, 1500u, 1500u, 1390u, 110u, 110u, 16390u, 3000u, 110u, 1390u, 110u, 5890u, 13500u, 110u, 110u, 5780u, 110u, 110u, 13280u, 1500u, 4280u, 110u, 110u, 1500u, 10500u,
 };
 static const EerufSchedule EERUF_HC_SR04_24 EERUF_FLASH = {
-    2, 24, 2, EERUF_HC_SR04_24_order, EERUF_HC_SR04_24_gap_us,
+    3, 24, 2, EERUF_HC_SR04_24_order, EERUF_HC_SR04_24_gap_us,
     94500u, 60220u, 576u, 14569u, 60000u, 1390u,
     EERUF_AS_T_DELTA, 94500u,
-    1, EERUF_LAYOUT_RING, 4, 0,
+    1, EERUF_LAYOUT_RING, 4, 0, 0,
 };

@@ -69,6 +69,7 @@ pub const fn status_of_violation(kind: ViolationKind) -> i32 {
         ViolationKind::StaleEcho => -12,
         ViolationKind::Interval => -13,
         ViolationKind::Window => -17,
+        ViolationKind::Together => -31,
         _ => 0,
     }
 }

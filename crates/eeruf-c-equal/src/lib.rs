@@ -79,6 +79,9 @@ pub struct Needs {
     pub stale_echo: bool,
 }
 
+/// What one sensor needs: `window_us`, `t_delta_us` and `group` of an EerufLimits.
+pub type OwnNeeds = [u32; 3];
+
 /// A ring in C, of either kind, with its schedules and modules, in memory of exactly the size that it needs.
 #[derive(Debug)]
 pub struct C(*mut c_void);
@@ -111,11 +114,12 @@ impl C {
     }
 
     /// `eeruf_schedule_verify` of the schedule with this number, and `eeruf_schedule_check` if that is fine.
-    pub fn verify(&mut self, schedule: u32, needs: Needs) -> (i32, Numbers) {
+    pub fn verify(&mut self, schedule: u32, needs: Needs, own: &[OwnNeeds]) -> (i32, Numbers) {
         let Needs { t_delta_us, min_interval_us, window_us, layout, neighbours, stale_echo } = needs;
         let mut out = [0; 4];
         let stale_echo = stale_echo.into();
-        // SAFETY: a schedule that was made, and room for four numbers.
+        let own = if own.is_empty() { std::ptr::null() } else { own.as_ptr().cast() };
+        // SAFETY: a schedule that was made, three numbers for each of its sensors, and room for four numbers.
         let status = unsafe {
             shim::shim_verify(
                 self.0,
@@ -126,6 +130,7 @@ impl C {
                 layout,
                 neighbours,
                 stale_echo,
+                own,
                 out.as_mut_ptr(),
             )
         };

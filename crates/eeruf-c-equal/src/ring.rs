@@ -1,10 +1,10 @@
 //! Rings that fire by tables.
 
 use crate::core_side::{flat, status_of, status_of_violation};
-use crate::{C, Do, Needs, Random};
+use crate::{C, Do, Needs, OwnNeeds, Random};
 use eeruf_core::{
-    EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule,
-    ScheduledFiring,
+    EachInUse, EachSensor, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingError, RingEvent,
+    Schedule, ScheduledFiring, Uneven,
 };
 
 use crate::world::{World, same};
@@ -13,39 +13,49 @@ const K: usize = 16;
 
 /// Verifying, which only schedules of two phases can be.
 pub trait Verify: Sized {
-    /// Verifies in both languages, and gives back the schedule, verified if it can be.
-    fn verify_as(self, c: &mut C, number: u32, needs: Needs) -> Self;
+    /// Verifies in both languages, and gives back the schedule, verified if it can be, and what it allows each sensor.
+    fn verify_as(self, c: &mut C, number: u32, needs: Needs, own: &[OwnNeeds]) -> (Self, EachSensor<K>);
 }
 
 impl Verify for Schedule<K, 2> {
-    fn verify_as(self, c: &mut C, number: u32, needs: Needs) -> Self {
+    fn verify_as(self, c: &mut C, number: u32, needs: Needs, own: &[OwnNeeds]) -> (Self, EachSensor<K>) {
         let layout = match needs.layout {
             0 => Layout::Line(needs.neighbours),
             1 => Layout::Ring(needs.neighbours),
             _ => Layout::Blocks(needs.neighbours),
         };
+        let of_each = |place: usize| own.iter().map(|own| Micros::new(own[place])).collect::<Vec<_>>();
+        let (window, t_delta) = (of_each(0), of_each(1));
+        let group = own.iter().enumerate().filter(|(_, own)| own[2] == 1).fold(0, |group, (x, _)| group | 1 << x);
+        let together: &[u64] = if group == 0 { &[] } else { &[group] };
+        let uneven = Uneven { window: &window, t_delta: &t_delta, together, ..Uneven::NONE };
         let requirements = Requirements {
+            uneven: (!own.is_empty()).then_some(uneven),
             min_interval: Micros::new(needs.min_interval_us),
             window: Micros::new(needs.window_us),
             stale_echo: needs.stale_echo,
             layout,
             ..Requirements::new(Micros::new(needs.t_delta_us))
         };
-        let (status, numbers) = c.verify(number, needs);
+        let (status, numbers) = c.verify(number, needs, own);
         assert_eq!(numbers.min_refire_us, self.min_refire().as_micros());
         let c_mm_s = 343_200;
         assert_eq!(numbers.max_speed_mm_s, self.max_speed_mm_s(requirements.t_delta, c_mm_s));
-        match self.verify(&requirements).verified() {
+        match self.verify(&requirements).verified_each() {
             Ok(verified) => {
                 assert_eq!(status, 0);
-                let verified_for = verified.verified_for();
-                assert_eq!(numbers.window_us, verified_for.window.as_micros());
-                assert_eq!(numbers.separation_us, verified_for.separation.as_micros());
-                verified.into_schedule()
+                let limits: Vec<_> = (0..K as u8).map_while(|x| verified.limits_of(x)).collect();
+                assert_eq!(Some(numbers.window_us), limits.iter().map(|limits| limits.window.as_micros()).max());
+                let schedule = *verified.schedule();
+                if own.is_empty() {
+                    assert_eq!(numbers.separation_us, verified.verified_for().separation.as_micros());
+                    return (schedule, EachSensor::NONE);
+                }
+                (schedule, *verified.own_limits())
             }
             Err(violation) => {
                 assert_eq!(status, status_of_violation(violation.kind), "{violation}");
-                self
+                (self, EachSensor::NONE)
             }
         }
     }
@@ -54,9 +64,9 @@ impl Verify for Schedule<K, 2> {
 macro_rules! cannot_be_verified {
     ($($phases:literal)*) => {$(
         impl Verify for Schedule<K, $phases> {
-            fn verify_as(self, c: &mut C, number: u32, needs: Needs) -> Self {
-                assert_eq!(c.verify(number, needs).0, -7);
-                self
+            fn verify_as(self, c: &mut C, number: u32, needs: Needs, own: &[OwnNeeds]) -> (Self, EachSensor<K>) {
+                assert_eq!(c.verify(number, needs, own).0, -7);
+                (self, EachSensor::NONE)
             }
         }
     )*};
@@ -64,7 +74,7 @@ macro_rules! cannot_be_verified {
 cannot_be_verified!(1 3 8);
 
 /// A schedule of so many sensors, in both languages, for a window that it mostly allows.
-fn schedule<const M: usize>(r: &Random, c: &mut C, number: u32, sensors: u8, period: u32) -> Schedule<K, M>
+fn schedule<const M: usize>(r: &Random, c: &mut C, number: u32, sensors: u8, period: u32) -> Fires<M>
 where
     Schedule<K, M>: Verify,
 {
@@ -72,6 +82,9 @@ where
     let step = 2 * t_delta + 1 + r.duration(40);
     let mut times = [[0; K]; M];
     let apart = r.once_in(5);
+    // Sensors that are not all alike; the first two fire together.
+    let uneven = M == 2 && r.once_in(3);
+    let pair = uneven && sensors > 1 && r.once_in(3);
     for x in 0..usize::from(sensors) {
         let first = r.within(0, period - 1);
         times[0][x] = if apart { x as u32 * period / u32::from(sensors) } else { first };
@@ -81,6 +94,9 @@ where
             let later = times[0][x] + wait;
             times[phase][x] = if later < period { later } else { times[0][x].saturating_sub(wait) };
         }
+    }
+    for row in times.iter_mut().filter(|_| pair && !r.once_in(9)) {
+        row[1] = row[0];
     }
     let rows = times.map(|row| row.map(Micros::new));
     let used = usize::from(sensors);
@@ -97,18 +113,28 @@ where
         neighbours: r.within(0, 5) as u8,
         stale_echo: r.once_in(4),
     };
+    let own: Vec<OwnNeeds> = (0..sensors)
+        .filter(|_| uneven)
+        .map(|x| {
+            let window = r.one_of(&[0, r.within(1, period.div_ceil(2)), r.within(1, period)]);
+            [window, r.one_of(&[t_delta, r.within(1, t_delta)]), u32::from(pair && x < 2)]
+        })
+        .collect();
     let rust = rust.expect("each firing lies in its period");
-    if r.once_in(5) { rust } else { rust.verify_as(c, number, needs) }
+    if r.once_in(5) { (rust, EachSensor::NONE) } else { rust.verify_as(c, number, needs, &own) }
 }
 
 fn change(c: &mut C, what: Do, value: u32, rust: Result<(), RingError>) {
     assert_eq!(c.call(what, 0, value), rust.map_or_else(|error| status_of(&error), |()| 0), "{what:?} {value}");
 }
 
-type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M>, EchoFilter<K>, K>;
+type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M, EachInUse<'s, K>>, EchoFilter<K>, K>;
+
+/// A schedule, and what it allows each sensor.
+type Fires<const M: usize> = (Schedule<K, M>, EachSensor<K>);
 
 /// What a caller may do now and then.
-fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, schedules: &'s [Schedule<K, M>], now: u32) {
+fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, schedules: &'s [Fires<M>], now: u32) {
     let sensor = r.within(0, ring.sensors() as u32) as u8;
     match r.within(0, 16) {
         0 => {
@@ -127,7 +153,8 @@ fn act<'s, const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'s, M>, sched
         }
         8..10 => {
             let number = r.within(0, schedules.len() as u32 - 1);
-            change(c, Do::ChangeSchedule, number, ring.change_to_unverified(&schedules[number as usize]));
+            let (schedule, limits) = &schedules[number as usize];
+            change(c, Do::ChangeSchedule, number, ring.change_with_limits(schedule, limits));
         }
         10 => {
             let t_delta = r.duration(1_500);
@@ -170,15 +197,15 @@ where
     let sensors = r.within(1, K as u32) as u8;
     let period = r.one_of(&[r.within(20_000, 120_000), r.within(30_000, 60_000), 1 + r.duration(1 << 28)]);
     let rungs = r.within(1, 3);
-    let schedules: Vec<Schedule<K, M>> = (0..rungs)
+    let schedules: Vec<Fires<M>> = (0..rungs)
         .map(|number| {
             let period = (period + number * r.duration(30_000)).min(1 << 28);
             schedule(r, &mut c, number, sensors, period)
         })
         .collect();
-    let first = schedules[0];
+    let (first, limits) = &schedules[0];
     let longest = first.min_refire().as_micros();
-    let window = r.one_of(&[0, longest, r.within(0, longest), r.duration(longest), longest.saturating_add(1)]);
+    let window = r.one_of(&[0, 0, longest, r.within(0, longest), r.duration(longest), longest.saturating_add(1)]);
     let (t_delta, blanking) = (r.one_of(&[0, r.duration(900)]), r.one_of(&[0, 0, r.duration(3_000)]));
     let path_change = r.one_of(&[0, 0, r.duration(1_000), r.duration(70_000)]);
     let audible = r.one_of(&[0, 0, 0, r.within(1, 2 * period.min(200_000)), r.duration(1 << 27)]);
@@ -189,7 +216,8 @@ where
     (config.t_delta, config.window) = (some(t_delta), some(window));
     (config.path_change, config.audible) = (some(path_change), some(audible));
     let status = c.ring(0, [t_delta, window, blanking, path_change, audible], consecutive, start);
-    let mut ring = match Table::<M>::unverified(&schedules[0], config, Instant::from_micros(start)) {
+    let plan = ScheduledFiring::with_limits(first, limits, Instant::from_micros(start));
+    let mut ring = match Table::<M>::with_plan(plan, config, Instant::from_micros(start)) {
         Ok(ring) => ring,
         Err(error) => {
             assert_eq!(status, status_of(&error), "{r}: {error}");

@@ -8,6 +8,7 @@
 
 typedef struct Handle {
     EerufSchedule *schedules[8];
+    EerufLimits *limits[8];
     unsigned schedule_count;
     EerufRing *ring;
     EerufSensor *sensors;
@@ -32,6 +33,7 @@ void shim_free(Handle *handle) {
         EerufSchedule *schedule = handle->schedules[--handle->schedule_count];
         free((void *)(uintptr_t)schedule->order);
         free((void *)(uintptr_t)schedule->gap_us);
+        free(handle->limits[handle->schedule_count]);
         free(schedule);
     }
     if (handle->hopping == NULL) free(handle->ring);
@@ -58,10 +60,23 @@ int shim_schedule(Handle *handle, uint32_t period_us, uint8_t sensors, uint8_t p
 }
 
 int shim_verify(Handle *handle, unsigned number, uint32_t t_delta_us, uint32_t min_interval_us, uint32_t window_us,
-                uint8_t layout, uint8_t neighbours, uint8_t stale_echo, uint32_t *out) {
-    const EerufRequirements requirements = {t_delta_us, min_interval_us, window_us, layout, neighbours, stale_echo};
+                uint8_t layout, uint8_t neighbours, uint8_t stale_echo, const uint32_t *own, uint32_t *out) {
     EerufSchedule *schedule = handle->schedules[number];
-    const EerufStatus status = eeruf_schedule_verify(schedule, &requirements);
+    EerufRequirements needs = {t_delta_us, min_interval_us, window_us, layout, neighbours, stale_echo, NULL};
+    EerufStatus status;
+    uint8_t x;
+    if (own != NULL) {
+        EerufLimits *limits = (EerufLimits *)calloc(schedule->sensors, sizeof *limits);
+        for (x = 0; x < schedule->sensors; x++, own += 3) {
+            limits[x].window_us = own[0];
+            limits[x].t_delta_us = (uint16_t)own[1];
+            limits[x].group = (uint8_t)own[2];
+        }
+        free(handle->limits[number]);
+        handle->limits[number] = limits;
+        needs.limits = limits;
+    }
+    status = eeruf_schedule_verify(schedule, &needs);
     out[0] = schedule->min_refire_us;
     out[1] = schedule->window_us;
     out[2] = schedule->separation_us;

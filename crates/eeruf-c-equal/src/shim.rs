@@ -21,6 +21,7 @@ unsafe extern "C" {
         layout: u8,
         neighbours: u8,
         stale_echo: u8,
+        own: *const u32,
         out: *mut u32,
     ) -> i32;
     pub(crate) fn shim_ring(

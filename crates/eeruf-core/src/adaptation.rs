@@ -3,6 +3,7 @@
 
 use core::fmt;
 
+use crate::own_limits::Alike;
 use crate::reading::{ReadingKind, Tally};
 use crate::ring::PeriodStats;
 use crate::sound::SpeedOfSound;
@@ -12,20 +13,20 @@ use crate::verified::VerifiedSchedule;
 /// Verified schedules for one ring, from the shortest period to the longest.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Ladder<'s, const K: usize> {
-    rungs: &'s [VerifiedSchedule<K>],
+pub struct Ladder<'s, const K: usize, L = Alike> {
+    rungs: &'s [VerifiedSchedule<K, 2, L>],
 }
 
-impl<'s, const K: usize> Ladder<'s, K> {
+impl<'s, const K: usize, L> Ladder<'s, K, L> {
     /// A ladder of these rungs. Each was verified for itself; a ring changes only to those that allow its own `t_delta`
     /// and window.
     ///
     /// # Errors
     /// [`LadderError`] if there is no rung, if a period is not longer than the one before, or if the number of sensors
     /// changes.
-    pub fn new(rungs: &'s [VerifiedSchedule<K>]) -> Result<Self, LadderError> {
+    pub fn new(rungs: &'s [VerifiedSchedule<K, 2, L>]) -> Result<Self, LadderError> {
         let Some(first) = rungs.first() else { return Err(LadderError::Empty) };
-        let mut before: Option<&VerifiedSchedule<K>> = None;
+        let mut before: Option<&VerifiedSchedule<K, 2, L>> = None;
         for (rung, schedule) in rungs.iter().enumerate() {
             if schedule.sensors() != first.sensors() {
                 let (sensors, expected) = (schedule.sensors(), first.sensors());
@@ -63,8 +64,8 @@ impl<'s, const K: usize> Ladder<'s, K> {
 /// ```
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Adaptation<'s, const K: usize> {
-    ladder: Ladder<'s, K>,
+pub struct Adaptation<'s, const K: usize, L = Alike> {
+    ladder: Ladder<'s, K, L>,
     rung: usize,
     /// Above this rejection rate, in thousandths, it fires more slowly. Default: 300, a choice of ours; the paper names
     /// none.
@@ -94,9 +95,9 @@ pub struct Advice {
     pub max_speed_mm_s: u32,
 }
 
-impl<'s, const K: usize> Adaptation<'s, K> {
+impl<'s, const K: usize, L> Adaptation<'s, K, L> {
     /// Starts on the lowest rung, the shortest period.
-    pub fn new(ladder: Ladder<'s, K>) -> Self {
+    pub fn new(ladder: Ladder<'s, K, L>) -> Self {
         Self {
             ladder,
             rung: 0,
@@ -120,7 +121,7 @@ impl<'s, const K: usize> Adaptation<'s, K> {
     pub fn adapt<Refused>(
         &mut self,
         stats: &PeriodStats,
-        change: impl FnOnce(&'s VerifiedSchedule<K>) -> Result<(), Refused>,
+        change: impl FnOnce(&'s VerifiedSchedule<K, 2, L>) -> Result<(), Refused>,
     ) -> Result<bool, Refused> {
         for kind in [ReadingKind::Accepted, ReadingKind::Rejected, ReadingKind::Repeated, ReadingKind::Ambiguous] {
             for _ in 0..stats.tally.of(kind) {

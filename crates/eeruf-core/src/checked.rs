@@ -1,12 +1,12 @@
-//! [`schedule!`](crate::schedule!), [`uneven_schedule!`](crate::uneven_schedule!) and
-//! [`hopping_schedule!`](crate::hopping_schedule!): schedules that the compiler verifies.
+//! [`schedule!`](crate::schedule!) and [`hopping_schedule!`](crate::hopping_schedule!): schedules that the compiler
+//! verifies.
 
 use crate::conditions::Requirements;
 use crate::hopping::{HoppingCode, HoppingSchedule};
+use crate::own_limits::EachSensor;
 use crate::phases::{PhaseRequirements, PhaseViolation};
 use crate::schedule::{Schedule, ScheduleError};
 use crate::time::Micros;
-use crate::uneven_schedule::UnevenSchedule;
 use crate::verified::VerifiedSchedule;
 use crate::verify::ViolationKind;
 
@@ -41,6 +41,29 @@ use crate::verify::ViolationKind;
 ///     meets: Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) },
 /// };
 /// # assert_eq!(FRONT.sensors(), 4);
+/// ```
+///
+/// Where sensors are not all alike, `each_meets` keeps for each the limits that it was verified for:
+///
+/// ```
+/// use eeruf_core::{EachSensor, Layout, Micros, Requirements, Uneven, VerifiedSchedule, schedule};
+///
+/// const CORNER: VerifiedSchedule<2, 2, EachSensor<2>> = schedule! {
+///     period_us: 60_000,
+///     t_fire_a_us: [0, 20_000],
+///     t_fire_b_us: [0, 23_000],
+///     each_meets: Requirements {
+///         layout: Layout::Line(2),
+///         min_interval: Micros::from_millis(15),
+///         uneven: Some(Uneven {
+///             window: &[Micros::from_millis(50), Micros::from_millis(12)],
+///             t_delta: &[Micros::new(999), Micros::new(1_400)],
+///             ..Uneven::NONE
+///         }),
+///         ..Requirements::new(Micros::new(999))
+///     },
+/// };
+/// assert_eq!(CORNER.limits_of(1).map(|limits| limits.window), Some(Micros::from_millis(12)));
 /// ```
 #[macro_export]
 macro_rules! schedule {
@@ -78,6 +101,36 @@ macro_rules! schedule {
             )
         }
     };
+    (
+        period_us: $period:expr,
+        t_fire_a_us: $t_fire_a:expr,
+        t_fire_b_us: $t_fire_b:expr,
+        each_meets: $requirements:expr $(,)?
+    ) => {
+        const {
+            $crate::__checked_each(
+                $crate::Schedule::from_firing(
+                    $crate::Micros::new($period),
+                    [$crate::__micros($t_fire_a), $crate::__micros($t_fire_b)],
+                ),
+                &$requirements,
+            )
+        }
+    };
+}
+
+/// For `schedule!` with `each_meets`.
+#[doc(hidden)]
+pub const fn __checked_each<const K: usize>(
+    schedule: Result<Schedule<K>, ScheduleError>,
+    requirements: &Requirements<'_>,
+) -> VerifiedSchedule<K, 2, EachSensor<K>> {
+    let schedule = *__checked(schedule, requirements).schedule();
+    match schedule.verify(requirements).verified_each() {
+        Ok(verified) => verified,
+        // Never: it has just been verified.
+        Err(_) => panic!("a schedule that does not meet its requirements"),
+    }
 }
 
 /// For `schedule!`, which evaluates it when the program is compiled: its panics are compile errors.
@@ -197,62 +250,5 @@ pub const fn __checked_hopping<const K: usize>(
         Some(PhaseViolation::StaleEcho { .. }) => panic!("a sensor's stale echo would be believed"),
         Some(PhaseViolation::Interval { .. }) => panic!("two neighbours fire closer together than min_interval"),
         Some(PhaseViolation::Window { .. }) => panic!("a sensor fires again while it still listens"),
-    }
-}
-
-/// An [`UnevenSchedule`] that is verified while the program is compiled, as [`schedule!`](crate::schedule!) does for
-/// sensors that are all alike; `eeruf design --emit rust` writes the whole call.
-///
-/// ```
-/// use eeruf_core::{Layout, Micros, Requirements, Uneven, UnevenSchedule, uneven_schedule};
-///
-/// const CORNER: UnevenSchedule<2> = uneven_schedule! {
-///     period_us: 60_000,
-///     t_fire_a_us: [0, 20_000],
-///     t_fire_b_us: [0, 23_000],
-///     meets: Requirements {
-///         layout: Layout::Line(2),
-///         min_interval: Micros::from_millis(15),
-///         uneven: Some(Uneven {
-///             window: &[Micros::from_millis(50), Micros::from_millis(12)],
-///             t_delta: &[Micros::new(999), Micros::new(1_400)],
-///             ..Uneven::NONE
-///         }),
-///         ..Requirements::new(Micros::new(999))
-///     },
-/// };
-/// assert_eq!(CORNER.limits_of(1).unwrap().window, Micros::from_millis(12));
-/// ```
-#[macro_export]
-macro_rules! uneven_schedule {
-    (
-        period_us: $period:expr,
-        t_fire_a_us: $t_fire_a:expr,
-        t_fire_b_us: $t_fire_b:expr,
-        meets: $requirements:expr $(,)?
-    ) => {
-        const {
-            $crate::__checked_uneven(
-                $crate::Schedule::from_firing(
-                    $crate::Micros::new($period),
-                    [$crate::__micros($t_fire_a), $crate::__micros($t_fire_b)],
-                ),
-                &$requirements,
-            )
-        }
-    };
-}
-
-/// For `uneven_schedule!`, which evaluates it when the program is compiled: its panics are compile errors.
-#[doc(hidden)]
-pub const fn __checked_uneven<const K: usize>(
-    schedule: Result<Schedule<K>, ScheduleError>,
-    requirements: &Requirements<'_>,
-) -> UnevenSchedule<K> {
-    let schedule = *__checked(schedule, requirements).schedule();
-    match schedule.verify(requirements).verified_uneven() {
-        Ok(uneven) => uneven,
-        // Never: it has just been verified.
-        Err(_) => panic!("a schedule that does not meet its requirements"),
     }
 }

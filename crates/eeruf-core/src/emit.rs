@@ -18,8 +18,7 @@ use crate::uneven::Uneven;
 
 impl<const K: usize> Schedule<K> {
     /// A `const RING: VerifiedSchedule` in Rust, with the `requirements` for the compiler to check (see
-    /// [`schedule!`](crate::schedule!)); an `UnevenSchedule` where sensors differ
-    /// ([`uneven_schedule!`](crate::uneven_schedule!)).
+    /// [`schedule!`](crate::schedule!)).
     pub const fn to_rust<'r>(&'r self, requirements: &'r Requirements<'r>) -> RustSource<'r, K> {
         RustSource { schedule: self, requirements }
     }
@@ -60,15 +59,19 @@ impl<const K: usize> fmt::Display for RustSource<'_, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { schedule, requirements } = self;
         let Requirements { t_delta, criterion, min_interval, layout, window, stale_echo, uneven } = requirements;
-        let (kind, check) = match uneven {
-            None => ("VerifiedSchedule", "schedule"),
-            Some(_) => ("UnevenSchedule", "uneven_schedule"),
-        };
-        let imports =
-            if uneven.is_some() { "Uneven, UnevenSchedule, uneven_schedule" } else { "VerifiedSchedule, schedule" };
-        writeln!(f, "use eeruf_core::{{Criterion, Layout, Micros, Requirements, {imports}}};\n")?;
+        let (each, uneven_too) = if uneven.is_some() { ("EachSensor, ", "Uneven, ") } else { ("", "") };
+        writeln!(
+            f,
+            "use eeruf_core::{{Criterion, {each}Layout, Micros, Requirements, {uneven_too}VerifiedSchedule, schedule}};\n"
+        )?;
         writeln!(f, "// {}; {}.", Summary(schedule), Promise(requirements))?;
-        writeln!(f, "pub const RING: {kind}<{}> = {check}! {{", schedule.sensors())?;
+        let sensors = schedule.sensors();
+        match uneven {
+            None => writeln!(f, "pub const RING: VerifiedSchedule<{sensors}> = schedule! {{")?,
+            Some(_) => {
+                writeln!(f, "pub const RING: VerifiedSchedule<{sensors}, 2, EachSensor<{sensors}>> = schedule! {{")?;
+            }
+        }
         writeln!(f, "    period_us: {},", Grouped(schedule.period()))?;
         if schedule.has_lags() && uneven.is_none() {
             writeln!(f, "    t_lag_us: [{}],", Numbers(|| schedule.t_lag().iter().copied()))?;
@@ -78,7 +81,7 @@ impl<const K: usize> fmt::Display for RustSource<'_, K> {
             writeln!(f, "    t_fire_a_us: [{}],", Numbers(|| schedule.fire_times(Phase::A)))?;
             writeln!(f, "    t_fire_b_us: [{}],", Numbers(|| schedule.fire_times(Phase::B)))?;
         }
-        writeln!(f, "    meets: Requirements {{")?;
+        writeln!(f, "    {}: Requirements {{", if uneven.is_some() { "each_meets" } else { "meets" })?;
         writeln!(f, "        t_delta: Micros::new({}),", Grouped(*t_delta))?;
         let criterion = match criterion {
             Criterion::Exact => "Exact",
@@ -282,13 +285,6 @@ mod tests {
         let c = TABLE_I_D.to_c(&REQUIREMENTS).to_string();
         assert!(c.contains(promise) && c.contains("#define EERUF_SENSORS 12\n"), "{c}");
         assert!(c.contains("{24000u, 49000u") && c.contains("{18000u, 37000u"), "{c}");
-    }
-
-    #[test]
-    fn a_schedule_of_uneven_sensors_is_written_as_firing_times_though_it_has_lags() {
-        let rust = TABLE_I_D.to_rust(&Requirements { uneven: Some(Uneven::NONE), ..REQUIREMENTS }).to_string();
-        assert!(rust.contains("pub const RING: UnevenSchedule<12> = uneven_schedule! {"), "{rust}");
-        assert!(rust.contains("    t_fire_a_us: [24_000, 49_000,") && !rust.contains("t_lag_us"), "{rust}");
     }
 
     #[test]

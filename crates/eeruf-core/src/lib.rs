@@ -40,6 +40,7 @@ mod interop;
 mod judge;
 mod layout;
 mod needs;
+mod own_limits;
 mod phases;
 mod plan;
 mod reading;
@@ -55,14 +56,13 @@ pub mod tables;
 mod time;
 mod tracker;
 mod uneven;
-mod uneven_schedule;
 mod verified;
 mod verify;
 mod watch;
 
 pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
 #[doc(hidden)]
-pub use checked::{__checked, __checked_hopping, __checked_uneven, __micros};
+pub use checked::{__checked, __checked_each, __checked_hopping, __micros};
 pub use conditions::{Criterion, Interval, Requirements, Separation};
 pub use edges::{Edge, EdgeQueue};
 pub use filter::{EchoFilter, FilterError, RateFilter};
@@ -73,11 +73,12 @@ pub use hopping::{
 pub use interop::DurationError;
 pub use judge::{Agreement, Firing, Heard, Judge, Sounds};
 pub use layout::{Layout, LayoutError, neighbour_rows};
+pub use own_limits::{Alike, EachInUse, EachSensor, LimitsInUse, OwnLimits, SensorLimits};
 pub use phases::{
     Audible, PhaseCriterion, PhaseInterval, PhaseRequirements, PhaseSeparation, PhaseTable, PhaseVerification,
     PhaseViolation, PhaseViolations,
 };
-pub use plan::{BrokenPromise, ImmediateRefiring, Limits, Plan, PlanStep, ScheduledFiring, UnevenFiring, check_plan};
+pub use plan::{BrokenPromise, ImmediateRefiring, Limits, Plan, PlanStep, ScheduledFiring, check_plan};
 pub use reading::{Explanation, ReadingKind, Tally, Verdict};
 pub use ring::{AgreementRing, PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
 pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError, VerifiedFor};
@@ -87,7 +88,6 @@ pub use survey::{Survey, SurveyEvent, SurveyPlan, SurveyRow, SurveySlot};
 pub use time::{Instant, Micros};
 pub use tracker::{EchoTracker, TrackerError, TrackerSettings};
 pub use uneven::{Uneven, UnevenError};
-pub use uneven_schedule::{SensorLimits, UnevenSchedule};
 pub use verified::VerifiedSchedule;
 pub use verify::{Verification, Violation, ViolationKind, Violations};
 pub use watch::{Blind, Doubt, SensorState, SensorWatch};

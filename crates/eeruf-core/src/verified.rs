@@ -3,31 +3,45 @@
 use core::ops::Deref;
 
 use crate::conditions::{Criterion, Requirements};
+use crate::own_limits::{Alike, EachSensor, SensorLimits};
 use crate::schedule::{Schedule, VerifiedFor};
-use crate::time::{Micros, shorter};
+use crate::time::{Micros, longer, shorter};
 use crate::verify::{Verification, Violation, stale_separation};
 
 /// A [`Schedule`] that was verified, and what for: [`schedule!`](crate::schedule!) makes it when the program is
 /// compiled, [`Verification::verified`] at run time. It can be used wherever a schedule can.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+///
+/// `L` is [`EachSensor`] where sensors have a window and a `t_delta` of their own, which a [`Ring`](crate::Ring) then
+/// keeps one by one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(transparent)]
-pub struct VerifiedSchedule<const K: usize, const M: usize = 2>(Schedule<K, M>);
+pub struct VerifiedSchedule<const K: usize, const M: usize = 2, L = Alike> {
+    schedule: Schedule<K, M>,
+    own_limits: L,
+}
 
-impl<const K: usize, const M: usize> VerifiedSchedule<K, M> {
+impl<const K: usize, const M: usize, L> VerifiedSchedule<K, M, L> {
     /// The schedule. It remembers what it was verified for: a ring that changes to it or restarts keeps its intervals.
     pub const fn schedule(&self) -> &Schedule<K, M> {
-        &self.0
+        &self.schedule
     }
 
     /// The schedule by itself, for those who keep schedules of both kinds. It remembers what it was verified for.
-    pub const fn into_schedule(self) -> Schedule<K, M> {
-        self.0
+    pub const fn into_schedule(self) -> Schedule<K, M>
+    where
+        L: Copy,
+    {
+        self.schedule
     }
 
-    /// What it was verified for.
+    /// The limits that its sensors have of their own.
+    pub const fn own_limits(&self) -> &L {
+        &self.own_limits
+    }
+
+    /// What it was verified for; where sensors have limits of their own, what every one of them allows.
     pub const fn verified_for(&self) -> VerifiedFor {
-        match self.0.verified_for() {
+        match self.schedule.verified_for() {
             Some(verified_for) => *verified_for,
             // Never: it is made with one.
             None => VerifiedFor::NOTHING,
@@ -47,26 +61,33 @@ impl<const K: usize, const M: usize> VerifiedSchedule<K, M> {
     }
 }
 
-impl<const K: usize, const M: usize> Deref for VerifiedSchedule<K, M> {
+impl<const K: usize, const M: usize> VerifiedSchedule<K, M, EachSensor<K>> {
+    /// The window and the `t_delta` of a sensor; `None` for one that is out of range.
+    pub fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
+        self.own_limits.of(sensor).filter(|_| usize::from(sensor) < self.sensors())
+    }
+}
+
+impl<const K: usize, const M: usize, L> Deref for VerifiedSchedule<K, M, L> {
     type Target = Schedule<K, M>;
 
     fn deref(&self) -> &Schedule<K, M> {
-        &self.0
+        &self.schedule
     }
 }
 
 /// As the schedule. Nothing can be read back as verified: read a [`Schedule`] and verify it.
 #[cfg(feature = "serde")]
-impl<const K: usize, const M: usize> serde::Serialize for VerifiedSchedule<K, M> {
+impl<const K: usize, const M: usize, L> serde::Serialize for VerifiedSchedule<K, M, L> {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.0.serialize(serializer)
+        self.schedule.serialize(serializer)
     }
 }
 
 impl<const K: usize> Verification<'_, K> {
     /// The schedule with the proof that it meets the requirements. Where sensors are not all alike, it holds for all
-    /// what every one of them allows: the smallest `t_delta` and window. [`UnevenSchedule`](crate::UnevenSchedule)
-    /// holds each one's own.
+    /// what every one of them allows: the smallest `t_delta` and window. [`verified_each`](Self::verified_each) keeps
+    /// each one's own.
     ///
     /// # Errors
     /// The first [`Violation`] if it does not.
@@ -111,6 +132,44 @@ impl<const K: usize> Verification<'_, K> {
         let periods = if stale_echo { 2 } else { 1 };
         let audible = Micros::new(periods * schedule.period().as_micros());
         let verified_for = VerifiedFor { t_delta, min_interval, window, separation, path_change: None, audible };
-        Ok(VerifiedSchedule(schedule.with_verified_for(verified_for)))
+        Ok(VerifiedSchedule { schedule: schedule.with_verified_for(verified_for), own_limits: Alike })
+    }
+
+    /// The schedule with the proof that it meets the requirements, and with what each sensor allows.
+    ///
+    /// # Errors
+    /// The first [`Violation`] if it does not.
+    pub const fn verified_each(&self) -> Result<VerifiedSchedule<K, 2, EachSensor<K>>, Violation> {
+        let verified = match self.verified() {
+            Ok(verified) => verified,
+            Err(violation) => return Err(violation),
+        };
+        let (schedule, requirements) = (self.schedule(), self.requirements());
+        let mut limits = [SensorLimits { t_delta: Micros::ZERO, window: Micros::ZERO }; K];
+        let mut spare = Micros::MAX;
+        let mut x = 0;
+        while x < schedule.sensors() && x < K {
+            let asked = requirements.window_of(x);
+            let window = if asked.as_micros() == 0 { schedule.min_refire() } else { asked };
+            limits[x] = SensorLimits { t_delta: requirements.t_delta_of(x), window };
+            let mut y = 0;
+            while y <= x {
+                let (even, odd) = schedule.left_sides(Criterion::Exact, x, y);
+                // Its own stale echoes move by twice its |d|, if they are to be rejected.
+                let moves = if x == y { odd } else { shorter(even, odd) };
+                let larger = longer(requirements.t_delta_of(x), requirements.t_delta_of(y));
+                if !requirements.fire_together(x, y) && (x != y || requirements.stale_echo) {
+                    spare = shorter(spare, moves.saturating_sub(larger));
+                }
+                y += 1;
+            }
+            x += 1;
+        }
+        let together = match &requirements.uneven {
+            Some(uneven) => uneven.together,
+            None => &[],
+        };
+        let own_limits = EachSensor::new(verified.verified_for(), schedule.sensors(), limits, spare, together);
+        Ok(VerifiedSchedule { schedule: verified.schedule, own_limits })
     }
 }

@@ -209,7 +209,7 @@ mod everything_public_has_a_format {
         formats::<(Phase, Schedule<12>, ScheduleError, VerifiedFor, VerifiedSchedule<12>)>();
         formats::<(BrokenPromise, ImmediateRefiring<'_, 12>, Limits<'_>, ScheduledFiring<'_, 12>, PlanStep)>();
         formats::<(Verification<'_, 12>, Violation, ViolationKind, Violations<'_, 12>)>();
-        formats::<(SensorLimits, Uneven<'_>, UnevenError, UnevenFiring<'_, 12>, UnevenSchedule<12>)>();
+        formats::<(SensorLimits, Uneven<'_>, UnevenError, Alike, EachSensor<12>)>();
         formats::<(HoppingCode, HoppingSchedule<12>, HoppingSettings, HoppingListening, HoppingError)>();
         formats::<(HoppingRing<12>, HoppingRing<12, 8>)>();
         formats::<(EchoTracker<12>, TrackerSettings, TrackerError, Firing, RateFilter<12>, Survey)>();

@@ -31,9 +31,9 @@ fn the_uneven_rings_have_a_shortest_period_that_is_verified_and_certified() {
         assert_eq!(found.schedule.period(), Micros::new(period_us), "{name}");
         let problem = found.spec.problem();
         assert_eq!(found.schedule.verify(&problem.requirements).violations().next(), None, "{name}");
-        let verified = found.schedule.verify(&problem.requirements).verified_uneven().expect("it is");
+        let verified = found.schedule.verify(&problem.requirements).verified_each().expect("it is");
         for sensor in 0..spec.sensors {
-            let limits = verified.limits_of(sensor).expect("it is there");
+            let limits = verified.limits_of(sensor as u8).expect("it is there");
             assert_eq!(limits.window, problem.requirements.window_of(sensor), "{name}");
         }
         let text = certificate::prove(&found, 1_000_000, |_| true).expect("a proof");

@@ -1,8 +1,8 @@
 //! [`HcSr04Ring`]: the driver of a ring. It triggers the sensors that the ring fires, and hands it the echoes.
 
 use eeruf_core::{
-    EchoFilter, Edge, EdgeQueue, Instant, Judge, Micros, Plan, Ring, RingError, RingEvent, ScheduledFiring,
-    SensorError, UnevenFiring, UnevenSchedule, VerifiedSchedule,
+    EchoFilter, Edge, EdgeQueue, Instant, Judge, LimitsInUse, Micros, OwnLimits, Plan, Ring, RingError, RingEvent,
+    ScheduledFiring, SensorError, VerifiedSchedule,
 };
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
@@ -177,29 +177,18 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring
     }
 }
 
-impl<'s, J: Judge, T, I, D, const K: usize, const M: usize, const H: usize>
-    HcSr04Ring<Ring<ScheduledFiring<'s, K, M>, J, K, 1, H>, T, I, D, K>
+impl<'s, U: LimitsInUse, J: Judge, T, I, D, const K: usize, const M: usize, const H: usize>
+    HcSr04Ring<Ring<ScheduledFiring<'s, K, M, U>, J, K, 1, H>, T, I, D, K>
 {
     /// As [`Ring::change_schedule`].
     ///
     /// # Errors
     /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered, and as
     /// [`Ring::change_schedule`]. The ring then goes on as before.
-    pub fn change_schedule(&mut self, schedule: &'s VerifiedSchedule<K, M>) -> Result<(), SetupError> {
-        self.lines.allow(schedule.min_refire())?;
-        Ok(self.ring.change_schedule(schedule)?)
-    }
-}
-
-impl<'s, J: Judge, T, I, D, const K: usize, const H: usize>
-    HcSr04Ring<Ring<UnevenFiring<'s, K>, J, K, 1, H>, T, I, D, K>
-{
-    /// As [`Ring::change_schedule`] of a ring of sensors that are not all alike.
-    ///
-    /// # Errors
-    /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered, and as
-    /// [`Ring::change_schedule`]. The ring then goes on as before.
-    pub fn change_schedule(&mut self, schedule: &'s UnevenSchedule<K>) -> Result<(), SetupError> {
+    pub fn change_schedule<L: OwnLimits<InUse<'s> = U>>(
+        &mut self,
+        schedule: &'s VerifiedSchedule<K, M, L>,
+    ) -> Result<(), SetupError> {
         self.lines.allow(schedule.min_refire())?;
         Ok(self.ring.change_schedule(schedule)?)
     }

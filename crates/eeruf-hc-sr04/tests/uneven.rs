@@ -3,18 +3,18 @@
 use core::convert::Infallible;
 
 use eeruf_core::{
-    EchoFilter, Edge, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Uneven,
-    UnevenFiring, UnevenSchedule, uneven_schedule,
+    EachInUse, EachSensor, EchoFilter, Edge, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig,
+    RingEvent, ScheduledFiring, Uneven, VerifiedSchedule, schedule,
 };
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings, SetupError};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 
 /// The first sees 5 m, the second 2 m; neither fires while the other listens.
-const RING: UnevenSchedule<2> = uneven_schedule! {
+const RING: VerifiedSchedule<2, 2, EachSensor<2>> = schedule! {
     period_us: 60_000,
     t_fire_a_us: [0, 32_000],
     t_fire_b_us: [0, 36_000],
-    meets: Requirements {
+    each_meets: Requirements {
         layout: Layout::Line(1),
         uneven: Some(Uneven {
             window: &[Micros::from_millis(30), Micros::from_millis(13)],
@@ -54,13 +54,14 @@ impl embedded_hal::digital::InputPin for Pin {
     }
 }
 
-type Driver = HcSr04Ring<Ring<UnevenFiring<'static, 2>, EchoFilter<2>, 2>, Pin, Pin, NoopDelay, 2>;
+type Driver =
+    HcSr04Ring<Ring<ScheduledFiring<'static, 2, 2, EachInUse<'static, 2>>, EchoFilter<2>, 2>, Pin, Pin, NoopDelay, 2>;
 
 fn driver(min_retrigger_ms: u32) -> Result<Driver, SetupError> {
     let mut settings = Settings::default();
     settings.min_retrigger = Micros::from_millis(min_retrigger_ms);
-    static SCHEDULE: UnevenSchedule<2> = RING;
-    let ring = Ring::uneven(&SCHEDULE, RingConfig::new(), Instant::default())?;
+    static SCHEDULE: VerifiedSchedule<2, 2, EachSensor<2>> = RING;
+    let ring = Ring::new(&SCHEDULE, RingConfig::new(), Instant::default())?;
     HcSr04Ring::new(ring, [0, 1].map(|_| Pin).map(|trigger| Pins { trigger, echo: Pin }), NoopDelay, settings)
 }
 

@@ -1,8 +1,8 @@
 //! A ring with the schedules that it borrows, so that it can change from one to another.
 
 use eeruf_core::{
-    EchoFilter, Instant, MAX_SENSORS, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, ScheduledRing,
-    SensorError, SensorWatch, UnevenFiring, UnevenSchedule,
+    EachInUse, EachSensor, Instant, MAX_SENSORS, Micros, Requirements, RingConfig, RingEvent, ScheduledFiring,
+    ScheduledRing, SensorWatch,
 };
 use eeruf_sim::AnySchedule;
 use elsa::sync::FrozenVec;
@@ -14,84 +14,16 @@ use crate::{
     requirements::OwnedRequirements,
 };
 
-/// A ring of sensors that are alike, or of some that are not.
-pub(crate) enum AnyRing<'s> {
-    Even(ScheduledRing<'s, MAX_SENSORS>),
-    Uneven(Ring<UnevenFiring<'s, MAX_SENSORS>, EchoFilter<MAX_SENSORS>, MAX_SENSORS>),
-}
+/// A ring that fires by a schedule, whether sensors are alike or not.
+pub(crate) type TableRing<'s> = ScheduledRing<'s, MAX_SENSORS, 1, EachInUse<'s, MAX_SENSORS>>;
 
-/// Hands calls on to the ring, whichever it is.
-macro_rules! either {
-    ($(fn $name:ident(&self $(, $argument:ident: $type:ty)*) -> $returns:ty;)*
-     $(mut fn $name_mut:ident(&mut self $(, $argument_mut:ident: $type_mut:ty)*) -> $returns_mut:ty;)*) => {
-        impl AnyRing<'_> {
-            $(pub(crate) fn $name(&self $(, $argument: $type)*) -> $returns {
-                match self {
-                    Self::Even(ring) => ring.$name($($argument),*),
-                    Self::Uneven(ring) => ring.$name($($argument),*),
-                }
-            })*
-            $(pub(crate) fn $name_mut(&mut self $(, $argument_mut: $type_mut)*) -> $returns_mut {
-                match self {
-                    Self::Even(ring) => ring.$name_mut($($argument_mut),*),
-                    Self::Uneven(ring) => ring.$name_mut($($argument_mut),*),
-                }
-            })*
-        }
-    };
-}
-
-either! {
-    fn next_deadline(&self) -> Instant;
-    fn sensors(&self) -> usize;
-    fn t_delta(&self) -> Micros;
-    fn window(&self) -> Micros;
-    fn blanking(&self) -> Micros;
-    fn audible(&self) -> Micros;
-    fn path_change_of(&self, sensor: u8) -> Micros;
-    fn is_enabled(&self, sensor: u8) -> bool;
-    mut fn poll_expecting(&mut self, now: Instant, change: impl FnMut(u8) -> i32) -> Option<RingEvent>;
-    mut fn set_t_delta(&mut self, t_delta: Micros) -> Result<(), RingError>;
-    mut fn set_window(&mut self, window: Micros) -> Result<(), RingError>;
-    mut fn set_blanking(&mut self, blanking: Micros) -> Result<(), RingError>;
-    mut fn set_path_change(&mut self, path_change: Micros) -> Result<(), RingError>;
-    mut fn set_audible(&mut self, audible: Micros) -> Result<(), RingError>;
-    mut fn echo(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError>;
-    mut fn fired(&mut self, sensor: u8, at: Instant) -> Result<(), SensorError>;
-    mut fn stuck(&mut self, sensor: u8) -> Result<(), SensorError>;
-    mut fn expect_answers(&mut self) -> ();
-    mut fn answered(&mut self, sensor: u8) -> Result<(), SensorError>;
-    mut fn unanswered(&mut self, sensor: u8) -> Result<(), SensorError>;
-    mut fn measured(&mut self, sensor: u8, t_echo: Option<Micros>) -> Result<(), SensorError>;
-    mut fn forget(&mut self, sensor: u8) -> Result<(), SensorError>;
-    mut fn disable(&mut self, sensor: u8) -> Result<(), SensorError>;
-    mut fn enable(&mut self, sensor: u8) -> Result<(), SensorError>;
-    mut fn pause(&mut self) -> ();
-    mut fn resume(&mut self) -> ();
-    mut fn restart(&mut self, now: Instant) -> ();
-}
-
-impl AnyRing<'_> {
-    /// The schedule of the present period.
-    pub(crate) fn schedule(&self) -> &AnySchedule {
-        match self {
-            Self::Even(ring) => ring.schedule(),
-            Self::Uneven(ring) => ring.schedule().verified().schedule(),
-        }
-    }
-}
-
-/// A schedule as a ring borrows it.
-#[derive(PartialEq)]
-enum Borrowed {
-    Even(Box<AnySchedule>),
-    Uneven(Box<UnevenSchedule<MAX_SENSORS>>),
-}
+/// A schedule, and what it allows each sensor.
+type Kept = (AnySchedule, EachSensor<MAX_SENSORS>);
 
 /// The schedules that a ring has fired by, each once.
 struct Schedules {
-    first: Borrowed,
-    others: FrozenVec<Box<Borrowed>>,
+    first: Box<Kept>,
+    others: FrozenVec<Box<Kept>>,
 }
 
 self_cell::self_cell!(
@@ -99,7 +31,7 @@ self_cell::self_cell!(
     struct WithSchedules {
         owner: Schedules,
         #[covariant]
-        dependent: AnyRing,
+        dependent: TableRing,
     }
 );
 
@@ -132,26 +64,35 @@ fn verify(schedule: &AnySchedule, t_delta: Micros) -> PyResult<()> {
     verification.violations().next().map_or(Ok(()), |violation| Err(violation.raise()))
 }
 
+impl Promise {
+    /// The schedule as a ring may fire by it, with the limits of each sensor where it must keep those.
+    fn keep(&self, schedule: &AnySchedule, t_delta: Micros) -> PyResult<Kept> {
+        match self {
+            Self::Nothing => Ok((*schedule, EachSensor::NONE)),
+            Self::TDelta => verify(schedule, t_delta).map(|()| (*schedule, EachSensor::NONE)),
+            Self::EachSensor(needs) => {
+                let verified = schedule.verify(&needs.requirements()).verified_each().map_err(Raise::raise)?;
+                Ok((*verified.schedule(), *verified.own_limits()))
+            }
+        }
+    }
+}
+
 impl OwnedRing {
-    fn begin(
-        schedule: AnySchedule,
-        borrowed: Borrowed,
-        promise: Promise,
-        config: RingConfig,
-        now: Instant,
-    ) -> PyResult<Self> {
-        let schedules = Schedules { first: borrowed, others: FrozenVec::new() };
-        let ring = WithSchedules::try_new(schedules, |schedules| match &schedules.first {
-            Borrowed::Even(schedule) => ScheduledRing::unverified(schedule, config, now).map(AnyRing::Even),
-            Borrowed::Uneven(schedule) => Ring::uneven(schedule, config, now).map(AnyRing::Uneven),
+    fn begin(kept: Kept, promise: Promise, config: RingConfig, now: Instant) -> PyResult<Self> {
+        let next = Box::new(kept.0);
+        let schedules = Schedules { first: Box::new(kept), others: FrozenVec::new() };
+        let ring = WithSchedules::try_new(schedules, |schedules| {
+            let (schedule, own_limits) = &*schedules.first;
+            TableRing::with_plan(ScheduledFiring::with_limits(schedule, own_limits, now), config, now)
         });
         let watch = SensorWatch::new(0, now);
-        Ok(Self { ring: ring.map_err(Raise::raise)?, promise, next: Box::new(schedule), watch, now })
+        Ok(Self { ring: ring.map_err(Raise::raise)?, promise, next, watch, now })
     }
 
     /// With a schedule that need not reject crosstalk.
     pub(crate) fn new(schedule: AnySchedule, config: RingConfig, now: Instant) -> PyResult<Self> {
-        Self::begin(schedule, Borrowed::Even(Box::new(schedule)), Promise::Nothing, config, now)
+        Self::begin((schedule, EachSensor::NONE), Promise::Nothing, config, now)
     }
 
     /// With a schedule that keeps what each sensor needs; so must then all to which it changes.
@@ -161,8 +102,8 @@ impl OwnedRing {
         config: RingConfig,
         now: Instant,
     ) -> PyResult<Self> {
-        let borrowed = schedule.verify(&needs.requirements()).verified_uneven().map_err(Raise::raise)?;
-        Self::begin(schedule, Borrowed::Uneven(Box::new(borrowed)), Promise::EachSensor(needs), config, now)
+        let promise = Promise::EachSensor(needs);
+        Self::begin(promise.keep(&schedule, Micros::ZERO)?, promise, config, now)
     }
 
     /// The same, if its schedule rejects crosstalk; so must then all to which it changes.
@@ -177,11 +118,11 @@ impl OwnedRing {
         whole("sensor", sensor, 0..=self.ring().sensors() as u8 - 1)
     }
 
-    pub(crate) fn ring(&self) -> &AnyRing<'_> {
+    pub(crate) fn ring(&self) -> &TableRing<'_> {
         self.ring.borrow_dependent()
     }
 
-    pub(crate) fn with<T>(&mut self, call: impl FnOnce(&mut AnyRing<'_>) -> T) -> T {
+    pub(crate) fn with<T>(&mut self, call: impl FnOnce(&mut TableRing<'_>) -> T) -> T {
         self.ring.with_dependent_mut(|_, ring| call(ring))
     }
 
@@ -195,7 +136,10 @@ impl OwnedRing {
         event
     }
 
-    pub(crate) fn change<E: Raise>(&mut self, change: impl FnOnce(&mut AnyRing<'_>) -> Result<(), E>) -> PyResult<()> {
+    pub(crate) fn change<E: Raise>(
+        &mut self,
+        change: impl FnOnce(&mut TableRing<'_>) -> Result<(), E>,
+    ) -> PyResult<()> {
         self.with(change).map_err(Raise::raise)
     }
 
@@ -215,26 +159,12 @@ impl OwnedRing {
             let expected = format!("one of {sensors} sensors, as the ring has");
             return Err(wrong("schedule", format!("one of {} sensors", schedule.sensors()), expected));
         }
-        let next = match &self.promise {
-            Promise::EachSensor(needs) => {
-                let verified = schedule.verify(&needs.requirements()).verified_uneven().map_err(Raise::raise)?;
-                Borrowed::Uneven(Box::new(verified))
-            }
-            Promise::TDelta => {
-                verify(schedule, self.ring().t_delta())?;
-                Borrowed::Even(Box::new(*schedule))
-            }
-            Promise::Nothing => Borrowed::Even(Box::new(*schedule)),
-        };
+        let next = self.promise.keep(schedule, self.ring().t_delta())?;
         let changed = self.ring.with_dependent_mut(|schedules, ring| {
-            let mut known = core::iter::once(&schedules.first).chain(&schedules.others);
-            let borrowed = known.find(|known| **known == next);
-            match (borrowed.unwrap_or_else(|| schedules.others.push_get(Box::new(next))), ring) {
-                (Borrowed::Even(schedule), AnyRing::Even(ring)) => ring.change_to_unverified(schedule),
-                (Borrowed::Uneven(schedule), AnyRing::Uneven(ring)) => ring.change_schedule(schedule),
-                // All of a ring's schedules keep the same promise.
-                _ => Err(RingError::Unverified),
-            }
+            let mut known = core::iter::once(&*schedules.first).chain(&schedules.others);
+            let borrowed = known.find(|&known| *known == next);
+            let (schedule, own_limits) = borrowed.unwrap_or_else(|| schedules.others.push_get(Box::new(next)));
+            ring.change_with_limits(schedule, own_limits)
         });
         changed.map_err(Raise::raise)?;
         *self.next = *schedule;

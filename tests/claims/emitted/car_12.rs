@@ -1,11 +1,11 @@
-use eeruf_core::{Criterion, Layout, Micros, Requirements, Uneven, UnevenSchedule, uneven_schedule};
+use eeruf_core::{Criterion, EachSensor, Layout, Micros, Requirements, Uneven, VerifiedSchedule, schedule};
 
 // 12 sensors, T_p = 33.3 ms; 3 adjacent sensors of a ring at least 6.993 ms apart, and what each sensor and pair needs.
-pub const RING: UnevenSchedule<12> = uneven_schedule! {
+pub const RING: VerifiedSchedule<12, 2, EachSensor<12>> = schedule! {
     period_us: 33_300,
     t_fire_a_us: [25_100, 7_600, 15_200, 30_800, 22_800, 9_800, 30_400, 2_100, 17_100, 25_500, 3_600, 17_500],
     t_fire_b_us: [28_700, 7_600, 16_400, 33_200, 8_700, 25_600, 18_000, 9_100, 27_800, 20_200, 12_600, 0],
-    meets: Requirements {
+    each_meets: Requirements {
         t_delta: Micros::new(845),
         criterion: Criterion::Exact,
         min_interval: Micros::new(6_993),

@@ -84,7 +84,7 @@ fn adaptation_climbs_and_descends_alike() {
             let b = [0, 5_500, 11_000, 16_500];
             let flat: Vec<u32> = a.into_iter().chain(b).collect();
             assert_eq!(c.schedule(period, K as u8, 2, &flat), 0);
-            assert_eq!(c.verify(number as u32, needs).0, 0);
+            assert_eq!(c.verify(number as u32, needs, &[]).0, 0);
             let schedule = Schedule::<K>::from_firing(Micros::new(period), [a, b].map(|row| row.map(Micros::new)));
             rungs.push(schedule.unwrap().verify(&Requirements::new(Micros::new(100))).verified().unwrap());
         }

@@ -5,11 +5,13 @@ use core::fmt;
 use super::{Promise, Summary};
 use crate::conditions::Requirements;
 use crate::layout::Layout;
+use crate::own_limits::SensorLimits;
 use crate::schedule::{Phase, Schedule, VerifiedFor};
 use crate::time::Micros;
+use crate::verified::VerifiedSchedule;
 
 /// `EERUF_VERSION` of the `eeruf.h` that tables are written for.
-pub(crate) const EERUF_VERSION: u16 = 2;
+pub(crate) const EERUF_VERSION: u16 = 3;
 
 /// A schedule as a C header: see [`Schedule::to_c`].
 #[derive(Clone, Copy, Debug)]
@@ -96,10 +98,15 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
             let gaps = || ends().zip(begins()).map(|(end, begin)| (end.abs_diff(begin).as_micros(), "u"));
             writeln!(f, "    {},", Plain(gaps))?;
         }
-        let verified = schedule.verify(requirements).verified().map(|verified| verified.verified_for());
-        let VerifiedFor { t_delta, min_interval, window, separation, path_change, audible } =
-            verified.unwrap_or(VerifiedFor::NOTHING);
+        let verified = schedule.verify(requirements).verified_each().ok();
+        let each = verified.as_ref().map(VerifiedSchedule::own_limits).filter(|_| requirements.uneven.is_some());
+        let most = each.and_then(|each| each.most().copied());
+        let alike = || verified.map(|verified| verified.verified_for());
+        let verified_for = most.or_else(alike).unwrap_or(VerifiedFor::NOTHING);
+        let VerifiedFor { t_delta, min_interval, window, separation, path_change, audible } = verified_for;
         let (layout, neighbours) = match requirements.layout {
+            // Single pairs may keep other intervals.
+            _ if requirements.uneven.is_some() => ("OTHER", 0),
             Layout::Line(n) => ("LINE", n),
             Layout::Ring(n) => ("RING", n),
             Layout::Blocks(n) => ("BLOCKS", n),
@@ -107,6 +114,13 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
         };
         let stale_echo = u8::from(requirements.stale_echo);
         let times = [schedule.period(), schedule.min_refire(), t_delta, min_interval, window, separation];
+        if let Some(each) = each {
+            writeln!(f, "}};\nstatic const EerufLimits {name}_limits[] EERUF_FLASH = {{")?;
+            for (x, group) in (0..sensors as u8).zip(each.groups()) {
+                let Some(SensorLimits { t_delta, window }) = each.of(x) else { continue };
+                writeln!(f, "    {{{}u, {}u, {group}}},", window.as_micros(), t_delta.as_micros())?;
+            }
+        }
         writeln!(f, "}};\nstatic const EerufSchedule {name} EERUF_FLASH = {{")?;
         writeln!(f, "    {EERUF_VERSION}, {sensors}, 2, {name}_order, {name}_gap_us,")?;
         writeln!(f, "    {},", Plain(|| times.into_iter().map(|time| (time.as_micros(), "u"))))?;
@@ -115,8 +129,12 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
             None => f.write_str("    EERUF_AS_T_DELTA,")?,
         }
         writeln!(f, " {}u,", audible.as_micros())?;
-        let verified = u8::from(verified.is_ok());
-        writeln!(f, "    {verified}, EERUF_LAYOUT_{layout}, {neighbours}, {stale_echo},\n}};")
+        let verified = u8::from(verified.is_some());
+        write!(f, "    {verified}, EERUF_LAYOUT_{layout}, {neighbours}, {stale_echo}, ")?;
+        match each {
+            Some(_) => writeln!(f, "{name}_limits,\n}};"),
+            None => writeln!(f, "0,\n}};"),
+        }
     }
 }
 
@@ -145,11 +163,11 @@ mod tests {
     #[test]
     fn the_constant_says_what_it_was_verified_for_or_that_it_was_not() {
         let tab = TABLE_I_D.to_arduino(&REQUIREMENTS, "PAPER").to_string();
-        assert!(tab.contains("EerufSchedule PAPER EERUF_FLASH = {\n    2, 12, 2, PAPER_order, PAPER_gap_us,"), "{tab}");
+        assert!(tab.contains("EerufSchedule PAPER EERUF_FLASH = {\n    3, 12, 2, PAPER_order, PAPER_gap_us,"), "{tab}");
         assert!(
             tab.contains(
                 "100000u, 76000u, 999u, 15000u, 76000u, 2000u,\n    EERUF_AS_T_DELTA, 100000u,\n    \
-                 1, EERUF_LAYOUT_LINE, 4, 0,"
+                 1, EERUF_LAYOUT_LINE, 4, 0, 0,"
             ),
             "{tab}"
         );
@@ -157,7 +175,7 @@ mod tests {
         let tab = TABLE_I_D.to_arduino(&more, "PAPER").to_string();
         assert!(
             tab.contains(
-                "100000u, 76000u, 0u, 0u, 0u, 0u,\n    EERUF_AS_T_DELTA, 0u,\n    0, EERUF_LAYOUT_LINE, 4, 0,"
+                "100000u, 76000u, 0u, 0u, 0u, 0u,\n    EERUF_AS_T_DELTA, 0u,\n    0, EERUF_LAYOUT_LINE, 4, 0, 0,"
             ),
             "{tab}"
         );

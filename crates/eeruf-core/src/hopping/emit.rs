@@ -273,7 +273,7 @@ mod tests {
         assert!(c.contains("{301u, 9602u, 18000u}, /* phase 1 */"), "{c}");
         assert!(c.contains("#define EERUF_PHASES 3\n") && c.contains("#define EERUF_T_DELTA_US 150u\n"), "{c}");
         assert!(
-            c.contains("2, 3, 3, 301u, 40000u, eeruf_hopping_config_lag_us,\n    36000u, 0u, 36000u, 8000u, 1u,"),
+            c.contains("3, 3, 3, 301u, 40000u, eeruf_hopping_config_lag_us,\n    36000u, 0u, 36000u, 8000u, 1u,"),
             "{c}"
         );
         let tab = schedule.to_arduino(&requirements, "PORT").to_string();

@@ -3,10 +3,10 @@
 //! A plan never reads a clock. The caller passes `now` and gets the next deadline back.
 
 use crate::judge::Firing;
+use crate::own_limits::SensorLimits;
 use crate::reading::ReadingKind;
 use crate::schedule::{Phase, VerifiedFor};
 use crate::time::{Instant, Micros};
-use crate::uneven_schedule::SensorLimits;
 
 /// What a plan wants done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,10 +6,8 @@ mod check;
 mod contract;
 mod immediate;
 mod scheduled;
-mod uneven;
 
 pub use check::{BrokenPromise, check_plan};
 pub use contract::{Limits, Plan, PlanStep};
 pub use immediate::ImmediateRefiring;
 pub use scheduled::ScheduledFiring;
-pub use uneven::UnevenFiring;

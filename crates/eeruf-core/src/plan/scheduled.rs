@@ -2,9 +2,11 @@
 
 use super::contract::{Limits, Plan};
 use crate::judge::Firing;
-use crate::schedule::{MAX_SENSORS, Phase, Schedule};
+use crate::own_limits::{Alike, LimitsInUse, OwnLimits, SensorLimits};
+use crate::schedule::{MAX_SENSORS, Phase, Schedule, VerifiedFor};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros, longer};
+use crate::verified::VerifiedSchedule;
 
 /// Scheduled firing: every sensor fires once per period, at the time the [`Schedule`] gives for the phase.
 ///
@@ -19,11 +21,14 @@ use crate::time::{Instant, Micros, longer};
 /// assert_eq!(plan.poll(Instant::from_micros(23_999)), None);
 /// assert_eq!(plan.poll(first), Some(PlanStep::Fire { sensor: 0, phase: Phase::A, late: Micros::ZERO }));
 /// ```
+///
+/// Where sensors have limits of their own, each listens and compares as it was verified for; in the first period after a
+/// change of schedules by the lesser of what both allow it.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 // In this order for the short offsets of a Cortex-M0: see `Ring`.
 #[repr(C)]
-pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
+pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2, U = Alike> {
     phase: u8,
     /// Place in the firing order of the sensor after the next one.
     following: u8,
@@ -38,6 +43,7 @@ pub struct ScheduledFiring<'s, const K: usize, const M: usize = 2> {
     last_fired: Instant,
     disabled: SensorSet,
     next_schedule: Option<&'s Schedule<K, M>>,
+    own_limits: U,
 }
 
 /// Who does not fire.
@@ -51,19 +57,36 @@ enum Skips {
 
 impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     /// Begins the first period of `schedule` at `now`, with all sensors enabled.
-    pub const fn new(schedule: &'s Schedule<K, M>, now: Instant) -> Self {
-        let now = now.as_micros();
+    pub fn new(schedule: &'s Schedule<K, M>, now: Instant) -> Self {
+        Self::with_limits(schedule, &Alike, now)
+    }
+}
+
+impl<'s, const K: usize, const M: usize, U: LimitsInUse> ScheduledFiring<'s, K, M, U> {
+    /// As [`new`](ScheduledFiring::new), by a schedule whose sensors may have limits of their own.
+    pub fn verified<L: OwnLimits<InUse<'s> = U>>(schedule: &'s VerifiedSchedule<K, M, L>, now: Instant) -> Self {
+        Self::with_limits(schedule.schedule(), schedule.own_limits(), now)
+    }
+
+    /// As [`verified`](Self::verified), of schedule and limits apart.
+    pub fn with_limits<L: OwnLimits<InUse<'s> = U>>(
+        schedule: &'s Schedule<K, M>,
+        own_limits: &'s L,
+        now: Instant,
+    ) -> Self {
         let (next, gap) = schedule.firing(0, 0);
+        let settling = settling_time(schedule).as_micros();
         Self {
             phase: 0,
             following: 1,
             next,
             skips: Skips::Nobody,
-            due: Instant::from_micros(now.wrapping_add(gap.as_micros())),
+            due: now + gap,
             schedule,
-            last_fired: Instant::from_micros(now.wrapping_sub(settling_time(schedule).as_micros())),
+            last_fired: Instant::from_micros(now.as_micros().wrapping_sub(settling)),
             disabled: SensorSet::NONE,
             next_schedule: None,
+            own_limits: own_limits.begin(),
         }
     }
 
@@ -77,8 +100,14 @@ impl<'s, const K: usize, const M: usize> ScheduledFiring<'s, K, M> {
     /// Neither schedule was verified against the other, so its first period begins late enough after the last firing to
     /// keep every refire time of the present schedule and every interval that both were verified for, and those of one
     /// that was not verified.
-    pub const fn change_schedule(&mut self, schedule: &'s Schedule<K, M>) {
+    pub fn change_schedule<L: OwnLimits<InUse<'s> = U>>(&mut self, schedule: &'s VerifiedSchedule<K, M, L>) {
+        self.change_with_limits(schedule.schedule(), schedule.own_limits());
+    }
+
+    /// As [`change_schedule`](Self::change_schedule), of schedule and limits apart.
+    pub fn change_with_limits<L: OwnLimits<InUse<'s> = U>>(&mut self, schedule: &'s Schedule<K, M>, own_limits: &'s L) {
         self.next_schedule = Some(schedule);
+        own_limits.change(&mut self.own_limits);
     }
 
     /// Turns to the following sensor, its gap after this instant, or to the next enabled one after it; if there is
@@ -133,6 +162,14 @@ const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>
     }
 }
 
+impl<'s> Limits<'s> {
+    /// What a schedule allows whose sensors have limits of their own, of which this is the most: none of them fires
+    /// again within its own window.
+    fn of_most(most: &'s VerifiedFor) -> Self {
+        Self { longest_window: most.window, verified_for: Some(most), audible: Some(most.audible) }
+    }
+}
+
 impl<const K: usize, const M: usize> Schedule<K, M> {
     /// What it allows a ring.
     pub(crate) const fn limits(&self) -> Limits<'_> {
@@ -144,7 +181,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     }
 }
 
-impl<const K: usize, const M: usize> Plan for ScheduledFiring<'_, K, M> {
+impl<const K: usize, const M: usize, U: LimitsInUse> Plan for ScheduledFiring<'_, K, M, U> {
     #[inline]
     fn fire(&mut self, now: Instant) {
         self.last_fired = now;
@@ -168,6 +205,7 @@ impl<const K: usize, const M: usize> Plan for ScheduledFiring<'_, K, M> {
         if start.since(self.last_fired) > settling {
             self.last_fired = Instant::from_micros(start.as_micros().wrapping_sub(settling.as_micros()));
         }
+        self.own_limits.end_period();
         if let Some(next) = self.next_schedule.take() {
             let min_interval = next.verified_for().map_or(Micros::ZERO, |verified_for| verified_for.min_interval);
             let settled = self.last_fired + longer(settling, min_interval);
@@ -237,11 +275,20 @@ impl<const K: usize, const M: usize> Plan for ScheduledFiring<'_, K, M> {
     }
 
     fn limits(&self) -> Limits<'_> {
-        self.schedule.limits()
+        self.own_limits.most().map_or_else(|| self.schedule.limits(), Limits::of_most)
     }
 
     fn next_limits(&self) -> Option<Limits<'_>> {
-        self.next_schedule.map(Schedule::limits)
+        self.own_limits.next_most().map(Limits::of_most).or_else(|| self.next_schedule.map(Schedule::limits))
+    }
+
+    fn hears(&self, receiver: u8, emitter: u8) -> bool {
+        self.own_limits.hears(receiver, emitter)
+    }
+
+    #[inline]
+    fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
+        self.own_limits.limits_of(sensor)
     }
 
     fn min_refire(&self) -> Micros {

@@ -5,51 +5,58 @@ use super::listening::Listening;
 use super::{NOBODY, Ring, RingError};
 use crate::filter::EchoFilter;
 use crate::judge::Judge;
-use crate::plan::{Plan, ScheduledFiring, UnevenFiring};
+use crate::own_limits::{Alike, LimitsInUse, OwnLimits};
+use crate::plan::{Plan, ScheduledFiring};
 use crate::schedule::Schedule;
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
-use crate::uneven_schedule::UnevenSchedule;
 use crate::verified::VerifiedSchedule;
 
-impl<'s, const N: usize, const M: usize, J: Judge, const K: usize, const E: usize, const H: usize>
-    Ring<ScheduledFiring<'s, N, M>, J, K, E, H>
+impl<'s, const N: usize, const M: usize, U: LimitsInUse, J: Judge, const K: usize, const E: usize, const H: usize>
+    Ring<ScheduledFiring<'s, N, M, U>, J, K, E, H>
 {
     /// Changes to another schedule when the present period ends (see [`ScheduledFiring::change_schedule`]).
-    /// `t_delta`, window and what sound may do stay.
+    /// `t_delta`, window and what sound may do stay; where sensors have limits of their own, each keeps in the first
+    /// period after the change the lesser of both schedules.
     ///
     /// # Errors
     /// [`RingError::TDelta`] or [`RingError::VerifiedWindow`] if the schedule was verified for less than the ring's
-    /// `t_delta` or window. The ring then goes on as before.
-    pub fn change_schedule(&mut self, schedule: &'s VerifiedSchedule<N, M>) -> Result<(), RingError> {
-        self.change_to_unverified(schedule)
+    /// `t_delta` or window; [`RingError::Blanking`] if a sensor would listen no longer than the blanking time. The ring
+    /// then goes on as before.
+    pub fn change_schedule<L: OwnLimits<InUse<'s> = U>>(
+        &mut self,
+        schedule: &'s VerifiedSchedule<N, M, L>,
+    ) -> Result<(), RingError> {
+        self.change_with_limits(schedule.schedule(), schedule.own_limits())
     }
 
-    /// As [`change_schedule`](Self::change_schedule), to a schedule that nobody has verified.
+    /// As [`change_schedule`](Self::change_schedule), of schedule and limits apart (see
+    /// [`ScheduledFiring::with_limits`]).
     ///
     /// # Errors
-    /// [`RingError::Window`] if a sensor would fire again while it still listens.
-    pub fn change_to_unverified(&mut self, schedule: &'s Schedule<N, M>) -> Result<(), RingError> {
-        self.listening.is_allowed(schedule.limits())?;
-        self.plan.change_schedule(schedule);
+    /// As there; [`RingError::Window`] if a sensor would fire again while it still listens.
+    pub fn change_with_limits<L: OwnLimits<InUse<'s> = U>>(
+        &mut self,
+        schedule: &'s Schedule<N, M>,
+        own_limits: &'s L,
+    ) -> Result<(), RingError> {
+        // As if it began with that schedule.
+        let begun = ScheduledFiring::with_limits(schedule, own_limits, Instant::from_micros(0));
+        Listening::checked(self.t_delta(), self.window(), self.blanking(), &begun)?;
+        self.plan.change_with_limits(schedule, own_limits);
         Ok(())
     }
 }
 
-impl<'s, J: Judge, const K: usize, const E: usize, const H: usize> Ring<UnevenFiring<'s, K>, J, K, E, H> {
-    /// Changes to another schedule when the present period ends (see [`UnevenFiring::change_schedule`]). What
-    /// the ring asks for at most stays; each sensor listens and compares as the schedules allow it, in the first period
-    /// after the change by the lesser of both.
+impl<'s, const N: usize, const M: usize, J: Judge, const K: usize, const E: usize, const H: usize>
+    Ring<ScheduledFiring<'s, N, M>, J, K, E, H>
+{
+    /// As [`change_schedule`](Ring::change_schedule), to a schedule that nobody has verified.
     ///
     /// # Errors
-    /// [`RingError`] if the largest `t_delta` or window that the schedule was verified for is less than what the ring
-    /// asks for at most, or if a sensor would listen no longer than the blanking time. The ring then goes on as before.
-    pub fn change_schedule(&mut self, schedule: &'s UnevenSchedule<K>) -> Result<(), RingError> {
-        // As if it began with that schedule.
-        let begun = UnevenFiring::new(schedule, Instant::from_micros(0));
-        Listening::checked(self.t_delta(), self.window(), self.blanking(), &begun)?;
-        self.plan.change_schedule(schedule);
-        Ok(())
+    /// [`RingError::Window`] if a sensor would fire again while it still listens.
+    pub fn change_to_unverified(&mut self, schedule: &'s Schedule<N, M>) -> Result<(), RingError> {
+        self.change_with_limits(schedule, &Alike)
     }
 }
 
@@ -161,7 +168,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.plan.restart(now);
         // Sound from before may still be heard, and its firings are no longer known by this clock.
         self.known_from = now;
-        for sensor in &mut self.sensors {
+        let sensors = self.sensors();
+        for sensor in self.sensors.iter_mut().take(sensors) {
             // One that was said to fire a little later still does.
             if is_just_ahead(sensor.fired(), self.known_from) {
                 self.known_from = sensor.fired();

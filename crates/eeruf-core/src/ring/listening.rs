@@ -163,11 +163,6 @@ impl Listening {
         u16::try_from(quarter).unwrap_or(u16::MAX)
     }
 
-    /// Whether another schedule allows it.
-    pub(super) fn is_allowed(&self, limits: Limits<'_>) -> Result<(), RingError> {
-        allowed(self.t_delta(), self.window, limits)
-    }
-
     pub(super) const fn window(&self) -> Micros {
         self.window
     }

@@ -16,12 +16,12 @@ mod steps;
 
 use crate::filter::EchoFilter;
 use crate::judge::{Agreement, Judge};
-use crate::plan::{ImmediateRefiring, Plan, ScheduledFiring, UnevenFiring};
+use crate::own_limits::{Alike, LimitsInUse, OwnLimits};
+use crate::plan::{ImmediateRefiring, Plan, ScheduledFiring};
 use crate::reading::{ReadingKind, Tally};
 use crate::schedule::{MAX_SENSORS, Schedule};
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
-use crate::uneven_schedule::UnevenSchedule;
 use crate::verified::VerifiedSchedule;
 
 use history::{Firings, long_before};
@@ -89,8 +89,10 @@ pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     tally: Tally<u8>,
 }
 
-/// A [`Ring`] with scheduled firing by a schedule of the paper's kind.
-pub type ScheduledRing<'s, const K: usize, const E: usize = 1> = Ring<ScheduledFiring<'s, K>, EchoFilter<K, E>, K, E>;
+/// A [`Ring`] with scheduled firing by a schedule of the paper's kind; `U` is [`EachInUse`](crate::EachInUse) where
+/// sensors have limits of their own.
+pub type ScheduledRing<'s, const K: usize, const E: usize = 1, U = Alike> =
+    Ring<ScheduledFiring<'s, K, 2, U>, EchoFilter<K, E>, K, E>;
 
 /// A [`Ring`] that accepts each reading that agrees with the one before, whoever else's sound explains both: a
 /// baseline. Where crosstalk repeats, as with constant waits, it is accepted.
@@ -98,17 +100,26 @@ pub type AgreementRing<P, const K: usize, const E: usize = 1> = Ring<P, Agreemen
 
 const NOBODY: u8 = u8::MAX;
 
-impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s, K, M>, EchoFilter<K, E>, K, E> {
+impl<'s, const K: usize, const M: usize, U: LimitsInUse, const E: usize>
+    Ring<ScheduledFiring<'s, K, M, U>, EchoFilter<K, E>, K, E>
+{
     /// A ring with scheduled firing that begins at `now`. It listens and compares as the schedule was verified for,
-    /// unless `config` asks for less.
+    /// unless `config` asks for less. Where sensors have limits of their own each keeps them, and what `config` says is
+    /// the most for all.
     ///
     /// # Errors
     /// As for [`Ring::with_plan`].
-    pub fn new(schedule: &'s VerifiedSchedule<K, M>, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
-        Self::unverified(schedule, config, now)
+    pub fn new<L: OwnLimits<InUse<'s> = U>>(
+        schedule: &'s VerifiedSchedule<K, M, L>,
+        config: RingConfig<E>,
+        now: Instant,
+    ) -> Result<Self, RingError> {
+        Self::with_plan(ScheduledFiring::verified(schedule, now), config, now)
     }
+}
 
-    /// As [`new`](Self::new), by a schedule that was not verified; `config` needs `t_delta` and window. Crosstalk is
+impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s, K, M>, EchoFilter<K, E>, K, E> {
+    /// As [`new`](Ring::new), by a schedule that was not verified; `config` needs `t_delta` and window. Crosstalk is
     /// not accepted either, but readings that it could explain are ambiguous: with constant waits nearly all.
     ///
     /// # Errors
@@ -118,29 +129,11 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s
     }
 }
 
-impl<'s, const K: usize, const M: usize, J, const E: usize, const H: usize>
-    Ring<ScheduledFiring<'s, K, M>, J, K, E, H>
+impl<'s, const K: usize, const M: usize, U: LimitsInUse, J, const E: usize, const H: usize>
+    Ring<ScheduledFiring<'s, K, M, U>, J, K, E, H>
 {
     /// The schedule of the present period.
     pub const fn schedule(&self) -> &'s Schedule<K, M> {
-        self.plan.schedule()
-    }
-}
-
-impl<'s, const K: usize, const E: usize> Ring<UnevenFiring<'s, K>, EchoFilter<K, E>, K, E> {
-    /// A ring of sensors that are not all alike, with scheduled firing that begins at `now`. Each sensor listens and
-    /// compares as it was verified for, unless `config` asks for less: what it says is the most for all.
-    ///
-    /// # Errors
-    /// As for [`Ring::with_plan`].
-    pub fn uneven(schedule: &'s UnevenSchedule<K>, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
-        Self::with_plan(UnevenFiring::new(schedule, now), config, now)
-    }
-}
-
-impl<'s, const K: usize, J, const E: usize, const H: usize> Ring<UnevenFiring<'s, K>, J, K, E, H> {
-    /// The schedule of the present period.
-    pub const fn schedule(&self) -> &'s UnevenSchedule<K> {
         self.plan.schedule()
     }
 }
@@ -463,7 +456,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         &self.judge
     }
 
-    /// Returns true if sensors listen for unlike times, so that the one that fired first need not be the first to end.
+    /// Returns true if sensors have limits of their own, so that the one that fired first need not be the first to end.
     #[inline]
     fn windows_differ(&self) -> bool {
         self.plan.limits_of(0).is_some()

@@ -60,19 +60,14 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
 
     #[inline]
     fn has_fired(&mut self, sensor: u8, now: Instant) {
-        if self.oldest == NOBODY || (self.windows_differ() && self.closes_first(sensor, now)) {
+        if self.oldest == NOBODY {
             self.oldest = sensor;
             if self.ready == 0 {
                 self.emit_at = now + self.window_of(sensor);
             }
+        } else if self.windows_differ() {
+            self.find_first_to_close();
         }
-    }
-
-    /// Whether the window of a sensor that fires `now` closes before all others: where windows differ, the sensor that
-    /// fired first need not be the first to end.
-    fn closes_first(&self, sensor: u8, now: Instant) -> bool {
-        let oldest = self.sensor(self.oldest).map(|oldest| oldest.fired() + self.window_of(self.oldest));
-        oldest.is_none_or(|closes| !(now + self.window_of(sensor)).has_reached(closes))
     }
 
     #[inline(never)]
@@ -105,6 +100,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             return None;
         }
         self.punctuality.note(u16::try_from(now.since(due).as_micros()).unwrap_or(u16::MAX));
+        let differed = self.windows_differ();
         let (phase, changed) = self.plan.end_period(now);
         let PeriodLateness { latest, sum } = self.punctuality.end_period();
         if changed {
@@ -118,10 +114,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         }
         self.begin_period();
         self.take_change();
-        if self.windows_differ() {
+        if differed || self.windows_differ() {
             // Another schedule may allow other windows, also to firings under way.
             self.find_first_to_close();
-            self.emit_when_oldest_ends();
         }
         let stats = PeriodStats {
             period: self.period,
@@ -218,7 +213,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// closes first.
     pub(super) fn find_oldest(&mut self, before: Instant) {
         if self.windows_differ() {
-            return self.find_first_to_close();
+            self.find_first_to_close();
+            return;
         }
         // 1 us before is not 71 minutes after.
         let before = Instant::from_micros(before.as_micros().wrapping_sub(STEP_BACK.as_micros()));
@@ -232,16 +228,23 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.oldest = oldest;
     }
 
+    /// Where windows differ, the sensor that fired first need not be the first to end.
     pub(super) fn find_first_to_close(&mut self) {
-        let mut first: Option<(u8, Instant)> = None;
-        for (x, sensor) in self.sensors.iter().enumerate() {
-            // At most 64 sensors.
-            let closes = sensor.fired() + self.window_of(x as u8);
-            if sensor.is(LISTENING) && first.is_none_or(|(_, sooner)| !closes.has_reached(sooner)) {
-                first = Some((x as u8, closes));
+        self.oldest = NOBODY;
+        // At most 64 sensors.
+        for x in 0..self.sensors() as u8 {
+            let listens = self.sensor(x).is_some_and(|sensor| sensor.is(LISTENING));
+            if listens && (self.oldest == NOBODY || !self.closes(x).has_reached(self.closes(self.oldest))) {
+                self.oldest = x;
             }
         }
-        self.oldest = first.map_or(NOBODY, |(x, _)| x);
+        self.emit_when_oldest_ends();
+    }
+
+    /// When the window of a sensor's last firing closes.
+    fn closes(&self, sensor: u8) -> Instant {
+        let fired = self.sensor(sensor).map_or(Instant::default(), Sensor::fired);
+        fired + self.window_of(sensor)
     }
 
     fn sensor(&self, sensor: u8) -> Option<&Sensor<E, H>> {

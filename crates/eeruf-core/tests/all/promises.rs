@@ -115,7 +115,7 @@ fn forty_minutes_without_sensors_do_not_delay_a_change_of_schedule() {
         assert!(matches!(plan.poll(now), Some(PlanStep::PeriodEnded { .. })));
     }
     (0..12).for_each(|sensor| plan.set_enabled(sensor, true));
-    plan.change_schedule(&TABLE_I_A);
+    plan.change_with_limits(&TABLE_I_A, &eeruf_core::Alike);
     assert!(time_to_fire(&mut plan, now) <= ms(400));
 }
 

@@ -4,8 +4,8 @@
 use eeruf_core::search::PeriodProblem;
 use eeruf_core::search::design::memory_words;
 use eeruf_core::{
-    Layout, Micros, Requirements, Schedule, Uneven, UnevenError, Verification, ViolationKind, tables::TABLE_I_D,
-    uneven_schedule,
+    EachSensor, Layout, Micros, Requirements, Schedule, Uneven, UnevenError, Verification, VerifiedSchedule,
+    ViolationKind, schedule, tables::TABLE_I_D,
 };
 
 use crate::common::random::Random;
@@ -201,12 +201,12 @@ fn what_makes_no_sense_for_a_ring_is_refused_by_what_it_is() {
 }
 
 #[test]
-fn a_verified_uneven_schedule_allows_each_sensor_its_own_and_all_together_the_least() {
-    const CORNERS: eeruf_core::UnevenSchedule<3> = uneven_schedule! {
+fn a_verified_schedule_allows_each_sensor_its_own_and_all_together_the_least() {
+    const CORNERS: VerifiedSchedule<3, 2, EachSensor<3>> = schedule! {
         period_us: 60_000,
         t_fire_a_us: [0, 25_000, 25_000],
         t_fire_b_us: [0, 29_000, 29_000],
-        meets: Requirements {
+        each_meets: Requirements {
             min_interval: Micros::from_millis(15),
             layout: Layout::Line(2),
             uneven: Some(Uneven {
@@ -223,7 +223,7 @@ fn a_verified_uneven_schedule_allows_each_sensor_its_own_and_all_together_the_le
     let of = |sensor| CORNERS.limits_of(sensor).map(|limits| (limits.t_delta, limits.window));
     assert_eq!(of(1), Some((Micros::new(1_900), Micros::from_millis(12))));
     assert_eq!((of(2), of(3)), (Some((Micros::new(999), Micros::from_millis(40))), None));
-    let least = CORNERS.verified().verified_for();
+    let least = CORNERS.verified_for();
     assert_eq!((least.t_delta, least.window), (Micros::new(499), Micros::from_millis(12)));
     // The longest that any pair or sensor keeps: the third listens for 40 ms before it fires again.
     assert_eq!((least.min_interval, least.separation), (Micros::from_millis(40), Micros::from_millis(4)));
@@ -233,7 +233,7 @@ fn a_verified_uneven_schedule_allows_each_sensor_its_own_and_all_together_the_le
         window: Micros::from_millis(26),
         ..Requirements::new(Micros::new(499))
     };
-    assert_eq!(CORNERS.verify(&late).verified_uneven().unwrap_err().kind, ViolationKind::CrosstalkA);
+    assert_eq!(CORNERS.verify(&late).verified().unwrap_err().kind, ViolationKind::CrosstalkA);
 }
 
 #[test]
@@ -260,8 +260,8 @@ fn an_uneven_schedule_is_written_with_all_that_it_was_designed_for() {
     let requirements = Requirements { uneven: Some(uneven), ..Requirements::new(Micros::new(999)) };
     let rust = schedule.to_rust(&requirements).to_string();
     for line in [
-        "use eeruf_core::{Criterion, Layout, Micros, Requirements, Uneven, UnevenSchedule, uneven_schedule};",
-        "pub const RING: UnevenSchedule<2> = uneven_schedule! {",
+        "use eeruf_core::{Criterion, EachSensor, Layout, Micros, Requirements, Uneven, VerifiedSchedule, schedule};",
+        "pub const RING: VerifiedSchedule<2, 2, EachSensor<2>> = schedule! {",
         "            window: &[Micros::new(50_000), Micros::new(12_000)],",
         "            intervals: &[(0, 1, Micros::new(15_000))],",
     ] {

@@ -1,8 +1,8 @@
 //! Rings of sensors that are not all alike, as they run.
 
 use eeruf_core::{
-    EchoFilter, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule,
-    Uneven, UnevenFiring, UnevenSchedule, check_plan, tables::TABLE_I_D,
+    Adaptation, EachSensor, EchoFilter, Instant, Ladder, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig,
+    RingError, RingEvent, Schedule, ScheduledFiring, Uneven, VerifiedSchedule, check_plan, tables::TABLE_I_D,
 };
 
 use crate::common::random::Random;
@@ -18,7 +18,7 @@ const fn ms<const K: usize>(times: [u32; K]) -> [Micros; K] {
 }
 
 /// Two that look far and compare coarsely, two that look near, two of which fire together.
-fn corners() -> UnevenSchedule<4> {
+fn corners() -> VerifiedSchedule<4, 2, EachSensor<4>> {
     let schedule = Schedule::from_firing(Micros::from_millis(60), [ms([0, 5, 40, 40]), ms([2, 12, 24, 24])])
         .expect("it lies within");
     let requirements = Requirements {
@@ -32,15 +32,15 @@ fn corners() -> UnevenSchedule<4> {
         }),
         ..Requirements::new(Micros::new(99))
     };
-    schedule.verify(&requirements).verified_uneven().expect("it keeps all")
+    schedule.verify(&requirements).verified_each().expect("it keeps all")
 }
 
 #[test]
 fn each_sensor_listens_and_compares_as_it_was_verified_for() {
     let schedule = corners();
-    let filter = |sensor| EchoFilter::<1>::new(schedule.limits_of(sensor).unwrap().t_delta, 2).unwrap();
+    let filter = |sensor: usize| EchoFilter::<1>::new(schedule.limits_of(sensor as u8).unwrap().t_delta, 2).unwrap();
     let mut filters: [EchoFilter<1>; 4] = core::array::from_fn(filter);
-    let mut ring: Ring<_, _, 4> = Ring::uneven(&schedule, RingConfig::new(), Instant::from_micros(0)).unwrap();
+    let mut ring: Ring<_, _, 4> = Ring::new(&schedule, RingConfig::new(), Instant::from_micros(0)).unwrap();
     let mut random = Random(3);
     // When each fired, and the echo that it is to hear.
     let mut firings: [Option<(Instant, Option<u32>)>; 4] = [None; 4];
@@ -63,7 +63,7 @@ fn each_sensor_listens_and_compares_as_it_was_verified_for() {
         while let Some(event) = ring.poll(now) {
             match event {
                 RingEvent::Fire { sensor, .. } => {
-                    let window = schedule.limits_of(sensor.into()).unwrap().window.as_micros();
+                    let window = schedule.limits_of(sensor).unwrap().window.as_micros();
                     assert_eq!(ring.window_of(sensor).as_micros(), window);
                     // Near the wall that it has seen before, or nowhere near, or beyond the window.
                     let echo = match random.up_to(5) {
@@ -77,12 +77,12 @@ fn each_sensor_listens_and_compares_as_it_was_verified_for() {
                 RingEvent::Reading(reading) => {
                     let sensor = usize::from(reading.sensor);
                     if reading.kind == ReadingKind::Late {
-                        assert!(reading.t_echo > Some(schedule.limits_of(sensor).unwrap().window));
+                        assert!(reading.t_echo > Some(schedule.limits_of(reading.sensor).unwrap().window));
                         late += 1;
                         continue;
                     }
                     let (fired, echo) = firings[sensor].take().expect("it has fired");
-                    let window = schedule.limits_of(sensor).unwrap().window;
+                    let window = schedule.limits_of(reading.sensor).unwrap().window;
                     let heard = echo.filter(|&echo| echo <= window.as_micros());
                     assert_eq!(now.since(fired), heard.map_or(window, Micros::new), "sensor {sensor}");
                     let expected = filters[sensor].push(0, heard.map(Micros::new)).unwrap();
@@ -111,10 +111,10 @@ fn where_all_are_alike_an_uneven_ring_does_what_a_ring_does() {
     let even = TABLE_I_D.verify(&alike).verified().unwrap();
     let windows = [Micros::from_millis(30); 12];
     let each = Uneven { window: &windows, ..Uneven::NONE };
-    let uneven = TABLE_I_D.verify(&Requirements { uneven: Some(each), ..alike }).verified_uneven().unwrap();
+    let uneven = TABLE_I_D.verify(&Requirements { uneven: Some(each), ..alike }).verified_each().unwrap();
     let begin = Instant::from_micros(u32::MAX - 3_000_000);
     let mut one: Ring<_, _, 12> = Ring::new(&even, RingConfig::new(), begin).unwrap();
-    let mut other: Ring<_, _, 12> = Ring::uneven(&uneven, RingConfig::new(), begin).unwrap();
+    let mut other: Ring<_, _, 12> = Ring::new(&uneven, RingConfig::new(), begin).unwrap();
     let mut random = Random(11);
     for poll in 0..20_000 {
         assert_eq!(one.next_deadline(), other.next_deadline());
@@ -149,7 +149,7 @@ fn a_ring_takes_less_than_was_verified_and_not_more() {
     let schedule = corners();
     let at = Instant::from_micros(0);
     let ring = |config| {
-        Ring::<_, _, 4>::uneven(&schedule, config, at).map(|ring| {
+        Ring::<_, _, 4>::new(&schedule, config, at).map(|ring| {
             (0..4).map(|x| (ring.window_of(x).as_micros() / 1000, ring.t_delta_of(x).as_micros())).collect::<Vec<_>>()
         })
     };
@@ -167,11 +167,11 @@ fn a_ring_takes_less_than_was_verified_and_not_more() {
 }
 
 #[test]
-fn uneven_firing_keeps_what_every_scheduler_promises() {
+fn a_plan_with_limits_keeps_what_every_plan_promises() {
     let schedule = corners();
     for seed in 0..20_u32 {
         let now = Instant::from_micros(seed.wrapping_mul(400_000_000));
-        check_plan(&mut UnevenFiring::new(&schedule, now), now, 20_000, seed).unwrap();
+        check_plan(&mut ScheduledFiring::verified(&schedule, now), now, 20_000, seed).unwrap();
     }
 }
 
@@ -180,7 +180,7 @@ fn an_uneven_ring_is_on_time_while_its_closest_pair_can_spare_it() {
     // Sensors 1 and 2 are 5 ms apart and compare by 2.4 ms, twice; a quarter of the 199 us left over, each period.
     let schedule = corners();
     for (late, on_time) in [(49, true), (50, false)] {
-        let mut ring: Ring<_, _, 4> = Ring::uneven(&schedule, RingConfig::new(), Instant::from_micros(0)).unwrap();
+        let mut ring: Ring<_, _, 4> = Ring::new(&schedule, RingConfig::new(), Instant::from_micros(0)).unwrap();
         let (mut kinds, mut periods, mut was_on_time) = (Vec::new(), 0, true);
         while periods < 6 {
             // The first firing of the fifth period comes late.
@@ -203,7 +203,7 @@ fn an_uneven_ring_is_on_time_while_its_closest_pair_can_spare_it() {
 }
 
 /// The same sensors on the same lines, two of which look farther, the first farther than any fires again.
-fn farther() -> UnevenSchedule<4> {
+fn farther() -> VerifiedSchedule<4, 2, EachSensor<4>> {
     let schedule = Schedule::from_firing(Micros::from_millis(80), [ms([62, 20, 44, 4]), ms([58, 10, 26, 30])])
         .expect("it lies within");
     let requirements = Requirements {
@@ -216,17 +216,16 @@ fn farther() -> UnevenSchedule<4> {
         }),
         ..Requirements::new(Micros::new(99))
     };
-    schedule.verify(&requirements).verified_uneven().expect("it keeps all")
+    schedule.verify(&requirements).verified_each().expect("it keeps all")
 }
 
 #[test]
 fn between_two_uneven_schedules_nothing_fires_or_listens_sooner_or_longer_than_both_allow() {
     let schedules = [corners(), farther()];
-    let limits = |of: usize, sensor: usize| schedules[of].limits_of(sensor).unwrap();
+    let limits = |of: usize, sensor: usize| schedules[of].limits_of(sensor as u8).unwrap();
     // No more than either allows, so that it can change between them.
     let config = RingConfig::new().with_window(Micros::from_millis(50)).with_t_delta(Micros::new(1_900));
-    let mut ring: Ring<_, _, 4> =
-        Ring::uneven(&schedules[0], config, Instant::from_micros(u32::MAX - 500_000)).unwrap();
+    let mut ring: Ring<_, _, 4> = Ring::new(&schedules[0], config, Instant::from_micros(u32::MAX - 500_000)).unwrap();
     let mut random = Random(5);
     // The schedules of the present period and the one before, when each sensor fired and by which, and until when it
     // listened.
@@ -269,7 +268,7 @@ fn between_two_uneven_schedules_nothing_fires_or_listens_sooner_or_longer_than_b
                     if let Some(next) = asked.take() {
                         (present, changes) = (next, changes + 1);
                     }
-                    assert_eq!(*ring.schedule(), schedules[present]);
+                    assert_eq!(*ring.schedule(), *schedules[present]);
                     if random.up_to(3) == 0 {
                         ring.change_schedule(&schedules[1 - present]).unwrap();
                         asked = Some(1 - present);
@@ -285,7 +284,7 @@ fn between_two_uneven_schedules_nothing_fires_or_listens_sooner_or_longer_than_b
 fn a_change_to_an_uneven_schedule_that_allows_less_is_refused_and_the_ring_goes_on() {
     let schedules = [corners(), farther()];
     let at = Instant::from_micros(0);
-    let mut ring: Ring<_, _, 4> = Ring::uneven(&schedules[1], RingConfig::new(), at).unwrap();
+    let mut ring: Ring<_, _, 4> = Ring::new(&schedules[1], RingConfig::new(), at).unwrap();
     let (window, verified) = (Micros::from_millis(70), Micros::from_millis(50));
     assert_eq!(ring.change_schedule(&schedules[0]), Err(RingError::VerifiedWindow { window, verified }));
     ring.set_window(verified).unwrap();
@@ -298,5 +297,67 @@ fn a_change_to_an_uneven_schedule_that_allows_less_is_refused_and_the_ring_goes_
     // What it changes to counts from then on.
     let (window, verified) = (Micros::from_millis(51), Micros::from_millis(50));
     assert_eq!(ring.set_window(window), Err(RingError::VerifiedWindow { window, verified }));
-    assert_eq!(*ring.schedule(), schedules[1]);
+    assert_eq!(*ring.schedule(), *schedules[1]);
+}
+
+#[test]
+fn a_ring_changes_between_sensors_that_are_alike_and_sensors_that_are_not() {
+    let uneven = corners();
+    let schedule = Schedule::from_firing(Micros::from_millis(70), [ms([0, 16, 32, 48]), ms([4, 26, 47, 50])]).unwrap();
+    let alike = Requirements { window: Micros::from_millis(50), ..Requirements::new(Micros::new(999)) };
+    let even = schedule.verify(&alike).verified().unwrap();
+    let (even, own): (_, EachSensor<4>) = (even.schedule(), EachSensor::NONE);
+    let config = RingConfig::new().with_window(Micros::from_millis(50)).with_t_delta(Micros::new(999));
+    let plan = ScheduledFiring::with_limits(even, &own, Instant::from_micros(0));
+    let mut ring: Ring<_, _, 4> = Ring::with_plan(plan, config, Instant::from_micros(0)).unwrap();
+    let mut lengths = Vec::new();
+    let mut readings = 0;
+    for period in 0..40 {
+        let each = (uneven.schedule(), uneven.own_limits());
+        let (next, limits) = if period % 8 < 4 { (even, &own) } else { each };
+        ring.change_with_limits(next, limits).unwrap();
+        loop {
+            let now = ring.next_deadline();
+            match ring.poll(now) {
+                Some(RingEvent::Fire { sensor, .. }) => ring.echo(sensor, now + Micros::from_millis(8)).unwrap(),
+                Some(RingEvent::Reading(reading)) => {
+                    assert_ne!(reading.kind, ReadingKind::Rejected, "{reading:?}");
+                    assert_eq!(reading.t_echo, Some(Micros::from_millis(8)));
+                    readings += 1;
+                }
+                Some(RingEvent::PeriodEnded(_)) => break,
+                None => {}
+            }
+        }
+        lengths.push((ring.window_of(3).as_micros() / 1_000, ring.t_delta_of(3).as_micros()));
+    }
+    // The period after a change keeps the limits of both schedules, the one after it its own alone.
+    assert_eq!(lengths[2..6], [(50, 999), (50, 999), (9, 400), (9, 400)]);
+    assert_eq!(lengths[7..10], [(9, 400), (9, 400), (50, 999)]);
+    assert!(readings >= 156, "{readings}");
+}
+
+#[test]
+fn a_ladder_takes_rungs_for_sensors_that_are_not_alike() {
+    let rungs = [corners(), farther()];
+    let mut adaptation = Adaptation::new(Ladder::new(&rungs).unwrap());
+    (adaptation.window, adaptation.noisy_permille) = (2, 0);
+    let config = RingConfig::new().with_window(Micros::from_millis(50)).with_t_delta(Micros::new(1_900));
+    let mut ring: Ring<_, _, 4> = Ring::new(&rungs[0], config, Instant::from_micros(0)).unwrap();
+    let mut random = Random(9);
+    for _ in 0..2_000 {
+        let now = ring.next_deadline();
+        match ring.poll(now) {
+            // Nothing agrees.
+            Some(RingEvent::Fire { sensor, .. }) => {
+                ring.echo(sensor, now + Micros::new(1_000 + random.up_to(7_000))).unwrap();
+            }
+            Some(RingEvent::PeriodEnded(stats)) => {
+                adaptation.adapt(&stats, |schedule| ring.change_schedule(schedule)).unwrap();
+            }
+            _ => {}
+        }
+    }
+    assert_eq!((*ring.schedule(), ring.window_of(0)), (*rungs[1].schedule(), Micros::from_millis(50)));
+    assert_eq!(ring.t_delta_of(3), Micros::new(300));
 }

@@ -1,16 +1,14 @@
 //! A ring that moves along a ladder of scaled schedules as the rejection rate asks for (end of Sec. 3.1).
 
-use eeruf_core::{
-    Adaptation, Instant, Ladder, MAX_SENSORS, Requirements, RingEvent, ScheduledRing, VerifiedSchedule, Violation,
-};
+use eeruf_core::{Adaptation, EachSensor, EchoFilter, Instant, Ladder, MAX_SENSORS, Ring, RingEvent, Violation};
 
-use super::ring_runner::{FiringPlan, RingRunner, RingStart, StartError, Started};
+use super::ring_runner::{FiringPlan, RingRunner, RingStart, StartError, Started, TableFiring};
 use crate::world::{AnySchedule, Robot};
 
 /// A ring that moves along a ladder of schedules (end of Sec. 3.1).
 struct AdaptiveRing<'s> {
-    ring: ScheduledRing<'s, MAX_SENSORS>,
-    adaptation: Adaptation<'s, MAX_SENSORS>,
+    ring: Ring<TableFiring<'s>, EchoFilter<MAX_SENSORS>, MAX_SENSORS>,
+    adaptation: Adaptation<'s, MAX_SENSORS, EachSensor<MAX_SENSORS>>,
 }
 
 impl<'s> RingRunner<'s> for AdaptiveRing<'s> {
@@ -37,21 +35,19 @@ const RUNGS: [(u32, u32); 4] = [(5, 6), (1, 1), (4, 3), (5, 3)];
 
 /// The rungs of a robot's ladder, from the schedule that it starts from.
 pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<FiringPlan, StartError> {
-    let requirements = Requirements { window: robot.window, ..Requirements::new(robot.t_delta) };
-    let verified = |schedule: AnySchedule| schedule.verify(&requirements).verified();
     let scaled = RUNGS.iter().filter_map(|&(num, den)| base.scaled(num, den).ok());
-    let mut ladder: Vec<VerifiedSchedule<MAX_SENSORS>> = scaled.filter_map(|rung| verified(rung).ok()).collect();
+    let mut ladder: Vec<_> = scaled.filter_map(|rung| robot.verified(&rung).ok()).collect();
     if ladder.is_empty() {
-        ladder.push(verified(base)?);
+        ladder.push(robot.verified(&base)?);
     }
-    Ok(FiringPlan { schedule: base, ladder, uneven: None })
+    Ok(FiringPlan { ladder, ..FiringPlan::new(base) })
 }
 
 /// A ring on its ladder.
 pub(super) fn adaptive<'s>(start: &RingStart<'s>) -> Started<'s> {
     let ladder = Ladder::new(&start.plan.ladder).map_err(StartError::Ladder)?;
     // A ladder has a rung.
-    let ring = ScheduledRing::new(&start.plan.ladder[0], start.config(), start.now)?;
+    let ring = Ring::new(&start.plan.ladder[0], start.config(), start.now)?;
     Ok(Box::new(AdaptiveRing { ring, adaptation: Adaptation::new(ladder) }))
 }
 

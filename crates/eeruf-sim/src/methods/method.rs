@@ -45,7 +45,7 @@ const DEFAULT: Row = Row {
     schedule: schedules::own,
     ring: ring_runner::scheduled::<1, ASKS>,
     belief: Belief::Repeated,
-    plan: |_, schedule| Ok(FiringPlan { schedule, ladder: vec![], uneven: None }),
+    plan: |_, schedule| Ok(FiringPlan::new(schedule)),
     echoes: 1,
     refire: |robot| robot.window,
 };

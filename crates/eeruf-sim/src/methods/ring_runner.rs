@@ -2,9 +2,9 @@
 //! under simulated time.
 
 use eeruf_core::{
-    AgreementRing, HoppingError, HoppingPlan, HoppingSettings, ImmediateRefiring, Instant, Judge, LadderError,
-    MAX_SENSORS, Plan, Ring, RingConfig, RingError, RingEvent, ScheduledFiring, UnevenFiring, UnevenSchedule,
-    VerifiedSchedule, Violation, Weighed,
+    AgreementRing, EachInUse, EachSensor, HoppingError, HoppingPlan, HoppingSettings, ImmediateRefiring, Instant,
+    Judge, LadderError, MAX_SENSORS, Plan, Ring, RingConfig, RingError, RingEvent, ScheduledFiring, VerifiedSchedule,
+    Violation, Weighed,
 };
 
 use super::firing::{OwnError, PeriodFiring};
@@ -62,12 +62,12 @@ pub(super) trait SimulatedPlan<'s>: Plan + Send + Sized {
     }
 }
 
-impl<'s> SimulatedPlan<'s> for ScheduledFiring<'s, MAX_SENSORS> {
+impl<'s> SimulatedPlan<'s> for TableFiring<'s> {
     fn change<J: Judge, const K: usize, const E: usize, const H: usize>(
         ring: &mut Ring<Self, J, K, E, H>,
         schedule: &'s AnySchedule,
     ) -> Result<(), ChangeError> {
-        ring.change_to_unverified(schedule).map_err(ChangeError::Ring)
+        ring.change_with_limits(schedule, &EachSensor::NONE).map_err(ChangeError::Ring)
     }
 }
 
@@ -83,7 +83,6 @@ impl SimulatedPlan<'_> for PeriodFiring {
     }
 }
 
-impl<'s> SimulatedPlan<'s> for UnevenFiring<'s, MAX_SENSORS> {}
 impl<'s> SimulatedPlan<'s> for ImmediateRefiring<'s, MAX_SENSORS> {}
 
 impl<'s, P: SimulatedPlan<'s>, J: Judge + Send, const K: usize, const E: usize, const H: usize> RingRunner<'s>
@@ -115,14 +114,24 @@ impl<'s, P: SimulatedPlan<'s>, J: Judge + Send, const K: usize, const E: usize, 
     }
 }
 
+/// Firing by a table, whether sensors are alike or not.
+pub(super) type TableFiring<'s> = ScheduledFiring<'s, MAX_SENSORS, 2, EachInUse<'s, MAX_SENSORS>>;
+
 /// What a robot's ring fires by.
 pub(crate) struct FiringPlan {
     /// The schedule that the method asked for.
     pub(crate) schedule: AnySchedule,
     /// Where it adapts, all that it may change to, the first one first.
-    pub(crate) ladder: Vec<VerifiedSchedule<MAX_SENSORS>>,
-    /// Where sensors are not all alike, the schedule with what each may do by itself.
-    pub(crate) uneven: Option<Box<UnevenSchedule<MAX_SENSORS>>>,
+    pub(crate) ladder: Vec<VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>>,
+    /// What each sensor may do by itself, where they are not all alike.
+    pub(crate) own_limits: EachSensor<MAX_SENSORS>,
+}
+
+impl FiringPlan {
+    /// One schedule for sensors that are alike.
+    pub(crate) const fn new(schedule: AnySchedule) -> Self {
+        Self { schedule, ladder: vec![], own_limits: EachSensor::NONE }
+    }
 }
 
 /// What a ring is started with.
@@ -226,16 +235,16 @@ where
 
 /// Scheduled firing, with up to `E` echoes of a firing.
 pub(super) fn scheduled<'s, const E: usize, const ASKS: bool>(start: &RingStart<'s>) -> Started<'s> {
-    match &start.plan.uneven {
-        Some(uneven) => start.run::<_, E, REMEMBERED, ASKS>(UnevenFiring::new(uneven, start.now)),
-        None => start.run::<_, E, REMEMBERED, ASKS>(ScheduledFiring::new(start.schedule(), start.now)),
-    }
+    start.run::<_, E, REMEMBERED, ASKS>(TableFiring::with_limits(start.schedule(), &start.plan.own_limits, start.now))
 }
 
 /// The robot's own schedule, where sensors are not all alike with what each may do.
 pub(super) fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
-    let uneven = robot.uneven(&schedule).map_err(StartError::Unverified)?.map(Box::new);
-    Ok(FiringPlan { schedule, ladder: vec![], uneven })
+    if !robot.is_uneven() {
+        return Ok(FiringPlan::new(schedule));
+    }
+    let own_limits = *robot.verified(&schedule)?.own_limits();
+    Ok(FiringPlan { own_limits, ..FiringPlan::new(schedule) })
 }
 
 /// Immediate refiring.

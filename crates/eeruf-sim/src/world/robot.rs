@@ -1,7 +1,7 @@
 //! A robot: its transducers, where it is and how it moves, its clock, and how it fires and listens.
 
 use eeruf_core::{
-    Layout, MAX_SENSORS, Micros, Requirements, Schedule, SensorLimits, Uneven, UnevenSchedule, Violation,
+    EachSensor, Layout, MAX_SENSORS, Micros, Requirements, Schedule, SensorLimits, Uneven, VerifiedSchedule, Violation,
 };
 
 use super::clock::Clock;
@@ -119,24 +119,29 @@ impl Robot {
         }
     }
 
-    /// A schedule with what each sensor may do by itself; `None` where all are alike.
+    /// Returns true if its sensors are not all alike.
+    pub(crate) fn is_uneven(&self) -> bool {
+        !self.limits.is_empty() || !self.together.is_empty()
+    }
+
+    /// A schedule that rejects crosstalk as each sensor compares, with what each may do by itself.
     ///
     /// # Errors
     /// The first condition that it violates.
-    pub fn uneven(&self, schedule: &AnySchedule) -> Result<Option<UnevenSchedule<MAX_SENSORS>>, Violation> {
-        if self.limits.is_empty() && self.together.is_empty() {
-            return Ok(None);
-        }
+    pub fn verified(
+        &self,
+        schedule: &AnySchedule,
+    ) -> Result<VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>, Violation> {
         let t_delta: Vec<_> = self.limits.iter().map(|limits| limits.t_delta).collect();
         let window: Vec<_> = self.limits.iter().map(|limits| limits.window).collect();
         let uneven = Uneven { t_delta: &t_delta, window: &window, together: &self.together, ..Uneven::NONE };
         let requirements = Requirements {
             layout: Layout::Line(1),
             window: self.window,
-            uneven: Some(uneven),
+            uneven: self.is_uneven().then_some(uneven),
             ..Requirements::new(self.t_delta)
         };
-        schedule.verify(&requirements).verified_uneven().map(Some)
+        schedule.verify(&requirements).verified_each()
     }
 
     /// The same robot with its sensors at these heights in metres, one each; where all are at [`DEFAULT_HEIGHT_M`],

@@ -1,6 +1,6 @@
 //! One robot's ring under way: core's ring, the robot's clock, and when something happens to it next.
 
-use eeruf_core::Micros;
+use eeruf_core::{EachSensor, Micros};
 
 use super::own::Own;
 use crate::simulation::channels::Channels;
@@ -100,8 +100,9 @@ pub(crate) fn start_all<'a>(
         let hearing = Hearing::new(world, robot, method.echoes(), refire, true_ns);
         let first = channels.first_of(index);
         let sensors = first..first + robot.sensors.len();
-        let uneven = plan.as_ref().and_then(|plan| plan.uneven.as_ref());
-        let limits = uneven.map_or(&[][..], |_| &robot.limits);
+        let keeps_limits = |plan: &FiringPlan| plan.own_limits != EachSensor::NONE || !plan.ladder.is_empty();
+        let has_limits = plan.as_ref().is_some_and(keeps_limits);
+        let limits = if has_limits { &robot.limits[..] } else { &[] };
         let windows = limits.iter().map(|limits| true_ns(limits.window)).collect();
         rings.push(RunningRing {
             robot,

@@ -1,0 +1,244 @@
+//! [`OwnLimits`]: the window and the `t_delta` of each sensor, for schedules whose sensors are not all alike.
+//!
+//! Which a schedule has is a type, so that a ring whose sensors are alike pays nothing for the others.
+
+use core::fmt;
+
+use crate::schedule::VerifiedFor;
+use crate::time::{Micros, longer};
+
+/// For how long one sensor may listen, and what may count as the same echo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct SensorLimits {
+    /// `T_delta` of the sensor, for which (13a), (13b) hold.
+    pub t_delta: Micros,
+    /// `T_wind` of the sensor; the time until it fires again where no window was asked for.
+    pub window: Micros,
+}
+
+/// Which limits the sensors of a schedule have of their own: none, [`Alike`], or some for each, [`EachSensor`].
+pub trait OwnLimits: Copy + fmt::Debug + sealed::Sealed {
+    /// What a plan holds of them while it fires.
+    type InUse<'s>: LimitsInUse
+    where
+        Self: 's;
+
+    /// Those of a plan that begins.
+    #[doc(hidden)]
+    fn begin(&self) -> Self::InUse<'_>;
+
+    /// Those of a plan that changes to them when its period ends.
+    #[doc(hidden)]
+    fn change<'s>(&'s self, in_use: &mut Self::InUse<'s>);
+}
+
+/// The limits that a plan fires by at present: [`Alike`] or [`EachInUse`].
+pub trait LimitsInUse: Clone + fmt::Debug + sealed::Sealed {
+    /// The period ends, and with it what the last change was from.
+    #[doc(hidden)]
+    fn end_period(&mut self) {}
+
+    /// The limits of one sensor, in the first period after a change the lesser of both.
+    #[doc(hidden)]
+    #[inline]
+    fn limits_of(&self, _sensor: u8) -> Option<SensorLimits> {
+        None
+    }
+
+    /// Returns true if `receiver` can hear `emitter`; in the first period after a change by either.
+    #[doc(hidden)]
+    #[inline]
+    fn hears(&self, _receiver: u8, _emitter: u8) -> bool {
+        true
+    }
+
+    /// What the schedule was verified for at most, if sensors have limits of their own.
+    #[doc(hidden)]
+    #[inline]
+    fn most(&self) -> Option<&VerifiedFor> {
+        None
+    }
+
+    /// The same of the schedule that it changes to.
+    #[doc(hidden)]
+    #[inline]
+    fn next_most(&self) -> Option<&VerifiedFor> {
+        None
+    }
+}
+
+mod sealed {
+    pub trait Sealed {}
+}
+
+/// No limits of their own: all sensors listen and compare alike.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Alike;
+
+impl sealed::Sealed for Alike {}
+
+impl LimitsInUse for Alike {}
+
+impl OwnLimits for Alike {
+    type InUse<'s> = Self;
+
+    #[inline]
+    fn begin(&self) -> Self {
+        Self
+    }
+
+    #[inline]
+    fn change(&self, _in_use: &mut Self) {}
+}
+
+/// Limits of its own for each sensor; places beyond the last sensor say nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct EachSensor<const K: usize> {
+    /// The largest `t_delta` and window, and a separation that is as much more than the `t_delta` as the pair with the
+    /// least to spare has; `None` if sensors are alike after all.
+    most: Option<VerifiedFor>,
+    limits: [SensorLimits; K],
+    /// The group that each sensor fires together with, from 1; 0 for none.
+    groups: [u8; K],
+}
+
+impl<const K: usize> EachSensor<K> {
+    /// No limits, for who decides at run time if sensors are alike.
+    pub const NONE: Self =
+        Self { most: None, limits: [SensorLimits { t_delta: Micros::MAX, window: Micros::MAX }; K], groups: [0; K] };
+
+    /// With what a schedule of so many sensors was verified for, if they were all alike, and sets of sensors that fire
+    /// together, bit x for sensor x.
+    pub(crate) const fn new(
+        verified_for: VerifiedFor,
+        sensors: usize,
+        limits: [SensorLimits; K],
+        spare: Micros,
+        together: &[u64],
+    ) -> Self {
+        let (mut t_delta, mut window) = (Micros::ZERO, Micros::ZERO);
+        let mut groups = [0; K];
+        let mut sensor = 0;
+        while sensor < sensors && sensor < K {
+            t_delta = longer(t_delta, limits[sensor].t_delta);
+            window = longer(window, limits[sensor].window);
+            let mut group = 0;
+            while group < together.len() {
+                if together[group] >> sensor & 1 == 1 {
+                    // Groups are disjoint, so there are at most 32.
+                    groups[sensor] = group as u8 + 1;
+                }
+                group += 1;
+            }
+            sensor += 1;
+        }
+        let most = VerifiedFor { t_delta, window, separation: t_delta.saturating_add(spare), ..verified_for };
+        Self { most: Some(most), limits, groups }
+    }
+
+    /// The limits of a sensor; `None` if it has none.
+    #[inline]
+    pub(crate) fn of(&self, sensor: u8) -> Option<SensorLimits> {
+        self.most?;
+        self.limits.get(usize::from(sensor)).copied()
+    }
+
+    /// The group that each sensor fires together with, from 1; 0 for none.
+    pub(crate) const fn groups(&self) -> &[u8; K] {
+        &self.groups
+    }
+
+    /// What the schedule was verified for at most.
+    pub(crate) const fn most(&self) -> Option<&VerifiedFor> {
+        self.most.as_ref()
+    }
+
+    fn hears(&self, receiver: u8, emitter: u8) -> bool {
+        let group_of = |sensor: u8| self.groups.get(usize::from(sensor)).copied().unwrap_or(0);
+        receiver == emitter || group_of(receiver) == 0 || group_of(receiver) != group_of(emitter)
+    }
+}
+
+impl<const K: usize> sealed::Sealed for EachSensor<K> {}
+
+impl<const K: usize> OwnLimits for EachSensor<K> {
+    type InUse<'s> = EachInUse<'s, K>;
+
+    fn begin(&self) -> EachInUse<'_, K> {
+        EachInUse { now: self, before: self, next: None }
+    }
+
+    fn change<'s>(&'s self, in_use: &mut EachInUse<'s, K>) {
+        in_use.next = Some(self);
+    }
+}
+
+/// The limits of each sensor by the schedules of the present period, the one before and the next.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct EachInUse<'s, const K: usize> {
+    now: &'s EachSensor<K>,
+    /// Its last firings may still be listening.
+    before: &'s EachSensor<K>,
+    next: Option<&'s EachSensor<K>>,
+}
+
+impl<const K: usize> sealed::Sealed for EachInUse<'_, K> {}
+
+impl<const K: usize> LimitsInUse for EachInUse<'_, K> {
+    fn end_period(&mut self) {
+        self.before = self.now;
+        self.now = self.next.take().unwrap_or(self.now);
+    }
+
+    #[inline]
+    fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
+        let (now, before) = (self.now.of(sensor), self.before.of(sensor));
+        let (Some(one), Some(other)) = (now, before) else { return now.or(before) };
+        Some(SensorLimits { t_delta: one.t_delta.min(other.t_delta), window: one.window.min(other.window) })
+    }
+
+    fn hears(&self, receiver: u8, emitter: u8) -> bool {
+        self.now.hears(receiver, emitter) || self.before.hears(receiver, emitter)
+    }
+
+    fn most(&self) -> Option<&VerifiedFor> {
+        self.now.most()
+    }
+
+    fn next_most(&self) -> Option<&VerifiedFor> {
+        self.next?.most()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conditions::Requirements;
+    use crate::layout::Layout;
+    use crate::schedule::Schedule;
+    use crate::uneven::Uneven;
+
+    #[test]
+    fn room_for_more_sensors_changes_nothing() {
+        let firing = [[0, 5, 40], [2, 12, 24]].map(|phase| phase.map(Micros::from_millis));
+        let requirements = Requirements {
+            layout: Layout::Line(1),
+            uneven: Some(Uneven { t_delta: &[1_500, 2_400, 900].map(Micros::new), ..Uneven::NONE }),
+            ..Requirements::new(Micros::new(99))
+        };
+        let period = Micros::from_millis(60);
+        let exact = Schedule::<3>::from_firing(period, firing).unwrap();
+        let roomy = Schedule::<5>::from_slices(period, &[Micros::ZERO; 3], [&firing[0], &firing[1]]).unwrap();
+        let (exact, roomy) = (exact.verify(&requirements), roomy.verify(&requirements));
+        let (exact, roomy) = (exact.verified_each().unwrap(), roomy.verified_each().unwrap());
+        assert_eq!(exact.own_limits().most(), roomy.own_limits().most());
+        for sensor in 0..5 {
+            assert_eq!(exact.limits_of(sensor), roomy.limits_of(sensor));
+        }
+        assert_eq!((exact.limits_of(2).is_some(), roomy.limits_of(3)), (true, None));
+    }
+}

@@ -1,6 +1,6 @@
 //! The settings of time hopping by their names on the command line.
 
-use eeruf_core::HoppingSettings;
+use eeruf_core::hopping::HoppingSettings;
 
 /// The named settings of time hopping.
 #[derive(Clone, Copy, clap::ValueEnum)]

@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use eeruf_core::{EchoFilter, FilterError, Instant, Micros, RateFilter, ReadingKind, SensorError, Verdict};
+use eeruf_core::{
+    EchoFilter, Instant, Micros, ReadingKind, SensorError,
+    judge::{FilterError, RateFilter, Verdict},
+};
 use eeruf_logs::{Echo, McapWriter, Reading, Report, Sensor, read_log};
 
 use super::answer::Answer;

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use eeruf_core::{ReadingKind, TrackerSettings, Verdict};
+use eeruf_core::{
+    ReadingKind,
+    judge::{TrackerSettings, Verdict},
+};
 use eeruf_logs::{Firing, FiringLog, McapWriter, Reading, replay};
 
 use super::answer::Answer;

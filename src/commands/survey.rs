@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use eeruf_core::{Micros, SurveyPlan};
+use eeruf_core::{Micros, survey::SurveyPlan};
 use eeruf_logs::{FiringLog, PathSettings, Surveyed, survey};
 use eeruf_sim::{Physics, World};
 
@@ -22,8 +22,8 @@ use crate::report::survey::{Found, RingTerms, Scenes, describe, json, ring_file,
 /// file for `design`.
 ///
 /// In the run each sensor fires alone, then each ordered pair with several times between the two, after silence:
-/// eeruf_core::Survey does so, and the Arduino example Survey. What moves in a sensor with the time between is the
-/// other's sound; its own echo does not move. The log is CSV with the columns sensor, fired_us, period (the slot),
+/// eeruf_core::survey::Survey does so, and the Arduino example Survey. What moves in a sensor with the time between is
+/// the other's sound; its own echo does not move. The log is CSV with the columns sensor, fired_us, period (the slot),
 /// phase and t_echo_us, or MCAP; a column `sends` that is 0 says that a sensor only listened.
 #[derive(clap::Args)]
 pub(crate) struct Args {

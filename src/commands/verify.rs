@@ -4,7 +4,11 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::ValueEnum;
-use eeruf_core::{Audible, Criterion, HoppingListening, Micros, PhaseCriterion, PhaseRequirements, Requirements};
+use eeruf_core::{
+    Criterion, Micros, Requirements,
+    hopping::HoppingListening,
+    phases::{Audible, PhaseCriterion, PhaseRequirements},
+};
 use eeruf_design::{LayoutKey, LayoutName, PhaseSchedule};
 use eeruf_sim::AnySchedule;
 

@@ -1,6 +1,9 @@
 //! A simulated survey: its log, as firmware would write it, and the paths that there are.
 
-use eeruf_core::{Instant, Micros, Survey, SurveyEvent, SurveyPlan};
+use eeruf_core::{
+    Instant, Micros,
+    survey::{Survey, SurveyEvent, SurveyPlan},
+};
 use eeruf_logs::{Firing, FiringLog};
 use eeruf_sim::{CrosstalkMatrix, CrosstalkQuery, Limits, LockStep, PathsError, Tracer, World};
 

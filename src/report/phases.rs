@@ -3,7 +3,10 @@
 use std::fmt::Write as _;
 
 use comfy_table::{Table, presets};
-use eeruf_core::{Micros, PhaseCriterion, PhaseRequirements, PhaseVerification, PhaseViolation};
+use eeruf_core::{
+    Micros,
+    phases::{PhaseCriterion, PhaseRequirements, PhaseVerification, PhaseViolation},
+};
 use eeruf_design::{HoppingDesign, PhaseSchedule, RingSpec};
 use serde::Serialize;
 

@@ -3,7 +3,10 @@
 use std::fmt::Write as _;
 
 use comfy_table::{Table, presets};
-use eeruf_core::{Criterion, Interval, Layout, MAX_SENSORS, Micros, Requirements, Verification};
+use eeruf_core::{
+    Criterion, Layout, MAX_SENSORS, Micros, Requirements,
+    conditions::{Interval, Verification},
+};
 use eeruf_sim::AnySchedule;
 use serde::Serialize;
 

@@ -7,7 +7,10 @@ mod hopping_8;
 
 use std::process::Command;
 
-use eeruf_core::{HoppingListening, HoppingRing, HoppingSettings, Instant, Micros, RingEvent};
+use eeruf_core::{
+    Instant, Micros, RingEvent,
+    hopping::{HoppingListening, HoppingRing, HoppingSettings},
+};
 use serde_json::Value;
 
 use crate::common::{Scratch, eeruf, json};

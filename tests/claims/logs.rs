@@ -1,6 +1,6 @@
 //! Logs in, logs out: what `eeruf replay` makes of files from robots.
 
-use eeruf_core::{HoppingSettings, ReadingKind};
+use eeruf_core::{ReadingKind, hopping::HoppingSettings};
 use eeruf_logs::{Echo, FiringLog, Options, read_log, replay};
 
 use crate::common::{Scratch, eeruf, json};

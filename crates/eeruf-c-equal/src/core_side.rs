@@ -1,7 +1,8 @@
 //! Core's events and errors as the numbers that C gives.
 
 use eeruf_core::{
-    Explanation, Micros, PeriodStats, Phase, Reading, ReadingKind, RingError, RingEvent, Tally, ViolationKind,
+    Micros, PeriodStats, Phase, Reading, ReadingKind, RingError, RingEvent, Tally, conditions::ViolationKind,
+    judge::Explanation,
 };
 
 use crate::{Flat, NO_ECHO};

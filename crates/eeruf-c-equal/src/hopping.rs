@@ -3,8 +3,9 @@
 use crate::core_side::{echo, flat};
 use crate::{C, Do, Random};
 use eeruf_core::{
-    HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros,
-    RingError, RingEvent, TrackerSettings,
+    Instant, Micros, RingError, RingEvent,
+    hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    judge::TrackerSettings,
 };
 
 use crate::world::{World, same};

@@ -3,8 +3,9 @@
 use crate::core_side::{flat, status_of, status_of_violation};
 use crate::{C, Do, Needs, OwnNeeds, Random};
 use eeruf_core::{
-    EachInUse, EachSensor, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingError, RingEvent,
-    Schedule, ScheduledFiring, Uneven,
+    EachSensor, EchoFilter, Instant, Layout, Micros, Requirements, Ring, RingConfig, RingError, RingEvent, Schedule,
+    Uneven,
+    plan::{EachInUse, ScheduledFiring},
 };
 
 use crate::world::{World, same};

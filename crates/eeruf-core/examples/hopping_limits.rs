@@ -8,8 +8,8 @@
 mod random;
 
 use eeruf_core::{
-    HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros, ReadingKind,
-    RingEvent,
+    Instant, Micros, ReadingKind, RingEvent,
+    hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
 };
 use random::Random;
 

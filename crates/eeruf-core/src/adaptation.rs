@@ -51,7 +51,9 @@ impl<'s, const K: usize, L> Ladder<'s, K, L> {
 /// [`change_schedule`](crate::Ring::change_schedule):
 ///
 /// ```
-/// use eeruf_core::{Adaptation, Instant, Ladder, Requirements, Ring, RingConfig, RingEvent, tables::TABLE_I_D};
+/// use eeruf_core::{
+///     Instant, Requirements, Ring, RingConfig, RingEvent, adaptation::{Adaptation, Ladder}, tables::TABLE_I_D,
+/// };
 /// # use eeruf_core::Micros;
 /// let requirements = Requirements::new(Micros::new(599));
 /// let rungs = [TABLE_I_D.scaled(3, 5)?, TABLE_I_D].map(|table| table.verify(&requirements).verified().expect("met"));
@@ -221,7 +223,7 @@ impl core::error::Error for LadderError {}
 mod tests {
     extern crate std;
     use super::*;
-    use crate::conditions::Requirements;
+    use crate::requirements::Requirements;
     use crate::schedule::{Phase, Schedule};
     use crate::tables::TABLE_I_D;
     use std::string::ToString;

@@ -1,10 +1,10 @@
 //! [`schedule!`](crate::schedule!) and [`hopping_schedule!`](crate::hopping_schedule!): schedules that the compiler
 //! verifies.
 
-use crate::conditions::Requirements;
 use crate::hopping::{HoppingCode, HoppingSchedule};
 use crate::own_limits::EachSensor;
 use crate::phases::{PhaseRequirements, PhaseViolation};
+use crate::requirements::Requirements;
 use crate::schedule::{Schedule, ScheduleError};
 use crate::time::Micros;
 use crate::verified::VerifiedSchedule;
@@ -173,7 +173,7 @@ pub const fn __micros<const K: usize>(us: [u32; K]) -> [Micros; K] {
 /// the whole call.
 ///
 /// ```
-/// use eeruf_core::{HoppingSchedule, Micros, PhaseCriterion, PhaseRequirements, hopping_schedule};
+/// use eeruf_core::{Micros, hopping::HoppingSchedule, hopping_schedule, phases::{PhaseCriterion, PhaseRequirements}};
 ///
 /// const RING: HoppingSchedule<4> = hopping_schedule! {
 ///     period_us: 60_000,
@@ -193,7 +193,7 @@ pub const fn __micros<const K: usize>(us: [u32; K]) -> [Micros; K] {
 /// The same table does not compile when 240 us are to keep a `t_delta` of 150 us apart as (13) asks, with 301 us:
 ///
 /// ```compile_fail
-/// use eeruf_core::{HoppingSchedule, Micros, PhaseRequirements, hopping_schedule};
+/// use eeruf_core::{Micros, hopping::HoppingSchedule, hopping_schedule, phases::PhaseRequirements};
 ///
 /// const RING: HoppingSchedule<4> = hopping_schedule! {
 ///     period_us: 60_000,

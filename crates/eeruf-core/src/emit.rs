@@ -8,10 +8,10 @@ mod c;
 use core::fmt;
 
 pub(crate) use c::EERUF_VERSION;
-pub use c::{ArduinoTab, CHeader};
+use c::{ArduinoTab, CHeader};
 
-use crate::conditions::{Criterion, Requirements};
 use crate::layout::Layout;
+use crate::requirements::{Criterion, Requirements};
 use crate::schedule::{Phase, Schedule};
 use crate::time::Micros;
 use crate::uneven::Uneven;
@@ -19,23 +19,23 @@ use crate::uneven::Uneven;
 impl<const K: usize> Schedule<K> {
     /// A `const RING: VerifiedSchedule` in Rust, with the `requirements` for the compiler to check (see
     /// [`schedule!`](crate::schedule!)).
-    pub const fn to_rust<'r>(&'r self, requirements: &'r Requirements<'r>) -> RustSource<'r, K> {
+    pub const fn to_rust<'r>(&'r self, requirements: &'r Requirements<'r>) -> impl fmt::Display {
         RustSource { schedule: self, requirements }
     }
 
     /// A C99 header that includes nothing but `<stdint.h>`, with the firing times and what they were designed for; and,
     /// where `eeruf.h` is included before it, the constant `eeruf_schedule` for its `eeruf_ring_init`.
-    pub const fn to_c<'r>(&'r self, requirements: &'r Requirements<'r>) -> CHeader<'r, K> {
+    pub const fn to_c<'r>(&'r self, requirements: &'r Requirements<'r>) -> impl fmt::Display {
         CHeader { schedule: self, requirements }
     }
 
     /// A file of an Arduino sketch that uses the library in `c/arduino`, with the schedule as a constant of this name.
-    pub const fn to_arduino<'r>(&'r self, requirements: &'r Requirements<'r>, name: &'r str) -> ArduinoTab<'r, K> {
+    pub const fn to_arduino<'r>(&'r self, requirements: &'r Requirements<'r>, name: &'r str) -> impl fmt::Display {
         ArduinoTab { schedule: self, requirements, name }
     }
 
     /// A schedule file, as the program reads it: lags and waits, or firing times if all lags are zero.
-    pub const fn to_toml(&self) -> Toml<'_, K> {
+    pub const fn to_toml(&self) -> impl fmt::Display {
         Toml { schedule: self }
     }
 
@@ -49,8 +49,7 @@ impl<const K: usize> Schedule<K> {
 }
 
 /// A schedule in Rust: see [`Schedule::to_rust`].
-#[derive(Clone, Copy, Debug)]
-pub struct RustSource<'r, const K: usize> {
+struct RustSource<'r, const K: usize> {
     schedule: &'r Schedule<K>,
     requirements: &'r Requirements<'r>,
 }
@@ -60,10 +59,8 @@ impl<const K: usize> fmt::Display for RustSource<'_, K> {
         let Self { schedule, requirements } = self;
         let Requirements { t_delta, criterion, min_interval, layout, window, stale_echo, uneven } = requirements;
         let (each, uneven_too) = if uneven.is_some() { ("EachSensor, ", "Uneven, ") } else { ("", "") };
-        writeln!(
-            f,
-            "use eeruf_core::{{Criterion, {each}Layout, Micros, Requirements, {uneven_too}VerifiedSchedule, schedule}};\n"
-        )?;
+        write!(f, "use eeruf_core::{{Criterion, {each}Layout, Micros, Requirements, ")?;
+        writeln!(f, "{uneven_too}VerifiedSchedule, schedule}};\n")?;
         writeln!(f, "// {}; {}.", Summary(schedule), Promise(requirements))?;
         let sensors = schedule.sensors();
         match uneven {
@@ -121,8 +118,7 @@ impl fmt::Display for RustLayout<'_> {
 }
 
 /// A schedule as a TOML file: see [`Schedule::to_toml`].
-#[derive(Clone, Copy, Debug)]
-pub struct Toml<'s, const K: usize> {
+struct Toml<'s, const K: usize> {
     schedule: &'s Schedule<K>,
 }
 

@@ -1,6 +1,11 @@
-//! [`Judge`]: what a ring asks of whatever decides what a reading is worth.
+//! What a reading is worth: the trait [`Judge`], and judges beside [`EchoFilter`](crate::EchoFilter).
 
-use crate::reading::{Explanation, ReadingKind, Verdict};
+pub use crate::filter::{FilterError, RateFilter};
+pub use crate::reading::{Explanation, Verdict};
+pub use crate::ring::AgreementRing;
+pub use crate::tracker::{EchoTracker, TrackerError, TrackerSettings};
+
+use crate::reading::ReadingKind;
 use crate::schedule::Phase;
 use crate::time::{Instant, Micros};
 
@@ -77,7 +82,7 @@ impl Sounds for NoSounds {
 }
 
 /// Decides what the readings of a [`Ring`](crate::Ring) are worth: [`EchoFilter`](crate::EchoFilter),
-/// [`EchoTracker`](crate::EchoTracker), [`RateFilter`](crate::RateFilter), [`Agreement`], or one of the caller's own.
+/// [`EchoTracker`], [`RateFilter`], [`Agreement`], or one of the caller's own.
 ///
 /// The ring hands in sensors that it has room for. A judge that has room for fewer accepts nothing of the others.
 pub trait Judge {
@@ -102,7 +107,7 @@ pub trait Judge {
     /// A sensor's last firing, which is judged already, was this much later than it seemed; negative for earlier.
     fn fired_later(&mut self, _sensor: u8, _later_us: i32) {}
     /// Firing times have changed against each other otherwise than by the phase: see
-    /// [`EchoTracker::firing_changed`](crate::EchoTracker::firing_changed).
+    /// [`EchoTracker::firing_changed`](crate::judge::EchoTracker::firing_changed).
     fn firing_changed(&mut self) {}
 }
 

@@ -49,12 +49,12 @@ impl core::error::Error for LayoutError {}
 /// for another ring would keep fewer sensors apart than it says.
 ///
 /// ```
-/// use eeruf_core::{Layout, neighbour_rows};
+/// use eeruf_core::{Layout, conditions::neighbour_rows};
 /// let rows = neighbour_rows([(0, 1), (1, 2)], 3)?;
 /// assert!(Layout::Graph(&rows).neighbours(3, 2, 1));
 /// let error = neighbour_rows([(1, 2), (2, 3)], 3).unwrap_err();
 /// assert_eq!(error.to_string(), "sensors 3 and 4 as neighbours; expected two different ones of 3");
-/// # Ok::<(), eeruf_core::LayoutError>(())
+/// # Ok::<(), eeruf_core::conditions::LayoutError>(())
 /// ```
 pub fn neighbour_rows(
     pairs: impl IntoIterator<Item = (usize, usize)>,

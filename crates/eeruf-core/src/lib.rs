@@ -5,17 +5,38 @@
 //! that differ from sensor to sensor, and accepts a reading only if it is near-identical to the one before. A true echo
 //! does not depend on the waits; crosstalk shifts with them and is rejected. What is proven, and why: [`theory`].
 //!
-//! - [`Schedule`]: when each sensor fires. [`Requirements`] and [`Schedule::verify`]: Eqs. (13a), (13b), the smallest
-//!   interval between neighbours, and the listening window.
-//! - [`VerifiedSchedule`]: a schedule that meets them. [`schedule!`] makes one while the firmware is compiled.
-//! - [`Ring`]: what firmware runs. It combines a [`Plan`] ([`ScheduledFiring`] or [`ImmediateRefiring`]) with the
-//!   filter; [`EchoFilter`] is the filter alone.
-//! - [`EchoTracker`]: believes an echo that readings from several phases support, for schedules of many phases.
-//! - [`EdgeQueue`]: from the interrupt of an echo line to the main loop.
-//! - [`SensorWatch`]: what is known of the space before each sensor now ([`SensorState`]), and which sensors are blind.
-//! - [`Adaptation`]: moves along a ladder of schedules as the rejection rate asks for.
-//! - [`Survey`]: a measuring run, after which it is known which sensors hear each other.
-//! - [`SpeedOfSound`]: distances from echo times.
+//! ```
+//! use eeruf_core::{Instant, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
+//!
+//! // `eeruf design RING.toml --emit rust` writes a table for a ring of one's own.
+//! let mut ring = Ring::new(&PAPER_12, RingConfig::new(), Instant::from_micros(0))?;
+//! let now = ring.next_deadline(); // sleep until then
+//! while let Some(event) = ring.poll(now) {
+//!     match event {
+//!         RingEvent::Fire { sensor, .. } => println!("trigger sensor {sensor}"),
+//!         RingEvent::Reading(reading) if reading.kind == ReadingKind::Accepted => println!("{reading:?}"),
+//!         _ => {}
+//!     }
+//! }
+//! // From the interrupt of an echo line, or through an `EdgeQueue`: ring.echo(sensor, at)
+//! # Ok::<(), eeruf_core::RingError>(())
+//! ```
+//!
+//! | To .. | there is |
+//! |---|---|
+//! | fire and judge a ring of sensors | [`Ring`], [`RingConfig`], [`RingEvent`], [`Reading`] |
+//! | say when each sensor fires | [`Schedule`], [`VerifiedSchedule`], [`schedule!`] |
+//! | check that, and see what is violated | [`Requirements`], [`conditions`] |
+//! | use sensors that are not all alike | [`Uneven`], [`EachSensor`] |
+//! | filter readings that were fired otherwise | [`EchoFilter`], [`judge::RateFilter`], [`judge::EchoTracker`] |
+//! | fire by another plan, or judge otherwise | [`plan`], [`judge`] |
+//! | keep no sensor blind where two phases do | [`hopping`], [`phases`] |
+//! | know what is before each sensor now | [`watch`] |
+//! | fire more slowly where much is rejected | [`adaptation`] |
+//! | measure which sensors hear each other | [`survey`] |
+//! | get edges from an interrupt to the main loop | [`EdgeQueue`] |
+//! | turn echo times into distances | [`SpeedOfSound`] |
+//! | find a schedule | [`search`], or the program `eeruf` |
 //!
 //! The crate is `no_std` and uses no allocator, no floats and no clock: the caller passes `now` in and sleeps until the
 //! deadline it gets back, so the same code runs in an interrupt, in a simulator and in a test. Sensors are counted from
@@ -29,21 +50,21 @@
 //! Mobile Robot Obstacle Avoidance*, IEEE Transactions on Robotics and Automation 11(1), February 1995, pp. 132-138.
 #![no_std]
 
-mod adaptation;
+pub mod adaptation;
 mod checked;
-mod conditions;
 mod edges;
-pub mod emit;
+mod emit;
 mod filter;
-mod hopping;
+pub mod hopping;
 mod interop;
-mod judge;
+pub mod judge;
 mod layout;
 mod needs;
 mod own_limits;
-mod phases;
-mod plan;
+pub mod phases;
+pub mod plan;
 mod reading;
+mod requirements;
 mod ring;
 mod schedule;
 #[cfg(feature = "search")]
@@ -51,46 +72,40 @@ pub mod search;
 mod sensor_error;
 mod sensor_set;
 mod sound;
-mod survey;
+pub mod survey;
 pub mod tables;
 mod time;
 mod tracker;
 mod uneven;
 mod verified;
 mod verify;
-mod watch;
+pub mod watch;
 
-pub use adaptation::{Adaptation, Advice, Ladder, LadderError};
 #[doc(hidden)]
 pub use checked::{__checked, __checked_each, __checked_hopping, __micros};
-pub use conditions::{Criterion, Interval, Requirements, Separation};
 pub use edges::{Edge, EdgeQueue};
-pub use filter::{EchoFilter, FilterError, RateFilter};
-pub use hopping::{
-    HoppingCode, HoppingError, HoppingHeader, HoppingListening, HoppingPlan, HoppingRing, HoppingRust, HoppingSchedule,
-    HoppingSettings, HoppingTab, HoppingToml, Weighed,
-};
+pub use filter::EchoFilter;
 pub use interop::DurationError;
-pub use judge::{Agreement, Firing, Heard, Judge, Sounds};
-pub use layout::{Layout, LayoutError, neighbour_rows};
-pub use own_limits::{Alike, EachInUse, EachSensor, LimitsInUse, OwnLimits, SensorLimits};
-pub use phases::{
-    Audible, PhaseCriterion, PhaseInterval, PhaseRequirements, PhaseSeparation, PhaseTable, PhaseVerification,
-    PhaseViolation, PhaseViolations,
-};
-pub use plan::{BrokenPromise, ImmediateRefiring, Limits, Plan, PlanStep, ScheduledFiring, check_plan};
-pub use reading::{Explanation, ReadingKind, Tally, Verdict};
-pub use ring::{AgreementRing, PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
-pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError, VerifiedFor};
+pub use layout::Layout;
+pub use own_limits::{EachSensor, SensorLimits};
+pub use reading::{ReadingKind, Tally};
+pub use requirements::{Criterion, Requirements};
+pub use ring::{PeriodStats, Reading, Ring, RingConfig, RingError, RingEvent, ScheduledRing};
+pub use schedule::{MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError};
 pub use sensor_error::SensorError;
 pub use sound::SpeedOfSound;
-pub use survey::{Survey, SurveyEvent, SurveyPlan, SurveyRow, SurveySlot};
 pub use time::{Instant, Micros};
-pub use tracker::{EchoTracker, TrackerError, TrackerSettings};
-pub use uneven::{Uneven, UnevenError};
+pub use uneven::Uneven;
 pub use verified::VerifiedSchedule;
-pub use verify::{Verification, Violation, ViolationKind, Violations};
-pub use watch::{Blind, Doubt, SensorState, SensorWatch};
+
+/// What holding a schedule against its [`Requirements`] finds.
+pub mod conditions {
+    pub use crate::layout::{LayoutError, neighbour_rows};
+    pub use crate::requirements::{Interval, Separation};
+    pub use crate::schedule::VerifiedFor;
+    pub use crate::uneven::UnevenError;
+    pub use crate::verify::{Verification, Violation, ViolationKind, Violations};
+}
 
 /// What is proven, and why: `docs/theory.md`, for reading here.
 ///

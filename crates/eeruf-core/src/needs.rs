@@ -1,6 +1,6 @@
 //! What one sensor or one pair needs, by [`Requirements`], whether all are alike or not.
 
-use crate::conditions::Requirements;
+use crate::requirements::Requirements;
 use crate::time::{Micros, longer, shorter};
 use crate::uneven::Uneven;
 

@@ -217,8 +217,8 @@ impl<const K: usize> LimitsInUse for EachInUse<'_, K> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conditions::Requirements;
     use crate::layout::Layout;
+    use crate::requirements::Requirements;
     use crate::schedule::Schedule;
     use crate::uneven::Uneven;
 

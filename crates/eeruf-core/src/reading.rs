@@ -33,7 +33,7 @@ pub enum ReadingKind {
     /// The driver reported that the echo line was stuck when the sensor was to fire.
     Stuck,
     /// An echo that few readings support so far and none contradicts, nearer than what is confirmed: slow down for it.
-    /// Only from an [`EchoTracker`](crate::EchoTracker).
+    /// Only from an [`EchoTracker`](crate::judge::EchoTracker).
     Tentative,
     /// Near-identical to the reading before, though sound of another firing explains both: [`Explanation`] names it.
     /// Only from a [`Ring`](crate::Ring).

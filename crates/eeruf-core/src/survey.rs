@@ -22,7 +22,7 @@ pub struct SurveySlot {
 /// What fires when in a survey.
 ///
 /// ```
-/// use eeruf_core::{Micros, SurveyPlan, SurveySlot};
+/// use eeruf_core::{Micros, survey::{SurveyPlan, SurveySlot}};
 /// let plan = SurveyPlan::new(8);
 /// assert_eq!(plan.slot(0), Some(SurveySlot { first: 0, second: None }));
 /// let last = SurveySlot { first: 7, second: Some((6, Micros::new(19 * 750))) };
@@ -176,7 +176,7 @@ struct Listener {
 /// A survey under way: the caller passes the time in, fires what it asks for, hands it the edges and logs its rows.
 ///
 /// ```
-/// use eeruf_core::{Instant, Micros, Survey, SurveyEvent, SurveyPlan};
+/// use eeruf_core::{Instant, Micros, survey::{Survey, SurveyEvent, SurveyPlan}};
 /// let mut survey = Survey::new(SurveyPlan::new(2), Instant::from_micros(0));
 /// let at = Instant::from_micros;
 /// assert_eq!(survey.poll(at(0)), Some(SurveyEvent::Fire { sensor: 0 }));

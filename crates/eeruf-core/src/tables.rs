@@ -6,7 +6,7 @@
 //! Table I-d keeps the groups 1-4, 5-8 and 9-12 at 19 ms, and any four adjacent sensors at 17 ms. Exactly one of the
 //! 12! orders has 19 ms there too; [`THE_ONE_WITH_19_MS`] is that one.
 
-use crate::conditions::Requirements;
+use crate::requirements::Requirements;
 use crate::schedule::{Schedule, ScheduleError};
 use crate::time::Micros;
 use crate::verified::VerifiedSchedule;

@@ -9,7 +9,7 @@ use crate::time::Micros;
 /// [`Requirements`](crate::Requirements) say for all. Sensors are counted from 0.
 ///
 /// ```
-/// use eeruf_core::{Layout, Micros, Requirements, Uneven, ViolationKind, Schedule};
+/// use eeruf_core::{Layout, Micros, Requirements, Schedule, Uneven, conditions::ViolationKind};
 /// // Two modules that look far and two that look near; the first and the third share an echo line.
 /// const MODULES: Uneven<'static> = Uneven {
 ///     window: &[Micros::from_millis(30), Micros::from_millis(30), Micros::from_millis(12), Micros::from_millis(12)],

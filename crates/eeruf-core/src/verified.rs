@@ -2,8 +2,8 @@
 
 use core::ops::Deref;
 
-use crate::conditions::{Criterion, Requirements};
 use crate::own_limits::{Alike, EachSensor, SensorLimits};
+use crate::requirements::{Criterion, Requirements};
 use crate::schedule::{Schedule, VerifiedFor};
 use crate::time::{Micros, longer, shorter};
 use crate::verify::{Verification, Violation, stale_separation};
@@ -98,7 +98,7 @@ impl<const K: usize> Verification<'_, K> {
     /// let verified = TABLE_I_D.verify(&asked).verified()?;
     /// assert_eq!((verified.t_delta(), verified.period()), (Micros::new(999), Micros::from_millis(100)));
     /// assert!(TABLE_I_D.verify(&Requirements::new(Micros::new(1000))).verified().is_err());
-    /// # Ok::<(), eeruf_core::Violation>(())
+    /// # Ok::<(), eeruf_core::conditions::Violation>(())
     /// ```
     pub const fn verified(&self) -> Result<VerifiedSchedule<K>, Violation> {
         let (schedule, requirements) = (self.schedule(), self.requirements());

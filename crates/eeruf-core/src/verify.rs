@@ -5,7 +5,7 @@
 
 use core::fmt;
 
-use crate::conditions::{Interval, Requirements, Separation, shorter};
+use crate::requirements::{Interval, Requirements, Separation, shorter};
 use crate::schedule::{Phase, Schedule};
 use crate::time::Micros;
 

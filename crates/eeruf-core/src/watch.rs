@@ -9,7 +9,9 @@ use crate::time::{Instant, Micros};
 /// sensors hear echoes none of which is accepted. 16 bytes for each sensor; a ring without it costs nothing.
 ///
 /// ```
-/// use eeruf_core::{Instant, Micros, Ring, RingConfig, RingEvent, SensorState, SensorWatch, tables::PAPER_12};
+/// use eeruf_core::{
+///     Instant, Micros, Ring, RingConfig, RingEvent, tables::PAPER_12, watch::{SensorState, SensorWatch},
+/// };
 /// let mut now = Instant::from_micros(0);
 /// let mut ring = Ring::new(&PAPER_12, RingConfig::new(), now)?;
 /// let mut watch = SensorWatch::<12>::new(20, now);

@@ -194,7 +194,7 @@ mod a_format_that_counts_fields {
 mod everything_public_has_a_format {
     use defmt::Format;
     use eeruf_core::search::{Outcome, ProblemError, SearchError};
-    use eeruf_core::*;
+    use eeruf_core::{adaptation::*, conditions::*, hopping::*, judge::*, phases::*, plan::*, survey::*, watch::*, *};
 
     const fn formats<T: Format>() {}
 

@@ -1,8 +1,9 @@
 //! Schedules of many phases for a ring: the shortest period, how long it must be at least, and the file.
 
 use eeruf_core::{
-    Audible, HoppingCode, HoppingListening, HoppingSchedule, Layout, MAX_SENSORS, Micros, Phase, PhaseCriterion,
-    PhaseRequirements, PhaseTable, PhaseVerification,
+    Layout, MAX_SENSORS, Micros, Phase,
+    hopping::{HoppingCode, HoppingListening, HoppingSchedule},
+    phases::{Audible, PhaseCriterion, PhaseRequirements, PhaseTable, PhaseVerification},
 };
 use serde::Deserialize;
 

@@ -1,6 +1,9 @@
 //! How the sensors of a ring stand, as files spell it.
 
-use eeruf_core::{Layout, LayoutError, neighbour_rows};
+use eeruf_core::{
+    Layout,
+    conditions::{LayoutError, neighbour_rows},
+};
 use serde::Deserialize;
 
 /// How the sensors stand, as files spell it.

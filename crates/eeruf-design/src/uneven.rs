@@ -1,6 +1,6 @@
 //! What sensors of a ring need that are not all alike, as files and callers say it.
 
-use eeruf_core::{MAX_SENSORS, Micros, Requirements, Uneven, UnevenError};
+use eeruf_core::{MAX_SENSORS, Micros, Requirements, Uneven, conditions::UnevenError};
 
 /// Windows and tolerances of each sensor, intervals of pairs, shared echo lines, sensors that fire together.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

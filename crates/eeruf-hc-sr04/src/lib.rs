@@ -13,7 +13,7 @@
 //! - a sensor that is not there, or edges that get lost on the way: [`HcSr04Ring::health`] says so;
 //! - a schedule that would trigger a sensor again too soon: it is refused when the ring is set up.
 //!
-//! The ring can also be a [`HoppingRing`](eeruf_core::HoppingRing), of which no sensor stays blind.
+//! The ring can also be a [`HoppingRing`](eeruf_core::hopping::HoppingRing), of which no sensor stays blind.
 //!
 //! It is a crate beside `eeruf-core` and not a feature of it, because core has no dependencies at all and a major
 //! version of `embedded-hal` must not become a major version of core.

@@ -1,8 +1,9 @@
 //! [`HcSr04Ring`]: the driver of a ring. It triggers the sensors that the ring fires, and hands it the echoes.
 
 use eeruf_core::{
-    EchoFilter, Edge, EdgeQueue, Instant, Judge, LimitsInUse, Micros, OwnLimits, Plan, Ring, RingError, RingEvent,
-    ScheduledFiring, SensorError, VerifiedSchedule,
+    EchoFilter, Edge, EdgeQueue, Instant, Micros, Ring, RingError, RingEvent, SensorError, VerifiedSchedule,
+    judge::Judge,
+    plan::{LimitsInUse, OwnLimits, Plan, ScheduledFiring},
 };
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
@@ -14,7 +15,7 @@ use crate::lines::{Lines, Pins, Trigger};
 use crate::settings::Settings;
 
 /// A ring whose firings are triggers on pins and whose echoes are pulses on lines: a [`Ring`] of any plan and judge,
-/// such as a [`HoppingRing`](eeruf_core::HoppingRing) where no sensor may stay blind.
+/// such as a [`HoppingRing`](eeruf_core::hopping::HoppingRing) where no sensor may stay blind.
 #[derive(Debug)]
 pub struct HcSr04Ring<R, T, I, D, const K: usize> {
     ring: R,

@@ -2,8 +2,8 @@
 //! sensor that has it.
 
 use eeruf_core::{
-    Edge, HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros, ReadingKind,
-    RingEvent, Tally,
+    Edge, Instant, Micros, ReadingKind, RingEvent, Tally,
+    hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
 };
 use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings, SetupError};
 use embedded_hal_mock::eh1::delay::NoopDelay;

@@ -3,8 +3,10 @@
 use core::convert::Infallible;
 
 use eeruf_core::{
-    EachInUse, EachSensor, EchoFilter, Edge, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig,
-    RingEvent, ScheduledFiring, Uneven, VerifiedSchedule, schedule,
+    EachSensor, EchoFilter, Edge, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent,
+    Uneven, VerifiedSchedule,
+    plan::{EachInUse, ScheduledFiring},
+    schedule,
 };
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings, SetupError};
 use embedded_hal_mock::eh1::delay::NoopDelay;

@@ -4,8 +4,10 @@ use core::convert::Infallible;
 
 use eeruf_core::tables::{PAPER_12, TABLE_I_D};
 use eeruf_core::{
-    Adaptation, EchoFilter, Edge, Instant, Ladder, Micros, Plan, ReadingKind, Requirements, Ring, RingConfig,
-    RingEvent, SensorError, SpeedOfSound, Tally,
+    EchoFilter, Edge, Instant, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, SensorError,
+    SpeedOfSound, Tally,
+    adaptation::{Adaptation, Ladder},
+    plan::Plan,
 };
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings, SetupError};
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};

@@ -5,7 +5,7 @@
 
 use core::convert::Infallible;
 
-use eeruf_core::{Edge, Instant, Micros, Plan, Ring, RingEvent, ScheduledRing};
+use eeruf_core::{Edge, Instant, Micros, Ring, RingEvent, ScheduledRing, plan::Plan};
 use eeruf_hil::{CONFIG, SCHEDULE, SENSORS};
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 

@@ -12,8 +12,9 @@
 #![no_std]
 
 use eeruf_core::{
-    Edge, Explanation, HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings,
-    Instant, Micros, Reading, Requirements, RingConfig, RingEvent, Schedule, VerifiedSchedule,
+    Edge, Instant, Micros, Reading, Requirements, RingConfig, RingEvent, Schedule, VerifiedSchedule,
+    hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    judge::Explanation,
 };
 use eeruf_hc_sr04::Health;
 
@@ -245,7 +246,7 @@ impl Record {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eeruf_core::{Explanation, PeriodStats, Phase, ReadingKind, Tally};
+    use eeruf_core::{PeriodStats, Phase, ReadingKind, Tally, judge::Explanation};
 
     #[test]
     fn what_the_host_says_arrives_as_it_was_said() {

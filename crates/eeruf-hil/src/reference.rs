@@ -9,7 +9,7 @@ use std::rc::Rc;
 use std::thread;
 use std::time::Duration;
 
-use eeruf_core::{Edge, Instant, Judge, Plan, Reading, Ring, RingEvent};
+use eeruf_core::{Edge, Instant, Reading, Ring, RingEvent, judge::Judge, plan::Plan};
 use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings};
 use eeruf_hil::{Record, SENSORS, Topic};
 use embedded_hal::delay::DelayNs;

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use eeruf_core::{Edge, Instant, Judge, Micros, Plan, Reading, ReadingKind, Ring, RingEvent};
+use eeruf_core::{Edge, Instant, Micros, Reading, ReadingKind, Ring, RingEvent, judge::Judge, plan::Plan};
 use eeruf_hc_sr04::Health;
 use eeruf_hil::{CONFIG, Orders, SCHEDULE, SENSORS, Topic, hopping_ring};
 use eeruf_sim::{Readings, World};

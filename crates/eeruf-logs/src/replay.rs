@@ -3,7 +3,8 @@
 use core::fmt;
 
 use eeruf_core::{
-    EchoTracker, Firing, MAX_SENSORS, Micros, Phase, ReadingKind, TrackerError, TrackerSettings, Verdict,
+    MAX_SENSORS, Micros, Phase, ReadingKind,
+    judge::{EchoTracker, Firing, TrackerError, TrackerSettings, Verdict},
 };
 
 use crate::firings::FiringLog;

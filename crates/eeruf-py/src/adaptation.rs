@@ -1,7 +1,8 @@
 //! `Adaptation`: adaptive scheduling (end of Sec. 3.1).
 
 use eeruf_core::{
-    Adaptation as Core, Ladder, MAX_SENSORS, Micros, Requirements, RingEvent, SpeedOfSound, VerifiedSchedule,
+    MAX_SENSORS, Micros, Requirements, RingEvent, SpeedOfSound, VerifiedSchedule,
+    adaptation::{Adaptation as Core, Ladder},
 };
 use pyo3::prelude::*;
 
@@ -108,7 +109,7 @@ impl Adaptation {
             (adaptation.window, adaptation.patience) = (window, patience);
             Ok(adaptation)
         });
-        Ok(Self { adaptation: adaptation.map_err(|error: eeruf_core::LadderError| error.raise())? })
+        Ok(Self { adaptation: adaptation.map_err(|error: eeruf_core::adaptation::LadderError| error.raise())? })
     }
 
     /// Take in an event of a ring, and change the ring to another schedule when the present one should be left. Only

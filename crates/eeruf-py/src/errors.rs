@@ -72,7 +72,7 @@ Example:
     >>> eeruf.Schedule.from_firing(40_000, [0, 50_000], [0, 2_000])
     Traceback (most recent call last):
     eeruf.ScheduleError: sensor 1 fires 50 ms into phase a; expected less than the period of 40 ms
-" from eeruf_core::ScheduleError, eeruf_core::LadderError;
+" from eeruf_core::ScheduleError, eeruf_core::adaptation::LadderError;
     FilterError "A filter that cannot compare as asked.
 
 Example:
@@ -80,7 +80,7 @@ Example:
     >>> eeruf.EchoFilter(4, 500, consecutive=9)
     Traceback (most recent call last):
     eeruf.FilterError: 9 consecutive readings; expected 2 to 8
-" from eeruf_core::FilterError;
+" from eeruf_core::judge::FilterError;
     RingError "A ring that cannot listen as asked.
 
 Example:
@@ -88,7 +88,7 @@ Example:
     >>> eeruf.Ring(eeruf.tables.TABLE_I_D, 500, window_us=0)
     Traceback (most recent call last):
     eeruf.RingError: a blanking time of 0 us; expected less than the window of 0 us, and at most 65.535 ms
-" from eeruf_core::RingError, eeruf_core::Violation;
+" from eeruf_core::RingError, eeruf_core::conditions::Violation;
     HoppingError "A ring that cannot hop as asked, or settings that contradict each other.
 
 Example:
@@ -96,7 +96,7 @@ Example:
     >>> eeruf.HoppingSchedule(8, 2_000, 240)
     Traceback (most recent call last):
     eeruf.HoppingError: a period of 2 ms; expected 2.401 ms to 268435.456 ms
-" from eeruf_core::HoppingError, eeruf_core::TrackerError;
+" from eeruf_core::hopping::HoppingError, eeruf_core::judge::TrackerError;
     SearchError "Needs that make no sense or are too large to search.
 
 Example:

@@ -1,6 +1,6 @@
 //! `EchoFilter`.
 
-use eeruf_core::{MAX_SENSORS, Micros, SensorError, Verdict};
+use eeruf_core::{MAX_SENSORS, Micros, SensorError, judge::Verdict};
 use numpy::{PyArray2, prelude::*};
 use pyo3::prelude::*;
 

@@ -1,6 +1,9 @@
 //! `HoppingFound`: what `design` with many phases returns, and how it is asked for.
 
-use eeruf_core::{Audible, Micros, PhaseCriterion, PhaseRequirements};
+use eeruf_core::{
+    Micros,
+    phases::{Audible, PhaseCriterion, PhaseRequirements},
+};
 use eeruf_design::HoppingDesign;
 use pyo3::{
     prelude::*,
@@ -58,7 +61,7 @@ impl HoppingFound {
     /// The shortest period for at least so many phases. Of what sensors need of their own the largest counts.
     pub(crate) fn design(phases: &Bound<'_, PyAny>, needs: &Needs<'_, '_>) -> PyResult<Self> {
         let py = phases.py();
-        let phases = whole("phases", phases, 2..=eeruf_core::HoppingCode::MAX_PHASES)?;
+        let phases = whole("phases", phases, 2..=eeruf_core::hopping::HoppingCode::MAX_PHASES)?;
         let sensors = requirements::sensors(needs.sensors)?;
         let layout = OwnedLayout::new(needs.layout, requirements::neighbours(needs.neighbours)?, sensors)?;
         let (t_delta, t_deltas) = each("t_delta_us", needs.t_delta_us, 0)?;

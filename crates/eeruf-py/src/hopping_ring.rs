@@ -1,6 +1,6 @@
 //! `HoppingRing`.
 
-use eeruf_core::{HoppingListening, Instant, MAX_SENSORS, Micros, SensorError};
+use eeruf_core::{Instant, MAX_SENSORS, Micros, SensorError, hopping::HoppingListening};
 use pyo3::{prelude::*, types::PyTuple};
 
 use crate::{
@@ -12,7 +12,7 @@ use crate::{
     ring_events::to_python,
 };
 
-type Core = eeruf_core::HoppingRing<MAX_SENSORS>;
+type Core = eeruf_core::hopping::HoppingRing<MAX_SENSORS>;
 
 /// A ring that hops in time, as the firmware runs it: used as a :class:`Ring`; its readings can also be
 /// ``"tentative"``.

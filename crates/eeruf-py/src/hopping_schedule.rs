@@ -1,6 +1,9 @@
 //! `HoppingSchedule`.
 
-use eeruf_core::{HoppingCode, HoppingSchedule as Core, MAX_SENSORS, Micros};
+use eeruf_core::{
+    MAX_SENSORS, Micros,
+    hopping::{HoppingCode, HoppingSchedule as Core},
+};
 use eeruf_design::PhaseFile;
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::{
@@ -45,7 +48,7 @@ use crate::{
 pub(crate) struct HoppingSchedule(pub(crate) Core<MAX_SENSORS>);
 
 /// As many as balanced settings want votes.
-const PHASES: u8 = eeruf_core::TrackerSettings::BALANCED.votes;
+const PHASES: u8 = eeruf_core::judge::TrackerSettings::BALANCED.votes;
 
 impl HoppingSchedule {
     fn lags(&self) -> impl Iterator<Item = u32> + '_ {

@@ -1,6 +1,6 @@
 //! `HoppingSettings`.
 
-use eeruf_core::{HoppingSettings as Core, Micros, TrackerSettings};
+use eeruf_core::{Micros, hopping::HoppingSettings as Core, judge::TrackerSettings};
 use pyo3::{prelude::*, types::PyDict};
 
 use crate::{

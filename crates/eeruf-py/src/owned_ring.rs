@@ -1,8 +1,9 @@
 //! A ring with the schedules that it borrows, so that it can change from one to another.
 
 use eeruf_core::{
-    EachInUse, EachSensor, Instant, MAX_SENSORS, Micros, Requirements, RingConfig, RingEvent, ScheduledFiring,
-    ScheduledRing, SensorWatch,
+    EachSensor, Instant, MAX_SENSORS, Micros, Requirements, RingConfig, RingEvent, ScheduledRing,
+    plan::{EachInUse, ScheduledFiring},
+    watch::SensorWatch,
 };
 use eeruf_sim::AnySchedule;
 use elsa::sync::FrozenVec;

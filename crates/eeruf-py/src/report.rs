@@ -116,7 +116,7 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    pub(crate) fn of(report: &eeruf_core::Verification<'_, MAX_SENSORS>) -> Self {
+    pub(crate) fn of(report: &eeruf_core::conditions::Verification<'_, MAX_SENSORS>) -> Self {
         let violations = report.violations().map(|violation| Violation {
             kind: violation.kind.as_str().to_owned(),
             sensors: violation.sensors,

@@ -1,6 +1,9 @@
 //! What a schedule must meet, out of keyword arguments: layout, neighbours, times.
 
-use eeruf_core::{Criterion, Layout, LayoutError, MAX_SENSORS, Micros, Requirements, neighbour_rows};
+use eeruf_core::{
+    Criterion, Layout, MAX_SENSORS, Micros, Requirements,
+    conditions::{LayoutError, neighbour_rows},
+};
 use eeruf_design::OwnedUneven;
 use eeruf_sim::AnySchedule;
 use pyo3::{prelude::*, types::PyList};

@@ -3,7 +3,8 @@
 use std::ops::RangeInclusive;
 
 use eeruf_core::{
-    Explanation, Instant, MAX_SENSORS, Micros, PeriodStats, Phase, ReadingKind, RingEvent, Tally, Verdict,
+    Instant, MAX_SENSORS, Micros, PeriodStats, Phase, ReadingKind, RingEvent, Tally,
+    judge::{Explanation, Verdict},
 };
 use pyo3::{
     IntoPyObjectExt,

@@ -1,6 +1,9 @@
 //! `SensorWatch`: what is known of the space before each sensor, and which sensors are blind.
 
-use eeruf_core::{Doubt, Instant, MAX_SENSORS, Micros, SensorState};
+use eeruf_core::{
+    Instant, MAX_SENSORS, Micros,
+    watch::{Doubt, SensorState},
+};
 use pyo3::{
     prelude::*,
     types::{PyDict, PyTuple},
@@ -44,7 +47,7 @@ use crate::{
 ///     (9000, 'unknown')
 #[pyclass(module = "eeruf")]
 pub(crate) struct SensorWatch {
-    watch: eeruf_core::SensorWatch<MAX_SENSORS>,
+    watch: eeruf_core::watch::SensorWatch<MAX_SENSORS>,
     sensors: u8,
 }
 
@@ -60,7 +63,7 @@ impl SensorWatch {
     ) -> PyResult<Self> {
         let sensors = whole("sensors", sensors, 1..=MAX_SENSORS as u8)?;
         let blind_after = whole_or("blind_after", blind_after, 20, 0..=u8::MAX)?;
-        Ok(Self { watch: eeruf_core::SensorWatch::new(blind_after, begins(now_us)?), sensors })
+        Ok(Self { watch: eeruf_core::watch::SensorWatch::new(blind_after, begins(now_us)?), sensors })
     }
 
     /// How many sensors it watches.
@@ -193,7 +196,7 @@ const WHYS: [&str; 4] = ["no_firing", "unsure", "rejected", "ambiguous"];
 
 impl State {
     /// For a sensor that is there.
-    pub(crate) fn of(watch: &eeruf_core::SensorWatch<MAX_SENSORS>, sensor: u8, now: Instant) -> Self {
+    pub(crate) fn of(watch: &eeruf_core::watch::SensorWatch<MAX_SENSORS>, sensor: u8, now: Instant) -> Self {
         let [obstacle, clear, too_close, unanswered, unknown] = KINDS;
         let known =
             |kind, age: Micros| Self { kind, t_echo_us: None, age_us: age.as_micros(), why: None, explained_by: None };

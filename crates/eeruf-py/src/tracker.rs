@@ -1,6 +1,9 @@
 //! `EchoTracker`.
 
-use eeruf_core::{Firing, MAX_SENSORS, Micros, Phase, TrackerError};
+use eeruf_core::{
+    MAX_SENSORS, Micros, Phase,
+    judge::{Firing, TrackerError},
+};
 use numpy::{PyArray1, PyArray2, prelude::*};
 use pyo3::prelude::*;
 
@@ -37,7 +40,7 @@ use crate::{
 ///     {'rejected'}
 #[pyclass(module = "eeruf")]
 pub(crate) struct EchoTracker {
-    tracker: Box<eeruf_core::EchoTracker<MAX_SENSORS>>,
+    tracker: Box<eeruf_core::judge::EchoTracker<MAX_SENSORS>>,
     /// How many sensors.
     #[pyo3(get)]
     sensors: usize,
@@ -55,7 +58,7 @@ impl EchoTracker {
     ) -> PyResult<Self> {
         let sensors = requirements::sensors(sensors)?;
         let t_delta = t_delta_us.map(|t_delta| micros("t_delta_us", t_delta)).transpose()?;
-        let tracker = eeruf_core::EchoTracker::new(tracker_settings(t_delta, settings)?);
+        let tracker = eeruf_core::judge::EchoTracker::new(tracker_settings(t_delta, settings)?);
         Ok(Self { tracker: Box::new(tracker.map_err(Raise::raise)?), sensors })
     }
 

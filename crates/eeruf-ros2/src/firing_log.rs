@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use eeruf_core::Explanation;
+use eeruf_core::judge::Explanation;
 use eeruf_serial::{Firing, Weighed};
 
 pub(crate) struct FiringLog {
@@ -59,8 +59,8 @@ mod tests {
     use std::collections::BTreeSet;
 
     use eeruf_core::{
-        HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros, ReadingKind,
-        RingEvent,
+        Instant, Micros, ReadingKind, RingEvent,
+        hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
     };
     use eeruf_serial::{Decoder, Message, Recorder};
 

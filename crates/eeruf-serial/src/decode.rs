@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use crc::{CRC_16_IBM_3740, Crc, Table};
-use eeruf_core::{Explanation, Instant, MAX_SENSORS, Micros, ReadingKind, Weighed};
+use eeruf_core::{Instant, MAX_SENSORS, Micros, ReadingKind, hopping::Weighed, judge::Explanation};
 
 use crate::encode::{LONGEST_CLOCK, LONGEST_FRAME};
 use crate::firing::Firing;

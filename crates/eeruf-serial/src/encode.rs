@@ -1,6 +1,6 @@
 //! [`Encoder`]: the bytes of a frame.
 
-use eeruf_core::{Explanation, MAX_SENSORS, Micros, Weighed};
+use eeruf_core::{MAX_SENSORS, Micros, hopping::Weighed, judge::Explanation};
 
 use crate::firing::Firing;
 use crate::{BY_HISTORY, BY_NOTHING, FIRING, HELLO, NO_ECHO, PERIOD, SOLO, STEADY, VERSION, WEIGHED};

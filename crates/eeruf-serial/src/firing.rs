@@ -1,4 +1,4 @@
-use eeruf_core::{Explanation, Instant, Micros, ReadingKind, Weighed};
+use eeruf_core::{Instant, Micros, ReadingKind, hopping::Weighed, judge::Explanation};
 
 /// One firing of one sensor, and what came of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

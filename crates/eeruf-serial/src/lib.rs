@@ -37,7 +37,7 @@ mod recorder;
 
 #[cfg(feature = "decode")]
 pub use decode::{Decoder, FrameError, Message, Received};
-pub use eeruf_core::Weighed;
+pub use eeruf_core::hopping::Weighed;
 pub use encode::{Encoder, Frame, LONGEST_CLOCK, LONGEST_FRAME};
 pub use firing::Firing;
 pub use recorder::Recorder;

@@ -1,6 +1,9 @@
 //! [`Recorder`]: from the events of a ring to frames.
 
-use eeruf_core::{HoppingRing, Instant, MAX_SENSORS, Micros, RingEvent, Weighed};
+use eeruf_core::{
+    Instant, MAX_SENSORS, Micros, RingEvent,
+    hopping::{HoppingRing, Weighed},
+};
 
 use crate::encode::{Encoder, Frame};
 use crate::firing::Firing;

@@ -1,7 +1,7 @@
 //! The line between board and host: what is said arrives, and what is damaged on the way is never taken for something
 //! else.
 
-use eeruf_core::{Explanation, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
+use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, judge::Explanation, tables::PAPER_12};
 use eeruf_serial::{Decoder, Encoder, Firing, Frame, FrameError, LONGEST_FRAME, Message, Received, Recorder, Weighed};
 use proptest::prelude::*;
 

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p eeruf-sim --example hopping_ablation -- [SEEDS [FIRST [PHYSICS]]]`
 
-use eeruf_core::{HoppingSettings, Micros, TrackerSettings};
+use eeruf_core::{Micros, hopping::HoppingSettings, judge::TrackerSettings};
 use eeruf_sim::experiments::Spread;
 use eeruf_sim::experiments::set_one::{Latency, SetOneOptions, set_one};
 use eeruf_sim::{Method, Physics};

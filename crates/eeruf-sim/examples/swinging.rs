@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use eeruf_core::HoppingSettings;
+use eeruf_core::hopping::HoppingSettings;
 use eeruf_sim::experiments::{Spread, set_one::Alcove};
 use eeruf_sim::{DEFAULT_TOLERANCE_US, Method, Noise, Options, Physics, Robot, Simulation, Stop, World, sweep};
 

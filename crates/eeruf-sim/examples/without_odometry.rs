@@ -4,7 +4,7 @@
 
 use core::f64::consts::TAU;
 
-use eeruf_core::{EchoFilter, Instant, Micros, RateFilter, ReadingKind};
+use eeruf_core::{EchoFilter, Instant, Micros, ReadingKind, judge::RateFilter};
 use eeruf_sim::experiments::Spread;
 use eeruf_sim::{
     Air, DEFAULT_TOLERANCE_US, Method, Motion, Noise, Options, Physics, Point, Pole, Pose, Random, Readings, Robot,

@@ -11,7 +11,8 @@ use core::fmt;
 
 use critical_section::Mutex;
 use eeruf_core::{
-    Edge, EdgeQueue, Instant, Micros, Ring, RingConfig, RingEvent, SensorState, SensorWatch, SpeedOfSound,
+    Edge, EdgeQueue, Instant, Micros, Ring, RingConfig, RingEvent, SpeedOfSound,
+    watch::{SensorState, SensorWatch},
 };
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
 use embedded_hal::digital::{ErrorType, InputPin};

@@ -9,7 +9,8 @@ use core::fmt;
 
 use defmt_rtt as _;
 use eeruf_core::{
-    Edge, EdgeQueue, Instant, Micros, Ring, RingConfig, RingEvent, SensorState, SensorWatch, SpeedOfSound,
+    Edge, EdgeQueue, Instant, Micros, Ring, RingConfig, RingEvent, SpeedOfSound,
+    watch::{SensorState, SensorWatch},
 };
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
 use embassy_executor::{InterruptExecutor, Spawner};

@@ -2,7 +2,7 @@
 
 use eeruf_board::fake_sensors::Delay;
 use eeruf_board::say::leave;
-use eeruf_core::{EdgeQueue, Instant, Judge, Micros, Plan, Ring, RingEvent};
+use eeruf_core::{EdgeQueue, Instant, Micros, Ring, RingEvent, judge::Judge, plan::Plan};
 use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings};
 use eeruf_hil::{Record, SENSORS};
 

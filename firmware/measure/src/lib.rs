@@ -6,8 +6,10 @@ use core::hint::black_box;
 
 use eeruf_board::{COUNTS_PER_1000_INSTRUCTIONS, say};
 use eeruf_core::{
-    HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Layout, Micros,
-    PhaseCriterion, PhaseRequirements, Requirements, RingConfig, Schedule, VerifiedSchedule, hopping_schedule,
+    Instant, Layout, Micros, Requirements, RingConfig, Schedule, VerifiedSchedule,
+    hopping::{HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    hopping_schedule,
+    phases::{PhaseCriterion, PhaseRequirements},
 };
 
 /// The paper's schedule for `K` sensors: groups of four, waits of `2 K` ms in phase a and 0, 2, 4, .. ms in phase b.
@@ -197,7 +199,10 @@ macro_rules! hopping_in_static_memory {
         use core::cell::UnsafeCell;
         use core::hint::black_box;
         use core::mem::MaybeUninit;
-        use eeruf_core::{HoppingError, HoppingRing, HoppingSchedule, Instant, RingEvent, SensorError};
+        use eeruf_core::{
+            Instant, RingEvent, SensorError,
+            hopping::{HoppingError, HoppingRing, HoppingSchedule},
+        };
 
         static SCHEDULE: HoppingSchedule<$k> = $crate::HOPPING_12;
 

@@ -1,6 +1,6 @@
 //! The timing diagram of a schedule of many phases: how each sensor's firing moves from period to period.
 
-use eeruf_core::{HoppingSchedule, MAX_SENSORS, Micros};
+use eeruf_core::{MAX_SENSORS, Micros, hopping::HoppingSchedule};
 use plotters::style::Color;
 
 use super::picture::Picture;

@@ -1,6 +1,9 @@
 use eeruf_core::{
-    Audible, HoppingListening, HoppingSchedule, HoppingSettings, Layout, Micros, PhaseCriterion, PhaseRequirements,
-    TrackerSettings, hopping_schedule,
+    Layout, Micros,
+    hopping::{HoppingListening, HoppingSchedule, HoppingSettings},
+    hopping_schedule,
+    judge::TrackerSettings,
+    phases::{Audible, PhaseCriterion, PhaseRequirements},
 };
 
 // 8 sensors, 11 phases, T_p = 54.48 ms,

@@ -3,8 +3,8 @@
 use eeruf_c_equal::core_side::{echo, explanation};
 use eeruf_c_equal::{C, Do, Edges, NO_ECHO, Needs, Random, distance_mm, echo_time_us, filter, sound_mm_s};
 use eeruf_core::{
-    Adaptation, EchoFilter, Edge, EdgeQueue, Instant, Ladder, Micros, Requirements, Ring, RingConfig, RingEvent,
-    Schedule, SpeedOfSound,
+    EchoFilter, Edge, EdgeQueue, Instant, Micros, Requirements, Ring, RingConfig, RingEvent, Schedule, SpeedOfSound,
+    adaptation::{Adaptation, Ladder},
 };
 
 #[test]

@@ -3,8 +3,11 @@
 use eeruf_c_equal::core_side::{explanation, flat};
 use eeruf_c_equal::{C, Do, Random};
 use eeruf_core::{
-    Explanation, HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros, Phase,
-    ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledFiring, tables::PAPER_12,
+    Instant, Micros, Phase, ReadingKind, Ring, RingConfig, RingEvent, Schedule,
+    hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    judge::Explanation,
+    plan::ScheduledFiring,
+    tables::PAPER_12,
 };
 use eeruf_serial::{Frame, Recorder};
 

@@ -1,6 +1,6 @@
 //! The named settings of hopping rings are the same numbers in both.
 
-use eeruf_core::HoppingSettings;
+use eeruf_core::hopping::HoppingSettings;
 
 #[test]
 fn the_named_settings_of_c_are_those_of_the_core() {

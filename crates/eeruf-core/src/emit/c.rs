@@ -3,9 +3,9 @@
 use core::fmt;
 
 use super::{Promise, Summary};
-use crate::conditions::Requirements;
 use crate::layout::Layout;
 use crate::own_limits::SensorLimits;
+use crate::requirements::Requirements;
 use crate::schedule::{Phase, Schedule, VerifiedFor};
 use crate::time::Micros;
 use crate::verified::VerifiedSchedule;
@@ -14,8 +14,7 @@ use crate::verified::VerifiedSchedule;
 pub(crate) const EERUF_VERSION: u16 = 3;
 
 /// A schedule as a C header: see [`Schedule::to_c`].
-#[derive(Clone, Copy, Debug)]
-pub struct CHeader<'r, const K: usize> {
+pub(super) struct CHeader<'r, const K: usize> {
     pub(super) schedule: &'r Schedule<K>,
     pub(super) requirements: &'r Requirements<'r>,
 }
@@ -56,8 +55,7 @@ impl<'r, const K: usize> fmt::Display for CHeader<'r, K> {
 }
 
 /// A schedule as a file of an Arduino sketch: see [`Schedule::to_arduino`].
-#[derive(Clone, Copy, Debug)]
-pub struct ArduinoTab<'r, const K: usize> {
+pub(super) struct ArduinoTab<'r, const K: usize> {
     pub(super) schedule: &'r Schedule<K>,
     pub(super) requirements: &'r Requirements<'r>,
     pub(super) name: &'r str,

@@ -16,7 +16,7 @@ use crate::time::{Instant, Micros};
 /// a sensor.
 ///
 /// ```
-/// use eeruf_core::{Instant, Micros, RateFilter, ReadingKind};
+/// use eeruf_core::{Instant, Micros, ReadingKind, judge::RateFilter};
 /// // Echoes change by up to 2 v / c: 5,828 us/s for each m/s at 343.2 m/s.
 /// let mut filter = RateFilter::<1>::new(Micros::new(500), 2 * 5_828)?;
 /// let mut push = |fired_us, echo_us| {

@@ -31,10 +31,10 @@ impl HoppingCode {
     /// [`HoppingError`] outside these ranges.
     ///
     /// ```
-    /// use eeruf_core::{HoppingCode, Micros};
+    /// use eeruf_core::{Micros, hopping::HoppingCode};
     /// let code = HoppingCode::new(8, 2, Micros::new(240))?;
     /// assert_eq!((code.phases(), code.width()), (11, Micros::new(2400)));
-    /// # Ok::<(), eeruf_core::HoppingError>(())
+    /// # Ok::<(), eeruf_core::hopping::HoppingError>(())
     /// ```
     pub const fn new(sensors: usize, phases: u8, step: Micros) -> Result<Self, HoppingError> {
         match Self::of_phases(sensors, phases, step, sensors + 1) {
@@ -53,11 +53,11 @@ impl HoppingCode {
     /// As for [`HoppingCode::new`].
     ///
     /// ```
-    /// use eeruf_core::{HoppingCode, Micros};
+    /// use eeruf_core::{Micros, hopping::HoppingCode};
     /// let code = HoppingCode::shortest(8, 2, Micros::new(240))?;
     /// assert_eq!((code.phases(), code.longest_drop()), (11, Micros::new(7 * 240)));
     /// assert_eq!(HoppingCode::new(8, 2, Micros::new(240))?.longest_drop(), Micros::new(10 * 240));
-    /// # Ok::<(), eeruf_core::HoppingError>(())
+    /// # Ok::<(), eeruf_core::hopping::HoppingError>(())
     /// ```
     pub const fn shortest(sensors: usize, phases: u8, step: Micros) -> Result<Self, HoppingError> {
         match Self::of_phases(sensors, phases, step, sensors) {

@@ -52,9 +52,9 @@ impl<const K: usize> fmt::Display for HoppingRust<'_, K> {
         let Self { schedule, requirements } = self;
         let PhaseRequirements { t_delta, criterion, audible, min_interval, layout, stale_echo } = requirements;
         let code = schedule.code();
-        writeln!(f, "use eeruf_core::{{")?;
-        write!(f, "    Audible, HoppingListening, HoppingSchedule, HoppingSettings, Layout, Micros, PhaseCriterion, ")?;
-        writeln!(f, "PhaseRequirements,\n    TrackerSettings, hopping_schedule,\n}};\n")?;
+        writeln!(f, "use eeruf_core::{{\n    Layout, Micros,")?;
+        writeln!(f, "    hopping::{{HoppingListening, HoppingSchedule, HoppingSettings}},\n    hopping_schedule,")?;
+        writeln!(f, "    judge::TrackerSettings,\n    phases::{{Audible, PhaseCriterion, PhaseRequirements}},\n}};\n")?;
         writeln!(f, "// {},", Summary(schedule))?;
         writeln!(f, "// {}.", Promise(requirements))?;
         writeln!(
@@ -245,7 +245,8 @@ impl fmt::Display for Promise<'_> {
 mod tests {
     extern crate std;
     use super::*;
-    use crate::{HoppingCode, Layout};
+    use crate::Layout;
+    use crate::hopping::HoppingCode;
     use std::string::ToString;
 
     #[test]

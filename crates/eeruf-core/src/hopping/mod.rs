@@ -5,7 +5,7 @@
 //! them support ([`EchoTracker`]). A sensor that hears nothing of its own for a while gets a *solo period*, in which it
 //! fires alone; one whose readings keep disagreeing draws a new lag.
 //!
-//! The room uses the ring, the tracker and the plan's trait. Rules and measurements: `docs/hopping.md`.
+//! Rules and measurements: `docs/hopping.md`.
 
 mod code;
 mod emit;
@@ -41,7 +41,8 @@ pub use weighed::Weighed;
 /// section 9 says why, and what is not covered.
 ///
 /// ```
-/// use eeruf_core::*;
+/// use eeruf_core::hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings};
+/// use eeruf_core::{Instant, Micros, ReadingKind, RingEvent};
 /// let code = HoppingCode::new(8, 2, Micros::new(240))?;
 /// let schedule = HoppingSchedule::<8>::spread(code, Micros::from_millis(60), 4)?;
 /// let listening = HoppingListening::new(Micros::from_millis(36));

@@ -158,14 +158,14 @@ impl<const K: usize> HoppingPlan<K> {
     }
 
     /// How often firing times have changed against each other otherwise than by the phase, such as by new lags, modulo
-    /// 256: each time [`EchoTracker::firing_changed`](crate::EchoTracker::firing_changed) was called.
+    /// 256: each time [`EchoTracker::firing_changed`](crate::judge::EchoTracker::firing_changed) was called.
     pub const fn changes(&self) -> u8 {
         self.changes
     }
 
     /// For the log of a reading that was just emitted: how it was weighed, with the change that the poll expected of
     /// its sensor, 0 for a robot that stands; `None` for a sensor that is out of range. With that, its phase and its
-    /// echo time an [`EchoTracker`](crate::EchoTracker) does again what the ring's did.
+    /// echo time an [`EchoTracker`](crate::judge::EchoTracker) does again what the ring's did.
     pub fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
         if usize::from(sensor) >= self.sensors() {
             return None;

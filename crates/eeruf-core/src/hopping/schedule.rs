@@ -53,11 +53,11 @@ impl<const K: usize> HoppingSchedule<K> {
     /// As for [`HoppingSchedule::new`].
     ///
     /// ```
-    /// use eeruf_core::{HoppingCode, HoppingSchedule, Micros};
+    /// use eeruf_core::{Micros, hopping::{HoppingCode, HoppingSchedule}};
     /// let code = HoppingCode::new(8, 2, Micros::new(240))?;
     /// let ring = HoppingSchedule::<8>::spread(code, Micros::from_millis(60), 4)?;
     /// assert_eq!(ring.t_fire(1, 1), Some(Micros::new(14_400 + 480)));
-    /// # Ok::<(), eeruf_core::HoppingError>(())
+    /// # Ok::<(), eeruf_core::hopping::HoppingError>(())
     /// ```
     pub const fn spread(code: HoppingCode, period: Micros, neighbours: u8) -> Result<Self, HoppingError> {
         let mut lags = [Micros::ZERO; K];
@@ -71,8 +71,8 @@ impl<const K: usize> HoppingSchedule<K> {
         Self::new(code, period, lags)
     }
 
-    /// The firing times as a table of `M` phases, for [`PhaseTable`](crate::PhaseTable): of the code's first `M`, or
-    /// from the first again if there are more. Sensors that are not there fire at once.
+    /// The firing times as a table of `M` phases, for [`PhaseTable`](crate::phases::PhaseTable): of the code's first
+    /// `M`, or from the first again if there are more. Sensors that are not there fire at once.
     pub const fn table<const M: usize>(&self) -> [[Micros; K]; M] {
         let mut table = [[Micros::ZERO; K]; M];
         let mut phase = 0;

@@ -232,7 +232,7 @@ fn each_error_names_what_is_wrong_and_what_is_expected() {
     let few = HoppingSchedule::<8>::spread(HoppingCode::new(2, 2, step).unwrap(), PERIOD, 2).unwrap();
     let error = new(&few, HoppingSettings::BALANCED).unwrap_err();
     assert_eq!(text(error), "5 votes to confirm an echo; expected at most 3, the phases of the code");
-    let tracker = crate::TrackerSettings { t_delta: step, ..crate::TrackerSettings::BALANCED };
+    let tracker = crate::judge::TrackerSettings { t_delta: step, ..crate::judge::TrackerSettings::BALANCED };
     let error = new(&schedule(), HoppingSettings { tracker, ..HoppingSettings::BALANCED }).unwrap_err();
     assert_eq!(text(error), "a t_delta of 240 us; expected less than 240 us, by which the code moves crosstalk");
 }

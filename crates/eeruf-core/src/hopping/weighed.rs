@@ -1,8 +1,8 @@
 //! [`Weighed`]: what the log of a hopping ring says of a reading.
 
 /// How the tracker of a hopping ring weighed a reading, beside its phase and echo time: what a log needs, so that an
-/// [`EchoTracker`](crate::EchoTracker) can do the same again. [`HoppingPlan::weighed`](crate::HoppingPlan::weighed)
-/// gives it.
+/// [`EchoTracker`](crate::judge::EchoTracker) can do the same again.
+/// [`HoppingPlan::weighed`](crate::hopping::HoppingPlan::weighed) gives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Weighed {
@@ -11,7 +11,7 @@ pub struct Weighed {
     /// Whether firings were so punctual that crosstalk moved as the schedule says.
     pub steady: bool,
     /// How often firing times had changed otherwise than by the phase, modulo 256: see
-    /// [`HoppingPlan::changes`](crate::HoppingPlan::changes).
+    /// [`HoppingPlan::changes`](crate::hopping::HoppingPlan::changes).
     pub changes: u8,
     /// By how much odometry expected the reading to change since the sensor's firing before, in microseconds; 0 for a
     /// robot that stands.

@@ -22,7 +22,7 @@ pub use verify::{PhaseCriterion, PhaseRequirements, PhaseVerification, PhaseViol
 /// Firing times of any number of phases, to be checked: a row for each phase, a number for each sensor.
 ///
 /// ```
-/// use eeruf_core::{Audible, HoppingCode, HoppingSchedule, Micros, PhaseTable};
+/// use eeruf_core::{Micros, hopping::{HoppingCode, HoppingSchedule}, phases::{Audible, PhaseTable}};
 /// const TIMES: [[Micros; 4]; 5] = {
 ///     let Ok(code) = HoppingCode::new(4, 2, Micros::new(301)) else { panic!() };
 ///     let Ok(ring) = HoppingSchedule::<4>::spread(code, Micros::from_millis(60), 4) else { panic!() };

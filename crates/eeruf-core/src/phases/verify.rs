@@ -12,8 +12,9 @@ use crate::time::Micros;
 pub enum PhaseCriterion {
     /// `2 T_delta + 1 us`, as in (13a) and (13b).
     Exact,
-    /// `T_delta` and this margin: it is all that jitter and lateness may use. A [`HoppingRing`](crate::HoppingRing)
-    /// lets a reading whose firing was later by more than half of it support nothing.
+    /// `T_delta` and this margin: it is all that jitter and lateness may use. A
+    /// [`HoppingRing`](crate::hopping::HoppingRing) lets a reading whose firing was later by more than half of it
+    /// support nothing.
     Margin(Micros),
 }
 

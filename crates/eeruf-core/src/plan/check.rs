@@ -73,10 +73,10 @@ impl core::error::Error for BrokenPromise {}
 /// write a [`Plan`] of their own; the same calls every time, seeded by `seed`.
 ///
 /// ```
-/// use eeruf_core::{Instant, ScheduledFiring, check_plan, tables::TABLE_I_D};
+/// use eeruf_core::{Instant, plan::{ScheduledFiring, check_plan}, tables::TABLE_I_D};
 /// let now = Instant::from_micros(0);
 /// check_plan(&mut ScheduledFiring::new(&TABLE_I_D, now), now, 10_000, 1)?;
-/// # Ok::<(), eeruf_core::BrokenPromise>(())
+/// # Ok::<(), eeruf_core::plan::BrokenPromise>(())
 /// ```
 ///
 /// # Errors

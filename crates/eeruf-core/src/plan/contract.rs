@@ -45,7 +45,8 @@ pub struct Limits<'s> {
 }
 
 /// Decides when each sensor of a ring fires: [`ScheduledFiring`](super::ScheduledFiring),
-/// [`ImmediateRefiring`](super::ImmediateRefiring), [`HoppingPlan`](crate::HoppingPlan), or one of the caller's own.
+/// [`ImmediateRefiring`](super::ImmediateRefiring), [`HoppingPlan`](crate::hopping::HoppingPlan), or one of the
+/// caller's own.
 pub trait Plan {
     /// The next step of a plan that is run without a ring, if one is due. Call again until there is none.
     #[inline]

@@ -1,6 +1,8 @@
-//! When to fire: the trait [`Plan`], *scheduled firing* and *immediate refiring*.
+//! When sensors fire: the trait [`Plan`], with *scheduled firing* and *immediate refiring* (Sec. 3.1, Figs. 2, 3), and
+//! whether sensors have limits of their own.
 //!
-//! The room uses [`time`](crate::time), [`schedule`](crate::schedule) and sets of sensors; it knows nothing of echoes.
+//! A plan knows nothing of echoes but what a ring tells it. [`check_plan`] tries what a plan of the caller's own has to
+//! keep.
 
 mod check;
 mod contract;
@@ -11,3 +13,5 @@ pub use check::{BrokenPromise, check_plan};
 pub use contract::{Limits, Plan, PlanStep};
 pub use immediate::ImmediateRefiring;
 pub use scheduled::ScheduledFiring;
+
+pub use crate::own_limits::{Alike, EachInUse, LimitsInUse, OwnLimits};

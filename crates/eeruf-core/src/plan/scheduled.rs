@@ -14,7 +14,7 @@ use crate::verified::VerifiedSchedule;
 /// no two firings ever come closer than in the schedule, however late the caller is.
 ///
 /// ```
-/// use eeruf_core::{Instant, Micros, Phase, ScheduledFiring, Plan, PlanStep, tables::TABLE_I_D};
+/// use eeruf_core::{Instant, Micros, Phase, plan::{Plan, PlanStep, ScheduledFiring}, tables::TABLE_I_D};
 /// let mut plan = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
 /// let first = plan.deadline();
 /// assert_eq!(first, Instant::from_micros(24_000));
@@ -22,8 +22,8 @@ use crate::verified::VerifiedSchedule;
 /// assert_eq!(plan.poll(first), Some(PlanStep::Fire { sensor: 0, phase: Phase::A, late: Micros::ZERO }));
 /// ```
 ///
-/// Where sensors have limits of their own, each listens and compares as it was verified for; in the first period after a
-/// change of schedules by the lesser of what both allow it.
+/// Where sensors have limits of their own, each listens and compares as it was verified for; in the first period after
+/// a change of schedules by the lesser of what both allow it.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 // In this order for the short offsets of a Cortex-M0: see `Ring`.

@@ -89,8 +89,8 @@ pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     tally: Tally<u8>,
 }
 
-/// A [`Ring`] with scheduled firing by a schedule of the paper's kind; `U` is [`EachInUse`](crate::EachInUse) where
-/// sensors have limits of their own.
+/// A [`Ring`] with scheduled firing by a schedule of the paper's kind; `U` is [`EachInUse`](crate::plan::EachInUse)
+/// where sensors have limits of their own.
 pub type ScheduledRing<'s, const K: usize, const E: usize = 1, U = Alike> =
     Ring<ScheduledFiring<'s, K, 2, U>, EchoFilter<K, E>, K, E>;
 

@@ -2,8 +2,8 @@
 
 use crate::time::Micros;
 
-/// What a schedule was verified for, where it was. Only [`Verification::verified`](crate::Verification::verified) makes
-/// one.
+/// What a schedule was verified for, where it was. Only
+/// [`Verification::verified`](crate::conditions::Verification::verified) makes one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -5,7 +5,7 @@ use super::design::{self, Explanation, Firing, InTime, Problem, Shortest};
 use super::error::SearchError;
 use super::found::Found;
 use super::grid::Grid;
-use crate::conditions::{Criterion, Requirements};
+use crate::requirements::{Criterion, Requirements};
 use crate::schedule::{MAX_PERIOD, MAX_SENSORS, Schedule};
 use crate::time::Micros;
 

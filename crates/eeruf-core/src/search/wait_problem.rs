@@ -7,8 +7,8 @@ use super::error::SearchError;
 use super::found::Found;
 use super::grid::Grid;
 use super::wait::{Best, Budget, Count, Enumeration, Objective, Pareto, ParetoPoint, Problem, Search};
-use crate::conditions::Criterion;
 use crate::layout::Layout;
+use crate::requirements::Criterion;
 use crate::schedule::{MAX_SENSORS, Schedule};
 use crate::time::Micros;
 

@@ -30,7 +30,7 @@ pub(crate) const LATEST_ECHO: Micros = Micros::new(LATEST);
 /// Tracks the echoes of up to `K` sensors, with up to `H` hypotheses for each.
 ///
 /// ```
-/// use eeruf_core::{EchoTracker, Firing, Micros, Phase, ReadingKind, TrackerSettings};
+/// use eeruf_core::{Micros, Phase, ReadingKind, judge::{EchoTracker, Firing, TrackerSettings}};
 /// let mut tracker = EchoTracker::<1>::new(TrackerSettings::BALANCED)?;
 /// let mut push = |phase, us| {
 ///     tracker.push(0, Some(Micros::new(us)), Firing::new(Phase(phase))).map(|verdict| verdict.kind)
@@ -43,7 +43,7 @@ pub(crate) const LATEST_ECHO: Micros = Micros::new(LATEST);
 /// let kinds = [4, 5, 6, 7, 8].map(|phase| push(phase, 9_000));
 /// assert_eq!(kinds[1]?, ReadingKind::Tentative);
 /// assert_eq!(kinds[4]?, ReadingKind::Accepted);
-/// # Ok::<(), eeruf_core::TrackerError>(())
+/// # Ok::<(), eeruf_core::judge::TrackerError>(())
 /// ```
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -3,8 +3,9 @@
 
 use eeruf_core::tables::{PAPER_12, TABLE_I_D};
 use eeruf_core::{
-    AgreementRing, Explanation, Instant, Micros, Reading, ReadingKind, Ring, RingConfig, RingEvent, ScheduledFiring,
-    ScheduledRing,
+    Instant, Micros, Reading, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing,
+    judge::{AgreementRing, Explanation},
+    plan::ScheduledFiring,
 };
 
 const WINDOW: Micros = Micros::from_millis(40);

@@ -1,8 +1,8 @@
 //! The conditions and the verifier against plain formulas, pair by pair, on seeded pseudo-random schedules.
 
 use eeruf_core::{
-    Criterion, Instant, Interval, Layout, Micros, Phase, ReadingKind, Requirements, Schedule, Separation, SpeedOfSound,
-    ViolationKind,
+    Criterion, Instant, Layout, Micros, Phase, ReadingKind, Requirements, Schedule, SpeedOfSound,
+    conditions::{Interval, Separation, ViolationKind},
 };
 
 use crate::common::random::Random;

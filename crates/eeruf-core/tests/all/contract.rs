@@ -2,7 +2,9 @@
 
 use eeruf_core::tables::{TABLE_I_A, TABLE_I_D};
 use eeruf_core::{
-    BrokenPromise, Firing, ImmediateRefiring, Instant, Limits, Micros, Phase, Plan, ScheduledFiring, check_plan,
+    Instant, Micros, Phase,
+    judge::Firing,
+    plan::{BrokenPromise, ImmediateRefiring, Limits, Plan, ScheduledFiring, check_plan},
 };
 
 const START: Instant = Instant::from_micros(u32::MAX - 500_000);

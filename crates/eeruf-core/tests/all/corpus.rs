@@ -11,8 +11,8 @@
 use std::fmt::Write;
 
 use eeruf_core::{
-    EchoFilter, Explanation, Instant, Layout, Micros, PeriodStats, Phase, Reading, ReadingKind, Requirements, Ring,
-    RingConfig, RingEvent, Schedule, ScheduledFiring,
+    EchoFilter, Instant, Layout, Micros, PeriodStats, Phase, Reading, ReadingKind, Requirements, Ring, RingConfig,
+    RingEvent, Schedule, judge::Explanation, plan::ScheduledFiring,
 };
 
 use crate::common::random::Random;

@@ -3,8 +3,9 @@
 //! fixed time later.
 
 use eeruf_core::{
-    Audible, HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant,
-    MAX_PERIOD, Micros, Phase, PhaseRequirements, PhaseTable, ReadingKind, RingEvent, Tally,
+    Instant, MAX_PERIOD, Micros, Phase, ReadingKind, RingEvent, Tally,
+    hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    phases::{Audible, PhaseRequirements, PhaseTable},
 };
 use proptest::prelude::*;
 

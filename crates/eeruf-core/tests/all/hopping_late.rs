@@ -2,7 +2,9 @@
 //! poll, and periods that are left out. What is heard across a move supports nothing.
 
 use eeruf_core::{
-    HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros, Plan as _, RingEvent,
+    Instant, Micros, RingEvent,
+    hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    plan::Plan as _,
 };
 
 const PERIOD: u32 = 60_000;

@@ -1,11 +1,12 @@
 //! What a log of a hopping ring holds is enough: an [`EchoTracker`] that is handed the phase, the raw echo time and the
-//! [`Weighed`](eeruf_core::Weighed) of each reading says what the ring said.
+//! [`Weighed`](eeruf_core::hopping::Weighed) of each reading says what the ring said.
 
 use std::collections::BTreeMap;
 
 use eeruf_core::{
-    EchoTracker, Firing, HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros,
-    ReadingKind, RingEvent, Verdict,
+    Instant, Micros, ReadingKind, RingEvent,
+    hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    judge::{EchoTracker, Firing, Verdict},
 };
 
 use crate::common::random::Random;

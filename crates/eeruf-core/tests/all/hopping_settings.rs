@@ -2,7 +2,9 @@
 //! the numbers that firmware was tried with.
 
 use eeruf_core::{
-    HoppingCode, HoppingError, HoppingListening, HoppingSettings, Micros, RingError, TrackerError, TrackerSettings,
+    Micros, RingError,
+    hopping::{HoppingCode, HoppingError, HoppingListening, HoppingSettings},
+    judge::{TrackerError, TrackerSettings},
 };
 
 #[test]

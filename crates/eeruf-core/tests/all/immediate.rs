@@ -2,7 +2,10 @@
 //! `contract`.
 
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{ImmediateRefiring, Instant, Micros, Phase, Plan, PlanStep, Schedule};
+use eeruf_core::{
+    Instant, Micros, Phase, Schedule,
+    plan::{ImmediateRefiring, Plan, PlanStep},
+};
 
 fn ms(ms: u32) -> Micros {
     Micros::from_millis(ms)

@@ -1,9 +1,10 @@
 //! What a ring hears: which edges are the echo of a firing, to the microsecond, and which are none.
 
 use eeruf_core::{
-    HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings, Instant, Micros,
-    Reading, ReadingKind, Ring, RingConfig, RingError, RingEvent, Schedule, ScheduledFiring, ScheduledRing,
+    Instant, Micros, Reading, ReadingKind, Ring, RingConfig, RingError, RingEvent, Schedule, ScheduledRing,
     SensorError,
+    hopping::{HoppingCode, HoppingError, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    plan::ScheduledFiring,
 };
 
 const BLANKING: u32 = 1_000;

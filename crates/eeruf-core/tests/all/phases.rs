@@ -1,8 +1,10 @@
 //! The conditions for many phases, against tables whose properties are known and against obvious loops.
 
 use eeruf_core::{
-    Audible, Criterion, HoppingCode, HoppingSchedule, Layout, Micros, Phase, PhaseCriterion, PhaseRequirements,
-    PhaseTable, PhaseViolation, Requirements, Schedule, tables::TABLE_I_D,
+    Criterion, Layout, Micros, Phase, Requirements, Schedule,
+    hopping::{HoppingCode, HoppingSchedule},
+    phases::{Audible, PhaseCriterion, PhaseRequirements, PhaseTable, PhaseViolation},
+    tables::TABLE_I_D,
 };
 use proptest::prelude::*;
 use serde_json::Value;

@@ -1,9 +1,11 @@
 //! Any plan goes with any judge, also with one of the caller's own.
 
 use eeruf_core::{
-    Agreement, EchoFilter, EchoTracker, Heard, HoppingCode, HoppingListening, HoppingPlan, HoppingSchedule,
-    HoppingSettings, ImmediateRefiring, Instant, Judge, Micros, Plan, ReadingKind, Ring, RingConfig, RingEvent,
-    ScheduledFiring, Sounds, TrackerSettings, Verdict, tables::TABLE_I_D,
+    EchoFilter, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent,
+    hopping::{HoppingCode, HoppingListening, HoppingPlan, HoppingSchedule, HoppingSettings},
+    judge::{Agreement, EchoTracker, Heard, Judge, Sounds, TrackerSettings, Verdict},
+    plan::{ImmediateRefiring, Plan, ScheduledFiring},
+    tables::TABLE_I_D,
 };
 
 const SENSORS: usize = 8;

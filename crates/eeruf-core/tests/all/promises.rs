@@ -5,8 +5,9 @@ use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 
 use eeruf_core::tables::{PAPER_12, TABLE_I_A, TABLE_I_D};
 use eeruf_core::{
-    EchoFilter, ImmediateRefiring, Instant, Layout, Micros, Phase, Plan, PlanStep, ReadingKind, Requirements, Ring,
-    RingConfig, RingError, RingEvent, Schedule, ScheduledFiring, ScheduledRing, VerifiedSchedule,
+    EchoFilter, Instant, Layout, Micros, Phase, ReadingKind, Requirements, Ring, RingConfig, RingError, RingEvent,
+    Schedule, ScheduledRing, VerifiedSchedule,
+    plan::{ImmediateRefiring, Plan, PlanStep, ScheduledFiring},
 };
 
 fn ms(ms: u32) -> Micros {
@@ -115,7 +116,7 @@ fn forty_minutes_without_sensors_do_not_delay_a_change_of_schedule() {
         assert!(matches!(plan.poll(now), Some(PlanStep::PeriodEnded { .. })));
     }
     (0..12).for_each(|sensor| plan.set_enabled(sensor, true));
-    plan.change_with_limits(&TABLE_I_A, &eeruf_core::Alike);
+    plan.change_with_limits(&TABLE_I_A, &eeruf_core::plan::Alike);
     assert!(time_to_fire(&mut plan, now) <= ms(400));
 }
 

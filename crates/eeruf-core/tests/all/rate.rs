@@ -3,8 +3,9 @@
 
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{
-    Agreement, Instant, Judge, Layout, Micros, Phase, RateFilter, ReadingKind, Requirements, Ring, RingConfig,
-    RingEvent, Schedule, ScheduledFiring,
+    Instant, Layout, Micros, Phase, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Schedule,
+    judge::{Agreement, Judge, RateFilter},
+    plan::ScheduledFiring,
 };
 
 use crate::common::random::Random;

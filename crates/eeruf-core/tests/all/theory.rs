@@ -5,7 +5,7 @@
 
 use eeruf_core::search::{Found, PeriodProblem, WaitProblem, WaitSearch, design, wait};
 use eeruf_core::tables::{TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
-use eeruf_core::{Criterion, Interval, Layout, Micros, Phase, Requirements, Schedule};
+use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, conditions::Interval};
 
 const THEORY: &str = include_str!("../../../../docs/theory.md");
 

@@ -3,7 +3,10 @@
 
 use std::collections::BTreeSet;
 
-use eeruf_core::{EchoTracker, Firing, Micros, Phase, ReadingKind, TrackerSettings};
+use eeruf_core::{
+    Micros, Phase, ReadingKind,
+    judge::{EchoTracker, Firing, TrackerSettings},
+};
 
 use super::common::random::Random;
 

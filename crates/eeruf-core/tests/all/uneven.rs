@@ -4,8 +4,10 @@
 use eeruf_core::search::PeriodProblem;
 use eeruf_core::search::design::memory_words;
 use eeruf_core::{
-    EachSensor, Layout, Micros, Requirements, Schedule, Uneven, UnevenError, Verification, VerifiedSchedule,
-    ViolationKind, schedule, tables::TABLE_I_D,
+    EachSensor, Layout, Micros, Requirements, Schedule, Uneven, VerifiedSchedule,
+    conditions::{UnevenError, Verification, ViolationKind},
+    schedule,
+    tables::TABLE_I_D,
 };
 
 use crate::common::random::Random;

@@ -1,8 +1,11 @@
 //! Rings of sensors that are not all alike, as they run.
 
 use eeruf_core::{
-    Adaptation, EachSensor, EchoFilter, Instant, Ladder, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig,
-    RingError, RingEvent, Schedule, ScheduledFiring, Uneven, VerifiedSchedule, check_plan, tables::TABLE_I_D,
+    EachSensor, EchoFilter, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingError, RingEvent,
+    Schedule, Uneven, VerifiedSchedule,
+    adaptation::{Adaptation, Ladder},
+    plan::{ScheduledFiring, check_plan},
+    tables::TABLE_I_D,
 };
 
 use crate::common::random::Random;

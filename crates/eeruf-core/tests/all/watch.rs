@@ -2,8 +2,9 @@
 
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{
-    Blind, Doubt, Explanation, Instant, Micros, Phase, Reading, ReadingKind, Ring, RingConfig, RingEvent,
-    ScheduledRing, SensorError, SensorState, SensorWatch,
+    Instant, Micros, Phase, Reading, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, SensorError,
+    judge::Explanation,
+    watch::{Blind, Doubt, SensorState, SensorWatch},
 };
 
 fn at(us: u32) -> Instant {

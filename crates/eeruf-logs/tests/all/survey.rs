@@ -1,6 +1,6 @@
 //! `survey` on rings whose paths are known: fired by core's own plan, in a world in which each pair has two paths.
 
-use eeruf_core::{Micros, SurveyPlan};
+use eeruf_core::{Micros, survey::SurveyPlan};
 use eeruf_logs::{Firing, FiringLog, McapWriter, PathSettings, survey};
 
 const SENSORS: usize = 5;

@@ -1,6 +1,10 @@
 //! A ring that moves along a ladder of scaled schedules as the rejection rate asks for (end of Sec. 3.1).
 
-use eeruf_core::{Adaptation, EachSensor, EchoFilter, Instant, Ladder, MAX_SENSORS, Ring, RingEvent, Violation};
+use eeruf_core::{
+    EachSensor, EchoFilter, Instant, MAX_SENSORS, Ring, RingEvent,
+    adaptation::{Adaptation, Ladder},
+    conditions::Violation,
+};
 
 use super::ring_runner::{FiringPlan, RingRunner, RingStart, StartError, Started, TableFiring};
 use crate::world::{AnySchedule, Robot};

@@ -42,7 +42,7 @@ impl Firing for Dither {
 mod tests {
     use super::*;
     use crate::methods::firing::PeriodFiring;
-    use eeruf_core::{Instant, check_plan};
+    use eeruf_core::{Instant, plan::check_plan};
 
     #[test]
     fn dither_keeps_the_contract_whatever_is_done_to_it() {

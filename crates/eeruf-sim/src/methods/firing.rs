@@ -3,7 +3,10 @@
 
 use core::fmt;
 
-use eeruf_core::{Instant, Limits, MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Micros, Phase, Plan};
+use eeruf_core::{
+    Instant, MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Micros, Phase,
+    plan::{Limits, Plan},
+};
 
 /// When the sensors of one robot's ring fire. Hand it to a simulation with [`Own`](crate::Own); dither is one as well.
 ///
@@ -295,8 +298,8 @@ impl Plan for PeriodFiring {
         self.begin_period(soon.unwrap_or(now));
     }
 
-    fn last_firing(&self, sensor: u8, _periods_ago: u8) -> eeruf_core::Firing {
-        eeruf_core::Firing::new(self.fired_in.get(usize::from(sensor)).copied().unwrap_or(self.phase))
+    fn last_firing(&self, sensor: u8, _periods_ago: u8) -> eeruf_core::judge::Firing {
+        eeruf_core::judge::Firing::new(self.fired_in.get(usize::from(sensor)).copied().unwrap_or(self.phase))
     }
 
     fn limits(&self) -> Limits<'_> {

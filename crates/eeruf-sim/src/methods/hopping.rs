@@ -1,6 +1,9 @@
 //! A ring that hops in time: core's own, for a robot.
 
-use eeruf_core::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, MAX_SENSORS, Micros};
+use eeruf_core::{
+    MAX_SENSORS, Micros,
+    hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule},
+};
 
 use super::ring_runner::{RingStart, Started};
 use crate::world::Robot;

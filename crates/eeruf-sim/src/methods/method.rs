@@ -157,7 +157,7 @@ methods! {
         plan: adaptive::plan,
     }
     /// Time hopping: the waits move through a cycle of many phases, and an echo is believed that readings from several
-    /// phases support ([`HoppingRing`](eeruf_core::HoppingRing)).
+    /// phases support ([`HoppingRing`](eeruf_core::hopping::HoppingRing)).
     EerufHopping = "eeruf_hopping" {
         eeruf: true,
         schedule: schedules::conventional,

@@ -2,9 +2,12 @@
 //! under simulated time.
 
 use eeruf_core::{
-    AgreementRing, EachInUse, EachSensor, HoppingError, HoppingPlan, HoppingSettings, ImmediateRefiring, Instant,
-    Judge, LadderError, MAX_SENSORS, Plan, Ring, RingConfig, RingError, RingEvent, ScheduledFiring, VerifiedSchedule,
-    Violation, Weighed,
+    EachSensor, Instant, MAX_SENSORS, Ring, RingConfig, RingError, RingEvent, VerifiedSchedule,
+    adaptation::LadderError,
+    conditions::Violation,
+    hopping::{HoppingError, HoppingPlan, HoppingSettings, Weighed},
+    judge::{AgreementRing, Judge},
+    plan::{EachInUse, ImmediateRefiring, Plan, ScheduledFiring},
 };
 
 use super::firing::{OwnError, PeriodFiring};

@@ -3,7 +3,7 @@
 
 use std::collections::TryReserveError;
 
-use eeruf_core::{ReadingKind, Weighed};
+use eeruf_core::{ReadingKind, hopping::Weighed};
 
 use crate::{methods::Method, scene::Bounce};
 

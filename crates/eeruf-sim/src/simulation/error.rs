@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use eeruf_core::{HoppingError, LadderError, RingError, ScheduleError, Violation};
+use eeruf_core::{RingError, ScheduleError, adaptation::LadderError, conditions::Violation, hopping::HoppingError};
 
 use crate::methods::{ChangeError, Method, OwnError, StartError};
 use crate::results::Readings;

@@ -1,6 +1,6 @@
 //! What can be asked for besides the world and the method.
 
-use eeruf_core::HoppingSettings;
+use eeruf_core::hopping::HoppingSettings;
 
 use crate::world::AnySchedule;
 

@@ -1,7 +1,8 @@
 //! A robot: its transducers, where it is and how it moves, its clock, and how it fires and listens.
 
 use eeruf_core::{
-    EachSensor, Layout, MAX_SENSORS, Micros, Requirements, Schedule, SensorLimits, Uneven, VerifiedSchedule, Violation,
+    EachSensor, Layout, MAX_SENSORS, Micros, Requirements, Schedule, SensorLimits, Uneven, VerifiedSchedule,
+    conditions::Violation,
 };
 
 use super::clock::Clock;

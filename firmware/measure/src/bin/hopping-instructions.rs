@@ -10,7 +10,7 @@
 use core::hint::black_box;
 
 use eeruf_board::say::leave;
-use eeruf_core::{HoppingRing, Instant, Micros, RingEvent, SensorError};
+use eeruf_core::{Instant, Micros, RingEvent, SensorError, hopping::HoppingRing};
 use eeruf_measure::{HOPPING_12, Range, counts, hopping};
 
 eeruf_board::no_panic!();

@@ -6,7 +6,11 @@ use core::hint::black_box;
 
 use eeruf_board::say::leave;
 use eeruf_core::tables::TABLE_I_D;
-use eeruf_core::{EchoFilter, Instant, Micros, Plan, PlanStep, ScheduledFiring, Verdict};
+use eeruf_core::{
+    EchoFilter, Instant, Micros,
+    judge::Verdict,
+    plan::{Plan, PlanStep, ScheduledFiring},
+};
 use eeruf_measure::{Range, T_DELTA, counts};
 
 eeruf_board::no_panic!();

@@ -6,7 +6,7 @@
 
 use super::problem::gap;
 use super::{Best, Budget, Count, Search};
-use crate::conditions::Criterion;
+use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::{Members, Outcome, ProblemError};
 

@@ -1,7 +1,7 @@
 //! Enumerates every table, one at a time, in lexicographic order of `a_0, b_0, a_1, b_1, ..`.
 
 use super::{Budget, Problem, Search};
-use crate::conditions::Criterion;
+use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::{Members, Outcome, ProblemError};
 

@@ -5,7 +5,7 @@
 
 use super::feasibility::decide;
 use super::{Budget, Problem, Search};
-use crate::conditions::Criterion;
+use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::{Outcome, ProblemError};
 

@@ -1,6 +1,6 @@
 //! The problem of the waits in ticks, its check, and what waits achieve.
 
-use crate::conditions::Criterion;
+use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::{Members, ProblemError, check_conflicts};
 

@@ -2,7 +2,7 @@
 //! all pairs; and the facts that the paper claims for Table I.
 
 use eeruf_core::tables::{TABLE_I_A, TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
-use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, ViolationKind};
+use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, conditions::ViolationKind};
 use proptest::prelude::*;
 
 /// The smaller left side of (13a), (13b) over all pairs, as they are printed (with the outer absolute value).

@@ -14,7 +14,9 @@
 
 use std::collections::VecDeque;
 
-use eeruf_core::{AgreementRing, ImmediateRefiring, Instant, Micros, ReadingKind, RingConfig, RingEvent, Schedule};
+use eeruf_core::{
+    Instant, Micros, ReadingKind, RingConfig, RingEvent, Schedule, judge::AgreementRing, plan::ImmediateRefiring,
+};
 use proptest::prelude::*;
 
 const T_DELTA: u32 = 500;

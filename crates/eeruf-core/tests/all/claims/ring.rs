@@ -5,7 +5,9 @@
 
 use eeruf_core::tables::{TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{
-    ImmediateRefiring, Instant, Judge, Layout, Micros, Plan, Ring, RingConfig, RingEvent, Schedule, SensorError,
+    Instant, Layout, Micros, Ring, RingConfig, RingEvent, Schedule, SensorError,
+    judge::Judge,
+    plan::{ImmediateRefiring, Plan},
 };
 use proptest::prelude::*;
 

@@ -1,6 +1,6 @@
 //! What is asked of Set I.
 
-use eeruf_core::{HoppingSettings, Micros};
+use eeruf_core::{Micros, hopping::HoppingSettings};
 
 use super::alcove::SENSORS;
 use super::multi_echo::MultiEcho;

@@ -1,6 +1,6 @@
 //! What is asked of Set II.
 
-use eeruf_core::{HoppingSettings, Micros};
+use eeruf_core::{Micros, hopping::HoppingSettings};
 
 use super::odometry::OdometryNoise;
 use super::pilots::Pilots;

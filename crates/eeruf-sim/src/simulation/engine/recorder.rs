@@ -1,7 +1,7 @@
 //! What becomes of a reading under a method, and its entry in the record: what it says, what it came from, and what the
 //! sensor would have read alone.
 
-use eeruf_core::{Reading, ReadingKind, Weighed};
+use eeruf_core::{Reading, ReadingKind, hopping::Weighed};
 
 use super::filter::{Filter, Filtered, FiredReading, MAX_MEDIAN, filter_of};
 use super::own::Own;

@@ -3,7 +3,7 @@
 use super::super::{Budget, Problem};
 use super::bits::{left_by, reach, span, waits_with};
 use super::memo::{Key, Memo, Ticket};
-use crate::conditions::Criterion;
+use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::{Members, Outcome};
 

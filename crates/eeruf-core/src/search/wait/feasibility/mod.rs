@@ -14,7 +14,7 @@ mod branch;
 mod walk;
 
 use super::{Budget, Problem, Search};
-use crate::conditions::Criterion;
+use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::{Outcome, ProblemError};
 use walk::{Feasibility, Style};

@@ -3,7 +3,7 @@
 use super::super::difference_constraints::{Constraints, Order};
 use super::super::{Budget, Problem};
 use super::branch::Branch;
-use crate::conditions::Criterion;
+use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
 use crate::search::common::{Members, Outcome};
 

@@ -51,7 +51,7 @@ _Method = Literal[
     "multi_echo",
 ]
 _Cause = Literal["nothing", "own", "stale", "crosstalk", "external"]
-_Transducer = Literal["polaroid_6500", "hc_sr04"]
+_Module = str | dict[str, float | str]
 _Height = Literal["flat", "room"] | dict[str, float | _Surface]
 _Beam = Literal["cut_at_90", "continuous"]
 _Gain = Literal["constant", "square_root", "linear", "stepped", "polaroid_6500"]
@@ -894,13 +894,13 @@ class Robot:
         sensors: _Int | Iterable[_Pose],
         spacing_rad: float | None = None,
         radius_m: float | None = None,
-        transducer: _Transducer = "polaroid_6500",
+        module: _Module | Iterable[_Module] = "polaroid-6500",
         *,
         gain: _Gain = "constant",
         period_us: _Int = 60000,
-        t_delta_us: _Int = 500,
-        window_us: _Int = 36000,
-        blanking_us: _Int | None = None,
+        t_delta_us: _Int | Iterable[_Int] = 500,
+        window_us: _Int | Iterable[_Int] = 36000,
+        blanking_us: _Int | Iterable[_Int] | None = None,
         min_refire_us: _Int = 36000,
         start_us: _Int = 0,
         schedule: Schedule | None = None,
@@ -917,6 +917,8 @@ class Robot:
         beam: _Beam | None = None,
         coupling_db: float | None = None,
         height_m: float | Iterable[float] = 0.3,
+        together: Iterable[Iterable[_Int]] = (),
+        transducer: _Module | Iterable[_Module] | None = None,
     ) -> Robot: ...
     def replace(self, **changes: object) -> Robot: ...
     @property
@@ -930,7 +932,9 @@ class Robot:
     @property
     def radius_m(self) -> float | None: ...
     @property
-    def transducer(self) -> _Transducer: ...
+    def module(self) -> _Module | list[_Module]: ...
+    @property
+    def together(self) -> list[list[int]]: ...
     @property
     def gain(self) -> _Gain: ...
     @property
@@ -944,11 +948,11 @@ class Robot:
     @property
     def period_us(self) -> int: ...
     @property
-    def t_delta_us(self) -> int: ...
+    def t_delta_us(self) -> int | list[int]: ...
     @property
-    def window_us(self) -> int: ...
+    def window_us(self) -> int | list[int]: ...
     @property
-    def blanking_us(self) -> int: ...
+    def blanking_us(self) -> int | list[int]: ...
     @property
     def min_refire_us(self) -> int: ...
     @property

@@ -5,9 +5,12 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use eeruf_core::search::{Progress, SearchError};
-use eeruf_core::{Micros, phases::PhaseCriterion};
+use eeruf_core::{Micros, Requirements, phases::PhaseCriterion};
 use eeruf_design::atlas::ATLAS;
 use eeruf_design::{CURVE_BUDGET, FoundJson, Need, RealPeriod, RingDesign, RingSpec, Search, real_budget};
+
+use eeruf_sim::AnySchedule;
+use eeruf_sim::modules::Module;
 
 use super::answer::Answer;
 use super::arguments::{picture, seconds};
@@ -31,7 +34,8 @@ use crate::report::watch::Watch;
 ///
 /// The ring file says how many sensors there are (sensors, layout, neighbours) and what they need: t_delta_us,
 /// min_interval_us, window_us; or jitter_us and speed_m_s, crosstalk_range_m, max_range_m and retrigger_us,
-/// temperature_c; and handling_us, for which the controller fires nothing else.
+/// temperature_c; and handling_us, for which the controller fires nothing else. module names the modules, one for all
+/// or a list, whose range and rest hold where max_range_m and retrigger_us are not given.
 /// t_delta_us, jitter_us, window_us, max_range_m and retrigger_us may be lists with a number for each
 /// sensor; intervals_us = [[x, y, us], ..] gives pairs an interval of their own, shared_lines = [[x, y], ..] names
 /// sensors on one echo line, together = [[x, y], ..] those that fire at the same instants. Sensors count from 0 in it.
@@ -202,10 +206,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         _ => certified,
     };
     match args.form() {
-        Some(Form::Toml) => print(design.schedule.to_toml())?,
-        Some(Form::Rust) => print(design.schedule.to_rust(&requirements))?,
-        Some(Form::C) => print(design.schedule.to_c(&requirements))?,
-        Some(Form::Arduino) => print(design.schedule.to_arduino(&requirements, "RING"))?,
+        Some(form @ (Form::Toml | Form::Rust | Form::C | Form::Arduino)) => {
+            emit(&spec.modules, form, &design.schedule, &requirements)?;
+        }
         Some(Form::Json) => {
             let real_period_us = real.as_ref().map(|real| real.period_us);
             let real_proven = real.as_ref().map(|real| real.proven);
@@ -214,6 +217,41 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         None => tell(describe(&args.file.display().to_string(), &spec, &design, real.as_ref(), seconds))?,
     }
     Ok(certified)
+}
+
+/// Prints a schedule in a form, after the modules that it is for.
+fn emit(
+    modules: &[Module],
+    form: Form,
+    schedule: &AnySchedule,
+    requirements: &Requirements<'_>,
+) -> Result<(), InputError> {
+    let alike = modules.chunk_by(|one, next| one == next);
+    let firsts = alike.clone().scan(0, |next, group| Some(core::mem::replace(next, *next + group.len())));
+    for (group, first) in alike.zip(firsts) {
+        let Module { name, trigger_us, rest_us, interface, no_echo, .. } = group[0];
+        let held = match no_echo.hold_us() {
+            0 => String::new(),
+            us => format!(", held {us} us without an echo"),
+        };
+        let (last, interface) = (first + group.len() - 1, interface.name());
+        let (begin, end) = match form {
+            Form::Toml => ("#", ""),
+            Form::C | Form::Arduino => ("/*", " */"),
+            Form::Rust | Form::Json => ("//", ""),
+        };
+        let times = format!("trigger {trigger_us} us, rest {rest_us} us{held}");
+        print_line(format!("{begin} Sensors {first} to {last}: {name}, {interface}, {times}{end}"))?;
+    }
+    match form {
+        Form::Toml => print(schedule.to_toml())?,
+        Form::Rust => print(schedule.to_rust(requirements))?,
+        Form::C => print(schedule.to_c(requirements))?,
+        Form::Arduino => print(schedule.to_arduino(requirements, "RING"))?,
+        // Whoever asks for JSON gets more than the schedule.
+        Form::Json => {}
+    }
+    Ok(())
 }
 
 /// Answers `--period`.
@@ -239,10 +277,7 @@ fn fit(args: &Args, spec: &RingSpec, period: Micros) -> Result<Answer, InputErro
     }
     match (args.form(), &schedule) {
         (Some(Form::Json), _) => print_line(to_json(&fit_json(&fit, seconds)))?,
-        (Some(Form::Toml), Some(schedule)) => print(schedule.to_toml())?,
-        (Some(Form::Rust), Some(schedule)) => print(schedule.to_rust(&requirements))?,
-        (Some(Form::C), Some(schedule)) => print(schedule.to_c(&requirements))?,
-        (Some(Form::Arduino), Some(schedule)) => print(schedule.to_arduino(&requirements, "RING"))?,
+        (Some(form), Some(schedule)) => emit(&spec.modules, form, schedule, &requirements)?,
         (Some(_), None) => tell(format!("{}: no schedule of {period} that meets all needs\n", args.file.display()))?,
         (None, _) => tell(describe_fit(&args.file.display().to_string(), spec, period, &fit, seconds))?,
     }

@@ -60,7 +60,8 @@ fn critical_paths(world: &World, max_order: u32) -> Result<PathsJson, eeruf_sim:
         out.departure_rad.push(path.departure_rad);
         out.arrival_rad.push(path.arrival_rad);
         out.amplitude.push(path.amplitude);
-        out.level_db.push(robot.transducer.level_db(path.amplitude, path.length_m, world.scene().air()));
+        let receiver = robot.transducer_of(path.receiver as usize);
+        out.level_db.push(receiver.level_db(path.amplitude, path.length_m, world.scene().air()));
         let bounces = matrix.bounces(path);
         out.walls.push(wall_numbers(bounces));
         out.by_way_of.push(by_way_of(bounces));

@@ -288,7 +288,7 @@ fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(
             at_ns: Some(fired_ns),
             radiation: 0,
             field_of_view_rad: 0.26,
-            min_range_m: metres(f64::from(robot.blanking.as_micros())),
+            min_range_m: metres(f64::from(robot.blanking_of(usize::from(id.sensor)).as_micros())),
             max_range_m: metres(f64::from(robot.window.as_micros())),
             range_m: metres(run.earliest_us[k]),
             variance: Some(0.0),

@@ -5,7 +5,7 @@ use eeruf_core::{
     survey::{Survey, SurveyEvent, SurveyPlan},
 };
 use eeruf_logs::{Firing, FiringLog};
-use eeruf_sim::{CrosstalkMatrix, CrosstalkQuery, Limits, LockStep, PathsError, Tracer, World};
+use eeruf_sim::{LockStep, PathsError, World};
 
 use super::firings::CLOCK;
 
@@ -58,20 +58,14 @@ pub(crate) fn simulate(world: &World, plan: SurveyPlan) -> Result<FiringLog, Pat
 /// The paths between the sensors of the first robot, its own echoes among them.
 pub(crate) fn true_paths(world: &World) -> Result<Vec<TruePath>, PathsError> {
     let Some(robot) = world.robots().first() else { return Ok(vec![]) };
-    let (scene, transducer) = (world.scene(), &robot.transducer);
-    let ring: Vec<_> = world.sensors(0, 0.0).collect();
-    let floor = transducer.detection_floor(scene.air());
-    let mut matrix = CrosstalkMatrix::new();
-    let limits = Limits::order(world.max_order());
-    let mut tracer = Tracer::new();
-    tracer.follow(&world.physics());
-    matrix.compute(&mut tracer, &CrosstalkQuery::new(scene, &ring, transducer, limits, 0.5 * floor))?;
-    let c = scene.air().speed_of_sound();
+    let air = world.scene().air();
+    let matrix = world.ring_paths_above(0, world.max_order(), 0.5)?;
+    let c = air.speed_of_sound();
     let path = |path: &eeruf_sim::CriticalPath| TruePath {
         sender: path.emitter as u8,
         receiver: path.receiver as u8,
         travel_us: 1e6 * path.length_m / c,
-        level_db: transducer.level_db(path.amplitude, path.length_m, scene.air()),
+        level_db: robot.transducer_of(path.receiver as usize).level_db(path.amplitude, path.length_m, air),
     };
     Ok(matrix.paths().iter().map(path).collect())
 }

@@ -1,7 +1,12 @@
 //! The program as its users call it: what it prints, and the exit code.
 
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
+
+use eeruf_design::RingSpec;
+use eeruf_sim::World;
+use eeruf_sim::modules::Module;
 
 use crate::common::{Scratch, eeruf, json};
 
@@ -154,6 +159,29 @@ fn every_ring_file_that_we_ship_gets_a_proven_schedule_with_a_picture() {
         assert_eq!((&found["value_us"], &found["proven"]), (&period_us.into(), &true.into()), "{ring}");
         assert!(std::fs::read_to_string(picture).unwrap().contains("phase b"));
     }
+}
+
+#[test]
+fn ring_file_scene_and_emitted_table_say_the_same_of_a_module() {
+    let scene = World::from_toml(Path::new("scenes/alcove-hc-sr04.toml")).unwrap();
+    let module = scene.robots()[0].module_of(0);
+    let spec = RingSpec::from_text(&std::fs::read_to_string("rings/hc-sr04-8.toml").unwrap()).unwrap();
+    // The scene sets its own beam.
+    assert_eq!(spec.modules, [Module { beam: spec.modules[0].beam, ..module }; 8]);
+    let (trigger_us, rest_us, held_us) = (module.trigger_us, module.rest_us, module.no_echo.hold_us());
+    let said =
+        format!("Sensors 0 to 7: hc-sr04, pulse_width, trigger {trigger_us} us, rest {rest_us} us, held {held_us} us");
+    for (form, begin) in [("toml", "# "), ("rust", "// "), ("c", "/* "), ("arduino", "/* ")] {
+        let emitted = eeruf(&["design", "rings/hc-sr04-8.toml", "--emit", form]).out;
+        assert!(emitted.starts_with(&format!("{begin}{said}")), "{emitted}");
+    }
+    let mixed = "sensors = 3\nlayout = \"ring\"\nmodule = [\"hc-sr04\", \"hc-sr04\", \"srf08\"]\njitter_us = 100\n\
+                 crosstalk_range_m = 1.0\n";
+    let (_folder, file) = Scratch::new("mixed.toml", mixed);
+    let emitted = eeruf(&["design", file.to_str().unwrap(), "--emit", "toml"]).out;
+    let modules: Vec<_> = emitted.lines().take(2).collect();
+    assert!(modules[0].starts_with("# Sensors 0 to 1: hc-sr04, pulse_width"), "{emitted}");
+    assert_eq!(modules[1], "# Sensors 2 to 2: srf08, i2c, trigger 0 us, rest 65000 us");
 }
 
 #[test]

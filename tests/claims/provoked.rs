@@ -120,7 +120,13 @@ const REFUSED_FILES: [Spoilt<'static>; 40] = [
     ("study", SCENE, "radius_m = 0.3", "radius_m = inf", "expected"),
     ("study", SCENE, "points_m", "point_m", "unknown field `point_m`, expected"),
     ("paths", SCENE, "period_us = 60_000", "period_us = 0", "expected"),
-    ("paths", SCENE, "period_us = 60_000", "transducer = \"hc-sr04\"", "expected"),
+    (
+        "paths",
+        SCENE,
+        "period_us = 60_000",
+        "module = \"hcsr04\"",
+        "no preset \"hcsr04\"; expected polaroid-6500, hc-sr04",
+    ),
 ];
 
 /// Wrong arguments and wrong files.

@@ -24,7 +24,7 @@ def hits(readings: sim.Readings) -> Any:
 
 def test_readings_of_a_robot_that_stands_know_where_each_sensor_is() -> None:
     places = [(0.1, 0.05, 0.3), (-0.1, 0.0, math.pi), (0.0, -0.2, -1.2)]
-    robot = sim.Robot((0.5, -0.25, 2.0), places, transducer="hc_sr04", window_us=24_000)
+    robot = sim.Robot((0.5, -0.25, 2.0), places, module="hc-sr04", window_us=24_000)
     readings = sim.simulate(sim.Scene(ROOM, robots=[robot]), periods=10)
     for sensor, (x, y, heading) in enumerate(places):
         of = readings.sensor == sensor

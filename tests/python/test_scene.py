@@ -160,3 +160,40 @@ def test_a_body_stands_in_the_way_of_another_robots_sound() -> None:
         readings = sim.simulate(scene, "sequential", periods=4).columns()
         reference = readings["reference_us"][readings["robot"] == 0]
         assert np.allclose(reference * 1e-6 * 343.2 / 2, expected_m, atol=1e-3)
+
+
+def test_a_mixed_robot_in_code_is_one_in_a_file() -> None:
+    robot = sim.Robot(
+        (0, 0, 0.3), 3, 0.4, 0.1, ["hc-sr04", {"like": "hc-sr04", "sees_to_m": 2.5, "hold_us": 130_000}, "srf08"],
+        t_delta_us=[300, 400, 500], window_us=[20_000, 14_000, 25_000], blanking_us=[200, 300, 400],
+        together=[[0, 2]], height_m=[0.2, 0.3, 0.4],
+    )  # fmt: skip
+    text = """
+seed = 1
+
+[[wall]]
+points_m = [[-2, -2], [2, -2], [2, 2], [-2, 2]]
+closed = true
+
+[[robot]]
+pose = { x_m = 0, y_m = 0, heading_rad = 0.3 }
+ring = { sensors = 3, spacing_deg = 22.918311805232928, radius_m = 0.1 }
+module = ["hc-sr04", { like = "hc-sr04", sees_to_m = 2.5, hold_us = 130_000 }, "srf08"]
+t_delta_us = [300, 400, 500]
+window_us = [20_000, 14_000, 25_000]
+blanking_us = [200, 300, 400]
+together = [[0, 2]]
+height_m = [0.2, 0.3, 0.4]
+"""
+    scene = sim.Scene(WALLS, robots=[robot])
+    read = sim.Scene.from_toml(text).robots[0]
+    for name in ("module", "t_delta_us", "window_us", "blanking_us", "together", "height_m"):
+        assert getattr(read, name) == getattr(robot, name), name
+    assert same(scene, sim.Scene.from_toml(scene.to_toml()))
+    assert robot.replace(module="ping").blanking_us == 115
+    assert pickle.loads(pickle.dumps(robot)) == robot
+    assert robot == eval(repr(robot), {"Robot": sim.Robot})
+    older = sim.Robot((0, 0, 0), 2, 0.3, 0.1, transducer="hc_sr04")
+    assert older == sim.Robot((0, 0, 0), 2, 0.3, 0.1, module="hc-sr04")
+    with pytest.raises(eeruf.ArgumentError, match="no figure `sees`; expected like, sees_to_m"):
+        sim.Robot((0, 0, 0), 2, 0.3, 0.1, {"like": "ping", "sees": 2.0})

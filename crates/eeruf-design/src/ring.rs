@@ -2,6 +2,7 @@
 
 use eeruf_core::search::PeriodProblem;
 use eeruf_core::{Criterion, Micros, Requirements, SpeedOfSound};
+use eeruf_modules::{Module, ModulesFile};
 use serde::Deserialize;
 
 use crate::each::Each;
@@ -27,6 +28,8 @@ pub struct RingFile {
     tick_us: u32,
     #[serde(default)]
     stale_echo: bool,
+    /// The modules: range and rest of each, where the file does not say otherwise.
+    module: Option<ModulesFile>,
     /// `T_delta` itself, or the sensor's repeatability with jitter, and how fast the robot moves.
     t_delta_us: Option<Each<u32>>,
     jitter_us: Option<Each<u32>>,
@@ -80,8 +83,18 @@ pub struct RingSpec {
     pub speed_mm_s: Option<u32>,
     /// The time that the controller needs for one firing: it gives two that are closer than this one after the other.
     pub handling: Micros,
+    /// The module of each sensor, where the file names them.
+    pub modules: Vec<Module>,
     /// What single sensors and pairs need, where they are not all alike.
     pub uneven: Option<OwnedUneven>,
+}
+
+/// A figure of modules, one for all or one for each.
+fn each<T>(modules: &ModulesFile, figure: impl Fn(&Module) -> T) -> Each<T> {
+    match modules {
+        ModulesFile::All(module) => Each::All(figure(module)),
+        ModulesFile::Of(list) => Each::Of(list.iter().map(figure).collect()),
+    }
 }
 
 impl RingSpec {
@@ -145,23 +158,26 @@ impl RingFile {
             (None, Some(range)) => metres("crosstalk_range_m", range)?,
             _ => return Err("expected either min_interval_us or crosstalk_range_m".to_owned()),
         };
-        let (window, refire): (Vec<Micros>, Vec<Micros>) =
-            match (&self.window_us, &self.max_range_m, &self.retrigger_us) {
-                (Some(us), None, None) => {
-                    (us.list("window_us", sensors)?.into_iter().map(Micros::new).collect(), vec![])
-                }
-                (None, Some(range), retrigger) => {
-                    let range =
-                        range.list("max_range_m", sensors)?.into_iter().map(|range| metres("max_range_m", range));
-                    let retrigger = retrigger.as_ref().map(|us| us.list("retrigger_us", sensors)).transpose()?;
-                    let retrigger = retrigger.unwrap_or_default().into_iter().map(Micros::new).collect();
-                    (range.collect::<Result<_, _>>()?, retrigger)
-                }
-                _ => return Err("expected either window_us, or max_range_m with or without retrigger_us".to_owned()),
-            };
+        let modules = self.module.as_ref().map(|modules| modules.list(sensors)).transpose()?.unwrap_or_default();
+        let of_modules = self.module.as_ref().filter(|_| self.window_us.is_none());
+        let max_range_m = self.max_range_m.clone().or(of_modules.map(|them| each(them, Module::sees_to_m)));
+        let retrigger_us = self.retrigger_us.clone().or(of_modules.map(|them| each(them, |module| module.rest_us)));
+        let (window, refire): (Vec<Micros>, Vec<Micros>) = match (&self.window_us, &max_range_m, &retrigger_us) {
+            (Some(us), None, None) => (us.list("window_us", sensors)?.into_iter().map(Micros::new).collect(), vec![]),
+            (None, Some(range), retrigger) => {
+                let range = range.list("max_range_m", sensors)?.into_iter().map(|range| metres("max_range_m", range));
+                let retrigger = retrigger.as_ref().map(|us| us.list("retrigger_us", sensors)).transpose()?;
+                let retrigger = retrigger.unwrap_or_default().into_iter().map(Micros::new).collect();
+                (range.collect::<Result<_, _>>()?, retrigger)
+            }
+            _ => {
+                let message = "expected either window_us, or max_range_m with or without retrigger_us, or module";
+                return Err(message.to_owned());
+            }
+        };
         let lists = [self.t_delta_us.as_ref(), self.jitter_us.as_ref(), self.window_us.as_ref()];
-        let are_lists = lists.into_iter().chain([self.retrigger_us.as_ref()]).flatten().any(Each::is_list)
-            || self.max_range_m.as_ref().is_some_and(Each::is_list);
+        let are_lists = lists.into_iter().chain([retrigger_us.as_ref()]).flatten().any(Each::is_list)
+            || max_range_m.as_ref().is_some_and(Each::is_list);
         let pairs = !(self.intervals_us.is_empty() && self.shared_lines.is_empty() && self.together.is_empty());
         let is_uneven = are_lists || pairs;
         let largest = |times: &[Micros]| times.iter().copied().max().unwrap_or_default();
@@ -188,6 +204,7 @@ impl RingFile {
             t_delta: largest_t_delta,
             speed_mm_s,
             handling: Micros::new(self.handling_us.unwrap_or(0)),
+            modules,
             uneven,
         };
         OwnedUneven::can_fire_together(&spec.problem().requirements, sensors)?;

@@ -163,3 +163,29 @@ fn what_is_wrong_with_a_file_is_named_with_key_value_and_what_is_expected() {
     let error = long.shortest(&Search::default(), &mut ()).unwrap_err().to_string();
     assert!(error.starts_with("firing one by one already takes") && error.ends_with("use a coarser tick"), "{error}");
 }
+
+#[test]
+fn modules_say_how_far_sensors_see_and_how_long_they_rest() {
+    const RING: &str = "sensors = 3\nmin_interval_us = 5000\njitter_us = 100\n";
+    let same = |one: &str, other: &str| {
+        let [one, other] = [one, other].map(|more| read(&format!("{RING}{more}")));
+        let of = |spec: &RingSpec| {
+            let requirements = spec.problem().requirements;
+            [0, 1, 2].map(|sensor| (requirements.window_of(sensor), requirements.refire_of(sensor)))
+        };
+        assert_eq!(of(&one), of(&other));
+        assert_eq!((one.window, one.listening, one.retrigger), (other.window, other.listening, other.retrigger));
+    };
+    same("module = \"hc-sr04\"", "max_range_m = 4.0\nretrigger_us = 60000");
+    same("module = \"hc-sr04\"\nmax_range_m = 2.5", "max_range_m = 2.5\nretrigger_us = 60000");
+    same("module = \"hc-sr04\"\nretrigger_us = 40000", "max_range_m = 4.0\nretrigger_us = 40000");
+    same("module = \"hc-sr04\"\nwindow_us = 20000", "window_us = 20000");
+    let mixed = "module = [\"hc-sr04\", \"ping\", { like = \"ping\", sees_to_m = 2.0 }]";
+    same(mixed, "max_range_m = [4.0, 3.0, 2.0]\nretrigger_us = [60000, 19455, 19455]");
+    let spec = read(&format!("{RING}{mixed}"));
+    assert_eq!(spec.modules.iter().map(|module| module.name).collect::<Vec<_>>(), ["hc-sr04", "ping", "ping"]);
+    let wrong = RingSpec::from_text(&format!("{RING}module = [\"ping\"]")).unwrap_err();
+    assert_eq!(wrong.message, "module: 1 modules; expected one for all, or one for each of 3 sensors");
+    let none = RingSpec::from_text(RING).unwrap_err();
+    assert_eq!(none.message, "expected either window_us, or max_range_m with or without retrigger_us, or module");
+}

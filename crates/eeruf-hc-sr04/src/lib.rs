@@ -50,6 +50,7 @@ mod lines;
 mod ring;
 mod settings;
 
+pub use eeruf_modules as modules;
 pub use error::SetupError;
 pub use health::Health;
 pub use lines::Pins;

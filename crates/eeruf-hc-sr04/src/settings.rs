@@ -1,6 +1,7 @@
 //! [`Settings`]: the times that the sensors need.
 
 use eeruf_core::Micros;
+use eeruf_modules::{HC_SR04, HC_SR04_CLONE, Module, NoEcho};
 
 use crate::error::SetupError;
 
@@ -8,24 +9,48 @@ use crate::error::SetupError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Settings {
-    /// How long the trigger stays high; the data sheet asks for 10 us at least.
+    /// How long the trigger stays high.
     pub trigger: Micros,
     /// Edges sooner than this after the trigger are the trigger itself, seen through the cable.
     pub deaf: Micros,
     /// Shorter pulses are no echoes: 100 us is 17 mm, less than the sensor can measure.
     pub shortest: Micros,
-    /// Pulses as long as this are the sensor's own time-out: no echo.
+    /// Pulses as long as this are the sensor's own time-out, which may be a nineteenth short: no echo.
     pub longest: Micros,
     /// The longest that a healthy sensor holds its line where nothing is in range; many clones do for 130 to 200 ms. A
     /// line that rose after its trigger and is high for no longer is still listening, not stuck.
     pub longest_hold: Micros,
-    /// No sensor may be triggered again sooner; the data sheet advises 60 ms.
+    /// No sensor may be triggered again sooner.
     pub min_retrigger: Micros,
     /// After so many firings in a row without a pulse a sensor counts as missing.
     pub missing_after: u8,
 }
 
 impl Settings {
+    /// The times of this module. `None` if it does not answer by the width of a pulse that ends without an echo too.
+    ///
+    /// ```
+    /// use eeruf_hc_sr04::{Settings, modules::{HC_SR04, PING, SRF08}};
+    /// assert_eq!(Settings::of(&HC_SR04), Some(Settings::default()));
+    /// assert_eq!(Settings::of(&PING).map(|settings| settings.trigger.as_micros()), Some(5));
+    /// assert_eq!(Settings::of(&SRF08), None);
+    /// ```
+    pub const fn of(module: &Module) -> Option<Self> {
+        let NoEcho::Holds { us: hold_us } = module.no_echo else { return None };
+        // Among modules of one name there are clones.
+        let clone_us = HC_SR04_CLONE.no_echo.hold_us();
+        let longest_hold_us = if hold_us > clone_us { hold_us } else { clone_us };
+        Some(Self {
+            trigger: Micros::new(module.trigger_us),
+            deaf: Micros::new(100),
+            shortest: Micros::new(100),
+            longest: Micros::new(hold_us / 19 * 18),
+            longest_hold: Micros::new(longest_hold_us / 4 * 5),
+            min_retrigger: Micros::new(module.rest_us),
+            missing_after: 3,
+        })
+    }
+
     /// Whether a sensor may be triggered again after this time.
     pub(crate) fn allow(&self, min_refire: Micros) -> Result<(), SetupError> {
         let min_retrigger = self.min_retrigger;
@@ -34,15 +59,12 @@ impl Settings {
 }
 
 impl Default for Settings {
+    /// Those of the HC-SR04.
     fn default() -> Self {
-        Self {
-            trigger: Micros::new(10),
-            deaf: Micros::new(100),
-            shortest: Micros::new(100),
-            longest: Micros::from_millis(36),
-            longest_hold: Micros::from_millis(250),
-            min_retrigger: Micros::from_millis(60),
-            missing_after: 3,
-        }
+        const SETTINGS: Settings = match Settings::of(&HC_SR04) {
+            Some(settings) => settings,
+            None => panic!("an HC-SR04 answers by a pulse"),
+        };
+        SETTINGS
     }
 }

@@ -30,6 +30,7 @@ mod logs;
 mod maps;
 mod memory;
 mod methods;
+mod module;
 mod moments;
 mod own;
 mod owned_ring;

@@ -50,6 +50,7 @@ impl Arguments<'_, '_> {
             t_delta,
             speed_mm_s: None,
             handling: Micros::ZERO,
+            modules: vec![],
             uneven: self.uneven.owned(sensors, t_deltas, windows)?,
         };
         OwnedUneven::can_fire_together(&spec.problem().requirements, sensors).map_err(ArgumentError::new_err)?;

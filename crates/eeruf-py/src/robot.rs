@@ -1,15 +1,16 @@
 //! `sim.Robot`: a robot with its ring.
 
-use eeruf_core::Micros;
+use eeruf_core::{Micros, SensorLimits};
 use eeruf_sim::{Beam, Clock, GainProfile, Motion, Point, Transducer};
 use pyo3::{
     prelude::*,
-    types::{PyDict, PyTuple},
+    types::{PyDict, PyString, PyTuple},
 };
 
 use crate::{
-    arguments::{choice, flag, instance, items, micros, number, whole, whole_or, wrong},
+    arguments::{choice, flag, instance, items, micros, number, shown, times, whole, whole_or, wrong},
     body::{outline, shown_body},
+    module::{modules, shown_module},
     pose::{from_pose, motion, pose_of, to_pose},
     requirements,
     schedule::Schedule,
@@ -22,11 +23,12 @@ use crate::{
 ///     sensors: how many on an arc, 1 to 64; or where each one is on the robot, as (x, y, heading).
 ///     spacing_rad: the angle from one sensor to the next on the arc, in radians.
 ///     radius_m: the radius of the arc, in metres.
-///     transducer: ``"polaroid_6500"`` or ``"hc_sr04"``.
+///     module: of its sensors: a name such as ``"hc-sr04"``, a dict of what differs from one, such as
+///         ``{"like": "hc-sr04", "sees_to_m": 2.5}``, or a list of one for each sensor; docs/modules.md has them all.
 ///     gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"``, ``"linear"``,
 ///         ``"stepped"`` or ``"polaroid_6500"``, the steps of that module's control circuit.
 ///     beam: the pattern near 90 degrees off a sensor's axis: ``"cut_at_90"``, an endless baffle with nothing behind,
-///         or ``"continuous"``, a baffle that ends; None for the transducer's own, ``"cut_at_90"`` of the
+///         or ``"continuous"``, a baffle that ends; None for the module's own, ``"cut_at_90"`` of the
 ///         Polaroid 6500 and ``"continuous"`` of the HC-SR04.
 ///     coupling_db: the level of the sound that the mounting carries straight from sensor to sensor, relative to two
 ///         that face each other as far apart, -200 to 0; None for what the patterns say.
@@ -34,9 +36,12 @@ use crate::{
 ///     body: its outline, which others' sound is reflected and shaded by: the radius of a disc, (length, width) of a
 ///         box, or 3 to 8 corners (x, y) of a convex polygon, counter-clockwise, all in metres; None for none.
 ///     period_us: ``T_p`` of the methods that bring no schedule of their own; the schedule's if there is one.
-///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical.
-///     window_us: ``T_wind``: how long a sensor listens.
-///     blanking_us: how long a sensor is deaf after it has fired; the transducer's own unless it is given.
+///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical; one for all, or a list
+///         of one for each sensor, for the robot's own schedule.
+///     window_us: ``T_wind``: how long a sensor listens; one for all, or a list as well.
+///     together: sets of sensors that the robot's own schedule fires at once, such as ``[[8, 9], [10, 11]]``.
+///     blanking_us: how long a sensor is deaf after it has fired, one for all or a list; the module's own unless it is
+///         given.
 ///     min_refire_us: with immediate refiring, how long a sensor rests between its echo and its next firing.
 ///     start_us: when the ring begins to fire, by its own clock.
 ///     schedule: what the EERUF methods fire by; None for the paper's table, scaled to the period.
@@ -48,6 +53,7 @@ use crate::{
 ///     waypoints_m: points (x, y) that it drives through in straight lines, instead of a velocity.
 ///     speed_m_s: how fast it does so, in m/s.
 ///     clock_offset_us: what its clock shows at the start.
+///     transducer: an older name of ``module``.
 ///     clock_drift_ppm: by how much its clock goes too fast, in millionths.
 ///
 /// Raises:
@@ -57,7 +63,7 @@ use crate::{
 ///     >>> from eeruf import sim
 ///     >>> sim.Robot((0.0, 0.0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3).period_us
 ///     60000
-///     >>> sim.Robot((0, 0, 0), sensors=[(0.1, 0.1, 0.5), (0.1, -0.1, -0.5)], transducer="hc_sr04").sensors
+///     >>> sim.Robot((0, 0, 0), sensors=[(0.1, 0.1, 0.5), (0.1, -0.1, -0.5)], module="hc-sr04").sensors
 ///     2
 #[pyclass(frozen, eq, module = "eeruf.sim")]
 #[derive(Clone, PartialEq)]
@@ -75,26 +81,16 @@ pub(crate) struct Robot {
     /// The radius of the arc, in metres; None for sensors at places of their own.
     #[pyo3(get)]
     radius_m: Option<f64>,
-    /// The name of the transducer.
-    #[pyo3(get)]
-    transducer: &'static str,
 }
-
-const TRANSDUCERS: [(&str, Transducer); 2] =
-    [("polaroid_6500", Transducer::POLAROID_6500), ("hc_sr04", Transducer::HC_SR04)];
 
 impl Robot {
     /// One that a file describes.
     pub(crate) fn of(robot: &eeruf_sim::Robot) -> Self {
-        let Transducer { gain, beam, .. } = robot.transducer;
-        let named = TRANSDUCERS.iter().find(|(_, preset)| Transducer { gain, beam, ..*preset } == robot.transducer);
         Self {
             pose: from_pose(&robot.pose),
             sensor_poses: robot.sensors.iter().map(from_pose).collect(),
             spacing_rad: None,
             radius_m: None,
-            // Files know no others.
-            transducer: named.map_or("polaroid_6500", |(name, _)| name),
             robot: robot.clone(),
         }
     }
@@ -111,9 +107,11 @@ impl Robot {
             }
             _ => all.set_item("sensors", &self.sensor_poses)?,
         }
-        all.set_item("transducer", self.transducer)?;
-        all.set_item("gain", self.gain())?;
-        all.set_item("beam", self.beam())?;
+        all.set_item("module", self.module(py)?)?;
+        if self.robot.modules.is_empty() {
+            all.set_item("gain", self.gain())?;
+            all.set_item("beam", self.beam())?;
+        }
         all.set_item("coupling_db", self.coupling_db())?;
         // One for all stays one for all when the sensors are replaced.
         match &self.robot.heights_m[..] {
@@ -125,9 +123,10 @@ impl Robot {
         }
         all.set_item("body", self.body(py)?)?;
         all.set_item("period_us", self.period_us())?;
-        all.set_item("t_delta_us", self.t_delta_us())?;
-        all.set_item("window_us", self.window_us())?;
-        all.set_item("blanking_us", self.blanking_us())?;
+        all.set_item("t_delta_us", self.t_delta_us(py)?)?;
+        all.set_item("window_us", self.window_us(py)?)?;
+        all.set_item("blanking_us", self.blanking_us(py)?)?;
+        all.set_item("together", self.together())?;
         all.set_item("min_refire_us", self.min_refire_us())?;
         all.set_item("start_us", self.start_us())?;
         all.set_item("schedule", self.schedule())?;
@@ -151,6 +150,13 @@ impl Robot {
     }
 }
 
+impl Robot {
+    /// A limit of each sensor, where they have their own.
+    fn limits(&self, of: fn(&SensorLimits) -> Micros) -> Option<Vec<Micros>> {
+        (!self.robot.limits.is_empty()).then(|| self.robot.limits.iter().map(of).collect())
+    }
+}
+
 /// One height for all sensors, or one for each, in metres.
 fn heights(value: Option<&Bound<'_, PyAny>>, sensors: usize) -> PyResult<Vec<f64>> {
     let Some(value) = value else { return Ok(vec![]) };
@@ -164,28 +170,48 @@ fn heights(value: Option<&Bound<'_, PyAny>>, sensors: usize) -> PyResult<Vec<f64
     each.iter().map(|height_m| number("height_m", height_m, 0.0..=1e3)).collect()
 }
 
+/// A time for each of so many sensors, and whether they were given one by one.
+fn each_micros(name: &str, value: &Bound<'_, PyAny>, sensors: usize) -> PyResult<(Vec<Micros>, bool)> {
+    if value.is_instance_of::<PyString>() || value.try_iter().is_err() {
+        return Ok((vec![micros(name, value)?; sensors], false));
+    }
+    let each = times(name, value)?;
+    if each.len() != sensors {
+        return Err(wrong(&format!("number of {name}"), each.len(), format_args!("{sensors}, one for each sensor")));
+    }
+    Ok((each, true))
+}
+
+/// One time, or a list of one for each sensor.
+fn shown_micros<'py>(py: Python<'py>, one: Micros, each: Option<Vec<Micros>>) -> PyResult<Bound<'py, PyAny>> {
+    match each {
+        None => Ok(one.as_micros().into_pyobject(py)?.into_any()),
+        Some(each) => each.into_iter().map(Micros::as_micros).collect::<Vec<_>>().into_pyobject(py),
+    }
+}
+
 #[pymethods]
 impl Robot {
     #[new]
     #[pyo3(signature = (
-        pose, sensors, spacing_rad=None, radius_m=None, transducer=None, *, gain=None, period_us=None, t_delta_us=None,
+        pose, sensors, spacing_rad=None, radius_m=None, module=None, *, gain=None, period_us=None, t_delta_us=None,
         window_us=None, blanking_us=None, min_refire_us=None, start_us=None, schedule=None, neighbours=None,
         consecutive=None, odometry=None, velocity_m_s=None, turn_rad_s=None, waypoints_m=None,
         speed_m_s=None, clock_offset_us=None, clock_drift_ppm=None, body=None, beam=None, coupling_db=None,
-        height_m=None
+        height_m=None, together=None, transducer=None
     ))]
-    #[pyo3(text_signature = "(pose, sensors, spacing_rad=None, radius_m=None, transducer=\"polaroid_6500\", *, \
+    #[pyo3(text_signature = "(pose, sensors, spacing_rad=None, radius_m=None, module=\"polaroid-6500\", *, \
             gain=\"constant\", period_us=60000, t_delta_us=500, window_us=36000, blanking_us=None, \
             min_refire_us=36000, start_us=0, schedule=None, neighbours=4, consecutive=2, odometry=False, \
             velocity_m_s=None, turn_rad_s=None, waypoints_m=None, speed_m_s=None, clock_offset_us=0, \
-            clock_drift_ppm=0.0, body=None, beam=None, coupling_db=None, height_m=0.3)")]
+            clock_drift_ppm=0.0, body=None, beam=None, coupling_db=None, height_m=0.3, together=(), transducer=None)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         pose: &Bound<'_, PyAny>,
         sensors: &Bound<'_, PyAny>,
         spacing_rad: Option<&Bound<'_, PyAny>>,
         radius_m: Option<&Bound<'_, PyAny>>,
-        transducer: Option<&Bound<'_, PyAny>>,
+        module: Option<&Bound<'_, PyAny>>,
         gain: Option<&Bound<'_, PyAny>>,
         period_us: Option<&Bound<'_, PyAny>>,
         t_delta_us: Option<&Bound<'_, PyAny>>,
@@ -207,47 +233,76 @@ impl Robot {
         beam: Option<&Bound<'_, PyAny>>,
         coupling_db: Option<&Bound<'_, PyAny>>,
         height_m: Option<&Bound<'_, PyAny>>,
+        together: Option<&Bound<'_, PyAny>>,
+        transducer: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let pose = pose_of("pose", pose)?;
-        let (name, transducer) =
-            choice("transducer", transducer, &TRANSDUCERS.map(|(name, kind)| (name, (name, kind))))?;
-        let gain = choice("gain", gain, &GainProfile::NAMES)?;
-        let beam = beam.map_or(Ok(transducer.beam), |beam| choice("beam", Some(beam), &Beam::NAMES))?;
-        let transducer = Transducer { gain, beam, ..transducer };
         let spacing_rad = spacing_rad.map(|angle| number("spacing_rad", angle, -10.0..=10.0)).transpose()?;
         let radius_m = radius_m.map(|radius| number("radius_m", radius, 0.0..=1e3)).transpose()?;
-        let (mut robot, sensor_poses) =
-            if sensors.is_instance_of::<pyo3::types::PyString>() || sensors.try_iter().is_err() {
-                let count = requirements::sensors(sensors)?;
-                let (Some(spacing_rad), Some(radius_m)) = (spacing_rad, radius_m) else {
-                    let name = if spacing_rad.is_none() { "spacing_rad" } else { "radius_m" };
-                    return Err(wrong(name, "None", "a number, since the sensors stand on an arc"));
-                };
-                let robot = eeruf_sim::Robot::ring(to_pose(pose), count, spacing_rad, radius_m, transducer);
-                let poses = robot.sensors.iter().map(from_pose).collect();
-                (robot, poses)
-            } else {
-                if spacing_rad.is_some() || radius_m.is_some() {
-                    let name = if spacing_rad.is_some() { "spacing_rad" } else { "radius_m" };
-                    let given = spacing_rad.or(radius_m).unwrap_or_default();
-                    return Err(wrong(name, given, "None, since each sensor has a place of its own"));
-                }
-                let places = items("sensors", sensors, "a number, or (x, y, heading) of each sensor")?;
-                let each = |(index, place)| pose_of(&format!("sensors[{index}]"), place);
-                let poses = places.iter().enumerate().map(each).collect::<PyResult<Vec<_>>>()?;
-                if poses.is_empty() || poses.len() > eeruf_core::MAX_SENSORS {
-                    return Err(wrong("number of sensors", poses.len(), "1 to 64"));
-                }
-                let on_robot = poses.iter().copied().map(to_pose).collect();
-                (eeruf_sim::Robot::with_sensors(to_pose(pose), on_robot, transducer), poses)
+        let (mut robot, sensor_poses) = if sensors.is_instance_of::<PyString>() || sensors.try_iter().is_err() {
+            let count = requirements::sensors(sensors)?;
+            let (Some(spacing_rad), Some(radius_m)) = (spacing_rad, radius_m) else {
+                let name = if spacing_rad.is_none() { "spacing_rad" } else { "radius_m" };
+                return Err(wrong(name, "None", "a number, since the sensors stand on an arc"));
             };
+            let robot = eeruf_sim::Robot::ring(to_pose(pose), count, spacing_rad, radius_m, Transducer::POLAROID_6500);
+            let poses = robot.sensors.iter().map(from_pose).collect();
+            (robot, poses)
+        } else {
+            if spacing_rad.is_some() || radius_m.is_some() {
+                let name = if spacing_rad.is_some() { "spacing_rad" } else { "radius_m" };
+                let given = spacing_rad.or(radius_m).unwrap_or_default();
+                return Err(wrong(name, given, "None, since each sensor has a place of its own"));
+            }
+            let places = items("sensors", sensors, "a number, or (x, y, heading) of each sensor")?;
+            let each = |(index, place)| pose_of(&format!("sensors[{index}]"), place);
+            let poses = places.iter().enumerate().map(each).collect::<PyResult<Vec<_>>>()?;
+            if poses.is_empty() || poses.len() > eeruf_core::MAX_SENSORS {
+                return Err(wrong("number of sensors", poses.len(), "1 to 64"));
+            }
+            let on_robot = poses.iter().copied().map(to_pose).collect();
+            (eeruf_sim::Robot::with_sensors(to_pose(pose), on_robot, Transducer::POLAROID_6500), poses)
+        };
+        let count = robot.sensors.len();
+        let (name, module) = match (module, transducer) {
+            (Some(_), Some(value)) => return Err(wrong("transducer", shown(value), "None, since module is given")),
+            (None, Some(value)) => ("transducer", Some(value)),
+            (value, None) => ("module", value),
+        };
+        if let Some(module) = module {
+            robot = robot.with_modules(modules(name, module, count)?);
+        }
+        let gain = gain.map(|gain| choice("gain", Some(gain), &GainProfile::NAMES)).transpose()?;
+        let beam = beam.map(|beam| choice("beam", Some(beam), &Beam::NAMES)).transpose()?;
+        robot = robot.with_pattern(gain, beam);
         let set = |name, value: Option<&Bound<'_, PyAny>>, field: &mut Micros| {
             value.map_or(Ok(()), |value| micros(name, value).map(|us| *field = us))
         };
         set("period_us", period_us, &mut robot.period)?;
-        set("t_delta_us", t_delta_us, &mut robot.t_delta)?;
-        set("window_us", window_us, &mut robot.window)?;
-        set("blanking_us", blanking_us, &mut robot.blanking)?;
+        let each = |name, value: Option<&Bound<'_, PyAny>>, own: Micros| {
+            value.map_or_else(|| Ok((vec![own; count], false)), |value| each_micros(name, value, count))
+        };
+        let (t_delta, own_t_delta) = each("t_delta_us", t_delta_us, robot.t_delta)?;
+        let (window, own_window) = each("window_us", window_us, robot.window)?;
+        let largest = |times: &[Micros]| times.iter().copied().max().unwrap_or_default();
+        (robot.t_delta, robot.window) = (largest(&t_delta), largest(&window));
+        if own_t_delta || own_window {
+            let limits = t_delta.into_iter().zip(window).map(|(t_delta, window)| SensorLimits { t_delta, window });
+            robot.limits = limits.collect();
+        }
+        if let Some(blanking_us) = blanking_us {
+            robot = robot.with_blankings(each_micros("blanking_us", blanking_us, count)?.0);
+        }
+        for group in together.map_or(Ok(vec![]), |sets| items("together", sets, "sets of two or more sensors"))? {
+            let members = items("together", &group, "sets of two or more sensors")?;
+            let last = u8::try_from(count - 1).unwrap_or(u8::MAX);
+            let members = members.iter().map(|sensor| whole("together", sensor, 0..=last));
+            let members = members.collect::<PyResult<Vec<u8>>>()?;
+            if members.len() < 2 {
+                return Err(wrong("together", shown(&group), "two or more sensors in each set"));
+            }
+            robot.together.push(members.iter().fold(0, |set, sensor| set | 1 << sensor));
+        }
         set("min_refire_us", min_refire_us, &mut robot.min_refire)?;
         set("start_us", start_us, &mut robot.start)?;
         robot.neighbours = requirements::neighbours(neighbours)?;
@@ -267,7 +322,7 @@ impl Robot {
         if let (Some(schedule), None) = (robot.schedule, period_us) {
             robot.period = schedule.period();
         }
-        Ok(Self { robot, pose, sensor_poses, spacing_rad, radius_m, transducer: name })
+        Ok(Self { robot, pose, sensor_poses, spacing_rad, radius_m })
     }
 
     /// The same robot, but for these arguments.
@@ -299,8 +354,11 @@ impl Robot {
                 arguments.del_item(older).or_else(missing)?;
             }
         }
-        if given("transducer") && !given("blanking_us") {
-            arguments.del_item("blanking_us")?;
+        if given("module") || given("transducer") {
+            arguments.del_item("module")?;
+            if !given("blanking_us") {
+                arguments.del_item("blanking_us")?;
+            }
         }
         if given("schedule") && !given("period_us") {
             arguments.del_item("period_us")?;
@@ -317,7 +375,28 @@ impl Robot {
         self.robot.sensors.len()
     }
 
-    /// How the receiver's gain grows while it listens.
+    /// The module of its sensors: a name, a dict of figures, or a list of these, one for each sensor.
+    #[getter]
+    fn module<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        if self.robot.modules.is_empty() {
+            // Gain and beam have arguments of their own.
+            let module = self.robot.module_of(0);
+            let preset = eeruf_sim::modules::find(module.name).copied().unwrap_or(module);
+            let eeruf_sim::modules::Module { gain, beam, .. } = preset;
+            return shown_module(py, &eeruf_sim::modules::Module { gain, beam, ..module });
+        }
+        let each = self.robot.modules.iter().map(|module| shown_module(py, module));
+        each.collect::<PyResult<Vec<_>>>()?.into_pyobject(py)
+    }
+
+    /// Sets of sensors that the robot's own schedule fires at once.
+    #[getter]
+    fn together(&self) -> Vec<Vec<usize>> {
+        let members = |set: &u64| (0..self.sensors()).filter(|sensor| set >> sensor & 1 == 1).collect();
+        self.robot.together.iter().map(members).collect()
+    }
+
+    /// How the receiver's gain grows while it listens; the first sensor's where they differ.
     #[getter]
     fn gain(&self) -> &'static str {
         self.robot.transducer.gain.name()
@@ -354,22 +433,23 @@ impl Robot {
         self.robot.period.as_micros()
     }
 
-    /// ``T_delta``, in microseconds.
+    /// ``T_delta``, in microseconds; a list of one for each sensor where they have their own.
     #[getter]
-    fn t_delta_us(&self) -> u32 {
-        self.robot.t_delta.as_micros()
+    fn t_delta_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        shown_micros(py, self.robot.t_delta, self.limits(|limits| limits.t_delta))
     }
 
-    /// How long a sensor listens, in microseconds.
+    /// How long a sensor listens, in microseconds; a list of one for each sensor where they have their own.
     #[getter]
-    fn window_us(&self) -> u32 {
-        self.robot.window.as_micros()
+    fn window_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        shown_micros(py, self.robot.window, self.limits(|limits| limits.window))
     }
 
-    /// How long a sensor is deaf after it has fired, in microseconds.
+    /// How long a sensor is deaf after it has fired, in microseconds; a list of one for each sensor where they differ.
     #[getter]
-    fn blanking_us(&self) -> u32 {
-        self.robot.blanking.as_micros()
+    fn blanking_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let each = Some(self.robot.blankings.clone()).filter(|each| !each.is_empty());
+        shown_micros(py, self.robot.blanking, each)
     }
 
     /// How long a sensor rests between its echo and its next firing, in microseconds.

@@ -58,6 +58,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub use eeruf_modules as modules;
+
 pub mod acoustics;
 pub mod experiments;
 pub mod geometry;
@@ -72,7 +74,7 @@ pub mod tracing;
 pub mod world;
 
 pub use acoustics::{
-    Beam, GainProfile, Physics, Piston, Transducer, UnknownPhysics, edge_diffraction, pole_wave_correction,
+    Beam, GainProfile, Physics, Piston, Transducer, UnknownPhysics, edge_diffraction, gain_at, pole_wave_correction,
     rigid_cylinder_form,
 };
 pub use geometry::{Moment, Point, Pose, Specular, Vector, alhazen, alhazen_twice};

@@ -2,35 +2,12 @@
 
 use core::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI};
 
+use eeruf_modules::Beam;
+
 use super::panel::fresnel;
 
 /// The first zero of `J1`: where the main lobe ends.
 const FIRST_NULL: f64 = 3.831_705_970_207_512;
-
-/// The pattern near 90 degrees off the axis, and beyond.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Beam {
-    /// An endless baffle: its pattern up to 90 degrees, nothing behind. Two sensors on one plate do not hear each other
-    /// straight along it, and hear each other fully if they are turned in by any angle.
-    #[default]
-    CutAt90,
-    /// A baffle that ends with the piston: half of the wave at 90 degrees, and the shadow of a half plane behind. The
-    /// pattern is continuous at all angles.
-    Continuous,
-}
-
-impl Beam {
-    /// The beams by their names in files.
-    pub const NAMES: [(&'static str, Self); 2] = [("cut_at_90", Self::CutAt90), ("continuous", Self::Continuous)];
-
-    /// The name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::CutAt90 => "cut_at_90",
-            Self::Continuous => "continuous",
-        }
-    }
-}
 
 /// A baffled circular piston with a floor under its nulls.
 #[derive(Clone, Copy, Debug, PartialEq)]

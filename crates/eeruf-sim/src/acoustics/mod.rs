@@ -10,9 +10,10 @@ mod spreading;
 mod transducer;
 
 pub use diffraction::{edge_diffraction, pole_wave_correction, rigid_cylinder_form};
-pub use directivity::{Beam, Piston};
+pub use directivity::Piston;
+pub use eeruf_modules::{Beam, Gain as GainProfile};
 pub(crate) use panel::{LOUDEST_PANEL, panel_share};
 pub use physics::{Physics, UnknownPhysics};
 pub(crate) use reflection::reflected;
 pub(crate) use spreading::pole_spread;
-pub use transducer::{GainProfile, Transducer};
+pub use transducer::{Transducer, gain_at};

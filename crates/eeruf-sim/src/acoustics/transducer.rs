@@ -1,27 +1,10 @@
 //! Transducers and their ranging modules: frequency, size, burst, blanking, range, gain over time and what is just
 //! heard.
 
-use super::directivity::{Beam, Piston};
-use crate::scene::Air;
+use eeruf_modules::{Beam, Gain as GainProfile, Module};
 
-/// The growth of a receiver's gain while it listens.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum GainProfile {
-    /// The same all the time.
-    #[default]
-    Constant,
-    /// With the square root of time.
-    SquareRoot,
-    /// In proportion to time, which makes up for spherical spreading.
-    Linear,
-    /// As [`Linear`](Self::Linear), but in twelve equal steps, as ranging modules switch it (how many is a choice).
-    Stepped,
-    /// The twelve steps of the Polaroid 6500 module, by the clock of its control circuit, the TL851 (Texas Instruments,
-    /// SLSS004, March 1988): whatever range it is used for, a step ends 2.38, 5.12, 7.87, .. 38.04 ms after firing.
-    /// Each step adds 1.15 dB. That is a choice: the TL852's relative gain is published as a drawing only (SLSS003,
-    /// Fig. 2), and regions of constant depth leave 1.1 to 1.2 dB a step; see `docs/physics.md`.
-    Polaroid6500,
-}
+use super::directivity::Piston;
+use crate::scene::Air;
 
 /// In how many steps [`GainProfile::Stepped`] grows.
 const GAIN_STEPS: f64 = 12.0;
@@ -33,51 +16,34 @@ const TL851_STEPS: [u32; 11] = [1000, 2152, 3304, 4456, 5608, 6760, 7912, 9064, 
 /// What a step of [`GainProfile::Polaroid6500`] adds, in dB.
 const STEP_DB: f64 = 1.15;
 
-impl GainProfile {
-    /// The profiles by their names in files.
-    pub const NAMES: [(&'static str, Self); 5] = [
-        ("constant", Self::Constant),
-        ("square_root", Self::SquareRoot),
-        ("linear", Self::Linear),
-        ("stepped", Self::Stepped),
-        ("polaroid_6500", Self::Polaroid6500),
-    ];
-
-    /// The name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Constant => "constant",
-            Self::SquareRoot => "square_root",
-            Self::Linear => "linear",
-            Self::Stepped => "stepped",
-            Self::Polaroid6500 => "polaroid_6500",
-        }
-    }
-
-    /// Gain at a time after firing, relative to the gain at `full_s`, from which on it stays 1. The Polaroid's own
-    /// steps are at 1 after 38 ms, whatever `full_s` is.
-    ///
-    /// ```
-    /// use eeruf_sim::GainProfile;
-    /// assert_eq!(GainProfile::Linear.gain(0.01, 0.04), 0.25);
-    /// assert_eq!(GainProfile::SquareRoot.gain(0.01, 0.04), 0.5);
-    /// assert_eq!([0.0, 0.0033, 0.0034].map(|t| 12.0 * GainProfile::Stepped.gain(t, 0.04)), [1.0, 1.0, 2.0]);
-    /// let polaroid_db = |t: f64| 20.0 * GainProfile::Polaroid6500.gain(t, 0.04).log10();
-    /// for (t, expected) in [(2.3e-3, -12.65), (2.4e-3, -11.5), (38.0e-3, -1.15), (38.1e-3, 0.0)] {
-    ///     assert!((polaroid_db(t) - expected).abs() < 1e-9);
-    /// }
-    /// ```
-    pub fn gain(self, time_s: f64, full_s: f64) -> f64 {
-        let share = (time_s / full_s).clamp(0.0, 1.0);
-        match self {
-            Self::Constant => 1.0,
-            Self::SquareRoot => share.sqrt(),
-            Self::Linear => share,
-            Self::Stepped => ((GAIN_STEPS * share).floor() + 1.0).min(GAIN_STEPS) / GAIN_STEPS,
-            Self::Polaroid6500 => {
-                let to_come = TL851_STEPS.iter().filter(|&&cycles| f64::from(cycles) > time_s * TL851_HZ).count();
-                libm::exp10(-STEP_DB * to_come as f64 / 20.0)
-            }
+/// The gain of a receiver at a time after firing, relative to the gain at `full_s`, from which on it stays 1. The
+/// Polaroid's own steps are at 1 after 38 ms, whatever `full_s` is.
+///
+/// [`GainProfile::Polaroid6500`] has the twelve steps of the Polaroid 6500 module, by the clock of its control circuit,
+/// the TL851 (Texas Instruments, SLSS004, March 1988): whatever range it is used for, a step ends 2.38, 5.12, 7.87, ..
+/// 38.04 ms after firing. Each step adds 1.15 dB. That is a choice: the TL852's relative gain is published as a drawing
+/// only (SLSS003, Fig. 2), and regions of constant depth leave 1.1 to 1.2 dB a step; see `docs/physics.md`.
+///
+/// ```
+/// use eeruf_sim::{GainProfile, gain_at};
+/// assert_eq!(gain_at(GainProfile::Linear, 0.01, 0.04), 0.25);
+/// assert_eq!(gain_at(GainProfile::SquareRoot, 0.01, 0.04), 0.5);
+/// assert_eq!([0.0, 0.0033, 0.0034].map(|t| 12.0 * gain_at(GainProfile::Stepped, t, 0.04)), [1.0, 1.0, 2.0]);
+/// let polaroid_db = |t: f64| 20.0 * gain_at(GainProfile::Polaroid6500, t, 0.04).log10();
+/// for (t, expected) in [(2.3e-3, -12.65), (2.4e-3, -11.5), (38.0e-3, -1.15), (38.1e-3, 0.0)] {
+///     assert!((polaroid_db(t) - expected).abs() < 1e-9);
+/// }
+/// ```
+pub fn gain_at(profile: GainProfile, time_s: f64, full_s: f64) -> f64 {
+    let share = (time_s / full_s).clamp(0.0, 1.0);
+    match profile {
+        GainProfile::Constant => 1.0,
+        GainProfile::SquareRoot => share.sqrt(),
+        GainProfile::Linear => share,
+        GainProfile::Stepped => ((GAIN_STEPS * share).floor() + 1.0).min(GAIN_STEPS) / GAIN_STEPS,
+        GainProfile::Polaroid6500 => {
+            let to_come = TL851_STEPS.iter().filter(|&&cycles| f64::from(cycles) > time_s * TL851_HZ).count();
+            libm::exp10(-STEP_DB * to_come as f64 / 20.0)
         }
     }
 }
@@ -106,35 +72,44 @@ pub struct Transducer {
 }
 
 impl Transducer {
-    /// Polaroid 600 series electrostatic transducer with the 6500 module. As wide as its burst: `f / cycles`, where the
-    /// spectrum of so many cycles has fallen by 3.9 dB (a choice). Its gain is constant, which the module's is not;
-    /// [`GainProfile::Polaroid6500`] is nearer to it.
-    pub const POLAROID_6500: Self = Self {
-        frequency_hz: 49_400.0,
-        bandwidth_hz: 49_400.0 / 16.0,
-        radius_m: 19.2e-3,
-        pattern_floor: Piston::DEFAULT_FLOOR,
-        beam: Beam::CutAt90,
-        cycles: 16,
-        blanking_s: 2.38e-3,
-        max_range_m: 10.7,
-        gain: GainProfile::Constant,
-    };
+    /// Polaroid 600 series electrostatic transducer with the 6500 module. Its gain is constant, which the module's is
+    /// not; [`GainProfile::Polaroid6500`] is nearer to it.
+    pub const POLAROID_6500: Self = Self::of(&eeruf_modules::POLAROID_6500);
 
-    /// HC-SR04 module. Its time-out without an echo is 38 ms. As wide as its burst, too. Its gain is constant, as the
-    /// module's is: amplifiers of fixed gain before a comparator; see `docs/physics.md`.
-    pub const HC_SR04: Self = Self {
-        frequency_hz: 40_000.0,
-        bandwidth_hz: 40_000.0 / 8.0,
-        radius_m: 8.0e-3,
-        pattern_floor: Piston::DEFAULT_FLOOR,
-        // Its cans stand free on a board.
-        beam: Beam::Continuous,
-        cycles: 8,
-        blanking_s: 0.117e-3,
-        max_range_m: 4.0,
-        gain: GainProfile::Constant,
-    };
+    /// HC-SR04 module. Its gain is constant, as the module's is: amplifiers of fixed gain before a comparator; see
+    /// `docs/physics.md`.
+    pub const HC_SR04: Self = Self::of(&eeruf_modules::HC_SR04);
+
+    /// What a module sends and hears.
+    pub const fn of(module: &Module) -> Self {
+        Self {
+            frequency_hz: module.frequency_hz as f64,
+            bandwidth_hz: module.bandwidth_hz as f64,
+            radius_m: module.radius_um as f64 / 1e6,
+            pattern_floor: Piston::DEFAULT_FLOOR,
+            beam: module.beam,
+            cycles: module.burst_cycles,
+            blanking_s: module.blanking_us as f64 / 1e6,
+            max_range_m: module.sees_to_mm as f64 / 1e3,
+            gain: module.gain,
+        }
+    }
+
+    /// The module that is `like` another one but for what is sent and heard, in whole numbers.
+    pub(crate) fn described(&self, like: &Module) -> Module {
+        let whole = |value: f64| value.round() as u32;
+        Module {
+            sees_to_mm: whole(1e3 * self.max_range_m),
+            blanking_us: whole(1e6 * self.blanking_s),
+            frequency_hz: whole(self.frequency_hz),
+            bandwidth_hz: whole(self.bandwidth_hz),
+            burst_cycles: self.cycles,
+            gain: self.gain,
+            radius_um: whole(1e6 * self.radius_m),
+            beam: self.beam,
+            ..*like
+        }
+    }
 
     /// `k = 2 pi f / c` in rad/m.
     pub fn wave_number(&self, air: Air) -> f64 {
@@ -178,7 +153,7 @@ impl Transducer {
     /// Received level after the time-varying gain, on the scale of [`detection_floor`](Self::detection_floor).
     pub fn received(&self, amplitude: f64, length_m: f64, air: Air) -> f64 {
         let c = air.speed_of_sound();
-        amplitude * self.gain.gain(length_m / c, 2.0 * self.max_range_m / c)
+        amplitude * gain_at(self.gain, length_m / c, 2.0 * self.max_range_m / c)
     }
 
     /// By how many decibels that is above the [`detection_floor`](Self::detection_floor); below 0 nothing is heard.
@@ -209,6 +184,19 @@ mod tests {
     fn polaroid_blanks_the_first_forty_one_centimetres() {
         let range = Transducer::POLAROID_6500.blanking_s * Air::default().speed_of_sound() / 2.0;
         assert!((range - 0.41).abs() < 0.005);
+    }
+
+    #[test]
+    fn modules_hear_to_five_sigma_of_fading_beyond_their_range() {
+        let air = Air::default();
+        for preset in &eeruf_modules::PRESETS {
+            let transducer = Transducer::of(preset.module);
+            let length_m = 2.0 * f64::from(preset.module.hears_to_mm) / 1e3;
+            let loss_db = air.absorption_db_per_m(transducer.frequency_hz) * length_m;
+            let amplitude = libm::exp10(-loss_db / 20.0) / length_m;
+            let below_db = -20.0 * libm::log10(amplitude / transducer.detection_floor(air));
+            assert!((below_db - 5.0 * 1.5).abs() < 0.05, "{}: {below_db} dB", preset.title);
+        }
     }
 
     #[test]

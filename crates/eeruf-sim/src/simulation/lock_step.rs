@@ -18,7 +18,8 @@ use crate::{
 pub struct LockStep<'w> {
     world: &'w World,
     channels: Channels<'w>,
-    hearing: Hearing,
+    /// How each sensor hears.
+    hearings: Vec<Hearing>,
     receivers: Vec<Receiver>,
     propagation: Propagation,
 }
@@ -33,11 +34,12 @@ impl<'w> LockStep<'w> {
         let robot = &world.robots()[0];
         let ns = |time: eeruf_core::Micros| u64::from(time.as_micros()) * 1000;
         let channels = Channels::new(world, &Planned(world), Stop::default())?;
-        let hearing = Hearing::new(world, robot, 1, ns(robot.window), ns);
+        let hearing_of = |sensor| Hearing::new(world, robot, sensor, 1, ns(robot.window), ns);
+        let hearings = (0..robot.sensors.len()).map(hearing_of).collect();
         let receivers = vec![Receiver::NEW; robot.sensors.len()];
         // The same random numbers as in a simulation.
         let propagation = Propagation::new(world, Random::new(world.seed()));
-        Ok(Self { world, channels, hearing, receivers, propagation })
+        Ok(Self { world, channels, hearings, receivers, propagation })
     }
 
     /// A sensor sends its sound and begins to listen, at this time in nanoseconds: not before the last call's, and not
@@ -48,12 +50,13 @@ impl<'w> LockStep<'w> {
     pub fn fire(&mut self, sensor: usize, at_ns: u64) -> Result<(), PathsError> {
         let Some(receiver) = self.receivers.get_mut(sensor) else { return Ok(()) };
         self.channels.prepare(sensor, at_ns, &Planned(self.world), None)?;
-        receiver.fire(at_ns, &self.hearing);
+        let hearings = &self.hearings;
+        receiver.fire(at_ns, &hearings[sensor]);
         let firing = [sensor as u64, receiver.firings.into()];
         // Another robot's sensors are silent here, and have no receivers.
-        let (channels, hearing) = (self.channels.from(sensor), &self.hearing);
-        self.propagation.send(firing, at_ns, channels, &mut self.receivers, |_, receiver, arrival| {
-            receiver.insert(arrival, hearing);
+        let channels = self.channels.from(sensor);
+        self.propagation.send(firing, at_ns, channels, &mut self.receivers, |number, receiver, arrival| {
+            receiver.insert(arrival, &hearings[number]);
         });
         Ok(())
     }

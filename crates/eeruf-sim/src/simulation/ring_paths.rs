@@ -2,6 +2,7 @@
 
 use super::channels::Bodies;
 use crate::{
+    acoustics::Transducer,
     geometry::Pose,
     tracing::{CrosstalkMatrix, CrosstalkQuery, Limits, PathsError, Tracer},
     world::World,
@@ -31,6 +32,14 @@ impl World {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn ring_paths(&self, robot: usize, max_order: u32) -> Result<CrosstalkMatrix, PathsError> {
+        self.ring_paths_above(robot, max_order, 1.0)
+    }
+
+    /// As [`ring_paths`](Self::ring_paths), with what is heard at this share of the amplitude that is just heard.
+    ///
+    /// # Errors
+    /// As [`Tracer::trace`].
+    pub fn ring_paths_above(&self, robot: usize, max_order: u32, share: f64) -> Result<CrosstalkMatrix, PathsError> {
         let mut matrix = CrosstalkMatrix::new();
         let Some(of) = self.robots().get(robot) else { return Ok(matrix) };
         let sensors: Vec<Pose> = self.sensors(robot, 0.0).collect();
@@ -44,12 +53,33 @@ impl World {
         // A body shades whatever the physics.
         tracer.pole_shadows |= furnished.is_some();
         tracer.pole_order = self.pole_order().min(max_order);
-        let floor = of.transducer.detection_floor(scene.air());
-        let limits = Limits::order(max_order);
-        let query = CrosstalkQuery::new(scene, &sensors, &of.transducer, limits, floor);
-        let heights_m: Vec<f64> = (0..sensors.len()).map(|sensor| of.height_m(sensor)).collect();
-        let query = CrosstalkQuery { coupling: of.coupling(), heights_m: [&heights_m; 2], ..query };
-        matrix.compute(&mut tracer, &query)?;
+        let kinds: Vec<Transducer> = of.transducers().collect();
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for sensor in 0..kinds.len() {
+            match groups.iter_mut().find(|group| kinds[group[0]] == kinds[sensor]) {
+                Some(group) => group.push(sensor),
+                None => groups.push(vec![sensor]),
+            }
+        }
+        let some = |group: &[usize]| -> (Vec<Pose>, Vec<f64>) {
+            group.iter().map(|&sensor| (sensors[sensor], of.height_m(sensor))).unzip()
+        };
+        let mut part = CrosstalkMatrix::new();
+        for senders in &groups {
+            for listeners in &groups {
+                let (sending, hearing) = (&kinds[senders[0]], &kinds[listeners[0]]);
+                if !hearing.hears(sending) {
+                    continue;
+                }
+                let ((sources, from_m), (receivers, to_m)) = (some(senders), some(listeners));
+                let (limits, floor) = (Limits::order(max_order), share * hearing.detection_floor(scene.air()));
+                let query = CrosstalkQuery::new(scene, &receivers, hearing, limits, floor);
+                let query = CrosstalkQuery { coupling: of.coupling(), heights_m: [&from_m, &to_m], ..query };
+                part.compute_between(&sources, sending, &mut tracer, &query)?;
+                matrix.absorb(&part, senders, listeners);
+            }
+        }
+        matrix.sort(sensors.len());
         if let Some(furnished) = &furnished {
             furnished.number(matrix.bounces_mut());
         }

@@ -276,6 +276,29 @@ impl CrosstalkMatrix {
         Ok(())
     }
 
+    /// Takes over the paths of another matrix between some of this ring's sensors, given by their numbers here.
+    /// [`sort`](Self::sort) comes after the last.
+    pub(crate) fn absorb(&mut self, part: &Self, emitters: &[usize], sensors: &[usize]) {
+        let before = self.bounces.len() as u32;
+        self.bounces.extend_from_slice(&part.bounces);
+        let number = |of: &[usize], index: u32| of.get(index as usize).map_or(index, |&number| number as u32);
+        self.paths.extend(part.paths.iter().map(|path| CriticalPath {
+            emitter: number(emitters, path.emitter),
+            receiver: number(sensors, path.receiver),
+            bounces: path.bounces.map(|at| at + before),
+            ..*path
+        }));
+    }
+
+    /// Puts what was absorbed in order, for a ring of so many sensors.
+    pub(crate) fn sort(&mut self, sensors: usize) {
+        let pair = |path: &CriticalPath| path.emitter as usize * sensors + path.receiver as usize;
+        self.paths.sort_by(|a, b| pair(a).cmp(&pair(b)).then(a.length_m.total_cmp(&b.length_m)));
+        let start = |first: usize| self.paths.partition_point(|path| pair(path) < first) as u32;
+        self.starts = (0..=sensors * sensors).map(start).collect();
+        (self.emitters, self.sensors) = (sensors, sensors);
+    }
+
     /// How many sensors the ring has.
     pub fn sensors(&self) -> usize {
         self.sensors

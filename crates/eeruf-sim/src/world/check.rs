@@ -102,15 +102,21 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
     if !within(robot.clock.drift_ppm, MAX_DRIFT_PPM) {
         return fail("drift_ppm", robot.clock.drift_ppm, "-1000 to 1000");
     }
-    let transducer = &robot.transducer;
-    for (field, value) in [
-        ("frequency_hz", transducer.frequency_hz),
-        ("bandwidth_hz", transducer.bandwidth_hz),
-        ("radius_m", transducer.radius_m),
-        ("max_range_m", transducer.max_range_m),
-    ] {
-        if !(value > 0.0 && value.is_finite()) {
-            return fail(field, value, "a positive number");
+    for transducer in robot.transducers() {
+        for (field, value) in [
+            ("frequency_hz", transducer.frequency_hz),
+            ("bandwidth_hz", transducer.bandwidth_hz),
+            ("radius_m", transducer.radius_m),
+            ("max_range_m", transducer.max_range_m),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return fail(field, value, "a positive number");
+            }
+        }
+    }
+    for (field, values) in [("module", robot.modules.len()), ("blanking_us", robot.blankings.len())] {
+        if values != 0 && values != robot.sensors.len() {
+            return fail(field, values as f64, "one for all, or one for each sensor");
         }
     }
     if let Some(coupling_db) = robot.coupling_db.filter(|db| !(-200.0..=0.0).contains(db)) {
@@ -123,7 +129,7 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
             return fail(field, f64::from(value.as_micros()), "1 to 268435456");
         }
     }
-    if robot.window <= robot.blanking {
+    if (0..robot.sensors.len()).any(|sensor| robot.window <= robot.blanking_of(sensor)) {
         return fail("window_us", f64::from(robot.window.as_micros()), "more than the blanking time");
     }
     if robot.neighbours == 0 || usize::from(robot.neighbours) > MAX_SENSORS {
@@ -133,12 +139,12 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
         return fail("consecutive", f64::from(robot.consecutive), "2 to 8");
     }
     check_heights(scene, index, robot)?;
-    for limits in &robot.limits {
+    for (sensor, limits) in robot.limits.iter().enumerate() {
         let window = limits.window;
         if robot.limits.len() != robot.sensors.len() {
             return fail("window_us", robot.limits.len() as f64, "one for all, or one for each sensor");
         }
-        if window <= robot.blanking || window <= limits.t_delta || window > robot.window {
+        if window <= robot.blanking_of(sensor) || window <= limits.t_delta || window > robot.window {
             return fail("window_us", f64::from(window.as_micros()), "more than t_delta_us and the blanking time");
         }
     }

@@ -5,11 +5,13 @@ use eeruf_core::{
     conditions::Violation,
 };
 
+use eeruf_modules::{HC_SR04, Module, POLAROID_6500, PRESETS};
+
 use super::clock::Clock;
 use super::motion::Motion;
 use super::ring::ring_of;
 use crate::{
-    acoustics::Transducer,
+    acoustics::{Beam, GainProfile, Transducer},
     geometry::{Pose, Vector},
     scene::{Body, DEFAULT_HEIGHT_M},
 };
@@ -27,6 +29,9 @@ pub struct Robot {
     /// What kind of transducer they are. Robots hear each other if their [bands overlap](Transducer::hears); those of
     /// the presets do not.
     pub transducer: Transducer,
+    /// The module of each sensor, where they are not all of [`transducer`](Self::transducer)'s kind; that is then the
+    /// first one's. Empty, as by default, where they are.
+    pub modules: Vec<Module>,
     /// Its outline: what others' sound is reflected and shaded by, and what overlaps no wall, pole or other body. Its
     /// own sensors neither see it nor are shaded by it, but that nothing leaves or reaches them from behind. The
     /// default is none: the robot is transparent, and stands free by the disc of [`radius_m`](Self::radius_m).
@@ -55,8 +60,10 @@ pub struct Robot {
     pub t_delta: Micros,
     /// `T_wind`: how long a sensor listens. The default is 36 ms, 6.2 m.
     pub window: Micros,
-    /// How long a sensor is deaf after it has fired.
+    /// How long a sensor is deaf after it has fired; the shortest where they differ.
     pub blanking: Micros,
+    /// The same of each sensor, where they differ. Empty, as by default, where they do not.
+    pub blankings: Vec<Micros>,
     /// With immediate refiring, how long a sensor rests at least between its echo and its next firing. The default is
     /// 36 ms, as long as it listens: much sooner, and it hears its last sound fade away in the room, just after
     /// blanking, every time.
@@ -99,6 +106,7 @@ impl Robot {
         Self {
             sensors,
             transducer,
+            modules: vec![],
             body: None,
             coupling_db: None,
             heights_m: vec![],
@@ -111,6 +119,7 @@ impl Robot {
             t_delta: Micros::new(500),
             window: Micros::from_millis(36),
             blanking: Micros::new((transducer.blanking_s * 1e6).round() as u32),
+            blankings: vec![],
             min_refire: Micros::from_millis(36),
             neighbours: 4,
             consecutive: 2,
@@ -151,6 +160,76 @@ impl Robot {
     pub fn with_heights(self, heights_m: Vec<f64>) -> Self {
         let usual = heights_m.len() == self.sensors.len() && heights_m.iter().all(|&it| it == DEFAULT_HEIGHT_M);
         Self { heights_m: if usual { vec![] } else { heights_m }, ..self }
+    }
+
+    /// The same robot with these modules, one for each sensor, and deaf for as long as they are.
+    ///
+    /// ```
+    /// use eeruf_sim::{Pose, Robot, Transducer, modules::{HC_SR04, PING}};
+    /// let robot = Robot::ring(Pose::identity(), 2, 0.3, 0.2, Transducer::HC_SR04).with_modules(vec![HC_SR04, PING]);
+    /// assert_eq!([0, 1].map(|sensor| robot.blanking_of(sensor).as_micros()), [117, 115]);
+    /// assert_eq!([0, 1].map(|sensor| robot.transducer_of(sensor).max_range_m), [4.0, 3.0]);
+    /// ```
+    #[must_use]
+    pub fn with_modules(mut self, modules: Vec<Module>) -> Self {
+        let Some(first) = modules.first().copied() else { return self };
+        self.transducer = Transducer::of(&first);
+        let preset = eeruf_modules::find(first.name) == Some(&first);
+        let alike = modules.iter().all(|module| *module == first);
+        let blankings = modules.iter().map(|module| Micros::new(module.blanking_us)).collect();
+        // Equal robots are equal.
+        self.modules = if alike && preset { vec![] } else { modules };
+        self.with_blankings(blankings)
+    }
+
+    /// The same robot whose sensors all have this gain, and this pattern near 90 degrees; where there is none, their
+    /// own.
+    #[must_use]
+    pub fn with_pattern(mut self, gain: Option<GainProfile>, beam: Option<Beam>) -> Self {
+        let own = self.transducer;
+        self.transducer = Transducer { gain: gain.unwrap_or(own.gain), beam: beam.unwrap_or(own.beam), ..own };
+        for module in &mut self.modules {
+            *module = Module { gain: gain.unwrap_or(module.gain), beam: beam.unwrap_or(module.beam), ..*module };
+        }
+        self
+    }
+
+    /// The same robot whose sensors are deaf for so long after firing, one each.
+    #[must_use]
+    pub fn with_blankings(mut self, blankings: Vec<Micros>) -> Self {
+        self.blanking = blankings.iter().copied().min().unwrap_or(self.blanking);
+        let alike = blankings.iter().all(|&blanking| blanking == self.blanking);
+        self.blankings = if alike && blankings.len() == self.sensors.len() { vec![] } else { blankings };
+        self
+    }
+
+    /// The transducer of a sensor.
+    pub fn transducer_of(&self, sensor: usize) -> Transducer {
+        self.modules.get(sensor).map_or(self.transducer, Transducer::of)
+    }
+
+    /// The transducers of all sensors.
+    pub fn transducers(&self) -> impl Iterator<Item = Transducer> + '_ {
+        (0..self.sensors.len()).map(|sensor| self.transducer_of(sensor))
+    }
+
+    /// How long a sensor is deaf after it has fired.
+    pub fn blanking_of(&self, sensor: usize) -> Micros {
+        self.blankings.get(sensor).copied().unwrap_or(self.blanking)
+    }
+
+    /// The module of a sensor: its own, or the preset of its transducer, or the nearest description of that.
+    pub fn module_of(&self, sensor: usize) -> Module {
+        if let Some(module) = self.modules.get(sensor) {
+            return *module;
+        }
+        let Transducer { gain, beam, .. } = self.transducer;
+        let known = PRESETS.iter().map(|preset| Module { gain, beam, ..*preset.module });
+        let known = known.into_iter().find(|module| Transducer::of(module) == self.transducer);
+        known.unwrap_or_else(|| {
+            let like = if self.transducer.frequency_hz > 45e3 { POLAROID_6500 } else { HC_SR04 };
+            self.transducer.described(&like)
+        })
     }
 
     /// The height of a sensor above the floor, in metres.

@@ -90,7 +90,7 @@ fn an_unknown_field_or_word_is_named_with_its_line() {
     );
     let preset = robot_error("transducer = \"bat\"");
     assert!(
-        preset.starts_with("w.toml, line 6: unknown variant `bat`, expected `polaroid_6500` or `hc_sr04`"),
+        preset.starts_with("w.toml, line 6: module: no preset \"bat\"; expected polaroid-6500, hc-sr04, "),
         "{preset}"
     );
     let negative = robot_error("period_us = -5");

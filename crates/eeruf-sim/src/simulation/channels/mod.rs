@@ -205,6 +205,10 @@ impl<'w> Channels<'w> {
         &self.world_robots[usize::from(self.ids[sensor].robot)]
     }
 
+    fn transducer_of(&self, sensor: usize) -> Transducer {
+        self.robot_of(sensor).transducer_of(usize::from(self.ids[sensor].sensor))
+    }
+
     fn compute_all(&mut self, kinematics: &impl Kinematics) -> Result<(), PathsError> {
         self.set_poses(0, kinematics);
         let mut by_emitter: Vec<Vec<Channel>> = vec![Vec::new(); self.ids.len()];
@@ -242,7 +246,7 @@ impl<'w> Channels<'w> {
     fn alike(&self, sensors: &[usize]) -> Vec<Vec<usize>> {
         let mut groups: Vec<Vec<usize>> = Vec::new();
         let same = |a: usize, b: usize| {
-            self.robot_of(a).transducer == self.robot_of(b).transducer
+            self.transducer_of(a) == self.transducer_of(b)
                 && self.embodied(a) == self.embodied(b)
                 && self.coupled(a) == self.coupled(b)
         };
@@ -290,13 +294,13 @@ impl<'w> Channels<'w> {
         mut found: impl FnMut(usize, Channel),
     ) -> Result<(), PathsError> {
         let Some(&first) = emitters.first() else { return Ok(()) };
-        let (place, sending) = (self.world.clone(), &self.robot_of(first).transducer);
+        let (place, sending) = (self.world.clone(), &self.transducer_of(first));
         let world: &World = &place;
         let hearing: Vec<_> =
-            receivers.iter().copied().filter(|&sensor| self.robot_of(sensor).transducer.hears(sending)).collect();
+            receivers.iter().copied().filter(|&sensor| self.transducer_of(sensor).hears(sending)).collect();
         let sources = self.poses_of(emitters);
         for listeners in self.alike(&hearing) {
-            let transducer = &self.robot_of(listeners[0]).transducer;
+            let transducer = &self.transducer_of(listeners[0]);
             let sensors = self.poses_of(&listeners);
             let range = self.range(sending, transducer);
             let mut furnished = None;

@@ -3,6 +3,7 @@
 
 use core::f32::consts::FRAC_PI_2;
 
+use crate::acoustics::Transducer;
 use crate::simulation::channels::Channel;
 use crate::simulation::receiver::{Arrival, EXTERNAL, NEVER, Receiver};
 use crate::world::{FARTHEST, Noise, Normal, Random, World};
@@ -35,7 +36,8 @@ impl Propagation {
     pub(crate) fn new(world: &World, seed: Random) -> Self {
         let (noise, physics) = (world.noise(), world.physics());
         let jitter_ns = (noise.jitter_us_rms * 1000.0) as f32;
-        let bursts = world.robots().iter().map(|robot| (robot.transducer.burst_s() * 1e9).ceil() as u64);
+        let burst_ns = |transducer: Transducer| (transducer.burst_s() * 1e9).ceil() as u64;
+        let bursts = world.robots().iter().flat_map(|robot| robot.transducers().map(burst_ns));
         let walk = if physics.range_walk { bursts.max().unwrap_or(0) } else { 0 };
         Self {
             random: seed.of(ARRIVALS),
@@ -159,7 +161,7 @@ mod tests {
 
     fn propagation(fading_time_s: f64) -> Propagation {
         let scene = Scene::new(vec![], vec![], Air::default()).unwrap();
-        let robot = Robot::ring(crate::Pose::identity(), 1, 0.1, 0.1, crate::Transducer::POLAROID_6500);
+        let robot = Robot::ring(crate::Pose::identity(), 1, 0.1, 0.1, Transducer::POLAROID_6500);
         let physics = Physics { fading_time_s, ..Physics::DEFAULT };
         let world = World::new(scene, vec![robot], Noise::default()).and_then(|world| world.with_physics(physics));
         Propagation::new(&world.unwrap(), Random::new(7))

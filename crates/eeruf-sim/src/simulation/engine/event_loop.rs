@@ -94,7 +94,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             Channels::new(world, &kinematics, stop.clone()).map_err(|error| SimulationError::paths(0, error))?;
         let rings = start_all(world, plans, options, &channels, seed, own)?;
         let sensors = channels.ids().len();
-        let longest = rings.iter().map(|ring| ring.hearing.window).max().unwrap_or(0);
+        let longest = rings.iter().map(RunningRing::longest_window).max().unwrap_or(0);
         let recorder = Recorder::new(method, options, end.unwrap_or(u64::MAX), room, channels.ids(), own)?;
         Ok(Self {
             c: world.scene().air().speed_of_sound(),
@@ -281,7 +281,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             let receiver = &mut self.receivers[number];
             if receiver.next_at() <= now {
                 let t_echo = ticks - ring.clock.ticks(receiver.fired);
-                receiver.hear(t_echo as u32, &ring.hearing);
+                receiver.hear(t_echo as u32, ring.hearing_of(number));
                 // At most 64 sensors.
                 ring.ring.echo(sensor as u8, instant);
             }
@@ -311,7 +311,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         };
         let arrives: Option<Arrives<'_>> = if propagation.is_keyed() { Some(&arrives) } else { None };
         self.channels.prepare(emitter, now, &self.kinematics, arrives)?;
-        let hearing = rings[index].hearing_of(emitter);
+        let hearing = *rings[index].hearing_of(emitter);
         self.references[emitter] = self.channels.reference(emitter, &hearing);
         let receiver = &mut self.receivers[emitter];
         receiver.fire(now, &hearing);
@@ -321,7 +321,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         let channels = self.channels.from(emitter);
         self.propagation.send(firing, now, channels, &mut self.receivers, |number, receiver, arrival| {
             let ring = &mut rings[usize::from(ids[number].robot)];
-            receiver.insert(arrival, &ring.hearing);
+            receiver.insert(arrival, ring.hearing_of(number));
             ring.hears = ring.hears.min(receiver.next_at());
         });
         Ok(())
@@ -336,7 +336,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             for number in ring.sensors.clone() {
                 if let Some(arrival) = bursts.arrival(now) {
                     let receiver = &mut self.receivers[number];
-                    receiver.insert(arrival, &ring.hearing);
+                    receiver.insert(arrival, ring.hearing_of(number));
                     ring.hears = ring.hears.min(receiver.next_at());
                 }
             }

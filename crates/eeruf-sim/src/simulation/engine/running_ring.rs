@@ -22,9 +22,8 @@ pub(crate) struct RunningRing<'a> {
     pub(crate) robot: &'a Robot,
     pub(crate) ring: Box<dyn RingRunner<'a> + 'a>,
     pub(crate) clock: Ticker,
-    pub(crate) hearing: Hearing,
-    /// How long each sensor listens, where they are not all alike.
-    windows: Vec<u64>,
+    /// How each sensor hears.
+    hearings: Vec<Hearing>,
     /// Its sensors among all of the world's.
     pub(crate) sensors: core::ops::Range<usize>,
     /// When its ring is due.
@@ -35,12 +34,14 @@ pub(crate) struct RunningRing<'a> {
 
 impl RunningRing<'_> {
     /// How a sensor, one of all of the world's, hears.
-    pub(crate) fn hearing_of(&self, number: usize) -> Hearing {
-        match self.windows.get(number - self.sensors.start) {
-            // Two ticks less, since the clock rounds.
-            Some(&window) => Hearing { window, refire: window.saturating_sub(2000), ..self.hearing },
-            None => self.hearing,
-        }
+    pub(crate) fn hearing_of(&self, number: usize) -> &Hearing {
+        // One for each of its sensors.
+        &self.hearings[number - self.sensors.start]
+    }
+
+    /// The longest time that one of its sensors listens.
+    pub(crate) fn longest_window(&self) -> u64 {
+        self.hearings.iter().map(|hearing| hearing.window).max().unwrap_or(0)
     }
 }
 
@@ -97,23 +98,21 @@ pub(crate) fn start_all<'a>(
         // Two ticks less, since the clock rounds.
         let soonest = if plan.is_some() { method.soonest_refire(robot) } else { robot.window };
         let refire = true_ns(soonest).saturating_sub(2000);
-        let hearing = Hearing::new(world, robot, method.echoes(), refire, true_ns);
         let first = channels.first_of(index);
         let sensors = first..first + robot.sensors.len();
         let keeps_limits = |plan: &FiringPlan| plan.own_limits != EachSensor::NONE || !plan.ladder.is_empty();
         let has_limits = plan.as_ref().is_some_and(keeps_limits);
         let limits = if has_limits { &robot.limits[..] } else { &[] };
-        let windows = limits.iter().map(|limits| true_ns(limits.window)).collect();
-        rings.push(RunningRing {
-            robot,
-            ring,
-            clock,
-            hearing,
-            windows,
-            sensors,
-            wakes: clock.reaches(start),
-            hears: NEVER,
-        });
+        let hearing_of = |sensor: usize| {
+            let hearing = Hearing::new(world, robot, sensor, method.echoes(), refire, true_ns);
+            match limits.get(sensor).map(|limits| true_ns(limits.window)) {
+                // Two ticks less, since the clock rounds.
+                Some(window) => Hearing { window, refire: window.saturating_sub(2000), ..hearing },
+                None => hearing,
+            }
+        };
+        let hearings = (0..robot.sensors.len()).map(hearing_of).collect();
+        rings.push(RunningRing { robot, ring, clock, hearings, sensors, wakes: clock.reaches(start), hears: NEVER });
     }
     Ok(rings)
 }

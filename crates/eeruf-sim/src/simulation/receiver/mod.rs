@@ -10,7 +10,7 @@ mod tests;
 use eeruf_core::Micros;
 
 use crate::{
-    acoustics::GainProfile,
+    acoustics::{GainProfile, gain_at},
     methods::MAX_ECHOES,
     world::{Robot, World},
 };
@@ -65,7 +65,7 @@ impl Echo {
     }
 }
 
-/// What all receivers of one robot have in common. Times are true nanoseconds.
+/// How a receiver hears. Times are true nanoseconds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hearing {
     pub(crate) blanking: u64,
@@ -84,17 +84,25 @@ pub(crate) struct Hearing {
 }
 
 impl Hearing {
-    /// What all receivers of a robot have in common whose true times are `ns` of what its clock measures.
-    pub(crate) fn new(world: &World, robot: &Robot, echoes: usize, refire: u64, ns: impl Fn(Micros) -> u64) -> Self {
-        let burst_ns = robot.transducer.burst_s() * 1e9;
+    /// How a sensor of a robot hears whose true times are `ns` of what its clock measures.
+    pub(crate) fn new(
+        world: &World,
+        robot: &Robot,
+        sensor: usize,
+        echoes: usize,
+        refire: u64,
+        ns: impl Fn(Micros) -> u64,
+    ) -> Self {
+        let transducer = robot.transducer_of(sensor);
+        let burst_ns = transducer.burst_s() * 1e9;
         Self {
-            blanking: ns(robot.blanking),
+            blanking: ns(robot.blanking_of(sensor)),
             window: ns(robot.window),
             refire,
             dead_time: burst_ns as u64,
             echoes,
-            gain: robot.transducer.gain,
-            gain_full_s: 2.0 * robot.transducer.max_range_m / world.scene().air().speed_of_sound(),
+            gain: transducer.gain,
+            gain_full_s: 2.0 * transducer.max_range_m / world.scene().air().speed_of_sound(),
             rise_ns: if world.physics().range_walk { burst_ns } else { 0.0 },
         }
     }
@@ -110,7 +118,7 @@ impl Hearing {
             GainProfile::Constant => f64::from(level_over_threshold_db),
             gain => {
                 f64::from(level_over_threshold_db)
-                    + 20.0 * libm::log10(gain.gain(after as f64 * 1e-9, self.gain_full_s))
+                    + 20.0 * libm::log10(gain_at(gain, after as f64 * 1e-9, self.gain_full_s))
             }
         };
         if !(level_db >= 0.0) {

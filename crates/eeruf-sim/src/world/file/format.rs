@@ -1,5 +1,6 @@
 //! The tables and keys of a world file, as serde reads them, and what plain ones stand for.
 
+use eeruf_modules::ModulesFile;
 use serde::{Deserialize, Deserializer, de::Error};
 use toml::Spanned;
 
@@ -241,11 +242,11 @@ pub(super) struct RobotFile {
     pub(super) pose: PoseFile,
     pub(super) ring: Option<RingFile>,
     pub(super) sensors: Option<Vec<PoseFile>>,
-    #[serde(default)]
-    pub(super) transducer: TransducerFile,
-    #[serde(default)]
-    pub(super) gain: GainFile,
-    pub(super) beam: Option<BeamFile>,
+    /// `transducer` in older files.
+    #[serde(alias = "transducer")]
+    pub(super) module: Option<ModulesFile>,
+    pub(super) gain: Option<String>,
+    pub(super) beam: Option<String>,
     pub(super) coupling_db: Option<f64>,
     pub(super) height_m: Option<HeightsFile>,
     pub(super) body: Option<BodyFile>,
@@ -258,7 +259,7 @@ pub(super) struct RobotFile {
     pub(super) window_us: Option<EachFile>,
     #[serde(default)]
     pub(super) together: Vec<Vec<usize>>,
-    pub(super) blanking_us: Option<u32>,
+    pub(super) blanking_us: Option<EachFile>,
     pub(super) min_refire_us: Option<u32>,
     pub(super) neighbours: Option<u8>,
     pub(super) consecutive: Option<u8>,
@@ -283,35 +284,6 @@ pub(super) struct RingFile {
     pub(super) sensors: usize,
     pub(super) spacing_deg: f64,
     pub(super) radius_m: f64,
-}
-
-#[derive(Clone, Copy, Default, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum TransducerFile {
-    #[default]
-    #[serde(rename = "polaroid_6500")]
-    Polaroid6500,
-    HcSr04,
-}
-
-#[derive(Clone, Copy, Default, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum GainFile {
-    #[default]
-    Constant,
-    SquareRoot,
-    Linear,
-    Stepped,
-    #[serde(rename = "polaroid_6500")]
-    Polaroid6500,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-pub(super) enum BeamFile {
-    #[serde(rename = "cut_at_90")]
-    CutAt90,
-    #[serde(rename = "continuous")]
-    Continuous,
 }
 
 #[derive(Deserialize)]

@@ -3,14 +3,15 @@
 use std::path::Path;
 
 use eeruf_core::{MAX_SENSORS, Micros, SensorLimits};
+use eeruf_modules::Value;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::format::{BeamFile, EachFile, GainFile, HeightsFile, MotionFile, RobotFile, TransducerFile, radians};
+use super::format::{EachFile, HeightsFile, MotionFile, RobotFile, radians};
 use super::schedule_file::ScheduleFile;
 use super::source::{Source, WorldFileError};
 use crate::{
-    acoustics::{Beam, GainProfile, Transducer},
+    acoustics::Transducer,
     geometry::{Point, Vector},
     world::{clock::Clock, motion::Motion, robot::AnySchedule, robot::Robot},
 };
@@ -20,28 +21,11 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
     let file = entry.get_ref();
     let fail =
         |field, message: String| source.error(Some(entry.span()), field, format!("robot {}{message}", index + 1));
-    let gain = match file.gain {
-        GainFile::Constant => GainProfile::Constant,
-        GainFile::SquareRoot => GainProfile::SquareRoot,
-        GainFile::Linear => GainProfile::Linear,
-        GainFile::Stepped => GainProfile::Stepped,
-        GainFile::Polaroid6500 => GainProfile::Polaroid6500,
-    };
     if file.patience.is_some() {
         let gone = ": patience; expected no such key: a filter that waited for an echo let crosstalk in one phase \
                     starve the wall. Delete the line";
         return Err(fail("patience", gone.to_owned()));
     }
-    let preset = match file.transducer {
-        TransducerFile::Polaroid6500 => Transducer::POLAROID_6500,
-        TransducerFile::HcSr04 => Transducer::HC_SR04,
-    };
-    let beam = match file.beam {
-        Some(BeamFile::CutAt90) => Beam::CutAt90,
-        Some(BeamFile::Continuous) => Beam::Continuous,
-        None => preset.beam,
-    };
-    let transducer = Transducer { gain, beam, ..preset };
     let pose = file.pose.pose();
     let mut robot = match (&file.ring, &file.sensors) {
         (Some(ring), None) => {
@@ -49,13 +33,24 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
             if ring.sensors == 0 || ring.sensors > MAX_SENSORS {
                 return Err(fail("ring", format!(" has {} sensors; expected 1 to {MAX_SENSORS}", ring.sensors)));
             }
-            Robot::ring(pose, ring.sensors, ring.spacing_deg.to_radians(), ring.radius_m, transducer)
+            Robot::ring(pose, ring.sensors, ring.spacing_deg.to_radians(), ring.radius_m, Transducer::POLAROID_6500)
         }
         (None, Some(sensors)) => {
-            Robot::with_sensors(pose, sensors.iter().map(|sensor| sensor.pose()).collect(), transducer)
+            Robot::with_sensors(pose, sensors.iter().map(|sensor| sensor.pose()).collect(), Transducer::POLAROID_6500)
         }
         _ => return Err(fail("pose", ": expected either ring or sensors".to_owned())),
     };
+    if let Some(modules) = &file.module {
+        let modules = modules.list(robot.sensors.len()).map_err(|message| fail("module", format!(": {message}")))?;
+        robot = robot.with_modules(modules);
+    }
+    let mut pattern = robot.module_of(0);
+    for (key, word) in [("gain", &file.gain), ("beam", &file.beam)] {
+        let Some(word) = word else { continue };
+        let set = pattern.set(key, Value::Word(word)).map_err(|error| error.to_string());
+        set.map_err(|message| fail(key, format!(": {message}")))?;
+    }
+    robot = robot.with_pattern(file.gain.as_ref().map(|_| pattern.gain), file.beam.as_ref().map(|_| pattern.beam));
     if let Some(motion) = &file.motion {
         robot.motion = match motion {
             MotionFile {
@@ -123,7 +118,15 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
         }
         robot.together.push(group.iter().fold(0, |set, sensor| set | 1 << sensor));
     }
-    set(&mut robot.blanking, file.blanking_us);
+    if file.blanking_us.is_some() {
+        let blanking = each(robot.blanking, &file.blanking_us);
+        if blanking.len() != sensors {
+            let message =
+                format!(": {} values; expected one for all, or one for each of {sensors} sensors", blanking.len());
+            return Err(fail("blanking_us", message));
+        }
+        robot = robot.with_blankings(blanking);
+    }
     set(&mut robot.min_refire, file.min_refire_us);
     robot.neighbours = file.neighbours.unwrap_or(robot.neighbours);
     robot.consecutive = file.consecutive.unwrap_or(robot.consecutive);

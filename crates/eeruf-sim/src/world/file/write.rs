@@ -1,6 +1,7 @@
 //! Writes a world file.
 
 use eeruf_core::{Micros, SensorLimits};
+use eeruf_modules::{KEYS, Module, Value as Figure, find};
 use toml::{Table, Value};
 
 use super::schedule_file::ScheduleFile;
@@ -140,16 +141,39 @@ fn exact_angle(pose: &Pose) -> Option<f64> {
     None
 }
 
+/// A preset by name, or a table of all figures.
+fn module_value(module: &Module) -> Value {
+    if find(module.name) == Some(module) {
+        return Value::from(module.name);
+    }
+    let mut table = Table::new();
+    set(&mut table, "like", module.name);
+    for key in &KEYS {
+        match key.of(module) {
+            Figure::Number(number) if key.is_whole() => set(&mut table, key.name, number as i64),
+            Figure::Number(number) => set(&mut table, key.name, number),
+            Figure::Word(word) => set(&mut table, key.name, word),
+        }
+    }
+    Value::Table(table)
+}
+
 fn robot_table(robot: &Robot) -> Table {
     let mut table = Table::new();
     set(&mut table, "pose", pose_table(&robot.pose));
     let sensors: Vec<Value> = robot.sensors.iter().map(|sensor| Value::Table(pose_table(sensor))).collect();
     set(&mut table, "sensors", sensors);
-    let Transducer { gain, beam, .. } = robot.transducer;
-    let hc_sr04 = Transducer { gain, beam, ..Transducer::HC_SR04 };
-    set(&mut table, "transducer", if robot.transducer == hc_sr04 { "hc_sr04" } else { "polaroid_6500" });
-    set(&mut table, "gain", gain.name());
-    set(&mut table, "beam", beam.name());
+    if robot.modules.is_empty() {
+        let Transducer { gain, beam, .. } = robot.transducer;
+        let module = robot.module_of(0);
+        // A preset but for these two, which have keys of their own.
+        let preset = find(module.name).filter(|preset| Module { gain, beam, ..**preset } == module);
+        set(&mut table, "module", preset.map_or_else(|| module_value(&module), |preset| Value::from(preset.name)));
+        set(&mut table, "gain", gain.name());
+        set(&mut table, "beam", beam.name());
+    } else {
+        set(&mut table, "module", robot.modules.iter().map(module_value).collect::<Vec<_>>());
+    }
     if let Some(coupling_db) = robot.coupling_db {
         set(&mut table, "coupling_db", coupling_db);
     }
@@ -202,6 +226,10 @@ fn robot_table(robot: &Robot) -> Table {
     ];
     for (key, time) in times {
         set(&mut table, key, i64::from(time.as_micros()));
+    }
+    if !robot.blankings.is_empty() {
+        let each = robot.blankings.iter().map(|blanking| i64::from(blanking.as_micros()));
+        set(&mut table, "blanking_us", each.collect::<Vec<_>>());
     }
     if !robot.limits.is_empty() {
         let list = |of: fn(&SensorLimits) -> Micros| {

@@ -1,0 +1,160 @@
+//! Modules as files say them: a name, or a table of what differs from one; one for all sensors, or a list.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt;
+
+use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+
+use crate::keys::{ModuleError, Value};
+use crate::module::Module;
+use crate::presets::find;
+
+/// A module by name, or `like` one but for what else the table says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ModuleFile(pub Module);
+
+/// A module for all sensors, or a list of one for each.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ModulesFile {
+    /// For all.
+    All(Module),
+    /// For each, in their order.
+    Of(Vec<Module>),
+}
+
+impl ModulesFile {
+    /// The module of each of so many sensors.
+    ///
+    /// # Errors
+    /// A list of another length.
+    pub fn list(&self, sensors: usize) -> Result<Vec<Module>, String> {
+        match self {
+            Self::All(module) => Ok(alloc::vec![*module; sensors]),
+            Self::Of(list) if list.len() == sensors => Ok(list.clone()),
+            Self::Of(list) => Err(alloc::format!(
+                "module: {} modules; expected one for all, or one for each of {sensors} sensors",
+                list.len()
+            )),
+        }
+    }
+}
+
+fn named<E: Error>(name: &str) -> Result<Module, E> {
+    find(name).copied().ok_or_else(|| E::custom(ModuleError::Name(name)))
+}
+
+/// A number or a word of a table.
+enum Figure {
+    Number(f64),
+    Word(String),
+}
+
+impl<'de> Deserialize<'de> for Figure {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct FigureVisitor;
+        impl Visitor<'_> for FigureVisitor {
+            type Value = Figure;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number or a word")
+            }
+
+            fn visit_i64<E: Error>(self, value: i64) -> Result<Figure, E> {
+                Ok(Figure::Number(value as f64))
+            }
+
+            fn visit_u64<E: Error>(self, value: u64) -> Result<Figure, E> {
+                Ok(Figure::Number(value as f64))
+            }
+
+            fn visit_f64<E: Error>(self, value: f64) -> Result<Figure, E> {
+                Ok(Figure::Number(value))
+            }
+
+            fn visit_str<E: Error>(self, value: &str) -> Result<Figure, E> {
+                Ok(Figure::Word(value.into()))
+            }
+        }
+        deserializer.deserialize_any(FigureVisitor)
+    }
+}
+
+struct ModuleVisitor;
+
+impl<'de> Visitor<'de> for ModuleVisitor {
+    type Value = Module;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a module's name, or a table with `like` and what differs")
+    }
+
+    fn visit_str<E: Error>(self, name: &str) -> Result<Module, E> {
+        named(name)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Module, A::Error> {
+        let (mut like, mut figures) = (None, Vec::new());
+        while let Some(key) = map.next_key::<String>()? {
+            match map.next_value::<Figure>()? {
+                Figure::Word(name) if key == "like" => like = Some(name),
+                figure => figures.push((key, figure)),
+            }
+        }
+        let like = like.ok_or_else(|| A::Error::custom("module: no `like`; expected the name of one that is alike"))?;
+        let mut module = named(&like)?;
+        for (key, figure) in &figures {
+            let value = match figure {
+                Figure::Number(number) => Value::Number(*number),
+                Figure::Word(word) => Value::Word(word),
+            };
+            module.set(key, value).map_err(A::Error::custom)?;
+        }
+        module.check().map_err(A::Error::custom)?;
+        Ok(module)
+    }
+}
+
+impl<'de> Deserialize<'de> for ModuleFile {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ModuleVisitor).map(Self)
+    }
+}
+
+impl<'de> Deserialize<'de> for ModulesFile {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ModulesVisitor;
+        impl<'de> Visitor<'de> for ModulesVisitor {
+            type Value = ModulesFile;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a module's name, a table with `like` and what differs, or a list of one for each sensor")
+            }
+
+            fn visit_str<E: Error>(self, name: &str) -> Result<ModulesFile, E> {
+                ModuleVisitor.visit_str(name).map(ModulesFile::All)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ModulesFile, A::Error> {
+                ModuleVisitor.visit_map(map).map(ModulesFile::All)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<ModulesFile, A::Error> {
+                // No ring has more; the rest is counted by whoever asks for a list.
+                const MOST: usize = 64;
+                let mut modules = Vec::new();
+                while modules.len() < MOST {
+                    match list.next_element::<ModuleFile>()? {
+                        Some(ModuleFile(module)) => modules.push(module),
+                        None => return Ok(ModulesFile::Of(modules)),
+                    }
+                }
+                match list.next_element::<IgnoredAny>()? {
+                    None => Ok(ModulesFile::Of(modules)),
+                    Some(_) => Err(A::Error::custom("module: more than 64 modules; expected one for each sensor")),
+                }
+            }
+        }
+        deserializer.deserialize_any(ModulesVisitor)
+    }
+}

@@ -1,0 +1,265 @@
+//! The words for a module's figures, the same in ring files, scenes and Python.
+
+use core::fmt;
+
+use crate::module::{Beam, Gain, Interface, Module, NoEcho};
+
+/// A figure of a module by its name in files.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// The name.
+    pub name: &'static str,
+    /// What it says.
+    pub about: &'static str,
+    kind: Kind,
+}
+
+/// How a figure is kept.
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    /// A number in the file's unit, kept as so many thousandths or whole ones, up to a largest.
+    Number { scale: f64, most: f64, get: fn(&Module) -> u32, set: fn(&mut Module, u32) },
+    /// A word, one of these.
+    Word { names: &'static [&'static str], get: fn(&Module) -> &'static str, set: fn(&mut Module, &str) -> bool },
+}
+
+/// A value of a figure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value<'a> {
+    /// In the unit that the key's name ends with.
+    Number(f64),
+    /// A word.
+    Word(&'a str),
+}
+
+impl fmt::Display for Value<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(f),
+            Self::Word(word) => word.fmt(f),
+        }
+    }
+}
+
+/// Why a module cannot be as described.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ModuleError<'a> {
+    /// No figure has this name.
+    Key(&'a str),
+    /// No preset has this name.
+    Name(&'a str),
+    /// A figure has a value that it cannot have.
+    Value {
+        /// The figure.
+        key: &'static str,
+        /// Its value.
+        value: Value<'a>,
+    },
+    /// A module that listens no longer than it is deaf.
+    Deaf {
+        /// Its blanking in us.
+        blanking_us: u32,
+        /// When the echo of the farthest wall is back, in us.
+        range_us: u32,
+    },
+}
+
+/// Writes words in a row.
+fn list<'a>(f: &mut fmt::Formatter<'_>, words: impl Iterator<Item = &'a str>) -> fmt::Result {
+    for (index, word) in words.enumerate() {
+        write!(f, "{}{word}", if index == 0 { "" } else { ", " })?;
+    }
+    Ok(())
+}
+
+impl fmt::Display for ModuleError<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Key(key) => {
+                write!(f, "module: no figure `{key}`; expected like, ")?;
+                list(f, KEYS.iter().map(|key| key.name))
+            }
+            Self::Name(name) => {
+                write!(f, "module: no preset \"{name}\"; expected ")?;
+                list(f, crate::names())
+            }
+            Self::Value { key, value } => {
+                write!(f, "module: {key} = {value}; expected ")?;
+                match KEYS.iter().find(|known| known.name == *key).map(|key| key.kind) {
+                    Some(Kind::Number { most, .. }) => write!(f, "a number from 0 to {most}"),
+                    Some(Kind::Word { names, .. }) => list(f, names.iter().copied()),
+                    None => Ok(()),
+                }
+            }
+            Self::Deaf { blanking_us, range_us } => write!(
+                f,
+                "module: blanking_us = {blanking_us}; expected less than {range_us}, when the echo from sees_to_m is \
+                 back"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ModuleError<'_> {}
+
+/// A number's row.
+macro_rules! number {
+    ($name:literal, $scale:literal, $most:literal, $field:ident, $about:literal) => {
+        Key {
+            name: $name,
+            about: $about,
+            kind: Kind::Number {
+                scale: $scale,
+                most: $most,
+                get: |module| module.$field,
+                set: |module, value| module.$field = value,
+            },
+        }
+    };
+}
+
+/// A word's row.
+macro_rules! word {
+    ($name:literal, $field:ident: $kind:ident, $names:expr, $about:literal) => {
+        Key {
+            name: $name,
+            about: $about,
+            kind: Kind::Word {
+                names: &$names,
+                get: |module| module.$field.name(),
+                set: |module, word| {
+                    let found = $kind::NAMES.into_iter().find(|(name, _)| *name == word);
+                    found.map(|(_, value)| module.$field = value).is_some()
+                },
+            },
+        }
+    };
+}
+
+/// The figures of a module, in the order in which tables list them.
+pub const KEYS: [Key; 15] = [
+    number!("sees_to_m", 1e3, 100.0, sees_to_mm, "farthest range that it reports"),
+    number!("hears_to_m", 1e3, 100.0, hears_to_mm, "farthest wall off which its sound is still heard now and then"),
+    number!("blanking_us", 1.0, 1e6, blanking_us, "deaf time after it has fired"),
+    number!("frequency_hz", 1.0, 1e6, frequency_hz, "frequency"),
+    number!("bandwidth_hz", 1.0, 1e6, bandwidth_hz, "width of its band; modules hear each other if bands overlap"),
+    number!("burst_cycles", 1.0, 1e3, burst_cycles, "length of the burst in cycles"),
+    word!(
+        "gain",
+        gain: Gain,
+        ["constant", "square_root", "linear", "stepped", "polaroid_6500"],
+        "growth of its gain while it listens"
+    ),
+    number!("radius_mm", 1e3, 100.0, radius_um, "radius of the piston that has its beam"),
+    word!("beam", beam: Beam, ["cut_at_90", "continuous"], "pattern near 90 degrees and beyond"),
+    Key {
+        name: "no_echo",
+        about: "what it does where nothing is in range",
+        kind: Kind::Word {
+            names: &NoEcho::NAMES,
+            get: |module| module.no_echo.name(),
+            set: |module, word| {
+                let us = module.no_echo.hold_us();
+                module.no_echo = match word {
+                    "holds" => NoEcho::Holds { us },
+                    "silent" => NoEcho::Silent,
+                    "reports" => NoEcho::Reports,
+                    _ => return false,
+                };
+                true
+            },
+        },
+    },
+    Key {
+        name: "hold_us",
+        about: "how long a module that holds its line does so; 0 for others",
+        kind: Kind::Number {
+            scale: 1.0,
+            most: 1e7,
+            get: |module| module.no_echo.hold_us(),
+            set: |module, us| {
+                if us > 0 {
+                    module.no_echo = NoEcho::Holds { us };
+                }
+            },
+        },
+    },
+    number!("rest_us", 1.0, 1e7, rest_us, "shortest time from one trigger to the next"),
+    number!("trigger_us", 1.0, 1e6, trigger_us, "length of the trigger pulse; 0 for a command, a level, or none"),
+    word!(
+        "interface",
+        interface: Interface,
+        ["edge", "one_pin", "pulse_width", "uart", "i2c", "analog"],
+        "how it reports"
+    ),
+    number!("report_us", 1.0, 1e7, report_us, "time from trigger to report; 0 where the echo's edge reports it"),
+];
+
+impl Key {
+    /// Returns true if its values are whole numbers: microseconds, hertz, cycles.
+    pub fn is_whole(&self) -> bool {
+        matches!(self.kind, Kind::Number { scale, .. } if scale == 1.0)
+    }
+
+    /// The value of this figure.
+    pub fn of(&self, module: &Module) -> Value<'static> {
+        match self.kind {
+            Kind::Number { scale, get, .. } => Value::Number(f64::from(get(module)) / scale),
+            Kind::Word { get, .. } => Value::Word(get(module)),
+        }
+    }
+}
+
+impl Module {
+    /// Sets a figure by its name in files.
+    ///
+    /// # Errors
+    /// An unknown name, or a value that the figure cannot have.
+    pub fn set<'a>(&mut self, key: &'a str, value: Value<'a>) -> Result<(), ModuleError<'a>> {
+        let known = KEYS.iter().find(|known| known.name == key).ok_or(ModuleError::Key(key))?;
+        let wrong = ModuleError::Value { key: known.name, value };
+        match (known.kind, value) {
+            (Kind::Number { scale, most, set, .. }, Value::Number(number)) if (0.0..=most).contains(&number) => {
+                // Rounded; at most 10^7.
+                set(self, (number * scale + 0.5) as u32);
+                Ok(())
+            }
+            (Kind::Word { set, .. }, Value::Word(word)) if set(self, word) => Ok(()),
+            _ => Err(wrong),
+        }
+    }
+
+    /// Checks the figures against each other, once all are set.
+    ///
+    /// # Errors
+    /// Zero range, frequency, burst or size, or a module that is deaf for as long as it listens.
+    pub fn check(&self) -> Result<(), ModuleError<'static>> {
+        for key in ["sees_to_m", "frequency_hz", "bandwidth_hz", "burst_cycles", "radius_mm"] {
+            let value = KEYS.iter().find(|known| known.name == key).map(|known| known.of(self));
+            if let Some(value) = value.filter(|value| *value == Value::Number(0.0)) {
+                return Err(ModuleError::Value { key, value });
+            }
+        }
+        let range_us = self.range_us();
+        if self.blanking_us >= range_us {
+            return Err(ModuleError::Deaf { blanking_us: self.blanking_us, range_us });
+        }
+        Ok(())
+    }
+
+    /// Its farthest range in metres.
+    pub const fn sees_to_m(&self) -> f64 {
+        self.sees_to_mm as f64 / 1e3
+    }
+
+    /// When the echo of a wall at its farthest range is back, in air of 20 degrees, in us.
+    ///
+    /// ```
+    /// assert_eq!(eeruf_modules::HC_SR04.range_us(), 23_311);
+    /// ```
+    pub const fn range_us(&self) -> u32 {
+        // 343.2 m/s; at most 100 m.
+        (self.sees_to_mm as u64 * 20_000).div_ceil(3_432) as u32
+    }
+}

@@ -1,0 +1,34 @@
+//! What ultrasonic ranging modules hear, see, hold and need between two triggers.
+//!
+//! One description serves ring files, scenes, drivers and the simulator: a [`Module`] of plain numbers. Ten are
+//! [presets](PRESETS), each figure with the document that gives it, or marked as a choice.
+//!
+//! ```
+//! use eeruf_modules::{HC_SR04, Interface, find};
+//! assert_eq!(HC_SR04.rest_us, 60_000);
+//! assert_eq!(find("ping").map(|module| module.interface), Some(Interface::OnePin));
+//! // A module of one's own differs from one that is known.
+//! let mut mine = HC_SR04;
+//! mine.set("sees_to_m", eeruf_modules::Value::Number(2.5))?;
+//! assert_eq!(mine.sees_to_mm, 2_500);
+//! # Ok::<(), eeruf_modules::ModuleError<'static>>(())
+//! ```
+#![no_std]
+
+#[cfg(feature = "serde")]
+extern crate alloc;
+
+#[cfg(feature = "serde")]
+mod file;
+mod keys;
+mod module;
+mod presets;
+
+#[cfg(feature = "serde")]
+pub use file::{ModuleFile, ModulesFile};
+pub use keys::{KEYS, Key, ModuleError, Value};
+pub use module::{Beam, Gain, Interface, Module, NoEcho};
+pub use presets::{
+    A02YYUW, HC_SR04, HC_SR04_CLONE, JSN_SR04T, MB1010, MB1242, PING, POLAROID_6500, PRESETS, Preset, SRF08, Source,
+    US_100, find, names,
+};

@@ -1,0 +1,146 @@
+//! [`Module`]: an ultrasonic transducer with its electronics, in whole numbers.
+
+/// A ranging module. Change what differs from a preset, by field or by [`set`](Self::set).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Module {
+    /// The name in files: that of a preset, or of the one that it differs from.
+    pub name: &'static str,
+    /// The farthest range that it reports, in mm.
+    pub sees_to_mm: u32,
+    /// The farthest wall off which its sound is still heard now and then, in mm.
+    pub hears_to_mm: u32,
+    /// How long it is deaf after it has fired, in us.
+    pub blanking_us: u32,
+    /// Frequency in Hz.
+    pub frequency_hz: u32,
+    /// Width of the band that it sends in and hears, around its frequency, in Hz.
+    pub bandwidth_hz: u32,
+    /// Length of the burst in cycles.
+    pub burst_cycles: u32,
+    /// The growth of its gain while it listens.
+    pub gain: Gain,
+    /// Radius of the piston that has its beam, in um.
+    pub radius_um: u32,
+    /// The pattern near 90 degrees and beyond.
+    pub beam: Beam,
+    /// What it does where nothing is in range.
+    pub no_echo: NoEcho,
+    /// The shortest time from one trigger to the next, in us.
+    pub rest_us: u32,
+    /// The length of the trigger pulse, in us; 0 for a command, a level, or a module that runs freely.
+    pub trigger_us: u32,
+    /// How it reports.
+    pub interface: Interface,
+    /// The time from the trigger to its report, in us; 0 where the echo's own edge reports it.
+    pub report_us: u32,
+}
+
+/// Makes an enum of words as they stand in files.
+macro_rules! words {
+    ($(#[doc = $about:literal])+ $name:ident { $( $(#[doc = $doc:literal])+ $variant:ident = $word:literal, )+ }) => {
+        $(#[doc = $about])+
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum $name {
+            $( $(#[doc = $doc])+ $variant, )+
+        }
+
+        impl $name {
+            /// Every one, by its name in files.
+            pub const NAMES: [(&'static str, Self); [$($word),+].len()] = [$(($word, Self::$variant)),+];
+
+            /// The name in files.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $( Self::$variant => $word, )+
+                }
+            }
+        }
+
+        impl Default for $name {
+            /// The first in its list.
+            fn default() -> Self {
+                Self::NAMES[0].1
+            }
+        }
+    };
+}
+
+words! {
+    /// The growth of a receiver's gain while it listens.
+    Gain {
+        /// The same all the time.
+        Constant = "constant",
+        /// With the square root of time.
+        SquareRoot = "square_root",
+        /// In proportion to time, which makes up for spherical spreading.
+        Linear = "linear",
+        /// As linear, in twelve equal steps.
+        Stepped = "stepped",
+        /// The twelve steps of the Polaroid 6500's control circuit.
+        Polaroid6500 = "polaroid_6500",
+    }
+}
+
+words! {
+    /// The pattern near 90 degrees off the axis, and beyond.
+    Beam {
+        /// An endless baffle: nothing behind.
+        CutAt90 = "cut_at_90",
+        /// A baffle that ends with the piston: half of the wave at 90 degrees, and a shadow behind.
+        Continuous = "continuous",
+    }
+}
+
+words! {
+    /// How a module reports.
+    Interface {
+        /// A line rises when the echo is heard.
+        Edge = "edge",
+        /// Trigger and echo share a pin: the width of the pulse that answers is the echo time.
+        OnePin = "one_pin",
+        /// A line is high from the burst to the echo.
+        PulseWidth = "pulse_width",
+        /// A serial line.
+        Uart = "uart",
+        /// A bus of many modules.
+        I2c = "i2c",
+        /// A voltage.
+        Analog = "analog",
+    }
+}
+
+/// What a module does where nothing is in range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoEcho {
+    /// It holds its line high for this long, then releases it.
+    Holds {
+        /// How long, in us.
+        us: u32,
+    },
+    /// Its line never rises.
+    Silent,
+    /// It reports that there is nothing, by a value.
+    Reports,
+}
+
+impl NoEcho {
+    /// The names in files; `holds` goes with `hold_us`.
+    pub const NAMES: [&'static str; 3] = ["holds", "silent", "reports"];
+
+    /// The name in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Holds { .. } => "holds",
+            Self::Silent => "silent",
+            Self::Reports => "reports",
+        }
+    }
+
+    /// How long its line is held, in us; 0 for one that is not.
+    pub const fn hold_us(self) -> u32 {
+        match self {
+            Self::Holds { us } => us,
+            Self::Silent | Self::Reports => 0,
+        }
+    }
+}

@@ -57,6 +57,7 @@ _Beam = Literal["cut_at_90", "continuous"]
 _Gain = Literal["constant", "square_root", "linear", "stepped", "polaroid_6500"]
 _Physics = Literal["plain", "default"] | dict[str, bool | float | str]
 _Body = float | tuple[float, float] | list[tuple[float, float]]
+_Fault = dict[str, Any]
 _Phase = Literal["a", "b"]
 _StateKind = Literal["obstacle", "clear", "too_close", "unanswered", "unknown"]
 _Doubt = Literal["no_firing", "unsure", "rejected", "ambiguous"]
@@ -1000,6 +1001,7 @@ class Scene:
         max_order: _Int = 6,
         physics: _Physics = "default",
         height: _Height = "flat",
+        faults: Iterable[_Fault] = (),
     ) -> Scene: ...
     @staticmethod
     def read_toml(path: str | PathLike[str]) -> Scene: ...
@@ -1007,6 +1009,8 @@ class Scene:
     def from_toml(text: str) -> Scene: ...
     def to_toml(self) -> str: ...
     def replace(self, **changes: object) -> Scene: ...
+    @property
+    def faults(self) -> list[_Fault]: ...
     @property
     def walls(self) -> _Floats: ...
     @property

@@ -119,7 +119,7 @@ fn course(args: &Args, number: u64, method: Method, go_on: &dyn Fn(f64) -> bool)
 
 fn scene_file(world: &World) -> String {
     let (noise, physics) = (world.noise(), world.physics());
-    world_file(world.scene(), world.robots(), &noise, &physics, world.max_order(), world.seed())
+    world_file(world.scene(), world.robots(), &noise, &physics, world.max_order(), world.seed(), world.faults())
 }
 
 fn file(folder: &Path, method: Method) -> PathBuf {

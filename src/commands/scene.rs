@@ -43,6 +43,6 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         args.file.display(),
         grid.cell_m(),
     ))?;
-    print(world_file(&scene, &[], &Noise::default(), &Physics::DEFAULT, eeruf_sim::world::DEFAULT_ORDER, 0))?;
+    print(world_file(&scene, &[], &Noise::default(), &Physics::DEFAULT, eeruf_sim::world::DEFAULT_ORDER, 0, &[]))?;
     Ok(Answer::Yes)
 }

@@ -7,6 +7,7 @@ mod certificates;
 mod documents;
 mod emitted;
 mod experiments;
+mod faults;
 mod field_cases;
 mod hopping;
 mod inputs;

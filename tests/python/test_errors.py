@@ -173,7 +173,7 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (
         lambda: ANY.sim.Robot((0, 0, 0), 8, 0.2, 0.3, "bat"),
         eeruf.ArgumentError,
-        "transducer = 'bat'; expected \"polaroid-6500\"",
+        "module = 'bat'; expected \"polaroid-6500\"",
     ),
     (lambda: sim.Scene([[0, 0, 1, 0]], open=[1]), eeruf.ArgumentError, "open = 1; expected a whole number from 0 to 0"),
     (lambda: sim.Scene([], open=[0]), eeruf.ArgumentError, r"open = \[0\]; expected no indices"),

@@ -185,7 +185,8 @@ blanking_us = [200, 300, 400]
 together = [[0, 2]]
 height_m = [0.2, 0.3, 0.4]
 """
-    scene = sim.Scene(WALLS, robots=[robot])
+    # Other methods than its own do not fire them together.
+    scene = sim.Scene(WALLS, robots=[robot.replace(together=())])
     read = sim.Scene.from_toml(text).robots[0]
     for name in ("module", "t_delta_us", "window_us", "blanking_us", "together", "height_m"):
         assert getattr(read, name) == getattr(robot, name), name
@@ -197,3 +198,35 @@ height_m = [0.2, 0.3, 0.4]
     assert older == sim.Robot((0, 0, 0), 2, 0.3, 0.1, module="hc-sr04")
     with pytest.raises(eeruf.ArgumentError, match="no figure `sees`; expected like, sees_to_m"):
         sim.Robot((0, 0, 0), 2, 0.3, 0.1, {"like": "ping", "sees": 2.0})
+
+
+def test_faults_are_said_by_the_words_of_scene_files() -> None:
+    schedule = eeruf.Schedule.from_firing(90_000, [0, 30_000], [8_000, 50_000])
+    faults = [
+        {"kind": "lost", "share": 0.5, "sensors": [0]},
+        {"kind": "cut", "sensors": [1], "from_s": 0.6, "to_s": 1.2},
+        {"kind": "other_table", "schedule": schedule, "from_s": 30},
+        {"kind": "leg", "radius_m": 0.05, "from_m": [1, -1], "to_m": (1, 1), "to_s": 2.0},
+    ]
+    robot = sim.Robot((0, 0, 0.3), [(0.05, 0.05, 0.7), (0.05, -0.05, -0.7)], module="hc-sr04", schedule=SCHEDULE)
+    scene = sim.Scene(WALLS, robots=[robot], faults=faults)
+    assert [fault["kind"] for fault in scene.faults] == ["lost", "cut", "other_table", "leg"]
+    again = sim.Scene.from_toml(scene.to_toml())
+    assert again.faults == scene.faults == scene.replace(seed=1).faults
+    assert same(scene, again)
+    assert pickle.loads(pickle.dumps(scene)).faults == scene.faults
+    readings = sim.simulate(scene, periods=60)
+    cut = (readings.sensor == 1) & (readings.fired_s > 0.6) & (readings.fired_s < 1.2)
+    assert cut.sum() > 8
+    assert np.isnan(readings.earliest_us[cut]).all()
+    for fault, message in [
+        ({"kind": "bat"}, 'kind is "bat"; expected lost, noise'),
+        ({"kind": "lost"}, 'no share; expected one with kind "lost"'),
+        ({"kind": "cut", "since": 1}, "unknown field `since`"),
+        ({"kind": "cut", "sensors": object()}, "a number, a text, a list or a dict of these"),
+        (3, "a sequence of dicts"),
+    ]:
+        with pytest.raises(eeruf.ArgumentError, match=message):
+            sim.Scene(WALLS, robots=[robot], faults=[fault])  # type: ignore[list-item]
+    with pytest.raises(eeruf.SceneError, match="sensors is 2; expected sensors of its robot"):
+        sim.Scene(WALLS, robots=[robot], faults=[{"kind": "cut", "sensors": [2]}])

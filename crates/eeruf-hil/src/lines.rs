@@ -5,18 +5,21 @@ use core::fmt;
 use eeruf_core::{Edge, Instant, Micros};
 use eeruf_hc_sr04::Health;
 use eeruf_hil::{Ahead, MOST_AHEAD, SENSORS};
-use eeruf_sim::{LockStep, World};
+use eeruf_sim::modules::HC_SR04;
+use eeruf_sim::{Fault, FaultKind, LockStep, World, line_edges};
 
 /// The sensor that has the faults, from 0.
 pub(crate) const FAULTY: u8 = 2;
 /// From the trigger's fall to the rise of the line, when the sound has been sent.
 const RISE_US: u64 = 450;
 /// The module's own time-out, after which its line falls without an echo.
-const TIME_OUT_US: u64 = 38_000;
+const TIME_OUT_US: u64 = HC_SR04.no_echo.hold_us() as u64;
+/// When a line gets stuck: between the nineteenth and the twentieth firing of a ring of 100 ms.
+const STUCK_FROM_S: f64 = 1.915;
 /// No interrupt comes later than this: some instructions at 64 ns each, and other interrupts before it.
 const LATEST_US: u64 = 200;
 
-/// What is wrong with the line of [`FAULTY`].
+/// What is wrong with the line of [`FAULTY`]: faults as scenes have them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LineFault {
     None,
@@ -31,6 +34,23 @@ pub(crate) enum LineFault {
 }
 
 impl LineFault {
+    /// The faults of [`FAULTY`] that it is made of.
+    fn faults(self) -> Vec<Fault> {
+        let kinds = match self {
+            Self::None => vec![],
+            Self::Missing => vec![FaultKind::Missing],
+            Self::StuckHigh => vec![FaultKind::Stuck],
+            Self::Chatters => vec![
+                FaultKind::GlitchLow { after_us: 30, width_us: 30 },
+                FaultKind::GlitchHigh { after_us: 500, width_us: 1000 },
+            ],
+            Self::InterruptsLost => vec![FaultKind::LostRises { every: 5 }, FaultKind::LostFalls { every: 7 }],
+        };
+        let from_s = if self == Self::StuckHigh { STUCK_FROM_S } else { 0.0 };
+        let fault = |kind| Fault::new(kind).of_sensors(&[FAULTY]).between(from_s, f64::INFINITY);
+        kinds.into_iter().map(fault).collect()
+    }
+
     /// What the driver should call it.
     pub(crate) fn name(self) -> Health {
         match self {
@@ -67,7 +87,7 @@ struct Line {
 /// All lines, in the board's time.
 pub(crate) struct Lines<'w> {
     world: LockStep<'w>,
-    fault: LineFault,
+    faults: Vec<Fault>,
     lines: [Line; SENSORS],
     /// A reading of the board's clock, and which microsecond since the start that was.
     clock: (Instant, u64),
@@ -78,7 +98,7 @@ pub(crate) struct Lines<'w> {
 impl<'w> Lines<'w> {
     pub(crate) fn new(world: &'w World, fault: LineFault, start: Instant) -> Result<Self, String> {
         let world = LockStep::new(world).map_err(|error| error.to_string())?;
-        Ok(Self { world, fault, lines: Default::default(), clock: (start, 0), latest: Micros::ZERO })
+        Ok(Self { world, faults: fault.faults(), lines: Default::default(), clock: (start, 0), latest: Micros::ZERO })
     }
 
     /// Microseconds since the start, without the clock's wrap: `at` is less than half an hour from what was asked
@@ -95,7 +115,9 @@ impl<'w> Lines<'w> {
         let at = self.since_start(at);
         self.all_noticed(sensor)?;
         let x = usize::from(sensor);
-        if !(self.fault == LineFault::Missing && sensor == FAULTY) {
+        let time_s = (at + RISE_US) as f64 * 1e-6;
+        let missing = |fault: &Fault| fault.kind == FaultKind::Missing && fault.is_of(0, sensor) && fault.is_at(time_s);
+        if !self.faults.iter().any(missing) {
             self.world.fire(x, (at + RISE_US) * 1000).map_err(|error| error.to_string())?;
         }
         let line = self.lines.get_mut(x).ok_or_else(|| format!("there is no sensor {}", sensor + 1))?;
@@ -110,20 +132,8 @@ impl<'w> Lines<'w> {
         let Some(triggered) = line.triggered_us else { return Vec::new() };
         let rise = triggered + RISE_US;
         let fall = self.world.hears_at_ns(sensor.into()).map_or(rise + TIME_OUT_US, |ns| ns / 1000);
-        let fault = if sensor == FAULTY { self.fault } else { LineFault::None };
-        match fault {
-            LineFault::None => vec![(rise, true, false), (fall, false, false)],
-            LineFault::Missing => vec![],
-            LineFault::StuckHigh if line.firings < 20 => vec![(rise, true, false), (fall, false, false)],
-            LineFault::StuckHigh => vec![(rise, true, false)],
-            LineFault::Chatters => {
-                let at = [rise, rise + 30, rise + 60, fall, fall + 500, fall + 1_500];
-                at.into_iter().enumerate().map(|(n, at)| (at, n % 2 == 0, false)).collect()
-            }
-            LineFault::InterruptsLost => {
-                vec![(rise, true, line.firings % 5 == 0), (fall, false, line.firings % 7 == 0)]
-            }
-        }
+        let edges = line_edges(&self.faults, 0, sensor, line.firings, rise, fall);
+        edges.map(|edge| (edge.at_us, edge.high, edge.lost)).collect()
     }
 
     /// What is to come on all lines, for a board whose clock reads `now`. Edges that it may just have noticed are among
@@ -202,6 +212,32 @@ mod tests {
         let [rise, fall] = ahead[..] else { panic!("{ahead:?}") };
         assert_eq!(rise.edge, Edge { sensor: 4, high: true, at: at(1_450) });
         assert!(fall.edge.sensor == 4 && !fall.edge.high && fall.edge.at.has_reached(at(2_000)));
+    }
+
+    #[test]
+    fn each_fault_is_what_its_name_says() {
+        let world = alcove();
+        let edges = |fault: LineFault, firing: u32| -> Vec<(u64, bool, bool)> {
+            let mut lines = Lines::new(&world, fault, at(0)).unwrap();
+            for before in 1..=firing {
+                let triggered = at(100_000 * before);
+                lines.trigger(FAULTY, triggered).unwrap();
+                lines.lines[usize::from(FAULTY)].noticed =
+                    lines.edges(FAULTY).iter().filter(|&&(_, _, lost)| !lost).count();
+            }
+            lines.edges(FAULTY)
+        };
+        let well = edges(LineFault::None, 5);
+        let &[(rise, true, false), (fall, false, false)] = &well[..] else { panic!("{well:?}") };
+        assert_eq!(rise, 500_450);
+        assert_eq!(edges(LineFault::Missing, 5), []);
+        assert_eq!(edges(LineFault::StuckHigh, 5), well);
+        assert_eq!(edges(LineFault::StuckHigh, 20).iter().map(|edge| edge.1).collect::<Vec<_>>(), [true]);
+        let times = [rise, rise + 30, rise + 60, fall, fall + 500, fall + 1_500];
+        let chatters: Vec<_> = (0..).zip(times).map(|(n, time)| (time, n % 2 == 0, false)).collect();
+        assert_eq!(edges(LineFault::Chatters, 5), chatters);
+        assert_eq!(edges(LineFault::InterruptsLost, 5), [(rise, true, true), (fall, false, false)]);
+        assert!(!edges(LineFault::InterruptsLost, 6)[1].2 && edges(LineFault::InterruptsLost, 7)[1].2);
     }
 
     #[test]

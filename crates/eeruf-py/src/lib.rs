@@ -18,6 +18,7 @@ mod design;
 mod drawing;
 mod errors;
 mod experiments;
+mod faults;
 mod fields;
 mod filter;
 mod found;

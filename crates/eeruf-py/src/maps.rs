@@ -44,5 +44,8 @@ pub(crate) fn read_map(path: &Bound<'_, PyAny>, tolerance_m: Option<&Bound<'_, P
     let walls = grid.walls(tolerance_m.unwrap_or(grid.default_tolerance_m()));
     let scene = eeruf_sim::Scene::new(walls, vec![], Air::default()).map_err(Raise::raise)?;
     let (noise, physics) = (Noise::default(), Physics::DEFAULT);
-    Scene::of(WorldParts { scene, robots: vec![], noise, physics, max_order: DEFAULT_ORDER, seed: 0 }, vec![])
+    Scene::of(
+        WorldParts { scene, robots: vec![], noise, physics, max_order: DEFAULT_ORDER, seed: 0, faults: vec![] },
+        vec![],
+    )
 }

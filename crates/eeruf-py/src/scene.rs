@@ -17,6 +17,7 @@ use crate::{
     contents::Contents,
     drawing,
     errors::{Raise, SceneError},
+    faults,
     paths::{Ends, Paths},
     robot::Robot,
     surroundings::{self, Material, Noise},
@@ -46,6 +47,8 @@ use crate::{
 ///         ``narrow_panels``, ``range_walk`` (each True or False), ``fading_time_s``; see ``docs/physics.md``.
 ///     height: ``"flat"``, all sound in one plane; ``"room"``, between a floor and a ceiling at 2.6 m; or a dict of
 ///         what differs from that room: ``ceiling_m``, and ``floor`` and ``ceiling`` as in ``materials``.
+///     faults: what goes wrong, dicts with the keys of ``[[fault]]`` in scene files, such as
+///         ``{"kind": "cut", "sensors": [2], "from_s": 3.0}``; docs/study.md has them all.
 ///
 /// Raises:
 ///     ArgumentError: an array of the wrong shape, an index of no wall, something of the wrong type or out of range.
@@ -62,6 +65,7 @@ pub(crate) struct Scene {
     robots: Vec<Robot>,
     noise: eeruf_sim::Noise,
     physics: eeruf_sim::Physics,
+    faults: Vec<eeruf_sim::Fault>,
     /// What decides all that is random.
     #[pyo3(get)]
     seed: u64,
@@ -81,17 +85,21 @@ impl Scene {
 
     /// Checks the parts against each other.
     pub(crate) fn of(parts: WorldParts, robots: Vec<Robot>) -> PyResult<Self> {
-        let WorldParts { scene, noise, physics, max_order, seed, .. } = parts;
+        let WorldParts { scene, noise, physics, max_order, seed, faults, .. } = parts;
         let contents = if robots.is_empty() {
+            if !faults.is_empty() {
+                return Err(SceneError::new_err(format!("{} faults; expected none without robots", faults.len())));
+            }
             Contents::Walls(Box::new(scene))
         } else {
             let inner = robots.iter().map(|robot| robot.robot.clone()).collect();
             let world = World::new(scene, inner, noise)
                 .and_then(|world| world.with_physics(physics))
-                .and_then(|world| world.with_max_order(max_order));
+                .and_then(|world| world.with_max_order(max_order))
+                .and_then(|world| world.with_faults(faults.clone()));
             Contents::World(Arc::new(world.map_err(Raise::raise)?.with_seed(seed)))
         };
-        Ok(Self { contents: Arc::new(contents), robots, noise, physics, seed, max_order })
+        Ok(Self { contents: Arc::new(contents), robots, noise, physics, faults, seed, max_order })
     }
 
     fn from_text(name: &Path, text: &str) -> PyResult<Self> {
@@ -122,6 +130,7 @@ impl Scene {
         all.set_item("max_order", self.max_order)?;
         all.set_item("physics", self.physics(py)?)?;
         all.set_item("height", self.height(py)?)?;
+        all.set_item("faults", self.faults(py)?)?;
         Ok(all)
     }
 }
@@ -142,11 +151,11 @@ impl Scene {
     #[pyo3(signature = (
         walls, open=None, two_sided=None, poles=None, *, materials=None, pole_materials=None, temperature_c=None,
         humidity_percent=None, pressure_kpa=None, robots=None, noise=None, seed=None, max_order=None, physics=None,
-        height=None
+        height=None, faults=None
     ))]
     #[pyo3(text_signature = "(walls, open=None, two_sided=None, poles=None, *, materials=None, pole_materials=None, \
             temperature_c=20.0, humidity_percent=50.0, pressure_kpa=101.325, robots=(), noise=True, seed=1, \
-            max_order=6, physics=\"default\", height=\"flat\")")]
+            max_order=6, physics=\"default\", height=\"flat\", faults=())")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         py: Python<'_>,
@@ -165,6 +174,7 @@ impl Scene {
         max_order: Option<&Bound<'_, PyAny>>,
         physics: Option<&Bound<'_, PyAny>>,
         height: Option<&Bound<'_, PyAny>>,
+        faults: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let rows = matrix("walls", walls, 4)?;
         let mut built_walls: Vec<_> =
@@ -208,7 +218,8 @@ impl Scene {
         let room = surroundings::height(height)?;
         let build = || eeruf_sim::Scene::new(built_walls, built_poles, air).and_then(|scene| scene.with_room(room));
         let scene = py.detach(build).map_err(Raise::raise)?;
-        Self::of(WorldParts { scene, robots: vec![], noise, physics, max_order, seed }, robots)
+        let faults = faults::faults(faults)?;
+        Self::of(WorldParts { scene, robots: vec![], noise, physics, max_order, seed, faults }, robots)
     }
 
     /// Read a scene file, such as those in the folder ``scenes``.
@@ -264,7 +275,7 @@ impl Scene {
     ///     True
     fn to_toml(&self) -> String {
         let robots: Vec<_> = self.robots.iter().map(|robot| robot.robot.clone()).collect();
-        world_file(self.scene(), &robots, &self.noise, &self.physics, self.max_order, self.seed)
+        world_file(self.scene(), &robots, &self.noise, &self.physics, self.max_order, self.seed, &self.faults)
     }
 
     /// The same scene, but for these arguments.
@@ -298,6 +309,12 @@ impl Scene {
             arguments.update(changes.as_mapping())?;
         }
         slf.get_type().call((), Some(&arguments))
+    }
+
+    /// What goes wrong: dicts with the keys of ``[[fault]]`` in scene files.
+    #[getter]
+    fn faults<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        faults::shown_faults(py, &self.faults)
     }
 
     /// The walls: array of shape (n, 4), as given.

@@ -39,6 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             &world.physics(),
             world.max_order(),
             world.seed(),
+            world.faults(),
         );
         std::fs::write(file, format!("# The typical alcove of Set I, number {}.\n{text}", numbers[place]))?;
     }

@@ -34,7 +34,7 @@ pub(crate) fn simulate_in_turn(
         if !events.run_until(turn * change, &mut keep_going)? || turn * change >= end {
             break;
         }
-        events.change_scene(Place::Borrowed(world)).map_err(|error| SimulationError::paths(turn * change, error))?;
+        events.change_scene(Place::Borrowed(world), turn * change)?;
     }
     events.run_until(u64::MAX, keep_going)?;
     Ok(events.take(end as f64 * 1e-9))

@@ -7,6 +7,7 @@ use eeruf_core::{RingError, ScheduleError, adaptation::LadderError, conditions::
 use crate::methods::{ChangeError, Method, OwnError, StartError};
 use crate::results::Readings;
 use crate::tracing::PathsError;
+use crate::world::WorldError;
 
 /// Why a simulation cannot be run. Robots are counted from 0 in code and printed from 1.
 /// `{:#}` counts from 0 where `{}` counts from 1.
@@ -112,6 +113,13 @@ pub enum SimulationError {
         /// How many there are.
         sensors: usize,
     },
+    /// A fault has no room in the scene at a time.
+    Fault {
+        /// When, in seconds.
+        at_s: f64,
+        /// Why.
+        error: WorldError,
+    },
     /// The caller asked to stop.
     Stopped,
 }
@@ -182,6 +190,7 @@ impl fmt::Display for SimulationError {
             Self::Sensors { robot, schedule, sensors } => {
                 write!(f, "robot {}: a schedule of {schedule} sensors; expected one of {sensors}", robot + first)
             }
+            Self::Fault { at_s, error } => write!(f, "at {at_s} s a door or a leg has no room: {error}"),
             Self::Stopped => write!(f, "stopped"),
         }
     }

@@ -298,8 +298,7 @@ impl Simulation {
     pub fn change_scene(&mut self, scene: Scene) -> Result<(), SimulationError> {
         let world = Arc::new(self.world().with_scene(scene));
         let (now, place) = (self.now, Place::Shared(Arc::clone(&world)));
-        let changed = self.under_way.with_dependent_mut(|_, events| events.change_scene(place));
-        changed.map_err(|error| SimulationError::paths(now, error))?;
+        self.under_way.with_dependent_mut(|_, events| events.change_scene(place, now))?;
         self.place = (world, self.happened);
         Ok(())
     }

@@ -38,6 +38,17 @@ pub enum WorldError {
         /// What is expected.
         expected: &'static str,
     },
+    /// A fault that makes no sense.
+    Fault {
+        /// The fault.
+        fault: usize,
+        /// The key, by its name in files.
+        field: &'static str,
+        /// The offending number.
+        value: f64,
+        /// What is expected.
+        expected: &'static str,
+    },
     /// A schedule for another number of sensors.
     Schedule {
         /// The robot.
@@ -139,6 +150,9 @@ impl fmt::Display for WorldError {
             }
             Self::Field { robot, field, value, expected } => {
                 write!(f, "robot {}: {field} is {value}; expected {expected}", robot + first)
+            }
+            Self::Fault { fault, field, value, expected } => {
+                write!(f, "fault {}: {field} is {value}; expected {expected}", fault + first)
             }
             Self::Schedule { robot, sensors, expected } => {
                 write!(f, "robot {}: a schedule for {sensors} sensors; expected one for its {expected}", robot + first)

@@ -4,6 +4,7 @@
 mod check;
 mod clock;
 mod error;
+mod fault;
 mod file;
 mod motion;
 mod noise;
@@ -15,6 +16,8 @@ mod world;
 pub(crate) use clock::Ticker;
 pub use clock::{Clock, MAX_DRIFT_PPM};
 pub use error::WorldError;
+pub(crate) use fault::scene_with;
+pub use fault::{Fault, FaultKind, LineEdge, line_edges};
 pub use file::{ScheduleFile, WorldFileError, WorldParts, heading_rad, world_file};
 pub use motion::{MAX_SPEED, Motion};
 pub(crate) use noise::{FARTHEST, Normal};

@@ -3,6 +3,7 @@
 
 use super::check::{check, check_apart, check_heights};
 use super::error::WorldError;
+use super::fault::{Fault, FaultKind, scene_with};
 use super::noise::Noise;
 use super::robot::{MAX_ROBOTS, Robot};
 use crate::{
@@ -15,6 +16,8 @@ use crate::{
 /// The highest order that a world follows sound to, unless another is asked for: the order at which Set I is
 /// evaluated.
 pub const DEFAULT_ORDER: u32 = 6;
+/// At how many steps of its way a door or a leg is tried before a simulation begins.
+const PLACES_TRIED: u32 = 16;
 /// The longest time for which a path may fade in the same way, in seconds: a choice, as good as for ever.
 const MAX_FADING_TIME_S: f64 = 3600.0;
 
@@ -28,6 +31,7 @@ pub struct World {
     pole_order: u32,
     physics: Physics,
     seed: u64,
+    faults: Vec<Fault>,
 }
 
 impl World {
@@ -63,6 +67,7 @@ impl World {
             pole_order: MAX_ORDER,
             physics: Physics::DEFAULT,
             seed: 1,
+            faults: vec![],
         })
     }
 
@@ -119,8 +124,38 @@ impl World {
 
     /// The same world with another scene, in which nobody looks whether the robots stand free.
     pub(crate) fn with_scene(&self, scene: Scene) -> Self {
-        let &Self { ref robots, noise, max_order, pole_order, physics, seed, .. } = self;
-        Self { scene, robots: robots.clone(), noise, max_order, pole_order, physics, seed }
+        let &Self { ref robots, noise, max_order, pole_order, physics, seed, ref faults, .. } = self;
+        let (robots, faults) = (robots.clone(), faults.clone());
+        Self { scene, robots, noise, max_order, pole_order, physics, seed, faults }
+    }
+
+    /// The same world, in which these things go wrong.
+    ///
+    /// # Errors
+    /// [`WorldError::Fault`] for one that makes no sense, [`WorldError`] for a door or a leg that the scene has no room
+    /// for somewhere on its way.
+    pub fn with_faults(self, faults: Vec<Fault>) -> Result<Self, WorldError> {
+        faults.iter().enumerate().try_for_each(|(index, fault)| fault.check(index, &self.robots))?;
+        for robot in 0..self.robots.len() {
+            let drifts = |fault: &&Fault| matches!(fault.kind, FaultKind::ClockDrift { .. }) && fault.robot == robot;
+            if let Some((index, _)) = faults.iter().enumerate().filter(|(_, fault)| drifts(fault)).nth(1) {
+                let expected = "no second clock_drift of one robot";
+                return Err(WorldError::Fault { fault: index, field: "robot", value: robot as f64, expected });
+            }
+        }
+        for fault in faults.iter().filter(|fault| fault.kind.is_of_scene()) {
+            let to_s = if fault.to_s.is_finite() { fault.to_s } else { fault.from_s };
+            for step in 0..=PLACES_TRIED {
+                let share = f64::from(step) / f64::from(PLACES_TRIED);
+                scene_with(&self.scene, &faults, fault.from_s + share * (to_s - fault.from_s))?;
+            }
+        }
+        Ok(Self { faults, ..self })
+    }
+
+    /// What goes wrong.
+    pub fn faults(&self) -> &[Fault] {
+        &self.faults
     }
 
     /// Walls, poles and air.

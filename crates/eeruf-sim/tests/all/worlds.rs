@@ -171,6 +171,7 @@ fn a_world_written_to_a_file_and_read_again_gives_the_same_bit_for_bit() {
             &world.physics(),
             world.max_order(),
             world.seed(),
+            world.faults(),
         );
         let again = World::from_text("again.toml".as_ref(), &text).unwrap();
         assert!(again.robots() == world.robots(), "{text}");

@@ -7,6 +7,7 @@
 use eeruf_core::{Instant, RingEvent};
 
 use super::arrivals::{Bursts, Propagation};
+use super::faults::{Due, Faults, Fired};
 use super::own::Own;
 use super::recorder::Recorder;
 use super::running_ring::{Plan, RunningRing, expected_change_us, plans, start_all};
@@ -43,6 +44,11 @@ pub(crate) struct EventLoop<'a, K> {
     fired: Vec<Option<Moment>>,
     fired_before: Vec<Option<Moment>>,
     propagation: Propagation,
+    faults: Faults<'a>,
+    /// When each sensor was triggered.
+    triggered: Vec<u64>,
+    /// By which method each robot fires, and the table of its own.
+    own_tables: Vec<(Method, Option<&'a AnySchedule>)>,
     recorder: Recorder,
     /// Nothing that happens later is reported.
     last: u64,
@@ -107,6 +113,9 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
             fired: vec![None; sensors],
             fired_before: vec![None; sensors],
             propagation: Propagation::new(world, seed),
+            faults: Faults::new(world, seed),
+            triggered: vec![0; sensors],
+            own_tables: plans.iter().map(|(of, plan)| (*of, plan.as_ref().map(|plan| &plan.schedule))).collect(),
             recorder,
             last: end.map_or(u64::MAX - 1, |end| end + longest + 1000),
             stop,
@@ -142,7 +151,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
 
     fn run_rings(
         &mut self,
-        rings: &mut [RunningRing<'_>],
+        rings: &mut [RunningRing<'a>],
         until: u64,
         to_reading: bool,
         keep_going: &mut impl FnMut(f64) -> bool,
@@ -154,6 +163,11 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
                 if due < now {
                     (now, whose) = (due, Some(index));
                 }
+            }
+            let changes = self.faults.next() <= now && self.faults.next() < until;
+            if changes && now <= self.last {
+                self.change(rings)?;
+                continue;
             }
             if now >= until && now <= self.last {
                 return Ok((true, None));
@@ -179,15 +193,42 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         }
     }
 
+    /// What faults change now: tables, and what stands in the scene.
+    fn change(&mut self, rings: &mut [RunningRing<'a>]) -> Result<(), SimulationError> {
+        let now = self.faults.next();
+        let at_s = now as f64 * 1e-9;
+        let due = self.faults.due(now).map_err(|error| SimulationError::Fault { at_s, error })?;
+        for change in due {
+            match change {
+                Due::Table(robot, table) => {
+                    let Some(&(method, own)) = self.own_tables.get(robot) else { continue };
+                    let changed = match (table.or(own), rings.get_mut(robot)) {
+                        (Some(table), Some(ring)) => ring.ring.change_schedule(table),
+                        _ => Err(ChangeError::Fixed),
+                    };
+                    changed.map_err(|error| SimulationError::change(robot, method, error))?;
+                }
+                Due::Scene(world) => {
+                    let moved = self.channels.change_scene(Place::Shared(world), &self.kinematics);
+                    moved.map_err(|error| SimulationError::paths(now, error))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// What was read since it was last taken, of so many seconds.
     pub(crate) fn take(&mut self, duration_s: f64) -> Readings {
         self.recorder.take(self.channels.paths(), duration_s)
     }
 
     /// From now on the scene is that of another world, whose robots are the same.
-    pub(crate) fn change_scene(&mut self, world: Place<'a>) -> Result<(), PathsError> {
+    pub(crate) fn change_scene(&mut self, world: Place<'a>, now: u64) -> Result<(), SimulationError> {
         let c = world.scene().air().speed_of_sound();
-        self.channels.change_scene(world, &self.kinematics)?;
+        let at_s = now as f64 * 1e-9;
+        let world = self.faults.begin_anew(world, now).map_err(|error| SimulationError::Fault { at_s, error })?;
+        let changed = self.channels.change_scene(world, &self.kinematics);
+        changed.map_err(|error| SimulationError::paths(now, error))?;
         self.c = c;
         Ok(())
     }
@@ -250,7 +291,7 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
                             &reading,
                             weighed,
                             expected_change_us,
-                            receiver,
+                            (receiver, self.triggered[number]),
                             reference,
                             &fired_from,
                         );
@@ -280,51 +321,112 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         for (sensor, number) in ring.sensors.clone().enumerate() {
             let receiver = &mut self.receivers[number];
             if receiver.next_at() <= now {
-                let t_echo = ticks - ring.clock.ticks(receiver.fired);
-                receiver.hear(t_echo as u32, ring.hearing_of(number));
                 // At most 64 sensors.
-                ring.ring.echo(sensor as u8, instant);
+                let sensor = sensor as u8;
+                let says = if self.faults.any() {
+                    self.faults.reported(self.channels.ids()[number], now, receiver.firings)
+                } else {
+                    Some(sensor)
+                };
+                let t_echo = |triggered: u64| (ticks - ring.clock.ticks(triggered)) as u32;
+                match says {
+                    Some(says) if says == sensor => {
+                        receiver.hear(t_echo(self.triggered[number]), ring.hearing_of(number));
+                        ring.ring.echo(sensor, instant);
+                    }
+                    Some(says) => {
+                        let (heard, number) = (receiver.lose(), ring.sensors.start + usize::from(says));
+                        let triggered = self.triggered[number];
+                        let listens = ring.hearing_of(number);
+                        let in_time = (triggered + listens.blanking..=triggered + listens.window).contains(&now);
+                        if let Some(heard) = heard.filter(|_| in_time) {
+                            self.receivers[number].report(t_echo(triggered), heard, listens);
+                            ring.ring.echo(says, instant);
+                        }
+                    }
+                    None => {
+                        receiver.lose();
+                    }
+                }
             }
-            ring.hears = ring.hears.min(receiver.next_at());
+            ring.hears = ring.hears.min(self.receivers[number].next_at());
         }
     }
 
-    /// A sensor fires: it begins to listen, and its sound sets out to every sensor that can hear it.
+    /// A sensor is triggered: it, or the one whose trigger wire it has, begins to listen, and its sound sets out to
+    /// every sensor that can hear it.
     fn fire(
         &mut self,
         rings: &mut [RunningRing<'_>],
         index: usize,
+        triggered: usize,
+        now: u64,
+    ) -> Result<(), PathsError> {
+        self.triggered[triggered] = now;
+        self.receivers[triggered].forget();
+        let id = self.channels.ids()[triggered];
+        let fired = if self.faults.any() { self.faults.fired(id, now) } else { Fired::Sends(id.sensor, 0) };
+        let Fired::Sends(sensor, late) = fired else {
+            self.receivers[triggered].firings += 1;
+            self.receivers[triggered].stop();
+            return self.prepare(triggered, triggered, &rings[index], now);
+        };
+        let emitter = rings[index].sensors.start + usize::from(sensor);
+        self.prepare(triggered, emitter, &rings[index], now)?;
+        self.send(rings, index, emitter, now + late);
+        Ok(())
+    }
+
+    /// Looks for what a sensor that is triggered would hear alone, and for the paths from the one that sends.
+    fn prepare(
+        &mut self,
+        triggered: usize,
         emitter: usize,
+        ring: &RunningRing<'_>,
         now: u64,
     ) -> Result<(), PathsError> {
         if self.channels.moves() {
             // Paths are looked for anew, which takes as long as many events.
             self.until_call = self.until_call.saturating_sub(EVENTS_PER_CALL / 64);
         }
-        self.fired_before[emitter] = self.fired[emitter];
-        self.fired[emitter] = Some(self.kinematics.moment(index, now));
+        self.fired_before[triggered] = self.fired[triggered];
+        self.fired[triggered] = Some(self.kinematics.moment(usize::from(self.channels.ids()[triggered].robot), now));
         // What will not be heard need not be weighed, unless chance depends on which paths were met.
         let (receivers, propagation) = (&self.receivers, &self.propagation);
         let arrives = |number: usize, at: u64, slack: u64| {
             let receiver = receivers.get(number);
-            number == emitter || receiver.is_some_and(|receiver| receiver.cares(at, propagation.slack(slack)))
+            number == triggered
+                || number == emitter
+                || receiver.is_some_and(|receiver| receiver.cares(at, propagation.slack(slack)))
         };
         let arrives: Option<Arrives<'_>> = if propagation.is_keyed() { Some(&arrives) } else { None };
-        self.channels.prepare(emitter, now, &self.kinematics, arrives)?;
+        self.channels.prepare(triggered, now, &self.kinematics, arrives)?;
+        self.references[triggered] = self.channels.reference(triggered, ring.hearing_of(triggered));
+        if emitter != triggered {
+            self.channels.prepare(emitter, now, &self.kinematics, arrives)?;
+        }
+        Ok(())
+    }
+
+    /// A sensor that was prepared begins to listen and sends its sound.
+    fn send(&mut self, rings: &mut [RunningRing<'_>], index: usize, emitter: usize, now: u64) {
         let hearing = *rings[index].hearing_of(emitter);
-        self.references[emitter] = self.channels.reference(emitter, &hearing);
         let receiver = &mut self.receivers[emitter];
-        receiver.fire(now, &hearing);
+        receiver.listen(now, &hearing);
+        let ids = self.channels.ids();
+        if self.faults.any() {
+            for arrival in self.faults.heard_beside(ids[emitter], now, receiver.firings, &hearing) {
+                receiver.insert(arrival, &hearing);
+            }
+        }
         rings[index].hears = rings[index].hears.min(receiver.next_at());
         let firing = [emitter as u64, receiver.firings.into()];
-        let ids = self.channels.ids();
         let channels = self.channels.from(emitter);
         self.propagation.send(firing, now, channels, &mut self.receivers, |number, receiver, arrival| {
             let ring = &mut rings[usize::from(ids[number].robot)];
             receiver.insert(arrival, ring.hearing_of(number));
             ring.hears = ring.hears.min(receiver.next_at());
         });
-        Ok(())
     }
 
     /// A burst from outside, heard by all at once.

@@ -3,6 +3,7 @@
 
 mod arrivals;
 mod event_loop;
+mod faults;
 mod filter;
 mod own;
 mod recorder;

@@ -69,9 +69,9 @@ impl Recorder {
         self.readings.try_reserve(more).map_err(|_| SimulationError::Memory { readings: (readings + more) as u64 })
     }
 
-    /// Records what is believed of a firing. `reference` is the travelling time of what the sensor hears alone,
-    /// `fired_from` its place and heading when it fired. The answer is all readings with this one as the last; none if
-    /// it does not count.
+    /// Records what is believed of a firing. With its receiver comes when the sensor was triggered; `reference` is the
+    /// travelling time of what the sensor hears alone, `fired_from` its place and heading then. The answer is all
+    /// readings with this one as the last; none if it does not count.
     #[expect(clippy::too_many_arguments, reason = "one reading")]
     pub(crate) fn record(
         &mut self,
@@ -79,14 +79,14 @@ impl Recorder {
         reading: &Reading,
         weighed: Option<Weighed>,
         expected_change_us: i32,
-        receiver: &Receiver,
+        (receiver, triggered): (&Receiver, u64),
         reference: u64,
         fired_from: &Pose,
     ) -> Result<Option<&Readings>, OwnError> {
-        if reading.kind == ReadingKind::Late || receiver.fired >= self.end {
+        if reading.kind == ReadingKind::Late || triggered >= self.end {
             return Ok(None);
         }
-        let (echoes, fired_s) = (receiver.heard(), receiver.fired as f64 * 1e-9);
+        let (echoes, fired_s) = (receiver.heard(), triggered as f64 * 1e-9);
         let earliest = echoes.first().copied();
         let firing = FiredReading { reading, echoes, fired_s, expected_change_us };
         let Filtered { kind, echo: chosen } = self.filters[usize::from(self.ids[sensor].robot)].push(&firing)?;

@@ -11,7 +11,7 @@ use crate::simulation::receiver::{Hearing, NEVER};
 use crate::{
     geometry::Pose,
     methods::{FiringPlan, Method, RingRunner, RingStart},
-    world::{Random, Robot, Ticker, World},
+    world::{FaultKind, Random, Robot, Ticker, World},
 };
 
 /// What the stream of random numbers is for.
@@ -83,7 +83,13 @@ pub(crate) fn start_all<'a>(
 ) -> Result<Vec<RunningRing<'a>>, SimulationError> {
     let mut rings = Vec::with_capacity(plans.len());
     for (index, (robot, (method, plan))) in world.robots().iter().zip(plans).enumerate() {
-        let clock = Ticker::new(robot.clock);
+        let mut clock = Ticker::new(robot.clock);
+        for fault in world.faults().iter().filter(|fault| fault.robot == index) {
+            if let FaultKind::ClockDrift { ppm } = fault.kind {
+                let ns = |time_s: f64| if time_s.is_finite() { (time_s * 1e9).round() as u64 } else { NEVER };
+                clock = clock.drifting(ppm, ns(fault.from_s), ns(fault.to_s));
+            }
+        }
         let start = u64::from(robot.start.as_micros());
         let random = seed.of(DITHER).of(index as u64);
         let now = clock.instant(start);

@@ -179,15 +179,25 @@ impl Receiver {
         latest > self.own_until || (latest >= self.open && at <= self.until.saturating_add(slack))
     }
 
-    /// Begins to listen.
+    /// Forgets what it heard before: its line is asked for a new firing.
+    pub(crate) fn forget(&mut self) {
+        self.heard_count = 0;
+    }
+
+    /// Begins to listen for a new firing.
     pub(crate) fn fire(&mut self, now: u64, hearing: &Hearing) {
+        self.forget();
+        self.listen(now, hearing);
+    }
+
+    /// Begins to listen; what it heard before is still to be read.
+    pub(crate) fn listen(&mut self, now: u64, hearing: &Hearing) {
         self.fired = now;
         self.firings += 1;
         self.open = now + hearing.blanking;
         self.until = now + hearing.window;
         self.own_until = now + hearing.refire;
         self.next = None;
-        self.heard_count = 0;
         // What still waits is handed in again, behind the old entries.
         let held = self.pending.len();
         for index in 0..held {
@@ -252,6 +262,21 @@ impl Receiver {
             index += 1;
         }
         self.next = soonest.map(|index| self.pending.swap_remove(index));
+    }
+
+    /// Loses what was next, and stops listening: nothing on its own line says it.
+    pub(crate) fn lose(&mut self) -> Option<Arrival> {
+        let lost = self.next.take();
+        self.stop();
+        lost
+    }
+
+    /// Its line says what another sensor has heard, if there is room for it.
+    pub(crate) fn report(&mut self, t_echo_us: u32, arrival: Arrival, hearing: &Hearing) {
+        if self.heard_count < hearing.echoes.min(MAX_ECHOES) {
+            self.heard[self.heard_count] = Echo { t_echo_us, arrival, of_this_firing: false };
+            self.heard_count += 1;
+        }
     }
 
     /// Stops listening.

@@ -4,6 +4,7 @@ use eeruf_modules::ModulesFile;
 use serde::{Deserialize, Deserializer, de::Error};
 use toml::Spanned;
 
+use super::fault::FaultFile;
 use crate::{
     acoustics::{Physics, UnknownPhysics},
     geometry::{Pose, Vector},
@@ -28,6 +29,8 @@ pub(super) struct WorldFile {
     pub(super) poles: Vec<Spanned<PoleFile>>,
     #[serde(default, rename = "robot")]
     pub(super) robots: Vec<Spanned<RobotFile>>,
+    #[serde(default, rename = "fault")]
+    pub(super) faults: Vec<Spanned<FaultFile>>,
 }
 
 /// A number, or a text where it is above the 2^63 at which TOML's numbers end.

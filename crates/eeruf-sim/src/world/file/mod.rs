@@ -1,6 +1,7 @@
 //! Worlds in TOML files: walls, poles, air, robots, noise and seed. Whatever is wrong with one is reported in one line:
 //! file, line, field, value, what is expected.
 
+mod fault;
 mod format;
 mod robot;
 mod scene;
@@ -14,10 +15,12 @@ use std::path::Path;
 use toml::Spanned;
 
 use super::error::WorldError;
+use super::fault::Fault;
 use super::noise::Noise;
 use super::robot::Robot;
 use super::world::World;
 use crate::{acoustics::Physics, scene::Scene};
+use fault::fault;
 use format::WorldFile;
 use robot::robot;
 use scene::scene;
@@ -59,10 +62,11 @@ impl World {
 
     fn parse(source: &Source) -> Result<Self, WorldFileError> {
         let file: WorldFile = source.toml()?;
-        let WorldParts { scene, robots, noise, physics, max_order, seed } = WorldParts::of(source, &file)?;
+        let WorldParts { scene, robots, noise, physics, max_order, seed, faults } = WorldParts::of(source, &file)?;
         let world = Self::new(scene, robots, noise)
             .and_then(|world| world.with_physics(physics))
-            .and_then(|world| world.with_max_order(max_order));
+            .and_then(|world| world.with_max_order(max_order))
+            .and_then(|world| world.with_faults(faults));
         world.map(|world| world.with_seed(seed)).map_err(|error| {
             let (part, field) = blame(&file, &error);
             source.error(part, field, error)
@@ -85,6 +89,8 @@ pub struct WorldParts {
     pub max_order: u32,
     /// What decides all that is random.
     pub seed: u64,
+    /// What goes wrong.
+    pub faults: Vec<Fault>,
 }
 
 impl WorldParts {
@@ -119,12 +125,14 @@ impl WorldParts {
                 entry.get_ref().physics().map_err(|error| source.error(Some(entry.span()), "preset", error))?
             }
         };
-        Ok(Self { scene, robots, noise, physics, max_order: file.max_order, seed: file.seed })
+        let faults = file.faults.iter().enumerate().map(|(index, entry)| fault(source, index, entry));
+        let faults = faults.collect::<Result<_, _>>()?;
+        Ok(Self { scene, robots, noise, physics, max_order: file.max_order, seed: file.seed, faults })
     }
 
     /// Writes the file that says all this; see [`world_file`].
     pub fn to_toml(&self) -> String {
-        world_file(&self.scene, &self.robots, &self.noise, &self.physics, self.max_order, self.seed)
+        world_file(&self.scene, &self.robots, &self.noise, &self.physics, self.max_order, self.seed, &self.faults)
     }
 }
 
@@ -134,6 +142,7 @@ fn blame(file: &WorldFile, error: &WorldError) -> (Option<Range<usize>>, &'stati
     match *error {
         WorldError::Sensors { robot: index, .. } => (robot(index), "ring"),
         WorldError::Field { robot: index, field, .. } => (robot(index), field),
+        WorldError::Fault { fault, field, .. } => (file.faults.get(fault).map(Spanned::span), field),
         WorldError::Schedule { robot: index, .. } => (robot(index), "schedule"),
         WorldError::Window { robot: index, .. } => (robot(index), "window_us"),
         WorldError::Contact { robot: index, .. }

@@ -135,7 +135,7 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
 }
 
 /// A schedule in the file itself, or the name of a file beside it.
-fn schedule(source: &Source, value: &Spanned<toml::Value>) -> Result<AnySchedule, WorldFileError> {
+pub(super) fn schedule(source: &Source, value: &Spanned<toml::Value>) -> Result<AnySchedule, WorldFileError> {
     let here = |message: String| source.error(Some(value.span()), "", format!("schedule: {message}"));
     if let toml::Value::String(name) = value.get_ref() {
         let beside = source.file.parent().unwrap_or(Path::new("")).join(name);

@@ -4,17 +4,18 @@ use eeruf_core::{Micros, SensorLimits};
 use eeruf_modules::{KEYS, Module, Value as Figure, find};
 use toml::{Table, Value};
 
+use super::fault::fault_table;
 use super::schedule_file::ScheduleFile;
 use crate::{
     acoustics::{Physics, Transducer},
     geometry::Pose,
     scene::{Body, Faces, Material, Room, Scene},
-    world::{motion::Motion, noise::Noise, robot::Robot},
+    world::{fault::Fault, motion::Motion, noise::Noise, robot::Robot},
 };
 
-/// Writes the world file of a scene with these robots, noise, physics, order and seed: reading it again gives the same,
-/// bit for bit, with the schedules in it. Only the last bit of a heading may move, and only the first time; see
-/// [`heading_rad`].
+/// Writes the world file of a scene with these robots, noise, physics, order, seed and faults: reading it again gives
+/// the same, bit for bit, with the schedules in it. Only the last bit of a heading may move, and only the first time;
+/// see [`heading_rad`].
 pub fn world_file(
     scene: &Scene,
     robots: &[Robot],
@@ -22,6 +23,7 @@ pub fn world_file(
     physics: &Physics,
     max_order: u32,
     seed: u64,
+    faults: &[Fault],
 ) -> String {
     let mut file = Table::new();
     // TOML's whole numbers end at 2^63.
@@ -89,6 +91,7 @@ pub fn world_file(
     });
     list(&mut file, "pole", poles.collect());
     list(&mut file, "robot", robots.iter().map(|robot| Value::Table(robot_table(robot))).collect());
+    list(&mut file, "fault", faults.iter().map(|fault| Value::Table(fault_table(fault))).collect());
     file.to_string()
 }
 

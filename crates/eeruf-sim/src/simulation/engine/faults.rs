@@ -1,0 +1,198 @@
+//! The faults of a world while it is simulated: which of them are there, and what they do to a firing and to an echo.
+
+use std::sync::Arc;
+
+use crate::simulation::channels::Place;
+use crate::simulation::receiver::{Arrival, EXTERNAL, Hearing, NEVER};
+use crate::{
+    modules::Interface,
+    results::SensorId,
+    world::{AnySchedule, Fault, FaultKind, Random, Robot, World, WorldError, scene_with},
+};
+
+/// What the stream of random numbers is for.
+const FAULTS: u64 = 5;
+/// From one place of a door or a leg to the next, in nanoseconds: at 1 m/s a twentieth of a metre. A choice.
+const FRAME_NS: u64 = 50_000_000;
+/// By how much noise is above what is just heard, in dB: a choice, as loud as a burst from outside.
+const NOISE_DB: f32 = 20.0;
+/// The same of a glitch, which is no sound and rises at once.
+const GLITCH_DB: f32 = 200.0;
+
+/// What becomes of a trigger.
+pub(super) enum Fired {
+    /// No sound is sent, and nothing is heard.
+    Nothing,
+    /// This sensor sends its sound, so many nanoseconds late.
+    Sends(u8, u64),
+}
+
+/// A change that is due.
+pub(super) enum Due<'a> {
+    /// A robot fires by this table from now on; by its own if there is none.
+    Table(usize, Option<&'a AnySchedule>),
+    /// Sound travels in this world from now on.
+    Scene(Arc<World>),
+}
+
+/// The faults of a world under way.
+pub(super) struct Faults<'a> {
+    faults: &'a [Fault],
+    robots: &'a [Robot],
+    random: Random,
+    /// The world without what faults put into its scene.
+    base: Place<'a>,
+    /// When the next of these changes is due: the beginnings and ends of other tables, and the places of what moves.
+    next: u64,
+    scene_next: u64,
+}
+
+fn ns(time_s: f64) -> u64 {
+    if time_s.is_finite() { (time_s * 1e9).round() as u64 } else { NEVER }
+}
+
+impl<'a> Faults<'a> {
+    pub(super) fn new(world: &'a World, seed: Random) -> Self {
+        let faults = world.faults();
+        let scene_next = if faults.iter().any(|fault| fault.kind.is_of_scene()) { 0 } else { NEVER };
+        let random = seed.of(FAULTS);
+        let base = Place::Borrowed(world);
+        let mut begun = Self { faults, robots: world.robots(), random, base, next: 0, scene_next };
+        begun.next = begun.change_after(None).min(scene_next);
+        begun
+    }
+
+    /// Returns true if there are any.
+    pub(super) fn any(&self) -> bool {
+        !self.faults.is_empty()
+    }
+
+    /// When something changes next.
+    pub(super) fn next(&self) -> u64 {
+        self.next
+    }
+
+    /// Takes another world for the one without what faults put into its scene, which it gives as it is at a time.
+    pub(super) fn begin_anew(&mut self, base: Place<'a>, now: u64) -> Result<Place<'a>, WorldError> {
+        self.base = base;
+        if self.scene_next == NEVER && !self.faults.iter().any(|fault| fault.kind.is_of_scene()) {
+            return Ok(self.base.clone());
+        }
+        Ok(Place::Shared(self.world_at(now)?))
+    }
+
+    fn world_at(&self, now: u64) -> Result<Arc<World>, WorldError> {
+        let scene = scene_with(self.base.scene(), self.faults, now as f64 * 1e-9)?;
+        Ok(Arc::new(self.base.with_scene(scene)))
+    }
+
+    /// When the first table changes after a time, or at any time.
+    fn change_after(&self, now: Option<u64>) -> u64 {
+        let tables = self.faults.iter().filter(|fault| matches!(fault.kind, FaultKind::OtherTable { .. }));
+        let times = tables.flat_map(|fault| [ns(fault.from_s), ns(fault.to_s)]);
+        times.filter(|&at| now.is_none_or(|now| at > now)).min().unwrap_or(NEVER)
+    }
+
+    /// What is due at a time, the one of [`next`](Self::next).
+    pub(super) fn due(&mut self, now: u64) -> Result<Vec<Due<'a>>, WorldError> {
+        let mut due = vec![];
+        let time_s = now as f64 * 1e-9;
+        let faults = self.faults;
+        for fault in faults {
+            if let FaultKind::OtherTable { schedule } = &fault.kind {
+                if now == ns(fault.from_s) {
+                    due.push(Due::Table(fault.robot, Some(schedule)));
+                } else if now == ns(fault.to_s) {
+                    due.push(Due::Table(fault.robot, None));
+                }
+            }
+        }
+        if now >= self.scene_next {
+            due.push(Due::Scene(self.world_at(now)?));
+            // While something moves, soon; else when it begins to.
+            let of_scene = || faults.iter().filter(|fault| fault.kind.is_of_scene());
+            self.scene_next = if of_scene().any(|fault| fault.is_at(time_s) && fault.to_s.is_finite()) {
+                let ends = of_scene().map(|fault| ns(fault.to_s)).filter(|&at| at > now).min().unwrap_or(NEVER);
+                (now + FRAME_NS).min(ends)
+            } else {
+                of_scene().map(|fault| ns(fault.from_s)).filter(|&at| at > now).min().unwrap_or(NEVER)
+            };
+        }
+        self.next = self.change_after(Some(now)).min(self.scene_next);
+        Ok(due)
+    }
+
+    /// The faults that a sensor has at a time, each with its number.
+    fn of(&self, id: SensorId, now: u64) -> impl Iterator<Item = (u64, &'a Fault)> {
+        let time_s = now as f64 * 1e-9;
+        let has = move |fault: &Fault| fault.is_of(id.robot.into(), id.sensor) && fault.is_at(time_s);
+        self.faults.iter().enumerate().filter(move |(_, fault)| has(fault)).map(|(index, fault)| (index as u64, fault))
+    }
+
+    /// A random number from 0 to 1 that a fault, a sensor and its firing decide.
+    fn chance(&self, fault: u64, id: SensorId, firing: u32, what: u64) -> f64 {
+        let of_sensor = self.random.of(fault).of(id.robot.into()).of(id.sensor.into());
+        of_sensor.of(firing.into()).of(what).bits() as f64 / (u64::MAX as f64 + 1.0)
+    }
+
+    /// What becomes of a sensor's trigger.
+    pub(super) fn fired(&self, id: SensorId, now: u64) -> Fired {
+        let wires = self.of(id, now).filter(|(_, fault)| fault.kind == FaultKind::TriggerWires);
+        let sensor = wires.fold(id.sensor, |sensor, (_, fault)| fault.exchanged(sensor));
+        let (mut late, mut sends) = (0, true);
+        for (_, fault) in self.of(SensorId { sensor, ..id }, now) {
+            match fault.kind {
+                FaultKind::Missing | FaultKind::Stuck => sends = false,
+                FaultKind::LateTrigger { us } => late += u64::from(us) * 1000,
+                _ => {}
+            }
+        }
+        if sends { Fired::Sends(sensor, late) } else { Fired::Nothing }
+    }
+
+    /// What a sensor hears after a firing because of faults, beside sound.
+    pub(super) fn heard_beside(&self, id: SensorId, now: u64, firing: u32, hearing: &Hearing) -> Vec<Arrival> {
+        let mut heard = vec![];
+        let robot = self.robots.get(usize::from(id.robot));
+        let is_edge = robot.is_some_and(|robot| robot.module_of(id.sensor.into()).interface == Interface::Edge);
+        for (index, fault) in self.of(id, now) {
+            let chance = |what| self.chance(index, id, firing, what);
+            let span = hearing.window - hearing.blanking;
+            let after = match fault.kind {
+                FaultKind::Noise { per_s } if per_s > 0.0 => {
+                    // The first of a process without memory.
+                    let wait_ns = -libm::log(1.0 - chance(0)) / per_s * 1e9;
+                    if wait_ns < span as f64 { hearing.blanking + wait_ns as u64 } else { continue }
+                }
+                FaultKind::UniformNoise { share } if chance(0) < share => {
+                    hearing.blanking + (chance(1) * span as f64) as u64
+                }
+                FaultKind::GlitchLow { after_us, .. } if !is_edge => u64::from(after_us) * 1000,
+                FaultKind::GlitchHigh { after_us, .. } if is_edge => u64::from(after_us) * 1000,
+                _ => continue,
+            };
+            let is_sound = matches!(fault.kind, FaultKind::Noise { .. } | FaultKind::UniformNoise { .. });
+            let level_over_threshold_db = if is_sound { NOISE_DB } else { GLITCH_DB };
+            let at = now + after.max(1);
+            heard.push(Arrival { onset: at, at, sent: now, path: EXTERNAL, level_over_threshold_db });
+        }
+        heard
+    }
+
+    /// The sensor whose line says what this one hears; none if nothing says it.
+    pub(super) fn reported(&self, id: SensorId, now: u64, firing: u32) -> Option<u8> {
+        for (index, fault) in self.of(id, now) {
+            let silent = match fault.kind {
+                FaultKind::Lost { share } => self.chance(index, id, firing, 2) < share,
+                FaultKind::Cut => true,
+                FaultKind::LostRises { every } | FaultKind::LostFalls { every } => firing.is_multiple_of(every.max(1)),
+                _ => false,
+            };
+            if silent {
+                return None;
+            }
+        }
+        let wires = self.of(id, now).filter(|(_, fault)| fault.kind == FaultKind::EchoWires);
+        Some(wires.fold(id.sensor, |sensor, (_, fault)| fault.exchanged(sensor)))
+    }
+}

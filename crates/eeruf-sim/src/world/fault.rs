@@ -1,0 +1,350 @@
+//! What goes wrong in a world: sensors, their wires and lines, clocks and tables, people and doors; each for a time.
+
+use super::error::WorldError;
+use super::robot::{AnySchedule, Robot};
+use crate::{
+    geometry::Point,
+    scene::{Faces, Pole, Scene, Wall},
+};
+
+/// The latest that a fault may begin or end, in seconds, unless it never does.
+const LATEST_S: f64 = 1e9;
+
+/// Something that goes wrong from one time to another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// What it is.
+    pub kind: FaultKind,
+    /// The robot that has it, counted from 0.
+    pub robot: usize,
+    /// The sensors that have it, counted from 0; empty for all.
+    pub sensors: Vec<u8>,
+    /// When it begins, in seconds.
+    pub from_s: f64,
+    /// When it ends, in seconds; infinite for never.
+    pub to_s: f64,
+}
+
+/// A kind of fault.
+///
+/// Where a module answers by the width of a pulse, a low glitch is taken for the echo's edge and a high one for
+/// nothing. Where its line rises with the echo it is the other way round.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FaultKind {
+    /// This share of echoes is not heard.
+    Lost {
+        /// 0 to 1.
+        share: f64,
+    },
+    /// Something else is heard while a sensor listens, at random times.
+    Noise {
+        /// How often, in 1/s.
+        per_s: f64,
+    },
+    /// Something else is heard in this share of firings, at any time of the window alike.
+    UniformNoise {
+        /// 0 to 1.
+        share: f64,
+    },
+    /// The echo lines of two sensors are exchanged.
+    EchoWires,
+    /// The trigger lines of two sensors are exchanged.
+    TriggerWires,
+    /// Triggers arrive late.
+    LateTrigger {
+        /// By how much, in us.
+        us: u32,
+    },
+    /// The ring fires by another table than its robot says, from the end of a period on.
+    OtherTable {
+        /// The table.
+        schedule: Box<AnySchedule>,
+    },
+    /// The clock goes faster than it should, or slower.
+    ClockDrift {
+        /// By how much more, in millionths.
+        ppm: f64,
+    },
+    /// There is no sensor: neither sound nor edges.
+    Missing,
+    /// The line stays high: it rises and does not fall, and is triggered no more.
+    Stuck,
+    /// The echo line is cut: sound, and no edges.
+    Cut,
+    /// One rise of so many makes no interrupt.
+    LostRises {
+        /// 1 for all.
+        every: u32,
+    },
+    /// One fall of so many makes no interrupt.
+    LostFalls {
+        /// 1 for all.
+        every: u32,
+    },
+    /// The line is low for a moment while it should be high.
+    GlitchLow {
+        /// How long after it rose, in us.
+        after_us: u32,
+        /// For how long, in us.
+        width_us: u32,
+    },
+    /// The line is high for a moment while it should be low.
+    GlitchHigh {
+        /// How long after it fell, or was triggered where it rises with the echo, in us.
+        after_us: u32,
+        /// For how long, in us.
+        width_us: u32,
+    },
+    /// A leg walks by, in a straight line from the fault's beginning to its end.
+    Leg {
+        /// Its radius in metres.
+        radius_m: f64,
+        /// Where it begins.
+        from_m: [f64; 2],
+        /// Where it ends.
+        to_m: [f64; 2],
+    },
+    /// A door, which stands at one angle, turns from the fault's beginning to its end and then stands at the other.
+    Door {
+        /// Its hinge.
+        hinge_m: [f64; 2],
+        /// Its width in metres.
+        length_m: f64,
+        /// Its direction from the hinge before, counter-clockwise from the x axis.
+        from_deg: f64,
+        /// And after.
+        to_deg: f64,
+    },
+}
+
+impl FaultKind {
+    /// The names in files.
+    pub const NAMES: [&'static str; 17] = [
+        "lost",
+        "noise",
+        "uniform_noise",
+        "echo_wires",
+        "trigger_wires",
+        "late_trigger",
+        "other_table",
+        "clock_drift",
+        "missing",
+        "stuck",
+        "cut",
+        "lost_rises",
+        "lost_falls",
+        "glitch_low",
+        "glitch_high",
+        "leg",
+        "door",
+    ];
+
+    /// The name in files.
+    pub fn name(&self) -> &'static str {
+        let index = match self {
+            Self::Lost { .. } => 0,
+            Self::Noise { .. } => 1,
+            Self::UniformNoise { .. } => 2,
+            Self::EchoWires => 3,
+            Self::TriggerWires => 4,
+            Self::LateTrigger { .. } => 5,
+            Self::OtherTable { .. } => 6,
+            Self::ClockDrift { .. } => 7,
+            Self::Missing => 8,
+            Self::Stuck => 9,
+            Self::Cut => 10,
+            Self::LostRises { .. } => 11,
+            Self::LostFalls { .. } => 12,
+            Self::GlitchLow { .. } => 13,
+            Self::GlitchHigh { .. } => 14,
+            Self::Leg { .. } => 15,
+            Self::Door { .. } => 16,
+        };
+        Self::NAMES[index]
+    }
+
+    /// Returns true for what changes the scene instead of a robot.
+    pub(crate) fn is_of_scene(&self) -> bool {
+        matches!(self, Self::Leg { .. } | Self::Door { .. })
+    }
+}
+
+/// An edge of an echo line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct LineEdge {
+    /// When, in us.
+    pub at_us: u64,
+    /// Whether the line rises.
+    pub high: bool,
+    /// Whether its interrupt is lost: the line changes, and nothing says so.
+    pub lost: bool,
+}
+
+impl Fault {
+    /// From the beginning on, of all sensors of the first robot, for ever.
+    pub const fn new(kind: FaultKind) -> Self {
+        Self { kind, robot: 0, sensors: vec![], from_s: 0.0, to_s: f64::INFINITY }
+    }
+
+    /// The same of these sensors.
+    #[must_use]
+    pub fn of_sensors(self, sensors: &[u8]) -> Self {
+        Self { sensors: sensors.to_vec(), ..self }
+    }
+
+    /// The same from one time to another, in seconds.
+    #[must_use]
+    pub fn between(self, from_s: f64, to_s: f64) -> Self {
+        Self { from_s, to_s, ..self }
+    }
+
+    /// Whether it is there at a time, in seconds.
+    pub fn is_at(&self, time_s: f64) -> bool {
+        (self.from_s..self.to_s).contains(&time_s)
+    }
+
+    /// Whether a sensor has it.
+    pub fn is_of(&self, robot: usize, sensor: u8) -> bool {
+        !self.kind.is_of_scene() && self.robot == robot && (self.sensors.is_empty() || self.sensors.contains(&sensor))
+    }
+
+    /// The sensor whose wire is where this one's should be.
+    pub(crate) fn exchanged(&self, sensor: u8) -> u8 {
+        match self.sensors[..] {
+            [one, other] if sensor == one => other,
+            [one, other] if sensor == other => one,
+            _ => sensor,
+        }
+    }
+
+    /// What stands in the scene because of it at a time.
+    pub(crate) fn obstacles(&self, time_s: f64, walls: &mut Vec<Wall>, poles: &mut Vec<Pole>) {
+        let share = if self.to_s > self.from_s && self.to_s.is_finite() {
+            ((time_s - self.from_s) / (self.to_s - self.from_s)).clamp(0.0, 1.0)
+        } else {
+            f64::from(u8::from(time_s >= self.from_s))
+        };
+        let between = |from: f64, to: f64| from + share * (to - from);
+        match self.kind {
+            FaultKind::Leg { radius_m, from_m, to_m } if self.is_at(time_s) => {
+                poles.push(Pole::new(between(from_m[0], to_m[0]), between(from_m[1], to_m[1]), radius_m));
+            }
+            FaultKind::Door { hinge_m, length_m, from_deg, to_deg } => {
+                let angle = between(from_deg, to_deg).to_radians();
+                let end =
+                    Point::new(hinge_m[0] + length_m * libm::cos(angle), hinge_m[1] + length_m * libm::sin(angle));
+                walls.push(Wall::new(hinge_m[0], hinge_m[1], end.x, end.y).with_faces(Faces::Both));
+            }
+            _ => {}
+        }
+    }
+
+    /// Finds what makes no sense of it.
+    pub(super) fn check(&self, index: usize, robots: &[Robot]) -> Result<(), WorldError> {
+        let fail = |field, value, expected| Err(WorldError::Fault { fault: index, field, value, expected });
+        let Some(robot) = robots.get(self.robot) else {
+            return fail("robot", self.robot as f64, "a robot, counted from 0");
+        };
+        if let Some(&sensor) = self.sensors.iter().find(|&&sensor| usize::from(sensor) >= robot.sensors.len()) {
+            return fail("sensors", f64::from(sensor), "sensors of its robot, counted from 0");
+        }
+        if !(0.0..=LATEST_S).contains(&self.from_s) {
+            return fail("from_s", self.from_s, "0 to 1e9");
+        }
+        if !(self.to_s > self.from_s) {
+            return fail("to_s", self.to_s, "more than from_s");
+        }
+        let share = |share: f64| (0.0..=1.0).contains(&share);
+        let length = |metres: f64| metres > 0.0 && metres <= 100.0;
+        match self.kind {
+            FaultKind::Lost { share: value } | FaultKind::UniformNoise { share: value } if !share(value) => {
+                fail("share", value, "0 to 1")
+            }
+            FaultKind::Noise { per_s } if !(0.0..=1e5).contains(&per_s) => fail("per_s", per_s, "0 to 100000"),
+            FaultKind::EchoWires | FaultKind::TriggerWires
+                if self.sensors.len() != 2 || self.sensors[0] == self.sensors[1] =>
+            {
+                fail("sensors", self.sensors.len() as f64, "two different ones")
+            }
+            FaultKind::LateTrigger { us } if us > 100_000 => fail("us", f64::from(us), "0 to 100000"),
+            FaultKind::OtherTable { ref schedule } if schedule.sensors() != robot.sensors.len() => {
+                fail("schedule", schedule.sensors() as f64, "a table for as many sensors as the robot has")
+            }
+            FaultKind::ClockDrift { .. } if !self.sensors.is_empty() => {
+                fail("sensors", self.sensors.len() as f64, "none: a clock is that of a robot")
+            }
+            FaultKind::ClockDrift { ppm } if !(-1e5..=1e5).contains(&ppm) => fail("ppm", ppm, "-100000 to 100000"),
+            FaultKind::LostRises { every: 0 } | FaultKind::LostFalls { every: 0 } => fail("every", 0.0, "1 or more"),
+            FaultKind::Leg { radius_m, .. } if !length(radius_m) => {
+                fail("radius_m", radius_m, "more than 0, up to 100")
+            }
+            FaultKind::Leg { .. } if !self.to_s.is_finite() => {
+                fail("to_s", self.to_s, "a time at which it has arrived")
+            }
+            FaultKind::Door { length_m, .. } if !length(length_m) => {
+                fail("length_m", length_m, "more than 0, up to 100")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The scene with what stands in it because of faults at a time.
+///
+/// # Errors
+/// As [`Scene::new`].
+pub(crate) fn scene_with(scene: &Scene, faults: &[Fault], time_s: f64) -> Result<Scene, WorldError> {
+    let (mut walls, mut poles) = (scene.walls().to_vec(), scene.poles().to_vec());
+    for fault in faults {
+        fault.obstacles(time_s, &mut walls, &mut poles);
+    }
+    Ok(Scene::new(walls, poles, scene.air())?.with_room(scene.room().copied())?)
+}
+
+/// The edges of a line that answers by the width of a pulse, after a firing, the first being 1: it would rise and fall
+/// at these times. A driver should take them for what its modules do with these faults.
+///
+/// ```
+/// use eeruf_sim::{Fault, FaultKind, line_edges};
+/// let edges = |kind| -> Vec<(u64, bool)> {
+///     line_edges(&[Fault::new(kind)], 0, 2, 7, 1_450, 9_000).map(|edge| (edge.at_us, edge.high)).collect()
+/// };
+/// let glitch = edges(FaultKind::GlitchLow { after_us: 30, width_us: 5 });
+/// assert_eq!(glitch, [(1_450, true), (1_480, false), (1_485, true), (9_000, false)]);
+/// assert_eq!(edges(FaultKind::Stuck), [(1_450, true)]);
+/// assert_eq!(edges(FaultKind::Cut), []);
+/// ```
+pub fn line_edges(
+    faults: &[Fault],
+    robot: usize,
+    sensor: u8,
+    firing: u32,
+    rise_us: u64,
+    fall_us: u64,
+) -> impl Iterator<Item = LineEdge> {
+    let time_s = rise_us as f64 * 1e-6;
+    let edge = |at_us, high| LineEdge { at_us, high, lost: false };
+    let mut edges = vec![edge(rise_us, true), edge(fall_us, false)];
+    for fault in faults.iter().filter(|fault| fault.is_of(robot, sensor) && fault.is_at(time_s)) {
+        match fault.kind {
+            FaultKind::Missing | FaultKind::Cut => edges.clear(),
+            FaultKind::Stuck => edges.retain(|edge| edge.high),
+            FaultKind::LostRises { every } | FaultKind::LostFalls { every } => {
+                let high = matches!(fault.kind, FaultKind::LostRises { .. });
+                let lost = firing.is_multiple_of(every.max(1));
+                edges.iter_mut().filter(|edge| edge.high == high).for_each(|edge| edge.lost |= lost);
+            }
+            FaultKind::GlitchLow { after_us, width_us } | FaultKind::GlitchHigh { after_us, width_us } => {
+                let low = matches!(fault.kind, FaultKind::GlitchLow { .. });
+                let begins = if low { rise_us } else { fall_us } + u64::from(after_us);
+                let ends = begins + u64::from(width_us);
+                if !low || ends < fall_us {
+                    edges.extend([edge(begins, !low), edge(ends, low)]);
+                }
+            }
+            _ => {}
+        }
+    }
+    edges.sort_unstable();
+    edges.into_iter()
+}

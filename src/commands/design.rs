@@ -219,13 +219,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(certified)
 }
 
-/// Prints a schedule in a form, after the modules that it is for.
-fn emit(
-    modules: &[Module],
-    form: Form,
-    schedule: &AnySchedule,
-    requirements: &Requirements<'_>,
-) -> Result<(), InputError> {
+/// Prints which modules a schedule in this form is for, as comments.
+fn emit_modules(modules: &[Module], form: Form) -> Result<(), InputError> {
     let alike = modules.chunk_by(|one, next| one == next);
     let firsts = alike.clone().scan(0, |next, group| Some(core::mem::replace(next, *next + group.len())));
     for (group, first) in alike.zip(firsts) {
@@ -243,6 +238,17 @@ fn emit(
         let times = format!("trigger {trigger_us} us, rest {rest_us} us{held}");
         print_line(format!("{begin} Sensors {first} to {last}: {name}, {interface}, {times}{end}"))?;
     }
+    Ok(())
+}
+
+/// Prints a schedule in a form, after the modules that it is for.
+fn emit(
+    modules: &[Module],
+    form: Form,
+    schedule: &AnySchedule,
+    requirements: &Requirements<'_>,
+) -> Result<(), InputError> {
+    emit_modules(modules, form)?;
     match form {
         Form::Toml => print(schedule.to_toml())?,
         Form::Rust => print(schedule.to_rust(requirements))?,
@@ -327,6 +333,9 @@ fn many_phases(args: &Args, spec: &RingSpec, phases: u8) -> Result<Answer, Input
     let requirements = spec.phase_requirements(criterion);
     if let Some(file) = &args.svg {
         draw::hopping_diagram(&design.schedule, requirements.audible.window).save(file)?;
+    }
+    if let Some(form) = args.form().filter(|form| *form != Form::Json) {
+        emit_modules(&spec.modules, form)?;
     }
     match args.form() {
         Some(Form::Toml) => print(design.schedule.to_toml())?,

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use eeruf_design::RingSpec;
+use eeruf_sim::modules::{KEYS, PRESETS, Source};
 use eeruf_sim::{Physics, Pose, Robot, Room, Transducer, WorldParts};
 
 /// Keys of older files, which are still read or refused by name.
@@ -31,6 +32,27 @@ fn expected(message: &str) -> BTreeSet<String> {
     let keys = quoted(expected);
     assert!(!keys.is_empty(), "{message}");
     keys.into_iter().filter(|key| !OLDER.contains(&&**key)).collect()
+}
+
+#[test]
+fn figures_of_modules_are_those_in_the_document() {
+    for preset in &PRESETS {
+        let heading = format!("\n### {}: `{}`\n", preset.title, preset.module.name);
+        let rows = rows("docs/modules.md", &heading);
+        let rows: Vec<_> = rows.iter().take(KEYS.len()).collect();
+        for (row, key) in rows.iter().zip(&KEYS) {
+            let value = key.of(preset.module).to_string();
+            let shown = row[1].trim_matches('`');
+            assert_eq!((row[0].trim_matches('`'), shown), (key.name, &*value), "{}", preset.title);
+            let source = match preset.source(key.name) {
+                Some(Source::Document(document)) => document.to_owned(),
+                Some(Source::Choice(why)) => format!("*choice*: {why}"),
+                None => panic!("{}: {}: no source", preset.title, key.name),
+            };
+            assert_eq!(row[2], source, "{}", preset.title);
+        }
+        assert_eq!(rows.len(), KEYS.len());
+    }
 }
 
 #[test]

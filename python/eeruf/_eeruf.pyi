@@ -38,6 +38,7 @@ _Kind = Literal[
 _Method = Literal[
     "simultaneous",
     "sequential",
+    "sequential_votes",
     "far_groups",
     "dither",
     "conventional",
@@ -1115,6 +1116,8 @@ class Readings:
     def paths(self) -> HeardPaths: ...
     @property
     def emitted_s(self) -> NDArray[np.float64]: ...
+    @property
+    def expected_change_us(self) -> NDArray[np.int32]: ...
     @property
     def is_accepted(self) -> NDArray[np.bool_]: ...
     def is_wrong(self, tolerance_us: float = 500.0) -> NDArray[np.bool_]: ...

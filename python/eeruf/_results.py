@@ -30,6 +30,12 @@ class _SummaryFields(TypedDict):
     rejected: float
     good_lost: float | None
     wrong_before_filter: float
+    belief_right: float
+    unknown: float
+    phantom: float
+    too_far: float
+    faint: float
+    right_echoes_per_s: float
     age_ms: float
     age_p99_ms: float
     readings_per_s: float
@@ -58,7 +64,7 @@ class _Result:
 
         Example:
             >>> from eeruf.experiments import Spread
-            >>> Spread(p10=0.0, median=0.1, p90=0.5, median_95=(0.0, 0.2), p90_95=(0.4, 0.6)).to_dict()["median_95"]
+            >>> Spread(0.0, 0.1, 0.5, (0.0, 0.2), (0.4, 0.6), 0.2, (0.1, 0.3)).to_dict()["median_95"]
             [0.0, 0.2]
 
         """
@@ -98,6 +104,18 @@ class Summary(_Result):
     """Share of the good readings that were not accepted; None if no reading was good."""
     wrong_before_filter: float
     """Share of all readings that would have been wrong without any filter."""
+    belief_right: float
+    """Share of the time in which what was last believed, at most 0.6 s ago, is right."""
+    unknown: float
+    """The share in which nothing is believed."""
+    phantom: float
+    """The share in which it is foreign sound."""
+    too_far: float
+    """The share in which it is an own later echo, or silence where there is an echo."""
+    faint: float
+    """The share in which it is an own nearer echo: faint but real."""
+    right_echoes_per_s: float
+    """Accepted echoes that were right in a second, all sensors together."""
     age_ms: float
     """Age of a sensor's last accepted reading, in milliseconds: half of the time it is no older."""
     age_p99_ms: float
@@ -105,9 +123,9 @@ class Summary(_Result):
     readings_per_s: float
     """Accepted readings in a second, all sensors together."""
     starved: int
-    """How many sensors had fewer than 5 % of their readings accepted, the blind ones included."""
+    """How many sensors had fewer than 5 % of their readings accepted."""
     blind: int
-    """How many sensors never had a reading accepted."""
+    """How many sensors were right under 5 % of the times they fired."""
     starved_in_part: int
     """How many of the starved read right in one phase and not in another."""
 
@@ -135,6 +153,10 @@ class Spread(_Result):
     """Where the median lies with 95 % confidence, by bootstrap."""
     p90_95: tuple[float, float]
     """Where ``p90`` lies with 95 % confidence."""
+    mean: float
+    """The mean over the geometries."""
+    mean_95: tuple[float, float]
+    """Where ``mean`` lies with 95 % confidence."""
 
 
 @dataclass(frozen=True)
@@ -159,6 +181,30 @@ class Latency(_Result):
     """Share of the steps that are not seen within 64 periods."""
     never_95: tuple[float, float]
     """Where ``never`` lies with 95 % confidence, by bootstrap."""
+
+
+@dataclass(frozen=True)
+class NewStep(_Result):
+    """How soon a wall is read right that comes nearer for the first time, so that no memory of places helps.
+
+    Example:
+        >>> import eeruf
+        >>> table = eeruf.experiments.set_one(seeds=2, readings=400, methods=["sequential"])
+        >>> table.methods["sequential"].new_step.median_ms < 400
+        True
+
+    """
+
+    steps: int
+    """How many steps of sensors were counted."""
+    median_ms: float | None
+    """Half of the steps are seen within this time, in milliseconds; None if more than half never are."""
+    p90_ms: float | None
+    """Nine in ten are."""
+    p95_ms: float | None
+    """Nineteen in twenty are."""
+    never: float
+    """Share of the steps that are not seen within 64 periods."""
 
 
 @dataclass(frozen=True)
@@ -195,18 +241,32 @@ class SetOneFigures(_Result):
     """The age that 99 % of the last accepted readings do not exceed, in milliseconds."""
     readings_per_s: Spread | None
     """Accepted readings in a second, all sensors together."""
+    belief_right: Spread | None
+    """Share of the time in which what was last believed, at most 0.6 s ago, is right."""
+    unknown: Spread | None
+    """The share in which nothing is believed."""
+    phantom: Spread | None
+    """The share in which it is foreign sound."""
+    too_far: Spread | None
+    """The share in which it is an own later echo, or silence where there is an echo."""
+    faint: Spread | None
+    """The share in which it is an own nearer echo: faint but real."""
+    right_echoes_per_s: Spread | None
+    """Accepted echoes that were right in a second, all sensors together."""
     starved: float
-    """Mean number of sensors that had fewer than 5 % of their readings accepted, the blind ones included."""
+    """Mean number of sensors that had fewer than 5 % of their readings accepted."""
     starved_95: tuple[float, float]
     """Where ``starved`` lies with 95 % confidence, by bootstrap."""
     blind: float
-    """Mean number of sensors that never had a reading accepted."""
+    """Mean number of sensors that were right under 5 % of the times they fired."""
     starved_in_part: float
     """Mean number of starved sensors that read right in one phase and not in another."""
     nearer: Latency | None
     """How soon the back wall is read right again when it has come nearer."""
     farther: Latency | None
     """How soon it is when it has gone away as far."""
+    new_step: NewStep | None
+    """How soon it is when it comes nearer for the first time."""
 
 
 @dataclass(frozen=True)
@@ -446,7 +506,7 @@ def set_one(text: str) -> SetOne:
     def figures(of: _Fields) -> SetOneFigures:
         made: _Fields = {}
         for name, value in _with_pairs(of).items():
-            kind = Latency if name in ("nearer", "farther") else Spread
+            kind = {"nearer": Latency, "farther": Latency, "new_step": NewStep}.get(name, Spread)
             made[name] = kind(**_with_pairs(value)) if isinstance(value, dict) else value  # type: ignore[arg-type]
         return SetOneFigures(**made)  # type: ignore[arg-type]
 

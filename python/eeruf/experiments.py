@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 from eeruf import _eeruf, _results
 from eeruf._results import (
     Latency,
+    NewStep,
     Run,
     SetOne,
     SetOneFigures,
@@ -35,6 +36,7 @@ __all__ = [
     "FIRST",
     "SPEEDS_M_S",
     "Latency",
+    "NewStep",
     "Run",
     "SetOne",
     "SetOneFigures",

@@ -20,11 +20,11 @@ use crate::report::watch::Watch;
 
 /// Simulate every firing method in a scene, on the same seed: which readings were wrong, and who was fooled by whom.
 ///
-/// The methods: simultaneous, sequential, far_groups, dither, conventional (constant lags, every echo accepted),
-/// comparison (constant lags, consecutive readings compared), median, eeruf_immediate, eeruf (the paper's table scaled
-/// to the period, or the robot's own schedule), eeruf_best (the shortest schedule with the same guarantees),
-/// eeruf_hopping (many phases, a tracker, solo periods and moving lags, so that no sensor stays blind), adaptive,
-/// multi_echo.
+/// The methods: simultaneous, sequential, sequential_votes (one by one, two of three readings agree), far_groups,
+/// dither, conventional (constant lags, every echo accepted), comparison (constant lags, consecutive readings
+/// compared), median, eeruf_immediate, eeruf (the paper's table scaled to the period, or the robot's own schedule),
+/// eeruf_best (the shortest schedule with the same guarantees), eeruf_hopping (many phases, a tracker and solo periods,
+/// so that no sensor stays blind), adaptive, multi_echo.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The scene

@@ -3,9 +3,10 @@
 use crate::common::{Scratch, eeruf, json};
 use serde_json::Value;
 
-const METHODS: [&str; 13] = [
+const METHODS: [&str; 14] = [
     "simultaneous",
     "sequential",
+    "sequential_votes",
     "far_groups",
     "dither",
     "conventional",

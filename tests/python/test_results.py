@@ -90,7 +90,7 @@ def test_a_result_pickles(name: str) -> None:
 def test_a_figure_has_one_name_in_all_results() -> None:
     summary, spread = RESULTS["Summary"].to_dict(), RESULTS["SetOneFigures"].to_dict()
     of_simulations = {"method", "readings", "accepted"}
-    of_geometries = {"starved_95", "nearer", "farther"}
+    of_geometries = {"starved_95", "nearer", "farther", "new_step"}
     assert set(summary) - of_simulations == set(spread) - of_geometries
     two, run = RESULTS["SetTwoFigures"].to_dict(), RESULTS["Run"].to_dict()
     # A share and a count are two figures: those of a run that have the same name are counts in both.

@@ -31,7 +31,7 @@ pub(crate) const CAUSES: [&str; 5] = ["nothing", "own", "stale", "crosstalk", "e
 #[pyclass(frozen, module = "eeruf.sim")]
 pub(crate) struct Readings {
     pub(crate) readings: eeruf_sim::Readings,
-    columns: Columns<16>,
+    columns: Columns<17>,
 }
 
 fn tolerance(value: Option<&Bound<'_, PyAny>>) -> PyResult<f64> {
@@ -178,6 +178,12 @@ impl Readings {
     #[getter]
     fn emitted_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 11, self.readings.emitted_s.iter().copied())
+    }
+
+    /// The change that odometry expects since the sensor's firing before, in microseconds; 0 without odometry: int32.
+    #[getter]
+    fn expected_change_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, 16, self.readings.expected_change_us.iter().copied())
     }
 
     /// Whether the method accepts the reading, an echo or that nothing is in range: bool.
@@ -364,7 +370,7 @@ impl Readings {
 }
 
 /// The arrays of equal length, one entry for each reading.
-const COLUMNS: [&str; 15] = [
+const COLUMNS: [&str; 16] = [
     "robot",
     "sensor",
     "period",
@@ -380,4 +386,5 @@ const COLUMNS: [&str; 15] = [
     "cause",
     "path",
     "emitted_s",
+    "expected_change_us",
 ];

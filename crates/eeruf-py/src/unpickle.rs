@@ -116,6 +116,7 @@ pub(crate) fn readings_from_columns(
         reference_us: column(columns, "reference_us")?,
         cause: code("cause", CAUSES.len())?.into_iter().map(|cause| CAUSE_OF[cause]).collect(),
         emitted_s: column(columns, "emitted_s")?,
+        expected_change_us: column(columns, "expected_change_us")?,
         // Nothing in Python asks for it.
         weighed: vec![None; robot.len()],
         path,
@@ -137,6 +138,7 @@ pub(crate) fn readings_from_columns(
         readings.cause.len(),
         readings.path.len(),
         readings.emitted_s.len(),
+        readings.expected_change_us.len(),
     ];
     equally_long(readings.robot.len(), &lengths)?;
     let seen: HashSet<SensorId> = (0..readings.len()).map(|reading| readings.id(reading)).collect();

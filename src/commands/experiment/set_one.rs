@@ -136,8 +136,9 @@ fn fading(mut options: SetOneOptions, fading_db_rms: f64) -> SetOneOptions {
 }
 
 /// The methods that `--vary` shows unless others are asked for.
-const VARIED: [Method; 6] = [
+const VARIED: [Method; 7] = [
     Method::Sequential,
+    Method::SequentialVotes,
     Method::Conventional,
     Method::Comparison,
     Method::Eeruf,

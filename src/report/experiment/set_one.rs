@@ -6,7 +6,7 @@ use eeruf_core::Micros;
 use eeruf_sim::BestSchedule;
 use eeruf_sim::Method;
 use eeruf_sim::experiments::Spread;
-use eeruf_sim::experiments::set_one::{Figures, Latency, MultiEcho, SetOne};
+use eeruf_sim::experiments::set_one::{Figures, Latency, MultiEcho, NewStep, SetOne};
 
 use crate::report::percent::{fine_percent, median, median_95, percent, percents, percents_95};
 use crate::report::table::markdown;
@@ -46,7 +46,8 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
         "Set I: {}, {} sensors, {} periods of {} each, physics: {}{}; 10 % / median / 90 % of the alcoves, or the \
          median alone.\n\
          Starved: sensors with under 5 % of their readings accepted, on average; in part: those of them that read\n\
-         right in one phase and not in another; blind: those that never had a reading accepted.\n\
+         right in one phase and not in another; blind: those that were right under 5 % of the times they\n\
+         fired.\n\
          multi_echo compares {} readings within {}, all others two within 500 us;\n\
          eeruf_best has a period of {} ({}). Nearer, farther: after how many periods a back wall that steps by 0.25 m\n\
          is read right, median / 90 % of the steps, and how many never are within 64.\n\n",
@@ -73,7 +74,51 @@ pub(crate) fn describe(found: &SetOne, best: &BestSchedule) -> String {
     ];
     let rows = found.methods.iter().map(|(method, figures)| intervals(*method, figures));
     _ = writeln!(text, "\n{}", markdown(&header, rows));
+    let header = [
+        "% of the time (mean, 95 %)",
+        "right",
+        "unknown",
+        "phantom",
+        "too far",
+        "faint",
+        "right echoes/s",
+        "new step ms, 50 / 90 / 95 %",
+    ];
+    let rows = found.methods.iter().map(|(method, figures)| belief(*method, figures));
+    _ = writeln!(
+        text,
+        "\nWhat was last believed, no longer than 0.6 s ago: right, unknown, foreign sound, an own later echo, an own\n\
+         nearer one (faint but real). New step: from the first step nearer to the right reading, and how many are\n\
+         never seen.\n\n{}",
+        markdown(&header, rows)
+    );
     text
+}
+
+fn belief(method: Method, figures: &Figures) -> Vec<String> {
+    let mean = |spread: Option<Spread>| spread.map_or_else(|| "-".to_owned(), |spread| fine_percent(spread.mean));
+    let right = figures.belief_right.map_or_else(
+        || "-".to_owned(),
+        |Spread { mean, mean_95: [low, high], .. }| {
+            format!("{:.1} ({:.1}-{:.1})", 100.0 * mean, 100.0 * low, 100.0 * high)
+        },
+    );
+    vec![
+        method.to_string(),
+        right,
+        mean(figures.unknown),
+        mean(figures.phantom),
+        mean(figures.too_far),
+        mean(figures.faint),
+        median(figures.right_echoes_per_s, 1),
+        new_step(figures.new_step),
+    ]
+}
+
+fn new_step(step: Option<NewStep>) -> String {
+    let Some(NewStep { median_ms, p90_ms, p95_ms, never, .. }) = step else { return "-".to_owned() };
+    let ms = |ms: Option<f64>| ms.map_or_else(|| "never".to_owned(), |ms| format!("{ms:.0}"));
+    format!("{} / {} / {}, {} %", ms(median_ms), ms(p90_ms), ms(p95_ms), fine_percent(never))
 }
 
 fn alcoves(found: &SetOne) -> String {

@@ -46,6 +46,7 @@ pub(crate) fn of_robot(readings: &Readings, robot: usize, sensors: usize) -> Rea
     alone.cause = pick(&own, &readings.cause);
     alone.path = pick(&own, &readings.path);
     alone.emitted_s = pick(&own, &readings.emitted_s);
+    alone.expected_change_us = pick(&own, &readings.expected_change_us);
     alone.weighed = pick(&own, &readings.weighed);
     alone
 }

@@ -61,6 +61,13 @@ fn table(runs: &[Readings]) -> Table {
         "99 %",
         "accepted/s",
         "starved",
+        "belief right %",
+        "unknown",
+        "phantom",
+        "too far",
+        "faint",
+        "right echoes/s",
+        "blind",
     ];
     let row = |summary: Summary| {
         let or_none = |share: Option<f64>| share.map_or_else(|| "-".to_owned(), fine_percent);
@@ -74,6 +81,13 @@ fn table(runs: &[Readings]) -> Table {
             format!("{:.0}", summary.age_ms.p99),
             format!("{:.1}", summary.readings_per_s),
             if summary.starved == 0 { "-".to_owned() } else { summary.starved.to_string() },
+            fine_percent(summary.belief.right),
+            fine_percent(summary.belief.unknown),
+            fine_percent(summary.belief.phantom),
+            fine_percent(summary.belief.too_far),
+            fine_percent(summary.belief.faint),
+            format!("{:.1}", summary.right_echoes_per_s),
+            if summary.blind == 0 { "-".to_owned() } else { summary.blind.to_string() },
         ]
     };
     markdown(&header, runs.iter().map(|readings| row(readings.summary())))

@@ -17,6 +17,10 @@ pub struct Spread {
     pub median_95: [f64; 2],
     /// Where `p90` lies with 95 % confidence, by bootstrap.
     pub p90_95: [f64; 2],
+    /// The mean over the runs.
+    pub mean: f64,
+    /// Where `mean` lies with 95 % confidence, by bootstrap.
+    pub mean_95: [f64; 2],
 }
 
 /// How many samples the bootstrap draws.
@@ -30,7 +34,7 @@ impl Spread {
     /// ```
     /// use eeruf_sim::experiments::Spread;
     /// let spread = Spread::of((1..=10).map(f64::from)).unwrap();
-    /// assert_eq!((spread.p10, spread.median, spread.p90), (1.0, 5.0, 9.0));
+    /// assert_eq!((spread.p10, spread.median, spread.p90, spread.mean), (1.0, 5.0, 9.0, 5.5));
     /// assert_eq!(Spread::of([]), None);
     /// ```
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
@@ -39,8 +43,14 @@ impl Spread {
         let (p10, median, p90) = (at(0.1), at(0.5), at(0.9));
         let interval = |share| interval_95(&values, |sample| quantile(sample, share));
         let (median_95, p90_95) = (interval(0.5), interval(0.9));
-        (!values.is_empty()).then_some(Self { p10, median, p90, median_95, p90_95 })
+        let (mean, mean_95) = (mean(&values), interval_95(&values, |sample| mean(sample)));
+        (!values.is_empty()).then_some(Self { p10, median, p90, median_95, p90_95, mean, mean_95 })
     }
+}
+
+/// The mean of some values; 0 without any.
+pub(super) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
 /// The 95 % interval of a figure of some values, by the percentile bootstrap (Efron, 1979); `[0, 0]` without values.

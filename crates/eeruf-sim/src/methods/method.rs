@@ -55,7 +55,7 @@ macro_rules! methods {
     ($( $(#[doc = $description:literal])+ $method:ident = $name:literal { $($field:ident: $value:expr,)+ } )+) => {
         /// A way to fire a ring and to decide what to believe.
         ///
-        /// The first five and [`Median`](Self::Median) come from practice, the others are the paper's and what follows
+        /// The first six and [`Median`](Self::Median) come from practice, the others are the paper's and what follows
         /// from it.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[non_exhaustive]
@@ -89,6 +89,13 @@ methods! {
         schedule: schedules::one_by_one,
         ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
         belief: Belief::All,
+    }
+    /// As sequential, but an echo is believed if one of the sensor's two readings before agrees with it: two of three
+    /// votes.
+    SequentialVotes = "sequential_votes" {
+        schedule: schedules::one_by_one,
+        ring: ring_runner::scheduled::<1, AGREEMENT_ALONE>,
+        belief: Belief::TwoOfThree,
     }
     /// As sequential, but sensors as far apart as the ring's `neighbours` fire together. Every echo is believed.
     FarGroups = "far_groups" {
@@ -235,6 +242,8 @@ pub(crate) enum Belief {
     All,
     /// The median of the last few.
     Median,
+    /// What agrees with one of the sensor's two readings before.
+    TwoOfThree,
     /// What the ring's own filter accepts.
     Repeated,
 }

@@ -2,11 +2,13 @@
 //! It uses `methods` and `scene` for the names of things; `simulation` fills it.
 
 mod attribution;
+mod belief;
 mod quantiles;
 mod readings;
 mod summary;
 
 pub use attribution::Attribution;
+pub use belief::{BELIEF_LASTS_S, Belief};
 pub use quantiles::quantile;
 pub use readings::{Cause, HeardPath, NO_PATH, Readings, SensorId};
 pub use summary::{Age, DEFAULT_TOLERANCE_US, Summary};

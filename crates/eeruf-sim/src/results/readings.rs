@@ -105,6 +105,9 @@ pub struct Readings {
     pub path: Vec<u32>,
     /// When the sound behind `t_echo_us` was sent, in seconds of true time.
     pub emitted_s: Vec<f64>,
+    /// The change that odometry expects of a good reading since the sensor's firing before, in microseconds; 0 for a
+    /// robot without odometry.
+    pub expected_change_us: Vec<i32>,
     /// How the ring's tracker weighed it, if it has one.
     pub weighed: Vec<Option<Weighed>>,
     /// Every path that some reading came along.
@@ -114,7 +117,8 @@ pub struct Readings {
 impl Readings {
     /// How much memory so many readings take, in bytes.
     pub const fn bytes_for(readings: u64) -> u64 {
-        let whole = size_of::<[f64; 8]>() + size_of::<Option<Weighed>>() + size_of::<(u32, u32)>() + size_of::<u16>();
+        let whole =
+            size_of::<[f64; 8]>() + size_of::<Option<Weighed>>() + size_of::<(u32, u32, i32)>() + size_of::<u16>();
         readings.saturating_mul((whole + size_of::<(u8, u8, ReadingKind, Cause)>()) as u64)
     }
 
@@ -139,6 +143,7 @@ impl Readings {
             cause: Vec::new(),
             path: Vec::new(),
             emitted_s: Vec::new(),
+            expected_change_us: Vec::new(),
             weighed: Vec::new(),
             paths: Vec::new(),
         }
@@ -159,6 +164,7 @@ impl Readings {
         heading_rad.try_reserve(more)?;
         let Self { t_echo_us, earliest_us, reference_us, cause, path, emitted_s, weighed, .. } = self;
         weighed.try_reserve(more)?;
+        self.expected_change_us.try_reserve(more)?;
         t_echo_us.try_reserve(more)?;
         earliest_us.try_reserve(more)?;
         reference_us.try_reserve(more)?;
@@ -200,6 +206,7 @@ impl Readings {
         heading_rad.clear();
         let Self { t_echo_us, earliest_us, reference_us, cause, path, emitted_s, weighed, paths, .. } = self;
         weighed.clear();
+        self.expected_change_us.clear();
         t_echo_us.clear();
         earliest_us.clear();
         reference_us.clear();

@@ -3,6 +3,7 @@
 
 use serde::Serialize;
 
+use super::belief::Belief;
 use super::quantiles::quantile;
 use super::readings::{Cause, Readings};
 use crate::methods::Method;
@@ -41,14 +42,19 @@ pub struct Summary {
     pub good_lost: Option<f64>,
     /// Share of all readings that were not good: what would have been wrong without any filter.
     pub wrong_before_filter: f64,
+    /// Shares of the time by what was last believed.
+    #[serde(flatten)]
+    pub belief: Belief,
+    /// Accepted echoes that were right in a second of simulated time, all sensors together.
+    pub right_echoes_per_s: f64,
     /// Age of the last accepted reading.
     #[serde(flatten)]
     pub age_ms: Age,
     /// Accepted readings in a second of simulated time, all sensors together.
     pub readings_per_s: f64,
-    /// How many sensors had fewer than 5 % of their readings accepted, the blind ones included.
+    /// How many sensors had fewer than 5 % of their readings accepted.
     pub starved: usize,
-    /// How many sensors never had a reading accepted.
+    /// How many sensors were right under 5 % of the times they fired: the reading was accepted and not wrong.
     pub blind: usize,
     /// How many of the starved sensors read right in one phase and not in another (more than half of the phase's
     /// readings are good, or fewer): foreign sound comes first in part of the periods only, but no two consecutive
@@ -77,13 +83,14 @@ impl Readings {
     /// The figures with another tolerance, in microseconds.
     pub fn summary_within(&self, tolerance_us: f64) -> Summary {
         let (mut accepted, mut wrong, mut crosstalk, mut good, mut false_rejections) = (0, 0, 0, 0, 0);
-        let mut confirmed_wrong = 0;
+        let (mut confirmed_wrong, mut right_echoes) = (0, 0);
         let mut ages = Vec::with_capacity(self.len());
         // Per robot and sensor: when the last accepted reading was fired.
         let mut last =
             vec![[None; eeruf_core::MAX_SENSORS]; self.robot.iter().max().map_or(0, |&r| usize::from(r) + 1)];
-        // And how many of its readings were accepted, of how many; how many were good in each phase, of how many.
-        let mut shares = vec![[(0_usize, 0_usize); eeruf_core::MAX_SENSORS]; last.len()];
+        // And how many of its readings were accepted, how many of those were right, of how many; how many were good in
+        // each phase, of how many.
+        let mut shares = vec![[(0_usize, 0_usize, 0_usize); eeruf_core::MAX_SENSORS]; last.len()];
         let mut phases: Vec<Vec<Phases>> = vec![vec![Phases::new(); eeruf_core::MAX_SENSORS]; last.len()];
         for reading in 0..self.len() {
             let believed = self.is_accepted(reading);
@@ -102,16 +109,20 @@ impl Readings {
             if believed {
                 *last_accepted = Some(self.fired_s[reading]);
             }
-            let (taken, of) = &mut shares[usize::from(self.robot[reading])][sensor];
+            let (taken, right, of) = &mut shares[usize::from(self.robot[reading])][sensor];
             *taken += usize::from(believed);
+            let is_right = believed && !fooled;
+            *right += usize::from(is_right);
+            right_echoes += usize::from(is_right && !self.t_echo_us[reading].is_nan());
             *of += 1;
             count(&mut phases[usize::from(self.robot[reading])][sensor], self.phase[reading], is_good);
         }
-        let fed = |&(taken, of): &(usize, usize)| taken > 0 && 20 * taken >= of;
+        let fed = |&(taken, _, of): &(usize, usize, usize)| taken > 0 && 20 * taken >= of;
         let often = shares.iter().flatten().filter(|&share| fed(share)).count();
+        let seeing = shares.iter().flatten().filter(|(_, right, of)| *right > 0 && 20 * right >= *of).count();
         let each = shares.iter().flatten().zip(phases.iter().flatten());
         let in_part = each.filter(|&(share, phases)| !fed(share) && differ(phases)).count();
-        let seeing = last.iter().flatten().filter(|last| last.is_some()).count();
+        let per_s = |count: usize| if self.duration_s > 0.0 { count as f64 / self.duration_s } else { 0.0 };
         let share = |count: usize, of: usize| if of == 0 { 0.0 } else { count as f64 / of as f64 };
         Summary {
             method: self.method,
@@ -124,8 +135,10 @@ impl Readings {
             rejected: share(self.len() - accepted, self.len()),
             good_lost: (good > 0).then(|| share(false_rejections, good)),
             wrong_before_filter: share(self.len() - good, self.len()),
+            belief: self.belief(tolerance_us),
+            right_echoes_per_s: per_s(right_echoes),
             age_ms: Age { median: quantile(&mut ages, 0.5), p99: quantile(&mut ages, 0.99) },
-            readings_per_s: if self.duration_s > 0.0 { accepted as f64 / self.duration_s } else { 0.0 },
+            readings_per_s: per_s(accepted),
             starved: self.sensors.saturating_sub(often),
             blind: self.sensors.saturating_sub(seeing),
             starved_in_part: in_part,

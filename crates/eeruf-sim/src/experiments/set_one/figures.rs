@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::step::{Latency, Steps};
+use super::step::{Latency, NewStep, Steps};
 use crate::{
-    experiments::spread::{Spread, interval_95},
+    experiments::spread::{Spread, interval_95, mean},
     results::Summary,
 };
 
@@ -32,11 +32,23 @@ pub struct Figures {
     pub age_p99_ms: Option<Spread>,
     /// Accepted readings in a second, all sensors together.
     pub readings_per_s: Option<Spread>,
-    /// Mean number of sensors that had fewer than 5 % of their readings accepted, the blind ones included.
+    /// Share of the time in which what was last believed is right, as in [`Belief`](crate::Belief).
+    pub belief_right: Option<Spread>,
+    /// The share in which nothing is believed.
+    pub unknown: Option<Spread>,
+    /// The share in which it is foreign sound.
+    pub phantom: Option<Spread>,
+    /// The share in which it is an own later echo.
+    pub too_far: Option<Spread>,
+    /// The share in which it is an own nearer echo.
+    pub faint: Option<Spread>,
+    /// Accepted echoes that were right in a second, all sensors together.
+    pub right_echoes_per_s: Option<Spread>,
+    /// Mean number of sensors that had fewer than 5 % of their readings accepted.
     pub starved: f64,
     /// Where `starved` lies with 95 % confidence, by bootstrap.
     pub starved_95: [f64; 2],
-    /// Mean number of sensors that never had a reading accepted.
+    /// Mean number of sensors that were right under 5 % of the times they fired.
     pub blind: f64,
     /// Mean number of starved sensors that read right in one phase and not in another.
     pub starved_in_part: f64,
@@ -44,6 +56,8 @@ pub struct Figures {
     pub nearer: Option<Latency>,
     /// How soon it is when it has gone away as far.
     pub farther: Option<Latency>,
+    /// How soon it is when it comes nearer for the first time, in milliseconds.
+    pub new_step: Option<NewStep>,
 }
 
 impl Figures {
@@ -64,16 +78,19 @@ impl Figures {
             age_ms: spread(|s| Some(s.age_ms.median)),
             age_p99_ms: spread(|s| Some(s.age_ms.p99)),
             readings_per_s: spread(|s| Some(s.readings_per_s)),
+            belief_right: spread(|s| Some(s.belief.right)),
+            unknown: spread(|s| Some(s.belief.unknown)),
+            phantom: spread(|s| Some(s.belief.phantom)),
+            too_far: spread(|s| Some(s.belief.too_far)),
+            faint: spread(|s| Some(s.belief.faint)),
+            right_echoes_per_s: spread(|s| Some(s.right_echoes_per_s)),
             starved: mean(&starved),
             starved_95: interval_95(&starved, |sample| mean(sample)),
             blind: mean_of(|summary| summary.blind),
             starved_in_part: mean_of(|summary| summary.starved_in_part),
             nearer: Latency::of(steps.iter().flat_map(|steps| &steps.nearer)),
             farther: Latency::of(steps.iter().flat_map(|steps| &steps.farther)),
+            new_step: NewStep::of(steps.iter().flat_map(|steps| &steps.new_ms)),
         }
     }
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
 }

@@ -24,6 +24,9 @@ const MOVED_US: f64 = 1000.0;
 pub(super) struct Steps {
     pub(super) nearer: Vec<Option<u32>>,
     pub(super) farther: Vec<Option<u32>>,
+    /// For the first step, which brings the wall nearer than it ever was: how many milliseconds after it the first
+    /// right reading was heard and accepted.
+    pub(super) new_ms: Vec<Option<f64>>,
 }
 
 /// How soon steps are seen, over all steps and sensors, in periods: 1 is the period of the step.
@@ -55,6 +58,33 @@ impl Latency {
         };
         let never_95 = interval_95(&periods, never);
         Some(Self { steps: periods.len(), median, p90, never: never(&mut periods), never_95 })
+    }
+}
+
+/// How soon a wall is seen that has come nearer for the first time, so that no memory of places helps, over all
+/// sensors that it concerns, in milliseconds from the step to the echo of the first right reading that is accepted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct NewStep {
+    /// How many steps of sensors were counted.
+    pub steps: usize,
+    /// Half of the steps are seen within this time; `None` if more than half never are.
+    pub median_ms: Option<f64>,
+    /// Nine in ten are.
+    pub p90_ms: Option<f64>,
+    /// Nineteen in twenty are.
+    pub p95_ms: Option<f64>,
+    /// Share of the steps that are not seen within 64 periods.
+    pub never: f64,
+}
+
+impl NewStep {
+    /// Of all steps; `None` without any.
+    pub(super) fn of<'a>(steps: impl Iterator<Item = &'a Option<f64>>) -> Option<Self> {
+        let mut seen: Vec<_> = steps.map(|seen| seen.unwrap_or(f64::INFINITY)).collect();
+        let never = seen.iter().filter(|seen| seen.is_infinite()).count() as f64 / seen.len().max(1) as f64;
+        let mut at = |share| Some(quantile(&mut seen, share)).filter(|at| at.is_finite());
+        let (median_ms, p90_ms, p95_ms) = (at(0.5), at(0.9), at(0.95));
+        (!seen.is_empty()).then_some(Self { steps: seen.len(), median_ms, p90_ms, p95_ms, never })
     }
 }
 
@@ -91,7 +121,12 @@ fn seen(readings: &Readings, sensor: usize, steps: u32, period_s: f64, found: &m
             continue;
         }
         let is_right = |&&n: &&usize| readings.is_accepted(n) && !readings.is_wrong(n, DEFAULT_TOLERANCE_US);
-        let periods = after.iter().find(is_right).map(|&n| ((readings.fired_s[n] - at_s) / period_s) as u32 + 1);
+        let right = after.iter().find(is_right).copied();
+        let periods = right.map(|n| ((readings.fired_s[n] - at_s) / period_s) as u32 + 1);
+        if step == 1 {
+            let heard_ms = |n: usize| 1e3 * (readings.fired_s[n] - at_s) + 1e-3 * readings.t_echo_us[n];
+            found.new_ms.push(right.filter(|_| periods <= Some(NEVER)).map(heard_ms));
+        }
         let list = if moved < 0.0 { &mut found.nearer } else { &mut found.farther };
         list.push(periods.filter(|&periods| periods <= NEVER));
     }

@@ -101,7 +101,8 @@ impl<'a, K: Kinematics> EventLoop<'a, K> {
         let rings = start_all(world, plans, options, &channels, seed, own)?;
         let sensors = channels.ids().len();
         let longest = rings.iter().map(RunningRing::longest_window).max().unwrap_or(0);
-        let recorder = Recorder::new(method, options, end.unwrap_or(u64::MAX), room, channels.ids(), own)?;
+        let (ids, robots) = (channels.ids(), world.robots());
+        let recorder = Recorder::new(method, options, end.unwrap_or(u64::MAX), room, ids, robots, own)?;
         Ok(Self {
             c: world.scene().air().speed_of_sound(),
             kinematics,

@@ -72,9 +72,11 @@ impl Filtered {
     }
 }
 
-/// The filter of a method; `median_of` is what [`Belief::Median`] takes the median of, up to [`MAX_MEDIAN`].
-pub(super) fn filter_of(belief: Belief, median_of: usize, sensors: usize) -> Box<dyn Filter> {
+/// The filter of a method; `median_of` is what [`Belief::Median`] takes the median of, up to [`MAX_MEDIAN`], and
+/// `t_delta` what counts as near-identical.
+pub(super) fn filter_of(belief: Belief, median_of: usize, t_delta: Micros, sensors: usize) -> Box<dyn Filter> {
     match belief {
+        Belief::TwoOfThree => Box::new(TwoOfThree { t_delta, before: vec![[None; 2]; sensors] }),
         Belief::All => Box::new(Everything),
         Belief::Median => Box::new(Median { of: median_of, history: vec![History::default(); sensors] }),
         Belief::Repeated => Box::new(AsTheRing),
@@ -97,6 +99,40 @@ impl Filter for AsTheRing {
     fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
         let Reading { kind, t_echo, .. } = *firing.reading;
         Ok(Filtered { kind, echo: firing.echoes.iter().find(|echo| Some(echo.t_echo()) == t_echo).copied() })
+    }
+}
+
+/// Believes the earliest echo, or silence, if one of the sensor's two readings before agrees with it.
+struct TwoOfThree {
+    t_delta: Micros,
+    /// The last reading of each sensor and the one before, carried on by odometry; `Some(None)` for silence.
+    before: Vec<[Option<Option<f64>>; 2]>,
+}
+
+impl Filter for TwoOfThree {
+    fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
+        let echo = firing.echoes.first().copied();
+        let Some(before) = self.before.get_mut(usize::from(firing.reading.sensor)) else {
+            return Ok(Filtered::accepted(echo));
+        };
+        for earlier in before.iter_mut().flatten().flatten() {
+            *earlier += f64::from(firing.expected_change_us);
+        }
+        let heard = echo.map(|echo| f64::from(echo.t_echo_us));
+        let within_us = f64::from(self.t_delta.as_micros());
+        let agrees = before.iter().flatten().any(|&earlier| match (earlier, heard) {
+            (Some(earlier), Some(heard)) => (earlier - heard).abs() <= within_us,
+            (None, None) => true,
+            _ => false,
+        });
+        let is_first = before.iter().all(Option::is_none);
+        *before = [Some(heard), before[0]];
+        Ok(match (agrees, echo.is_some()) {
+            (true, _) => Filtered::accepted(echo),
+            (false, false) => Filtered { kind: ReadingKind::NoEcho, echo },
+            (false, true) if is_first => Filtered { kind: ReadingKind::First, echo },
+            (false, true) => Filtered { kind: ReadingKind::Rejected, echo },
+        })
     }
 }
 

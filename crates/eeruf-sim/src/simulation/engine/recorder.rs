@@ -1,7 +1,7 @@
 //! What becomes of a reading under a method, and its entry in the record: what it says, what it came from, and what the
 //! sensor would have read alone.
 
-use eeruf_core::{Reading, ReadingKind, hopping::Weighed};
+use eeruf_core::{Micros, Reading, ReadingKind, hopping::Weighed};
 
 use super::filter::{Filter, Filtered, FiredReading, MAX_MEDIAN, filter_of};
 use super::own::Own;
@@ -12,6 +12,7 @@ use crate::{
     geometry::Pose,
     methods::{Method, OwnError},
     results::{Cause, HeardPath, NO_PATH, Readings, SensorId},
+    world::Robot,
 };
 
 /// More than all rings of a world give at one moment.
@@ -34,6 +35,7 @@ impl Recorder {
         end: u64,
         expected: u64,
         ids: &[SensorId],
+        robots: &[Robot],
         own: &mut Own,
     ) -> Result<Self, SimulationError> {
         let median_of = usize::from(options.median_of);
@@ -43,7 +45,8 @@ impl Recorder {
         let duration_s = end as f64 * 1e-9;
         let of_robot = |sensors: &[SensorId]| {
             let robot = usize::from(sensors[0].robot);
-            own.take_filter(robot).unwrap_or_else(|| filter_of(method.belief(), median_of, sensors.len()))
+            let t_delta = robots.get(robot).map_or(Micros::ZERO, |robot| robot.t_delta);
+            own.take_filter(robot).unwrap_or_else(|| filter_of(method.belief(), median_of, t_delta, sensors.len()))
         };
         let filters = ids.chunk_by(|a, b| a.robot == b.robot).map(of_robot).collect();
         let mut readings = Readings::new(method, duration_s, ids.len());
@@ -119,6 +122,7 @@ impl Recorder {
         out.cause.push(cause);
         out.path.push(path);
         out.emitted_s.push(emitted_s);
+        out.expected_change_us.push(expected_change_us);
         out.weighed.push(weighed);
         Ok(Some(out))
     }

@@ -1763,6 +1763,7 @@ static uint16_t fewer16(uint16_t one, uint16_t other) {
 #define ONE_SOLO 256u       /* what a solo period costs; as much again may be saved up */
 #define LEAST_CHANGE_US 20  /* an expected change that tells how much of it there is */
 #define WHOLE 64            /* as much more as is expected */
+#define MOVING_VOTES 3u     /* for a tentative echo while odometry moves: any two readings are those of some wall */
 #define DRAWS 8u            /* lags that are drawn in search of one that keeps the neighbours' interval */
 
 /* -- The tracker: which echo of a sensor is its own. A reading within t_delta of a track supports it, and only support
@@ -1940,7 +1941,7 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_
     const bool solo = (hopper->flags & SOLO) != 0;
     const uint32_t t_echo_us = reading->t_echo_us;
     const uint16_t phase = phase_bit(hopper->phase);
-    const uint8_t votes = how->tentative_votes;
+    const uint8_t votes = how->tentative_votes, least = change_us != 0 ? MOVING_VOTES : 0;
     const uint8_t nearest = nearest_track(hopper, t_echo_us, how->t_delta_us);
     const EerufTrack *believed = believed_of(hopper);
     /* A copy: the tracks move below. Without one no echo is as late. */
@@ -1960,7 +1961,7 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_
             support(track, t_echo_us, phase, solo, how);
             close = track->flags & CONTRADICTED ? 0 : track->close;
             earlier = (!believes || track->t_echo_us < held_us) && track->t_echo_us != EERUF_NO_ECHO;
-            tentative = earlier && votes != 0 && (solo || close >= votes);
+            tentative = earlier && votes != 0 && (solo || close >= (votes < least ? least : votes));
         } else if (is_near && track->t_echo_us == held_us) {
             /* It follows an echo that moves faster than its support: three tenths of the way. */
             grow_older(track);
@@ -2001,14 +2002,59 @@ static uint8_t multiplier_of(const EerufHoppingConfig *config, uint8_t sensor) {
     return (uint8_t)(sensor + first);
 }
 
+static bool is_prime(uint8_t number) {
+    uint8_t divisor;
+    for (divisor = 2; divisor * divisor <= number; divisor++)
+        if (number % divisor == 0) return false;
+    return number > 1;
+}
+
+/* The least primitive root of a prime. */
+static uint8_t primitive_root(uint8_t prime) {
+    uint8_t root = 1, power, order;
+    for (;; root++) {
+        for (power = root, order = 1; power != 1 && order < prime; order++) power = (uint8_t)(power * root % prime);
+        if (order >= prime - 1u) return root;
+    }
+}
+
+/* Welch's sequence: a place and one, times the root, modulo one more than the cycle, less one. */
+static uint8_t times_root(uint8_t place, uint8_t root, uint8_t cycle) {
+    uint8_t product = 0, left;
+    for (left = root; left > 0; left--) {
+        product = (uint8_t)(product + place + 1u);
+        if (product > cycle) product = (uint8_t)(product - cycle - 1u);
+    }
+    return (uint8_t)(product - 1u);
+}
+
 /* By how much less than a period two firings of a sensor are apart at most. */
-static uint32_t longest_drop(const EerufHoppingConfig *config, uint8_t cycle) {
-    uint8_t x, most = 0;
-    for (x = 0; x < config->sensors; x++) {
+static uint32_t longest_drop(const EerufHoppingConfig *config, uint8_t cycle, uint8_t root) {
+    uint8_t x, most = 0, place = 0;
+    for (x = 0; x < config->sensors && root == 0; x++) {
         const uint8_t multiplier = (uint8_t)(multiplier_of(config, x) % cycle);
         if (multiplier != 0 && cycle - multiplier > most) most = (uint8_t)(cycle - multiplier);
     }
+    for (x = 0; x < cycle && root != 0; x++) {
+        const uint8_t next = times_root(place, root, cycle);
+        if (place > next && place - next > most) most = (uint8_t)(place - next);
+        place = next;
+    }
     return most * config->step_us;
+}
+
+/* Where a sensor is in Welch's sequence: each is a phase behind the one before it in the order of lags. */
+static uint8_t welch_place(const EerufHoppingRing *hopping, uint8_t sensor) {
+    const EerufHopper *hoppers = hopping->hoppers;
+    uint8_t other, left = (uint8_t)(hopping->cycle + hopping->phase);
+    uint8_t place = (uint8_t)(multiplier_of(&hopping->config, 0) - 1u);
+    if (hopping->root == 0) return 0;
+    for (other = 0; other < hopping->ring.count; other++)
+        if (hoppers[other].lag_us < hoppers[sensor].lag_us ||
+            (hoppers[other].lag_us == hoppers[sensor].lag_us && other < sensor))
+            left--;
+    for (; left > 0; left--) place = times_root(place, hopping->root, hopping->cycle);
+    return place;
 }
 
 static uint32_t times(uint16_t one, uint16_t other) {
@@ -2021,14 +2067,18 @@ static OUT_OF_LINE uint32_t offset_of(const EerufHoppingRing *hopping, uint8_t s
     return hopper->lag_us + times(hopper->place, (uint16_t)hopping->config.step_us);
 }
 
-/* The next phase. A sensor's place is its multiplier times the phase, modulo the cycle; all are less than that, but for
-   the multiplier, which is less than twice as much. */
+/* The next phase. In a linear congruence a sensor's place is its multiplier times the phase, modulo the cycle; all are
+   less than that, but for the multiplier, which is less than twice as much. */
 static void next_phase(EerufHoppingRing *hopping) {
     const uint8_t cycle = hopping->cycle;
     uint8_t x;
     hopping->phase = hopping->phase + 1u < cycle ? (uint8_t)(hopping->phase + 1u) : 0;
     for (x = 0; x < hopping->ring.count; x++) {
         uint8_t place = multiplier_of(&hopping->config, x);
+        if (hopping->root != 0) {
+            hopping->hoppers[x].place = times_root(hopping->hoppers[x].place, hopping->root, cycle);
+            continue;
+        }
         if (place >= cycle) place = (uint8_t)(place - cycle);
         place = (uint8_t)(place + hopping->hoppers[x].place);
         if (place >= cycle) place = (uint8_t)(place - cycle);
@@ -2172,6 +2222,7 @@ static void shift_all(EerufHoppingRing *hopping) {
     if (!shifted) return;
     hopping->since_shift = 0;
     hopping->changed = 1;
+    for (x = 0; x < hopping->ring.count && hopping->root != 0; x++) hopping->hoppers[x].place = welch_place(hopping, x);
     /* What is pending was fired with the lags of before. */
     unsettle(hopping);
 }
@@ -2300,13 +2351,6 @@ static void restart_hopping(EerufRing *ring, uint32_t now_us) {
     plan(hopping);
 }
 
-static bool is_prime(uint8_t number) {
-    uint8_t divisor;
-    for (divisor = 2; divisor * divisor <= number; divisor++)
-        if (number % divisor == 0) return false;
-    return number > 1;
-}
-
 static bool is_between(uint16_t value, uint16_t least, uint16_t most) {
     return value >= least && value <= most;
 }
@@ -2324,7 +2368,7 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
                                const EerufHoppingConfig *config, uint32_t now_us) {
     EerufStatus status;
     uint32_t width_us, least_us;
-    uint8_t x, cycle;
+    uint8_t x, cycle, root = 0;
     if (hopping == NULL || sensors == NULL || hoppers == NULL || config == NULL) return EERUF_ERR_NULL;
     if (config->version != EERUF_VERSION) return EERUF_ERR_VERSION;
     if (ring_size != sizeof *hopping) return EERUF_ERR_MEMORY;
@@ -2333,12 +2377,21 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     if (hoppers_size / sizeof *hoppers < config->sensors) return EERUF_ERR_MEMORY;
     if (!is_between(config->phases, 2, 67)) return EERUF_ERR_PHASES;
     if (config->step_us == 0 || config->step_us > UINT16_MAX) return EERUF_ERR_STEP;
-    cycle = config->phases > config->sensors ? config->phases : (uint8_t)(config->sensors + 1u);
-    if (config->code != 0) {
+    if (config->code == 0) {
+        cycle = config->phases > config->sensors + 1u ? config->phases : (uint8_t)(config->sensors + 1u);
+        if (cycle < 67) cycle++;
+        if (cycle < 5) cycle = 5; /* two phases would be those of a linear congruence */
+        while (!is_prime(cycle)) cycle++;
+        root = primitive_root(cycle--);
+    } else {
         cycle = config->phases;
-        if (!is_prime(cycle) || cycle < config->sensors || config->code > cycle) return EERUF_ERR_PHASES;
+        if (!is_prime(cycle) || cycle < config->sensors) {
+            if (!is_prime((uint8_t)(cycle + 1u)) || cycle <= config->sensors) return EERUF_ERR_PHASES;
+            if (config->code == 1) return EERUF_ERR_PHASES;
+            root = primitive_root((uint8_t)(cycle + 1u));
+        }
+        if (config->code > cycle) return EERUF_ERR_PHASES;
     }
-    while (!is_prime(cycle)) cycle++;
     width_us = (cycle - 1u) * config->step_us;
     if (config->period_us <= width_us || config->period_us > EERUF_MAX_PERIOD_US) return EERUF_ERR_PERIOD;
     for (x = 0; x < config->sensors && config->lag_us != NULL; x++)
@@ -2348,7 +2401,7 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     if (config->step_us <= config->tracker.t_delta_us) return EERUF_ERR_T_DELTA;
     if (config->tracker.votes > cycle) return EERUF_ERR_VOTES;
     /* The sensor must have stopped listening, and a path must not read the same with two ages. */
-    least_us = longer(add32(config->window_us, longest_drop(config, cycle)), 2 * width_us + config->step_us);
+    least_us = longer(add32(config->window_us, longest_drop(config, cycle, root)), 2 * width_us + config->step_us);
     if (config->period_us < least_us) return EERUF_ERR_PERIOD;
     if (config->window_us > EERUF_HOPPING_MAX_WINDOW_US) return EERUF_ERR_WINDOW;
 
@@ -2360,6 +2413,7 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     hopping->hoppers = hoppers;
     hopping->config = *config;
     hopping->cycle = cycle;
+    hopping->root = root;
     hopping->start_us = hopping->ring.last_fired_us = now_us;
     hopping->dies_us = config->reach_us > config->blanking_us ? config->reach_us - config->blanking_us : 0;
     hopping->dies_us = add32(longer(hopping->dies_us, config->window_us), 1);
@@ -2369,11 +2423,12 @@ EerufStatus eeruf_hopping_init(EerufHoppingRing *hopping, size_t ring_size, Eeru
     hopping->least_late[0] = hopping->least_late[1] = hopping->least_late[2] = UINT16_MAX;
     memset(hoppers, 0, config->sensors * sizeof *hoppers);
     for (x = 0; x < config->sensors; x++) {
-        const uint8_t n = config->neighbours == 0 ? 1 : config->neighbours, k = x % n;
-        const uint32_t room = config->period_us - width_us; /* k room / n, in 32 bits */
+        const uint8_t n = config->sensors;
+        const uint32_t room = config->period_us - width_us; /* x room / n, in 32 bits */
         forget_tracks(&hoppers[x]);
-        hoppers[x].lag_us = config->lag_us != NULL ? config->lag_us[x] : k * (room / n) + k * (room % n) / n;
+        hoppers[x].lag_us = config->lag_us != NULL ? config->lag_us[x] : x * (room / n) + x * (room % n) / n;
     }
+    for (x = 0; x < config->sensors; x++) hoppers[x].place = welch_place(hopping, x);
     plan(hopping);
     hopping->ring.ready = READY;
     return EERUF_OK;

@@ -485,10 +485,10 @@ typedef struct EerufTrackerSettings {
 typedef struct EerufHoppingConfig {
     uint16_t version;            /* EERUF_VERSION */
     uint8_t sensors;             /* 1 to 64 */
-    uint8_t phases;              /* the cycle is the next prime that is at least this and above the number of sensors */
+    uint8_t phases;              /* the cycle is at least this and above the number of sensors, one less than a prime */
     uint32_t step_us;            /* the code's: crosstalk moves by at least this; 1 to 65,535 */
     uint32_t period_us;          /* at least window + (phases - 1) step */
-    const uint32_t *lag_us;      /* one for each sensor, in RAM; null: `neighbours` adjacent ones spread evenly */
+    const uint32_t *lag_us;      /* one for each sensor, in RAM; null: spread evenly in the order of sensors */
     uint32_t window_us;          /* at most EERUF_HOPPING_MAX_WINDOW_US */
     uint32_t blanking_us;
     uint32_t reach_us;           /* after how long no sound is heard any more */
@@ -499,23 +499,23 @@ typedef struct EerufHoppingConfig {
     uint8_t solo_after;          /* firings with nothing accepted */
     uint8_t solo_spacing, shift_after, shift_spacing;
     uint8_t neighbours;
-    uint8_t code;                /* 0; or, with `phases` exactly, a prime: 1 + the multiplier of sensor 0, as
-                                    `eeruf design --phases` writes it for the shortest period */
+    uint8_t code;                /* 0; or, with `phases` exactly, a prime or one less: 1 + the multiplier of
+                                    sensor 0, as schedules that `eeruf` writes have it */
 } EerufHoppingConfig;
 
 /* The settings of most robots, of those that must stop early, of those that drive, and of those that make maps. */
 #define EERUF_HOPPING_BALANCED(sensors, period_us, window_us)                                                          \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 60, 5, 6, 2, 6, 2}, 84, 5, 3, 5, 8, 4, 0}
+     {150, 400, 60, 5, 6, 2, 6, 2}, 84, 5, 3, 0, 8, 4, 0}
 #define EERUF_HOPPING_QUICK(sensors, period_us, window_us)                                                             \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 100, 4, 6, 2, 6, 2}, 100, 4, 2, 5, 8, 4, 0}
+     {150, 400, 100, 4, 6, 2, 6, 2}, 100, 4, 2, 0, 8, 4, 0}
 #define EERUF_HOPPING_DRIVING(sensors, period_us, window_us)                                                           \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
      {150, 400, 60, 5, 6, 2, 6, 2}, 0, 5, 3, 0, 8, 4, 0}
 #define EERUF_HOPPING_MAPS(sensors, period_us, window_us)                                                              \
     {EERUF_VERSION, sensors, 5, 240, period_us, NULL, window_us, 0, window_us, 8000, 1,                                \
-     {150, 400, 60, 5, 7, 1, 6, 0}, 28, 8, 6, 5, 24, 4, 0}
+     {150, 400, 60, 5, 7, 1, 6, 0}, 28, 8, 6, 0, 24, 4, 0}
 
 /* What a hopping ring has of each sensor in place of an EerufSensor: its last firing is enough. 16 bytes on an AVR. Not
    for the caller. */
@@ -549,7 +549,7 @@ typedef struct EerufHoppingRing {
     EerufHoppingConfig config;
     uint32_t start_us, length_us, solo_at_us, dies_us, random;
     uint16_t earned, tolerated, least_late[3], most_late[3];
-    uint8_t phase, cycle, planned, place, since_solo, since_shift, changed, changes;
+    uint8_t phase, cycle, root, planned, place, since_solo, since_shift, changed, changes;
 } EerufHoppingRing;
 
 /* Makes a hopping ring that begins at `now_us`. Both arrays have a place for each sensor of the config. Poll it with

@@ -432,8 +432,7 @@ class HoppingSchedule:
         phases: _Int = 5,
         t_lag_us: Iterable[_Int] | None = None,
         *,
-        neighbours: _Int = 4,
-        first_multiplier: _Int = 1,
+        first_multiplier: _Int | None = None,
     ) -> HoppingSchedule: ...
     @staticmethod
     def from_toml(text: str) -> HoppingSchedule: ...

@@ -222,7 +222,7 @@ fn the_data_set_is_the_same_bit_for_bit_and_knows_whose_sound_each_reading_is() 
         let text = std::fs::read(file).unwrap();
         text.iter().for_each(|&byte| hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
     }
-    assert_eq!(format!("{hash:016x}"), "46696163a4de7531");
+    assert_eq!(format!("{hash:016x}"), "e53f7f7c00b43d28");
     let readings = std::fs::read_to_string(out.join("alcoves/60000/conventional.csv")).unwrap();
     let fooled = readings.lines().filter(|line| line.contains(",crosstalk,")).count();
     assert!(fooled > 20 && readings.lines().count() == 2 + 8 * 40, "{fooled} of {}", readings.lines().count());
@@ -302,10 +302,11 @@ fn the_replay_of_a_hopping_rings_log_makes_of_each_firing_what_the_run_made_of_i
         }
         // All that matters has happened.
         let of = |kind: ReadingKind| counts[kind as usize];
-        assert!(of(ReadingKind::Accepted) > 100 && of(ReadingKind::Tentative) > 20 && of(ReadingKind::Rejected) > 300);
+        assert!(of(ReadingKind::Accepted) > 40 && of(ReadingKind::Tentative) > 20 && of(ReadingKind::Rejected) > 200);
         let weighed = || firings.firings.iter().filter_map(|firing| firing.weighed.as_ref());
-        assert!(weighed().any(|weighed| weighed.solo) && weighed().any(|weighed| !weighed.steady), "{scene}");
-        assert!(weighed().any(|weighed| weighed.changes > 0), "{scene}");
+        assert!(weighed().any(|weighed| weighed.solo), "{scene}");
+        // Lags stay, and simulated firings are on time.
+        assert!(weighed().all(|weighed| weighed.steady && weighed.changes == 0), "{scene}");
         assert_eq!(weighed().any(|weighed| weighed.expected_change_us != 0), scene.contains("pole-course"));
 
         // The command counts the same.

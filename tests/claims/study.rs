@@ -93,7 +93,7 @@ fn the_table_names_every_method_and_who_was_fooled_by_whom() {
     let outcome = eeruf(&["study", "scenes/alcove.toml", "--periods", "300"]);
     assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""));
     for method in METHODS {
-        assert!(outcome.out.contains(&format!("| {method:<15} |")), "{method}\n{}", outcome.out);
+        assert!(outcome.out.contains(&format!("| {method:<16} |")), "{method}\n{}", outcome.out);
     }
     for said in ["Who was fooled by whom", "|      8 |                 4 |     1 | wall 1", "300 of 300", "EERUF"] {
         assert!(outcome.out.contains(said), "{said}\n{}", outcome.out);

@@ -229,7 +229,7 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.EchoFilter(2, 500).forget(a()),
         lambda: ANY.EchoFilter(2, 500, echoes=4).push_echoes(m(0), m([9_000, 12_000]), m(0)),
         lambda: ring(c),
-        lambda: ANY.HoppingSchedule(m(8), m(60_000), m(240), m(5), m(None), neighbours=m(4)),
+        lambda: ANY.HoppingSchedule(m(8), m(60_000), m(240), m(5), m(None), first_multiplier=m(1)),
         lambda: ANY.HoppingSchedule.from_toml(mutated(c, HOPPING.to_toml())),
         lambda: ANY.HoppingSettings(m("quick"), **{c.random.choice(["votes", "near_us", "nonsense"]): a()}),
         lambda: ANY.EchoTracker(m(2), m(150), settings=m("maps")).push(m(0), m(3), m(9_000), m(0), solo=m(True)),

@@ -44,7 +44,17 @@ def test_a_congruence_is_the_formula_for_every_number_of_sensors() -> None:
         assert all(q % divisor for divisor in range(2, q))
         assert schedule.t_fire_us.tolist() == (np.array(schedule.t_lag_us) + 240 * ((x + 1) * m % q)).tolist()
         assert schedule.width_us == 240 * (q - 1)
-        assert schedule == HoppingSchedule(sensors, 400_000, 240)
+
+
+def test_a_schedule_is_welchs_sequence_for_every_number_of_sensors() -> None:
+    for sensors in (2, 7, 12, 24, 64):
+        schedule = HoppingSchedule(sensors, 400_000, 240)
+        q, m, x = schedule.phases + 1, np.arange(schedule.phases)[:, None], np.arange(sensors)
+        root = next(g for g in range(1, q) if len({pow(g, power, q) for power in range(1, q)}) == q - 1)
+        powers = np.array([pow(root, power, q) for power in range(q - 1)])
+        waits = powers[(m - x) % (q - 1)] - 1
+        assert schedule.t_fire_us.tolist() == (np.array(schedule.t_lag_us) + 240 * waits).tolist()
+        assert schedule.width_us == 240 * (q - 2)
 
 
 def test_two_phases_of_a_congruence_are_a_schedule_of_the_paper() -> None:

@@ -92,7 +92,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
     let rust = rust.and_then(|code| {
         let schedule = match lags {
             Some(lags) => HoppingSchedule::<K>::new(code, Micros::new(period), lags)?,
-            None => HoppingSchedule::spread(code, Micros::new(period), s.neighbours)?,
+            None => HoppingSchedule::spread(code, Micros::new(period))?,
         };
         HoppingRing::<K>::hopping(&schedule, s, listening, random_seed, Instant::from_micros(start))
     });

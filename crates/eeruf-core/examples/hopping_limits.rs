@@ -50,7 +50,7 @@ impl Count {
 /// A ring in a world of these paths; each poll is up to `late` microseconds late.
 fn run(paths: &[Path], step: u32, settings: HoppingSettings, late: u32, seed: u64, periods: u32) -> Count {
     let code = HoppingCode::new(SENSORS, 2, Micros::new(step)).expect("a step above 0");
-    let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(PERIOD), 4).expect("room for the code");
+    let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(PERIOD)).expect("room for the code");
     let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
     let (mut random, start) = (Random(seed), Instant::from_micros(0));
     let mut ring = HoppingRing::<SENSORS>::hopping(&schedule, settings, listening, seed as u32, start)

@@ -14,7 +14,7 @@ const WINDOW: Micros = Micros::from_millis(40);
 
 fn ring() -> HoppingRing<K> {
     let code = HoppingCode::new(K, 5, Micros::new(240)).unwrap();
-    let schedule = HoppingSchedule::spread(code, Micros::from_millis(60), 3).unwrap();
+    let schedule = HoppingSchedule::spread(code, Micros::from_millis(60)).unwrap();
     let settings = HoppingSettings::BALANCED.with_shift_after(0);
     HoppingRing::hopping(&schedule, settings, HoppingListening::new(WINDOW), 1, Instant::default()).unwrap()
 }

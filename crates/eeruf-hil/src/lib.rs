@@ -51,7 +51,7 @@ pub const STEP: Micros = Micros::new(652);
 pub fn hopping_ring(now: Instant) -> Result<HoppingRing<SENSORS>, HoppingError> {
     let settings = HoppingSettings::BALANCED;
     let code = HoppingCode::new(SENSORS, settings.tracker.votes, STEP)?;
-    let schedule = HoppingSchedule::spread(code, Micros::from_millis(100), settings.neighbours)?;
+    let schedule = HoppingSchedule::spread(code, Micros::from_millis(100))?;
     HoppingRing::hopping(&schedule, settings, HoppingListening::new(Micros::from_millis(60)), 1, now)
 }
 

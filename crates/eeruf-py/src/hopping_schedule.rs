@@ -2,7 +2,7 @@
 
 use eeruf_core::{
     MAX_SENSORS, Micros,
-    hopping::{HoppingCode, HoppingSchedule as Core},
+    hopping::{HoppingCode, HoppingError as Error, HoppingSchedule as Core},
 };
 use eeruf_design::PhaseFile;
 use numpy::{PyArray1, PyArray2, prelude::*};
@@ -20,19 +20,21 @@ use crate::{
 
 /// When the sensors of a hopping ring fire: a code of many phases, for sensors that two phases leave blind. Immutable.
 ///
-/// Sensor ``x`` fires ``t_lag_us[x] + step_us * ((x + a) * m % phases)`` after the beginning of a period of phase
-/// ``m``; the number of phases is prime, so that any path from one sensor to another moves by at least a step from each
-/// phase to each other. Schedules compare, hash and pickle, and their ``repr`` can be pasted back.
+/// The code is Welch's Costas sequence: the sensor that is ``i``th in the order of lags fires
+/// ``step_us * (a * g ** (m - i) % q - 1)`` after its lag in phase ``m``, with ``q`` the prime above the number of
+/// phases and ``g`` its least primitive root. Any path from one sensor to another moves by at least a step from each
+/// phase to each other, and few phases lie along any line, as a robot's own speed would draw it. Schedules compare,
+/// hash and pickle, and their ``repr`` can be pasted back.
 ///
 /// Args:
 ///     sensors: how many, 1 to 64.
 ///     period_us: the period, ``T_p``; it must exceed the width of the code.
 ///     step_us: by how much crosstalk moves at least, 1 to 65535.
-///     phases: at least so many, 2 to 67; there are as many as the next prime above the sensors' number. By default
-///         at least the 5 that confirm an echo.
-///     t_lag_us: the lag of each sensor; by default ``neighbours`` adjacent ones are spread evenly over the period.
-///     neighbours: how many, 1 to 64.
-///     first_multiplier: ``a``, below the number of phases.
+///     phases: at least so many, 2 to 67, as far as there are; there are more than sensors, and one less than a prime.
+///         By default at least the 5 that confirm an echo.
+///     t_lag_us: the lag of each sensor; by default they are spread evenly over the period.
+///     first_multiplier: ``a``, below the number of phases, which are then exactly as many as asked for: one less than
+///         a prime, or a prime for the linear congruence ``(x + a) * m % phases`` of sensor ``x``.
 ///
 /// Raises:
 ///     ArgumentError: something of the wrong type or out of range.
@@ -42,7 +44,7 @@ use crate::{
 ///     >>> import eeruf
 ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
 ///     >>> schedule.phases, schedule.width_us, schedule.t_fire_us.shape
-///     (11, 2400, (11, 8))
+///     (10, 2160, (10, 8))
 #[pyclass(frozen, eq, hash, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct HoppingSchedule(pub(crate) Core<MAX_SENSORS>);
@@ -51,38 +53,29 @@ pub(crate) struct HoppingSchedule(pub(crate) Core<MAX_SENSORS>);
 const PHASES: u8 = eeruf_core::judge::TrackerSettings::BALANCED.votes;
 
 impl HoppingSchedule {
-    fn lags(&self) -> impl Iterator<Item = u32> + '_ {
-        (0..self.sensors()).filter_map(|sensor| self.0.t_lag(sensor)).map(Micros::as_micros)
-    }
-}
-
-#[pymethods]
-impl HoppingSchedule {
-    #[new]
-    #[pyo3(signature = (
-        sensors, period_us, step_us, phases=None, t_lag_us=None, *, neighbours=None, first_multiplier=None
-    ))]
-    #[pyo3(text_signature = "(sensors, period_us, step_us, phases=5, t_lag_us=None, *, neighbours=4, \
-            first_multiplier=1)")]
-    pub(crate) fn new(
+    /// A linear congruence: the narrowest with at least so many phases.
+    pub(crate) fn congruence(
         sensors: &Bound<'_, PyAny>,
         period_us: &Bound<'_, PyAny>,
         step_us: &Bound<'_, PyAny>,
         phases: Option<&Bound<'_, PyAny>>,
         t_lag_us: Option<&Bound<'_, PyAny>>,
-        neighbours: Option<&Bound<'_, PyAny>>,
-        first_multiplier: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (sensors, period) = (requirements::sensors(sensors)?, micros("period_us", period_us)?);
         let phases = whole_or("phases", phases, PHASES, 2..=HoppingCode::MAX_PHASES)?;
-        let neighbours = whole_or("neighbours", neighbours, 4, 1..=MAX_SENSORS as u8)?;
-        let mut code = HoppingCode::new(sensors, phases, micros("step_us", step_us)?).map_err(Raise::raise)?;
-        if let Some(first) = first_multiplier {
-            let first = whole("first_multiplier", first, 0..=code.phases() - 1)?;
-            code = HoppingCode::of(sensors, code.phases(), first, code.step()).map_err(Raise::raise)?;
-        }
+        let step = micros("step_us", step_us)?;
+        // At most 64 sensors.
+        let mut primes = (phases.max(sensors as u8 + 1)..=HoppingCode::MAX_PHASES)
+            .map(|phases| HoppingCode::of(sensors, phases, 1, step))
+            .filter(|code| !code.is_ok_and(|code| code.is_welch()) && !matches!(code, Err(Error::NotPrime { .. })));
+        let code = primes.next().unwrap_or_else(|| HoppingCode::new(sensors, phases, step));
+        Self::with_lags(code.map_err(Raise::raise)?, period, t_lag_us)
+    }
+
+    fn with_lags(code: HoppingCode, period: Micros, t_lag_us: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let sensors = code.sensors();
         let schedule = match t_lag_us {
-            None => Core::spread(code, period, neighbours),
+            None => Core::spread(code, period),
             Some(given) => {
                 let (given, mut lags) = (times("t_lag_us", given)?, [Micros::ZERO; MAX_SENSORS]);
                 if given.len() != sensors {
@@ -94,6 +87,40 @@ impl HoppingSchedule {
             }
         };
         schedule.map(Self).map_err(Raise::raise)
+    }
+
+    fn lags(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..self.sensors()).filter_map(|sensor| self.0.t_lag(sensor)).map(Micros::as_micros)
+    }
+}
+
+#[pymethods]
+impl HoppingSchedule {
+    #[new]
+    #[pyo3(signature = (
+        sensors, period_us, step_us, phases=None, t_lag_us=None, *, first_multiplier=None
+    ))]
+    #[pyo3(text_signature = "(sensors, period_us, step_us, phases=5, t_lag_us=None, *, first_multiplier=None)")]
+    pub(crate) fn new(
+        sensors: &Bound<'_, PyAny>,
+        period_us: &Bound<'_, PyAny>,
+        step_us: &Bound<'_, PyAny>,
+        phases: Option<&Bound<'_, PyAny>>,
+        t_lag_us: Option<&Bound<'_, PyAny>>,
+        first_multiplier: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let (sensors, period) = (requirements::sensors(sensors)?, micros("period_us", period_us)?);
+        let phases = whole_or("phases", phases, PHASES, 2..=HoppingCode::MAX_PHASES)?;
+        let step = micros("step_us", step_us)?;
+        let code = match first_multiplier {
+            None => HoppingCode::new(sensors, phases, step),
+            Some(first) => {
+                let first = whole("first_multiplier", first, 0..=HoppingCode::MAX_PHASES - 1)?;
+                HoppingCode::of(sensors, phases, first, step)
+            }
+        };
+        let code = code.map_err(Raise::raise)?;
+        Self::with_lags(code, period, t_lag_us)
     }
 
     /// Read a schedule as ``eeruf design --phases M --emit toml`` and :meth:`to_toml` write it.
@@ -145,13 +172,13 @@ impl HoppingSchedule {
         self.0.code().sensors()
     }
 
-    /// How many phases a cycle has: a prime.
+    /// How many phases a cycle has: one less than a prime, or a prime for a linear congruence.
     #[getter]
     fn phases(&self) -> u8 {
         self.0.code().phases()
     }
 
-    /// ``a``: by what the phase is multiplied for sensor 0.
+    /// ``a``: what the first sensor's wait is multiplied by.
     #[getter]
     fn first_multiplier(&self) -> u8 {
         self.0.code().first_multiplier()
@@ -189,7 +216,7 @@ impl HoppingSchedule {
     /// Example:
     ///     >>> import eeruf
     ///     >>> eeruf.HoppingSchedule(sensors=2, period_us=60_000, step_us=240, phases=5).to_dict()["t_lag_us"]
-    ///     [0, 14760]
+    ///     [0, 29400]
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         to_dict(slf, &["period_us", "step_us", "phases", "first_multiplier", "t_lag_us"])
     }
@@ -197,13 +224,10 @@ impl HoppingSchedule {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let (sensors, period, step, phases) = (self.sensors(), self.period_us(), self.step_us(), self.phases());
         let lags = self.t_lag_us(py)?;
-        let first = match self.first_multiplier() {
-            1 => String::new(),
-            first => format!(", first_multiplier={first}"),
-        };
+        let first = self.first_multiplier();
         Ok(format!(
-            "HoppingSchedule(sensors={sensors}, period_us={period}, step_us={step}, phases={phases}, t_lag_us={lags}\
-             {first})"
+            "HoppingSchedule(sensors={sensors}, period_us={period}, step_us={step}, phases={phases}, t_lag_us={lags}, \
+             first_multiplier={first})"
         ))
     }
 

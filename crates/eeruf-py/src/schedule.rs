@@ -92,14 +92,15 @@ impl Schedule {
         AnySchedule::from_slices(period, &vec![Micros::ZERO; a.len()], [&a, &b]).map(Self).map_err(Raise::raise)
     }
 
-    /// A schedule of many phases, as :class:`HoppingSchedule` makes it of the same arguments: a linear congruence.
+    /// A schedule of many phases by a linear congruence: sensor ``x`` fires ``step_us * ((x + 1) * m % phases)`` after
+    /// its lag in phase ``m``. For robots that stand: a robot that drives takes a :class:`HoppingSchedule`.
     ///
     /// Args:
     ///     sensors: how many, 1 to 64.
     ///     period_us: the period, ``T_p``.
     ///     step_us: by how much crosstalk moves at least, 1 to 65535.
     ///     phases: at least so many, 2 to 67; by default the 5 that confirm an echo.
-    ///     t_lag_us: the lag of each sensor; by default four adjacent ones are spread evenly over the period.
+    ///     t_lag_us: the lag of each sensor; by default they are spread evenly over the period.
     ///
     /// Raises:
     ///     ArgumentError: something of the wrong type or out of range.
@@ -108,7 +109,7 @@ impl Schedule {
     /// Example:
     ///     >>> from eeruf import Schedule
     ///     >>> Schedule.congruence(sensors=8, period_us=60_000, step_us=240).t_fire_us[1, :3].tolist()
-    ///     [240, 14880, 29520]
+    ///     [240, 7680, 15120]
     #[staticmethod]
     #[pyo3(signature = (sensors, period_us, step_us, phases=None, t_lag_us=None))]
     #[pyo3(text_signature = "(sensors, period_us, step_us, phases=5, t_lag_us=None)")]
@@ -119,7 +120,7 @@ impl Schedule {
         phases: Option<&Bound<'_, PyAny>>,
         t_lag_us: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<HoppingSchedule> {
-        HoppingSchedule::new(sensors, period_us, step_us, phases, t_lag_us, None, None)
+        HoppingSchedule::congruence(sensors, period_us, step_us, phases, t_lag_us)
     }
 
     /// Read a schedule as ``eeruf design --emit toml`` and :meth:`to_toml` write it.

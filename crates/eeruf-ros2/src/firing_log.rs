@@ -107,7 +107,7 @@ mod tests {
     /// A ring of eight among its own sound and that of others; each path is as long as its two sensors say.
     fn hopping_ring() -> HoppingRing<8> {
         let code = HoppingCode::new(8, 2, Micros::new(240)).unwrap();
-        let schedule = HoppingSchedule::<8>::spread(code, Micros::from_millis(60), 4).unwrap();
+        let schedule = HoppingSchedule::<8>::spread(code, Micros::from_millis(60)).unwrap();
         let listening = HoppingListening::new(Micros::from_millis(36));
         HoppingRing::hopping(&schedule, HoppingSettings::BALANCED, listening, 1, Instant::from_micros(0)).unwrap()
     }

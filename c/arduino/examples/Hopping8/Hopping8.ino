@@ -1,4 +1,4 @@
-// Eight HC-SR04 modules with one pin each (2 to 9) that hop in time: firing times move through a cycle of eleven
+// Eight HC-SR04 modules with one pin each (2 to 9) that hop in time: firing times move through a cycle of ten
 // phases, and a module that hears nothing of its own gets a period alone, so that none stays blind. It takes twice the
 // memory. Written with the functions of eeruf.h, as a program without Arduino would be.
 #include <EerufArduino.h>

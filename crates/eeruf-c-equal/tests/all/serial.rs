@@ -94,7 +94,7 @@ fn hop(seed: u64) -> u64 {
     let (r, mut c) = (Random::new(seed), C::new());
     let (start, settings) = (r.any() as u32, HoppingSettings::BALANCED);
     let code = HoppingCode::new(8, 5, Micros::new(240)).unwrap();
-    let schedule = HoppingSchedule::<8>::spread(code, Micros::from_millis(60), settings.neighbours).unwrap();
+    let schedule = HoppingSchedule::<8>::spread(code, Micros::from_millis(60)).unwrap();
     let listening = HoppingListening::new(Micros::from_millis(36));
     let mut ring = HoppingRing::<8>::hopping(&schedule, settings, listening, 1, Instant::from_micros(start)).unwrap();
     let t = settings.tracker;

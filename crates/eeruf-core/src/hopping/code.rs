@@ -1,15 +1,20 @@
-//! [`HoppingCode`]: by how much each sensor's firing moves from phase to phase, a linear congruence.
+//! [`HoppingCode`]: by how much each sensor's firing moves from phase to phase, Welch's Costas sequence or a linear
+//! congruence.
 
 use super::error::HoppingError;
 use crate::schedule::MAX_SENSORS;
 use crate::time::Micros;
 
-/// The waits of a cycle of `q` phases, `q` prime: sensor `i` (from 0) waits `step ((i + a) m mod q)` in phase `m`,
-/// where `a` is 1 unless asked otherwise.
+/// The waits of a cycle of phases, in whole steps, of one of two families:
 ///
-/// What sound of sensor x, sent j periods before, moves by from phase m to phase m' of sensor y is a multiple of the
-/// step, and modulo `q` it is `(x - y)(m - m')`, which is not 0. So it moves by at least one step, for each pair of
-/// sensors, each j and each pair of phases, whatever the lags are (`docs/theory.md`, section 9).
+/// - **Welch's Costas sequence**, [`new`](Self::new): `q - 1` phases, `q` prime. With `g` the least primitive root of
+///   `q`, the sensor that is `i`th in the order of lags (from 0) waits `step ((a g^(m - i) mod q) - 1)` in phase `m`;
+///   `a` is 1 unless asked otherwise.
+/// - **The linear congruence**, [`shortest`](Self::shortest): `q` phases. Sensor `i` waits `step ((i + a) m mod q)`.
+///
+/// What sound of one sensor, sent j periods before, moves by from one phase of another sensor to another is at least a
+/// step (`docs/theory.md`, section 9). With the linear congruence it moves by the same from each period to the next, as
+/// an obstacle does that a robot drives towards; with Welch's sequence few phases lie along any line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HoppingCode {
@@ -17,6 +22,8 @@ pub struct HoppingCode {
     phases: u8,
     /// `a`.
     first: u8,
+    /// `g`; 0 for a linear congruence.
+    root: u8,
     step: Micros,
 }
 
@@ -24,8 +31,8 @@ impl HoppingCode {
     /// The most phases: the smallest prime above 64.
     pub const MAX_PHASES: u8 = 67;
 
-    /// The narrowest such code for 1 to 64 sensors: `q` is the smallest prime that is above their number and at least
-    /// `phases`, 2 to 67. The step is 1 to 65,535 us.
+    /// The narrowest code of Welch's sequence for 1 to 64 sensors: it has more phases than sensors, and at least
+    /// `phases`, 2 to 67, as far as there are so many: 66 at most. The step is 1 to 65,535 us.
     ///
     /// # Errors
     /// [`HoppingError`] outside these ranges.
@@ -33,18 +40,26 @@ impl HoppingCode {
     /// ```
     /// use eeruf_core::{Micros, hopping::HoppingCode};
     /// let code = HoppingCode::new(8, 2, Micros::new(240))?;
-    /// assert_eq!((code.phases(), code.width()), (11, Micros::new(2400)));
+    /// assert_eq!((code.phases(), code.width()), (10, Micros::new(2160)));
     /// # Ok::<(), eeruf_core::hopping::HoppingError>(())
     /// ```
     pub const fn new(sensors: usize, phases: u8, step: Micros) -> Result<Self, HoppingError> {
-        match Self::of_phases(sensors, phases, step, sensors + 1) {
-            Ok(phases) => Ok(Self { sensors: sensors as u8, phases, first: 1, step }),
-            Err(error) => Err(error),
+        if let Err(error) = Self::check(sensors, phases, step) {
+            return Err(error);
         }
+        let mut q = if phases as usize > sensors + 1 { phases } else { sensors as u8 + 1 };
+        q = if q < Self::MAX_PHASES { q + 1 } else { q };
+        // Two phases would be those of a linear congruence.
+        q = if q < 5 { 5 } else { q };
+        while !is_prime(q) {
+            q += 1;
+        }
+        Ok(Self { sensors: sensors as u8, phases: q - 1, first: 1, root: primitive_root(q), step })
     }
 
-    /// The code with which the period can be shortest: one sensor always waits alike, and the waits of all others
-    /// shrink by 1 to `K - 1` steps from period to period, for `q` at least the number of sensors `K` and `phases`.
+    /// The linear congruence with which the period can be shortest: one sensor always waits alike, and the waits of all
+    /// others shrink by 1 to `K - 1` steps from period to period, for `q` at least the number of sensors `K` and
+    /// `phases`.
     ///
     /// A sensor's two firings are then never closer than `T_p - (K - 1) step`. No code of any kind that moves sound of
     /// every age by a step does better (`docs/theory.md`, section 9.3).
@@ -56,40 +71,54 @@ impl HoppingCode {
     /// use eeruf_core::{Micros, hopping::HoppingCode};
     /// let code = HoppingCode::shortest(8, 2, Micros::new(240))?;
     /// assert_eq!((code.phases(), code.longest_drop()), (11, Micros::new(7 * 240)));
-    /// assert_eq!(HoppingCode::new(8, 2, Micros::new(240))?.longest_drop(), Micros::new(10 * 240));
+    /// assert_eq!(HoppingCode::new(8, 2, Micros::new(240))?.longest_drop(), Micros::new(5 * 240));
     /// # Ok::<(), eeruf_core::hopping::HoppingError>(())
     /// ```
     pub const fn shortest(sensors: usize, phases: u8, step: Micros) -> Result<Self, HoppingError> {
         match Self::of_phases(sensors, phases, step, sensors) {
             Ok(phases) => {
                 let sensors = sensors as u8;
-                Ok(Self { sensors, phases, first: (phases - sensors + 1) % phases, step })
+                Ok(Self { sensors, phases, first: (phases - sensors + 1) % phases, root: 0, step })
             }
             Err(error) => Err(error),
         }
     }
 
-    /// The code with exactly so many phases, and the multiplier `a` of sensor 0: what files and sources say.
+    /// The code with exactly so many phases, and `a`: what files and sources say. It is a linear congruence if their
+    /// number is a prime, Welch's sequence if it is one less than a prime and above the number of sensors.
     ///
     /// # Errors
-    /// [`HoppingError`] as for [`HoppingCode::new`]; [`HoppingError::NotPrime`] for phases that are no prime or fewer
-    /// than the sensors, [`HoppingError::Multiplier`] for one that is not below them.
+    /// [`HoppingError`] as for [`HoppingCode::new`]; [`HoppingError::NotPrime`] for any other number of phases,
+    /// [`HoppingError::Multiplier`] for an `a` that is not below it, or 0 with Welch's sequence.
     pub const fn of(sensors: usize, phases: u8, first_multiplier: u8, step: Micros) -> Result<Self, HoppingError> {
         let prime = match Self::of_phases(sensors, phases, step, sensors) {
             Ok(prime) => prime,
             Err(error) => return Err(error),
         };
-        if prime != phases {
+        let is_linear = prime == phases;
+        if !is_linear && (phases as usize <= sensors || !is_prime(phases + 1)) {
             return Err(HoppingError::NotPrime { phases, next: prime });
         }
-        if first_multiplier >= phases {
+        if first_multiplier >= phases || (first_multiplier == 0 && !is_linear) {
             return Err(HoppingError::Multiplier { first_multiplier, phases });
         }
-        Ok(Self { sensors: sensors as u8, phases, first: first_multiplier, step })
+        let root = if is_linear { 0 } else { primitive_root(phases + 1) };
+        Ok(Self { sensors: sensors as u8, phases, first: first_multiplier, root, step })
     }
 
     /// The number of phases: a prime, at least `phases` and at least `least`.
     const fn of_phases(sensors: usize, phases: u8, step: Micros, least: usize) -> Result<u8, HoppingError> {
+        if let Err(error) = Self::check(sensors, phases, step) {
+            return Err(error);
+        }
+        let mut q = if phases as usize > least { phases } else { least as u8 };
+        while !is_prime(q) {
+            q += 1;
+        }
+        Ok(q)
+    }
+
+    const fn check(sensors: usize, phases: u8, step: Micros) -> Result<(), HoppingError> {
         if sensors == 0 || sensors > MAX_SENSORS {
             return Err(HoppingError::Sensors { sensors, most: MAX_SENSORS });
         }
@@ -99,11 +128,7 @@ impl HoppingCode {
         if step.as_micros() == 0 || step.as_micros() > u16::MAX as u32 {
             return Err(HoppingError::Step { step });
         }
-        let mut q = if phases as usize > least { phases } else { least as u8 };
-        while !is_prime(q) {
-            q += 1;
-        }
-        Ok(q)
+        Ok(())
     }
 
     /// How many sensors it is for.
@@ -111,7 +136,7 @@ impl HoppingCode {
         self.sensors as usize
     }
 
-    /// `q`: the number of phases of a cycle.
+    /// The number of phases of a cycle.
     pub const fn phases(&self) -> u8 {
         self.phases
     }
@@ -119,6 +144,11 @@ impl HoppingCode {
     /// The shortest period at which no path reads the same with two ages: twice the width and a step.
     pub(super) const fn two_ages(&self) -> Micros {
         self.width().saturating_add(self.width()).saturating_add(self.step)
+    }
+
+    /// Returns true for Welch's sequence, false for a linear congruence.
+    pub const fn is_welch(&self) -> bool {
+        self.root != 0
     }
 
     /// `a`: the multiplier of sensor 0.
@@ -131,7 +161,7 @@ impl HoppingCode {
         self.step
     }
 
-    /// The longest wait, `(q - 1) step`.
+    /// The longest wait: a step less than there are phases.
     pub const fn width(&self) -> Micros {
         Micros::new((self.phases as u32 - 1) * self.step.as_micros())
     }
@@ -139,11 +169,19 @@ impl HoppingCode {
     /// By how much less than a period two firings of a sensor are apart at most.
     pub const fn longest_drop(&self) -> Micros {
         let (mut most, mut sensor) = (0, 0);
-        while sensor < self.sensors as usize {
+        while sensor < self.sensors as usize && !self.is_welch() {
             let multiplier = self.multiplier(sensor);
             let drop = if multiplier == 0 { 0 } else { self.phases as u32 - multiplier };
             most = if drop > most { drop } else { most };
             sensor += 1;
+        }
+        // All sensors go through the same waits.
+        let (mut place, mut left) = (0, self.phases);
+        while left > 0 && self.is_welch() {
+            let next = self.next_place(0, place);
+            let drop = place.saturating_sub(next) as u32;
+            most = if drop > most { drop } else { most };
+            (place, left) = (next, left - 1);
         }
         Micros::new(most * self.step.as_micros())
     }
@@ -156,6 +194,9 @@ impl HoppingCode {
     /// Of a sensor's wait, in steps: what it is in the phase after the one in which it is `place`. Without a division,
     /// which small processors do not have.
     pub(super) const fn next_place(&self, sensor: u8, place: u8) -> u8 {
+        if self.is_welch() {
+            return self.times_root(place);
+        }
         // All three are less than twice the number of phases, which is at most 67.
         let multiplier = sensor + self.first;
         let multiplier = if multiplier >= self.phases { multiplier - self.phases } else { multiplier };
@@ -163,10 +204,58 @@ impl HoppingCode {
         if next >= self.phases { next - self.phases } else { next }
     }
 
-    /// How long a sensor waits after its lag in a phase; phases are counted modulo `q`.
+    /// `g` times one more than a place, modulo `q`, less one. Roots are small: at most 6.
+    const fn times_root(&self, place: u8) -> u8 {
+        let (q, number) = (self.phases + 1, place + 1);
+        let (mut product, mut left) = (0, self.root);
+        while left > 0 {
+            product += number;
+            product = if product >= q { product - q } else { product };
+            left -= 1;
+        }
+        // It is never a multiple of a prime.
+        product.saturating_sub(1)
+    }
+
+    /// The wait in steps in a phase, phases counted modulo their number: of the sensor with this number for a linear
+    /// congruence, of the one with this place in the order of lags for Welch's sequence.
+    pub(super) const fn place(&self, sensor: usize, phase: u8) -> u8 {
+        if !self.is_welch() {
+            return remainder(self.multiplier(sensor) * phase as u32, self.phases) as u8;
+        }
+        let phases = self.phases as u32;
+        let mut left = remainder(phase as u32 + phases - remainder(sensor as u32, self.phases), self.phases);
+        let mut place = self.first.saturating_sub(1);
+        while left > 0 {
+            place = self.times_root(place);
+            left -= 1;
+        }
+        place
+    }
+
+    /// The time that a sensor waits after its lag in a phase; both are counted as in [`HoppingSchedule::t_fire`] if
+    /// lags are in the order of sensors.
+    ///
+    /// [`HoppingSchedule::t_fire`]: super::HoppingSchedule::t_fire
     pub const fn wait(&self, sensor: usize, phase: u8) -> Micros {
-        let place = remainder(self.multiplier(sensor) * phase as u32, self.phases);
-        Micros::new(place * self.step.as_micros())
+        Micros::new(self.place(sensor, phase) as u32 * self.step.as_micros())
+    }
+}
+
+/// The least primitive root of a prime.
+const fn primitive_root(q: u8) -> u8 {
+    let mut root = 1;
+    loop {
+        let (mut power, mut order) = (root as u32, 1);
+        while power != 1 && order < q {
+            power = remainder(power * root as u32, q);
+            order += 1;
+        }
+        // Every prime has one: that of 2 is 1.
+        if order >= q - 1 {
+            return root;
+        }
+        root += 1;
     }
 }
 
@@ -191,6 +280,7 @@ const fn is_prime(number: u8) -> bool {
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
     use super::*;
 
     #[test]
@@ -200,7 +290,7 @@ mod tests {
             for code in [HoppingCode::new(sensors, 2, step), HoppingCode::shortest(sensors, 2, step)] {
                 let code = code.unwrap();
                 for sensor in 0..sensors as u8 {
-                    let mut place = 0;
+                    let mut place = code.place(sensor.into(), 0);
                     for phase in 0..code.phases() {
                         let waits = Micros::new(u32::from(place) * step.as_micros());
                         assert_eq!(waits, code.wait(sensor.into(), phase), "{code:?}, sensor {sensor}, phase {phase}");
@@ -209,5 +299,22 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn least_primitive_roots_are_those_of_the_tables() {
+        let known = [(3, 2), (5, 2), (7, 3), (11, 2), (13, 2), (17, 3), (19, 2), (23, 5), (31, 3), (41, 6), (67, 2)];
+        for (q, root) in known {
+            assert_eq!(primitive_root(q), root, "{q}");
+        }
+    }
+
+    #[test]
+    fn welch_code_of_eight_sensors_is_that_of_the_textbook() {
+        // Powers of 2 modulo 11, less one; each sensor is a phase behind the one before.
+        let code = HoppingCode::new(8, 2, Micros::new(1)).unwrap();
+        let waits = |sensor| (0..10).map(|phase| code.wait(sensor, phase).as_micros()).collect::<std::vec::Vec<_>>();
+        assert_eq!(waits(0), [0, 1, 3, 7, 4, 9, 8, 6, 2, 5]);
+        assert_eq!(waits(1), [5, 0, 1, 3, 7, 4, 9, 8, 6, 2]);
     }
 }

@@ -279,7 +279,7 @@ mod tests {
         );
         let tab = schedule.to_arduino(&requirements, "PORT").to_string();
         assert!(tab.contains("PORT_lag_us[] = {0u, 9000u, 18000u};"), "{tab}");
-        assert!(tab.contains("{150, 400, 60, 5, 6, 2, 6, 2},\n    84, 5, 3, 5, 8, 2, 2,\n};"), "{tab}");
+        assert!(tab.contains("{150, 400, 60, 5, 6, 2, 6, 2},\n    84, 5, 3, 0, 8, 2, 2,\n};"), "{tab}");
         // What may not be less than T_delta, or more, follows it.
         let wide = PhaseRequirements { t_delta: Micros::new(500), ..requirements };
         assert!(schedule.to_c(&wide).to_string().contains("{500, 500, 60,"));

@@ -23,7 +23,7 @@ pub enum HoppingError {
         /// How many were asked for.
         phases: u8,
     },
-    /// A number of phases that is no prime, or below that of sensors.
+    /// A number of phases that is neither a prime, no less than the sensors, nor one less than a prime and above them.
     NotPrime {
         /// How many were asked for.
         phases: u8,
@@ -103,7 +103,9 @@ impl HoppingError {
         match self {
             Self::Sensors { .. } => "a hopping schedule has 1 to 64 sensors, no more than it has room for",
             Self::Phases { .. } => "a code has 2 to 67 phases",
-            Self::NotPrime { .. } => "the number of phases must be a prime, no less than the sensors",
+            Self::NotPrime { .. } => {
+                "the number of phases must be a prime, no less than the sensors, or one less and above them"
+            }
             Self::Multiplier { .. } => "the first multiplier must be less than the number of phases",
             Self::Step { .. } => "a step is 1 us to 65.535 ms",
             Self::TDelta { .. } => "t_delta must be less than the step",
@@ -124,7 +126,11 @@ impl fmt::Display for HoppingError {
             Self::Sensors { sensors, most } => write!(f, "{sensors} sensors; expected 1 to {most}"),
             Self::Phases { phases } => write!(f, "{phases} phases; expected 2 to 67"),
             Self::NotPrime { phases, next } => {
-                write!(f, "{phases} phases; expected a prime that is no less than the sensors, such as {next}")
+                write!(
+                    f,
+                    "{phases} phases; expected a prime that is no less than the sensors, such as {next}, or one less \
+                     than a prime and above the sensors"
+                )
             }
             Self::Multiplier { first_multiplier, phases } => {
                 write!(f, "a first multiplier of {first_multiplier}; expected less than {phases}, the number of phases")

@@ -3,7 +3,7 @@
 //! Two phases reject crosstalk, but a sensor that foreign sound reaches first in one of them never has a reading
 //! accepted. Here waits move through a code of many phases ([`HoppingCode`]), and an echo is believed that several of
 //! them support ([`EchoTracker`]). A sensor that hears nothing of its own for a while gets a *solo period*, in which it
-//! fires alone; one whose readings keep disagreeing draws a new lag.
+//! fires alone; where settings say so, one whose readings keep disagreeing draws a new lag.
 //!
 //! Rules and measurements: `docs/hopping.md`.
 
@@ -44,7 +44,7 @@ pub use weighed::Weighed;
 /// use eeruf_core::hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings};
 /// use eeruf_core::{Instant, Micros, ReadingKind, RingEvent};
 /// let code = HoppingCode::new(8, 2, Micros::new(240))?;
-/// let schedule = HoppingSchedule::<8>::spread(code, Micros::from_millis(60), 4)?;
+/// let schedule = HoppingSchedule::<8>::spread(code, Micros::from_millis(60))?;
 /// let listening = HoppingListening::new(Micros::from_millis(36));
 /// let start = Instant::from_micros(0);
 /// let mut ring = HoppingRing::<8>::hopping(&schedule, HoppingSettings::BALANCED, listening, 1, start)?;

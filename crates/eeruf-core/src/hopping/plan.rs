@@ -135,7 +135,10 @@ impl<const K: usize> HoppingPlan<K> {
             // A track may be off by as much as its readings, and a step is at most 65,535 us.
             tolerated: (schedule.code().step().abs_diff(settings.tracker.t_delta).as_micros().saturating_sub(1) / 2)
                 as u16,
-            turns: core::array::from_fn(|sensor| Turn::new(schedule.t_lag(sensor).unwrap_or(Micros::ZERO))),
+            turns: core::array::from_fn(|sensor| {
+                let lag = schedule.t_lag(sensor).unwrap_or(Micros::ZERO);
+                Turn::new(lag, code.place(schedule.turn(sensor), 0))
+            }),
         };
         // No sensor has fired.
         plan.plan(|_| now);
@@ -328,7 +331,7 @@ impl<const K: usize> Plan for HoppingPlan<K> {
         let code = self.code;
         self.phase = if self.phase + 1 < code.phases() { self.phase + 1 } else { 0 };
         for (sensor, turn) in (0..).zip(self.turns.iter_mut().take(code.sensors())) {
-            turn.place = if self.phase == 0 { 0 } else { code.next_place(sensor, turn.place) };
+            turn.place = code.next_place(sensor, turn.place);
         }
         self.clear_period();
         (phase, left_out)

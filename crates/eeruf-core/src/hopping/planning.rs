@@ -126,9 +126,26 @@ impl<const K: usize> HoppingPlan<K> {
         if shifted {
             self.since_shift = 0;
             self.changed = true;
+            if self.code.is_welch() {
+                self.order_places();
+            }
             // What is pending was fired with the lags of before.
             for turn in &mut self.turns {
                 turn.set(SETTLED, false);
+            }
+        }
+    }
+
+    /// Gives each sensor its place in the code by the order of lags, as
+    /// [`HoppingSchedule::turn`](super::HoppingSchedule) does.
+    fn order_places(&mut self) {
+        for sensor in 0..self.code.sensors() {
+            let Some(own) = self.turns.get(sensor).map(|turn| turn.lag) else { break };
+            let others = self.turns.iter().take(self.code.sensors()).enumerate();
+            let before = others.filter(|&(other, turn)| turn.lag < own || (turn.lag == own && other < sensor)).count();
+            let place = self.code.place(before, self.phase);
+            if let Some(turn) = self.turns.get_mut(sensor) {
+                turn.place = place;
             }
         }
     }

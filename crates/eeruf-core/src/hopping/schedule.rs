@@ -46,8 +46,7 @@ impl<const K: usize> HoppingSchedule<K> {
         Ok(Self { code, period, lags })
     }
 
-    /// With the lags of the conventional method, as far as the code leaves room: `neighbours` adjacent sensors fire
-    /// evenly spread over the period. No neighbours count as one.
+    /// With even lags, as far as the code leaves room: sensors fire in their order, spread over the whole period.
     ///
     /// # Errors
     /// As for [`HoppingSchedule::new`].
@@ -55,17 +54,17 @@ impl<const K: usize> HoppingSchedule<K> {
     /// ```
     /// use eeruf_core::{Micros, hopping::{HoppingCode, HoppingSchedule}};
     /// let code = HoppingCode::new(8, 2, Micros::new(240))?;
-    /// let ring = HoppingSchedule::<8>::spread(code, Micros::from_millis(60), 4)?;
-    /// assert_eq!(ring.t_fire(1, 1), Some(Micros::new(14_400 + 480)));
+    /// let ring = HoppingSchedule::<8>::spread(code, Micros::from_millis(60))?;
+    /// assert_eq!(ring.t_fire(1, 2), Some(Micros::new(14_460 + 5 * 240)));
     /// # Ok::<(), eeruf_core::hopping::HoppingError>(())
     /// ```
-    pub const fn spread(code: HoppingCode, period: Micros, neighbours: u8) -> Result<Self, HoppingError> {
+    pub const fn spread(code: HoppingCode, period: Micros) -> Result<Self, HoppingError> {
         let mut lags = [Micros::ZERO; K];
         let room = period.saturating_sub(code.width()).as_micros() as u64;
-        let n = if neighbours == 0 { 1 } else { neighbours as u64 };
+        let sensors = code.sensors() as u64;
         let mut sensor = 0;
-        while sensor < K {
-            lags[sensor] = Micros::new((sensor as u64 % n * room / n) as u32);
+        while sensor < K && sensor < code.sensors() {
+            lags[sensor] = Micros::new((sensor as u64 * room / sensors) as u32);
             sensor += 1;
         }
         Self::new(code, period, lags)
@@ -98,7 +97,7 @@ impl<const K: usize> HoppingSchedule<K> {
         let table = PhaseTable::new(self.period, cycle).with_sensors(self.code.sensors());
         let separation = if self.code.sensors() < 2 {
             None
-        } else if self.period.as_micros() < self.code.two_ages().as_micros() {
+        } else if self.period.as_micros() < self.code.two_ages().as_micros() || self.hears_the_same(requirements) {
             table.separation(&requirements.audible)
         } else {
             // All pairs and phases are alike.
@@ -107,6 +106,14 @@ impl<const K: usize> HoppingSchedule<K> {
         };
         let stale = if requirements.stale_echo { table.stale_separation(&requirements.audible) } else { None };
         PhaseVerification::new(requirements, separation, stale, &table)
+    }
+
+    /// Returns true if the sound of the sensor that fires before another, from the period before, is still audible:
+    /// with Welch's sequence it moves as the other does.
+    const fn hears_the_same(&self, requirements: &PhaseRequirements<'_>) -> bool {
+        let (audible, period) = (&requirements.audible, self.period.as_micros());
+        let dies = audible.reach.saturating_sub(audible.blanking).as_micros();
+        self.code.is_welch() && (dies > period || audible.window.as_micros() > period)
     }
 
     /// The code.
@@ -133,9 +140,26 @@ impl<const K: usize> HoppingSchedule<K> {
     /// a sensor that is not there.
     pub const fn t_fire(&self, phase: u8, sensor: usize) -> Option<Micros> {
         match self.t_lag(sensor) {
-            Some(lag) => Some(lag.saturating_add(self.code.wait(sensor, phase))),
+            Some(lag) => Some(lag.saturating_add(self.code.wait(self.turn(sensor), phase))),
             None => None,
         }
+    }
+
+    /// The place of a sensor in the code: in the order of lags for Welch's sequence, so that only the sensor that fires
+    /// before it, in the period before, moves as it does.
+    pub(super) const fn turn(&self, sensor: usize) -> usize {
+        if !self.code.is_welch() || sensor >= K {
+            return sensor;
+        }
+        let (mut turn, mut other) = (0, 0);
+        while other < self.code.sensors() && other < K {
+            let (lag, own) = (self.lags[other].as_micros(), self.lags[sensor].as_micros());
+            if lag < own || (lag == own && other < sensor) {
+                turn += 1;
+            }
+            other += 1;
+        }
+        turn
     }
 }
 

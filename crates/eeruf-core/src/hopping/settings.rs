@@ -37,7 +37,7 @@ impl HoppingSettings {
         solo_rate: 84,
         solo_after: 5,
         solo_spacing: 3,
-        shift_after: 5,
+        shift_after: 0,
         shift_spacing: 8,
         shift_interval: Micros::from_millis(8),
         neighbours: 4,

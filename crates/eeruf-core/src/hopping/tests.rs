@@ -15,7 +15,7 @@ const PERIOD: Micros = Micros::from_millis(60);
 const WINDOW: Micros = Micros::from_millis(36);
 
 fn schedule() -> HoppingSchedule<8> {
-    HoppingSchedule::spread(HoppingCode::new(8, 2, Micros::new(240)).unwrap(), PERIOD, 4).unwrap()
+    HoppingSchedule::spread(HoppingCode::new(8, 2, Micros::new(240)).unwrap(), PERIOD).unwrap()
 }
 
 fn ring(settings: HoppingSettings) -> HoppingRing<8> {
@@ -69,13 +69,17 @@ fn any_two_phases_move_any_path_by_at_least_a_step_for_every_number_of_sensors()
     for sensors in 1..=64 {
         for code in [HoppingCode::new(sensors, 2, Micros::new(1)), HoppingCode::shortest(sensors, 2, Micros::new(1))] {
             let code = code.unwrap();
-            let q = i32::from(code.phases());
-            let wait = |sensor: usize, phase: i32| code.wait(sensor, phase.rem_euclid(q) as u8).as_micros() as i32;
+            let phases = i32::from(code.phases());
+            let wait = |sensor: usize, phase: i32| code.wait(sensor, phase.rem_euclid(phases) as u8).as_micros() as i32;
             // Residues: the least distance between values whose residues differ is one step.
             for (x, y) in [(0, sensors - 1), (sensors / 2, 0), (sensors - 1, sensors / 3)] {
                 for j in -1..=2 {
+                    // With Welch's sequence one sensor does j periods later what the jth before it does.
+                    if code.is_welch() && (y as i32 - x as i32 - j) % phases == 0 {
+                        continue;
+                    }
                     let moved = |m: i32| wait(x, m - j) - wait(y, m);
-                    let mut places: Vec<_> = (0..q).map(moved).collect();
+                    let mut places: Vec<_> = (0..phases).map(moved).collect();
                     places.sort_unstable();
                     assert!(x == y || places.windows(2).all(|pair| pair[1] > pair[0]), "{sensors}: {x} {y} {j}");
                 }
@@ -100,15 +104,16 @@ fn no_code_lets_a_sensor_fire_less_early_again_than_the_shortest_one() {
         // What each sensor's waits change by from phase to phase sums to 0 over a cycle, and no two sensors' changes
         // are less than a step apart: one of K sensors fires K - 1 steps early.
         assert_eq!(most as usize, sensors - 1);
-        let ordinary = HoppingCode::new(sensors, 2, Micros::new(1)).unwrap();
-        assert_eq!(ordinary.longest_drop(), ordinary.width());
+        let welch = HoppingCode::new(sensors, 2, Micros::new(1)).unwrap();
+        let drop = |phase| welch.wait(0, phase).saturating_sub(welch.wait(0, (phase + 1) % welch.phases()));
+        assert_eq!(Some(welch.longest_drop()), (0..welch.phases()).map(drop).max(), "{sensors}");
     }
 }
 
 #[test]
 fn schedules_of_the_same_sensors_are_equal_whatever_stands_beyond_them() {
     let code = HoppingCode::new(2, 2, Micros::new(240)).unwrap();
-    let spread = HoppingSchedule::<8>::spread(code, PERIOD, 2).unwrap();
+    let spread = HoppingSchedule::<8>::spread(code, PERIOD).unwrap();
     let lags = core::array::from_fn(|sensor| spread.t_lag(sensor).unwrap_or(Micros::new(7)));
     assert_eq!(HoppingSchedule::new(code, PERIOD, lags).unwrap(), spread);
 }
@@ -116,9 +121,9 @@ fn schedules_of_the_same_sensors_are_equal_whatever_stands_beyond_them() {
 #[test]
 fn a_ring_that_sees_fires_each_sensor_once_a_period_as_the_schedule_says() {
     let fired = fire(&mut ring(HoppingSettings::BALANCED), 40, |_, _| Some(12_000));
-    let (q, period) = (11, PERIOD.as_micros());
+    let (phases, period) = (10, PERIOD.as_micros());
     for &(at, sensor, solo) in &fired {
-        let phase = (at / period % q) as u8;
+        let phase = (at / period % phases) as u8;
         assert_eq!((at % period, solo), (schedule().t_fire(phase, sensor.into()).unwrap().as_micros(), false));
     }
     assert_eq!(fired.len(), 40 * 8);
@@ -142,8 +147,12 @@ fn a_blind_sensor_gets_solo_periods_in_which_all_is_silent_before_and_after() {
 #[test]
 fn no_sensor_fires_again_while_it_listens_and_neighbours_keep_the_interval_asked_for_when_lags_change() {
     let interval = Micros::from_millis(8);
-    let settings = HoppingSettings { shift_interval: interval, shift_spacing: 2, ..HoppingSettings::BALANCED };
-    let mut hopping = ring(settings);
+    let settings =
+        HoppingSettings { shift_interval: interval, shift_after: 5, shift_spacing: 2, ..HoppingSettings::BALANCED };
+    let lags = core::array::from_fn(|sensor| Micros::new(14_400 * (sensor as u32 % 4)));
+    let apart = HoppingSchedule::<8>::new(*schedule().code(), PERIOD, lags).unwrap();
+    let listening = HoppingListening::new(WINDOW);
+    let mut hopping = HoppingRing::hopping(&apart, settings, listening, 7, Instant::from_micros(0)).unwrap();
     let before: Vec<_> = (0..8).map(|sensor| hopping.plan().t_lag(sensor)).collect();
     let fired = fire(&mut hopping, 500, |_, firing| Some(3000 + (firing as u32 * 7919) % 30_000));
     let after: Vec<_> = (0..8).map(|sensor| hopping.plan().t_lag(sensor)).collect();
@@ -169,8 +178,10 @@ fn hopping_keeps_what_every_plan_promises() {
     for seed in 0..40 {
         let reach = if seed % 2 == 0 { WINDOW } else { Micros::from_millis(90) };
         let listening = HoppingListening { blanking: Micros::new(2380), reach, ..HoppingListening::new(WINDOW) };
-        let hurried = HoppingSettings { solo_rate: 255, solo_spacing: 2, shift_spacing: 2, ..HoppingSettings::QUICK };
-        for settings in [HoppingSettings::BALANCED, hurried] {
+        let near = Micros::from_millis(1);
+        let shifting = HoppingSettings { shift_after: 5, shift_interval: near, ..HoppingSettings::BALANCED };
+        let hurried = HoppingSettings { solo_rate: 255, solo_spacing: 2, shift_spacing: 2, ..shifting };
+        for settings in [shifting, hurried] {
             // The clock wraps on the way.
             let now = Instant::from_micros(u32::MAX - 500_000);
             let mut plan = HoppingPlan::new(&schedule(), settings, listening, seed, now).unwrap();
@@ -215,7 +226,8 @@ fn each_error_names_what_is_wrong_and_what_is_expected() {
     assert_eq!(text(HoppingCode::new(8, 2, Micros::ZERO).unwrap_err()), "a step of 0 us; expected 1 us to 65.535 ms");
     assert_eq!(
         text(HoppingCode::of(8, 9, 1, step).unwrap_err()),
-        "9 phases; expected a prime that is no less than the sensors, such as 11"
+        "9 phases; expected a prime that is no less than the sensors, such as 11, or one less than a prime \
+         and above the sensors"
     );
     assert_eq!(
         text(HoppingCode::of(8, 11, 11, step).unwrap_err()),
@@ -223,15 +235,15 @@ fn each_error_names_what_is_wrong_and_what_is_expected() {
     );
     let code = HoppingCode::new(8, 2, step).unwrap();
     let late = HoppingSchedule::new(code, PERIOD, [Micros::from_millis(58); 8]).unwrap_err();
-    assert_eq!(text(late), "a lag of 58 ms for sensor 1; expected at most 57.599 ms");
-    let short = HoppingSchedule::<8>::spread(code, Micros::from_millis(38), 4).unwrap();
+    assert_eq!(text(late), "a lag of 58 ms for sensor 1; expected at most 57.839 ms");
+    let short = HoppingSchedule::<8>::spread(code, Micros::from_millis(37)).unwrap();
     let listening = HoppingListening::new(WINDOW);
     let new = |schedule, settings| HoppingRing::<8>::hopping(schedule, settings, listening, 1, Instant::from_micros(0));
     let error = new(&short, HoppingSettings::BALANCED).unwrap_err();
-    assert_eq!(text(error), "a period of 38 ms; expected 38.4 ms to 268435.456 ms");
-    let few = HoppingSchedule::<8>::spread(HoppingCode::new(2, 2, step).unwrap(), PERIOD, 2).unwrap();
+    assert_eq!(text(error), "a period of 37 ms; expected 37.2 ms to 268435.456 ms");
+    let few = HoppingSchedule::<8>::spread(HoppingCode::new(2, 2, step).unwrap(), PERIOD).unwrap();
     let error = new(&few, HoppingSettings::BALANCED).unwrap_err();
-    assert_eq!(text(error), "5 votes to confirm an echo; expected at most 3, the phases of the code");
+    assert_eq!(text(error), "5 votes to confirm an echo; expected at most 4, the phases of the code");
     let tracker = crate::judge::TrackerSettings { t_delta: step, ..crate::judge::TrackerSettings::BALANCED };
     let error = new(&schedule(), HoppingSettings { tracker, ..HoppingSettings::BALANCED }).unwrap_err();
     assert_eq!(text(error), "a t_delta of 240 us; expected less than 240 us, by which the code moves crosstalk");
@@ -240,8 +252,8 @@ fn each_error_names_what_is_wrong_and_what_is_expected() {
 #[test]
 fn a_code_has_the_phases_asked_for_up_to_67_and_a_step_of_16_bits() {
     let code = |phases, step| HoppingCode::new(2, phases, Micros::new(step)).map(|code| (code.phases(), code.width()));
-    assert_eq!(code(13, 240), Ok((13, Micros::new(12 * 240))));
-    assert_eq!(code(67, 65_535), Ok((67, Micros::new(66 * 65_535))));
+    assert_eq!(code(13, 240), Ok((16, Micros::new(15 * 240))));
+    assert_eq!(code(67, 65_535), Ok((66, Micros::new(65 * 65_535))));
     assert_eq!(code(68, 1), Err(HoppingError::Phases { phases: 68 }));
     for step in [65_536, 70_000].map(Micros::new) {
         assert_eq!(HoppingCode::new(2, 2, step), Err(HoppingError::Step { step }));

@@ -32,8 +32,8 @@ pub(super) const SETTLED: u8 = 4;
 pub(super) const DISABLED: u8 = 8;
 
 impl Turn {
-    pub(super) const fn new(lag: Micros) -> Self {
-        Self { lag, place: 0, late: 0, phase: 0, unserved: 0, misfits: 0, flags: 0, order: u8::MAX }
+    pub(super) const fn new(lag: Micros, place: u8) -> Self {
+        Self { lag, place, late: 0, phase: 0, unserved: 0, misfits: 0, flags: 0, order: u8::MAX }
     }
 
     pub(super) const fn is(&self, flag: u8) -> bool {

@@ -23,9 +23,9 @@ pub use verify::{PhaseCriterion, PhaseRequirements, PhaseVerification, PhaseViol
 ///
 /// ```
 /// use eeruf_core::{Micros, hopping::{HoppingCode, HoppingSchedule}, phases::{Audible, PhaseTable}};
-/// const TIMES: [[Micros; 4]; 5] = {
+/// const TIMES: [[Micros; 4]; 6] = {
 ///     let Ok(code) = HoppingCode::new(4, 2, Micros::new(301)) else { panic!() };
-///     let Ok(ring) = HoppingSchedule::<4>::spread(code, Micros::from_millis(60), 4) else { panic!() };
+///     let Ok(ring) = HoppingSchedule::<4>::spread(code, Micros::from_millis(60)) else { panic!() };
 ///     ring.table()
 /// };
 /// // Checked when it is compiled.

@@ -45,6 +45,9 @@ pub(super) struct SensorTracks<const H: usize> {
     surplus: i8,
 }
 
+/// While odometry moves, at least so many phases must support an echo before it is reported as tentative.
+const MOVING_VOTES: u8 = 3;
+
 /// As much more as is expected: a surplus is between none at all and twice as much.
 const WHOLE: i32 = 64;
 
@@ -100,6 +103,9 @@ impl<const H: usize> SensorTracks<H> {
         let is_near = confirmed.abs_diff(t_echo) <= near;
         let previous = self.tracks.get(nearest).map_or(confirmed, Track::t_echo);
         let reports_tentative = settings.tentative_votes != 0;
+        // Of a robot that moves, any two readings are those of some wall.
+        let moving = change_us != 0;
+        let tentative_votes = settings.tentative_votes.max(if moving { MOVING_VOTES } else { 0 });
         let mut tentative = false;
         if steady {
             let before = core::mem::replace(&mut confirmed, NOTHING);
@@ -113,7 +119,7 @@ impl<const H: usize> SensorTracks<H> {
                     Self::learn(&mut self.surplus, track.to(t_echo), change_us);
                     track.support(t_echo, phase, solo, settings);
                     let earlier = track.t_echo() < before.min(SILENCE);
-                    let enough = solo || track.close_votes() >= settings.tentative_votes;
+                    let enough = solo || track.close_votes() >= tentative_votes;
                     tentative = earlier && reports_tentative && enough;
                 } else if is_near && at == before {
                     track.grow_older();

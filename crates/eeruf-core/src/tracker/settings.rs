@@ -24,7 +24,7 @@ pub struct TrackerSettings {
     /// What it takes if the sensor fired alone. 1 to 15.
     pub solo_contradiction: u8,
     /// How many phases must support an echo that was never contradicted before it is reported as tentative, or 0 to
-    /// report confirmed echoes alone. 0 or 2 to 15; one is enough if the sensor fired alone.
+    /// report confirmed echoes alone. 0 or 2 to 15; at least three while odometry moves, one if the sensor fired alone.
     pub tentative_votes: u8,
     /// How closely they must agree to count for that. At most `t_delta`.
     pub tentative_within: Micros,

@@ -18,7 +18,7 @@ const fn at(us: u32) -> Instant {
 
 /// A ring that begins at 0 and has room for more sensors than it has.
 fn ring<const K: usize>(sensors: usize) -> HoppingRing<K> {
-    let code = HoppingCode::new(sensors, 5, Micros::new(240)).unwrap();
+    let code = HoppingCode::shortest(sensors, 5, Micros::new(240)).unwrap();
     let lags = core::array::from_fn(|sensor| Micros::new(if sensor < sensors { sensor as u32 * APART } else { 0 }));
     let schedule = HoppingSchedule::new(code, Micros::new(PERIOD), lags).unwrap();
     let listening = HoppingListening::new(Micros::new(WINDOW));

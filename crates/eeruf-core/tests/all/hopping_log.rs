@@ -17,7 +17,7 @@ const WINDOW: u32 = 36_000;
 
 fn ring(settings: HoppingSettings, seed: u32) -> HoppingRing<SENSORS> {
     let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
-    let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000), 4).unwrap();
+    let schedule = HoppingSchedule::<SENSORS>::spread(code, Micros::new(60_000)).unwrap();
     let listening = HoppingListening::new(Micros::new(WINDOW)).with_blanking(Micros::new(BLANKING));
     HoppingRing::hopping(&schedule, settings, listening, seed, Instant::from_micros(0)).unwrap()
 }
@@ -146,12 +146,12 @@ fn a_firing_that_was_late_by_what_the_caller_says_makes_its_reading_unsteady() {
             let now = ring.next_deadline();
             while let Some(event) = ring.poll(now) {
                 match event {
-                    RingEvent::Fire { sensor, .. } if periods == 2 && sensor == 5 => {
+                    RingEvent::Fire { sensor, .. } if periods == 2 && sensor == 1 => {
                         ring.fired(sensor, now + Micros::new(late)).unwrap();
                     }
-                    RingEvent::Reading(reading) if periods == 2 && reading.sensor == 5 => {
+                    RingEvent::Reading(reading) if periods == 2 && reading.sensor == 1 => {
                         assert_eq!(
-                            ring.plan().weighed(5, 0).map(|weighed| weighed.steady),
+                            ring.plan().weighed(1, 0).map(|weighed| weighed.steady),
                             Some(steady),
                             "{late} us late"
                         );

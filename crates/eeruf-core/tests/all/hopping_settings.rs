@@ -42,10 +42,10 @@ fn the_named_settings_are_these() {
         assert_eq!((of.shift_interval, of.neighbours), (Micros::from_millis(8), 4));
         (of.tracker, solo, (of.shift_after, of.shift_spacing))
     };
-    assert_eq!(numbers(HoppingSettings::BALANCED), (TrackerSettings::BALANCED, (84, 5, 3), (5, 8)));
-    assert_eq!(numbers(HoppingSettings::QUICK), (TrackerSettings::QUICK, (100, 4, 2), (5, 8)));
+    assert_eq!(numbers(HoppingSettings::BALANCED), (TrackerSettings::BALANCED, (84, 5, 3), (0, 8)));
+    assert_eq!(numbers(HoppingSettings::QUICK), (TrackerSettings::QUICK, (100, 4, 2), (0, 8)));
     assert_eq!(numbers(HoppingSettings::DRIVING), (TrackerSettings::BALANCED, (0, 5, 3), (0, 8)));
-    assert_eq!(numbers(HoppingSettings::MAPS), (TrackerSettings::MAPS, (28, 8, 6), (5, 24)));
+    assert_eq!(numbers(HoppingSettings::MAPS), (TrackerSettings::MAPS, (28, 8, 6), (0, 24)));
     assert_eq!(HoppingSettings::default(), HoppingSettings::BALANCED);
 }
 

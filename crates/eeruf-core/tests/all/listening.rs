@@ -245,7 +245,7 @@ fn refused<const K: usize>() -> [Option<RingError>; 2] {
     let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW));
     let ring = Ring::<_, _, K>::with_plan(ScheduledFiring::new(&schedule, now), config, now);
     let code = HoppingCode::new(2, 5, Micros::new(240)).unwrap();
-    let hops = HoppingSchedule::<K>::spread(code, Micros::from_millis(60), 2).unwrap();
+    let hops = HoppingSchedule::<K>::spread(code, Micros::from_millis(60)).unwrap();
     let listening = HoppingListening::new(Micros::new(WINDOW));
     let hopping = HoppingRing::<K>::hopping(&hops, HoppingSettings::BALANCED, listening, 1, now);
     [

@@ -18,6 +18,7 @@ mod formats;
 mod hopping;
 mod hopping_late;
 mod hopping_log;
+mod hopping_moving;
 mod hopping_settings;
 mod immediate;
 mod lateness;

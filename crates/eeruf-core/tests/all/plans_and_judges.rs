@@ -56,7 +56,7 @@ impl Judge for EveryThird {
 
 fn hopping() -> HoppingPlan<SENSORS> {
     let code = HoppingCode::new(SENSORS, 2, Micros::new(240)).unwrap();
-    let schedule = HoppingSchedule::spread(code, Micros::from_millis(60), 4).unwrap();
+    let schedule = HoppingSchedule::spread(code, Micros::from_millis(60)).unwrap();
     let listening = HoppingListening::new(Micros::from_millis(30));
     HoppingPlan::new(&schedule, HoppingSettings::BALANCED, listening, 1, BEGIN).unwrap()
 }

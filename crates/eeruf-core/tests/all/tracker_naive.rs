@@ -144,7 +144,10 @@ impl Naive {
                 self.surplus = (self.surplus + more).clamp(-64, 64);
                 belief.support(place, phase, solo, &settings);
                 let is_earlier = belief.place.is_some() && before.is_none_or(|before| is_later(before, belief.place));
-                let agreed = !belief.was_contradicted && belief.close >= i64::from(settings.tentative_votes);
+                // Any two readings are those of some wall while the robot moves.
+                let least = if firing.expected_change_us == 0 { 0 } else { 3 };
+                let votes = i64::from(settings.tentative_votes).max(least);
+                let agreed = !belief.was_contradicted && belief.close >= votes;
                 tentative = is_earlier && settings.tentative_votes != 0 && (solo || agreed);
             } else if near(before) && before == Some(belief.place) {
                 belief.age = (belief.age + 1).min(255);

@@ -12,6 +12,10 @@ use crate::world::Robot;
 /// lateness.
 const STEP: Micros = Micros::new(240);
 
+/// How much of a period each sensor gets at least, unless the robot drives: with less, more crosstalk comes first and
+/// what is believed is right for less of the time (docs/hopping.md).
+const TURN_US: u32 = 10_000;
+
 /// A hopping ring, no larger than needed.
 pub(super) fn hopping<'s>(start: &RingStart<'s>) -> Started<'s> {
     match start.robot.sensors.len() {
@@ -25,7 +29,9 @@ fn ring<'s, const K: usize>(start: &RingStart<'s>) -> Started<'s> {
     let Robot { ref sensors, period, window, blanking, neighbours, .. } = *start.robot;
     // Each phase gives one vote.
     let code = HoppingCode::new(sensors.len(), start.hopping.tracker.votes, STEP)?;
-    let schedule = HoppingSchedule::<K>::spread(code, period, neighbours)?;
+    let stands = start.hopping.solo_rate > 0;
+    let turns = Micros::new(if stands { TURN_US * sensors.len() as u32 } else { 0 });
+    let schedule = HoppingSchedule::<K>::spread(code, period.max(turns))?;
     let settings = start.hopping.with_neighbours(neighbours);
     let listening = HoppingListening::new(window).with_blanking(blanking);
     let seed = start.random.of(0).bits() as u32;

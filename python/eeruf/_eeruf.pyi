@@ -52,7 +52,24 @@ _Method = Literal[
     "multi_echo",
 ]
 _Cause = Literal["nothing", "own", "stale", "crosstalk", "external"]
-_Module = str | dict[str, float | str]
+_Module = (
+    Literal[
+        "polaroid-6500",
+        "hc-sr04",
+        "hc-sr04-clone",
+        "us-100",
+        "jsn-sr04t",
+        "a02yyuw",
+        "ping",
+        "mb1010",
+        "mb1242",
+        "srf08",
+        # As older scenes have them.
+        "polaroid_6500",
+        "hc_sr04",
+    ]
+    | dict[str, float | str]
+)
 _Height = Literal["flat", "room"] | dict[str, float | _Surface]
 _Beam = Literal["cut_at_90", "continuous"]
 _Gain = Literal["constant", "square_root", "linear", "stepped", "polaroid_6500"]
@@ -895,7 +912,7 @@ class Robot:
         sensors: _Int | Iterable[_Pose],
         spacing_rad: float | None = None,
         radius_m: float | None = None,
-        module: _Module | Iterable[_Module] = "polaroid-6500",
+        module: _Module | Sequence[_Module] = "polaroid-6500",
         *,
         gain: _Gain = "constant",
         period_us: _Int = 60000,
@@ -919,7 +936,7 @@ class Robot:
         coupling_db: float | None = None,
         height_m: float | Iterable[float] = 0.3,
         together: Iterable[Iterable[_Int]] = (),
-        transducer: _Module | Iterable[_Module] | None = None,
+        transducer: _Module | Sequence[_Module] | None = None,
     ) -> Robot: ...
     def replace(self, **changes: object) -> Robot: ...
     @property

@@ -36,7 +36,9 @@ fn expected(message: &str) -> BTreeSet<String> {
 
 #[test]
 fn figures_of_modules_are_those_in_the_document() {
+    let stubs = std::fs::read_to_string("python/eeruf/_eeruf.pyi").unwrap();
     for preset in &PRESETS {
+        assert!(stubs.contains(&format!("        {:?},\n", preset.module.name)), "_eeruf.pyi: {}", preset.title);
         let heading = format!("\n### {}: `{}`\n", preset.title, preset.module.name);
         let rows = rows("docs/modules.md", &heading);
         let rows: Vec<_> = rows.iter().take(KEYS.len()).collect();

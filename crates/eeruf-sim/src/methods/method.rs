@@ -164,8 +164,8 @@ methods! {
         plan: adaptive::plan,
     }
     /// Time hopping: the waits move through a cycle of many phases, and an echo is believed that readings from several
-    /// phases support ([`HoppingRing`](eeruf_core::hopping::HoppingRing)). With solo periods, for robots that stand, a period is
-    /// at least 10 ms for each sensor.
+    /// phases support ([`HoppingRing`](eeruf_core::hopping::HoppingRing)). With solo periods, for robots that stand, a
+    /// period is at least 10 ms for each sensor.
     EerufHopping = "eeruf_hopping" {
         eeruf: true,
         schedule: schedules::conventional,

@@ -153,5 +153,5 @@ def test_the_timing_of_many_phases_marks_every_firing_of_each() -> None:
     fires = next(lines for lines in ax.collections if isinstance(lines, LineCollection))
     drawn = sorted(float(segment[0][0]) for segment in fires.get_segments())
     assert drawn == pytest.approx(sorted((schedule.t_fire_us / 1e3).ravel().tolist()))
-    assert len(ax.patches) == 2 * 8 * 11
+    assert len(ax.patches) == 2 * 8 * schedule.phases
     assert ax.get_xlim() == (0, 60)

@@ -49,7 +49,8 @@ pub const STEP: Micros = Micros::new(652);
 /// # Errors
 /// None with these numbers.
 pub fn hopping_ring(now: Instant) -> Result<HoppingRing<SENSORS>, HoppingError> {
-    let settings = HoppingSettings::BALANCED;
+    // Lags that are drawn anew, so that boards and host are compared in that too.
+    let settings = HoppingSettings::BALANCED.with_shift_after(5);
     let code = HoppingCode::new(SENSORS, settings.tracker.votes, STEP)?;
     let schedule = HoppingSchedule::spread(code, Micros::from_millis(100))?;
     HoppingRing::hopping(&schedule, settings, HoppingListening::new(Micros::from_millis(60)), 1, now)

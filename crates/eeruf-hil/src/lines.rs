@@ -14,8 +14,8 @@ pub(crate) const FAULTY: u8 = 2;
 const RISE_US: u64 = 450;
 /// The module's own time-out, after which its line falls without an echo.
 const TIME_OUT_US: u64 = HC_SR04.no_echo.hold_us() as u64;
-/// When a line gets stuck: between the nineteenth and the twentieth firing of a ring of 100 ms.
-const STUCK_FROM_S: f64 = 1.915;
+/// The firing from which on a line is stuck, whenever the board gets there.
+const STUCK_FROM: u32 = 20;
 /// No interrupt comes later than this: some instructions at 64 ns each, and other interrupts before it.
 const LATEST_US: u64 = 200;
 
@@ -34,8 +34,8 @@ pub(crate) enum LineFault {
 }
 
 impl LineFault {
-    /// The faults of [`FAULTY`] that it is made of.
-    fn faults(self) -> Vec<Fault> {
+    /// The faults of [`FAULTY`] that it is made of, from this time on.
+    fn faults(self, from_s: f64) -> Vec<Fault> {
         let kinds = match self {
             Self::None => vec![],
             Self::Missing => vec![FaultKind::Missing],
@@ -46,7 +46,6 @@ impl LineFault {
             ],
             Self::InterruptsLost => vec![FaultKind::LostRises { every: 5 }, FaultKind::LostFalls { every: 7 }],
         };
-        let from_s = if self == Self::StuckHigh { STUCK_FROM_S } else { 0.0 };
         let fault = |kind| Fault::new(kind).of_sensors(&[FAULTY]).between(from_s, f64::INFINITY);
         kinds.into_iter().map(fault).collect()
     }
@@ -87,6 +86,7 @@ struct Line {
 /// All lines, in the board's time.
 pub(crate) struct Lines<'w> {
     world: LockStep<'w>,
+    fault: LineFault,
     faults: Vec<Fault>,
     lines: [Line; SENSORS],
     /// A reading of the board's clock, and which microsecond since the start that was.
@@ -98,7 +98,8 @@ pub(crate) struct Lines<'w> {
 impl<'w> Lines<'w> {
     pub(crate) fn new(world: &'w World, fault: LineFault, start: Instant) -> Result<Self, String> {
         let world = LockStep::new(world).map_err(|error| error.to_string())?;
-        Ok(Self { world, faults: fault.faults(), lines: Default::default(), clock: (start, 0), latest: Micros::ZERO })
+        let faults = if fault == LineFault::StuckHigh { vec![] } else { fault.faults(0.0) };
+        Ok(Self { world, fault, faults, lines: Default::default(), clock: (start, 0), latest: Micros::ZERO })
     }
 
     /// Microseconds since the start, without the clock's wrap: `at` is less than half an hour from what was asked
@@ -122,6 +123,9 @@ impl<'w> Lines<'w> {
         }
         let line = self.lines.get_mut(x).ok_or_else(|| format!("there is no sensor {}", sensor + 1))?;
         *line = Line { triggered_us: Some(at), firings: line.firings + 1, noticed: 0 };
+        if self.fault == LineFault::StuckHigh && sensor == FAULTY && line.firings == STUCK_FROM {
+            self.faults = self.fault.faults(at as f64 * 1e-6);
+        }
         Ok(())
     }
 

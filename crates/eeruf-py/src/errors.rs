@@ -95,7 +95,7 @@ Example:
     >>> import eeruf
     >>> eeruf.HoppingSchedule(8, 2_000, 240)
     Traceback (most recent call last):
-    eeruf.HoppingError: a period of 2 ms; expected 2.401 ms to 268435.456 ms
+    eeruf.HoppingError: a period of 2 ms; expected 2.161 ms to 268435.456 ms
 " from eeruf_core::hopping::HoppingError, eeruf_core::judge::TrackerError;
     SearchError "Needs that make no sense or are too large to search.
 

@@ -147,10 +147,10 @@ impl HoppingRing {
     ///     >>> import eeruf
     ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
     ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-    ///     >>> [ring.poll(0).sensor for _ in range(2)]
-    ///     [0, 4]
+    ///     >>> ring.poll(0).sensor
+    ///     0
     ///     >>> ring.wait_us(0)
-    ///     14400
+    ///     8430
     #[pyo3(signature = (now_us))]
     fn wait_us(&self, now_us: &Bound<'_, PyAny>) -> PyResult<u32> {
         Ok(until(self.ring.next_deadline(), instant("now_us", now_us)?))
@@ -235,11 +235,11 @@ impl HoppingRing {
     ///     >>> import eeruf
     ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
     ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-    ///     >>> [ring.poll(0).sensor for _ in range(2)]
-    ///     [0, 4]
-    ///     >>> ring.echo(0, 9_000)
-    ///     >>> ring.poll(9_000).t_echo_us
-    ///     9000
+    ///     >>> ring.poll(0).sensor
+    ///     0
+    ///     >>> ring.echo(0, 6_000)
+    ///     >>> ring.poll(6_000).t_echo_us
+    ///     6000
     #[pyo3(signature = (sensor, at_us))]
     fn echo(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
@@ -260,12 +260,12 @@ impl HoppingRing {
     ///     >>> import eeruf
     ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
     ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-    ///     >>> [ring.poll(0).sensor for _ in range(2)]
-    ///     [0, 4]
+    ///     >>> ring.poll(0).sensor
+    ///     0
     ///     >>> ring.fired(0, 100)
-    ///     >>> ring.echo(0, 9_000)
-    ///     >>> ring.poll(9_000).t_echo_us
-    ///     8900
+    ///     >>> ring.echo(0, 6_000)
+    ///     >>> ring.poll(6_000).t_echo_us
+    ///     5900
     #[pyo3(signature = (sensor, at_us))]
     fn fired(&mut self, sensor: &Bound<'_, PyAny>, at_us: &Bound<'_, PyAny>) -> PyResult<()> {
         let (sensor, at) = (self.sensor(sensor)?, instant("at_us", at_us)?);
@@ -284,8 +284,8 @@ impl HoppingRing {
     ///     >>> import eeruf
     ///     >>> schedule = eeruf.HoppingSchedule(sensors=8, period_us=60_000, step_us=240)
     ///     >>> ring = eeruf.HoppingRing(schedule, window_us=36_000)
-    ///     >>> [ring.poll(0).sensor for _ in range(2)]
-    ///     [0, 4]
+    ///     >>> ring.poll(0).sensor
+    ///     0
     ///     >>> ring.stuck(0)
     ///     >>> while not isinstance(event := ring.poll(ring.next_deadline_us), eeruf.Reading):
     ///     ...     pass

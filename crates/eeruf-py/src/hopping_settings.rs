@@ -16,7 +16,7 @@ const NAMED: [(&str, Core); 4] =
 ///
 /// Args:
 ///     name: what to start from: ``"balanced"`` for most robots, ``"quick"`` for those that must stop early (a little
-///         more is wrong), ``"driving"`` for those that drive (no solo periods, and lags stay), ``"maps"`` for
+///         more is wrong), ``"driving"`` for those that drive (no solo periods), ``"maps"`` for
 ///         confirmed echoes alone.
 ///     changes: whatever is to be different, by the names of the attributes; whole numbers.
 ///
@@ -26,11 +26,11 @@ const NAMED: [(&str, Core); 4] =
 ///
 /// Example:
 ///     >>> import eeruf
-///     >>> settings = eeruf.HoppingSettings("quick", shift_after=0)  # lags stay
+///     >>> settings = eeruf.HoppingSettings("quick", shift_after=5)  # lags are drawn anew
 ///     >>> settings.votes, settings.shift_after
-///     (4, 0)
+///     (4, 5)
 ///     >>> settings
-///     HoppingSettings('quick', shift_after=0)
+///     HoppingSettings('quick', shift_after=5)
 #[pyclass(frozen, eq, hash, module = "eeruf")]
 #[derive(Clone, PartialEq, Eq)]
 pub(crate) struct HoppingSettings(pub(crate) Core);

@@ -39,16 +39,16 @@ pub const T_DELTA: Micros = Micros::new(999);
 /// The configuration of all measured rings.
 pub const CONFIG: RingConfig = RingConfig::new().with_window(Micros::from_millis(36));
 
-/// The hopping schedule of twelve sensors: 13 phases, 100 ms.
+/// The hopping schedule of twelve sensors: 16 phases, 100 ms, even lags.
 pub const HOPPING_12: HoppingSchedule<12> = hopping_schedule! {
     period_us: 100_000,
     step_us: 240,
-    phases: 13,
+    phases: 16,
     first_multiplier: 1,
-    t_lag_us: [0, 24_000, 48_000, 72_000, 0, 24_000, 48_000, 72_000, 0, 24_000, 48_000, 72_000],
+    t_lag_us: [0, 8_000, 16_000, 24_000, 32_000, 40_000, 48_000, 56_000, 64_000, 72_000, 80_000, 88_000],
     meets: PhaseRequirements {
         criterion: PhaseCriterion::Margin(Micros::new(90)),
-        min_interval: Micros::from_millis(20),
+        min_interval: Micros::from_millis(4),
         layout: Layout::Line(4),
         ..PhaseRequirements::new(Micros::new(150), Micros::from_millis(36))
     },
@@ -60,7 +60,9 @@ pub const HOPPING_12: HoppingSchedule<12> = hopping_schedule! {
 /// As [`HoppingRing::hopping`].
 #[inline(always)]
 pub fn hopping<const K: usize>(schedule: &HoppingSchedule<K>, now: Instant) -> Result<HoppingRing<K>, HoppingError> {
-    HoppingRing::hopping(schedule, HoppingSettings::BALANCED, HoppingListening::new(Micros::from_millis(36)), 1, now)
+    // Lags that are drawn anew, so that it is measured what that costs.
+    let settings = HoppingSettings::BALANCED.with_shift_after(5);
+    HoppingRing::hopping(schedule, settings, HoppingListening::new(Micros::from_millis(36)), 1, now)
 }
 
 /// The fewest and the most instructions that one kind of call took.

@@ -17,15 +17,15 @@ const HOPPING: [(&str, u32); 7] = [
     ("reading", 1192),
     ("reading_moving", 1192),
     ("period_ended", 3074),
-    ("new_lags", 19_397),
+    ("new_lags", 24_705),
 ];
-const HOPPING_FLASH: u64 = 7824;
+const HOPPING_FLASH: u64 = 8548;
 const HOPPING_RAM: u64 = 904;
 /// What a poll of it takes of the stack there.
-const HOPPING_STACK: u64 = 316;
+const HOPPING_STACK: u64 = 332;
 /// Compilers differ: only more than the budget and this part of it fails.
 const LEEWAY: f64 = 0.05;
-const FLASH: u64 = 4960;
+const FLASH: u64 = 4972;
 const RAM: u64 = 12 * 32 + 88;
 const STACK: u64 = 616;
 

@@ -259,12 +259,13 @@ const fn primitive_root(q: u8) -> u8 {
     }
 }
 
-/// There is at least one phase, which the compiler does not know: no path to a panic.
-const fn remainder(number: u32, phases: u8) -> u32 {
-    match number.checked_rem(phases as u32) {
-        Some(remainder) => remainder,
-        None => 0,
+/// By subtraction: numbers are small, and small processors have no division. There is at least one phase, which the
+/// compiler does not know.
+const fn remainder(mut number: u32, phases: u8) -> u32 {
+    while phases > 0 && number >= phases as u32 {
+        number -= phases as u32;
     }
+    number
 }
 
 const fn is_prime(number: u8) -> bool {

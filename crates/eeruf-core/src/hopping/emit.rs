@@ -14,24 +14,24 @@ impl<const K: usize> HoppingSchedule<K> {
     /// A `const RING: HoppingSchedule` in Rust, with the `requirements` for the compiler to check (see
     /// [`hopping_schedule!`](crate::hopping_schedule!)), and the constants `SETTINGS` and `LISTENING` for a
     /// [`HoppingRing`](super::HoppingRing): the balanced settings with this `t_delta` and these neighbours.
-    pub const fn to_rust<'r>(&'r self, requirements: &'r PhaseRequirements<'r>) -> HoppingRust<'r, K> {
+    pub const fn to_rust<'r>(&'r self, requirements: &'r PhaseRequirements<'r>) -> impl fmt::Display {
         HoppingRust { schedule: self, requirements }
     }
 
     /// A C99 header that includes nothing but `<stdint.h>`, with the firing times of each phase; with `eeruf.h` before
     /// it, also the constant `eeruf_hopping_config` for `eeruf_hopping_init`, with the settings of
     /// [`to_rust`](Self::to_rust).
-    pub const fn to_c<'r>(&'r self, requirements: &'r PhaseRequirements<'r>) -> HoppingHeader<'r, K> {
+    pub const fn to_c<'r>(&'r self, requirements: &'r PhaseRequirements<'r>) -> impl fmt::Display {
         HoppingHeader { schedule: self, requirements }
     }
 
     /// A file of an Arduino sketch with the constant `name` for `eeruf_hopping_init`, as in [`to_c`](Self::to_c).
-    pub const fn to_arduino<'r>(&'r self, requirements: &'r PhaseRequirements<'r>, name: &'r str) -> HoppingTab<'r, K> {
+    pub const fn to_arduino<'r>(&'r self, requirements: &'r PhaseRequirements<'r>, name: &'r str) -> impl fmt::Display {
         HoppingTab { schedule: self, requirements, name }
     }
 
     /// A schedule file, as the program reads it: the code and the lags.
-    pub const fn to_toml(&self) -> HoppingToml<'_, K> {
+    pub const fn to_toml(&self) -> impl fmt::Display {
         HoppingToml { schedule: self }
     }
 
@@ -41,8 +41,7 @@ impl<const K: usize> HoppingSchedule<K> {
 }
 
 /// A hopping schedule in Rust: see [`HoppingSchedule::to_rust`].
-#[derive(Clone, Copy, Debug)]
-pub struct HoppingRust<'r, const K: usize> {
+struct HoppingRust<'r, const K: usize> {
     schedule: &'r HoppingSchedule<K>,
     requirements: &'r PhaseRequirements<'r>,
 }
@@ -117,8 +116,7 @@ fn settings(requirements: &PhaseRequirements<'_>) -> HoppingSettings {
 }
 
 /// A hopping schedule as a C header: see [`HoppingSchedule::to_c`].
-#[derive(Clone, Copy, Debug)]
-pub struct HoppingHeader<'r, const K: usize> {
+struct HoppingHeader<'r, const K: usize> {
     schedule: &'r HoppingSchedule<K>,
     requirements: &'r PhaseRequirements<'r>,
 }
@@ -150,8 +148,7 @@ impl<const K: usize> fmt::Display for HoppingHeader<'_, K> {
 }
 
 /// A hopping schedule as a file of an Arduino sketch: see [`HoppingSchedule::to_arduino`].
-#[derive(Clone, Copy, Debug)]
-pub struct HoppingTab<'r, const K: usize> {
+struct HoppingTab<'r, const K: usize> {
     schedule: &'r HoppingSchedule<K>,
     requirements: &'r PhaseRequirements<'r>,
     name: &'r str,
@@ -203,8 +200,7 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
 }
 
 /// A hopping schedule as a TOML file: see [`HoppingSchedule::to_toml`].
-#[derive(Clone, Copy, Debug)]
-pub struct HoppingToml<'s, const K: usize> {
+struct HoppingToml<'s, const K: usize> {
     schedule: &'s HoppingSchedule<K>,
 }
 

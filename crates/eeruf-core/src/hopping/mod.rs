@@ -26,7 +26,6 @@ use crate::time::Instant;
 use crate::tracker::EchoTracker;
 
 pub use code::HoppingCode;
-pub use emit::{HoppingHeader, HoppingRust, HoppingTab, HoppingToml};
 pub use error::HoppingError;
 pub use plan::HoppingPlan;
 pub use schedule::HoppingSchedule;

@@ -15,7 +15,7 @@ use crate::{
     watch::{Background, in_background},
 };
 
-/// Drive the rings of a scene through simulated time by a method: core's own scheduler and filter, as on the target.
+/// Drive the rings of a scene through simulated time by a method: core's own plans and judges, as on the target.
 ///
 /// The same scene, method and seed give the same readings, bit for bit. It runs on one core, without the interpreter
 /// lock; Ctrl-C ends it.

@@ -53,7 +53,7 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
     verified_for: Option<VerifiedFor>,
 }
 
-/// The firings of one phase in the order in which they come, so that the scheduler need not look for the next one.
+/// The firings of one phase in the order in which they come, so that a plan need not look for the next one.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
@@ -127,7 +127,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
 
     /// The sensor at a place in the firing order of a phase, and how long it fires after the one before it; beyond the
     /// last place a sensor that is not there (`K` or more), and the time from the last firing to the end of the period.
-    /// Each step of the scheduler asks.
+    /// Each step of a plan asks.
     #[inline]
     pub(crate) const fn firing(&self, phase: u8, place: u8) -> (u8, Micros) {
         if phase as usize >= M {

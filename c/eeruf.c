@@ -2022,8 +2022,8 @@ static uint8_t primitive_root(uint8_t prime) {
 static uint8_t times_root(uint8_t place, uint8_t root, uint8_t cycle) {
     uint8_t product = 0, left;
     for (left = root; left > 0; left--) {
-        product = (uint8_t)(product + place + 1u);
-        if (product > cycle) product = (uint8_t)(product - cycle - 1u);
+        product = (uint8_t)((unsigned)product + place + 1u);
+        if (product > cycle) product = (uint8_t)((unsigned)product - cycle - 1u);
     }
     return (uint8_t)(product - 1u);
 }

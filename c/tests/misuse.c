@@ -355,7 +355,7 @@ static void hopping_rings(void) {
     WITH(phases, 68, EERUF_ERR_PHASES);
     WITH(code, 6, EERUF_ERR_PHASES);
     WITH(code, 5, EERUF_OK);
-    config.phases = 6; /* not a prime */
+    config.phases = 8; /* no prime, nor one less than one */
     EXPECT(hop(r, s, h, &config), EERUF_ERR_PHASES);
     config.phases = 3; /* fewer than the sensors */
     EXPECT(hop(r, s, h, &config), EERUF_ERR_PHASES);
@@ -364,9 +364,10 @@ static void hopping_rings(void) {
     WITH(period_us, 36959, EERUF_ERR_PERIOD);
     WITH(lag_us, late, EERUF_ERR_LAG);
     WITH(tracker.votes, 1, EERUF_ERR_TRACKER);
-    WITH(tracker.votes, 6, EERUF_ERR_VOTES);
-    /* Two sensors would need three phases only, in which no echo has votes enough: the presets ask for more. */
+    /* Two sensors need four phases only, in which no echo has votes enough: the presets ask for more. */
     WITH(sensors, 2, EERUF_OK);
+    config.phases = 2;
+    EXPECT(hop(r, s, h, &config), EERUF_ERR_VOTES);
     WITH(tracker.near_us, 149, EERUF_ERR_TRACKER);
     WITH(blanking_us, 36000, EERUF_ERR_BLANKING);
     config = fine;

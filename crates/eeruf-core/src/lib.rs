@@ -57,7 +57,7 @@ mod emit;
 mod filter;
 pub mod hopping;
 mod interop;
-pub mod judge;
+mod judging;
 mod layout;
 mod needs;
 mod own_limits;
@@ -98,7 +98,16 @@ pub use time::{Instant, Micros};
 pub use uneven::Uneven;
 pub use verified::VerifiedSchedule;
 
-/// What holding a schedule against its [`Requirements`] finds.
+/// Judges of readings: the trait [`Judge`](judge::Judge), and those beside [`EchoFilter`].
+pub mod judge {
+    pub use crate::filter::{FilterError, RateFilter};
+    pub use crate::judging::{Agreement, Firing, Heard, Judge, Sounds};
+    pub use crate::reading::{Explanation, Verdict};
+    pub use crate::ring::AgreementRing;
+    pub use crate::tracker::{EchoTracker, TrackerError, TrackerSettings};
+}
+
+/// The findings of [`Schedule::verify`], and what they are made of.
 pub mod conditions {
     pub use crate::layout::{LayoutError, neighbour_rows};
     pub use crate::requirements::{Interval, Separation};

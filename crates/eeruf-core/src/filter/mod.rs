@@ -21,7 +21,7 @@ mod rate;
 mod tests;
 mod tracker;
 
-use crate::judge::{Heard, Judge, Sounds};
+use crate::judging::{Heard, Judge, Sounds};
 use crate::reading::{ReadingKind, Verdict};
 use crate::sensor_error::SensorError;
 use crate::time::Micros;

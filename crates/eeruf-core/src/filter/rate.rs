@@ -1,7 +1,7 @@
 //! [`RateFilter`]: three consecutive readings on a line, for a robot that moves and has no odometry.
 
 use super::error::FilterError;
-use crate::judge::{Heard, Judge, NoSounds, Sounds};
+use crate::judging::{Heard, Judge, NoSounds, Sounds};
 use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};

@@ -8,7 +8,7 @@ use super::schedule::HoppingSchedule;
 use super::settings::{HoppingListening, HoppingSettings, Pace};
 use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
 use super::weighed::Weighed;
-use crate::judge::Firing;
+use crate::judging::Firing;
 use crate::plan::{Limits, Plan};
 use crate::reading::ReadingKind;
 use crate::schedule::Phase;

@@ -2,7 +2,7 @@
 //!
 //! A plan never reads a clock. The caller passes `now` and gets the next deadline back.
 
-use crate::judge::Firing;
+use crate::judging::Firing;
 use crate::own_limits::SensorLimits;
 use crate::reading::ReadingKind;
 use crate::schedule::{Phase, VerifiedFor};

@@ -13,7 +13,7 @@
 //! In (8) the filter takes it for a true echo. In (10a), (10b) consecutive readings differ, and it does not.
 
 use super::contract::{Limits, Plan};
-use crate::judge::Firing;
+use crate::judging::Firing;
 use crate::schedule::{MAX_PERIOD, Phase, Schedule};
 use crate::sensor_set::SensorSet;
 use crate::time::{Instant, Micros};

@@ -1,7 +1,7 @@
 //! [`ScheduledFiring`]: every sensor fires once per period, by the table of a schedule (Sec. 3.1, Fig. 3).
 
 use super::contract::{Limits, Plan};
-use crate::judge::Firing;
+use crate::judging::Firing;
 use crate::own_limits::{Alike, LimitsInUse, OwnLimits, SensorLimits};
 use crate::schedule::{MAX_SENSORS, Phase, Schedule, VerifiedFor};
 use crate::sensor_set::SensorSet;

@@ -4,7 +4,7 @@ use super::history::is_just_ahead;
 use super::listening::Listening;
 use super::{NOBODY, Ring, RingError};
 use crate::filter::EchoFilter;
-use crate::judge::Judge;
+use crate::judging::Judge;
 use crate::own_limits::{Alike, LimitsInUse, OwnLimits};
 use crate::plan::{Plan, ScheduledFiring};
 use crate::schedule::Schedule;

@@ -2,7 +2,7 @@
 
 use super::Ring;
 use super::sensor::LISTENING;
-use crate::judge::Judge;
+use crate::judging::Judge;
 use crate::plan::Plan;
 use crate::sensor_error::SensorError;
 use crate::time::Instant;

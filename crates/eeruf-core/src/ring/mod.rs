@@ -15,7 +15,7 @@ mod sensor;
 mod steps;
 
 use crate::filter::EchoFilter;
-use crate::judge::{Agreement, Judge};
+use crate::judging::{Agreement, Judge};
 use crate::own_limits::{Alike, LimitsInUse, OwnLimits};
 use crate::plan::{ImmediateRefiring, Plan, ScheduledFiring};
 use crate::reading::{ReadingKind, Tally};

@@ -6,7 +6,7 @@ use super::punctuality::PeriodLateness;
 use super::sensor::{Ended, LISTENING, READY, Sensor};
 use super::{NOBODY, PeriodStats, Reading, Ring, RingEvent};
 use crate::filter::heard;
-use crate::judge::{Heard, Judge, Sounds};
+use crate::judging::{Heard, Judge, Sounds};
 use crate::plan::Plan;
 use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::time::{Instant, Micros};

@@ -15,7 +15,7 @@ mod settings;
 mod tests;
 mod track;
 
-use crate::judge::{self, Firing, Judge, Sounds};
+use crate::judging::{self, Firing, Judge, Sounds};
 use crate::reading::{ReadingKind, Verdict};
 use crate::time::Micros;
 
@@ -141,14 +141,14 @@ impl<const K: usize, const H: usize> Judge for EchoTracker<K, H> {
     }
 
     #[inline(always)]
-    fn judge(&mut self, heard: &judge::Heard<'_>, _: &impl Sounds) -> Verdict {
+    fn judge(&mut self, heard: &judging::Heard<'_>, _: &impl Sounds) -> Verdict {
         match self.sensors.get_mut(usize::from(heard.sensor)) {
             Some(tracks) => tracks.push(Heard::new(heard.echoes.first().copied(), heard.firing), &self.settings),
             None => heard.unjudged(None),
         }
     }
 
-    fn skip(&mut self, heard: &judge::Heard<'_>, kind: ReadingKind) -> Verdict {
+    fn skip(&mut self, heard: &judging::Heard<'_>, kind: ReadingKind) -> Verdict {
         let change_us = heard.firing.expected_change_us;
         match self.sensors.get_mut(usize::from(heard.sensor)) {
             Some(tracks) => tracks.skip(kind, heard.echoes.first().copied(), change_us),

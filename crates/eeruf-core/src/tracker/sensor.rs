@@ -2,7 +2,7 @@
 
 use super::settings::TrackerSettings;
 use super::track::{LATEST, SILENCE, Track, bit};
-use crate::judge::Firing;
+use crate::judging::Firing;
 use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::Phase;
 use crate::time::Micros;

@@ -1,11 +1,6 @@
-//! What a reading is worth: the trait [`Judge`], and judges beside [`EchoFilter`](crate::EchoFilter).
+//! [`Judge`]: what a ring asks of whatever decides what a reading is worth.
 
-pub use crate::filter::{FilterError, RateFilter};
-pub use crate::reading::{Explanation, Verdict};
-pub use crate::ring::AgreementRing;
-pub use crate::tracker::{EchoTracker, TrackerError, TrackerSettings};
-
-use crate::reading::ReadingKind;
+use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::schedule::Phase;
 use crate::time::{Instant, Micros};
 
@@ -82,7 +77,8 @@ impl Sounds for NoSounds {
 }
 
 /// Decides what the readings of a [`Ring`](crate::Ring) are worth: [`EchoFilter`](crate::EchoFilter),
-/// [`EchoTracker`], [`RateFilter`], [`Agreement`], or one of the caller's own.
+/// [`EchoTracker`](crate::judge::EchoTracker), [`RateFilter`](crate::judge::RateFilter), [`Agreement`], or one of the
+/// caller's own.
 ///
 /// The ring hands in sensors that it has room for. A judge that has room for fewer accepts nothing of the others.
 pub trait Judge {

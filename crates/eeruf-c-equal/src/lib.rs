@@ -79,7 +79,7 @@ pub struct Needs {
     pub stale_echo: bool,
 }
 
-/// What one sensor needs: `window_us`, `t_delta_us` and `group` of an EerufLimits.
+/// Needs of one sensor: `window_us`, `t_delta_us` and `group` of an EerufLimits.
 pub type OwnNeeds = [u32; 3];
 
 /// A ring in C, of either kind, with its schedules and modules, in memory of exactly the size that it needs.

@@ -19,7 +19,7 @@ pub struct SensorLimits {
 
 /// Which limits the sensors of a schedule have of their own: none, [`Alike`], or some for each, [`EachSensor`].
 pub trait OwnLimits: Copy + fmt::Debug + sealed::Sealed {
-    /// What a plan holds of them while it fires.
+    /// The part of them that a plan holds while it fires.
     type InUse<'s>: LimitsInUse
     where
         Self: 's;
@@ -53,7 +53,7 @@ pub trait LimitsInUse: Clone + fmt::Debug + sealed::Sealed {
         true
     }
 
-    /// What the schedule was verified for at most, if sensors have limits of their own.
+    /// The most that the schedule was verified for, if sensors have limits of their own.
     #[doc(hidden)]
     #[inline]
     fn most(&self) -> Option<&VerifiedFor> {
@@ -151,7 +151,7 @@ impl<const K: usize> EachSensor<K> {
         &self.groups
     }
 
-    /// What the schedule was verified for at most.
+    /// The most that the schedule was verified for.
     pub(crate) const fn most(&self) -> Option<&VerifiedFor> {
         self.most.as_ref()
     }

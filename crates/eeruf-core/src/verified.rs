@@ -39,7 +39,7 @@ impl<const K: usize, const M: usize, L> VerifiedSchedule<K, M, L> {
         &self.own_limits
     }
 
-    /// What it was verified for; where sensors have limits of their own, what every one of them allows.
+    /// The needs that it was verified for; where sensors have limits of their own, what every one of them allows.
     pub const fn verified_for(&self) -> VerifiedFor {
         match self.schedule.verified_for() {
             Some(verified_for) => *verified_for,

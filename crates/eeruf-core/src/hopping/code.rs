@@ -84,8 +84,8 @@ impl HoppingCode {
         }
     }
 
-    /// The code with exactly so many phases, and `a`: what files and sources say. It is a linear congruence if their
-    /// number is a prime, Welch's sequence if it is one less than a prime and above the number of sensors.
+    /// The code with exactly this number of phases, and `a`, as files and sources have them. It is a linear congruence
+    /// if their number is a prime, Welch's sequence if it is one less than a prime and above the number of sensors.
     ///
     /// # Errors
     /// [`HoppingError`] as for [`HoppingCode::new`]; [`HoppingError::NotPrime`] for any other number of phases,

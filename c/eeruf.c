@@ -1761,8 +1761,10 @@ static uint16_t fewer16(uint16_t one, uint16_t other) {
 
 #define CATCHES_UP_US 1000u /* a firing that is later moves all that follow */
 #define ONE_SOLO 256u       /* what a solo period costs; as much again may be saved up */
-#define LEAST_CHANGE_US 20  /* an expected change that tells how much of it there is */
+#define LEAST_CHANGE_US 40  /* an expected change that tells how much of it there is */
 #define WHOLE 64            /* as much more as is expected */
+#define MOST_SURPLUS 80     /* two readings that show more are not of one echo */
+#define UNKNOWN INT8_MIN    /* readings that show no surplus */
 #define MOVING_VOTES 3u     /* for a tentative echo while odometry moves: any two readings are those of some wall */
 #define DRAWS 8u            /* lags that are drawn in search of one that keeps the neighbours' interval */
 
@@ -1799,6 +1801,8 @@ static void forget_tracks(EerufHopper *hopper) {
     uint8_t place;
     for (place = 0; place < EERUF_HYPOTHESES; place++) forget_track(&hopper->tracks[place]);
     hopper->surplus = 0;
+    hopper->last_us = EERUF_NO_ECHO;
+    hopper->observed = UNKNOWN;
 }
 
 /* What is not confirmed cannot be compared with what comes. */
@@ -1927,12 +1931,32 @@ static void shift_tracks(EerufHopper *hopper, int32_t change_us) {
     }
 }
 
-/* A reading this much later than a track that it supports tells how much the echo really changed. */
-static void learn(EerufHopper *hopper, int32_t later_us, int32_t change_us) {
-    int32_t surplus = hopper->surplus;
-    if (change_us >= LEAST_CHANGE_US) surplus += later_us / 32;
-    else if (change_us <= -LEAST_CHANGE_US) surplus -= later_us / 32;
-    hopper->surplus = (int8_t)(surplus > WHOLE ? WHOLE : surplus < -WHOLE ? -WHOLE : surplus);
+/* The surplus that two consecutive readings of one echo show, or UNKNOWN. */
+static int8_t surplus_of(uint32_t last_us, uint32_t t_echo_us, int32_t change_us) {
+    int32_t surplus;
+    if ((change_us < LEAST_CHANGE_US && change_us > -LEAST_CHANGE_US) || t_echo_us == EERUF_NO_ECHO ||
+        last_us == EERUF_NO_ECHO)
+        return UNKNOWN;
+    /* Times have 24 bits, the product 30. */
+    surplus = WHOLE * ((int32_t)t_echo_us - (int32_t)last_us) / change_us - WHOLE;
+    return surplus < -MOST_SURPLUS || surplus > MOST_SURPLUS ? UNKNOWN : (int8_t)surplus;
+}
+
+/* Two pairs of consecutive readings that change alike tell how much of the expected change there really is, whatever
+   they support. Crosstalk changes otherwise from each phase to the next. */
+static void learn(EerufHopper *hopper, uint32_t t_echo_us, int32_t change_us, uint16_t t_delta_us) {
+    const int8_t observed = surplus_of(hopper->last_us, t_echo_us, change_us), before = hopper->observed;
+    const uint32_t expected_us = change_us < 0 ? 0u - (uint32_t)change_us : (uint32_t)change_us;
+    int16_t known = hopper->surplus, differs = (int16_t)(observed - before);
+    hopper->last_us = t_echo_us;
+    if (observed == UNKNOWN) return;
+    hopper->observed = observed;
+    if (before == UNKNOWN) return;
+    if (differs < 0) differs = (int16_t)-differs;
+    /* differs * expected <= WHOLE * t_delta, without a product of 40 bits. */
+    if (differs != 0 && expected_us > (uint32_t)WHOLE * t_delta_us / (uint16_t)differs) return;
+    known = (int16_t)(known + (observed - known) / 2);
+    hopper->surplus = (int8_t)(known > WHOLE ? WHOLE : known < -WHOLE ? -WHOLE : known);
 }
 
 static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_t change_us, EerufReading *reading) {
@@ -1957,7 +1981,6 @@ static void weigh(EerufHoppingRing *hopping, uint8_t sensor, bool steady, int32_
         if (place == nearest) {
             bool earlier;
             uint8_t close;
-            learn(hopper, (int32_t)(t_echo_us - track->t_echo_us), change_us);
             support(track, t_echo_us, phase, solo, how);
             close = track->flags & CONTRADICTED ? 0 : track->close;
             earlier = (!believes || track->t_echo_us < held_us) && track->t_echo_us != EERUF_NO_ECHO;
@@ -2468,6 +2491,9 @@ EerufStatus eeruf_hopping_poll(EerufHoppingRing *hopping, uint32_t now_us, const
     if (reading->kind != EERUF_READING_LATE) {
         const int32_t change = change_us == NULL ? 0 : change_us[event->sensor];
         reading->previous_us = EERUF_NO_ECHO;
+        if (reading->kind == EERUF_READING_FIRST)
+            learn(hopper, reading->t_echo_us, change, hopping->config.tracker.t_delta_us);
+        else hopper->last_us = EERUF_NO_ECHO;
         shift_tracks(hopper, change);
         if (reading->kind == EERUF_READING_FIRST)
             weigh(hopping, event->sensor, was_steady(hopping, hopper), change, reading);

@@ -533,12 +533,12 @@ typedef struct EerufTrack {
     uint8_t solo_votes, score, close, flags, age;
 } EerufTrack;
 
-/* One sensor of a hopping ring: 57 bytes on an AVR, beside its EerufHopSensor. Not for the caller. */
+/* One sensor of a hopping ring: 62 bytes on an AVR, beside its EerufHopSensor. Not for the caller. */
 typedef struct EerufHopper {
-    uint32_t lag_us;
+    uint32_t lag_us, last_us;
     uint16_t late_us;
     uint8_t place, phase, unserved, misfits, flags, order;
-    int8_t surplus;
+    int8_t surplus, observed;
     EerufTrack tracks[EERUF_HYPOTHESES];
 } EerufHopper;
 

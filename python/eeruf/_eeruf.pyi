@@ -49,6 +49,7 @@ _Method = Literal[
     "eeruf_best",
     "adaptive",
     "eeruf_hopping",
+    "flow",
     "multi_echo",
 ]
 _Cause = Literal["nothing", "own", "stale", "crosstalk", "external"]

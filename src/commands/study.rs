@@ -24,7 +24,8 @@ use crate::report::watch::Watch;
 /// dither, conventional (constant lags, every echo accepted), comparison (constant lags, consecutive readings
 /// compared), median, eeruf_immediate, eeruf (the paper's table scaled to the period, or the robot's own schedule),
 /// eeruf_best (the shortest schedule with the same guarantees), eeruf_hopping (many phases, a tracker and solo periods,
-/// so that no sensor stays blind), adaptive, multi_echo.
+/// so that no sensor stays blind), flow (one after the other, each with the quiet that it has needed), adaptive,
+/// multi_echo.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The scene

@@ -3,7 +3,7 @@
 use crate::common::{Scratch, eeruf, json};
 use serde_json::Value;
 
-const METHODS: [&str; 14] = [
+const METHODS: [&str; 15] = [
     "simultaneous",
     "sequential",
     "sequential_votes",
@@ -17,6 +17,7 @@ const METHODS: [&str; 14] = [
     "eeruf_best",
     "adaptive",
     "eeruf_hopping",
+    "flow",
     "multi_echo",
 ];
 

@@ -95,6 +95,10 @@ pub trait Judge {
     /// Returns true if it believes now that nothing is in a sensor's range: what its last reading heard is none of its
     /// own.
     fn is_clear(&self, sensor: u8) -> bool;
+    /// The echo time that it believes of a sensor now; `None` if it believes none, or that nothing is in range.
+    fn believed(&self, _sensor: u8) -> Option<Micros> {
+        None
+    }
     /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
     fn forget(&mut self, sensor: u8);
     /// The ring begins anew: sound from before may still be heard, and what a sensor hears next is compared with

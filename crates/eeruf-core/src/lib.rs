@@ -55,6 +55,7 @@ mod checked;
 mod edges;
 mod emit;
 mod filter;
+pub mod flow;
 pub mod hopping;
 mod interop;
 mod judging;

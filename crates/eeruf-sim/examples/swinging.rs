@@ -104,6 +104,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("eeruf", Method::Eeruf, HoppingSettings::BALANCED),
         ("eeruf_hopping, balanced", Method::EerufHopping, HoppingSettings::BALANCED),
         ("eeruf_hopping, driving", Method::EerufHopping, HoppingSettings::DRIVING),
+        ("flow", Method::Flow, HoppingSettings::BALANCED),
     ] {
         let found = sweep(&numbers, |&number| swing(number, world, method, hopping));
         let found: Vec<[f64; 3]> = found.into_iter().flatten().collect();

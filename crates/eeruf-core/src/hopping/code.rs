@@ -193,7 +193,7 @@ impl HoppingCode {
 
     /// Of a sensor's wait, in steps: what it is in the phase after the one in which it is `place`. Without a division,
     /// which small processors do not have.
-    pub(super) const fn next_place(&self, sensor: u8, place: u8) -> u8 {
+    pub(crate) const fn next_place(&self, sensor: u8, place: u8) -> u8 {
         if self.is_welch() {
             return self.times_root(place);
         }
@@ -219,7 +219,7 @@ impl HoppingCode {
 
     /// The wait in steps in a phase, phases counted modulo their number: of the sensor with this number for a linear
     /// congruence, of the one with this place in the order of lags for Welch's sequence.
-    pub(super) const fn place(&self, sensor: usize, phase: u8) -> u8 {
+    pub(crate) const fn place(&self, sensor: usize, phase: u8) -> u8 {
         if !self.is_welch() {
             return remainder(self.multiplier(sensor) * phase as u32, self.phases) as u8;
         }

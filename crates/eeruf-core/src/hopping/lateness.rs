@@ -20,27 +20,27 @@ impl Spread {
 /// emitted now, if sound dies within a period.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub(super) struct Lateness {
+pub(crate) struct Lateness {
     periods: [Spread; 3],
 }
 
 impl Lateness {
-    pub(super) const NEW: Self = Self { periods: [Spread::NONE; 3] };
+    pub(crate) const NEW: Self = Self { periods: [Spread::NONE; 3] };
 
-    pub(super) fn note(&mut self, late: u16) {
+    pub(crate) fn note(&mut self, late: u16) {
         let [present, ..] = &mut self.periods;
         *present = present.and(Spread { least: late, most: late });
     }
 
     /// As `note(0)`, the least there is.
     #[inline(always)]
-    pub(super) fn note_punctual(&mut self) {
+    pub(crate) fn note_punctual(&mut self) {
         let [present, ..] = &mut self.periods;
         present.least = 0;
     }
 
     /// As if none of this period's firings had been noted, unless the timetable has moved.
-    pub(super) fn begin_anew(&mut self) {
+    pub(crate) fn begin_anew(&mut self) {
         let [present, ..] = &mut self.periods;
         if present.most != u16::MAX {
             *present = Spread::NONE;
@@ -48,19 +48,19 @@ impl Lateness {
     }
 
     /// The timetable has moved: nothing that is heard across it moves as the code says.
-    pub(super) fn break_off(&mut self) {
+    pub(crate) fn break_off(&mut self) {
         let [present, ..] = &mut self.periods;
         *present = Spread { least: 0, most: u16::MAX };
     }
 
-    pub(super) fn end_period(&mut self) {
+    pub(crate) fn end_period(&mut self) {
         self.periods.rotate_right(1);
         let [present, ..] = &mut self.periods;
         *present = Spread::NONE;
     }
 
     /// Whether a firing this late differs from all others by no more than is tolerated.
-    pub(super) fn is_steady(&self, late: u16, tolerated: u16) -> bool {
+    pub(crate) fn is_steady(&self, late: u16, tolerated: u16) -> bool {
         let [present, before, before_that] = self.periods;
         let Spread { least, most } = present.and(before).and(before_that);
         late.saturating_sub(least) <= tolerated && most.saturating_sub(late) <= tolerated

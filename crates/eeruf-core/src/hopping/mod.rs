@@ -27,6 +27,8 @@ use crate::tracker::EchoTracker;
 
 pub use code::HoppingCode;
 pub use error::HoppingError;
+pub(crate) use lateness::Lateness;
+pub(crate) use plan::CATCHES_UP;
 pub use plan::HoppingPlan;
 pub use schedule::HoppingSchedule;
 pub use settings::{HoppingListening, HoppingSettings};

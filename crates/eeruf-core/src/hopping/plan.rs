@@ -8,15 +8,15 @@ use super::schedule::HoppingSchedule;
 use super::settings::{HoppingListening, HoppingSettings, Pace};
 use super::turn::{DISABLED, FIRED, SETTLED, SOLO, Turn};
 use super::weighed::Weighed;
-use crate::judging::Firing;
+use crate::judging::{Firing, Heard, Judge};
 use crate::plan::{Limits, Plan};
-use crate::reading::ReadingKind;
+use crate::reading::{ReadingKind, Verdict};
 use crate::schedule::Phase;
 use crate::time::{Instant, Micros};
 
 /// A firing that is later than this moves all that follow. Up to this the timetable stands, so that lateness does not
 /// add up; intervals can be shorter than planned by as much.
-pub(super) const CATCHES_UP: Micros = Micros::new(1000);
+pub(crate) const CATCHES_UP: Micros = Micros::new(1000);
 
 /// No sensor has this number.
 const NOBODY: u8 = u8::MAX;
@@ -107,7 +107,7 @@ impl<const K: usize> HoppingPlan<K> {
         if listening.window > most {
             return Err(HoppingError::Window { window: listening.window, most });
         }
-        let HoppingListening { window, blanking, reach } = listening;
+        let window = listening.window;
         let mut plan = Self {
             next: NOBODY,
             place: 0,
@@ -130,7 +130,7 @@ impl<const K: usize> HoppingPlan<K> {
             period: schedule.period(),
             random: SmallRandom::new(seed),
             window,
-            dies: reach.saturating_sub(blanking).max(window).saturating_add(Micros::new(1)),
+            dies: listening.dies(),
             pace: Pace::of(&settings),
             // A track may be off by as much as its readings, and a step is at most 65,535 us.
             tolerated: (schedule.code().step().abs_diff(settings.tracker.t_delta).as_micros().saturating_sub(1) / 2)
@@ -348,7 +348,8 @@ impl<const K: usize> Plan for HoppingPlan<K> {
         changed
     }
 
-    fn judged(&mut self, sensor: u8, kind: ReadingKind, is_clear: impl FnOnce() -> bool) {
+    fn judged(&mut self, heard: &Heard<'_>, &Verdict { kind, .. }: &Verdict, judge: &impl Judge) {
+        let sensor = heard.sensor;
         let confirmed = matches!(kind, ReadingKind::Accepted | ReadingKind::Clear);
         // Neither silence nor another lag helps a sensor whose line is stuck, or that does not answer: it costs the
         // others nothing.
@@ -357,7 +358,7 @@ impl<const K: usize> Plan for HoppingPlan<K> {
         }
         if let Some(turn) = self.turns.get_mut(usize::from(sensor)) {
             // A sensor that is known to have nothing in range is not fooled by what does not fit.
-            turn.heard(confirmed || kind == ReadingKind::Tentative, confirmed || is_clear());
+            turn.heard(confirmed || kind == ReadingKind::Tentative, confirmed || judge.is_clear(sensor));
         }
     }
 

@@ -164,6 +164,13 @@ impl HoppingListening {
         Self { blanking, ..self }
     }
 
+    /// From a firing until its sensor no longer listens, and nothing of it is heard in a window that opens then.
+    pub(crate) const fn dies(&self) -> Micros {
+        let dies = self.reach.saturating_sub(self.blanking);
+        let dies = if dies.as_micros() > self.window.as_micros() { dies } else { self.window };
+        dies.saturating_add(Micros::new(1))
+    }
+
     /// With sound that is heard for this long.
     #[must_use]
     pub const fn with_reach(self, reach: Micros) -> Self {

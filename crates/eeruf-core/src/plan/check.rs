@@ -3,6 +3,8 @@
 use core::fmt;
 
 use super::contract::Plan;
+use crate::filter::EchoFilter;
+use crate::judging::Heard;
 use crate::reading::ReadingKind;
 use crate::schedule::MAX_SENSORS;
 use crate::time::{Instant, Micros};
@@ -184,12 +186,16 @@ impl Check {
 
     /// Ends the listening of those whose time is up.
     fn end_until<P: Plan>(&mut self, plan: &mut P, until: Instant) {
-        for (x, seen) in self.seen.iter_mut().enumerate() {
-            if let Some(at) = seen.ends {
+        // It believes nothing.
+        let Ok(judge) = EchoFilter::<0>::new(Micros::new(1), 2) else { return };
+        for (x, seen) in (0..).zip(&mut self.seen) {
+            if let (Some(at), Some(fired)) = (seen.ends, seen.fired) {
                 if until.has_reached(at) {
                     seen.ends = None;
-                    plan.judged(x as u8, ReadingKind::Rejected, || false);
-                    plan.ended(x as u8, at);
+                    let (firing, t_delta) = (plan.last_firing(x, 0), Micros::new(1));
+                    let heard = Heard { sensor: x, fired, echoes: &[at.since(fired)], firing, t_delta };
+                    plan.judged(&heard, &heard.unjudged(Some(ReadingKind::Rejected)), &judge);
+                    plan.ended(x, at);
                 }
             }
         }

@@ -2,9 +2,9 @@
 //!
 //! A plan never reads a clock. The caller passes `now` and gets the next deadline back.
 
-use crate::judging::Firing;
+use crate::judging::{Firing, Heard, Judge};
 use crate::own_limits::SensorLimits;
-use crate::reading::ReadingKind;
+use crate::reading::Verdict;
 use crate::schedule::{Phase, VerifiedFor};
 use crate::time::{Instant, Micros};
 
@@ -88,9 +88,8 @@ pub trait Plan {
     fn take_change(&mut self) -> bool {
         false
     }
-    /// Takes in what became of a sensor's reading, for plans that fire by it; `is_clear` asks the judge if it believes
-    /// that nothing is in the sensor's range.
-    fn judged(&mut self, _sensor: u8, _kind: ReadingKind, _is_clear: impl FnOnce() -> bool) {}
+    /// Takes in a sensor's reading with its verdict, and the judge, for plans that fire by what is believed.
+    fn judged(&mut self, _heard: &Heard<'_>, _verdict: &Verdict, _judge: &impl Judge) {}
     /// A sensor turns out to have fired `at` this instant.
     fn fired(&mut self, _sensor: u8, _at: Instant) {}
     /// Returns true if a sensor can have fired before [`fire`](Self::fire) was called for it, as a timer may.

@@ -181,7 +181,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
                         .judge(&heard, &Memory { receiver: sensor, sensors, plan, listening, known_from, on_time })
                 }
             };
-            self.plan.judged(sensor, verdict.kind, || self.judge.is_clear(sensor));
+            self.plan.judged(&heard, &verdict, &self.judge);
             self.plan.ended(sensor, ended_at);
             if self.oldest == sensor {
                 self.find_oldest(fired);

@@ -164,6 +164,10 @@ impl<const K: usize, const H: usize> Judge for EchoTracker<K, H> {
         self.is_clear(sensor.into())
     }
 
+    fn believed(&self, sensor: u8) -> Option<Micros> {
+        self.confirmed(sensor.into())
+    }
+
     fn forget(&mut self, sensor: u8) {
         self.forget(sensor.into());
     }

@@ -40,9 +40,13 @@ pub(super) struct SensorTracks<const H: usize> {
     tracks: [Track; H],
     /// Firings since the last accepted reading.
     age: u16,
-    /// How much more than the expected change there is, in 1/64 of it, as echoes that supported a track showed so far:
+    /// How much more than the expected change there is, in 1/64 of it, as consecutive readings showed so far:
     /// a wall that it sees at a slant comes nearer more slowly than one straight ahead, or faster.
     surplus: i8,
+    /// The surplus that two consecutive readings showed last, or [`UNKNOWN`].
+    observed: i8,
+    /// Its last reading; [`SILENCE`] also if that said nothing.
+    last: u32,
 }
 
 /// While odometry moves, at least so many phases must support an echo before it is reported as tentative.
@@ -51,16 +55,21 @@ const MOVING_VOTES: u8 = 3;
 /// As much more as is expected: a surplus is between none at all and twice as much.
 const WHOLE: i32 = 64;
 
+/// Two readings that show a surplus beyond this, of either sign, are not of one echo.
+const MOST_SURPLUS: i32 = WHOLE + WHOLE / 4;
+
+/// Readings that show no surplus.
+const UNKNOWN: i8 = i8::MIN;
+
 /// A smaller change, in microseconds, tells nothing of how much of it there is.
-const LEAST_CHANGE_US: i32 = 20;
-const LEAST_CHANGE_SOONER_US: i32 = -LEAST_CHANGE_US;
+const LEAST_CHANGE_US: u32 = 40;
 
 impl<const H: usize> SensorTracks<H> {
-    pub(super) const NEW: Self = Self { tracks: [Track::NONE; H], age: NEVER, surplus: 0 };
+    pub(super) const NEW: Self =
+        Self { tracks: [Track::NONE; H], age: NEVER, surplus: 0, observed: UNKNOWN, last: SILENCE };
 
     pub(super) fn forget(&mut self) {
-        self.tracks = [Track::NONE; H];
-        self.surplus = 0;
+        *self = Self { age: self.age, ..Self::NEW };
     }
 
     pub(super) fn firing_changed(&mut self) {
@@ -82,21 +91,43 @@ impl<const H: usize> SensorTracks<H> {
         }
     }
 
-    /// A reading this much later than a track that it supports tells how much the echo really changed.
-    #[inline(always)]
-    fn learn(surplus: &mut i8, later_us: i32, change_us: i32) {
-        let more_us = match change_us {
-            LEAST_CHANGE_US.. => later_us,
-            ..=LEAST_CHANGE_SOONER_US => -later_us,
-            _ => return,
-        };
-        *surplus = (i32::from(*surplus) + more_us / 32).clamp(-WHOLE, WHOLE) as i8;
+    /// Two pairs of consecutive readings that change alike tell how much of the expected change there really is,
+    /// whatever they support: with a wrong share the second would not support what the first did. Crosstalk changes
+    /// otherwise from each phase to the next, by more than `t_delta`, where the code is Welch's.
+    fn learn(&mut self, t_echo: u32, expected_us: i32, t_delta: Micros) {
+        let last = core::mem::replace(&mut self.last, t_echo);
+        let observed = Self::surplus_of(last, t_echo, expected_us);
+        if observed == UNKNOWN {
+            return;
+        }
+        let before = core::mem::replace(&mut self.observed, observed);
+        if before == UNKNOWN {
+            return;
+        }
+        let differs = u32::from(observed.abs_diff(before));
+        // A difference times the expected change, without a product of 40 bits.
+        let most_us = (WHOLE as u32 * t_delta.as_micros()).checked_div(differs);
+        if most_us.is_none_or(|most_us| expected_us.unsigned_abs() <= most_us) {
+            self.surplus += ((i32::from(observed) - i32::from(self.surplus)) / 2) as i8;
+            self.surplus = self.surplus.clamp(-(WHOLE as i8), WHOLE as i8);
+        }
+    }
+
+    /// The surplus that two consecutive readings of one echo show, or [`UNKNOWN`].
+    fn surplus_of(last: u32, t_echo: u32, expected_us: i32) -> i8 {
+        if expected_us.unsigned_abs() < LEAST_CHANGE_US || t_echo == SILENCE || last == SILENCE {
+            return UNKNOWN;
+        }
+        // Times have 24 bits, the product 30.
+        let surplus = WHOLE * (t_echo as i32 - last as i32) / expected_us - WHOLE;
+        if (-MOST_SURPLUS..=MOST_SURPLUS).contains(&surplus) { surplus as i8 } else { UNKNOWN }
     }
 
     /// Takes in a reading.
     pub(super) fn push(&mut self, heard: Heard, settings: &TrackerSettings) -> Verdict {
         let Heard { t_echo, phase, solo, steady, change_us } = heard;
         let phase = bit(phase);
+        self.learn(t_echo, change_us, settings.t_delta);
         self.shift(change_us);
         let (mut confirmed, nearest) = self.confirmed_and_nearest(t_echo, settings.t_delta.as_micros());
         let near = settings.near.as_micros();
@@ -116,7 +147,6 @@ impl<const H: usize> SensorTracks<H> {
                 }
                 let at = track.t_echo();
                 if place == nearest {
-                    Self::learn(&mut self.surplus, track.to(t_echo), change_us);
                     track.support(t_echo, phase, solo, settings);
                     let earlier = track.t_echo() < before.min(SILENCE);
                     let enough = solo || track.close_votes() >= tentative_votes;
@@ -125,9 +155,9 @@ impl<const H: usize> SensorTracks<H> {
                     track.grow_older();
                     track.catch_up(t_echo);
                 } else if t_echo > at {
-                    track.contradict(phase, weights);
+                    track.contradict(phase, weights, settings);
                 } else {
-                    track.mask(phase);
+                    track.mask(phase, settings);
                 }
                 confirmed = confirmed.min(track.confirmed());
             }
@@ -152,6 +182,7 @@ impl<const H: usize> SensorTracks<H> {
 
     /// A firing that says nothing about the echo time.
     pub(super) fn skip(&mut self, kind: ReadingKind, t_echo: Option<Micros>, change_us: i32) -> Verdict {
+        self.last = SILENCE;
         self.shift(change_us);
         self.verdict(kind, t_echo, None)
     }

@@ -28,6 +28,9 @@ pub struct TrackerSettings {
     pub tentative_votes: u8,
     /// How closely they must agree to count for that. At most `t_delta`.
     pub tentative_within: Micros,
+    /// A confirmed echo that is contradicted or masked is remembered for this many firings without support, and
+    /// confirmed again by a single reading. 0: it is forgotten.
+    pub memory: u8,
 }
 
 impl TrackerSettings {
@@ -41,6 +44,7 @@ impl TrackerSettings {
         solo_contradiction: 6,
         tentative_votes: 2,
         tentative_within: Micros::new(60),
+        memory: 0,
     };
     /// For robots that must stop early: four phases confirm, and tentative readings need not agree as closely.
     pub const QUICK: Self = Self { votes: 4, tentative_within: Micros::new(100), ..Self::BALANCED };
@@ -93,6 +97,12 @@ impl TrackerSettings {
     #[must_use]
     pub const fn with_tentative_within(self, tentative_within: Micros) -> Self {
         Self { tentative_within, ..self }
+    }
+
+    /// Remembering confirmed echoes for this many firings without support; 0: not at all.
+    #[must_use]
+    pub const fn with_memory(self, memory: u8) -> Self {
+        Self { memory, ..self }
     }
 
     /// Whether each setting is in its range, as [`EchoTracker::new`](super::EchoTracker::new) checks it.

@@ -35,8 +35,12 @@ const SCORE: u8 = 0x0f;
 const SOLO_VOTE: u8 = 0x10;
 const CONFIRMED: u8 = 1;
 const CONTRADICTED: u8 = 2;
-const CLOSE_VOTE: u8 = 4;
-const MOST_CLOSE: u8 = !(CONFIRMED | CONTRADICTED);
+/// It was confirmed, and is again once it is supported.
+const REMEMBERED: u8 = 4;
+/// The least score of a track that is confirmed again.
+const REGAINED: u8 = 2;
+const CLOSE_VOTE: u8 = 8;
+const MOST_CLOSE: u8 = !(CONFIRMED | CONTRADICTED | REMEMBERED);
 
 /// The bit of a phase.
 pub(super) const fn bit(phase: u8) -> u16 {
@@ -80,11 +84,17 @@ impl Track {
         if self.close_and_flags & CONTRADICTED == 0 { self.close_and_flags / CLOSE_VOTE } else { 0 }
     }
 
+    /// Firings since it was last supported, 255 at most.
+    const fn age(&self) -> u8 {
+        (self.echo_and_age & AGE) as u8
+    }
+
     /// What is replaced first: the less, the sooner. First what is not confirmed, then by score, then by age.
     pub(super) const fn rank(&self) -> u32 {
         let confirmed = (self.close_and_flags & CONFIRMED) as u32;
         let score = (self.score_and_solo & SCORE) as u32;
-        (confirmed << 24) | (score << 8) | (AGE - (self.echo_and_age & AGE))
+        let remembered = (self.close_and_flags & REMEMBERED != 0) as u32;
+        (confirmed << 24) | (remembered << 16) | (score << 8) | (AGE - (self.echo_and_age & AGE))
     }
 
     /// How far a reading is from it.
@@ -119,6 +129,12 @@ impl Track {
         if new || solo || self.is_confirmed() {
             score = (score + 1 + u8::from(solo)).min(settings.score_limit);
         }
+        let recalled = self.close_and_flags & REMEMBERED != 0 && self.age() <= settings.memory;
+        if recalled {
+            self.close_and_flags |= CONFIRMED;
+            score = score.max(REGAINED);
+        }
+        self.close_and_flags &= !REMEMBERED;
         self.score_and_solo = score | (solo_votes * SOLO_VOTE);
         if self.t_echo() == SILENCE {
             self.echo_and_age &= !AGE;
@@ -143,33 +159,45 @@ impl Track {
 
     /// A later reading, or silence: its echo would have come first. It weighs the one if the track is not confirmed,
     /// the other if it is.
-    pub(super) fn contradict(&mut self, bit: u16, weights: (u8, u8)) {
+    pub(super) fn contradict(&mut self, bit: u16, weights: (u8, u8), settings: &TrackerSettings) {
         let weight = if self.is_confirmed() { weights.1 } else { weights.0 };
         let score = (self.score_and_solo & SCORE).saturating_sub(weight);
         if score == 0 {
             // Were it confirmed still, it would keep its place from all that come.
-            *self = Self::NONE;
+            self.lose(settings);
             return;
         }
         // Without its votes of solo periods.
         self.score_and_solo = score;
         self.close_and_flags |= CONTRADICTED;
         self.grow_older();
-        self.miss(bit);
+        self.miss(bit, settings);
+    }
+
+    /// Nothing speaks for it any more: it is gone, or remembered if it was confirmed.
+    fn lose(&mut self, settings: &TrackerSettings) {
+        if self.close_and_flags & (CONFIRMED | REMEMBERED) != 0 && self.age() < settings.memory {
+            self.grow_older();
+            self.phases = 0;
+            self.score_and_solo = 1;
+            self.close_and_flags = CONTRADICTED | REMEMBERED;
+        } else {
+            *self = Self::NONE;
+        }
     }
 
     /// An earlier reading hides whether its echo came.
-    pub(super) fn mask(&mut self, bit: u16) {
+    pub(super) fn mask(&mut self, bit: u16, settings: &TrackerSettings) {
         self.grow_older();
         if self.is_confirmed() {
-            self.miss(bit);
+            self.miss(bit, settings);
         }
     }
 
     /// The last firing in this phase did not support it. One phase alone, in which a path repeats itself, keeps no
     /// track confirmed.
     #[inline(always)]
-    fn miss(&mut self, bit: u16) {
+    fn miss(&mut self, bit: u16, settings: &TrackerSettings) {
         self.phases &= !bit;
         if self.is_confirmed() {
             let solo_votes = self.score_and_solo / SOLO_VOTE;
@@ -177,6 +205,9 @@ impl Track {
             let two_votes = several_phases || solo_votes + u8::from(self.phases != 0) >= 2;
             if !two_votes {
                 self.close_and_flags &= !CONFIRMED;
+                if settings.memory > 0 {
+                    self.close_and_flags |= REMEMBERED;
+                }
             }
         }
     }

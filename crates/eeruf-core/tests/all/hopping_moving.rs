@@ -2,8 +2,11 @@
 //! same from each period to the next makes it look like a wall that the robot drives towards.
 
 use eeruf_core::{
-    Instant, Micros, ReadingKind, RingEvent,
+    Instant, Micros, ReadingKind, Ring, RingEvent,
+    flow::{FlowRing, FlowSettings},
     hopping::{HoppingCode, HoppingListening, HoppingRing, HoppingSchedule, HoppingSettings},
+    judge::Judge,
+    plan::Plan,
 };
 
 const WINDOW: Micros = Micros::from_millis(36);
@@ -20,14 +23,15 @@ struct Drive {
     mm_s: i32,
 }
 
-/// Returns true if the receiver accepts an echo within ten cycles of the code.
-fn confirms<const K: usize>(code: HoppingCode, period: Micros, settings: HoppingSettings, drive: Drive) -> bool {
-    let schedule = HoppingSchedule::<K>::spread(code, period).unwrap();
-    let listening = HoppingListening::new(WINDOW).with_blanking(Micros::new(BLANKING));
-    let mut ring = HoppingRing::<K>::hopping(&schedule, settings, listening, 1, Instant::from_micros(0)).unwrap();
+fn listening() -> HoppingListening {
+    HoppingListening::new(WINDOW).with_blanking(Micros::new(BLANKING))
+}
+
+/// Returns true if the receiver accepts an echo within this number of periods.
+fn confirms<P: Plan, J: Judge, const K: usize>(mut ring: Ring<P, J, K, 1, 1>, periods: u32, drive: Drive) -> bool {
     let (mut fired_us, mut before_us) = ([None; K], [None; K]);
     let mut ended = 0;
-    while ended < 10 * u32::from(code.phases()) {
+    while ended < periods {
         let now = ring.next_deadline();
         let expected = |sensor: u8| match (fired_us[usize::from(sensor)], before_us[usize::from(sensor)]) {
             // 343.2 m/s: 2 v dt / c, in microseconds.
@@ -64,12 +68,12 @@ fn confirms<const K: usize>(code: HoppingCode, period: Micros, settings: Hopping
 }
 
 /// The pairs that confirm some path at some speed from 0 to 2 m/s.
-fn fooled<const K: usize>(code: HoppingCode, period: Micros, settings: HoppingSettings) -> Vec<(u8, u8, i32)> {
+fn fooled<const K: usize>(confirms: impl Fn(Drive) -> bool) -> Vec<(u8, u8, i32)> {
     let mut found = vec![];
     for (from, to) in (0..K as u8).flat_map(|from| (0..K as u8).map(move |to| (from, to))) {
         for (mm_s, length_us) in (0..=20).flat_map(|tenths| LENGTHS.map(|length_us| (100 * tenths, length_us))) {
             let drive = Drive { from, to, length_us, mm_s };
-            if from != to && confirms::<K>(code, period, settings, drive) {
+            if from != to && confirms(drive) {
                 found.push((from, to, mm_s));
                 break;
             }
@@ -78,24 +82,46 @@ fn fooled<const K: usize>(code: HoppingCode, period: Micros, settings: HoppingSe
     found
 }
 
+/// The same of a hopping ring.
+fn fooled_hopping<const K: usize>(code: HoppingCode, period: Micros, settings: HoppingSettings) -> Vec<(u8, u8, i32)> {
+    let schedule = HoppingSchedule::<K>::spread(code, period).unwrap();
+    fooled::<K>(|drive| {
+        let ring = HoppingRing::<K>::hopping(&schedule, settings, listening(), 1, Instant::from_micros(0)).unwrap();
+        confirms(ring, 10 * u32::from(code.phases()), drive)
+    })
+}
+
+/// The same of a flow ring.
+fn fooled_flow<const K: usize>(settings: FlowSettings) -> Vec<(u8, u8, i32)> {
+    fooled::<K>(|drive| {
+        confirms(FlowRing::<K>::flow(K, settings, listening(), Instant::from_micros(0)).unwrap(), 120, drive)
+    })
+}
+
+#[test]
+fn no_pair_of_a_flow_ring_is_confirmed_at_any_speed() {
+    assert_eq!(fooled_flow::<8>(FlowSettings::DEFAULT), []);
+    assert_eq!(fooled_flow::<12>(FlowSettings::DEFAULT), []);
+}
+
 #[test]
 fn no_pair_of_eight_is_confirmed_at_any_speed() {
     let code = HoppingCode::new(8, 2, Micros::new(240)).unwrap();
     for settings in [HoppingSettings::BALANCED, HoppingSettings::DRIVING, HoppingSettings::QUICK] {
-        assert_eq!(fooled::<8>(code, Micros::from_millis(60), settings), []);
+        assert_eq!(fooled_hopping::<8>(code, Micros::from_millis(60), settings), []);
     }
 }
 
 #[test]
 fn no_pair_of_twelve_is_confirmed_at_any_speed() {
     let code = HoppingCode::new(12, 2, Micros::new(240)).unwrap();
-    assert_eq!(fooled::<12>(code, Micros::from_millis(100), HoppingSettings::DRIVING), []);
+    assert_eq!(fooled_hopping::<12>(code, Micros::from_millis(100), HoppingSettings::DRIVING), []);
 }
 
 #[test]
 fn a_linear_congruence_confirms_crosstalk_while_driving() {
     let code = HoppingCode::of(8, 11, 1, Micros::new(240)).unwrap();
-    let found = fooled::<8>(code, Micros::from_millis(60), HoppingSettings::DRIVING);
+    let found = fooled_hopping::<8>(code, Micros::from_millis(60), HoppingSettings::DRIVING);
     assert!(found.len() >= 5, "{found:?}");
     assert!(found.iter().all(|(_, _, mm_s)| *mm_s > 0), "{found:?}");
 }

@@ -38,13 +38,16 @@ struct Belief {
     age: i64,
     is_confirmed: bool,
     was_contradicted: bool,
+    /// It was confirmed, and is again by one reading.
+    is_remembered: bool,
 }
 
 impl Belief {
     fn new(place: Place, phase: u8, solo: bool) -> Self {
         let (score, solo_votes) = if solo { (2, 1) } else { (1, 0) };
-        let (is_confirmed, was_contradicted) = (false, false);
-        Self { place, phases: [phase].into(), solo_votes, score, close: 1, age: 0, is_confirmed, was_contradicted }
+        let (is_confirmed, was_contradicted, is_remembered) = (false, false, false);
+        let phases = [phase].into();
+        Self { place, phases, solo_votes, score, close: 1, age: 0, is_confirmed, was_contradicted, is_remembered }
     }
 
     fn votes(&self) -> i64 {
@@ -60,7 +63,7 @@ impl Belief {
     fn support(&mut self, place: Place, phase: u8, solo: bool, settings: &TrackerSettings) {
         let is_new = self.phases.insert(phase);
         if is_new && distance(self.place, place) <= i64::from(settings.tentative_within.as_micros()) {
-            self.close = (self.close + 1).min(63);
+            self.close = (self.close + 1).min(31);
         }
         if solo {
             self.solo_votes = (self.solo_votes + 1).min(i64::from(settings.votes));
@@ -68,14 +71,29 @@ impl Belief {
         if is_new || solo || self.is_confirmed {
             self.score = (self.score + if solo { 2 } else { 1 }).min(i64::from(settings.score_limit));
         }
+        if core::mem::take(&mut self.is_remembered) && self.age <= i64::from(settings.memory) {
+            self.is_confirmed = true;
+            self.score = self.score.max(2);
+        }
         self.age = 0;
         self.follow(place, (1, 4));
         self.is_confirmed |= self.votes().min(self.score) >= i64::from(settings.votes);
     }
 
-    fn miss(&mut self, phase: u8) {
+    fn miss(&mut self, phase: u8, settings: &TrackerSettings) {
         self.phases.remove(&phase);
-        self.is_confirmed &= self.votes() >= 2;
+        if self.is_confirmed && self.votes() < 2 {
+            (self.is_confirmed, self.is_remembered) = (false, settings.memory > 0);
+        }
+    }
+
+    /// Returns true if it is remembered, now that nothing speaks for it.
+    fn lose(&mut self, settings: &TrackerSettings) -> bool {
+        let remembers = (self.is_confirmed || self.is_remembered) && self.age < i64::from(settings.memory);
+        (self.is_confirmed, self.is_remembered, self.was_contradicted) = (false, true, true);
+        (self.score, self.solo_votes, self.close, self.age) = (1, 0, 0, self.age + 1);
+        self.phases.clear();
+        remembers
     }
 }
 
@@ -85,9 +103,17 @@ struct Naive {
     beliefs: Vec<Option<Belief>>,
     age: Option<u16>,
     surplus: i64,
+    /// Its last reading, unless that said nothing.
+    last: Place,
+    /// The surplus that two consecutive readings showed last.
+    observed: Option<i64>,
 }
 
 impl Naive {
+    fn new(settings: TrackerSettings, places: usize) -> Self {
+        Self { settings, beliefs: vec![None; places], age: None, surplus: 0, last: None, observed: None }
+    }
+
     fn confirmed(&self) -> Option<Place> {
         let places = self.beliefs.iter().flatten().filter(|belief| belief.is_confirmed).map(|belief| belief.place);
         places.min_by_key(|place| place.unwrap_or(i64::MAX))
@@ -118,7 +144,8 @@ impl Naive {
     }
 
     fn weakest(&self) -> usize {
-        let rank = |at: &usize| self.beliefs[*at].as_ref().map(|of| (of.is_confirmed, of.score, -of.age));
+        let rank =
+            |at: &usize| self.beliefs[*at].as_ref().map(|of| (of.is_confirmed, of.is_remembered, of.score, -of.age));
         (0..self.beliefs.len()).min_by_key(rank).unwrap()
     }
 
@@ -126,6 +153,20 @@ impl Naive {
     fn push(&mut self, place: Place, firing: Firing) -> (ReadingKind, Place) {
         let settings = self.settings;
         let (phase, solo) = (firing.phase.0 % 16, firing.solo);
+        let last = core::mem::replace(&mut self.last, place);
+        let expected = i64::from(firing.expected_change_us);
+        let observed = match (last, place) {
+            (Some(last), Some(now)) if expected.abs() >= 40 => Some(64 * (now - last) / expected - 64),
+            _ => None,
+        };
+        let observed = observed.filter(|surplus| (-80..=80).contains(surplus));
+        let before = self.observed;
+        self.observed = observed.or(before);
+        if let (Some(before), Some(now)) = (before, observed) {
+            if (now - before).abs() * expected.abs() <= 64 * i64::from(settings.t_delta.as_micros()) {
+                self.surplus = (self.surplus + (now - self.surplus) / 2).clamp(-64, 64);
+            }
+        }
         self.shift(firing.expected_change_us);
         let before = self.confirmed();
         let nearest = self.nearest(place);
@@ -135,13 +176,6 @@ impl Naive {
         for at in (0..self.beliefs.len()).filter(|_| firing.steady) {
             let Some(belief) = &mut self.beliefs[at] else { continue };
             if nearest == Some(at) {
-                let later = place.unwrap_or(0) - belief.place.unwrap_or(0);
-                let more = match firing.expected_change_us {
-                    20.. => later / 32,
-                    ..=-20 => -later / 32,
-                    _ => 0,
-                };
-                self.surplus = (self.surplus + more).clamp(-64, 64);
                 belief.support(place, phase, solo, &settings);
                 let is_earlier = belief.place.is_some() && before.is_none_or(|before| is_later(before, belief.place));
                 // Any two readings are those of some wall while the robot moves.
@@ -156,17 +190,20 @@ impl Naive {
                 let solo_weight = settings.solo_contradiction;
                 let weight = if belief.is_confirmed { settings.contradiction } else { 1 };
                 belief.score -= i64::from(if solo { solo_weight } else { weight });
+                if belief.score <= 0 {
+                    if !belief.lose(&settings) {
+                        self.beliefs[at] = None;
+                    }
+                    continue;
+                }
                 belief.solo_votes = 0;
                 belief.was_contradicted = true;
                 belief.age = (belief.age + 1).min(255);
-                belief.miss(phase);
-                if belief.score <= 0 {
-                    self.beliefs[at] = None;
-                }
+                belief.miss(phase, &settings);
             } else {
                 belief.age = (belief.age + 1).min(255);
                 if belief.is_confirmed {
-                    belief.miss(phase);
+                    belief.miss(phase, &settings);
                 }
             }
         }
@@ -190,7 +227,7 @@ impl Naive {
     fn firing_changed(&mut self) {
         for belief in self.beliefs.iter_mut().flatten().filter(|belief| !belief.is_confirmed) {
             belief.phases.clear();
-            (belief.score, belief.close) = (belief.score.min(1), 0);
+            (belief.score, belief.close, belief.is_remembered) = (belief.score.min(1), 0, false);
         }
     }
 }
@@ -224,6 +261,7 @@ impl World {
         let settings = settings.with_near(near).with_score_limit(votes + random.up_to(4) as u8);
         let settings = settings.with_contradiction(1 + random.up_to(3) as u8).with_tentative_votes(tentative_votes);
         let settings = settings.with_solo_contradiction(1 + random.up_to(7) as u8);
+        let settings = settings.with_memory([0, 0, 3, 10, 40][random.up_to(4) as usize]);
         settings.with_tentative_within(Micros::new(random.up_to(t_delta.as_micros())))
     }
 
@@ -248,7 +286,7 @@ fn agree<const H: usize>(seed: u64) {
     let mut world = World::new(seed);
     let settings = world.settings();
     let mut tracker = EchoTracker::<1, H>::new(settings).unwrap();
-    let mut naive = Naive { settings, beliefs: vec![None; H], age: None, surplus: 0 };
+    let mut naive = Naive::new(settings, H);
     let (phases, part) = (2 + world.random.up_to(17), i64::from(world.random.up_to(192)));
     let swings = 4 + world.random.up_to(30);
     for number in 0..400_u32 {
@@ -266,6 +304,7 @@ fn agree<const H: usize>(seed: u64) {
         let echo = place.map(|at| Micros::new(at as u32));
         let us = |echo: Option<Micros>| echo.map(|echo| i64::from(echo.as_micros()));
         let verdict = if world.one_in(20) {
+            naive.last = None;
             naive.shift(expected_change_us);
             naive.grow_older(ReadingKind::TooEarly);
             let verdict = tracker.skip(0, ReadingKind::TooEarly, echo, expected_change_us).unwrap();
@@ -280,7 +319,7 @@ fn agree<const H: usize>(seed: u64) {
         assert_eq!((us(verdict.t_echo), verdict.age, tracker.age(0)), (place, naive.age, naive.age));
         if world.one_in(150) {
             tracker.forget(0);
-            (naive.beliefs, naive.surplus) = (vec![None; H], 0);
+            naive = Naive { age: naive.age, ..Naive::new(settings, H) };
         }
         if world.one_in(30) {
             tracker.firing_changed();
@@ -346,7 +385,7 @@ fn a_track_that_is_masked_for_long_stays_where_it_is() {
 fn a_track_that_is_masked_and_supported_in_turns_gets_no_more_votes_than_can_be_counted() {
     let settings = TrackerSettings::BALANCED;
     let mut tracker = EchoTracker::<1>::new(settings).unwrap();
-    let mut naive = Naive { settings, beliefs: vec![None; 4], age: None, surplus: 0 };
+    let mut naive = Naive::new(settings, 4);
     let mut random = Random(5);
     // Of eleven phases each is masked in every other period, and in the end all are, so that it is confirmed no more.
     for number in 0..400_u16 {
@@ -375,6 +414,7 @@ fn each_setting_of_a_tracker_is_set_alone() {
     sets(|of| of.contradiction = 3, kept.with_contradiction(3));
     sets(|of| of.solo_contradiction = 3, kept.with_solo_contradiction(3));
     sets(|of| of.tentative_votes = 3, kept.with_tentative_votes(3));
+    sets(|of| of.memory = 7, kept.with_memory(7));
     sets(|of| of.tentative_within = Micros::new(7), kept.with_tentative_within(us(7)));
     let numbers = |of: TrackerSettings| {
         let votes = (of.votes, of.score_limit, of.tentative_votes);

@@ -11,6 +11,7 @@ use serde::{Serialize, Serializer};
 use super::adaptive;
 use super::dither;
 use super::firing::Firing;
+use super::flow;
 use super::hopping;
 use super::planned_ring::planned;
 use super::ring_runner::{self, AGREEMENT_ALONE, ASKS, FiringPlan, RingRunner, RingStart, StartError, Started};
@@ -170,6 +171,15 @@ methods! {
         eeruf: true,
         schedule: schedules::conventional,
         ring: hopping::hopping,
+        belief: Belief::Repeated,
+    }
+    /// Flow: one sensor after the other, each with as much quiet around its firing as it has needed, and an echo is
+    /// believed that several phases support ([`FlowRing`](eeruf_core::flow::FlowRing)). The robot's period is the
+    /// shortest cycle.
+    Flow = "flow" {
+        eeruf: true,
+        schedule: schedules::conventional,
+        ring: flow::flow,
         belief: Belief::Repeated,
     }
     /// As [`Eeruf`](Self::Eeruf), with sensors that report up to eight echoes of a firing: the earliest that repeats is

@@ -5,6 +5,7 @@ mod adaptive;
 mod best_schedule;
 mod dither;
 mod firing;
+mod flow;
 mod hopping;
 mod method;
 mod planned_ring;

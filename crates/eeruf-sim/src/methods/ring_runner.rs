@@ -5,6 +5,7 @@ use eeruf_core::{
     EachSensor, Instant, MAX_SENSORS, Ring, RingConfig, RingError, RingEvent, VerifiedSchedule,
     adaptation::LadderError,
     conditions::Violation,
+    flow::{FlowPlan, FlowSettings},
     hopping::{HoppingError, HoppingPlan, HoppingSettings, Weighed},
     judge::{AgreementRing, Judge},
     plan::{EachInUse, ImmediateRefiring, Plan, ScheduledFiring},
@@ -80,6 +81,12 @@ impl<const K: usize> SimulatedPlan<'_> for HoppingPlan<K> {
     }
 }
 
+impl<const K: usize> SimulatedPlan<'_> for FlowPlan<K> {
+    fn weighed(&self, sensor: u8, expected_change_us: i32) -> Option<Weighed> {
+        FlowPlan::weighed(self, sensor, expected_change_us)
+    }
+}
+
 impl SimulatedPlan<'_> for PeriodFiring {
     fn error(&self) -> Option<&OwnError> {
         PeriodFiring::error(self)
@@ -143,6 +150,8 @@ pub(crate) struct RingStart<'s> {
     pub(crate) plan: &'s FiringPlan,
     /// How a hopping ring fires and believes.
     pub(crate) hopping: HoppingSettings,
+    /// How a flow ring does.
+    pub(crate) flow: FlowSettings,
     pub(crate) random: Random,
     pub(crate) now: Instant,
 }

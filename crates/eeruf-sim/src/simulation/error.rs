@@ -163,7 +163,7 @@ impl fmt::Display for SimulationError {
             }
             Self::Ring { robot, method, error } => write!(f, "robot {}, method {method}: {error}", robot + first),
             Self::Ladder { robot, error } => write!(f, "robot {}, method adaptive: {error}", robot + first),
-            Self::Hopping { robot, error } => write!(f, "robot {}, method eeruf_hopping: {error}", robot + first),
+            Self::Hopping { robot, error } => write!(f, "robot {}, time hopping: {error}", robot + first),
             Self::Unverified { robot, violation } => {
                 write!(f, "robot {}, method adaptive: {violation}", robot + first)
             }

@@ -1,6 +1,6 @@
 //! What can be asked for besides the world and the method.
 
-use eeruf_core::hopping::HoppingSettings;
+use eeruf_core::{flow::FlowSettings, hopping::HoppingSettings};
 
 use crate::world::AnySchedule;
 
@@ -20,11 +20,21 @@ pub struct Options {
     /// How [`Method::EerufHopping`](crate::Method::EerufHopping) fires and believes; how many sensors are neighbours,
     /// the robot says. The default is [`HoppingSettings::BALANCED`].
     pub hopping: HoppingSettings,
+    /// How [`Method::Flow`](crate::Method::Flow) fires and believes; the robot's period is its shortest cycle. The
+    /// default is [`FlowSettings::DEFAULT`].
+    pub flow: FlowSettings,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { periods: 1000, seed: None, best: None, median_of: 3, hopping: HoppingSettings::BALANCED }
+        Self {
+            periods: 1000,
+            seed: None,
+            best: None,
+            median_of: 3,
+            hopping: HoppingSettings::BALANCED,
+            flow: FlowSettings::DEFAULT,
+        }
     }
 }
 

@@ -1,7 +1,9 @@
 //! Whose period it is, and whether lags change, as planned.
 
 use super::*;
+use crate::judge::{EchoTracker, Firing, Heard, Judge, TrackerSettings};
 use crate::reading::ReadingKind;
+use crate::schedule::Phase;
 
 const HURRIED: HoppingSettings =
     HoppingSettings { solo_after: 1, solo_spacing: 1, shift_after: 0, ..HoppingSettings::BALANCED };
@@ -12,6 +14,16 @@ struct Fooled(HoppingPlan<8>, [Instant; 8]);
 fn fooled(settings: HoppingSettings) -> Fooled {
     let now = Instant::from_micros(0);
     Fooled(HoppingPlan::new(&schedule(), settings, HoppingListening::new(WINDOW), 1, now).unwrap(), [now; 8])
+}
+
+/// A judge that believes that nothing is in any sensor's range, or believes nothing.
+fn judge(is_clear: bool) -> impl Judge {
+    let mut tracker = EchoTracker::<8>::new(TrackerSettings::BALANCED).unwrap();
+    for (sensor, phase) in (0..8).flat_map(|sensor| (0..if is_clear { 5 } else { 0 }).map(move |phase| (sensor, phase)))
+    {
+        tracker.push(sensor, None, Firing::new(Phase(phase))).unwrap();
+    }
+    tracker
 }
 
 /// A period in which all fire on time; `hears` says of a sensor whether its reading is accepted and whether it fits.
@@ -25,7 +37,9 @@ fn period(fooled: &mut Fooled, hears: impl Fn(u8) -> (bool, bool)) -> Option<u8>
         fired[usize::from(sensor)] = now;
         let (accepted, is_clear) = hears(sensor);
         let kind = if accepted { ReadingKind::Accepted } else { ReadingKind::Rejected };
-        plan.judged(sensor, kind, || is_clear);
+        let heard =
+            Heard { sensor, fired: now, echoes: &[], firing: plan.last_firing(sensor, 0), t_delta: Micros::new(150) };
+        plan.judged(&heard, &heard.unjudged(Some(kind)), &judge(is_clear));
     }
     plan.end_period(plan.deadline());
     plan.begin_period(|sensor| fired[usize::from(sensor)]);

@@ -61,6 +61,7 @@ impl Pilots {
 pub const fn steered_as(method: Method) -> Method {
     match method {
         Method::SequentialVotes => Method::Sequential,
+        Method::Flow => Method::EerufHopping,
         _ => method,
     }
 }

@@ -94,7 +94,10 @@ pub(crate) fn start_all<'a>(
         let random = seed.of(DITHER).of(index as u64);
         let now = clock.instant(start);
         let ring = match (plan, own.take_firing(index)) {
-            (Some(plan), None) => method.start(&RingStart { robot, plan, hopping: options.hopping, random, now }),
+            (Some(plan), None) => {
+                let Options { hopping, flow, .. } = *options;
+                method.start(&RingStart { robot, plan, hopping, flow, random, now })
+            }
             (_, Some(firing)) => method.start_own(robot, firing, now),
             // Every robot has one of the two.
             (None, None) => continue,

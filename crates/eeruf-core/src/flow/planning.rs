@@ -1,0 +1,241 @@
+//! The gaps of the next cycle of a flow ring.
+
+use super::plan::FlowPlan;
+use super::slot::{FIRED, GIVEN, QUIET_US, WILL_BE_SOLO};
+use crate::hopping::CATCHES_UP;
+use crate::plan::Plan;
+use crate::time::{Instant, Micros};
+
+impl<const K: usize> FlowPlan<K> {
+    /// Decides on the cycle that has begun. `fired` says when a sensor that has fired last did.
+    pub(super) fn plan(&mut self, fired: impl Fn(u8) -> Instant) {
+        let most = self.longest_cycle();
+        self.fastest = 0;
+        self.put_in_order();
+        self.give_gaps(self.units(most, false));
+        self.place_firings(fired);
+        self.obey_pause();
+    }
+
+    /// The longest that this cycle may take: the shorter the faster the robot moved in the last.
+    fn longest_cycle(&self) -> Micros {
+        let settings = &self.settings;
+        let travel = settings.travel.as_micros();
+        // Changes are at most 65,535 us where they count.
+        let most = match self.fastest {
+            0 => settings.longest_cycle,
+            fastest if fastest <= travel && self.length >= settings.longest_cycle => settings.longest_cycle,
+            fastest => {
+                let length = u64::from(self.length.as_micros()) * u64::from(travel) / u64::from(fastest);
+                Micros::new(u32::try_from(length).unwrap_or(u32::MAX)).min(settings.longest_cycle)
+            }
+        };
+        most.max(settings.shortest_cycle)
+    }
+
+    /// A time in units of the grid.
+    fn units(&self, time: Micros, up: bool) -> u16 {
+        let unit = self.unit.as_micros().max(1);
+        let time = time.as_micros() + if up { unit - 1 } else { 0 };
+        u16::try_from(time / unit).unwrap_or(u16::MAX)
+    }
+
+    fn quiet_units(&self, quiet: u8) -> u8 {
+        self.units(Micros::new(u32::from(quiet) * QUIET_US), true).min(255) as u8
+    }
+
+    /// The sensor that fires in a turn, if all do: each as far from the one before as the ring allows, since neighbours
+    /// hear each other loudest.
+    pub(super) fn sensor_of(&self, turn: u8) -> u8 {
+        let sensors = self.code.sensors() as u8;
+        let stride = stride(sensors);
+        let (mut sensor, mut left) = (0, turn);
+        while left > 0 {
+            sensor += stride;
+            if sensor >= sensors {
+                sensor -= sensors;
+            }
+            left -= 1;
+        }
+        sensor
+    }
+
+    /// Lists the sensors that fire.
+    fn put_in_order(&mut self) {
+        let sensors = self.code.sensors() as u8;
+        let stride = stride(sensors);
+        self.planned = 0;
+        let mut sensor = 0;
+        for _ in 0..sensors {
+            if self.is_enabled(sensor) {
+                if let Some(slot) = self.slots.get_mut(usize::from(self.planned)) {
+                    slot.order = sensor;
+                    self.planned += 1;
+                }
+            }
+            sensor += stride;
+            if sensor >= sensors {
+                sensor -= sensors;
+            }
+        }
+    }
+
+    /// Gives each firing the gap to the next, within `most` units in all.
+    fn give_gaps(&mut self, most: u16) {
+        let least = self.quiet_units(super::plan::quiet(self.settings.shortest_gap)).max(1);
+        let mut sum = 0;
+        for place in 0..self.planned {
+            let gap = self.need(place).max(least);
+            self.set_gap(place, gap);
+            sum += u16::from(gap);
+        }
+        if sum > most {
+            sum = u16::from(least) * u16::from(self.planned);
+            let mut left = most.saturating_sub(sum);
+            for place in 0..self.planned {
+                self.set_gap(place, least);
+                let sensor = self.order(place);
+                if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
+                    slot.set(GIVEN, false);
+                }
+            }
+            while let Some(place) = self.longest_unserved() {
+                let sensor = self.order(place);
+                let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { break };
+                slot.set(GIVEN, true);
+                let (before, after) = (slot.before, slot.after);
+                let previous = if place == 0 { self.planned - 1 } else { place - 1 };
+                for (place, quiet) in [(previous, before), (place, after)] {
+                    let (need, has) = (self.quiet_units(quiet), self.gap(place));
+                    let more = u16::from(need.saturating_sub(has)).min(left);
+                    self.set_gap(place, has + more as u8);
+                    left -= more;
+                    sum += more;
+                }
+                if left == 0 {
+                    break;
+                }
+            }
+        }
+        let least_sum = self.units(self.settings.shortest_cycle, true);
+        if let Some(last) = self.planned.checked_sub(1) {
+            if sum < least_sum {
+                let gap = u16::from(self.gap(last)) + least_sum - sum;
+                self.set_gap(last, gap.min(255) as u8);
+            }
+        }
+    }
+
+    /// The gap after this place that the sensors on both sides need.
+    fn need(&self, place: u8) -> u8 {
+        let next = if place + 1 < self.planned { place + 1 } else { 0 };
+        let after = self.slots.get(usize::from(self.order(place))).map_or(0, |slot| slot.after);
+        let before = self.slots.get(usize::from(self.order(next))).map_or(0, |slot| slot.before);
+        self.quiet_units(after.max(before))
+    }
+
+    fn longest_unserved(&self) -> Option<u8> {
+        let mut longest = None;
+        for place in 0..self.planned {
+            let Some(slot) = self.slots.get(usize::from(self.order(place))) else { continue };
+            if !slot.is(GIVEN) && longest.is_none_or(|(most, _)| slot.unserved > most) {
+                longest = Some((slot.unserved, place));
+            }
+        }
+        longest.map(|(_, place)| place)
+    }
+
+    fn gap(&self, place: u8) -> u8 {
+        self.slots.get(usize::from(place)).map_or(0, |slot| slot.gap)
+    }
+
+    fn set_gap(&mut self, place: u8, gap: u8) {
+        if let Some(slot) = self.slots.get_mut(usize::from(place)) {
+            slot.gap = gap;
+        }
+    }
+
+    /// Adds the gaps up to firing times.
+    fn place_firings(&mut self, fired: impl Fn(u8) -> Instant) {
+        let mut at = 0;
+        for place in 0..self.planned {
+            let sensor = self.order(place);
+            if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
+                slot.at = at;
+            }
+            let rests = self.rests_for(sensor, fired(sensor));
+            let short = rests.saturating_sub(self.offset(sensor));
+            at += self.units(short, true);
+            if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
+                slot.at = at;
+            }
+            at += u16::from(self.gap(place));
+        }
+        let empty = if self.planned == 0 { self.units(self.settings.shortest_cycle, true) } else { at };
+        self.length = Micros::new(u32::from(empty) * self.unit.as_micros());
+        for place in 0..self.planned {
+            let sensor = self.order(place);
+            let solo = self.quiet_before(place) >= self.dies && self.quiet_after(place) >= self.closes;
+            if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
+                slot.set(WILL_BE_SOLO, solo);
+            }
+        }
+    }
+
+    /// Time from the firing before one to it.
+    fn quiet_before(&self, place: u8) -> Micros {
+        let own = self.offset(self.order(place));
+        match place.checked_sub(1) {
+            Some(before) => own.saturating_sub(self.offset(self.order(before))),
+            None => own.saturating_add(self.silent_for()),
+        }
+    }
+
+    fn quiet_after(&self, place: u8) -> Micros {
+        let own = self.offset(self.order(place));
+        let next = if place + 1 < self.planned { self.offset(self.order(place + 1)) } else { self.length };
+        next.saturating_sub(own)
+    }
+
+    /// Time from the last firing of any sensor to the start of the cycle.
+    fn silent_for(&self) -> Micros {
+        self.start.since(self.last_fired)
+    }
+
+    /// How long after the cycle's start a sensor that has last `fired` then still listens.
+    fn rests_for(&self, sensor: u8, fired: Instant) -> Micros {
+        let rested = fired + self.window;
+        let rests = if self.start.has_reached(rested) { Micros::ZERO } else { rested.since(self.start) };
+        let has_fired = self.slots.get(usize::from(sensor)).is_some_and(|slot| slot.is(FIRED));
+        // A clock that has jumped says nothing about when that was.
+        if has_fired && rests <= self.window.saturating_add(CATCHES_UP) { rests } else { Micros::ZERO }
+    }
+
+    /// Takes a sensor out of those that are still to fire.
+    pub(super) fn leave_out(&mut self, sensor: u8) {
+        let Some(at) = (self.place..self.planned).find(|&at| self.order(at) == sensor) else { return };
+        self.planned -= 1;
+        for at in at..self.planned {
+            let next = self.order(at + 1);
+            if let Some(slot) = self.slots.get_mut(usize::from(at)) {
+                slot.order = next;
+            }
+        }
+    }
+}
+
+/// The distance in the ring from one firing to the next: neighbours hear each other loudest.
+const fn stride(sensors: u8) -> u8 {
+    let mut stride = if sensors > 6 { sensors / 3 + 1 } else { 1 };
+    while !coprime(stride, sensors) {
+        stride += 1;
+    }
+    stride
+}
+
+const fn coprime(mut a: u8, mut b: u8) -> bool {
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a <= 1
+}

@@ -1,0 +1,56 @@
+//! [`FlowSettings`]: how a flow ring spaces its firings and weighs its readings.
+
+use crate::time::Micros;
+use crate::tracker::TrackerSettings;
+
+/// How a [`FlowRing`](super::FlowRing) fires and believes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct FlowSettings {
+    /// How readings are weighed.
+    pub tracker: TrackerSettings,
+    /// Step of the code: crosstalk moves by at least as much from phase to phase. Above the tracker's `t_delta`.
+    pub step: Micros,
+    /// Least time between two firings, at most [`LONGEST_GAP`](Self::LONGEST_GAP) as all times of quiet.
+    pub shortest_gap: Micros,
+    /// Quiet that a reading adds that comes before what is believed.
+    pub masked_adds: Micros,
+    /// Quiet that a believed reading takes away.
+    pub believed_takes: Micros,
+    /// Quiet that a sensor gains after each [`unserved_after`](Self::unserved_after) firings with nothing believed.
+    pub unserved_adds: Micros,
+    /// Firings with nothing believed after which a sensor gains quiet, at least 1.
+    pub unserved_after: u8,
+    /// Shortest time from a cycle to the next.
+    pub shortest_cycle: Micros,
+    /// Longest time from a cycle to the next, of a robot that stands.
+    pub longest_cycle: Micros,
+    /// Change of an echo by odometry that a cycle may bring: it bounds the cycle of a robot that moves.
+    pub travel: Micros,
+}
+
+impl FlowSettings {
+    /// Longest time of quiet: 65 ms.
+    pub const LONGEST_GAP: Micros = Micros::new(255 << 8);
+
+    /// For every robot.
+    pub const DEFAULT: Self = Self {
+        tracker: TrackerSettings::BALANCED.with_memory(5),
+        step: Micros::new(240),
+        shortest_gap: Micros::new(7_500),
+        masked_adds: Micros::from_millis(5),
+        believed_takes: Micros::from_millis(1),
+        unserved_adds: Micros::from_millis(12),
+        unserved_after: 3,
+        shortest_cycle: Micros::from_millis(60),
+        longest_cycle: Micros::from_millis(400),
+        travel: Micros::new(580),
+    };
+}
+
+impl Default for FlowSettings {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}

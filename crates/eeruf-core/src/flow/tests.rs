@@ -1,0 +1,195 @@
+//! Cycles of a flow ring: order, gaps, the grid, and what sensors gain and give back.
+
+extern crate std;
+
+use super::*;
+use crate::judge::{EchoTracker, Firing, Heard, Judge};
+use crate::plan::{Plan, check_plan};
+use crate::reading::{ReadingKind, Verdict};
+use crate::schedule::Phase;
+use crate::time::Micros;
+use std::vec::Vec;
+
+const WINDOW: Micros = Micros::from_millis(36);
+
+fn listening() -> HoppingListening {
+    HoppingListening::new(WINDOW).with_blanking(Micros::new(2_380))
+}
+
+fn plan<const K: usize>(sensors: usize) -> FlowPlan<K> {
+    FlowPlan::new(sensors, FlowSettings::DEFAULT, listening(), Instant::from_micros(0)).unwrap()
+}
+
+/// A judge that believes an echo at 20 ms of each of eight sensors.
+fn judge() -> impl Judge {
+    let mut tracker = EchoTracker::<8>::new(FlowSettings::DEFAULT.tracker).unwrap();
+    for (sensor, phase) in (0..8).flat_map(|sensor| (0..5).map(move |phase| (sensor, phase))) {
+        tracker.push(sensor, Some(Micros::from_millis(20)), Firing::new(Phase(phase))).unwrap();
+    }
+    tracker
+}
+
+/// Fires a cycle on time; `hears` gives each sensor's echo and the kind of its reading. Returns who fired when, after
+/// the start of the cycle, and the cycle's length.
+fn cycle<const K: usize>(
+    plan: &mut FlowPlan<K>,
+    fired: &mut [Instant; K],
+    expected_change_us: i32,
+    hears: impl Fn(u8) -> (u32, ReadingKind),
+) -> (Vec<(u8, u32, bool)>, u32) {
+    let (judge, start) = (judge(), plan.start);
+    let mut seen = Vec::new();
+    while let Some((sensor, _)) = plan.next_firing() {
+        let now = plan.deadline();
+        plan.fire(now);
+        fired[usize::from(sensor)] = now;
+        let firing = Firing { expected_change_us, ..plan.last_firing(sensor, 0) };
+        seen.push((sensor, now.since(start).as_micros(), firing.solo));
+        let (echo_us, kind) = hears(sensor);
+        let echoes = [Micros::new(echo_us)];
+        let heard = Heard { sensor, fired: now, echoes: &echoes, firing, t_delta: Micros::new(150) };
+        let verdict = Verdict { kind, ..heard.unjudged(None) };
+        plan.judged(&heard, &verdict, &judge);
+    }
+    let end = plan.deadline();
+    plan.end_period(end);
+    plan.begin_period(|sensor| fired[usize::from(sensor)]);
+    (seen, end.since(start).as_micros())
+}
+
+const WELL: fn(u8) -> (u32, ReadingKind) = |_| (20_000, ReadingKind::Accepted);
+const MASKED: fn(u8) -> (u32, ReadingKind) = |_| (6_000, ReadingKind::Rejected);
+
+#[test]
+fn flow_keeps_what_every_plan_promises() {
+    for seed in 0..20 {
+        let now = Instant::from_micros(u32::MAX - 1_000_000);
+        check_plan(&mut FlowPlan::<12>::new(8, FlowSettings::DEFAULT, listening(), now).unwrap(), now, 3_000, seed)
+            .unwrap();
+    }
+    for sensors in 1..=24 {
+        let now = Instant::from_micros(0);
+        check_plan(&mut plan::<24>(sensors), now, 1_000, 7).unwrap();
+    }
+}
+
+#[test]
+fn a_ring_that_is_believed_fires_each_sensor_once_in_the_shortest_cycle() {
+    let (mut plan, mut fired) = (plan::<8>(8), [Instant::from_micros(0); 8]);
+    for _ in 0..20 {
+        let (seen, length) = cycle(&mut plan, &mut fired, 0, WELL);
+        // Neighbours never fire one after the other.
+        assert_eq!(seen.iter().map(|(sensor, ..)| *sensor).collect::<Vec<_>>(), [0, 3, 6, 1, 4, 7, 2, 5]);
+        // A multiple of the grid of 2,640 us.
+        assert_eq!(length, 63_360);
+        assert!(seen.iter().all(|(_, _, solo)| !solo));
+    }
+}
+
+#[test]
+fn firings_move_on_the_grid_by_the_code_whatever_gaps_are() {
+    let (mut plan, mut fired) = (plan::<8>(8), [Instant::from_micros(0); 8]);
+    let code = plan.code;
+    for number in 0..60_u32 {
+        let phase = plan.phase().0;
+        let (seen, length) = cycle(&mut plan, &mut fired, 0, |sensor| {
+            if (u32::from(sensor) + number) % 5 < 2 { MASKED(sensor) } else { WELL(sensor) }
+        });
+        assert_eq!(length % 2_640, 0);
+        for (turn, (_, at, _)) in seen.into_iter().enumerate() {
+            assert_eq!(at % 2_640, code.wait(turn, phase).as_micros(), "cycle {number}, turn {turn}");
+        }
+    }
+}
+
+#[test]
+fn a_masked_sensor_gains_quiet_until_it_fires_alone_and_gives_it_back() {
+    let (mut plan, mut fired) = (plan::<8>(8), [Instant::from_micros(0); 8]);
+    let masked = |sensor| if sensor == 4 { MASKED(sensor) } else { WELL(sensor) };
+    let alone = (1..20).find(|_| {
+        let (seen, length) = cycle(&mut plan, &mut fired, 0, masked);
+        assert!(length < 200_000, "{length}");
+        seen.iter().any(|&(sensor, _, solo)| {
+            assert!(!solo || sensor == 4);
+            solo
+        })
+    });
+    assert!(alone.is_some_and(|cycles| cycles > 2), "{alone:?}");
+    let (before, after) = plan.quiet(4).unwrap();
+    assert!(before >= WINDOW && after >= Micros::from_millis(33), "{before} {after}");
+    for _ in 0..40 {
+        cycle(&mut plan, &mut fired, 0, WELL);
+    }
+    assert_eq!(plan.quiet(4), plan.quiet(0));
+    assert_eq!(plan.quiet(8), None);
+}
+
+#[test]
+fn a_solo_firing_has_silence_before_and_after() {
+    let (mut plan, mut fired) = (plan::<8>(8), [Instant::from_micros(0); 8]);
+    let mut firings = Vec::new();
+    for number in 0..100_u32 {
+        let start = plan.start.as_micros();
+        let hears = |sensor: u8| if (number / 10 + u32::from(sensor)) % 4 == 0 { MASKED(sensor) } else { WELL(sensor) };
+        let (seen, _) = cycle(&mut plan, &mut fired, 0, hears);
+        firings.extend(seen.into_iter().map(|(_, at, solo)| (start + at, solo)));
+    }
+    let solos = firings.windows(3).filter(|firings| firings[1].1);
+    let mut many = 0;
+    for firings in solos {
+        many += 1;
+        assert!(firings[1].0 - firings[0].0 > 36_000, "{firings:?}");
+        assert!(firings[2].0 - firings[1].0 >= 36_000 - 2_380, "{firings:?}");
+    }
+    assert!(many > 20, "{many}");
+}
+
+#[test]
+fn a_cycle_ends_within_the_longest_for_a_robot_that_stands_and_sooner_for_one_that_moves() {
+    let (mut plan, mut fired) = (plan::<12>(12), [Instant::from_micros(0); 12]);
+    let mut lengths = (0..40).map(|_| cycle(&mut plan, &mut fired, 0, |_| (6_000, ReadingKind::Rejected)).1);
+    let longest = lengths.by_ref().skip(10).max().unwrap();
+    assert!((390_000..=400_000).contains(&longest), "{longest}");
+    // 1 m/s: 580 us of change are a tenth of a second.
+    let mut length = longest;
+    for _ in 0..20 {
+        let change = -(2.0 * f64::from(length) / 343.0) as i32;
+        length = cycle(&mut plan, &mut fired, change, |_| (6_000, ReadingKind::Rejected)).1;
+    }
+    assert!((93_600..=100_000).contains(&length), "{length}");
+}
+
+#[test]
+fn who_is_unserved_longest_gets_its_quiet_first() {
+    let (mut plan, mut fired) = (plan::<12>(12), [Instant::from_micros(0); 12]);
+    for slot in &mut plan.slots {
+        (slot.before, slot.after) = (200, 200);
+    }
+    // All need more than there is; sensor 7 has been unserved for longest.
+    let nothing = |sensor| if sensor == 7 { (20_000, ReadingKind::NoEcho) } else { WELL(sensor) };
+    for _ in 0..6 {
+        for slot in &mut plan.slots {
+            (slot.before, slot.after) = (149, 149);
+        }
+        cycle(&mut plan, &mut fired, 0, nothing);
+    }
+    for slot in &mut plan.slots {
+        (slot.before, slot.after) = (149, 149);
+    }
+    let (seen, _) = cycle(&mut plan, &mut fired, -1_000, nothing);
+    assert!(seen.iter().any(|&(sensor, _, solo)| sensor == 7 && solo), "{seen:?}");
+}
+
+#[test]
+fn each_error_names_what_is_wrong() {
+    let now = Instant::from_micros(0);
+    let with = |change: fn(&mut FlowSettings)| {
+        let mut settings = FlowSettings::DEFAULT;
+        change(&mut settings);
+        FlowPlan::<8>::new(8, settings, listening(), now).unwrap_err()
+    };
+    assert!(matches!(with(|of| of.step = Micros::new(150)), HoppingError::TDelta { .. }));
+    assert!(matches!(with(|of| of.shortest_cycle = Micros::from_millis(38)), HoppingError::Period { .. }));
+    let many = FlowPlan::<8>::new(9, FlowSettings::DEFAULT, listening(), now);
+    assert!(matches!(many, Err(HoppingError::Sensors { sensors: 9, most: 8 })));
+}

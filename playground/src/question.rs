@@ -35,7 +35,7 @@ enum Answer<T> {
 /// Answers a question.
 pub(crate) fn answer(question: &[u8]) -> String {
     match serde_json::from_slice(question) {
-        Ok(Question::Methods {}) => json(Ok(Method::ALL)),
+        Ok(Question::Methods {}) => json(Ok(Method::usual().collect::<Vec<_>>())),
         Ok(Question::Trace { scene }) => json(world(&scene).and_then(|world| trace::trace(&world))),
         Ok(Question::Run { scene, method, periods, shown_s }) => json(world(&scene).and_then(|world| {
             let method = method.parse().map_err(|error: eeruf_sim::UnknownMethod| error.to_string())?;

@@ -51,6 +51,12 @@ _Method = Literal[
     "eeruf_hopping",
     "flow",
     "multi_echo",
+    "in_turn",
+    "arrays",
+    "groups",
+    "sync_line",
+    "free_running",
+    "table",
 ]
 _Cause = Literal["nothing", "own", "stale", "crosstalk", "external"]
 _Module = (
@@ -910,7 +916,7 @@ class Robot:
     def __new__(
         cls,
         pose: _Pose,
-        sensors: _Int | Iterable[_Pose],
+        sensors: _Int | Iterable[_Pose] | None = None,
         spacing_rad: float | None = None,
         radius_m: float | None = None,
         module: _Module | Sequence[_Module] = "polaroid-6500",
@@ -938,6 +944,9 @@ class Robot:
         height_m: float | Iterable[float] = 0.3,
         together: Iterable[Iterable[_Int]] = (),
         transducer: _Module | Sequence[_Module] | None = None,
+        audible_us: _Int | None = None,
+        firing: dict[str, object] | None = None,
+        ring: str | PathLike[str] | None = None,
     ) -> Robot: ...
     def replace(self, **changes: object) -> Robot: ...
     @property
@@ -974,6 +983,10 @@ class Robot:
     def blanking_us(self) -> int | list[int]: ...
     @property
     def min_refire_us(self) -> int: ...
+    @property
+    def audible_us(self) -> int: ...
+    @property
+    def firing(self) -> dict[str, object]: ...
     @property
     def start_us(self) -> int: ...
     @property

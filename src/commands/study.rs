@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use eeruf_sim::{Method, Options, Physics, SimulationError, World, shortest_schedule_for, simulate_while, sweep};
+use eeruf_sim::{
+    Method, Options, Physics, SimulationError, Sketch, World, shortest_schedule_for, simulate_while, sweep,
+};
 
 use super::answer::Answer;
 use super::methods::chosen;
@@ -25,7 +27,8 @@ use crate::report::watch::Watch;
 /// compared), median, eeruf_immediate, eeruf (the paper's table scaled to the period, or the robot's own schedule),
 /// eeruf_best (the shortest schedule with the same guarantees), eeruf_hopping (many phases, a tracker and solo periods,
 /// so that no sensor stays blind), flow (one after the other, each with the quiet that it has needed), adaptive,
-/// multi_echo.
+/// multi_echo. By name, or if the scene says `firing`, as rings are fired today: in_turn (the next as soon as the echo
+/// came, or after a time-out), arrays, groups, sync_line, free_running, table.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The scene
@@ -98,7 +101,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 }
 
 fn study(args: &Args, world: &World) -> Result<Study, InputError> {
-    let methods = chosen(&args.methods);
+    let sketched = world.robots().iter().any(|robot| robot.firing != Sketch::default());
+    let methods = chosen(&args.methods, sketched);
     let bad = |error: &dyn std::fmt::Display| InputError::new(&args.file, None, error);
     let mut watch = Watch::new();
     let best = if methods.contains(&Method::EerufBest) {

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use eeruf_core::{Micros, Requirements};
-use eeruf_design::{PhaseFile, PhaseSchedule, parse};
+use eeruf_design::{PhaseFile, PhaseSchedule, parse, robot_ring};
 use eeruf_sim::{AnySchedule, ScheduleFile, World};
 use serde::de::DeserializeOwned;
 
@@ -68,7 +68,7 @@ pub(crate) fn read_schedule(file: &Path) -> Result<AnySchedule, InputError> {
 /// Reads a scene with its robots.
 pub(crate) fn read_world(file: &Path) -> Result<World, InputError> {
     let text = read_text(file, Kind::Scene)?;
-    let world = World::from_text(file, &text).map_err(|error| {
+    let world = World::from_text_with(file, &text, robot_ring).map_err(|error| {
         // A scene names the file that is to blame, which may be that of a schedule.
         InputError::new(&error.file, error.line.map(|line| line as u64), expected(&error.message))
     })?;

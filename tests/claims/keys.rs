@@ -80,7 +80,7 @@ fn keys_of_scene_files_are_those_in_the_document() {
         ("pose", "[[robot]]\npose = { unknown = 1 }".to_owned()),
         ("schedule", format!("{robot}{ring}schedule = {{ unknown = 1 }}")),
     ];
-    tables.extend(["air", "noise"].map(|table| (table, format!("[{table}]\nunknown = 1"))));
+    tables.extend(["air", "noise", "firing"].map(|table| (table, format!("[{table}]\nunknown = 1"))));
     tables.extend(["wall", "pole", "fault"].map(|table| (table, format!("[[{table}]]\nunknown = 1"))));
     tables.extend(["ring", "motion", "clock", "body"].map(|table| (table, format!("{robot}{table}.unknown = 1"))));
     for (table, text) in &tables {

@@ -4,52 +4,36 @@
 use std::path::Path;
 
 use eeruf_core::{Micros, ReadingKind};
-use eeruf_design::{RingSpec, Search};
+use eeruf_design::{RingSpec, Search, robot_ring};
 use eeruf_sim::{Method, Options, World, simulate};
 
-/// Sensors around a hull of 1.6 m by 0.8 m: place and heading, in metres and degrees.
-const CAR: [[f64; 3]; 12] = [
-    [0.8, 0.35, 30.0],
-    [0.82, 0.12, 6.0],
-    [0.82, -0.12, -6.0],
-    [0.8, -0.35, -30.0],
-    [0.5, -0.4, -90.0],
-    [-0.5, -0.4, -90.0],
-    [-0.8, -0.35, -150.0],
-    [-0.82, -0.12, -174.0],
-    [-0.82, 0.12, 174.0],
-    [-0.8, 0.35, 150.0],
-    [-0.5, 0.4, 90.0],
-    [0.5, 0.4, 90.0],
+/// The mower's sensors: eight around the hull, four over its front edge.
+const MOWER: [[f64; 3]; 12] = [
+    [0.35, 0.0, 0.0],
+    [0.25, -0.2, -45.0],
+    [0.0, -0.25, -90.0],
+    [-0.25, -0.2, -135.0],
+    [-0.35, 0.0, 180.0],
+    [-0.25, 0.2, 135.0],
+    [0.0, 0.25, 90.0],
+    [0.25, 0.2, 45.0],
+    [0.36, 0.12, 20.0],
+    [0.36, -0.12, -20.0],
+    [0.36, 0.06, 5.0],
+    [0.36, -0.06, -5.0],
 ];
 
-/// A scene in which the robot of a ring file stands, with its sensors at these places.
-fn scene(spec: &RingSpec, modules: &[&str], places: &[[f64; 3]]) -> String {
-    let design = spec.shortest(&Search::default(), &mut ()).unwrap().unwrap();
-    let requirements = design.spec.problem().requirements;
-    let list = |of: &dyn Fn(usize) -> Micros| {
-        (0..spec.sensors).map(|sensor| of(sensor).as_micros().to_string()).collect::<Vec<_>>().join(", ")
-    };
-    let poses = places.iter().map(|[x, y, deg]| format!("{{ x_m = {x:?}, y_m = {y:?}, heading_deg = {deg:?} }}"));
-    let modules = modules.iter().map(|module| format!("{module:?}"));
-    let together: Vec<Vec<usize>> = spec.uneven.as_ref().map_or(vec![], |uneven| {
-        let members = |set: &u64| (0..spec.sensors).filter(|sensor| set >> sensor & 1 == 1).collect();
-        uneven.uneven().together.iter().map(members).collect()
-    });
-    format!(
-        "seed = 2\nmax_order = 2\n[[wall]]\npoints_m = [[-2.5, -1.8], [2.6, -1.8], [2.6, 1.7], [-2.5, 1.7]]\n\
-         closed = true\n[[robot]]\npose = {{ x_m = 0, y_m = 0 }}\nsensors = [{}]\nmodule = [{}]\nblanking_us = 900\n\
-         t_delta_us = [{}]\nwindow_us = [{}]\ntogether = {together:?}\n[robot.schedule]\n{}",
-        poses.collect::<Vec<_>>().join(", "),
-        modules.collect::<Vec<_>>().join(", "),
-        list(&|sensor| requirements.t_delta_of(sensor)),
-        list(&|sensor| requirements.window_of(sensor)),
-        design.schedule.to_toml()
-    )
+const ROOM: &str = "seed = 2\nmax_order = 2\n[[wall]]\nclosed = true\n\
+                    points_m = [[-2.5, -1.8], [2.6, -1.8], [2.6, 1.7], [-2.5, 1.7]]\n";
+
+/// A scene in which the robot of a ring file stands, with more keys of the robot.
+fn scene(ring: &str, more: &str) -> Result<World, String> {
+    let text = format!("{ROOM}[[robot]]\npose = {{ x_m = 0, y_m = 0 }}\nring = {ring:?}\n{more}\n");
+    World::from_text_with(Path::new("rings/scene.toml"), &text, robot_ring).map_err(|error| error.to_string())
 }
 
-fn ring(name: &str) -> RingSpec {
-    RingSpec::from_text(&std::fs::read_to_string(format!("rings/{name}.toml")).unwrap()).unwrap()
+fn makes(list: &[&str]) -> String {
+    format!("module = {list:?}")
 }
 
 #[test]
@@ -57,21 +41,80 @@ fn a_car_with_two_makes_and_a_mower_fire_as_their_ring_files_say() {
     // The front of another make, as the file says.
     let car: Vec<_> = (0..12).map(|sensor| if sensor < 4 { "jsn-sr04t" } else { "hc-sr04" }).collect();
     let mower: Vec<_> = (0..12).map(|sensor| if sensor < 8 { "hc-sr04" } else { "ping" }).collect();
-    for (name, modules) in [("car-12", car), ("mower-8-and-4", mower)] {
-        let spec = ring(name);
-        let text = scene(&spec, &modules, &CAR);
-        let world = World::from_text(Path::new("scene.toml"), &text).unwrap();
+    let places = MOWER.map(|[x, y, deg]| format!("{{ x_m = {x:?}, y_m = {y:?}, heading_deg = {deg:?} }}"));
+    let places = format!("sensors = [{}]\n", places.join(", "));
+    for (name, modules, places) in [("car-12", car, ""), ("mower-8-and-4", mower, &*places)] {
+        let text = std::fs::read_to_string(format!("rings/{name}.toml")).unwrap();
+        let spec = RingSpec::from_text(&text).unwrap();
+        let design = spec.shortest(&Search::default(), &mut ()).unwrap().unwrap();
+        let schedule = format!("[robot.schedule]\n{}", design.schedule.to_toml());
+        let more = format!("{places}{}\nblanking_us = 900\n{schedule}", makes(&modules));
+        let world = scene(&format!("{name}.toml"), &more).unwrap();
         let robot = &world.robots()[0];
         assert_eq!((0..12).map(|sensor| robot.module_of(sensor).name).collect::<Vec<_>>(), modules);
+        // What design asked of the schedule, driving as fast as the file says.
+        let requirements = design.spec.problem().requirements;
+        for (sensor, limits) in robot.limits.iter().enumerate() {
+            assert_eq!(limits.window, requirements.window_of(sensor), "{name}");
+            let off = limits.t_delta.abs_diff(requirements.t_delta_of(sensor));
+            assert!(off <= Micros::new(2), "{name}: {} {}", limits.t_delta, requirements.t_delta_of(sensor));
+        }
+        let together = requirements.uneven.map_or(vec![], |uneven| uneven.together.to_vec());
+        assert_eq!(robot.together, together);
         let readings = simulate(&world, Method::Eeruf, &Options::periods(200)).unwrap();
         assert!(readings.len() > 12 * 150, "{name}: {}", readings.len());
-        let window = |sensor: u8| spec.problem().requirements.window_of(usize::from(sensor)).as_micros();
         for k in 0..readings.len() {
-            let t_echo_us = readings.earliest_us[k];
-            assert!(t_echo_us.is_nan() || t_echo_us <= f64::from(window(readings.sensor[k])), "{name}: {t_echo_us}");
+            let (t_echo_us, window) = (readings.earliest_us[k], robot.limits[usize::from(readings.sensor[k])].window);
+            assert!(t_echo_us.is_nan() || t_echo_us <= f64::from(window.as_micros()), "{name}: {t_echo_us}");
         }
         let accepted = (0..readings.len()).filter(|&k| readings.kind[k] == ReadingKind::Accepted);
         let believed: std::collections::BTreeSet<_> = accepted.map(|k| readings.sensor[k]).collect();
         assert!(believed.len() >= 4, "{name}: {believed:?}");
+    }
+}
+
+#[test]
+fn two_arrays_of_a_ring_file_fire_side_by_side() {
+    let arrays = "firing = { arrays = [[0, 1, 2, 3, 4, 5, 6, 7], [8, 9, 10, 11, 12, 13, 14, 15]] }";
+    let world = scene("../tests/data/pioneer-16.toml", &format!("{arrays}\nneighbours = 2")).unwrap();
+    let robot = &world.robots()[0];
+    assert_eq!((robot.sensors.len(), robot.neighbours, robot.window), (16, 2, Micros::new(29_138)));
+    assert!((robot.sensors[8].translation.x + 0.155).abs() < 1e-12);
+    assert!((robot.sensors[15].rotation.angle().to_degrees() - 90.0).abs() < 1e-9);
+    let readings = simulate(&world, Method::Arrays, &Options::periods(50)).unwrap();
+    let mut fired: Vec<_> = (0..readings.len()).map(|k| (readings.fired_s[k], readings.sensor[k])).collect();
+    fired.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for array in [0..8, 8..16_u8] {
+        let order: Vec<_> = fired.iter().map(|(_, sensor)| *sensor).filter(|sensor| array.contains(sensor)).collect();
+        assert!(order.len() > 100 && order.iter().zip(array.clone().cycle()).all(|(a, b)| *a == b), "{order:?}");
+    }
+    // A round of one array is not that of the other.
+    let rounds = [0, 8].map(|first| fired.iter().filter(|(_, sensor)| *sensor == first).count());
+    assert!(rounds[0] != rounds[1], "{rounds:?}");
+}
+
+#[test]
+fn what_a_ring_file_leaves_open_is_asked_for() {
+    let refused = |ring: &str, more: &str| scene(ring, more).unwrap_err();
+    let error = refused("paper-12.toml", "");
+    assert_eq!(
+        error,
+        "rings/scene.toml, line 8: robot 1: paper-12.toml: it does not say where sensors stand; expected poses or \
+         spacing_deg and radius_m in it, or sensors beside it"
+    );
+    let error = refused("car-12.toml", "sensors = [{ x_m = 0, y_m = 0 }]");
+    assert!(error.contains("car-12.toml: 1 places of sensors; expected 12, as many as it has"), "{error}");
+    assert!(refused("none.toml", "").starts_with("rings/none.toml: "));
+    let error = refused("table-i-d.toml", "");
+    assert!(error.starts_with("rings/table-i-d.toml: line ") && error.contains("unknown field"), "{error}");
+    let text = format!("{ROOM}[[robot]]\npose = {{ x_m = 0, y_m = 0 }}\nring = \"car-12.toml\"\n");
+    let error = World::from_text(Path::new("rings/scene.toml"), &text).unwrap_err().to_string();
+    assert!(error.starts_with("rings/car-12.toml: a ring file, which this reader of scenes does not know"), "{error}");
+    for (wrong, expected) in [
+        ("poses = [{ x_m = 0, y_m = 0 }]", "poses has 1 places; expected 2, as many as sensors"),
+        ("spacing_deg = 20", "expected either poses, or spacing_deg and radius_m"),
+    ] {
+        let error = robot_ring(&format!("sensors = 2\nt_delta_us = 9\nmin_interval_us = 0\nwindow_us = 9\n{wrong}"));
+        assert!(error.unwrap_err().contains(expected), "{wrong}");
     }
 }

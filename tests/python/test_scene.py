@@ -230,3 +230,56 @@ def test_faults_are_said_by_the_words_of_scene_files() -> None:
             sim.Scene(WALLS, robots=[robot], faults=[fault])  # type: ignore[list-item]
     with pytest.raises(eeruf.SceneError, match="sensors is 2; expected sensors of its robot"):
         sim.Scene(WALLS, robots=[robot], faults=[{"kind": "cut", "sensors": [2]}])
+
+
+def test_how_a_ring_is_fired_today_is_said_in_code_as_in_a_file() -> None:
+    firing = {"turn_us": 33_000, "arrays": [[0, 2], [1, 3]], "consecutive": 2}
+    robot = sim.Robot((0, 0, 0.3), 4, 0.5, 0.1, module="hc-sr04", firing=firing)
+    assert robot.firing == firing
+    assert robot.audible_us == 33_159
+    assert eval(repr(robot), {"Robot": sim.Robot}) == robot
+    assert robot.replace(module="polaroid-6500").audible_us == 73_252
+    made = sim.Scene(WALLS, robots=[robot])
+    again = sim.Scene.from_toml(made.to_toml())
+    assert again.robots[0].firing == firing
+    for method in ("in_turn", "arrays", "sync_line"):
+        readings = sim.simulate(made, method, periods=30)
+        assert np.array_equal(readings.fired_s, sim.simulate(again, method, periods=30).fired_s)
+        first = np.sort(readings.fired_s[readings.sensor == 0])
+        assert np.diff(first).min() > {"in_turn": 0.131, "arrays": 0.065, "sync_line": 0.059}[method]
+    with pytest.raises(eeruf.ArgumentError, match="firing: unknown field `turns_us`, expected one of `timeout_us`"):
+        robot.replace(firing={"turns_us": 1})
+    with pytest.raises(eeruf.SceneError, match="timeout_us is 40000; expected 1 to window_us"):
+        sim.Scene(WALLS, robots=[robot.replace(firing={"timeout_us": 40_000})])
+
+
+def test_a_ring_file_makes_the_same_robot_in_code_as_in_a_scene(tmp_path: Path) -> None:
+    rings = SCENES.parent / "rings"
+    makes = ["jsn-sr04t"] * 4 + ["hc-sr04"] * 8
+    made = sim.Robot((0, 0, 0), ring=rings / "car-12.toml", module=makes, blanking_us=900)
+    ring = (rings / "car-12.toml").read_text()
+    (tmp_path / "car.toml").write_text(ring)
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        f"[[robot]]\npose = {{ x_m = 0, y_m = 0 }}\nring = 'car.toml'\nmodule = {makes}\nblanking_us = 900\n"
+    )
+    read = sim.Scene.read_toml(scene).robots[0]
+    assert read == made
+    assert (made.sensors, made.neighbours, made.module) == (12, 3, makes)
+    far_m = [4.5, 5.5, 5.5, 4.5, 2.0, 2.0, 2.5, 3.0, 3.0, 2.5, 2.0, 2.0]
+    assert made.window_us == [round(2e6 * range_m / 343.2) for range_m in far_m]
+    # Driving as fast as the file says, unless odometry knows: 2 v T / c, of 75 ms at 1.5 m/s.
+    assert made.t_delta_us == [150 + 656] * 4 + [400 + 656] * 8
+    standing = sim.Robot((0, 0, 0), ring=rings / "car-12.toml", odometry=True)
+    assert standing.t_delta_us == [150] * 4 + [400] * 8
+    pioneer = SCENES.parent / "tests" / "data" / "pioneer-16.toml"
+    arrays = [list(range(8)), list(range(8, 16))]
+    robot = sim.Robot((0, 0, 0), ring=pioneer, firing={"arrays": arrays})
+    readings = sim.simulate(sim.Scene(WALLS, robots=[robot]), "arrays", periods=50)
+    for array in arrays:
+        order = readings.sensor[np.argsort(readings.fired_s, kind="stable")]
+        assert order[np.isin(order, array)][:16].tolist() == array * 2
+    with pytest.raises(eeruf.ArgumentError, match="ring: it does not say where sensors stand"):
+        sim.Robot((0, 0, 0), ring=rings / "paper-12.toml")
+    with pytest.raises(eeruf.ArgumentError, match="nowhere"):
+        sim.Robot((0, 0, 0), ring="nowhere.toml")

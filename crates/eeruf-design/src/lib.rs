@@ -62,7 +62,7 @@ pub use layout::{LayoutKey, LayoutName, OwnedLayout};
 pub use limits::{four, neighbours_in_range, sensors_in_range};
 pub use questions::{CURVE_BUDGET, CURVE_POINTS, CurvePoint, Fit, Need};
 pub use reals::{RealPeriod, over_reals, real_budget};
-pub use ring::{RingFile, RingSpec};
+pub use ring::{RingFile, RingSpec, robot_ring};
 pub use shortest::{Search, Shortest, shortest};
 pub use text::{TextError, parse};
 pub use uneven::OwnedUneven;

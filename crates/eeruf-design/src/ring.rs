@@ -1,8 +1,9 @@
 //! Ring files: what a designer knows of a ring, turned into what a schedule must meet.
 
 use eeruf_core::search::PeriodProblem;
-use eeruf_core::{Criterion, Micros, Requirements, SpeedOfSound};
+use eeruf_core::{Criterion, Micros, Requirements, SensorLimits, SpeedOfSound};
 use eeruf_modules::{Module, ModulesFile};
+use eeruf_sim::{Pose, Robot, RobotRing, Transducer, Vector};
 use serde::Deserialize;
 
 use crate::each::Each;
@@ -44,6 +45,10 @@ pub struct RingFile {
     /// The time that the controller needs for one firing; no two are closer.
     handling_us: Option<u32>,
     temperature_c: Option<f64>,
+    /// Where each sensor is on the robot, or the arc on which they stand, for scenes.
+    poses: Option<Vec<PlaceFile>>,
+    spacing_deg: Option<f64>,
+    radius_m: Option<f64>,
     /// Pairs of sensors with an interval of their own.
     #[serde(default)]
     intervals_us: Vec<(usize, usize, u32)>,
@@ -53,6 +58,16 @@ pub struct RingFile {
     /// Sensors that fire at the same instants.
     #[serde(default)]
     together: Vec<Vec<usize>>,
+}
+
+/// Where a sensor is on its robot.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlaceFile {
+    x_m: f64,
+    y_m: f64,
+    #[serde(default)]
+    heading_deg: f64,
 }
 
 /// What a ring file asks for.
@@ -85,6 +100,8 @@ pub struct RingSpec {
     pub handling: Micros,
     /// The module of each sensor, where the file names them.
     pub modules: Vec<Module>,
+    /// Where each sensor is on the robot, if the file says it.
+    pub poses: Vec<Pose>,
     /// What single sensors and pairs need, where they are not all alike.
     pub uneven: Option<OwnedUneven>,
 }
@@ -129,7 +146,64 @@ impl RingSpec {
     }
 }
 
+/// What a ring file says of a robot in a scene: how [`World::from_text_with`](eeruf_sim::World::from_text_with) reads
+/// one.
+///
+/// # Errors
+/// The first thing wrong with it.
+///
+/// ```
+/// let text = "sensors = 2\nmodule = \"ping\"\njitter_us = 100\nmin_interval_us = 0\nspacing_deg = 30\nradius_m = 0.2";
+/// let ring = eeruf_design::robot_ring(text)?;
+/// assert_eq!((ring.modules[1].name, ring.limits[1].t_delta.as_micros()), ("ping", 100));
+/// # Ok::<(), String>(())
+/// ```
+pub fn robot_ring(text: &str) -> Result<RobotRing, String> {
+    let at = |error: TextError| match error.line {
+        Some(line) => format!("line {line}: {}", error.message),
+        None => error.message,
+    };
+    let file = parse::<RingFile>(text).map_err(at)?;
+    let spec = file.spec()?;
+    let requirements = spec.problem().requirements;
+    let limits = (0..spec.sensors).map(|sensor| SensorLimits {
+        t_delta: requirements.t_delta_of(sensor),
+        // What only keeps a module from being triggered is no time to listen.
+        window: requirements.window_of(sensor).min(spec.listening),
+    });
+    Ok(RobotRing {
+        sensors: spec.sensors,
+        poses: spec.poses.clone(),
+        modules: spec.modules.clone(),
+        limits: limits.collect(),
+        together: requirements.uneven.map_or(vec![], |uneven| uneven.together.to_vec()),
+        speed_m_s: file.speed_m_s.unwrap_or(0.0),
+        neighbours: file.neighbours,
+    })
+}
+
 impl RingFile {
+    /// Where its sensors are, if it says that.
+    fn poses(&self) -> Result<Vec<Pose>, String> {
+        match (&self.poses, self.spacing_deg, self.radius_m) {
+            (None, None, None) => Ok(vec![]),
+            (Some(poses), None, None) if poses.len() == self.sensors => {
+                let pose =
+                    |place: &PlaceFile| Pose::new(Vector::new(place.x_m, place.y_m), place.heading_deg.to_radians());
+                Ok(poses.iter().map(pose).collect())
+            }
+            (Some(poses), None, None) => {
+                Err(format!("poses has {} places; expected {}, as many as sensors", poses.len(), self.sensors))
+            }
+            (None, Some(spacing), Some(radius)) => {
+                let spacing = number("spacing_deg", spacing, -360.0, 360.0)?.to_radians();
+                let radius = number("radius_m", radius, 0.0, 1000.0)?;
+                Ok(Robot::ring(Pose::identity(), self.sensors, spacing, radius, Transducer::HC_SR04).sensors)
+            }
+            _ => Err("expected either poses, or spacing_deg and radius_m, or none of them".to_owned()),
+        }
+    }
+
     /// What it asks for.
     ///
     /// # Errors
@@ -205,6 +279,7 @@ impl RingFile {
             speed_mm_s,
             handling: Micros::new(self.handling_us.unwrap_or(0)),
             modules,
+            poses: self.poses()?,
             uneven,
         };
         OwnedUneven::can_fire_together(&spec.problem().requirements, sensors)?;

@@ -37,7 +37,8 @@ fn value_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     list.map(|item| value_of(name, &item?)).collect::<PyResult<Vec<_>>>().map(Value::Array)
 }
 
-fn table_of(name: &str, dict: &Bound<'_, PyDict>) -> PyResult<Table> {
+/// A dict as a table.
+pub(crate) fn table_of(name: &str, dict: &Bound<'_, PyDict>) -> PyResult<Table> {
     let pair = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
         let key = text(name, &key, "keys that are texts")?;
         let value = value_of(&format!("{name}[\"{key}\"]"), &value)?;
@@ -74,7 +75,8 @@ fn shown_value<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny
     })
 }
 
-fn shown_table<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
+/// A table as a dict.
+pub(crate) fn shown_table<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (key, value) in table {
         dict.set_item(key, shown_value(py, value)?)?;

@@ -51,6 +51,7 @@ impl Arguments<'_, '_> {
             speed_mm_s: None,
             handling: Micros::ZERO,
             modules: vec![],
+            poses: vec![],
             uneven: self.uneven.owned(sensors, t_deltas, windows)?,
         };
         OwnedUneven::can_fire_together(&spec.problem().requirements, sensors).map_err(ArgumentError::new_err)?;

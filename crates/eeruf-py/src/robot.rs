@@ -1,7 +1,10 @@
 //! `sim.Robot`: a robot with its ring.
 
+use std::path::PathBuf;
+
 use eeruf_core::{Micros, SensorLimits};
-use eeruf_sim::{Beam, Clock, GainProfile, Motion, Point, Transducer};
+use eeruf_design::robot_ring;
+use eeruf_sim::{Beam, Clock, GainProfile, Motion, Point, RobotRing, Sketch, Transducer, world::cover_motion};
 use pyo3::{
     prelude::*,
     types::{PyDict, PyString, PyTuple},
@@ -10,6 +13,8 @@ use pyo3::{
 use crate::{
     arguments::{choice, flag, instance, items, micros, number, shown, times, whole, whole_or, wrong},
     body::{outline, shown_body},
+    errors::ArgumentError,
+    faults::{shown_table, table_of},
     module::{modules, shown_module},
     pose::{from_pose, motion, pose_of, to_pose},
     requirements,
@@ -20,7 +25,8 @@ use crate::{
 ///
 /// Args:
 ///     pose: (x, y, heading) in metres and radians, counter-clockwise from the x axis.
-///     sensors: how many on an arc, 1 to 64; or where each one is on the robot, as (x, y, heading).
+///     sensors: how many on an arc, 1 to 64; or where each one is on the robot, as (x, y, heading). None where the ring
+///         file says it.
 ///     spacing_rad: the angle from one sensor to the next on the arc, in radians.
 ///     radius_m: the radius of the arc, in metres.
 ///     module: of its sensors: a name such as ``"hc-sr04"``, a dict of what differs from one, such as
@@ -43,6 +49,12 @@ use crate::{
 ///     blanking_us: how long a sensor is deaf after it has fired, one for all or a list; the module's own unless it is
 ///         given.
 ///     min_refire_us: with immediate refiring, how long a sensor rests between its echo and its next firing.
+///     audible_us: how long sound is heard after it was sent, as far as methods that fire one by one allow for it; what
+///         its modules say where ``module`` is given, or else no longer than sensors listen.
+///     ring: the path of a ring file, for ``eeruf design``, that gives modules, windows, ``T_delta``, sensors that fire
+///         together and neighbours, unless these are given here.
+///     firing: a dict with the keys of ``[firing]`` in scene files, such as ``{"turn_us": 33_000}``, for the methods that
+///         fire as sketches and modules do.
 ///     start_us: when the ring begins to fire, by its own clock.
 ///     schedule: what the EERUF methods fire by; None for the paper's table, scaled to the period.
 ///     neighbours: how many adjacent sensors must not fire close together, 1 to 64.
@@ -129,6 +141,8 @@ impl Robot {
         all.set_item("together", self.together())?;
         all.set_item("min_refire_us", self.min_refire_us())?;
         all.set_item("start_us", self.start_us())?;
+        all.set_item("audible_us", self.audible_us())?;
+        all.set_item("firing", self.firing(py)?)?;
         all.set_item("schedule", self.schedule())?;
         all.set_item("neighbours", self.neighbours())?;
         all.set_item("consecutive", self.consecutive())?;
@@ -170,6 +184,25 @@ fn heights(value: Option<&Bound<'_, PyAny>>, sensors: usize) -> PyResult<Vec<f64
     each.iter().map(|height_m| number("height_m", height_m, 0.0..=1e3)).collect()
 }
 
+/// How sketches and modules fire it.
+fn sketch(value: &Bound<'_, PyAny>) -> PyResult<Sketch> {
+    let refused = |_| wrong("firing", shown(value), "a dict with keys of [firing], such as {\"turn_us\": 33_000}");
+    let table = table_of("firing", value.cast::<PyDict>().map_err(refused)?)?;
+    Sketch::from_table(&table).map_err(|message| ArgumentError::new_err(format!("firing: {message}")))
+}
+
+/// What a ring file says of a robot.
+fn ring_file(path: &Bound<'_, PyAny>) -> PyResult<RobotRing> {
+    let path: PathBuf = path.extract().map_err(|_| wrong("ring", shown(path), "the path of a ring file"))?;
+    let failed = |message: &dyn std::fmt::Display| ArgumentError::new_err(format!("{}: {message}", path.display()));
+    let text = std::fs::read_to_string(&path).map_err(|error| failed(&error))?;
+    robot_ring(&text).map_err(|message| failed(&message))
+}
+
+fn refused_ring(message: &str) -> PyErr {
+    ArgumentError::new_err(format!("ring: {message}"))
+}
+
 /// A time for each of so many sensors, and whether they were given one by one.
 fn each_micros(name: &str, value: &Bound<'_, PyAny>, sensors: usize) -> PyResult<(Vec<Micros>, bool)> {
     if value.is_instance_of::<PyString>() || value.try_iter().is_err() {
@@ -194,21 +227,23 @@ fn shown_micros<'py>(py: Python<'py>, one: Micros, each: Option<Vec<Micros>>) ->
 impl Robot {
     #[new]
     #[pyo3(signature = (
-        pose, sensors, spacing_rad=None, radius_m=None, module=None, *, gain=None, period_us=None, t_delta_us=None,
+        pose, sensors=None, spacing_rad=None, radius_m=None, module=None, *, gain=None, period_us=None, t_delta_us=None,
         window_us=None, blanking_us=None, min_refire_us=None, start_us=None, schedule=None, neighbours=None,
         consecutive=None, odometry=None, velocity_m_s=None, turn_rad_s=None, waypoints_m=None,
         speed_m_s=None, clock_offset_us=None, clock_drift_ppm=None, body=None, beam=None, coupling_db=None,
-        height_m=None, together=None, transducer=None
+        height_m=None, together=None, transducer=None, audible_us=None, firing=None,
+        ring=None
     ))]
-    #[pyo3(text_signature = "(pose, sensors, spacing_rad=None, radius_m=None, module=\"polaroid-6500\", *, \
+    #[pyo3(text_signature = "(pose, sensors=None, spacing_rad=None, radius_m=None, module=\"polaroid-6500\", *, \
             gain=\"constant\", period_us=60000, t_delta_us=500, window_us=36000, blanking_us=None, \
             min_refire_us=36000, start_us=0, schedule=None, neighbours=4, consecutive=2, odometry=False, \
             velocity_m_s=None, turn_rad_s=None, waypoints_m=None, speed_m_s=None, clock_offset_us=0, \
-            clock_drift_ppm=0.0, body=None, beam=None, coupling_db=None, height_m=0.3, together=(), transducer=None)")]
+            clock_drift_ppm=0.0, body=None, beam=None, coupling_db=None, height_m=0.3, together=(), transducer=None, \
+            audible_us=None, firing=None, ring=None)")]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn new(
         pose: &Bound<'_, PyAny>,
-        sensors: &Bound<'_, PyAny>,
+        sensors: Option<&Bound<'_, PyAny>>,
         spacing_rad: Option<&Bound<'_, PyAny>>,
         radius_m: Option<&Bound<'_, PyAny>>,
         module: Option<&Bound<'_, PyAny>>,
@@ -235,11 +270,28 @@ impl Robot {
         height_m: Option<&Bound<'_, PyAny>>,
         together: Option<&Bound<'_, PyAny>>,
         transducer: Option<&Bound<'_, PyAny>>,
+        audible_us: Option<&Bound<'_, PyAny>>,
+        firing: Option<&Bound<'_, PyAny>>,
+        ring: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let pose = pose_of("pose", pose)?;
         let spacing_rad = spacing_rad.map(|angle| number("spacing_rad", angle, -10.0..=10.0)).transpose()?;
         let radius_m = radius_m.map(|radius| number("radius_m", radius, 0.0..=1e3)).transpose()?;
-        let (mut robot, sensor_poses) = if sensors.is_instance_of::<PyString>() || sensors.try_iter().is_err() {
+        let file = ring.map(ring_file).transpose()?;
+        let rated_m_s = file.as_ref().map_or(0.0, |file| file.speed_m_s);
+        let (mut robot, sensor_poses) = if let (None, Some(file)) = (sensors, &file) {
+            if spacing_rad.is_some() || radius_m.is_some() {
+                let name = if spacing_rad.is_some() { "spacing_rad" } else { "radius_m" };
+                let given = spacing_rad.or(radius_m).unwrap_or_default();
+                return Err(wrong(name, given, "None, since the ring file says where sensors stand"));
+            }
+            let robot = file.robot(to_pose(pose), None).map_err(|message| refused_ring(&message))?;
+            let poses = robot.sensors.iter().map(from_pose).collect();
+            (robot, poses)
+        } else if sensors.is_none_or(|sensors| sensors.is_instance_of::<PyString>() || sensors.try_iter().is_err()) {
+            let Some(sensors) = sensors else {
+                return Err(wrong("sensors", "None", "a number, or (x, y, heading) of each sensor"));
+            };
             let count = requirements::sensors(sensors)?;
             let (Some(spacing_rad), Some(radius_m)) = (spacing_rad, radius_m) else {
                 let name = if spacing_rad.is_none() { "spacing_rad" } else { "radius_m" };
@@ -254,6 +306,9 @@ impl Robot {
                 let given = spacing_rad.or(radius_m).unwrap_or_default();
                 return Err(wrong(name, given, "None, since each sensor has a place of its own"));
             }
+            let Some(sensors) = sensors else {
+                return Err(wrong("sensors", "None", "(x, y, heading) of each sensor"));
+            };
             let places = items("sensors", sensors, "a number, or (x, y, heading) of each sensor")?;
             let each = |(index, place)| pose_of(&format!("sensors[{index}]"), place);
             let poses = places.iter().enumerate().map(each).collect::<PyResult<Vec<_>>>()?;
@@ -263,6 +318,9 @@ impl Robot {
             let on_robot = poses.iter().copied().map(to_pose).collect();
             (eeruf_sim::Robot::with_sensors(to_pose(pose), on_robot, Transducer::POLAROID_6500), poses)
         };
+        if let (Some(file), Some(_)) = (&file, sensors) {
+            robot = file.robot(to_pose(pose), Some(robot.sensors)).map_err(|message| refused_ring(&message))?;
+        }
         let count = robot.sensors.len();
         let (name, module) = match (module, transducer) {
             (Some(_), Some(value)) => return Err(wrong("transducer", shown(value), "None, since module is given")),
@@ -279,19 +337,32 @@ impl Robot {
             value.map_or(Ok(()), |value| micros(name, value).map(|us| *field = us))
         };
         set("period_us", period_us, &mut robot.period)?;
-        let each = |name, value: Option<&Bound<'_, PyAny>>, own: Micros| {
-            value.map_or_else(|| Ok((vec![own; count], false)), |value| each_micros(name, value, count))
+        let odometry = flag("odometry", odometry, false)?;
+        let given = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
+        robot.schedule = given.transpose()?.map(|schedule| schedule.get().0);
+        if t_delta_us.is_none() && !odometry {
+            cover_motion(&mut robot, rated_m_s);
+        }
+        let each = |name, value: Option<&Bound<'_, PyAny>>, of: fn(&SensorLimits) -> Micros, own: Micros| {
+            let own = || match &robot.limits[..] {
+                [] => vec![own; count],
+                limits => limits.iter().map(of).collect(),
+            };
+            value.map_or_else(|| Ok((own(), false)), |value| each_micros(name, value, count))
         };
-        let (t_delta, own_t_delta) = each("t_delta_us", t_delta_us, robot.t_delta)?;
-        let (window, own_window) = each("window_us", window_us, robot.window)?;
+        let (t_delta, own_t_delta) = each("t_delta_us", t_delta_us, |limits| limits.t_delta, robot.t_delta)?;
+        let (window, own_window) = each("window_us", window_us, |limits| limits.window, robot.window)?;
         let largest = |times: &[Micros]| times.iter().copied().max().unwrap_or_default();
         (robot.t_delta, robot.window) = (largest(&t_delta), largest(&window));
-        if own_t_delta || own_window {
+        if own_t_delta || own_window || !robot.limits.is_empty() {
             let limits = t_delta.into_iter().zip(window).map(|(t_delta, window)| SensorLimits { t_delta, window });
             robot.limits = limits.collect();
         }
         if let Some(blanking_us) = blanking_us {
             robot = robot.with_blankings(each_micros("blanking_us", blanking_us, count)?.0);
+        }
+        if together.is_some() {
+            robot.together.clear();
         }
         for group in together.map_or(Ok(vec![]), |sets| items("together", sets, "sets of two or more sensors"))? {
             let members = items("together", &group, "sets of two or more sensors")?;
@@ -305,9 +376,13 @@ impl Robot {
         }
         set("min_refire_us", min_refire_us, &mut robot.min_refire)?;
         set("start_us", start_us, &mut robot.start)?;
-        robot.neighbours = requirements::neighbours(neighbours)?;
+        set("audible_us", audible_us, &mut robot.audible)?;
+        robot.firing = firing.map_or(Ok(Sketch::default()), sketch)?;
+        if neighbours.is_some() || ring.is_none() {
+            robot.neighbours = requirements::neighbours(neighbours)?;
+        }
         robot.consecutive = whole_or("consecutive", consecutive, 2, 2..=8)?;
-        robot.odometry = flag("odometry", odometry, false)?;
+        robot.odometry = odometry;
         robot.motion = motion(velocity_m_s, turn_rad_s, waypoints_m, speed_m_s)?;
         robot.clock = Clock {
             offset_us: clock_offset_us.map_or(Ok(0), |offset| whole("clock_offset_us", offset, 0..=u32::MAX))?,
@@ -317,8 +392,6 @@ impl Robot {
         let heights_m = heights(height_m, robot.sensors.len())?;
         let mut robot = robot.with_heights(heights_m);
         robot.coupling_db = coupling_db.map(|level| number("coupling_db", level, -200.0..=0.0)).transpose()?;
-        let given = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
-        robot.schedule = given.transpose()?.map(|schedule| schedule.get().0);
         if let (Some(schedule), None) = (robot.schedule, period_us) {
             robot.period = schedule.period();
         }
@@ -358,6 +431,9 @@ impl Robot {
             arguments.del_item("module")?;
             if !given("blanking_us") {
                 arguments.del_item("blanking_us")?;
+            }
+            if !given("audible_us") {
+                arguments.del_item("audible_us")?;
             }
         }
         if given("schedule") && !given("period_us") {
@@ -456,6 +532,18 @@ impl Robot {
     #[getter]
     fn min_refire_us(&self) -> u32 {
         self.robot.min_refire.as_micros()
+    }
+
+    /// How long sound is heard after it was sent, in microseconds; 0 for as long as sensors listen.
+    #[getter]
+    fn audible_us(&self) -> u32 {
+        self.robot.audible.as_micros()
+    }
+
+    /// How sketches and modules fire it: a dict of what differs from the default.
+    #[getter]
+    fn firing<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        shown_table(py, &self.robot.firing.to_table())
     }
 
     /// When the ring begins to fire, in microseconds.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use eeruf_design::robot_ring;
 use eeruf_sim::{
     Air, DEFAULT_HEIGHT_M, Faces, Limits, Pole, Wall, World, WorldParts, world::DEFAULT_ORDER, world_file,
 };
@@ -103,11 +104,11 @@ impl Scene {
     }
 
     fn from_text(name: &Path, text: &str) -> PyResult<Self> {
-        let parts = WorldParts::from_text(name, text).map_err(Raise::raise)?;
+        let parts = WorldParts::from_text_with(name, text, robot_ring).map_err(Raise::raise)?;
         let robots: Vec<_> = parts.robots.iter().map(Robot::of).collect();
         if !robots.is_empty() {
             // For the line that is to blame, where the world is.
-            World::from_text(name, text).map_err(Raise::raise)?;
+            World::from_text_with(name, text, robot_ring).map_err(Raise::raise)?;
         }
         Self::of(parts, robots)
     }

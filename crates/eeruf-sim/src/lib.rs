@@ -102,8 +102,8 @@ pub use tracing::{
     VERTICAL_ORDER, paths_of_many, reception, reception_along,
 };
 pub use world::{
-    AnySchedule, Clock, Fault, FaultKind, LineEdge, Motion, Noise, Random, Robot, ScheduleFile, World, WorldError,
-    WorldFileError, WorldParts, line_edges, ring_of, world_file,
+    AnySchedule, Clock, Fault, FaultKind, FiringTable, LineEdge, Motion, Noise, Random, ReadRing, Robot, RobotRing,
+    ScheduleFile, Sketch, World, WorldError, WorldFileError, WorldParts, line_edges, ring_of, world_file,
 };
 
 /// The listing of the crate's README compiles and holds.

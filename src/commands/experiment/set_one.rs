@@ -56,7 +56,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         physics: args.common.physics,
         room: args.common.room(),
         transducer: Transducer { gain: args.common.gain, ..Transducer::POLAROID_6500 },
-        methods: chosen(&args.methods),
+        methods: chosen(&args.methods, false),
         hopping: args.hopping.settings(),
         sensors: args.sensors.into(),
         period: Micros::new(args.period_us),

@@ -114,7 +114,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         ..SetTwoOptions::default()
     };
     if !args.methods.is_empty() {
-        options.methods = chosen(&args.methods);
+        options.methods = chosen(&args.methods, false);
     }
     if options.methods.contains(&Method::EerufBest) {
         let mut watch = Watch::new();

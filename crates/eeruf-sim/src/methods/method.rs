@@ -16,6 +16,7 @@ use super::hopping;
 use super::planned_ring::planned;
 use super::ring_runner::{self, AGREEMENT_ALONE, ASKS, FiringPlan, RingRunner, RingStart, StartError, Started};
 use super::schedules::{self, Made, ScheduleQuery};
+use super::sketch;
 use crate::world::{AnySchedule, Robot};
 
 /// The most echoes that a sensor reports of one firing.
@@ -26,6 +27,8 @@ struct Row {
     name: &'static str,
     /// Whether it is EERUF: waits alternate, and readings are compared.
     eeruf: bool,
+    /// Whether it fires by a robot's [`Sketch`](crate::Sketch).
+    sketch: bool,
     /// The schedule that a robot's ring starts with; for dither the lags alone.
     schedule: fn(&ScheduleQuery<'_>) -> Made,
     /// The ring, ready to run.
@@ -43,6 +46,7 @@ struct Row {
 const DEFAULT: Row = Row {
     name: "",
     eeruf: false,
+    sketch: false,
     schedule: schedules::own,
     ring: ring_runner::scheduled::<1, ASKS>,
     belief: Belief::Repeated,
@@ -192,6 +196,54 @@ methods! {
         plan: ring_runner::plan_own,
         echoes: MAX_ECHOES,
     }
+    /// One by one, each as soon as the one before has answered or was given up, as the loop of a sketch or a ping timer
+    /// fires; see [`Sketch`](crate::Sketch). Every echo is believed, unless that says otherwise.
+    InTurn = "in_turn" {
+        sketch: true,
+        schedule: schedules::together,
+        ring: sketch::in_turn,
+        belief: Belief::AsSketched,
+        refire: |_| Micros::ZERO,
+    }
+    /// Arrays side by side, each as [`InTurn`](Self::InTurn).
+    Arrays = "arrays" {
+        sketch: true,
+        schedule: schedules::together,
+        ring: sketch::arrays,
+        belief: Belief::AsSketched,
+        refire: |_| Micros::ZERO,
+    }
+    /// As [`InTurn`](Self::InTurn), with groups of sensors that fire together.
+    Groups = "groups" {
+        sketch: true,
+        schedule: schedules::together,
+        ring: sketch::groups,
+        belief: Belief::AsSketched,
+        refire: |_| Micros::ZERO,
+    }
+    /// Modules that share a trigger: all at once, again when the slowest has answered and rested.
+    SyncLine = "sync_line" {
+        sketch: true,
+        schedule: schedules::together,
+        ring: sketch::sync_line,
+        belief: Belief::AsSketched,
+        refire: |_| Micros::ZERO,
+    }
+    /// Modules that fire themselves, each by a clock of its own.
+    FreeRunning = "free_running" {
+        sketch: true,
+        schedule: schedules::together,
+        ring: sketch::free_running,
+        belief: Belief::AsSketched,
+        refire: |_| Micros::ZERO,
+    }
+    /// By a table of any number of phases, the robot's own schedule unless the sketch has one.
+    Table = "table" {
+        sketch: true,
+        schedule: schedules::own,
+        ring: sketch::table,
+        belief: Belief::AsSketched,
+    }
 }
 
 impl Method {
@@ -203,6 +255,16 @@ impl Method {
     /// Whether it is the paper's method or follows from it: waits alternate, and consecutive readings are compared.
     pub const fn is_eeruf(self) -> bool {
         self.row().eeruf
+    }
+
+    /// Returns true if it fires as sketches and modules do today, by a robot's [`Sketch`](crate::Sketch).
+    pub const fn is_sketch(self) -> bool {
+        self.row().sketch
+    }
+
+    /// The methods that are compared where nothing says how a ring is fired today: all that are no sketch.
+    pub fn usual() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().filter(|method| !method.is_sketch())
     }
 
     /// Which readings it believes.
@@ -257,6 +319,8 @@ pub(crate) enum Belief {
     TwoOfThree,
     /// What the ring's own filter accepts.
     Repeated,
+    /// Every one, or what the ring's own filter accepts: as the robot's sketch says.
+    AsSketched,
 }
 
 impl fmt::Display for Method {

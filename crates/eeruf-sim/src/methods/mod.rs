@@ -11,6 +11,7 @@ mod method;
 mod planned_ring;
 mod ring_runner;
 mod schedules;
+mod sketch;
 
 pub use best_schedule::{BestSchedule, TICK, best_schedule_for, requirements_of, shortest_schedule_for};
 pub use firing::{Firing, FiringPeriod, OwnError};

@@ -18,7 +18,7 @@ pub(super) fn together(query: &ScheduleQuery<'_>) -> Made {
     constant(query.robot.period, &vec![Micros::ZERO; query.robot.sensors.len()])
 }
 
-/// One sensor after the other.
+/// One sensor after the other, each when the one before is heard no more.
 pub(super) fn one_by_one(query: &ScheduleQuery<'_>) -> Made {
     in_turns(query.robot, query.robot.sensors.len())
 }
@@ -58,13 +58,16 @@ pub(super) fn refiring(query: &ScheduleQuery<'_>) -> Made {
     AnySchedule::from_slices(period.saturating_add(min_refire), table.t_lag(), [&longer(Phase::A), &longer(Phase::B)])
 }
 
-/// Sensors in turns, each turn as long as they listen.
+/// Sensors in turns, each turn as long as they listen, and where their modules are known as long as those hear, and a
+/// round no shorter than those rest.
 fn in_turns(robot: &Robot, turns: usize) -> Made {
     // A window that ends just when the next one begins still counts an echo at its very end.
-    let turn = robot.window.saturating_add(Micros::new(1)).as_micros();
+    let turn = robot.window.max(robot.audible).saturating_add(Micros::new(1)).as_micros();
     let sensors = 0..robot.sensors.len();
     let times: Vec<_> = sensors.map(|i| Micros::new(turn.saturating_mul((i % turns) as u32))).collect();
-    constant(Micros::new(turn.saturating_mul(turns as u32)), &times)
+    let round = Micros::new(turn.saturating_mul(turns as u32));
+    let rest = if robot.audible == Micros::ZERO { Micros::ZERO } else { robot.module_rest() };
+    constant(round.max(rest), &times)
 }
 
 /// The same lags in both phases.

@@ -139,6 +139,13 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
         return fail("consecutive", f64::from(robot.consecutive), "2 to 8");
     }
     check_heights(scene, index, robot)?;
+    robot
+        .firing
+        .check(robot.sensors.len(), robot.window)
+        .or_else(|(field, value, expected)| fail(field, value, expected))?;
+    if robot.audible > MAX_PERIOD {
+        return fail("audible_us", f64::from(robot.audible.as_micros()), "0 to 268435456");
+    }
     for (sensor, limits) in robot.limits.iter().enumerate() {
         let window = limits.window;
         if robot.limits.len() != robot.sensors.len() {

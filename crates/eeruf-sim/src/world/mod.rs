@@ -10,6 +10,7 @@ mod motion;
 mod noise;
 mod ring;
 mod robot;
+mod sketch;
 #[allow(clippy::module_inception, reason = "the world itself")]
 mod world;
 
@@ -18,11 +19,12 @@ pub use clock::{Clock, MAX_DRIFT_PPM};
 pub use error::WorldError;
 pub(crate) use fault::scene_with;
 pub use fault::{Fault, FaultKind, LineEdge, line_edges};
-pub use file::{ScheduleFile, WorldFileError, WorldParts, heading_rad, world_file};
+pub use file::{ReadRing, RobotRing, ScheduleFile, WorldFileError, WorldParts, cover_motion, heading_rad, world_file};
 pub use motion::{MAX_SPEED, Motion};
 pub(crate) use noise::{FARTHEST, Normal};
 pub use noise::{Noise, Random};
 pub use ring::ring_of;
 pub(crate) use robot::offset;
 pub use robot::{AnySchedule, MAX_ROBOTS, Robot};
+pub use sketch::{FiringTable, Sketch};
 pub use world::{DEFAULT_ORDER, World};

@@ -1,8 +1,8 @@
 //! A robot: its transducers, where it is and how it moves, its clock, and how it fires and listens.
 
 use eeruf_core::{
-    EachSensor, Layout, MAX_SENSORS, Micros, Requirements, Schedule, SensorLimits, Uneven, VerifiedSchedule,
-    conditions::Violation,
+    EachSensor, Layout, MAX_SENSORS, Micros, Requirements, Schedule, SensorLimits, SpeedOfSound, Uneven,
+    VerifiedSchedule, conditions::Violation,
 };
 
 use eeruf_modules::{HC_SR04, Module, POLAROID_6500, PRESETS};
@@ -10,6 +10,7 @@ use eeruf_modules::{HC_SR04, Module, POLAROID_6500, PRESETS};
 use super::clock::Clock;
 use super::motion::Motion;
 use super::ring::ring_of;
+use super::sketch::Sketch;
 use crate::{
     acoustics::{Beam, GainProfile, Transducer},
     geometry::{Pose, Vector},
@@ -77,6 +78,11 @@ pub struct Robot {
     /// [`window`](Self::window) and [`t_delta`](Self::t_delta) are then the largest, which other methods use for all.
     /// Empty, as by default, where they are alike.
     pub limits: Vec<SensorLimits>,
+    /// How its sketch fires.
+    pub firing: Sketch,
+    /// The time for which sound is heard after it was sent, as far as methods that fire one by one allow for it: that
+    /// of its modules where they are [given](Self::with_modules). The default is 0: no longer than sensors listen.
+    pub audible: Micros,
     /// Sets of sensors that its own schedule fires together, bit x for sensor x.
     pub together: Vec<u64>,
     /// Whether odometry gives the ring by how much a good reading should change from the robot's own motion.
@@ -124,6 +130,8 @@ impl Robot {
             neighbours: 4,
             consecutive: 2,
             limits: vec![],
+            firing: Sketch::default(),
+            audible: Micros::ZERO,
             together: vec![],
             odometry: false,
         }
@@ -162,7 +170,8 @@ impl Robot {
         Self { heights_m: if usual { vec![] } else { heights_m }, ..self }
     }
 
-    /// The same robot with these modules, one for each sensor, and deaf for as long as they are.
+    /// The same robot with these modules, one for each sensor, deaf for as long as they are, and with sound
+    /// [audible](Self::audible) for as long as they hear it at 20 degrees.
     ///
     /// ```
     /// use eeruf_sim::{Pose, Robot, Transducer, modules::{HC_SR04, PING}};
@@ -174,11 +183,15 @@ impl Robot {
     pub fn with_modules(mut self, modules: Vec<Module>) -> Self {
         let Some(first) = modules.first().copied() else { return self };
         self.transducer = Transducer::of(&first);
-        let preset = eeruf_modules::find(first.name) == Some(&first);
         let alike = modules.iter().all(|module| *module == first);
         let blankings = modules.iter().map(|module| Micros::new(module.blanking_us)).collect();
-        // Equal robots are equal.
-        self.modules = if alike && preset { vec![] } else { modules };
+        let hears = modules.iter().map(|module| SpeedOfSound::AT_20_CELSIUS.echo_time(module.hears_to_mm)).max();
+        self.audible = hears.unwrap_or_default();
+        // Equal robots are equal; modules that differ in more than their transducer are kept.
+        self.modules.clear();
+        if !(alike && self.module_of(0) == first) {
+            self.modules = modules;
+        }
         self.with_blankings(blankings)
     }
 
@@ -230,6 +243,11 @@ impl Robot {
             let like = if self.transducer.frequency_hz > 45e3 { POLAROID_6500 } else { HC_SR04 };
             self.transducer.described(&like)
         })
+    }
+
+    /// The longest rest that one of its modules needs from trigger to trigger.
+    pub fn module_rest(&self) -> Micros {
+        (0..self.sensors.len()).map(|sensor| Micros::new(self.module_of(sensor).rest_us)).max().unwrap_or_default()
     }
 
     /// The height of a sensor above the floor, in metres.

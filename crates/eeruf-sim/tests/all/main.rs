@@ -22,5 +22,6 @@ mod room;
 mod set_one;
 mod set_two;
 mod simulation;
+mod sketches;
 mod uneven;
 mod worlds;

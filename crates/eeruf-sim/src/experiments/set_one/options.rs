@@ -28,7 +28,7 @@ pub struct SetOneOptions {
     /// How often the back wall steps to and fro, for the figures of how soon that is seen; 0: never. The default is
     /// 22: to and fro in each phase of a cycle of 11.
     pub steps: u32,
-    /// The methods.
+    /// The methods. The default is [`Method::usual`].
     pub methods: Vec<Method>,
     /// What [`Method::EerufBest`] fires by, see [`best_schedule_for`](crate::best_schedule_for).
     pub best: Option<BestSchedule>,
@@ -57,7 +57,7 @@ impl Default for SetOneOptions {
             first: FIRST,
             readings: READINGS,
             steps: 22,
-            methods: Method::ALL.to_vec(),
+            methods: Method::usual().collect(),
             best: None,
             hopping: HoppingSettings::BALANCED,
             physics: Physics::DEFAULT,

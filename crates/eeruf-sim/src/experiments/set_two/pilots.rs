@@ -62,6 +62,7 @@ pub const fn steered_as(method: Method) -> Method {
     match method {
         Method::SequentialVotes => Method::Sequential,
         Method::Flow => Method::EerufHopping,
+        sketch if sketch.is_sketch() => Method::Sequential,
         _ => method,
     }
 }

@@ -4,6 +4,7 @@ use eeruf_core::{Micros, Reading, ReadingKind};
 
 use crate::methods::{Belief, OwnError};
 use crate::simulation::receiver::Echo;
+use crate::world::Robot;
 
 /// What is believed of the readings of one robot's ring. Hand it to a simulation with [`Own`](crate::Own); what the
 /// methods believe goes through it as well.
@@ -72,12 +73,13 @@ impl Filtered {
     }
 }
 
-/// The filter of a method; `median_of` is what [`Belief::Median`] takes the median of, up to [`MAX_MEDIAN`], and
-/// `t_delta` what counts as near-identical.
-pub(super) fn filter_of(belief: Belief, median_of: usize, t_delta: Micros, sensors: usize) -> Box<dyn Filter> {
+/// The filter of a method for a robot's readings; `median_of` is what [`Belief::Median`] takes the median of, up to [`MAX_MEDIAN`].
+pub(super) fn filter_of(belief: Belief, median_of: usize, robot: Option<&Robot>, sensors: usize) -> Box<dyn Filter> {
+    let t_delta = robot.map_or(Micros::ZERO, |robot| robot.t_delta);
     match belief {
+        Belief::AsSketched if robot.is_some_and(|robot| robot.firing.consecutive > 1) => Box::new(AsTheRing),
         Belief::TwoOfThree => Box::new(TwoOfThree { t_delta, before: vec![[None; 2]; sensors] }),
-        Belief::All => Box::new(Everything),
+        Belief::All | Belief::AsSketched => Box::new(Everything),
         Belief::Median => Box::new(Median { of: median_of, history: vec![History::default(); sensors] }),
         Belief::Repeated => Box::new(AsTheRing),
     }

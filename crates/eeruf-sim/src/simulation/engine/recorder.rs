@@ -1,7 +1,7 @@
 //! What becomes of a reading under a method, and its entry in the record: what it says, what it came from, and what the
 //! sensor would have read alone.
 
-use eeruf_core::{Micros, Reading, ReadingKind, hopping::Weighed};
+use eeruf_core::{Reading, ReadingKind, hopping::Weighed};
 
 use super::filter::{Filter, Filtered, FiredReading, MAX_MEDIAN, filter_of};
 use super::own::Own;
@@ -45,8 +45,8 @@ impl Recorder {
         let duration_s = end as f64 * 1e-9;
         let of_robot = |sensors: &[SensorId]| {
             let robot = usize::from(sensors[0].robot);
-            let t_delta = robots.get(robot).map_or(Micros::ZERO, |robot| robot.t_delta);
-            own.take_filter(robot).unwrap_or_else(|| filter_of(method.belief(), median_of, t_delta, sensors.len()))
+            let default = || filter_of(method.belief(), median_of, robots.get(robot), sensors.len());
+            own.take_filter(robot).unwrap_or_else(default)
         };
         let filters = ids.chunk_by(|a, b| a.robot == b.robot).map(of_robot).collect();
         let mut readings = Readings::new(method, duration_s, ids.len());

@@ -5,6 +5,7 @@ use serde::{Deserialize, Deserializer, de::Error};
 use toml::Spanned;
 
 use super::fault::FaultFile;
+use super::sketch::SketchFile;
 use crate::{
     acoustics::{Physics, UnknownPhysics},
     geometry::{Pose, Vector},
@@ -23,6 +24,7 @@ pub(super) struct WorldFile {
     pub(super) noise: Option<Spanned<NoiseFile>>,
     pub(super) physics: Option<Spanned<PhysicsFile>>,
     pub(super) height: Option<Spanned<HeightFile>>,
+    pub(super) firing: Option<SketchFile>,
     #[serde(default, rename = "wall")]
     pub(super) walls: Vec<Spanned<WallFile>>,
     #[serde(default, rename = "pole")]
@@ -243,7 +245,8 @@ pub(super) enum HeightsFile {
 #[serde(deny_unknown_fields)]
 pub(super) struct RobotFile {
     pub(super) pose: PoseFile,
-    pub(super) ring: Option<RingFile>,
+    #[serde(default, deserialize_with = "ring")]
+    pub(super) ring: Option<RingKey>,
     pub(super) sensors: Option<Vec<PoseFile>>,
     /// `transducer` in older files.
     #[serde(alias = "transducer")]
@@ -264,6 +267,8 @@ pub(super) struct RobotFile {
     pub(super) together: Vec<Vec<usize>>,
     pub(super) blanking_us: Option<EachFile>,
     pub(super) min_refire_us: Option<u32>,
+    pub(super) audible_us: Option<u32>,
+    pub(super) firing: Option<SketchFile>,
     pub(super) neighbours: Option<u8>,
     pub(super) consecutive: Option<u8>,
     /// A key of older files, refused by name.
@@ -279,6 +284,21 @@ pub(super) struct PoseFile {
     pub(super) y_m: f64,
     pub(super) heading_deg: Option<f64>,
     pub(super) heading_rad: Option<f64>,
+}
+
+/// Sensors on an arc, or the name of a ring file.
+pub(super) enum RingKey {
+    Arc(RingFile),
+    File(String),
+}
+
+/// By hand, so that the message of a wrong table is the table's.
+fn ring<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<RingKey>, D::Error> {
+    let key = match toml::Value::deserialize(deserializer)? {
+        toml::Value::String(name) => RingKey::File(name),
+        table => RingKey::Arc(RingFile::deserialize(table).map_err(|error| D::Error::custom(error.message()))?),
+    };
+    Ok(Some(key))
 }
 
 #[derive(Deserialize)]

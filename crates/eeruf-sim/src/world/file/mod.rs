@@ -3,9 +3,11 @@
 
 mod fault;
 mod format;
+mod ring_file;
 mod robot;
 mod scene;
 mod schedule_file;
+mod sketch;
 mod source;
 mod write;
 
@@ -22,21 +24,24 @@ use super::world::World;
 use crate::{acoustics::Physics, scene::Scene};
 use fault::fault;
 use format::WorldFile;
+use ring_file::no_reader;
 use robot::robot;
 use scene::scene;
 use source::Source;
 
+pub use ring_file::{ReadRing, RobotRing, cover_motion};
 pub use schedule_file::ScheduleFile;
 pub use source::WorldFileError;
 pub use write::{heading_rad, world_file};
 
 impl World {
-    /// Reads a world from a TOML file. Schedules that it names are looked for beside it.
+    /// Reads a world from a TOML file. Schedules that it names are looked for beside it; ring files need a
+    /// [reader](Self::from_text_with).
     ///
     /// # Errors
     /// The first thing found wrong.
     pub fn from_toml(file: &Path) -> Result<Self, WorldFileError> {
-        Self::parse(&Source::read(file)?)
+        Self::parse(&Source::read(file)?, no_reader)
     }
 
     /// The same from a text; `file` stands in errors, and schedules are looked for beside it.
@@ -57,12 +62,21 @@ impl World {
     /// assert_eq!(error.to_string(), "pillars.toml, line 6: robot 1 has 65 sensors; expected 1 to 64");
     /// ```
     pub fn from_text(file: &Path, text: &str) -> Result<Self, WorldFileError> {
-        Self::parse(&Source { file: file.to_owned(), text: text.to_owned() })
+        Self::from_text_with(file, text, no_reader)
     }
 
-    fn parse(source: &Source) -> Result<Self, WorldFileError> {
+    /// The same, with a reader for the ring files that robots name, which are looked for beside it too.
+    ///
+    /// # Errors
+    /// As [`from_toml`](Self::from_toml).
+    pub fn from_text_with(file: &Path, text: &str, read_ring: ReadRing) -> Result<Self, WorldFileError> {
+        Self::parse(&Source { file: file.to_owned(), text: text.to_owned() }, read_ring)
+    }
+
+    fn parse(source: &Source, read_ring: ReadRing) -> Result<Self, WorldFileError> {
         let file: WorldFile = source.toml()?;
-        let WorldParts { scene, robots, noise, physics, max_order, seed, faults } = WorldParts::of(source, &file)?;
+        let WorldParts { scene, robots, noise, physics, max_order, seed, faults } =
+            WorldParts::of(source, &file, read_ring)?;
         let world = Self::new(scene, robots, noise)
             .and_then(|world| world.with_physics(physics))
             .and_then(|world| world.with_max_order(max_order))
@@ -108,15 +122,23 @@ impl WorldParts {
     /// # Ok::<(), eeruf_sim::WorldFileError>(())
     /// ```
     pub fn from_text(file: &Path, text: &str) -> Result<Self, WorldFileError> {
-        let source = Source { file: file.to_owned(), text: text.to_owned() };
-        Self::of(&source, &source.toml()?)
+        Self::from_text_with(file, text, no_reader)
     }
 
-    fn of(source: &Source, file: &WorldFile) -> Result<Self, WorldFileError> {
+    /// The same, with a reader for the ring files that robots name, which are looked for beside it too.
+    ///
+    /// # Errors
+    /// As [`World::from_text`].
+    pub fn from_text_with(file: &Path, text: &str, read_ring: ReadRing) -> Result<Self, WorldFileError> {
+        let source = Source { file: file.to_owned(), text: text.to_owned() };
+        Self::of(&source, &source.toml()?, read_ring)
+    }
+
+    fn of(source: &Source, file: &WorldFile, read_ring: ReadRing) -> Result<Self, WorldFileError> {
         let scene = scene(source, file)?;
         let mut robots = Vec::new();
         for (index, entry) in file.robots.iter().enumerate() {
-            robots.push(robot(source, index, entry)?);
+            robots.push(robot(source, index, entry, file.firing.as_ref(), read_ring)?);
         }
         let noise = file.noise.as_ref().map_or(Noise::default(), |noise| noise.get_ref().noise());
         let physics = match &file.physics {

@@ -1,14 +1,14 @@
 //! The robots of a world file.
 
-use std::path::Path;
-
 use eeruf_core::{MAX_SENSORS, Micros, SensorLimits};
 use eeruf_modules::Value;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::format::{EachFile, HeightsFile, MotionFile, RobotFile, radians};
+use super::format::{EachFile, HeightsFile, MotionFile, RingKey, RobotFile, radians};
+use super::ring_file::{ReadRing, cover_motion};
 use super::schedule_file::ScheduleFile;
+use super::sketch::{SketchFile, sketch};
 use super::source::{Source, WorldFileError};
 use crate::{
     acoustics::Transducer,
@@ -16,8 +16,14 @@ use crate::{
     world::{clock::Clock, motion::Motion, robot::AnySchedule, robot::Robot},
 };
 
-/// Builds the robot with this index.
-pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -> Result<Robot, WorldFileError> {
+/// Builds the robot with this index, which fires as all do unless it says how.
+pub(super) fn robot(
+    source: &Source,
+    index: usize,
+    entry: &Spanned<RobotFile>,
+    firing: Option<&SketchFile>,
+    read_ring: ReadRing,
+) -> Result<Robot, WorldFileError> {
     let file = entry.get_ref();
     let fail =
         |field, message: String| source.error(Some(entry.span()), field, format!("robot {}{message}", index + 1));
@@ -27,13 +33,22 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
         return Err(fail("patience", gone.to_owned()));
     }
     let pose = file.pose.pose();
+    let mut speed_m_s = 0.0;
     let mut robot = match (&file.ring, &file.sensors) {
-        (Some(ring), None) => {
+        (Some(RingKey::Arc(ring)), None) => {
             // Checked here, before as many poses are made.
             if ring.sensors == 0 || ring.sensors > MAX_SENSORS {
                 return Err(fail("ring", format!(" has {} sensors; expected 1 to {MAX_SENSORS}", ring.sensors)));
             }
             Robot::ring(pose, ring.sensors, ring.spacing_deg.to_radians(), ring.radius_m, Transducer::POLAROID_6500)
+        }
+        (Some(RingKey::File(name)), sensors) => {
+            let beside = source.beside(name)?;
+            let ring = read_ring(&beside.text);
+            let ring = ring.map_err(|message| WorldFileError { file: beside.file, line: None, message })?;
+            speed_m_s = ring.speed_m_s;
+            let poses = sensors.as_ref().map(|sensors| sensors.iter().map(|sensor| sensor.pose()).collect());
+            ring.robot(pose, poses).map_err(|message| fail("ring", format!(": {name}: {message}")))?
         }
         (None, Some(sensors)) => {
             Robot::with_sensors(pose, sensors.iter().map(|sensor| sensor.pose()).collect(), Transducer::POLAROID_6500)
@@ -92,12 +107,20 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
     set(&mut robot.start, file.start_us);
     set(&mut robot.period, file.period_us);
     let sensors = robot.sensors.len();
-    let each = |own: Micros, value: &Option<EachFile>| match value {
-        None => vec![own; sensors],
+    let each = |own: Vec<Micros>, value: &Option<EachFile>| match value {
+        None => own,
         Some(EachFile::All(us)) => vec![Micros::new(*us); sensors],
         Some(EachFile::Of(list)) => list.iter().map(|&us| Micros::new(us)).collect(),
     };
-    let (t_delta, window) = (each(robot.t_delta, &file.t_delta_us), each(robot.window, &file.window_us));
+    if file.t_delta_us.is_none() && !file.odometry {
+        cover_motion(&mut robot, speed_m_s);
+    }
+    let own = |of: fn(&SensorLimits) -> Micros, all: Micros| match &robot.limits[..] {
+        [] => vec![all; sensors],
+        limits => limits.iter().map(of).collect(),
+    };
+    let t_delta = each(own(|limits| limits.t_delta, robot.t_delta), &file.t_delta_us);
+    let window = each(own(|limits| limits.window, robot.window), &file.window_us);
     for (what, list) in [("t_delta_us", &t_delta), ("window_us", &window)] {
         if list.len() != sensors {
             let message =
@@ -107,9 +130,13 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
     }
     let largest = |times: &[Micros]| times.iter().copied().max().unwrap_or_default();
     (robot.t_delta, robot.window) = (largest(&t_delta), largest(&window));
-    if [&file.t_delta_us, &file.window_us].iter().any(|value| matches!(value, Some(EachFile::Of(_)))) {
+    let lists = [&file.t_delta_us, &file.window_us].iter().any(|value| matches!(value, Some(EachFile::Of(_))));
+    if lists || !robot.limits.is_empty() {
         let limits = t_delta.into_iter().zip(window).map(|(t_delta, window)| SensorLimits { t_delta, window });
         robot.limits = limits.collect();
+    }
+    if !file.together.is_empty() {
+        robot.together.clear();
     }
     for group in &file.together {
         if group.len() < 2 || group.iter().any(|&sensor| sensor >= sensors) {
@@ -119,7 +146,7 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
         robot.together.push(group.iter().fold(0, |set, sensor| set | 1 << sensor));
     }
     if file.blanking_us.is_some() {
-        let blanking = each(robot.blanking, &file.blanking_us);
+        let blanking = each(vec![], &file.blanking_us);
         if blanking.len() != sensors {
             let message =
                 format!(": {} values; expected one for all, or one for each of {sensors} sensors", blanking.len());
@@ -128,6 +155,10 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
         robot = robot.with_blankings(blanking);
     }
     set(&mut robot.min_refire, file.min_refire_us);
+    set(&mut robot.audible, file.audible_us);
+    if let Some(firing) = file.firing.as_ref().or(firing) {
+        robot.firing = sketch(source, firing)?;
+    }
     robot.neighbours = file.neighbours.unwrap_or(robot.neighbours);
     robot.consecutive = file.consecutive.unwrap_or(robot.consecutive);
     robot.odometry = file.odometry;
@@ -138,8 +169,7 @@ pub(super) fn robot(source: &Source, index: usize, entry: &Spanned<RobotFile>) -
 pub(super) fn schedule(source: &Source, value: &Spanned<toml::Value>) -> Result<AnySchedule, WorldFileError> {
     let here = |message: String| source.error(Some(value.span()), "", format!("schedule: {message}"));
     if let toml::Value::String(name) = value.get_ref() {
-        let beside = source.file.parent().unwrap_or(Path::new("")).join(name);
-        let source = Source::read(&beside)?;
+        let source = source.beside(name)?;
         let file: ScheduleFile = source.toml()?;
         return file.schedule().map_err(|message| source.error(None, "", message));
     }

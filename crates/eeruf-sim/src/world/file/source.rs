@@ -28,6 +28,7 @@ impl fmt::Display for WorldFileError {
 impl core::error::Error for WorldFileError {}
 
 /// A file and its text.
+#[derive(Clone)]
 pub(super) struct Source {
     pub(super) file: PathBuf,
     pub(super) text: String,
@@ -39,6 +40,11 @@ impl Source {
             Ok(text) => Ok(Self { file: file.to_owned(), text }),
             Err(error) => Err(WorldFileError { file: file.to_owned(), line: None, message: error.to_string() }),
         }
+    }
+
+    /// The file of this name beside this one.
+    pub(super) fn beside(&self, name: &str) -> Result<Self, WorldFileError> {
+        Self::read(&self.file.parent().unwrap_or(Path::new("")).join(name))
     }
 
     pub(super) fn toml<T: serde::de::DeserializeOwned>(&self) -> Result<T, WorldFileError> {
@@ -53,7 +59,7 @@ impl Source {
 
     /// The line on which a field is set, which begins with its name or holds it in braces; entries of arrays of tables
     /// span from their header on.
-    fn line(&self, part: Range<usize>, field: &str) -> usize {
+    pub(super) fn line(&self, part: Range<usize>, field: &str) -> usize {
         let end = part.end.min(self.text.len());
         let start = part.start.min(end);
         let first = 1 + self.text.get(..start).map_or(0, |before| before.matches('\n').count());

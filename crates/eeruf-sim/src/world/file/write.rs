@@ -95,7 +95,7 @@ pub fn world_file(
     file.to_string()
 }
 
-fn set(table: &mut Table, key: &str, value: impl Into<Value>) {
+pub(super) fn set(table: &mut Table, key: &str, value: impl Into<Value>) {
     table.insert(key.to_owned(), value.into());
 }
 
@@ -219,13 +219,14 @@ fn robot_table(robot: &Robot) -> Table {
     {
         set(&mut table, "schedule", schedule);
     }
-    let times: [(&str, Micros); 6] = [
+    let times: [(&str, Micros); 7] = [
         ("start_us", robot.start),
         ("period_us", robot.period),
         ("t_delta_us", robot.t_delta),
         ("window_us", robot.window),
         ("blanking_us", robot.blanking),
         ("min_refire_us", robot.min_refire),
+        ("audible_us", robot.audible),
     ];
     for (key, time) in times {
         set(&mut table, key, i64::from(time.as_micros()));
@@ -249,5 +250,9 @@ fn robot_table(robot: &Robot) -> Table {
         set(&mut table, key, i64::from(number));
     }
     set(&mut table, "odometry", robot.odometry);
+    let firing = robot.firing.to_table();
+    if !firing.is_empty() {
+        set(&mut table, "firing", firing);
+    }
     table
 }

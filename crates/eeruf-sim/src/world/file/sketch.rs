@@ -1,0 +1,159 @@
+//! `[firing]` of a world file: how its robots are fired today.
+
+use eeruf_core::{
+    MAX_SENSORS, Micros,
+    hopping::{HoppingCode, HoppingSchedule},
+};
+use serde::Deserialize;
+use toml::{Spanned, Table, Value};
+
+use super::schedule_file::ScheduleFile;
+use super::source::{Source, WorldFileError};
+use super::write::set;
+use crate::world::sketch::{FiringTable, Sketch};
+
+#[derive(Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SketchFile {
+    timeout_us: Option<u32>,
+    pause_us: Option<u32>,
+    turn_us: Option<u32>,
+    rest_us: Option<u32>,
+    #[serde(default)]
+    arrays: Vec<Vec<u8>>,
+    #[serde(default)]
+    groups: Vec<Vec<u8>>,
+    consecutive: Option<u8>,
+    drift_ppm: Option<f64>,
+    schedule: Option<Spanned<Value>>,
+}
+
+/// A table of many phases: firing times, or a code with lags.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PhasesFile {
+    period_us: u32,
+    t_fire_us: Option<Vec<Vec<u32>>>,
+    step_us: Option<u32>,
+    phases: Option<u8>,
+    first_multiplier: Option<u8>,
+    t_lag_us: Option<Vec<u32>>,
+}
+
+/// What a table `[firing]` says.
+pub(super) fn sketch(source: &Source, file: &SketchFile) -> Result<Sketch, WorldFileError> {
+    let default = Sketch::default();
+    let us = |time: Option<u32>| Micros::new(time.unwrap_or(0));
+    let table = file.schedule.as_ref().map(|value| {
+        let (Source { file, .. }, text) = match value.get_ref() {
+            Value::String(name) => {
+                let beside = source.beside(name)?;
+                let table = beside.toml()?;
+                (beside, table)
+            }
+            value => (source.clone(), value.as_table().cloned().unwrap_or_default()),
+        };
+        let line = (file == source.file).then(|| source.line(value.span(), ""));
+        let error = |message| WorldFileError { file, line, message: format!("schedule: {message}") };
+        table_of(text).map_err(error)
+    });
+    Ok(Sketch {
+        timeout: file.timeout_us.map(Micros::new),
+        pause: us(file.pause_us),
+        turn: us(file.turn_us),
+        rest: file.rest_us.map(Micros::new),
+        arrays: file.arrays.clone(),
+        groups: file.groups.clone(),
+        consecutive: file.consecutive.unwrap_or(default.consecutive),
+        drift_ppm: file.drift_ppm.unwrap_or(default.drift_ppm),
+        table: table.transpose()?,
+    })
+}
+
+/// The firing times of a schedule of two phases, or of many.
+fn table_of(table: Table) -> Result<FiringTable, String> {
+    let micros = |us: &[u32]| us.iter().copied().map(Micros::new).collect::<Vec<_>>();
+    if ["t_fire_us", "step_us"].iter().any(|&key| table.contains_key(key)) {
+        let file = PhasesFile::deserialize(table).map_err(|error| error.message().to_owned())?;
+        let period = Micros::new(file.period_us);
+        return match (&file.t_fire_us, file.step_us, file.phases, &file.t_lag_us) {
+            (Some(rows), None, None, None) if file.first_multiplier.is_none() => {
+                Ok(FiringTable { period, rows: rows.iter().map(|row| micros(row)).collect() })
+            }
+            (None, Some(step), Some(phases), Some(lags)) if lags.len() <= MAX_SENSORS => {
+                let mut all = [Micros::ZERO; MAX_SENSORS];
+                all[..lags.len()].copy_from_slice(&micros(lags));
+                let first = file.first_multiplier.unwrap_or(1);
+                let made = HoppingCode::of(lags.len(), phases, first, Micros::new(step))
+                    .and_then(|code| HoppingSchedule::new(code, period, all));
+                let made = made.map_err(|error| error.to_string())?;
+                let rows = made.table::<{ HoppingCode::MAX_PHASES as usize }>();
+                let rows = rows.iter().take(phases.into()).map(|row| row[..lags.len()].to_vec());
+                Ok(FiringTable { period, rows: rows.collect() })
+            }
+            _ => Err("expected either t_fire_us, one list for each phase, or step_us, phases and t_lag_us".to_owned()),
+        };
+    }
+    let file = ScheduleFile::deserialize(table).map_err(|error| error.message().to_owned())?;
+    let schedule = file.schedule()?;
+    let row = |phase| (0..schedule.sensors()).map(|x| schedule.t_fire(phase, x).unwrap_or_default()).collect();
+    Ok(FiringTable { period: schedule.period(), rows: [eeruf_core::Phase::A, eeruf_core::Phase::B].map(row).into() })
+}
+
+impl Sketch {
+    /// Reads the table `[firing]` of a scene file. A schedule that it names is looked for in the present folder.
+    ///
+    /// # Errors
+    /// A message that names the key, its value and what is expected.
+    ///
+    /// ```
+    /// use eeruf_sim::Sketch;
+    /// let sketch = Sketch::from_table(&"turn_us = 33_000\narrays = [[0, 1], [2, 3]]".parse()?)?;
+    /// assert_eq!(Sketch::from_table(&sketch.to_table())?, sketch);
+    /// assert!(Sketch::from_table(&"turns_us = 1".parse()?).unwrap_err().contains("expected one of `timeout_us`"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn from_table(table: &Table) -> Result<Self, String> {
+        let source = Source { file: "firing".into(), text: table.to_string() };
+        let file: SketchFile = toml::from_str(&source.text).map_err(|error| error.message().to_owned())?;
+        sketch(&source, &file).map_err(|error| error.message)
+    }
+
+    /// The table `[firing]` in a scene file that says this: what differs from the default.
+    pub fn to_table(&self) -> Table {
+        let (mut table, default) = (Table::new(), Self::default());
+        let us = |time: Micros| i64::from(time.as_micros());
+        let lists = |lists: &[Vec<u8>]| {
+            lists.iter().map(|list| list.iter().map(|&x| i64::from(x)).collect::<Vec<_>>()).collect::<Vec<_>>()
+        };
+        for (key, time) in [("timeout_us", self.timeout), ("rest_us", self.rest)] {
+            if let Some(time) = time {
+                set(&mut table, key, us(time));
+            }
+        }
+        for (key, time) in [("pause_us", self.pause), ("turn_us", self.turn)] {
+            if time != Micros::ZERO {
+                set(&mut table, key, us(time));
+            }
+        }
+        for (key, sets) in [("arrays", &self.arrays), ("groups", &self.groups)] {
+            if !sets.is_empty() {
+                set(&mut table, key, lists(sets));
+            }
+        }
+        if self.consecutive != default.consecutive {
+            set(&mut table, "consecutive", i64::from(self.consecutive));
+        }
+        if self.drift_ppm != default.drift_ppm {
+            set(&mut table, "drift_ppm", self.drift_ppm);
+        }
+        if let Some(FiringTable { period, rows }) = &self.table {
+            let mut schedule = Table::new();
+            set(&mut schedule, "period_us", us(*period));
+            let rows = rows.iter().map(|row| row.iter().map(|&time| us(time)).collect::<Vec<_>>());
+            set(&mut schedule, "t_fire_us", rows.collect::<Vec<_>>());
+            set(&mut table, "schedule", schedule);
+        }
+        table
+    }
+}

@@ -1269,6 +1269,15 @@ def _set_one(
     progress: _Progress,
     physics: _Physics | None = None,
 ) -> str: ...
+def _set_three(
+    seeds: int,
+    first: int | None,
+    periods: int | None,
+    methods: Sequence[str] | None,
+    progress: _Progress,
+    physics: _Physics,
+    height: object,
+) -> str: ...
 def _set_two(asked: dict[str, object], progress: _Progress) -> tuple[str, dict[_Method, list[dict[str, object]]]]: ...
 def _speed_sweep(speeds_m_s: Sequence[float], asked: dict[str, object], progress: _Progress) -> str: ...
 def _readings_from_columns(

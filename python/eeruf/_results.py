@@ -476,6 +476,114 @@ class SpeedSweep(_Result):
     """For each method the highest of the speeds at which 95 % of the courses were finished; None if there is none."""
 
 
+@dataclass(frozen=True)
+class SetThreeFigures(_Result):
+    """A method's figures over the placings of Set III; what counts sensors or seconds is of one robot.
+
+    A spread is None where no placing has the figure.
+
+    Example:
+        >>> import eeruf
+        >>> found = eeruf.experiments.set_three(seeds=2, periods=20, methods=["conventional"])
+        >>> found.methods["conventional"].others_of_accepted.median >= 0
+        True
+
+    """
+
+    others_of_accepted: Spread | None
+    """Share of the accepted readings that are another robot's sound."""
+    others_at_worst: Spread | None
+    """The same of the sensor that accepts the largest share of it, among those with five accepted readings."""
+    foreign_of_accepted: Spread | None
+    """Share of the accepted readings that are foreign sound, of the robot's other sensors or an earlier firing too."""
+    good_lost: Spread | None
+    """Share of the good readings that were not accepted."""
+    right_echoes_per_s: Spread | None
+    """Accepted echoes that were right in a second."""
+    belief_right: Spread | None
+    """Share of the time in which what was last believed, at most 0.6 s ago, is right."""
+    unknown: Spread | None
+    """The share in which nothing is believed."""
+    phantom: Spread | None
+    """The share in which it is foreign sound."""
+    too_far: Spread | None
+    """The share in which it is an own later echo, or silence where there is an echo."""
+    faint: Spread | None
+    """The share in which it is an own nearer echo: faint but real."""
+    blind: Spread | None
+    """Sensors that were right under 5 % of the times they fired."""
+
+
+@dataclass(frozen=True)
+class SetThreeBrief(_Result):
+    """The figures that a group of placings is compared by.
+
+    Example:
+        >>> import eeruf
+        >>> found = eeruf.experiments.set_three(seeds=2, periods=20, methods=["driving"])
+        >>> 0 <= found.groups[0].methods["driving"].belief_right.median <= 1
+        True
+
+    """
+
+    others_of_accepted: Spread | None
+    """Share of the accepted readings that are another robot's sound."""
+    belief_right: Spread | None
+    """Share of the time in which what was last believed, at most 0.6 s ago, is right."""
+
+
+@dataclass(frozen=True)
+class SetThreeGroup(_Result):
+    """Some of the placings of Set III.
+
+    Example:
+        >>> import eeruf
+        >>> found = eeruf.experiments.set_three(seeds=2, periods=20, methods=["eeruf"])
+        >>> [(group.place, group.arrangement, group.robots) for group in found.groups]
+        [('corridor', 'meeting', None), ('hall', 'meeting', None), (None, None, 5)]
+
+    """
+
+    placings: int
+    """How many placings these are."""
+    methods: Mapping[str, SetThreeBrief]
+    """By name, over these placings."""
+    place: Literal["corridor", "hall"] | None = None
+    """Where they are; None for anywhere."""
+    arrangement: Literal["standing", "meeting", "following"] | None = None
+    """How the robots are to each other; None for anyhow."""
+    robots: int | None = None
+    """How many robots there are; None for any number."""
+
+
+@dataclass(frozen=True)
+class SetThree(_Result):
+    """Set III over many placings of robots of one make.
+
+    Example:
+        >>> import eeruf
+        >>> found = eeruf.experiments.set_three(seeds=2, periods=20, methods=["sequential", "driving"], height="room")
+        >>> list(found.methods), found.height
+        (['sequential', 'driving'], 'room')
+
+    """
+
+    first: int
+    """The first placing's number."""
+    seeds: int
+    """How many placings."""
+    physics: _Physics
+    """Which effects the rooms had."""
+    periods: int
+    """How many periods each was simulated for."""
+    methods: Mapping[str, SetThreeFigures]
+    """By name, over all placings; ``"driving"`` is time hopping by its settings for robots that drive."""
+    groups: tuple[SetThreeGroup, ...]
+    """The placings by place and arrangement, and by the number of robots."""
+    height: Literal["flat", "room"] = "flat"
+    """Whether the rings heard floor and ceiling."""
+
+
 # A method bears a speed at which this share of the courses is finished.
 _BORNE = 0.95
 
@@ -513,6 +621,27 @@ def set_one(text: str) -> SetOne:
     table = _fields(text)
     table["methods"] = {name: figures(of) for name, of in cast("dict[Method, _Fields]", table["methods"]).items()}
     return SetOne(**table)  # type: ignore[arg-type]
+
+
+def set_three(text: str) -> SetThree:
+    """Make the result of Set III of its JSON."""
+
+    def spreads(of: _Fields) -> _Fields:
+        return {
+            name: Spread(**_with_pairs(value)) if isinstance(value, dict) else value  # type: ignore[arg-type]
+            for name, value in of.items()
+        }
+
+    def group(of: _Fields) -> SetThreeGroup:
+        methods = cast("dict[str, _Fields]", of["methods"])
+        of["methods"] = {name: SetThreeBrief(**spreads(brief)) for name, brief in methods.items()}  # type: ignore[arg-type]
+        return SetThreeGroup(**of)  # type: ignore[arg-type]
+
+    table = _fields(text)
+    methods = cast("dict[str, _Fields]", table["methods"])
+    table["methods"] = {name: SetThreeFigures(**spreads(of)) for name, of in methods.items()}  # type: ignore[arg-type]
+    table["groups"] = tuple(group(of) for of in cast("list[_Fields]", table["groups"]))
+    return SetThree(**table)  # type: ignore[arg-type]
 
 
 def set_two(text: str, runs: dict[Method, list[_Fields]]) -> SetTwo:

@@ -1,4 +1,4 @@
-"""The paper's experiments (Sec. 4): robots that stand before walls, and a robot that drives between poles.
+"""The paper's experiments (Sec. 4): robots that stand before walls, a robot that drives between poles; and robots of one make.
 
 What the tables say, and where the paper promises too much, stands in ``docs/experiments.md``; the program prints the same ones
 (``eeruf experiment``).
@@ -15,6 +15,10 @@ from eeruf._results import (
     Run,
     SetOne,
     SetOneFigures,
+    SetThree,
+    SetThreeBrief,
+    SetThreeFigures,
+    SetThreeGroup,
     SetTwo,
     SetTwoFigures,
     SpeedStep,
@@ -40,12 +44,17 @@ __all__ = [
     "Run",
     "SetOne",
     "SetOneFigures",
+    "SetThree",
+    "SetThreeBrief",
+    "SetThreeFigures",
+    "SetThreeGroup",
     "SetTwo",
     "SetTwoFigures",
     "SpeedStep",
     "SpeedSweep",
     "Spread",
     "set_one",
+    "set_three",
     "set_two",
     "speed_sweep",
 ]
@@ -73,7 +82,7 @@ def set_one(
     Args:
         seeds: how many alcoves, 1 to 100,000.
         readings: about how many readings of each alcove and method, 1 or more.
-        methods: names of ``eeruf.sim.METHODS``; all by default.
+        methods: names of ``eeruf.sim.METHODS``; by default all but those that fire as sketches and modules do.
         first: the first alcove's number.
         physics: as the argument of ``eeruf.sim.Scene``.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
@@ -155,6 +164,47 @@ def set_two(
         seeds, methods, second_robot, speed_m_s, odometry, t_delta_us, first, pilot, odometry_noise, physics, bodies
     )
     return _results.set_two(*_eeruf._set_two(asked, progress))
+
+
+def set_three(
+    seeds: int = 200,
+    *,
+    methods: Sequence[str] | None = None,
+    periods: int = 40,
+    first: int = FIRST,
+    physics: _Physics = "default",
+    height: Literal["flat", "room"] | dict[str, object] = "flat",
+    progress: _Progress = None,
+) -> SetThree:
+    """Set III: two to six robots with the same ring stand, meet or follow each other in a corridor or a hall.
+
+    Nothing but the phases and drifts of their clocks tells them apart. Runs on all cores; Ctrl-C ends it.
+
+    Args:
+        seeds: how many placings, 1 to 100,000.
+        methods: names of ``eeruf.sim.METHODS``, and ``"driving"``, time hopping by its settings for robots that drive; by
+            default simultaneous, sequential, sequential_votes, dither, eeruf, eeruf_hopping and driving.
+        periods: of 100 ms, for which each placing is simulated, 10 to 100,000.
+        first: the first placing's number.
+        physics: as the argument of ``eeruf.sim.Scene``.
+        height: as the argument of ``eeruf.sim.Scene``.
+        progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
+
+    Returns:
+        The figures of each method, which do not depend on the number of threads.
+
+    Raises:
+        ArgumentError: a number is out of range, or there is no such method.
+        ExperimentError: there are no methods.
+
+    Example:
+        >>> import eeruf
+        >>> found = eeruf.experiments.set_three(seeds=3, periods=20, methods=["simultaneous", "driving"])
+        >>> found.methods["driving"].right_echoes_per_s.median > 0
+        True
+
+    """
+    return _results.set_three(_eeruf._set_three(seeds, first, periods, methods, progress, physics, height))
 
 
 def speed_sweep(

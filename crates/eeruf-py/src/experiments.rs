@@ -1,4 +1,4 @@
-//! The paper's experiments. Their tables come as JSON, with the names that `eeruf experiment --json` uses; what users
+//! The paper's experiments, and robots of one make. Their tables come as JSON, with the names that `eeruf experiment --json` uses; what users
 //! call is in `python/eeruf/experiments.py`.
 
 use eeruf_core::Micros;
@@ -7,6 +7,7 @@ use eeruf_sim::{
     experiments::{
         FIRST,
         set_one::{self as first_set, Alcove, READINGS, SetOneOptions},
+        set_three::{self as third_set, SetThreeOptions, Way},
         set_two::{
             self as second_set, Course, Ending, OdometryNoise, POLE_RADIUS_M, Pilots, Run, SECOND_AHEAD, SECOND_BEHIND,
             SetTwoOptions, SpeedStep,
@@ -21,7 +22,7 @@ use pyo3::{
 use serde::Serialize;
 
 use crate::{
-    arguments::{choice, flag, items, micros, number, points, shown, whole, whole_or, wrong},
+    arguments::{choice, flag, items, micros, number, points, shown, text, whole, whole_or, wrong},
     errors::{ArgumentError, Raise},
     methods::{best, methods as methods_named},
     surroundings,
@@ -53,13 +54,48 @@ pub(crate) fn set_one(
     let seeds = whole("seeds", seeds, 1..=SEEDS_MOST)?;
     let first = whole_or("first", first, FIRST, 0..=u64::from(u32::MAX))?;
     let readings = whole_or("readings", readings, READINGS, 1..=u32::MAX)?;
-    let methods = methods_named(methods, &Method::ALL)?;
+    let methods = methods_named(methods, &Method::usual().collect::<Vec<_>>())?;
     in_background(py, progress, move |background| {
         let best = best(&methods, &Alcove::random(0).robot(), background)?;
         let keep_going = |done| background.go_on(Some(done), || format!("{seeds} alcoves"));
         let asked = SetOneOptions { seeds, first, readings, methods, physics, best, ..SetOneOptions::default() };
         let table = first_set::set_one(&asked, &keep_going).map_err(Raise::raise)?;
         json(&table)
+    })
+}
+
+/// Set III over many placings.
+#[pyfunction]
+#[pyo3(name = "_set_three", signature = (seeds, first, periods, methods, progress, physics, height))]
+#[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+pub(crate) fn set_three(
+    py: Python<'_>,
+    seeds: &Bound<'_, PyAny>,
+    first: Option<&Bound<'_, PyAny>>,
+    periods: Option<&Bound<'_, PyAny>>,
+    methods: Option<&Bound<'_, PyAny>>,
+    progress: Option<&Bound<'_, PyAny>>,
+    physics: Option<&Bound<'_, PyAny>>,
+    height: Option<&Bound<'_, PyAny>>,
+) -> PyResult<String> {
+    let default = SetThreeOptions::default();
+    let way = |name: &Bound<'_, PyAny>| {
+        let name = text("methods", name, "a name of eeruf.sim.METHODS, or \"driving\"")?;
+        name.parse::<Way>().map_err(|error| ArgumentError::new_err(error.to_string()))
+    };
+    let named = methods.map(|names| items("methods", names, "a sequence of names of eeruf.sim.METHODS")).transpose()?;
+    let asked = SetThreeOptions {
+        seeds: whole("seeds", seeds, 1..=SEEDS_MOST)?,
+        first: whole_or("first", first, FIRST, 0..=u64::from(u32::MAX))?,
+        periods: whole_or("periods", periods, default.periods, 10..=100_000)?,
+        ways: named.map_or(Ok(default.ways), |names| names.iter().map(way).collect())?,
+        physics: surroundings::physics(physics)?,
+        room: surroundings::height(height)?,
+        gain: default.gain,
+    };
+    in_background(py, progress, move |background| {
+        let keep_going = |done| background.go_on(Some(done), || format!("{} placings", asked.seeds));
+        json(&third_set::set_three(&asked, &keep_going).map_err(Raise::raise)?)
     })
 }
 

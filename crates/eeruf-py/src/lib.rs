@@ -73,7 +73,7 @@ mod _eeruf {
             ArgumentError, CertificateError, EerufError, ExperimentError, FilterError, HoppingError, PathsError,
             RingError, SceneError, ScheduleError, SearchError, SimulationError,
         },
-        experiments::{set_one, set_two, speed_sweep},
+        experiments::{set_one, set_three, set_two, speed_sweep},
         filter::EchoFilter,
         found::Found,
         himm::Himm,

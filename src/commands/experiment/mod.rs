@@ -1,13 +1,15 @@
-//! `eeruf experiment`: Section 4 of the paper as two commands, with its own figures beside those found here.
+//! `eeruf experiment`: Section 4 of the paper as two commands, with its own figures beside those found here,
+//! and robots of one make as a third.
 
 mod common;
 mod set_one;
+mod set_three;
 mod set_two;
 
 use super::answer::Answer;
 use crate::files::error::InputError;
 
-/// Repeat an experiment of the paper over many seeded geometries or courses, by every method.
+/// Repeat an experiment over many seeded geometries, courses or placings, by every method.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(subcommand)]
@@ -16,14 +18,19 @@ pub(crate) struct Args {
 
 #[derive(clap::Subcommand)]
 enum Set {
-    SetOne(set_one::Args),
-    SetTwo(set_two::Args),
+    #[command(name = "set-one")]
+    One(set_one::Args),
+    #[command(name = "set-two")]
+    Two(set_two::Args),
+    #[command(name = "set-three")]
+    Three(set_three::Args),
 }
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     match &args.set {
-        Set::SetOne(args) => set_one::run(args)?,
-        Set::SetTwo(args) => set_two::run(args)?,
+        Set::One(args) => set_one::run(args)?,
+        Set::Two(args) => set_two::run(args)?,
+        Set::Three(args) => set_three::run(args)?,
     }
     Ok(Answer::Yes)
 }

@@ -22,5 +22,5 @@ pub(crate) use methods::methods_chart;
 pub(crate) use picture::Picture;
 pub(crate) use readings::readings_over_time;
 pub(crate) use scene::{DrawnPath, Panel, scene_with_paths};
-pub(crate) use spreads::set_one;
+pub(crate) use spreads::{robots_of_one_make, set_one};
 pub(crate) use timing::timing_diagram;

@@ -1,4 +1,5 @@
 //! What the experiments found, as tables.
 
 pub(crate) mod set_one;
+pub(crate) mod set_three;
 pub(crate) mod set_two;

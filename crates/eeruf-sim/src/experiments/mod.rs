@@ -1,4 +1,5 @@
-//! The paper's experiments, made repeatable: Set I before three walls, Set II through courses of poles.
+//! The paper's experiments, made repeatable: Set I before three walls, Set II through courses of poles; and Set III among
+//! robots of one make.
 //! It uses all other rooms, and none uses it.
 
 mod by_name;
@@ -6,6 +7,7 @@ mod conditions;
 mod error;
 mod progress;
 pub mod set_one;
+pub mod set_three;
 pub mod set_two;
 mod spread;
 

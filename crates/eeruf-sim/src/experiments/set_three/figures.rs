@@ -1,0 +1,122 @@
+//! A way's figures over placings.
+
+use serde::Serialize;
+
+use crate::{
+    experiments::spread::Spread,
+    results::{Belief, Cause, NO_PATH, Readings, Summary},
+};
+
+/// A way's figures over placings; shares are fractions of 1, and what counts sensors or seconds is of one robot.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Figures {
+    /// Share of the accepted readings that are another robot's sound.
+    pub others_of_accepted: Option<Spread>,
+    /// The same of the sensor, of all robots, that accepts the largest share of it, among those with five accepted
+    /// readings.
+    pub others_at_worst: Option<Spread>,
+    /// Share of the accepted readings that are foreign sound, of the robot's other sensors or of an earlier firing too.
+    pub foreign_of_accepted: Option<Spread>,
+    /// Share of the good readings that were not accepted.
+    pub good_lost: Option<Spread>,
+    /// Accepted echoes that were right in a second.
+    pub right_echoes_per_s: Option<Spread>,
+    /// Share of the time in which what was last believed is right, as in [`Belief`].
+    pub belief_right: Option<Spread>,
+    /// The share in which nothing is believed.
+    pub unknown: Option<Spread>,
+    /// The share in which it is foreign sound.
+    pub phantom: Option<Spread>,
+    /// The share in which it is an own later echo.
+    pub too_far: Option<Spread>,
+    /// The share in which it is an own nearer echo.
+    pub faint: Option<Spread>,
+    /// Sensors that were right under 5 % of the times they fired.
+    pub blind: Option<Spread>,
+}
+
+/// The figures that a group of placings is compared by.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Brief {
+    /// See [`Figures::others_of_accepted`].
+    pub others_of_accepted: Option<Spread>,
+    /// See [`Figures::belief_right`].
+    pub belief_right: Option<Spread>,
+}
+
+/// What one placing gave.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Run {
+    others_of_accepted: Option<f64>,
+    others_at_worst: Option<f64>,
+    foreign_of_accepted: Option<f64>,
+    good_lost: Option<f64>,
+    right_echoes_per_s: f64,
+    belief: Belief,
+    blind: f64,
+}
+
+/// As many readings must be accepted of a sensor that may be the worst.
+const ENOUGH: usize = 5;
+
+impl Run {
+    pub(super) fn of(readings: &Readings, robots: usize) -> Self {
+        let sensors = readings.sensors.div_ceil(robots.max(1));
+        let mut each = vec![(0_usize, 0_usize); readings.sensors];
+        let mut foreign = 0;
+        for k in (0..readings.len()).filter(|&k| readings.is_accepted(k)) {
+            let (robot, cause) = (readings.robot[k], readings.cause[k]);
+            let path = Some(readings.path[k]).filter(|&path| path != NO_PATH);
+            let heard = path.and_then(|path| readings.paths.get(path as usize));
+            foreign += usize::from(matches!(cause, Cause::Crosstalk | Cause::Stale | Cause::External));
+            let place = usize::from(robot) * sensors + usize::from(readings.sensor[k]);
+            if let Some((accepted, others)) = each.get_mut(place) {
+                *accepted += 1;
+                *others += usize::from(heard.is_some_and(|heard| heard.emitter.robot != robot));
+            }
+        }
+        let accepted: usize = each.iter().map(|(accepted, _)| accepted).sum();
+        let others: usize = each.iter().map(|(_, others)| others).sum();
+        let share = |count: usize, of: usize| (of > 0).then(|| count as f64 / of as f64);
+        let often = each.iter().filter(|(accepted, _)| *accepted >= ENOUGH);
+        let Summary { good_lost, right_echoes_per_s, belief, blind, .. } = readings.summary();
+        let of_one = robots.max(1) as f64;
+        Self {
+            others_of_accepted: share(others, accepted),
+            others_at_worst: often.filter_map(|&(accepted, others)| share(others, accepted)).reduce(f64::max),
+            foreign_of_accepted: share(foreign, accepted),
+            good_lost,
+            right_echoes_per_s: right_echoes_per_s / of_one,
+            belief,
+            blind: blind as f64 / of_one,
+        }
+    }
+}
+
+impl Figures {
+    pub(super) fn of(runs: &[Run]) -> Self {
+        let spread = |value: fn(&Run) -> Option<f64>| Spread::of(runs.iter().filter_map(value));
+        Self {
+            others_of_accepted: spread(|run| run.others_of_accepted),
+            others_at_worst: spread(|run| run.others_at_worst),
+            foreign_of_accepted: spread(|run| run.foreign_of_accepted),
+            good_lost: spread(|run| run.good_lost),
+            right_echoes_per_s: spread(|run| Some(run.right_echoes_per_s)),
+            belief_right: spread(|run| Some(run.belief.right)),
+            unknown: spread(|run| Some(run.belief.unknown)),
+            phantom: spread(|run| Some(run.belief.phantom)),
+            too_far: spread(|run| Some(run.belief.too_far)),
+            faint: spread(|run| Some(run.belief.faint)),
+            blind: spread(|run| Some(run.blind)),
+        }
+    }
+}
+
+impl Brief {
+    pub(super) fn of<'r>(runs: impl Iterator<Item = &'r Run> + Clone) -> Self {
+        Self {
+            others_of_accepted: Spread::of(runs.clone().filter_map(|run| run.others_of_accepted)),
+            belief_right: Spread::of(runs.map(|run| run.belief.right)),
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! The table of Set III.
+
+use std::fmt::Write as _;
+
+use eeruf_sim::experiments::Spread;
+use eeruf_sim::experiments::set_three::{Arrangement, Brief, Figures, Group, PERIOD, Place, SetThree, Way};
+
+use crate::report::percent::{fine_percent, median};
+use crate::report::table::markdown;
+
+pub(crate) fn describe(found: &SetThree) -> String {
+    let mut text = format!(
+        "Set III: {} placings from {} on of two to six robots, {} periods of {} each, physics: {}{};\n\
+         medians with 95 % intervals. Others: another robot's sound, and the same at the sensor that accepts most of\n\
+         it; foreign: the robot's own other sensors and earlier firings too. Belief: what was last believed, no longer\n\
+         than 0.6 s ago. Echoes and blind sensors are those of one robot with twelve (means).\n\n",
+        found.seeds, found.first, found.periods, PERIOD, found.physics, found.conditions,
+    );
+    let header = [
+        "method",
+        "others, % of accepted",
+        "90 %",
+        "worst sensor",
+        "foreign, % of accepted",
+        "good lost %",
+        "right echoes/s",
+        "blind",
+    ];
+    _ = writeln!(text, "{}", markdown(&header, found.methods.iter().map(|(way, figures)| accepted(*way, figures))));
+    let header = ["% of the time", "right", "unknown", "phantom", "too far", "faint"];
+    _ = writeln!(text, "\n{}", markdown(&header, found.methods.iter().map(|(way, figures)| belief(*way, figures))));
+    let mut header = vec!["others, % of accepted / belief right %".to_owned(), "placings".to_owned()];
+    header.extend(found.methods.iter().map(|(way, _)| way.to_string()));
+    _ = writeln!(text, "\n{}", markdown(&header, found.groups.iter().map(group)));
+    text
+}
+
+fn with_interval(spread: Option<Spread>) -> String {
+    spread.map_or_else(
+        || "-".to_owned(),
+        |Spread { median, median_95: [low, high], .. }| {
+            format!("{} ({}-{})", fine_percent(median), fine_percent(low), fine_percent(high))
+        },
+    )
+}
+
+fn mean_95(spread: Option<Spread>, digits: usize) -> String {
+    spread.map_or_else(
+        || "-".to_owned(),
+        |Spread { mean, mean_95: [low, high], .. }| format!("{mean:.digits$} ({low:.digits$}-{high:.digits$})"),
+    )
+}
+
+fn accepted(way: Way, figures: &Figures) -> Vec<String> {
+    let p90 = figures.others_of_accepted.map_or_else(|| "-".to_owned(), |spread| fine_percent(spread.p90));
+    vec![
+        way.to_string(),
+        with_interval(figures.others_of_accepted),
+        p90,
+        with_interval(figures.others_at_worst),
+        with_interval(figures.foreign_of_accepted),
+        with_interval(figures.good_lost),
+        mean_95(figures.right_echoes_per_s, 1),
+        mean_95(figures.blind, 2),
+    ]
+}
+
+fn belief(way: Way, figures: &Figures) -> Vec<String> {
+    let shares = [figures.belief_right, figures.unknown, figures.phantom, figures.too_far, figures.faint];
+    [way.to_string()].into_iter().chain(shares.map(with_interval)).collect()
+}
+
+fn group(group: &Group) -> Vec<String> {
+    let place = group.place.map(|place| match place {
+        Place::Corridor => "corridor, ",
+        Place::Hall => "hall, ",
+    });
+    let arrangement = group.arrangement.map(|arrangement| match arrangement {
+        Arrangement::Standing => "standing",
+        Arrangement::Meeting => "meeting",
+        Arrangement::Following => "following",
+    });
+    let robots = group.robots.map(|robots| format!("{robots} robots"));
+    let name = [place.map(str::to_owned), arrangement.map(str::to_owned), robots];
+    let mut row = vec![name.into_iter().flatten().collect::<String>(), group.placings.to_string()];
+    row.extend(group.methods.iter().map(|(_, brief)| briefly(brief)));
+    row
+}
+
+fn briefly(brief: &Brief) -> String {
+    let percent =
+        |spread: Option<Spread>| median(spread.map(|spread| Spread { median: 100.0 * spread.median, ..spread }), 1);
+    format!("{} / {}", percent(brief.others_of_accepted), percent(brief.belief_right))
+}

@@ -1,5 +1,5 @@
-//! The paper's experiments, and robots of one make. Their tables come as JSON, with the names that `eeruf experiment --json` uses; what users
-//! call is in `python/eeruf/experiments.py`.
+//! The paper's experiments, and robots of one make. Their tables come as JSON, with the names that `eeruf experiment
+//! --json` uses; what users call is in `python/eeruf/experiments.py`.
 
 use eeruf_core::Micros;
 use eeruf_sim::{

@@ -53,8 +53,8 @@ use crate::{
 ///         its modules say where ``module`` is given, or else no longer than sensors listen.
 ///     ring: the path of a ring file, for ``eeruf design``, that gives modules, windows, ``T_delta``, sensors that fire
 ///         together and neighbours, unless these are given here.
-///     firing: a dict with the keys of ``[firing]`` in scene files, such as ``{"turn_us": 33_000}``, for the methods that
-///         fire as sketches and modules do.
+///     firing: a dict with the keys of ``[firing]`` in scene files, such as ``{"turn_us": 33_000}``, for the methods
+///         that fire as sketches and modules do.
 ///     start_us: when the ring begins to fire, by its own clock.
 ///     schedule: what the EERUF methods fire by; None for the paper's table, scaled to the period.
 ///     neighbours: how many adjacent sensors must not fire close together, 1 to 64.

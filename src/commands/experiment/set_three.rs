@@ -12,9 +12,8 @@ use crate::report::json::to_json;
 /// Set III: two to six robots with the same ring stand, meet or follow each other in a corridor or a hall, each with a
 /// clock of its own.
 ///
-/// A ring has twelve sensors all round, with the paper's period of 100 ms. Every placing is simulated by each method for
-/// 40 periods. Figures are given
-/// as medians over the placings, with 95 % intervals.
+/// A ring has twelve sensors all round, with the paper's period of 100 ms. Every placing is simulated by each method
+/// for 40 periods. Figures are given as medians over the placings, with 95 % intervals.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]

@@ -20,6 +20,7 @@ mod properties;
 mod random;
 mod room;
 mod set_one;
+mod set_three;
 mod set_two;
 mod simulation;
 mod sketches;

@@ -73,7 +73,8 @@ impl Filtered {
     }
 }
 
-/// The filter of a method for a robot's readings; `median_of` is what [`Belief::Median`] takes the median of, up to [`MAX_MEDIAN`].
+/// The filter of a method for a robot's readings; `median_of` is what [`Belief::Median`] takes the median of, up to
+/// [`MAX_MEDIAN`].
 pub(super) fn filter_of(belief: Belief, median_of: usize, robot: Option<&Robot>, sensors: usize) -> Box<dyn Filter> {
     let t_delta = robot.map_or(Micros::ZERO, |robot| robot.t_delta);
     match belief {

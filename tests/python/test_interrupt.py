@@ -17,6 +17,7 @@ LONG = {
     "paths": "poles.paths((-1.9, -1.9), [(1.9, 0.01 * y) for y in range(100)], 8, progress=tell)",
     "set_one": "eeruf.experiments.set_one(100_000, progress=tell)",
     "set_two": "eeruf.experiments.set_two(100_000, progress=tell)",
+    "set_three": "eeruf.experiments.set_three(100_000, progress=tell)",
     "speed_sweep": "eeruf.experiments.speed_sweep(seeds=100_000, progress=tell)",
     "count": "tell(); waits.count()",
     "all": "tell(); [None for table in waits.all()]",

@@ -255,7 +255,7 @@ def test_how_a_ring_is_fired_today_is_said_in_code_as_in_a_file() -> None:
 
 def test_a_ring_file_makes_the_same_robot_in_code_as_in_a_scene(tmp_path: Path) -> None:
     rings = SCENES.parent / "rings"
-    makes = ["jsn-sr04t"] * 4 + ["hc-sr04"] * 8
+    makes: Any = ["jsn-sr04t"] * 4 + ["hc-sr04"] * 8
     made = sim.Robot((0, 0, 0), ring=rings / "car-12.toml", module=makes, blanking_us=900)
     ring = (rings / "car-12.toml").read_text()
     (tmp_path / "car.toml").write_text(ring)

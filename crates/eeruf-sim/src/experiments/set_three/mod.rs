@@ -1,9 +1,9 @@
 //! Set III: two to six robots of one make, near each other, all firing by the same method with clocks of their own.
 //!
 //! The paper claims that a ring also rejects what other robots send (Sec. 5), and measures it for no two that are
-//! alike. Here rings of twelve sensors all round, of one period, window and table, stand, meet or follow each other in a
-//! corridor and in a hall; nothing but the phase and the drift of their clocks tells them apart. The rooms, places and
-//! drifts are choices.
+//! alike. Here rings of twelve sensors all round, of one period, window and table, stand, meet or follow each other in
+//! a corridor and in a hall; nothing but the phase and the drift of their clocks tells them apart. The rooms, places
+//! and drifts are choices.
 
 mod figures;
 mod placing;

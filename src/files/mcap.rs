@@ -1,17 +1,15 @@
 //! Simulated readings as an MCAP file, for Foxglove, Rerun and whatever reads ROS 2: ranges, poses, the scene, and
 //! along which path each reading came.
 //!
-//! Ranges are `sensor_msgs/msg/Range` in CDR; poses, scene and paths are Foxglove's own messages in JSON. Sensors and
-//! robots are counted from 1 in the names of topics and frames.
+//! All messages are those of ROS 2, in CDR. Sensors and robots are counted from 1 in the names of topics and frames.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use eeruf_core::ReadingKind;
-use eeruf_logs::{LogError, McapWriter, Reading};
+use eeruf_logs::{LogError, Marker, McapWriter, Placement, Reading, Shape, Transform};
 use eeruf_sim::experiments::set_two::Place;
-use eeruf_sim::{HeardPath, Point, Pose, Readings, Scene, SensorId, Simulation, Vector, World};
-use serde_json::{Value, json};
+use eeruf_sim::{HeardPath, Moment, Point, Pose, Readings, Scene, SensorId, Simulation, Vector, World};
 
 use super::error::InputError;
 use super::firings::{CLOCK, firing};
@@ -31,28 +29,28 @@ pub(crate) struct Stage<'a> {
     world: &'a World,
     /// Worlds with the scenes that its own was exchanged for, and since when in seconds, in order of time.
     changes: &'a [(Arc<World>, f64)],
-    /// Where a robot is at a time in seconds; nothing where nobody knows.
-    pose: Box<dyn Fn(usize, f64) -> Option<Pose> + 'a>,
+    /// The place and velocity of a robot at a time in seconds, if they are known.
+    moment: Box<dyn Fn(usize, f64) -> Option<Moment> + 'a>,
 }
 
 impl<'a> Stage<'a> {
     /// Robots move as the world says.
     pub(crate) fn of(world: &'a World) -> Self {
-        Self { world, changes: &[], pose: Box::new(|robot, time_s| planned(world, robot, time_s)) }
+        Self { world, changes: &[], moment: Box::new(|robot, time_s| planned(world, robot, time_s)) }
     }
 
     /// The first robot was driven; its places are in order of time.
     pub(crate) fn driven(world: &'a World, track: &'a [Place]) -> Self {
-        let pose = |robot, time_s| if robot == 0 { on_track(track, time_s) } else { planned(world, robot, time_s) };
-        Self { world, changes: &[], pose: Box::new(pose) }
+        let moment = |robot, time_s| if robot == 0 { on_track(track, time_s) } else { planned(world, robot, time_s) };
+        Self { world, changes: &[], moment: Box::new(moment) }
     }
 
     /// Robots move as they are steered, among scenes that change.
     fn under_way(simulation: &'a Simulation, changes: &'a [(Arc<World>, f64)]) -> Self {
         // What is computed of times may be off by a rounding.
         let known = |time_s: f64| time_s.clamp(0.0, simulation.time_s());
-        let pose = move |robot, time_s| Some(simulation.moment_at(robot, known(time_s)).ok()?.pose);
-        Self { world: simulation.world(), changes, pose: Box::new(pose) }
+        let moment = move |robot, time_s| simulation.moment_at(robot, known(time_s)).ok();
+        Self { world: simulation.world(), changes, moment: Box::new(moment) }
     }
 
     /// The scene in which sound travels that was sent at this time.
@@ -62,7 +60,7 @@ impl<'a> Stage<'a> {
     }
 
     fn pose(&self, robot: usize, time_s: f64) -> Option<Pose> {
-        (self.pose)(robot, time_s)
+        Some((self.moment)(robot, time_s)?.pose)
     }
 
     fn position(&self, id: SensorId, time_s: f64) -> Option<Point> {
@@ -72,25 +70,28 @@ impl<'a> Stage<'a> {
     }
 }
 
-fn planned(world: &World, robot: usize, time_s: f64) -> Option<Pose> {
+fn planned(world: &World, robot: usize, time_s: f64) -> Option<Moment> {
     let robot = world.robots().get(robot)?;
-    Some(robot.motion.at(&robot.pose, time_s).pose)
+    Some(robot.motion.at(&robot.pose, time_s))
 }
 
 /// Between two places, or at the last one.
-fn on_track(track: &[Place], time_s: f64) -> Option<Pose> {
+fn on_track(track: &[Place], time_s: f64) -> Option<Moment> {
     let after = track.partition_point(|place| place.time_s <= time_s);
     let (before, after) = (track.get(after.saturating_sub(1))?, track.get(after));
     let Some(after) = after.filter(|after| after.time_s > before.time_s) else {
-        return Some(Pose::new(Vector::new(before.x_m, before.y_m), before.heading_rad));
+        let pose = Pose::new(Vector::new(before.x_m, before.y_m), before.heading_rad);
+        return Some(Moment { pose, velocity: Vector::zeros(), turn_rad_s: 0.0 });
     };
-    let share = ((time_s - before.time_s) / (after.time_s - before.time_s)).clamp(0.0, 1.0);
-    let between = |from: f64, to: f64| from + share * (to - from);
+    let lasts_s = after.time_s - before.time_s;
+    let way = Vector::new(after.x_m - before.x_m, after.y_m - before.y_m);
     // The shorter way round.
     let turn = after.heading_rad - before.heading_rad;
     let turn = turn.sin().atan2(turn.cos());
-    let place = Vector::new(between(before.x_m, after.x_m), between(before.y_m, after.y_m));
-    Some(Pose::new(place, before.heading_rad + share * turn))
+    let share = ((time_s - before.time_s) / lasts_s).clamp(0.0, 1.0);
+    let place = Vector::new(before.x_m, before.y_m) + share * way;
+    let pose = Pose::new(place, before.heading_rad + share * turn);
+    Some(Moment { pose, velocity: way / lasts_s, turn_rad_s: turn / lasts_s })
 }
 
 /// Writes all runs into one file, each under the name of its method.
@@ -189,86 +190,55 @@ fn at_ns(time_s: f64) -> u64 {
     START_NS + (1e9 * time_s.max(0.0)).round() as u64
 }
 
-fn stamp(at_ns: u64) -> Value {
-    json!({"sec": at_ns / 1_000_000_000, "nsec": at_ns % 1_000_000_000})
-}
-
 fn sensor_frame(id: SensorId) -> String {
     format!("robot_{}/sonar_{}", id.robot + 1, id.sensor + 1)
 }
 
-fn point(at: &Point) -> Value {
-    json!({"x": at.x, "y": at.y, "z": 0.0})
+fn placement(pose: &Pose) -> Placement {
+    Placement::planar(pose.translation.x, pose.translation.y, pose.rotation.angle())
 }
 
-/// Half the angle makes the quaternion.
-fn turned(pose: &Pose) -> Value {
-    let (z, w) = (0.5 * pose.rotation.angle()).sin_cos();
-    json!({"x": 0.0, "y": 0.0, "z": z, "w": w})
-}
-
-/// A line strip, as Foxglove has it.
-fn line(points: &[Value], colour: [f64; 4], thickness: f64) -> Value {
-    let [r, g, b, a] = colour;
-    json!({
-        "type": 0, "thickness": thickness, "scale_invariant": true, "points": points, "colors": [], "indices": [],
-        "pose": {"position": {"x": 0, "y": 0, "z": 0}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}},
-        "color": {"r": r, "g": g, "b": b, "a": a},
-    })
-}
-
-/// An entity in the world's frame; a lifetime of zero is for ever.
-fn entity(id: &str, at_ns: u64, lifetime_ns: u64, lines: &[Value], cylinders: &[Value]) -> Value {
-    json!({
-        "timestamp": stamp(at_ns), "frame_id": "world", "id": id, "lifetime": stamp(lifetime_ns),
-        "frame_locked": false, "metadata": [], "arrows": [], "cubes": [], "spheres": [], "triangles": [],
-        "texts": [], "models": [], "lines": lines, "cylinders": cylinders,
-    })
+fn marker(namespace: &str, id: usize, shape: Shape, colour: [f32; 4], lifetime_ns: u64) -> Marker {
+    let (frame, namespace) = ("world".to_owned(), namespace.to_owned());
+    Marker { frame, namespace, id: id as i32, shape, colour, lifetime_ns }
 }
 
 /// Walls and poles, in the place of those before.
 fn scene(out: &mut McapWriter, scene: &Scene, time_s: f64) -> Result<(), LogError> {
-    let now = at_ns(time_s);
-    let wall = |wall: &eeruf_sim::Wall| line(&[point(&wall.from), point(&wall.to)], [0.2, 0.2, 0.25, 1.0], 3.0);
-    let walls: Vec<_> = scene.walls().iter().map(wall).collect();
-    let pole = |pole: &eeruf_sim::Pole| {
-        json!({
-            "pose": {"position": point(&pole.centre), "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}},
-            "size": {"x": 2.0 * pole.radius_m, "y": 2.0 * pole.radius_m, "z": 0.5},
-            "bottom_scale": 1.0, "top_scale": 1.0, "color": {"r": 0.2, "g": 0.2, "b": 0.25, "a": 1.0},
-        })
-    };
-    let poles: Vec<_> = scene.poles().iter().map(pole).collect();
-    let message = json!({"deletions": [], "entities": [entity("scene", now, 0, &walls, &poles)]});
-    out.json("/scene", "foxglove.SceneUpdate", now, &message.to_string())
+    const COLOUR: [f32; 4] = [0.2, 0.2, 0.25, 1.0];
+    let walls = scene.walls().iter().flat_map(|wall| [wall.from, wall.to]);
+    let walls = Shape::Lines(walls.map(|end| [end.x, end.y, 0.0]).collect(), 0.02);
+    let mut markers = vec![marker("", 0, Shape::Clear, COLOUR, 0), marker("walls", 0, walls, COLOUR, 0)];
+    for (number, pole) in scene.poles().iter().enumerate() {
+        let place = Placement::planar(pole.centre.x, pole.centre.y, 0.0);
+        let shape = Shape::Cylinder(place, 2.0 * pole.radius_m, 0.5);
+        markers.push(marker("poles", number, shape, COLOUR, 0));
+    }
+    out.markers("/scene", at_ns(time_s), &markers)
 }
 
-/// Where robots and sensors are at a moment: transforms, and each robot's pose, which is its odometry without error.
+/// Where robots and sensors are at a moment: transforms, and each robot's odometry, without error.
 fn poses(out: &mut McapWriter, stage: &Stage<'_>, time_s: f64) -> Result<(), LogError> {
     let now = at_ns(time_s);
-    let transform = |parent: &str, child: &str, pose: &Pose| {
-        json!({
-            "timestamp": stamp(now), "parent_frame_id": parent, "child_frame_id": child,
-            "translation": {"x": pose.translation.x, "y": pose.translation.y, "z": 0.0}, "rotation": turned(pose),
-        })
+    let transform = |parent: &str, child: &str, pose: &Pose| Transform {
+        parent: parent.to_owned(),
+        child: child.to_owned(),
+        placement: placement(pose),
     };
     let mut transforms = Vec::new();
     for (number, robot) in stage.world.robots().iter().enumerate() {
         let name = format!("robot_{}", number + 1);
-        let Some(pose) = stage.pose(number, time_s) else { continue };
-        transforms.push(transform("world", &name, &pose));
+        let Some(Moment { pose, velocity, turn_rad_s }) = (stage.moment)(number, time_s) else { continue };
+        let of = transform("world", &name, &pose);
+        let ahead = pose.rotation.inverse() * velocity;
+        out.odometry(&format!("/{name}/odom"), now, &of, [ahead.x, ahead.y, 0.0], [0.0, 0.0, turn_rad_s])?;
+        transforms.push(of);
         for (sensor, mounted) in robot.sensors.iter().enumerate() {
             let id = SensorId { robot: number as u16, sensor: sensor as u8 };
             transforms.push(transform(&name, &sensor_frame(id), mounted));
         }
-        let place = json!({"x": pose.translation.x, "y": pose.translation.y, "z": 0.0});
-        let message = json!({
-            "timestamp": stamp(now), "frame_id": "world", "pose": {"position": place, "orientation": turned(&pose)},
-        });
-        out.json(&format!("/{name}/pose"), "foxglove.PoseInFrame", now, &message.to_string())?;
     }
-    let message = json!({"transforms": transforms}).to_string();
-    out.json("/tf", "foxglove.FrameTransforms", now, &message)
+    out.transforms("/tf", now, &transforms)
 }
 
 /// Each reading as a range, what the method accepts beside it, its path, and the firings of the first robot as
@@ -310,10 +280,9 @@ fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(
                 (false, true) => [0.82, 0.29, 0.36, 1.0],
                 (false, false) => [0.93, 0.78, 0.42, 0.8],
             };
-            let points: Vec<_> = points.iter().map(point).collect();
-            let entity = entity(&frame, fired_ns, SHOWN_NS, &[line(&points, colour, 1.5)], &[]);
-            let message = json!({"deletions": [], "entities": [entity]}).to_string();
-            out.json(&format!("/{}/paths", run.method), "foxglove.SceneUpdate", fired_ns, &message)?;
+            let points = points.iter().map(|point| [point.x, point.y, 0.0]).collect();
+            let drawn = marker(&frame, 0, Shape::Strip(points, 0.01), colour, SHOWN_NS);
+            out.markers(&format!("/{}/paths", run.method), fired_ns, &[drawn])?;
         }
     }
     Ok(())

@@ -4,6 +4,7 @@ use eeruf_core::{ReadingKind, hopping::HoppingSettings};
 use eeruf_logs::{Echo, FiringLog, Options, read_log, replay};
 
 use crate::common::{Scratch, eeruf, json};
+use crate::ros2::Message;
 
 #[test]
 fn replay_writes_what_it_accepts_beside_what_was_recorded_by_rep_117() {
@@ -114,31 +115,33 @@ fn study_writes_ranges_poses_scene_and_paths_that_another_reader_reads() {
         assert!(of(&eeruf) == 40 && of(&format!("{eeruf}/accepted")) < 40);
     }
 
-    // The reader of the crate `mcap`: all messages in JSON are objects of a type of Foxglove's.
-    let bytes = std::fs::read(&file).unwrap();
+    // By the definitions in the file: all messages are of ROS 2.
     let mut paths = 0;
-    for message in mcap::MessageStream::new(&bytes).unwrap() {
-        let message = message.unwrap();
-        if message.channel.message_encoding != "json" {
-            continue;
-        }
-        let object: serde_json::Value = serde_json::from_slice(&message.data).unwrap();
-        let type_name = message.channel.schema.as_ref().unwrap().name.clone();
-        match type_name.as_str() {
-            "foxglove.FrameTransforms" => assert_eq!(object["transforms"].as_array().unwrap().len(), 9),
-            "foxglove.PoseInFrame" => assert!(object["pose"]["position"]["x"].is_number()),
-            "foxglove.SceneUpdate" => {
-                let lines = object["entities"][0]["lines"].as_array().unwrap();
-                let scene = message.channel.topic == "/scene";
-                assert_eq!(lines.len(), if scene { 3 } else { 1 });
-                assert!(lines.iter().all(|line| line["points"].as_array().unwrap().len() >= 2));
-                paths += usize::from(!scene);
+    for Message { topic, kind, value, .. } in crate::ros2::messages(&file) {
+        match kind.as_str() {
+            "sensor_msgs/msg/Range" => assert_eq!(value["header"]["frame_id"], topic_frame(&topic)),
+            "tf2_msgs/msg/TFMessage" => assert_eq!(value["transforms"].as_array().unwrap().len(), 9),
+            "nav_msgs/msg/Odometry" => assert_eq!(value["child_frame_id"], "robot_1"),
+            "visualization_msgs/msg/MarkerArray" if topic == "/scene" => {
+                assert_eq!(value["markers"][1]["points"].as_array().unwrap().len(), 2 * 3);
             }
-            "eeruf.Firing" => assert!(object["sensor"].is_number() && object["period"].is_number()),
+            "visualization_msgs/msg/MarkerArray" => {
+                assert!(value["markers"][0]["points"].as_array().unwrap().len() >= 2);
+                paths += 1;
+            }
+            "eeruf_msgs/msg/Firing" => {
+                let echo = value["t_echo_us"].as_u64().unwrap();
+                assert_eq!(value["has_echo"], echo > 0);
+            }
             other => panic!("{other}"),
         }
     }
     assert!(paths > 400, "{paths}");
+}
+
+/// The frame of a sensor by its topic, `/METHOD/FRAME` or `/METHOD/FRAME/accepted`.
+fn topic_frame(topic: &str) -> &str {
+    topic[1..].split_once('/').unwrap().1.trim_end_matches("/accepted")
 }
 
 #[test]

@@ -18,5 +18,6 @@ mod program;
 mod provoked;
 mod recording;
 mod rings_in_scenes;
+mod ros2;
 mod scene;
 mod study;

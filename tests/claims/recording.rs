@@ -52,27 +52,32 @@ fn a_recording_has_each_reading_once_and_poses_where_the_robot_was_steered() {
     assert_eq!((report.unwrap().damage, ranges[&false]), (vec![], logged.len()));
     assert!(ranges[&true] > 20, "{ranges:?}");
 
-    let bytes = std::fs::read(&file).unwrap();
     let (mut poses, mut paths, mut scenes) = (0, 0, 0);
-    for message in mcap::MessageStream::new(&bytes).unwrap() {
-        let message = message.unwrap();
-        let topic = message.channel.topic.as_str();
-        if !(topic.ends_with("/pose") || topic.ends_with("/paths") || topic == "/scene") {
+    for (time_s, topic, object) in messages(&file, "") {
+        if !(topic.ends_with("/odom") || topic.ends_with("/paths") || topic == "/scene") {
             continue;
         }
-        let object: Value = serde_json::from_slice(&message.data).unwrap();
-        let time_s = (message.log_time - START_NS) as f64 * 1e-9;
         let was = simulation.moment_at(0, time_s).unwrap().pose;
-        if topic.ends_with("/pose") {
-            let position = &object["pose"]["position"];
+        if topic.ends_with("/odom") {
+            let position = &object["pose"]["pose"]["position"];
             let [x, y] = ["x", "y"].map(|name| position[name].as_f64().unwrap());
             assert!((Vector::new(x, y) - was.translation.vector).norm() < 1e-9, "{time_s} s: {object}");
+            // Velocities are in the robot's own frame; where a step ends, it has the one before and the one after.
+            let twist = &object["twist"]["twist"];
+            let [ahead, left] = ["x", "y"].map(|name| twist["linear"][name].as_f64().unwrap());
+            let velocity = was.rotation * Vector::new(ahead, left);
+            let turn_rad_s = twist["angular"]["z"].as_f64().unwrap();
+            let is_at = |time_s: f64| {
+                let now = simulation.moment_at(0, time_s.clamp(0.0, simulation.time_s())).unwrap();
+                (velocity - now.velocity).norm() < 1e-5 && (turn_rad_s - now.turn_rad_s).abs() < 1e-5
+            };
+            assert!(is_at(time_s - 1e-6) || is_at(time_s + 1e-6), "{time_s} s: {twist}");
             // One every 50 ms, from the beginning.
             assert!((time_s - 0.05 * f64::from(poses)).abs() < 1e-6, "{time_s} s");
             poses += 1;
         } else if topic.ends_with("/paths") {
             // An echo of the sensor's own begins where the sensor was when it fired; it has 0.3 m to the middle.
-            let points = object["entities"][0]["lines"][0]["points"].as_array().unwrap();
+            let points = object["markers"][0]["points"].as_array().unwrap();
             let [x, y] = ["x", "y"].map(|name| points[0][name].as_f64().unwrap());
             let off = ((Vector::new(x, y) - was.translation.vector).norm() - 0.3).abs();
             // Foreign sound was sent at another time.
@@ -86,16 +91,10 @@ fn a_recording_has_each_reading_once_and_poses_where_the_robot_was_steered() {
     assert!(paths > 200, "{paths}");
 }
 
-/// The messages of the topics that end so, with their times in seconds, in the file's order.
-fn messages(file: &std::path::Path, ending: &str) -> Vec<(f64, Value)> {
-    let bytes = std::fs::read(file).unwrap();
-    let all = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap);
-    all.filter(|message| message.channel.topic.ends_with(ending))
-        .map(|message| {
-            let time_s = (message.log_time - START_NS) as f64 * 1e-9;
-            (time_s, serde_json::from_slice(&message.data).unwrap())
-        })
-        .collect()
+/// The messages of the topics that end so, with their times in seconds and their topics, in the file's order.
+fn messages(file: &std::path::Path, ending: &str) -> Vec<(f64, String, Value)> {
+    let all = crate::ros2::messages(file).into_iter().filter(|message| message.topic.ends_with(ending));
+    all.map(|message| ((message.log_time - START_NS) as f64 * 1e-9, message.topic, message.value)).collect()
 }
 
 #[test]
@@ -145,11 +144,12 @@ fn a_scene_that_is_exchanged_is_drawn_from_then_on_and_sound_that_was_on_its_way
 
     let drawn: Vec<_> = messages(&file, "/scene")
         .into_iter()
-        .map(|(time_s, message)| {
-            let entity = &message["entities"][0];
-            assert_eq!((entity["id"].as_str(), message["entities"].as_array().unwrap().len()), (Some("scene"), 1));
-            let poles = entity["cylinders"].as_array().unwrap().len();
-            (time_s, entity["lines"][0]["points"][0]["x"].as_f64().unwrap(), poles)
+        .map(|(time_s, _, message)| {
+            let markers = message["markers"].as_array().unwrap();
+            // All that was there before goes.
+            assert_eq!((&markers[0]["action"], &markers[1]["ns"]), (&3.into(), &"walls".into()));
+            let poles = markers.iter().filter(|marker| marker["ns"] == "poles").count();
+            (time_s, markers[1]["points"][0]["x"].as_f64().unwrap(), poles)
         })
         .collect();
     assert_eq!(drawn.len(), walls.len(), "{drawn:?}");
@@ -159,9 +159,9 @@ fn a_scene_that_is_exchanged_is_drawn_from_then_on_and_sound_that_was_on_its_way
     }
     let paths = messages(&file, "/paths");
     let mut crossed = 0;
-    for (fired_s, message) in &paths {
+    for (fired_s, _, message) in &paths {
         let wall = walls.iter().rfind(|(since_s, _)| since_s <= fired_s).unwrap().1;
-        let touched = message["entities"][0]["lines"][0]["points"][1]["x"].as_f64().unwrap();
+        let touched = message["markers"][0]["points"][1]["x"].as_f64().unwrap();
         assert!((touched - wall).abs() < 1e-9, "fired at {fired_s} s: {touched} m, not {wall} m");
         // An echo from 2.5 m takes 14.6 ms, and the wall before the last stood at 3 m.
         let after = |since_s: f64| (0.0..0.0145).contains(&(since_s - fired_s));

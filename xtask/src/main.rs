@@ -32,6 +32,7 @@ mod program;
 mod python;
 mod quick;
 mod release;
+mod rerun;
 mod ros2;
 mod site;
 mod steps;
@@ -90,6 +91,8 @@ enum Verb {
     Python,
     /// Run a ring on an emulated board, its serial line and the ROS 2 node, and listen with Cyclone DDS and pymavlink
     Ros2,
+    /// Load a recording in Rerun, whose wheel has 170 MB, and see that none of it is raw bytes
+    Rerun,
     /// Replay bags of a million messages, name senders in 200 alcoves, write the data set: the figures of docs/logs.md,
     /// docs/diagnose.md and docs/dataset.md, which are also what must hold (many minutes)
     Logs,
@@ -185,6 +188,7 @@ fn main() -> ExitCode {
         }
         Verb::Python => one_step("Python package", python::python),
         Verb::Ros2 => one_step("ROS 2 node", ros2::ros2),
+        Verb::Rerun => one_step("recording in Rerun", rerun::rerun),
         Verb::Logs => {
             let mut steps = Steps::default();
             logs::logs(&mut steps);

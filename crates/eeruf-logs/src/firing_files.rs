@@ -12,7 +12,7 @@ use crate::form::{self, Form};
 fn not_firings(file: &Path, form: &str) -> LogError {
     let message = format!(
         "{form}, which holds ranges and no firings; expected CSV with sensor, fired_us, period, phase and t_echo_us, \
-         or MCAP with eeruf.Firing; `eeruf logs` and `eeruf replay` read ranges"
+         or MCAP with eeruf_msgs/msg/Firing; `eeruf logs` and `eeruf replay` read ranges"
     );
     LogError::new(file, message)
 }

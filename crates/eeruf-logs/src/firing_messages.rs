@@ -1,4 +1,4 @@
-//! Firing logs in MCAP: messages of the type `eeruf.Firing` in JSON.
+//! Firing logs in MCAP: messages `eeruf_msgs/msg/Firing` of ROS 2, and `eeruf.Firing` in JSON from other programs.
 
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -8,24 +8,73 @@ use std::path::Path;
 use ::mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use serde_json::{Value, json};
 
+use crate::bytes::Bytes;
 use crate::error::LogError;
 use crate::firings::{Firing, FiringLog, MAX_SENSORS, was_rejected};
+use crate::message::cdr_bytes;
 use crate::weighed::Weighed;
 
-/// The type of the messages.
-pub(crate) const FIRING: &str = "eeruf.Firing";
+/// The type of the messages in ROS 2.
+pub(crate) const FIRING: &str = "eeruf_msgs/msg/Firing";
 
-/// One firing as a message.
-pub(crate) fn message(clock: &str, firing: &Firing) -> Value {
-    let reading = Some(firing.reading()).filter(|reading| !reading.is_empty());
+/// The type of the messages in JSON.
+const JSON_FIRING: &str = "eeruf.Firing";
+
+/// The fields of the message in ROS 2.
+pub(crate) const FIRING_FIELDS: &str = "\
+# One firing of one sensor of a ring; sensors, periods and phases count from 0.
+std_msgs/Header header
+string clock
+uint8 sensor
+int64 fired_us
+uint32 period
+uint8 phase
+# Without an echo t_echo_us is 0.
+bool has_echo
+uint32 t_echo_us
+# What the ring made of the reading; empty if unknown.
+string reading
+# Without it the fields below are 0.
+bool is_weighed
+uint64 given
+bool solo
+bool steady
+uint8 changes
+int32 expected_us
+";
+
+/// A message of ROS 2 with the fields of one in JSON.
+fn of_cdr(data: &[u8]) -> Option<Value> {
+    let (mut rest, most) = cdr_bytes(data)?;
+    let flag = |rest: &mut Bytes<'_>| Some(rest.u8()? != 0);
+    rest.take(8)?;
+    rest.text()?;
+    rest.align(4)?;
+    let clock = rest.text()?;
+    let clock = clock.trim_end_matches('\0');
+    let sensor = rest.u8()?;
+    rest.align(most)?;
+    let fired_us = rest.u64()?.cast_signed();
+    let (period, phase, has_echo) = (rest.u32()?, rest.u8()?, flag(&mut rest)?);
+    rest.align(4)?;
+    let t_echo_us = Some(rest.u32()?).filter(|_| has_echo);
+    let reading = rest.text()?;
+    let reading = Some(reading.trim_end_matches('\0')).filter(|reading| !reading.is_empty());
     let mut message = json!({
-        "clock": clock, "sensor": firing.sensor, "fired_us": firing.fired_us, "period": firing.period,
-        "phase": firing.phase, "t_echo_us": firing.t_echo_us, "reading": reading,
+        "clock": clock, "sensor": sensor, "fired_us": fired_us, "period": period, "phase": phase,
+        "t_echo_us": t_echo_us, "reading": reading,
     });
-    if let (Some(weighed), Some(fields)) = (&firing.weighed, message.as_object_mut()) {
-        weighed.add_to(fields);
+    if flag(&mut rest)? {
+        rest.align(most)?;
+        let (given, solo, steady, changes) = (rest.u64()?, flag(&mut rest)?, flag(&mut rest)?, rest.u8()?);
+        rest.align(4)?;
+        let expected = rest.u32()?.cast_signed();
+        let fields = json!({
+            "given": given, "solo": solo, "steady": steady, "changes": changes, "expected_us": expected,
+        });
+        message.as_object_mut()?.extend(fields.as_object()?.clone());
     }
-    message
+    Some(message)
 }
 
 /// Reads the firings of a file, as far as it is whole.
@@ -54,6 +103,8 @@ struct Found {
     /// Schemas of firings, and channels that have them.
     schemas: BTreeSet<u16>,
     channels: Vec<(u16, String)>,
+    /// The channels in CDR.
+    in_cdr: BTreeSet<u16>,
     /// The channels that have messages.
     used: BTreeSet<u16>,
     clock: String,
@@ -69,25 +120,31 @@ impl Found {
             return Ok(());
         };
         match record {
-            ::mcap::records::Record::Schema { header, .. } if header.name == FIRING => {
+            ::mcap::records::Record::Schema { header, .. } if [FIRING, JSON_FIRING].contains(&header.name.as_str()) => {
                 self.schemas.insert(header.id);
             }
             ::mcap::records::Record::Channel(channel)
                 if self.schemas.contains(&channel.schema_id)
                     && self.channels.iter().all(|known| known.0 != channel.id) =>
             {
+                if channel.message_encoding == "cdr" {
+                    self.in_cdr.insert(channel.id);
+                }
                 self.channels.push((channel.id, channel.topic));
             }
             ::mcap::records::Record::Message { header, data } => {
                 let id = header.channel_id;
                 if let Some((_, topic)) = self.channels.iter().find(|known| known.0 == id) {
-                    let message = serde_json::from_slice::<Value>(&data).ok();
+                    let message =
+                        if self.in_cdr.contains(&id) { of_cdr(&data) } else { serde_json::from_slice(&data).ok() };
                     let number = (self.firings.len() + self.listened.len()) as u64;
                     let firing = message.as_ref().and_then(|message| firing(message, number));
                     let expected = "expected sensor (0 to 63), fired_us, period, phase and t_echo_us (or null), and of \
                                     solo, steady and changes all or none";
                     let bad = || {
-                        LogError::new(file, format!("topic {topic}: {}; {expected}", String::from_utf8_lossy(&data)))
+                        let text = message.as_ref().map(Value::to_string);
+                        let text = text.unwrap_or_else(|| String::from_utf8_lossy(&data).into_owned());
+                        LogError::new(file, format!("topic {topic}: {text}; {expected}"))
                     };
                     let firing = firing.ok_or_else(bad)?;
                     let field = |name: &str| message.as_ref().and_then(|message| message.get(name));
@@ -107,7 +164,10 @@ impl Found {
     fn log(self, file: &Path) -> Result<FiringLog, LogError> {
         if self.firings.is_empty() {
             let why = self.damage.map_or(String::new(), |damage| format!("; {damage}"));
-            return Err(LogError::new(file, format!("no firings: expected messages of the type {FIRING}{why}")));
+            return Err(LogError::new(
+                file,
+                format!("no firings: expected messages of the type {FIRING}, or {JSON_FIRING} in JSON{why}"),
+            ));
         }
         if self.used.len() > 1 {
             let topics = self.channels.into_iter().filter(|channel| self.used.contains(&channel.0));

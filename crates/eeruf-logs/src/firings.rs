@@ -16,8 +16,9 @@
 //! put onto a fixed schedule ([`align`](crate::align())). Rows may come in any order that is at most 2^31 us out. Where
 //! a column `sends` is 0 the sensor only listened from then on, as some can.
 //!
-//! The same in MCAP is a JSON message `eeruf.Firing` for each row, with the columns as its fields and the clock's name
-//! as a field `clock`; see [`McapWriter::firing`](crate::McapWriter::firing).
+//! The same in MCAP is a message `eeruf_msgs/msg/Firing` of ROS 2 for each row, which
+//! [`McapWriter::firing`](crate::McapWriter::firing) writes, or one `eeruf.Firing` in JSON, with the columns as its
+//! fields and the clock's name as a field `clock`.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;

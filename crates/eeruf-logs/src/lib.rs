@@ -31,6 +31,7 @@
 //! ```
 
 mod bytes;
+mod cdr;
 mod chunks;
 mod diagnose;
 mod error;
@@ -45,6 +46,7 @@ mod pattern;
 mod reading;
 mod replay;
 mod ros1;
+mod ros2;
 mod rosbag2;
 mod schema;
 mod sink;
@@ -68,6 +70,7 @@ pub use options::{FieldChoice, Options, RangeUnit, Table, TimeUnit};
 pub use pattern::{FiringPattern, Pattern};
 pub use reading::{Echo, Reading, Sensor};
 pub use replay::{ReplayError, replay};
+pub use ros2::{Marker, Placement, Shape, Transform};
 pub use sink::{Guess, Report, Skipped};
 pub use survey::{PathSettings, Surveyed, survey};
 pub use weighed::Weighed;

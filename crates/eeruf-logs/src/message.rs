@@ -214,6 +214,19 @@ fn has_variance(schema: &str) -> Option<bool> {
     has("range").then(|| has("variance"))
 }
 
+/// What follows CDR's own header of four bytes, of which the second says in which order bytes come, and the largest
+/// alignment.
+pub(crate) fn cdr_bytes(message: &[u8]) -> Option<(Bytes<'_>, usize)> {
+    let (header, body) = message.split_at_checked(4)?;
+    let order = match (header[0], header[1]) {
+        // Plain CDR, of the first and of the second version, for types that do not change.
+        (0, 0 | 6) => Order::Big,
+        (0, 1 | 7) => Order::Little,
+        _ => return None,
+    };
+    Some((Bytes::new(body, order), if header[1] < 6 { 8 } else { 4 }))
+}
+
 /// The fields of a message, one after the other.
 struct Fields<'a> {
     bytes: Bytes<'a>,
@@ -223,17 +236,9 @@ struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// What follows CDR's own header of four bytes, of which the second says in which order bytes come.
     fn cdr(message: &'a [u8]) -> Option<Self> {
-        let (header, body) = message.split_at_checked(4)?;
-        let order = match (header[0], header[1]) {
-            // Plain CDR, of the first and of the second version, for types that do not change.
-            (0, 0 | 6) => Order::Big,
-            (0, 1 | 7) => Order::Little,
-            _ => return None,
-        };
-        let most = if header[1] < 6 { 8 } else { 4 };
-        Some(Self { bytes: Bytes::new(body, order), cdr: Some(most) })
+        let (bytes, most) = cdr_bytes(message)?;
+        Some(Self { bytes, cdr: Some(most) })
     }
 
     fn align(&mut self) -> Option<()> {

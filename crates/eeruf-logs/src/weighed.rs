@@ -2,7 +2,7 @@
 
 use csv::StringRecord;
 use eeruf_core::ReadingKind;
-use serde_json::{Map, Value, json};
+use serde_json::Value;
 
 /// How the tracker of a hopping ring weighed a reading, beside its phase and echo time: what
 /// [`replay`](crate::replay()) needs to do the same again.
@@ -30,19 +30,6 @@ impl Weighed {
     pub(crate) fn fields(&self) -> String {
         let Self { given, solo, steady, changes, expected_change_us, .. } = self;
         format!(",{given},{},{},{changes},{expected_change_us}", u8::from(*solo), u8::from(*steady))
-    }
-
-    /// As fields of a message.
-    pub(crate) fn add_to(&self, message: &mut Map<String, Value>) {
-        let Self { given, solo, steady, changes, expected_change_us, .. } = self;
-        let fields = [
-            ("given", json!(given)),
-            ("solo", json!(solo)),
-            ("steady", json!(steady)),
-            ("changes", json!(changes)),
-            ("expected_us", json!(expected_change_us)),
-        ];
-        message.extend(fields.map(|(name, value)| (name.to_owned(), value)));
     }
 
     /// Of a message, the firing with this number: nothing if it has none of the fields that are needed; no answer if

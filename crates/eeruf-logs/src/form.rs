@@ -13,6 +13,8 @@ pub(crate) enum Form {
     Mcap,
     Ros1,
     Sqlite,
+    /// Frames of the serial line.
+    Serial,
     Text,
     Packed(Packing),
     Foreign(Foreign),
@@ -50,6 +52,8 @@ impl Form {
             Self::Ros1
         } else if starts(crate::rosbag2::SQLITE_MAGIC) {
             Self::Sqlite
+        } else if crate::serial::is_serial(first) {
+            Self::Serial
         } else if starts(&[0x1f, 0x8b]) {
             Self::Packed(Packing::Gzip)
         } else if starts(b"BZh") {
@@ -94,6 +98,7 @@ impl Form {
             Self::Mcap => "MCAP",
             Self::Ros1 => "a ROS 1 bag",
             Self::Sqlite => "a ROS 2 bag's SQLite file",
+            Self::Serial => "frames of the serial line",
             Self::Text => "text",
             Self::Packed(packing) => packing.name(),
             Self::Foreign(foreign) => foreign.name(),

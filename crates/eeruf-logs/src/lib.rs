@@ -7,6 +7,7 @@
 //! | ROS 2 bag (a folder) | the same, from its MCAP or `SQLite` files; messages packed by zstd too |
 //! | ROS 1 bag | the same, format 2.0; chunks of bz2, lz4 or neither |
 //! | text | tables with any separator, with or without header; pairs of name and value; JSON |
+//! | frames of `eeruf-serial`, as they came | each firing |
 //! | any of these packed | as a whole, by gzip, bzip2 or zstd |
 //!
 //! `Range` has had a `variance` since ROS 2 Iron: the schema in the file says whether it is there, else the message's
@@ -37,6 +38,7 @@ mod diagnose;
 mod error;
 mod firing_files;
 mod firing_messages;
+mod firing_text;
 mod firings;
 mod form;
 mod mcap;
@@ -49,6 +51,7 @@ mod ros1;
 mod ros2;
 mod rosbag2;
 mod schema;
+mod serial;
 mod sink;
 mod survey;
 mod text;
@@ -112,6 +115,7 @@ fn read_form(
         form::Form::Ros1 => ros1::read(file, sink),
         form::Form::Sqlite => rosbag2::read_sqlite(file, false, sink),
         form::Form::Text => text::read(File::open(file).map_err(failed)?, name, options, sink),
+        form::Form::Serial => serial::read(File::open(file).map_err(failed)?, name, options, sink),
         form::Form::Foreign(foreign) => Err(foreign.refuse(name)),
         form::Form::Packed(packing) => {
             let opened = BufReader::new(File::open(file).map_err(failed)?);
@@ -137,6 +141,10 @@ fn read_unpacked(
     match form {
         form::Form::Text if error.is_none() => {
             text::read(form::UntilError::new(input, &mut error), name, options, sink)?;
+        }
+        form::Form::Serial => {
+            form.name().clone_into(&mut sink.report.form);
+            serial::read(form::UntilError::new(input, &mut error), name, options, sink)?;
         }
         form::Form::Packed(_) => return Err(LogError::new(name, "packed twice; expected once: unpack it first")),
         form::Form::Text => {}

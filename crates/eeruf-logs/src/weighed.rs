@@ -1,6 +1,5 @@
 //! [`Weighed`]: how the tracker of a hopping ring weighed a reading, and how logs have it.
 
-use csv::StringRecord;
 use eeruf_core::ReadingKind;
 use serde_json::Value;
 
@@ -76,7 +75,7 @@ impl Columns {
     pub(crate) const EMPTY: &str = ",,,,,";
 
     /// Nothing if the log has none of those that are needed; what is missing, if it has some of them.
-    pub(crate) fn of(header: &StringRecord) -> Result<Option<Self>, String> {
+    pub(crate) fn of(header: &[String]) -> Result<Option<Self>, String> {
         let column = |name: &str| header.iter().position(|column| column == name);
         let needed = ["solo", "steady", "changes"];
         match needed.map(column) {
@@ -96,11 +95,11 @@ impl Columns {
     /// is expected.
     pub(crate) fn read(
         &self,
-        row: &StringRecord,
+        row: &[String],
         made: &str,
         number: u64,
     ) -> Result<Option<Weighed>, (usize, &'static str)> {
-        let text = |column: usize| row.get(column).unwrap_or_default();
+        let text = |column: usize| row.get(column).map_or("", String::as_str);
         let Self { given, solo, steady, changes, expected } = *self;
         if [solo, steady, changes].into_iter().all(|column| text(column).is_empty()) {
             return Ok(None);

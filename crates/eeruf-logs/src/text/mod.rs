@@ -19,7 +19,10 @@ use crate::error::LogError;
 use crate::options::Options;
 use crate::sink::Sink;
 
-use lines::Source;
+pub(crate) use lines::{Line, Source};
+pub(crate) use recognise::is_comment;
+pub(crate) use shape::{Separator, json, separated};
+pub(crate) use value::{is_no_echo, number, prefix};
 
 /// The unit of ranges that a name says.
 pub(crate) fn range_unit(name: &str) -> Option<crate::options::RangeUnit> {

@@ -60,7 +60,7 @@ pub(super) struct Plan {
     pub(super) skipped: Vec<Skipped>,
 }
 
-pub(super) fn is_comment(text: &str) -> bool {
+pub(crate) fn is_comment(text: &str) -> bool {
     let text = text.trim_start();
     text.is_empty() || text.starts_with('#') || text.starts_with("//") || text.to_lowercase().starts_with("sep=")
 }

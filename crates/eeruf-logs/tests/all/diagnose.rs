@@ -280,7 +280,11 @@ fn a_log_is_read_as_it_was_written_and_a_clock_of_32_bits_may_wrap() {
     let read = FiringLog::read_from(wrapped.as_bytes(), "log".as_ref()).unwrap();
     assert_eq!((read.clock.as_str(), read.firings[1].fired_us), ("unnamed", 4_294_972_296));
     let said = |text: &str| FiringLog::read_from(text.as_bytes(), "log".as_ref()).unwrap_err().to_string();
-    assert_eq!(said("a,b\n"), "log: no column `sensor`; expected sensor, fired_us, period, phase, t_echo_us");
+    assert_eq!(
+        said("a,b\n"),
+        "log: no column `sensor`; expected sensor, fired_us, period, phase, t_echo_us; `eeruf logs` says what else \
+         the file holds"
+    );
     let header = "# clock: board\nsensor,fired_us,period,phase,t_echo_us\n";
     assert_eq!(said(&format!("{header}64,0,0,0,\n")), "log, line 3: column sensor: `64`; expected 0 to 63");
     assert_eq!(

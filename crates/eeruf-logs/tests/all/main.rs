@@ -4,6 +4,7 @@ mod bags;
 mod csv;
 mod damage;
 mod diagnose;
+mod firing_logs;
 mod forms;
 mod mutated;
 mod survey;

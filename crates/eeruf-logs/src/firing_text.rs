@@ -1,0 +1,268 @@
+//! Firing logs in text: tables with any separator and JSON, by the recogniser of [`read_log`](crate::read_log). A line
+//! that is damaged gives no firing, and is named.
+
+use std::io::Read;
+use std::path::Path;
+
+use crate::error::LogError;
+use crate::firings::{Firing, FiringLog, MAX_SENSORS, was_rejected};
+use crate::text::{Line, Separator, Source, is_comment, is_no_echo, json, number, prefix, separated};
+use crate::weighed::Columns;
+
+const NEEDED: [&str; 4] = ["sensor", "period", "phase", "t_echo_us"];
+/// The columns that are read, in the order in which rows of JSON have them.
+const NAMES: [&str; 12] = [
+    "sensor",
+    "fired_us",
+    "period",
+    "phase",
+    "t_echo_us",
+    "reading",
+    "sends",
+    "given",
+    "solo",
+    "steady",
+    "changes",
+    "expected_us",
+];
+
+/// Where the columns stand.
+struct Header {
+    names: Vec<String>,
+    /// Nothing for JSON, whose rows have names.
+    separator: Option<Separator>,
+    has_prefix: bool,
+    needed: [usize; 4],
+    fired: Option<usize>,
+    reading: Option<usize>,
+    sends: Option<usize>,
+    weighed: Option<Columns>,
+}
+
+/// Why a line gives no firing: a column, if it is one, and what is wrong.
+type Wrong = (Option<usize>, String);
+
+impl Header {
+    /// By the first line that is no comment, or by the first objects.
+    fn of(sample: &[Line], is_document: bool) -> Result<Self, String> {
+        let lines = || sample.iter().filter(|line| !is_comment(&line.text));
+        let first = lines().next().map_or("", |line| line.text.trim());
+        let is_json = is_document || first.starts_with('{');
+        let stripped = prefix(first).map(|(_, rest)| rest).filter(|rest| rest.to_lowercase().contains("sensor"));
+        let has_prefix = !is_json && stripped.is_some();
+        let (separator, names) = if is_json {
+            let rows: Vec<_> = lines().filter_map(|line| json(&line.text)).collect();
+            let is_there = |name: &&str| rows.iter().flatten().any(|(own, _)| same_name(own) == *name);
+            (None, NAMES.iter().filter(|name| is_there(name)).map(|&name| name.to_owned()).collect())
+        } else {
+            let cells = |separator| separated(stripped.unwrap_or(first), separator).unwrap_or_default();
+            let found = |separator: &Separator| {
+                cells(*separator).iter().filter(|name| NAMES.contains(&same_name(name).as_str())).count()
+            };
+            let separator = Separator::ALL.into_iter().rev().max_by_key(found).unwrap_or(Separator::Comma);
+            (Some(separator), cells(separator).iter().map(|name| same_name(name)).collect::<Vec<_>>())
+        };
+        let column = |name: &str| names.iter().position(|column| column == name);
+        let mut needed = [0; 4];
+        for (place, name) in needed.iter_mut().zip(NEEDED) {
+            *place = column(name).ok_or_else(|| {
+                format!(
+                    "no column `{name}`; expected sensor, fired_us, period, phase, t_echo_us; `eeruf logs` says what \
+                     else the file holds"
+                )
+            })?;
+        }
+        let (fired, reading, sends) = (column("fired_us"), column("reading"), column("sends"));
+        let weighed = Columns::of(&names)?;
+        Ok(Self { separator, has_prefix, needed, fired, reading, sends, weighed, names })
+    }
+
+    /// The cells of a line; nothing for the header itself.
+    fn cells(&self, line: &Line) -> Result<Option<Vec<String>>, Wrong> {
+        let wrong = |why: String| (None, why);
+        if line.is_too_long || line.text.contains('\u{fffd}') {
+            return Err(wrong("bytes that are no text".to_owned()));
+        }
+        let text = line.text.trim_matches([' ', '\u{feff}']);
+        let text = if self.has_prefix { prefix(text).map_or(text, |found| found.1) } else { text };
+        let Some(separator) = self.separator else {
+            let pairs = json(text).ok_or_else(|| wrong("no JSON object".to_owned()))?;
+            let value = |name: &String| {
+                let found = pairs.iter().find(|(own, _)| same_name(own) == *name).map_or("", |(_, text)| text.as_str());
+                match found {
+                    "null" => String::new(),
+                    "true" => "1".to_owned(),
+                    "false" => "0".to_owned(),
+                    other => other.to_owned(),
+                }
+            };
+            return Ok(Some(self.names.iter().map(value).collect()));
+        };
+        let cells =
+            separated(text, separator).ok_or_else(|| wrong("a quotation mark that is not closed".to_owned()))?;
+        if cells.iter().map(|cell| same_name(cell)).eq(self.names.iter().cloned()) {
+            return Ok(None);
+        }
+        if cells.len() != self.names.len() {
+            return Err(wrong(format!("{} cells; expected {}", cells.len(), self.names.len())));
+        }
+        Ok(Some(cells))
+    }
+
+    /// The firing of a row, with this number, and whether its sensor sent; `fired_us` is `None` if the row lacks it.
+    fn firing(&self, cells: &[String], row: u64) -> Result<(Firing, Option<i64>, bool), Wrong> {
+        let decimal_comma = self.separator.is_some_and(|separator| separator != Separator::Comma);
+        let text = |column: usize| cells.get(column).map_or("", String::as_str);
+        let bad = |column: usize, expected: &str| (Some(column), format!("`{}`; expected {expected}", text(column)));
+        let [sensor, period, phase, echo] = self.needed;
+        let fired_us = match self.fired.filter(|&column| !text(column).is_empty()) {
+            None => None,
+            Some(column) => {
+                let us = number(text(column), decimal_comma).filter(|us| (0.0..9e15).contains(us));
+                Some(us.ok_or_else(|| bad(column, "microseconds, 0 to 9e15"))?.round() as i64)
+            }
+        };
+        let t_echo_us = match text(echo) {
+            text if is_no_echo(text) => None,
+            text => {
+                let us = number(text, decimal_comma).filter(|us| (0.0..4e9).contains(us));
+                Some(us.ok_or_else(|| bad(echo, "microseconds, or nothing"))?.round() as u32)
+            }
+        };
+        let sends = match self.sends {
+            Some(column) => match text(column) {
+                "0" => false,
+                "" | "1" => true,
+                _ => return Err(bad(column, "0 or 1")),
+            },
+            None => true,
+        };
+        let made = self.reading.map(text).unwrap_or_default();
+        let weighed = self.weighed.as_ref().map(|columns| columns.read(cells, made, row)).transpose();
+        let known_sensor = text(sensor).parse().ok().filter(|&sensor| sensor < MAX_SENSORS);
+        let firing = Firing {
+            weighed: weighed.map_err(|(column, expected)| bad(column, expected))?.flatten(),
+            sensor: known_sensor.ok_or_else(|| bad(sensor, "0 to 63"))?,
+            fired_us: fired_us.unwrap_or(0),
+            period: text(period).parse().map_err(|_| bad(period, "a number from 0"))?,
+            phase: text(phase).parse().map_err(|_| bad(phase, "0 to 255"))?,
+            t_echo_us,
+            rejected: Some(made).filter(|made| !made.is_empty()).map(was_rejected),
+        };
+        Ok((firing, fired_us, sends))
+    }
+}
+
+/// A column's name as it is compared.
+fn same_name(name: &str) -> String {
+    name.trim().trim_start_matches('#').trim().to_lowercase().replace([' ', '-'], "_")
+}
+
+/// Reads a log; `file` stands in errors.
+pub(crate) fn read(input: impl Read, file: &Path) -> Result<FiringLog, LogError> {
+    let failed = |error| LogError::new(file, error);
+    let mut source = Source::new(Box::new(input)).map_err(failed)?;
+    let mut sample = vec![];
+    while sample.len() < 200 {
+        let Some(line) = source.next().map_err(failed)? else { break };
+        sample.push(line);
+    }
+    let header = Header::of(&sample, matches!(source, Source::Objects(_)));
+    let header = header.map_err(|message| LogError::new(file, message))?;
+    let clock = sample.iter().find_map(|line| line.text.trim().strip_prefix('#')).unwrap_or_default().trim();
+    let clock = clock.trim_start_matches("clock:").trim();
+    let mut rows = Rows::new(header, if clock.is_empty() { "unnamed" } else { clock });
+    sample.iter().for_each(|line| rows.line(line));
+    while let Some(line) = source.next().map_err(failed)? {
+        rows.line(&line);
+    }
+    rows.log(file)
+}
+
+/// The firings so far.
+struct Rows {
+    header: Header,
+    clock: String,
+    firings: Vec<Firing>,
+    listened: Vec<Firing>,
+    lacks_instants: bool,
+    /// A clock of 32 bits has wrapped so often, times 2^32.
+    wraps: i64,
+    last: i64,
+    number: u64,
+    /// The longest last cell.
+    longest: usize,
+    damaged: u64,
+    first_damage: Option<(u64, String)>,
+}
+
+impl Rows {
+    fn new(header: Header, clock: &str) -> Self {
+        Self {
+            lacks_instants: header.fired.is_none(),
+            header,
+            clock: clock.to_owned(),
+            firings: vec![],
+            listened: vec![],
+            wraps: 0,
+            last: i64::MIN,
+            number: 0,
+            longest: 0,
+            damaged: 0,
+            first_damage: None,
+        }
+    }
+
+    fn line(&mut self, line: &Line) {
+        if is_comment(&line.text) && !line.is_too_long {
+            return;
+        }
+        if let Err((column, why)) = self.row(line) {
+            self.damaged += 1;
+            let why = match column.and_then(|column| self.header.names.get(column)) {
+                Some(name) => format!("column {name}: {why}"),
+                None => why,
+            };
+            self.first_damage.get_or_insert((line.number, why));
+        }
+    }
+
+    fn row(&mut self, line: &Line) -> Result<(), Wrong> {
+        let Some(cells) = self.header.cells(line)? else { return Ok(()) };
+        let last = cells.last().map_or(0, String::len);
+        if !line.is_ended && self.header.separator.is_some() && last < self.longest {
+            return Err((None, "it ends without a line break and may be cut".to_owned()));
+        }
+        self.longest = self.longest.max(last);
+        let (mut firing, fired_us, sends) = self.header.firing(&cells, self.number)?;
+        self.lacks_instants |= fired_us.is_none();
+        firing.fired_us += self.wraps;
+        if self.last != i64::MIN && self.last - firing.fired_us > 1 << 31 {
+            self.wraps += 1 << 32;
+            firing.fired_us += 1 << 32;
+        }
+        self.last = firing.fired_us;
+        self.number += 1;
+        if sends { &mut self.firings } else { &mut self.listened }.push(firing);
+        Ok(())
+    }
+
+    fn log(mut self, file: &Path) -> Result<FiringLog, LogError> {
+        if self.firings.is_empty() {
+            return Err(match self.first_damage {
+                Some((line, why)) => LogError::at_line(file, Some(line), why),
+                None => LogError::new(file, "no firings"),
+            });
+        }
+        if self.lacks_instants {
+            self.firings.iter_mut().chain(&mut self.listened).for_each(|firing| firing.fired_us = 0);
+            self.firings.sort_by_key(|firing| firing.period);
+        }
+        let damage = self.first_damage.map(|(line, why)| match self.damaged {
+            1 => format!("line {line} is left out: {why}"),
+            damaged => format!("{damaged} lines are left out, first line {line}: {why}"),
+        });
+        let (listened, lacks_instants) = (self.listened, self.lacks_instants);
+        Ok(FiringLog { listened, lacks_instants, damage, ..FiringLog::new(&self.clock, self.firings) })
+    }
+}

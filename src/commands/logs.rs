@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use eeruf_logs::{Reading, Report, read_log};
+use eeruf_logs::{Doctor, Examination, Reading, Report, read_log};
 use serde::Serialize;
 
 use super::answer::Answer;
@@ -14,7 +14,8 @@ use crate::files::kind::expect_log;
 use crate::report::json::to_json;
 use crate::report::table::markdown;
 
-/// Say what a log holds: its form, its sensors, how they fire, and each guess with the option that overrides it.
+/// Say what a log holds: its form, its sensors, how they fire, each guess with the option that overrides it, and
+/// whether sensors read each other's sound.
 ///
 /// Reads MCAP, ROS 1 and ROS 2 bags, tables with any separator, lines of pairs of name and value, JSON, and each of
 /// them packed by gzip, bzip2 or zstd. `replay` reads the same, and Python's `read_log`.
@@ -38,6 +39,7 @@ struct Found {
     sensors: Vec<Sensor>,
     guesses: Vec<Guess>,
     firing: Firing,
+    crosstalk: Crosstalk,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     warnings: Vec<String>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -75,6 +77,17 @@ struct Firing {
     proves: String,
 }
 
+/// The doctor's verdict; sensors count from 0.
+#[derive(Serialize)]
+struct Crosstalk {
+    verdict: &'static str,
+    fooled: Vec<usize>,
+    pairs: Vec<(usize, usize)>,
+    reasons: Vec<String>,
+    record: Option<String>,
+    notes: Vec<String>,
+}
+
 impl Sensor {
     fn count(&mut self, reading: &Reading) {
         self.readings += 1;
@@ -94,7 +107,10 @@ impl Sensor {
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     expect_log(&args.file)?;
     let mut sensors: Vec<Sensor> = vec![];
-    let report = read_log(&args.file, &args.log.options(&args.file)?, |known, reading| {
+    let options = args.log.options(&args.file)?;
+    let mut doctor = Doctor::new(options.speed_of_sound);
+    let report = read_log(&args.file, &options, |known, reading| {
+        doctor.push(reading);
         while sensors.len() < known.len() {
             sensors.push(Sensor {
                 name: String::new(),
@@ -110,7 +126,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         sensors[reading.sensor].count(reading);
     })?;
     sensors.iter_mut().zip(report.names()).for_each(|(sensor, name)| sensor.name = name);
-    let found = found(&report, sensors);
+    let found = found(&report, sensors, doctor.examine(&report.firing, &report.names()));
     if args.json {
         print_line(to_json(&found))?;
     } else if !report.sensors.is_empty() {
@@ -120,7 +136,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(Answer::Yes)
 }
 
-fn found(report: &Report, sensors: Vec<Sensor>) -> Found {
+fn found(report: &Report, sensors: Vec<Sensor>, examination: Examination) -> Found {
+    let Examination { verdict, fooled, pairs, reasons, record, notes } = examination;
     let guess = |guess: &eeruf_logs::Guess| Guess {
         what: guess.what.clone(),
         value: guess.value.clone(),
@@ -139,6 +156,7 @@ fn found(report: &Report, sensors: Vec<Sensor>) -> Found {
             why: firing.why.clone(),
             proves: firing.proves(None),
         },
+        crosstalk: Crosstalk { verdict: verdict.as_str(), fooled, pairs, reasons, record, notes },
         warnings: report.warnings.clone(),
         damage: report.damage.iter().map(ToString::to_string).collect(),
         skipped: left_out(report),
@@ -163,5 +181,14 @@ fn describe(file: &str, found: &Found) -> String {
     for skipped in &found.skipped {
         _ = write!(text, "\nleft out {skipped}");
     }
+    let Crosstalk { verdict, fooled, reasons, record, notes, .. } = &found.crosstalk;
+    let names: Vec<_> = fooled.iter().map(|&sensor| found.sensors[sensor].name.as_str()).collect();
+    let at = if names.is_empty() { String::new() } else { format!(" at {}", names.join(", ")) };
+    _ = write!(text, "\ncrosstalk: {}{at}", if *verdict == "crosstalk" { "yes" } else { verdict });
+    reasons.iter().for_each(|reason| _ = write!(text, "\n- {reason}"));
+    if let Some(record) = record {
+        _ = write!(text, "\n- record {record}");
+    }
+    notes.iter().for_each(|note| _ = write!(text, "\nnote {note}"));
     text + "\n"
 }

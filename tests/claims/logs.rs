@@ -145,6 +145,24 @@ fn topic_frame(topic: &str) -> &str {
 }
 
 #[test]
+fn logs_say_whether_there_is_crosstalk() {
+    let (folder, _) = Scratch::new("unused", "");
+    let file = folder.path().join("log.mcap");
+    let file = file.to_str().unwrap();
+    for (method, verdict) in [("eeruf", "crosstalk"), ("sequential", "none seen"), ("conventional", "cannot tell")] {
+        let study = ["study", "scenes/alcove.toml", "--method", method, "--periods", "300", "--mcap", file];
+        assert_eq!(eeruf(&study).code, Some(0));
+        let found = &json(&["logs", file, "--json"])["crosstalk"];
+        assert_eq!(found["verdict"], verdict, "{found}");
+        assert_eq!(found["fooled"].as_array().unwrap().is_empty(), method != "eeruf", "{found}");
+        assert_eq!(found["record"].is_null(), method != "conventional", "{found}");
+        let text = eeruf(&["logs", file]).out;
+        let begins = if method == "eeruf" { "yes at /eeruf/robot_1/sonar_" } else { verdict };
+        assert!(text.contains(&format!("\ncrosstalk: {begins}")), "{text}");
+    }
+}
+
+#[test]
 fn a_simulated_survey_finds_who_hears_whom_and_its_ring_file_is_one_for_design() {
     let (folder, log) = Scratch::new("survey.csv", "");
     let (log, ring, picture) =

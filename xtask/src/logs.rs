@@ -21,6 +21,9 @@ pub(crate) fn logs(steps: &mut Steps) {
     for (method, physics) in [("eeruf_hopping", "plain"), ("eeruf_hopping", "default"), ("eeruf", "plain")] {
         steps.step(&format!("senders in 200 alcoves under {method}, physics {physics}"), || senders(method, physics));
     }
+    for physics in ["plain", "default"] {
+        steps.step(&format!("crosstalk in 800 logs, physics {physics}"), || doctor(physics));
+    }
     steps.step("the data set", data_set);
 }
 
@@ -45,6 +48,12 @@ fn bags(topics: u32, messages: [u32; 2]) -> Result<(), Trouble> {
         fs::remove_dir_all(folder).map_err(|error| failed(&folder.display(), &error))?;
     }
     replayed
+}
+
+/// The verdicts of `eeruf logs` on logs of alcoves, which fail if they break what docs/logs.md promises.
+fn doctor(physics: &str) -> Result<(), Trouble> {
+    let example = ["run", "--quiet", "--release", "-p", "eeruf-logs", "--example", "doctor_alcoves", "--"];
+    run(Command::new("cargo").args(example).args(["20000", "100", "1000", physics]))
 }
 
 /// A virtual environment with `rosbags`; its Python.

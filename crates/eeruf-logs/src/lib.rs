@@ -35,6 +35,7 @@ mod bytes;
 mod cdr;
 mod chunks;
 mod diagnose;
+mod doctor;
 mod error;
 mod firing_files;
 mod firing_messages;
@@ -67,6 +68,7 @@ pub use diagnose::{
     AlignError, Alignment, Diagnosis, Fault, FoundPath, Hearing, Named, Settings, Share, Timing, TimingError, align,
     diagnose, timing,
 };
+pub use doctor::{Doctor, Examination, Verdict};
 pub use error::{Damage, LogError};
 pub use firings::{Firing, FiringLog};
 pub use options::{FieldChoice, Options, RangeUnit, Table, TimeUnit};

@@ -1,0 +1,64 @@
+//! Two sensors that read each other's sound: the path is the same both ways, so that their readings differ by twice
+//! the lag between their firings, however the robot moves.
+
+use super::series::Series;
+
+/// How two sensors agree.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Mirrored {
+    /// Firings in which both have an echo.
+    pub(crate) both: u32,
+    /// Of these, readings that are each other's.
+    pub(crate) agree: u32,
+    /// Readings that nearly are: of a wall before both sensors there would be as many in as wide a band.
+    pub(crate) nearly: u32,
+    /// Readings that are far from it: two sensors whose echoes come from one wall would have none.
+    pub(crate) far: u32,
+    /// The range in microseconds of the readings that agree.
+    pub(crate) spread_us: f64,
+}
+
+/// Echo times this close are the same, in microseconds.
+const SAME_US: f64 = 45.0;
+/// Echo times that differ by so much come from different walls.
+const FAR_US: f64 = 1000.0;
+/// From here to there two echoes are nearly the same: the band is three times as wide.
+const NEARLY_US: [f64; 2] = [65.0, 200.0];
+
+/// Compares two sensors that fire within half a period of each other.
+pub(crate) fn mirrored(x: &Series, y: &Series, period_us: f64) -> Mirrored {
+    let (mut next, mut differences, mut agreeing) = (0, vec![], vec![]);
+    for (&at, &echo) in x.at_us.iter().zip(&x.echo_us) {
+        while next + 1 < y.at_us.len() && (y.at_us[next + 1] - at).abs() <= (y.at_us[next] - at).abs() {
+            next += 1;
+        }
+        let (Some(&fired), Some(&other)) = (y.at_us.get(next), y.echo_us.get(next)) else { break };
+        let lag = at - fired;
+        if lag.abs() > 0.5 * period_us || echo.is_nan() || other.is_nan() {
+            continue;
+        }
+        let difference = echo - other + 2.0 * lag;
+        if difference.abs() <= SAME_US {
+            agreeing.push(echo);
+        }
+        differences.push(difference);
+    }
+    let nearly = differences.iter().filter(|us| (NEARLY_US[0]..NEARLY_US[1]).contains(&us.abs())).count() as u32;
+    let far = differences.iter().filter(|us| us.abs() >= FAR_US).count() as u32;
+    agreeing.sort_by(f64::total_cmp);
+    let part = |share: usize| agreeing.get(agreeing.len() * share / 20).copied().unwrap_or(0.0);
+    Mirrored {
+        both: differences.len() as u32,
+        agree: agreeing.len() as u32,
+        nearly,
+        far,
+        spread_us: part(19) - part(1),
+    }
+}
+
+impl Mirrored {
+    /// Returns true if the two read each other's sound, and neither chance nor a wall before both explains it.
+    pub(crate) fn is_mutual(&self) -> bool {
+        self.agree >= 20 && self.agree >= 2 * self.nearly && 2 * self.far >= self.both && self.spread_us >= 150.0
+    }
+}

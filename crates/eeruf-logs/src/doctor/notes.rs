@@ -1,0 +1,104 @@
+//! What strikes of a single sensor, without the others.
+
+use super::series::{Series, Steady};
+
+/// Fewer readings say nothing.
+const FEWEST: usize = 30;
+
+impl Series {
+    /// Puts the readings in order of time.
+    pub(crate) fn sort(&mut self) {
+        let mut order: Vec<usize> = (0..self.at_us.len()).collect();
+        order.sort_by(|&a, &b| self.at_us[a].total_cmp(&self.at_us[b]));
+        self.at_us = order.iter().map(|&k| self.at_us[k]).collect();
+        self.echo_us = order.iter().map(|&k| self.echo_us[k]).collect();
+    }
+
+    /// The most striking thing about the sensor's readings, if there is one.
+    pub(crate) fn note(&self) -> Option<String> {
+        let count = self.echo_us.len();
+        let echoes: Vec<f64> = self.echoes().collect();
+        if count < FEWEST {
+            return None;
+        }
+        if echoes.is_empty() {
+            return Some("no echo at all: nothing in range, or a sensor that is deaf or not connected".to_owned());
+        }
+        if echoes.len() < FEWEST {
+            return None;
+        }
+        self.coarse(&echoes).or_else(|| self.chatter(&echoes)).or_else(|| self.stale()).or_else(|| self.faded())
+    }
+
+    /// Values that are all multiples of a step of 5 mm or more, and take at least four values.
+    fn coarse(&self, echoes: &[f64]) -> Option<String> {
+        let mut sorted = echoes.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        sorted.dedup_by(|a, b| (*a - *b).abs() < 0.5);
+        let steps = sorted.windows(2).map(|two| two[1] - two[0]);
+        let step = steps.fold(f64::INFINITY, f64::min);
+        let is_multiple = |us: &f64| (us / step - (us / step).round()).abs() < 0.02;
+        let is_coarse = sorted.len() >= 4 && (25.0..2000.0).contains(&step) && sorted.iter().all(is_multiple);
+        is_coarse
+            .then(|| format!("values in steps of {step:.0} us: smaller changes, and who agrees with whom, do not show"))
+    }
+
+    /// Readings that are nearly never near the one before nor at a value that comes again.
+    fn chatter(&self, echoes: &[f64]) -> Option<String> {
+        let near = echoes.windows(2).filter(|two| (two[1] - two[0]).abs() < 500.0).count();
+        let steady = self.steady().into_iter().filter(Steady::is_still);
+        let lasting: usize = steady.map(|value| value.count).sum();
+        (near * 4 < echoes.len() && lasting * 4 < echoes.len()).then(|| {
+            let percent = 100.0 * near as f64 / (echoes.len() - 1) as f64;
+            format!("chatter: {percent:.0} % of the readings are within 500 us of the one before")
+        })
+    }
+
+    /// Two steady values whose difference is the sensor's own period: the echo of the firing before.
+    fn stale(&self) -> Option<String> {
+        let mut periods: Vec<f64> = self.at_us.windows(2).map(|two| two[1] - two[0]).filter(|us| *us > 0.0).collect();
+        periods.sort_by(f64::total_cmp);
+        let period = periods.get(periods.len() / 2).copied()?;
+        let spread = periods[periods.len() * 9 / 10] - periods[periods.len() / 10];
+        if spread < 200.0 {
+            return None;
+        }
+        // A reading that fits the firing before moves against the time between the two.
+        let (mut fits, mut stays, mut number) = (0, 0, 0);
+        for k in 2..self.echo_us.len() {
+            let change = self.echo_us[k] - self.echo_us[k - 1];
+            let moved = (self.at_us[k] - self.at_us[k - 1]) - (self.at_us[k - 1] - self.at_us[k - 2]);
+            if change.is_nan() || moved.abs() < 200.0 {
+                continue;
+            }
+            number += 1;
+            fits += usize::from((change + moved).abs() < 60.0);
+            stays += usize::from(change.abs() < 60.0);
+        }
+        (number >= FEWEST && fits * 2 > number && fits > stays).then(|| {
+            format!(
+                "stale echo: {fits} of {number} readings move against the time since the sensor's own firing before, \
+                 {:.1} ms earlier",
+                period * 1e-3
+            )
+        })
+    }
+
+    /// Two steady values with at least a tenth of the readings each.
+    fn faded(&self) -> Option<String> {
+        if self.moves() {
+            return None;
+        }
+        let count = self.echoes().count();
+        let mut values = self.steady();
+        values.retain(|value| value.count * 10 >= count);
+        let [near, far] = values[..] else { return None };
+        let jumps = self.echo_us.windows(2).filter(|two| (two[1] - two[0]).abs() > 0.5 * (far.from_us - near.to_us));
+        Some(format!(
+            "jumps {} times between {:.1} and {:.1} ms: a near echo that fades, or another's sound",
+            jumps.count(),
+            0.5e-3 * (near.from_us + near.to_us),
+            0.5e-3 * (far.from_us + far.to_us)
+        ))
+    }
+}

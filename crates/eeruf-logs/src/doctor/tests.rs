@@ -1,0 +1,108 @@
+use super::*;
+
+/// Readings of sensors that fire at these times, in microseconds, and read this, 300 times each.
+fn examine(sensors: usize, pattern: Pattern, reads: impl Fn(u64, usize) -> (u64, Option<f64>)) -> Examination {
+    let mut doctor = Doctor::new(343.2);
+    for round in 0..300 {
+        for sensor in 0..sensors {
+            let (at_us, echo_us) = reads(round, sensor);
+            let range_m = echo_us.map_or(f64::INFINITY, |us| 0.5e-6 * 343.2 * us);
+            doctor.push(&Reading {
+                sensor,
+                at_ns: Some(1000 * at_us),
+                radiation: 0,
+                field_of_view_rad: 0.0,
+                min_range_m: 0.0,
+                max_range_m: 0.0,
+                range_m,
+                variance: None,
+            });
+        }
+    }
+    let firing = FiringPattern { pattern, period_us: Some(60_000), gap_us: Some(40_000), ..FiringPattern::default() };
+    doctor.examine(&firing, &(0..sensors).map(|sensor| format!("s{sensor}")).collect::<Vec<_>>())
+}
+
+/// Noise of up to 20 us, the same in each run.
+fn noise(round: u64, sensor: usize) -> f64 {
+    let mixed = (round * 64 + sensor as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    ((mixed ^ (mixed >> 31)) >> 40) as f64 / f64::from(1 << 24) * 40.0 - 20.0
+}
+
+#[test]
+fn alternating_lags_show_foreign_sound_standing_and_driving() {
+    // Sensor 1 fires 10 ms after sensor 0, or 13 ms.
+    let at = |round: u64, sensor: usize| 60_000 * round + sensor as u64 * (10_000 + 3000 * (round % 2));
+    for driving_us in [0.0, 30.0] {
+        let own = |round: u64, sensor: usize| 9000.0 + driving_us * round as f64 + noise(round, sensor);
+        let healthy = examine(2, Pattern::Alternating, |round, sensor| (at(round, sensor), Some(own(round, sensor))));
+        assert_eq!((healthy.verdict, healthy.fooled), (Verdict::NoneSeen, vec![]), "{driving_us}");
+        // Sound of sensor 0 that takes 16 ms reaches sensor 1 after 6 or 3 ms.
+        let foreign = examine(2, Pattern::Alternating, |round, sensor| {
+            let heard = 6000.0 - 3000.0 * (round % 2) as f64 + driving_us * round as f64 + noise(round, sensor);
+            (at(round, sensor), Some(if sensor == 1 { heard } else { own(round, sensor) }))
+        });
+        assert_eq!((foreign.verdict, foreign.fooled), (Verdict::Crosstalk, vec![1]), "{driving_us}");
+        assert!(foreign.reasons[0].starts_with("s1: 100 % of the readings depend on which of two lags"));
+    }
+}
+
+#[test]
+fn echo_that_fades_at_random_is_no_crosstalk() {
+    let at = |round: u64, sensor: usize| 60_000 * round + sensor as u64 * (10_000 + 3000 * (round % 2));
+    let fades = |round: u64, sensor: usize| noise(round * 7 + 3, sensor) > 5.0;
+    let found = examine(2, Pattern::Alternating, |round, sensor| {
+        let echo = if fades(round, sensor) { 12_000.0 } else { 9000.0 };
+        (at(round, sensor), Some(echo + noise(round, sensor)))
+    });
+    assert_eq!((found.verdict, found.notes.len()), (Verdict::NoneSeen, 2), "{found:?}");
+    assert!(found.notes[0].starts_with("s0: jumps ") && found.notes[0].contains("between 9.0 and 12.0 ms"));
+}
+
+#[test]
+fn two_sensors_that_read_one_path_both_ways_are_a_pair() {
+    // Sensor 1 fires 2 ms after sensor 0; the path between them takes 12 to 15 ms: 0 reads it after that, 1 2 ms less.
+    let at = |round: u64, sensor: usize| 60_000 * round + 2000 * sensor as u64;
+    let path = |round: u64| 12_000.0 + 10.0 * round as f64;
+    let own = |round: u64, sensor: usize| 9000.0 + 2500.0 * sensor as f64 + 8.0 * round as f64;
+    let found = examine(2, Pattern::ConstantLags, |round, sensor| {
+        let lag = if sensor == 0 { 2000.0 } else { -2000.0 };
+        let heard = if round < 60 { path(round) + lag } else { own(round, sensor) };
+        (at(round, sensor), Some(heard + noise(round, sensor)))
+    });
+    assert_eq!((found.verdict, &found.pairs[..], &found.fooled[..]), (Verdict::Crosstalk, &[(0, 1)][..], &[0, 1][..]));
+    // A wall that both see: their difference drifts through the same value.
+    let wall = examine(2, Pattern::ConstantLags, |round, sensor| {
+        let turned = if sensor == 1 { 14.0 * round as f64 - 6000.0 } else { 0.0 };
+        (at(round, sensor), Some(9000.0 + 8.0 * round as f64 + turned + noise(round, sensor)))
+    });
+    assert_eq!((wall.verdict, wall.pairs), (Verdict::CannotTell, vec![]));
+    assert!(wall.record.is_some_and(|record| record.contains("lags that change")));
+}
+
+#[test]
+fn a_log_that_would_not_show_crosstalk_cannot_tell() {
+    let steady = |round: u64, sensor: usize| (60_000 * round, Some(9000.0 + noise(round, sensor)));
+    for pattern in [Pattern::AtOnce, Pattern::ConstantLags, Pattern::Unknown, Pattern::Hopping] {
+        let found = examine(2, pattern, steady);
+        assert_eq!((found.verdict, found.record.is_some()), (Verdict::CannotTell, true), "{pattern:?}");
+    }
+    assert_eq!(examine(2, Pattern::InTurn, steady).verdict, Verdict::NoneSeen);
+}
+
+#[test]
+fn single_sensors_are_noted_for_what_strikes() {
+    let note = |echo: &dyn Fn(u64) -> Option<f64>| {
+        // Every second period is longer by 1 ms.
+        let found = examine(1, Pattern::Unknown, |round, _| (60_000 * round + 1000 * (round / 2 % 2), echo(round)));
+        found.notes.first().cloned().unwrap_or_default()
+    };
+    assert_eq!(note(&|round| Some(9000.0 + noise(round, 0))), "");
+    assert!(note(&|_| None).contains("no echo at all"));
+    assert!(note(&|round| Some(583.0 * (10 + round % 5) as f64)).contains("steps of 583 us"));
+    assert!(note(&|round| Some(9000.0 + 400.0 * noise(round, 0))).contains("chatter"));
+    // The echo of the firing before comes 60 ms, 61 ms or 59 ms after that.
+    let at = |round: u64| (60_000 * round + 1000 * (round / 2 % 2)) as f64;
+    let stale = |round: u64| (round > 0).then(|| 65_000.0 - (at(round) - at(round - 1)) + noise(round, 0) / 4.0);
+    assert!(note(&stale).contains("stale echo"), "{}", note(&stale));
+}

@@ -183,7 +183,7 @@ def set_three(
     Args:
         seeds: how many placings, 1 to 100,000.
         methods: names of ``eeruf.sim.METHODS``, and ``"driving"``, time hopping by its settings for robots that drive; by
-            default simultaneous, sequential, sequential_votes, dither, eeruf, eeruf_hopping and driving.
+            default simultaneous, sequential, sequential_votes, dither, eeruf, eeruf_hopping, driving and flow.
         periods: of 100 ms, for which each placing is simulated, 10 to 100,000.
         first: the first placing's number.
         physics: as the argument of ``eeruf.sim.Scene``.

@@ -19,7 +19,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     common: Common,
     /// Simulate only these methods, separated by commas; `driving` is eeruf_hopping by its settings for robots that
-    /// drive. By default simultaneous, sequential, sequential_votes, dither, eeruf, eeruf_hopping and driving
+    /// drive. By default simultaneous, sequential, sequential_votes, dither, eeruf, eeruf_hopping, driving and flow
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     ways: Vec<Way>,
     /// For how many periods each placing is simulated

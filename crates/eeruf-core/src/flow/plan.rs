@@ -1,7 +1,7 @@
 //! [`FlowPlan`]: when the sensors of a flow ring fire. The gaps of a cycle are decided in `planning`.
 
 use super::settings::FlowSettings;
-use super::slot::{DISABLED, QUIET_US, SETTLED, SOLO, Slot};
+use super::slot::{DISABLED, QUIET_US, SETTLED, Slot};
 use crate::hopping::{CATCHES_UP, HoppingCode, HoppingError, HoppingListening, Lateness, Weighed};
 use crate::judging::{Firing, Heard, Judge};
 use crate::plan::{Limits, Plan};
@@ -30,8 +30,6 @@ pub struct FlowPlan<const K: usize> {
     settled: bool,
     pub(super) start: Instant,
     due: Instant,
-    /// The last firing of any sensor.
-    pub(super) last_fired: Instant,
     lateness: Lateness,
     pub(super) code: HoppingCode,
     /// Length of the present cycle.
@@ -41,11 +39,8 @@ pub struct FlowPlan<const K: usize> {
     /// One unit of the grid.
     pub(super) unit: Micros,
     pub(super) window: Micros,
-    /// From a firing until nothing of it is heard in a window that opens then: the most quiet that a sensor gets, and
-    /// what a solo firing has before it.
-    pub(super) dies: Micros,
-    /// What a solo firing has after it: whatever fires later is heard when the window has closed.
-    pub(super) closes: Micros,
+    /// From a firing until nothing of it is heard in a window that opens then: the most quiet that a sensor gets.
+    dies: Micros,
     tolerated: u16,
     pub(super) settings: FlowSettings,
     pub(super) slots: [Slot; K],
@@ -89,14 +84,12 @@ impl<const K: usize> FlowPlan<K> {
             settled: true,
             start: now,
             due: now,
-            last_fired: now,
             lateness: Lateness::NEW,
             length: settings.shortest_cycle,
             fastest: 0,
             unit: code.width().saturating_add(code.step()).saturating_add(code.step()),
             window: listening.window,
             dies: listening.dies(),
-            closes: listening.window.saturating_sub(listening.blanking),
             tolerated: (code.step().abs_diff(t_delta).as_micros().saturating_sub(1) / 2) as u16,
             slots: [Slot::new(quiet(settings.shortest_gap)); K],
             code,
@@ -216,7 +209,6 @@ impl<const K: usize> Plan for FlowPlan<K> {
         let (phase, settled) = (self.phase, self.settled);
         let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { return };
         slot.fire(phase, settled);
-        self.last_fired = now;
         if late == Micros::ZERO {
             self.lateness.note_punctual();
         }
@@ -275,12 +267,6 @@ impl<const K: usize> Plan for FlowPlan<K> {
         self.learn(heard, verdict, judge);
     }
 
-    fn fired(&mut self, _sensor: u8, at: Instant) {
-        if !self.last_fired.has_reached(at) {
-            self.last_fired = at;
-        }
-    }
-
     fn may_fire_ahead(&self) -> bool {
         false
     }
@@ -326,7 +312,7 @@ impl<const K: usize> Plan for FlowPlan<K> {
     fn last_firing(&self, sensor: u8, _periods_ago: u8) -> Firing {
         let Some(slot) = self.slots.get(usize::from(sensor)) else { return Firing::new(Phase(0)) };
         let steady = slot.is(SETTLED) && self.lateness.is_steady(slot.late, self.tolerated);
-        Firing { phase: Phase(slot.phase), solo: slot.is(SOLO), steady, expected_change_us: 0 }
+        Firing { steady, ..Firing::new(Phase(slot.phase)) }
     }
 
     fn limits(&self) -> Limits<'_> {

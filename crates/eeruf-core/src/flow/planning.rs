@@ -1,7 +1,7 @@
 //! The gaps of the next cycle of a flow ring.
 
 use super::plan::FlowPlan;
-use super::slot::{FIRED, GIVEN, QUIET_US, WILL_BE_SOLO};
+use super::slot::{FIRED, GIVEN, QUIET_US};
 use crate::hopping::CATCHES_UP;
 use crate::plan::Plan;
 use crate::time::{Instant, Micros};
@@ -173,33 +173,6 @@ impl<const K: usize> FlowPlan<K> {
         }
         let empty = if self.planned == 0 { self.units(self.settings.shortest_cycle, true) } else { at };
         self.length = Micros::new(u32::from(empty) * self.unit.as_micros());
-        for place in 0..self.planned {
-            let sensor = self.order(place);
-            let solo = self.quiet_before(place) >= self.dies && self.quiet_after(place) >= self.closes;
-            if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
-                slot.set(WILL_BE_SOLO, solo);
-            }
-        }
-    }
-
-    /// Time from the firing before one to it.
-    fn quiet_before(&self, place: u8) -> Micros {
-        let own = self.offset(self.order(place));
-        match place.checked_sub(1) {
-            Some(before) => own.saturating_sub(self.offset(self.order(before))),
-            None => own.saturating_add(self.silent_for()),
-        }
-    }
-
-    fn quiet_after(&self, place: u8) -> Micros {
-        let own = self.offset(self.order(place));
-        let next = if place + 1 < self.planned { self.offset(self.order(place + 1)) } else { self.length };
-        next.saturating_sub(own)
-    }
-
-    /// Time from the last firing of any sensor to the start of the cycle.
-    fn silent_for(&self) -> Micros {
-        self.start.since(self.last_fired)
     }
 
     /// How long after the cycle's start a sensor that has last `fired` then still listens.

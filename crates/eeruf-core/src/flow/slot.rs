@@ -30,16 +30,12 @@ pub(super) const QUIET_US: u32 = 256;
 
 /// It has fired since the start.
 pub(super) const FIRED: u8 = 1;
-/// Its last firing was solo.
-pub(super) const SOLO: u8 = 2;
 /// What it hears of its last firing moves as the code says.
-pub(super) const SETTLED: u8 = 4;
+pub(super) const SETTLED: u8 = 2;
 /// It does not fire.
-pub(super) const DISABLED: u8 = 8;
-/// Its firing in the present cycle will be solo.
-pub(super) const WILL_BE_SOLO: u8 = 16;
+pub(super) const DISABLED: u8 = 4;
 /// The gaps around it were raised to its need.
-pub(super) const GIVEN: u8 = 32;
+pub(super) const GIVEN: u8 = 8;
 
 impl Slot {
     pub(super) const fn new(quiet: u8) -> Self {
@@ -68,10 +64,9 @@ impl Slot {
     /// It fires, on time.
     #[inline(always)]
     pub(super) fn fire(&mut self, phase: u8, settled: bool) {
-        let solo = if self.is(WILL_BE_SOLO) { SOLO } else { 0 };
         let settled = if settled { SETTLED } else { 0 };
         (self.late, self.phase) = (0, phase);
-        self.flags = (self.flags & !(SOLO | SETTLED)) | FIRED | solo | settled;
+        self.flags = (self.flags & !SETTLED) | FIRED | settled;
     }
 }
 

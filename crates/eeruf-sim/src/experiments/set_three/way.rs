@@ -19,7 +19,7 @@ pub enum Way {
 
 impl Way {
     /// The ways that are compared unless others are asked for.
-    pub const USUAL: [Self; 7] = [
+    pub const USUAL: [Self; 8] = [
         Self::Method(Method::Simultaneous),
         Self::Method(Method::Sequential),
         Self::Method(Method::SequentialVotes),
@@ -27,6 +27,7 @@ impl Way {
         Self::Method(Method::Eeruf),
         Self::Method(Method::EerufHopping),
         Self::Driving,
+        Self::Method(Method::Flow),
     ];
 
     /// The name in the program, in JSON and in Python.

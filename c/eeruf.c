@@ -1934,8 +1934,8 @@ static void shift_tracks(EerufHopper *hopper, int32_t change_us) {
 /* The surplus that two consecutive readings of one echo show, or UNKNOWN. */
 static int8_t surplus_of(uint32_t last_us, uint32_t t_echo_us, int32_t change_us) {
     int32_t surplus;
-    if ((change_us < LEAST_CHANGE_US && change_us > -LEAST_CHANGE_US) || t_echo_us == EERUF_NO_ECHO ||
-        last_us == EERUF_NO_ECHO)
+    if ((change_us < LEAST_CHANGE_US && change_us > -LEAST_CHANGE_US) || change_us > INT16_MAX ||
+        change_us < -INT16_MAX || t_echo_us == EERUF_NO_ECHO || last_us == EERUF_NO_ECHO)
         return UNKNOWN;
     /* Times have 24 bits, the product 30. */
     surplus = WHOLE * ((int32_t)t_echo_us - (int32_t)last_us) / change_us - WHOLE;
@@ -1953,8 +1953,7 @@ static void learn(EerufHopper *hopper, uint32_t t_echo_us, int32_t change_us, ui
     hopper->observed = observed;
     if (before == UNKNOWN) return;
     if (differs < 0) differs = (int16_t)-differs;
-    /* differs * expected <= WHOLE * t_delta, without a product of 40 bits. */
-    if (differs != 0 && expected_us > (uint32_t)WHOLE * t_delta_us / (uint16_t)differs) return;
+    if ((uint32_t)differs * expected_us > (uint32_t)WHOLE * t_delta_us) return;
     known = (int16_t)(known + (observed - known) / 2);
     hopper->surplus = (int8_t)(known > WHOLE ? WHOLE : known < -WHOLE ? -WHOLE : known);
 }

@@ -53,16 +53,17 @@ pub(super) struct SensorTracks<const H: usize> {
 const MOVING_VOTES: u8 = 3;
 
 /// As much more as is expected: a surplus is between none at all and twice as much.
-const WHOLE: i32 = 64;
+const WHOLE: u32 = 64;
 
 /// Two readings that show a surplus beyond this, of either sign, are not of one echo.
-const MOST_SURPLUS: i32 = WHOLE + WHOLE / 4;
+const MOST_SURPLUS: u32 = WHOLE + WHOLE / 4;
 
 /// Readings that show no surplus.
 const UNKNOWN: i8 = i8::MIN;
 
-/// A smaller change, in microseconds, tells nothing of how much of it there is.
+/// A smaller change, in microseconds, tells nothing of how much of it there is, and no robot makes a larger one.
 const LEAST_CHANGE_US: u32 = 40;
+const MOST_CHANGE_US: u32 = i16::MAX as u32;
 
 impl<const H: usize> SensorTracks<H> {
     pub(super) const NEW: Self =
@@ -84,7 +85,7 @@ impl<const H: usize> SensorTracks<H> {
         if expected_us != 0 {
             let most = if expected_us < 0 { i16::MIN } else { i16::MAX };
             let expected_us = i32::from(i16::try_from(expected_us).unwrap_or(most));
-            let change_us = expected_us + expected_us * i32::from(self.surplus) / WHOLE;
+            let change_us = expected_us + expected_us * i32::from(self.surplus) / WHOLE as i32;
             for track in &mut self.tracks {
                 track.shift(change_us);
             }
@@ -105,22 +106,36 @@ impl<const H: usize> SensorTracks<H> {
             return;
         }
         let differs = u32::from(observed.abs_diff(before));
-        // A difference times the expected change, without a product of 40 bits.
-        let most_us = (WHOLE as u32 * t_delta.as_micros()).checked_div(differs);
-        if most_us.is_none_or(|most_us| expected_us.unsigned_abs() <= most_us) {
-            self.surplus += ((i32::from(observed) - i32::from(self.surplus)) / 2) as i8;
-            self.surplus = self.surplus.clamp(-(WHOLE as i8), WHOLE as i8);
+        if differs * expected_us.unsigned_abs() <= WHOLE * t_delta.as_micros() {
+            let surplus = i32::from(self.surplus);
+            let learned = surplus + (i32::from(observed) - surplus) / 2;
+            self.surplus = learned.clamp(-(WHOLE as i32), WHOLE as i32) as i8;
         }
     }
 
     /// The surplus that two consecutive readings of one echo show, or [`UNKNOWN`].
     fn surplus_of(last: u32, t_echo: u32, expected_us: i32) -> i8 {
-        if expected_us.unsigned_abs() < LEAST_CHANGE_US || t_echo == SILENCE || last == SILENCE {
+        let expected = expected_us.unsigned_abs();
+        if !(LEAST_CHANGE_US..=MOST_CHANGE_US).contains(&expected) || t_echo == SILENCE || last == SILENCE {
             return UNKNOWN;
         }
-        // Times have 24 bits, the product 30.
-        let surplus = WHOLE * (t_echo as i32 - last as i32) / expected_us - WHOLE;
-        if (-MOST_SURPLUS..=MOST_SURPLUS).contains(&surplus) { surplus as i8 } else { UNKNOWN }
+        // Times have 24 bits, the products 30.
+        let mut rest = WHOLE * t_echo.abs_diff(last);
+        if rest >= (WHOLE + MOST_SURPLUS + 1) * expected {
+            return UNKNOWN;
+        }
+        // By shifts: small processors take a hundred instructions to divide.
+        let (mut share, mut bit) = (0, 128);
+        while bit > 0 {
+            if rest >= bit * expected {
+                rest -= bit * expected;
+                share += bit as i32;
+            }
+            bit /= 2;
+        }
+        let share = if (t_echo < last) == (expected_us < 0) { share } else { -share };
+        let surplus = share - WHOLE as i32;
+        if surplus < -(MOST_SURPLUS as i32) { UNKNOWN } else { surplus as i8 }
     }
 
     /// Takes in a reading.

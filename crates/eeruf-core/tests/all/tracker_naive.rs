@@ -156,7 +156,9 @@ impl Naive {
         let last = core::mem::replace(&mut self.last, place);
         let expected = i64::from(firing.expected_change_us);
         let observed = match (last, place) {
-            (Some(last), Some(now)) if expected.abs() >= 40 => Some(64 * (now - last) / expected - 64),
+            (Some(last), Some(now)) if (40..32_768).contains(&expected.abs()) => {
+                Some(64 * (now - last) / expected - 64)
+            }
             _ => None,
         };
         let observed = observed.filter(|surplus| (-80..=80).contains(surplus));

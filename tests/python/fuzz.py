@@ -316,6 +316,9 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
             c.small(1), readings=c.small(8), methods=m(["eeruf"]), progress=c.random.choice([None, False, 3, len])
         ),
         lambda: ANY.experiments.set_two(1, methods=m([]), second_robot=m("behind"), pilot=m("own"), physics=m("plain")),
+        lambda: ANY.experiments.set_three(
+            1, periods=m(20), methods=m(["driving"]), physics=m("plain"), height=m("room")
+        ),
         lambda: ANY.experiments.speed_sweep(m([]), seeds=m(1), methods=m([]), bodies=m(True), t_delta_us=m(150)),
         lambda: ANY.sweep(
             m(repr),

@@ -43,6 +43,8 @@ def inherited(of: type) -> dict[str, Any]:
         for base in reversed(of.__mro__)
         if base.__module__.startswith("eeruf")
         for name, value in vars(base).items()
+        # The default of a field is no method.
+        if name not in getattr(base, "__dataclass_fields__", ())
     }
 
 

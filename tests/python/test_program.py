@@ -33,7 +33,7 @@ def program(*words: str) -> Any:
 
 @pytest.mark.parametrize("method", [method for method in sim.METHODS if method != "eeruf_best"])
 def test_a_simulation_has_the_figures_that_the_program_prints(method: Any) -> None:
-    printed = program("study", "scenes/alcove.toml", "--periods", "200")["methods"][method]
+    printed = program("study", "scenes/alcove.toml", "--periods", "200", "--method", method)["methods"][method]
     readings = sim.simulate(sim.Scene.read_toml(ROOT / "scenes/alcove.toml"), method, periods=200)
     summary = readings.summary().to_dict()
     # The program names the method by the key.

@@ -128,7 +128,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{alcoves} alcoves from {first} on, {periods} periods, physics {physics_name}; 95 % intervals.\n");
     println!("| firing | robot | crosstalk | none seen | cannot tell | fooled sensors named | alone: none seen |");
     println!("|---|---|--:|--:|--:|---|---|");
-    let (mut sum, mut telling, mut told) = ([[0; 2]; 4], 0, 0);
+    let (mut sum, mut telling, mut verdicts) = ([[0; 2]; 4], 0, 0);
     for (way, method) in WAYS {
         for drives in [false, true] {
             let method: Method = method.parse()?;
@@ -155,7 +155,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             ];
             sum.iter_mut().zip(counts).for_each(|(sum, (part, of))| *sum = [sum[0] + part, sum[1] + of]);
             if drives || !["at once", "constant lags"].contains(&way) {
-                (telling, told) = (telling + all.len(), told + all.len() - of(Verdict::CannotTell));
+                (telling, verdicts) = (telling + all.len(), verdicts + all.len() - of(Verdict::CannotTell));
             }
             println!(
                 "| {way} | {} | {} | {} | {} | {} | {} |",
@@ -173,9 +173,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("- Logs with a sensor named that heard no other: {sensor}");
     println!("- Logs with a pair named of which neither heard the other 5 times: {pair}");
     println!("- Crosstalk named where each sensor was alone: {alone}");
-    println!("- Verdicts where lags change, sensors fire in turn, or the robot drives: {}", share(told, telling));
+    println!("- Verdicts where lags change, sensors fire in turn, or the robot drives: {}", share(verdicts, telling));
     let is_rare = |[part, of]: [usize; 2]| 100 * part <= of;
-    if !is_rare(sum[0]) || !is_rare(sum[2]) || 10 * told < 6 * telling {
+    if !is_rare(sum[0]) || !is_rare(sum[2]) || 10 * verdicts < 6 * telling {
         return Err("expected well above 5 % and false pairs in at most 1 % of the logs, and verdicts in 60 %".into());
     }
     Ok(())

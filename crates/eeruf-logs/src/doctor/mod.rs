@@ -178,7 +178,7 @@ impl Doctor {
             } else if deviations >= DEVIATIONS && share >= LEAST_SHARE {
                 found.fooled.push(sensor);
                 found.reasons.push(format!(
-                    "{}: {:.0} % of the readings depend on which of two lags the others fire with; an own echo does not",
+                    "{}: {:.0} % of the readings depend on which of two lags others fire with; an own echo does not",
                     name(sensor),
                     100.0 * share
                 ));

@@ -6,7 +6,7 @@ use crate::hopping::{CATCHES_UP, HoppingCode, HoppingError, HoppingListening, La
 use crate::judging::{Firing, Heard, Judge};
 use crate::plan::{Limits, Plan};
 use crate::reading::{ReadingKind, Verdict};
-use crate::schedule::Phase;
+use crate::schedule::{MAX_PERIOD, Phase};
 use crate::time::{Instant, Micros};
 
 /// No sensor has this number.
@@ -50,7 +50,9 @@ impl<const K: usize> FlowPlan<K> {
     /// A plan whose first cycle begins at `now`.
     ///
     /// # Errors
-    /// [`HoppingError`] as for [`HoppingPlan::new`](crate::hopping::HoppingPlan::new).
+    /// [`HoppingError`] for more sensors than there is room for, a code as in [`HoppingCode::new`], a step no larger than
+    /// `t_delta`, a window longer than [`HoppingListening::MAX_WINDOW`], or a shortest cycle that is shorter than window
+    /// and code or longer than [`MAX_PERIOD`].
     pub fn new(
         sensors: usize,
         settings: FlowSettings,
@@ -70,7 +72,7 @@ impl<const K: usize> FlowPlan<K> {
             return Err(HoppingError::Window { window: listening.window, most });
         }
         let least = listening.window.saturating_add(code.width());
-        if settings.shortest_cycle < least {
+        if settings.shortest_cycle < least || settings.shortest_cycle > MAX_PERIOD {
             return Err(HoppingError::Period { period: settings.shortest_cycle, least });
         }
         let mut plan = Self {

@@ -1,6 +1,6 @@
 //! The gaps of the next cycle of a flow ring.
 
-use super::plan::FlowPlan;
+use super::plan::{FlowPlan, quiet};
 use super::slot::{FIRED, GIVEN, QUIET_US};
 use crate::hopping::CATCHES_UP;
 use crate::plan::Plan;
@@ -34,10 +34,10 @@ impl<const K: usize> FlowPlan<K> {
     }
 
     /// A time in units of the grid.
-    fn units(&self, time: Micros, up: bool) -> u16 {
+    fn units(&self, time: Micros, up: bool) -> u32 {
         let unit = self.unit.as_micros().max(1);
-        let time = time.as_micros() + if up { unit - 1 } else { 0 };
-        u16::try_from(time / unit).unwrap_or(u16::MAX)
+        let time = time.as_micros().saturating_add(if up { unit - 1 } else { 0 });
+        time / unit
     }
 
     fn quiet_units(&self, quiet: u8) -> u8 {
@@ -81,47 +81,42 @@ impl<const K: usize> FlowPlan<K> {
     }
 
     /// Gives each firing the gap to the next, within `most` units in all.
-    fn give_gaps(&mut self, most: u16) {
-        let least = self.quiet_units(super::plan::quiet(self.settings.shortest_gap)).max(1);
+    fn give_gaps(&mut self, most: u32) {
+        let least = self.quiet_units(quiet(self.settings.shortest_gap)).max(1);
         let mut sum = 0;
         for place in 0..self.planned {
             let gap = self.need(place).max(least);
             self.set_gap(place, gap);
-            sum += u16::from(gap);
+            sum += u32::from(gap);
         }
         if sum > most {
-            sum = u16::from(least) * u16::from(self.planned);
-            let mut left = most.saturating_sub(sum);
-            for place in 0..self.planned {
-                self.set_gap(place, least);
-                let sensor = self.order(place);
-                if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
-                    slot.set(GIVEN, false);
-                }
-            }
-            while let Some(place) = self.longest_unserved() {
-                let sensor = self.order(place);
-                let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { break };
-                slot.set(GIVEN, true);
-                let (before, after) = (slot.before, slot.after);
-                let previous = if place == 0 { self.planned - 1 } else { place - 1 };
-                for (place, quiet) in [(previous, before), (place, after)] {
-                    let (need, has) = (self.quiet_units(quiet), self.gap(place));
-                    let more = u16::from(need.saturating_sub(has)).min(left);
-                    self.set_gap(place, has + more as u8);
-                    left -= more;
-                    sum += more;
-                }
-                if left == 0 {
-                    break;
-                }
+            self.share_out(most, least);
+        }
+    }
+
+    /// Gives all the least gap, and what is left to whoever has been unserved for longest.
+    fn share_out(&mut self, most: u32, least: u8) {
+        for place in 0..self.planned {
+            self.set_gap(place, least);
+            let sensor = self.order(place);
+            if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
+                slot.set(GIVEN, false);
             }
         }
-        let least_sum = self.units(self.settings.shortest_cycle, true);
-        if let Some(last) = self.planned.checked_sub(1) {
-            if sum < least_sum {
-                let gap = u16::from(self.gap(last)) + least_sum - sum;
-                self.set_gap(last, gap.min(255) as u8);
+        let mut left = most.saturating_sub(u32::from(least) * u32::from(self.planned));
+        while left > 0 {
+            let Some(place) = self.longest_unserved() else { break };
+            let sensor = self.order(place);
+            let Some(slot) = self.slots.get_mut(usize::from(sensor)) else { break };
+            slot.set(GIVEN, true);
+            let (before, after) = (slot.before, slot.after);
+            let previous = if place == 0 { self.planned - 1 } else { place - 1 };
+            for (place, quiet) in [(previous, before), (place, after)] {
+                let (need, has) = (self.quiet_units(quiet), self.gap(place));
+                // Below 256.
+                let more = u32::from(need.saturating_sub(has)).min(left) as u8;
+                self.set_gap(place, has + more);
+                left -= u32::from(more);
             }
         }
     }
@@ -157,7 +152,8 @@ impl<const K: usize> FlowPlan<K> {
 
     /// Adds the gaps up to firing times.
     fn place_firings(&mut self, fired: impl Fn(u8) -> Instant) {
-        let mut at = 0;
+        // At most 64 gaps of a byte, and a window.
+        let mut at = 0_u16;
         for place in 0..self.planned {
             let sensor = self.order(place);
             if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
@@ -165,14 +161,14 @@ impl<const K: usize> FlowPlan<K> {
             }
             let rests = self.rests_for(sensor, fired(sensor));
             let short = rests.saturating_sub(self.offset(sensor));
-            at += self.units(short, true);
+            at = at.saturating_add(u16::try_from(self.units(short, true)).unwrap_or(u16::MAX));
             if let Some(slot) = self.slots.get_mut(usize::from(sensor)) {
                 slot.at = at;
             }
-            at += u16::from(self.gap(place));
+            at = at.saturating_add(u16::from(self.gap(place)));
         }
-        let empty = if self.planned == 0 { self.units(self.settings.shortest_cycle, true) } else { at };
-        self.length = Micros::new(u32::from(empty) * self.unit.as_micros());
+        let units = u32::from(at).max(self.units(self.settings.shortest_cycle, true));
+        self.length = Micros::new(units.saturating_mul(self.unit.as_micros()));
     }
 
     /// How long after the cycle's start a sensor that has last `fired` then still listens.

@@ -168,6 +168,20 @@ fn who_is_unserved_longest_gets_its_quiet_first() {
 }
 
 #[test]
+fn a_cycle_is_never_shorter_than_the_shortest() {
+    for shortest in [60_000, 400_000, 1_000_000, 100_000_000] {
+        let mut settings = FlowSettings::DEFAULT;
+        settings.shortest_cycle = Micros::new(shortest);
+        let mut plan = FlowPlan::<2>::new(2, settings, listening(), Instant::from_micros(0)).unwrap();
+        let mut fired = [Instant::from_micros(0); 2];
+        for _ in 0..5 {
+            let (_, length) = cycle(&mut plan, &mut fired, 0, WELL);
+            assert!((shortest..shortest + 1_680).contains(&length), "{shortest}: {length}");
+        }
+    }
+}
+
+#[test]
 fn each_error_names_what_is_wrong() {
     let now = Instant::from_micros(0);
     let with = |change: fn(&mut FlowSettings)| {
